@@ -187,10 +187,8 @@ void FastForward::end_walk(std::uint64_t cycle) {
   is_walking_ = false;
   if (!holds_group(room_)) return;
   const TransitionCache::Accesses accesses = this->accesses();
-  const std::optional<HostRequests> host = host_requests(cycle);
-  if (!host || (host->words == 0 && known_.find(state_, accesses))) return;
-  stepped_ = {
-      state_, accesses, *host, host_.words, progress(cycle), control().counts(), control().match().part()};
+  if (host_.words == 0 && known_.find(state_, accesses)) return;
+  stepped_ = {state_, accesses, host_, progress(cycle), control().counts(), control().match().part()};
   stepper_.arbitration().begin_recording();
 }
 
@@ -218,8 +216,7 @@ std::uint64_t FastForward::walk(std::uint64_t cycle, std::uint64_t end) {
 
 // The transition from `cycle` on, in which the host requests its words.
 std::optional<TransitionCache::Transition> FastForward::find_host(std::uint64_t cycle) const {
-  if (!is_walking_) return std::nullopt;
-  std::optional<HostRequests> requests = host_requests(cycle);
+  std::optional<HostRequests> requests = is_walking_ ? requests_of(host_, cycle) : std::nullopt;
   if (!requests) return std::nullopt;
   const TransitionCache::Accesses accesses = this->accesses();
   auto found = known_.find(state_, accesses, *requests);
@@ -231,14 +228,13 @@ std::optional<TransitionCache::Transition> FastForward::find_host(std::uint64_t 
   return found && known_.progress(*found).fits(room_) ? found : std::nullopt;
 }
 
-// The requests of host_ from `cycle` on. Nothing if a memo cannot hold them.
-std::optional<HostRequests> FastForward::host_requests(std::uint64_t cycle) const {
-  if (host_.words == 0) return HostRequests{};
-  const std::uint64_t first = host_.first > cycle ? host_.first - cycle : 0;
+// The requests of these words from `cycle` on. Nothing if a memo cannot hold them.
+std::optional<HostRequests> FastForward::requests_of(const HostWords& host, std::uint64_t cycle) {
+  const std::uint64_t first = host.first > cycle ? host.first - cycle : 0;
   if (first > HostRequests::kMostCycles) return std::nullopt;
   return HostRequests{static_cast<std::uint16_t>(first),
-                      static_cast<std::uint16_t>(std::min<std::size_t>(host_.words, HostRequests::kEndless)),
-                      host_.route};
+                      static_cast<std::uint16_t>(std::min<std::size_t>(host.words, HostRequests::kEndless)),
+                      host.route};
 }
 
 void FastForward::follow(const TransitionCache::Transition& transition) {
@@ -406,21 +402,22 @@ void FastForward::end_stepped(std::uint64_t cycle) {
                                  stepper_.arbitration().take_recorded(),
                                  {}};
   effect.progress.subtract(stepped.begin);
-  HostRequests host = stepped.host;
-  if (host.first >= effect.progress.cycles) host = {};  // the host requests later
-  if (host.words != 0) {
-    if (effect.progress.cycles > HostRequests::kMostCycles) return;
+  HostRequests requests;
+  if (stepped.host.words != 0 && stepped.host.first < cycle) {  // the host has requested
+    const std::optional<HostRequests> host = requests_of(stepped.host, stepped.begin.cycles);
+    if (!host || effect.progress.cycles > HostRequests::kMostCycles) return;
+    requests = *host;
     const std::uint64_t end = host_.words != 0 ? cycle : host_.first;  // of the requests
-    effect.host.words = stepped.host_words - host_.words;
-    effect.host.requests = end - stepped.begin.cycles - host.first;
+    effect.host.words = stepped.host.words - host_.words;
+    effect.host.requests = end - stepped.begin.cycles - requests.first;
     if (effect.host.words != 0) effect.host.cycles = host_.first - stepped.begin.cycles;
-    if (host_.words != 0) host.words = HostRequests::kEndless;
+    if (host_.words != 0) requests.words = HostRequests::kEndless;
   }
   const auto is_beyond = [this](Side side) {
     return !control().match().draining() && control().lane(side).taken() >= all_strips_[strips_].end;
   };
   if (stepped.part != control().match().part() || is_beyond(Side::kLeft) || is_beyond(Side::kRight)) return;
-  known_.record(stepped.state, stepped.accesses, host, state(cycle), effect);
+  known_.record(stepped.state, stepped.accesses, requests, state(cycle), effect);
 }
 
 // The progress up to `cycle`. Its beginning is arbitrary: only differences have a meaning.

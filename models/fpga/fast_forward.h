@@ -68,12 +68,17 @@ class FastForward {
     std::uint64_t end = 0;    // number of slots of the frame up to the end of the last of these strips
     std::uint64_t empty = 0;  // bit k: slot k of each column is empty
   };
+  // Words that the host requests one after the other.
+  struct HostWords {
+    std::uint64_t first = 0;  // first cycle in which the next word requests
+    std::size_t words = 0;
+    std::uint8_t route = 0;  // HostRequests::route
+  };
   // The transition that is being stepped, to be recorded at its end.
   struct Stepped {
     StateNumber state;
     TransitionCache::Accesses accesses;
-    HostRequests host;
-    std::size_t host_words;  // of its burst that are not granted before
+    HostWords host;
     Progress begin;
     CoreControl::Counts counts;
     std::uint64_t part;  // MatchControl::part()
@@ -84,13 +89,6 @@ class FastForward {
   struct Followed {
     StateNumber state = UINT32_MAX;
     TransitionCache::Transition transition;
-  };
-
-  // Words that the host requests one after the other.
-  struct HostWords {
-    std::uint64_t first = 0;  // first cycle in which the next word requests
-    std::size_t words = 0;
-    std::uint8_t route = 0;  // HostRequests::route
   };
 
   template <bool kMayRequest>
@@ -114,7 +112,7 @@ class FastForward {
   TransitionCache::Accesses accesses_from(std::uint64_t consumed, std::uint64_t slots) const;
   std::uint64_t uniform_slots(std::uint64_t consumed) const;
   TransitionCache::Accesses accesses() const;
-  std::optional<HostRequests> host_requests(std::uint64_t cycle) const;
+  static std::optional<HostRequests> requests_of(const HostWords& host, std::uint64_t cycle);
   void end_stepped(std::uint64_t cycle);
   Progress progress(std::uint64_t cycle) const;
   StateNumber state(std::uint64_t cycle);
