@@ -21,6 +21,8 @@ std::uint64_t empty_slots(const FrameGeometry& geometry, int strip) {
   return empty;
 }
 
+static_assert(2 * memory::kBankCountRule.max - 1 <= HostRequests::kMostRoute);
+
 std::size_t most_slots_of_group(const FrameGeometry& geometry, int lane_fifo_slots) {
   return static_cast<std::size_t>(4 * geometry.slots_per_column + lane_fifo_slots);
 }
@@ -103,6 +105,10 @@ FastForward::Served FastForward::serve_host(std::uint64_t& cycle, const Route& r
   if (!is_walking_) stepped_.reset();  // a group that is begun without the burst is not recorded
   route_host(cycle, route, first);
   host_ = {first, words, static_cast<std::uint8_t>(route.bank << 1U | std::size_t{route.write})};
+  if (follow_sequence(cycle)) {
+    trust(route.write).note(true);
+    return {words, cycle - 1};
+  }
   Served served;
   bool is_known = true;
   const std::uint64_t end = std::max(cycle, first) + kMostHostCycles;
@@ -116,6 +122,7 @@ FastForward::Served FastForward::serve_host(std::uint64_t& cycle, const Route& r
       host_.first = cycle;
       follow(*found);
     } else {
+      sequence_.reset();
       const std::size_t words_before = host_.words;
       cycle = step_group(cycle, end);
       if (host_.words != words_before) served.last_cycle = host_.first - 1;
@@ -127,8 +134,44 @@ FastForward::Served FastForward::serve_host(std::uint64_t& cycle, const Route& r
   if (host_.words != 0) {
     host_.words = 0;
     stepped_.reset();
+    sequence_.reset();
   }
+  end_sequence();
   return served;
+}
+
+// If the whole burst of host_ is known as one transition, follows it and returns true. Else begins to note the
+// transitions that are followed, if they will be the same from this state on.
+bool FastForward::follow_sequence(std::uint64_t& cycle) {
+  sequence_.reset();
+  if (!is_walking_ || varies()) return false;
+  std::optional<HostRequests> requests = requests_of(host_, cycle);
+  if (!requests) return false;
+  requests->to_last_grant = true;
+  const auto found = known_.find(state_, {}, *requests);
+  if (!found) {
+    sequence_ = {state_, *requests, ahead_, host_ahead_};
+    known_.begin_sequence();
+    return false;
+  }
+  if (!known_.progress(*found).fits(room_)) return false;
+  cycle += known_.progress(*found).cycles;
+  host_.words = 0;
+  follow(*found);
+  return true;
+}
+
+// Records the sequence, if it was not interrupted.
+void FastForward::end_sequence() {
+  known_.end_sequence();
+  if (!sequence_) return;
+  Progress progress = ahead_;
+  progress.subtract(sequence_->begin);
+  const HostGrants& before = sequence_->host_begin;
+  known_.record_sequence(
+      sequence_->state, sequence_->host, state_, progress,
+      {host_ahead_.words - before.words, progress.cycles, host_ahead_.requests - before.requests});
+  sequence_.reset();
 }
 
 // Routes the host to the bank. If ports are uncontended no more because of that, runs up to `first` before.
@@ -243,16 +286,18 @@ void FastForward::follow(const TransitionCache::Transition& transition) {
   host_ahead_.words += host.words;
   host_ahead_.requests += host.requests;
   state_ = transition.next;
-  const Progress& progress = known_.progress(transition);
-  left_of_group_ -= progress.consumed;
-  if (left_of_group_ == 0) left_of_group_ = slots_of_group();
-  skip(progress);
+  skip(known_.progress(transition));
 }
 
 void FastForward::skip(const Progress& progress) {
   room_.subtract(progress);
   ahead_.add(progress);
   consumed_ += progress.consumed;
+  if (progress.consumed < left_of_group_) {
+    left_of_group_ -= progress.consumed;
+  } else {
+    left_of_group_ = slots_of_group() - (progress.consumed - left_of_group_) % slots_of_group();
+  }
   skipped_cycles_ += progress.cycles;
 }
 
@@ -274,8 +319,7 @@ void FastForward::catch_up(std::uint64_t cycle) {
 
 // Follows recorded transitions as far as there is room, which it reduces. Returns the state that comes next.
 FastForward::StateNumber FastForward::walk_known(StateNumber state, Progress& room) {
-  const bool varies = !control().match().draining() && (varying_[0] != nullptr || varying_[1] != nullptr);
-  return varies ? walk_varying(state, room) : known_.walk(state, {}, room);
+  return varies() ? walk_varying(state, room) : known_.walk(state, {}, room);
 }
 
 FastForward::StateNumber FastForward::walk_varying(StateNumber state, Progress& room) {
@@ -387,8 +431,7 @@ std::uint64_t FastForward::uniform_slots(std::uint64_t consumed) const {
 
 // The accesses of the slots in the lanes up to the end of the group, from the state of the walk on.
 TransitionCache::Accesses FastForward::accesses() const {
-  return control().match().draining() ? TransitionCache::Accesses{}
-                                      : accesses_from(consumed_, left_of_group_);
+  return varies() ? accesses_from(consumed_, left_of_group_) : TransitionCache::Accesses{};
 }
 
 // Records the transition that has just been stepped. Does not record it if the next state depends on the

@@ -84,6 +84,14 @@ class FastForward {
     std::uint64_t part;  // MatchControl::part()
   };
 
+  // The transitions that are followed for a whole burst, to be recorded as one.
+  struct Sequence {
+    StateNumber state;
+    HostRequests host;
+    Progress begin;         // ahead_ before it
+    HostGrants host_begin;  // host_ahead_ before it
+  };
+
   // A transition that was followed at some group of the frame. It is followed there again, if the state is
   // the same: frame after frame the slots make the same accesses.
   struct Followed {
@@ -97,6 +105,8 @@ class FastForward {
   void begin_walk(std::uint64_t cycle);
   void end_walk(std::uint64_t cycle);
   std::uint64_t walk(std::uint64_t cycle, std::uint64_t end);
+  bool follow_sequence(std::uint64_t& cycle);
+  void end_sequence();
   void route_host(std::uint64_t& cycle, const Route& route, std::uint64_t first);
   void resolve_accesses();
   std::optional<TransitionCache::Transition> find_host(std::uint64_t cycle) const;
@@ -116,6 +126,10 @@ class FastForward {
   void end_stepped(std::uint64_t cycle);
   Progress progress(std::uint64_t cycle) const;
   StateNumber state(std::uint64_t cycle);
+  // Whether the accesses of the slots vary, from the state of the walk on.
+  bool varies() const {
+    return (varying_[0] != nullptr || varying_[1] != nullptr) && !control().match().draining();
+  }
   // The number of slots that the matcher consumes in a group.
   std::uint64_t slots_of_group() const {
     return 4 * static_cast<std::uint64_t>(control().geometry().slots_per_column);
@@ -133,12 +147,13 @@ class FastForward {
   // Whether transitions are being followed. The next four are valid then.
   bool is_walking_ = false;
   StateNumber state_ = 0;
-  Progress room_;                     // how far transitions can be followed
-  std::uint64_t consumed_ = 0;        // slots of the frame that the matcher has consumed
-  std::uint64_t left_of_group_ = 0;   // slots, or consume-cycles, to the end of the group
-  Progress ahead_;                    // see ahead()
-  HostGrants host_ahead_;             // words of the host in these cycles, without HostGrants::cycles
-  HostWords host_;                    // words that are granted from the next cycle on
+  Progress room_;                    // how far transitions can be followed
+  std::uint64_t consumed_ = 0;       // slots of the frame that the matcher has consumed
+  std::uint64_t left_of_group_ = 0;  // slots, or consume-cycles, to the end of the group
+  Progress ahead_;                   // see ahead()
+  HostGrants host_ahead_;            // words of the host in these cycles, without HostGrants::cycles
+  HostWords host_;                   // words that are granted from the next cycle on
+  std::optional<Sequence> sequence_;
   bool is_host_routed_ = false;       // by serve_host()
   std::array<BurstTrust, 2> trusts_;  // in bursts that [0] read, [1] write
   std::uint64_t routes_ = 0;

@@ -55,7 +55,11 @@ struct HostRequests {
 
   std::uint16_t first = 0;
   std::uint16_t words = 0;  // 0: no request
-  std::uint8_t route = 0;   // a number for the bank and the direction
+  std::uint8_t route = 0;   // a number for the bank and the direction, at most kMostRoute
+  // Whether the transition is a sequence that leads to the last grant, over ends of groups too.
+  bool to_last_grant = false;
+
+  static constexpr std::size_t kMostRoute = 127;
 };
 // The words that the host was granted in a transition.
 struct HostGrants {
@@ -134,10 +138,18 @@ class TransitionCache {
   const HostGrants& host(const Transition& transition) const { return host_[transition.effect]; }
   // Notes that a transition has been followed.
   void follow(const Transition& transition, std::uint64_t times = 1) {
-    std::uint64_t& followed = followed_[transition.effect];
-    if (followed == 0) effects_followed_.push_back(transition.effect);
-    followed += times;
+    if (is_in_sequence_) sequence_.push_back({transition.effect, times});
+    count(transition.effect, times);
   }
+  // Begins a sequence: the transitions that are followed from now on.
+  void begin_sequence() {
+    sequence_.clear();
+    is_in_sequence_ = true;
+  }
+  void end_sequence() { is_in_sequence_ = false; }
+  // Records the last sequence as one transition, which needs no accesses.
+  void record_sequence(StateNumber from, HostRequests host, StateNumber next, const Progress& progress,
+                       const HostGrants& grants);
   // Follows recorded transitions with the same accesses, as far as there is room, which it reduces. A loop of
   // transitions is repeated in one step. Returns the state that comes next.
   StateNumber walk(StateNumber first, const Accesses& accesses, Progress& room);
@@ -154,16 +166,29 @@ class TransitionCache {
 
   static constexpr std::size_t kMostStates = std::size_t{1} << 23U;
 
+  // Part of a sequence: an effect, `times` times.
+  struct Part {
+    std::uint32_t effect;
+    std::uint64_t times;
+  };
+
   // A bucket of the table of transitions: the number of the state plus one (0: the bucket is free) and, above
   // it, the requests of the host; the accesses of key_of(); the transition.
   std::size_t words_of_bucket() const { return words_ + 2; }
   Accesses key_of(StateNumber from, const Accesses& accesses) const;
   static std::uint64_t first_word_of(StateNumber from, HostRequests host) {
     return std::uint64_t{host.first} << 48U | std::uint64_t{host.words} << 32U |
-           std::uint64_t{host.route} << 24U | (from + 1);
+           std::uint64_t{host.to_last_grant} << 31U | std::uint64_t{host.route} << 24U | (from + 1);
   }
   std::size_t bucket_of(std::uint64_t first_word, const Accesses& key) const;
   std::uint32_t number_of_effect(const Effect& effect);
+  void add_effect(const Effect* effect, const Progress& progress, const HostGrants& host);
+  void record(StateNumber from, const Accesses& accesses, HostRequests host, Transition transition);
+  void count(std::uint32_t effect, std::uint64_t times) {
+    std::uint64_t& followed = followed_[effect];
+    if (followed == 0) effects_followed_.push_back(effect);
+    followed += times;
+  }
   void double_buckets();
 
   std::size_t words_;  // of the accesses
@@ -172,11 +197,14 @@ class TransitionCache {
   std::vector<const State*> states_;  // [number]
   std::vector<Accesses> unhandled_;   // [number of the state]: bits of the slots that are not handled before
   std::unordered_map<Effect, std::uint32_t, EffectHash> effect_numbers_;
-  std::vector<const Effect*> effects_;   // [number]
-  std::vector<Progress> progress_;       // [number of the effect]
-  std::vector<HostGrants> host_;         // [number of the effect]
-  std::vector<std::uint64_t> followed_;  // [number of the effect]: times not counted yet
+  std::vector<const Effect*> effects_;    // [number]; null for a sequence
+  std::vector<std::vector<Part>> parts_;  // [number]; empty unless it is a sequence
+  std::vector<Progress> progress_;        // [number of the effect]
+  std::vector<HostGrants> host_;          // [number of the effect]
+  std::vector<std::uint64_t> followed_;   // [number of the effect]: times not counted yet
   std::vector<std::uint32_t> effects_followed_;
+  std::vector<Part> sequence_;  // the last one
+  bool is_in_sequence_ = false;
   std::vector<std::uint64_t> buckets_;
   std::size_t mask_ = 0;  // number of buckets - 1; they are a power of two
   std::size_t transitions_ = 0;
