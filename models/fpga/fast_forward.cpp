@@ -63,17 +63,16 @@ void FastForward::start_stepped_frame() {
 }
 
 void FastForward::settle() {
-  resolve_accesses();
+  stepped_.reset();
+  is_walking_ = false;
+  for (const Side side : kSides) resolve_accesses(side);
   if (is_host_routed_) stepper_.arbitration().unroute(kHostPort);
   is_host_routed_ = false;
 }
 
-// To be called before a port that is alone on its bank ceases to be.
-void FastForward::resolve_accesses() {
-  stepped_.reset();
-  is_walking_ = false;
-  accesses_.resolve();
-  for (const Side side : kSides) varying_[index_of(side)] = accesses_.varying(side);
+void FastForward::resolve_accesses(Side side) {
+  accesses_.resolve(side);
+  varying_[index_of(side)] = accesses_.varying(side);
 }
 
 // `kMayRequest`: false where the host requests in no cycle, which is most of them and costs less.
@@ -174,13 +173,17 @@ void FastForward::end_sequence() {
   sequence_.reset();
 }
 
-// Routes the host to the bank. If ports are uncontended no more because of that, runs up to `first` before.
+// Routes the host to the bank. If a port is alone there, and ceases to be, runs up to `first` before.
 void FastForward::route_host(std::uint64_t& cycle, const Route& route, std::uint64_t first) {
   memory::Arbitration& arbitration = stepper_.arbitration();
   const bool is_new = !arbitration.is_shared(route.bank);
   if (is_new) {
     cycle = run_ahead(cycle, std::max(cycle, first));
-    resolve_accesses();
+    stepped_.reset();
+    is_walking_ = false;
+    for (const Side side : kSides) {
+      if (arbitration.bank_of(pixel_port(side)) == route.bank) resolve_accesses(side);
+    }
   }
   arbitration.visit(kHostPort, route.bank, route.write);
   is_host_routed_ = true;

@@ -108,7 +108,7 @@ class FastForward {
   bool follow_sequence(std::uint64_t& cycle);
   void end_sequence();
   void route_host(std::uint64_t& cycle, const Route& route, std::uint64_t first);
-  void resolve_accesses();
+  void resolve_accesses(Side side);
   std::optional<TransitionCache::Transition> find_host(std::uint64_t cycle) const;
   void follow(const TransitionCache::Transition& transition);
   void skip(const Progress& progress);

@@ -25,7 +25,12 @@ void Arbitration::unroute(Port port) {
 void Arbitration::visit(Port port, std::size_t bank, bool write) {
   const std::size_t index = index_of_shared(bank);
   if (index == shared_bank_count_ || is_alone(port)) {
-    settle();
+    PortMask ports = mask_of(port);
+    for (std::size_t other = 0; other < kMostPorts; ++other) {
+      if (is_routed(other) && routes_[other].bank == bank)
+        ports = static_cast<PortMask>(ports | mask_of(other));
+    }
+    settle(ports);
     visited_ |= std::uint64_t{1} << bank;
     set_route(port, bank, write);
     share_banks();
@@ -117,15 +122,15 @@ void Arbitration::count_alone() const {
   retracted_grants_ = {};
 }
 
-// To be called when no grant can be retracted any more: counts as count_alone() does, and moves the states of
-// the policies by these grants.
-void Arbitration::settle() {
+// To be called when no grant of these ports can be retracted any more: counts as count_alone() does, and moves
+// the states of the policies by their grants.
+void Arbitration::settle(PortMask ports) {
   count_alone();
   for (std::size_t port = 0; port < kMostPorts; ++port) {
-    if (alone_grants_[port] == 0) continue;
+    if ((ports & mask_of(port)) == 0 || alone_grants_[port] == 0) continue;
     arbiters_[routes_[port].bank].grant_alone(mask_of(port), routes_[port].write);
+    alone_grants_[port] = 0;
   }
-  alone_grants_ = {};
 }
 
 // The part of arbitrate() for requests to shared_banks_.

@@ -49,8 +49,8 @@ class Arbitration {
   bool is_alone(Port port) const { return (alone_ & mask_of(port)) != 0; }
   // Subtracts grants of a port that is alone. FastForward counts a grant for each slot of such a pixel port
   // before it knows which table entries are valid, and then subtracts the grants of the slots that passed. To
-  // be called before a route changes or counting ends: at that time the remaining grants move the state of
-  // the bank's policy.
+  // be called before the bank is visited, another route changes, or counting ends: at that time the remaining
+  // grants move the state of the bank's policy.
   void retract_grants(Port port, std::uint64_t grants) { retracted_grants_[port] += grants; }
 
   // Decides one request for a bank that no routed port requests. `port` needs no route; `write` is the
@@ -119,6 +119,8 @@ class Arbitration {
     std::size_t bank = 0;
     bool write = false;
   };
+  static constexpr auto kAllPorts = static_cast<PortMask>((1U << kMostPorts) - 1);
+
   // A bank with several ports, or with turnaround, or that was visited.
   struct SharedBank {
     std::size_t bank = 0;
@@ -131,7 +133,7 @@ class Arbitration {
   std::size_t index_of_shared(std::size_t bank) const;
   void share_banks();
   void count_alone() const;
-  void settle();
+  void settle(PortMask ports = kAllPorts);
   PortMask arbitrate_shared(std::uint64_t cycle, PortMask requests);
 
   mutable std::vector<BankArbiter> arbiters_;

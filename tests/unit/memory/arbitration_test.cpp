@@ -198,6 +198,23 @@ TEST(Arbitration, MovesNoPlaceForGrantsThatAreRetractedAfterAQuery) {
   EXPECT_EQ(granted_after_being_alone(1, 0), kRight);
 }
 
+// As before, with a visit of the host before the grants are retracted.
+PortMask granted_after_a_visit(std::size_t bank, std::uint64_t retracted) {
+  Arbitration arbitration(kRoundRobin, banks());
+  arbitration.route(port::kLeftPixel, 0, false);
+  for (std::uint64_t cycle = 0; cycle < 5; ++cycle) arbitration.arbitrate(cycle, kLeft);
+  arbitration.visit(port::kHost, bank, false);
+  arbitration.retract_grants(port::kLeftPixel, retracted);
+  arbitration.route(port::kRightPixel, 0, false);
+  return arbitration.arbitrate(5, kLeft | kRight);
+}
+
+TEST(Arbitration, MovesThePlaceOfAVisitedBankOnly) {
+  EXPECT_EQ(granted_after_a_visit(1, 5), kLeft);
+  EXPECT_EQ(granted_after_a_visit(1, 4), kRight);
+  EXPECT_EQ(granted_after_a_visit(0, 0), kRight);
+}
+
 TEST(Arbitration, HasAStateOnlyWherePortsContendOrTheBankHasTurnaround) {
   Arbitration arbitration(kRoundRobin, banks());
   const Arbitration::State none{};
