@@ -145,7 +145,7 @@ bool FastForward::follow_sequence(std::uint64_t& cycle) {
   sequence_.reset();
   if (!is_walking_ || varies()) return false;
   std::optional<HostRequests> requests = requests_of(host_, cycle);
-  if (!requests) return false;
+  if (!requests || requests->words == HostRequests::kEndless) return false;
   requests->to_last_grant = true;
   const auto found = known_.find(state_, {}, *requests);
   if (!found) {

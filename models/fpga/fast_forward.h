@@ -18,8 +18,8 @@ namespace stereotlm::fpga {
 // around the end of each row are stepped.
 //
 // A walk follows transitions in the memo alone. The core and the arbiters are taken to its end only when a
-// cycle must be stepped, and by run_ahead(). Each burst of the host ends a transition: so any number of bursts
-// may share a group.
+// cycle must be stepped, and by run_ahead(). The last grant of a burst of the host ends a transition, so that
+// a group may hold several bursts.
 class FastForward {
  public:
   // `stepper` outlives this object. `most_groups`: cap of the transition cache.
@@ -31,8 +31,8 @@ class FastForward {
   void start_direct_frame(const AccessPatterns& patterns, std::uint64_t routes);
   // To be called when a frame starts that the owner steps itself.
   void start_stepped_frame();
-  // To be called before the route of the host changes within a frame, and after the last cycle of a frame.
-  // Corrects the counts that are provisional until then.
+  // To be called before the owner changes the route of the host within a frame, and after the last cycle of a
+  // frame. Corrects the counts that are provisional until then.
   void settle();
 
   // Runs one cycle. `host_requests`: whether the host port requests in it. Returns the ports granted.
