@@ -40,8 +40,8 @@ class AssumedAccesses {
   // LaneControl::correct_marks() of a side.
   std::uint64_t marks(Side side) const;
 
-  // To be called before the pixel port of a side ceases to be alone on its bank, and after the last cycle of a
-  // frame. Corrects the counts. From now on the pattern determines which slots need their pixels.
+  // To be called before the pixel port of a side ceases to be alone on its bank, and after the last cycle of
+  // a frame. Corrects the counts. From now on the pattern determines which slots need their pixels.
   void resolve(Side side);
 
  private:

@@ -139,8 +139,8 @@ FastForward::Served FastForward::serve_host(std::uint64_t& cycle, const Route& r
   return served;
 }
 
-// If the whole burst of host_ is known as one transition, follows it and returns true. Else begins to note the
-// transitions that are followed, if they will be the same from this state on.
+// If the whole burst of host_ is known as one transition, follows it and returns true. Else begins to note
+// the transitions that are followed, if they will be the same from this state on.
 bool FastForward::follow_sequence(std::uint64_t& cycle) {
   sequence_.reset();
   if (!is_walking_ || varies()) return false;
@@ -384,8 +384,8 @@ bool FastForward::find_strips() {
          std::max(left.taken(), right.taken()) < all_strips_[strips_].end;
 }
 
-// Returns how far the core can run before the strips end, MatchControl::part() changes, or a row of results is
-// complete.
+// Returns how far the core can run before the strips end, MatchControl::part() changes, or a row of results
+// is complete.
 Progress FastForward::room() const {
   const bool drains = control().match().draining();
   // A port decides by the slot after the last one taken: that slot must be in the strips too.

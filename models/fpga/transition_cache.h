@@ -47,8 +47,8 @@ struct Progress {
   }
 };
 
-// The requests of the host from a state on: `words` words one after the other, the first after `first` cycles,
-// each other in the cycle after a grant.
+// The requests of the host from a state on: `words` words one after the other, the first after `first`
+// cycles, each other in the cycle after a grant.
 struct HostRequests {
   static constexpr std::uint16_t kEndless = UINT16_MAX;         // more words than the group grants
   static constexpr std::uint64_t kMostCycles = UINT16_MAX - 1;  // `first` is at most this
@@ -74,8 +74,8 @@ struct HostGrants {
 
 // Memo of state transitions for FastForward. A transition leads to the end of a group of four columns of the
 // matcher, or to the last grant of a burst of the host in the group. The state before it, the requests of the
-// host, and the accesses of the slots that the group can handle, determine its cycles, its counts and the next
-// state. A transition is recorded when it is stepped; after that it is skipped.
+// host, and the accesses of the slots that the group can handle, determine its cycles, its counts and the
+// next state. A transition is recorded when it is stepped; after that it is skipped.
 //
 // States and effects have numbers: they are few, while the accesses of real tables hardly repeat. A step
 // along the memo is one look-up in a small table.

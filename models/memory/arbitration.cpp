@@ -122,8 +122,8 @@ void Arbitration::count_alone() const {
   retracted_grants_ = {};
 }
 
-// To be called when no grant of these ports can be retracted any more: counts as count_alone() does, and moves
-// the states of the policies by their grants.
+// To be called when no grant of these ports can be retracted any more: counts as count_alone() does, and
+// moves the states of the policies by their grants.
 void Arbitration::settle(PortMask ports) {
   count_alone();
   for (std::size_t port = 0; port < kMostPorts; ++port) {
