@@ -27,10 +27,6 @@ std::uint64_t AssumedAccesses::marks(Side side) const {
   return marks;
 }
 
-void AssumedAccesses::resolve() {
-  for (const Side side : kSides) resolve(side);
-}
-
 void AssumedAccesses::resolve(Side side) {
   SideAccesses& accesses = sides_[index_of(side)];
   if (!accesses.are_all || accesses.pattern->needs_all_pixels()) return;
