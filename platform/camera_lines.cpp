@@ -31,11 +31,6 @@ std::int64_t play_ps(const Clock& pci, const Clock& local) {
 
 using Counts = pci::PciBusControl::MasterCounts;
 
-Counts sum(const Counts& a, const Counts& b) {
-  return {a.transactions + b.transactions, a.words + b.words, a.wait_clocks + b.wait_clocks,
-          a.retries + b.retries, a.aborts + b.aborts};
-}
-
 Counts difference(const Counts& a, const Counts& b) {
   return {a.transactions - b.transactions, a.words - b.words, a.wait_clocks - b.wait_clocks,
           a.retries - b.retries, a.aborts - b.aborts};
@@ -80,7 +75,7 @@ std::optional<CameraLines::OfSides<std::uint64_t>> CameraLines::bank_addresses()
   for (std::size_t side = 0; side < kSides; ++side) {
     const std::uint64_t offset = captures_[side].line_address() - DeviceMap().bridge_slave;
     const auto address = bridge_.bank_address(offset, bytes);
-    if (!address || !board_.takes_in_step(*address, bytes)) return std::nullopt;
+    if (!address || !board_.serves_in_step(*address, bytes)) return std::nullopt;
     addresses[side] = *address;
   }
   if (memory::bank_of_address(addresses[0]) == memory::bank_of_address(addresses[1])) return std::nullopt;
@@ -113,12 +108,11 @@ void CameraLines::apply(const Line& line, std::uint64_t now_ps, const OfSides<st
   const std::uint64_t first = pci_bus_.decision_clock();
   const std::uint64_t first_local = local_clock().edge_at_or_after(now_ps);
   const pci::PciBusControl::Position before = pci_bus_.position();
+  for (std::size_t side = 0; side < kSides; ++side)
+    pci_bus_.skip_bursts(kMasters[side], line.sides[side].pci);
   pci_bus_.skip_to(
-      {line.pci.last_granted, first + line.pci.free_clock, before.busy_clocks + line.pci.busy_clocks},
-      kMasters,
-      {sum(pci_bus_.counts(kMasters[0]), line.sides[0].pci),
-       sum(pci_bus_.counts(kMasters[1]), line.sides[1].pci)});
-  bridge_.skip_to((bridge_.turn() + line.turns) % pci::bridge::kChannels, line.most_posted);
+      {line.pci.last_granted, first + line.pci.free_clock, before.busy_clocks + line.pci.busy_clocks});
+  bridge_.skip_posted((bridge_.turn() + line.turns) % pci::bridge::kChannels, line.most_posted);
   fpga::LocalBusControl& local_bus = board_.local_bus();
   local_bus.skip_to(local_bus.bursts() + line.bursts, local_bus.busy_clocks() + line.busy_clocks,
                     first_local + line.idle_clock);
@@ -126,8 +120,8 @@ void CameraLines::apply(const Line& line, std::uint64_t now_ps, const OfSides<st
   for (std::size_t side = 0; side < kSides; ++side) {
     const Line::Side& of_side = line.sides[side];
     bridge_.count_skipped(addresses[side], words);
-    std::uint32_t* const stored = board_.skip_writes(addresses[side], words, first_local + of_side.first_word,
-                                                     first_local + of_side.end_word);
+    std::uint32_t* const stored = board_.skip_words(
+        true, addresses[side], words, first_local + of_side.first_word, first_local + of_side.end_word);
     if (has_pixels_) captures_[side].copy_line(stored);
     captures_[side].skip_line(pci_clock().edge_ps(first + of_side.end_clock), of_side.pci.transactions);
   }

@@ -146,13 +146,13 @@ bool HostPort::serves_in_step(std::size_t bank) const {
 
 // As in serve_in_step(), the words behind the first one change the state of the policy as cycles without
 // request do, which is what lies between two bursts.
-void HostPort::count_skipped(std::size_t bank, std::uint64_t first_cycle, std::uint64_t end_cycle,
+void HostPort::count_skipped(std::size_t bank, bool write, std::uint64_t first_cycle, std::uint64_t end_cycle,
                              std::uint64_t words) {
   const bool in_frame = frames_.is_running();
   count_served(UINT64_MAX, in_frame);
   served_bank_ = bank;
   served_.push_back(
-      {end_cycle - words, words, arbitration_.decide_unrouted(bank, first_cycle, kHostPort, true)});
+      {end_cycle - words, words, arbitration_.decide_unrouted(bank, first_cycle, kHostPort, write)});
   count_served(UINT64_MAX, in_frame);
 }
 

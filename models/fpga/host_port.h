@@ -59,13 +59,13 @@ class HostPort {
   // Serves an uncontended burst that has just begun, if no frame can start within it.
   void serve_new_burst();
 
-  // For platform::CameraLines, which skips bursts that it has seen before.
+  // For platform::CameraLines and platform::DmaBursts, which skip bursts that they have seen before.
   //
   // Whether bursts to this bank are served one word a cycle, and independently of the frame.
   bool serves_in_step(std::size_t bank) const;
-  // Counts `words` words of skipped bursts that write to such a bank. The first is served in `first_cycle`,
-  // the last in the cycle before `end_cycle`, and the running frame cannot have ended by then.
-  void count_skipped(std::size_t bank, std::uint64_t first_cycle, std::uint64_t end_cycle,
+  // Counts `words` words of skipped bursts of one direction to such a bank. The first is served in
+  // `first_cycle`, the last in the cycle before `end_cycle`, and the running frame cannot have ended by then.
+  void count_skipped(std::size_t bank, bool write, std::uint64_t first_cycle, std::uint64_t end_cycle,
                      std::uint64_t words);
 
   // Counts the words that were served before the frame's cycle(), as words in the frame.

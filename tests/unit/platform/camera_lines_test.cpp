@@ -15,14 +15,8 @@
 #include <utility>
 #include <vector>
 
-#include "models/capture/capture_registers.h"
-#include "models/fpga/register_map.h"
-#include "models/kernels/gray_image.h"
-#include "models/pci/bridge_registers.h"
-#include "platform/computer_loop.h"
 #include "platform/config/board_yaml.h"
-#include "platform/device_map.h"
-#include "tests/support/random_board.h"
+#include "tests/unit/platform/loop_run.h"
 
 namespace stereotlm::platform {
 namespace {
@@ -30,34 +24,19 @@ namespace {
 using Settings = std::vector<std::string>;
 using Pair = std::array<std::uint32_t, 2>;  // [left, right]
 
-constexpr DeviceMap kLinesMap;
-constexpr std::uint64_t kLongPs = 1'000'000'000'000;
-// No frame of the core is longer than this.
-constexpr std::uint64_t kFramePs = 10'000'000'000;
+using testing::kFramePs;
+using testing::kLongPs;
+using testing::kLoopCaptures;
+using testing::kRunMap;
+
 // No line that is skipped is as short as this.
 constexpr std::uint64_t kShortPs = 50'000;
-
-// Pictures of noise, another one in each frame.
-class NoiseSource : public capture::CameraSource {
- public:
-  NoiseSource(const BoardConfig& board, std::uint64_t seed)
-      : seed_(seed), picture_(board.image.width, board.image.height, 0) {}
-  const kernels::GrayImage& frame(std::uint64_t number, std::uint64_t /*begin_ps*/) override {
-    test::SplitMix64 random(seed_ + number);
-    for (std::uint8_t& pixel : picture_.pixels) pixel = static_cast<std::uint8_t>(random.next() >> 56U);
-    return picture_;
-  }
-
- private:
-  std::uint64_t seed_;
-  kernels::GrayImage picture_;
-};
 
 // What the program does: where the captures go, and which banks the core's frame uses beside each of them.
 struct Program {
   Pair pages = {0U << 26U, 2U << 26U};  // of apertures 0 and 1
-  Pair buffers = {static_cast<std::uint32_t>(kLinesMap.bridge_slave),
-                  static_cast<std::uint32_t>(kLinesMap.bridge_slave + pci::bridge::kApertureBytes)};
+  Pair buffers = {static_cast<std::uint32_t>(kRunMap.bridge_slave),
+                  static_cast<std::uint32_t>(kRunMap.bridge_slave + pci::bridge::kApertureBytes)};
   std::optional<std::uint32_t> first_bank_of_frame;  // its five buffers are in this bank and the next four
   int captures = 2;
   std::uint64_t disturb_ps = 0;  // while a picture is captured, it disturbs the lines as often; 0: never
@@ -69,43 +48,34 @@ struct Outcome {
   std::uint64_t skipped_lines = 0;
 };
 
-// A run of the program, in which the loop runs for at most `step_ps` at a time: no line can be skipped that
-// does not end within such a step.
-class LinesRun : public pci::PciMasterIf {
+class LinesRun : public testing::LoopRun {
  public:
   LinesRun(const BoardConfig& board, const Program& program, std::uint64_t step_ps)
-      : board_(board),
-        program_(program),
-        step_ps_(step_ps),
-        left_(board, 1'000),
-        right_(board, 2'000),
-        loop_(board, memory_.data(), memory_.size(), left_, right_, program.fidelity) {
+      : LoopRun(board, program.fidelity, step_ps), board_(board), program_(program) {
     const std::array<std::uint32_t, 4> descriptor = {0x2000, 6U << 26U, 1U << 31U | 50U, 0};
-    std::memcpy(memory_.data() + kDescriptor, descriptor.data(), sizeof descriptor);
+    std::memcpy(memory().data() + kDescriptor, descriptor.data(), sizeof descriptor);
   }
 
   Outcome outcome() {
     for (std::size_t side = 0; side < 2; ++side) {
-      write(kLinesMap.bridge_registers + pci::bridge::kPage + 4 * side, program_.pages[side]);
-      write(kBoards[side] + capture::registers::kBufferAddress, program_.buffers[side]);
+      write(kRunMap.bridge_registers + pci::bridge::kPage + 4 * side, program_.pages[side]);
+      write(kLoopCaptures[side] + capture::registers::kBufferAddress, program_.buffers[side]);
     }
     for (int capture = 0; capture < program_.captures; ++capture) {
       if (program_.first_bank_of_frame) {
         run_for(kFramePs);  // the frame before ends
         start_frame(*program_.first_bank_of_frame);
       }
-      write(kBoards[1] + capture::registers::kControl, capture::registers::kControlArm);
-      write(kBoards[0] + capture::registers::kControl,
-            capture::registers::kControlArm | capture::registers::kControlTrigger);
+      arm_captures();
       const std::uint64_t end_ps =
-          loop_.now_ps() + static_cast<std::uint64_t>(2.1e12 / board_.cameras.frame_rate_hz);
-      for (std::uint64_t number = 0; program_.disturb_ps != 0 && loop_.now_ps() < end_ps; ++number) {
+          loop().now_ps() + static_cast<std::uint64_t>(2.1e12 / board_.cameras.frame_rate_hz);
+      for (std::uint64_t number = 0; program_.disturb_ps != 0 && loop().now_ps() < end_ps; ++number) {
         run_for(program_.disturb_ps);
         disturb(number);
       }
-      if (loop_.now_ps() < end_ps) run_for(end_ps - loop_.now_ps());
-      for (const std::uint64_t board : kBoards) {
-        figures_ += fmt::format("status {}\n", read(board + capture::registers::kStatus, 1).front());
+      if (loop().now_ps() < end_ps) run_for(end_ps - loop().now_ps());
+      for (const std::uint64_t board : kLoopCaptures) {
+        note("status {}\n", read(board + capture::registers::kStatus, 1).front());
         write(board + capture::registers::kStatus, capture::registers::kStatusDone);
       }
     }
@@ -113,120 +83,28 @@ class LinesRun : public pci::PciMasterIf {
     const auto words = static_cast<std::size_t>(board_.image.width * board_.image.height / 4);
     if (program_.fidelity == fpga::Fidelity::kFast) {
       for (const std::uint32_t buffer : program_.buffers)
-        figures_ += fmt::format("words {}\n", fmt::join(read(buffer, words), ","));
+        note("words {}\n", fmt::join(read(buffer, words), ","));
     }
-    return {figures_ + counters(), loop_.skipped_lines()};
-  }
-
-  pci::PciBurst begin_burst(std::uint64_t /*address_clock_ps*/) override {
-    return {writes_, address_, &words_};
-  }
-  void end_burst(const pci::BurstResult& result) override {
-    figures_ += fmt::format("burst {} {}\n", result.end_ps, static_cast<int>(result.end));
-    const auto rest = words_.begin() + static_cast<std::ptrdiff_t>(result.words);
-    done_.insert(done_.end(), words_.begin(), rest);
-    words_.erase(words_.begin(), is_error(result.end) ? words_.end() : rest);
-    address_ += 4 * result.words;
-    if (words_.empty()) {
-      loop_.notice();
-    } else {
-      loop_.host_slot().request(*this, result.end_ps);
-    }
+    return {figures() + counters(), loop().skipped_lines()};
   }
 
  private:
   static constexpr std::uint32_t kDescriptor = 0x1000;
-  static constexpr std::array<std::uint64_t, 2> kBoards = {kLinesMap.left_capture, kLinesMap.right_capture};
 
-  void access() {
-    done_.clear();
-    loop_.host_slot().request(*this, loop_.now_ps());
-    while (!words_.empty()) loop_.run(loop_.now_ps() + kLongPs);
-  }
-  void write(std::uint64_t address, std::uint32_t word) {
-    writes_ = true;
-    address_ = address;
-    words_ = {word};
-    access();
-  }
-  std::vector<std::uint32_t> read(std::uint64_t address, std::size_t words) {
-    writes_ = false;
-    address_ = address;
-    words_.assign(words, 0);
-    access();
-    return done_;
-  }
-  void run_for(std::uint64_t time_ps) {
-    const std::uint64_t end_ps = loop_.now_ps() + time_ps;
-    while (loop_.now_ps() < end_ps) {
-      const bool level = loop_.interrupt();
-      loop_.run(std::min(end_ps, loop_.now_ps() + step_ps_));
-      if (loop_.interrupt() != level) figures_ += fmt::format("interrupt {}\n", loop_.now_ps());
-    }
-  }
   // While a picture is captured, the program accesses a register or a bank, or starts both DMA channels.
   void disturb(std::uint64_t number) {
     if (number % 3 == 0) {
-      read(kBoards[0] + capture::registers::kStatus, 1);
+      read(kLoopCaptures[0] + capture::registers::kStatus, 1);
     } else if (number % 3 == 1) {
       read(program_.buffers[0], 2);
     } else {
-      for (std::uint64_t channel = 0; channel < pci::bridge::kChannels; ++channel) {
-        const std::uint64_t registers = kLinesMap.bridge_registers + pci::bridge::kChannelStride * channel;
-        write(registers + pci::bridge::kDmaDescriptor, kDescriptor);
-        write(registers + pci::bridge::kDmaControl, 1);
-      }
+      for (std::uint64_t channel = 0; channel < pci::bridge::kChannels; ++channel)
+        start_dma(channel, kDescriptor);
     }
-  }
-  // Its tables have no valid entry.
-  void start_frame(std::uint32_t bank) {
-    namespace core = fpga::registers;
-    const std::uint64_t registers = kLinesMap.bridge_slave + pci::bridge::kCoreRegisters;
-    for (const std::uint64_t base : {core::kLeftImageBase, core::kRightImageBase, core::kDisparityBase,
-                                     core::kLeftLutBase, core::kRightLutBase})
-      write(registers + base, core::base(bank++, 0x10000));
-    write(registers + core::kControl, core::kControlStart);
-  }
-  std::string counters() const {
-    const ComputerCounters counters = loop_.counters();
-    std::string text = fmt::format("pci {} {}\n", counters.pci.clocks, counters.pci.busy_clocks);
-    for (const pci::PciBusControl::MasterStats& master : counters.pci.masters) {
-      text += fmt::format("{} {} {} {} {} {}\n", master.name, master.transactions, master.words,
-                          master.wait_clocks, master.retries, master.aborts);
-    }
-    const pci::BridgeControl::Stats& bridge = counters.bridge;
-    text += fmt::format("bridge {} {} {} {}\n", bridge.posted_words, bridge.slave_reads,
-                        bridge.most_posted_words, bridge.errors);
-    const fpga::LocalBusControl::Stats& local = counters.local_bus;
-    text += fmt::format("local bus {} {} {} {} {} {}\n", local.bursts, local.words_read, local.words_written,
-                        local.errors, local.clocks, local.busy_clocks);
-    text += fmt::format("words {} {}\n", fmt::join(counters.words.into_bridge, " "),
-                        fmt::join(counters.words.granted, " "));
-    for (const ComputerCounters::Camera& camera : counters.cameras) {
-      const capture::CaptureControl::Stats& capture = camera.capture;
-      text += fmt::format("camera {} {} {} {} {} {} {}\n", camera.frames, capture.captured_frames,
-                          capture.dropped_frames(), capture.dropped_pixels, capture.bursts, capture.words,
-                          capture.lost_words);
-    }
-    for (const auto& bank : counters.board.banks) {
-      text += fmt::format("bank {} {} {} {} {}\n", bank.accesses, bank.uncounted_grants, bank.arbiter.writes,
-                          bank.arbiter.idle_cycles, bank.arbiter.busy_cycles);
-    }
-    return text;
   }
 
   const BoardConfig& board_;
   const Program& program_;
-  std::uint64_t step_ps_;
-  std::vector<unsigned char> memory_ = std::vector<unsigned char>(1U << 20U);
-  NoiseSource left_;
-  NoiseSource right_;
-  ComputerLoop loop_;
-  bool writes_ = false;
-  std::uint64_t address_ = 0;
-  std::vector<std::uint32_t> words_;  // of the burst that are still to be transferred
-  std::vector<std::uint32_t> done_;   // the others
-  std::string figures_;
 };
 
 BoardConfig board_of(const Settings& settings) {
@@ -294,7 +172,7 @@ TEST(CameraLines, StepsLinesThatGoElsewhereThanToTwoIndependentBanks) {
   constexpr std::uint32_t kWords = 524'288;  // of a bank
   constexpr std::uint32_t kPicture = 160 * 48 / 4;
   constexpr auto word = [](std::uint32_t bank, std::uint32_t number) { return bank << 26U | number; };
-  constexpr auto window = static_cast<std::uint32_t>(kLinesMap.bridge_slave);
+  constexpr auto window = static_cast<std::uint32_t>(kRunMap.bridge_slave);
   constexpr auto aperture = static_cast<std::uint32_t>(pci::bridge::kApertureBytes);
   struct Case {
     std::string what;
