@@ -274,8 +274,8 @@ std::optional<TransitionCache::Transition> FastForward::find_host(std::uint64_t 
   return found && fits_host(*found) ? found : std::nullopt;
 }
 
-// Whether a transition with requests of the host can be followed. It may continue after the last slot that it
-// consumes: this must not be the last uniform slot.
+// Whether a transition with requests of the host can be followed. It may consume no slot, or continue after its
+// last one. Both would be wrong after the last uniform slot, where the core is in another state than the memo.
 bool FastForward::fits_host(const TransitionCache::Transition& transition) const {
   const Progress& progress = known_.progress(transition);
   return progress.fits(room_) && progress.consumed < room_.consumed;
