@@ -153,7 +153,7 @@ bool FastForward::follow_sequence(std::uint64_t& cycle) {
     known_.begin_sequence();
     return false;
   }
-  if (!known_.progress(*found).fits(room_)) return false;
+  if (!fits_host(*found)) return false;
   cycle += known_.progress(*found).cycles;
   host_.words = 0;
   follow(*found);
@@ -271,7 +271,14 @@ std::optional<TransitionCache::Transition> FastForward::find_host(std::uint64_t 
     found = known_.find(state_, accesses, *requests);
     if (found && known_.host(*found).words >= host_.words) return std::nullopt;
   }
-  return found && known_.progress(*found).fits(room_) ? found : std::nullopt;
+  return found && fits_host(*found) ? found : std::nullopt;
+}
+
+// Whether a transition with requests of the host can be followed. It may consume no slot, or continue after its
+// last one. Both would be wrong after the last uniform slot, where the core is in another state than the memo.
+bool FastForward::fits_host(const TransitionCache::Transition& transition) const {
+  const Progress& progress = known_.progress(transition);
+  return progress.fits(room_) && progress.consumed < room_.consumed;
 }
 
 // The requests of these words from `cycle` on. Nothing if a memo cannot hold them.
@@ -392,12 +399,12 @@ Progress FastForward::room() const {
   const auto slots = [this, drains](Side side) {
     return drains ? 0 : all_strips_[strips_].end - 1 - control().lane(side).taken();
   };
-  const std::uint64_t uniform = control().match().uniform_slots();
-  return {UINT64_MAX, uniform == 0 ? 0 : uniform - 1, slots(Side::kLeft), slots(Side::kRight),
+  return {UINT64_MAX, control().match().uniform_slots(), slots(Side::kLeft), slots(Side::kRight),
           stepper_.rows().next_words() - control().result().words_written() - 1};
 }
 
-// Whether a whole group fits into `room`.
+// Whether a whole group fits into `room`. If not, nothing may be recorded: after a walk up to the last uniform
+// slot, the state of the memo differs from that of the core.
 bool FastForward::holds_group(const Progress& room) const {
   const std::uint64_t slots = control().match().draining() ? 0 : slots_of_group();
   return room.consumed >= slots_of_group() && room.left_slots >= slots && room.right_slots >= slots;

@@ -110,6 +110,7 @@ class FastForward {
   void route_host(std::uint64_t& cycle, const Route& route, std::uint64_t first);
   void resolve_accesses(Side side);
   std::optional<TransitionCache::Transition> find_host(std::uint64_t cycle) const;
+  bool fits_host(const TransitionCache::Transition& transition) const;
   void follow(const TransitionCache::Transition& transition);
   void skip(const Progress& progress);
   void catch_up(std::uint64_t cycle);

@@ -106,6 +106,7 @@ class Core {
   bool done() const { return frames_.control().frame_done(); }
   std::uint64_t cycle() const { return frames_.cycle(); }
   std::uint64_t earliest_last_write() const { return frames_.earliest_last_write(); }
+  std::uint64_t work() const { return frames_.control().work(); }
   // One cycle. True if the host is granted.
   bool step(bool host_requests = false) {
     const memory::PortMask granted =
@@ -467,6 +468,37 @@ TEST(FastForward, GrantsTwoBurstsOfAGroup) {
       ahead.finish();
       ASSERT_EQ(ahead.figures(), stepped.figures()) << pause;
     }
+  }
+}
+
+// A burst that begins with a group of the drain is known; one that begins after the last group comes in the same
+// state, but there the matcher has nothing to do. A slot takes 16 cycles.
+TEST(FastForward, FollowsNoBurstBeyondTheLastGroupOfTheDrain) {
+  Setting setting = bank_for_each_port(64, 24);
+  setting.core.disparities = 16;
+  setting.core.units = 1;
+  Core alone(setting, Core::Way::kStepped);
+  alone.start(0);
+  alone.advance(kNever);
+  const std::uint64_t last_write = alone.cycle() - 1;
+  const std::uint64_t group = 4 * 7 * 16;
+  Core stepped(setting, Core::Way::kStepped);
+  Core ahead(setting, Core::Way::kAhead);
+  for (int frame = 0; frame < 3; ++frame) {
+    const std::uint64_t start = stepped.cycle();
+    stepped.start(start);
+    ahead.start(start);
+    for (std::uint64_t groups = 3; groups <= 3; --groups) {
+      const Burst burst{start + last_write - groups * group, 4, true, 5};
+      ASSERT_EQ(ahead.serve_in_step(burst), stepped.serve_in_step(burst));
+    }
+    stepped.advance(kNever);
+    ahead.advance(kNever);
+    EXPECT_EQ(stepped.cycle(), start + last_write + 1 + 5);
+    EXPECT_EQ(ahead.work(), stepped.work());
+    stepped.finish();
+    ahead.finish();
+    ASSERT_EQ(ahead.figures(), stepped.figures());
   }
 }
 
