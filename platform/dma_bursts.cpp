@@ -11,7 +11,8 @@
 namespace stereotlm::platform {
 namespace {
 
-// Times are rounded to whole ps: a clock may begin 1 ps earlier or later against another one.
+// Each time is rounded to whole ps. From the beginning of a step to the ends of its two bursts, this may take
+// as many ps from the distance of the ends.
 constexpr std::uint64_t kRounding = 4;
 
 }  // namespace

@@ -36,8 +36,8 @@ class DmaBursts {
   DmaBursts(pci::PciBusControl& pci_bus, pci::BridgeControl& bridge, FastBoard& board,
             unsigned char* host_memory, std::uint64_t host_memory_bytes, bool has_pixels);
 
-  // To be called before the local bus chooses a burst, at `now_ps`. Before `end_ps` nothing but the PCI bus and
-  // the bridge has an event. Returns true if it has skipped bursts: then the bus chooses later.
+  // To be called before the local bus chooses a burst, at `now_ps`. Before `end_ps` nothing but the PCI bus
+  // and the bridge has an event. Returns true if it has skipped bursts: then the bus chooses later.
   bool skip(std::uint64_t now_ps, std::uint64_t end_ps);
 
   // The number of steps skipped.

@@ -52,6 +52,7 @@ struct DmaProgram {
   std::array<std::vector<Piece>, pci::bridge::kChannels> chains;
   std::optional<std::uint32_t> first_bank_of_frame;
   bool captures = false;         // to the banks 0 and 2
+  std::uint64_t delay_ps = 0;    // after the start of the frame
   std::uint64_t disturb_ps = 0;  // it accesses a register or a bank as often; 0: never
   fpga::Fidelity fidelity = fpga::Fidelity::kFast;
 };
@@ -80,6 +81,7 @@ class DmaRun : public testing::LoopRun {
     }
     if (program_.first_bank_of_frame) start_frame(*program_.first_bank_of_frame);
     if (program_.captures) arm_captures();
+    run_for(program_.delay_ps);
     std::uint32_t ended = 0;
     std::uint32_t awaited = 0;
     for (std::uint32_t channel = 0; channel < bridge::kChannels; ++channel) {
@@ -247,6 +249,19 @@ TEST(DmaBursts, StepsBurstsBesideTheOtherChannelAndInTheWayOfAFrame) {
   EXPECT_GT(skipped_bursts(dma_board({}), program), 30U);
   program.chains[1] = {{true, 0x80000, word_of(1, 0), 50 * kBurst}};
   EXPECT_LT(skipped_bursts(dma_board({}), program), 12U);  // where one channel is done
+}
+
+// In one of these runs a frame ends, and interrupts the processor, at the time at which a step begins. Each step
+// takes 35 clocks of the local bus.
+TEST(DmaBursts, SkipNothingBehindAnInterrupt) {
+  const BoardConfig board = dma_board({"pci.clock_mhz=80", "image={width: 16, height: 8}"});
+  DmaProgram program;
+  program.chains[0] = {{false, 0x10000, word_of(0, 0), 200 * kBurst}};
+  program.first_bank_of_frame = 3;
+  for (std::uint64_t clock = 0; clock < 35; ++clock) {
+    program.delay_ps = 25'000 * clock;
+    EXPECT_GT(skipped_bursts(board, program), 150U);
+  }
 }
 
 // Computers in which either bus is the slower one, or both are alike.
