@@ -275,7 +275,7 @@ std::optional<TransitionCache::Transition> FastForward::find_host(std::uint64_t 
 }
 
 // Whether a transition with requests of the host can be followed. It may consume no slot, or continue after
-// its last one. Both would be wrong after the last uniform slot: there the state of the memo is not the core's.
+// its last one. Both would be wrong after the last uniform slot: there the memo has another state.
 bool FastForward::fits_host(const TransitionCache::Transition& transition) const {
   const Progress& progress = known_.progress(transition);
   return progress.fits(room_) && progress.consumed < room_.consumed;
