@@ -274,8 +274,8 @@ std::optional<TransitionCache::Transition> FastForward::find_host(std::uint64_t 
   return found && fits_host(*found) ? found : std::nullopt;
 }
 
-// Whether a transition with requests of the host can be followed. It may consume no slot, or continue after its
-// last one. Both would be wrong after the last uniform slot, where the core is in another state than the memo.
+// Whether a transition with requests of the host can be followed. It may consume no slot, or continue after
+// its last one. Both would be wrong after the last uniform slot: there the memo has another state.
 bool FastForward::fits_host(const TransitionCache::Transition& transition) const {
   const Progress& progress = known_.progress(transition);
   return progress.fits(room_) && progress.consumed < room_.consumed;
@@ -403,8 +403,8 @@ Progress FastForward::room() const {
           stepper_.rows().next_words() - control().result().words_written() - 1};
 }
 
-// Whether a whole group fits into `room`. If not, nothing may be recorded: after a walk up to the last uniform
-// slot, the state of the memo differs from that of the core.
+// Whether a whole group fits into `room`. If not, nothing may be recorded: after a walk up to the last
+// uniform slot, the state of the memo differs from that of the core.
 bool FastForward::holds_group(const Progress& room) const {
   const std::uint64_t slots = control().match().draining() ? 0 : slots_of_group();
   return room.consumed >= slots_of_group() && room.left_slots >= slots && room.right_slots >= slots;

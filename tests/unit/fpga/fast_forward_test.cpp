@@ -385,8 +385,8 @@ TEST(FastForward, StepsFewCyclesBesideBurstsOnceTheirGroupsAreRecorded) {
   EXPECT_LT(with_results[1], 2000U);
 }
 
-// As before, with two bursts of 32 words every `pause` cycles, to two banks and in both directions: the second
-// begins `gap` cycles after the first has ended.
+// As before, with two bursts of 32 words every `pause` cycles, to two banks and in both directions: the
+// second begins `gap` cycles after the first has ended.
 std::vector<std::uint64_t> stepped_beside_pairs_of_bursts(std::uint64_t pause, std::uint64_t gap) {
   const Setting setting = bank_for_each_port(640, 480);
   Core core(setting, Core::Way::kAhead);
@@ -424,7 +424,7 @@ TEST(FastForward, RecordsTheGroupsFarBeforeABurst) {
   EXPECT_LT(core.cycle() - core.skipped_cycles() - begin, 2000U);
 }
 
-// The pixel ports have banks of their own, so that their accesses need not be known; until a burst goes there.
+// The pixel ports have banks of their own, so that their accesses need not be known until a burst goes there.
 TEST(FastForward, ForgetsABurstWithTheEndOfItsFrame) {
   Setting setting = bank_for_each_port(640, 480);
   test::SplitMix64 random(1);
@@ -471,8 +471,8 @@ TEST(FastForward, GrantsTwoBurstsOfAGroup) {
   }
 }
 
-// A burst that begins with a group of the drain is known; one that begins after the last group comes in the same
-// state, but there the matcher has nothing to do. A slot takes 16 cycles.
+// A burst that begins with a group of the drain is known. One that begins after the last group comes in the
+// same state, but there the matcher has nothing to do. A slot takes 16 cycles.
 TEST(FastForward, FollowsNoBurstBeyondTheLastGroupOfTheDrain) {
   Setting setting = bank_for_each_port(64, 24);
   setting.core.disparities = 16;

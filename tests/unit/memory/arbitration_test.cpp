@@ -102,8 +102,8 @@ TEST(Arbitration, GrantsAndCountsAsOneArbiterPerBank) {
 class SkippedArbitration : public testing::TestWithParam<bool> {};
 
 // Two with the same routes, counting or not: one steps every cycle; the other records the cycles between two
-// states, and skips them wherever it is in the first of these states again. The host may visit shared banks in
-// between.
+// states, and skips them wherever it is in the first of these states again. The host may visit shared banks
+// in between.
 TEST_P(SkippedArbitration, EqualsTheSteppedOneInGrantsStatesAndCounts) {
   int skipped = 0;
   int repeated = 0;
