@@ -107,7 +107,8 @@ class LocalBusControl final : public LocalBusIf {
   // Whether the clocks of the bus begin with those of `clock`.
   bool is_in_step_with(const Clock& clock) const { return clock_.has_edges_of(clock); }
 
-  // For platform::CameraLines and platform::DmaBursts, which skip bursts to the banks that they have seen before.
+  // For platform::CameraLines and platform::DmaBursts, which skip bursts to the banks that they have seen
+  // before.
   const Clock& clock() const { return clock_; }
   // The last burst, and the number of its idle clock.
   const LocalBurst& burst() const { return burst_; }

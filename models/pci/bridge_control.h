@@ -104,7 +104,7 @@ class BridgeControl final : public PciMasterIf, private LocalBusMaster::Listener
   // For platform::DmaBursts, which skips bursts of DMA that it has seen before.
   //
   // The channel that is about to write a burst on one bus and to read the next one on the other, if both are
-  // of full length, have not begun yet, and nothing else is under way in the bridge or waits there; else null.
+  // of full length and have not begun yet, and nothing else is under way or waits in the bridge; else null.
   DmaChannel* lone_channel();
   // That channel has written this number of bursts, and read as many. The next two are to begin at `now_ps`.
   // To be called when the bus may take requests again.

@@ -105,7 +105,8 @@ class PciBusControl {
   Position position() const { return {last_granted_, free_clock_, busy_clocks_}; }
   const MasterCounts& counts(std::size_t master) const { return master_stats_[master]; }
   std::uint64_t transactions() const;  // of all masters
-  // Instead of decide(): the request of a master has been granted, and its bursts have ended, with these counts.
+  // Instead of decide(): the request of a master has been granted, and its bursts have ended. These are their
+  // counts.
   void skip_bursts(std::size_t master, const MasterCounts& counts);
   // To be called then: the position after all of them. The masters may then request again.
   void skip_to(const Position& position);

@@ -251,8 +251,8 @@ TEST(DmaBursts, StepsBurstsBesideTheOtherChannelAndInTheWayOfAFrame) {
   EXPECT_LT(skipped_bursts(dma_board({}), program), 12U);  // where one channel is done
 }
 
-// In one of these runs a frame ends, and interrupts the processor, at the time at which a step begins. Each step
-// takes 35 clocks of the local bus.
+// In one of these runs a frame ends, and interrupts the processor, at the time at which a step begins. Each
+// step takes 35 clocks of the local bus.
 TEST(DmaBursts, SkipNothingBehindAnInterrupt) {
   const BoardConfig board = dma_board({"pci.clock_mhz=80", "image={width: 16, height: 8}"});
   DmaProgram program;

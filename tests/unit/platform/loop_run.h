@@ -41,8 +41,8 @@ class NoiseSource : public capture::CameraSource {
   kernels::GrayImage picture_;
 };
 
-// A processor for ComputerLoop, which notes the times of its accesses and of the interrupts. The loop runs for
-// at most `step_ps` at a time: nothing can be skipped that does not end within such a step.
+// A processor for ComputerLoop, which notes the times of its accesses and of the interrupts. The loop runs
+// for at most `step_ps` at a time: nothing can be skipped that does not end within such a step.
 class LoopRun : public pci::PciMasterIf {
  public:
   LoopRun(const BoardConfig& board, fpga::Fidelity fidelity, std::uint64_t step_ps)
