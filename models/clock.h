@@ -28,6 +28,13 @@ class Clock {
 
   // Whether all edges of both clocks lie at the same times.
   bool has_edges_of(const Clock& other) const { return period_ == other.period_; }
+  // The number of phases that the edges of this clock have against those of `other`: each edge is a multiple of
+  // other's period divided by this number behind an edge of `other`.
+  Wide phases_against(const Clock& other) const {
+    const Wide mine = mhz_.numerator * other.mhz_.denominator;
+    const Wide others = other.mhz_.numerator * mhz_.denominator;
+    return mine / greatest_common_divisor(mine, others);
+  }
 
  private:
   static double checked(double mhz) {
@@ -35,9 +42,11 @@ class Clock {
     throw std::invalid_argument("clock_mhz = " + std::to_string(mhz) + ": must be 0.001..1000");
   }
   explicit Clock(const DecimalNumber& mhz)
-      : period_(Wide{1'000'000} * mhz.denominator, mhz.numerator),
+      : mhz_(mhz),
+        period_(Wide{1'000'000} * mhz.denominator, mhz.numerator),
         periods_(Wide{1'000'000} * mhz.denominator, mhz.numerator) {}
 
+  DecimalNumber mhz_;
   Period period_;
   PeriodCounter periods_;
 };

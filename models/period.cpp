@@ -48,13 +48,17 @@ DecimalNumber decimal_of(double value) {
   return {digits * power_of_ten(-decimals), power_of_ten(decimals)};
 }
 
-Period::Period(Wide numerator, Wide denominator) {
-  Wide divisor = denominator;
-  for (Wide rest = numerator; rest != 0;) {
-    const Wide next = divisor % rest;
-    divisor = rest;
-    rest = next;
+Wide greatest_common_divisor(Wide a, Wide b) {
+  while (b != 0) {
+    const Wide rest = a % b;
+    a = b;
+    b = rest;
   }
+  return a;
+}
+
+Period::Period(Wide numerator, Wide denominator) {
+  const Wide divisor = greatest_common_divisor(numerator, denominator);
   denominator_ = denominator / divisor;
   whole_ = static_cast<std::uint64_t>(numerator / denominator);
   rest_ = numerator / divisor % denominator_;

@@ -4,33 +4,32 @@
 
 #include "models/memory/crossbar_address.h"
 #include "models/time_ps.h"
-#include "platform/computer_parts.h"
 #include "platform/device_map.h"
 
 namespace stereotlm::platform {
 namespace {
 
 constexpr std::array<std::size_t, 2> kMasters = {kLeftCapture, kRightCapture};
-// Each time is rounded to the nearest ps. The order of two times is the same in two lines if their distances
-// are at least this long, in ps: each of them, and the two times to which they are related, is off by half a
-// ps at most.
-constexpr std::int64_t kRounding = 4;
+// Each time is rounded to whole ps. So the distance of two clocks, or of two pixels, may be 1 ps longer in one
+// line than in another. Two such distances lie between the beginning of a line and two times whose order
+// matters. If these two stay 1 ps apart beyond that, their order is the same.
+constexpr std::int64_t kRounding = 3;
 // Lines are recorded as long as most of them are skipped: this number, and one for each line skipped.
 constexpr std::uint64_t kFirstRecords = 64;
-constexpr std::size_t kMostRecords = 4096;
-// A clock is divided into this number of cells.
-constexpr std::uint64_t kCells = 64;
+// With more records it would take longer to search them than to step the line.
+constexpr std::size_t kMostRecords = 512;
 
 std::int64_t from_to(std::uint64_t from_ps, std::uint64_t to_ps) {
   return static_cast<std::int64_t>(to_ps) - static_cast<std::int64_t>(from_ps);
 }
 
-using Counts = pci::PciBusControl::MasterCounts;
-
-Counts sum(const Counts& a, const Counts& b) {
-  return {a.transactions + b.transactions, a.words + b.words, a.wait_clocks + b.wait_clocks,
-          a.retries + b.retries, a.aborts + b.aborts};
+// Against the clocks of the local bus those of the PCI bus may have few phases. Then two phases that differ by
+// less than half a step are the same.
+std::int64_t play_ps(const Clock& pci, const Clock& local) {
+  return static_cast<std::int64_t>(local.edge_ps(1) / pci.phases_against(local) / 2) - kRounding;
 }
+
+using Counts = pci::PciBusControl::MasterCounts;
 
 Counts difference(const Counts& a, const Counts& b) {
   return {a.transactions - b.transactions, a.words - b.words, a.wait_clocks - b.wait_clocks,
@@ -46,21 +45,11 @@ CameraLines::CameraLines(pci::PciBusControl& pci_bus, pci::BridgeControl& bridge
       board_(board),
       captures_(captures),
       has_pixels_(has_pixels),
-      buses_are_in_step_(pci_clock().has_edges_of(local_clock())),
-      pci_cell_ps_(pci_clock().edge_ps(1) / kCells + 1),
-      local_cell_ps_(local_clock().edge_ps(1) / kCells + 1),
-      cells_((kTrafficGenerator + 1) * kCells * kCells) {}
-
-bool CameraLines::both_request() const {
-  const std::uint64_t clock = pci_bus_.decision_clock();
-  return pci_bus_.request_clock(kLeftCapture) == clock && pci_bus_.request_clock(kRightCapture) == clock &&
-         captures_[0].requested_ps() == captures_[1].requested_ps() &&
-         captures_[0].fifo().next_row() == captures_[1].fifo().next_row();
-}
+      local_play_ps_(play_ps(pci_clock(), local_clock())) {}
 
 bool CameraLines::skip(std::uint64_t now_ps, std::uint64_t end_ps) {
   const auto addresses = bank_addresses();
-  if (!addresses || !bridge_.is_idle(now_ps) || !board_.local_bus().is_idle(now_ps)) {
+  if (!addresses || !bridge_.is_idle(now_ps)) {
     drop();
     return false;
   }
@@ -86,7 +75,7 @@ std::optional<CameraLines::OfSides<std::uint64_t>> CameraLines::bank_addresses()
   for (std::size_t side = 0; side < kSides; ++side) {
     const std::uint64_t offset = captures_[side].line_address() - DeviceMap().bridge_slave;
     const auto address = bridge_.bank_address(offset, bytes);
-    if (!address || !board_.takes_in_step(*address, bytes)) return std::nullopt;
+    if (!address || !board_.serves_in_step(*address, bytes)) return std::nullopt;
     addresses[side] = *address;
   }
   if (memory::bank_of_address(addresses[0]) == memory::bank_of_address(addresses[1])) return std::nullopt;
@@ -99,23 +88,10 @@ CameraLines::Beginning CameraLines::beginning(std::uint64_t now_ps) const {
           from_to(now_ps, local_ps)};
 }
 
-std::size_t CameraLines::cell_of(const Beginning& beginning) const {
-  const auto cell = [](std::int64_t ps, std::uint64_t cell_ps) {
-    return std::min(static_cast<std::uint64_t>(ps) / cell_ps, kCells - 1);
-  };
-  return (beginning.last_granted * kCells + cell(beginning.pci_ps, pci_cell_ps_)) * kCells +
-         cell(beginning.local_ps, local_cell_ps_);
-}
-
-const CameraLines::Line* CameraLines::find(const Beginning& beginning) {
-  std::uint16_t& latest = cells_[cell_of(beginning)];
-  if (latest != 0 && bounds_[latest - 1U].hold(beginning)) return &lines_[latest - 1U];
+const CameraLines::Line* CameraLines::find(const Beginning& beginning) const {
   const auto found = std::find_if(bounds_.begin(), bounds_.end(),
                                   [&](const Bounds& bounds) { return bounds.hold(beginning); });
-  if (found == bounds_.end()) return nullptr;
-  const auto index = static_cast<std::size_t>(found - bounds_.begin());
-  latest = static_cast<std::uint16_t>(index + 1);
-  return &lines_[index];
+  return found != bounds_.end() ? &lines_[static_cast<std::size_t>(found - bounds_.begin())] : nullptr;
 }
 
 // Whether the line ends before `end_ps`, before any other master can have the bus, and before the next line.
@@ -123,8 +99,7 @@ bool CameraLines::fits_before(const Line& line, std::uint64_t now_ps, std::uint6
   const std::uint64_t free_clock = pci_bus_.decision_clock() + line.pci.free_clock;
   if (pci_bus_.earliest_request_beside(kLeftCapture, kRightCapture) < free_clock) return false;
   const std::uint64_t idle_clock = local_clock().edge_at_or_after(now_ps) + line.idle_clock;
-  const std::uint64_t last_ps =
-      std::max(pci_clock().edge_ps(free_clock), local_clock().edge_ps(idle_clock + 1));
+  const std::uint64_t last_ps = local_clock().edge_ps(idle_clock + 1);  // behind the end of all PCI bursts
   const capture::CaptureFifo& fifo = captures_[0].fifo();
   return last_ps < end_ps && last_ps < fifo.first_request_ps(fifo.next_row() + 1);
 }
@@ -133,20 +108,23 @@ void CameraLines::apply(const Line& line, std::uint64_t now_ps, const OfSides<st
   const std::uint64_t first = pci_bus_.decision_clock();
   const std::uint64_t first_local = local_clock().edge_at_or_after(now_ps);
   const pci::PciBusControl::Position before = pci_bus_.position();
+  for (std::size_t side = 0; side < kSides; ++side)
+    pci_bus_.skip_bursts(kMasters[side], line.sides[side].pci);
   pci_bus_.skip_to(
-      {line.pci.last_granted, first + line.pci.free_clock, before.busy_clocks + line.pci.busy_clocks},
-      kMasters,
-      {sum(pci_bus_.counts(kMasters[0]), line.sides[0].pci),
-       sum(pci_bus_.counts(kMasters[1]), line.sides[1].pci)});
-  bridge_.skip_to((bridge_.turn() + line.turns) % pci::bridge::kChannels, line.most_posted);
+      {line.pci.last_granted, first + line.pci.free_clock, before.busy_clocks + line.pci.busy_clocks});
+  bridge_.skip_posted((bridge_.turn() + line.turns) % pci::bridge::kChannels, line.most_posted);
   fpga::LocalBusControl& local_bus = board_.local_bus();
   local_bus.skip_to(local_bus.bursts() + line.bursts, local_bus.busy_clocks() + line.busy_clocks,
-                    first_local + line.address_clock, first_local + line.idle_clock);
+                    first_local + line.idle_clock);
   const std::uint64_t words = words_of_line();
   for (std::size_t side = 0; side < kSides; ++side) {
     const Line::Side& of_side = line.sides[side];
     bridge_.count_skipped(addresses[side], words);
-    std::uint32_t* const stored = board_.skip_writes(addresses[side], words, first_local, of_side.bursts);
+    const std::vector<fpga::HostPort::ServedWords>& bursts = of_side.bursts;
+    std::uint32_t* const stored =
+        board_.skip_words(true, addresses[side], words, first_local + bursts.front().first_cycle,
+                          first_local + bursts.back().first_cycle + bursts.back().words);
+    if (board_.is_recorded()) board_.record_skipped(true, addresses[side], first_local, bursts);
     if (has_pixels_) captures_[side].copy_line(stored);
     captures_[side].skip_line(pci_clock().edge_ps(first + of_side.end_clock), of_side.pci.transactions);
   }
@@ -173,63 +151,65 @@ void CameraLines::begin_record(std::uint64_t now_ps, const Beginning& beginning,
   record_.bursts = board_.local_bus().bursts();
   record_.bursts_seen = record_.bursts;
   record_.busy_clocks = board_.local_bus().busy_clocks();
-  keep_place(record_.pci_clock, true);
-  keep_place(record_.pci_clock - 1, false);
-}
-
-// The clock of the PCI bus must keep its place among the pixels, and among the clocks of the local bus.
-void CameraLines::keep_place(std::uint64_t clock, bool among_local_clocks) {
-  const std::uint64_t time_ps = pci_clock().edge_ps(clock);
-  const capture::CaptureFifo::Span span = captures_[0].fifo().same_words(record_.row, time_ps);
-  record_.pci_earlier_ps = std::min(record_.pci_earlier_ps, from_to(span.first_ps, time_ps) - kRounding);
-  record_.pci_later_ps = std::min(record_.pci_later_ps, from_to(time_ps, span.end_ps) - kRounding);
-  if (!among_local_clocks || buses_are_in_step_) return;
-  const std::uint64_t local = local_clock().edge_at_or_after(time_ps);
-  record_.local_earlier_ps =
-      std::min(record_.local_earlier_ps, from_to(time_ps, local_clock().edge_ps(local)) - kRounding);
-  record_.local_later_ps =
-      std::min(record_.local_later_ps, from_to(local_clock().edge_ps(local - 1), time_ps) - kRounding);
 }
 
 void CameraLines::stepped(std::uint64_t now_ps, bool is_of_pci_bus) {
-  Line& line = record_.line;
-  const std::uint64_t now_clock = is_of_pci_bus ? pci_clock().edge_at_or_after(now_ps) : 0;
-  if (is_of_pci_bus) keep_place(now_clock, true);
+  if (is_of_pci_bus) see_pci_bus(pci_clock().edge_at_or_after(now_ps));
+  record_.line.most_posted = std::max<std::uint64_t>(record_.line.most_posted, bridge_.posted_words());
+  if (board_.local_bus().bursts() != record_.bursts_seen) see_local_burst();
+}
+
+void CameraLines::see_pci_bus(std::uint64_t clock) {
+  keep_place_among_pixels(clock);
+  keep_place_among_local_clocks(clock);
   for (std::size_t side = 0; side < kSides; ++side) {
+    Line::Side& of_side = record_.line.sides[side];
     const Counts so_far = difference(pci_bus_.counts(kMasters[side]), record_.counts[side]);
-    if (so_far.transactions != line.sides[side].pci.transactions)
-      line.sides[side].end_clock = now_clock - record_.pci_clock;
-    line.sides[side].pci = so_far;
+    if (so_far.transactions != of_side.pci.transactions) of_side.end_clock = clock - record_.pci_clock;
+    of_side.pci = so_far;
     // A request counts from the first clock at or after its time. That of the next line is not of this one.
     const std::uint64_t requested = pci_bus_.request_clock(kMasters[side]);
     if (requested != kNever && requested != record_.request_clocks[side] &&
         !captures_[side].is_between_lines()) {
-      keep_place(requested, true);
-      keep_place(requested - 1, false);
+      keep_place_among_pixels(requested - 1);
+      keep_place_among_pixels(requested);
     }
     record_.request_clocks[side] = requested;
   }
-  line.most_posted = std::max<std::uint64_t>(line.most_posted, bridge_.posted_words());
-  if (board_.local_bus().bursts() != record_.bursts_seen) see_local_burst();
+}
+
+void CameraLines::keep_place_among_pixels(std::uint64_t pci_clock) {
+  const std::uint64_t time_ps = this->pci_clock().edge_ps(pci_clock);
+  const capture::CaptureFifo::Span span = captures_[0].fifo().same_words(record_.row, time_ps);
+  record_.pci_earlier_ps = std::min(record_.pci_earlier_ps, from_to(span.first_ps, time_ps) - kRounding);
+  record_.pci_later_ps = std::min(record_.pci_later_ps, from_to(time_ps, span.end_ps) - kRounding);
+}
+
+void CameraLines::keep_place_among_local_clocks(std::uint64_t pci_clock) {
+  const std::uint64_t time_ps = this->pci_clock().edge_ps(pci_clock);
+  const std::uint64_t next = local_clock().edge_at_or_after(time_ps);
+  const std::uint64_t next_ps = local_clock().edge_ps(next);
+  // A clock that begins at this very time must still do so.
+  const std::uint64_t last_ps = next_ps == time_ps ? time_ps : local_clock().edge_ps(next - 1);
+  record_.local_earlier_ps = std::min(record_.local_earlier_ps, from_to(time_ps, next_ps) - kRounding);
+  record_.local_later_ps = std::min(record_.local_later_ps, from_to(last_ps, time_ps) - kRounding);
 }
 
 void CameraLines::see_local_burst() {
   const fpga::LocalBusControl& local_bus = board_.local_bus();
   const LocalBurst& burst = local_bus.burst();
   const std::uint64_t first = local_bus.request_clock() - record_.local_clock;
-  for (std::size_t side = 0; side < kSides; ++side) {
-    const std::uint64_t address = record_.addresses[side];
-    if (burst.address < address || burst.address >= address + 4 * words_of_line()) continue;
-    Line::Side& of_side = record_.line.sides[side];
-    of_side.bursts.push_back({first, burst.words});
-    record_.words_on_local_bus[side] += burst.words;
-  }
+  const bool is_right =
+      memory::bank_of_address(burst.address) == memory::bank_of_address(record_.addresses[1]);
+  record_.line.sides[is_right ? 1 : 0].bursts.push_back({first, burst.words});
   record_.bursts_seen = local_bus.bursts();
 }
 
 // Called when the next line begins. Everything is idle again.
 void CameraLines::end_record() {
   is_recording_ = false;
+  record_.local_earlier_ps = std::max(record_.local_earlier_ps, local_play_ps_);
+  record_.local_later_ps = std::max(record_.local_later_ps, local_play_ps_);
   if (!record_is_whole()) return;
   const fpga::LocalBusControl& local_bus = board_.local_bus();
   Line& line = record_.line;
@@ -239,7 +219,6 @@ void CameraLines::end_record() {
   line.turns = (bridge_.turn() + pci::bridge::kChannels - record_.turn) % pci::bridge::kChannels;
   line.bursts = local_bus.bursts() - record_.bursts;
   line.busy_clocks = local_bus.busy_clocks() - record_.busy_clocks;
-  line.address_clock = local_bus.address_clock() - record_.local_clock;
   line.idle_clock = local_bus.idle_clock() - record_.local_clock;
   lines_.push_back(line);
   Bounds& bounds = bounds_.emplace_back();
@@ -250,24 +229,15 @@ void CameraLines::end_record() {
   bounds.most.local_ps += record_.local_later_ps;
 }
 
-// Whether all words of the line have reached their banks, nobody else had the PCI bus, the FIFOs were never
-// full, and there are bounds.
+// Whether no word may have found its FIFO full, no other master had the PCI bus, and there are bounds.
 bool CameraLines::record_is_whole() const {
-  const capture::CaptureFifo& fifo = captures_[0].fifo();
-  if (fifo.next_row() != record_.row + 1 ||
-      captures_[0].requested_ps() != fifo.first_request_ps(record_.row + 1))
-    return false;
+  if (captures_[0].fifo().next_row() != record_.row + 1) return false;  // the next line came before the end
   std::uint64_t transactions = record_.transactions;
   for (std::size_t side = 0; side < kSides; ++side) {
-    const Counts& counts = record_.line.sides[side].pci;
-    if (counts.words != words_of_line() || counts.aborts != 0 ||
-        record_.words_on_local_bus[side] != words_of_line() ||
-        captures_[side].fifo().looks() != record_.looks[side])
-      return false;
-    transactions += counts.transactions;
+    if (captures_[side].fifo().looks() != record_.looks[side]) return false;
+    transactions += record_.line.sides[side].pci.transactions;
   }
   return pci_bus_.transactions() == transactions &&
-         pci_bus_.earliest_request_beside(kLeftCapture, kRightCapture) >= pci_bus_.position().free_clock &&
          std::min({record_.pci_earlier_ps, record_.pci_later_ps, record_.local_earlier_ps,
                    record_.local_later_ps}) >= 0;
 }

@@ -9,32 +9,44 @@
 #include "models/capture/capture_control.h"
 #include "models/pci/bridge_control.h"
 #include "models/pci/pci_bus_control.h"
+#include "platform/computer_parts.h"
 #include "platform/fast_board.h"
 
 namespace stereotlm::platform {
 
-// Skips lines of the cameras. Both cameras send line after line, at the same times. If the words of a line
-// reach the banks undisturbed, everything from its first request of the PCI bus to that of the next line
-// depends on two things only: whose turn it is, and the order of three series of times, which are the edges of
-// the clocks of PCI bus and local bus, and the arrivals of the first and the last pixel of each word.
+// Skips lines of the cameras that repeat what an earlier line did.
 //
-// So a line is stepped once, and recorded: what was counted, whose turn it is then, and how far the clocks of
-// the PCI bus could move against the pixels, and those of the local bus against the PCI bus, before an event
-// on the PCI bus would change places with one of these times. A later line that begins with the same turn and
-// within these bounds is skipped. A line that no record fits is stepped.
+// Both cameras send a line at the same time. Its words take bursts on the PCI bus, wait in the bridge, and take
+// bursts on the local bus to their banks. What happens when depends on three series of times: the arrivals of
+// the first and of the last pixel of each word, the clocks of the PCI bus, and the clocks of the local bus. These
+// are seldom in step, so the times of one line seldom come again. But only their order matters: which words are
+// complete when a clock of the PCI bus begins, and which clock of the local bus is the next one then.
 //
-// A line is undisturbed if at its beginning nothing is under way, both boards request the bus from the same
-// time on, their words go to two banks that serve one word a cycle independently of the core's frame, and
-// nothing else happens until the last word is there.
+// So a line is stepped once and recorded: what it counts, and in which clocks it ends. Beside that stands how
+// far the clocks of the PCI bus could move against the pixels, and those of the local bus against those of the
+// PCI bus, before two times would change places. A later line is skipped if it begins within these bounds, and
+// if the same master had the PCI bus last (the bus is granted in turn). A line that no record fits is stepped.
+//
+// This holds only for lines that nothing else touches:
+// - Bridge, local bus and PCI bus are idle when the line begins, and both boards request then.
+// - The words go to two banks, and each bank takes one word a cycle, beside the frame of the core. The local
+//   bus and the core must have the same clock.
+// - Until the last word is stored, no other master requests the PCI bus, and no other block has an event.
+// - No pixel arrives when its FIFO would be full if no word left: else it would also matter in which data clock
+//   each word leaves.
+// The first line of a picture and the last one are always stepped.
 class CameraLines {
  public:
   // `has_pixels`: whether the words of the skipped lines are written. The other arguments outlive this object.
   CameraLines(pci::PciBusControl& pci_bus, pci::BridgeControl& bridge, FastBoard& board,
               std::array<capture::CaptureControl, 2>& captures, bool has_pixels);
 
-  // Whether a line begins with the next decision of the PCI bus.
+  // Whether a line begins with the next decision of the PCI bus: both boards wait for the same line, and the bus
+  // is free as they request it.
   bool begins() const {
-    return captures_[0].is_between_lines() && captures_[1].is_between_lines() && both_request();
+    return captures_[0].is_between_lines() && captures_[1].is_between_lines() &&
+           captures_[0].requested_ps() == captures_[1].requested_ps() &&
+           pci_bus_.request_clock(kLeftCapture) == pci_bus_.decision_clock();
   }
   // To be called then, before that decision, at `now_ps`. Before `end_ps` nothing but the PCI bus and the
   // bridge has an event. Returns true if it has skipped the line, instead of that decision.
@@ -85,17 +97,17 @@ class CameraLines {
     std::uint64_t most_posted = 0;     // the most words in the bridge at one time
     std::uint64_t bursts = 0;          // on the local bus
     std::uint64_t busy_clocks = 0;
-    std::uint64_t address_clock = 0;  // of the last burst
-    std::uint64_t idle_clock = 0;
+    std::uint64_t idle_clock = 0;  // of the last burst
   };
   // The line that is being recorded.
   struct Record {
     Beginning beginning;
-    // How far the clocks of the PCI bus could move against the pixels, and those of the local bus against them.
+    // How far the clocks of the PCI bus could move against the pixels, and those of the local bus against those
+    // of the PCI bus.
     std::int64_t pci_earlier_ps = kFar, pci_later_ps = kFar;
     std::int64_t local_earlier_ps = kFar, local_later_ps = kFar;
     Line line;
-    int row = 0;
+    int row = 0;                    // its number in the picture
     std::uint64_t pci_clock = 0;    // with which the line begins
     std::uint64_t local_clock = 0;  // the next one
     OfSides<std::uint64_t> addresses{};
@@ -109,22 +121,21 @@ class CameraLines {
     std::uint64_t busy_clocks = 0;
     // After the last event.
     OfSides<std::uint64_t> request_clocks{};
-    OfSides<std::uint64_t> words_on_local_bus{};
     std::uint64_t bursts_seen = 0;
   };
 
-  bool both_request() const;
   std::optional<OfSides<std::uint64_t>> bank_addresses() const;
   Beginning beginning(std::uint64_t now_ps) const;
-  const Line* find(const Beginning& beginning);
-  std::size_t cell_of(const Beginning& beginning) const;
+  const Line* find(const Beginning& beginning) const;
   bool fits_before(const Line& line, std::uint64_t now_ps, std::uint64_t end_ps) const;
   void apply(const Line& line, std::uint64_t now_ps, const OfSides<std::uint64_t>& addresses);
 
   void begin_record(std::uint64_t now_ps, const Beginning& beginning,
                     const OfSides<std::uint64_t>& addresses);
-  void keep_place(std::uint64_t pci_clock, bool among_local_clocks);
+  void see_pci_bus(std::uint64_t clock);
   void see_local_burst();
+  void keep_place_among_pixels(std::uint64_t pci_clock);
+  void keep_place_among_local_clocks(std::uint64_t pci_clock);
   void end_record();
   bool record_is_whole() const;
 
@@ -139,14 +150,11 @@ class CameraLines {
   FastBoard& board_;
   OfSides<capture::CaptureControl>& captures_;
   bool has_pixels_;
-  bool buses_are_in_step_;
-  std::uint64_t pci_cell_ps_;  // the part of a clock that a cell covers
-  std::uint64_t local_cell_ps_;
+  // What the clocks of the local bus may be earlier or later and yet have the same phase.
+  std::int64_t local_play_ps_;
 
   std::vector<Bounds> bounds_;
   std::vector<Line> lines_;  // [index in bounds_]
-  // [cell of beginnings]: 1 + the index of the record that was found for one of them last; 0: none yet
-  std::vector<std::uint16_t> cells_;
   bool is_recording_ = false;
   Record record_;
   std::uint64_t recorded_ = 0;  // lines of which a record was begun

@@ -30,7 +30,8 @@ ComputerLoop::ComputerLoop(const BoardConfig& config, unsigned char* host_memory
       host_memory_(host_memory),
       capture_registers_{CaptureRegisterTarget(captures_[0]), CaptureRegisterTarget(captures_[1])},
       traffic_device_(config.pci.load ? traffic_config(config)->access_ps : 0),
-      lines_(pci_bus_, bridge_, board_, captures_, fidelity == fpga::Fidelity::kFast) {
+      lines_(pci_bus_, bridge_, board_, captures_, fidelity == fpga::Fidelity::kFast),
+      dma_(pci_bus_, bridge_, board_, host_memory, host_memory_bytes, fidelity == fpga::Fidelity::kFast) {
   bind();
   if (const auto traffic = traffic_config(config)) {
     pci_bus_.bind(kTrafficDevice, traffic_device_);
@@ -85,15 +86,23 @@ void ComputerLoop::run(std::uint64_t end_ps) {
     }
     now_ps_ = next >> kKindBits;
     const auto kind = static_cast<Kind>(next & ((1U << kKindBits) - 1));
-    if (kind == kPciDecides && lines_.begins() &&
-        lines_.skip(now_ps_, std::min(end_ps + 1, next_ps_beside_buses())))
-      continue;
+    if (skip(kind, end_ps + 1)) continue;
     step(kind);
     if (lines_.is_recording()) note_step(kind);
     const bool level = interrupt();
     if (level && !interrupt_) noticed_ = true;
     interrupt_ = level;
   }
+}
+
+// Skips what follows from the event, instead of stepping it, if that is known and ends before `end_ps`.
+// Nothing is skipped that comes after what the processor is to see.
+bool ComputerLoop::skip(Kind kind, std::uint64_t end_ps) {
+  if (kind == kPciDecides) {
+    return lines_.begins() && lines_.skip(now_ps_, std::min(end_ps, next_ps_beside_buses()));
+  }
+  return kind == kLocalBusChooses && !noticed_ &&
+         dma_.skip(now_ps_, std::min(end_ps, next_ps_beside_buses()));
 }
 
 // The next time at which something but the PCI bus and the bridge has an event.

@@ -15,6 +15,7 @@
 #include "platform/camera_lines.h"
 #include "platform/collect_computer.h"
 #include "platform/config/board_config.h"
+#include "platform/dma_bursts.h"
 #include "platform/fast_board.h"
 #include "platform/timeline.h"
 
@@ -57,6 +58,8 @@ class ComputerLoop : private FastBoard::Doorbell, private pci::BridgeControl::Ho
   const pci::PciBusControl& pci_bus() const { return pci_bus_; }
   // Lines of the cameras that were skipped.
   std::uint64_t skipped_lines() const { return lines_.skipped(); }
+  // Bursts written by DMA that were skipped.
+  std::uint64_t skipped_dma_bursts() const { return dma_.skipped(); }
 
  private:
   // The targets of the PCI bus.
@@ -135,6 +138,7 @@ class ComputerLoop : private FastBoard::Doorbell, private pci::BridgeControl::Ho
     return time_ps << kKindBits | kind;
   }
   std::uint64_t next_event() const;
+  bool skip(Kind kind, std::uint64_t end_ps);
   void step(Kind kind);
   std::uint64_t next_ps_beside_buses() const;
   void note_step(Kind kind);
@@ -154,6 +158,7 @@ class ComputerLoop : private FastBoard::Doorbell, private pci::BridgeControl::Ho
   std::array<CaptureRegisterTarget, 2> capture_registers_;
   TrafficTarget traffic_device_;
   CameraLines lines_;
+  DmaBursts dma_;
   std::uint64_t now_ps_ = 0;
   bool interrupt_ = false;  // level after the last step
   bool noticed_ = false;

@@ -46,17 +46,18 @@ void FastBoard::catch_up(std::uint64_t now_ps) {
   if (frames_.is_running()) frames_.run_ahead(clock_.edge_at_or_after(now_ps));
 }
 
-bool FastBoard::takes_in_step(std::uint64_t address, std::uint64_t bytes) {
-  return direct(address, bytes) != nullptr &&
-         fast_core_.is_apart(memory::bank_of_address(address), {address, address + bytes}, true);
+bool FastBoard::serves_in_step(std::uint64_t address, std::uint64_t bytes) {
+  const std::size_t bank = memory::bank_of_address(address);
+  return bank < banks_.size() && direct(address, bytes) != nullptr && host_port_.serves_in_step(bank);
 }
 
-std::uint32_t* FastBoard::skip_writes(std::uint64_t address, std::uint64_t words, std::uint64_t cycle,
-                                      const std::vector<fpga::HostPort::ServedWords>& bursts) {
-  local_bus_.count_skipped(address, words);
-  host_port_.count_skipped(address, words, cycle, bursts);
-  sums_.add_accesses(memory::bank_of_address(address), words);
-  changes(address, 4 * words);
+std::uint32_t* FastBoard::skip_words(bool write, std::uint64_t address, std::uint64_t words,
+                                     std::uint64_t first_cycle, std::uint64_t end_cycle) {
+  const std::size_t bank = memory::bank_of_address(address);
+  local_bus_.count_words(write, address, words);
+  host_port_.count_skipped(bank, write, first_cycle, end_cycle, words);
+  sums_.add_accesses(bank, words);
+  if (write) changes(address, 4 * words);
   return reinterpret_cast<std::uint32_t*>(direct(address, 4 * words));
 }
 

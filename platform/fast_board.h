@@ -59,14 +59,21 @@ class FastBoard : private fpga::LocalBusControl::Core,
   // Advances the core. Throws std::runtime_error if a frame stalls or needs Fidelity::kCycle.
   void step(std::uint64_t now_ps);
 
-  // For CameraLines, which skips bursts that it has seen before.
+  // For CameraLines and DmaBursts, which skip bursts that they have seen before.
   //
-  // Whether bursts that write these bytes are served one word a cycle, independently of the running frame.
-  bool takes_in_step(std::uint64_t address, std::uint64_t bytes);
-  // Such bursts have written `words` words from `address` on. See HostPort::count_skipped(). Returns the place
-  // of the words.
-  std::uint32_t* skip_writes(std::uint64_t address, std::uint64_t words, std::uint64_t cycle,
-                             const std::vector<fpga::HostPort::ServedWords>& bursts);
+  // Whether bursts to these bytes are served one word a cycle, independently of the running frame.
+  bool serves_in_step(std::uint64_t address, std::uint64_t bytes);
+  // Such bursts have moved `words` words from `address` on. See HostPort::count_skipped(). Returns the place
+  // of the words, which the caller moves.
+  std::uint32_t* skip_words(bool write, std::uint64_t address, std::uint64_t words, std::uint64_t first_cycle,
+                            std::uint64_t end_cycle);
+  // Whether the running frame is recorded. If so, record_skipped() is to be called for these words too. See
+  // HostPort.
+  bool is_recorded() const { return frames_.is_recorded(); }
+  void record_skipped(bool write, std::uint64_t address, std::uint64_t cycle,
+                      const std::vector<fpga::HostPort::ServedWords>& bursts) {
+    host_port_.record_skipped(write, address, cycle, bursts);
+  }
 
   // See FrameRun.
   void observe(fpga::FrameObserver& observer) { frames_.observe(observer); }

@@ -70,26 +70,14 @@ void CaptureFifo::skip_line(std::uint64_t now_ps) {
   now_ps_ = now_ps;
 }
 
-// A word begins with its first pixel, and is complete with its last one.
+// The number of words changes with the first and with the last pixel of each word.
 CaptureFifo::Span CaptureFifo::same_words(int row, std::uint64_t time_ps) const {
-  const int pixels = time_ps < begin_ps_ ? 0 : timing_->pixels_by(row, time_ps - begin_ps_);
+  const int pixels = timing_->pixels_by(row, time_ps - begin_ps_);
   const int first_of_word = pixels / kPixelsPerWord * kPixelsPerWord;
-  Span span;
-  if (pixels != first_of_word) {
-    span = {arrival_ps(first_of_word, row), arrival_ps(first_of_word + kPixelsPerWord - 1, row)};
-  } else {
-    if (pixels != 0) {
-      span.first_ps = arrival_ps(pixels - 1, row);
-    } else if (row != 0) {
-      span.first_ps = arrival_ps(timing_->width() - 1, row - 1);
-    }
-    if (pixels != timing_->width()) {
-      span.end_ps = arrival_ps(pixels, row);
-    } else {
-      span.end_ps = row + 1 < timing_->height() ? arrival_ps(0, row + 1) : kNever;
-    }
-  }
-  return span;
+  if (pixels != first_of_word)
+    return {arrival_ps(first_of_word, row), arrival_ps(first_of_word + kPixelsPerWord - 1, row)};
+  return {arrival_ps(pixels - 1, row),
+          pixels != timing_->width() ? arrival_ps(pixels, row) : arrival_ps(0, row + 1)};
 }
 
 // The next words of the arriving line enter.

@@ -58,10 +58,8 @@ class CaptureFifo {
   // Whether the frame finishes at next_ps(), without a further request.
   bool finishes_next() const { return occupancy_ == 0 && next_line_ps_ == kNever && takes_no_more(); }
   // For platform::CameraLines, which skips lines that it has seen before. A line is skipped between two lines:
-  // all words of the lines up to now have entered and left, and a line comes, which is next_row().
-  bool is_between_lines() const {
-    return occupancy_ == 0 && line_end_ps_ <= now_ps_ && taken_ == words_per_line_ && next_line_ps_ != kNever;
-  }
+  // no word of the lines up to now is to come or to leave, and a line comes, which is next_row().
+  bool is_between_lines() const { return occupancy_ == 0 && takes_no_more() && next_line_ps_ != kNever; }
   int next_row() const { return row_ + 1; }
   bool has_row(int row) const { return row < timing_->height(); }
   int words_per_line() const { return words_per_line_; }
@@ -69,8 +67,8 @@ class CaptureFifo {
   std::uint64_t first_request_ps(int row) const {
     return arrival_ps(std::min(trigger_words_, words_per_line_) * kernels::kPixelsPerWord - 1, row);
   }
-  // From `first_ps` on, and before `end_ps`, as many words have begun, and are complete, as at `time_ps` in
-  // this line or between it and its neighbours.
+  // From `first_ps` on, and before `end_ps`, as many words have begun, and are complete, as at `time_ps`. Some
+  // of this row's pixels have arrived then, but none of the next row's, which exists.
   struct Span {
     std::uint64_t first_ps = 0;
     std::uint64_t end_ps = 0;

@@ -27,10 +27,6 @@ std::uint64_t AssumedAccesses::marks(Side side) const {
   return marks;
 }
 
-void AssumedAccesses::resolve() {
-  for (const Side side : kSides) resolve(side);
-}
-
 void AssumedAccesses::resolve(Side side) {
   const AccessPattern* const pattern = assumed(side);
   if (pattern == nullptr) return;

@@ -45,9 +45,9 @@ class AssumedAccesses {
   // LaneControl::correct_marks() of a side.
   std::uint64_t marks(Side side) const;
 
-  // To be called before a route changes, and after the last cycle of a frame. Corrects the counts. From now
-  // on the patterns determine which slots need their pixels.
-  void resolve();
+  // To be called before the pixel port of a side ceases to be alone on its bank, and after the last cycle of
+  // a frame. Corrects the counts. From now on the pattern determines which slots need their pixels.
+  void resolve(Side side);
 
  private:
   struct SideAccesses {
@@ -55,7 +55,6 @@ class AssumedAccesses {
     bool are_all = false;  // every slot inside the image has an access, or is assumed to have one
   };
 
-  void resolve(Side side);
   bool needs_pixel(Side side, memory::PortMask granted) const {
     const CoreControl& control = stepper_.control();
     if ((granted & memory::mask_of(control.table_port(side))) == 0) return false;

@@ -48,6 +48,7 @@ ConflictRecorder::ConflictRecorder(const CoreConfig& config,
       captured_(std::move(captured)),
       grid_(geometry_, most_tiles),
       group_shift_(static_cast<unsigned>(__builtin_ctzll(grid_.groups_of_tile))),
+      groups_of_fill_(static_cast<std::size_t>(geometry_.result_delay_columns + 3) / 4),
       groups_of_strip_(groups_of_strip(geometry_)),
       strips_(1 + strips_of_results(geometry_)),
       strip_ends_(strips_),
@@ -63,7 +64,6 @@ bool ConflictRecorder::start_frame(std::uint64_t cycle, const CoreControl& contr
   is_recording_ = frames_begun_++ < frames_wanted_;
   if (!is_recording_) return false;
   first_cycle_ = cycle_ = cycle;
-  columns_ = 0;
   strip_ = group_ = strip_tile_ = 0;
   for (std::size_t port = 0; port < kCorePortCount; ++port)
     grants_[port] = control.port_cycles(port).granted();
@@ -101,31 +101,31 @@ void ConflictRecorder::step(memory::PortMask requests, memory::PortMask granted,
 void ConflictRecorder::end_group(std::uint64_t next_cycle, const CoreControl& control,
                                  const memory::Arbitration& arbitration) {
   cycle_ = next_cycle;
-  columns_ = control.match().columns();
-  if (strip_ != 0) {
-    end_group_of_strip();
-  }
+  end_group_of_strip();
   if (is_at_strip_end()) end_strip(control, arbitration);
 }
 
-std::uint64_t ConflictRecorder::columns_to_strip_end() const {
-  return strip_ == 0 ? geometry_.result_delay_columns - columns_ : 4 * (groups_of_strip_ - group_);
+void ConflictRecorder::add_part(const GroupConflicts& part, const memory::Arbitration& arbitration) {
+  count_host_words(part, 1, arbitration);
+  add_stalls(part, 0, 1, 1, arbitration);
+  cycle_ += part.cycles;
 }
 
-bool ConflictRecorder::is_at_strip_end() const {
-  return strip_ == 0 ? columns_ == geometry_.result_delay_columns : group_ == groups_of_strip_;
+void ConflictRecorder::count_host_words(const GroupConflicts& group, std::uint64_t times,
+                                        const memory::Arbitration& arbitration) {
+  if (group.host_words != 0)
+    host_accesses(strip_, arbitration.bank_of(kHostPort), traffic_) += group.host_words * times;
 }
 
 void ConflictRecorder::repeat(const GroupConflicts* const* groups, std::size_t size, std::uint64_t times,
                               const memory::Arbitration& arbitration) {
   for (std::size_t first = 0; first < size; ++first) {
     const GroupConflicts& group = *groups[first];
-    if (group.host_words != 0)
-      host_accesses(strip_, arbitration.bank_of(kHostPort), traffic_) += group.host_words * times;
+    count_host_words(group, times, arbitration);
     if (!group.stalls.empty()) add_stalls(group, first, static_cast<std::size_t>(times), size, arbitration);
   }
-  columns_ += 4 * size * times;
   if (strip_ == 0) {
+    group_ += size * static_cast<std::size_t>(times);
     for (std::size_t group = 0; group < size; ++group) cycle_ += groups[group]->cycles * times;
     return;
   }

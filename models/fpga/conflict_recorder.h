@@ -48,7 +48,8 @@ struct TileGrid {
   std::size_t strips_of_tile;
 };
 
-// The cycles of one group of four columns of the matcher: up to the end of the cycle in which it is complete.
+// The cycles of one group of four columns of the matcher, up to the end of the cycle in which it is complete; or
+// a part of them.
 struct GroupConflicts {
   std::uint64_t cycles = 0;
   std::uint64_t host_words = 0;  // that the host is granted
@@ -107,13 +108,20 @@ class ConflictRecorder {
   void end_group(std::uint64_t next_cycle, const CoreControl& control,
                  const memory::Arbitration& arbitration);
 
-  // For FastForward, which skips whole groups. The number of columns up to the end of the strip: there the core
-  // must be in the state after them when end_strip() is called.
-  std::uint64_t columns_to_strip_end() const;
+  // For FastForward, which skips groups and parts of groups, from this cycle on.
+  void skip_from(std::uint64_t cycle) { cycle_ = cycle; }
+  // A part of a group, but not its end.
+  void add_part(const GroupConflicts& part, const memory::Arbitration& arbitration);
+  // The number of columns up to the end of the strip: there the core must be in the state after them when
+  // end_strip() is called.
+  std::uint64_t strip_end_column() const {
+    return geometry_.result_delay_columns + 4 * groups_of_strip_ * strip_;
+  }
   // These groups follow each other, and this `times` times. They end at the end of the strip at the latest.
+  // The first one may be the rest of a group.
   void repeat(const GroupConflicts* const* groups, std::size_t size, std::uint64_t times,
               const memory::Arbitration& arbitration);
-  bool is_at_strip_end() const;
+  bool is_at_strip_end() const { return group_ == (strip_ == 0 ? groups_of_fill_ : groups_of_strip_); }
   void end_strip(const CoreControl& control, const memory::Arbitration& arbitration);
   // [side]: the passes of the pixel port are counted as grants until this is called with null.
   void assume_accesses(const std::array<const AccessPattern*, 2>& assumed) { assumed_ = assumed; }
@@ -178,6 +186,8 @@ class ConflictRecorder {
   std::uint64_t& host_accesses(std::size_t strip, std::size_t bank, HostTraffic traffic) {
     return accesses_of(strip, bank)[1 + static_cast<std::size_t>(traffic)];
   }
+  void count_host_words(const GroupConflicts& group, std::uint64_t times,
+                        const memory::Arbitration& arbitration);
   void add_stalls(const GroupConflicts& group, std::size_t first, std::size_t count, std::size_t step,
                   const memory::Arbitration& arbitration);
   void count_grants(const CoreControl& control, const memory::Arbitration& arbitration);
@@ -185,6 +195,7 @@ class ConflictRecorder {
   // The group ends before cycle_.
   void end_group_of_strip() {
     const std::size_t group = group_++;
+    if (strip_ == 0) return;
     const bool ends_place = (group_ & (grid_.groups_of_tile - 1)) == 0 || group_ == groups_of_strip_;
     if (ends_place) end_place(place_of(strip_, group));
   }
@@ -198,7 +209,8 @@ class ConflictRecorder {
   std::size_t banks_;
   std::vector<AddressRange> captured_;
   TileGrid grid_;
-  unsigned group_shift_;  // a tile has 2^group_shift_ groups side by side
+  unsigned group_shift_;        // a tile has 2^group_shift_ groups side by side
+  std::size_t groups_of_fill_;  // the first one may have fewer than four columns
   std::size_t groups_of_strip_;
   std::size_t strips_;  // the fill among them
   std::uint64_t frames_wanted_ = UINT64_MAX;
@@ -207,11 +219,10 @@ class ConflictRecorder {
   // The running frame.
   bool is_recording_ = false;
   std::uint64_t first_cycle_ = 0;
-  std::uint64_t cycle_ = 0;                             // the first one after the last group
-  std::uint64_t columns_ = 0;                           // consumed up to there
-  std::size_t strip_ = 0;                               // of the next group
-  std::size_t group_ = 0;                               // number of the next group in its strip
-  std::size_t strip_tile_ = 0;                          // the first tile of this strip
+  std::uint64_t cycle_ = 0;     // the first one after the last group, and the transitions skipped since then
+  std::size_t strip_ = 0;       // of the next group
+  std::size_t group_ = 0;       // number of the next group in its strip
+  std::size_t strip_tile_ = 0;  // the first tile of this strip
   std::array<std::uint64_t, kCorePortCount> grants_{};  // [port]: up to the end of the strip before
   std::array<const AccessPattern*, 2> assumed_{};
   // [place_of()]: the first cycle after the part of a tile in its strip. Only if the host may be refused in an

@@ -43,12 +43,11 @@ void CoreControl::add(const Counts& counts, std::uint64_t times) {
   for (std::size_t port = 0; port < counts.size(); ++port) cycles_[port].add(counts[port], times);
 }
 
-void CoreControl::skip_to(const State& state, std::uint64_t columns, std::uint64_t words) {
-  const std::uint64_t slots =
-      match_.draining() ? 0 : columns * static_cast<std::uint64_t>(geometry_.slots_per_column);
-  for (std::size_t side = 0; side < lanes_.size(); ++side) lanes_[side].skip_to(state.lanes[side], slots);
-  match_.skip_columns(columns);
-  result_.skip_to(state.rest >> 8U, words);
+void CoreControl::skip_to(const State& state, std::uint64_t slots, std::uint64_t words) {
+  const std::uint64_t of_lanes = match_.draining() ? 0 : slots;
+  for (std::size_t side = 0; side < lanes_.size(); ++side) lanes_[side].skip_to(state.lanes[side], of_lanes);
+  match_.skip_to(state.rest & 0xffff'ffffU, slots);
+  result_.skip_to(state.rest >> kHalf, words);
 }
 
 std::uint64_t CoreControl::earliest_last_write(std::uint64_t cycle) const {

@@ -71,21 +71,22 @@ class CoreControl {
   // See LaneControl.
   void correct_marks(Side side, std::uint64_t marks) { lanes_[index_of(side)].correct_marks(marks); }
 
-  // After a group of four columns: the state that determines the next cycles, together with the arbiters'
-  // state and the slots that the pixel ports have not handled.
+  // The state that determines the next cycles, together with the arbiters' state and the slots that the pixel
+  // ports have not handled.
   struct State {
     std::array<LaneControl::State, 2> lanes{};  // [side]
-    std::uint64_t rest = 0;  // bits 0..7: state of the matcher; from bit 8 on: state of the result queue
+    std::uint64_t rest = 0;  // lower half: state of the matcher; upper half: state of the result queue
 
     friend bool operator==(const State& a, const State& b) { return a.lanes == b.lanes && a.rest == b.rest; }
   };
   State state() const {
-    return {{lane(Side::kLeft).state(), lane(Side::kRight).state()}, match_.state() | result_.state() << 8U};
+    return {{lane(Side::kLeft).state(), lane(Side::kRight).state()},
+            match_.state() | result_.state() << kHalf};
   }
-  // Skips the cycles in which the matcher consumes `columns` columns and `words` words of results are
-  // written. Afterwards the lanes and the result queue are in `state`; the caller corrects the marks of the
-  // lanes. `columns` is at most MatchControl::uniform_columns().
-  void skip_to(const State& state, std::uint64_t columns, std::uint64_t words);
+  // Skips the cycles in which the matcher consumes `slots` slots, or consume-cycles of the drain, and `words`
+  // words of results are written. The core is in `state` afterwards; the caller corrects the marks of the
+  // lanes. `slots` is at most MatchControl::uniform_slots().
+  void skip_to(const State& state, std::uint64_t slots, std::uint64_t words);
   // Cycles of the core's own ports, over all frames.
   using Counts = std::array<PortCycles, kCorePortCount>;
   Counts counts() const;
@@ -111,6 +112,8 @@ class CoreControl {
   std::uint64_t work() const { return match_.worked() + port_cycles(kResultPort).granted(); }
 
  private:
+  static constexpr unsigned kHalf = 32;  // bits of State::rest
+
   PortCycles& host_cycles() { return cycles_[kHostPort]; }
 
   FrameGeometry geometry_;

@@ -51,7 +51,7 @@ class CoreStepper {
   const RowRecorder& rows() const { return rows_; }
   // The recorder of the running frame; null if it is not recorded.
   void record(ConflictRecorder* conflicts) { conflicts_ = conflicts; }
-  ConflictRecorder* conflicts() { return conflicts_; }
+  ConflictRecorder* conflicts() const { return conflicts_; }
   memory::Arbitration& arbitration() { return arbitration_; }
   const memory::Arbitration& arbitration() const { return arbitration_; }
 

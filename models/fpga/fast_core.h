@@ -56,13 +56,6 @@ class FastCore {
   // To be called instead of HostPort::route() unless a stepped frame runs.
   void route(const HostRoute& route);
 
-  // Whether a burst to these words of a bank is independent of the running frame: neither a hazard nor
-  // contended.
-  bool is_apart(std::size_t bank, const AddressRange& words, bool write) const {
-    return host_port_.serves_in_step(bank) &&
-           !(frames_.is_running() && direct_frame_.hazard_with(words, write));
-  }
-
   // Does what is due at `now_ps`. Returns the time of the next call; kNever: the next call is due when a frame
   // starts. When a burst begins to request, a call is due in any case. An event at the time of an edge belongs
   // to the cycle that begins there.

@@ -21,6 +21,8 @@ std::uint64_t empty_slots(const FrameGeometry& geometry, int strip) {
   return empty;
 }
 
+static_assert(2 * memory::kBankCountRule.max - 1 <= HostRequests::kMostRoute);
+
 std::size_t most_slots_of_group(const FrameGeometry& geometry, int lane_fifo_slots) {
   return static_cast<std::size_t>(4 * geometry.slots_per_column + lane_fifo_slots);
 }
@@ -65,12 +67,15 @@ void FastForward::start_stepped_frame() {
 void FastForward::settle() {
   stepped_.reset();
   is_walking_ = false;
-  granting_.reset();
-  accesses_.resolve();
-  tell_assumed();
-  for (const Side side : kSides) varying_[index_of(side)] = accesses_.varying(side);
+  for (const Side side : kSides) resolve_accesses(side);
   if (is_host_routed_) stepper_.arbitration().unroute(kHostPort);
   is_host_routed_ = false;
+}
+
+void FastForward::resolve_accesses(Side side) {
+  accesses_.resolve(side);
+  varying_[index_of(side)] = accesses_.varying(side);
+  tell_assumed();
 }
 
 void FastForward::tell_assumed() {
@@ -104,85 +109,108 @@ std::uint64_t FastForward::run_ahead(std::uint64_t cycle, std::uint64_t end) {
 
 FastForward::Served FastForward::serve_host(std::uint64_t& cycle, const Route& route, std::uint64_t first,
                                             std::size_t words) {
-  cycle = walk_to_burst(cycle, first);
-  if (!is_walking_) stepped_.reset();  // a group that is begun before the burst is not recorded
-  keeps_route_ = true;
-  route_host(cycle, route);
+  if (!is_walking_) stepped_.reset();  // a group that is begun without the burst is not recorded
+  route_host(cycle, route, first);
   if (ConflictRecorder* const conflicts = stepper_.conflicts()) conflicts->set_host_traffic(route.traffic);
-  host_ = {first, words};
-  const Served served = grant_words(cycle);
-  trust(route.write).note(keeps_route_);
-  if (!granting_ && host_.words != 0) {
-    host_ = {};
-    stepped_.reset();
+  host_ = {first, words, static_cast<std::uint8_t>(route.bank << 1U | std::size_t{route.write})};
+  if (follow_sequence(cycle)) {
+    trust(route.write).note(true);
+    return {words, cycle - 1};
   }
-  return served;
-}
-
-// Runs to the beginning of the group in which the burst begins; to `first` if it is not certain which group
-// that is, unless the host is routed already.
-std::uint64_t FastForward::walk_to_burst(std::uint64_t cycle, std::uint64_t first) {
-  while (cycle < first && !control().frame_done()) {
-    if (is_walking_) cycle = walk(cycle, first);
-    // A group has at least as many cycles as slots.
-    if (is_walking_ && !granting_ &&
-        (is_host_routed_ || first - cycle < slots_of_group() || known_.find(state_, accesses())))
-      return cycle;
-    if (cycle < first) cycle = step_group(cycle, first);
-  }
-  return cycle;
-}
-
-// Runs until the words of host_ are granted, or as far as serve_host() does.
-FastForward::Served FastForward::grant_words(std::uint64_t& cycle) {
   Served served;
-  const std::size_t words = host_.words;
-  const std::uint64_t end = std::max(cycle, host_.first) + kMostHostCycles;
+  bool is_known = true;
+  const std::uint64_t end = std::max(cycle, first) + kMostHostCycles;
   while (host_.words != 0 && cycle < end && !control().frame_done()) {
-    if (is_walking_ && cycle < host_.first) cycle = walk(cycle, host_.first);
-    const auto found = is_walking_ ? find_host(cycle) : std::nullopt;
-    if (!found) {
-      keeps_route_ = false;
+    if (is_walking_ && cycle < first) cycle = walk(cycle, first);
+    if (const auto found = find_host(cycle)) {
+      const HostGrants& grants = known_.host(*found);
+      if (grants.words != 0) served.last_cycle = cycle + grants.cycles - 1;
+      cycle += known_.progress(*found).cycles;
+      host_.words -= grants.words;
+      host_.first = cycle;
+      follow(*found, cycle);
+    } else {
+      sequence_.reset();
       const std::size_t words_before = host_.words;
       cycle = step_group(cycle, end);
       if (host_.words != words_before) served.last_cycle = host_.first - 1;
-      continue;
+      if (cycle > first) is_known = false;
     }
-    const HostGrants& grants = known_.host(*found);
-    if (grants.words != 0) served.last_cycle = cycle + grants.cycles - 1;
-    if (grants.words == host_.words) {
-      granting_ = found;
-      served.words = words;
-      return served;
-    }
-    cycle += known_.progress(*found).cycles;
-    follow(*found);
-    record_skipped(cycle);
-    host_ = {cycle, host_.words - grants.words};
   }
+  trust(route.write).note(is_known);
   served.words = words - host_.words;
+  if (host_.words != 0) {
+    host_.words = 0;
+    stepped_.reset();
+    sequence_.reset();
+  }
+  end_sequence();
   return served;
 }
 
-// Routes the host to the bank, and keeps walking if a walk has begun.
-void FastForward::route_host(std::uint64_t cycle, const Route& route) {
-  memory::Arbitration& arbitration = stepper_.arbitration();
-  if (is_host_routed_ && arbitration.bank_of(kHostPort) == route.bank &&
-      arbitration.writes(kHostPort) == route.write)
-    return;
-  catch_up(cycle);
-  const bool was_walking = is_walking_;
-  settle();
-  arbitration.route(kHostPort, route.bank, route.write);
-  is_host_routed_ = true;
-  if (was_walking) begin_walk(cycle);
+// If the whole burst of host_ is known as one transition, follows it and returns true. Else begins to note
+// the transitions that are followed, if they will be the same from this state on.
+bool FastForward::follow_sequence(std::uint64_t& cycle) {
+  sequence_.reset();
+  if (!is_walking_ || varies()) return false;
+  std::optional<HostRequests> requests = requests_of(host_, cycle);
+  if (!requests || requests->words == HostRequests::kEndless) return false;
+  requests->to_last_grant = true;
+  const auto found = known_.find(state_, {}, *requests);
+  if (!found) {
+    sequence_ = {state_, *requests, ahead_, host_ahead_};
+    known_.begin_sequence();
+    return false;
+  }
+  if (!fits_host(*found) || !ends_in_strip(*found)) return false;
+  cycle += known_.progress(*found).cycles;
+  host_.words = 0;
+  follow(*found, cycle);
+  return true;
 }
 
-// Steps to the end of the group, at most up to `end`, or until the last word of the host is granted, or the
-// frame is done.
+// Whether the transition can be recorded at once. The core must be up to date at the end of a strip.
+bool FastForward::ends_in_strip(const TransitionCache::Transition& transition) const {
+  const ConflictRecorder* const conflicts = stepper_.conflicts();
+  return conflicts == nullptr ||
+         known_.progress(transition).consumed < slots_to(conflicts->strip_end_column());
+}
+
+// Records the sequence, if it was not interrupted.
+void FastForward::end_sequence() {
+  known_.end_sequence();
+  if (!sequence_) return;
+  Progress progress = ahead_;
+  progress.subtract(sequence_->begin);
+  const HostGrants& before = sequence_->host_begin;
+  known_.record_sequence(
+      sequence_->state, sequence_->host, state_, progress,
+      {host_ahead_.words - before.words, progress.cycles, host_ahead_.requests - before.requests});
+  sequence_.reset();
+}
+
+// Routes the host to the bank. If a port is alone there, and ceases to be, runs up to `first` before.
+void FastForward::route_host(std::uint64_t& cycle, const Route& route, std::uint64_t first) {
+  memory::Arbitration& arbitration = stepper_.arbitration();
+  const bool is_new = !arbitration.is_shared(route.bank);
+  if (is_new) {
+    cycle = run_ahead(cycle, std::max(cycle, first));
+    stepped_.reset();
+    is_walking_ = false;
+    for (const Side side : kSides) {
+      if (arbitration.bank_of(pixel_port(side)) == route.bank) resolve_accesses(side);
+    }
+  }
+  arbitration.visit(kHostPort, route.bank, route.write);
+  is_host_routed_ = true;
+  if (is_new) begin_walk(cycle);
+}
+
+// Steps to the end of the group, or of the burst of the host, at most up to `end` or the end of the frame.
 std::uint64_t FastForward::step_group(std::uint64_t cycle, std::uint64_t end) {
   if (is_walking_) end_walk(cycle);
   const auto is_over = [&] { return cycle >= end || stepper_.completed_group() || control().frame_done(); };
+  bool burst_ends = false;
   if (host_.words == 0) {
     do step_core<false>(cycle++, false);
     while (!is_over());
@@ -190,18 +218,18 @@ std::uint64_t FastForward::step_group(std::uint64_t cycle, std::uint64_t end) {
     do {
       const bool requests = cycle >= host_.first;
       const memory::PortMask granted = step_core<true>(cycle++, requests);
-      if ((granted & memory::mask_of(kHostPort)) != 0) host_ = {cycle, host_.words - 1};
-    } while (host_.words != 0 && !is_over());
+      if ((granted & memory::mask_of(kHostPort)) == 0) continue;
+      host_.first = cycle;
+      burst_ends = --host_.words == 0;
+    } while (!burst_ends && !is_over());
   }
-  if (stepper_.completed_group()) begin_walk(cycle);
+  if (burst_ends || stepper_.completed_group()) begin_walk(cycle);
   return cycle;
 }
 
-// Begins to follow transitions, if possible. Called after a group of four columns has been stepped.
+// Begins to follow transitions, if possible.
 void FastForward::begin_walk(std::uint64_t cycle) {
-  if (stepped_) end_group(cycle);
-  // Without the route of the host more ports are uncontended.
-  if (is_host_routed_ && !keeps_route_ && host_.words == 0) settle();
+  if (stepped_) end_stepped(cycle);
   if (!find_strips()) return;
   room_ = room();
   if (!holds_group(room_)) return;
@@ -210,109 +238,142 @@ void FastForward::begin_walk(std::uint64_t cycle) {
     followed_.clear();
   }
   state_ = state(cycle);
-  consumed_ = control().match().columns() * slots_of_group() / 4;
+  consumed_ = control().match().consumed();
+  left_of_group_ = control().match().slots_of_group_left();
   is_walking_ = true;
+  if (ConflictRecorder* const conflicts = stepper_.conflicts()) conflicts->skip_from(cycle);
 }
 
-// Takes the core to the end of the walk, and records the group that is stepped next if it is not known.
+// Takes the core to the end of the walk, and records the transition that is stepped next if it is not known.
 void FastForward::end_walk(std::uint64_t cycle) {
   catch_up(cycle);
   is_walking_ = false;
-  const bool is_known = granting_.has_value();
-  granting_.reset();
-  if (is_known || !holds_group(room_)) return;
+  if (!holds_group(room_)) return;
   const TransitionCache::Accesses accesses = this->accesses();
   if (host_.words == 0 && known_.find(state_, accesses)) return;
-  stepped_ = {state_,          accesses,           host_requests(cycle),     host_.words,
-              progress(cycle), control().counts(), control().match().state()};
+  stepped_ = {state_, accesses, host_, progress(cycle), control().counts(), control().match().part()};
   stepper_.arbitration().begin_recording();
 }
 
-// Follows the transitions of whole groups that are over before `end`.
+// Follows the transitions to the ends of groups that are over before `end`.
 std::uint64_t FastForward::walk(std::uint64_t cycle, std::uint64_t end) {
-  if (granting_) {
-    const std::uint64_t cycles = known_.progress(*granting_).cycles;
-    if (cycles > end - cycle) return cycle;
-    cycle += cycles;
-    follow(*granting_);
-    record_skipped(cycle);
-    granting_.reset();
-    host_ = {};
+  // A group has at least as many cycles as slots.
+  if (left_of_group_ != slots_of_group() && end - cycle >= left_of_group_) {
+    const auto found = known_.find(state_, accesses());
+    Progress room = room_;
+    room.cycles = end - cycle;
+    if (found && known_.progress(*found).fits(room)) {
+      cycle += known_.progress(*found).cycles;
+      follow(*found, cycle);
+    }
   }
+  if (left_of_group_ != slots_of_group() || end - cycle < slots_of_group()) return cycle;
   do {
     Progress room = room_;
     room.cycles = end - cycle;
-    if (ConflictRecorder* const conflicts = stepper_.conflicts())
-      room.columns = std::min(room.columns, conflicts->columns_to_strip_end());
+    if (const ConflictRecorder* const conflicts = stepper_.conflicts())
+      room.consumed = std::min(room.consumed, slots_to(conflicts->strip_end_column()));
     Progress skipped = room;
     state_ = walk_known(state_, room);
     skipped.subtract(room);
     skip(skipped);
     cycle += skipped.cycles;
-  } while (record_skipped(cycle));
+  } while (record_skipped(cycle, slots_of_group()));
   return cycle;
 }
 
-// The transition of the group from `cycle` on, in which the host requests its words.
+// The transition from `cycle` on, in which the host requests its words.
 std::optional<TransitionCache::Transition> FastForward::find_host(std::uint64_t cycle) const {
+  std::optional<HostRequests> requests = is_walking_ ? requests_of(host_, cycle) : std::nullopt;
+  if (!requests) return std::nullopt;
   const TransitionCache::Accesses accesses = this->accesses();
-  HostRequests requests = host_requests(cycle);
-  if (requests.words == 0) return std::nullopt;
-  auto found = known_.find(state_, accesses, requests);
+  auto found = known_.find(state_, accesses, *requests);
   if (!found) {
-    requests.words = HostRequests::kEndless;
-    found = known_.find(state_, accesses, requests);
+    requests->words = HostRequests::kEndless;
+    found = known_.find(state_, accesses, *requests);
     if (found && known_.host(*found).words >= host_.words) return std::nullopt;
   }
-  return found && known_.progress(*found).fits(room_) ? found : std::nullopt;
+  return found && fits_host(*found) ? found : std::nullopt;
 }
 
-// The requests of host_ in the group from `cycle` on. None if a memo cannot hold them.
-HostRequests FastForward::host_requests(std::uint64_t cycle) const {
-  if (host_.words == 0) return {};
-  const std::uint64_t first = host_.first > cycle ? host_.first - cycle : 0;
-  if (first > HostRequests::kMostCycles) return {};
-  return {static_cast<std::uint16_t>(first),
-          static_cast<std::uint16_t>(std::min<std::size_t>(host_.words, HostRequests::kEndless))};
+// Whether a transition with requests of the host can be followed. It may consume no slot, or continue after
+// its last one. Both would be wrong after the last uniform slot: there the memo has another state.
+bool FastForward::fits_host(const TransitionCache::Transition& transition) const {
+  const Progress& progress = known_.progress(transition);
+  return progress.fits(room_) && progress.consumed < room_.consumed;
 }
 
-void FastForward::follow(const TransitionCache::Transition& transition) {
+// The requests of these words from `cycle` on. Nothing if a memo cannot hold them.
+std::optional<HostRequests> FastForward::requests_of(const HostWords& host, std::uint64_t cycle) {
+  const std::uint64_t first = host.first > cycle ? host.first - cycle : 0;
+  if (first > HostRequests::kMostCycles) return std::nullopt;
+  return HostRequests{static_cast<std::uint16_t>(first),
+                      static_cast<std::uint16_t>(std::min<std::size_t>(host.words, HostRequests::kEndless)),
+                      host.route};
+}
+
+// Follows one transition, which ends before `cycle`.
+void FastForward::follow(const TransitionCache::Transition& transition, std::uint64_t cycle) {
   known_.follow(transition);
   const HostGrants& host = known_.host(transition);
   host_ahead_.words += host.words;
   host_ahead_.requests += host.requests;
   state_ = transition.next;
+  const std::uint64_t left_of_group = left_of_group_;
   skip(known_.progress(transition));
+  record_skipped(cycle, left_of_group);
 }
 
 void FastForward::skip(const Progress& progress) {
   room_.subtract(progress);
   ahead_.add(progress);
-  consumed_ += progress.columns * slots_of_group() / 4;
+  consumed_ += progress.consumed;
+  if (progress.consumed < left_of_group_) {
+    left_of_group_ -= progress.consumed;
+  } else {
+    left_of_group_ = slots_of_group() - (progress.consumed - left_of_group_) % slots_of_group();
+  }
   skipped_cycles_ += progress.cycles;
 }
 
 // See record_skipped().
-bool FastForward::hand_over(ConflictRecorder& conflicts, std::uint64_t cycle) {
+bool FastForward::hand_over(ConflictRecorder& conflicts, std::uint64_t cycle, std::uint64_t left_of_group) {
   if (known_.in_order().empty()) return false;
-  const std::vector<TransitionCache::InOrder>& in_order = known_.in_order();
-  for (auto next = in_order.begin(); next != in_order.end(); next += next->length) {
-    if (next->length == 1) {
-      const GroupConflicts* const group = &known_.conflicts(next->effect);
-      conflicts.repeat(&group, 1, next->times, stepper_.arbitration());
-      continue;
-    }
-    repeated_.clear();
-    for (std::uint32_t step = 0; step < next->length; ++step) known_.conflicts((next + step)->effect);
-    for (std::uint32_t step = 0; step < next->length; ++step)
-      repeated_.push_back(&known_.conflicts((next + step)->effect));
-    conflicts.repeat(repeated_.data(), repeated_.size(), next->times, stepper_.arbitration());
-  }
+  hand_over(conflicts, known_.in_order(), left_of_group);
   known_.forget_order();
   if (!conflicts.is_at_strip_end()) return false;
+  sequence_.reset();
   catch_up(cycle);
   conflicts.end_strip(control(), stepper_.arbitration());
   return true;
+}
+
+void FastForward::hand_over(ConflictRecorder& conflicts, const std::vector<TransitionCache::Part>& parts,
+                            std::uint64_t left_of_group) {
+  const memory::Arbitration& arbitration = stepper_.arbitration();
+  for (auto next = parts.begin(); next != parts.end(); next += next->length) {
+    if (next->length != 1) {  // whole groups
+      repeated_.clear();
+      for (std::uint32_t step = 0; step < next->length; ++step) known_.conflicts((next + step)->effect);
+      for (std::uint32_t step = 0; step < next->length; ++step)
+        repeated_.push_back(&known_.conflicts((next + step)->effect));
+      conflicts.repeat(repeated_.data(), repeated_.size(), next->times, arbitration);
+      continue;
+    }
+    if (const auto& of_sequence = known_.parts(next->effect); !of_sequence.empty()) {
+      hand_over(conflicts, of_sequence, left_of_group);
+      return;  // a sequence is handed over alone
+    }
+    const GroupConflicts* const group = &known_.conflicts(next->effect);
+    const std::uint64_t consumed = known_.progress(next->effect).consumed;
+    if (consumed < left_of_group) {
+      conflicts.add_part(*group, arbitration);
+      left_of_group -= consumed;
+    } else {
+      conflicts.repeat(&group, 1, next->times, arbitration);
+      left_of_group = slots_of_group();
+    }
+  }
 }
 
 // Takes the core and the arbiters to the state that the walk has reached.
@@ -324,7 +385,7 @@ void FastForward::catch_up(std::uint64_t cycle) {
   control.count_host(false, false, ahead_.cycles - host_ahead_.requests);
   control.count_host(true, false, host_ahead_.requests - host_ahead_.words);
   control.count_host(true, true, host_ahead_.words);
-  control.skip_to(known_.state(state_).control, ahead_.columns, ahead_.words);
+  control.skip_to(known_.state(state_).control, ahead_.consumed, ahead_.words);
   for (const Side side : kSides) control.correct_marks(side, accesses_.marks(side));
   arbitration.skip_to(known_.state(state_).arbitration, cycle, ahead_.cycles);
   ahead_ = {};
@@ -333,8 +394,7 @@ void FastForward::catch_up(std::uint64_t cycle) {
 
 // Follows recorded transitions as far as there is room, which it reduces. Returns the state that comes next.
 FastForward::StateNumber FastForward::walk_known(StateNumber state, Progress& room) {
-  const bool varies = !control().match().draining() && (varying_[0] != nullptr || varying_[1] != nullptr);
-  return varies ? walk_varying(state, room) : known_.walk(state, {}, room);
+  return varies() ? walk_varying(state, room) : known_.walk(state, {}, room);
 }
 
 FastForward::StateNumber FastForward::walk_varying(StateNumber state, Progress& room) {
@@ -348,15 +408,15 @@ FastForward::StateNumber FastForward::walk_varying(StateNumber state, Progress& 
       transition = followed.transition;
       alike = 0;
     } else {
-      const TransitionCache::Accesses accesses = accesses_from(consumed);
-      const bool is_alike = consumed >= slots && accesses == accesses_from(consumed - slots);
+      const TransitionCache::Accesses accesses = accesses_from(consumed, slots);
+      const bool is_alike = consumed >= slots && accesses == accesses_from(consumed - slots, slots);
       alike = is_alike ? alike + 1 : 0;
       if (alike == kManyAlike) {
         alike = 0;
-        const std::uint64_t columns = room.columns;
+        const std::uint64_t left = room.consumed;
         state = walk_uniform(state, consumed, room);
-        consumed += (columns - room.columns) / 4 * slots;
-        if (columns != room.columns) continue;
+        consumed += left - room.consumed;
+        if (left != room.consumed) continue;
       }
       const auto found = known_.find(state, accesses);
       if (!found) return state;
@@ -376,9 +436,9 @@ FastForward::StateNumber FastForward::walk_varying(StateNumber state, Progress& 
 FastForward::StateNumber FastForward::walk_uniform(StateNumber state, std::uint64_t consumed,
                                                    Progress& room) {
   Progress uniform = room;
-  uniform.columns = std::min(uniform.columns, uniform_columns(consumed));
+  uniform.consumed = std::min(uniform.consumed, uniform_slots(consumed));
   Progress left = uniform;
-  const StateNumber last = known_.walk(state, accesses_from(consumed), left);
+  const StateNumber last = known_.walk(state, accesses_from(consumed, slots_of_group()), left);
   uniform.subtract(left);
   room.subtract(uniform);
   return last;
@@ -396,61 +456,63 @@ bool FastForward::find_strips() {
          std::max(left.taken(), right.taken()) < all_strips_[strips_].end;
 }
 
-// Returns how far the core can run before the strips end, or a row of results is complete.
+// Returns how far the core can run before the strips end, MatchControl::part() changes, or a row of results
+// is complete.
 Progress FastForward::room() const {
   const bool drains = control().match().draining();
   // A port decides by the slot after the last one taken: that slot must be in the strips too.
   const auto slots = [this, drains](Side side) {
     return drains ? 0 : all_strips_[strips_].end - 1 - control().lane(side).taken();
   };
-  return {UINT64_MAX, control().match().uniform_columns(), slots(Side::kLeft), slots(Side::kRight),
+  return {UINT64_MAX, control().match().uniform_slots(), slots(Side::kLeft), slots(Side::kRight),
           stepper_.rows().next_words() - control().result().words_written() - 1};
 }
 
-// Whether a whole group fits into `room`. If not, no group may be recorded: after a walk up to the last
-// uniform column, the state of the memo differs from that of the core.
+// Whether a whole group fits into `room`. If not, nothing may be recorded: after a walk up to the last
+// uniform slot, the state of the memo differs from that of the core.
 bool FastForward::holds_group(const Progress& room) const {
   const std::uint64_t slots = control().match().draining() ? 0 : slots_of_group();
-  return room.columns >= 4 && room.left_slots >= slots && room.right_slots >= slots;
+  return room.consumed >= slots_of_group() && room.left_slots >= slots && room.right_slots >= slots;
 }
 
-// The accesses of the slots in the lanes during a group, before which `consumed` slots are consumed.
-TransitionCache::Accesses FastForward::accesses_from(std::uint64_t consumed) const {
+// The accesses of the slots in the lanes while the matcher consumes `slots` slots, before which `consumed`
+// slots are consumed.
+TransitionCache::Accesses FastForward::accesses_from(std::uint64_t consumed, std::uint64_t slots) const {
   TransitionCache::Accesses accesses{};
   const std::size_t words = known_.words_of_side();
-  const std::uint64_t beyond = (slots_of_group() + lane_fifo_slots_) % 64;  // bits in use of the last word
+  const std::uint64_t in_use = slots + lane_fifo_slots_;  // bits of a side
   for (std::size_t side = 0; side < varying_.size(); ++side) {
     if (varying_[side] == nullptr) continue;
     std::uint64_t* const of_side = accesses.data() + side * words;
-    for (std::size_t word = 0; word < words; ++word)
+    for (std::size_t word = 0; 64 * word < in_use; ++word)
       of_side[word] = varying_[side]->pixels_of_slots(consumed + 64 * word);
-    if (beyond != 0) of_side[words - 1] &= (std::uint64_t{1} << beyond) - 1;
+    if (in_use % 64 != 0) of_side[in_use / 64] &= (std::uint64_t{1} << in_use % 64) - 1;
   }
   return accesses;
 }
 
-// The number of columns from slot `consumed` on over which accesses_from() stays the same, group after group.
-std::uint64_t FastForward::uniform_columns(std::uint64_t consumed) const {
+// The number of slots from slot `consumed` on over which accesses_from() stays the same, group after group.
+std::uint64_t FastForward::uniform_slots(std::uint64_t consumed) const {
   const std::uint64_t slots_per_column = slots_of_group() / 4;
-  std::uint64_t columns = UINT64_MAX;
+  std::uint64_t uniform = UINT64_MAX;
   for (const AccessPattern* pattern : varying_) {
     if (pattern == nullptr) continue;
-    const std::uint64_t slots = pattern->uniform_until(consumed / slots_per_column) * slots_per_column;
+    const std::uint64_t end = pattern->uniform_until(consumed / slots_per_column) * slots_per_column;
     const std::uint64_t last = consumed + lane_fifo_slots_;
-    columns = std::min(columns, slots < last ? 0 : (slots - last) / slots_per_column);
+    uniform = std::min(uniform, end < last ? 0 : end - last);
   }
-  return columns;
+  return uniform;
 }
 
-// The accesses of the slots in the lanes during the group that comes next in the walk.
+// The accesses of the slots in the lanes up to the end of the group, from the state of the walk on.
 TransitionCache::Accesses FastForward::accesses() const {
-  return control().match().draining() ? TransitionCache::Accesses{} : accesses_from(consumed_);
+  return varies() ? accesses_from(consumed_, left_of_group_) : TransitionCache::Accesses{};
 }
 
-// Records the transition of the group that has just been stepped. Does not record it if the next state
-// depends on the position in the frame, and not on the state before the group alone: a lane has left the
-// current run of equal strips (Strips), or MatchControl::state() has changed.
-void FastForward::end_group(std::uint64_t cycle) {
+// Records the transition that has just been stepped. Does not record it if the next state depends on the
+// position in the frame, and not on the state before alone: a lane has left the current run of equal strips
+// (Strips), or MatchControl::part() has changed.
+void FastForward::end_stepped(std::uint64_t cycle) {
   const Stepped stepped = *stepped_;
   stepped_.reset();
   TransitionCache::Effect effect{progress(cycle),
@@ -458,26 +520,27 @@ void FastForward::end_group(std::uint64_t cycle) {
                                  stepper_.arbitration().take_recorded(),
                                  {}};
   effect.progress.subtract(stepped.begin);
-  HostRequests host = stepped.host;
-  if (host.first >= effect.progress.cycles) host = {};  // the host requests after this group
-  if (host.words != 0) {
-    if (effect.progress.cycles > HostRequests::kMostCycles) return;
+  HostRequests requests;
+  if (stepped.host.words != 0 && stepped.host.first < cycle) {  // the host has requested
+    const std::optional<HostRequests> host = requests_of(stepped.host, stepped.begin.cycles);
+    if (!host || effect.progress.cycles > HostRequests::kMostCycles) return;
+    requests = *host;
     const std::uint64_t end = host_.words != 0 ? cycle : host_.first;  // of the requests
-    effect.host.words = stepped.host_words - host_.words;
-    effect.host.requests = end - stepped.begin.cycles - host.first;
+    effect.host.words = stepped.host.words - host_.words;
+    effect.host.requests = end - stepped.begin.cycles - requests.first;
     if (effect.host.words != 0) effect.host.cycles = host_.first - stepped.begin.cycles;
-    if (host_.words != 0) host.words = HostRequests::kEndless;
+    if (host_.words != 0) requests.words = HostRequests::kEndless;
   }
   const auto is_beyond = [this](Side side) {
     return !control().match().draining() && control().lane(side).taken() >= all_strips_[strips_].end;
   };
-  if (stepped.match != control().match().state() || is_beyond(Side::kLeft) || is_beyond(Side::kRight)) return;
-  known_.record(stepped.state, stepped.accesses, host, state(cycle), effect);
+  if (stepped.part != control().match().part() || is_beyond(Side::kLeft) || is_beyond(Side::kRight)) return;
+  known_.record(stepped.state, stepped.accesses, requests, state(cycle), effect);
 }
 
 // The progress up to `cycle`. Its beginning is arbitrary: only differences have a meaning.
 Progress FastForward::progress(std::uint64_t cycle) const {
-  return {cycle, control().match().columns(), control().lane(Side::kLeft).taken(),
+  return {cycle, control().match().consumed(), control().lane(Side::kLeft).taken(),
           control().lane(Side::kRight).taken(), control().result().words_written()};
 }
 
@@ -486,12 +549,12 @@ FastForward::StateNumber FastForward::state(std::uint64_t cycle) {
                                                                            << 1U;
   const memory::Arbitration& arbitration = stepper_.arbitration();
   const std::uint64_t host =
-      arbitration.is_routed(kHostPort)
+      arbitration.is_routed(kHostPort) && !is_host_routed_
           ? arbitration.bank_of(kHostPort) << 2U | std::uint64_t{arbitration.writes(kHostPort)} << 1U | 1U
           : 0;
   return known_.number_of({control().state(), arbitration.state(cycle),
                            control().match().draining() ? 0 : all_strips_[strips_].empty,
-                           routes_ << 32U | host << 2U | varies});
+                           routes_ << 32U | host << 2U | varies, arbitration.visited()});
 }
 
 }  // namespace stereotlm::fpga

@@ -18,7 +18,8 @@ namespace stereotlm::fpga {
 // around the end of each row are stepped.
 //
 // A walk follows transitions in the memo alone. The core and the arbiters are taken to its end only when a
-// cycle must be stepped, and by run_ahead().
+// cycle must be stepped, and by run_ahead(). The last grant of a burst of the host ends a transition, so that
+// a group may hold several bursts.
 class FastForward {
  public:
   // `stepper` outlives this object. `most_groups`: cap of the transition cache.
@@ -30,8 +31,8 @@ class FastForward {
   void start_direct_frame(const AccessPatterns& patterns, std::uint64_t routes);
   // To be called when a frame starts that the owner steps itself.
   void start_stepped_frame();
-  // To be called before the route of the host changes within a frame, and after the last cycle of a frame.
-  // Corrects the counts that are provisional until then.
+  // To be called before the owner changes the route of the host within a frame, and after the last cycle of a
+  // frame. Corrects the counts that are provisional until then.
   void settle();
 
   // Runs one cycle. `host_requests`: whether the host port requests in it. Returns the ports granted.
@@ -51,8 +52,7 @@ class FastForward {
   };
   // Runs the cycles from `cycle` on until the host is granted `words` words of its bank. The first requests
   // from cycle `first` on, each other in the cycle after a grant. Every earlier burst has ended before `first`.
-  // Ends early if the frame is done, or after 8192 cycles. Sets `cycle` to the next cycle, or to the beginning
-  // of the group in which the last word is granted.
+  // Ends early if the frame is done, or after 8192 cycles. Sets `cycle` to the next cycle.
   Served serve_host(std::uint64_t& cycle, const Route& route, std::uint64_t first, std::size_t words);
   // Whether a burst in this direction is probably known. If not, step() is faster. To be called once for each
   // burst.
@@ -69,15 +69,28 @@ class FastForward {
     std::uint64_t end = 0;    // number of slots of the frame up to the end of the last of these strips
     std::uint64_t empty = 0;  // bit k: slot k of each column is empty
   };
-  // The group that is being stepped, to be recorded at its end.
+  // Words that the host requests one after the other.
+  struct HostWords {
+    std::uint64_t first = 0;  // first cycle in which the next word requests
+    std::size_t words = 0;
+    std::uint8_t route = 0;  // HostRequests::route
+  };
+  // The transition that is being stepped, to be recorded at its end.
   struct Stepped {
     StateNumber state;
     TransitionCache::Accesses accesses;
-    HostRequests host;
-    std::size_t host_words;  // of its burst that are not granted before
+    HostWords host;
     Progress begin;
     CoreControl::Counts counts;
-    std::uint64_t match;  // MatchControl::state()
+    std::uint64_t part;  // MatchControl::part()
+  };
+
+  // The transitions that are followed for a whole burst, to be recorded as one.
+  struct Sequence {
+    StateNumber state;
+    HostRequests host;
+    Progress begin;         // ahead_ before it
+    HostGrants host_begin;  // host_ahead_ before it
   };
 
   // A transition that was followed at some group of the frame. It is followed there again, if the state is
@@ -87,30 +100,29 @@ class FastForward {
     TransitionCache::Transition transition;
   };
 
-  // Words that the host requests one after the other.
-  struct HostWords {
-    std::uint64_t first = 0;  // first cycle in which the next word requests
-    std::size_t words = 0;
-  };
-
   template <bool kMayRequest>
   memory::PortMask step_core(std::uint64_t cycle, bool host_requests);
   std::uint64_t step_group(std::uint64_t cycle, std::uint64_t end);
   void begin_walk(std::uint64_t cycle);
   void end_walk(std::uint64_t cycle);
   std::uint64_t walk(std::uint64_t cycle, std::uint64_t end);
-  std::uint64_t walk_to_burst(std::uint64_t cycle, std::uint64_t first);
-  Served grant_words(std::uint64_t& cycle);
-  void route_host(std::uint64_t cycle, const Route& route);
+  bool follow_sequence(std::uint64_t& cycle);
+  void end_sequence();
+  void route_host(std::uint64_t& cycle, const Route& route, std::uint64_t first);
+  void resolve_accesses(Side side);
   std::optional<TransitionCache::Transition> find_host(std::uint64_t cycle) const;
-  void follow(const TransitionCache::Transition& transition);
+  bool fits_host(const TransitionCache::Transition& transition) const;
+  void follow(const TransitionCache::Transition& transition, std::uint64_t cycle);
   void skip(const Progress& progress);
-  // Hands what has been skipped to the recorder of the frame, if there is one. Returns true at the end of a
-  // strip, where more may be skipped.
-  bool record_skipped(std::uint64_t cycle) {
-    return stepper_.conflicts() != nullptr && hand_over(*stepper_.conflicts(), cycle);
+  // Hands what has been skipped to the recorder of the frame, if there is one. `left_of_group`: as it was
+  // before. Returns true at the end of a strip, where more may be skipped.
+  bool record_skipped(std::uint64_t cycle, std::uint64_t left_of_group) {
+    return stepper_.conflicts() != nullptr && hand_over(*stepper_.conflicts(), cycle, left_of_group);
   }
-  bool hand_over(ConflictRecorder& conflicts, std::uint64_t cycle);
+  bool hand_over(ConflictRecorder& conflicts, std::uint64_t cycle, std::uint64_t left_of_group);
+  void hand_over(ConflictRecorder& conflicts, const std::vector<TransitionCache::Part>& parts,
+                 std::uint64_t left_of_group);
+  bool ends_in_strip(const TransitionCache::Transition& transition) const;
   void tell_assumed();
   void catch_up(std::uint64_t cycle);
   StateNumber walk_known(StateNumber state, Progress& room);
@@ -119,17 +131,23 @@ class FastForward {
   bool find_strips();
   Progress room() const;
   bool holds_group(const Progress& room) const;
-  TransitionCache::Accesses accesses_from(std::uint64_t consumed) const;
-  std::uint64_t uniform_columns(std::uint64_t consumed) const;
+  TransitionCache::Accesses accesses_from(std::uint64_t consumed, std::uint64_t slots) const;
+  std::uint64_t uniform_slots(std::uint64_t consumed) const;
   TransitionCache::Accesses accesses() const;
-  HostRequests host_requests(std::uint64_t cycle) const;
-  void end_group(std::uint64_t cycle);
+  static std::optional<HostRequests> requests_of(const HostWords& host, std::uint64_t cycle);
+  void end_stepped(std::uint64_t cycle);
   Progress progress(std::uint64_t cycle) const;
   StateNumber state(std::uint64_t cycle);
+  // Whether the accesses of the slots vary, from the state of the walk on.
+  bool varies() const {
+    return (varying_[0] != nullptr || varying_[1] != nullptr) && !control().match().draining();
+  }
   // The number of slots that the matcher consumes in a group.
   std::uint64_t slots_of_group() const {
     return 4 * static_cast<std::uint64_t>(control().geometry().slots_per_column);
   }
+  // The number of slots up to this column, from the state of the walk on.
+  std::uint64_t slots_to(std::uint64_t column) const { return column * slots_of_group() / 4 - consumed_; }
   const CoreControl& control() const { return stepper_.control(); }
   BurstTrust& trust(bool write) { return trusts_[write ? 1 : 0]; }
 
@@ -141,19 +159,17 @@ class FastForward {
   std::optional<Stepped> stepped_;
   std::vector<const GroupConflicts*> repeated_;  // of record_skipped()
   std::uint64_t skipped_cycles_ = 0;
-  // Whether transitions are being followed, from the group before cycle() on. The next three are valid then.
+  // Whether transitions are being followed. The next four are valid then.
   bool is_walking_ = false;
   StateNumber state_ = 0;
-  Progress room_;               // how far transitions can be followed
-  std::uint64_t consumed_ = 0;  // slots of the frame that the matcher has consumed
-  Progress ahead_;              // see ahead()
-  HostGrants host_ahead_;       // words of the host in these cycles, without HostGrants::cycles
-  HostWords host_;              // words that are granted from the next cycle on
-  // If the host is granted these words in the next group, and the group is known: its transition. It can be
-  // followed unless another burst begins in the group.
-  std::optional<TransitionCache::Transition> granting_;
+  Progress room_;                    // how far transitions can be followed
+  std::uint64_t consumed_ = 0;       // slots of the frame that the matcher has consumed
+  std::uint64_t left_of_group_ = 0;  // slots, or consume-cycles, to the end of the group
+  Progress ahead_;                   // see ahead()
+  HostGrants host_ahead_;            // words of the host in these cycles, without HostGrants::cycles
+  HostWords host_;                   // words that are granted from the next cycle on
+  std::optional<Sequence> sequence_;
   bool is_host_routed_ = false;       // by serve_host()
-  bool keeps_route_ = false;          // after the burst: all its groups were known
   std::array<BurstTrust, 2> trusts_;  // in bursts that [0] read, [1] write
   std::uint64_t routes_ = 0;
   std::size_t strips_ = 0;  // index in all_strips_: the run in which the lanes take their next slots

@@ -61,7 +61,7 @@ std::uint64_t FrameRun::index_of_routes(const FrameBases& bases) {
 std::uint64_t FrameRun::stalled_cycles() {
   const Progress& ahead = fast_forward_.ahead();
   const std::uint64_t cycles =
-      watchdog_.stalled_cycles(cycle_, control().work() + ahead.columns + ahead.words);
+      watchdog_.stalled_cycles(cycle_, control().work() + ahead.consumed + ahead.words);
   if (cycles != 0) run_ahead(cycle_);  // for waits()
   return cycles;
 }

@@ -58,8 +58,7 @@ class FrameRun {
   void run_ahead(std::uint64_t end) { cycle_ = fast_forward_.run_ahead(cycle_, end); }
   // Makes `cycle` the next cycle to run. To be called only while no frame runs.
   void skip_to(std::uint64_t cycle) { cycle_ = cycle; }
-  // Serves words of the host in a direct frame, see FastForward. cycle() is then at most the one after the
-  // last grant.
+  // Serves words of the host in a direct frame, see FastForward.
   FastForward::Served serve_host(const FastForward::Route& route, std::uint64_t first, std::size_t words) {
     return fast_forward_.serve_host(cycle_, route, first, words);
   }
@@ -106,6 +105,8 @@ class FrameRun {
   // Records all frames from the next one on. `conflicts` outlives this object.
   void record(ConflictRecorder& conflicts) { conflicts_ = &conflicts; }
   ConflictRecorder* conflicts() { return conflicts_; }
+  // Whether a frame is running that is recorded.
+  bool is_recorded() const { return stepper_.conflicts() != nullptr; }
 
  private:
   enum class State { kIdle, kRunning, kFinishing };

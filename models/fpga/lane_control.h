@@ -94,8 +94,6 @@ class LaneControl {
   // The state that determines the lane's next cycles, together with the slots that the pixel port has not
   // handled yet.
   using State = std::uint64_t;
-  // To be called after a cycle in which the matcher has consumed: the lane then holds fewer than kMostSlots
-  // slots.
   State state() const {
     return (taken_ - consumed_) | (handled_ - consumed_) << 8U | (arrived_entries_ - consumed_) << 16U |
            (arrived_pixels_ - consumed_) << 24U | std::uint64_t{next_slot_.done()} << 32U |

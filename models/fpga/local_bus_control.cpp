@@ -88,8 +88,7 @@ void LocalBusControl::move_words(unsigned char* words) {
 }
 
 void LocalBusControl::count_granted(std::size_t words, std::uint64_t grant_ps, std::uint64_t usable_ps) {
-  (burst_.write ? stats_.words_written : stats_.words_read) += words;
-  if (burst_.write) words_granted_.add(next_address(), words);
+  count_words(burst_.write, next_address(), words);
   advance(words, grant_ps, usable_ps);
 }
 
@@ -138,18 +137,17 @@ void LocalBusControl::end(std::uint64_t idle_clock) {
   master_->end_burst_at(free_ps_, ok_);
 }
 
-void LocalBusControl::skip_to(std::uint64_t bursts, std::uint64_t busy_clocks, std::uint64_t address_clock,
-                              std::uint64_t idle_clock) {
+void LocalBusControl::skip_to(std::uint64_t bursts, std::uint64_t busy_clocks, std::uint64_t idle_clock) {
   stats_.bursts = bursts;
-  stats_.busy_clocks = busy_clocks - (idle_clock - address_clock);
-  address_clock_ = address_clock;
+  stats_.busy_clocks = busy_clocks;
+  address_clock_ = idle_clock;  // all clocks of the last burst are counted
   idle_clock_ = idle_clock;
   free_ps_ = clock_.edge_ps(idle_clock_ + 1);
 }
 
-void LocalBusControl::count_skipped(std::uint64_t address, std::uint64_t words) {
-  stats_.words_written += words;
-  words_granted_.add(address, words);
+void LocalBusControl::count_words(bool write, std::uint64_t address, std::uint64_t words) {
+  (write ? stats_.words_written : stats_.words_read) += words;
+  if (write) words_granted_.add(address, words);
 }
 
 LocalBusControl::Stats LocalBusControl::stats(std::uint64_t now_ps) const {

@@ -107,24 +107,19 @@ class LocalBusControl final : public LocalBusIf {
   // Whether the clocks of the bus begin with those of `clock`.
   bool is_in_step_with(const Clock& clock) const { return clock_.has_edges_of(clock); }
 
-  // For platform::CameraLines, which skips bursts to the banks that it has seen before.
+  // For platform::CameraLines and platform::DmaBursts, which skip bursts to the banks that they have seen
+  // before.
   const Clock& clock() const { return clock_; }
-  bool is_idle(std::uint64_t now_ps) const {
-    return words_left_ == 0 && next_ps_ == kNever && idle_clock_ != kUnknown &&
-           clock_.edge_ps(idle_clock_ + 1) <= now_ps;
-  }
-  // The last burst, and the numbers of its address clock and of its idle clock.
+  // The last burst, and the number of its idle clock.
   const LocalBurst& burst() const { return burst_; }
-  std::uint64_t address_clock() const { return address_clock_; }
   std::uint64_t idle_clock() const { return idle_clock_; }
   // The clocks of all bursts, while the bus is idle.
   std::uint64_t busy_clocks() const { return stats_.busy_clocks + idle_clock_ - address_clock_; }
   std::uint64_t bursts() const { return stats_.bursts; }
-  // Bursts have written words: all clocks, and the last burst's, are those after them. For each range of
-  // addresses count_skipped() adds their words.
-  void skip_to(std::uint64_t bursts, std::uint64_t busy_clocks, std::uint64_t address_clock,
-               std::uint64_t idle_clock);
-  void count_skipped(std::uint64_t address, std::uint64_t words);
+  // Bursts have moved words: the number and the clocks of all bursts, and the idle clock of the last one, are
+  // those after them. For each range of addresses count_words() adds their words.
+  void skip_to(std::uint64_t bursts, std::uint64_t busy_clocks, std::uint64_t idle_clock);
+  void count_words(bool write, std::uint64_t address, std::uint64_t words);
 
   // Counts up to `now_ps`.
   Stats stats(std::uint64_t now_ps) const;

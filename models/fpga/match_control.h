@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "models/fpga/frame_geometry.h"
+#include "models/kernels/pixel_column.h"
 
 namespace stereotlm::fpga {
 
@@ -49,8 +50,14 @@ class MatchControl {
     return columns_ <= geometry_.last_strip_column ? geometry_.rows : geometry_.last_rows;
   }
 
-  // The matcher's part of the state that determines the next cycles. To be called between two columns.
+  // The matcher's part of the state that determines the next cycles: bits 0..2 the part of the frame, bits 3
+  // and 4 the columns of the group that are consumed, bits 5..10 the slots of the column, bits 11..18 pass_.
   std::uint64_t state() const {
+    return part() | (columns_ - geometry_.result_delay_columns) % 4 << 3U |
+           static_cast<std::uint64_t>(k_) << 5U | static_cast<std::uint64_t>(pass_) << kPassBit;
+  }
+  // The part of the frame: before or after the first results, the last strip, the drain.
+  std::uint64_t part() const {
     return std::uint64_t{columns_ >= geometry_.result_delay_columns} | std::uint64_t{draining()} << 1U |
            std::uint64_t{columns_ >= fewer_rows_column_} << 2U;
   }
@@ -63,20 +70,30 @@ class MatchControl {
                static_cast<std::uint64_t>(geometry_.rows) +
            (columns_ - before_last_strip) / 4 * static_cast<std::uint64_t>(geometry_.last_rows);
   }
-  // The number of columns up to and including the one after which state() changes. To be called between two
-  // columns.
-  std::uint64_t uniform_columns() const {
-    const auto slots_per_column = static_cast<std::uint64_t>(geometry_.slots_per_column);
-    const std::uint64_t left = (draining() ? drain_left_ : slots_left_) / slots_per_column;
+  // The number of slots, or of consume-cycles of the drain, that have been consumed in this frame.
+  std::uint64_t consumed() const { return columns_ * slots_per_column() + static_cast<std::uint64_t>(k_); }
+  // The number of slots, or of consume-cycles, up to and including the one after which part() changes.
+  std::uint64_t uniform_slots() const {
+    const std::uint64_t left = draining() ? drain_left_ : slots_left_;
     if (columns_ < geometry_.result_delay_columns)
-      return std::min(left, geometry_.result_delay_columns - columns_);
-    return columns_ < fewer_rows_column_ ? std::min(left, fewer_rows_column_ - columns_) : left;
+      return std::min(left, geometry_.result_delay_columns * slots_per_column() - consumed());
+    return columns_ < fewer_rows_column_ && fewer_rows_column_ != UINT64_MAX
+               ? std::min(left, fewer_rows_column_ * slots_per_column() - consumed())
+               : left;
   }
-  // Skips columns, at most uniform_columns().
-  void skip_columns(std::uint64_t columns) {
-    (draining() ? drain_left_ : slots_left_) -=
-        columns * static_cast<std::uint64_t>(geometry_.slots_per_column);
-    columns_ += columns;
+  // The number of slots, or of consume-cycles, to the end of the group.
+  std::uint64_t slots_of_group_left() const {
+    const std::uint64_t columns = 4 - (columns_ - geometry_.result_delay_columns) % 4;
+    return columns * slots_per_column() - static_cast<std::uint64_t>(k_);
+  }
+  // Skips the cycles in which `slots` slots, or consume-cycles, are consumed, at most uniform_slots(). The
+  // matcher is in `state` afterwards.
+  void skip_to(std::uint64_t state, std::uint64_t slots) {
+    (draining() ? drain_left_ : slots_left_) -= slots;
+    const std::uint64_t consumed = this->consumed() + slots;
+    columns_ = consumed / slots_per_column();
+    k_ = static_cast<int>(consumed % slots_per_column());
+    pass_ = static_cast<int>(state >> kPassBit);
   }
   // The number of cycles of the frame in which the matcher has still to work.
   std::uint64_t cycles_left() const {
@@ -91,6 +108,11 @@ class MatchControl {
   }
 
  private:
+  static constexpr unsigned kPassBit = 11;
+  static_assert(kernels::kMostRows < 1 << 6U);
+
+  std::uint64_t slots_per_column() const { return static_cast<std::uint64_t>(geometry_.slots_per_column); }
+
   FrameGeometry geometry_;
   // From this column on, fewer rows of a strip lie inside the image. Never reached if all strips lie inside.
   std::uint64_t fewer_rows_column_ =

@@ -26,7 +26,7 @@ constexpr std::size_t kFirstBuckets = 1024;
 
 std::uint64_t Progress::times_in(const Progress& room) const {
   std::uint64_t times = room.cycles / cycles;
-  if (columns != 0) times = std::min(times, room.columns / columns);
+  if (consumed != 0) times = std::min(times, room.consumed / consumed);
   if (left_slots != 0) times = std::min(times, room.left_slots / left_slots);
   if (right_slots != 0) times = std::min(times, room.right_slots / right_slots);
   if (words != 0) times = std::min(times, room.words / words);
@@ -40,6 +40,7 @@ std::size_t TransitionCache::StateHash::operator()(const State& state) const {
   for (const std::uint64_t word : state.arbitration) hash.mix(word);
   hash.mix(state.empty);
   hash.mix(state.frame);
+  hash.mix(state.visited);
   return hash.value();
 }
 
@@ -47,7 +48,7 @@ std::size_t TransitionCache::EffectHash::operator()(const Effect& effect) const 
   Hash hash;
   const Progress& progress = effect.progress;
   for (const std::uint64_t word :
-       {progress.cycles, progress.left_slots, progress.right_slots, progress.words})
+       {progress.cycles, progress.consumed, progress.left_slots, progress.right_slots, progress.words})
     hash.mix(word);
   for (const PortCycles& port : effect.counts) {
     hash.mix(port.granted() << 32U | port.stalled());
@@ -72,6 +73,7 @@ void TransitionCache::clear() {
   unhandled_.clear();
   state_numbers_.clear();
   effects_.clear();
+  parts_.clear();
   effect_numbers_.clear();
   progress_.clear();
   host_.clear();
@@ -101,13 +103,16 @@ TransitionCache::StateNumber TransitionCache::number_of(const State& state) {
 std::uint32_t TransitionCache::number_of_effect(const Effect& effect) {
   const auto [entry, is_new] =
       effect_numbers_.try_emplace(effect, static_cast<std::uint32_t>(effects_.size()));
-  if (is_new) {
-    effects_.push_back(&entry->first);
-    progress_.push_back(effect.progress);
-    host_.push_back(effect.host);
-    followed_.push_back(0);
-  }
+  if (is_new) add_effect(&entry->first, effect.progress, effect.host);
   return entry->second;
+}
+
+void TransitionCache::add_effect(const Effect* effect, const Progress& progress, const HostGrants& host) {
+  effects_.push_back(effect);
+  parts_.emplace_back();
+  progress_.push_back(progress);
+  host_.push_back(host);
+  followed_.push_back(0);
 }
 
 TransitionCache::Accesses TransitionCache::key_of(StateNumber from, const Accesses& accesses) const {
@@ -143,6 +148,19 @@ std::optional<TransitionCache::Transition> TransitionCache::find(StateNumber fro
 
 void TransitionCache::record(StateNumber from, const Accesses& accesses, HostRequests host, StateNumber next,
                              const Effect& effect) {
+  record(from, accesses, host, {next, number_of_effect(effect)});
+}
+
+void TransitionCache::record_sequence(StateNumber from, HostRequests host, StateNumber next,
+                                      const Progress& progress, const HostGrants& grants) {
+  const auto effect = static_cast<std::uint32_t>(effects_.size());
+  add_effect(nullptr, progress, grants);
+  parts_.back() = sequence_;
+  record(from, {}, host, {next, effect});
+}
+
+void TransitionCache::record(StateNumber from, const Accesses& accesses, HostRequests host,
+                             Transition transition) {
   if (2 * (transitions_ + 1) > mask_) double_buckets();
   const Accesses key = key_of(from, accesses);
   const std::uint64_t first_word = first_word_of(from, host);
@@ -150,7 +168,7 @@ void TransitionCache::record(StateNumber from, const Accesses& accesses, HostReq
   if (words[0] == 0) ++transitions_;
   words[0] = first_word;
   std::copy_n(key.begin(), words_, words + 1);
-  words[1 + words_] = std::uint64_t{number_of_effect(effect)} << 32U | next;
+  words[1 + words_] = std::uint64_t{transition.effect} << 32U | transition.next;
 }
 
 void TransitionCache::double_buckets() {
@@ -198,8 +216,12 @@ TransitionCache::StateNumber TransitionCache::walk(StateNumber first, const Acce
         follow(*transition, times);
         state = transition->next;
       }
-      for (std::size_t step = in_order_.size(); keeps_order_ && step > in_order_.size() - steps; --step)
-        in_order_[step - 1].length = static_cast<std::uint32_t>(steps);
+      const auto is_loop = [steps](std::vector<Part>& parts) {
+        for (auto part = parts.end() - static_cast<std::ptrdiff_t>(steps); part != parts.end(); ++part)
+          part->length = static_cast<std::uint32_t>(steps);
+      };
+      if (is_in_sequence_) is_loop(sequence_);
+      if (keeps_order_) is_loop(in_order_);
       room.subtract(since_mark, times);
     } else if (steps == mark_after) {
       mark = state;
@@ -218,9 +240,15 @@ const GroupConflicts& TransitionCache::find_conflicts(std::uint32_t effect) {
 }
 
 void TransitionCache::count_followed(CoreControl& control, memory::Arbitration& arbitration) {
+  for (std::size_t i = 0; i < effects_followed_.size(); ++i) {  // parts are added behind
+    const std::uint32_t number = effects_followed_[i];
+    for (const Part& part : parts_[number]) count(part.effect, part.times * followed_[number]);
+  }
   for (const std::uint32_t number : effects_followed_) {
-    control.add(effects_[number]->counts, followed_[number]);
-    arbitration.count_skipped(effects_[number]->decided, followed_[number]);
+    if (effects_[number] != nullptr) {
+      control.add(effects_[number]->counts, followed_[number]);
+      arbitration.count_skipped(effects_[number]->decided, followed_[number]);
+    }
     followed_[number] = 0;
   }
   effects_followed_.clear();

@@ -16,51 +16,56 @@ namespace stereotlm::fpga {
 // The progress of the core over some cycles of a frame, or a limit for that progress.
 struct Progress {
   std::uint64_t cycles = 0;
-  std::uint64_t columns = 0;      // consumed by the matcher
+  std::uint64_t consumed = 0;     // slots, or consume-cycles of the drain, of the matcher
   std::uint64_t left_slots = 0;   // taken by the left lane
   std::uint64_t right_slots = 0;  // taken by the right lane
   std::uint64_t words = 0;        // results written
 
   bool fits(const Progress& room) const {
-    return cycles <= room.cycles && columns <= room.columns && left_slots <= room.left_slots &&
+    return cycles <= room.cycles && consumed <= room.consumed && left_slots <= room.left_slots &&
            right_slots <= room.right_slots && words <= room.words;
   }
   // How many times this progress fits into the limit `room`. `cycles` must not be 0.
   std::uint64_t times_in(const Progress& room) const;
   void add(const Progress& other) {
     cycles += other.cycles;
-    columns += other.columns;
+    consumed += other.consumed;
     left_slots += other.left_slots;
     right_slots += other.right_slots;
     words += other.words;
   }
   void subtract(const Progress& other, std::uint64_t times = 1) {
     cycles -= other.cycles * times;
-    columns -= other.columns * times;
+    consumed -= other.consumed * times;
     left_slots -= other.left_slots * times;
     right_slots -= other.right_slots * times;
     words -= other.words * times;
   }
 
   friend bool operator==(const Progress& a, const Progress& b) {
-    return a.cycles == b.cycles && a.columns == b.columns && a.left_slots == b.left_slots &&
+    return a.cycles == b.cycles && a.consumed == b.consumed && a.left_slots == b.left_slots &&
            a.right_slots == b.right_slots && a.words == b.words;
   }
 };
 
-// The requests of the host in a group: `words` words one after the other, the first from cycle `first` of
-// the group on, each other in the cycle after a grant.
+// The requests of the host from a state on: `words` words one after the other, the first after `first`
+// cycles, each other in the cycle after a grant.
 struct HostRequests {
   static constexpr std::uint16_t kEndless = UINT16_MAX;         // more words than the group grants
   static constexpr std::uint64_t kMostCycles = UINT16_MAX - 1;  // `first` is at most this
 
   std::uint16_t first = 0;
   std::uint16_t words = 0;  // 0: no request
+  std::uint8_t route = 0;   // a number for the bank and the direction, at most kMostRoute
+  // Whether the transition is a sequence that leads to the last grant, over ends of groups too.
+  bool to_last_grant = false;
+
+  static constexpr std::size_t kMostRoute = 127;
 };
-// The words that the host was granted in a group.
+// The words that the host was granted in a transition.
 struct HostGrants {
   std::uint64_t words = 0;
-  std::uint64_t cycles = 0;    // of the group up to the last grant, its cycle included
+  std::uint64_t cycles = 0;    // of the transition up to the last grant, its cycle included
   std::uint64_t requests = 0;  // cycles in which the host requested
 
   friend bool operator==(const HostGrants& a, const HostGrants& b) {
@@ -68,9 +73,10 @@ struct HostGrants {
   }
 };
 
-// Memo of state transitions for FastForward, one per group of four columns of the matcher. The state before a
-// group, and the accesses of the slots that the group can handle, determine the group's cycles, counts and
-// next state. A transition is recorded when its group is stepped; after that it is skipped.
+// Memo of state transitions for FastForward. A transition leads to the end of a group of four columns of the
+// matcher, or to the last grant of a burst of the host in the group. The state before it, the requests of the
+// host, and the accesses of the slots that the group can handle, determine its cycles, its counts and the
+// next state. A transition is recorded when it is stepped; after that it is skipped.
 //
 // States and effects have numbers: they are few, while the accesses of real tables hardly repeat. A step
 // along the memo is one look-up in a small table.
@@ -82,19 +88,20 @@ class TransitionCache {
   struct State {
     CoreControl::State control;
     memory::Arbitration::State arbitration{};
-    std::uint64_t empty = 0;  // bit k: slot k of each column is empty
-    std::uint64_t frame = 0;  // set by FastForward: the routes, and the sides whose accesses vary
+    std::uint64_t empty = 0;    // bit k: slot k of each column is empty
+    std::uint64_t frame = 0;    // set by FastForward: the routes, and the sides whose accesses vary
+    std::uint64_t visited = 0;  // memory::Arbitration::visited()
 
     friend bool operator==(const State& a, const State& b) {
       return a.control == b.control && a.arbitration == b.arbitration && a.empty == b.empty &&
-             a.frame == b.frame;
+             a.frame == b.frame && a.visited == b.visited;
     }
   };
   using StateNumber = std::uint32_t;
 
-  // The slots in the lanes during a group, from the first one that is not consumed before it: a bit for
-  // each, which is 1 if the slot accesses its pixel. words_of_side() words for the left lane, then as many
-  // for the right lane. Slots that are handled before the group have no effect.
+  // The slots in the lanes up to the end of the group, from the first one that is not consumed before the
+  // transition: a bit for each, which is 1 if the slot accesses its pixel. words_of_side() words for the left
+  // lane, then as many for the right lane. Slots that are handled before have no effect.
   static constexpr std::size_t kMostWordsOfSide = 4;
   using Accesses = std::array<std::uint64_t, 2 * kMostWordsOfSide>;
   std::size_t words_of_side() const { return words_ / 2; }
@@ -126,32 +133,44 @@ class TransitionCache {
   void record(StateNumber from, const Accesses& accesses, HostRequests host, StateNumber next,
               const Effect& effect);
   void clear();
-  bool is_full() const { return transitions_ >= most_; }
+  bool is_full() const { return transitions_ >= most_ || states_.size() >= kMostStates; }
 
-  const Progress& progress(const Transition& transition) const { return progress_[transition.effect]; }
+  const Progress& progress(std::uint32_t effect) const { return progress_[effect]; }
+  const Progress& progress(const Transition& transition) const { return progress(transition.effect); }
   const HostGrants& host(const Transition& transition) const { return host_[transition.effect]; }
   // Notes that a transition has been followed.
   void follow(const Transition& transition, std::uint64_t times = 1) {
-    std::uint64_t& followed = followed_[transition.effect];
-    if (followed == 0) effects_followed_.push_back(transition.effect);
-    followed += times;
+    if (is_in_sequence_) sequence_.push_back({transition.effect, 1, times});
     if (keeps_order_) in_order_.push_back({transition.effect, 1, times});
+    count(transition.effect, times);
   }
-  // While the order is kept: the transitions that have been followed since forget_order(), in their order.
-  // `length` consecutive ones are followed one after the other, and this `times` times.
-  struct InOrder {
+  // Transitions in their order: `length` consecutive ones are followed one after the other, and this `times`
+  // times.
+  struct Part {
     std::uint32_t effect;
     std::uint32_t length;
     std::uint64_t times;
   };
+  // While the order is kept: the transitions that have been followed since forget_order().
   void keep_order(bool keeps_order) { keeps_order_ = keeps_order; }
-  const std::vector<InOrder>& in_order() const { return in_order_; }
+  const std::vector<Part>& in_order() const { return in_order_; }
   void forget_order() { in_order_.clear(); }
-  // Valid until the next call for an effect that has not been asked for.
+  // The transitions of a sequence; none if this is no sequence.
+  const std::vector<Part>& parts(std::uint32_t effect) const { return parts_[effect]; }
+  // Valid until the next call for an effect that has not been asked for. Not for a sequence.
   const GroupConflicts& conflicts(std::uint32_t effect) {
     const bool is_known = effect < conflicts_.size() && conflicts_[effect].cycles != 0;
     return is_known ? conflicts_[effect] : find_conflicts(effect);
   }
+  // Begins a sequence: the transitions that are followed from now on.
+  void begin_sequence() {
+    sequence_.clear();
+    is_in_sequence_ = true;
+  }
+  void end_sequence() { is_in_sequence_ = false; }
+  // Records the last sequence as one transition, which needs no accesses.
+  void record_sequence(StateNumber from, HostRequests host, StateNumber next, const Progress& progress,
+                       const HostGrants& grants);
   // Follows recorded transitions with the same accesses, as far as there is room, which it reduces. A loop of
   // transitions is repeated in one step. Returns the state that comes next.
   StateNumber walk(StateNumber first, const Accesses& accesses, Progress& room);
@@ -166,16 +185,26 @@ class TransitionCache {
     std::size_t operator()(const Effect& effect) const;
   };
 
+  static constexpr std::size_t kMostStates = std::size_t{1} << 23U;
+
   // A bucket of the table of transitions: the number of the state plus one (0: the bucket is free) and, above
   // it, the requests of the host; the accesses of key_of(); the transition.
   std::size_t words_of_bucket() const { return words_ + 2; }
   Accesses key_of(StateNumber from, const Accesses& accesses) const;
   static std::uint64_t first_word_of(StateNumber from, HostRequests host) {
-    return std::uint64_t{host.first} << 48U | std::uint64_t{host.words} << 32U | (from + 1);
+    return std::uint64_t{host.first} << 48U | std::uint64_t{host.words} << 32U |
+           std::uint64_t{host.to_last_grant} << 31U | std::uint64_t{host.route} << 24U | (from + 1);
   }
   std::size_t bucket_of(std::uint64_t first_word, const Accesses& key) const;
   std::uint32_t number_of_effect(const Effect& effect);
   const GroupConflicts& find_conflicts(std::uint32_t effect);
+  void add_effect(const Effect* effect, const Progress& progress, const HostGrants& host);
+  void record(StateNumber from, const Accesses& accesses, HostRequests host, Transition transition);
+  void count(std::uint32_t effect, std::uint64_t times) {
+    std::uint64_t& followed = followed_[effect];
+    if (followed == 0) effects_followed_.push_back(effect);
+    followed += times;
+  }
   void double_buckets();
 
   std::size_t words_;  // of the accesses
@@ -184,13 +213,16 @@ class TransitionCache {
   std::vector<const State*> states_;  // [number]
   std::vector<Accesses> unhandled_;   // [number of the state]: bits of the slots that are not handled before
   std::unordered_map<Effect, std::uint32_t, EffectHash> effect_numbers_;
-  std::vector<const Effect*> effects_;   // [number]
-  std::vector<Progress> progress_;       // [number of the effect]
-  std::vector<HostGrants> host_;         // [number of the effect]
-  std::vector<std::uint64_t> followed_;  // [number of the effect]: times not counted yet
+  std::vector<const Effect*> effects_;    // [number]; null for a sequence
+  std::vector<std::vector<Part>> parts_;  // [number]; empty unless it is a sequence
+  std::vector<Progress> progress_;        // [number of the effect]
+  std::vector<HostGrants> host_;          // [number of the effect]
+  std::vector<std::uint64_t> followed_;   // [number of the effect]: times not counted yet
   std::vector<std::uint32_t> effects_followed_;
+  std::vector<Part> sequence_;  // the last one
+  bool is_in_sequence_ = false;
   bool keeps_order_ = false;
-  std::vector<InOrder> in_order_;
+  std::vector<Part> in_order_;
   std::vector<GroupConflicts> conflicts_;  // [number of the effect]; without cycles: not asked for yet
   std::vector<std::uint64_t> buckets_;
   std::size_t mask_ = 0;  // number of buckets - 1; they are a power of two

@@ -10,15 +10,52 @@ Arbitration::Arbitration(const ArbiterConfig& arbiter, const std::vector<SsramBa
 
 void Arbitration::route(Port port, std::size_t bank, bool write) {
   settle();
-  routes_[port] = {bank, write};
-  routed_ = static_cast<PortMask>(routed_ | mask_of(port));
+  visited_ = 0;
+  set_route(port, bank, write);
   share_banks();
 }
 
 void Arbitration::unroute(Port port) {
   settle();
+  visited_ = 0;
   routed_ = static_cast<PortMask>(routed_ & ~mask_of(port));
   share_banks();
+}
+
+void Arbitration::visit(Port port, std::size_t bank, bool write) {
+  const std::size_t index = index_of_shared(bank);
+  if (index == shared_bank_count_ || is_alone(port)) {
+    PortMask ports = mask_of(port);
+    for (std::size_t other = 0; other < kMostPorts; ++other) {
+      if (is_routed(other) && routes_[other].bank == bank)
+        ports = static_cast<PortMask>(ports | mask_of(other));
+    }
+    settle(ports);
+    visited_ |= std::uint64_t{1} << bank;
+    set_route(port, bank, write);
+    share_banks();
+    return;
+  }
+  if (is_routed(port)) {
+    const std::size_t left = index_of_shared(routes_[port].bank);
+    if (left != shared_bank_count_)
+      shared_banks_[left].ports = static_cast<PortMask>(shared_banks_[left].ports & ~mask_of(port));
+  }
+  shared_banks_[index].ports = static_cast<PortMask>(shared_banks_[index].ports | mask_of(port));
+  set_route(port, bank, write);
+}
+
+void Arbitration::set_route(Port port, std::size_t bank, bool write) {
+  routes_[port] = {bank, write};
+  routed_ = static_cast<PortMask>(routed_ | mask_of(port));
+  writes_ = static_cast<PortMask>((writes_ & ~mask_of(port)) | (write ? mask_of(port) : 0U));
+}
+
+// The index of a bank in shared_banks_, or their number.
+std::size_t Arbitration::index_of_shared(std::size_t bank) const {
+  std::size_t index = 0;
+  while (index < shared_bank_count_ && shared_banks_[index].bank != bank) ++index;
+  return index;
 }
 
 bool Arbitration::is_used_beside(Port port, std::size_t bank) const {
@@ -58,16 +95,15 @@ BankArbiter::Outcome Arbitration::decide_unrouted(std::size_t bank, std::uint64_
   return arbiters_[bank].decide(cycle, mask_of(port), write ? mask_of(port) : PortMask{0});
 }
 
-// Finds the uncontended ports, and the banks that are shared or have turnaround.
+// Finds the uncontended ports and the shared banks. Visited banks without a port are forgotten.
 void Arbitration::share_banks() {
   recording_ = false;
-  writes_ = 0;
   alone_ = 0;
   shared_bank_count_ = 0;
+  std::uint64_t visited = 0;
   std::array<PortMask, kMostPorts> together{};  // [port]: the ports on its bank
   for (std::size_t i = 0; i < kMostPorts; ++i) {
     if (!is_routed(i)) continue;
-    writes_ = static_cast<PortMask>(writes_ | unsigned{routes_[i].write} << i);
     for (std::size_t other = 0; other < kMostPorts; ++other) {
       const bool same_bank = is_routed(other) && routes_[other].bank == routes_[i].bank;
       together[i] = static_cast<PortMask>(together[i] | unsigned{same_bank} << other);
@@ -76,15 +112,20 @@ void Arbitration::share_banks() {
   for (std::size_t i = 0; i < kMostPorts; ++i) {
     const auto port_mask = static_cast<PortMask>(1U << i);
     if (together[i] == 0 || lowest_port(together[i]) != i) continue;
-    BankArbiter& arbiter = arbiters_[routes_[i].bank];
-    if (together[i] == port_mask && !arbiter.needs_turnaround()) {
+    const std::size_t bank = routes_[i].bank;
+    BankArbiter& arbiter = arbiters_[bank];
+    const std::uint64_t visit = visited_ & std::uint64_t{1} << bank;
+    visited |= visit;
+    if (together[i] == port_mask && !arbiter.needs_turnaround() && visit == 0) {
       alone_ = static_cast<PortMask>(alone_ | port_mask);
     } else {
       SharedBank& shared = shared_banks_[shared_bank_count_++];
+      shared.bank = bank;
       shared.arbiter = &arbiter;
       shared.ports = together[i];
     }
   }
+  visited_ = visited;
 }
 
 // Adds the grants of uncontended ports to the counts of the arbiters.
@@ -106,15 +147,15 @@ void Arbitration::count_alone() const {
   retracted_grants_ = {};
 }
 
-// To be called when no grant can be retracted any more: counts as count_alone() does, and moves the states of
-// the policies by these grants.
-void Arbitration::settle() {
+// To be called when no grant of these ports can be retracted any more: counts as count_alone() does, and
+// moves the states of the policies by their grants.
+void Arbitration::settle(PortMask ports) {
   count_alone();
   for (std::size_t port = 0; port < kMostPorts; ++port) {
-    if (alone_grants_[port] == 0) continue;
+    if ((ports & mask_of(port)) == 0 || alone_grants_[port] == 0) continue;
     arbiters_[routes_[port].bank].grant_alone(mask_of(port), routes_[port].write);
+    alone_grants_[port] = 0;
   }
-  alone_grants_ = {};
 }
 
 // The part of arbitrate() for requests to shared_banks_.

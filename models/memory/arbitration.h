@@ -28,6 +28,14 @@ class Arbitration {
   void route(Port port, std::size_t bank, bool write);
   // Removes the route of the port, which must not request from now on.
   void unroute(Port port);
+  // Routes a port that changes its bank often. Its banks count as shared until the next route() or unroute().
+  // So a visit of a bank that is shared changes nothing for the other ports: State keeps its layout, and a
+  // record of decisions is continued.
+  void visit(Port port, std::size_t bank, bool write);
+  // Whether the bank has several ports, or turnaround, or was visited.
+  bool is_shared(std::size_t bank) const { return index_of_shared(bank) != shared_bank_count_; }
+  // The banks that were visited: bit b for bank b.
+  std::uint64_t visited() const { return visited_; }
   std::size_t bank_of(Port port) const { return routes_[port].bank; }  // bank of its last route
   bool writes(Port port) const { return routes_[port].write; }         // direction of its last route
   bool is_routed(Port port) const { return (routed_ >> port & 1U) != 0; }
@@ -51,8 +59,8 @@ class Arbitration {
   bool is_alone(Port port) const { return (alone_ & mask_of(port)) != 0; }
   // Subtracts grants of a port that is alone. FastForward counts a grant for each slot of such a pixel port
   // before it knows which table entries are valid, and then subtracts the grants of the slots that passed. To
-  // be called before a route changes or counting ends: at that time the remaining grants move the state of
-  // the bank's policy.
+  // be called before the bank is visited, another route changes, or counting ends: at that time the remaining
+  // grants move the state of the bank's policy.
   void retract_grants(Port port, std::uint64_t grants) { retracted_grants_[port] += grants; }
 
   // Decides one request for a bank that no routed port requests. `port` needs no route; `write` is the
@@ -68,7 +76,7 @@ class Arbitration {
   }
 
   // The state that determines all arbitration from `cycle` on, as long as no route changes: one word for each
-  // bank with several ports or with turnaround, then zeros.
+  // shared bank, then zeros.
   using State = std::array<std::uint64_t, kMostPorts>;
   State state(std::uint64_t cycle) const;
   // The decisions of several cycles, by outcome. Valid as long as no route changes.
@@ -123,23 +131,29 @@ class Arbitration {
     std::size_t bank = 0;
     bool write = false;
   };
-  // A bank with several ports, or with turnaround.
+  static constexpr auto kAllPorts = static_cast<PortMask>((1U << kMostPorts) - 1);
+
+  // A bank with several ports, or with turnaround, or that was visited.
   struct SharedBank {
+    std::size_t bank = 0;
     BankArbiter* arbiter = nullptr;
     PortMask ports = 0;
     std::vector<BankArbiter::Outcome> recorded;
   };
 
+  void set_route(Port port, std::size_t bank, bool write);
+  std::size_t index_of_shared(std::size_t bank) const;
   void share_banks();
   void count_alone() const;
-  void settle();
+  void settle(PortMask ports = kAllPorts);
   PortMask arbitrate_shared(std::uint64_t cycle, PortMask requests);
 
   mutable std::vector<BankArbiter> arbiters_;
   std::array<Route, kMostPorts> routes_{};
   PortMask routed_ = 0;
-  PortMask writes_ = 0;  // ports whose route writes
-  // Uncontended ports: each is alone on a bank without turnaround. They need no arbitration; their grants are
+  PortMask writes_ = 0;        // ports whose route writes
+  std::uint64_t visited_ = 0;  // see visited()
+  // Uncontended ports: each is alone on a bank that is not shared. They need no arbitration; their grants are
   // added to the counts of the arbiters later, at the latest when the arbiters are queried.
   PortMask alone_ = 0;
   using AloneCycles =

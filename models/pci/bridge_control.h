@@ -86,9 +86,9 @@ class BridgeControl final : public PciMasterIf, private LocalBusMaster::Listener
   PciBurst begin_burst(std::uint64_t address_clock_ps) override;
   void end_burst(const BurstResult& result) override;
 
-  // For platform::CameraLines, which skips writes that it has seen before.
+  // For platform::CameraLines, which skips posted writes that it has seen before.
   //
-  // Whether nothing is under way in the bridge, or waits there.
+  // Whether nothing is under way in the bridge or on the local bus, or waits there.
   bool is_idle(std::uint64_t now_ps);
   // The byte address on the local bus to which `bytes` bytes of the slave window lead, if they lead to one
   // bank at contiguous addresses.
@@ -98,8 +98,17 @@ class BridgeControl final : public PciMasterIf, private LocalBusMaster::Listener
   std::size_t posted_words() const { return local_bus_.posted().words(); }
   // Writes have been posted and sent, at most `most_posted` words at one time: the turn after them, and for
   // each range of addresses on the local bus their words.
-  void skip_to(std::size_t turn, std::uint64_t most_posted);
+  void skip_posted(std::size_t turn, std::uint64_t most_posted);
   void count_skipped(std::uint64_t address, std::uint64_t words);
+
+  // For platform::DmaBursts, which skips bursts of DMA that it has seen before.
+  //
+  // The channel that is about to write a burst on one bus and to read the next one on the other, if both are
+  // of full length and have not begun yet, and nothing else is under way or waits in the bridge; else null.
+  DmaChannel* lone_channel();
+  // That channel has written this number of bursts, and read as many. The next two are to begin at `now_ps`.
+  // To be called when the bus may take requests again.
+  void skip_dma(std::uint64_t now_ps, DmaChannel& channel, std::size_t bursts);
 
   const Stats& stats() const { return stats_; }
   // The words for the banks that the bridge has received, posted or by DMA, counted by buffer.

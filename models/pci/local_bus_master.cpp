@@ -56,6 +56,13 @@ void LocalBusMaster::step(std::uint64_t now_ps) {
   }
 }
 
+bool LocalBusMaster::is_to_begin_only(const BridgeTransfer& transfer) const {
+  return !busy_ && !posted_.waits() && !read_.under_way &&
+         std::all_of(channels_.begin(), channels_.end(), [&](const DmaChannel& channel) {
+           return channel.on_local_bus().under_way == (&channel == transfer.channel);
+         });
+}
+
 // Begins the next burst. Returns false if nothing waits. A transfer that starts later at the current time is
 // not considered.
 bool LocalBusMaster::serve(std::uint64_t now_ps) {

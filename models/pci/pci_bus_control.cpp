@@ -40,7 +40,7 @@ void PciBusControl::request(std::size_t master, PciMasterIf& from, std::uint64_t
 }
 
 void PciBusControl::await_request() {
-  const std::uint64_t earliest = earliest_request(kNobody);
+  const std::uint64_t earliest = earliest_request_beside(kNobody);
   if (earliest == kNever) return;
   const std::uint64_t clock = std::max(free_clock_, earliest);
   if (clock >= decision_clock_) return;
@@ -48,12 +48,8 @@ void PciBusControl::await_request() {
   next_ps_ = clock_.edge_ps(clock);
 }
 
-std::uint64_t PciBusControl::earliest_request(std::size_t except) const {
-  std::uint64_t earliest = kNever;
-  for (std::size_t master = 0; master < requests_.size(); ++master) {
-    if (master != except) earliest = std::min(earliest, requests_[master].clock);
-  }
-  return earliest;
+std::uint64_t PciBusControl::earliest_request_beside(std::size_t master) const {
+  return earliest_request_beside(master, kNobody);
 }
 
 std::uint64_t PciBusControl::earliest_request_beside(std::size_t first, std::size_t second) const {
@@ -70,15 +66,23 @@ std::uint64_t PciBusControl::transactions() const {
   return transactions;
 }
 
-void PciBusControl::skip_to(const Position& position, const std::array<std::size_t, 2>& masters,
-                            const std::array<MasterCounts, 2>& counts) {
+void PciBusControl::MasterCounts::add(const MasterCounts& other) {
+  transactions += other.transactions;
+  words += other.words;
+  wait_clocks += other.wait_clocks;
+  retries += other.retries;
+  aborts += other.aborts;
+}
+
+void PciBusControl::skip_bursts(std::size_t master, const MasterCounts& counts) {
+  requests_[master].clock = kNever;
+  master_stats_[master].add(counts);
+}
+
+void PciBusControl::skip_to(const Position& position) {
   last_granted_ = position.last_granted;
   free_clock_ = position.free_clock;
   busy_clocks_ = position.busy_clocks;
-  for (std::size_t i = 0; i < masters.size(); ++i) {
-    requests_[masters[i]].clock = kNever;
-    static_cast<MasterCounts&>(master_stats_[masters[i]]) = counts[i];
-  }
   decision_clock_ = kNever;
   next_ps_ = kNever;
   await_request();
@@ -149,7 +153,7 @@ void PciBusControl::begin_words(std::uint64_t first_clock) {
 
 // Cuts the burst for the earliest request of another master. A later request would not cut it earlier.
 void PciBusControl::cut_words() {
-  const std::uint64_t request = earliest_request(running_.master);
+  const std::uint64_t request = earliest_request_beside(running_.master);
   if (request == kNever) return;
   const std::uint64_t last_data_clock =
       std::max({running_.address_clock + latency_timer_clocks_, request, running_.result.first_data_clock});

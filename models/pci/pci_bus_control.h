@@ -51,6 +51,8 @@ class PciBusControl {
     std::uint64_t wait_clocks = 0;   // from the first clock at or after a request to its address clock
     std::uint64_t retries = 0;       // bursts that the target disconnected before the first word
     std::uint64_t aborts = 0;        // bursts that ended with kMasterAbort or kTargetError
+
+    void add(const MasterCounts& other);
   };
   struct MasterStats : MasterCounts {
     std::string name;
@@ -86,12 +88,13 @@ class PciBusControl {
   // Counts up to `now_ps`.
   Stats stats(std::uint64_t now_ps) const;
 
-  // For platform::CameraLines, which skips bursts that it has seen before.
+  // For platform::CameraLines and platform::DmaBursts, which skip bursts that they have seen before.
   //
   // The clock that the next decide() grants, the first clock of a master's request (kNever: there is none),
-  // and the earliest one of all masters but two.
+  // and the earliest one of all masters but one or two.
   std::uint64_t decision_clock() const { return decision_clock_; }
   std::uint64_t request_clock(std::size_t master) const { return requests_[master].clock; }
+  std::uint64_t earliest_request_beside(std::size_t master) const;
   std::uint64_t earliest_request_beside(std::size_t first, std::size_t second) const;
   // The state between two bursts, and what a master has done.
   struct Position {
@@ -102,10 +105,11 @@ class PciBusControl {
   Position position() const { return {last_granted_, free_clock_, busy_clocks_}; }
   const MasterCounts& counts(std::size_t master) const { return master_stats_[master]; }
   std::uint64_t transactions() const;  // of all masters
-  // Instead of decide(): the requests of these masters have been granted, and their bursts have ended. The
-  // position and the counts are those after them. The masters may then request again.
-  void skip_to(const Position& position, const std::array<std::size_t, 2>& masters,
-               const std::array<MasterCounts, 2>& counts);
+  // Instead of decide(): the request of a master has been granted, and its bursts have ended. These are their
+  // counts.
+  void skip_bursts(std::size_t master, const MasterCounts& counts);
+  // To be called then: the position after all of them. The masters may then request again.
+  void skip_to(const Position& position);
 
  private:
   class Slot final : public PciSlot {
@@ -148,7 +152,6 @@ class PciBusControl {
   // These take requests.
   void request(std::size_t master, PciMasterIf& from, std::uint64_t from_ps);
   void await_request();
-  std::uint64_t earliest_request(std::size_t except) const;
 
   // These step through a burst.
   void begin(std::uint64_t now_ps, std::size_t master, const PciBurst& burst, std::uint64_t clock);

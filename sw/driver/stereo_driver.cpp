@@ -64,12 +64,9 @@ std::uint64_t host_memory_bytes(const DriverConfig& config) {
   return results_start(config) + config.buffers.disparities.size() * picture_bytes(config);
 }
 
-StereoDriver::StereoDriver(const DriverConfig& config, std::vector<std::uint32_t> left_table,
-                           std::vector<std::uint32_t> right_table, FrameListener& listener)
-    : config_(config),
-      left_table_(std::move(left_table)),
-      right_table_(std::move(right_table)),
-      listener_(listener) {
+StereoDriver::StereoDriver(const DriverConfig& config, const std::vector<std::uint32_t>& left_table,
+                           const std::vector<std::uint32_t>& right_table, FrameListener& listener)
+    : config_(config), left_table_(left_table), right_table_(right_table), listener_(listener) {
   if (const auto found = problems(config); !found.empty()) throw std::invalid_argument(found.front());
   const auto check = [this](const char* side, bool is_used, std::size_t entries) {
     const std::uint64_t expected = is_used ? table_bytes(config_) / 4 : 0;
@@ -85,12 +82,11 @@ StereoDriver::StereoDriver(const DriverConfig& config, std::vector<std::uint32_t
 }
 
 void StereoDriver::join_tables() {
-  const auto table = [this](std::vector<std::uint32_t>& entries) {
-    return kernels::RectificationTable{config_.width, config_.height, std::move(entries)};
+  const auto table = [this](const std::vector<std::uint32_t>& entries) {
+    return kernels::RectificationTable{config_.width, config_.height, entries};
   };
   kernels::JointTable joint = kernels::join_tables(table(left_table_), table(right_table_));
-  left_table_ = std::move(joint.words);
-  right_table_.clear();
+  joint_table_ = std::move(joint.words);
   joint_offsets_ = joint.offsets;
 }
 
@@ -132,9 +128,11 @@ void StereoDriver::upload_tables() {
   };
   if (config_.buffers.has_joint_tables) {
     for (const auto& [address, value] : core_map::joint_offsets(joint_offsets_)) core(address, value);
+    add(config_.buffers.left_lut, joint_table_);
+  } else {
+    add(config_.buffers.left_lut, left_table_);
+    add(config_.buffers.right_lut, right_table_);
   }
-  add(config_.buffers.left_lut, left_table_);
-  add(config_.buffers.right_lut, right_table_);
   if (pieces.empty()) return;
   const std::uint32_t done = bridge_map::kDmaDone << unsigned{kToBoard};
   const std::uint32_t error = bridge_map::kDmaError << unsigned{kToBoard};

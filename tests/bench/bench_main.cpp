@@ -9,6 +9,7 @@
 #include <functional>
 #include <memory>
 #include <opencv2/calib3d.hpp>
+#include <opencv2/imgproc.hpp>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -68,6 +69,33 @@ const std::vector<Case>& cases() {
       {"one_bank_in_turn", "fpl2003-syncburst", one_bank({"fpga.arbitration=round_robin"}), true},
   };
   return all;
+}
+
+// Whole computers. `contended` is not checked.
+const std::vector<Case>& computers() {
+  static const std::vector<Case> all = {
+      {"fpl2003", "fpl2003", {}},
+      {"left_captures_shared", "fpl2003", {"allocation.left_image=[bank6, bank7]"}},
+      {"four_banks",
+       "fpl2003",
+       {"allocation.left_image=[bank0, bank0]", "allocation.right_image=[bank1, bank1]",
+        "allocation.disparity=[bank2, bank2]", "allocation.left_lut=bank3", "allocation.right_lut=bank2"}},
+      {"wvga-60hz", "wvga-60hz", {}},
+      {"megapixel-pci64", "megapixel-pci64", {}},
+  };
+  return all;
+}
+
+// The pair in the size of the board's pictures.
+host::StereoPair of_size(const host::StereoPair& pair, const Case& c) {
+  const platform::ImageConfig size = platform::load_board(c.board, c.sets).image;
+  const auto sized = [&size](const kernels::GrayImage& image) {
+    kernels::GrayImage found(size.width, size.height);
+    cv::Mat out(size.height, size.width, CV_8UC1, found.pixels.data());
+    cv::resize(calib::view(image), out, out.size());
+    return found;
+  };
+  return {sized(pair.left), sized(pair.right)};
 }
 
 // OpenCV's matcher on the same pair.
@@ -259,13 +287,13 @@ void add_frames(const host::StereoPair& pair, const platform::Tables* rig_tables
     const auto add_case = [&, fidelity = fidelity](const std::string& name, const Case& c,
                                                    const platform::Tables* tables, bool camera) {
       add_timed(name, [=, &pair](benchmark::State& state) {
-        run_frames(state, c, {c.board, c.sets, tables, camera, fidelity}, pair);
+        run_frames(state, c, {c.board, c.sets, tables, camera, fidelity}, of_size(pair, c));
       });
     };
     for (const Case& c : cases()) add_case("frame_" + fidelity_name + '/' + c.name, c, nullptr, false);
     const Case& usual = cases().front();
     if (rig_tables != nullptr) add_case("frame_" + fidelity_name + "/rig", usual, rig_tables, false);
-    add_case("computer_" + fidelity_name + "/fpl2003", usual, nullptr, true);
+    for (const Case& c : computers()) add_case("computer_" + fidelity_name + '/' + c.name, c, nullptr, true);
   }
 }
 

@@ -52,6 +52,22 @@ void draw_contended_captures(RandomBoard& board, SplitMix64& random) {
   }
 }
 
+// Pictures are captured into two banks that nothing else uses, line after line.
+void draw_apart_captures(RandomBoard& board, SplitMix64& random) {
+  board.width = 4 * random.between(6, 16);
+  board.height = random.between(12, 40);
+  board.window = std::min(board.window, 9);
+  for (auto* table : {&board.left_table, &board.right_table}) {
+    if (*table) *table = identity_table(board);
+  }
+  const int pictures = random.between(1, 2);
+  for (auto* image : {&board.left_image, &board.right_image}) {
+    image->assign(static_cast<std::size_t>(pictures), static_cast<int>(board.banks.size()));
+    board.banks.push_back(
+        {one_of<PlainBankKind>(random, {PlainBankKind::kZbtPipelined, PlainBankKind::kZbtFlowThrough})});
+  }
+}
+
 }  // namespace
 
 RandomComputer make_random_computer(std::uint64_t seed, const RandomKnobs& knobs) {
@@ -60,6 +76,9 @@ RandomComputer make_random_computer(std::uint64_t seed, const RandomKnobs& knobs
   SplitMix64 random_captures(seed + 3'000'000);
   const bool has_contended_captures = knobs.contended_captures && random_captures.chance(40);
   if (has_contended_captures) draw_contended_captures(board, random_captures);
+  SplitMix64 random_apart(seed + 4'000'000);
+  const bool has_apart_captures = knobs.apart_captures && !has_contended_captures && random_apart.chance(60);
+  if (has_apart_captures) draw_apart_captures(board, random_apart);
   SplitMix64 random(seed + 1'000'000);
   PlainComputerInput input;
   input.frame_rate_hz = usual_or_odd(random, {"1000", "500", "299.7", "99.9"}, 100, 1000);
@@ -90,7 +109,7 @@ RandomComputer make_random_computer(std::uint64_t seed, const RandomKnobs& knobs
     SplitMix64 random_width(seed + 2'000'000);
     input.pci_width_bits = random_width.chance(50) ? 64 : 32;
   }
-  if (has_contended_captures) {
+  if (has_contended_captures || has_apart_captures) {
     input.capture_to_host = false;
     input.local_clock_mhz = fpga_clock_mhz;
     input.frames = std::max(input.frames, 4);

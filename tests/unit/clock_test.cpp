@@ -95,6 +95,18 @@ TEST(Clock, HasTheEdgesOfAClockWithTheSameFrequency) {
   EXPECT_FALSE(Clock(33.333).has_edges_of(Clock(33.334)));
 }
 
+TEST(Clock, KnowsHowManyPhasesItsEdgesHaveAgainstThoseOfAnother) {
+  const auto phases = [](double mhz, double other) {
+    return static_cast<std::uint64_t>(Clock(mhz).phases_against(Clock(other)));
+  };
+  EXPECT_EQ(phases(33.333, 33.333), 1U);
+  EXPECT_EQ(phases(20, 40), 1U);
+  EXPECT_EQ(phases(40, 20), 2U);
+  EXPECT_EQ(phases(66, 40), 33U);
+  EXPECT_EQ(phases(33.333, 40), 33'333U);
+  EXPECT_EQ(phases(1000, 0.001), 1'000'000U);
+}
+
 TEST(Clock, RefusesAFrequencyOutsideItsRange) {
   for (const double mhz : {0.0, -40.0, 0.000999, 1000.001}) EXPECT_THROW(Clock{mhz}, std::invalid_argument);
 }

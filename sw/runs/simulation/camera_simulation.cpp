@@ -12,8 +12,9 @@
 namespace stereotlm::runs {
 namespace {
 
-std::vector<std::uint32_t> entries_of(const std::optional<kernels::RectificationTable>& table) {
-  return table ? table->entries : std::vector<std::uint32_t>{};
+const std::vector<std::uint32_t>& entries_of(const std::optional<kernels::RectificationTable>& table) {
+  static const std::vector<std::uint32_t> none;
+  return table ? table->entries : none;
 }
 
 // If nothing progresses for this simulated time, the simulation has stalled. The time exceeds every regular

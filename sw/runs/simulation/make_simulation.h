@@ -32,8 +32,7 @@ class BlankPairs : public host::FrameSource {
   explicit BlankPairs(const platform::BoardConfig& board) : image_(board.image) {}
   const host::StereoPair& pair(std::uint64_t /*frame*/) override {
     if (pair_.left.pixels.empty()) {
-      const kernels::GrayImage black(image_.width, image_.height);
-      pair_ = {black, black};
+      pair_ = {{image_.width, image_.height}, {image_.width, image_.height}};
     }
     return pair_;
   }

@@ -148,6 +148,113 @@ TEST_F(ConflictRecorderTurnaroundTest, BringsUncontendedStallsOfTheHostToTheirTi
   EXPECT_EQ(conflicts_.take_frames().front().strips[1].stalls[requester_of(HostTraffic::kReadBack)], 2U);
 }
 
+// Frames beside bursts of the host that write to the bank of the left table, 5 words each.
+class BurstsOfHost {
+ public:
+  BurstsOfHost() {
+    for (std::uint32_t port = 0; port < kCorePortCount; ++port) bases_[port] = registers::base(port, 0);
+    frames_.record(conflicts_);
+  }
+  void start() { frames_.start_direct(frames_.done_cycle(), bases_, patterns_); }
+  bool done() const { return frames_.control().frame_done(); }
+  std::uint64_t cycle() const { return frames_.cycle(); }
+  // Both return the cycle of the last grant.
+  std::uint64_t serve_at_once(std::uint64_t first, HostTraffic traffic) {
+    std::uint64_t last_grant = first;
+    for (std::size_t left = kWords; left != 0 && !done();) {
+      const FastForward::Served served = frames_.serve_host({0, true, traffic}, first, left);
+      left -= served.words;
+      if (served.words != 0) last_grant = served.last_cycle;
+      first = last_grant + 1;
+    }
+    return last_grant;
+  }
+  std::uint64_t serve_in_steps(std::uint64_t first, HostTraffic traffic) {
+    while (cycle() < first && !done()) frames_.step(false);
+    if (done()) return first;
+    conflicts_.set_host_traffic(traffic);
+    frames_.host_route_changes();
+    arbitration_.route(kHostPort, 0, true);
+    std::uint64_t last_grant = first;
+    for (std::size_t left = kWords; left != 0 && !done();) {
+      if ((frames_.step(true) & memory::mask_of(kHostPort)) == 0) continue;
+      last_grant = cycle() - 1;
+      --left;
+    }
+    frames_.host_route_changes();
+    arbitration_.unroute(kHostPort);
+    return last_grant;
+  }
+  void finish() {
+    frames_.run_ahead(UINT64_MAX);
+    frames_.finish();
+    frames_.end();
+  }
+  std::uint64_t skipped_cycles() const { return frames_.skipped_cycles(); }
+
+  // All that has been recorded.
+  std::vector<std::uint64_t> figures() {
+    std::vector<std::uint64_t> figures = conflicts_.tile_cycles();
+    for (const ConflictRecorder::Stalls* stalls : conflicts_.stalls()) {
+      figures.insert(figures.end(), {stalls->requester, stalls->bank, stalls->by});
+      figures.insert(figures.end(), stalls->cycles.begin(), stalls->cycles.end());
+    }
+    for (const FrameConflicts& frame : conflicts_.take_frames()) {
+      for (const StripConflicts& strip : frame.strips) {
+        figures.push_back(strip.cycles);
+        figures.insert(figures.end(), strip.stalls.begin(), strip.stalls.end());
+      }
+      for (const FrameConflicts::BankAccesses& bank : frame.accesses)
+        figures.insert(figures.end(), bank.begin(), bank.end());
+    }
+    return figures;
+  }
+
+ private:
+  static constexpr std::size_t kWords = 5;
+
+  static CoreConfig core() {
+    CoreConfig config = tile_core();
+    config.width = 64;
+    config.height = 24;
+    return config;
+  }
+
+  CoreConfig config_ = core();
+  std::vector<memory::SsramBankConfig> banks_ = std::vector<memory::SsramBankConfig>(6);
+  FrameBases bases_{};
+  memory::Arbitration arbitration_{core_arbiter(), banks_};
+  FrameRun frames_{config_, banks_, arbitration_, 1000};
+  AccessPatterns patterns_{AccessPattern(frames_.control().geometry(), config_.pixel_cache),
+                           AccessPattern(frames_.control().geometry(), config_.pixel_cache)};
+  ConflictRecorder conflicts_{config_, banks_, {}};
+};
+
+// They begin in every phase of a group, some in the same group, and some lie across the end of a strip.
+TEST(ConflictRecorder, RecordsBurstsThatAreSkippedAsTheirSteps) {
+  for (const std::uint64_t pause : {1U, 3U, 7U, 31U, 60U, 191U}) {
+    SCOPED_TRACE(pause);
+    BurstsOfHost at_once;
+    BurstsOfHost in_steps;
+    for (int frame = 0; frame < 3; ++frame) {
+      at_once.start();
+      in_steps.start();
+      HostTraffic traffic = HostTraffic::kCapture;
+      for (std::uint64_t first = in_steps.cycle() + 50; !in_steps.done();) {
+        const std::uint64_t last_grant = in_steps.serve_in_steps(first, traffic);
+        ASSERT_EQ(at_once.serve_at_once(first, traffic), last_grant);
+        traffic = traffic == HostTraffic::kCapture ? HostTraffic::kUpload : HostTraffic::kCapture;
+        first = last_grant + 1 + pause;
+      }
+      at_once.finish();
+      in_steps.finish();
+      ASSERT_EQ(at_once.figures(), in_steps.figures()) << frame;
+    }
+    EXPECT_GT(at_once.skipped_cycles(), 8000U);  // of 3 frames with 4600 cycles
+    EXPECT_EQ(in_steps.skipped_cycles(), 0U);
+  }
+}
+
 TEST(TileGrid, HasATileForEachGroupUpToTheMost) {
   CoreConfig config;
   config.width = 64;

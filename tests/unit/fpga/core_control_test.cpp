@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "tests/support/random_board.h"
 #include "tests/unit/fpga/random_core.h"
 
 namespace stereotlm::fpga {
@@ -114,22 +115,50 @@ TEST(MatchControl, CompletesAWordOfEachRowInsideTheImageWithEveryFourthResultOfA
 }
 
 // A group of four columns repeats one before it only if it completes as many words.
-TEST(MatchControl, ChangesItsStateWhereTheWordsOfAGroupChangeAndIsUniformUpToThere) {
+TEST(MatchControl, ChangesItsPartWhereTheWordsOfAGroupChangeAndIsUniformUpToThere) {
   for (const CoreConfig& config : cores_with_words()) {
     MatchControl match{FrameGeometry(config)};
     match.start_frame();
-    std::map<std::uint64_t, int> words_from;  // [state]
-    std::uint64_t state = match.state();
-    std::uint64_t change = match.columns() + match.uniform_columns();
+    std::map<std::uint64_t, int> words_from;  // [part]
+    std::uint64_t part = match.part();
+    std::uint64_t change = match.consumed() + match.uniform_slots();
     while (match.cycles_left() > 0) {
-      while (!match.work()) continue;
+      bool completes = false;
+      do {
+        ASSERT_EQ(match.consumed() + match.uniform_slots(), change);
+        completes = match.work();
+        if (match.consumed() == change) change += match.uniform_slots();
+      } while (!completes);
       const int words = match.words_leaving();
-      if (match.columns() < change) {
-        EXPECT_EQ(match.state(), state);
-        EXPECT_EQ(words_from.emplace(state, words).first->second, words);
+      if (match.part() == part) {
+        EXPECT_EQ(words_from.emplace(part, words).first->second, words);
       }
-      state = match.state();
-      if (match.columns() >= change) change = match.columns() + match.uniform_columns();
+      part = match.part();
+    }
+  }
+}
+
+// Every state of a frame, and skips of any length within a part.
+TEST(MatchControl, IsAfterASkipAsIfItHadWorked) {
+  for (const CoreConfig& config : cores_with_words()) {
+    const FrameGeometry geometry(config);
+    const auto group = static_cast<std::uint64_t>(4 * geometry.slots_per_column);
+    const auto phase =
+        geometry.result_delay_columns % 4 * static_cast<std::uint64_t>(geometry.slots_per_column);
+    MatchControl match(geometry);
+    match.start_frame();
+    test::SplitMix64 random(1);
+    while (match.cycles_left() > 0) {
+      MatchControl worked = match;
+      const std::uint64_t end = match.consumed() + match.uniform_slots();
+      for (int cycles = random.between(0, 200); cycles > 0 && worked.consumed() < end; --cycles)
+        worked.work();
+      match.skip_to(worked.state(), worked.consumed() - match.consumed());
+      ASSERT_EQ(match.state(), worked.state());
+      ASSERT_EQ(match.cycles_left(), worked.cycles_left());
+      ASSERT_EQ(match.columns(), worked.columns());
+      ASSERT_EQ(match.slots_of_group_left(), group - (match.consumed() + group - phase) % group);
+      if (match.cycles_left() > 0) match.work();
     }
   }
 }

@@ -106,6 +106,7 @@ class Core {
   bool done() const { return frames_.control().frame_done(); }
   std::uint64_t cycle() const { return frames_.cycle(); }
   std::uint64_t earliest_last_write() const { return frames_.earliest_last_write(); }
+  std::uint64_t work() const { return frames_.control().work(); }
   // One cycle. True if the host is granted.
   bool step(bool host_requests = false) {
     const memory::PortMask granted =
@@ -384,7 +385,46 @@ TEST(FastForward, StepsFewCyclesBesideBurstsOnceTheirGroupsAreRecorded) {
   EXPECT_LT(with_results[1], 2000U);
 }
 
-// The pixel port has a bank of its own, so that its accesses need not be known; until a burst goes there.
+// As before, with two bursts of 32 words every `pause` cycles, to two banks and in both directions: the
+// second begins `gap` cycles after the first has ended.
+std::vector<std::uint64_t> stepped_beside_pairs_of_bursts(std::uint64_t pause, std::uint64_t gap) {
+  const Setting setting = bank_for_each_port(640, 480);
+  Core core(setting, Core::Way::kAhead);
+  std::vector<std::uint64_t> stepped;
+  for (int frame = 0; frame < 3; ++frame) {
+    const std::uint64_t begin = core.cycle() - core.skipped_cycles();
+    core.start(core.cycle());
+    for (std::uint64_t first = core.cycle() + 10'000; !core.done(); first += pause) {
+      const std::uint64_t last = core.serve_in_step({first, 0, true, 32});
+      core.serve_in_step({last + 1 + gap, 3, false, 32});
+    }
+    core.advance(kNever);
+    stepped.push_back(core.cycle() - core.skipped_cycles() - begin);
+    core.finish();
+  }
+  return stepped;
+}
+
+TEST(FastForward, StepsFewCyclesBesideBurstsThatShareAGroup) {
+  for (const std::uint64_t gap : {0U, 1U, 13U, 27U, 28U, 29U}) {
+    const std::vector<std::uint64_t> stepped = stepped_beside_pairs_of_bursts(301, gap);
+    EXPECT_LT(stepped[0], 100'000U) << gap;
+    EXPECT_LT(stepped[2], 4000U) << gap;
+  }
+}
+
+// The first group that is not known begins more than HostRequests::kMostCycles before the burst.
+TEST(FastForward, RecordsTheGroupsFarBeforeABurst) {
+  const Setting setting = bank_for_each_port(640, 480);
+  Core core(setting, Core::Way::kAhead);
+  core.start(0);
+  core.serve_in_step({100, 0, true, 1});
+  const std::uint64_t begin = core.cycle() - core.skipped_cycles();
+  EXPECT_EQ(core.serve_in_step({1'000'000, 0, true, 1}), 1'000'000U);
+  EXPECT_LT(core.cycle() - core.skipped_cycles() - begin, 2000U);
+}
+
+// The pixel ports have banks of their own, so that their accesses need not be known until a burst goes there.
 TEST(FastForward, ForgetsABurstWithTheEndOfItsFrame) {
   Setting setting = bank_for_each_port(640, 480);
   test::SplitMix64 random(1);
@@ -392,21 +432,20 @@ TEST(FastForward, ForgetsABurstWithTheEndOfItsFrame) {
     if (random.chance(50)) entry = 0;
   }
   Core core(setting, Core::Way::kAhead);
-  std::vector<std::uint64_t> stepped;
-  for (const bool has_burst : {false, true, false}) {
+  const auto stepped = [&](const std::vector<std::size_t>& banks) {
     const std::uint64_t begin = core.cycle() - core.skipped_cycles();
     core.start(core.cycle());
-    if (has_burst) {
-      core.serve_in_step({core.cycle() + 10'000, 2, true, 32});
-      core.serve_in_step({core.cycle() + 10'000, 2, true, 32});
-    }
+    for (const std::size_t bank : banks) core.serve_in_step({core.cycle() + 10'000, bank, true, 32});
     core.advance(kNever);
-    stepped.push_back(core.cycle() - core.skipped_cycles() - begin);
+    const std::uint64_t cycles = core.cycle() - core.skipped_cycles() - begin;
     core.finish();
-  }
-  EXPECT_LT(stepped[0], 2000U);
-  EXPECT_GT(stepped[1], 20'000U);
-  EXPECT_LE(stepped[2], stepped[0]);
+    return cycles;
+  };
+  const std::uint64_t alone = stepped({});
+  EXPECT_LT(alone, 2000U);
+  EXPECT_LT(stepped({0, 0, 3, 3}), 4000U);  // the left table and the right picture
+  EXPECT_GT(stepped({2, 2}), 20'000U);
+  EXPECT_LE(stepped({}), alone);
 }
 
 // A burst ends in the group in which the next one begins.
@@ -429,6 +468,37 @@ TEST(FastForward, GrantsTwoBurstsOfAGroup) {
       ahead.finish();
       ASSERT_EQ(ahead.figures(), stepped.figures()) << pause;
     }
+  }
+}
+
+// A burst that begins with a group of the drain is known. One that begins after the last group comes in the
+// same state, but there the matcher has nothing to do. A slot takes 16 cycles.
+TEST(FastForward, FollowsNoBurstBeyondTheLastGroupOfTheDrain) {
+  Setting setting = bank_for_each_port(64, 24);
+  setting.core.disparities = 16;
+  setting.core.units = 1;
+  Core alone(setting, Core::Way::kStepped);
+  alone.start(0);
+  alone.advance(kNever);
+  const std::uint64_t last_write = alone.cycle() - 1;
+  const std::uint64_t group = 4 * 7 * 16;
+  Core stepped(setting, Core::Way::kStepped);
+  Core ahead(setting, Core::Way::kAhead);
+  for (int frame = 0; frame < 3; ++frame) {
+    const std::uint64_t start = stepped.cycle();
+    stepped.start(start);
+    ahead.start(start);
+    for (std::uint64_t groups = 3; groups <= 3; --groups) {
+      const Burst burst{start + last_write - groups * group, 4, true, 5};
+      ASSERT_EQ(ahead.serve_in_step(burst), stepped.serve_in_step(burst));
+    }
+    stepped.advance(kNever);
+    ahead.advance(kNever);
+    EXPECT_EQ(stepped.cycle(), start + last_write + 1 + 5);
+    EXPECT_EQ(ahead.work(), stepped.work());
+    stepped.finish();
+    ahead.finish();
+    ASSERT_EQ(ahead.figures(), stepped.figures());
   }
 }
 

@@ -97,16 +97,83 @@ TEST_F(TransitionCacheTest, DistinguishesTheRequestsOfTheHost) {
   const auto number = groups_.number_of(state(0));
   TransitionCache::Effect granting = effect(0);
   granting.host = {5, 9, 7};
-  groups_.record(number, {}, {3, 5}, number, granting);
+  groups_.record(number, {}, {3, 5, 7}, number, granting);
   const auto finds = [&](const HostRequests& host) { return groups_.find(number, {}, host).has_value(); };
-  EXPECT_TRUE(finds({3, 5}));
-  EXPECT_FALSE(finds({4, 5}));
-  EXPECT_FALSE(finds({3, 6}));
-  EXPECT_FALSE(finds({3, HostRequests::kEndless}));
+  EXPECT_TRUE(finds({3, 5, 7}));
+  EXPECT_FALSE(finds({4, 5, 7}));
+  EXPECT_FALSE(finds({3, 6, 7}));
+  EXPECT_FALSE(finds({3, 5, 6}));
+  EXPECT_FALSE(finds({3, HostRequests::kEndless, 7}));
   EXPECT_FALSE(finds({}));
   groups_.record(number, {}, {}, number, effect(0));
-  EXPECT_EQ(groups_.host(*groups_.find(number, {}, {3, 5})), granting.host);
+  EXPECT_EQ(groups_.host(*groups_.find(number, {}, {3, 5, 7})), granting.host);
   EXPECT_EQ(groups_.host(*groups_.find(number, {})), HostGrants{});
+}
+
+// A ring of 3 groups with 1, 2 and 3 grants: 7 groups have 13 of them, and lead from the first to the second.
+TEST_F(TransitionCacheTest, CountsASequenceAsItsTransitions) {
+  make_ring(3, 0);
+  const auto first = groups_.number_of(state(0));
+  Progress room = {kMuch, kMuch, kMuch, kMuch, 7};
+  groups_.begin_sequence();
+  EXPECT_EQ(walk(0, room), 1U);
+  groups_.end_sequence();
+  EXPECT_EQ(granted(), 13U);
+  room.words = 1;
+  EXPECT_EQ(walk(0, room), 1U);  // no part of the sequence
+  EXPECT_EQ(granted(), 14U);
+
+  const HostRequests host = {3, 5, 7, true};
+  const Progress progress = {76, 28, 56, 56, 7};
+  const HostGrants grants = {5, 76, 6};
+  groups_.record_sequence(first, host, groups_.number_of(state(1)), progress, grants);
+  EXPECT_FALSE(groups_.find(first, {}, {3, 5, 7, false}));
+  EXPECT_FALSE(groups_.find(first, {}, {3, 4, 7, true}));
+  const auto found = groups_.find(first, {}, host);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->next, groups_.number_of(state(1)));
+  EXPECT_EQ(groups_.progress(*found), progress);
+  EXPECT_EQ(groups_.host(*found), grants);
+  for (int i = 0; i < 3; ++i) groups_.follow(*found);
+  room.words = 1;
+  walk(0, room);  // counts all
+  EXPECT_EQ(granted(), 14U + 3 * 13 + 1);
+}
+
+TEST_F(TransitionCacheTest, KeepsTheOrderOfItsTransitions) {
+  const auto cycles_of = [&](const std::vector<TransitionCache::Part>& parts) {
+    std::vector<std::uint64_t> cycles;
+    for (auto next = parts.begin(); next != parts.end(); next += next->length) {
+      for (std::uint64_t time = 0; time < next->times; ++time) {
+        for (auto part = next; part != next + next->length; ++part)
+          cycles.push_back(groups_.progress(part->effect).cycles);
+      }
+    }
+    return cycles;
+  };
+  groups_.keep_order(true);
+  for (const std::size_t back_to : {0U, 1U, 3U, 4U}) {
+    groups_.clear();
+    make_ring(5, back_to);
+    std::vector<std::uint64_t> expected;
+    for (std::size_t word = 0, at = 0; word < 123; ++word) {
+      expected.push_back(10 + at);
+      at = at + 1 < 5 ? at + 1 : back_to;
+    }
+    Progress room = {kMuch, kMuch, kMuch, kMuch, 123};
+    groups_.begin_sequence();
+    walk(0, room);
+    groups_.end_sequence();
+    EXPECT_EQ(cycles_of(groups_.in_order()), expected) << back_to;
+    EXPECT_LT(groups_.in_order().size(), 40U);
+    const HostRequests host = {3, 5, 7, true};
+    groups_.record_sequence(groups_.number_of(state(0)), host, groups_.number_of(state(0)), {}, {});
+    const auto sequence = groups_.find(groups_.number_of(state(0)), {}, host);
+    ASSERT_TRUE(sequence);
+    EXPECT_EQ(cycles_of(groups_.parts(sequence->effect)), expected) << back_to;
+    groups_.forget_order();
+    EXPECT_TRUE(groups_.in_order().empty());
+  }
 }
 
 TEST_F(TransitionCacheTest, FindsEachTransitionAndIsFullAtItsCap) {

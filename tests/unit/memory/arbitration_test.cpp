@@ -51,6 +51,11 @@ struct Routes {
       mask = static_cast<PortMask>(mask | (bank[port] == number ? requests & 1U << port : 0U));
     return mask;
   }
+  void visit(Port port, std::size_t to, bool write) {
+    bank[port] = to;
+    ports = static_cast<PortMask>(ports | mask_of(port));
+    writes = static_cast<PortMask>((writes & ~mask_of(port)) | (write ? mask_of(port) : kNone));
+  }
   PortMask random_requests(SplitMix64& random) const {
     return random.chance(20) ? kNone : static_cast<PortMask>(random.next() & ports);
   }
@@ -70,12 +75,18 @@ TEST(Arbitration, GrantsAndCountsAsOneArbiterPerBank) {
     for (const SsramBankConfig& bank : banks()) plain.emplace_back(config, bank);
     std::uint64_t cycle = 0;
     for (int part = 0; part < 6; ++part) {
-      const Routes routes(random);
+      Routes routes(random);
       routes.apply(arbitration);
+      const int visits = random.chance(50) ? 0 : random.between(1, 50);  // percent
       const bool counts = part % 2 == 1;
       for (PlainArbiter& arbiter : plain) arbiter.counts = counts;
       if (counts) arbitration.begin_counting(cycle);
       for (const std::uint64_t end = cycle + 100; cycle < end; ++cycle) {
+        if (random.chance(visits)) {
+          routes.visit(port::kHost, static_cast<std::size_t>(random.between(0, kBanks - 1)),
+                       random.chance(50));
+          arbitration.visit(port::kHost, routes.bank[port::kHost], (routes.writes & kHost) != 0);
+        }
         const PortMask requests = routes.random_requests(random);
         PortMask granted = 0;
         for (std::size_t bank = 0; bank < plain.size(); ++bank)
@@ -91,7 +102,8 @@ TEST(Arbitration, GrantsAndCountsAsOneArbiterPerBank) {
 class SkippedArbitration : public testing::TestWithParam<bool> {};
 
 // Two with the same routes, counting or not: one steps every cycle; the other records the cycles between two
-// states, and skips them wherever it is in the first of these states again.
+// states, and skips them wherever it is in the first of these states again. The host may visit shared banks
+// in between.
 TEST_P(SkippedArbitration, EqualsTheSteppedOneInGrantsStatesAndCounts) {
   int skipped = 0;
   int repeated = 0;
@@ -99,7 +111,8 @@ TEST_P(SkippedArbitration, EqualsTheSteppedOneInGrantsStatesAndCounts) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     SplitMix64 random(seed);
     const ArbiterConfig config = random_arbiter(random);
-    const Routes routes(random);
+    Routes routes(random);
+    const bool visits = random.chance(50);
     Arbitration skips(config, banks());
     Arbitration steps(config, banks());
     std::uint64_t cycle = 3;
@@ -109,16 +122,26 @@ TEST_P(SkippedArbitration, EqualsTheSteppedOneInGrantsStatesAndCounts) {
     }
     struct Span {
       Arbitration::State begin;
+      std::size_t host_bank;
+      PortMask writes;
       std::vector<PortMask> requests;
       Arbitration::Decided decided;
       Arbitration::State end;
     };
     std::vector<Span> spans;
     for (int part = 0; part < 60; ++part) {
+      const auto bank = static_cast<std::size_t>(random.between(0, kBanks - 1));
+      if (visits && steps.is_shared(bank)) {
+        routes.visit(port::kHost, bank, random.chance(50));
+        for (Arbitration* arbitration : {&skips, &steps})
+          arbitration->visit(port::kHost, bank, (routes.writes & kHost) != 0);
+      }
       const Arbitration::State now = steps.state(cycle);
       ASSERT_EQ(skips.state(cycle), now);
-      const auto known =
-          std::find_if(spans.begin(), spans.end(), [&now](const Span& span) { return span.begin == now; });
+      const auto known = std::find_if(spans.begin(), spans.end(), [&](const Span& span) {
+        return span.begin == now && span.host_bank == routes.bank[port::kHost] &&
+               span.writes == routes.writes;
+      });
       if (known != spans.end()) {
         const bool recurs = known->begin == known->end;
         const auto times = static_cast<std::uint64_t>(recurs ? random.between(1, 5) : 1);
@@ -131,7 +154,7 @@ TEST_P(SkippedArbitration, EqualsTheSteppedOneInGrantsStatesAndCounts) {
         if (recurs) spans.erase(known);
         continue;
       }
-      Span span{now, {}, {}, {}};
+      Span span{now, routes.bank[port::kHost], routes.writes, {}, {}, {}};
       skips.begin_recording();
       for (int cycles = random.between(1, 12); cycles > 0; --cycles) {
         span.requests.push_back(routes.random_requests(random));
@@ -175,6 +198,23 @@ TEST(Arbitration, MovesNoPlaceForGrantsThatAreRetractedAfterAQuery) {
   EXPECT_EQ(granted_after_being_alone(1, 0), kRight);
 }
 
+// As before, with a visit of the host before the grants are retracted.
+PortMask granted_after_a_visit(std::size_t bank, std::uint64_t retracted) {
+  Arbitration arbitration(kRoundRobin, banks());
+  arbitration.route(port::kLeftPixel, 0, false);
+  for (std::uint64_t cycle = 0; cycle < 5; ++cycle) arbitration.arbitrate(cycle, kLeft);
+  arbitration.visit(port::kHost, bank, false);
+  arbitration.retract_grants(port::kLeftPixel, retracted);
+  arbitration.route(port::kRightPixel, 0, false);
+  return arbitration.arbitrate(5, kLeft | kRight);
+}
+
+TEST(Arbitration, MovesThePlaceOfAVisitedBankOnly) {
+  EXPECT_EQ(granted_after_a_visit(1, 5), kLeft);
+  EXPECT_EQ(granted_after_a_visit(1, 4), kRight);
+  EXPECT_EQ(granted_after_a_visit(0, 0), kRight);
+}
+
 TEST(Arbitration, HasAStateOnlyWherePortsContendOrTheBankHasTurnaround) {
   Arbitration arbitration(kRoundRobin, banks());
   const Arbitration::State none{};
@@ -188,6 +228,46 @@ TEST(Arbitration, HasAStateOnlyWherePortsContendOrTheBankHasTurnaround) {
   arbitration.route(port::kResult, 2, true);
   arbitration.arbitrate(1, kResult);
   EXPECT_NE(arbitration.state(2), none);
+}
+
+TEST(Arbitration, SharesABankFromItsFirstVisitToTheNextRoute) {
+  Arbitration arbitration(kFixedPriority, banks());
+  arbitration.route(port::kLeftPixel, 0, false);
+  arbitration.route(port::kRightPixel, 1, false);
+  EXPECT_FALSE(arbitration.is_shared(0));
+  arbitration.visit(port::kHost, 0, true);
+  EXPECT_TRUE(arbitration.is_shared(0));
+  EXPECT_FALSE(arbitration.is_alone(port::kLeftPixel));
+  EXPECT_FALSE(arbitration.is_shared(1));
+  EXPECT_TRUE(arbitration.is_alone(port::kRightPixel));
+  EXPECT_EQ(arbitration.visited(), 1U);
+  arbitration.visit(port::kHost, 1, true);
+  EXPECT_TRUE(arbitration.is_shared(0));
+  EXPECT_TRUE(arbitration.is_shared(1));
+  EXPECT_EQ(arbitration.visited(), 3U);
+  arbitration.begin_recording();
+  EXPECT_EQ(arbitration.arbitrate(0, kHost | kLeft | kRight), kHost | kLeft);
+  arbitration.visit(port::kHost, 0, false);
+  EXPECT_EQ(arbitration.bank_of(port::kHost), 0U);
+  EXPECT_FALSE(arbitration.writes(port::kHost));
+  EXPECT_EQ(arbitration.arbitrate(1, kHost | kLeft | kRight), kHost | kRight);
+  EXPECT_EQ(arbitration.take_recorded().shared.size(), 4U);
+  arbitration.unroute(port::kHost);
+  EXPECT_EQ(arbitration.visited(), 0U);
+  EXPECT_FALSE(arbitration.is_shared(0));
+  EXPECT_TRUE(arbitration.is_alone(port::kLeftPixel));
+  arbitration.visit(port::kHost, 0, true);
+  arbitration.route(port::kRightPixel, 2, false);
+  EXPECT_EQ(arbitration.visited(), 0U);
+}
+
+// Banks that no other port uses.
+TEST(Arbitration, ForgetsAVisitedBankThatHasNoPortMoreWhenAnotherIsVisitedFirst) {
+  Arbitration arbitration(kFixedPriority, banks());
+  arbitration.visit(port::kHost, 0, true);
+  arbitration.visit(port::kHost, 4, true);
+  EXPECT_EQ(arbitration.visited(), 16U);
+  EXPECT_FALSE(arbitration.is_shared(0));
 }
 
 TEST(Arbitration, KnowsWhichOtherPortsAreRoutedToABankAndWhetherItHasTurnaround) {

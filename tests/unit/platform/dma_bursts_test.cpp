@@ -1,0 +1,323 @@
+// The computer with bursts of DMA that are skipped, and the same computer without.
+#include "platform/dma_bursts.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "platform/config/board_yaml.h"
+#include "tests/unit/platform/loop_run.h"
+
+namespace stereotlm::platform {
+namespace {
+
+using Keys = std::vector<std::string>;
+
+constexpr std::uint32_t kHostBytes = 1U << 20U;
+constexpr std::uint32_t kBurst = 32;  // words
+
+constexpr std::uint32_t word_of(std::uint32_t bank, std::uint32_t number) { return bank << 26U | number; }
+
+// What host memory holds at first.
+const std::vector<unsigned char>& noise() {
+  static const std::vector<unsigned char> bytes = [] {
+    std::vector<unsigned char> random(kHostBytes);
+    test::SplitMix64 source(1);
+    std::generate(random.begin(), random.end(),
+                  [&] { return static_cast<unsigned char>(source.next() >> 56U); });
+    return random;
+  }();
+  return bytes;
+}
+
+struct Piece {
+  bool to_host = false;
+  std::uint32_t host = 0;
+  std::uint32_t board = word_of(4, 0);
+  std::uint32_t words = 0;
+};
+
+// What the program does: the chain of each channel, and what disturbs them.
+struct DmaProgram {
+  std::array<std::vector<Piece>, pci::bridge::kChannels> chains;
+  std::optional<std::uint32_t> first_bank_of_frame;
+  bool captures = false;         // to the banks 0 and 2
+  std::uint64_t delay_ps = 0;    // after the start of the frame
+  std::uint64_t disturb_ps = 0;  // it accesses a register or a bank as often; 0: never
+  fpga::Fidelity fidelity = fpga::Fidelity::kFast;
+};
+
+struct DmaOutcome {
+  std::string figures;
+  std::uint64_t skipped = 0;
+};
+
+class DmaRun : public testing::LoopRun {
+ public:
+  DmaRun(const BoardConfig& board, const DmaProgram& program, std::uint64_t step_ps)
+      : LoopRun(board, program.fidelity, step_ps), program_(program) {
+    std::copy(noise().begin(), noise().end(), memory().begin());
+    for (std::uint32_t channel = 0; channel < pci::bridge::kChannels; ++channel) put_chain(channel);
+  }
+
+  DmaOutcome outcome() {
+    namespace bridge = pci::bridge;
+    const std::uint64_t registers = testing::kRunMap.bridge_registers;
+    write(registers + bridge::kPage + 4, word_of(2, 0));
+    write(registers + bridge::kInterruptEnable, bridge::kAllInterrupts);
+    for (std::size_t side = 0; side < testing::kLoopCaptures.size(); ++side) {
+      write(testing::kLoopCaptures[side] + capture::registers::kBufferAddress,
+            static_cast<std::uint32_t>(testing::kRunMap.bridge_slave + side * bridge::kApertureBytes));
+    }
+    if (program_.first_bank_of_frame) start_frame(*program_.first_bank_of_frame);
+    if (program_.captures) arm_captures();
+    run_for(program_.delay_ps);
+    std::uint32_t ended = 0;
+    std::uint32_t awaited = 0;
+    for (std::uint32_t channel = 0; channel < bridge::kChannels; ++channel) {
+      if (program_.chains[channel].empty()) continue;
+      awaited |= (bridge::kDmaDone | bridge::kDmaError) << channel;
+      start_dma(channel, kBytesOfChain * channel);
+    }
+    const std::uint64_t wait_ps = program_.disturb_ps != 0 ? program_.disturb_ps : testing::kFramePs;
+    for (std::uint64_t number = 0; (ended & awaited) == 0 || !all_ended(ended); ++number) {
+      if (!run_to_interrupt(wait_ps)) {
+        disturb(number);
+        continue;
+      }
+      const std::uint32_t status = read(registers + bridge::kInterruptStatus, 1).front();
+      write(registers + bridge::kInterruptStatus, status);
+      for (const std::uint64_t board : testing::kLoopCaptures)
+        write(board + capture::registers::kStatus, capture::registers::kStatusDone);
+      note("status {}\n", status);
+      ended |= status;
+    }
+    finish();
+    if (program_.fidelity == fpga::Fidelity::kFast) {
+      const std::string_view bytes(reinterpret_cast<const char*>(memory().data()), kHostBytes);
+      note("memory {}\n", std::hash<std::string_view>()(bytes));
+    }
+    return {figures() + counters(), loop().skipped_dma_bursts()};
+  }
+
+ private:
+  static constexpr std::uint32_t kBytesOfChain = 512;
+
+  void put_chain(std::uint32_t channel) {
+    std::uint32_t address = kBytesOfChain * channel;
+    for (const Piece& piece : program_.chains[channel]) {
+      const bool is_last = &piece == &program_.chains[channel].back();
+      const std::array<std::uint32_t, 4> descriptor = {
+          piece.host, piece.board, piece.words | (piece.to_host ? pci::bridge::kToPci : 0),
+          is_last ? 0 : address + 16};
+      std::memcpy(memory().data() + address, descriptor.data(), sizeof descriptor);
+      address += 16;
+    }
+  }
+  bool all_ended(std::uint32_t status) const {
+    for (std::uint32_t channel = 0; channel < pci::bridge::kChannels; ++channel) {
+      const std::uint32_t ends = (pci::bridge::kDmaDone | pci::bridge::kDmaError) << channel;
+      if (!program_.chains[channel].empty() && (status & ends) == 0) return false;
+    }
+    return true;
+  }
+  void disturb(std::uint64_t number) {
+    const std::uint64_t bank = testing::kRunMap.bridge_slave + 4 * (5000 + number);
+    if (number % 3 == 0) {
+      read(testing::kLoopCaptures[0] + capture::registers::kStatus, 1);
+    } else if (number % 3 == 1) {
+      write(bank, 7);
+    } else {
+      read(bank, 3);
+    }
+  }
+
+  const DmaProgram& program_;
+};
+
+BoardConfig dma_board(const Keys& keys) {
+  Keys all = {"image.width=160", "image.height=48", "cameras.frame_rate_hz=912.3",
+              "cameras.trigger=on_demand"};
+  all.insert(all.end(), keys.begin(), keys.end());
+  return load_board("fpl2003", all);
+}
+
+// The bursts skipped. Expects the same figures, times and words if none is skipped.
+std::uint64_t skipped_bursts(const BoardConfig& board, const DmaProgram& program) {
+  const DmaOutcome skipping = DmaRun(board, program, testing::kLongPs).outcome();
+  // Less than a burst takes on a local bus of 120 MHz.
+  const std::uint64_t step_ps = 8'000 * static_cast<std::uint64_t>(board.bridge.dma_burst_words + 2);
+  const DmaOutcome stepped = DmaRun(board, program, step_ps).outcome();
+  EXPECT_EQ(stepped.skipped, 0U);
+  EXPECT_EQ(skipping.figures, stepped.figures) << to_yaml(board);
+  return skipping.skipped;
+}
+
+// To bank 4 and back, 30 bursts each.
+DmaProgram there_and_back(std::size_t channel = 0) {
+  DmaProgram program;
+  program.chains[channel] = {{false, 0x10000, word_of(4, 0), 30 * kBurst},
+                             {true, 0x40000, word_of(4, 0), 30 * kBurst}};
+  return program;
+}
+
+TEST(DmaBursts, SkipsMostBurstsOfAnUndisturbedTransfer) {
+  for (const std::size_t channel : {0U, 1U})
+    EXPECT_GT(skipped_bursts(dma_board({}), there_and_back(channel)), 48U);
+  for (const int mhz : {20, 40, 66, 150}) {
+    EXPECT_GT(skipped_bursts(dma_board({fmt::format("pci.clock_mhz={}", mhz)}), there_and_back()), 48U)
+        << mhz;
+  }
+  DmaProgram timing_only = there_and_back();
+  timing_only.fidelity = fpga::Fidelity::kTiming;
+  EXPECT_GT(skipped_bursts(dma_board({}), timing_only), 48U);
+}
+
+// Each board with what prevents that a burst is skipped, and the same without.
+TEST(DmaBursts, StepsBurstsThatAreDisturbed) {
+  struct Case {
+    std::string what;
+    Keys board;  // prevents it
+    Keys undisturbed;
+  };
+  const auto pci_at_40 = [](int wait_clocks) {
+    return Keys{"pci.clock_mhz=40", fmt::format("pci.memory_wait_clocks={}", wait_clocks)};
+  };
+  const std::vector<Case> boards = {
+      {"core and local bus have different clocks", {"bridge.local_clock_mhz=40.001"}, {}},
+      {"the banks need turnaround cycles",
+       {"ssram.default={words: 524288, kind: sync_burst, turnaround_cycles: 1}"},
+       {"ssram.default={words: 524288, kind: zbt_flow_through}"}},
+      {"another master uses the bus all the time",
+       {"pci.load={burst_words: 8, interval_us: 0}"},
+       {"pci.load={burst_words: 8, interval_us: 12}"}},
+      // A burst has 34 clocks of the PCI bus and the wait clocks, and 35 clocks of the local bus.
+      {"the PCI bus waits for the local bus, but not for a clock", pci_at_40(1), pci_at_40(0)},
+      {"the local bus waits for the PCI bus, but not for a clock", pci_at_40(2), pci_at_40(3)},
+  };
+  DmaProgram program;
+  program.chains[0] = {{false, 0x10000, word_of(4, 0), 30 * kBurst}};
+  for (const auto& [what, disturbed, undisturbed] : boards) {
+    EXPECT_EQ(skipped_bursts(dma_board(disturbed), program), 0U) << what;
+    EXPECT_GT(skipped_bursts(dma_board(undisturbed), program), 0U) << what;
+  }
+}
+
+TEST(DmaBursts, StepsTransfersThatCannotBeSkipped) {
+  struct Case {
+    std::string what;
+    std::vector<Piece> chain;
+    std::uint64_t skipped;
+  };
+  constexpr std::uint32_t kBank = 524'288;  // words
+  const std::vector<Case> chains = {
+      {"five bursts", {{false, 0x10000, word_of(4, 0), 5 * kBurst}}, 1},
+      {"a word less", {{false, 0x10000, word_of(4, 0), 5 * kBurst - 1}}, 0},
+      {"five bursts to the host", {{true, 0x10000, word_of(4, 0), 5 * kBurst}}, 1},
+      {"a word less", {{true, 0x10000, word_of(4, 0), 5 * kBurst - 1}}, 0},
+      {"to the end of the bank", {{false, 0x10000, word_of(7, kBank - 8 * kBurst), 8 * kBurst}}, 4},
+      {"beyond it", {{false, 0x10000, word_of(7, kBank - 8 * kBurst + 1), 8 * kBurst}}, 0},
+      {"a bank that does not exist", {{false, 0x10000, word_of(8, 0), 8 * kBurst}}, 0},
+      {"to the end of host memory", {{true, kHostBytes - 4 * 8 * kBurst, word_of(4, 0), 8 * kBurst}}, 4},
+      {"beyond it", {{true, kHostBytes - 4 * 8 * kBurst + 4, word_of(4, 0), 8 * kBurst}}, 0},
+      {"from another device",
+       {{false, static_cast<std::uint32_t>(testing::kRunMap.bridge_slave), word_of(4, 0), 8 * kBurst}},
+       0},
+  };
+  for (const auto& [what, chain, skipped] : chains) {
+    DmaProgram program;
+    program.chains[0] = chain;
+    EXPECT_EQ(skipped_bursts(dma_board({}), program), skipped) << what;
+  }
+}
+
+TEST(DmaBursts, StepsBurstsBesideTheOtherChannelAndInTheWayOfAFrame) {
+  DmaProgram program = there_and_back();
+  program.first_bank_of_frame = 3;
+  EXPECT_EQ(skipped_bursts(dma_board({}), program), 0U);
+  for (Piece& piece : program.chains[0]) piece.board = word_of(0, 0);
+  EXPECT_GT(skipped_bursts(dma_board({}), program), 30U);
+  program.chains[1] = {{true, 0x80000, word_of(1, 0), 50 * kBurst}};
+  EXPECT_LT(skipped_bursts(dma_board({}), program), 12U);  // where one channel is done
+}
+
+// In one of these runs a frame ends, and interrupts the processor, at the time at which a step begins. Each
+// step takes 35 clocks of the local bus.
+TEST(DmaBursts, SkipNothingBehindAnInterrupt) {
+  const BoardConfig board = dma_board({"pci.clock_mhz=80", "image={width: 16, height: 8}"});
+  DmaProgram program;
+  program.chains[0] = {{false, 0x10000, word_of(0, 0), 200 * kBurst}};
+  program.first_bank_of_frame = 3;
+  for (std::uint64_t clock = 0; clock < 35; ++clock) {
+    program.delay_ps = 25'000 * clock;
+    EXPECT_GT(skipped_bursts(board, program), 150U);
+  }
+}
+
+// Computers in which either bus is the slower one, or both are alike.
+Keys random_keys(test::SplitMix64& random) {
+  const auto one_of = [&](const std::vector<int>& values) {
+    return values[static_cast<std::size_t>(random.between(0, static_cast<int>(values.size()) - 1))];
+  };
+  const auto decimal = [&](int low, int high) { return random.between(10'000 * low, 10'000 * high) / 1e4; };
+  const double pci = random.chance(60) ? decimal(6, 150) : one_of({20, 30, 33, 50, 66, 80});
+  const double local = random.chance(40) ? 40 : decimal(12, 120);
+  Keys keys = {
+      fmt::format("pci.clock_mhz={}", pci),
+      fmt::format("pci.latency_timer_clocks={}", one_of({0, 1, 5, 16, 64, 255})),
+      fmt::format("pci.memory_wait_clocks={}", one_of({0, 1, 4, 8, 20})),
+      fmt::format("pci.width_bits={}", one_of({32, 64})),
+      fmt::format("bridge.local_clock_mhz={}", local),
+      fmt::format("fpga.clock_mhz={}", local),
+      fmt::format("bridge.dma_burst_words={}", one_of({1, 2, 7, 32, 32, 256})),
+      fmt::format("fpga.arbitration={}", random.chance(50) ? "age" : "round_robin"),
+      fmt::format("ssram.default={{words: 524288, kind: {}}}", random.chance(50) ? "zbt_pipelined" : "qdr"),
+  };
+  if (random.chance(25)) {
+    keys.push_back(fmt::format("pci.load={{burst_words: {}, interval_us: {}, first_us: {}}}", one_of({1, 32}),
+                               decimal(1, 60), decimal(1, 30)));
+  }
+  return keys;
+}
+
+TEST(DmaBursts, GiveTheSameFiguresAsSteppedBurstsInRandomComputers) {
+  const char* const asked = std::getenv("STEREOTLM_RANDOM_COMPUTERS");
+  const std::uint64_t computers = asked != nullptr ? std::stoull(asked) : 200;
+  std::uint64_t bursts = 0;
+  std::uint64_t skipped = 0;
+  for (std::uint64_t seed = 0; seed < computers; ++seed) {
+    test::SplitMix64 random(seed);
+    const BoardConfig board = dma_board(random_keys(random));
+    const int burst = board.bridge.dma_burst_words;
+    DmaProgram program;
+    std::vector<Piece>& chain = program.chains[seed % 2];
+    for (int piece = random.between(1, 4); piece > 0; --piece) {
+      const int words = random.between(1, random.chance(50) ? 60 * burst : 5 * burst);
+      chain.push_back(
+          {piece % 2 == 0, 0x1000U * static_cast<std::uint32_t>(random.between(1, 150)),
+           word_of(random.chance(50) ? 4 : 1, 4 * static_cast<std::uint32_t>(random.between(0, 40))),
+           static_cast<std::uint32_t>(words)});
+      bursts += static_cast<std::uint64_t>(words / burst);
+    }
+    if (random.chance(15)) program.chains[1 - seed % 2] = {{true, 0xA0000, word_of(5, 0), 300}};
+    if (random.chance(20)) program.first_bank_of_frame = static_cast<std::uint32_t>(random.between(0, 3));
+    program.captures = random.chance(40);
+    if (random.chance(30)) program.disturb_ps = 1'000'000 + 234'567 * (seed % 100);
+    skipped += skipped_bursts(board, program);
+    ASSERT_FALSE(HasFailure()) << "seed " << seed;
+  }
+  EXPECT_GT(skipped, bursts / 4) << bursts;
+}
+
+}  // namespace
+}  // namespace stereotlm::platform
