@@ -29,6 +29,7 @@ class Period {
 
   // The time of `count` periods, in ps.
   std::uint64_t times(std::uint64_t count) const {
+    if (rest_ == 0) return whole_ * count;
     const Wide product = Wide{fraction_} * count;
     // The exact time is beyond whole ps by at least `least` and by less than `most`, in 2^-64 ps.
     const auto least = static_cast<std::uint64_t>(product);

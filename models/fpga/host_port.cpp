@@ -33,8 +33,8 @@ void HostPort::join() {
   arbitration_.route(kHostPort, *burst_.bank, burst_.write);
 }
 
-bool HostPort::access(std::uint64_t cycle) {
-  bus_.access(clock_.edge_ps(cycle), usable_ps(cycle));
+bool HostPort::access(std::uint64_t cycle, std::uint64_t edge_ps) {
+  bus_.access(edge_ps, usable_ps(cycle));
   return !bus_.word_waits();
 }
 
@@ -129,7 +129,7 @@ void HostPort::serve_word(std::uint64_t cycle, std::uint64_t edge_ps) {
     bus_.count_granted(1, edge_ps, usable_ps(cycle));
   } else {
     banks_.allow_access(kHostPort);
-    access(cycle);
+    access(cycle, edge_ps);
   }
 }
 

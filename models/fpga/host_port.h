@@ -42,8 +42,9 @@ class HostPort {
 
   // Lets the burst take part in the arbitration of its bank from now on.
   void join();
-  // Transfers the waiting word, which has been granted in `cycle`. Returns true if the burst has ended.
-  bool access(std::uint64_t cycle);
+  // Transfers the waiting word, which has been granted in `cycle`, which begins at `edge_ps`. Returns true if
+  // the burst has ended.
+  bool access(std::uint64_t cycle, std::uint64_t edge_ps);
 
   // Whether the burst goes to a bank of the running frame, or another master of the registers may start the
   // next frame as soon as this one ends.

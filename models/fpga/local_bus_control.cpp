@@ -98,8 +98,8 @@ void LocalBusControl::advance(std::size_t words, std::uint64_t grant_ps, std::ui
   words_left_ -= words;
   // Mostly each word is granted at once, in a cycle that begins with a clock of the bus.
   const std::uint64_t at_once = request_clock_ + words - 1;
-  const std::uint64_t clock =
-      clock_.edge_ps(at_once) == grant_ps ? at_once : clock_.edge_at_or_after(grant_ps);
+  const std::uint64_t at_once_ps = words == 1 ? request_ps_ : clock_.edge_ps(at_once);
+  const std::uint64_t clock = at_once_ps == grant_ps ? at_once : clock_.edge_at_or_after(grant_ps);
   if (words_left_ != 0) {
     request_clock_ = clock + 1;
     request_ps_ = clock_.edge_ps(request_clock_);

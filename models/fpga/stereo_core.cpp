@@ -155,7 +155,8 @@ void StereoCore::run_cycles() {
     if (!frames_.is_running()) {
       // No cycle matters before the next request. (A frame may begin before it.)
       const bool pending = local_bus_.word_waits();
-      if (pending) next = std::max(next, clock_.edge_at_or_after(local_bus_.request_ps()));
+      if (pending && local_bus_.request_ps() > clock_.edge_ps(next))
+        next = clock_.edge_at_or_after(local_bus_.request_ps());
       if (frames_.is_finishing() && (!pending || next >= frames_.done_cycle())) {
         const std::uint64_t end_ps = clock_.edge_ps(frames_.done_cycle());
         if (end_ps > now) {
@@ -193,7 +194,7 @@ bool StereoCore::step(std::uint64_t edge_ps, const sc_core::sc_time& at) {
   bool burst_has_ended = false;
   const auto serve_host = [&] {
     host_is_served = true;
-    burst_has_ended = host_port_.access(cycle);
+    burst_has_ended = host_port_.access(cycle, edge_ps);
   };
   if (frames_.is_running()) {
     granted = frames_.step(host_requests, [&](const CoreControl::Decision& decision, PortMask grants) {

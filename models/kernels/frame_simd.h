@@ -106,6 +106,12 @@ struct FrameSimd {
   void (*to_lanes)(const std::int16_t* const* from, int count, std::int16_t* out);
   // The reverse of to_lanes(), with bytes as output.
   void (*from_lanes)(const std::int16_t* from, int count, std::uint8_t* const* out);
+  // The left-right check of `count` pixels of a row (contract 1.4), and the validity of their own entries:
+  // out[i] = left_based[i], or kInvalidDisparity if it fails. right_based[i - left_based[i]] is read for each
+  // pixel, so left_based must hold disparities only. A null `right_based` or `left_table` leaves out its
+  // check.
+  void (*check_row)(const std::uint8_t* left_based, const std::uint8_t* right_based,
+                    const std::uint32_t* left_table, int count, int tolerance, std::uint8_t* out);
   // The census bits of one row (contract 7.6). `rows`: the 2 * half + 1 rows and columns around the first
   // pixel, with the upper bit of each pixel inverted. out[b] gets bits 8b .. 8b + 7 of each pixel; the order
   // of the neighbours is the same for all. Reads the rows and writes `out` up to 64 pixels beyond `width`.

@@ -16,6 +16,8 @@ void filter_row(const std::int16_t* const* rows, const FilterTaps& taps, int wid
 void pair_pixels(const std::uint8_t* entering, const std::uint8_t* leaving, int width, std::int16_t* out);
 void to_lanes(const std::int16_t* const* from, int count, std::int16_t* out);
 void from_lanes(const std::int16_t* from, int count, std::uint8_t* const* out);
+void check_row(const std::uint8_t* left_based, const std::uint8_t* right_based,
+               const std::uint32_t* left_table, int count, int tolerance, std::uint8_t* out);
 void census_row(const std::int8_t* const* rows, int half, int width, std::uint8_t* const* out);
 MatchLoops sad_loops(int window);
 MatchLoops ssd_loops(int window);

@@ -4,8 +4,6 @@
 #include <cstddef>
 #include <stdexcept>
 
-#include "models/kernels/lr_check.h"
-#include "models/kernels/rectification_table.h"
 #include "models/kernels/words.h"
 
 namespace stereotlm::kernels {
@@ -32,7 +30,6 @@ StereoPipeline::StereoPipeline(int width, int height, const StereoConfig& config
     if (filter_) side->filtered.resize(pixels + ImageFilter::kPadding);
     side->disparity.resize(pixels);
   }
-  pointed_to_.resize(static_cast<std::size_t>(width));
 }
 
 const std::uint8_t* StereoPipeline::prepare(Side& side, const std::uint8_t* image,
@@ -57,30 +54,17 @@ void StereoPipeline::run(const std::uint8_t* left, const std::uint8_t* right, co
   check(left_table, disparity);
 }
 
-void StereoPipeline::check(const std::uint32_t* left_table, std::uint8_t* disparity) {
-  const std::size_t pixels = left_.disparity.size();
-  std::copy_n(left_.disparity.data(), pixels, disparity);
-  const auto invalid_if = [](bool condition) {
-    return static_cast<std::uint8_t>(condition ? kInvalidDisparity : 0);
-  };
-  if (tolerance_) {
-    // Every pixel with a window has a left-based disparity, which points to a pixel with a window.
-    const int tolerance = *tolerance_;
-    const int count = width_ - 2 * radius_;
-    for (int row = radius_; row < height_ - radius_; ++row) {
-      const std::ptrdiff_t begin = std::ptrdiff_t{row} * width_ + radius_;
-      const std::uint8_t* left_based = left_.disparity.data() + begin;
-      const std::uint8_t* right_based = right_.disparity.data() + begin;
-      std::uint8_t* pointed_to = pointed_to_.data();
-      for (int i = 0; i < count; ++i) pointed_to[i] = right_based[i - left_based[i]];
-      std::uint8_t* out = disparity + begin;
-      for (int i = 0; i < count; ++i)
-        out[i] |= invalid_if(!left_right_consistent(left_based[i], pointed_to[i], tolerance));
-    }
-  }
-  if (left_table != nullptr) {
-    for (std::size_t pixel = 0; pixel < pixels; ++pixel)
-      disparity[pixel] |= invalid_if(!entry_is_valid(left_table[pixel]));
+// Every pixel with a window has a left-based disparity, which points to a pixel with a window. The others have
+// none.
+void StereoPipeline::check(const std::uint32_t* left_table, std::uint8_t* disparity) const {
+  std::fill_n(disparity, left_.disparity.size(), kInvalidDisparity);
+  const int windows = width_ - 2 * radius_;  // in a row
+  if (windows <= 0) return;
+  for (int row = radius_; row < height_ - radius_; ++row) {
+    const std::ptrdiff_t begin = std::ptrdiff_t{row} * width_ + radius_;
+    simd_.check_row(left_.disparity.data() + begin, tolerance_ ? right_.disparity.data() + begin : nullptr,
+                    left_table != nullptr ? left_table + begin : nullptr, windows, tolerance_.value_or(0),
+                    disparity + begin);
   }
 }
 

@@ -33,7 +33,7 @@ class StereoPipeline {
   };
 
   const std::uint8_t* prepare(Side& side, const std::uint8_t* image, const std::uint32_t* table);
-  void check(const std::uint32_t* left_table, std::uint8_t* disparity);
+  void check(const std::uint32_t* left_table, std::uint8_t* disparity) const;
 
   int width_;
   int height_;
@@ -44,8 +44,6 @@ class StereoPipeline {
   ImageMatcher matcher_;
   Side left_;
   Side right_;
-  // One row: the right-based disparity at the pixel to which each left-based disparity points.
-  std::vector<std::uint8_t> pointed_to_;
 };
 
 }  // namespace stereotlm::kernels

@@ -64,10 +64,10 @@ void Crossbar::PortTarget::b_transport(tlm::tlm_generic_payload& access, sc_core
     return;
   }
   crossbar_.granted_ = static_cast<PortMask>(crossbar_.granted_ & ~port_mask_);
-  if (write_) crossbar_.changes(address, 4);
   access.set_address(address - bank_base_);
   bank_port_->b_transport(access, delay);
   access.set_address(address);
+  if (write_) crossbar_.changes(address, 4);
 }
 
 bool Crossbar::may_have_changed(Port port, std::uint64_t first, std::uint64_t end) {

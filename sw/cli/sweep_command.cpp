@@ -107,18 +107,18 @@ std::string summary(const explore::SweepCounts& counts, const SweepCommandOption
   return text + '\n';
 }
 
-// The lines with the most frequent reasons of points with this status, and the number of points for each
-// reason.
-std::string reasons(explore::Database& store, const std::string& status) {
-  constexpr int kMost = 3;
-  std::string text;
+// The lines with the most frequent reasons of points that failed, then of impossible ones, and the number of
+// points for each reason.
+std::string reasons(explore::Database& store) {
   explore::Statement statement(
       store,
-      "SELECT reason, count(*) FROM points WHERE status = ? GROUP BY reason ORDER BY 2 DESC, 1 LIMIT ?");
-  statement.bind(1, status);
-  statement.bind(2, std::int64_t{kMost});
+      "SELECT status, reason, points FROM (SELECT *, row_number() OVER (PARTITION BY status ORDER BY points "
+      "DESC, reason) AS place FROM (SELECT status, reason, count(*) AS points FROM points WHERE status <> "
+      "'ok' "
+      "GROUP BY status, reason)) WHERE place <= 3 ORDER BY status, place");
+  std::string text;
   while (statement.step()) {
-    text += fmt::format("  {} {}: {}\n", statement.text(1), status, statement.text(0));
+    text += fmt::format("  {} {}: {}\n", statement.text(2), statement.text(0), statement.text(1));
   }
   return text;
 }
@@ -128,7 +128,7 @@ int report(const explore::SweepCounts& counts, const SweepCommandOptions& option
   if (std::filesystem::exists(options.sweep.store)) {
     explore::Database store(options.sweep.store, explore::Database::Access::kRead);
     text += fmt::format("{}: {} points\n", options.sweep.store, store.number("SELECT count(*) FROM points"));
-    text += reasons(store, "failed") + reasons(store, "impossible");
+    text += reasons(store);
   }
   process::print(text);
   if (counts.done() == counts.total) return kDone;

@@ -319,8 +319,8 @@ class Meanwhile(SweepTest):
 
     def setUp(self):
         super().setUp()
-        disparities = "matcher.disparities: {from: 1, to: 254, step: 1}"
-        self.many = self.file("many.yaml", PLAN.replace("matcher.window: [3, 5, 7]", disparities))
+        keys = "matcher.window: [3, 5, 7, 9]\n  matcher.disparities: {from: 1, to: 254, step: 1}"
+        self.many = self.file("many.yaml", PLAN.replace("matcher.window: [3, 5, 7]", keys))
 
     def begin(self):
         """A process with some points done."""
@@ -334,7 +334,7 @@ class Meanwhile(SweepTest):
         os.killpg(process.pid, signal.SIGINT)  # as a terminal does it: all processes get it
         out, errors = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 130, errors)
-        self.assertRegex(out, r"1016 points: \d+ ok, \d+ impossible, 0 failed, \d+ not begun\n")
+        self.assertRegex(out, r"4064 points: \d+ ok, \d+ impossible, 0 failed, \d+ not begun\n")
         note = "interrupted: run the same command to resume"
         self.assertEqual(errors, f"stereotlm: note: {note}\n")
         self.succeeds(self.sweep(plan=self.many))
@@ -360,10 +360,10 @@ class Meanwhile(SweepTest):
 
     def test_a_terminal_shows_its_progress(self):
         terminal = Terminal(["sweep", self.many, "--out", self.store])
-        terminal.read_until(r"\d+/1016 points   \d+\.\d %   \d+\.\d points/s   \S+ left")
+        terminal.read_until(r"\d+/4064 points   \d+\.\d %   \d+\.\d points/s   \S+ left")
         status, out = terminal.finish()
         self.assertEqual(status, 0)
-        self.assertIn("1016 points: 508 ok, 508 impossible", out)
+        self.assertIn("4064 points: 2032 ok, 2032 impossible", out)
 
 
 if __name__ == "__main__":

@@ -104,7 +104,8 @@ TEST_F(CollectComputer, FindsEachIdentityThatDoesNotHold) {
                   [side](auto& found) { ++found.cameras[side].frames; });
     for (const auto part :
          {&capture::CaptureControl::Stats::started_frames, &capture::CaptureControl::Stats::dropped_not_armed,
-          &capture::CaptureControl::Stats::dropped_busy, &capture::CaptureControl::Stats::dropped_by_partner}) {
+          &capture::CaptureControl::Stats::dropped_busy,
+          &capture::CaptureControl::Stats::dropped_by_partner}) {
       expect_failed(camera + "frames", frames, "captured and dropped", frames + 1,
                     [side, part](auto& found) { ++(found.cameras[side].capture.*part); });
     }

@@ -71,7 +71,8 @@ TEST_P(PciBusBurst, ShowsTheWordsThatHaveGoneOn64Bits) {
   bench.request_at(0);
   std::vector<std::size_t> words;
   for (std::uint64_t clock = 1 + kWait; clock < 1 + kWait + 3; ++clock)
-    bench.at(bench.edge(clock) + 1, [&] { words.push_back(master.pci->transferred(kernel_time::now_ps()).words); });
+    bench.at(bench.edge(clock) + 1,
+             [&] { words.push_back(master.pci->transferred(kernel_time::now_ps()).words); });
   sc_core::sc_start();
   EXPECT_EQ(words, (std::vector<std::size_t>{0, 2, 4}));
   const BurstResult& result = master.ended[0].result;
