@@ -72,7 +72,7 @@ export function addBlame(page, run) {
     plot.append(
         s('line', {x1: -left, x2: inner, y1: end + 4, y2: end + 4, class: 'base'}),
         s('text', {x: -8, y: end + 22, 'text-anchor': 'end'}, 'sum'),
-        s('text', {x: -8, y: end + 44, 'text-anchor': 'end'}, cut('counted by port', left - 8)));
+        s('text', {x: -8, y: end + 44, 'text-anchor': 'end'}, 'counter'));
     ports.forEach((port, column) => {
       const total = blames.filter(row => row.port === port.name).reduce((all, row) => all + row.cycles, 0);
       const x = cell * (column + 0.5);
@@ -92,7 +92,7 @@ export function addBlame(page, run) {
     draw,
     note:
         `Stall cycles in % of the ${whole(cycles)} cycles of all frames: the port of the column waits on a ` +
-        'bank, because the bank serves the one named behind it.',
+        'bank, because the bank serves the one named behind it. The counter of each port has the same sum.',
     numbers: () => [
         ['port', 'bank', 'by', 'cycles', 'percent'],
         blames.map(row => [row.port, row.bank, row.by, row.cycles, 100 * row.share])],

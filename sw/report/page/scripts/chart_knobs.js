@@ -19,6 +19,7 @@ export function addKnobs(page, run) {
     return;
   }
   const {board, steps, forbidden, failed} = run.knobs;
+  const impossible = forbidden.length + failed.length;
   const advice = adviceOf(run);
   const now = board.frames_per_second;
   const state = {keep: false};
@@ -106,9 +107,9 @@ export function addKnobs(page, run) {
                       [...new Set(without)]
                           .filter(knob => !steps.some(step => step.knob === knob && step.has_effect))
                           .join(', ')}.`),
-        forbidden.length + failed.length > 0 &&
+        impossible > 0 &&
             h('details', null,
-              h('summary', null, `${forbidden.length + failed.length} steps are not possible`),
+              h('summary', null, `${count(impossible, 'step')} ${impossible === 1 ? 'is' : 'are'} not possible`),
               h('ul', {class: 'note'},
                 [...forbidden, ...failed].map(step => h('li', null, `${stepText(step)}: ${step.reason}`))))),
     numbers:

@@ -58,7 +58,7 @@ export function addRows(page, run) {
   const draw = (host, width) => {
     const wordsOf = name => name.split(/(?<=_)| · | /);
     const upright = columns.some(  // names from bottom to top
-        ({name}) => wordsOf(name).some(word => textWidth(word) > (width - 48) / columns.length));
+        ({name}) => wordsOf(name).some(word => textWidth(word) + 6 > (width - 48) / columns.length));
     const top = upright ? 150 : 60;
     const {plot, width: inner, height, svg} =
         drawing(host, width, 336 + top, {left: 44, right: 4, top, bottom: 8}, 'Rows of the picture');
@@ -86,7 +86,7 @@ export function addRows(page, run) {
             s('text', {transform: `translate(${(i + 0.5) * step + 4} -6) rotate(-90)`},
               cut(column.name, top - 10)));
       } else {
-        const words = textWidth(column.name) < step ? [column.name] : wordsOf(column.name);
+        const words = textWidth(column.name) + 6 < step ? [column.name] : wordsOf(column.name);
         words.forEach(
             (word, line) => plot.append(
                 s('text',
