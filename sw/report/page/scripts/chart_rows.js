@@ -59,7 +59,7 @@ export function addRows(page, run) {
     const wordsOf = name => name.split(/(?<=_)| · | /);
     const upright = columns.some(  // names from bottom to top
         ({name}) => wordsOf(name).some(word => textWidth(word) + 6 > (width - 48) / columns.length));
-    const top = upright ? 150 : 60;
+    const top = upright ? Math.min(200, 16 + Math.max(...columns.map(({name}) => textWidth(name)))) : 60;
     const {plot, width: inner, height, svg} =
         drawing(host, width, 336 + top, {left: 44, right: 4, top, bottom: 8}, 'Rows of the picture');
     const y = linear([state.from * rowsOfLine, state.to * rowsOfLine], [0, height]);
