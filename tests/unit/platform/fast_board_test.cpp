@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <stdexcept>
 #include <string>
@@ -16,6 +17,7 @@
 #include "platform/core_run.h"
 #include "tests/support/noise_pairs.h"
 #include "tests/support/scratch_folder.h"
+#include "tests/unit/platform/computer_registers.h"
 #include "tests/unit/platform/preloaded_run.h"
 
 namespace stereotlm::platform {
@@ -89,11 +91,9 @@ class FastBoardTest : public ::testing::Test, public FastBoard::Doorbell, public
   }
   void set_bases(std::uint32_t frame) {
     const std::uint32_t other = frame % 2;
-    write_register(core::kLeftImageBase, core::base(other, 0));
-    write_register(core::kRightImageBase, core::base(2 + other, 0));
-    write_register(core::kDisparityBase, core::base(4 + other, 0));
-    write_register(core::kLeftLutBase, core::base(6, 0));
-    write_register(core::kRightLutBase, core::base(7, 0));
+    const std::array<std::uint32_t, 5> banks = {other, 2 + other, 4 + other, 6, 7};
+    for (std::size_t buffer = 0; buffer < banks.size(); ++buffer)
+      write_register(testing::kBaseRegisters[buffer], core::base(banks[buffer], 0));
   }
   void load_tables() {
     for (const std::uint64_t bank : {6U, 7U}) write(crossbar_address(bank, 0), tables.left->entries);
