@@ -6,7 +6,7 @@ namespace stereotlm::fpga {
 
 // Decides whether FastForward looks up a burst in its cache. Looking up a burst that is not known, and recording
 // it, costs time. With irregular accesses few bursts are ever known. So FastForward stops looking up bursts after
-// many misses, and tries again every 2048 bursts. platform::CameraLines does so with the lines of the cameras.
+// many misses, and tries again every 2048 bursts.
 class BurstTrust {
  public:
   // Whether the next burst is to be looked up: it is probably known, because others were lately; or none was
