@@ -51,8 +51,9 @@ void PciBusControl::await_request() {
 
 std::uint64_t PciBusControl::earliest_request_beside(Masters masters) const {
   std::uint64_t earliest = kNever;
-  for (std::size_t master = 0; master < requests_.size(); ++master) {
-    if ((masters & mask_of(master)) == 0) earliest = std::min(earliest, requests_[master].clock);
+  for (const Request& request : requests_) {
+    if ((masters & 1U) == 0) earliest = std::min(earliest, request.clock);
+    masters >>= 1U;
   }
   return earliest;
 }
