@@ -78,6 +78,8 @@ void TransitionCache::clear() {
   progress_.clear();
   host_.clear();
   followed_.clear();
+  effects_followed_.clear();
+  parts_count_ = 0;
   transitions_ = 0;
   mask_ = kFirstBuckets - 1;
   buckets_.assign(kFirstBuckets * words_of_bucket(), 0);
@@ -151,10 +153,12 @@ void TransitionCache::record(StateNumber from, const Accesses& accesses, HostReq
 }
 
 void TransitionCache::record_sequence(StateNumber from, HostRequests host, StateNumber next,
-                                      const Progress& progress, const HostGrants& grants) {
+                                      const Progress& progress, const HostGrants& grants,
+                                      const Sequence& sequence) {
   const auto effect = static_cast<std::uint32_t>(effects_.size());
   add_effect(nullptr, progress, grants);
-  parts_.back() = sequence_;
+  parts_count_ += sequence.size();
+  parts_.back() = sequence;
   record(from, {}, host, {next, effect});
 }
 
@@ -188,7 +192,7 @@ void TransitionCache::double_buckets() {
 // loop of any length is found. When the walk returns to the marked state, it repeats the loop as often as
 // there is room.
 TransitionCache::StateNumber TransitionCache::walk(StateNumber first, const Accesses& accesses,
-                                                   Progress& room) {
+                                                   Progress& room, Sequence* sequence) {
   StateNumber state = first;
   StateNumber mark = state;
   Progress since_mark;
@@ -198,11 +202,11 @@ TransitionCache::StateNumber TransitionCache::walk(StateNumber first, const Acce
        transition = find(state, accesses)) {
     if (transition->next == state) {
       const std::uint64_t times = progress(*transition).times_in(room);
-      follow(*transition, times);
+      follow(*transition, times, sequence);
       room.subtract(progress(*transition), times);
       return state;
     }
-    follow(*transition);
+    follow(*transition, 1, sequence);
     room.subtract(progress(*transition));
     since_mark.add(progress(*transition));
     state = transition->next;
@@ -212,7 +216,7 @@ TransitionCache::StateNumber TransitionCache::walk(StateNumber first, const Acce
       if (times == 0) continue;
       for (std::uint64_t step = 0; step < steps; ++step) {
         transition = find(state, accesses);
-        follow(*transition, times);
+        follow(*transition, times, sequence);
         state = transition->next;
       }
       room.subtract(since_mark, times);
