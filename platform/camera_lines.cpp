@@ -10,12 +10,16 @@ namespace stereotlm::platform {
 namespace {
 
 constexpr std::array<std::size_t, 2> kMasters = {kLeftCapture, kRightCapture};
+constexpr pci::PciBusControl::Masters kCaptures =
+    pci::PciBusControl::mask_of(kLeftCapture) | pci::PciBusControl::mask_of(kRightCapture);
 // Each time is rounded to whole ps. So the distance of two clocks, or of two pixels, may be 1 ps longer in one
 // line than in another. Two such distances lie between the beginning of a line and two times whose order
-// matters. If these two stay 1 ps apart beyond that, their order is the same.
+// matters. Rounding moves each of the two distances by up to 1 ps. The third ps keeps the times apart.
 constexpr std::int64_t kRounding = 3;
-// Lines are recorded as long as most of them are skipped: this number, and one for each line skipped.
+// Recording stops when the records exceed the skipped lines by this number.
 constexpr std::uint64_t kFirstRecords = 64;
+// But one of this number of unknown lines is always recorded, because what disturbs the lines may end.
+constexpr std::uint64_t kUnknownPerRecord = 128;
 // With more records it would take longer to search them than to step the line.
 constexpr std::size_t kMostRecords = 512;
 
@@ -25,31 +29,25 @@ std::int64_t from_to(std::uint64_t from_ps, std::uint64_t to_ps) {
 
 // Against the clocks of the local bus those of the PCI bus may have few phases. Then two phases that differ by
 // less than half a step are the same.
-std::int64_t play_ps(const Clock& pci, const Clock& local) {
+std::int64_t phase_tolerance_ps(const Clock& pci, const Clock& local) {
   return static_cast<std::int64_t>(local.edge_ps(1) / pci.phases_against(local) / 2) - kRounding;
-}
-
-using Counts = pci::PciBusControl::MasterCounts;
-
-Counts difference(const Counts& a, const Counts& b) {
-  return {a.transactions - b.transactions, a.words - b.words, a.wait_clocks - b.wait_clocks,
-          a.retries - b.retries, a.aborts - b.aborts};
 }
 
 }  // namespace
 
 CameraLines::CameraLines(pci::PciBusControl& pci_bus, pci::BridgeControl& bridge, FastBoard& board,
                          std::array<capture::CaptureControl, 2>& captures, bool has_pixels)
-    : pci_bus_(pci_bus),
+    : buses_{pci_bus, board.local_bus()},
       bridge_(bridge),
       board_(board),
       captures_(captures),
       has_pixels_(has_pixels),
-      local_play_ps_(play_ps(pci_clock(), local_clock())) {}
+      phase_tolerance_ps_(phase_tolerance_ps(buses_.pci_clock(), buses_.local_clock())) {}
 
 bool CameraLines::skip(std::uint64_t now_ps, std::uint64_t end_ps) {
+  bridge_.settle(now_ps);
   const auto addresses = bank_addresses();
-  if (!addresses || !bridge_.is_idle(now_ps)) {
+  if (!addresses || !bridge_.is_idle()) {
     drop();
     return false;
   }
@@ -63,7 +61,8 @@ bool CameraLines::skip(std::uint64_t now_ps, std::uint64_t end_ps) {
     ++skipped_;
     return true;
   }
-  if (recorded_ < kFirstRecords + skipped_ && lines_.size() < kMostRecords)
+  ++unknown_;
+  if (recorded_ < kFirstRecords + skipped_ || unknown_ % kUnknownPerRecord == 0)
     begin_record(now_ps, here, *addresses);
   return false;
 }
@@ -75,7 +74,7 @@ std::optional<CameraLines::OfSides<std::uint64_t>> CameraLines::bank_addresses()
   for (std::size_t side = 0; side < kSides; ++side) {
     const std::uint64_t offset = captures_[side].line_address() - DeviceMap().bridge_slave;
     const auto address = bridge_.bank_address(offset, bytes);
-    if (!address || !board_.serves_in_step(*address, bytes)) return std::nullopt;
+    if (!address || !board_.serves_one_word_per_cycle(*address, bytes)) return std::nullopt;
     addresses[side] = *address;
   }
   if (memory::bank_of_address(addresses[0]) == memory::bank_of_address(addresses[1])) return std::nullopt;
@@ -83,8 +82,9 @@ std::optional<CameraLines::OfSides<std::uint64_t>> CameraLines::bank_addresses()
 }
 
 CameraLines::Beginning CameraLines::beginning(std::uint64_t now_ps) const {
-  const std::uint64_t local_ps = local_clock().edge_ps(local_clock().edge_at_or_after(now_ps));
-  return {pci_bus_.position().last_granted, from_to(captures_[0].requested_ps(), now_ps),
+  const Clock& local = buses_.local_clock();
+  const std::uint64_t local_ps = local.edge_ps(local.edge_at_or_after(now_ps));
+  return {buses_.pci.position().last_granted, from_to(captures_[0].requested_ps(), now_ps),
           from_to(now_ps, local_ps)};
 }
 
@@ -94,28 +94,25 @@ const CameraLines::Line* CameraLines::find(const Beginning& beginning) const {
   return found != bounds_.end() ? &lines_[static_cast<std::size_t>(found - bounds_.begin())] : nullptr;
 }
 
-// Whether the line ends before `end_ps`, before any other master can have the bus, and before the next line.
+// Whether the line ends before `end_ps`, before the first request of any other master, and before the next line.
 bool CameraLines::fits_before(const Line& line, std::uint64_t now_ps, std::uint64_t end_ps) const {
-  const std::uint64_t free_clock = pci_bus_.decision_clock() + line.pci.free_clock;
-  if (pci_bus_.earliest_request_beside(kLeftCapture, kRightCapture) < free_clock) return false;
-  const std::uint64_t idle_clock = local_clock().edge_at_or_after(now_ps) + line.idle_clock;
-  const std::uint64_t last_ps = local_clock().edge_ps(idle_clock + 1);  // behind the end of all PCI bursts
+  const Clock& local = buses_.local_clock();
+  const std::uint64_t idle_clock = local.edge_at_or_after(now_ps) + line.idle_clock;
+  const std::uint64_t last_ps = local.edge_ps(idle_clock + 1);  // behind the end of all PCI bursts
+  const std::uint64_t request = buses_.pci.earliest_request_beside(kCaptures);
+  if (request != kNever && buses_.pci_clock().edge_ps(request) <= last_ps) return false;
   const capture::CaptureFifo& fifo = captures_[0].fifo();
   return last_ps < end_ps && last_ps < fifo.first_request_ps(fifo.next_row() + 1);
 }
 
 void CameraLines::apply(const Line& line, std::uint64_t now_ps, const OfSides<std::uint64_t>& addresses) {
-  const std::uint64_t first = pci_bus_.decision_clock();
-  const std::uint64_t first_local = local_clock().edge_at_or_after(now_ps);
-  const pci::PciBusControl::Position before = pci_bus_.position();
+  const std::uint64_t first = buses_.pci.decision_clock();
+  const std::uint64_t first_local = buses_.local_clock().edge_at_or_after(now_ps);
   for (std::size_t side = 0; side < kSides; ++side)
-    pci_bus_.skip_bursts(kMasters[side], line.sides[side].pci);
-  pci_bus_.skip_to(
-      {line.pci.last_granted, first + line.pci.free_clock, before.busy_clocks + line.pci.busy_clocks});
+    buses_.pci.skip_bursts(kMasters[side], line.sides[side].pci);
+  buses_.pci.skip_to({line.pci.last_granted, first + line.pci.free_clock}, line.buses.pci_busy);
   bridge_.skip_posted((bridge_.turn() + line.turns) % pci::bridge::kChannels, line.most_posted);
-  fpga::LocalBusControl& local_bus = board_.local_bus();
-  local_bus.skip_to(local_bus.bursts() + line.bursts, local_bus.busy_clocks() + line.busy_clocks,
-                    first_local + line.idle_clock);
+  buses_.local.skip_bursts(line.buses.bursts, line.buses.local_busy, first_local + line.idle_clock);
   const std::uint64_t words = words_of_line();
   for (std::size_t side = 0; side < kSides; ++side) {
     const Line::Side& of_side = line.sides[side];
@@ -126,7 +123,8 @@ void CameraLines::apply(const Line& line, std::uint64_t now_ps, const OfSides<st
                           first_local + bursts.back().first_cycle + bursts.back().words);
     if (board_.is_recorded()) board_.record_skipped(true, addresses[side], first_local, bursts);
     if (has_pixels_) captures_[side].copy_line(stored);
-    captures_[side].skip_line(pci_clock().edge_ps(first + of_side.end_clock), of_side.pci.transactions);
+    captures_[side].skip_line(buses_.pci_clock().edge_ps(first + of_side.end_clock),
+                              of_side.pci.transactions);
   }
 }
 
@@ -137,107 +135,114 @@ void CameraLines::begin_record(std::uint64_t now_ps, const Beginning& beginning,
   record_ = {};
   record_.beginning = beginning;
   record_.row = captures_[0].fifo().next_row();
-  record_.pci_clock = pci_bus_.decision_clock();
-  record_.local_clock = local_clock().edge_at_or_after(now_ps);
+  record_.pci_clock = buses_.pci.decision_clock();
+  record_.local_clock = buses_.local_clock().edge_at_or_after(now_ps);
   record_.addresses = addresses;
   for (std::size_t side = 0; side < kSides; ++side) {
-    record_.counts[side] = pci_bus_.counts(kMasters[side]);
-    record_.looks[side] = captures_[side].fifo().looks();
+    record_.counts[side] = buses_.pci.counts(kMasters[side]);
+    record_.full_checks[side] = captures_[side].fifo().full_checks();
     record_.request_clocks[side] = record_.pci_clock;
   }
-  record_.position = pci_bus_.position();
+  record_.buses = buses_.counts();
   record_.turn = bridge_.turn();
-  record_.transactions = pci_bus_.transactions();
-  record_.bursts = board_.local_bus().bursts();
-  record_.bursts_seen = record_.bursts;
-  record_.busy_clocks = board_.local_bus().busy_clocks();
 }
 
 void CameraLines::stepped(std::uint64_t now_ps, bool is_of_pci_bus) {
-  if (is_of_pci_bus) see_pci_bus(pci_clock().edge_at_or_after(now_ps));
+  if (is_of_pci_bus) record_pci_step(buses_.pci_clock().edge_at_or_after(now_ps));
   record_.line.most_posted = std::max<std::uint64_t>(record_.line.most_posted, bridge_.posted_words());
-  if (board_.local_bus().bursts() != record_.bursts_seen) see_local_burst();
+  if (buses_.local.bursts() != record_.buses.bursts + record_.line.buses.bursts) record_local_burst();
 }
 
-void CameraLines::see_pci_bus(std::uint64_t clock) {
-  keep_place_among_pixels(clock);
-  keep_place_among_local_clocks(clock);
+void CameraLines::record_pci_step(std::uint64_t clock) {
+  narrow_pixel_bounds(clock);
+  narrow_local_bounds(clock);
   for (std::size_t side = 0; side < kSides; ++side) {
     Line::Side& of_side = record_.line.sides[side];
-    const Counts so_far = difference(pci_bus_.counts(kMasters[side]), record_.counts[side]);
+    pci::PciBusControl::MasterCounts so_far = buses_.pci.counts(kMasters[side]);
+    so_far.subtract(record_.counts[side]);
     if (so_far.transactions != of_side.pci.transactions) of_side.end_clock = clock - record_.pci_clock;
     of_side.pci = so_far;
     // A request counts from the first clock at or after its time. That of the next line is not of this one.
-    const std::uint64_t requested = pci_bus_.request_clock(kMasters[side]);
+    const std::uint64_t requested = buses_.pci.request_clock(kMasters[side]);
     if (requested != kNever && requested != record_.request_clocks[side] &&
         !captures_[side].is_between_lines()) {
-      keep_place_among_pixels(requested - 1);
-      keep_place_among_pixels(requested);
+      narrow_pixel_bounds(requested - 1);
+      narrow_pixel_bounds(requested);
     }
     record_.request_clocks[side] = requested;
   }
 }
 
-void CameraLines::keep_place_among_pixels(std::uint64_t pci_clock) {
-  const std::uint64_t time_ps = this->pci_clock().edge_ps(pci_clock);
+// The same words stay complete at this clock of the PCI bus.
+void CameraLines::narrow_pixel_bounds(std::uint64_t pci_clock) {
+  const std::uint64_t time_ps = buses_.pci_clock().edge_ps(pci_clock);
   const capture::CaptureFifo::Span span = captures_[0].fifo().same_words(record_.row, time_ps);
   record_.pci_earlier_ps = std::min(record_.pci_earlier_ps, from_to(span.first_ps, time_ps) - kRounding);
   record_.pci_later_ps = std::min(record_.pci_later_ps, from_to(time_ps, span.end_ps) - kRounding);
 }
 
-void CameraLines::keep_place_among_local_clocks(std::uint64_t pci_clock) {
-  const std::uint64_t time_ps = this->pci_clock().edge_ps(pci_clock);
-  const std::uint64_t next = local_clock().edge_at_or_after(time_ps);
-  const std::uint64_t next_ps = local_clock().edge_ps(next);
+// The same clock of the local bus stays the next one at this clock of the PCI bus.
+void CameraLines::narrow_local_bounds(std::uint64_t pci_clock) {
+  const Clock& local = buses_.local_clock();
+  const std::uint64_t time_ps = buses_.pci_clock().edge_ps(pci_clock);
+  const std::uint64_t next = local.edge_at_or_after(time_ps);
+  const std::uint64_t next_ps = local.edge_ps(next);
   // A clock that begins at this very time must still do so.
-  const std::uint64_t last_ps = next_ps == time_ps ? time_ps : local_clock().edge_ps(next - 1);
+  const std::uint64_t last_ps = next_ps == time_ps ? time_ps : local.edge_ps(next - 1);
   record_.local_earlier_ps = std::min(record_.local_earlier_ps, from_to(time_ps, next_ps) - kRounding);
   record_.local_later_ps = std::min(record_.local_later_ps, from_to(last_ps, time_ps) - kRounding);
 }
 
-void CameraLines::see_local_burst() {
-  const fpga::LocalBusControl& local_bus = board_.local_bus();
-  const LocalBurst& burst = local_bus.burst();
-  const std::uint64_t first = local_bus.request_clock() - record_.local_clock;
+void CameraLines::record_local_burst() {
+  const LocalBurst& burst = buses_.local.burst();
+  const std::uint64_t first = buses_.local.request_clock() - record_.local_clock;
   const bool is_right =
       memory::bank_of_address(burst.address) == memory::bank_of_address(record_.addresses[1]);
   record_.line.sides[is_right ? 1 : 0].bursts.push_back({first, burst.words});
-  record_.bursts_seen = local_bus.bursts();
+  ++record_.line.buses.bursts;
 }
 
 // Called when the next line begins. Everything is idle again.
 void CameraLines::end_record() {
   is_recording_ = false;
-  record_.local_earlier_ps = std::max(record_.local_earlier_ps, local_play_ps_);
-  record_.local_later_ps = std::max(record_.local_later_ps, local_play_ps_);
-  if (!record_is_whole()) return;
-  const fpga::LocalBusControl& local_bus = board_.local_bus();
+  record_.local_earlier_ps = std::max(record_.local_earlier_ps, phase_tolerance_ps_);
+  record_.local_later_ps = std::max(record_.local_later_ps, phase_tolerance_ps_);
+  const BusCounts buses = buses_.counts().since(record_.buses);
+  if (!record_is_whole(buses)) return;
   Line& line = record_.line;
-  line.pci = pci_bus_.position();
+  line.pci = buses_.pci.position();
   line.pci.free_clock -= record_.pci_clock;
-  line.pci.busy_clocks -= record_.position.busy_clocks;
+  line.buses = buses;
   line.turns = (bridge_.turn() + pci::bridge::kChannels - record_.turn) % pci::bridge::kChannels;
-  line.bursts = local_bus.bursts() - record_.bursts;
-  line.busy_clocks = local_bus.busy_clocks() - record_.busy_clocks;
-  line.idle_clock = local_bus.idle_clock() - record_.local_clock;
-  lines_.push_back(line);
-  Bounds& bounds = bounds_.emplace_back();
-  bounds = {record_.beginning, record_.beginning};
+  line.idle_clock = buses_.local.idle_clock() - record_.local_clock;
+  Bounds bounds = {record_.beginning, record_.beginning};
   bounds.least.pci_ps -= record_.pci_earlier_ps;
   bounds.most.pci_ps += record_.pci_later_ps;
   bounds.least.local_ps -= record_.local_earlier_ps;
   bounds.most.local_ps += record_.local_later_ps;
+  if (lines_.size() < kMostRecords) {
+    lines_.push_back(line);
+    bounds_.push_back(bounds);
+  } else {
+    lines_[oldest_] = line;
+    bounds_[oldest_] = bounds;
+    oldest_ = (oldest_ + 1) % kMostRecords;
+  }
 }
 
-// Whether no word may have found its FIFO full, no other master had the PCI bus, and there are bounds.
-bool CameraLines::record_is_whole() const {
+// Whether all words were stored, none may have found its FIFO full, no other master had a bus, and there are
+// bounds. `buses`: what the buses have done in the line.
+bool CameraLines::record_is_whole(const BusCounts& buses) const {
   if (captures_[0].fifo().next_row() != record_.row + 1) return false;  // the next line came before the end
-  std::uint64_t transactions = record_.transactions;
+  std::uint64_t transactions = 0;
   for (std::size_t side = 0; side < kSides; ++side) {
-    if (captures_[side].fifo().looks() != record_.looks[side]) return false;
-    transactions += record_.line.sides[side].pci.transactions;
+    const pci::PciBusControl::MasterCounts& counts = record_.line.sides[side].pci;
+    if (counts.words != words_of_line() || counts.aborts != 0 ||
+        captures_[side].fifo().full_checks() != record_.full_checks[side])
+      return false;
+    transactions += counts.transactions;
   }
-  return pci_bus_.transactions() == transactions &&
+  return buses.transactions == transactions && buses.bursts == record_.line.buses.bursts &&
          std::min({record_.pci_earlier_ps, record_.pci_later_ps, record_.local_earlier_ps,
                    record_.local_later_ps}) >= 0;
 }

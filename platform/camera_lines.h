@@ -9,6 +9,7 @@
 #include "models/capture/capture_control.h"
 #include "models/pci/bridge_control.h"
 #include "models/pci/pci_bus_control.h"
+#include "platform/bridge_buses.h"
 #include "platform/computer_parts.h"
 #include "platform/fast_board.h"
 
@@ -46,7 +47,8 @@ class CameraLines {
   bool begins() const {
     return captures_[0].is_between_lines() && captures_[1].is_between_lines() &&
            captures_[0].requested_ps() == captures_[1].requested_ps() &&
-           pci_bus_.request_clock(kLeftCapture) == pci_bus_.decision_clock();
+           captures_[0].fifo().next_row() == captures_[1].fifo().next_row() &&
+           buses_.pci.request_clock(kLeftCapture) == buses_.pci.decision_clock();
   }
   // To be called then, before that decision, at `now_ps`. Before `end_ps` nothing but the PCI bus and the
   // bridge has an event. Returns true if it has skipped the line, instead of that decision.
@@ -93,11 +95,10 @@ class CameraLines {
     };
     OfSides<Side> sides;
     pci::PciBusControl::Position pci;  // after the line
-    std::size_t turns = 0;             // how often the turn on the local bus was passed on
-    std::uint64_t most_posted = 0;     // the most words in the bridge at one time
-    std::uint64_t bursts = 0;          // on the local bus
-    std::uint64_t busy_clocks = 0;
-    std::uint64_t idle_clock = 0;  // of the last burst
+    BusCounts buses;
+    std::size_t turns = 0;          // how often the turn on the local bus was passed on
+    std::uint64_t most_posted = 0;  // the most words in the bridge at one time
+    std::uint64_t idle_clock = 0;   // of the last burst on the local bus
   };
   // The line that is being recorded.
   struct Record {
@@ -106,22 +107,18 @@ class CameraLines {
     // of the PCI bus.
     std::int64_t pci_earlier_ps = kFar, pci_later_ps = kFar;
     std::int64_t local_earlier_ps = kFar, local_later_ps = kFar;
-    Line line;
+    Line line;                      // so far
     int row = 0;                    // its number in the picture
     std::uint64_t pci_clock = 0;    // with which the line begins
     std::uint64_t local_clock = 0;  // the next one
     OfSides<std::uint64_t> addresses{};
     // At the beginning of the line.
     OfSides<pci::PciBusControl::MasterCounts> counts;
-    OfSides<std::uint64_t> looks{};
-    pci::PciBusControl::Position position;
+    OfSides<std::uint64_t> full_checks{};
+    BusCounts buses;
     std::size_t turn = 0;
-    std::uint64_t transactions = 0;
-    std::uint64_t bursts = 0;
-    std::uint64_t busy_clocks = 0;
-    // After the last event.
+    // The first clocks of the last requests, among whose pixels the bounds are narrowed already.
     OfSides<std::uint64_t> request_clocks{};
-    std::uint64_t bursts_seen = 0;
   };
 
   std::optional<OfSides<std::uint64_t>> bank_addresses() const;
@@ -132,32 +129,32 @@ class CameraLines {
 
   void begin_record(std::uint64_t now_ps, const Beginning& beginning,
                     const OfSides<std::uint64_t>& addresses);
-  void see_pci_bus(std::uint64_t clock);
-  void see_local_burst();
-  void keep_place_among_pixels(std::uint64_t pci_clock);
-  void keep_place_among_local_clocks(std::uint64_t pci_clock);
+  void record_pci_step(std::uint64_t clock);
+  void record_local_burst();
+  void narrow_pixel_bounds(std::uint64_t pci_clock);
+  void narrow_local_bounds(std::uint64_t pci_clock);
   void end_record();
-  bool record_is_whole() const;
+  bool record_is_whole(const BusCounts& buses) const;
 
   std::uint64_t words_of_line() const {
     return static_cast<std::uint64_t>(captures_[0].fifo().words_per_line());
   }
-  const Clock& pci_clock() const { return pci_bus_.clock(); }
-  const Clock& local_clock() const { return board_.local_bus().clock(); }
 
-  pci::PciBusControl& pci_bus_;
+  BridgeBuses buses_;
   pci::BridgeControl& bridge_;
   FastBoard& board_;
   OfSides<capture::CaptureControl>& captures_;
   bool has_pixels_;
-  // What the clocks of the local bus may be earlier or later and yet have the same phase.
-  std::int64_t local_play_ps_;
+  // Two phases of the clocks of the local bus that differ by no more than this are the same.
+  std::int64_t phase_tolerance_ps_;
 
   std::vector<Bounds> bounds_;
   std::vector<Line> lines_;  // [index in bounds_]
+  std::size_t oldest_ = 0;   // index of the record that is replaced next; 0 until there are kMostRecords
   bool is_recording_ = false;
   Record record_;
   std::uint64_t recorded_ = 0;  // lines of which a record was begun
+  std::uint64_t unknown_ = 0;   // lines that no record fitted
   std::uint64_t skipped_ = 0;
 };
 

@@ -36,7 +36,7 @@ class Computer : public sc_core::sc_module, public ComputerView {
   ComputerCounters counters() const override;
   const fpga::FrameRun& core_frames() const override { return board.core.frames(); }
   std::uint64_t work_done() override;
-  std::string waits() const override { return board.core.waits(); }
+  std::string waits() override { return board.core.waits(); }
   void record(Timeline& timeline) override;
   void record(fpga::ConflictRecorder& conflicts) override { board.core.record(conflicts); }
   void record_rows() override { board.core.record_rows(); }

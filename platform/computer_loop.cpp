@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cstring>
+#include <stdexcept>
+#include <string>
 
 #include "models/capture/capture_register_file.h"
 #include "models/capture/capture_registers.h"
@@ -13,6 +15,11 @@ namespace {
 
 bool is_one_word(const pci::PciAccess& access, std::uint64_t end) {
   return access.count == 1 && access.address < end;
+}
+
+[[noreturn]] void refuse_end(std::uint64_t end_ps) {
+  throw std::invalid_argument("end_ps = " + std::to_string(end_ps) + ": must be below " +
+                              std::to_string(ComputerLoop::kEndOfTime));
 }
 
 }  // namespace
@@ -75,6 +82,7 @@ std::uint64_t ComputerLoop::next_event() const {
 }
 
 void ComputerLoop::run(std::uint64_t end_ps) {
+  if (end_ps >= kEndOfTime) refuse_end(end_ps);
   noticed_ = false;
   lines_.drop();
   for (;;) {

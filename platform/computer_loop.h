@@ -33,9 +33,11 @@ class ComputerLoop : private FastBoard::Doorbell, private pci::BridgeControl::Ho
   ComputerLoop(const ComputerLoop&) = delete;
   ComputerLoop& operator=(const ComputerLoop&) = delete;
 
+  // Times are below 2^60 - 1 ps, which are 13 days.
+  static constexpr std::uint64_t kEndOfTime = (std::uint64_t{1} << 60U) - 1;
   // Steps the blocks to the time at which the interrupt rises or notice() is called, at most to `end_ps`. The
   // decisions of that time are still to be made, because whatever the processor does then comes before them.
-  // Those of `end_ps` have been made.
+  // Those of `end_ps` have been made. Throws std::invalid_argument unless `end_ps` is below kEndOfTime.
   void run(std::uint64_t end_ps);
   // The time up to which the blocks have been stepped.
   std::uint64_t now_ps() const { return now_ps_; }
@@ -131,9 +133,9 @@ class ComputerLoop : private FastBoard::Doorbell, private pci::BridgeControl::Ho
   };
 
   void bind();
-  // A number that orders events by time, then by kind. Times are below 2^60 ps, which are 13 days; kNever is
-  // behind all of them.
+  // A number that orders events by time, then by kind. kNever is behind all times.
   static constexpr unsigned kKindBits = 4;
+  static_assert(kEndOfTime == kNever >> kKindBits);
   static constexpr std::uint64_t event(std::uint64_t time_ps, Kind kind) {
     return time_ps << kKindBits | kind;
   }

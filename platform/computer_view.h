@@ -21,7 +21,7 @@ class ComputerView {
   // A measure of progress towards a result. It advances a running frame to the present.
   virtual std::uint64_t work_done() = 0;
   // Text for messages: what the ports of the core wait for.
-  virtual std::string waits() const = 0;
+  virtual std::string waits() = 0;
   // Hands everything that happens to `timeline`, which outlives the computer. To be called at time 0.
   virtual void record(Timeline& timeline) = 0;
   // See FrameRun.

@@ -19,7 +19,7 @@ constexpr std::uint64_t kRounding = 4;
 
 DmaBursts::DmaBursts(pci::PciBusControl& pci_bus, pci::BridgeControl& bridge, FastBoard& board,
                      unsigned char* host_memory, std::uint64_t host_memory_bytes, bool has_pixels)
-    : pci_bus_(pci_bus),
+    : buses_{pci_bus, board.local_bus()},
       bridge_(bridge),
       board_(board),
       host_memory_(host_memory),
@@ -29,28 +29,29 @@ DmaBursts::DmaBursts(pci::PciBusControl& pci_bus, pci::BridgeControl& bridge, Fa
 
 bool DmaBursts::skip(std::uint64_t now_ps, std::uint64_t end_ps) {
   pci::DmaChannel* const channel = bridge_.lone_channel();
-  if (channel == nullptr || !pci_bus_.decides_next()) return false;
+  if (channel == nullptr || !buses_.pci.decides_next()) return false;
   const auto here = beginning(now_ps, *channel);
   if (!here) return false;
   const std::size_t burst_words = channel->on_pci().words.size();
   if (!(*here == beginning_)) {
     step_.reset();
   } else if (!step_) {
-    step_ = recorded(now_ps, burst_words);
+    step_ = recorded(burst_words);
   }
   beginning_ = *here;
   if (!step_) {
-    before_ = state(now_ps);
+    before_ = {now_ps, buses_.pci.counts(kBridge), buses_.counts()};
     return false;
   }
   // All words of the skipped steps are moved before any other event, and before another master can have the
   // bus.
-  const std::uint64_t request = pci_bus_.earliest_request_beside(kBridge);
-  if (request != kNever) end_ps = std::min(end_ps, pci_clock().edge_ps(request) + 1);
+  const std::uint64_t request = buses_.pci.earliest_request_beside(pci::PciBusControl::mask_of(kBridge));
+  if (request != kNever) end_ps = std::min(end_ps, buses_.pci_clock().edge_ps(request) + 1);
   if (end_ps <= now_ps) return false;
   const std::uint64_t first = pace().edge_at_or_after(now_ps);
   const std::uint64_t clocks = pace().edge_at_or_after(end_ps) - 1 - first;
   const std::size_t bursts_left = (channel->moving().words - channel->written()) / burst_words;
+  if (bursts_left < 2) return false;
   const std::uint64_t steps = std::min<std::uint64_t>(clocks / period(), bursts_left - 1);
   if (steps == 0) return false;
   apply(now_ps, *channel, steps);
@@ -60,54 +61,46 @@ bool DmaBursts::skip(std::uint64_t now_ps, std::uint64_t end_ps) {
 
 // How the step begins that the channel takes at `now_ps`; nothing if it cannot be skipped.
 std::optional<DmaBursts::Beginning> DmaBursts::beginning(std::uint64_t now_ps,
-                                                         const pci::DmaChannel& channel) {
-  const std::uint64_t request = pci_bus_.request_clock(kBridge);
-  if (request != pci_clock().edge_at_or_after(now_ps)) return std::nullopt;
+                                                         const pci::DmaChannel& channel) const {
+  const std::uint64_t request = buses_.pci.request_clock(kBridge);
+  if (request != buses_.pci_clock().edge_at_or_after(now_ps)) return std::nullopt;
   const auto& [to_pci, pci_address, local_address, words, next] = channel.moving();
   const std::uint64_t bytes = 4 * words;
   if (pci_address < host_base_ || pci_address + bytes > host_end_) return std::nullopt;
   const std::size_t bank = memory::bank_of_address(local_address);
   if (memory::bank_of_address(local_address + bytes - 4) != bank ||
-      !board_.serves_in_step(local_address, bytes))
+      !board_.serves_one_word_per_cycle(local_address, bytes))
     return std::nullopt;
-  const pci::PciBusControl::Position position = pci_bus_.position();
+  const pci::PciBusControl::Position position = buses_.pci.position();
   return Beginning{
       channel.number(), to_pci, bank, bridge_.turn(), position.last_granted, position.free_clock > request};
 }
 
-DmaBursts::Before DmaBursts::state(std::uint64_t now_ps) const {
-  return {now_ps,
-          pci_bus_.transactions(),
-          pci_bus_.counts(kBridge),
-          pci_bus_.position().busy_clocks,
-          board_.local_bus().bursts(),
-          board_.local_bus().busy_clocks()};
-}
-
-// What the step did that began in the state before_ and has ended now; nothing if others had a bus too, or
+// What the step did that began in the state before_ and has just ended; nothing if others had a bus too, or
 // steps like this one cannot be skipped.
-std::optional<DmaBursts::Step> DmaBursts::recorded(std::uint64_t now_ps, std::size_t burst_words) const {
-  const Before now = state(now_ps);
-  if (now.transactions != before_.transactions + 1 || now.bursts != before_.bursts + 1 ||
-      now.counts.words != before_.counts.words + burst_words)
-    return std::nullopt;
-  const std::uint64_t local_begin = local_clock().edge_at_or_after(before_.now_ps);
+std::optional<DmaBursts::Step> DmaBursts::recorded(std::size_t burst_words) const {
+  const BusCounts buses = buses_.counts().since(before_.buses);
+  pci::PciBusControl::MasterCounts counts = buses_.pci.counts(kBridge);
+  counts.subtract(before_.counts);
+  if (buses.transactions != 1 || buses.bursts != 1 || counts.words != burst_words) return std::nullopt;
+  const std::uint64_t local_begin = buses_.local_clock().edge_at_or_after(before_.now_ps);
   Step step;
-  step.pci_free = pci_bus_.position().free_clock - pci_clock().edge_at_or_after(before_.now_ps);
-  step.local_free = board_.local_bus().idle_clock() + 1 - local_begin;
-  step.first_word = board_.local_bus().request_clock() - local_begin;
-  step.wait_clocks = now.counts.wait_clocks - before_.counts.wait_clocks;
-  step.pci_busy = now.pci_busy - before_.pci_busy;
-  step.local_busy = now.local_busy - before_.local_busy;
+  step.pci_free = buses_.pci.position().free_clock - buses_.pci_clock().edge_at_or_after(before_.now_ps);
+  step.local_free = buses_.local.idle_clock() + 1 - local_begin;
+  step.first_word = buses_.local.request_clock() - local_begin;
+  step.wait_clocks = counts.wait_clocks;
+  step.pci_busy = buses.pci_busy;
+  step.local_busy = buses.local_busy;
   return keeps_pace(step) ? std::optional(step) : std::nullopt;
 }
 
 // Whether the bus that ended last does so too where the other one begins up to a clock later.
 bool DmaBursts::keeps_pace(const Step& step) const {
+  const Clock& pci = buses_.pci_clock();
+  const Clock& local = buses_.local_clock();
   const std::uint64_t pci_clocks = step.pci_free - 1;  // to the end of the burst
-  return beginning_.waits_for_pci
-             ? local_clock().edge_ps(step.local_free + 1) + kRounding <= pci_clock().edge_ps(pci_clocks)
-             : pci_clock().edge_ps(pci_clocks + 1) + kRounding <= local_clock().edge_ps(step.local_free);
+  return beginning_.waits_for_pci ? local.edge_ps(step.local_free + 1) + kRounding <= pci.edge_ps(pci_clocks)
+                                  : pci.edge_ps(pci_clocks + 1) + kRounding <= local.edge_ps(step.local_free);
 }
 
 void DmaBursts::apply(std::uint64_t now_ps, pci::DmaChannel& channel, std::size_t steps) {
@@ -116,8 +109,8 @@ void DmaBursts::apply(std::uint64_t now_ps, pci::DmaChannel& channel, std::size_
   const std::uint64_t end_ps = pace().edge_ps(first + steps * period());
   const std::size_t burst_words = channel.on_pci().words.size();
   const std::size_t words = steps * burst_words;
-  const std::uint64_t first_local = local_clock().edge_at_or_after(now_ps);
-  const std::uint64_t last_local = local_clock().edge_at_or_after(last_ps);
+  const std::uint64_t first_local = buses_.local_clock().edge_at_or_after(now_ps);
+  const std::uint64_t last_local = buses_.local_clock().edge_at_or_after(last_ps);
   const pci::BridgeTransfer& on_local_bus = channel.on_local_bus();
   std::uint32_t* const in_bank =
       board_.skip_words(on_local_bus.write, on_local_bus.address, words, first_local + step_->first_word,
@@ -125,19 +118,18 @@ void DmaBursts::apply(std::uint64_t now_ps, pci::DmaChannel& channel, std::size_
   if (board_.is_recorded()) {
     bursts_.clear();
     for (std::size_t step = 0; step < steps; ++step) {
-      const std::uint64_t local = local_clock().edge_at_or_after(pace().edge_ps(first + step * period()));
+      const std::uint64_t local =
+          buses_.local_clock().edge_at_or_after(pace().edge_ps(first + step * period()));
       bursts_.push_back({local + step_->first_word, burst_words});
     }
     board_.record_skipped(on_local_bus.write, on_local_bus.address, 0, bursts_);
   }
-  const pci::PciBusControl::Position before = pci_bus_.position();
-  fpga::LocalBusControl& local_bus = board_.local_bus();
-  local_bus.skip_to(local_bus.bursts() + steps, local_bus.busy_clocks() + steps * step_->local_busy,
-                    last_local + step_->local_free - 1);
+  buses_.local.skip_bursts(steps, steps * step_->local_busy, last_local + step_->local_free - 1);
   move_words(channel, words, in_bank);
-  pci_bus_.skip_bursts(kBridge, {steps, words, steps * step_->wait_clocks, 0, 0});
-  pci_bus_.skip_to({before.last_granted, pci_clock().edge_at_or_after(last_ps) + step_->pci_free,
-                    before.busy_clocks + steps * step_->pci_busy});
+  buses_.pci.skip_bursts(kBridge, {steps, words, steps * step_->wait_clocks, 0, 0});
+  buses_.pci.skip_to(
+      {buses_.pci.position().last_granted, buses_.pci_clock().edge_at_or_after(last_ps) + step_->pci_free},
+      steps * step_->pci_busy);
   bridge_.skip_dma(end_ps, channel, steps);
 }
 

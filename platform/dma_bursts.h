@@ -7,6 +7,7 @@
 
 #include "models/pci/bridge_control.h"
 #include "models/pci/pci_bus_control.h"
+#include "platform/bridge_buses.h"
 #include "platform/fast_board.h"
 
 namespace stereotlm::platform {
@@ -72,18 +73,14 @@ class DmaBursts {
   // The state in which a step began.
   struct Before {
     std::uint64_t now_ps = 0;
-    std::uint64_t transactions = 0;  // of all masters
     pci::PciBusControl::MasterCounts counts;
-    std::uint64_t pci_busy = 0;
-    std::uint64_t bursts = 0;  // on the local bus
-    std::uint64_t local_busy = 0;
+    BusCounts buses;
   };
 
-  std::optional<Beginning> beginning(std::uint64_t now_ps, const pci::DmaChannel& channel);
-  Before state(std::uint64_t now_ps) const;
-  std::optional<Step> recorded(std::uint64_t now_ps, std::size_t burst_words) const;
+  std::optional<Beginning> beginning(std::uint64_t now_ps, const pci::DmaChannel& channel) const;
+  std::optional<Step> recorded(std::size_t burst_words) const;
   bool keeps_pace(const Step& step) const;
-  const Clock& pace() const { return beginning_.waits_for_pci ? pci_clock() : local_clock(); }
+  const Clock& pace() const { return beginning_.waits_for_pci ? buses_.pci_clock() : buses_.local_clock(); }
   std::uint64_t period() const { return beginning_.waits_for_pci ? step_->pci_free - 1 : step_->local_free; }
   void apply(std::uint64_t now_ps, pci::DmaChannel& channel, std::size_t steps);
   void move_words(pci::DmaChannel& channel, std::size_t words, std::uint32_t* in_bank);
@@ -91,10 +88,8 @@ class DmaBursts {
   unsigned char* host_words(const pci::DmaChannel& channel, std::size_t word) const {
     return host_memory_ + (channel.moving().pci_address - host_base_) + 4 * word;
   }
-  const Clock& pci_clock() const { return pci_bus_.clock(); }
-  const Clock& local_clock() const { return board_.local_bus().clock(); }
 
-  pci::PciBusControl& pci_bus_;
+  BridgeBuses buses_;
   pci::BridgeControl& bridge_;
   FastBoard& board_;
   unsigned char* host_memory_;

@@ -46,9 +46,10 @@ void FastBoard::catch_up(std::uint64_t now_ps) {
   if (frames_.is_running()) frames_.run_ahead(clock_.edge_at_or_after(now_ps));
 }
 
-bool FastBoard::serves_in_step(std::uint64_t address, std::uint64_t bytes) {
+bool FastBoard::serves_one_word_per_cycle(std::uint64_t address, std::uint64_t bytes) const {
   const std::size_t bank = memory::bank_of_address(address);
-  return bank < banks_.size() && direct(address, bytes) != nullptr && host_port_.serves_in_step(bank);
+  return bank < banks_.size() && banks_[bank].holds(address - memory::crossbar_address(bank, 0), bytes) &&
+         host_port_.serves_one_word_per_cycle(bank);
 }
 
 std::uint32_t* FastBoard::skip_words(bool write, std::uint64_t address, std::uint64_t words,

@@ -59,10 +59,10 @@ class FastBoard : private fpga::LocalBusControl::Core,
   // Advances the core. Throws std::runtime_error if a frame stalls or needs Fidelity::kCycle.
   void step(std::uint64_t now_ps);
 
-  // For CameraLines and DmaBursts, which skip bursts that they have seen before.
+  // To skip bursts that repeat:
   //
   // Whether bursts to these bytes are served one word a cycle, independently of the running frame.
-  bool serves_in_step(std::uint64_t address, std::uint64_t bytes);
+  bool serves_one_word_per_cycle(std::uint64_t address, std::uint64_t bytes) const;
   // Such bursts have moved `words` words from `address` on. See HostPort::count_skipped(). Returns the place
   // of the words, which the caller moves.
   std::uint32_t* skip_words(bool write, std::uint64_t address, std::uint64_t words, std::uint64_t first_cycle,
@@ -80,7 +80,7 @@ class FastBoard : private fpga::LocalBusControl::Core,
   void record(fpga::ConflictRecorder& conflicts) { frames_.record(conflicts); }
   void record_rows() { frames_.record_rows(); }
   std::vector<fpga::RowProfile> take_rows() { return frames_.take_rows(); }
-  std::string waits() const { return frames_.waits(local_bus_.word_waits()); }
+  std::string waits() { return frames_.waits(local_bus_.word_waits()); }
   // Advances the running frame to `now_ps`, for observers. See StereoCore::catch_up().
   void catch_up(std::uint64_t now_ps);
 

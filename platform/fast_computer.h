@@ -40,7 +40,7 @@ class FastComputer : public sc_core::sc_module,
   ComputerCounters counters() const override { return loop_.counters(); }
   const fpga::FrameRun& core_frames() const override { return loop_.board().frames(); }
   std::uint64_t work_done() override { return loop_.work_done(); }
-  std::string waits() const override { return loop_.board().waits(); }
+  std::string waits() override { return loop_.board().waits(); }
   void record(Timeline& timeline) override { loop_.record(timeline); }
   void record(fpga::ConflictRecorder& conflicts) override { loop_.board().record(conflicts); }
   void record_rows() override { loop_.board().record_rows(); }

@@ -26,11 +26,11 @@ namespace stereotlm::platform {
 
 // Records what happens in a computer: captures and dropped frames, DMA transfers, frames of the core,
 // interrupts, and who waits for whom. The blocks say what they do, at every fidelity in the same words. The
-// waits and the parts of each latency follow from that and from the driver's rules (sw/driver/README.md), so
-// that no other program can be recorded. Plain C++.
+// waits and the parts of each latency follow from that and from the driver's rules (sw/driver/README.md).
+// Therefore only the driver's program can be recorded. Plain C++.
 //
-// Events are handed out in the order of their ends. Memory holds only those since the last delivery, or since
-// the first wait began that has not ended.
+// Events are handed out in the order of their ends. It keeps only the events since the last delivery or, if
+// earlier, since the beginning of the oldest wait that still runs.
 class Timeline : private pci::BridgeObserver, private fpga::FrameObserver {
  public:
   // Throws std::invalid_argument if the board has problems.

@@ -80,7 +80,7 @@ class CaptureControl : public FrameReceiver, public CapturePartner, public pci::
   pci::PciBurst begin_burst(std::uint64_t address_clock_ps) override;
   void end_burst(const pci::BurstResult& result) override;
 
-  // For platform::CameraLines, which skips lines that it has seen before.
+  // To skip lines that repeat:
   //
   // Whether the board waits for the next line of its picture; and for the time from which it requests the bus.
   bool is_between_lines() const { return bus_state_ == BusState::kRequested && fifo_.is_between_lines(); }

@@ -55,7 +55,7 @@ void CaptureFifo::take_words(int end, const LeftBy& left_by) {
   const auto finds_it_full = [&] {
     return occupancy_ + (word - taken_) - left_by(arrival_ps(word * kPixelsPerWord, row_)) >= fifo_words_;
   };
-  if (word < end) ++looks_;
+  if (word < end) ++full_checks_;
   while (word < end && !finds_it_full()) ++word;
   append(word - taken_);
   if (word == end) return;

@@ -57,8 +57,10 @@ class CaptureFifo {
   std::uint64_t next_ps() const;
   // Whether the frame finishes at next_ps(), without a further request.
   bool finishes_next() const { return occupancy_ == 0 && next_line_ps_ == kNever && takes_no_more(); }
-  // For platform::CameraLines, which skips lines that it has seen before. A line is skipped between two lines:
-  // no word of the lines up to now is to come or to leave, and a line comes, which is next_row().
+  // To skip lines that repeat:
+  //
+  // Whether a line can be skipped: no word of the lines up to now is to come or to leave, and a line comes,
+  // which is next_row().
   bool is_between_lines() const { return occupancy_ == 0 && takes_no_more() && next_line_ps_ != kNever; }
   int next_row() const { return row_ + 1; }
   bool has_row(int row) const { return row < timing_->height(); }
@@ -74,8 +76,8 @@ class CaptureFifo {
     std::uint64_t end_ps = 0;
   };
   Span same_words(int row, std::uint64_t time_ps) const;
-  // How often it has looked whether a word found it full.
-  std::uint64_t looks() const { return looks_; }
+  // The number of times that a word needed a check for a free place.
+  std::uint64_t full_checks() const { return full_checks_; }
   // The next line has come, and all its words have entered and left, the last of them at `now_ps`.
   void skip_line(std::uint64_t now_ps);
 
@@ -118,7 +120,7 @@ class CaptureFifo {
   std::size_t oldest_ = 0;
   std::size_t newest_ = 0;
   int occupancy_ = 0;  // number of words in the FIFO, complete or being filled
-  std::uint64_t looks_ = 0;
+  std::uint64_t full_checks_ = 0;
   int owed_ = 0;  // number of the oldest words that were complete at the last grant and have not left
 };
 

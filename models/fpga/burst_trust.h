@@ -4,21 +4,21 @@
 
 namespace stereotlm::fpga {
 
-// Whether FastForward should look for the groups of a burst in its memo. A known burst saves more time than is
-// lost by looking for one that is not known and by recording it. With irregular accesses hardly a burst meets
-// the core in a state that comes again.
+// Decides whether FastForward looks up a burst in its cache. Looking up a burst that is not known, and recording
+// it, costs time. With irregular accesses few bursts are ever known. So FastForward stops looking up bursts after
+// many misses, and tries again every 2048 bursts.
 class BurstTrust {
  public:
-  // Whether the next burst is probably known, because others were lately; or has to be looked for, because
-  // none was for long. To be called once for each burst.
+  // Whether the next burst is to be looked up: it is probably known, because others were lately; or none was
+  // looked up for long. To be called once for each burst.
   bool expects_known() {
     if (trust_ == 0 && ++bursts_without_ == kMostBurstsWithout) {
-      trust_ = kNew;
+      trust_ = kRetry;
       bursts_without_ = 0;
     }
     return trust_ != 0;
   }
-  // To be called for each burst that was looked for.
+  // To be called for each burst that was looked up.
   void note(bool is_known) {
     trust_ = is_known ? std::min(trust_ + kWonByKnown, kMost) : trust_ - std::min(trust_, 1U);
   }
@@ -26,7 +26,7 @@ class BurstTrust {
  private:
   static constexpr unsigned kMost = 256;
   static constexpr unsigned kWonByKnown = 2;
-  static constexpr unsigned kNew = 8;
+  static constexpr unsigned kRetry = 8;
   static constexpr unsigned kMostBurstsWithout = 2048;
 
   unsigned trust_ = kMost;

@@ -1,6 +1,7 @@
 #include "models/fpga/fast_forward.h"
 
 #include <algorithm>
+#include <stdexcept>
 #include <utility>
 
 namespace stereotlm::fpga {
@@ -8,8 +9,6 @@ namespace {
 
 // After this number of groups with the same accesses, the walk expects more groups with these accesses.
 constexpr int kManyAlike = 8;
-// The largest number of cycles that one call of serve_host() runs from the first request on.
-constexpr std::uint64_t kMostHostCycles = std::uint64_t{1} << 13U;
 
 // The empty slots of a column of a strip: bit k for slot k.
 std::uint64_t empty_slots(const FrameGeometry& geometry, int strip) {
@@ -44,11 +43,9 @@ FastForward::FastForward(CoreStepper& stepper, int lane_fifo_slots, std::size_t 
 }
 
 void FastForward::start_direct_frame(const AccessPatterns& patterns, std::uint64_t routes) {
+  start_frame();
   accesses_.start_direct_frame(patterns);
-  known_.keep_order(stepper_.conflicts() != nullptr);
   tell_assumed();
-  stepped_.reset();
-  is_walking_ = false;
   routes_ = routes;
   strips_ = 0;
   for (const Side side : kSides) varying_[index_of(side)] = accesses_.varying(side);
@@ -59,14 +56,19 @@ void FastForward::start_direct_frame(const AccessPatterns& patterns, std::uint64
 }
 
 void FastForward::start_stepped_frame() {
+  start_frame();
   accesses_.start_stepped_frame();
+}
+
+void FastForward::start_frame() {
+  if (ahead_.cycles != 0) throw std::logic_error("a frame starts before the last one was settled");
   stepped_.reset();
   is_walking_ = false;
 }
 
-void FastForward::settle() {
+void FastForward::settle(std::uint64_t cycle) {
   stepped_.reset();
-  is_walking_ = false;
+  leave_walk(cycle);
   for (const Side side : kSides) resolve_accesses(side);
   if (is_host_routed_) stepper_.arbitration().unroute(kHostPort);
   is_host_routed_ = false;
@@ -93,7 +95,7 @@ memory::PortMask FastForward::step_core(std::uint64_t cycle, bool host_requests)
 }
 
 memory::PortMask FastForward::step(std::uint64_t cycle, bool host_requests) {
-  is_walking_ = false;
+  leave_walk(cycle);
   stepped_.reset();
   return step_core<true>(cycle, host_requests);
 }
@@ -159,7 +161,7 @@ bool FastForward::follow_sequence(std::uint64_t& cycle) {
   const auto found = known_.find(state_, {}, *requests);
   if (!found) {
     sequence_ = {state_, *requests, ahead_, host_ahead_};
-    known_.begin_sequence();
+    sequence_parts_.clear();
     return false;
   }
   if (!fits_host(*found) || !ends_in_strip(*found)) return false;
@@ -178,14 +180,14 @@ bool FastForward::ends_in_strip(const TransitionCache::Transition& transition) c
 
 // Records the sequence, if it was not interrupted.
 void FastForward::end_sequence() {
-  known_.end_sequence();
   if (!sequence_) return;
   Progress progress = ahead_;
   progress.subtract(sequence_->begin);
   const HostGrants& before = sequence_->host_begin;
   known_.record_sequence(
       sequence_->state, sequence_->host, state_, progress,
-      {host_ahead_.words - before.words, progress.cycles, host_ahead_.requests - before.requests});
+      {host_ahead_.words - before.words, progress.cycles, host_ahead_.requests - before.requests},
+      sequence_parts_);
   sequence_.reset();
 }
 
@@ -196,7 +198,7 @@ void FastForward::route_host(std::uint64_t& cycle, const Route& route, std::uint
   if (is_new) {
     cycle = run_ahead(cycle, std::max(cycle, first));
     stepped_.reset();
-    is_walking_ = false;
+    leave_walk(cycle);
     for (const Side side : kSides) {
       if (arbitration.bank_of(pixel_port(side)) == route.bank) resolve_accesses(side);
     }
@@ -244,10 +246,16 @@ void FastForward::begin_walk(std::uint64_t cycle) {
   if (ConflictRecorder* const conflicts = stepper_.conflicts()) conflicts->skip_from(cycle);
 }
 
-// Takes the core to the end of the walk, and records the transition that is stepped next if it is not known.
-void FastForward::end_walk(std::uint64_t cycle) {
+// Takes the core to the end of the walk.
+void FastForward::leave_walk(std::uint64_t cycle) {
+  if (!is_walking_) return;
   catch_up(cycle);
   is_walking_ = false;
+}
+
+// Leaves the walk, and records the transition that is stepped next if it is not known.
+void FastForward::end_walk(std::uint64_t cycle) {
+  leave_walk(cycle);
   if (!holds_group(room_)) return;
   const TransitionCache::Accesses accesses = this->accesses();
   if (host_.words == 0 && known_.find(state_, accesses)) return;
@@ -297,13 +305,13 @@ std::optional<TransitionCache::Transition> FastForward::find_host(std::uint64_t 
 }
 
 // Whether a transition with requests of the host can be followed. It may consume no slot, or continue after
-// its last one. Both would be wrong after the last uniform slot: there the memo has another state.
+// its last one. Both would be wrong after the last uniform slot: there the cache has another state.
 bool FastForward::fits_host(const TransitionCache::Transition& transition) const {
   const Progress& progress = known_.progress(transition);
   return progress.fits(room_) && progress.consumed < room_.consumed;
 }
 
-// The requests of these words from `cycle` on. Nothing if a memo cannot hold them.
+// The requests of these words from `cycle` on. Nothing if the cache cannot hold them.
 std::optional<HostRequests> FastForward::requests_of(const HostWords& host, std::uint64_t cycle) {
   const std::uint64_t first = host.first > cycle ? host.first - cycle : 0;
   if (first > HostRequests::kMostCycles) return std::nullopt;
@@ -314,7 +322,7 @@ std::optional<HostRequests> FastForward::requests_of(const HostWords& host, std:
 
 // Follows one transition, which ends before `cycle`.
 void FastForward::follow(const TransitionCache::Transition& transition, std::uint64_t cycle) {
-  known_.follow(transition);
+  known_.follow(transition, 1, noted());
   const HostGrants& host = known_.host(transition);
   host_ahead_.words += host.words;
   host_ahead_.requests += host.requests;
@@ -338,9 +346,10 @@ void FastForward::skip(const Progress& progress) {
 
 // See record_skipped().
 bool FastForward::hand_over(ConflictRecorder& conflicts, std::uint64_t cycle, std::uint64_t left_of_group) {
-  if (known_.in_order().empty()) return false;
-  hand_over(conflicts, known_.in_order(), left_of_group);
-  known_.forget_order();
+  if (in_order_.empty()) return false;
+  hand_over(conflicts, in_order_, left_of_group);
+  if (sequence_) sequence_parts_.insert(sequence_parts_.end(), in_order_.begin(), in_order_.end());
+  in_order_.clear();
   if (!conflicts.is_at_strip_end()) return false;
   sequence_.reset();
   catch_up(cycle);
@@ -394,7 +403,7 @@ void FastForward::catch_up(std::uint64_t cycle) {
 
 // Follows recorded transitions as far as there is room, which it reduces. Returns the state that comes next.
 FastForward::StateNumber FastForward::walk_known(StateNumber state, Progress& room) {
-  return varies() ? walk_varying(state, room) : known_.walk(state, {}, room);
+  return varies() ? walk_varying(state, room) : known_.walk(state, {}, room, noted());
 }
 
 FastForward::StateNumber FastForward::walk_varying(StateNumber state, Progress& room) {
@@ -425,7 +434,7 @@ FastForward::StateNumber FastForward::walk_varying(StateNumber state, Progress& 
     }
     const Progress& progress = known_.progress(transition);
     if (!progress.fits(room)) return state;
-    known_.follow(transition);
+    known_.follow(transition, 1, noted());
     room.subtract(progress);
     state = transition.next;
     consumed += slots;
@@ -438,7 +447,7 @@ FastForward::StateNumber FastForward::walk_uniform(StateNumber state, std::uint6
   Progress uniform = room;
   uniform.consumed = std::min(uniform.consumed, uniform_slots(consumed));
   Progress left = uniform;
-  const StateNumber last = known_.walk(state, accesses_from(consumed, slots_of_group()), left);
+  const StateNumber last = known_.walk(state, accesses_from(consumed, slots_of_group()), left, noted());
   uniform.subtract(left);
   room.subtract(uniform);
   return last;
@@ -469,7 +478,7 @@ Progress FastForward::room() const {
 }
 
 // Whether a whole group fits into `room`. If not, nothing may be recorded: after a walk up to the last
-// uniform slot, the state of the memo differs from that of the core.
+// uniform slot, the state in the cache differs from that of the core.
 bool FastForward::holds_group(const Progress& room) const {
   const std::uint64_t slots = control().match().draining() ? 0 : slots_of_group();
   return room.consumed >= slots_of_group() && room.left_slots >= slots && room.right_slots >= slots;

@@ -17,14 +17,15 @@ namespace stereotlm::fpga {
 // in the TransitionCache is skipped; others are stepped and recorded. While rows are recorded, the cycles
 // around the end of each row are stepped.
 //
-// A walk follows transitions in the memo alone. The core and the arbiters are taken to its end only when a
-// cycle must be stepped, and by run_ahead(). The last grant of a burst of the host ends a transition, so that
-// a group may hold several bursts.
+// A walk only follows recorded transitions: the core and the arbiters keep their old state until catch_up().
+// The last grant of a burst of the host ends a transition, so that a group may hold several bursts.
 class FastForward {
  public:
   // `stepper` outlives this object. `most_groups`: cap of the transition cache.
   FastForward(CoreStepper& stepper, int lane_fifo_slots, std::size_t most_groups);
 
+  // These two throw std::logic_error if settle() has not been called since the last frame.
+  //
   // To be called when a frame with these accesses is to be fast-forwarded, after its ports have been routed
   // and the stepper has started it. The patterns must outlive the frame. `routes`: frames with the same
   // number have the same routes and latencies.
@@ -32,14 +33,16 @@ class FastForward {
   // To be called when a frame starts that the owner steps itself.
   void start_stepped_frame();
   // To be called before the owner changes the route of the host within a frame, and after the last cycle of a
-  // frame. Corrects the counts that are provisional until then.
-  void settle();
+  // frame. `cycle`: the next cycle. Corrects the counts that are provisional until then.
+  void settle(std::uint64_t cycle);
 
   // Runs one cycle. `host_requests`: whether the host port requests in it. Returns the ports granted.
   memory::PortMask step(std::uint64_t cycle, bool host_requests);
   // Runs the cycles from `cycle` up to `end`, `end` not included, or until the frame is done. Returns the
   // next cycle.
   std::uint64_t run_ahead(std::uint64_t cycle, std::uint64_t end);
+  // The longest time that the words of a burst are served in one call.
+  static constexpr std::uint64_t kMostHostCycles = std::uint64_t{1} << 13U;
   // The bank of a burst of the host, and its direction.
   struct Route {
     std::size_t bank = 0;
@@ -51,8 +54,9 @@ class FastForward {
     std::uint64_t last_cycle = 0;  // in which the last of them was granted
   };
   // Runs the cycles from `cycle` on until the host is granted `words` words of its bank. The first requests
-  // from cycle `first` on, each other in the cycle after a grant. Every earlier burst has ended before `first`.
-  // Ends early if the frame is done, or after 8192 cycles. Sets `cycle` to the next cycle.
+  // from cycle `first` on, each other in the cycle after a grant. The caller guarantees that every earlier
+  // burst has ended before `first`. Ends early if the frame is done, or kMostHostCycles after the first
+  // request. Sets `cycle` to the next cycle, to which the core is taken only by the next other call.
   Served serve_host(std::uint64_t& cycle, const Route& route, std::uint64_t first, std::size_t words);
   // Whether a burst in this direction is probably known. If not, step() is faster. To be called once for each
   // burst.
@@ -104,7 +108,9 @@ class FastForward {
   memory::PortMask step_core(std::uint64_t cycle, bool host_requests);
   std::uint64_t step_group(std::uint64_t cycle, std::uint64_t end);
   void begin_walk(std::uint64_t cycle);
+  void leave_walk(std::uint64_t cycle);
   void end_walk(std::uint64_t cycle);
+  void start_frame();
   std::uint64_t walk(std::uint64_t cycle, std::uint64_t end);
   bool follow_sequence(std::uint64_t& cycle);
   void end_sequence();
@@ -113,6 +119,11 @@ class FastForward {
   std::optional<TransitionCache::Transition> find_host(std::uint64_t cycle) const;
   bool fits_host(const TransitionCache::Transition& transition) const;
   void follow(const TransitionCache::Transition& transition, std::uint64_t cycle);
+  // To which transitions are added that are followed: null unless a recorder or a sequence needs them.
+  TransitionCache::Sequence* noted() {
+    if (stepper_.conflicts() != nullptr) return &in_order_;
+    return sequence_ ? &sequence_parts_ : nullptr;
+  }
   void skip(const Progress& progress);
   // Hands what has been skipped to the recorder of the frame, if there is one. `left_of_group`: as it was
   // before. Returns true at the end of a strip, where more may be skipped.
@@ -169,8 +180,10 @@ class FastForward {
   HostGrants host_ahead_;            // words of the host in these cycles, without HostGrants::cycles
   HostWords host_;                   // words that are granted from the next cycle on
   std::optional<Sequence> sequence_;
-  bool is_host_routed_ = false;       // by serve_host()
-  std::array<BurstTrust, 2> trusts_;  // in bursts that [0] read, [1] write
+  TransitionCache::Sequence sequence_parts_;  // of sequence_; kept here, so that it keeps its memory
+  TransitionCache::Sequence in_order_;        // what has been followed and is not yet handed to the recorder
+  bool is_host_routed_ = false;               // by serve_host()
+  std::array<BurstTrust, 2> trusts_;          // in bursts that [0] read, [1] write
   std::uint64_t routes_ = 0;
   std::size_t strips_ = 0;  // index in all_strips_: the run in which the lanes take their next slots
   // [side]: the pattern by which the accesses of the side vary, or null.

@@ -60,16 +60,13 @@ std::uint64_t FrameRun::index_of_routes(const FrameBases& bases) {
 
 std::uint64_t FrameRun::stalled_cycles() {
   const Progress& ahead = fast_forward_.ahead();
-  const std::uint64_t cycles =
-      watchdog_.stalled_cycles(cycle_, control().work() + ahead.consumed + ahead.words);
-  if (cycles != 0) run_ahead(cycle_);  // for waits()
-  return cycles;
+  return watchdog_.stalled_cycles(cycle_, control().work() + ahead.consumed + ahead.words);
 }
 
 void FrameRun::finish() {
   state_ = State::kFinishing;
   done_cycle_ = cycle_ + static_cast<std::uint64_t>(config_.pipeline_latency_cycles);
-  fast_forward_.settle();
+  fast_forward_.settle(cycle_);
   stepper_.arbitration().end_counting(cycle_);
   if (stepper_.conflicts() == nullptr) return;
   conflicts_->end_frame(cycle_, control(), stepper_.arbitration());
@@ -86,8 +83,9 @@ void FrameRun::end() {
   if (stepper_.rows().is_on()) row_profiles_.push_back(stepper_.rows().profile(first_cycle_));
 }
 
-std::string FrameRun::waits(bool host_requests) const {
+std::string FrameRun::waits(bool host_requests) {
   if (!is_running()) return "the core runs no frame";
+  run_ahead(cycle_);  // after serve_host() the core has an older state
   return "frame " + std::to_string(frame_cycles_.size()) + " of the core, cycle " +
          std::to_string(cycle_ - first_cycle_) + "; " +
          waits_of_ports(control(), stepper_.arbitration(), host_requests);

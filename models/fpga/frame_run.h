@@ -64,7 +64,7 @@ class FrameRun {
   }
   bool expects_known_burst(bool write) { return fast_forward_.expects_known_burst(write); }
   // To be called before the route of the host changes.
-  void host_route_changes() { fast_forward_.settle(); }
+  void host_route_changes() { fast_forward_.settle(cycle_); }
   // To be called when control().frame_done() becomes true.
   void finish();
   // To be called in done_cycle().
@@ -78,7 +78,8 @@ class FrameRun {
   std::uint64_t first_cycle() const { return first_cycle_; }
   // The first cycle after the frame that was finished last.
   std::uint64_t done_cycle() const { return done_cycle_; }
-  // After serve_host() its state and counts may be of an earlier cycle, up to the next run_ahead().
+  // After serve_host() its state and counts may be of an earlier cycle, up to the next other call that runs
+  // cycles.
   CoreControl& control() { return stepper_.control(); }
   const CoreControl& control() const { return stepper_.control(); }
   // A lower bound of the cycle in which the last write of the frame is granted.
@@ -92,7 +93,7 @@ class FrameRun {
   // See StallWatchdog.
   std::uint64_t stalled_cycles();
   // Text for messages: the frame that runs, and what its ports wait for.
-  std::string waits(bool host_requests) const;
+  std::string waits(bool host_requests);
 
   // The number of cycles of every frame that has ended, from its first cycle to its end (`frame_cycles` in
   // results).

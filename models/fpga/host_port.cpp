@@ -8,8 +8,6 @@ namespace stereotlm::fpga {
 namespace {
 
 constexpr memory::PortMask kHostMask = memory::mask_of(kHostPort);
-// The largest number of cycles that one call of step_contended() steps.
-constexpr std::uint64_t kMostCycles = std::uint64_t{1} << 13U;
 
 }  // namespace
 
@@ -61,7 +59,7 @@ void HostPort::serve_contended() {
 void HostPort::step_contended(std::uint64_t first_cycle) {
   frames_.run_ahead(first_cycle);  // before join(): the route of the host prevents skipping
   join();
-  const std::uint64_t end = frames_.cycle() + kMostCycles;
+  const std::uint64_t end = frames_.cycle() + FastForward::kMostHostCycles;
   while (frames_.cycle() < end && !frames_.control().frame_done() && bus_.word_waits()) {
     const std::uint64_t cycle = frames_.cycle();
     const std::uint64_t edge_ps = clock_.edge_ps(cycle);
@@ -144,7 +142,7 @@ void HostPort::serve_in_step(std::uint64_t first_cycle) {
   bus_.count_granted(words, clock_.edge_ps(last), usable_ps(last));
 }
 
-bool HostPort::serves_in_step(std::size_t bank) const {
+bool HostPort::serves_one_word_per_cycle(std::size_t bank) const {
   return is_in_step_ && is_only_master_ && !is_contended(bank) && !arbitration_.needs_turnaround(bank);
 }
 

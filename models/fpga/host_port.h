@@ -50,7 +50,7 @@ class HostPort {
   // next frame as soon as this one ends.
   bool is_contended() const;
   // Runs the frame and serves the words of the burst, to the end of the burst or of the frame, but not more
-  // than 8192 cycles after the waiting word requests.
+  // than FastForward::kMostHostCycles after the waiting word requests.
   void serve_contended();
   // Serves the words of an uncontended burst. A word may be served early, but another master of the registers
   // could start a frame on its bank from `horizon_ps` on. Returns the time to call again, in ps: either a
@@ -60,10 +60,10 @@ class HostPort {
   // Serves an uncontended burst that has just begun, if no frame can start within it.
   void serve_new_burst();
 
-  // For platform::CameraLines and platform::DmaBursts, which skip bursts that they have seen before.
+  // To skip bursts that repeat:
   //
   // Whether bursts to this bank are served one word a cycle, and independently of the frame.
-  bool serves_in_step(std::size_t bank) const;
+  bool serves_one_word_per_cycle(std::size_t bank) const;
   // Counts `words` words of skipped bursts of one direction to such a bank. The first is served in
   // `first_cycle`, the last in the cycle before `end_cycle`, and the running frame cannot have ended by then.
   void count_skipped(std::size_t bank, bool write, std::uint64_t first_cycle, std::uint64_t end_cycle,

@@ -137,9 +137,9 @@ void LocalBusControl::end(std::uint64_t idle_clock) {
   master_->end_burst_at(free_ps_, ok_);
 }
 
-void LocalBusControl::skip_to(std::uint64_t bursts, std::uint64_t busy_clocks, std::uint64_t idle_clock) {
-  stats_.bursts = bursts;
-  stats_.busy_clocks = busy_clocks;
+void LocalBusControl::skip_bursts(std::uint64_t bursts, std::uint64_t busy_clocks, std::uint64_t idle_clock) {
+  stats_.bursts += bursts;
+  stats_.busy_clocks += idle_clock_ - address_clock_ + busy_clocks;
   address_clock_ = idle_clock;  // all clocks of the last burst are counted
   idle_clock_ = idle_clock;
   free_ps_ = clock_.edge_ps(idle_clock_ + 1);

@@ -107,8 +107,7 @@ class LocalBusControl final : public LocalBusIf {
   // Whether the clocks of the bus begin with those of `clock`.
   bool is_in_step_with(const Clock& clock) const { return clock_.has_edges_of(clock); }
 
-  // For platform::CameraLines and platform::DmaBursts, which skip bursts to the banks that they have seen
-  // before.
+  // To skip bursts to the banks that repeat:
   const Clock& clock() const { return clock_; }
   // The last burst, and the number of its idle clock.
   const LocalBurst& burst() const { return burst_; }
@@ -116,9 +115,9 @@ class LocalBusControl final : public LocalBusIf {
   // The clocks of all bursts, while the bus is idle.
   std::uint64_t busy_clocks() const { return stats_.busy_clocks + idle_clock_ - address_clock_; }
   std::uint64_t bursts() const { return stats_.bursts; }
-  // Bursts have moved words: the number and the clocks of all bursts, and the idle clock of the last one, are
-  // those after them. For each range of addresses count_words() adds their words.
-  void skip_to(std::uint64_t bursts, std::uint64_t busy_clocks, std::uint64_t idle_clock);
+  // While the bus is idle: `bursts` bursts have taken `busy_clocks` clocks, and this is the idle clock of the
+  // last one. For each range of addresses count_words() adds their words.
+  void skip_bursts(std::uint64_t bursts, std::uint64_t busy_clocks, std::uint64_t idle_clock);
   void count_words(bool write, std::uint64_t address, std::uint64_t words);
 
   // Counts up to `now_ps`.

@@ -83,7 +83,7 @@ class StereoCore : public sc_core::sc_module, private FastCore::Board {
   void record_rows() { frames_.record_rows(); }
   std::vector<RowProfile> take_rows() { return frames_.take_rows(); }
   // Text for messages: what the ports wait for.
-  std::string waits() const { return frames_.waits(local_bus_.word_waits()); }
+  std::string waits() { return frames_.waits(local_bus_.word_waits()); }
   // Advances control() to the present, for observers of a running frame. Two counts are provisional until a
   // burst contends for a bank of the frame, or the frame ends:
   // - A pass on an uncontended pixel port counts as a grant, in the arbiters' reads too, and waits() shows it

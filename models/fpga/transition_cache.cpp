@@ -79,6 +79,8 @@ void TransitionCache::clear() {
   host_.clear();
   followed_.clear();
   conflicts_.clear();
+  effects_followed_.clear();
+  parts_count_ = 0;
   transitions_ = 0;
   mask_ = kFirstBuckets - 1;
   buckets_.assign(kFirstBuckets * words_of_bucket(), 0);
@@ -152,10 +154,12 @@ void TransitionCache::record(StateNumber from, const Accesses& accesses, HostReq
 }
 
 void TransitionCache::record_sequence(StateNumber from, HostRequests host, StateNumber next,
-                                      const Progress& progress, const HostGrants& grants) {
+                                      const Progress& progress, const HostGrants& grants,
+                                      const Sequence& sequence) {
   const auto effect = static_cast<std::uint32_t>(effects_.size());
   add_effect(nullptr, progress, grants);
-  parts_.back() = sequence_;
+  parts_count_ += sequence.size();
+  parts_.back() = sequence;
   record(from, {}, host, {next, effect});
 }
 
@@ -189,7 +193,7 @@ void TransitionCache::double_buckets() {
 // loop of any length is found. When the walk returns to the marked state, it repeats the loop as often as
 // there is room.
 TransitionCache::StateNumber TransitionCache::walk(StateNumber first, const Accesses& accesses,
-                                                   Progress& room) {
+                                                   Progress& room, Sequence* sequence) {
   StateNumber state = first;
   StateNumber mark = state;
   Progress since_mark;
@@ -199,11 +203,11 @@ TransitionCache::StateNumber TransitionCache::walk(StateNumber first, const Acce
        transition = find(state, accesses)) {
     if (transition->next == state) {
       const std::uint64_t times = progress(*transition).times_in(room);
-      follow(*transition, times);
+      follow(*transition, times, sequence);
       room.subtract(progress(*transition), times);
       return state;
     }
-    follow(*transition);
+    follow(*transition, 1, sequence);
     room.subtract(progress(*transition));
     since_mark.add(progress(*transition));
     state = transition->next;
@@ -213,15 +217,14 @@ TransitionCache::StateNumber TransitionCache::walk(StateNumber first, const Acce
       if (times == 0) continue;
       for (std::uint64_t step = 0; step < steps; ++step) {
         transition = find(state, accesses);
-        follow(*transition, times);
+        follow(*transition, times, sequence);
         state = transition->next;
       }
-      const auto is_loop = [steps](std::vector<Part>& parts) {
-        for (auto part = parts.end() - static_cast<std::ptrdiff_t>(steps); part != parts.end(); ++part)
+      if (sequence != nullptr) {
+        for (auto part = sequence->end() - static_cast<std::ptrdiff_t>(steps); part != sequence->end();
+             ++part)
           part->length = static_cast<std::uint32_t>(steps);
-      };
-      if (is_in_sequence_) is_loop(sequence_);
-      if (keeps_order_) is_loop(in_order_);
+      }
       room.subtract(since_mark, times);
     } else if (steps == mark_after) {
       mark = state;

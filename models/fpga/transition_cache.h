@@ -73,17 +73,19 @@ struct HostGrants {
   }
 };
 
-// Memo of state transitions for FastForward. A transition leads to the end of a group of four columns of the
+// Cache of state transitions for FastForward. A transition leads to the end of a group of four columns of the
 // matcher, or to the last grant of a burst of the host in the group. The state before it, the requests of the
 // host, and the accesses of the slots that the group can handle, determine its cycles, its counts and the
 // next state. A transition is recorded when it is stepped; after that it is skipped.
 //
 // States and effects have numbers: they are few, while the accesses of real tables hardly repeat. A step
-// along the memo is one look-up in a small table.
+// of a walk is one look-up in a small table.
 class TransitionCache {
  public:
   // Cap: a frame that never repeats would otherwise fill memory.
   static constexpr std::size_t kMost = std::size_t{1} << 17U;
+  // Cap of the parts of all sequences: this number for each transition of the other cap.
+  static constexpr std::size_t kMostPartsEach = 8;
 
   struct State {
     CoreControl::State control;
@@ -120,6 +122,14 @@ class TransitionCache {
     StateNumber next = 0;
     std::uint32_t effect = 0;
   };
+  // Part of a sequence of transitions: an effect. `length` consecutive parts are followed one after the other,
+  // and this `times` times.
+  struct Part {
+    std::uint32_t effect;
+    std::uint32_t length;
+    std::uint64_t times;
+  };
+  using Sequence = std::vector<Part>;
 
   // `slots`: the most slots that are in a lane during a group.
   TransitionCache(std::size_t slots, std::size_t most);
@@ -133,47 +143,32 @@ class TransitionCache {
   void record(StateNumber from, const Accesses& accesses, HostRequests host, StateNumber next,
               const Effect& effect);
   void clear();
-  bool is_full() const { return transitions_ >= most_ || states_.size() >= kMostStates; }
+  bool is_full() const {
+    return transitions_ >= most_ || parts_count_ >= kMostPartsEach * most_ || states_.size() >= kMostStates;
+  }
 
   const Progress& progress(std::uint32_t effect) const { return progress_[effect]; }
   const Progress& progress(const Transition& transition) const { return progress(transition.effect); }
   const HostGrants& host(const Transition& transition) const { return host_[transition.effect]; }
-  // Notes that a transition has been followed.
-  void follow(const Transition& transition, std::uint64_t times = 1) {
-    if (is_in_sequence_) sequence_.push_back({transition.effect, 1, times});
-    if (keeps_order_) in_order_.push_back({transition.effect, 1, times});
-    count(transition.effect, times);
-  }
-  // Transitions in their order: `length` consecutive ones are followed one after the other, and this `times`
-  // times.
-  struct Part {
-    std::uint32_t effect;
-    std::uint32_t length;
-    std::uint64_t times;
-  };
-  // While the order is kept: the transitions that have been followed since forget_order().
-  void keep_order(bool keeps_order) { keeps_order_ = keeps_order; }
-  const std::vector<Part>& in_order() const { return in_order_; }
-  void forget_order() { in_order_.clear(); }
   // The transitions of a sequence; none if this is no sequence.
-  const std::vector<Part>& parts(std::uint32_t effect) const { return parts_[effect]; }
+  const Sequence& parts(std::uint32_t effect) const { return parts_[effect]; }
   // Valid until the next call for an effect that has not been asked for. Not for a sequence.
   const GroupConflicts& conflicts(std::uint32_t effect) {
     const bool is_known = effect < conflicts_.size() && conflicts_[effect].cycles != 0;
     return is_known ? conflicts_[effect] : find_conflicts(effect);
   }
-  // Begins a sequence: the transitions that are followed from now on.
-  void begin_sequence() {
-    sequence_.clear();
-    is_in_sequence_ = true;
+  // Notes that a transition has been followed. Adds it to `sequence`, unless that is null.
+  void follow(const Transition& transition, std::uint64_t times = 1, Sequence* sequence = nullptr) {
+    if (sequence != nullptr) sequence->push_back({transition.effect, 1, times});
+    count(transition.effect, times);
   }
-  void end_sequence() { is_in_sequence_ = false; }
-  // Records the last sequence as one transition, which needs no accesses.
+  // Records a sequence as one transition, which needs no accesses.
   void record_sequence(StateNumber from, HostRequests host, StateNumber next, const Progress& progress,
-                       const HostGrants& grants);
+                       const HostGrants& grants, const Sequence& sequence);
   // Follows recorded transitions with the same accesses, as far as there is room, which it reduces. A loop of
-  // transitions is repeated in one step. Returns the state that comes next.
-  StateNumber walk(StateNumber first, const Accesses& accesses, Progress& room);
+  // transitions is repeated in one step. Adds them to `sequence`, unless that is null. Returns the state that
+  // comes next.
+  StateNumber walk(StateNumber first, const Accesses& accesses, Progress& room, Sequence* sequence = nullptr);
   // Adds the counts of the transitions that were followed since the last call.
   void count_followed(CoreControl& control, memory::Arbitration& arbitration);
 
@@ -213,17 +208,14 @@ class TransitionCache {
   std::vector<const State*> states_;  // [number]
   std::vector<Accesses> unhandled_;   // [number of the state]: bits of the slots that are not handled before
   std::unordered_map<Effect, std::uint32_t, EffectHash> effect_numbers_;
-  std::vector<const Effect*> effects_;    // [number]; null for a sequence
-  std::vector<std::vector<Part>> parts_;  // [number]; empty unless it is a sequence
-  std::vector<Progress> progress_;        // [number of the effect]
-  std::vector<HostGrants> host_;          // [number of the effect]
-  std::vector<std::uint64_t> followed_;   // [number of the effect]: times not counted yet
+  std::vector<const Effect*> effects_;   // [number]; null for a sequence
+  std::vector<Sequence> parts_;          // [number]; empty unless it is a sequence
+  std::vector<Progress> progress_;       // [number of the effect]
+  std::vector<HostGrants> host_;         // [number of the effect]
+  std::vector<std::uint64_t> followed_;  // [number of the effect]: times not counted yet
   std::vector<std::uint32_t> effects_followed_;
-  std::vector<Part> sequence_;  // the last one
-  bool is_in_sequence_ = false;
-  bool keeps_order_ = false;
-  std::vector<Part> in_order_;
   std::vector<GroupConflicts> conflicts_;  // [number of the effect]; without cycles: not asked for yet
+  std::size_t parts_count_ = 0;            // of all sequences
   std::vector<std::uint64_t> buckets_;
   std::size_t mask_ = 0;  // number of buckets - 1; they are a power of two
   std::size_t transitions_ = 0;

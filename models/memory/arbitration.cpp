@@ -3,6 +3,9 @@
 #include <algorithm>
 
 namespace stereotlm::memory {
+
+static_assert(kBankCountRule.max <= 64, "visited() has a bit for each bank");
+
 Arbitration::Arbitration(const ArbiterConfig& arbiter, const std::vector<SsramBankConfig>& banks) {
   arbiters_.reserve(banks.size());
   for (const SsramBankConfig& bank : banks) arbiters_.emplace_back(arbiter, bank);

@@ -86,13 +86,10 @@ WordsByRange BridgeControl::words_held() const {
   return held;
 }
 
-bool BridgeControl::is_idle(std::uint64_t now_ps) {
-  if (pci_queue_.front() != nullptr) return false;
-  for (const DmaChannel& channel : channels_) {
-    if (channel.busy()) return false;
-  }
-  local_bus_.settle(now_ps);
-  return local_bus_.is_idle();
+bool BridgeControl::is_idle() const {
+  return pci_queue_.front() == nullptr && local_bus_.is_idle() &&
+         std::none_of(channels_.begin(), channels_.end(),
+                      [](const DmaChannel& channel) { return channel.busy(); });
 }
 
 std::optional<std::uint64_t> BridgeControl::bank_address(std::uint64_t offset, std::uint64_t bytes) const {

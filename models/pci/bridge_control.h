@@ -86,10 +86,13 @@ class BridgeControl final : public PciMasterIf, private LocalBusMaster::Listener
   PciBurst begin_burst(std::uint64_t address_clock_ps) override;
   void end_burst(const BurstResult& result) override;
 
-  // For platform::CameraLines, which skips posted writes that it has seen before.
+  // To skip posted writes that repeat:
   //
-  // Whether nothing is under way in the bridge or on the local bus, or waits there.
-  bool is_idle(std::uint64_t now_ps);
+  // If the end of a burst on the local bus has come, ends the burst and begins the next one.
+  void settle(std::uint64_t now_ps) { local_bus_.settle(now_ps); }
+  // Whether nothing is under way in the bridge or on the local bus, or waits there. To be called after
+  // settle().
+  bool is_idle() const;
   // The byte address on the local bus to which `bytes` bytes of the slave window lead, if they lead to one
   // bank at contiguous addresses.
   std::optional<std::uint64_t> bank_address(std::uint64_t offset, std::uint64_t bytes) const;
@@ -101,7 +104,7 @@ class BridgeControl final : public PciMasterIf, private LocalBusMaster::Listener
   void skip_posted(std::size_t turn, std::uint64_t most_posted);
   void count_skipped(std::uint64_t address, std::uint64_t words);
 
-  // For platform::DmaBursts, which skips bursts of DMA that it has seen before.
+  // To skip bursts of DMA that repeat:
   //
   // The channel that is about to write a burst on one bus and to read the next one on the other, if both are
   // of full length and have not begun yet, and nothing else is under way or waits in the bridge; else null.

@@ -63,7 +63,7 @@ class DmaChannel {
     std::size_t words = 0;
     std::uint32_t next = 0;  // PCI address of the next descriptor; 0: none
   };
-  // For platform::DmaBursts, which skips bursts that it has seen before.
+  // To skip bursts that repeat:
   //
   // Whether it writes a burst on one bus while it reads the next one on the other, both of full length.
   bool moves_full_bursts() const {

@@ -6,13 +6,14 @@
 namespace stereotlm::pci {
 namespace {
 
-constexpr std::size_t kNobody = SIZE_MAX;
 constexpr std::uint64_t kDevselClocks = 4;  // clocks for which a master waits for DEVSEL#
 
 BurstEnd end_of(std::size_t words, std::size_t accepted, std::size_t asked) {
   if (words == asked) return BurstEnd::kComplete;
   return words == accepted ? BurstEnd::kDisconnect : BurstEnd::kLatencyTimer;
 }
+
+static_assert(kMasterCountRule.max <= 64, "PciBusControl::Masters has a bit for each slot");
 
 }  // namespace
 
@@ -40,7 +41,7 @@ void PciBusControl::request(std::size_t master, PciMasterIf& from, std::uint64_t
 }
 
 void PciBusControl::await_request() {
-  const std::uint64_t earliest = earliest_request_beside(kNobody);
+  const std::uint64_t earliest = earliest_request_beside(0);
   if (earliest == kNever) return;
   const std::uint64_t clock = std::max(free_clock_, earliest);
   if (clock >= decision_clock_) return;
@@ -48,14 +49,11 @@ void PciBusControl::await_request() {
   next_ps_ = clock_.edge_ps(clock);
 }
 
-std::uint64_t PciBusControl::earliest_request_beside(std::size_t master) const {
-  return earliest_request_beside(master, kNobody);
-}
-
-std::uint64_t PciBusControl::earliest_request_beside(std::size_t first, std::size_t second) const {
+std::uint64_t PciBusControl::earliest_request_beside(Masters masters) const {
   std::uint64_t earliest = kNever;
-  for (std::size_t master = 0; master < requests_.size(); ++master) {
-    if (master != first && master != second) earliest = std::min(earliest, requests_[master].clock);
+  for (const Request& request : requests_) {
+    if ((masters & 1U) == 0) earliest = std::min(earliest, request.clock);
+    masters >>= 1U;
   }
   return earliest;
 }
@@ -74,15 +72,23 @@ void PciBusControl::MasterCounts::add(const MasterCounts& other) {
   aborts += other.aborts;
 }
 
+void PciBusControl::MasterCounts::subtract(const MasterCounts& other) {
+  transactions -= other.transactions;
+  words -= other.words;
+  wait_clocks -= other.wait_clocks;
+  retries -= other.retries;
+  aborts -= other.aborts;
+}
+
 void PciBusControl::skip_bursts(std::size_t master, const MasterCounts& counts) {
   requests_[master].clock = kNever;
   master_stats_[master].add(counts);
 }
 
-void PciBusControl::skip_to(const Position& position) {
+void PciBusControl::skip_to(const Position& position, std::uint64_t busy_clocks) {
   last_granted_ = position.last_granted;
   free_clock_ = position.free_clock;
-  busy_clocks_ = position.busy_clocks;
+  busy_clocks_ += busy_clocks;
   decision_clock_ = kNever;
   next_ps_ = kNever;
   await_request();
@@ -153,7 +159,7 @@ void PciBusControl::begin_words(std::uint64_t first_clock) {
 
 // Cuts the burst for the earliest request of another master. A later request would not cut it earlier.
 void PciBusControl::cut_words() {
-  const std::uint64_t request = earliest_request_beside(running_.master);
+  const std::uint64_t request = earliest_request_beside(mask_of(running_.master));
   if (request == kNever) return;
   const std::uint64_t last_data_clock =
       std::max({running_.address_clock + latency_timer_clocks_, request, running_.result.first_data_clock});

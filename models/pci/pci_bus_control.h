@@ -53,6 +53,7 @@ class PciBusControl {
     std::uint64_t aborts = 0;        // bursts that ended with kMasterAbort or kTargetError
 
     void add(const MasterCounts& other);
+    void subtract(const MasterCounts& other);
   };
   struct MasterStats : MasterCounts {
     std::string name;
@@ -88,28 +89,31 @@ class PciBusControl {
   // Counts up to `now_ps`.
   Stats stats(std::uint64_t now_ps) const;
 
-  // For platform::CameraLines and platform::DmaBursts, which skip bursts that they have seen before.
+  // To skip bursts that repeat:
   //
-  // The clock that the next decide() grants, the first clock of a master's request (kNever: there is none),
-  // and the earliest one of all masters but one or two.
+  // The clock that the next decide() grants, and the first clock of a master's request (kNever: there is none).
   std::uint64_t decision_clock() const { return decision_clock_; }
   std::uint64_t request_clock(std::size_t master) const { return requests_[master].clock; }
-  std::uint64_t earliest_request_beside(std::size_t master) const;
-  std::uint64_t earliest_request_beside(std::size_t first, std::size_t second) const;
-  // The state between two bursts, and what a master has done.
+  // The earliest of these clocks over all masters but some.
+  using Masters = std::uint64_t;  // a bit for each slot
+  static constexpr Masters mask_of(std::size_t master) { return Masters{1} << master; }
+  std::uint64_t earliest_request_beside(Masters masters) const;
+  // The state between two bursts.
   struct Position {
     std::size_t last_granted = 0;
     std::uint64_t free_clock = 0;
-    std::uint64_t busy_clocks = 0;
   };
-  Position position() const { return {last_granted_, free_clock_, busy_clocks_}; }
+  Position position() const { return {last_granted_, free_clock_}; }
+  // What has been done up to the end of the last burst, by one master or by all.
   const MasterCounts& counts(std::size_t master) const { return master_stats_[master]; }
-  std::uint64_t transactions() const;  // of all masters
+  std::uint64_t transactions() const;
+  std::uint64_t busy_clocks() const { return busy_clocks_; }
   // Instead of decide(): the request of a master has been granted, and its bursts have ended. These are their
   // counts.
   void skip_bursts(std::size_t master, const MasterCounts& counts);
-  // To be called then: the position after all of them. The masters may then request again.
-  void skip_to(const Position& position);
+  // To be called then: the position after all of them, and the clocks that they have taken. The masters may
+  // then request again.
+  void skip_to(const Position& position, std::uint64_t busy_clocks);
 
  private:
   class Slot final : public PciSlot {

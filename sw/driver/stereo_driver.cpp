@@ -64,11 +64,12 @@ std::uint64_t host_memory_bytes(const DriverConfig& config) {
   return results_start(config) + config.buffers.disparities.size() * picture_bytes(config);
 }
 
-StereoDriver::StereoDriver(const DriverConfig& config, const std::vector<std::uint32_t>& left_table,
-                           const std::vector<std::uint32_t>& right_table, FrameListener& listener)
+StereoDriver::StereoDriver(const DriverConfig& config, const std::vector<std::uint32_t>* left_table,
+                           const std::vector<std::uint32_t>* right_table, FrameListener& listener)
     : config_(config), left_table_(left_table), right_table_(right_table), listener_(listener) {
   if (const auto found = problems(config); !found.empty()) throw std::invalid_argument(found.front());
-  const auto check = [this](const char* side, bool is_used, std::size_t entries) {
+  const auto check = [this](const char* side, bool is_used, const std::vector<std::uint32_t>* table) {
+    const std::size_t entries = table != nullptr ? table->size() : 0;
     const std::uint64_t expected = is_used ? table_bytes(config_) / 4 : 0;
     if (entries != expected) {
       throw std::invalid_argument(std::string(side) + " table = " + std::to_string(entries) +
@@ -76,8 +77,8 @@ StereoDriver::StereoDriver(const DriverConfig& config, const std::vector<std::ui
     }
   };
   const fpga::BufferBases& buffers = config.buffers;
-  check("left", buffers.left_lut.has_value(), left_table_.size());
-  check("right", buffers.right_lut.has_value() || buffers.has_joint_tables, right_table_.size());
+  check("left", buffers.left_lut.has_value(), left_table_);
+  check("right", buffers.right_lut.has_value() || buffers.has_joint_tables, right_table_);
   if (buffers.has_joint_tables) join_tables();
 }
 
@@ -85,7 +86,7 @@ void StereoDriver::join_tables() {
   const auto table = [this](const std::vector<std::uint32_t>& entries) {
     return kernels::RectificationTable{config_.width, config_.height, entries};
   };
-  kernels::JointTable joint = kernels::join_tables(table(left_table_), table(right_table_));
+  kernels::JointTable joint = kernels::join_tables(table(*left_table_), table(*right_table_));
   joint_table_ = std::move(joint.words);
   joint_offsets_ = joint.offsets;
 }
@@ -119,16 +120,16 @@ std::string StereoDriver::under_way() const {
 void StereoDriver::upload_tables() {
   std::vector<Piece> pieces;
   std::uint64_t host = kDataStart;
-  const auto add = [&](const std::optional<std::uint32_t>& lut, const std::vector<std::uint32_t>& table) {
+  const auto add = [&](const std::optional<std::uint32_t>& lut, const std::vector<std::uint32_t>* table) {
     if (!lut) return;
-    std::memcpy(bus_->memory(config_.devices.host_memory + host, table.size() * 4), table.data(),
-                table.size() * 4);
-    pieces.push_back({host, *lut, table.size(), false});
-    host += table.size() * 4;
+    const std::uint64_t bytes = table->size() * 4;
+    std::memcpy(bus_->memory(config_.devices.host_memory + host, bytes), table->data(), bytes);
+    pieces.push_back({host, *lut, table->size(), false});
+    host += bytes;
   };
   if (config_.buffers.has_joint_tables) {
     for (const auto& [address, value] : core_map::joint_offsets(joint_offsets_)) core(address, value);
-    add(config_.buffers.left_lut, joint_table_);
+    add(config_.buffers.left_lut, &joint_table_);
   } else {
     add(config_.buffers.left_lut, left_table_);
     add(config_.buffers.right_lut, right_table_);

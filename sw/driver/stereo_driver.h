@@ -57,11 +57,11 @@ class FrameListener {
 // reports an error, and what HostBus throws.
 class StereoDriver : public host::Program {
  public:
-  // Entries of the tables, row by row (contract 1.1); empty for a side without table. The driver joins those
+  // Entries of the tables, row by row (contract 1.1); null for a side without table. The driver joins those
   // of joint tables. The tables and `listener` outlive the driver. Throws std::invalid_argument if the
   // configuration has problems, a table does not have one entry per pixel, or joint tables do not fit.
-  StereoDriver(const DriverConfig& config, const std::vector<std::uint32_t>& left_table,
-               const std::vector<std::uint32_t>& right_table, FrameListener& listener);
+  StereoDriver(const DriverConfig& config, const std::vector<std::uint32_t>* left_table,
+               const std::vector<std::uint32_t>* right_table, FrameListener& listener);
 
   void run(host::HostBus& bus) override;
 
@@ -111,8 +111,8 @@ class StereoDriver : public host::Program {
   std::uint64_t image_bytes() const;
 
   DriverConfig config_;
-  const std::vector<std::uint32_t>& left_table_;
-  const std::vector<std::uint32_t>& right_table_;
+  const std::vector<std::uint32_t>* left_table_;
+  const std::vector<std::uint32_t>* right_table_;
   std::vector<std::uint32_t> joint_table_;  // empty unless the tables are joint
   kernels::JointOffsets joint_offsets_{};
   FrameListener& listener_;

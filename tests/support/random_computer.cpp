@@ -1,6 +1,8 @@
 #include "tests/support/random_computer.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <cstdlib>
 #include <optional>
 #include <string>
 #include <vector>
@@ -33,14 +35,19 @@ std::vector<std::uint32_t> identity_table(const RandomBoard& board) {
   return entries;
 }
 
-// Pictures are captured into banks that the frame of the pictures before them uses.
-void draw_contended_captures(RandomBoard& board, SplitMix64& random) {
+// A smaller frame, so that more of them are compared, with identity tables, which make its accesses regular.
+void make_regular_frame(RandomBoard& board, SplitMix64& random) {
   board.width = 4 * random.between(6, 16);
   board.height = random.between(12, 40);
   board.window = std::min(board.window, 9);
   for (auto* table : {&board.left_table, &board.right_table}) {
     if (*table) *table = identity_table(board);
   }
+}
+
+// Pictures are captured into banks that the frame of the pictures before them uses.
+void draw_contended_captures(RandomBoard& board, SplitMix64& random) {
+  make_regular_frame(board, random);
   std::vector<int> used = board.disparity;
   for (const std::optional<int>& bank : {board.left_lut, board.right_lut}) {
     if (bank) used.push_back(*bank);
@@ -54,12 +61,7 @@ void draw_contended_captures(RandomBoard& board, SplitMix64& random) {
 
 // Pictures are captured into two banks that nothing else uses, line after line.
 void draw_apart_captures(RandomBoard& board, SplitMix64& random) {
-  board.width = 4 * random.between(6, 16);
-  board.height = random.between(12, 40);
-  board.window = std::min(board.window, 9);
-  for (auto* table : {&board.left_table, &board.right_table}) {
-    if (*table) *table = identity_table(board);
-  }
+  make_regular_frame(board, random);
   const int pictures = random.between(1, 2);
   for (auto* image : {&board.left_image, &board.right_image}) {
     image->assign(static_cast<std::size_t>(pictures), static_cast<int>(board.banks.size()));
@@ -69,6 +71,11 @@ void draw_apart_captures(RandomBoard& board, SplitMix64& random) {
 }
 
 }  // namespace
+
+std::uint64_t random_computers(std::uint64_t without_it) {
+  const char* const asked = std::getenv("STEREOTLM_RANDOM_COMPUTERS");
+  return asked != nullptr ? std::stoull(asked) : without_it;
+}
 
 RandomComputer make_random_computer(std::uint64_t seed, const RandomKnobs& knobs) {
   constexpr PlainTime kPsOfUs = 1'000'000;

@@ -15,6 +15,9 @@ struct RandomComputer {
   PlainComputerInput input;  // the same board and the computer around it
 };
 
+// How many of them a test compares: as many as STEREOTLM_RANDOM_COMPUTERS says.
+std::uint64_t random_computers(std::uint64_t without_it);
+
 RandomComputer make_random_computer(std::uint64_t seed, const RandomKnobs& knobs = {});
 
 // The pictures of a camera frame: noise, another one in each frame.

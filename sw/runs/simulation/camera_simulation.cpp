@@ -12,9 +12,8 @@
 namespace stereotlm::runs {
 namespace {
 
-const std::vector<std::uint32_t>& entries_of(const std::optional<kernels::RectificationTable>& table) {
-  static const std::vector<std::uint32_t> none;
-  return table ? table->entries : none;
+const std::vector<std::uint32_t>* entries_of(const std::optional<kernels::RectificationTable>& table) {
+  return table ? &table->entries : nullptr;
 }
 
 // If nothing progresses for this simulated time, the simulation has stalled. The time exceeds every regular

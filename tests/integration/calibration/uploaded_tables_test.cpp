@@ -103,7 +103,7 @@ TEST_P(UploadedTables, AreWhatTheirBanksHold) {
   Pictures right(scene.right);
   Deliveries deliveries;
   const driver::DriverConfig config = driver::driver_config(board, 2);
-  driver::StereoDriver driver(config, tables.left.entries, tables.right.entries, deliveries);
+  driver::StereoDriver driver(config, &tables.left.entries, &tables.right.entries, deliveries);
   DriverAndReadBack program(driver, platform::buffer_bases(board));
   test::MonitoringBinder binder;
   platform::Computer computer("computer", board, driver::host_memory_bytes(config), program, left, right,

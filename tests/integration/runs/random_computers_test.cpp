@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <cstdlib>
 #include <optional>
 #include <string>
 #include <thread>
@@ -243,10 +242,7 @@ std::string problems_of(std::uint64_t seed, const test::RandomKnobs& knobs, Fide
   return problems.empty() ? problems : problems + platform::to_yaml(board);
 }
 
-std::uint64_t computers(std::uint64_t otherwise = 300) {
-  const char* text = std::getenv("STEREOTLM_RANDOM_COMPUTERS");
-  return text != nullptr ? std::stoull(text) : otherwise;
-}
+std::uint64_t computers(std::uint64_t otherwise = 300) { return test::random_computers(otherwise); }
 
 int processors() { return static_cast<int>(std::max(1U, std::thread::hardware_concurrency())); }
 

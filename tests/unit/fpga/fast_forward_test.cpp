@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -469,6 +470,50 @@ TEST(FastForward, GrantsTwoBurstsOfAGroup) {
       ASSERT_EQ(ahead.figures(), stepped.figures()) << pause;
     }
   }
+}
+
+// After a burst that is known, the core is still in the state before it. Whatever is called next takes the core
+// to the last grant: a step, a burst that comes word by word, or the end of the frame.
+TEST(FastForward, IsTakenToTheLastGrantByAnyCall) {
+  const Setting setting = bank_for_each_port(64, 24);
+  Core stepped(setting, Core::Way::kStepped);
+  Core ahead(setting, Core::Way::kAhead);
+  for (int frame = 0; frame < 6; ++frame) {
+    stepped.start(stepped.cycle());
+    ahead.start(ahead.cycle());
+    Burst burst{stepped.cycle() + 500, 0, true, 3};
+    for (int number = 0; !stepped.done(); ++number) {
+      const std::uint64_t last_grant = stepped.serve_in_step(burst);
+      ASSERT_EQ(ahead.serve_in_step(burst), last_grant);
+      ASSERT_EQ(ahead.cycle(), stepped.cycle());
+      if (number % 3 == 1) {
+        ahead.step();
+        stepped.step();
+      } else if (number % 3 == 2) {
+        for (Core* core : {&stepped, &ahead}) core->serve({0, 1, true, 2});
+      }
+      ASSERT_EQ(ahead.cycle(), stepped.cycle());
+      burst.cycle = stepped.cycle() + 600;
+    }
+    ahead.advance(kNever);
+    stepped.finish();
+    ahead.finish();
+    ASSERT_EQ(ahead.figures(), stepped.figures()) << frame;
+  }
+}
+
+TEST(FastForward, RefusesAFrameBeforeTheLastOneIsSettled) {
+  Core core(bank_for_each_port(64, 24), Core::Way::kAhead);
+  for (int frame = 0; frame < 2; ++frame) {
+    core.start(core.cycle());
+    const std::uint64_t first = core.cycle();
+    for (std::uint64_t number = 1; number < 4; ++number)
+      core.serve_in_step({first + 700 * number, 0, true, 3});
+    if (frame == 1) break;
+    core.advance(kNever);
+    core.finish();
+  }
+  EXPECT_THROW(core.start(core.cycle()), std::logic_error);
 }
 
 // A burst that begins with a group of the drain is known. One that begins after the last group comes in the

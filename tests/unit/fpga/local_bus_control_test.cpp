@@ -94,6 +94,39 @@ TEST_F(LocalBusControlTest, BeginsEachBurstWithTheFirstClockAtOrAfterItsTime) {
   }
 }
 
+// Two bursts of three words, which begin in clocks 10 and 20, are stepped or skipped.
+TEST_F(LocalBusControlTest, IsInTheSameStateAfterBurstsThatAreSkipped) {
+  LocalBusControl skipping({40, {{0, 64}}}, kBankCount, *this);
+  LocalBusControl stepped({40, {{0, 64}}}, kBankCount, *this);
+  const auto run = [&](LocalBusControl& control, std::uint64_t clock) {
+    std::uint32_t data[3] = {};
+    EXPECT_TRUE(control.begin_burst(clock * kPs, {true, 8, reinterpret_cast<unsigned char*>(data), 3}));
+    control.count_granted(3, (clock + 5) * kPs, (clock + 7) * kPs);
+  };
+  for (LocalBusControl* control : {&skipping, &stepped}) {
+    control->bind(*this);
+    run(*control, 2);
+  }
+  const std::uint64_t busy = stepped.busy_clocks();
+  for (const std::uint64_t clock : {10U, 20U}) run(stepped, clock);
+  skipping.skip_bursts(2, stepped.busy_clocks() - busy, 25);
+  skipping.count_words(true, 8, 6);
+  EXPECT_EQ(stepped.busy_clocks() - busy, 2 * 5U);  // address, decode, three words
+  for (const std::uint64_t clock : {30U, 31U}) {    // the idle clock is 25
+    const LocalBusControl::Stats a = skipping.stats(clock * kPs);
+    const LocalBusControl::Stats b = stepped.stats(clock * kPs);
+    EXPECT_EQ(a.bursts, b.bursts);
+    EXPECT_EQ(a.words_written, b.words_written);
+    EXPECT_EQ(a.busy_clocks, b.busy_clocks);
+    EXPECT_EQ(skipping.idle_clock(), stepped.idle_clock());
+    EXPECT_EQ(skipping.words_granted().words(), stepped.words_granted().words());
+    if (clock == 30) {  // the next burst
+      run(skipping, 26);
+      run(stepped, 26);
+    }
+  }
+}
+
 TEST_F(LocalBusControlTest, IsInStepWithAClockThatHasItsEdges) {
   EXPECT_TRUE(bus.is_in_step_with(Clock(40)));
   EXPECT_FALSE(bus.is_in_step_with(Clock(80)));

@@ -34,9 +34,9 @@ class TransitionCacheTest : public testing::Test {
   void make_ring(std::size_t groups, std::size_t back_to) {
     for (std::size_t i = 0; i < groups; ++i) record(i, i + 1 < groups ? i + 1 : back_to);
   }
-  // The number of the group that comes next. Reduces `room`.
-  std::uint64_t walk(std::size_t from, Progress& room) {
-    const auto last = groups_.walk(groups_.number_of(state(from)), {}, room);
+  // The number of the group that comes next. Reduces `room`, and adds to `sequence`.
+  std::uint64_t walk(std::size_t from, Progress& room, TransitionCache::Sequence* sequence = nullptr) {
+    const auto last = groups_.walk(groups_.number_of(state(from)), {}, room, sequence);
     groups_.count_followed(control_, arbitration_);
     return groups_.state(last).control.rest;
   }
@@ -115,9 +115,8 @@ TEST_F(TransitionCacheTest, CountsASequenceAsItsTransitions) {
   make_ring(3, 0);
   const auto first = groups_.number_of(state(0));
   Progress room = {kMuch, kMuch, kMuch, kMuch, 7};
-  groups_.begin_sequence();
-  EXPECT_EQ(walk(0, room), 1U);
-  groups_.end_sequence();
+  TransitionCache::Sequence sequence;
+  EXPECT_EQ(walk(0, room, &sequence), 1U);
   EXPECT_EQ(granted(), 13U);
   room.words = 1;
   EXPECT_EQ(walk(0, room), 1U);  // no part of the sequence
@@ -126,7 +125,7 @@ TEST_F(TransitionCacheTest, CountsASequenceAsItsTransitions) {
   const HostRequests host = {3, 5, 7, true};
   const Progress progress = {76, 28, 56, 56, 7};
   const HostGrants grants = {5, 76, 6};
-  groups_.record_sequence(first, host, groups_.number_of(state(1)), progress, grants);
+  groups_.record_sequence(first, host, groups_.number_of(state(1)), progress, grants, sequence);
   EXPECT_FALSE(groups_.find(first, {}, {3, 5, 7, false}));
   EXPECT_FALSE(groups_.find(first, {}, {3, 4, 7, true}));
   const auto found = groups_.find(first, {}, host);
@@ -141,7 +140,7 @@ TEST_F(TransitionCacheTest, CountsASequenceAsItsTransitions) {
 }
 
 TEST_F(TransitionCacheTest, KeepsTheOrderOfItsTransitions) {
-  const auto cycles_of = [&](const std::vector<TransitionCache::Part>& parts) {
+  const auto cycles_of = [&](const TransitionCache::Sequence& parts) {
     std::vector<std::uint64_t> cycles;
     for (auto next = parts.begin(); next != parts.end(); next += next->length) {
       for (std::uint64_t time = 0; time < next->times; ++time) {
@@ -151,7 +150,6 @@ TEST_F(TransitionCacheTest, KeepsTheOrderOfItsTransitions) {
     }
     return cycles;
   };
-  groups_.keep_order(true);
   for (const std::size_t back_to : {0U, 1U, 3U, 4U}) {
     groups_.clear();
     make_ring(5, back_to);
@@ -161,18 +159,15 @@ TEST_F(TransitionCacheTest, KeepsTheOrderOfItsTransitions) {
       at = at + 1 < 5 ? at + 1 : back_to;
     }
     Progress room = {kMuch, kMuch, kMuch, kMuch, 123};
-    groups_.begin_sequence();
-    walk(0, room);
-    groups_.end_sequence();
-    EXPECT_EQ(cycles_of(groups_.in_order()), expected) << back_to;
-    EXPECT_LT(groups_.in_order().size(), 40U);
+    TransitionCache::Sequence sequence;
+    walk(0, room, &sequence);
+    EXPECT_EQ(cycles_of(sequence), expected) << back_to;
+    EXPECT_LT(sequence.size(), 40U);
     const HostRequests host = {3, 5, 7, true};
-    groups_.record_sequence(groups_.number_of(state(0)), host, groups_.number_of(state(0)), {}, {});
-    const auto sequence = groups_.find(groups_.number_of(state(0)), {}, host);
-    ASSERT_TRUE(sequence);
-    EXPECT_EQ(cycles_of(groups_.parts(sequence->effect)), expected) << back_to;
-    groups_.forget_order();
-    EXPECT_TRUE(groups_.in_order().empty());
+    groups_.record_sequence(groups_.number_of(state(0)), host, groups_.number_of(state(0)), {}, {}, sequence);
+    const auto recorded = groups_.find(groups_.number_of(state(0)), {}, host);
+    ASSERT_TRUE(recorded);
+    EXPECT_EQ(cycles_of(groups_.parts(recorded->effect)), expected) << back_to;
   }
 }
 
@@ -191,6 +186,33 @@ TEST_F(TransitionCacheTest, FindsEachTransitionAndIsFullAtItsCap) {
   groups_.clear();
   EXPECT_FALSE(groups_.is_full());
   EXPECT_FALSE(groups_.find(groups_.number_of(state(0)), {0, 0, 7, 0}));
+}
+
+TEST_F(TransitionCacheTest, IsFullWithTheMostPartsOfSequences) {
+  record(0, 0);
+  const auto number = groups_.number_of(state(0));
+  const auto part = *groups_.find(number, {});
+  TransitionCache::Sequence sequence;
+  for (int i = 0; i < 100; ++i) groups_.follow(part, 1, &sequence);
+  constexpr std::size_t kMostSequences = TransitionCache::kMostPartsEach * kMost / 100;
+  for (std::uint16_t words = 1; words <= kMostSequences; ++words) {
+    ASSERT_FALSE(groups_.is_full()) << words;
+    groups_.record_sequence(number, {0, words, 0, true}, number, {}, {}, sequence);
+  }
+  EXPECT_TRUE(groups_.is_full());
+  groups_.clear();
+  EXPECT_FALSE(groups_.is_full());
+}
+
+// A clear cache knows nothing of the transitions that were followed before.
+TEST_F(TransitionCacheTest, ForgetsWhatWasFollowedWhenItIsCleared) {
+  make_ring(3, 0);
+  groups_.follow(*groups_.find(groups_.number_of(state(2)), {}));
+  groups_.clear();
+  make_ring(1, 0);
+  Progress room = {kMuch, kMuch, kMuch, kMuch, 5};
+  walk(0, room);
+  EXPECT_EQ(granted(), 5U);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <cstring>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "models/fpga/local_bus_control.h"
@@ -54,10 +55,7 @@ class BridgeControlTest : public testing::Test,
     return burst;
   }
 
-  void request(PciMasterIf& master, std::uint64_t from_ps) override {
-    EXPECT_EQ(&master, &bridge);
-    requests_ps.push_back(from_ps);
-  }
+  void request(PciMasterIf& /*master*/, std::uint64_t from_ps) override { requests_ps.push_back(from_ps); }
   BurstResult transferred(std::uint64_t) const override { return {}; }
   const Clock& clock() const override { return pci_clock; }
   void slave_read_ended(std::uint64_t now_ps, bool ok) override {
@@ -148,6 +146,107 @@ TEST_F(BridgeControlTest, RaisesAnErrorAtOnceIfTheLocalBusRefusesAPostedBurst) {
   EXPECT_FALSE(bridge.interrupts());
   EXPECT_EQ(interrupts_ps, (std::vector<std::uint64_t>{kPs, 2 * kPs}));
   EXPECT_EQ(bus.stats(0).errors, 1U);
+}
+
+TEST_F(BridgeControlTest, KnowsTheAddressInABankOfBytesThatLieInOneApertureAndOneBank) {
+  constexpr std::uint32_t kWords = bridge::kBankBytes / 4;
+  bridge.write_register(0, bridge::kPage, 1U << 26U | 5U);
+  bridge.write_register(0, bridge::kPage + 12, 2U << 26U | (kWords - 8));
+  const std::uint64_t bank = bridge::kBankBytes;
+  const std::uint64_t end = bridge::kApertureBytes;
+  EXPECT_EQ(bridge.bank_address(8, 16), bank + 20 + 8);
+  EXPECT_EQ(bridge.bank_address(end - 16, 16), bank + 20 + end - 16);
+  EXPECT_EQ(bridge.bank_address(end - 16, 20), std::nullopt);  // two apertures
+  EXPECT_EQ(bridge.bank_address(3 * end, 32), 3 * bank - 32);
+  EXPECT_EQ(bridge.bank_address(3 * end, 36), std::nullopt);  // two banks
+  EXPECT_NE(bridge.bank_address(4 * end - 4, 4), std::nullopt);
+  EXPECT_EQ(bridge.bank_address(4 * end - 4, 8), std::nullopt);  // the core's registers
+  EXPECT_EQ(bridge.bank_address(4 * end, 4), std::nullopt);
+}
+
+TEST_F(BridgeControlTest, IsIdleWhenTheBurstOfThePostedWordsHasEnded) {
+  EXPECT_TRUE(bridge.is_idle());
+  const std::size_t turn = bridge.turn();
+  EXPECT_TRUE(post(0, 0, 32));
+  EXPECT_EQ(bridge.posted_words(), 32U);
+  bridge.settle(35 * kPs - 1);
+  EXPECT_FALSE(bridge.is_idle());
+  bridge.settle(35 * kPs);
+  EXPECT_TRUE(bridge.is_idle());
+  EXPECT_EQ(bridge.posted_words(), 0U);
+  EXPECT_NE(bridge.turn(), turn);
+  bridge.write_register(36 * kPs, bridge::kDmaControl, 1);
+  EXPECT_FALSE(bridge.is_idle());
+}
+
+TEST_F(BridgeControlTest, CountsPostedWritesThatAreSkipped) {
+  const std::size_t turn = 1 - bridge.turn();
+  bridge.skip_posted(turn, 40);
+  EXPECT_EQ(bridge.turn(), turn);
+  bridge.skip_posted(turn, 39);
+  EXPECT_EQ(bridge.stats().most_posted_words, 40U);
+  bridge.count_skipped(0, 32);
+  bridge.count_skipped(bridge::kBankBytes, 8);
+  EXPECT_EQ(bridge.stats().posted_words, 40U);
+}
+
+// A descriptor of 5 bursts of 32 words, to bank 1. `bursts` of them are read, and one less is written.
+TEST_F(BridgeControlTest, SkipsTheBurstsOfALoneChannel) {
+  constexpr std::uint32_t kBurst = 32;
+  const std::vector<std::uint32_t> words(kBurst, 7);
+  const auto start = [&](std::uint64_t channel) {
+    bridge.write_register(0, bridge::kDmaDescriptor + bridge::kChannelStride * channel, 0x100);
+    bridge.write_register(0, bridge::kDmaControl + bridge::kChannelStride * channel, 1);
+  };
+  start(0);
+  EXPECT_EQ(bridge.lone_channel(), nullptr);
+  transfer(kPs, 4, {0x1000, 1U << 26U, 5 * kBurst, 0});
+  EXPECT_EQ(bridge.lone_channel(), nullptr);  // the first burst is read, and none is written
+  transfer(2 * kPs, kBurst, words);
+  DmaChannel* const channel = bridge.lone_channel();
+  ASSERT_NE(channel, nullptr);
+  EXPECT_EQ(channel->written(), kBurst);
+  bridge.skip_dma(10 * kPs, *channel, 2);
+  EXPECT_EQ(requests_ps.back(), 10 * kPs);
+  EXPECT_EQ(bridge.next_ps(), 10 * kPs);
+  EXPECT_EQ(bridge.stats().dma_words, 3 * kBurst);
+  EXPECT_EQ(channel->written(), 3 * kBurst);
+  EXPECT_EQ(bridge.lone_channel(), channel);
+  run_to(10 * kPs);
+  EXPECT_EQ(bridge.lone_channel(), nullptr);  // its burst runs on the local bus
+  EXPECT_EQ(transfer(12 * kPs, kBurst, words).address, 0x1000U + 4 * 3 * kBurst);
+  run_to(45 * kPs);
+  EXPECT_EQ(memory.count(bridge::kBankBytes + 4 * (2 * kBurst - 1)), 0U);  // skipped
+  EXPECT_EQ(memory.count(bridge::kBankBytes + 4 * 2 * kBurst), 1U);
+  transfer(46 * kPs, kBurst, words);
+  run_to(200 * kPs);
+  EXPECT_EQ(status(), bridge::kDmaDone);
+  EXPECT_EQ(bridge.stats().dma_words, 5 * kBurst);
+}
+
+TEST_F(BridgeControlTest, HasNoLoneChannelBesideOtherTransfersOrWithAShortBurst) {
+  constexpr std::uint32_t kBurst = 32;
+  const std::vector<std::uint32_t> words(kBurst, 7);
+  enum What { kAlone, kPosted, kOtherChannel, kShort };
+  for (const What what : {kAlone, kPosted, kOtherChannel, kShort}) {
+    BridgeControl other{{32, 64}, *this, bus, *this};
+    bus.bind(other.local_bus_master());
+    const auto read = [&](const std::vector<std::uint32_t>& data) {
+      const PciBurst burst = other.begin_burst(kPs);
+      std::copy_n(data.begin(), burst.words->size(), burst.words->begin());
+      other.end_burst({BurstEnd::kComplete, burst.words->size(), 0, kPs});
+    };
+    other.write_register(0, bridge::kDmaControl, 1);
+    if (what == kOtherChannel) other.write_register(0, bridge::kDmaControl + bridge::kChannelStride, 1);
+    read({0x1000, 1U << 26U, what == kShort ? 2 * kBurst - 1 : 2 * kBurst, 0});
+    if (what == kOtherChannel) read({0x1000, 1U << 26U, 2 * kBurst, 0});
+    read(words);
+    if (what == kPosted) {
+      const std::uint32_t word = 1;
+      other.write(kPs, 0, reinterpret_cast<const unsigned char*>(&word), 1);
+    }
+    EXPECT_EQ(other.lone_channel() != nullptr, what == kAlone) << what;
+  }
 }
 
 // The channel reads its descriptor and four words, one of them after a cut, and writes them to bank 1.

@@ -298,6 +298,48 @@ TEST_F(PciBusControlTest, CountsTheClocksFromTheFirstRequestToItsAddressClock) {
   EXPECT_EQ(stats.busy_clocks, 27U);
 }
 
+TEST_F(PciBusControlTest, KnowsTheEarliestRequestOfAllMastersButSome) {
+  request(0, 5 * kClockPs);
+  request(2, 3 * kClockPs);
+  const auto beside = [&](PciBusControl::Masters some) { return bus.earliest_request_beside(some); };
+  EXPECT_EQ(beside(0), 3U);
+  EXPECT_EQ(beside(PciBusControl::mask_of(0)), 3U);
+  EXPECT_EQ(beside(PciBusControl::mask_of(2)), 5U);
+  EXPECT_EQ(beside(PciBusControl::mask_of(0) | PciBusControl::mask_of(2)), kNever);
+}
+
+// A burst of master 0 is stepped or skipped, while master 1 requests a later clock.
+TEST_F(PciBusControlTest, IsInTheSameStateAfterABurstThatIsSkipped) {
+  PciBusControl skipping(config());
+  skipping.bind(0, target);
+  const auto request_both = [&](PciBusControl& control) {
+    control.slot(0).request(masters[0], 2 * kClockPs);
+    control.slot(1).request(masters[1], 40 * kClockPs);
+  };
+  request_both(bus);
+  request_both(skipping);
+  masters[0].add(true, 3);
+  bus.decide(bus.next_ps());
+  bus.step(bus.next_ps());
+  EXPECT_EQ(skipping.decision_clock(), 2U);
+  skipping.skip_bursts(0, bus.counts(0));
+  EXPECT_EQ(skipping.request_clock(0), kNever);
+  skipping.skip_to(bus.position(), bus.busy_clocks());
+  EXPECT_EQ(bus.busy_clocks(), 1 + kWaitClocks + 3);
+  EXPECT_EQ(bus.position().free_clock, 2 + 1 + kWaitClocks + 3 + 1);
+  for (const PciBusControl* control : {&bus, &skipping}) {
+    EXPECT_EQ(control->next_ps(), 40 * kClockPs);
+    EXPECT_EQ(control->decision_clock(), 40U);
+    EXPECT_EQ(control->position().last_granted, 0U);
+    EXPECT_EQ(control->position().free_clock, bus.position().free_clock);
+    EXPECT_EQ(control->transactions(), 1U);
+    const PciBusControl::Stats stats = control->stats(30 * kClockPs);
+    EXPECT_EQ(stats.busy_clocks, bus.busy_clocks());
+    EXPECT_EQ(stats.masters[0].words, 3U);
+    EXPECT_EQ(stats.masters[0].wait_clocks, 0U);
+  }
+}
+
 TEST_F(PciBusControlTest, PassesAnUnusedGrantToTheNextMasterInTheSameClock) {
   masters[2].add(true, 1);
   for (const std::size_t master : {0U, 1U, 2U}) request_at(5, master);

@@ -5,135 +5,55 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
-#include <deque>
-#include <memory>
 #include <stdexcept>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "models/capture/camera_timing.h"
 #include "models/capture/capture_registers.h"
-#include "models/fpga/register_map.h"
 #include "models/pci/bridge_registers.h"
 #include "platform/computer_parts.h"
-#include "platform/device_map.h"
+#include "tests/unit/platform/loop_run.h"
 #include "tests/unit/platform/preloaded_run.h"
 
 namespace stereotlm::platform {
 namespace {
 
 namespace capture_map = capture::registers;
-using Words = std::vector<std::uint32_t>;
+using testing::kCaptures;
+using testing::kDevices;
+using testing::Words;
 
 constexpr std::uint64_t kEdgePs = 25'000;  // a clock of PCI, of the local bus and of the core
 constexpr std::uint64_t kFar = 1'000'000'000'000;
-constexpr DeviceMap kLoopMap;
 
-class GreyCamera : public capture::CameraSource {
+// The small board, with another clock of the PCI bus and faster cameras.
+class LoopWithProcessor : public testing::LoopProcessor {
  public:
-  const kernels::GrayImage& frame(std::uint64_t /*number*/, std::uint64_t /*begin_ps*/) override {
-    return picture_;
-  }
-
- private:
-  kernels::GrayImage picture_ = kernels::GrayImage(16, 6, 50);
-};
-
-// A loop with a processor, whose bursts follow each other. The configuration may be changed before the first
-// call of loop().
-class LoopWithProcessor : public pci::PciMasterIf {
- public:
-  struct Burst {
-    bool write;
-    std::uint64_t address;
-    Words words;
-  };
-
-  LoopWithProcessor() {
+  LoopWithProcessor() : LoopProcessor(testing::small_board()) {
     config.pci.clock_mhz = 40;
     config.cameras.frame_rate_hz = 1000;
   }
-  ComputerLoop& loop() {
-    if (loop_ == nullptr) {
-      loop_ = std::make_unique<ComputerLoop>(config, host_memory.data(), host_memory.size(), left, right,
-                                             fpga::Fidelity::kFast);
-    }
-    return *loop_;
-  }
-
-  pci::PciBurst begin_burst(std::uint64_t address_clock_ps) override {
-    granted_ps.push_back(address_clock_ps);
-    return {bursts.front().write, bursts.front().address, &bursts.front().words};
-  }
-  void end_burst(const pci::BurstResult& result) override {
-    results.push_back(result);
-    done = std::move(bursts.front());
-    bursts.pop_front();
-    if (bursts.empty()) {
-      loop().notice();
-    } else {
-      loop().host_slot().request(*this, result.end_ps);
-    }
-  }
-  void request(std::uint64_t from_ps) { loop().host_slot().request(*this, from_ps); }
-  // Runs one burst to its end.
-  pci::BurstEnd access(bool write, std::uint64_t address, Words words) {
-    bursts.push_back({write, address, std::move(words)});
-    const std::size_t before = results.size();
-    request(loop().now_ps());
-    while (results.size() == before) loop().run(kFar);
-    return results.back().end;
-  }
-  void write(std::uint64_t address, std::uint32_t value) {
-    EXPECT_EQ(access(true, address, {value}), pci::BurstEnd::kComplete);
-  }
-  std::uint32_t read(std::uint64_t address) {
-    EXPECT_EQ(access(false, address, {0}), pci::BurstEnd::kComplete);
-    return done.words[0];
-  }
-  void write_core(std::uint64_t address, std::uint32_t value) {
-    write(kLoopMap.bridge_slave + pci::bridge::kCoreRegisters + address, value);
-  }
   // Arms both captures, into banks 1 and 3.
   void arm() {
-    write(kLoopMap.bridge_registers + pci::bridge::kPage + 4, 1U << 26U);
-    write(kLoopMap.bridge_registers + pci::bridge::kPage + 8, 3U << 26U);
-    for (const bool is_left : {true, false}) {
-      const std::uint64_t board = is_left ? kLoopMap.left_capture : kLoopMap.right_capture;
-      const std::uint64_t aperture = kLoopMap.bridge_slave + (is_left ? 1 : 2) * pci::bridge::kApertureBytes;
-      write(board + capture_map::kBufferAddress, static_cast<std::uint32_t>(aperture));
-      write(board + capture_map::kControl, capture_map::kControlArm);
+    for (const std::uint32_t side : {0U, 1U}) {
+      write(testing::page_register(1 + side), (1 + 2 * side) << 26U);
+      write(kCaptures[side] + capture_map::kBufferAddress,
+            static_cast<std::uint32_t>(testing::aperture(1 + side)));
+      write(kCaptures[side] + capture_map::kControl, capture_map::kControlArm);
     }
   }
-  // A frame without valid table entries. Its end raises the interrupt.
+  // A frame whose end raises the interrupt.
   void start_core() {
-    write(kLoopMap.bridge_registers + pci::bridge::kInterruptEnable, pci::bridge::kDoorbell);
-    std::uint32_t bank = 0;
-    for (const std::uint64_t base :
-         {fpga::registers::kLeftImageBase, fpga::registers::kRightImageBase, fpga::registers::kDisparityBase,
-          fpga::registers::kLeftLutBase, fpga::registers::kRightLutBase})
-      write_core(base, fpga::registers::base(bank++, 0));
-    write_core(fpga::registers::kControl, fpga::registers::kControlStart);
+    write(kDevices.bridge_registers + pci::bridge::kInterruptEnable, pci::bridge::kDoorbell);
+    start_frame(0, 0);
   }
-
-  BoardConfig config = testing::small_board();
-  std::vector<unsigned char> host_memory = std::vector<unsigned char>(4096);
-  GreyCamera left;
-  GreyCamera right;
-  std::deque<Burst> bursts;
-  Burst done{};  // the last one that has ended
-  std::vector<std::uint64_t> granted_ps;
-  std::vector<pci::BurstResult> results;
-
- private:
-  std::unique_ptr<ComputerLoop> loop_;
 };
 
 class ComputerLoopTest : public ::testing::Test, public LoopWithProcessor {};
 
 TEST_F(ComputerLoopTest, StopsAtItsEndTimeBehindTheDecisionsOfThatTime) {
-  bursts.push_back({true, kLoopMap.host_memory, {1}});
+  bursts.push_back({true, kDevices.host_memory, {1}});
   request(10 * kEdgePs - 3);
   loop().run(10 * kEdgePs - 1);
   EXPECT_EQ(loop().now_ps(), 10 * kEdgePs - 1);
@@ -145,12 +65,12 @@ TEST_F(ComputerLoopTest, StopsAtItsEndTimeBehindTheDecisionsOfThatTime) {
 
 // Address clock 10, 8 wait clocks and one word.
 TEST_F(ComputerLoopTest, StopsAtWhatItIsToNoticeOnce) {
-  bursts.push_back({true, kLoopMap.host_memory + 8, {0x1234}});
+  bursts.push_back({true, kDevices.host_memory + 8, {0x1234}});
   request(10 * kEdgePs);
   loop().run(kFar);
   EXPECT_EQ(loop().now_ps(), (10 + 1 + 8 + 1) * kEdgePs);
   EXPECT_EQ(results.at(0).end_ps, loop().now_ps());
-  EXPECT_EQ(host_memory[8] | host_memory[9] << 8U, 0x1234);
+  EXPECT_EQ(memory[8] | memory[9] << 8U, 0x1234);
   loop().run(100 * kEdgePs);
   EXPECT_EQ(loop().now_ps(), 100 * kEdgePs);
 }
@@ -167,7 +87,7 @@ TEST_F(ComputerLoopTest, StopsWhenTheInterruptRisesAndNotWhileItStaysHigh) {
   loop().run(left_ps + 1000 * kEdgePs);  // the right capture ends in this time
   EXPECT_EQ(loop().now_ps(), left_ps + 1000 * kEdgePs);
   EXPECT_EQ(loop().counters().cameras[1].capture.captured_frames, 1U);
-  for (const std::uint64_t board : {kLoopMap.left_capture, kLoopMap.right_capture}) {
+  for (const std::uint64_t board : {kDevices.left_capture, kDevices.right_capture}) {
     EXPECT_TRUE(loop().interrupt());
     write(board + capture_map::kStatus, capture_map::kStatusDone);
   }
@@ -197,7 +117,7 @@ TEST_F(ComputerLoopTest, LetsTheProcessorTakePartInTheDecisionsOfTheTimeOfAnInte
   loop().run(kFar);
   EXPECT_EQ(loop().now_ps(), interrupt_ps);
   EXPECT_EQ(loop().counters().pci.masters[kTrafficGenerator].transactions, 1U);
-  bursts.push_back({false, kLoopMap.host_memory, {0}});
+  bursts.push_back({false, kDevices.host_memory, {0}});
   request(interrupt_ps);
   loop().run(kFar);
   EXPECT_EQ(granted_ps.back(), interrupt_ps);
@@ -209,7 +129,7 @@ TEST_F(ComputerLoopTest, LetsTheProcessorTakePartInTheDecisionsOfTheTimeOfAnInte
 TEST_F(ComputerLoopTest, EndsABurstOfTheLocalBusBeforeWordsArePostedAtThatTime) {
   for (const std::size_t words : {11U, 12U}) {
     const std::uint64_t before = loop().counters().local_bus.bursts;
-    std::uint64_t address = kLoopMap.bridge_slave;
+    std::uint64_t address = kDevices.bridge_slave;
     for (const std::size_t count : {words, std::size_t{1}, std::size_t{1}}) {
       bursts.push_back({true, address, Words(count, 7)});
       address += 4 * count;
@@ -246,12 +166,12 @@ TEST_P(ComputerLoopPixels, ArriveAfterTheWritesOfTheirTime) {
   // The write: address clock, wait clocks, one word.
   const std::uint64_t write_ps = last_ps + (later ? 1000 : 0);
   const auto clocks = static_cast<std::uint64_t>(1 + config.pci.bridge_wait_clocks + 1);
-  bursts.push_back({true, kLoopMap.left_capture + capture_map::kStatus, {capture_map::kStatusDone}});
+  bursts.push_back({true, kDevices.left_capture + capture_map::kStatus, {capture_map::kStatusDone}});
   request(write_ps - 1000 * clocks);
   while (results.back().end_ps < write_ps) loop().run(kFar);
   EXPECT_EQ(results.back().end_ps, write_ps);
-  EXPECT_EQ(read(kLoopMap.left_capture + capture_map::kDroppedPixels), 12U);
-  EXPECT_EQ(read(kLoopMap.left_capture + capture_map::kStatus), later ? 0U : capture_map::kStatusDone);
+  EXPECT_EQ(read(kDevices.left_capture + capture_map::kDroppedPixels), 12U);
+  EXPECT_EQ(read(kDevices.left_capture + capture_map::kStatus), later ? 0U : capture_map::kStatusDone);
 }
 
 INSTANTIATE_TEST_SUITE_P(ComputerLoop, ComputerLoopPixels, ::testing::Bool(), [](const auto& later) {
@@ -264,11 +184,11 @@ TEST_F(ComputerLoopTest, TakesAFrameWhoseCapturesAreArmedAsItBegins) {
     SCOPED_TRACE(late_ps);
     LoopWithProcessor other;
     ComputerLoop& computer = other.loop();
-    other.write(kLoopMap.left_capture + capture_map::kBufferAddress, 0);
-    other.write(kLoopMap.right_capture + capture_map::kBufferAddress, 0);
-    other.write(kLoopMap.right_capture + capture_map::kControl, capture_map::kControlArm);
+    other.write(kDevices.left_capture + capture_map::kBufferAddress, 0);
+    other.write(kDevices.right_capture + capture_map::kBufferAddress, 0);
+    other.write(kDevices.right_capture + capture_map::kControl, capture_map::kControlArm);
     const std::uint64_t frame_ps = 1'000'000'000;
-    other.bursts.push_back({true, kLoopMap.left_capture + capture_map::kControl, {capture_map::kControlArm}});
+    other.bursts.push_back({true, kDevices.left_capture + capture_map::kControl, {capture_map::kControlArm}});
     other.request(frame_ps + late_ps - 6 * kEdgePs);
     computer.run(kFar);
     EXPECT_EQ(computer.now_ps(), frame_ps + late_ps);
@@ -280,23 +200,32 @@ TEST_F(ComputerLoopTest, TakesAFrameWhoseCapturesAreArmedAsItBegins) {
 TEST_F(ComputerLoopTest, RefusesBurstsOfSeveralWordsToRegisters) {
   for (const bool write : {true, false}) {
     for (const std::uint64_t address :
-         {kLoopMap.bridge_registers, kLoopMap.left_capture + capture_map::kStatus})
+         {kDevices.bridge_registers, kDevices.left_capture + capture_map::kStatus})
       EXPECT_EQ(access(write, address, Words(2)), pci::BurstEnd::kTargetError);
   }
   EXPECT_EQ(loop().counters().bridge.errors, 2U);
   EXPECT_EQ(loop().counters().cameras[0].capture.refused_accesses, 2U);
-  EXPECT_EQ(access(true, kLoopMap.host_memory, Words(2)), pci::BurstEnd::kComplete);
+  EXPECT_EQ(access(true, kDevices.host_memory, Words(2)), pci::BurstEnd::kComplete);
 }
 
 TEST_F(ComputerLoopTest, HasACountOfWorkThatGrowsWithTheFrameAndTheWordsForResults) {
   const std::uint64_t idle = loop().work_done();
-  write(kLoopMap.host_memory, 1);
+  write(kDevices.host_memory, 1);
   EXPECT_EQ(loop().work_done(), idle + 1);
   start_core();
   const std::uint64_t started = loop().work_done();
   loop().run(loop().now_ps() + 50 * kEdgePs);
   EXPECT_GT(loop().work_done(), started + 20);
   EXPECT_EQ(loop().board().waits().substr(0, 26), "frame 0 of the core, cycle");
+}
+
+TEST_F(ComputerLoopTest, RefusesAnEndThatItsEventsCannotHold) {
+  bursts.push_back({true, kDevices.host_memory, {1}});
+  request(0);
+  EXPECT_THROW(loop().run(ComputerLoop::kEndOfTime), std::invalid_argument);
+  EXPECT_TRUE(results.empty());
+  loop().run(ComputerLoop::kEndOfTime - 1);
+  EXPECT_EQ(results.size(), 1U);
 }
 
 TEST_F(ComputerLoopTest, RefusesABoardWithProblems) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <stdexcept>
 #include <string>
@@ -16,6 +17,7 @@
 #include "platform/core_run.h"
 #include "tests/support/noise_pairs.h"
 #include "tests/support/scratch_folder.h"
+#include "tests/unit/platform/computer_registers.h"
 #include "tests/unit/platform/preloaded_run.h"
 
 namespace stereotlm::platform {
@@ -89,11 +91,9 @@ class FastBoardTest : public ::testing::Test, public FastBoard::Doorbell, public
   }
   void set_bases(std::uint32_t frame) {
     const std::uint32_t other = frame % 2;
-    write_register(core::kLeftImageBase, core::base(other, 0));
-    write_register(core::kRightImageBase, core::base(2 + other, 0));
-    write_register(core::kDisparityBase, core::base(4 + other, 0));
-    write_register(core::kLeftLutBase, core::base(6, 0));
-    write_register(core::kRightLutBase, core::base(7, 0));
+    const std::array<std::uint32_t, 5> banks = {other, 2 + other, 4 + other, 6, 7};
+    for (std::size_t buffer = 0; buffer < banks.size(); ++buffer)
+      write_register(testing::kBaseRegisters[buffer], core::base(banks[buffer], 0));
   }
   void load_tables() {
     for (const std::uint64_t bank : {6U, 7U}) write(crossbar_address(bank, 0), tables.left->entries);
@@ -264,6 +264,72 @@ TEST_F(FastBoardTest, ArbitratesABurstInABankOfTheRunningFrame) {
   const Statistics found =
       collect_statistics(config, tables, "fast", board.frames().frame_cycles(), board.counters());
   EXPECT_EQ(found.failed, std::vector<std::string>());
+}
+
+TEST_F(FastBoardTest, ServesOneWordPerCycleInItsBanksThatTheFrameDoesNotUse) {
+  const auto serves = [this](std::uint64_t bank, std::uint64_t word, std::uint64_t words) {
+    return board.serves_one_word_per_cycle(crossbar_address(bank, word), 4 * words);
+  };
+  EXPECT_TRUE(serves(6, 0, kLeftTableBankWords));
+  EXPECT_FALSE(serves(6, 1, kLeftTableBankWords));
+  EXPECT_TRUE(serves(7, 0, 1));
+  EXPECT_FALSE(serves(8, 0, 1));
+  set_bases(0);
+  start();
+  EXPECT_FALSE(serves(0, kSpareWord, 1));
+  EXPECT_TRUE(serves(1, kSpareWord, 1));
+}
+
+class OtherFastBoard : public FastBoardTest {
+ public:
+  using FastBoardTest::board;
+  using FastBoardTest::now_ps;
+  using FastBoardTest::run_to;
+  using FastBoardTest::set_bases;
+  using FastBoardTest::start;
+
+ private:
+  void TestBody() override {}
+};
+
+// Two bursts of 8 words, stepped or skipped, beside a frame and without one.
+TEST_F(FastBoardTest, CountsWordsThatAreSkippedAsThoseOfSteppedBursts) {
+  OtherFastBoard other;
+  const std::uint64_t address = crossbar_address(1, kSpareWord);
+  for (const bool beside_frame : {false, true}) {
+    set_bases(0);
+    other.set_bases(0);
+    if (beside_frame) {
+      start();
+      other.start();
+    }
+    const std::uint64_t clock = now_ps / kClockPs;
+    const std::uint64_t busy = board.local_bus().busy_clocks();
+    write(address, Words(8, 5));
+    write(address + 32, Words(8, 6));
+    EXPECT_EQ(now_ps, (clock + 2 * 11) * kClockPs);  // address, decode, 8 words, idle
+    const std::uint64_t new_busy = board.local_bus().busy_clocks() - busy;
+    EXPECT_EQ(new_busy, 2 * 10U);
+    std::uint32_t* const words = other.board.skip_words(true, address, 16, clock + 3, clock + 2 * 11);
+    other.board.local_bus().skip_bursts(2, new_busy, clock + 2 * 11 - 1);
+    EXPECT_EQ(words[0], beside_frame ? 5U : 0U);
+    std::fill_n(words, 8, 5U);
+    run_to(now_ps + 10'000 * kClockPs);
+    other.run_to(now_ps);
+    const BoardCounters stepped = board.counters();
+    const BoardCounters skipped = other.board.counters();
+    EXPECT_EQ(skipped.frames, beside_frame ? 1U : 0U);
+    EXPECT_EQ(skipped.banks[1].accesses, stepped.banks[1].accesses);
+    EXPECT_EQ(skipped.banks[1].uncounted_grants, stepped.banks[1].uncounted_grants);
+    EXPECT_EQ(skipped.banks[1].uncounted_grants, 16U);  // those of the first time
+    EXPECT_EQ(skipped.banks[1].arbiter.writes, stepped.banks[1].arbiter.writes);
+    EXPECT_EQ(skipped.banks[1].arbiter.busy_cycles, stepped.banks[1].arbiter.busy_cycles);
+    EXPECT_EQ(skipped.banks[1].arbiter.idle_cycles, stepped.banks[1].arbiter.idle_cycles);
+    EXPECT_EQ(skipped.ports[fpga::kHostPort].granted(), beside_frame ? 16U : 0U);
+    EXPECT_EQ(skipped.ports[fpga::kHostPort].granted(), stepped.ports[fpga::kHostPort].granted());
+    EXPECT_EQ(other.board.local_bus().stats(now_ps).words_written,
+              board.local_bus().stats(now_ps).words_written);
+  }
 }
 
 class FastBoardTiming : public FastBoardTest {

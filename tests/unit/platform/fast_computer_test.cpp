@@ -16,11 +16,11 @@
 
 #include "models/kernel_time.h"
 #include "platform/computer.h"
-#include "platform/device_map.h"
 #include "tests/support/expected_report.h"
 #include "tests/support/fork.h"
 #include "tests/support/monitoring_binder.h"
 #include "tests/support/random_board.h"
+#include "tests/unit/platform/computer_registers.h"
 #include "tests/unit/platform/preloaded_run.h"
 
 namespace stereotlm::platform {
@@ -31,9 +31,11 @@ namespace core = fpga::registers;
 namespace capture_map = capture::registers;
 using fpga::Fidelity;
 
-constexpr DeviceMap kDevices;
+using testing::core_register;
+using testing::kCaptures;
+using testing::kDevices;
+
 constexpr std::uint64_t kMemoryBytes = 65'536;
-constexpr std::array<std::uint64_t, 2> kCaptures = {kDevices.left_capture, kDevices.right_capture};
 
 // Each frame is a picture of its own.
 class CountedPictures : public capture::CameraSource {
@@ -144,11 +146,14 @@ std::string log_of(Fidelity fidelity, const std::function<void(LoggedBus&)>& scr
   });
 }
 
-constexpr std::uint64_t core_register(std::uint64_t address) {
-  return kDevices.bridge_slave + bridge::kCoreRegisters + address;
-}
 // A word of a bank, through aperture 3.
-constexpr std::uint64_t kWindow = kDevices.bridge_slave + 3 * bridge::kApertureBytes;
+constexpr std::uint64_t kWindow = testing::aperture(3);
+
+// The buffers of a frame are in these banks, from word 0 on.
+void write_bases(LoggedBus& bus, const std::array<std::uint32_t, 5>& banks) {
+  for (std::size_t buffer = 0; buffer < banks.size(); ++buffer)
+    bus.write(core_register(testing::kBaseRegisters[buffer]), core::base(banks[buffer], 0));
+}
 
 // Does what software can do with the devices in an order drawn from a seed. Frames work in banks 0, 2, 4, 6
 // and 7, with tables without valid entries; captures fill banks 1 and 3; everything else goes to words that
@@ -171,16 +176,13 @@ class RandomProgram {
 
   void begin(LoggedBus& bus) {
     bus.write(kDevices.bridge_registers + bridge::kInterruptEnable, bridge::kAllInterrupts);
-    bus.write(kDevices.bridge_registers + bridge::kPage + 12, kSpareWord);
+    bus.write(testing::page_register(3), kSpareWord);
     for (std::uint32_t side = 0; side < 2; ++side) {
-      bus.write(kDevices.bridge_registers + bridge::kPage + 4 * (1 + side), (1 + 2 * side) << 26U);
+      bus.write(testing::page_register(1 + side), (1 + 2 * side) << 26U);
       bus.write(kCaptures[side] + capture_map::kBufferAddress,
-                static_cast<std::uint32_t>(kDevices.bridge_slave + (1 + side) * bridge::kApertureBytes));
+                static_cast<std::uint32_t>(testing::aperture(1 + side)));
     }
-    const std::uint64_t bases[] = {core::kLeftImageBase, core::kRightImageBase, core::kDisparityBase,
-                                   core::kLeftLutBase, core::kRightLutBase};
-    const std::uint32_t banks[] = {0, 2, 4, 6, 7};
-    for (int i = 0; i < 5; ++i) bus.write(core_register(bases[i]), core::base(banks[i], 0));
+    write_bases(bus, {0, 2, 4, 6, 7});
   }
 
   void act(LoggedBus& bus, int action) {
@@ -192,7 +194,7 @@ class RandomProgram {
         read_any_register(bus);
         break;
       case 2:
-        bus.write(kDevices.bridge_registers + bridge::kPage + 12,
+        bus.write(testing::page_register(3),
                   static_cast<std::uint32_t>(random_.between(0, 7)) << 26U | kSpareWord);
         break;
       case 3:
@@ -245,9 +247,8 @@ class RandomProgram {
     const std::uint32_t descriptor[] = {1024U * (1 + channel), bank << 26U | kSpareWord,
                                         words | (random_.chance(50) ? bridge::kToPci : 0U), 0};
     std::memcpy(bus.memory(kMemoryBytes) + 4096 + 16 * channel, descriptor, sizeof descriptor);
-    const std::uint64_t registers = kDevices.bridge_registers + bridge::kChannelStride * channel;
-    bus.write(registers + bridge::kDmaDescriptor, 4096 + 16 * channel);
-    bus.write(registers + bridge::kDmaControl, 1);
+    bus.write(testing::dma_register(channel, bridge::kDmaDescriptor), 4096 + 16 * channel);
+    bus.write(testing::dma_register(channel, bridge::kDmaControl), 1);
   }
   void handle_interrupt(LoggedBus& bus) {
     bus.wait_for_interrupt();
@@ -359,10 +360,7 @@ class FastComputerErrors : public ::testing::Test {
     });
   }
   static void start_core(LoggedBus& bus, std::uint32_t disparity_bank) {
-    const std::uint64_t bases[] = {core::kLeftImageBase, core::kRightImageBase, core::kLeftLutBase,
-                                   core::kRightLutBase};
-    for (std::uint32_t bank = 0; bank < 4; ++bank) bus.write(core_register(bases[bank]), core::base(bank, 0));
-    bus.write(core_register(core::kDisparityBase), core::base(disparity_bank, 0));
+    write_bases(bus, {0, 1, disparity_bank, 2, 3});
     bus.write(core_register(core::kControl), core::kControlStart);
   }
   static void wait_forever(LoggedBus& bus) {
@@ -386,7 +384,7 @@ TEST_F(FastComputerErrors, OfTheLoopReachTheReport) {
 
 TEST_F(FastComputerErrors, OfABurstBesideAFrameReachTheReport) {
   const std::string text = report(Fidelity::kTiming, [](LoggedBus& bus) {
-    bus.write(kDevices.bridge_registers + bridge::kPage + 12, core::base(4, 5));
+    bus.write(testing::page_register(3), core::base(4, 5));
     start_core(bus, 4);
     bus.write(kWindow, 0);
     wait_forever(bus);

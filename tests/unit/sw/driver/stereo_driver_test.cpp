@@ -73,7 +73,7 @@ TEST_P(StereoDriverBuffers, DeliverEveryFrameOnceAndInOrder) {
     config.host_frames = GetParam().host_frames;
     Listener listener;
     FakeMachine machine(seed);
-    StereoDriver driver(config, kLeftTable, kRightTable, listener);
+    StereoDriver driver(config, &kLeftTable, &kRightTable, listener);
     driver.run(machine);
     EXPECT_EQ(machine.core_starts, kFrames);
     ASSERT_EQ(listener.words.size(), kFrames);
@@ -96,7 +96,7 @@ TEST(StereoDriver, UploadsItsTablesFirst) {
   DriverConfig config = small(2, 2, 3);
   Listener listener;
   FakeMachine machine(1);
-  StereoDriver(config, kLeftTable, kRightTable, listener).run(machine);
+  StereoDriver(config, &kLeftTable, &kRightTable, listener).run(machine);
   EXPECT_EQ(machine.uploads, (std::vector<std::pair<std::uint32_t, std::uint32_t>>{
                                  {word_of_bank(30), 4}, {word_of_bank(31) + 5, 4}}));
   for (std::uint32_t word = 0; word < 4; ++word) {
@@ -106,7 +106,7 @@ TEST(StereoDriver, UploadsItsTablesFirst) {
   config.buffers.left_lut = config.buffers.right_lut = std::nullopt;
   Listener other;
   FakeMachine without_tables(1);
-  StereoDriver(config, {}, {}, other).run(without_tables);
+  StereoDriver(config, nullptr, nullptr, other).run(without_tables);
   EXPECT_TRUE(without_tables.uploads.empty());
   EXPECT_EQ(other.words.size(), 3U);
 }
@@ -121,7 +121,7 @@ TEST(StereoDriver, UploadsJointTablesAsOneAndWritesTheirOffsetsFirst) {
   const kernels::JointTable joint = kernels::join_tables({4, 1, left}, {4, 1, right});
   Listener listener;
   FakeMachine machine(1);
-  StereoDriver(config, left, right, listener).run(machine);
+  StereoDriver(config, &left, &right, listener).run(machine);
   EXPECT_EQ(listener.words.size(), 3U);
   EXPECT_EQ(machine.uploads, (std::vector<std::pair<std::uint32_t, std::uint32_t>>{{word_of_bank(30), 4}}));
   for (std::uint32_t word = 0; word < 4; ++word)
@@ -142,7 +142,7 @@ TEST(StereoDriver, TriggersCamerasOnDemandWithEachCapture) {
     config.trigger_cameras = on_demand;
     Listener listener;
     FakeMachine machine(1);
-    StereoDriver(config, kLeftTable, kRightTable, listener).run(machine);
+    StereoDriver(config, &kLeftTable, &kRightTable, listener).run(machine);
     EXPECT_EQ(machine.triggers, on_demand ? machine.captures : 0U);
   }
 }
@@ -166,8 +166,7 @@ TEST_P(StereoDriverFailure, EndsTheRun) {
   Listener listener;
   FakeMachine machine(1);
   failure.happens(machine);
-  const std::vector<std::uint32_t> none;
-  StereoDriver driver(config, failure.copies ? none : kLeftTable, failure.copies ? none : kRightTable,
+  StereoDriver driver(config, failure.copies ? nullptr : &kLeftTable, failure.copies ? nullptr : &kRightTable,
                       listener);
   EXPECT_THAT([&] { driver.run(machine); },
               testing::ThrowsMessage<std::runtime_error>("stereo driver: " + failure.said));
@@ -213,7 +212,7 @@ TEST(StereoDriver, NamesTheWorkThatItWaitsFor) {
   WatchedMachine machine(1);
   DriverConfig config = small(2, 2, 3);
   config.capture_to_host = true;
-  StereoDriver driver(config, kLeftTable, kRightTable, listener);
+  StereoDriver driver(config, &kLeftTable, &kRightTable, listener);
   EXPECT_EQ(driver.under_way(), "nothing");
   std::vector<std::string> texts;
   machine.on_wait = [&] { texts.push_back(driver.under_way()); };
@@ -232,7 +231,7 @@ void expect_stop(std::uint64_t seed, std::uint64_t least_frames,
                  const std::function<bool(const Listener&)>& is_due) {
   Listener listener;
   WatchedMachine machine(seed);
-  StereoDriver driver(small(2, 2, 1'000'000), kLeftTable, kRightTable, listener);
+  StereoDriver driver(small(2, 2, 1'000'000), &kLeftTable, &kRightTable, listener);
   std::optional<std::uint64_t> started;
   machine.*moment = [&] {
     if (started || !is_due(listener)) return;
@@ -268,10 +267,10 @@ TEST(StereoDriver, UsesJustTheHostMemoryThatItAnnounces) {
     config.capture_to_host = to_host;
     Listener listener;
     FakeMachine enough(1, host_memory_bytes(config));
-    StereoDriver driver(config, kLeftTable, kRightTable, listener);
+    StereoDriver driver(config, &kLeftTable, &kRightTable, listener);
     EXPECT_NO_THROW(driver.run(enough));
     FakeMachine short_of_a_byte(1, host_memory_bytes(config) - 1);
-    StereoDriver other(config, kLeftTable, kRightTable, listener);
+    StereoDriver other(config, &kLeftTable, &kRightTable, listener);
     EXPECT_THROW(other.run(short_of_a_byte), std::out_of_range);
   }
 }
@@ -292,10 +291,11 @@ TEST(StereoDriver, RefusesAConfigurationWithProblems) {
     DriverConfig config = valid;
     changes[change](config);
     EXPECT_EQ(problems(config).size(), 1U) << change;
-    EXPECT_THROW(StereoDriver(config, kLeftTable, kRightTable, listener), std::invalid_argument) << change;
+    EXPECT_THROW(StereoDriver(config, &kLeftTable, &kRightTable, listener), std::invalid_argument) << change;
   }
-  EXPECT_THROW(StereoDriver(valid, {1, 2, 3}, kRightTable, listener), std::invalid_argument);
-  EXPECT_THROW(StereoDriver(valid, kLeftTable, {}, listener), std::invalid_argument);
+  const std::vector<std::uint32_t> short_table = {1, 2, 3};
+  EXPECT_THROW(StereoDriver(valid, &short_table, &kRightTable, listener), std::invalid_argument);
+  EXPECT_THROW(StereoDriver(valid, &kLeftTable, nullptr, listener), std::invalid_argument);
 }
 
 }  // namespace

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+
+#include "models/clock.h"
+#include "models/fpga/local_bus_control.h"
+#include "models/pci/pci_bus_control.h"
+
+namespace stereotlm::platform {
+
+// What the two buses of the bridge have done, up to a time or since a time.
+struct BusCounts {
+  std::uint64_t transactions = 0;  // on the PCI bus, of all masters
+  std::uint64_t pci_busy = 0;      // clocks
+  std::uint64_t bursts = 0;        // on the local bus
+  std::uint64_t local_busy = 0;    // clocks
+
+  BusCounts since(const BusCounts& before) const {
+    return {transactions - before.transactions, pci_busy - before.pci_busy, bursts - before.bursts,
+            local_busy - before.local_busy};
+  }
+};
+
+// The two buses of the bridge, on which CameraLines and DmaBursts skip bursts.
+struct BridgeBuses {
+  pci::PciBusControl& pci;
+  fpga::LocalBusControl& local;
+
+  const Clock& pci_clock() const { return pci.clock(); }
+  const Clock& local_clock() const { return local.clock(); }
+  // To be called while the local bus is idle.
+  BusCounts counts() const {
+    return {pci.transactions(), pci.busy_clocks(), local.bursts(), local.busy_clocks()};
+  }
+};
+
+}  // namespace stereotlm::platform
