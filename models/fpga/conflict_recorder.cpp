@@ -75,14 +75,10 @@ bool ConflictRecorder::start_frame(std::uint64_t cycle, const CoreControl& contr
   return true;
 }
 
-std::vector<std::uint64_t>& ConflictRecorder::stalls_of(std::size_t requester, std::size_t bank,
-                                                        std::size_t by) {
-  std::size_t& index = indices_[(requester * banks_ + bank) * (kRequesters + 1) + by];
-  if (index == 0) {
-    stalls_.push_back({requester, bank, by, std::vector<std::uint64_t>(tiles())});
-    index = stalls_.size();
-  }
-  return stalls_[index - 1].cycles;
+std::uint64_t* ConflictRecorder::first_stalls_of(std::size_t requester, std::size_t bank, std::size_t by) {
+  stalls_.push_back({requester, bank, by, std::vector<std::uint64_t>(tiles())});
+  indices_[(requester * banks_ + bank) * (kRequesters + 1) + by] = stalls_.size();
+  return stalls_.back().cycles.data();
 }
 
 void ConflictRecorder::step(memory::PortMask requests, memory::PortMask granted,
@@ -155,7 +151,7 @@ void ConflictRecorder::add_stalls(const GroupConflicts& group, std::size_t first
   for (const memory::Stall& stall : group.stalls) {
     const std::size_t requester = requester_of_port(stall.port);
     const std::size_t by = requester_of_port(stall.by);
-    std::uint64_t* const cycles = stalls_of(requester, arbitration.bank_of(stall.port), by).data();
+    std::uint64_t* const cycles = stalls_of(requester, arbitration.bank_of(stall.port), by);
     frame_.strips[strip_].stalls[requester] += stall.cycles * count;
     if (strip_ == 0) {
       cycles[0] += stall.cycles * count;

@@ -179,7 +179,12 @@ class ConflictRecorder {
   std::size_t place_of(std::size_t strip, std::size_t group) const {
     return strip == 0 ? 0 : 1 + (strip - 1) * grid_.columns + (group >> group_shift_);
   }
-  std::vector<std::uint64_t>& stalls_of(std::size_t requester, std::size_t bank, std::size_t by);
+  // [tile]
+  std::uint64_t* stalls_of(std::size_t requester, std::size_t bank, std::size_t by) {
+    const std::size_t index = indices_[(requester * banks_ + bank) * (kRequesters + 1) + by];
+    return index != 0 ? stalls_[index - 1].cycles.data() : first_stalls_of(requester, bank, by);
+  }
+  std::uint64_t* first_stalls_of(std::size_t requester, std::size_t bank, std::size_t by);
   FrameConflicts::BankAccesses& accesses_of(std::size_t strip, std::size_t bank) {
     return frame_.accesses[strip * banks_ + bank];
   }

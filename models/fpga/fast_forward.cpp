@@ -434,7 +434,7 @@ FastForward::StateNumber FastForward::walk_varying(StateNumber state, Progress& 
     }
     const Progress& progress = known_.progress(transition);
     if (!progress.fits(room)) return state;
-    known_.follow(transition, 1, noted());
+    known_.follow_group(transition, noted());
     room.subtract(progress);
     state = transition.next;
     consumed += slots;

@@ -162,6 +162,14 @@ class TransitionCache {
     if (sequence != nullptr) sequence->push_back({transition.effect, 1, times});
     count(transition.effect, times);
   }
+  // The same for a transition of a whole group: it is put together with the last one of `sequence` if both are
+  // equal.
+  void follow_group(const Transition& transition, Sequence* sequence) {
+    const bool comes_again = sequence != nullptr && !sequence->empty() &&
+                             sequence->back().effect == transition.effect && sequence->back().length == 1;
+    if (comes_again) ++sequence->back().times;
+    follow(transition, 1, comes_again ? nullptr : sequence);
+  }
   // Records a sequence as one transition, which needs no accesses.
   void record_sequence(StateNumber from, HostRequests host, StateNumber next, const Progress& progress,
                        const HostGrants& grants, const Sequence& sequence);

@@ -12,6 +12,7 @@ namespace stereotlm::report {
 namespace {
 
 constexpr std::ptrdiff_t kMostDigits = 20;
+constexpr std::size_t kPieceBytes = std::size_t{1} << 16U;
 constexpr std::array<const char*, fpga::FrameConflicts::kAccessKinds> kAccessNames = {"core", "capture",
                                                                                       "upload", "read_back"};
 
@@ -83,6 +84,13 @@ std::string conflicts_csv_head() {
 }
 
 std::string conflicts_csv(const platform::BoardConfig& board, const fpga::ConflictRecorder& recorder) {
+  std::string text;
+  conflicts_csv(board, recorder, [&text](const std::string& piece) { text += piece; });
+  return text;
+}
+
+void conflicts_csv(const platform::BoardConfig& board, const fpga::ConflictRecorder& recorder,
+                   const std::function<void(const std::string& piece)>& take) {
   std::string text = conflicts_csv_head();
   const fpga::TileGrid& grid = recorder.grid();
   const std::vector<const fpga::ConflictRecorder::Stalls*> stalls = recorder.stalls();
@@ -108,8 +116,11 @@ std::string conflicts_csv(const platform::BoardConfig& board, const fpga::Confli
       text += names[index];
       append(text, cycles, '\n');
     }
+    if (text.size() < kPieceBytes) continue;
+    take(text);
+    text.clear();
   }
-  return text;
+  take(text);
 }
 
 }  // namespace stereotlm::report

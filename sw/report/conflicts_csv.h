@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 
 #include "models/fpga/conflict_recorder.h"
@@ -16,5 +17,8 @@ std::string rows_csv(const platform::BoardConfig& board, std::uint64_t frame,
 // The text of conflicts.csv, and its head.
 std::string conflicts_csv_head();
 std::string conflicts_csv(const platform::BoardConfig& board, const fpga::ConflictRecorder& recorder);
+// The same text in pieces of some 64 kB, because the whole can have tens of MB.
+void conflicts_csv(const platform::BoardConfig& board, const fpga::ConflictRecorder& recorder,
+                   const std::function<void(const std::string& piece)>& take);
 
 }  // namespace stereotlm::report

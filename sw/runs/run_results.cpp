@@ -97,7 +97,8 @@ void RecordFiles::add(Simulation& simulation) {
 void RecordFiles::finish(Simulation& simulation) {
   if (!input_.record) return;
   add(simulation);
-  append_("conflicts.csv", report::conflicts_csv(input_.board, *simulation.conflicts()));
+  report::conflicts_csv(input_.board, *simulation.conflicts(),
+                        [this](const std::string& piece) { append_("conflicts.csv", piece); });
 }
 
 void leave_out_truth_of_another_pair(RunInput& input, std::uint64_t frames_done) {
