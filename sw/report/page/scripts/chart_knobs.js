@@ -15,6 +15,7 @@ const kBarLine = 24;
 const kNarrowLine = 34;  // with the name above its bar
 const kMostNameWidth = 400;
 const kGainWidth = 64;
+const kBold = 1.1;  // its width, of that of other letters
 const kLogicWidth = 76;
 const kPartsWidth = 132;
 
@@ -55,6 +56,12 @@ export function addKnobs(page, run) {
     const isWide = width > 760;
     const marks = step => (step.changes_disparities ? ' *' : '') + (step.loses_pixels ? ' †' : '');
     const nameOf = step => shortStepText(step) + marks(step);
+    // Without the present value where there is no room for it.
+    const fittedName = (step, room) => {
+      const width = step === advice.first ? room / kBold : room;
+      return textWidth(nameOf(step)) <= width ? nameOf(step) :
+                                                cut(nameOf(step).replace(/: .* →/, ' →'), width);
+    };
     const left = isWide ?
         Math.min(kMostNameWidth, Math.max(...rows.map(step => textWidth(nameOf(step))), 60) + 10) :
         0;
@@ -88,8 +95,8 @@ export function addKnobs(page, run) {
       const price = priceOf(step, board);
       const name = {class: step === advice.first ? 'halo strong' : 'halo'};
       plot.append(
-          isWide ? s('text', {x: -8, y: y + 17, 'text-anchor': 'end', ...name}, cut(nameOf(step), left - 8)) :
-                   s('text', {x: 0, y: y + 14, ...name}, cut(nameOf(step), inner - kGainWidth)),
+          isWide ? s('text', {x: -8, y: y + 17, 'text-anchor': 'end', ...name}, fittedName(step, left - 8)) :
+                   s('text', {x: 0, y: y + 14, ...name}, fittedName(step, inner - kGainWidth)),
           value(isWide ? inner + kGainWidth - 4 : inner, y + (isWide ? 17 : 14), gainText(gain)),
           mark(
               s('rect', {
@@ -224,7 +231,7 @@ export function addRoofline(page, run) {
             {x: at + (isLeft ? -11 : 11), y: below, 'text-anchor': isLeft ? 'end' : 'start', class: 'halo'},
             cut(each.name, isLeft ? at - 11 : inner - at - 11)));
     }
-    const label = `roof: ${here.bank} with one access in each cycle of ${here.clock} MHz`;
+    const label = `roof: ${here.bank} at ${here.clock} MHz`;
     plot.append(
         s('text', {x: inner, y: -10, 'text-anchor': 'end', class: 'label halo'}, cut(label, inner - 150)));
   };

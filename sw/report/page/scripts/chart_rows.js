@@ -162,8 +162,9 @@ export function addRows(page, run) {
     body: tools,
     title: `Ports wait ${waitingRows(run) ?? 'in no row of the picture'}`,
     note: `Banks: the share of the cycles of each row with an access. Ports: the share in which they wait. ` +
-        `Sums over ${count(frames, 'frame')}; 0 % is pale. The strongest colour is 100 % for banks${
-              mostWaits > 0 ? `, and for waits the most of them in any row, ${percent(mostWaits)}` : ''}. ` +
+        `Sums over ${count(frames, 'frame')}. The colours of banks end at 100 %${
+              mostWaits > 0 ? `, those of waits at the most of them in any row, ${percent(mostWaits)}` :
+                              ''}. ` +
         'Drag over rows to zoom in.',
     numbers: () => {
       const named = [

@@ -207,7 +207,7 @@ export function whereText(run) {
   const most = cycles.reduce((a, b) => Math.max(a, b));
   const longer = cycles.filter(each => each > 1.01 * least).length;
   if (longer > 0) {
-    texts.push(`${longer} of ${count(cycles.length, 'frame')} ${longer === 1 ? 'takes' : 'take'} up to ${
+    texts.push(`${longer} of ${count(cycles.length, 'frame')} ${longer === 1 ? 'takes' : 'take up to'} ${
         whole(most)} cycles; the shortest takes ${whole(least)}.`);
   }
   return texts;
