@@ -98,7 +98,7 @@ def bank_rows(recorded, options):
 
 
 def picture(recorded, options):
-    """The stalls, painted over the picture."""
+    """The waits, over the picture."""
     tiles = {}
     for row in recorded.tiles:
         if row["first_row"]:

@@ -487,7 +487,7 @@ class Answers(PageTest):
         self.assertIn("That is no fault.", self.browser.text("#time .note"))
         share = 1
         self.opened(computer(), change)
-        self.assertIn(f"{dropped}.", self.answer("What limits?"))
+        self.assertIn(f"{dropped}, such as before the tables are uploaded.", self.answer("What limits?"))
 
     def steps(self, *changed):
         """Changes the steps of a run to these: (knob, from, to, gain in %, what else differs from the board)."""
@@ -561,6 +561,7 @@ class Answers(PageTest):
             run["recording"]["waits"] = [{"class": "core", "why": "capture", "ps": all_of_it}]
 
         for all_of_it, text in ((early, "ms before its first frame, then never"),
+                                (early + 1000, "ms before its first frame, then hardly ever"),
                                 (early * 1.05, "ms before its first frame, later "),
                                 (early * 1.2, "% because the capture of the next pair runs")):
             self.opened(computer(), change)

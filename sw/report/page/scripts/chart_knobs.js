@@ -3,7 +3,7 @@ import {h, s} from './dom.js';
 import {count, fixed, gainText, percent, rate, signed, whole} from './format.js';
 import {addChart, cut, drawing, textWidth} from './chart.js';
 import {adviceOf, newPartsOf, priceOf, priceText, shortStepText, stepText} from './advice.js';
-import {kindOfSteps, rateOf, resourceText} from './findings.js';
+import {kindOfSteps, rateOf, resourceText, withVerb} from './findings.js';
 import {axisBelow, axisLeft, logarithmic} from './scale.js';
 import {mark} from './tooltip.js';
 
@@ -241,7 +241,7 @@ export function addRoofline(page, run) {
     title: `${here.bank} works at ${percent(share)} of its roof: ` +
         (by.startsWith('bank') ? 'fewer accesses are the way up' :
              share > kNearRoof ? `a faster ${resourceText(by).replace('the ', '')} needs fewer accesses too` :
-                                 `${resourceText(by)} limits`),
+                                 withVerb(by, 'limit')),
     note:
         'The line is the roof: what a bank with one access a cycle allows. Both axes are logarithmic. Large dots: ' +
         'this board (orange), the first change and the largest gain. Small dots: all other single changes.',

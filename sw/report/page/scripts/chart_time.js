@@ -79,7 +79,9 @@ function coreWaits(run, span, early) {
   const ms = ps => `${fixed(ps / kPsOfMs, ps < 0.1 * kPsOfMs ? 2 : 1)} ms`;
   if (all <= kHardly * span) return {title: ', and hardly waits', note: null};
   if (all - early <= kFewLater * all) {
-    const later = all - early < 0.005 * kPsOfMs ? 'then never' : `later ${ms(all - early)} in all`;
+    const later = all === early       ? 'then never' :
+        all - early < 0.005 * kPsOfMs ? 'then hardly ever' :
+                                        `later ${ms(all - early)} in all`;
     return {
       title: `; it waits ${ms(early)} before its first frame, ${later}`,
       note: `All in all the core waits ${reasons(ms).join(', ')}.`

@@ -111,12 +111,13 @@ export function droppedText(run) {
   const {frames, dropped_not_armed: dropped} = run.stats.cameras[0];
   if (dropped === 0) return null;
   const delivered = settingOf(run, 'cameras.frame_rate_hz');
-  const text =
-      `${dropped} of ${frames} camera frames are dropped, because no input buffer is free as they begin`;
-  return rateOf(run).now < 0.995 * delivered ?
+  const {now, kind, limit} = rateOf(run);
+  const text = `${dropped} of ${frames} camera frames ${
+      dropped === 1 ? 'is' : 'are'} dropped, because no input buffer is free as they begin`;
+  return (kind === 'steady' ? now : limit) < 0.995 * delivered ?
       `${text}: the cameras deliver ${
           rate(delivered)} frames/s, and the board takes fewer. That is no fault.` :
-      `${text}.`;
+      `${text}, such as before the tables are uploaded.`;
 }
 
 function whoWaits(run) {
