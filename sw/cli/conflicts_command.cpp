@@ -39,12 +39,12 @@ constexpr std::array kFigures = {"bank_rows", "picture", "time_line", "causes"};
 constexpr std::array kEndings = {".png", ".svg", ".pdf", ".csv"};
 constexpr const char* kConflictsFooter =
     "Printed are who waits at which bank for whom, and where in the picture. Written are conflicts.csv,\n"
-    "stalls by tile, which is a group of four columns in the rows of results that leave at once; rows.csv,\n"
-    "cycles, stalls and accesses of every frame by rows; and the figures, each with its data:\n"
-    "  bank_rows  use of the banks, and stalls, by row\n"
-    "  picture    stalls painted over the left picture\n"
-    "  time_line  the frame with the most cycles: use of the banks, and stalls, over its time\n"
-    "  causes     stalls of each port by bank and cause\n"
+    "waits by tile, which is a group of four columns in the rows of results that leave at once; rows.csv,\n"
+    "cycles, waits and accesses of every frame by rows; and the figures, each with its data:\n"
+    "  bank_rows  use of the banks, and waits, by row\n"
+    "  picture    waits drawn over the left picture\n"
+    "  time_line  the frame with the most cycles: use of the banks, and waits, over its time\n"
+    "  causes     waits of each port by bank and cause\n"
     "A RUN is repeated from its config.yaml and run.json, after a check of every input by its SHA-256, and\n"
     "must give the figures of its stats.json. The sums of what is written equal the figures of the run.";
 

@@ -70,7 +70,7 @@ std::string table_of_rows(const platform::BoardConfig& board, const fpga::FrameC
     }
     if (is_used) banks.push_back(bank);
   }
-  std::string text = "rows             stalls %";
+  std::string text = "rows              waits %";
   for (const std::size_t bank : banks) text += fmt::format(" {:>9}", board.banks[bank].name + " %");
   text += '\n';
   const std::size_t strips = sums.strips.size() - 1;
@@ -129,12 +129,12 @@ std::string conflicts_text(const platform::BoardConfig& board, const fpga::Confl
   std::vector<const fpga::ConflictRecorder::Stalls*> stalls = recorder.stalls();
   std::stable_sort(stalls.begin(), stalls.end(),
                    [](const auto* a, const auto* b) { return sum_of(a->cycles) > sum_of(b->cycles); });
-  if (stalls.empty()) text += "stalls       none\n";
+  if (stalls.empty()) text += "waits        none\n";
   for (const fpga::ConflictRecorder::Stalls* each : stalls) {
     const std::uint64_t lost = sum_of(each->cycles);
-    text += fmt::format("stalls       {} on {} lost {} cycles ({:.2f} %) to {}: {}\n",
-                        fpga::requester_name(each->requester), board.banks[each->bank].name, lost,
-                        percent_of(lost, cycles), fpga::requester_name(each->by),
+    text += fmt::format("waits        {} on {} for {}: {} cycles ({:.2f} %), {}\n",
+                        fpga::requester_name(each->requester), board.banks[each->bank].name,
+                        fpga::requester_name(each->by), lost, percent_of(lost, cycles),
                         where(board, recorder.grid(), each->cycles));
   }
   return text + table_of_rows(board, sums);

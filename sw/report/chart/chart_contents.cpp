@@ -13,16 +13,16 @@ namespace {
 
 using platform::BoardConfig;
 
-// "512K", "2M", "307200".
+// "512K", "2M", "307,200".
 std::string count_text(std::uint64_t count) {
   constexpr std::uint64_t kKilo = 1024;
   if (count > 0 && count % (kKilo * kKilo) == 0) return fmt::format("{}M", count / (kKilo * kKilo));
   if (count > 0 && count % kKilo == 0) return fmt::format("{}K", count / kKilo);
-  return std::to_string(count);
+  return grouped(count);
 }
 
 std::string busy_text(const ChartTraffic* traffic, const std::string& block) {
-  return traffic == nullptr ? "" : fmt::format(", busy {} %", short_number(traffic->busy_percent.at(block)));
+  return traffic == nullptr ? "" : fmt::format(", busy {} %", measured(traffic->busy_percent.at(block)));
 }
 
 }  // namespace
@@ -40,7 +40,7 @@ BankLines bank_lines(const BoardConfig& board, const platform::BankConfig& bank,
     used += words;
   }
   const memory::BankTraits& traits = memory::traits_of(bank.kind);
-  lines.size = fmt::format("{} of {} words", used, count_text(lines.words));
+  lines.size = fmt::format("{} of {} words", grouped(used), count_text(lines.words));
   lines.kind = traits.name;
   if (traits.has_turnaround) lines.kind += fmt::format(", {} lost", bank.turnaround_cycles);
   lines.bandwidth = short_number(4 * traits.ports * board.fpga.clock_mhz) + " MB/s";
@@ -49,7 +49,7 @@ BankLines bank_lines(const BoardConfig& board, const platform::BankConfig& bank,
   for (const ChartLink& link : chart_links(board, traffic->extent)) {
     if (link.to == "bank-" + bank.name) sum += traffic->megabytes_per_second.at(link.id());
   }
-  lines.bandwidth = fmt::format("{} of {}", short_number(sum), lines.bandwidth);
+  lines.bandwidth = fmt::format("{} of {}", measured(sum), lines.bandwidth);
   return lines;
 }
 
@@ -74,8 +74,9 @@ ChartLines port_lines(const BoardConfig& board, const std::string& port, const C
                             : port == "result"                       ? "disparities"
                             : port.find("_lut") != std::string::npos ? table
                                                                      : pixels};
-  if (traffic != nullptr)
-    lines.push_back(fmt::format("stalled {} %", short_number(traffic->stalled_percent.at("port-" + port))));
+  if (traffic == nullptr) return lines;
+  const double waits = traffic->waits_percent.at("port-" + port);
+  lines.push_back(waits == 0 ? "never waits" : fmt::format("waits {} %", measured(waits)));
   return lines;
 }
 
@@ -179,9 +180,10 @@ ChartLines subtitle_lines(const BoardConfig& board, ChartExtent extent, const Ch
 }
 
 ChartLines legend_lines(ChartExtent extent, const ChartTraffic* traffic) {
-  if (traffic == nullptr) return {"Numbers at the links: peak MB/s (10^6 bytes/s)"};
-  ChartLines lines = {"Links: MB/s (10^6 bytes/s), width by MB/s,", "colour by % of the link's peak:"};
-  lines.emplace_back("Heavy frame: limits the frame rate");
+  if (traffic == nullptr) return {"Numbers at the links: peak MB/s (million bytes/s)"};
+  ChartLines lines = {"Links: MB/s (million bytes/s), width by MB/s,", "colour by % of the link's peak:"};
+  lines.emplace_back("No number: nothing was moved");
+  lines.emplace_back("Thick outline: sets the bound of the frame rate");
   lines.emplace_back(extent == ChartExtent::kBoard ? "While the core works on a frame"
                                                    : "Banks, ports: while the core works on a frame");
   if (extent == ChartExtent::kComputer) lines.emplace_back("Buses, captures: since power-up");

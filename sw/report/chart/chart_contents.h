@@ -12,8 +12,8 @@ namespace stereotlm::report {
 using ChartLines = std::vector<std::string>;
 
 struct BankLines {
-  std::string bandwidth;  // beside the name: "160 MB/s"; of a run "158.96 of 160 MB/s"
-  std::string size;       // "76800 of 512K words"
+  std::string bandwidth;  // beside the name: "160 MB/s"; of a run "159.0 of 160 MB/s"
+  std::string size;       // "76,800 of 512K words"
   std::string kind;       // "zbt_pipelined", "sync_burst, 2 lost"
   struct Held {
     std::string label;  // "left_image[0]"

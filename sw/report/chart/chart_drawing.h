@@ -66,7 +66,7 @@ struct ChartEdge {
   std::optional<double> megabytes_per_second;  // nullopt without a run
   double width = 1.5;
   std::vector<ChartPoint> way;  // from link.from to link.to; horizontal and vertical pieces
-  ChartText label;
+  ChartText label;              // without text where a run has moved nothing
   std::string title;
 };
 

@@ -21,6 +21,7 @@ constexpr double kNameStep = 16;  // from a name to the line below it
 constexpr double kNoteStep = 14;
 constexpr double kPadding = 7;  // in a block, above and below its text
 constexpr double kLabelHeight = kNoteSize * kLetterHeight;
+constexpr double kAboveLabel = 8;  // free, up to the next link of the bank
 constexpr double kThinEdge = 1.5;
 constexpr double kWidestEdge = 12;
 constexpr double kShortEdge = 36;  // length of an edge between blocks that stand one above the other
@@ -50,6 +51,8 @@ constexpr double kBridgeWidth = 232;
 double block_height(const ChartLines& lines) {
   return 2 * kPadding + kNameStep + kNoteStep * static_cast<double>(lines.size() - 1);
 }
+
+bool is_around_board(const ChartLink& link) { return link.from.compare(0, 5, "part-") == 0; }
 
 double tallest(const std::vector<ChartLines>& blocks) {
   double height = 0;
@@ -150,9 +153,10 @@ class Layout {
         const double value = traffic_->megabytes_per_second.at(link.id());
         edge.megabytes_per_second = value;
         edge.width = std::max(1.0, kWidestEdge * value / most);
-        edge.title = fmt::format("{}: {} of {} MB/s ({} %)", ends, short_number(value), number,
-                                 short_number(100 * value / link.peak));
-        number = short_number(value);
+        edge.title = fmt::format(
+            "{}: {} of {} MB/s ({} %)\n{}", ends, measured(value), number, measured(100 * value / link.peak),
+            is_around_board(link) ? "mean since power-up" : "mean while the core works on a frame");
+        number = value == 0 ? "" : measured(value);
       }
       edge.label = text_at(number, 0, 0, ChartAnchor::kStart, 100);
       edge.label.faint = false;
@@ -161,7 +165,9 @@ class Layout {
   }
 
   // The height that an edge takes at a bank: its label stands on it.
-  static double slot_of(const ChartEdge& edge) { return edge.width + kLabelHeight + 4; }
+  static double slot_of(const ChartEdge& edge) {
+    return edge.width + kAboveLabel + (edge.label.text.empty() ? 0 : kLabelHeight);
+  }
 
   void measure_banks() {
     for (const platform::BankConfig& config : board_.banks) {
@@ -333,7 +339,7 @@ class Layout {
           bar.all.width * static_cast<double>(held.words) / static_cast<double>(bank.lines.words);
       bar.buffers.push_back({x, bar.all.y, width, kWordsBar});
       x += width;
-      const std::string words = std::to_string(held.words);
+      const std::string words = grouped(held.words);
       block.title += fmt::format("\n{}: {} words", held.label, words);
       ChartText label = text_at(held.label, left, y, ChartAnchor::kStart, right - left - 70);
       label.faint = false;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <utility>
@@ -129,6 +130,23 @@ std::string short_number(double value) {
   std::string text = fmt::format("{:.2f}", value);
   while (text.back() == '0') text.pop_back();
   if (text.back() == '.') text.pop_back();
+  return text;
+}
+
+std::string measured(double value) {
+  if (value == 0) return "0";
+  return value < 0.05 ? "<0.1" : fmt::format("{:.1f}", value);
+}
+
+std::string rate_text(double frames_per_second) {
+  return fmt::format("{:.{}f}", frames_per_second, frames_per_second < 100 ? 2 : 1);
+}
+
+std::string grouped(std::uint64_t count) {
+  std::string text = std::to_string(count);
+  if (count < 10000) return text;
+  for (std::size_t place = text.size() - 3; place > 0; place -= std::min<std::size_t>(place, 3))
+    text.insert(place, ",");
   return text;
 }
 

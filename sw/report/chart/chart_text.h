@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -18,7 +19,17 @@ std::string fitted(const std::string& text, double size, bool bold, double width
 // UTF-8, become U+FFFD.
 std::string xml_text(std::string_view text);
 
-// At most two decimals, without trailing zeros: "160", "133.33", "5.7"; "<0.01" for less.
+// A figure of the configuration. At most two decimals, without trailing zeros: "160", "133.33", "5.7"; "<0.01"
+// for less.
 std::string short_number(double value);
+
+// A measured figure. One decimal: "144.4", "5.0"; "<0.1" for less, and "0" for nothing.
+std::string measured(double value);
+
+// A rate in frames/s: two decimals below 100, else one.
+std::string rate_text(double frames_per_second);
+
+// A count, with commas from 10,000 on.
+std::string grouped(std::uint64_t count);
 
 }  // namespace stereotlm::report

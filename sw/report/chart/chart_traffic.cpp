@@ -8,6 +8,8 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "sw/report/chart/chart_text.h"
+
 namespace stereotlm::report {
 namespace {
 
@@ -30,6 +32,15 @@ const Json& entry(const Json& list, const std::string& name) {
 }
 
 std::uint64_t number(const Json& object, const char* key) { return object.at(key).get<std::uint64_t>(); }
+
+// What a resource of stats.json is called in a sentence.
+std::string resource_text(const std::string& resource) {
+  if (resource == "matcher") return "the matcher";
+  if (resource == "camera") return "the cameras";
+  if (resource == "pci") return "the PCI bus";
+  if (resource == "bridge") return "the PCI bridge";
+  return resource.substr(resource.find(' ') + 1);  // "bank bank0", "port left_lut"
+}
 
 class TrafficReader {
  public:
@@ -64,7 +75,7 @@ class TrafficReader {
     for (const fpga::CorePort& port : fpga::kPorts) {
       const Json& figures = entry(stats_.at("ports"), port.name);
       const std::uint64_t grants = number(figures, "grants");
-      traffic_.stalled_percent[std::string("port-") + port.name] =
+      traffic_.waits_percent[std::string("port-") + port.name] =
           percent(number(figures, "stall_cycles"), cycles_);
       const std::vector<std::string> banks = banks_of(board_, port);
       if (banks.empty()) continue;
@@ -161,19 +172,19 @@ class TrafficReader {
   }
 
   void read_summary() {
+    const bool is_whole = traffic_.extent == ChartExtent::kComputer;
     const Json& rates = stats_.at("frames_per_second");
+    const auto rate = [&rates](const char* key) { return rate_text(rates.at(key).get<double>()); };
+    std::string text = rate(is_whole ? "system" : "core") + " frames/s" +
+                       (is_whole ? ", including start-up" : ", core only");
+    if (is_whole && rates.contains("steady"))
+      text = rate("steady") + " frames/s, steady; " + rate("system") + " including start-up";
+    traffic_.summary = {fmt::format("{}; {} frame{}", text, frames_, frames_ == 1 ? "" : "s")};
     const Json& bound = stats_.at("bound");
-    const auto line = [&](const char* what, const char* rate_key, const std::string& more,
-                          const char* limit) {
-      traffic_.summary.push_back(
-          fmt::format("{} {:.3f} frames/s{}; bound {:.3f}, by {}", what, rates.at(rate_key).get<double>(),
-                      more, bound.at(what).get<double>(), bound.at(limit).get<std::string>()));
-    };
-    line("core", "core", fmt::format(", {} frame{}", frames_, frames_ == 1 ? "" : "s"), "core_limited_by");
-    if (traffic_.extent == ChartExtent::kBoard) return;
-    const std::string steady =
-        rates.contains("steady") ? fmt::format(", steady {:.3f}", rates.at("steady").get<double>()) : "";
-    line("system", "system", steady, "system_limited_by");
+    const double limit = bound.at(is_whole ? "system" : "core").get<double>();
+    const std::string by = bound.at(is_whole ? "system_limited_by" : "core_limited_by").get<std::string>();
+    traffic_.summary.push_back(
+        fmt::format("bound {} frames/s, set by {}", rate_text(limit), resource_text(by)));
   }
 
   const platform::BoardConfig& board_;

@@ -15,7 +15,7 @@ struct ChartTraffic {
   ChartExtent extent = ChartExtent::kBoard;            // of the run
   std::map<std::string, double> megabytes_per_second;  // by the id of the link; of every link
   std::map<std::string, double> busy_percent;          // by the id of the block: banks and buses
-  std::map<std::string, double> stalled_percent;       // by the id of the block: ports
+  std::map<std::string, double> waits_percent;         // by the id of the block: ports
   std::set<std::string> limiting;                      // ids of the blocks that set the bounds of the rate
   std::vector<std::string> summary;                    // lines about the run
 };

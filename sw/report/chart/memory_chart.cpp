@@ -162,7 +162,7 @@ std::string edge_element(const ChartEdge& edge) {
                      edge.link.peak, data) +
          title_element(edge.title) +
          arrow_elements(edge.way, edge.link.there, edge.link.back, edge.width, color_name) +
-         text_element(edge.label) + "</g>\n";
+         (edge.label.text.empty() ? "" : text_element(edge.label)) + "</g>\n";
 }
 
 // Edges of one port follow each other, and lie side by side: a halo must not cover its neighbours.

@@ -106,7 +106,14 @@ Json settings_of(const BoardConfig& board) {
   return all;
 }
 
-Json banks_of(const BoardConfig& board) {
+// The accesses of the host to a bank, as a share of the cycles of the frames.
+double host_share(const std::string& bank, const BoardConfig& board, const ChartTraffic& traffic) {
+  const ChartLink link{std::string("port-") + fpga::kPorts[fpga::kHostPort].name, "bank-" + bank};
+  const auto rate = traffic.megabytes_per_second.find(link.id());
+  return rate == traffic.megabytes_per_second.end() ? 0 : rate->second / (4 * board.fpga.clock_mhz);
+}
+
+Json banks_of(const BoardConfig& board, const ChartTraffic& traffic) {
   Json all = Json::array();
   for (const platform::BankConfig& bank : board.banks) {
     const memory::BankTraits& traits = memory::traits_of(bank.kind);
@@ -119,6 +126,7 @@ Json banks_of(const BoardConfig& board) {
                    {"kind", traits.name},
                    {"words", bank.words},
                    {"accesses_per_cycle", traits.ports},
+                   {"host_share", host_share(bank.name, board, traffic)},
                    {"buffers", std::move(buffers)}});
   }
   return all;
@@ -195,25 +203,58 @@ std::string png_url(const std::string& bytes) {
   return "data:image/png;base64," + files::base64(bytes.data(), bytes.size());
 }
 
-std::string memory_chart_of(const runs::RecordedRun& run) {
+ChartTraffic traffic_of(const runs::RecordedRun& run) {
   try {
-    return memory_chart_svg(run.board, chart_traffic(run.board, run.stats_json));
+    return chart_traffic(run.board, run.stats_json);
   } catch (const std::runtime_error& error) {
     throw std::runtime_error(fmt::format("{}: stats.json {}", runs::name_of(run), error.what()));
   }
 }
 
-std::size_t banks_used(const BoardConfig& board) {
+std::set<std::string> banks_used(const BoardConfig& board) {
   std::set<std::string> banks;
   for (const platform::PlacedBuffer& buffer : platform::buffers(board)) banks.insert(buffer.bank);
-  return banks.size();
+  return banks;
+}
+
+std::uint64_t words_in(const std::string& bank, const BoardConfig& board) {
+  std::uint64_t words = 0;
+  for (const platform::PlacedBuffer& buffer : platform::buffers(board)) {
+    if (buffer.bank == bank) words += buffer_words(buffer, board.image);
+  }
+  return words;
+}
+
+// Where a changed board uses banks that the board does not use: the banks of the board that can be taken for
+// them, and how many banks the board lacks.
+void add_banks_taken(const BoardConfig& board, const BoardConfig& changed, Json& data) {
+  const std::set<std::string> used = banks_used(board);
+  std::vector<std::string> idle;
+  std::size_t lacking = 0;
+  for (const platform::BankConfig& bank : changed.banks) {
+    if (banks_used(changed).count(bank.name) == 0 || used.count(bank.name) > 0) continue;
+    const auto can_replace = [&](const platform::BankConfig& own) {
+      if (own.name == bank.name) return true;
+      return used.count(own.name) == 0 && std::find(idle.begin(), idle.end(), own.name) == idle.end() &&
+             own.kind == bank.kind && own.turnaround_cycles == bank.turnaround_cycles &&
+             static_cast<std::uint64_t>(own.words) >= words_in(bank.name, changed);
+    };
+    const auto own = std::find_if(board.banks.begin(), board.banks.end(), can_replace);
+    if (own == board.banks.end()) {
+      ++lacking;
+    } else {
+      idle.push_back(own->name);
+    }
+  }
+  data["idle_banks"] = idle;
+  data["new_banks"] = lacking;
 }
 
 // What a board costs and how hard its busiest bank works.
 void add_prices(const BoardConfig& board, const runs::Explanation::BusiestBank& busiest, Json& data) {
   const double pixels = static_cast<double>(board.image.width) * board.image.height;
   data["area"] = json_of(platform::area_of(board));
-  data["banks_used"] = banks_used(board);
+  data["banks_used"] = banks_used(board).size();
   data["busiest_bank"] = {{"name", busiest.name},
                           {"accesses_per_pixel", busiest.accesses_per_frame / pixels}};
   data["clock_mhz"] = board.fpga.clock_mhz;
@@ -223,6 +264,7 @@ void add_prices(const BoardConfig& board, const runs::Explanation::BusiestBank& 
 
 Json run_data(const runs::RecordedRun& run, const platform::Tables& tables) {
   const BoardConfig& board = run.board;
+  const ChartTraffic traffic = traffic_of(run);
   const auto read = [&run](const char* name) {
     return files::read_whole_file(std::filesystem::path(run.folder) / name);
   };
@@ -232,11 +274,11 @@ Json run_data(const runs::RecordedRun& run, const platform::Tables& tables) {
                {"config_yaml", read("config.yaml")},
                {"options", Json::parse(run.run_json)},
                {"settings", settings_of(board)},
-               {"banks", banks_of(board)},
+               {"banks", banks_of(board, traffic)},
                {"ports", ports_of(board)},
                {"bounds", bounds_of(board, tables, run.options.source == "camera")},
                {"area", area_data(board)},
-               {"memory_chart", memory_chart_of(run)}};
+               {"memory_chart", memory_chart_svg(board, traffic)}};
   if (!run.options.timing_only) {
     data["pictures"] = {{"disparity", png_url(read("disparity.png"))},
                         {"disparities", board.matcher.disparities}};
@@ -303,6 +345,7 @@ Json knobs_data(const BoardConfig& board, runs::Explanation& explanation) {
     step["changes_disparities"] = knob.changes_disparities;
     step["loses_pixels"] = found.rate.loses_pixels;
     add_prices(knob.board, found.busiest, step);
+    add_banks_taken(board, knob.board, step);
     steps.push_back(std::move(step));
   }
   Json forbidden = Json::array();

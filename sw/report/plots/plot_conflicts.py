@@ -79,7 +79,7 @@ def bank_rows(recorded, options):
     rows = recorded.sums[1:]
     sheet = Sheet("How busy banks are, and who waits, from the top of the picture to its bottom", options.size,
                   options.format)
-    sheet.note("Of the cycles of each row of results: accesses of the bank, or stalls of the port. " + recorded.note)
+    sheet.note("Of the cycles of each row of results: accesses of the bank, or waits of the port. " + recorded.note)
     (axes,) = sheet.columns(1, 4.2, 0.7, headed=False, bottom=1.5, right=0.3)
     edges = [int(row["first_row"]) for row in rows] + [recorded.about["height"]]
     values = [[recorded.share(row, name) for name in columns] for row in rows]
@@ -98,7 +98,7 @@ def bank_rows(recorded, options):
 
 
 def picture(recorded, options):
-    """The stalls, painted over the picture."""
+    """The waits, over the picture."""
     tiles = {}
     for row in recorded.tiles:
         if row["first_row"]:
@@ -113,7 +113,7 @@ def picture(recorded, options):
                 paint[row][group] = 100 * lost / cycles
     most = max((max(row) for row in paint), default=0)
     sheet = Sheet("Where in the picture ports wait", options.size, options.format)
-    sheet.note("Stall cycles of all ports, of the cycles after which the results of this place leave. "
+    sheet.note("Waits of all ports, of the cycles after which the results of this place leave. "
                "The ports read ahead of the results. " + recorded.note)
     left, right = 0.6, 0.25
     (axes,) = sheet.columns(1, (sheet.width - left - right) * height / width, left, headed=False, bottom=0.95,
@@ -125,7 +125,7 @@ def picture(recorded, options):
                         interpolation="nearest")
     axes.grid(False)
     axes.set_ylabel("row")
-    sheet.color_bar(shown, "stalls, % of the cycles (two ports that wait count twice)", 0.5)
+    sheet.color_bar(shown, "waits, % of the cycles (two ports that wait count twice)", 0.5)
     header = ["first_row", "last_row", "first_column", "last_column", "stall_cycles", "cycles"]
     return Drawing(sheet, header, [[*place, *each] for place, each in sorted(tiles.items())], "")
 
@@ -178,7 +178,7 @@ def causes(recorded, options):
     most = max(sum(cycles for (port, bank, _), cycles in lost.items() if (bank, port) == place) for place in places)
     factor, word = in_words(most / frames)
     sheet = Sheet("Which port waits at which bank, and for whom", options.size, options.format)
-    sheet.legend([(Patch(color=colors[by]), by if by == "turnaround" else f"lost to {by}") for by in blamed])
+    sheet.legend([(Patch(color=colors[by]), by if by == "turnaround" else f"for {by}") for by in blamed])
     sheet.note(recorded.note)
     widest = max(style.text_width(f"{port} on {bank}", style.SIZE) for bank, port in places)
     panels = sheet.columns(1, 0.3 + 0.3 * len(places), widest + 0.3, headed=False)
@@ -192,7 +192,7 @@ def causes(recorded, options):
     panels[0].set_ylim(len(places) - 0.4, -0.6)
     panels[0].grid(False, axis="y")
     ticks_of_columns(panels, most / frames / factor)
-    sheet.below(f"{word}stall cycles a frame")
+    sheet.below(f"{word}cycles of waiting a frame")
     table = [[*key, cycles] for key, cycles in sorted(lost.items())]
     return Drawing(sheet, ["port", "bank", "by", "cycles"], table, "")
 

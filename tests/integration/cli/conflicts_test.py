@@ -91,10 +91,10 @@ class Recorded(ConflictsTest):
 class Command(ConflictsTest):
     def test_it_says_who_waits_and_where(self):
         text = self.succeeds(run("conflicts", *self.scene, *PRELOADED, *SHARED))
-        self.assertRegex(text, r"stalls       left_lut on bank0 lost \d+ cycles \(\d+\.\d\d %\) to left_pixel: ")
-        self.assertIn("rows             stalls %   bank0 %", text)
+        self.assertRegex(text, r"waits        left_lut on bank0 for left_pixel: \d+ cycles \(\d+\.\d\d %\), ")
+        self.assertIn("rows              waits %   bank0 %", text)
         text = self.succeeds(run("conflicts", *self.scene, *PRELOADED))
-        self.assertIn("stalls       none\n", text)
+        self.assertIn("waits        none\n", text)
 
     def test_it_writes_tables_and_figures(self):
         options = ["--format", "png,svg,pdf", "--out", self.out]
@@ -111,7 +111,7 @@ class Command(ConflictsTest):
         self.assertEqual(lost, of_tiles)
         self.assertEqual(sum(int(row["cycles"]) for row in self.table("causes.csv")),
                          sum(row["cycles"] for row in self.stats(recorded)["blame"]))
-        self.assertIn("lost to host capture", (self.out / "causes.svg").read_text())
+        self.assertIn("for host capture", (self.out / "causes.svg").read_text())
         with self.unchanged(self.out):  # the same bytes again
             self.succeeds(run("conflicts", *self.scene, *CAPTURES, *options))
 

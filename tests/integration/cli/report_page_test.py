@@ -18,6 +18,7 @@ from selenium.webdriver.common.keys import Keys
 
 SCENE = [*SMALL, "--synthetic", "1"]
 SHARED = sets("allocation.left_lut=bank0")
+UNWANTED = r"stall|refused|knob|\bpaint|counted|all together|places of|heavy frame|blocked|starved|passed|10\^"
 NASTY = "<script>hacked=1</script><img src=x onerror=hacked=1> \"q\" 'a' $x & {{y}}"
 NASTY_FOLDER = "<img src=x onerror=hacked=1> \"q\" 'a' $x & y"
 
@@ -135,8 +136,22 @@ class EveryChart(PageTest):
             "}).map(text => text.textContent)"
         )
         self.assertEqual(self.browser.run(outside), [])
+        self.reads_well()
         self.assertEqual(self.browser.run("return [...document.querySelectorAll('svg [d*=NaN], svg [cx=NaN], "
                                           "svg [points*=NaN], svg [x=NaN], svg [width=NaN]')].length"), 0)
+
+    def reads_well(self):
+        """One word for a thing, one style of numbers, no full stop in a title."""
+        texts = self.browser.run(
+            "return [...document.querySelectorAll('dd, h2, section .note, .legend, .plot text, .memory text')]"
+            ".map(element => element.textContent)"
+        )
+        for text in texts:
+            self.assertNotRegex(text.lower(), UNWANTED)
+            self.assertNotRegex(text, r"(?<![\d.,_])\d,\d{3}(?![,\d])", "grouped below 10,000")
+            self.assertNotRegex(text, r"(?<![\d.,_/])\d{5}", "not grouped")
+        for title in self.browser.run("return [...document.querySelectorAll('h1, h2')].map(each => each.textContent)"):
+            self.assertFalse(title.endswith("."), title)
 
     def test_tells_its_numbers_to_the_keyboard(self):
         self.browser.open(page_of(computer()))
@@ -364,16 +379,16 @@ class Tools(PageTest):
         recording["events"].update(periods_ps=[[0, end // 4], [end // 2, end]], all=9999)
         self.browser.open(with_data(page_of(computer()), data, self.folder / "page.html"))
         self.browser.button("time", "All")
-        self.assertIn("of 9,999 events", self.browser.text("#time"))
+        self.assertIn("of 9999 events", self.browser.text("#time"))
         box = "return document.querySelector(arguments[0]).getBoundingClientRect().width"
         self.assertAlmostEqual(self.browser.run(box, "#time .left-out") * 4,
                                self.browser.run(box, "#time .window"), delta=8)
 
-    def test_sliders_move_the_picture_and_the_paint(self):
+    def test_sliders_move_the_picture_and_the_overlay(self):
         self.browser.open(page_of(computer()))
         self.browser.drawn()
         states = [self.picture()]
-        for slider, value in (("split", 0), ("split", 100), ("paint", 100), ("paint", 0)):
+        for slider, value in (("split", 0), ("split", 100), ("overlay", 100), ("overlay", 0)):
             self.browser.choose(f"picture-{slider}", value)
             states.append(self.picture())
         self.assertEqual(len(set(states)), 5)
@@ -381,13 +396,13 @@ class Tools(PageTest):
         self.browser.keys(Keys.ARROW_DOWN)
         self.assertIn("row 13", self.browser.text("#tooltip"))
 
-    def test_stalls_are_painted_without_pixels_too(self):
+    def test_waits_are_shown_without_pixels_too(self):
         data = data_of(page_of(computer()))
         del data["run"]["pictures"]
         self.browser.open(with_data(page_of(computer()), data, self.folder / "page.html"))
         self.browser.drawn()
         states = [self.picture()]
-        self.browser.choose("picture-paint", 100)
+        self.browser.choose("picture-overlay", 100)
         self.assertNotEqual(self.picture(), states[0])
         self.assertEqual(self.browser.all("#picture-split"), [])
 
@@ -416,6 +431,141 @@ class Tools(PageTest):
         for chart in ("rows", "time", "knobs"):
             self.assertIn("--quick", self.browser.text(f"#{chart}"))
             self.assertEqual(self.browser.all(f"#{chart} svg"), [])
+
+
+class Answers(PageTest):
+    """What the head of the page says; the data are changed to what is asked."""
+
+    def opened(self, folder, change):
+        data = data_of(page_of(folder))
+        change(data["run"])
+        self.browser.open(with_data(page_of(folder), data, self.folder / "page.html"))
+
+    def answer(self, question):
+        texts = self.browser.run(
+            "return [...document.querySelectorAll('.answers > div')]"
+            ".find(each => each.firstChild.textContent === arguments[0]).textContent", question)
+        return texts.removeprefix(question).replace("\u00a0", " ")
+
+    def test_the_port_that_waits_most_in_all_is_the_first(self):
+        def change(run):
+            cause = lambda port, bank, by, share: {"port": port, "bank": bank, "by": by,
+                                                   "cycles": share * run["stats"]["cycles"] / 100}
+            run["stats"]["blame"] = [
+                cause("right_lut", "bank2", "result", 3.2), cause("right_lut", "bank2", "host", 2.9),
+                cause("left_pixel", "bank0", "host", 3.3), cause("result", "bank2", "host", 0.2),
+                cause("result", "bank1", "host", 0.3), cause("right_lut", "bank2", "turnaround", 0.01)]
+
+        self.opened(core(), change)
+        first = "right_lut waits in 6.1 % of all cycles: 3.2 % for result, 2.9 % for host and less, on bank2"
+        self.assertEqual(self.answer("Who waits for whom?"),
+                         f"{first}.Then left_pixel 3.3 %, for host on bank0; result 0.5 %, mostly for host on bank1.")
+        self.assertEqual(self.browser.text("#blame h2"), first)
+
+    def test_the_bound_says_what_it_leaves_out(self):
+        def change(run):
+            run["stats"]["bound"]["system_limited_by"] = limit
+            run["banks"][2]["host_share"] = share
+
+        host = "The host takes 6.1 % of the cycles of bank2, which the bound leaves out"
+        for limit, share, has_host in (("bank bank2", 0.061, True), ("bank bank2", 0, False), ("matcher", 0.061, False)):
+            self.opened(computer(), change)
+            self.assertEqual(host in self.answer("What limits?"), has_host)
+
+    def test_dropped_frames_are_no_fault(self):
+        def change(run):
+            run["stats"]["cameras"][0].update(frames=26, dropped_not_armed=12, dropped_frames=12)
+            run["stats"]["frames_per_second"]["steady"] = share * self.rate
+            run["stats"]["bound"]["system"] = self.rate
+
+        (self.rate,) = (each["value"] for each in data_of(page_of(computer()))["run"]["settings"]
+                        if each["key"] == "cameras.frame_rate_hz")
+        dropped = "12 of 26 camera frames are dropped, because no input buffer is free as they begin"
+        share = 0.99
+        self.opened(computer(), change)
+        self.assertIn(f"{dropped}: the cameras deliver", self.answer("What limits?"))
+        self.assertIn("That is no fault.", self.browser.text("#time .note"))
+        share = 1
+        self.opened(computer(), change)
+        self.assertIn(f"{dropped}, such as before the tables are uploaded.", self.answer("What limits?"))
+
+    def steps(self, *changed):
+        """Changes the steps of a run to these: (knob, from, to, gain in %, what else differs from the board)."""
+
+        def change(run):
+            board = run["knobs"]["board"]
+            run["knobs"]["steps"] = [
+                {**board, "knob": knob, "from": before, "to": to, "has_effect": True, "changes_disparities": False,
+                 "frames_per_second": board["frames_per_second"] * (1 + gain / 100), "idle_banks": [],
+                 "new_banks": 0, **more, "area": {**board["area"], **more.get("area", {})}}
+                for knob, before, to, gain, more in changed
+            ]
+
+        return change
+
+    def test_the_first_change_needs_nothing_new(self):
+        slices = lambda more, percent: {"area": {
+            "slices": self.area["slices"] + more, "slices_percent": self.area["slices_percent"] + percent}}
+        self.area = data_of(page_of(core()))["run"]["knobs"]["board"]["area"]
+        large = ("matcher.rows", "1", "2", 40, slices(6016, 17.8))
+        largest = ("matcher.fetch", "column", "line_buffer", 40, slices(9830, 29.1))
+        kind = ("ssram.banks.*.kind", "zbt_pipelined", "qdr", 6, {})
+        bank = ("a bank more", "right_lut in bank2", "in one of its own", 4.6, {"idle_banks": ["bank4"]})
+        joint = ("fpga.tables", "separate", "joint in bank3", 4.6, slices(22, 0.1))
+        self.opened(core(), self.steps(largest, large, kind, joint, bank))
+        self.assertRegex(self.answer("What to change first?"),
+                         r"^right_lut: bank2 → bank4 gives .* frames/s, core only \(\+4\.6 %\)\."
+                         r"The largest gain: matcher\.rows: 1 → 2 gives .* \(\+40\.0 %\)\. "
+                         r"It needs \+6016 slices \(\+17\.8 % of the FPGA\)\.$")
+        self.assertTrue(self.answer("What does it cost?").startswith(
+            "The first change takes nothing new: it uses bank4, which holds nothing."))
+        self.opened(core(), self.steps(kind, ("a bank more", "right_lut in bank2", "", 4.6, {"new_banks": 1}),
+                                       ("fpga.clock_mhz", "40", "41", 2, {"clock_mhz": 41}),
+                                       ("matcher.window", "7", "5", 2, {"changes_disparities": True})))
+        self.assertTrue(self.answer("What to change first?").startswith(
+            "kind of memory of all banks (ssram.banks.*.kind): zbt_pipelined → qdr gives"))
+        self.assertIn("takes other memory chips.", self.answer("What does it cost?"))
+        self.assertEqual(self.browser.text("#knobs h2"), "First: kind of memory of all banks: zbt_pipelined → qdr, +6.0 %")
+        self.opened(core(), self.steps(("fpga.arbitration", "age", "round_robin", 0.9, {})))
+        self.assertIn("no single change gains 1 %", self.answer("What to change first?"))
+
+    def test_a_change_that_reaches_another_limit_says_so(self):
+        def change(run):
+            run["bounds"]["computer"] = [{"resource": "camera", "frames_per_second": 29.97}]
+            run["knobs"]["board"]["frames_per_second"] = 20
+            self.steps((key, "a", "b", gain, {}))(run)
+
+        for key, gain, text in (("matcher.cost", 49.85, "(+49.8 %), where the cameras limit."),
+                                ("matcher.cost", 49, "(+49.0 %)."),
+                                ("cameras.trigger", 49.85, "(+49.8 %).")):
+            self.opened(computer(), change)
+            self.assertTrue(self.answer("What to change first?").endswith(text), (key, gain))
+
+    def test_small_changes_are_folded(self):
+        self.opened(core(), self.steps(*(("matcher.rows", "1", str(i), gain, {}) for i, gain in
+                                         enumerate((5, 0.11, 0.09, 0.049, 0, -0.049, -0.09, -0.11)))))
+        self.assertEqual(len(self.browser.all("#knobs .mark")), 3)
+        self.assertEqual(self.browser.text("#fold-changes"), "▸ 5 changes that gain or lose less than 0.1 %")
+        self.browser.click("#fold-changes")
+        gains = self.browser.run("return [...document.querySelectorAll('#knobs .mark')]"
+                                 ".map(each => each.getAttribute('aria-label').match(/\\((.*?)\\)/)[1])")
+        self.assertEqual(gains, ["+5.0 %", "+0.1 %", "+0.1 %", "≈ 0", "≈ 0", "≈ 0", "−0.1 %", "−0.1 %"])
+
+    def test_the_core_says_when_it_waits(self):
+        recorded = list(csv.DictReader(io.StringIO((computer() / "timeline.csv").read_text())))
+        first = min(int(row["start_ps"]) for row in recorded if row["kind"] == "frame")
+        waits = [row for row in recorded if (row["kind"], row["class"]) == ("wait", "core")]
+        early = sum(int(row["end_ps"]) - int(row["start_ps"]) for row in waits if int(row["end_ps"]) <= first)
+
+        def change(run):
+            run["recording"]["waits"] = [{"class": "core", "why": "capture", "ps": all_of_it}]
+
+        for all_of_it, text in ((early, "ms before its first frame, then never"),
+                                (early + 1000, "ms before its first frame, then hardly ever"),
+                                (early * 1.05, "ms before its first frame, later "),
+                                (early * 1.2, "% because the capture of the next pair runs")):
+            self.opened(computer(), change)
+            self.assertIn(text, self.browser.text("#time h2"))
 
 
 class Names(PageTest):

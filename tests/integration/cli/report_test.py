@@ -65,6 +65,28 @@ class Run(ReportTest):
             accesses[each["bank"]] += sum(values(each["accesses"]))
         self.assertEqual(accesses, {bank["name"]: bank["reads"] + bank["writes"] for bank in stats["banks"]})
 
+    def test_holds_what_the_host_takes_of_each_bank(self):
+        folder = self.run_of("a", *CAMERA_RATES, *SHARED, "--frames", "3")
+        stats = self.stats(folder)
+        shares = [bank["host_share"] for bank in self.data(folder, "--quick")["run"]["banks"]]
+        (host,) = (port for port in stats["ports"] if port["name"] == "host")
+        self.assertGreater(host["grants"], 0)
+        self.assertAlmostEqual(sum(shares) * stats["cycles"], host["grants"], places=3)
+        self.assertEqual(shares[6:], [0, 0])  # tables are there before the first frame
+
+    def test_a_change_takes_a_bank_that_holds_nothing_if_it_is_alike(self):
+        for more, idle, lacking in (((), ["bank6"], 0),
+                                    (("ssram.banks.bank6.kind=qdr",), [], 1),
+                                    (("ssram.banks.bank6.words=64",), [], 1)):
+            with self.subTest(more=more):
+                folder = self.run_of(f"a{len(idle)}{len(more)}{more}", *PRELOADED, *SHARED, *sets(*more))
+                steps = self.data(folder)["run"]["knobs"]["steps"]
+                (step,) = (each for each in steps if each["knob"] == "a bank more")
+                self.assertEqual((step["idle_banks"], step["new_banks"]), (idle, lacking))
+                for each in steps:
+                    if each["knob"] == "matcher.window":
+                        self.assertEqual((each["idle_banks"], each["new_banks"]), ([], 0))
+
     def test_names_the_command_that_repeats_it(self):
         folder = self.run_of("a b'c", *PRELOADED, "--frames", "2")
         command = self.data(folder)["run"]["command"]

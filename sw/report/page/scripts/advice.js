@@ -1,37 +1,88 @@
-// What to change first, of all steps of knobs, and what a step costs.
-import {fixed, signed, whole} from './format.js';
+// What to change first, of all single changes of the board, and what a change takes.
+import {fixed, sameWithin, signed, whole} from './format.js';
 
 const kWorthwhile = 0.01;  // least gain of a change worth naming, of the present rate
-const kCheapSlices = 1;    // percent of the FPGA that a cheap change may take in addition
+const kFreeSlices = 1;     // percent of the FPGA that a change may take and still need nothing new
+const kSame = 0.9995;      // rates that differ by less are the same
+const kAtLimit = 0.003;    // a rate is at the bound of a resource around the board if it is as near as this
 
-// What a step costs beside the board as it is.
+// Keys that are no settings of the parts of the board, but need another part.
+const kNeeds = [
+  [/^ssram\.banks\./, () => 'other memory chips'],
+  [/^cameras\.frame_rate_hz$/, () => 'other cameras'],
+  [/^capture\.fifo_words$/, () => 'other capture boards'],
+  [/^pci\.load\./, () => 'other traffic on the PCI bus'],
+  [/^pci\.(clock_mhz|width_bits)$/, () => 'another PCI bus'],
+  [/^pci\.memory_wait_clocks$/, () => 'another host'],
+  [/^(pci\.bridge_wait_clocks|bridge\.(posted_words|local_clock_mhz))$/, () => 'another PCI bridge'],
+  [/^fpga\.clock_mhz$/, step => `a clock of ${step.clock_mhz} MHz`],
+];
+
+const kKeyTexts = {
+  'ssram.banks.*.kind': 'kind of memory of all banks',
+  'ssram.banks.*.turnaround_cycles': 'turnaround of all banks',
+};
+
+// A change in words: matcher.rows: 1 → 2.
+export function shortStepText({knob, from, to, idle_banks: idle}) {
+  const moved = knob === 'a bank more' && /^(.*) in (.*)$/.exec(from);
+  if (moved) return `${moved[1]}: ${moved[2]} → ${idle?.[0] ?? 'a new bank'}`;
+  return `${kKeyTexts[knob] ?? knob}: ${from} → ${to}`;
+}
+
+// The same with the key that it changes.
+export function stepText(step) {
+  const name = kKeyTexts[step.knob];
+  return name ? `${name} (${step.knob}): ${step.from} → ${step.to}` : shortStepText(step);
+}
+
+// What a change takes beside the board as it is.
 export function priceOf(step, board) {
   return {
     slices: step.area.slices - board.area.slices,
     slicesPercent: step.area.slices_percent - board.area.slices_percent,
     blockRams: step.area.block_rams - board.area.block_rams,
     multipliers: step.area.multipliers - board.area.multipliers,
-    banks: step.banks_used - board.banks_used,
   };
+}
+
+// The parts that a change needs and the board does not have.
+export function newPartsOf(step) {
+  const parts = kNeeds.filter(([key]) => key.test(step.knob)).map(([, text]) => text(step));
+  if (step.new_banks > 0) parts.push(step.new_banks === 1 ? 'a new bank' : `${step.new_banks} new banks`);
+  return parts;
 }
 
 export function priceText(step, board) {
   const price = priceOf(step, board);
-  const parts = [];
-  if (price.slices)
-    parts.push(`${signed(price.slices, whole)} slices (${
-        signed(price.slicesPercent, n => fixed(n, 1))} % of the FPGA)`);
-  if (price.blockRams) parts.push(`${signed(price.blockRams, whole)} block RAMs`);
-  if (price.multipliers) parts.push(`${signed(price.multipliers, whole)} multipliers`);
-  if (price.banks)
-    parts.push(`${signed(price.banks, whole)} ${Math.abs(price.banks) === 1 ? 'bank' : 'banks'}`);
-  if (step.clock_mhz !== board.clock_mhz) parts.push(`a clock of ${step.clock_mhz} MHz`);
-  if (!step.area.fits) parts.push('it does not fit');
-  return parts.length ? parts.join(', ') : 'nothing that is counted';
+  const parts = newPartsOf(step);
+  const add = (number, noun) =>
+      number && parts.push(`${signed(number, whole)} ${noun}${Math.abs(number) === 1 ? '' : 's'}`);
+  if (price.slices) {
+    add(price.slices, 'slice');
+    parts[parts.length - 1] += ` (${signed(price.slicesPercent, n => fixed(n, 1))} % of the FPGA)`;
+  }
+  add(price.blockRams, 'block RAM');
+  add(price.multipliers, 'multiplier');
+  if (!step.area.fits) parts.push('a larger FPGA');
+  if (parts.length === 0) parts.push('nothing new');
+  const idle = step.idle_banks ?? [];
+  return parts.join(', ') + (idle.length ? `: it uses ${idle.join(', ')}, which holds nothing` : '');
 }
 
-// The changes worth naming: the largest gain of those that are cheap, and the largest of all. Changes of the
-// disparities, boards that lose pixels and boards that do not fit are left out.
+// The resource around the board whose bound the rate of a change reaches, such as `camera`. A resource that the
+// change itself concerns has another bound.
+export function limitReached(run, step) {
+  const isConcerned = resource => step.knob.startsWith(resource === 'camera' ? 'cameras.' : `${resource}.`);
+  return (run.bounds.computer ?? [])
+      .find(
+          ({resource, frames_per_second: bound}) =>
+              !isConcerned(resource) && sameWithin(step.frames_per_second, bound, kAtLimit))
+      ?.resource;
+}
+
+// The changes worth naming: the largest gain of those that need nothing new, and the largest of all. Changes of
+// the disparities, boards that lose pixels and boards that do not fit are left out.
 export function adviceOf(run) {
   if (!run.knobs) return null;
   const {board, steps} = run.knobs;
@@ -39,23 +90,23 @@ export function adviceOf(run) {
   const useful = steps.filter(
       step => gain(step) >= kWorthwhile && !step.changes_disparities && step.area.fits &&
           (!step.loses_pixels || board.loses_pixels));
-  // Of a board that loses pixels, the best step that cures it comes first, whatever it gains or costs.
+  // Of a board that loses pixels, the best step that cures it comes first, whatever it gains or takes.
   const cure = board.loses_pixels &&
       steps.find(step => !step.loses_pixels && !step.changes_disparities && step.area.fits);
-  const isCheap = step => {
+  const isFree = step => {
     const price = priceOf(step, board);
-    return price.banks <= 0 && price.slicesPercent <= kCheapSlices && price.blockRams <= 0 &&
-        step.clock_mhz === board.clock_mhz;
+    return newPartsOf(step).length === 0 && price.slicesPercent <= kFreeSlices && price.blockRams <= 0 &&
+        price.multipliers <= 0;
   };
-  const cheap = useful.filter(isCheap);
+  // Of changes in the order of their gains: the best, and of several that gain the same the smallest.
+  const bestOf = some => some.filter(step => step.frames_per_second > some[0].frames_per_second * kSame)
+                             .sort((a, b) => a.area.slices - b.area.slices)[0];
+  const largest = bestOf(useful) ?? null;
   return {
-    first: cure || (cheap[0] ?? useful[0] ?? null),
-    largest: useful[0] ?? null,
+    first: cure || (bestOf(useful.filter(isFree)) ?? largest),
+    largest,
     gain,
     board,
-    isCheap: cure ? isCheap(cure) : cheap.length > 0,
     cures: Boolean(cure),
   };
 }
-
-export const stepText = step => `${step.knob}: ${step.from} → ${step.to}`;

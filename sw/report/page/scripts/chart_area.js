@@ -48,7 +48,9 @@ export function addArea(page, run) {
     draw,
     title: `${fixed(total.slices_percent, 1)} % of the ${device.name}: ${whole(total.slices)} slices${
         total.fits ? '' : ', which does not fit'}`,
-    note: 'An estimate: nothing is placed or routed. Bars: share of the places of LUTs and flip-flops.',
+    note:
+        'An estimate: nothing is placed or routed. Bars: share of the logic, by the larger of a part\'s LUTs and ' +
+        'flip-flops.',
     body:
         h('div', {class: 'uses'}, use('slices', total.slices, device.slices),
           use('block RAMs', total.block_rams, device.block_rams),

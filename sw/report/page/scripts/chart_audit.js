@@ -17,7 +17,7 @@ export function identitiesOf(run) {
     all.push(
         [`${port.name}: its six states = cycles`, sum(kPortStateKeys.map(key => port[key])), stats.cycles]);
     all.push([
-      `${port.name}: stalls blamed = stalls counted`,
+      `${port.name}: waits by cause = waits counted`,
       sum(stats.blame.filter(row => row.port === port.name).map(row => row.cycles)), port.stall_cycles
     ]);
   }
@@ -45,7 +45,7 @@ export function identitiesOf(run) {
     const portOf = name => name.startsWith('host ') ? 'host' : name;
     for (const {name, stall_cycles: stalls} of stats.ports)
       all.push([
-        `${name}: stalls of the rows = stalls counted`,
+        `${name}: waits of the rows = waits counted`,
         totalOf(lines.stalls.filter(({port}) => portOf(port) === name)), stalls
       ]);
     for (const {name, reads, writes} of stats.banks)

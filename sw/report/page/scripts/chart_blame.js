@@ -2,7 +2,7 @@
 // of a column is the stalls that the port itself has counted.
 import {addChart, cut, drawing, textWidth} from './chart.js';
 import {s} from './dom.js';
-import {blamesOf, waitText} from './findings.js';
+import {blamesOf, blameText, waitsOf, waitText} from './findings.js';
 import {percent, whole} from './format.js';
 import {css, heat, inkOn} from './theme.js';
 import {mark} from './tooltip.js';
@@ -16,7 +16,7 @@ export function addBlame(page, run) {
     addChart(page, {
       id: 'blame',
       title: 'No port waits for another',
-      note: 'In no cycle was a request for a bank refused, so there is no blame to share out.'
+      note: 'In every cycle each port that asks for a bank gets it.'
     });
     return;
   }
@@ -27,7 +27,7 @@ export function addBlame(page, run) {
     const labels = causes.map(([bank, by]) => `${bank} · ${by}`);
     const left = Math.min(width * 0.34, Math.max(...labels.map(textWidth), 70) + 10);
     const {plot, width: inner} = drawing(
-        host, width, (causes.length + 2) * kCellHeight + 56, {left, top: 50}, 'Stalls by cause and port');
+        host, width, (causes.length + 2) * kCellHeight + 56, {left, top: 50}, 'Waits by cause and port');
     const cell = inner / ports.length;
     const most = Math.max(...blames.map(row => row.share));
     ports.forEach((port, column) => {
@@ -56,7 +56,7 @@ export function addBlame(page, run) {
         });
         plot.append(box);
         if (!row) return;
-        mark(box, [waitText(row), `${whole(row.cycles)} of ${whole(cycles)} cycles`]);
+        mark(box, [blameText(row), `${whole(row.cycles)} of ${whole(cycles)} cycles`]);
         plot.append(
             s('text', {
               x: cell * (column + 0.5),
@@ -76,23 +76,20 @@ export function addBlame(page, run) {
     ports.forEach((port, column) => {
       const total = blames.filter(row => row.port === port.name).reduce((all, row) => all + row.cycles, 0);
       const x = cell * (column + 0.5);
+      const agrees = total === port.stall_cycles;
       plot.append(
           s('text', {x, y: end + 22, 'text-anchor': 'middle'}, percent(total / cycles).replace(' %', '')),
-          s('text',
-            {x, y: end + 44, 'text-anchor': 'middle', class: total === port.stall_cycles ? 'good' : 'bad'},
-            percent(port.stall_cycles / cycles).replace(' %', '') +
-                (total !== port.stall_cycles ? ' ≠' :
-                     cell > 52               ? ' =' :
-                                               '')));
+          s('text', {x, y: end + 44, 'text-anchor': 'middle', class: agrees ? 'good' : 'bad'},
+            agrees ? '✓' : `≠ ${percent(port.stall_cycles / cycles).replace(' %', '')}`));
     });
   };
   addChart(page, {
     id: 'blame',
-    title: waitText(blames[0]),
+    title: waitText(waitsOf(run)[0]),
     draw,
     note:
-        `Stall cycles in % of the ${whole(cycles)} cycles of all frames: the port of the column waits on a ` +
-        'bank, because the bank serves the one named behind it. The counter of each port has the same sum.',
+        `Waits in % of the ${whole(cycles)} cycles of all frames: the port of the column waits on a bank, ` +
+        'because the bank serves the one named behind it. ✓: the sum agrees with the counter of the port.',
     numbers: () => [
         ['port', 'bank', 'by', 'cycles', 'percent'],
         blames.map(row => [row.port, row.bank, row.by, row.cycles, 100 * row.share])],
@@ -116,7 +113,7 @@ export function addBlameDifference(page, a, b) {
   if (rows.length === 0) {
     addChart(
         page,
-        {id: 'blame', title: 'Ports wait equally in both runs', note: 'Every stall has the same cause.'});
+        {id: 'blame', title: 'Ports wait equally in both runs', note: 'Every wait has the same cause.'});
     return;
   }
   const most = Math.max(...rows.map(row => Math.abs(row.b - row.a)));
@@ -124,7 +121,7 @@ export function addBlameDifference(page, a, b) {
   const sign = row => (row.b > row.a ? '+' : '−') + whole(Math.abs(row.b - row.a));
   const draw = (host, width) => {
     const shown = rows.slice(0, 20);
-    const {plot, width: inner} = drawing(host, width, shown.length * 40 + 4, {}, 'Difference of stalls');
+    const {plot, width: inner} = drawing(host, width, shown.length * 40 + 4, {}, 'Difference of waits');
     shown.forEach((row, line) => {
       const size = Math.abs(row.b - row.a) / most * inner / 2;
       const y = line * 40;
@@ -147,7 +144,7 @@ export function addBlameDifference(page, a, b) {
     id: 'blame',
     title: `${text(rows[0])}: ${sign(rows[0])} cycles in B`,
     draw,
-    note: 'Stall cycles of B less those of A, by port, bank and cause.',
+    note: 'Cycles of waiting in B less those in A, by port, bank and cause.',
     numbers: () => [
         ['port', 'bank', 'by', 'cycles_a', 'cycles_b', 'difference'],
         rows.map(row => [row.port, row.bank, row.by, row.a, row.b, row.b - row.a])]

@@ -1,7 +1,7 @@
 // The ladder of bounds: what each resource alone would allow, beside what the run reaches.
 import {addChart, cut, drawing} from './chart.js';
 import {s} from './dom.js';
-import {rateOf} from './findings.js';
+import {rateOf, resourceText, withVerb} from './findings.js';
 import {percent, rate, whole} from './format.js';
 import {axisBelow, logarithmic} from './scale.js';
 import {mark} from './tooltip.js';
@@ -20,10 +20,11 @@ function resourcesOf(run) {
 }
 
 export function addBounds(page, run) {
-  const {now, limit, by} = rateOf(run);
-  const together = {resource: 'all together', fps: limit};
-  const resources = [...resourcesOf(run), together].sort((a, b) => a.fps - b.fps);
+  const {now, kind, limit, by} = rateOf(run);
+  const resources = resourcesOf(run);
   const turn = run.bounds.core.length;
+  // The bound is a mean over frames that differ.
+  const isMean = limit > resources[0].fps * 1.001;
   const draw = (host, width) => {
     const left = Math.min(width * 0.34, 130);
     const {plot, width: inner, height} = drawing(
@@ -34,10 +35,10 @@ export function addBounds(page, run) {
     plot.append(axisBelow(x, inner, height, 'frames/s (logarithmic)'));
     resources.forEach((each, line) => {
       const y = line * 21 + 12;
-      const tight = each.resource === by || each === together;
+      const tight = each.resource === by;
       plot.append(
           s('text', {x: -8, y: y + 4, 'text-anchor': 'end', class: tight ? 'strong' : null},
-            cut(each.resource, left - 8)),
+            cut(resourceText(each.resource).replace(/^the /, ''), left - 8)),
           s('line', {x1: 0, x2: x(each.fps), y1: y, y2: y, class: 'stem'}),
           mark(
               s('circle',
@@ -54,15 +55,17 @@ export function addBounds(page, run) {
     plot.append(
         s('line', {x1: x(now), x2: x(now), y1: -4, y2: height, class: 'now'}),
         s('text', {x: x(now), y: -8, 'text-anchor': x(now) > inner / 2 ? 'end' : 'start', class: 'now-label'},
-          `the run: ${rate(now)}`));
+          `the run: ${rate(now)}, ${kind}`));
   };
   addChart(page, {
     id: 'bounds',
-    title: `${by.replace(/^(bank|port) /, '')} sets the bound of ${rate(limit)} frames/s`,
+    title: `${withVerb(by, 'set')} the bound of ${rate(limit)} frames/s`.replace(/^the /, 'The '),
     draw,
-    note:
-        'The frames a second that each resource alone would allow, in the frame where it allows least; all ' +
-        'together: the mean of the slowest resource of each frame.',
+    note: 'The frames a second that each resource alone would allow. Accesses of the host are left out.' +
+        (isMean ?
+             ` Frames differ: a resource has the frame in which it allows least, and the bound is the mean ${
+                 turn > 1 ? `over ${turn} frames` : 'over all frames'} of the slowest resource of each.` :
+                            ''),
     numbers: () => [
         ['resource', 'frames_per_second', 'cycles', 'frame'],
         resources.map(each => [each.resource, each.fps, each.cycles ?? null, each.frame ?? null])]

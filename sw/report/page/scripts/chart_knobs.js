@@ -1,20 +1,30 @@
-// What one step of each knob gains, and its price.
+// What each single change of the board gains, and its price.
 import {h, s} from './dom.js';
-import {brief, count, fixed, percent, rate, signed} from './format.js';
-import {addChart, cut, drawing} from './chart.js';
-import {adviceOf, priceOf, priceText, stepText} from './advice.js';
-import {rateOf} from './findings.js';
+import {count, fixed, gainText, percent, rate, signed, whole} from './format.js';
+import {addChart, cut, drawing, textWidth} from './chart.js';
+import {adviceOf, newPartsOf, priceOf, priceText, shortStepText, stepText} from './advice.js';
+import {kindOfSteps, rateOf, resourceText, withVerb} from './findings.js';
 import {axisBelow, axisLeft, logarithmic} from './scale.js';
 import {mark} from './tooltip.js';
 
 const kNearRoof = 0.9;
+
+// A change that gains or loses less is folded, until it is asked for.
+const kFolded = 0.001;
+const kBarLine = 24;
+const kNarrowLine = 34;  // with the name above its bar
+const kMostNameWidth = 400;
+const kGainWidth = 64;
+const kBold = 1.1;  // its width, of that of other letters
+const kLogicWidth = 76;
+const kPartsWidth = 132;
 
 export function addKnobs(page, run) {
   if (!run.knobs) {
     addChart(page, {
       id: 'knobs',
       title: 'What to change first',
-      note: 'Left out by --quick. `stereotlm report` without it tries one step of each knob.'
+      note: 'Left out by --quick. `stereotlm report` without it tries single changes of the board.'
     });
     return;
   }
@@ -22,19 +32,49 @@ export function addKnobs(page, run) {
   const impossible = forbidden.length + failed.length;
   const advice = adviceOf(run);
   const now = board.frames_per_second;
-  const state = {keep: false};
-  const shown = () => steps.filter(step => step.has_effect && !(state.keep && step.changes_disparities));
-  const prices = [['slices', 'slices'], ['blockRams', 'block RAMs'], ['banks', 'banks']];
+  const kind = kindOfSteps(run);
+  const state = {keep: false, all: false};
+  const gainOf = step => step.frames_per_second / now - 1;
+  const isSmall = step => Math.abs(gainOf(step)) < kFolded;
+  const listed = () => steps.filter(step => step.has_effect && !(state.keep && step.changes_disparities));
+  const fold = h('button', {
+    type: 'button',
+    class: 'small',
+    id: 'fold-changes',
+    click: () => {
+      state.all = !state.all;
+      chart.redraw();
+    }
+  });
   const draw = (host, width) => {
-    const rows = shown();
-    const columns = width > 560 ? prices : [];
-    const right = 64 + columns.length * 78;
+    const rows = listed().filter(step => state.all || !isSmall(step));
+    const small = listed().filter(isSmall).length;
+    fold.hidden = small === 0;
+    fold.setAttribute('aria-expanded', String(state.all));
+    fold.textContent = `${state.all ? '▾' : '▸'} ${count(small, 'change')} that gain${
+        small === 1 ? 's' : ''} or lose${small === 1 ? 's' : ''} less than 0.1 %`;
+    const isWide = width > 760;
+    const marks = step => (step.changes_disparities ? ' *' : '') + (step.loses_pixels ? ' †' : '');
+    const nameOf = step => shortStepText(step) + marks(step);
+    // Without the present value where there is no room for it.
+    const fittedName = (step, room) => {
+      const width = step === advice.first ? room / kBold : room;
+      return textWidth(nameOf(step)) <= width ? nameOf(step) :
+                                                cut(nameOf(step).replace(/: .* →/, ' →'), width);
+    };
+    const left = isWide ?
+        Math.min(kMostNameWidth, Math.max(...rows.map(step => textWidth(nameOf(step))), 60) + 10) :
+        0;
+    const columns =
+        isWide ? [['slices', kLogicWidth], ['block RAMs', kLogicWidth], ['new parts', kPartsWidth]] : [];
+    const right = (isWide ? kGainWidth : 0) + columns.reduce((all, [, wide]) => all + wide, 0);
+    const line = isWide ? kBarLine : kNarrowLine;
     const {plot, width: inner, height} = drawing(
-        host, width, rows.length * 34 + 62, {left: 6, right, top: 22, bottom: 40},
-        'Frames a second after a step');
+        host, width, rows.length * line + 62, {left, right, top: 22, bottom: 40},
+        'Frames a second after a single change');
     const all = [now, ...rows.map(step => step.frames_per_second)].filter(each => each > 0);
     const x = logarithmic([Math.min(...all) * 0.95, Math.max(...all) * 1.05], [0, inner]);
-    plot.append(axisBelow(x, inner, height, 'frames/s (logarithmic)'));
+    plot.append(axisBelow(x, inner, height, `frames/s, ${kind} (logarithmic)`, {grid: isWide}));
     plot.append(
         s('line', {x1: x(now), x2: x(now), y1: -4, y2: height, class: 'now'}),
         s('text', {
@@ -43,40 +83,41 @@ export function addKnobs(page, run) {
           'text-anchor': x(now) > inner / 2 ? 'end' : 'start',
           class: 'now-label'
         },
-          cut(`now: ${rate(now)}`, inner)));
-    columns.forEach(
-        ([, name], i) => plot.append(s(
-            'text', {x: inner + 64 + 78 * (i + 1) - 4, y: -8, 'text-anchor': 'end', class: 'label'}, name)));
-    rows.forEach((step, line) => {
-      const y = line * 34;
-      const gain = step.frames_per_second / now - 1;
-      const at = x(Math.max(step.frames_per_second, x.domain[0]));
-      const colour = gain > 0 ? '--blue' : '--vermilion';
-      const label = stepText(step) + (step.changes_disparities ? ' *' : '') + (step.loses_pixels ? ' †' : '');
+          cut(`now: ${rate(now)}, ${kind}`, inner)));
+    const value = (at, y, text) => s('text', {x: at, y, 'text-anchor': 'end', class: 'value'}, text);
+    let at = inner + kGainWidth;
+    for (const [name, wide] of columns)
+      plot.append(s('text', {x: at += wide, y: -8, 'text-anchor': 'end', class: 'label'}, name));
+    rows.forEach((step, number) => {
+      const y = number * line;
+      const gain = gainOf(step);
+      const end = x(Math.max(step.frames_per_second, x.domain[0]));
       const price = priceOf(step, board);
+      const name = {class: step === advice.first ? 'halo strong' : 'halo'};
       plot.append(
-          s('text', {x: 0, y: y + 12, class: step === advice.first ? 'halo strong' : 'halo'},
-            cut(label, inner - 4)),
-          s('text', {x: inner + 60, y: y + 22, 'text-anchor': 'end', class: 'value'},
-            signed(gain, each => percent(each, each < 0.0095 ? 2 : 1))),
+          isWide ? s('text', {x: -8, y: y + 17, 'text-anchor': 'end', ...name}, fittedName(step, left - 8)) :
+                   s('text', {x: 0, y: y + 14, ...name}, fittedName(step, inner - kGainWidth)),
+          value(isWide ? inner + kGainWidth - 4 : inner, y + (isWide ? 17 : 14), gainText(gain)),
           mark(
               s('rect', {
-                x: Math.min(at, x(now)),
-                y: y + 17,
-                width: Math.max(1, Math.abs(at - x(now))),
-                height: 9,
-                style: `fill:var(${colour})`
+                x: Math.min(end, x(now)),
+                y: y + (isWide ? 7 : 19),
+                width: Math.max(1, Math.abs(end - x(now))),
+                height: isWide ? 12 : 9,
+                style: `fill:var(${gain > 0 ? '--blue' : '--vermilion'})`
               }),
               [
-                stepText(step),
-                `${rate(step.frames_per_second)} frames/s, ${signed(gain, each => percent(each, 2))}`,
+                stepText(step), `${rate(step.frames_per_second)} frames/s, ${kind} (${gainText(gain)})`,
                 `takes ${priceText(step, board)}`, step.changes_disparities && 'changes the disparities',
                 step.loses_pixels && 'captures lose pixels'
               ].filter(Boolean)));
-      columns.forEach(
-          ([key], i) => plot.append(
-              s('text', {x: inner + 64 + 78 * (i + 1) - 4, y: y + 22, 'text-anchor': 'end', class: 'value'},
-                price[key] ? signed(price[key], brief) : '·')));
+      const cells = [price.slices, price.blockRams].map(each => each ? signed(each, whole) : '0');
+      cells.push(newPartsOf(step).join(', ') || 'none');
+      let place = inner + kGainWidth;
+      columns.forEach(([, wide], i) => {
+        place += wide;
+        plot.append(value(place, y + 17, cut(cells[i], wide - 4)));
+      });
     });
   };
   const keep =
@@ -89,40 +130,38 @@ export function addKnobs(page, run) {
           }
         }),
         ' only what keeps the disparities');
-  const without = steps.filter(step => !step.has_effect).map(step => step.knob);
+  const without = [...new Set(steps.filter(step => !step.has_effect).map(step => step.knob))].filter(
+      knob => !steps.some(step => step.knob === knob && step.has_effect));
   const chart = addChart(page, {
     id: 'knobs',
     wide: true,
     draw,
-    title: advice.first ? `First: ${stepText(advice.first)}, ${signed(advice.gain(advice.first), percent)}` :
-                          'No single step gains 1 % and keeps the disparities',
-    note: `One step of each knob, simulated: ${
-              count(board.frames, 'frame')} each. Right: gain, and what it takes in ` +
+    title: advice.first ? `First: ${shortStepText(advice.first)}, ${gainText(advice.gain(advice.first))}` :
+                          'No single change gains 1 % and keeps the disparities',
+    note: `One setting changed at a time, simulated with ${
+              count(board.frames, 'frame')} each. Right: the gain, and what the change takes in ` +
         'addition. *: changes the disparities. †: captures lose pixels.',
     body: h(
         'div', null, keep,
-        without.length > 0 &&
-            h('p', {class: 'note'},
-              `Without effect here: ${
-                      [...new Set(without)]
-                          .filter(knob => !steps.some(step => step.knob === knob && step.has_effect))
-                          .join(', ')}.`),
+        without.length > 0 && h('p', {class: 'note'}, `Without effect here: ${without.join(', ')}.`),
         impossible > 0 &&
             h('details', null,
-              h('summary', null, `${count(impossible, 'step')} ${impossible === 1 ? 'is' : 'are'} not possible`),
+              h('summary', null,
+                `${count(impossible, 'change')} ${impossible === 1 ? 'is' : 'are'} not possible`),
               h('ul', {class: 'note'},
                 [...forbidden, ...failed].map(step => h('li', null, `${stepText(step)}: ${step.reason}`))))),
+    foot: fold,
     numbers:
         () => [
             [
               'knob', 'from', 'to', 'frames_per_second', 'gain_percent', 'slices', 'block_rams',
-              'multipliers', 'banks_used', 'changes_disparities', 'loses_pixels'
+              'multipliers', 'banks_used', 'new_banks', 'changes_disparities', 'loses_pixels'
             ],
             steps.map(
                 step =>
                     [step.knob, step.from, step.to, step.frames_per_second,
                      100 * (step.frames_per_second / now - 1), step.area.slices, step.area.block_rams,
-                     step.area.multipliers, step.banks_used, String(step.changes_disparities),
+                     step.area.multipliers, step.banks_used, step.new_banks, String(step.changes_disparities),
                      String(step.loses_pixels)])]
   });
 }
@@ -132,6 +171,8 @@ export function addRoofline(page, run) {
   if (!run.knobs) return;
   const {board, steps} = run.knobs;
   const {by} = rateOf(run);
+  const kind = kindOfSteps(run);
+  const {first, largest} = adviceOf(run);
   const setting = key => run.settings.find(each => each.key === key).value;
   const pixels = setting('image.width') * setting('image.height');
   const point = (step, name) => ({
@@ -144,7 +185,7 @@ export function addRoofline(page, run) {
   });
   const here = point(board, 'this board');
   const all = steps.filter(step => step.has_effect)
-                  .map(step => point(step, stepText(step)))
+                  .map(step => ({...point(step, shortStepText(step)), step}))
                   .filter(each => each.accesses > 0);
   const roofAt = here.clock / here.accesses;
   const share = here.speed / roofAt;
@@ -157,35 +198,53 @@ export function addRoofline(page, run) {
     const x = logarithmic([Math.min(...xs) * 0.8, Math.max(...xs) * 1.25], [0, inner]);
     const y = logarithmic([Math.min(...ys) * 0.8, Math.max(...ys, roofAt) * 1.3], [height, 0]);
     plot.append(
-        axisBelow(x, inner, height, 'accesses of the busiest bank for a pixel'), axisLeft(y, inner, height));
-    plot.append(s('text', {x: -6, y: -10, class: 'label', 'text-anchor': 'start'}, 'Mpixels/s'));
+        axisBelow(x, inner, height, 'accesses of the busiest bank for a pixel (logarithmic)'),
+        axisLeft(y, inner, height));
+    plot.append(
+        s('text', {x: -6, y: -10, class: 'label', 'text-anchor': 'start'}, 'Mpixels/s (logarithmic)'));
     const path = Array.from({length: 200}, (_, i) => x.domain[0] * (x.domain[1] / x.domain[0]) ** (i / 199))
                      .filter(each => y(here.clock / each) >= 0 && y(here.clock / each) <= height)
                      .map(each => `${x(each)},${y(here.clock / each)}`);
     plot.append(s('polyline', {points: path.join(' '), class: 'roof'}));
-    for (const each of all) {
-      plot.append(mark(s('circle', {cx: x(each.accesses), cy: y(each.speed), r: 4, class: 'neighbour'}), [
-        each.name, `${fixed(each.accesses, 2)} accesses of ${each.bank} a pixel`,
-        `${fixed(each.speed, 2)} Mpixels/s, ${rate(each.fps)} frames/s`
-      ]));
+    const isNamed = ({step}) => step === first || step === largest;
+    const linesOf = each =>
+        [each.name, `${fixed(each.accesses, 2)} accesses of ${each.bank} a pixel`,
+         `${fixed(each.speed, 2)} Mpixels/s, ${rate(each.fps)} frames/s, ${kind}`];
+    for (const each of [...all].sort((a, b) => isNamed(a) - isNamed(b))) {
+      plot.append(mark(
+          s('circle',
+            {cx: x(each.accesses), cy: y(each.speed), r: isNamed(each) ? 7 : 4, class: 'neighbour'}),
+          linesOf(each)));
     }
+    plot.append(mark(
+        s('circle', {cx: x(here.accesses), cy: y(here.speed), r: 7, style: 'fill:var(--vermilion)'}),
+        [...linesOf(here), `${percent(share)} of the roof`]));
+    // The names of the large dots, each beside its dot where no other name is.
+    const taken = [];
+    for (const each of [here, ...all.filter(isNamed)]) {
+      const [at, isLeft] = [x(each.accesses), x(each.accesses) > inner / 2];
+      let below = y(each.speed) + 4;
+      while (taken.some(other => Math.abs(other - below) < 15)) below += 15;
+      taken.push(below);
+      plot.append(
+          s('text',
+            {x: at + (isLeft ? -11 : 11), y: below, 'text-anchor': isLeft ? 'end' : 'start', class: 'halo'},
+            cut(each.name, isLeft ? at - 11 : inner - at - 11)));
+    }
+    const label = `roof: ${here.bank} at ${here.clock} MHz`;
     plot.append(
-        mark(s('circle', {cx: x(here.accesses), cy: y(here.speed), r: 7, style: 'fill:var(--vermilion)'}), [
-          'this board', `${fixed(here.accesses, 2)} accesses of ${here.bank} a pixel`,
-          `${fixed(here.speed, 2)} Mpixels/s, ${percent(share)} of the roof`
-        ]));
-    const label = `${here.bank}: one access a cycle of ${here.clock} MHz`;
-    plot.append(s('text', {x: inner, y: 8, 'text-anchor': 'end', class: 'label halo'}, cut(label, inner)));
+        s('text', {x: inner, y: -10, 'text-anchor': 'end', class: 'label halo'}, cut(label, inner - 150)));
   };
   addChart(page, {
     id: 'roofline',
     draw,
     title: `${here.bank} works at ${percent(share)} of its roof: ` +
         (by.startsWith('bank') ? 'fewer accesses are the way up' :
-             share > kNearRoof ? `a faster ${by} needs fewer accesses too` :
-                                 `${by} limits`),
+             share > kNearRoof ? `a faster ${resourceText(by).replace('the ', '')} needs fewer accesses too` :
+                                 withVerb(by, 'limit')),
     note:
-        'The line is what a bank with one access a cycle allows. Small: the board after one step of a knob.',
+        'The line is the roof: what a bank with one access a cycle allows. Both axes are logarithmic. Large dots: ' +
+        'this board (orange), the first change and the largest gain. Small dots: all other single changes.',
     numbers: () => [
         ['board', 'bank', 'accesses_per_pixel', 'megapixels_per_second', 'frames_per_second', 'clock_mhz'],
         [here, ...all].map(each => [each.name, each.bank, each.accesses, each.speed, each.fps, each.clock])]

@@ -97,8 +97,8 @@ export function addLatency(page, run) {
     id: 'latency',
     wide: true,
     draw,
-    title: `${percent(share, 0)} of the ${
-        fixed(means.latency_ps / kPsOfMs, 1)} ms from capture to host are waiting`,
+    title: `Of the mean ${fixed(means.latency_ps / kPsOfMs, 1)} ms from capture to host, ${
+        percent(share, 0)} is waiting`,
     note:
         'One bar for each delivered frame, from the first pixel of the capture to the results on the host. ' +
         `Half of the frames take at most ${fixed(percentiles.p50, 1)} ms, 95 % at most ${

@@ -92,7 +92,7 @@ export function addMemoryOfTwo(page, a, b) {
     const [inA, inB] = rates.get(name);
     return inA === undefined ? ['not in A'] :
         inB === undefined    ? ['not in B'] :
-                               [`B − A: ${signed(inB - inA, rate => fixed(rate, 2))} MB/s`];
+                               [`B − A: ${signed(inB - inA, rate => fixed(rate, 1))} MB/s`];
   };
   svgs.forEach((svg, i) => useInPage(svg, links[i], linesOf));
   const body = h('div', {class: 'memory'}, svgs);
@@ -106,8 +106,12 @@ export function addMemoryOfTwo(page, a, b) {
   addChart(page, {
     id: 'memory',
     wide: true,
-    title: inA === inB ? 'Each link carries the same' :
-                         `${name}: ${fixed(inA, 1)} MB/s in A, ${fixed(inB, 1)} in B`,
+    title: inA === inB ?
+        'Each link carries the same' :
+        `${name}: ${
+                [inA, inB]
+                    .map((rate, i) => `${rate ? `${fixed(rate, 1)} MB/s` : 'nothing'} in ${'AB'[i]}`)
+                    .join(', ')}`,
     note: `The board with the traffic of each link. ${kHowTo}`,
     body: [
       h('div', {class: 'controls'},

@@ -143,7 +143,7 @@ export function addParallel(page, points) {
     wide: true,
     draw,
     title: `${points.keys.length} keys vary`,
-    note: 'One line for each selected point, at most 4,000. Drag along an axis to select; click it to clear.',
+    note: 'One line for each selected point, at most 4000. Drag along an axis to select; click it to clear.',
     body:
         h('details', null, h('summary', null, 'Axes'),
           h('p', {class: 'note'}, 'Ctrl-click takes or leaves an axis.'), add),

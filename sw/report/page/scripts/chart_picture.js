@@ -1,13 +1,14 @@
-// The stalls, painted over the picture: a slider between the picture and its disparities, one for the paint.
+// The waits over the picture: a slider between the picture and its disparities, one for the strength of the
+// overlay.
 import {addChart, canvasOf} from './chart.js';
 import {h} from './dom.js';
-import {whole} from './format.js';
+import {count, whole} from './format.js';
 import {viridis} from './theme.js';
 import {hideTooltip, showTooltip} from './tooltip.js';
 
 const kInvalid = 255;
 const kMostHeight = 900;
-const kPaint = [255, 60, 0];
+const kOverlay = [255, 60, 0];
 
 // A picture without URL is grey.
 async function pixelsOf({url, width, height}) {
@@ -37,7 +38,7 @@ function colourDisparities({context, data}, disparities) {
 }
 
 // The amounts as a picture of their own, transparent where there is none.
-function paintOf({values, columns, rows}) {
+function overlayOf({values, columns, rows}) {
   const canvas = h('canvas', {width: columns, height: rows});
   const context = canvas.getContext('2d');
   const data = context.createImageData(columns, rows);
@@ -45,7 +46,7 @@ function paintOf({values, columns, rows}) {
   for (const value of values) most = Math.max(most, value);
   values.forEach((value, i) => {
     if (value <= 0) return;
-    data.data.set(kPaint, 4 * i);
+    data.data.set(kOverlay, 4 * i);
     data.data[4 * i + 3] = 40 + 215 * value / most;
   });
   context.putImageData(data, 0, 0);
@@ -54,9 +55,9 @@ function paintOf({values, columns, rows}) {
 
 // pictures: one or two of {url, disparities}, the latter of a picture of disparities, or of {width, height}
 // without picture; names: of the pictures.
-// layers: maps of amounts as those of tilesOf().
-export function addPicture(page, {id = 'picture', title, note, pictures, layers, names}) {
-  const state = {split: 0.5, paint: 0.35, layer: 0};
+// layers: maps of amounts as those of tilesOf(), sums over `frames` frames.
+export function addPicture(page, {id = 'picture', title, note, pictures, layers, frames, names}) {
+  const state = {split: 0.5, overlay: 0.4, layer: 0};
   let loaded = null;
   let drawn = null;
   const slider = (name, label, key) => h('label', null, `${label} `, h('input', {
@@ -90,7 +91,7 @@ export function addPicture(page, {id = 'picture', title, note, pictures, layers,
     canvas.setAttribute('tabindex', '0');
     canvas.setAttribute('aria-label', `${title}. Arrow keys read the picture.`);
     let at = [Math.round(columns / 2), Math.round(rows / 2)];
-    const paints = layers.map(paintOf);
+    const overlays = layers.map(overlayOf);
     drawn = () => {
       context.imageSmoothingEnabled = scale < 1;
       context.globalAlpha = 1;
@@ -106,15 +107,15 @@ export function addPicture(page, {id = 'picture', title, note, pictures, layers,
         context.fillRect(w * state.split - 1, 0, 2, hgt);
       }
       context.imageSmoothingEnabled = false;
-      context.globalAlpha = state.paint;
+      context.globalAlpha = state.overlay;
       const layer = layers[state.layer];
       if (layer) {
         context.drawImage(
-            paints[state.layer], 0, 0, layer.columns * layer.width * scale,
+            overlays[state.layer], 0, 0, layer.columns * layer.width * scale,
             layer.rows * layer.height * scale);
-        most.textContent =
-            `strongest paint: ${whole(layer.values.reduce((a, b) => Math.max(a, b)))} cycles ` +
-            `in ${layer.width} × ${layer.height} pixels`;
+        most.textContent = `strongest colour: ${
+                               whole(layer.values.reduce((a, b) => Math.max(a, b)))} cycles in a block of ` +
+            `${layer.width} × ${layer.height} pixels, over ${count(frames, 'frame')}`;
       }
     };
     const tip = (clientX, clientY) => {
@@ -157,8 +158,8 @@ export function addPicture(page, {id = 'picture', title, note, pictures, layers,
     draw,
     body:
         h('div', {class: 'controls'}, names[1] && slider('split', `${names[0]} | ${names[1]}`, 'split'),
-          layers.length > 0 && slider('paint', 'paint', 'paint'),
-          layers.length > 0 && h('label', null, 'stalls ', choose), layers.length > 0 && most),
+          layers.length > 0 && slider('overlay', 'overlay strength', 'overlay'),
+          layers.length > 0 && h('label', null, 'shown ', choose), layers.length > 0 && most),
     numbers: () => layers.length === 0 ? [['cycles'], []] :
                                          [
                                            ['first_row', 'first_column', 'cycles'],

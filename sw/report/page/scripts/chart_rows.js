@@ -1,17 +1,17 @@
-// What happens from top to bottom of the picture: use of the banks and stalls. A range of rows can be brushed
+// What happens from top to bottom of the picture: use of the banks and waits. A range of rows can be brushed
 // to look closer.
 import {addBrush} from './brush.js';
 import {addChart, canvasOf, cut, drawing, textWidth} from './chart.js';
 import {h, s} from './dom.js';
-import {settingOf, whereText} from './findings.js';
+import {settingOf, waitingRows} from './findings.js';
 import {count, percent, whole} from './format.js';
 import {linesOf, rowsText} from './recording.js';
 import {axisLeft, linear} from './scale.js';
 import {css, heat} from './theme.js';
 import {hideTooltip, mark, showTooltip} from './tooltip.js';
 
-// The columns of the map: {name, what, values, fill, most, parts}: amounts of each line, of which a cycle has
-// at most `most`.
+// The columns of the map: {name, what, values, fill, most, parts, waits}: amounts of each line, of which a cycle
+// has at most `most`; whether they are waits.
 function columnsOf(run, {accesses, stalls}) {
   const used = [...new Set(accesses.map(({bank}) => bank))].map(name => {
     const parts = accesses.filter(({bank}) => bank === name);
@@ -26,10 +26,15 @@ function columnsOf(run, {accesses, stalls}) {
     };
   });
   return [
-    ...used,
-    ...stalls.map(
-        ({port, bank, by, values, fill}) =>
-            ({name: `${port} · ${by}`, what: `waits on ${bank}`, values, fill, most: 1, parts: []}))
+    ...used, ...stalls.map(({port, bank, by, values, fill}) => ({
+                             name: `${port} · ${by}`,
+                             what: `waits on ${bank}`,
+                             values,
+                             fill,
+                             most: 1,
+                             parts: [],
+                             waits: true
+                           }))
   ];
 }
 
@@ -47,6 +52,9 @@ export function addRows(page, run) {
   const imageHeight = settingOf(run, 'image.height');
   const columns = columnsOf(run, recorded);
   const shareOf = ({values, most}, line) => cycles[line] > 0 ? values[line] / cycles[line] / most : 0;
+  const mostWaits = columns.filter(({waits}) => waits)
+                        .flatMap(column => cycles.map((_, line) => shareOf(column, line)))
+                        .reduce((a, b) => Math.max(a, b), 0);
   const tipOf = (column, line) =>
       [`${rowsText(recorded, line, line + 1, imageHeight)}: ${column.name} ${column.what} in ${
            percent(shareOf(column, line))} of the cycles`,
@@ -75,7 +83,7 @@ export function addRows(page, run) {
         const last = Math.max(first + 1, state.from + Math.floor((pixel + 1) / height * shown));
         let share = 0;
         for (let line = first; line < last; ++line) share = Math.max(share, shareOf(column, line));
-        context.fillStyle = css(heat(share));
+        context.fillStyle = css(heat(column.waits && mostWaits > 0 ? share / mostWaits : share));
         context.fillRect(i * step + 1, pixel, Math.max(1, step - 2), 1.5);
       }
     });
@@ -152,10 +160,12 @@ export function addRows(page, run) {
     id: 'rows',
     draw,
     body: tools,
-    title: whereText(run)[0],
+    title: `Ports wait ${waitingRows(run) ?? 'in no row of the picture'}`,
     note: `Banks: the share of the cycles of each row with an access. Ports: the share in which they wait. ` +
-        `Sums over ${count(frames, 'frame')}; ${percent(0, 0)} is pale, ${
-              percent(1, 0)} the strongest colour. Drag over rows to zoom in.`,
+        `Sums over ${count(frames, 'frame')}. The colours of banks end at 100 %${
+              mostWaits > 0 ? `, those of waits at the most of them in any row, ${percent(mostWaits)}` :
+                              ''}. ` +
+        'Drag over rows to zoom in.',
     numbers: () => {
       const named = [
         ...recorded.accesses.map(each => [`${each.bank} ${each.by} accesses`, each]),

@@ -5,9 +5,9 @@ import {percent, whole} from './format.js';
 import {mark} from './tooltip.js';
 
 const kPortStates = [
-  ['grants', 'granted', '--blue'], ['stall_cycles', 'stalled', '--vermilion'],
-  ['passed_cycles', 'passed', '--sky'], ['blocked_cycles', 'blocked', '--yellow'],
-  ['starved_cycles', 'starved', '--green'], ['idle_cycles', 'idle', '--pale']
+  ['grants', 'granted', '--blue'], ['stall_cycles', 'waits', '--vermilion'],
+  ['passed_cycles', 'no access needed', '--sky'], ['blocked_cycles', 'output full', '--yellow'],
+  ['starved_cycles', 'no input', '--green'], ['idle_cycles', 'idle', '--pale']
 ];
 const kBankStates = [
   ['busy_cycles', 'busy', '--blue'], ['turnaround_cycles', 'turnaround', '--grey'],
@@ -58,10 +58,13 @@ export function addPortStates(page, {stats}, suffix = '') {
     cycles: stats.cycles,
     title: (suffix && `${suffix}: `) +
         (worst.stall_cycles > 0 ?
-             `${worst.name} is refused in ${percent(worst.stall_cycles / stats.cycles)} of the cycles` :
-             'Every request of a port is granted at once'),
-    note: 'What each port does in all cycles of the frames; on the right the share granted. Passed: a ' +
-        'slot without access. Blocked: its lane is full. Starved: nothing to do yet.'
+             `${worst.name} waits in ${percent(worst.stall_cycles / stats.cycles)} of the cycles` :
+             'No port ever waits'),
+    note:
+        'What each port does in all cycles of the frames; on the right the share granted. No access needed: ' +
+        'it has the word already, or the place is outside the picture. Output full: the queue behind it takes ' +
+        'no more. No input: nothing to work on has come. Idle: before its first and after its last work of a ' +
+        'frame; the host: no request.'
   });
 }
 
@@ -81,7 +84,7 @@ export function addBankUse(page, run) {
     note: 'How busy each bank is in all cycles of the frames.',
     more: bank =>
         [`${whole(bank.reads)} reads, ${whole(bank.writes)} writes, ` +
-             `${whole(bank.contended_cycles)} cycles contended`,
+             `in ${whole(bank.contended_cycles)} cycles a port waits`,
          banks.find(each => each.name === bank.name).buffers.map(buffer => buffer.name).join(', ') ||
              'holds nothing']
   });

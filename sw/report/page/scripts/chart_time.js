@@ -3,8 +3,8 @@
 import {addBrush} from './brush.js';
 import {addChart, cut, drawing, legend} from './chart.js';
 import {h, s} from './dom.js';
-import {settingOf} from './findings.js';
-import {count, fixed, kPsOfMs, percent, whole} from './format.js';
+import {droppedText, settingOf} from './findings.js';
+import {count, fixed, kPsOfMs, percent, sum, whole} from './format.js';
 import {axisBelow, linear} from './scale.js';
 import {Table, unpack} from './table.js';
 import {mark} from './tooltip.js';
@@ -66,12 +66,32 @@ const kWhy = {
 };
 const whyText = (who, why) => kWhy[`${who} ${why}`] ?? 'the driver works: register accesses and interrupts';
 
-// The longest waits of the core in words, as shares of the time.
-function coreWaits(run, span) {
-  return run.recording.waits.filter(wait => wait.class === 'core' && wait.ps > 0.001 * span)
-      .sort((a, b) => b.ps - a.ps)
-      .slice(0, 3)
-      .map(wait => `${percent(wait.ps / span)} because ${whyText('core', wait.why)}`);
+const kHardly = 0.001;  // of the time of a run that the core waits: not worth its reasons
+const kFewLater = 0.1;  // of its waits that are after the beginning of its first frame
+
+// How long the core waits and why, in words: {title, note}. `early`: what of it is before its first frame, in ps.
+function coreWaits(run, span, early) {
+  const waits = run.recording.waits.filter(wait => wait.class === 'core').sort((a, b) => b.ps - a.ps);
+  const all = sum(waits.map(wait => wait.ps));
+  const reasons = textOf => waits.filter(wait => wait.ps > kHardly * span)
+                                .slice(0, 3)
+                                .map(wait => `${textOf(wait.ps)} because ${whyText('core', wait.why)}`);
+  const ms = ps => `${fixed(ps / kPsOfMs, ps < 0.1 * kPsOfMs ? 2 : 1)} ms`;
+  if (all <= kHardly * span) return {title: ', and hardly waits', note: null};
+  if (all - early <= kFewLater * all) {
+    const later = all === early       ? 'then never' :
+        all - early < 0.005 * kPsOfMs ? 'then hardly ever' :
+                                        `later ${ms(all - early)} in all`;
+    return {
+      title: `; it waits ${ms(early)} before its first frame, ${later}`,
+      note: `All in all the core waits ${reasons(ms).join(', ')}.`
+    };
+  }
+  const [most, ...others] = reasons(ps => percent(ps / span));
+  return {
+    title: most ? `, and waits ${most}` : '',
+    note: others.length ? `It also waits ${others.join(', and ')}.` : null
+  };
 }
 
 export function addTimeLine(page, run) {
@@ -241,16 +261,20 @@ export function addTimeLine(page, run) {
   const clock = settingOf(run, 'fpga.clock_mhz');
   const works = run.stats.cycles / clock * 1e6 / last;
   const drops = run.stats.cameras[0].dropped_frames;
-  const waits = coreWaits(run, last);
+  const firstFrame = Math.min(...start.filter((_, i) => kind[i] === 'frame'));
+  const waitedBefore = sum(kind.map(
+      (each, i) => each === 'wait' && what[i] === 'core' && end[i] <= firstFrame ? end[i] - start[i] : 0));
+  const waits = coreWaits(run, last, waitedBefore);
   const leftOut = events.all > events.rows;
   const chart = addChart(page, {
     id: 'time',
     wide: true,
     draw,
-    title: `The core works ${percent(works)} of the time${waits.length ? `, and waits ${waits[0]}` : ''}`,
+    title: `The core works ${percent(works)} of the time${waits.title}`,
     note: [
-      waits.length > 1 && `It also waits ${waits.slice(1).join(', and ')}.`,
-      drops > 0 && `${count(drops, 'frame')} of the left camera are dropped (crosses).`,
+      waits.note,
+      drops > 0 && (droppedText(run) ?? `${count(drops, 'frame')} of the left camera are dropped.`),
+      drops > 0 && 'Crosses: dropped frames.',
       'The number in a bar is the frame; thin grey bars are waits. Drag in the overview, or in the window ' +
           'below it, to choose the time that is shown.',
       leftOut &&

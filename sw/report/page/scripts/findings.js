@@ -1,40 +1,80 @@
 // What a run shows, in plain words: what limits, who waits for whom, where, what to change first, its price.
-import {count, fixed, percent, rate, signed, sum, whole} from './format.js';
-import {adviceOf, priceText, stepText} from './advice.js';
+import {adviceOf, limitReached, priceText, stepText} from './advice.js';
+import {capital, count, fixed, gainText, percent, rate, sum, whole} from './format.js';
 import {linesOf, rowsText, tilesOf} from './recording.js';
 
 const kLeastShare = 0.0005;  // of all cycles that a port waits, to be named
-const kFewTiles = 0.35;      // a share of the tiles that is named if it holds half of the stalls
+const kFewTiles = 0.35;      // a share of the tiles that is named if it holds half of the waits
+const kMostCauses = 3;       // of a port that are named
 const kAbout = 1 + 1e-6;     // a rate that reaches its bound may be above it by rounding
 
 export const settingOf = (run, key) => run.settings.find(setting => setting.key === key)?.value;
 
-// The rate of a run and its bound. The bound of a computer is that of the rate from power-up; of a few frames
-// the steady rate may be above it, and is then not compared with it.
+// The rate of a run, what kind of rate it is, and its bound. The bound of a computer is that of the rate that
+// includes the start-up; of a few frames the steady rate may be above it, and is then not compared with it.
 export function rateOf(run) {
   const {frames_per_second: rates, bound} = run.stats;
   const computer = rates.system !== undefined;
   const limit = computer ? bound.system : bound.core;
   const steady = rates.steady <= limit * kAbout;
   const now = steady ? rates.steady : rates.system ?? rates.core;
+  const kind = steady ? 'steady' : computer ? 'including start-up' : 'core only';
   const by = computer ? bound.system_limited_by : bound.core_limited_by;
-  return {now, limit, by, computer, share: now / limit, steady};
+  return {now, kind, limit, by, computer, share: now / limit};
 }
 
-// Stalls of the ports, the most first: {port, bank, by, cycles, share of all cycles}.
+// The kind of the rates of single changes.
+export const kindOfSteps = run => run.stats.cameras ? 'steady' : 'core only';
+
+const kResources = {
+  matcher: 'the matcher',
+  camera: 'the cameras',
+  pci: 'the PCI bus',
+  bridge: 'the PCI bridge'
+};
+export const resourceText = name => kResources[name] ?? name.replace(/^(bank|port) /, '');
+// "bank2 sets", "the cameras set"
+export const withVerb = (name, verb) => `${resourceText(name)} ${verb}${name === 'camera' ? '' : 's'}`;
+
+// Waits of the ports by bank and cause, the most first: {port, bank, by, cycles, share of all cycles}.
 export const blamesOf = run => run.stats.blame.map(row => ({...row, share: row.cycles / run.stats.cycles}))
                                    .sort((a, b) => b.cycles - a.cycles);
 
-export const waitText = ({port, bank, by, share}) => by === 'turnaround' ?
-    `${port} waits ${percent(share)} of all cycles, while ${bank} turns round` :
-    `${port} waits ${percent(share)} of all cycles, for ${by}, on ${bank}`;
+const causeText = by => by === 'turnaround' ? 'for the turnaround' : `for ${by}`;
+
+export const blameText = ({port, bank, by, share}) =>
+    `${port} waits in ${percent(share)} of all cycles, ${causeText(by)} on ${bank}`;
+
+// The ports that wait, the most first: {port, cycles, share, causes: its waits, the most first}.
+export function waitsOf(run) {
+  const ports = new Map();
+  for (const row of blamesOf(run)) {
+    if (!ports.has(row.port)) ports.set(row.port, {port: row.port, cycles: 0, share: 0, causes: []});
+    const port = ports.get(row.port);
+    port.cycles += row.cycles;
+    port.share += row.share;
+    port.causes.push(row);
+  }
+  return [...ports.values()].sort((a, b) => b.cycles - a.cycles);
+}
+
+export function waitText({port, share, causes}) {
+  if (causes.length === 1) return blameText(causes[0]);
+  const isOneBank = causes.every(({bank}) => bank === causes[0].bank);
+  const named = causes.filter(cause => cause.share >= kLeastShare).slice(0, kMostCauses);
+  const texts = named.map(
+      ({bank, by, share: part}) => `${percent(part)} ${causeText(by)}${isOneBank ? '' : ` on ${bank}`}`);
+  return `${port} waits in ${percent(share)} of all cycles: ${texts.join(', ')}${
+      named.length < causes.length ? ' and less' : ''}${isOneBank ? `, on ${causes[0].bank}` : ''}`;
+}
 
 const lostPixels = run => sum((run.stats.cameras ?? []).map(camera => camera.dropped_pixels));
 
 function whatLimits(run) {
-  const {by, limit, share, now, computer} = rateOf(run);
+  const {by, limit, share, now, kind: kindOfRate, computer} = rateOf(run);
   const [kind, name] = by.split(' ');
-  const reached = `The run reaches ${percent(share)} of the bound of ${rate(limit)} frames/s`;
+  const reached = `The run reaches ${percent(share)} of the bound of ${rate(limit)} frames/s: ${rate(now)}, ${
+      kindOfRate}`;
   const because = {
     bank: () => {
       const bank = run.banks.find(each => each.name === name);
@@ -51,38 +91,49 @@ function whatLimits(run) {
     bridge: () => 'The local bus behind the bridge',
   }[kind]?.() ??
       by;
-  const lost = [];
-  if (computer && share < 0.995) {
-    const dropped = run.stats.cameras?.[0];
-    if (dropped?.dropped_not_armed > 0) {
-      lost.push(
-          `A capture begins with a camera frame: ${dropped.dropped_not_armed} of ${dropped.frames} frames ` +
-          'of the camera found no free buffer');
-    }
-  }
-  if (!computer && share < 0.99 && run.stats.blame.length === 0) {
-    lost.push('no port stalls: the matcher waits for the queue of results, which no bound counts');
-  }
+  const hostShare = kind === 'bank' ? run.banks.find(each => each.name === name).host_share : 0;
   return [
-    `${because}.`, `${reached}: ${rate(now)}.${lost.length ? ` ${lost.join('; ')}.` : ''}`,
+    `${because}.`, `${reached}.`,
+    hostShare > 0 &&
+        `The host takes ${percent(hostShare)} of the cycles of ${
+            name}, which the bound leaves out: it counts the accesses of the core only.`,
+    computer && droppedText(run),
+    !computer && share < 0.99 && run.stats.blame.length === 0 &&
+        'No port waits: the matcher waits for the queue of results, which the bound leaves out.',
     lostPixels(run) > 0 &&
         `Captures lose ${whole(lostPixels(run))} pixels: their FIFOs are full before the ` +
             'words reach the memory. Disparities there are wrong.'
   ];
 }
 
+// Why camera frames are dropped.
+export function droppedText(run) {
+  const {frames, dropped_not_armed: dropped} = run.stats.cameras[0];
+  if (dropped === 0) return null;
+  const delivered = settingOf(run, 'cameras.frame_rate_hz');
+  const {now, kind, limit} = rateOf(run);
+  const text = `${dropped} of ${frames} camera frames ${
+      dropped === 1 ? 'is' : 'are'} dropped, because no input buffer is free as they begin`;
+  return (kind === 'steady' ? now : limit) < 0.995 * delivered ?
+      `${text}: the cameras deliver ${
+          rate(delivered)} frames/s, and the board takes fewer. That is no fault.` :
+      `${text}, such as before the tables are uploaded.`;
+}
+
 function whoWaits(run) {
-  const blames = blamesOf(run);
-  if (blames.length > 0 && blames[0].share < kLeastShare) {
-    const all = sum(blames.map(row => row.cycles));
+  const waits = waitsOf(run);
+  if (waits.length === 0) return ['Nobody: no port of the banks ever waits.'];
+  if (waits[0].share < kLeastShare) {
+    const all = sum(waits.map(row => row.cycles));
     return [`Hardly anybody: all ports together wait ${count(all, 'cycle')} of ${whole(run.stats.cycles)}.`];
   }
-  if (blames.length === 0) return ['Nobody: no port of the banks ever stalls.'];
-  const others =
-      blames.slice(1, 3).map(row => `${row.port} for ${row.by} on ${row.bank} (${percent(row.share)})`);
+  const placeText = ({by, bank}) => `${causeText(by)} on ${bank}`;
+  const others = waits.slice(1, 3).map(
+      ({port, share, causes}) =>
+          `${port} ${percent(share)}, ${causes.length === 1 ? '' : 'mostly '}${placeText(causes[0])}`);
   return [
-    `${waitText(blames[0])}.`,
-    others.length > 0 ? `Then ${others.join(', ')}${blames.length > 3 ? ' and less' : ''}.` : null
+    `${waitText(waits[0])}.`,
+    others.length > 0 ? `Then ${others.join('; ')}${waits.length > 3 ? '; others less' : ''}.` : null
   ];
 }
 
@@ -98,7 +149,7 @@ function mainPart(amounts) {
   return {first, last, total};
 }
 
-// Which columns hold the stalls, and whether few tiles hold many.
+// Which columns hold the waits, and whether few tiles hold many.
 function acrossText(run) {
   const [{columns, width, values, total}] = tilesOf(run);
   const amounts = new Array(columns).fill(0);
@@ -113,44 +164,52 @@ function acrossText(run) {
   let tiles = 0;
   for (let rest = total / 2; rest > 0; ++tiles) rest -= order[tiles];
   const share = tiles / values.length;
-  return `${where}${share < kFewTiles ? `; half of them in ${percent(share, 0)} of the picture` : ''}.`;
+  return `${where}${
+      share < kFewTiles ? `; half of all waits are in ${percent(share, 0)} of the picture` : ''}.`;
 }
 
-// Where in the picture the stalls are.
-export function whereText(run) {
+// The rows in which ports wait: "most in rows 0 to 47: ..". null if they wait in none.
+export function waitingRows(run) {
   const recorded = linesOf(run);
-  if (!recorded) return ['Not known: this report was made with --quick, of a run without --record.'];
   const {lines, height, frames, stalls} = recorded;
   const amounts = Array.from({length: lines}, (_, line) => sum(stalls.map(({values}) => values[line])));
-  if (sum(amounts) === 0)
-    return [
-      stalls.length ? 'Nowhere: ports wait only before the first row.' :
-                      'Nowhere: no row of the picture waits.'
-    ];
+  if (sum(amounts) === 0) return null;
   const imageHeight = settingOf(run, 'image.height');
   const {first, last, total} = mainPart(amounts);
-  const mean = total / frames / (last + 1 - first) / height;
   const tenth = Math.max(1, Math.round(lines / 10));
   let best = {sum: 0, line: 0};
   for (let line = 0, window = 0; line < lines; ++line) {
     window += amounts[line] - (line >= tenth ? amounts[line - tenth] : 0);
     if (window > best.sum) best = {sum: window, line: Math.max(0, line - tenth + 1)};
   }
-  const uneven = best.sum / total > 2 * tenth / (last + 1 - first);
-  const texts = [
-    uneven ? `Most in ${rowsText(recorded, best.line, best.line + tenth, imageHeight)}: ${
-                 percent(best.sum / total, 0)} of all stalls.` :
-             `${rowsText(recorded, first, last + 1, imageHeight).replace(/^r/, 'R')} of ${
-                 imageHeight}, evenly: ${whole(mean)} stall cycles a row and frame.`,
-    acrossText(run)
-  ];
+  if (best.sum / total > 2 * tenth / (last + 1 - first)) {
+    return `most in ${rowsText(recorded, best.line, best.line + tenth, imageHeight)}: ${
+        percent(best.sum / total, 0)} of all waits`;
+  }
+  const mean = total / frames / (last + 1 - first) / height;
+  return `in ${rowsText(recorded, first, last + 1, imageHeight)} of ${imageHeight}, evenly: ${
+      whole(mean)} cycles of waiting a row and frame`;
+}
+
+// Where in the picture ports wait.
+export function whereText(run) {
+  const recorded = linesOf(run);
+  if (!recorded) return ['Not known: this report was made with --quick, of a run without --record.'];
+  const rows = waitingRows(run);
+  if (!rows) {
+    return [
+      recorded.stalls.length ? 'Nowhere: ports wait only before the first row.' :
+                               'Nowhere: no row of the picture waits.'
+    ];
+  }
+  const texts = [`${capital(rows)}.`, acrossText(run)];
   const cycles = run.stats.frame_cycles;
   const least = cycles.reduce((a, b) => Math.min(a, b));
   const most = cycles.reduce((a, b) => Math.max(a, b));
   const longer = cycles.filter(each => each > 1.01 * least).length;
   if (longer > 0) {
-    texts.push(`In ${longer} of ${count(cycles.length, 'frame')}: these take up to ${
-        whole(most)} cycles, the others ${whole(least)}.`);
+    texts.push(`${longer} of ${count(cycles.length, 'frame')} ${longer === 1 ? 'takes' : 'take up to'} ${
+        whole(most)} cycles; the shortest takes ${whole(least)}.`);
   }
   return texts;
 }
@@ -158,37 +217,37 @@ export function whereText(run) {
 function whatFirst(run) {
   const advice = adviceOf(run);
   if (!advice) return ['Not known: this report was made with --quick.'];
-  const {first, largest, gain, isCheap, cures} = advice;
-  if (!first) return ['Nothing in one step: no knob gains 1 % or more and keeps the disparities.'];
-  const text = step => `${stepText(step)} gives ${rate(step.frames_per_second)} frames/s (${
-      signed(gain(step), percent)})${step.loses_pixels ? ', and loses pixels too' : ''}`;
+  const {first, largest, gain, board, cures} = advice;
+  if (!first) return ['Nothing: no single change gains 1 % or more and keeps the disparities.'];
+  const text = step => {
+    const limit = limitReached(run, step);
+    return `${stepText(step)} gives ${rate(step.frames_per_second)} frames/s, ${kindOfSteps(run)} (${
+        gainText(gain(step))})${limit ? `, where ${withVerb(limit, 'limit')}` : ''}${
+        step.loses_pixels ? ', and loses pixels too' : ''}`;
+  };
   return [
-    `${text(first)}${isCheap ? ', with the FPGA and the banks there are' : ''}${
-        cures ? ', and loses no pixels' : ''}.`,
-    largest === first ? null : `The largest step: ${text(largest)}.`
+    `${text(first)}${cures ? ', and loses no pixels' : ''}.`,
+    !largest || largest === first ?
+        null :
+        `The largest gain: ${text(largest)}. It needs ${priceText(largest, board)}.`
   ];
 }
 
 function whatItCosts(run) {
   const {total, device} = run.area;
   const advice = adviceOf(run);
-  const now = `The board takes ${whole(total.slices)} slices (${fixed(total.slices_percent, 1)} % of the ` +
+  const now =
+      `The core as it is takes ${whole(total.slices)} slices (${fixed(total.slices_percent, 1)} % of the ` +
       `${device.name}) and ${count(total.block_rams, 'block RAM')}.`;
   if (!advice?.first) return [now];
-  const texts = [`The first change takes ${priceText(advice.first, advice.board)}.`];
-  if (advice.largest !== advice.first)
-    texts.push(`The largest takes ${priceText(advice.largest, advice.board)}.`);
-  return [...texts, now];
+  return [`The first change takes ${priceText(advice.first, advice.board)}.`, now];
 }
 
 export function headlineOf(run) {
-  const {now, limit, by, share, steady, computer} = rateOf(run);
-  return `${rate(now)} frames/s${
-             steady       ? ', steady' :
-                 computer ? ' from power-up' :
-                            ''}: ${percent(share)} of the bound ` +
-      `${rate(limit)}, which ${by.replace(/^(bank|port) /, '').replace('matcher', 'the matcher')} sets` +
-      (lostPixels(run) > 0 ? '. Captures lose pixels' : '');
+  const {now, kind, limit, by, share} = rateOf(run);
+  return `${rate(now)} frames/s, ${kind}: ${percent(share)} of the bound ${rate(limit)}, which ${
+             withVerb(by, 'set')}` +
+      (lostPixels(run) > 0 ? '; captures lose pixels' : '');
 }
 
 // [question, [answer, ..]] in the order in which they are asked.

@@ -2,9 +2,10 @@
 
 export const kPsOfMs = 1e9;
 
-export const whole = number => Math.round(number).toLocaleString('en-US');
-export const fixed = (number, digits) =>
-    number.toLocaleString('en-US', {minimumFractionDigits: digits, maximumFractionDigits: digits});
+// Digits are grouped from 10,000 on.
+export const fixed = (number, digits) => number.toLocaleString(
+    'en-US', {minimumFractionDigits: digits, maximumFractionDigits: digits, useGrouping: 'min2'});
+export const whole = number => fixed(Math.round(number), 0);
 // What is more than nothing does not look like it: <0.1 %.
 export function percent(share, digits = 1) {
   const least = 10 ** -digits;
@@ -13,6 +14,9 @@ export function percent(share, digits = 1) {
 }
 export const rate = number => fixed(number, number < 100 ? 2 : 1);
 export const signed = (number, text) => `${number < 0 ? '−' : '+'}${text(Math.abs(number))}`;
+// A gain, as a share of what there was.
+export const gainText = gain => Math.abs(gain) < 0.0005 ? '≈ 0' : signed(gain, percent);
+export const sameWithin = (a, b, share) => Math.abs(a / b - 1) <= share;
 export const count = (number, noun) => `${whole(number)} ${noun}${number === 1 ? '' : 's'}`;
 
 // For ticks: 1200 -> 1.2k.
@@ -30,6 +34,8 @@ export const shortened = any => typeof any === 'number' ? +any.toPrecision(9) : 
 
 // A value of a table: every digit that it has.
 export const value = any => any === null || any === undefined ? '' : String(any);
+
+export const capital = text => text.charAt(0).toUpperCase() + text.slice(1);
 
 export const sum = numbers => numbers.reduce((total, number) => total + number, 0);
 

@@ -2,12 +2,15 @@
 import {h} from './dom.js';
 import {themeSwitch} from './theme.js';
 
+// The sign stays in the line of its number.
+const unbroken = text => text.replaceAll(' %', '\u00a0%');
+
 export function addHead(page, {kind, name, headline, sub}) {
   document.title = `${name}: ${headline}`;
   page.append(
       h('header', {class: 'head'},
         h('div', {class: 'top'}, h('span', null, `stereotlm ${kind}`), h('b', null, name), themeSwitch()),
-        h('h1', null, headline), sub));
+        h('h1', null, unbroken(headline)), sub));
 }
 
 export function addAnswers(page, answers) {
@@ -16,7 +19,7 @@ export function addAnswers(page, answers) {
         answers.map(
             ([question, texts]) =>
                 h('div', null, h('dt', null, question),
-                  texts.filter(Boolean).map(text => h('dd', null, text))))));
+                  texts.filter(Boolean).map(text => h('dd', null, unbroken(text)))))));
 }
 
 // A heading, and below it the place of charts.

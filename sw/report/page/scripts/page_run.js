@@ -13,23 +13,24 @@ import {addRows} from './chart_rows.js';
 import {addBankUse, addPortStates} from './chart_states.js';
 import {addTimeLine} from './chart_time.js';
 import {h} from './dom.js';
-import {answersOf, headlineOf, settingOf} from './findings.js';
+import {answersOf, headlineOf, settingOf, waitingRows} from './findings.js';
 import {count} from './format.js';
 import {addAnswers, addGroup, addHead} from './page_parts.js';
 import {tilesOf} from './recording.js';
 
-// The stalls over the picture and its disparities, or over grey where the run has computed no pixels.
+// The waits over the picture and its disparities, or over grey where the run has computed no pixels.
 function addPictureOf(page, run) {
   const layers = tilesOf(run);
   if (!run.pictures && layers.length === 0) return;
+  const {stats} = run;
   const {left, disparity, disparities} = run.pictures ?? {};
   const [width, height] = ['image.width', 'image.height'].map(key => settingOf(run, key));
   addPicture(page, {
-    title: layers.length ? 'Where in the picture the ports wait' : 'The picture and its disparities',
+    title: layers.length ? `Ports wait ${waitingRows(run)}` : 'The picture and its disparities',
     layers,
     note: [
-      layers.length     ? 'A stall belongs to the pixels whose results are next; sums over all frames.' :
-          run.recording ? 'There are no stalls to paint.' :
+      layers.length     ? 'Colour: cycles in which ports wait, at the place whose results come next.' :
+          run.recording ? 'No port waits for these rows.' :
                           '',
       run.pictures ?
           'Below is the last frame: disparities from dark (far) to bright (near); black: no answer.' :
@@ -37,6 +38,7 @@ function addPictureOf(page, run) {
     ].join(' '),
     pictures:
         [left && {url: left}, disparity ? {url: disparity, disparities} : {width, height}].filter(Boolean),
+    frames: stats.frames,
     names: left ? ['picture', 'disparities'] : ['disparities']
   });
 }

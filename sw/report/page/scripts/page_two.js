@@ -1,6 +1,6 @@
 // The page of two runs: what differs in B.
 import {h, s} from './dom.js';
-import {count, percent, rate, shortened, signed, whole} from './format.js';
+import {capital, count, gainText, rate, shortened, signed, whole} from './format.js';
 import {addBlameDifference} from './chart_blame.js';
 import {addChart, drawing, htmlTable, legend} from './chart.js';
 import {commandLine} from './chart_config.js';
@@ -8,7 +8,7 @@ import {addFrames} from './chart_frames.js';
 import {addMemoryOfTwo} from './chart_memory.js';
 import {addPicture} from './chart_picture.js';
 import {addPortStates} from './chart_states.js';
-import {blamesOf, rateOf, settingOf, waitText} from './findings.js';
+import {rateOf, resourceText, settingOf, waitsOf, waitText} from './findings.js';
 import {addAnswers, addGroup, addHead} from './page_parts.js';
 import {axisBelow, axisLeft, linear} from './scale.js';
 import {namedColour} from './theme.js';
@@ -23,7 +23,7 @@ function settingsThatDiffer(a, b) {
                                                                                              y]) => x !== y);
 }
 
-// Cycles that each row takes more in B, beside the stalls.
+// Cycles that each row takes more in B, beside the waits.
 function addRowDifference(page, {rows, no_rows: reason}) {
   if (!rows) return addChart(page, {id: 'rows', title: 'Rows cannot be compared', note: reason});
   const ports = Object.entries(rows.stalls).filter(([, values]) => values.some(value => value !== 0));
@@ -58,7 +58,7 @@ function addRowDifference(page, {rows, no_rows: reason}) {
           [
             rowsOf[1] - rowsOf[0] > 1 ? `rows ${rowsOf[0]} to ${rowsOf[1] - 1}` : `row ${rowsOf[0]}`,
             `${signed(value, whole)} cycles a frame`,
-            ...ports.map(([port, values]) => `${port}: ${signed(over(values, rowsOf), whole)} stalls`)
+            ...ports.map(([port, values]) => `${port}: ${signed(over(values, rowsOf), whole)} of waiting`)
           ]));
     }
     for (const [port, values] of ports) {
@@ -87,11 +87,11 @@ function addRowDifference(page, {rows, no_rows: reason}) {
     title: parting ? `They part in frame ${parting.frame}, row ${parting.row}: whole after ${
                          whole(parting.cycles_a)} cycles in A, ${whole(parting.cycles_b)} in B` :
                      'All rows are whole in the same cycles',
-    note: `How much longer each row takes in B, and how much more each port stalls; ${
+    note: `How much longer each row takes in B, and how much longer each port waits; ${
         signed(total, whole)} cycles in ${count(rows.frames, 'frame')}.`,
     body: legend([
       ['cycles of the row', 'var(--row-bar)'],
-      ...ports.map(([port]) => [`stalls of ${port}`, `var(${namedColour(port)})`])
+      ...ports.map(([port]) => [`waits of ${port}`, `var(${namedColour(port)})`])
     ]),
     numbers: () => [
         ['row', 'cycles', ...ports.map(([port]) => `${port} stalls`)],
@@ -122,28 +122,28 @@ function addTotals(page, a, b) {
   });
 }
 
+// How the disparities of the runs differ.
 function pixelText({pixels, no_pixels: reason}) {
-  if (!pixels) return `Disparities cannot be compared: ${reason}.`;
-  if (pixels.frames === 0) return 'No camera frame was computed by both runs.';
-  if (pixels.pixels === 0)
-    return `The disparities are the same, pixel for pixel, in ${count(pixels.frames, 'frame')}.`;
-  return `${whole(pixels.pixels)} disparities differ, in ${pixels.frames_that_differ} of ${
+  if (!pixels) return `not compared: ${reason}`;
+  if (pixels.frames === 0) return 'not compared: no camera frame was computed by both runs';
+  if (pixels.pixels === 0) return `the same, pixel for pixel, in ${count(pixels.frames, 'frame')}`;
+  return `${whole(pixels.pixels)} differ, in ${pixels.frames_that_differ} of ${
              count(pixels.frames, 'frame')}; the first ` +
       `in column ${pixels.first.column}, row ${pixels.first.row} of camera frame ${
-             pixels.first.camera_frame}.`;
+             pixels.first.camera_frame}`;
 }
 
 export function showTwoRuns(page, {runs: [a, b], difference}) {
   const [rateA, rateB] = [rateOf(a), rateOf(b)];
   const settings = settingsThatDiffer(a, b);
   const gain = rateB.now / rateA.now - 1;
-  const blame = run => blamesOf(run).length ? `${waitText(blamesOf(run)[0])}.` : 'Nobody.';
+  const blame = run => waitsOf(run).length ? `${waitText(waitsOf(run)[0])}.` : 'Nobody.';
   addHead(page, {
     kind: 'two runs',
     name: `A ${a.folder} · B ${b.folder}`,
-    headline: gain === 0 ?
-        `B runs at the rate of A: ${rate(rateA.now)} frames/s` :
-        `B runs at ${rate(rateB.now)} frames/s, A at ${rate(rateA.now)}: ${signed(gain, percent)}`,
+    headline: gain === 0 ? `B runs at the rate of A: ${rate(rateA.now)} frames/s, ${rateA.kind}` :
+                           `B runs at ${rate(rateB.now)} frames/s (${rateB.kind}), A at ${rate(rateA.now)}${
+                               rateA.kind === rateB.kind ? '' : ` (${rateA.kind})`}: ${gainText(gain)}`,
     sub: [commandLine(a.command), commandLine(b.command)]
   });
   const {rows} = difference;
@@ -165,21 +165,22 @@ export function showTwoRuns(page, {runs: [a, b], difference}) {
     [
       'What limits?',
       [
-        `A: ${rateA.by}, at ${rate(rateA.limit)} frames/s.`,
-        `B: ${rateB.by}, at ${rate(rateB.limit)} frames/s.`
+        `A: ${resourceText(rateA.by)}, at ${rate(rateA.limit)} frames/s.`,
+        `B: ${resourceText(rateB.by)}, at ${rate(rateB.limit)} frames/s.`
       ]
     ],
-    ['Are the pictures the same?', [pixelText(difference)]]
+    ['Are the disparities the same?', [`${capital(pixelText(difference))}.`]]
   ]);
 
   const where = addGroup(page, 'Where and when');
   addRowDifference(where, difference);
   if (a.pictures && b.pictures) {
     addPicture(where, {
-      title: `Disparities of A and B. ${pixelText(difference)}`,
+      title: `Disparities of A and B: ${pixelText(difference)}`,
       note: 'The last frame of each run, with the rows that take longer in B.',
       pictures: [a, b].map(({pictures: {disparity, disparities}}) => ({url: disparity, disparities})),
       names: ['A', 'B'],
+      frames: rows?.frames,
       layers: rows?.cycles.some(value => value > 0) ? [{
         name: 'B, by row',
         values: rows.cycles,

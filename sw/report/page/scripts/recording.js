@@ -35,7 +35,7 @@ export function rowsText({height}, from, to, imageHeight) {
   return last === from * height ? `row ${last}` : `rows ${from * height} to ${last}`;
 }
 
-// Maps of the stalls over the picture, the most first: {name, values, columns, rows, width, height}. The
+// Maps of the waits over the picture, the most first: {name, values, columns, rows, width, height}. The
 // latter two are the size of a tile in pixels.
 export function tilesOf({recording}) {
   if (!recording) return [];
@@ -47,5 +47,5 @@ export function tilesOf({recording}) {
   const some = maps.filter(({total}) => total > 0).sort((a, b) => b.total - a.total);
   if (some.length < 2) return some;
   const all = some[0].values.map((_, tile) => sum(some.map(({values}) => values[tile])));
-  return [{...tiles, name: 'all stalls', values: all, total: sum(all)}, ...some];
+  return [{...tiles, name: 'all waits', values: all, total: sum(all)}, ...some];
 }

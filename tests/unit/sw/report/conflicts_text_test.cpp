@@ -50,8 +50,8 @@ TEST(ConflictsText, SumsFramesAndShowsTheBanksThatAreUsed) {
   const platform::Conflicts none(board());
   EXPECT_EQ(conflicts_text(board(), none.recorder(), sums.sums()),
             "core         0 cycles in 0 frames\n"
-            "stalls       none\n"
-            "rows             stalls %       a %       b %\n"
+            "waits        none\n"
+            "rows              waits %       a %       b %\n"
             "fill                 0.00      0.00      0.00\n"
             "0..1                28.50     75.00      3.00\n"
             "2..2                 0.00      0.00      0.00\n");

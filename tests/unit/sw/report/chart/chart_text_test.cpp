@@ -56,5 +56,24 @@ TEST(ChartText, HasNumbersOfAtMostTwoDecimals) {
   EXPECT_EQ(short_number(0.0049), "<0.01");
 }
 
+TEST(ChartText, HasMeasuredFiguresOfOneDecimal) {
+  EXPECT_EQ(measured(0), "0");
+  EXPECT_EQ(measured(0.0499), "<0.1");
+  EXPECT_EQ(measured(0.05), "0.1");
+  EXPECT_EQ(measured(7.7), "7.7");
+  EXPECT_EQ(measured(160), "160.0");
+  EXPECT_EQ(rate_text(18.5959), "18.60");
+  EXPECT_EQ(rate_text(99.99), "99.99");
+  EXPECT_EQ(rate_text(100), "100.0");
+}
+
+TEST(ChartText, GroupsCountsFrom10000On) {
+  EXPECT_EQ(grouped(0), "0");
+  EXPECT_EQ(grouped(9999), "9999");
+  EXPECT_EQ(grouped(10000), "10,000");
+  EXPECT_EQ(grouped(307200), "307,200");
+  EXPECT_EQ(grouped(67108864), "67,108,864");
+}
+
 }  // namespace
 }  // namespace stereotlm::report

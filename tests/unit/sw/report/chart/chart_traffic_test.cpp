@@ -20,6 +20,7 @@ namespace {
 
 using platform::BoardConfig;
 using platform::Statistics;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::UnorderedElementsAre;
 
@@ -50,7 +51,7 @@ void expect_sums_of(const Statistics& statistics, const BoardConfig& board) {
     if (statistics.computer && port.name == "host")
       sum -= traffic.megabytes_per_second.at("edge-local_bus-host");
     expect_close(sum, 4 * static_cast<double>(port.grants) * board.fpga.clock_mhz / cycles, port.name);
-    expect_close(traffic.stalled_percent.at("port-" + port.name),
+    expect_close(traffic.waits_percent.at("port-" + port.name),
                  100 * static_cast<double>(port.stall_cycles) / cycles, port.name);
   }
   if (!statistics.computer) return;
@@ -138,9 +139,17 @@ TEST(ChartTraffic, DividesTheGrantsOfAPortByTheFramesThatUseEachBuffer) {
                            std::pair("edge-left_pixel-bank1", 20), std::pair("edge-right_pixel-bank2", 20),
                            std::pair("edge-right_pixel-bank3", 10), std::pair("edge-result-bank4", 8),
                            std::pair("edge-result-bank5", 4)));
-  EXPECT_EQ(traffic.stalled_percent.at("port-left_lut"), 10);
+  EXPECT_EQ(traffic.waits_percent.at("port-left_lut"), 10);
   EXPECT_THAT(traffic.limiting, UnorderedElementsAre("bank-bank0"));
   EXPECT_EQ(traffic.extent, ChartExtent::kBoard);
+}
+
+TEST(ChartTraffic, NamesTheKindOfEachRate) {
+  Statistics run = small_run();
+  run.frames_per_second.core = 12.345;
+  run.bound.core = 123.45;
+  EXPECT_THAT(chart_traffic(small_board(), stats_json(run, {})).summary,
+              ElementsAre("12.35 frames/s, core only; 3 frames", "bound 123.5 frames/s, set by bank0"));
 }
 
 TEST(ChartTraffic, MarksWhatLimitsTheRate) {

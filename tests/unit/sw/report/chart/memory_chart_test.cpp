@@ -26,8 +26,9 @@ TEST(MemoryChart, HasTheWholeNumberOfEachLinkOfARun) {
   traffic.megabytes_per_second["edge-left_lut-bank6"] = 158.9636822785;
   const std::string svg = memory_chart_svg({}, traffic);
   EXPECT_THAT(svg, HasSubstr("data-peak=\"160\" data-mbps=\"158.9636822785\">"));
-  EXPECT_THAT(svg, HasSubstr(">158.96</text>"));
-  EXPECT_THAT(svg, HasSubstr("left_lut - bank6: 158.96 of 160 MB/s (99.35 %)"));
+  EXPECT_THAT(svg, HasSubstr(">159.0</text>"));
+  EXPECT_THAT(
+      svg, HasSubstr("left_lut - bank6: 159.0 of 160 MB/s (99.4 %)\nmean while the core works on a frame"));
   EXPECT_THAT(svg, Not(HasSubstr("part-pci")));
 }
 

@@ -81,12 +81,11 @@ inline ChartTraffic random_chart_traffic(const platform::BoardConfig& board, Cha
   }
   for (const platform::BankConfig& bank : board.banks) traffic.busy_percent["bank-" + bank.name] = 12.34;
   for (const fpga::CorePort& port : fpga::kPorts)
-    traffic.stalled_percent[std::string("port-") + port.name] = 100;
+    traffic.waits_percent[std::string("port-") + port.name] = 100;
   traffic.busy_percent["part-pci"] = traffic.busy_percent["part-local_bus"] = 99.99;
   traffic.limiting = {"bank-" + board.banks.front().name};
-  traffic.summary = {"core 18.596 frames/s, 1000000 frames; bound 18.596, by bank " +
-                     board.banks.front().name};
-  if (extent == ChartExtent::kComputer) traffic.summary.emplace_back("system 17.5 frames/s");
+  traffic.summary = {"18.60 frames/s steady, 17.50 including start-up; 1000000 frames",
+                     "bound 18.60 frames/s, set by bank " + board.banks.front().name};
   return traffic;
 }
 
