@@ -56,7 +56,7 @@ void RunOptions::add_to(CLI::App& command) {
            "Write the disparities of every frame too: frames/000000.png and so on in the folder of "
            "--out, numbered by "
            "camera frame");
-  add_flag(command, "--record", record,
+  add_flag(command, "--record,--conflicts", record,
            "Write where and when ports stall: rows.csv and conflicts.csv in the folder of --out; with "
            "cameras also "
            "what happened when, and why it waited: timeline.csv and latency.csv");

@@ -59,7 +59,10 @@ class Recorded(ConflictsTest):
             self.check_sums()
             self.record(*options, *CYCLE, out=cycle)
             self.record(*options, "--timing-only", out=timing)
+            other = self.folder / "other"
+            self.succeeds(run("run", *self.scene, "--conflicts", *options, "--out", other))
             for name in TABLES:
+                self.assertEqual((self.out / name).read_bytes(), (other / name).read_bytes())
                 self.assertEqual((self.out / name).read_bytes(), (cycle / name).read_bytes())
                 self.assertEqual((self.out / name).read_bytes(), (timing / name).read_bytes())
 
