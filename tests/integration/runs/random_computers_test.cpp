@@ -242,7 +242,7 @@ std::string problems_of(std::uint64_t seed, const test::RandomKnobs& knobs, Fide
   return problems.empty() ? problems : problems + platform::to_yaml(board);
 }
 
-std::uint64_t computers(std::uint64_t otherwise = 300) { return test::random_computers(otherwise); }
+std::uint64_t computers(std::uint64_t otherwise = 200) { return test::random_computers(otherwise); }
 
 int processors() { return static_cast<int>(std::max(1U, std::thread::hardware_concurrency())); }
 
@@ -339,7 +339,7 @@ TEST_P(RandomConflicts, EqualThePlainLoopOverEvents) {
   test::RandomKnobs knobs = with_knobs ? test::RandomKnobs::all() : test::RandomKnobs{};
   knobs.large_images = false;
   std::vector<test::ChildWork> jobs;
-  for (std::uint64_t seed = 0; seed < computers(150); ++seed)
+  for (std::uint64_t seed = 0; seed < computers(100); ++seed)
     jobs.push_back(
         [seed, knobs, fidelity = fidelity] { return conflicts_that_differ(seed, knobs, fidelity); });
   const std::vector<test::ChildResult> results = test::run_in_children(jobs, processors());

@@ -503,7 +503,8 @@ TEST(FastForward, IsTakenToTheLastGrantByAnyCall) {
 }
 
 TEST(FastForward, RefusesAFrameBeforeTheLastOneIsSettled) {
-  Core core(bank_for_each_port(64, 24), Core::Way::kAhead);
+  const Setting setting = bank_for_each_port(64, 24);
+  Core core(setting, Core::Way::kAhead);
   for (int frame = 0; frame < 2; ++frame) {
     core.start(core.cycle());
     const std::uint64_t first = core.cycle();

@@ -1,7 +1,7 @@
 // The cycles of each frame.
 import {addChart, drawing, legend} from './chart.js';
 import {s} from './dom.js';
-import {brief, count, whole} from './format.js';
+import {count, whole} from './format.js';
 import {axisLeft, linear} from './scale.js';
 import {mark} from './tooltip.js';
 
@@ -47,7 +47,7 @@ export function addFrames(page, series, clockMhz) {
     draw,
     title: least === most ?
         `${frames === 1 ? 'The frame' : `Each of ${frames} frames`} takes ${whole(least)} cycles` :
-        `Frames take ${brief(least)} to ${brief(most)} cycles`,
+        `Frames take ${whole(least)} to ${whole(most)} cycles`,
     note: 'Cycles of the FPGA clock from the start of a frame to its last result.',
     body: series.length > 1 && legend(series.map(([name, , colour]) => [name, `var(${colour})`])),
     numbers: () => [

@@ -140,7 +140,8 @@ export function addKnobs(page, run) {
                           'No single change gains 1 % and keeps the disparities',
     note: `One setting changed at a time, simulated with ${
               count(board.frames, 'frame')} each. Right: the gain, and what the change takes in ` +
-        'addition. *: changes the disparities. †: captures lose pixels.',
+        'addition. First is the largest gain without new parts, a faster clock or more than 1 % of the ' +
+        'FPGA. *: changes the disparities. †: captures lose pixels.',
     body: h(
         'div', null, keep,
         without.length > 0 && h('p', {class: 'note'}, `Without effect here: ${without.join(', ')}.`),

@@ -40,6 +40,14 @@ export const withVerb = (name, verb) => `${resourceText(name)} ${verb}${name ===
 export const blamesOf = run => run.stats.blame.map(row => ({...row, share: row.cycles / run.stats.cycles}))
                                    .sort((a, b) => b.cycles - a.cycles);
 
+// The same, with what the host moved as its name, if all frames were recorded.
+function detailedBlamesOf(run) {
+  const recorded = linesOf(run);
+  if (!recorded || recorded.frames !== run.stats.frame_cycles.length) return blamesOf(run);
+  return recorded.stalls.map(
+      ({port, bank, by, total}) => ({port, bank, by, cycles: total, share: total / run.stats.cycles}));
+}
+
 const causeText = by => by === 'turnaround' ? 'for the turnaround' : `for ${by}`;
 
 export const blameText = ({port, bank, by, share}) =>
@@ -48,7 +56,7 @@ export const blameText = ({port, bank, by, share}) =>
 // The ports that wait, the most first: {port, cycles, share, causes: its waits, the most first}.
 export function waitsOf(run) {
   const ports = new Map();
-  for (const row of blamesOf(run)) {
+  for (const row of detailedBlamesOf(run)) {
     if (!ports.has(row.port)) ports.set(row.port, {port: row.port, cycles: 0, share: 0, causes: []});
     const port = ports.get(row.port);
     port.cycles += row.cycles;
@@ -79,7 +87,7 @@ function whatLimits(run) {
     bank: () => {
       const bank = run.banks.find(each => each.name === name);
       const busy = run.stats.banks.find(each => each.name === name);
-      return `Bank ${name} holds ${bank.buffers.map(each => each.name).join(', ')}, and is busy in ` +
+      return `${/^bank/i.test(name) ? name : `Bank ${name}`} holds ${bank.buffers.map(each => each.name).join(', ')}, and is busy in ` +
           `${percent(busy.utilization)} of the cycles`;
     },
     port: () => `Port ${name}: it moves one word a cycle at most`,
@@ -116,7 +124,7 @@ export function droppedText(run) {
       dropped === 1 ? 'is' : 'are'} dropped, because no input buffer is free as they begin`;
   return (kind === 'steady' ? now : limit) < 0.995 * delivered ?
       `${text}: the cameras deliver ${
-          rate(delivered)} frames/s, and the board takes fewer. That is no fault.` :
+          rate(delivered)} frames/s, and the board takes fewer. This is expected.` :
       `${text}, such as before the tables are uploaded.`;
 }
 
@@ -168,7 +176,18 @@ function acrossText(run) {
       share < kFewTiles ? `; half of all waits are in ${percent(share, 0)} of the picture` : ''}.`;
 }
 
-// The rows in which ports wait: "most in rows 0 to 47: ..". null if they wait in none.
+// The consecutive lines with the largest surplus over the mean of all lines: {from, to, sum}.
+function densestLines(amounts, mean) {
+  let best = {surplus: 0, from: 0, to: 0};
+  for (let line = 0, from = 0, surplus = 0; line < amounts.length; ++line) {
+    if (surplus <= 0) [from, surplus] = [line, 0];
+    surplus += amounts[line] - mean;
+    if (surplus > best.surplus) best = {surplus, from, to: line + 1};
+  }
+  return {...best, sum: sum(amounts.slice(best.from, best.to))};
+}
+
+// The rows in which ports wait: "most often in rows 0 to 9: ..". null if they wait in none.
 export function waitingRows(run) {
   const recorded = linesOf(run);
   const {lines, height, frames, stalls} = recorded;
@@ -176,15 +195,11 @@ export function waitingRows(run) {
   if (sum(amounts) === 0) return null;
   const imageHeight = settingOf(run, 'image.height');
   const {first, last, total} = mainPart(amounts);
-  const tenth = Math.max(1, Math.round(lines / 10));
-  let best = {sum: 0, line: 0};
-  for (let line = 0, window = 0; line < lines; ++line) {
-    window += amounts[line] - (line >= tenth ? amounts[line - tenth] : 0);
-    if (window > best.sum) best = {sum: window, line: Math.max(0, line - tenth + 1)};
-  }
-  if (best.sum / total > 2 * tenth / (last + 1 - first)) {
-    return `most in ${rowsText(recorded, best.line, best.line + tenth, imageHeight)}: ${
-        percent(best.sum / total, 0)} of all waits`;
+  const densest = densestLines(amounts, total / (last + 1 - first));
+  const partOfLines = (densest.to - densest.from) / lines;
+  if (densest.sum / total > 2 * partOfLines) {
+    return `most often in ${rowsText(recorded, densest.from, densest.to, imageHeight)}: ${
+        percent(densest.sum / total, 0)} of all waits in ${percent(partOfLines, 0)} of the rows`;
   }
   const mean = total / frames / (last + 1 - first) / height;
   return `in ${rowsText(recorded, first, last + 1, imageHeight)} of ${imageHeight}, evenly: ${
