@@ -92,6 +92,7 @@ class Made(CalibrateTest):
             shutil.copy(self.pictures / path.name, path)
         self.succeeds(self.calibrate(**pairs))
 
+    @program.slow
     def test_doubts_pictures_whose_names_do_not_go_together(self):
         process = self.calibrate(left="left_0[01].png", right="right_0[02].png")
         pair = f"'{self.pictures / 'left_01.png'}' with '{self.pictures / 'right_02.png'}'"

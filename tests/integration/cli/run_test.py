@@ -153,6 +153,7 @@ class ProgressLine(ProgramTest):
         """At a terminal, a run of a thousand frames that takes a while."""
         return Terminal(self.run_arguments(*CYCLE, "--frames", "1000"), **options)
 
+    @program.slow
     def test_shows_rate_and_remaining_time_and_is_erased(self):
         terminal = self.start_slow()
         done, total, percent, _, rate, left = terminal.read_until(PROGRESS)[0]
@@ -165,6 +166,7 @@ class ProgressLine(ProgramTest):
         self.assertRegex(left, r"^\d+:\d\d$")
         self.assertEqual(terminal.shown(), [""])
 
+    @program.slow
     def test_fits_into_a_narrow_terminal_and_outlives_a_signal_that_the_caller_ignores(self):
         ignore = lambda: signal.signal(signal.SIGINT, signal.SIG_IGN)
         terminal = self.start_slow(columns=20, preexec_fn=ignore)

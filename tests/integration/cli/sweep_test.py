@@ -358,6 +358,7 @@ class Meanwhile(SweepTest):
         self.assertIn("points.db", errors)
         self.assertNotIn("kept", errors)
 
+    @program.slow
     def test_a_terminal_shows_its_progress(self):
         terminal = Terminal(["sweep", self.many, "--out", self.store])
         terminal.read_until(r"\d+/4064 points   \d+\.\d %   \d+\.\d points/s   \S+ left")
