@@ -4,6 +4,10 @@
 namespace stereotlm::kernels::STEREOTLM_SIMD {
 namespace {
 
+// kernels::kInvalidDisparity. Its header has inline functions, which must not be compiled with the instructions
+// of this file.
+constexpr std::uint8_t kInvalid = 0xFF;
+
 // Stores the disparities of `left` that agree with those of `right`, in the next `count` pixels.
 void check(const std::uint8_t* left, const std::uint8_t* right, int count, int tolerance, std::uint8_t* out) {
   const Bytes most = Bytes{} + static_cast<std::uint8_t>(tolerance);
@@ -12,12 +16,12 @@ void check(const std::uint8_t* left, const std::uint8_t* right, int count, int t
     const auto l = load<Bytes>(left + i);
     const auto r = load<Bytes>(right + i);
     const Bytes difference = l > r ? l - r : r - l;
-    const auto fails = reinterpret_cast<Bytes>((difference > most) | (r == 0xFF));
+    const auto fails = reinterpret_cast<Bytes>((difference > most) | (r == kInvalid));
     store(l | fails, out + i);
   }
   for (; i < count; ++i) {
     const int difference = left[i] > right[i] ? left[i] - right[i] : right[i] - left[i];
-    out[i] = difference > tolerance || right[i] == 0xFF ? std::uint8_t{0xFF} : left[i];
+    out[i] = difference > tolerance || right[i] == kInvalid ? kInvalid : left[i];
   }
 }
 
@@ -41,8 +45,7 @@ void check_row(const std::uint8_t* left_based, const std::uint8_t* right_based,
     }
   }
   if (left_table == nullptr) return;
-  for (std::ptrdiff_t i = 0; i < count; ++i)
-    out[i] |= left_table[i] >> 31 == 0 ? std::uint8_t{0xFF} : std::uint8_t{0};
+  for (std::ptrdiff_t i = 0; i < count; ++i) out[i] |= left_table[i] >> 31 == 0 ? kInvalid : std::uint8_t{0};
 }
 
 }  // namespace stereotlm::kernels::STEREOTLM_SIMD

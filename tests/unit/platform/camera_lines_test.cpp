@@ -223,11 +223,8 @@ Keys random_keys(std::uint64_t seed) {
                fmt::format("capture.fifo_trigger_words={}", random.between(1, std::min(fifo, 32))),
                fmt::format("pci.bridge_wait_clocks={}", wait),
                fmt::format("bridge.posted_words={}", testing::one_of(random, {3, 16, 64, 64, 4096}))});
-  if (random.chance(25)) {
-    keys.push_back(fmt::format("pci.load={{burst_words: {}, interval_us: {}, first_us: {}}}",
-                               testing::one_of(random, {1, 32}), testing::decimal(random, 20, 400),
-                               testing::decimal(random, 1, 300)));
-  }
+  const Keys load = testing::random_load(random, 20, 400, 300);
+  keys.insert(keys.end(), load.begin(), load.end());
   return keys;
 }
 

@@ -272,11 +272,8 @@ TEST(DmaBursts, SkipNothingBehindAnInterrupt) {
 Keys random_dma_keys(test::SplitMix64& random) {
   Keys keys = testing::random_buses(random).keys;
   keys.push_back(fmt::format("pci.memory_wait_clocks={}", testing::one_of(random, {0, 1, 4, 8, 20})));
-  if (random.chance(25)) {
-    keys.push_back(fmt::format("pci.load={{burst_words: {}, interval_us: {}, first_us: {}}}",
-                               testing::one_of(random, {1, 32}), testing::decimal(random, 1, 60),
-                               testing::decimal(random, 1, 30)));
-  }
+  const Keys load = testing::random_load(random, 1, 60, 30);
+  keys.insert(keys.end(), load.begin(), load.end());
   return keys;
 }
 

@@ -269,4 +269,13 @@ inline RandomBuses random_buses(test::SplitMix64& random) {
   return buses;
 }
 
+// The key of a traffic generator with a probability of 25 %, else none.
+inline Keys random_load(test::SplitMix64& random, int least_interval_us, int most_interval_us,
+                        int most_first_us) {
+  if (!random.chance(25)) return {};
+  return {fmt::format("pci.load={{burst_words: {}, interval_us: {}, first_us: {}}}", one_of(random, {1, 32}),
+                      decimal(random, least_interval_us, most_interval_us),
+                      decimal(random, 1, most_first_us))};
+}
+
 }  // namespace stereotlm::platform::testing
