@@ -230,8 +230,8 @@ void CameraLines::end_record() {
   }
 }
 
-// Whether all words were stored, none may have found its FIFO full, no other master had a bus, and there are
-// bounds. `buses`: what the buses have done in the line.
+// Whether the record holds for later lines: all words were stored, none can have found its FIFO full, no other
+// master had a bus, and the bounds hold some time. `buses`: what the buses have done in the line.
 bool CameraLines::record_is_whole(const BusCounts& buses) const {
   if (captures_[0].fifo().next_row() != record_.row + 1) return false;  // the next line came before the end
   std::uint64_t transactions = 0;

@@ -11,8 +11,8 @@
 namespace stereotlm::platform {
 namespace {
 
-// Each time is rounded to whole ps. From the beginning of a step to the ends of its two bursts, this may take
-// as many ps from the distance of the ends.
+// Each time is rounded to whole ps. So the ends of the two bursts of a step may come closer by this number of ps
+// than those of another step.
 constexpr std::uint64_t kRounding = 4;
 
 }  // namespace
@@ -59,7 +59,7 @@ bool DmaBursts::skip(std::uint64_t now_ps, std::uint64_t end_ps) {
   return true;
 }
 
-// How the step begins that the channel takes at `now_ps`; nothing if it cannot be skipped.
+// The beginning of the step that the channel takes at `now_ps`; nothing if the step cannot be skipped.
 std::optional<DmaBursts::Beginning> DmaBursts::beginning(std::uint64_t now_ps,
                                                          const pci::DmaChannel& channel) const {
   const std::uint64_t request = buses_.pci.request_clock(kBridge);
@@ -76,8 +76,8 @@ std::optional<DmaBursts::Beginning> DmaBursts::beginning(std::uint64_t now_ps,
       channel.number(), to_pci, bank, bridge_.turn(), position.last_granted, position.free_clock > request};
 }
 
-// What the step did that began in the state before_ and has just ended; nothing if others had a bus too, or
-// steps like this one cannot be skipped.
+// The step that began in the state before_ and has just ended; nothing if others had a bus too, or if steps like
+// this one cannot be skipped.
 std::optional<DmaBursts::Step> DmaBursts::recorded(std::size_t burst_words) const {
   const BusCounts buses = buses_.counts().since(before_.buses);
   pci::PciBusControl::MasterCounts counts = buses_.pci.counts(kBridge);

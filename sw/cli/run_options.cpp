@@ -53,13 +53,11 @@ void RunOptions::add_to(CLI::App& command) {
               "Folder for the result files: created if missing, else empty or an earlier result, which is "
               "replaced (default: no files)");
   add_flag(command, "--save-frames", save_frames,
-           "Write the disparities of every frame too: frames/000000.png and so on in the folder of "
-           "--out, numbered by "
-           "camera frame");
+           "Write the disparities of every frame too: frames/000000.png and so on in the folder of --out, "
+           "numbered by camera frame");
   add_flag(command, "--record,--conflicts", record,
-           "Write where and when ports stall: rows.csv and conflicts.csv in the folder of --out; with "
-           "cameras also "
-           "what happened when, and why it waited: timeline.csv and latency.csv");
+           "Write where and when ports wait: rows.csv and conflicts.csv in the folder of --out; with cameras "
+           "also what happened when, and why it waited: timeline.csv and latency.csv");
   trace_.add_to(command);
   set_footer(command,
              paragraph("", 0, fmt::format("Not in this version: {}.", trace_.name())) +

@@ -107,15 +107,16 @@ std::string summary(const explore::SweepCounts& counts, const SweepCommandOption
   return text + '\n';
 }
 
-// The lines with the most frequent reasons of points that failed, then of impossible ones, and the number of
-// points for each reason.
+// The lines with the three most frequent reasons of points that failed, then of impossible ones, and the number
+// of points for each reason. One scan of the table; by name 'failed' comes before 'impossible'.
 std::string reasons(explore::Database& store) {
   explore::Statement statement(
       store,
-      "SELECT status, reason, points FROM (SELECT *, row_number() OVER (PARTITION BY status ORDER BY points "
-      "DESC, reason) AS place FROM (SELECT status, reason, count(*) AS points FROM points WHERE status <> "
-      "'ok' "
-      "GROUP BY status, reason)) WHERE place <= 3 ORDER BY status, place");
+      "SELECT status, reason, points FROM ("
+      "  SELECT status, reason, count(*) AS points,"
+      "    row_number() OVER (PARTITION BY status ORDER BY count(*) DESC, reason) AS place"
+      "  FROM points WHERE status <> 'ok' GROUP BY status, reason)"
+      " WHERE place <= 3 ORDER BY status, place");
   std::string text;
   while (statement.step()) {
     text += fmt::format("  {} {}: {}\n", statement.text(2), statement.text(0), statement.text(1));

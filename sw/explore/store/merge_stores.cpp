@@ -184,7 +184,7 @@ void merge_stores(const std::vector<std::string>& inputs, const std::string& sto
   Readers readers;
   readers.reserve(inputs.size());
   for (const std::string& input : inputs) readers.push_back(std::make_unique<StoreReader>(input));
-  if (readers.size() > 1) check_versions(readers);  // every writer of a store checks that it has one version
+  if (readers.size() > 1) check_versions(readers);  // Store refuses a second version
   MergedFile file(out);
   {
     Database database(file.path(), Database::Access::kWrite);
@@ -192,7 +192,7 @@ void merge_stores(const std::vector<std::string>& inputs, const std::string& sto
         "PRAGMA journal_mode = OFF; PRAGMA synchronous = NORMAL; PRAGMA main.locking_mode = EXCLUSIVE");
     if (inputs.size() == 1) {
       database.attach(inputs.front(), "input");
-      database.execute("PRAGMA input.mmap_size = 0x40000000");  // one system call less for each page
+      database.execute("PRAGMA input.mmap_size = 0x40000000");  // pages are read without a system call
     }
     database.execute("BEGIN");
     std::vector<std::string> columns = further_columns(readers);

@@ -485,14 +485,14 @@ class Answers(PageTest):
 
         (self.rate,) = (each["value"] for each in data_of(page_of(computer()))["run"]["settings"]
                         if each["key"] == "cameras.frame_rate_hz")
-        dropped = "12 of 26 camera frames are dropped, because no input buffer is free as they begin"
+        dropped = "12 of 26 frames of the left camera are dropped, because its capture board is not armed as they begin"
         share = 0.99
         self.opened(computer(), change)
-        self.assertIn(f"{dropped}: the cameras deliver", self.answer("What limits?"))
+        self.assertIn(f"{dropped}. The cameras deliver", self.answer("What limits?"))
         self.assertIn("This is expected.", self.browser.text("#time .note"))
         share = 1
         self.opened(computer(), change)
-        self.assertIn(f"{dropped}, such as before the tables are uploaded.", self.answer("What limits?"))
+        self.assertIn(f"{dropped}. It is armed when the tables are uploaded and a buffer is free.", self.answer("What limits?"))
 
     def steps(self, *changed):
         """Changes the steps of a run to these: (knob, from, to, gain in %, what else differs from the board)."""

@@ -67,13 +67,22 @@ export function priceText(step, board) {
   if (!step.area.fits) parts.push('a larger FPGA');
   if (parts.length === 0) parts.push('nothing new');
   const idle = step.idle_banks ?? [];
-  return parts.join(', ') + (idle.length ? `: it uses ${idle.join(', ')}, which holds nothing` : '');
+  return parts.join(', ') +
+      (idle.length ? `: it uses ${idle.join(' and ')}, which ${idle.length === 1 ? 'holds' : 'hold'} nothing` :
+                     '');
 }
 
-// The resource around the board whose bound the rate of a change reaches, such as `camera`. A resource that the
-// change itself concerns has another bound.
+// The keys that move the bound of a resource around the board.
+const kMoves = {
+  camera: /^cameras\./,
+  pci: /^(pci|bridge|capture)\./,
+  bridge: /^(bridge\.|capture\.|fpga\.clock_mhz$)/
+};
+
+// The resource around the board whose bound the rate of a change reaches, such as `camera`. A resource whose
+// bound the change moves is left out.
 export function limitReached(run, step) {
-  const isConcerned = resource => step.knob.startsWith(resource === 'camera' ? 'cameras.' : `${resource}.`);
+  const isConcerned = resource => kMoves[resource]?.test(step.knob) ?? false;
   return (run.bounds.computer ?? [])
       .find(
           ({resource, frames_per_second: bound}) =>

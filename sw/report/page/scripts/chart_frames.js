@@ -1,7 +1,7 @@
 // The cycles of each frame.
 import {addChart, drawing, legend} from './chart.js';
 import {s} from './dom.js';
-import {count, whole} from './format.js';
+import {whole} from './format.js';
 import {axisLeft, linear} from './scale.js';
 import {mark} from './tooltip.js';
 

@@ -35,7 +35,7 @@ export function addKnobs(page, run) {
   const kind = kindOfSteps(run);
   const state = {keep: false, all: false};
   const gainOf = step => step.frames_per_second / now - 1;
-  const isSmall = step => Math.abs(gainOf(step)) < kFolded;
+  const isSmall = step => step !== advice.first && Math.abs(gainOf(step)) < kFolded;
   const listed = () => steps.filter(step => step.has_effect && !(state.keep && step.changes_disparities));
   const fold = h('button', {
     type: 'button',
@@ -140,8 +140,8 @@ export function addKnobs(page, run) {
                           'No single change gains 1 % and keeps the disparities',
     note: `One setting changed at a time, simulated with ${
               count(board.frames, 'frame')} each. Right: the gain, and what the change takes in ` +
-        'addition. First is the largest gain without new parts, a faster clock or more than 1 % of the ' +
-        'FPGA. *: changes the disparities. †: captures lose pixels.',
+        'addition. First: the largest gain that needs nothing new; if there is none, the largest of ' +
+        'all; where captures lose pixels, the best change that ends that. *: changes the disparities. †: captures lose pixels.',
     body: h(
         'div', null, keep,
         without.length > 0 && h('p', {class: 'note'}, `Without effect here: ${without.join(', ')}.`),

@@ -60,7 +60,7 @@ const kWhy = {
   'core copy': 'its pair is copied to the board',
   'core output_buffer': 'no output buffer is free',
   'result read_back': 'the result before is read back',
-  'drop not_armed': 'the capture board was not armed: no input buffer was free',
+  'drop not_armed': 'the capture board was not armed',
   'drop busy': 'the capture before had not ended',
   'drop partner': 'the other camera lost this frame'
 };
@@ -73,7 +73,7 @@ const kFewLater = 0.1;  // of its waits that are after the beginning of its firs
 function coreWaits(run, span, early) {
   const waits = run.recording.waits.filter(wait => wait.class === 'core').sort((a, b) => b.ps - a.ps);
   const all = sum(waits.map(wait => wait.ps));
-  const reasons = textOf => waits.filter(wait => wait.ps > kHardly * span)
+  const reasons = textOf => waits.filter((wait, i) => i === 0 || wait.ps > kHardly * span)
                                 .slice(0, 3)
                                 .map(wait => `${textOf(wait.ps)} because ${whyText('core', wait.why)}`);
   const ms = ps => `${fixed(ps / kPsOfMs, ps < 0.1 * kPsOfMs ? 2 : 1)} ms`;

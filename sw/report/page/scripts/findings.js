@@ -69,7 +69,7 @@ export function waitsOf(run) {
 export function waitText({port, share, causes}) {
   if (causes.length === 1) return blameText(causes[0]);
   const isOneBank = causes.every(({bank}) => bank === causes[0].bank);
-  const named = causes.filter(cause => cause.share >= kLeastShare).slice(0, kMostCauses);
+  const named = causes.slice(0, kMostCauses).filter((cause, i) => i === 0 || cause.share >= kLeastShare);
   const texts = named.map(
       ({bank, by, share: part}) => `${percent(part)} ${causeText(by)}${isOneBank ? '' : ` on ${bank}`}`);
   return `${port} waits in ${percent(share)} of all cycles: ${texts.join(', ')}${
@@ -87,8 +87,9 @@ function whatLimits(run) {
     bank: () => {
       const bank = run.banks.find(each => each.name === name);
       const busy = run.stats.banks.find(each => each.name === name);
-      return `${/^bank/i.test(name) ? name : `Bank ${name}`} holds ${bank.buffers.map(each => each.name).join(', ')}, and is busy in ` +
-          `${percent(busy.utilization)} of the cycles`;
+      const title = /^bank/i.test(name) ? name : `Bank ${name}`;
+      const held = bank.buffers.map(each => each.name).join(', ') || 'no buffer';
+      return `${title} holds ${held}, and is busy in ${percent(busy.utilization)} of the cycles`;
     },
     port: () => `Port ${name}: it moves one word a cycle at most`,
     matcher: () =>
@@ -114,18 +115,19 @@ function whatLimits(run) {
   ];
 }
 
-// Why camera frames are dropped.
+// Why frames of the left camera are dropped.
 export function droppedText(run) {
-  const {frames, dropped_not_armed: dropped} = run.stats.cameras[0];
+  const {frames, dropped_frames: all, dropped_not_armed: dropped} = run.stats.cameras[0];
   if (dropped === 0) return null;
   const delivered = settingOf(run, 'cameras.frame_rate_hz');
   const {now, kind, limit} = rateOf(run);
-  const text = `${dropped} of ${frames} camera frames ${
-      dropped === 1 ? 'is' : 'are'} dropped, because no input buffer is free as they begin`;
+  const others = all > dropped ? `; ${whole(all - dropped)} for other reasons` : '';
+  const text = `${whole(dropped)} of ${whole(frames)} frames of the left camera ${
+      dropped === 1 ? 'is' : 'are'} dropped, because its capture board is not armed as they begin${others}`;
   return (kind === 'steady' ? now : limit) < 0.995 * delivered ?
-      `${text}: the cameras deliver ${
+      `${text}. The cameras deliver ${
           rate(delivered)} frames/s, and the board takes fewer. This is expected.` :
-      `${text}, such as before the tables are uploaded.`;
+      `${text}. It is armed when the tables are uploaded and a buffer is free.`;
 }
 
 function whoWaits(run) {
@@ -176,7 +178,7 @@ function acrossText(run) {
       share < kFewTiles ? `; half of all waits are in ${percent(share, 0)} of the picture` : ''}.`;
 }
 
-// The consecutive lines with the largest surplus over the mean of all lines: {from, to, sum}.
+// The consecutive lines with the largest surplus over `mean`: {from, to, sum}.
 function densestLines(amounts, mean) {
   let best = {surplus: 0, from: 0, to: 0};
   for (let line = 0, from = 0, surplus = 0; line < amounts.length; ++line) {
@@ -196,10 +198,10 @@ export function waitingRows(run) {
   const imageHeight = settingOf(run, 'image.height');
   const {first, last, total} = mainPart(amounts);
   const densest = densestLines(amounts, total / (last + 1 - first));
-  const partOfLines = (densest.to - densest.from) / lines;
-  if (densest.sum / total > 2 * partOfLines) {
+  const waiting = last + 1 - first;
+  if (densest.sum / total > 2 * (densest.to - densest.from) / waiting) {
     return `most often in ${rowsText(recorded, densest.from, densest.to, imageHeight)}: ${
-        percent(densest.sum / total, 0)} of all waits in ${percent(partOfLines, 0)} of the rows`;
+        percent(densest.sum / total, 0)} of all waits in ${percent((densest.to - densest.from) / lines, 0)} of the rows`;
   }
   const mean = total / frames / (last + 1 - first) / height;
   return `in ${rowsText(recorded, first, last + 1, imageHeight)} of ${imageHeight}, evenly: ${
@@ -207,7 +209,7 @@ export function waitingRows(run) {
 }
 
 // Where in the picture ports wait.
-export function whereText(run) {
+function whereText(run) {
   const recorded = linesOf(run);
   if (!recorded) return ['Not known: this report was made with --quick, of a run without --record.'];
   const rows = waitingRows(run);

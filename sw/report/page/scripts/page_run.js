@@ -16,7 +16,7 @@ import {h} from './dom.js';
 import {answersOf, headlineOf, settingOf, waitingRows} from './findings.js';
 import {count} from './format.js';
 import {addAnswers, addGroup, addHead} from './page_parts.js';
-import {tilesOf} from './recording.js';
+import {linesOf, tilesOf} from './recording.js';
 
 // The waits over the picture and its disparities, or over grey where the run has computed no pixels.
 function addPictureOf(page, run) {
@@ -30,7 +30,7 @@ function addPictureOf(page, run) {
     layers,
     note: [
       layers.length     ? 'Colour: cycles in which ports wait, at the place whose results come next.' :
-          run.recording ? 'No port waits for these rows.' :
+          run.recording ? 'No port waits in any row of the picture.' :
                           '',
       run.pictures ?
           'Below is the last frame: disparities from dark (far) to bright (near); black: no answer.' :
@@ -38,7 +38,7 @@ function addPictureOf(page, run) {
     ].join(' '),
     pictures:
         [left && {url: left}, disparity ? {url: disparity, disparities} : {width, height}].filter(Boolean),
-    frames: stats.frames,
+    frames: linesOf(run)?.frames ?? stats.frames,
     names: left ? ['picture', 'disparities'] : ['disparities']
   });
 }
