@@ -1,0 +1,23 @@
+#pragma once
+
+#include "models/fpga/core_cycle.h"
+#include "platform/timeline_records.h"
+#include "platform/trace_records.h"
+
+namespace stereotlm::trace {
+
+// Writes a trace of a run to a file, which appears whole with commit() or not at all. Memory does not grow with
+// the run. Every function throws std::runtime_error, with the name of the file, if a byte cannot be stored.
+//
+// Cycles, bursts and levels come from the window of the trace only.
+class TraceWriter : public fpga::CycleObserver, public platform::BusObserver {
+ public:
+  // A frame of the core has ended.
+  virtual void frame(const platform::FrameRuns& frame) = 0;
+  // What has happened in the computer, by the ends of the events.
+  virtual void events(const platform::TimelineRecords& records) = 0;
+  // The run has ended. To be called once, after everything else.
+  virtual void commit() = 0;
+};
+
+}  // namespace stereotlm::trace
