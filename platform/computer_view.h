@@ -26,6 +26,7 @@ class ComputerView {
   virtual void record(Timeline& timeline) = 0;
   // See FrameRun.
   virtual void record(fpga::ConflictRecorder& conflicts) = 0;
+  virtual void record(fpga::CycleRecorder& cycles) = 0;
   virtual void record_rows() = 0;
   virtual std::vector<fpga::RowProfile> take_rows() = 0;
 };

@@ -43,6 +43,7 @@ class FastComputer : public sc_core::sc_module,
   std::string waits() override { return loop_.board().waits(); }
   void record(Timeline& timeline) override { loop_.record(timeline); }
   void record(fpga::ConflictRecorder& conflicts) override { loop_.board().record(conflicts); }
+  void record(fpga::CycleRecorder& cycles) override { loop_.board().record(cycles); }
   void record_rows() override { loop_.board().record_rows(); }
   std::vector<fpga::RowProfile> take_rows() override { return loop_.board().take_rows(); }
 

@@ -80,6 +80,7 @@ class StereoCore : public sc_core::sc_module, private FastCore::Board {
   // See FrameRun.
   void observe(FrameObserver& observer) { frames_.observe(observer); }
   void record(ConflictRecorder& conflicts) { frames_.record(conflicts); }
+  void record(CycleRecorder& cycles) { host_port_.record(cycles); }
   void record_rows() { frames_.record_rows(); }
   std::vector<RowProfile> take_rows() { return frames_.take_rows(); }
   // Text for messages: what the ports wait for.

@@ -56,6 +56,7 @@ class CameraSimulation : public Simulation, private driver::FrameListener {
   void frame_delivered(const driver::DeliveredFrame& frame) override;
   void check_progress() override;
   void record(fpga::ConflictRecorder& conflicts) override { computer_->record(conflicts); }
+  void record(fpga::CycleRecorder& cycles) override { computer_->record(cycles); }
 
   const platform::BoardConfig& board_;
   fpga::Fidelity fidelity_;

@@ -18,9 +18,10 @@ constexpr double kFastSliceCycles = 2'000'000;
 
 }  // namespace
 
-Simulation::Simulation(const platform::BoardConfig& board, host::FrameSource& pairs, std::uint64_t frames,
-                       fpga::Fidelity fidelity)
+Simulation::Simulation(const platform::BoardConfig& board, const platform::Tables& tables,
+                       host::FrameSource& pairs, std::uint64_t frames, fpga::Fidelity fidelity)
     : board_(board),
+      tables_(tables),
       pairs_(pairs),
       slice_cycles_(fidelity == fpga::Fidelity::kCycle ? kSliceCycles : kFastSliceCycles),
       frames_(frames) {}
@@ -43,6 +44,13 @@ std::vector<Result> Simulation::advance() {
 }
 
 void Simulation::record_conflicts() { record(conflicts_.emplace(board_).recorder()); }
+
+void Simulation::trace_cycles(const fpga::CycleWindow& window, fpga::CycleObserver& observer) {
+  cycles_.emplace(platform::core_config(board_), conflicts_->recorder(), window, observer);
+  if (tables_.left) cycles_->set_entries(fpga::Side::kLeft, tables_.left->entries.data());
+  if (tables_.right) cycles_->set_entries(fpga::Side::kRight, tables_.right->entries.data());
+  record(*cycles_);
+}
 
 std::vector<fpga::FrameConflicts> Simulation::take_conflicts() {
   return conflicts_ ? conflicts_->take_frames() : std::vector<fpga::FrameConflicts>();
