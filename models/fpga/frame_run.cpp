@@ -96,10 +96,9 @@ void FrameRun::finish() {
 void FrameRun::end() {
   state_ = State::kIdle;
   frame_cycles_.push_back(done_cycle_ - first_cycle_);
-  if (observer_ != nullptr) {
-    const auto pipeline = static_cast<std::uint64_t>(config_.pipeline_latency_cycles);
-    observer_->frame_ended({strobe_ps_, first_cycle_, done_cycle_ - pipeline, done_cycle_, writes()});
-  }
+  const auto pipeline = static_cast<std::uint64_t>(config_.pipeline_latency_cycles);
+  for (FrameObserver* const observer : observers_)
+    observer->frame_ended({strobe_ps_, first_cycle_, done_cycle_ - pipeline, done_cycle_, writes()});
   if (stepper_.rows().is_on()) row_profiles_.push_back(stepper_.rows().profile(first_cycle_));
 }
 

@@ -29,12 +29,13 @@ class FrameRun {
            memory::Arbitration& arbitration, std::uint64_t stall_timeout_cycles,
            std::size_t most_groups = TransitionCache::kMost);
 
-  // `observer` outlives this object. Whoever observes frames names the strobe of each, by strobe().
-  void observe(FrameObserver& observer) { observer_ = &observer; }
+  // Adds an observer, which outlives this object. Whoever observes frames names the strobe of each, by
+  // strobe().
+  void observe(FrameObserver& observer) { observers_.push_back(&observer); }
   // To be called after a frame is started.
   void strobe(std::uint64_t time_ps) {
     strobe_ps_ = time_ps;
-    if (observer_ != nullptr) observer_->frame_begun(time_ps);
+    for (FrameObserver* const observer : observers_) observer->frame_begun(time_ps);
   }
 
   // Whether the bank in the value of a base register exists.
@@ -145,7 +146,7 @@ class FrameRun {
   std::uint64_t first_cycle_ = 0;
   std::uint64_t done_cycle_ = 0;
   std::uint64_t strobe_ps_ = 0;
-  FrameObserver* observer_ = nullptr;
+  std::vector<FrameObserver*> observers_;
   ConflictRecorder* conflicts_ = nullptr;
   CycleRecorder* cycles_ = nullptr;
   bool is_settled_ = false;          // run_ahead_recorded() has settled fast_forward_

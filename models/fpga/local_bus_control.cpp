@@ -134,6 +134,10 @@ void LocalBusControl::refuse_word() {
 void LocalBusControl::end(std::uint64_t idle_clock) {
   idle_clock_ = idle_clock;
   free_ps_ = clock_.edge_ps(idle_clock_ + 1);
+  if (observer_ != nullptr) {
+    observer_->local_burst_ended({burst_.write, burst_.address, burst_.words, clock_.edge_ps(address_clock_),
+                                  clock_.edge_ps(address_clock_ + 1), clock_.edge_ps(idle_clock_), free_ps_});
+  }
   master_->end_burst_at(free_ps_, ok_);
 }
 

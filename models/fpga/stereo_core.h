@@ -77,6 +77,8 @@ class StereoCore : public sc_core::sc_module, private FastCore::Board {
   // Frames that were stepped cycle by cycle, at any fidelity.
   std::uint64_t stepped_frames() const { return stepped_frames_; }
 
+  // See LocalBusControl.
+  void observe(LocalBusObserver& observer) { local_bus_.observe(observer); }
   // See FrameRun.
   void observe(FrameObserver& observer) { frames_.observe(observer); }
   void record(ConflictRecorder& conflicts) { frames_.record(conflicts); }
