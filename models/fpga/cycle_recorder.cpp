@@ -24,6 +24,7 @@ CycleRecorder::CycleRecorder(const CoreConfig& config, const ConflictRecorder& c
       observer_(observer) {}
 
 void CycleRecorder::start_frame(std::uint64_t number, std::uint64_t first_cycle, const FrameBases& bases) {
+  tell_served(first_cycle);
   frame_ = number;
   first_cycle_ = first_cycle;
   bases_ = bases;
@@ -32,7 +33,6 @@ void CycleRecorder::start_frame(std::uint64_t number, std::uint64_t first_cycle,
 void CycleRecorder::end_frame(std::uint64_t end_cycle) {
   drop_served(end_cycle);
   frame_.reset();
-  tell_served();
 }
 
 std::uint64_t CycleRecorder::next_stepped(std::uint64_t cycle) const {
@@ -141,11 +141,6 @@ void CycleRecorder::set_host(CoreCycle& cycle, const HostWord& word, bool grante
   cycle.host_writes = word.write;
 }
 
-void CycleRecorder::served(const HostWord& first, std::uint64_t cycle, std::uint64_t cycles, bool granted) {
-  served_.push_back({first, cycle, cycles, granted});
-  if (!frame_) tell_served();
-}
-
 // Drops what was served before `end_cycle`.
 void CycleRecorder::drop_served(std::uint64_t end_cycle) {
   while (!served_.empty() && served_.front().cycle < end_cycle) {
@@ -166,9 +161,9 @@ void CycleRecorder::set_served(CoreCycle& cycle) const {
   set_host(cycle, served.word, served.granted, served.granted ? 0 : kTurnaroundToBlame);
 }
 
-// Tells what was served while no frame runs.
-void CycleRecorder::tell_served() {
-  while (!served_.empty()) {
+// Tells what was served before `end_cycle` while no frame runs.
+void CycleRecorder::tell_served(std::uint64_t end_cycle) {
+  while (!served_.empty() && served_.front().cycle < end_cycle) {
     CoreCycle out;
     out.cycle = served_.front().cycle;
     set_served(out);

@@ -56,7 +56,15 @@ class CycleRecorder {
   // For the owner of the host's port: what is decided on words that request beside a frame, or while no frame
   // runs. In `cycle` and in the cycles behind it one word after the other is granted, or the first one waits
   // because of the turnaround. To be called in the order of the cycles, and before the frame is stepped there.
-  void served(const HostWord& first, std::uint64_t cycle, std::uint64_t cycles, bool granted);
+  void served(const HostWord& first, std::uint64_t cycle, std::uint64_t cycles, bool granted) {
+    served_.push_back({first, cycle, cycles, granted});
+  }
+
+  // Tells the cycles before `end_cycle`, as far as they are known, while no frame runs. To be called regularly,
+  // because they fill memory, and at the end of the run. What is served may be ahead of that.
+  void hand_out(std::uint64_t end_cycle) {
+    if (!frame_) tell_served(end_cycle);
+  }
 
  private:
   struct Served {
@@ -75,7 +83,7 @@ class CycleRecorder {
   static void set_host(CoreCycle& cycle, const HostWord& word, bool granted, std::size_t by);
   void set_served(CoreCycle& cycle) const;
   void drop_served(std::uint64_t end_cycle);
-  void tell_served();
+  void tell_served(std::uint64_t end_cycle);
 
   FrameGeometry geometry_;
   std::array<bool, 2> has_table_;  // [side]

@@ -31,7 +31,7 @@ class CameraSimulation : public Simulation, private driver::FrameListener {
   // also checks the identities of the records.
   void record_timeline();
   // See ComputerView. To be called before advance().
-  void trace_buses(platform::BusTrace& trace) { computer_->trace_buses(trace); }
+  void trace_buses(platform::BusTrace& buses) override { computer_->trace_buses(buses); }
 
   void end_early() override;
   void record_rows() override { computer_->record_rows(); }

@@ -11,6 +11,7 @@
 #include "models/fpga/row_profile.h"
 #include "models/host/frame_source.h"
 #include "models/kernels/gray_image.h"
+#include "platform/bus_trace.h"
 #include "platform/config/board_config.h"
 #include "platform/config/tables.h"
 #include "platform/conflicts.h"
@@ -71,9 +72,9 @@ class Simulation {
   // Null if conflicts are not recorded.
   const fpga::ConflictRecorder* conflicts() const { return conflicts_ ? &conflicts_->recorder() : nullptr; }
 
-  // Tells `observer` each cycle of the core in the window. To be called after record_conflicts(), before
-  // advance(). `observer` outlives the simulation.
-  void trace_cycles(const fpga::CycleWindow& window, fpga::CycleObserver& observer);
+  // Tells the observers what the core, and around it the buses and queues of a computer, do in the window. To be
+  // called after record_conflicts(), before advance(). The observers outlive the simulation.
+  void trace(const fpga::CycleWindow& window, fpga::CycleObserver& cycles, platform::BusObserver& buses);
 
   // The figures of the finished frames. May be called only if no frame is running that end_early() would let
   // finish, and for a whole computer only after the first result.
@@ -96,6 +97,8 @@ class Simulation {
   // Hands everything that the core does to the recorder.
   virtual void record(fpga::ConflictRecorder& conflicts) = 0;
   virtual void record(fpga::CycleRecorder& cycles) = 0;
+  // Hands what the buses do to the trace. A board alone has none.
+  virtual void trace_buses(platform::BusTrace& /*buses*/) {}
   // Called by advance(). Throws std::runtime_error if the simulation has stalled.
   virtual void check_progress() {}
 
@@ -111,6 +114,7 @@ class Simulation {
   Result last_;
   std::optional<platform::Conflicts> conflicts_;
   std::optional<fpga::CycleRecorder> cycles_;
+  std::optional<platform::BusTrace> buses_;
   std::exception_ptr failure_;  // exception of the source
 };
 

@@ -88,6 +88,13 @@ class KeptCycles : public fpga::CycleObserver {
   std::uint64_t last_ = UINT64_MAX;
 };
 
+// random_bus_traces_test.cpp compares these.
+class Buses : public platform::BusObserver {
+ public:
+  void burst(const platform::BusBurst& /*burst*/) override {}
+  void level(const platform::QueueLevel& /*level*/) override {}
+};
+
 struct Traced {
   std::vector<platform::FrameRuns> runs;
   std::vector<fpga::CoreCycle> cycles;
@@ -102,7 +109,8 @@ Traced trace(const Case& of, Fidelity fidelity, const CycleWindow& window, bool 
   const std::unique_ptr<runs::Simulation> simulation =
       runs::make_simulation(of.board, of.tables, pictures, {of.camera, fidelity, of.frames, true}, binder);
   KeptCycles cycles(keeps_cycles);
-  simulation->trace_cycles(window, cycles);
+  Buses buses;
+  simulation->trace(window, cycles, buses);
   Traced traced;
   while (!simulation->finished()) {
     simulation->advance();
