@@ -1,0 +1,28 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "platform/config/board_config.h"
+#include "sw/trace/trace_writer.h"
+
+namespace stereotlm::trace {
+
+enum class Format : std::uint8_t { kPerfetto, kVcd, kSqlite };
+inline constexpr std::array<const char*, 3> kFormatNames = {"perfetto", "vcd", "sqlite"};
+
+// A trace that a run is to write.
+struct TraceFile {
+  Format format = Format::kPerfetto;
+  std::string path;
+};
+
+// The writer of one or more traces of a run. Throws std::runtime_error, with the name of the file, if one cannot
+// be written.
+std::unique_ptr<TraceWriter> make_writer(const std::vector<TraceFile>& files,
+                                         const platform::BoardConfig& board);
+
+}  // namespace stereotlm::trace
