@@ -114,8 +114,13 @@ ReplacedFile::~ReplacedFile() {
   if (lock_ >= 0) close(lock_);
 }
 
-void ReplacedFile::commit() {
+void ReplacedFile::complete() {
   file_->close();
+  file_.reset();
+}
+
+void ReplacedFile::commit() {
+  if (file_) complete();
   take_place(aside_, path_);
   aside_.clear();
 }

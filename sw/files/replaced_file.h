@@ -32,6 +32,12 @@ class ReplacedFile {
   ReplacedFile& operator=(const ReplacedFile&) = delete;
 
   void write(std::string_view bytes) { file_->write(bytes); }
+  // The hidden file, for a library or a program that writes the new content by its path. Empty after commit().
+  const std::filesystem::path& aside() const { return aside_; }
+  // Makes the new content durable. No write() may follow. Several files that belong together are all completed
+  // before the first of them is committed.
+  void complete();
+  // Calls complete() unless that has been done.
   void commit();
 
  private:
@@ -39,7 +45,7 @@ class ReplacedFile {
 
   std::filesystem::path path_;
   std::filesystem::path aside_;  // empty after commit()
-  std::unique_ptr<NewFile> file_;
+  std::unique_ptr<NewFile> file_;  // null after complete()
   int lock_ = -1;  // descriptor of the file aside, which is locked while this process writes it
 };
 

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "models/fpga/core_cycle.h"
+#include "platform/config/board_config.h"
+#include "platform/timeline_records.h"
+#include "platform/trace_records.h"
+#include "sw/trace/trace_writer.h"
+
+namespace stereotlm::test {
+
+// The records of a run, made without the simulator: a plain core with one row of results per strip, fixed
+// priority, an endless host that now and then writes to a bank, and a few bursts and events around it. Each
+// cycle of each frame is there.
+struct MadeTrace {
+  std::vector<fpga::CoreCycle> cycles;
+  std::vector<platform::FrameRuns> frames;
+  std::vector<platform::BusBurst> bursts;
+  std::vector<platform::QueueLevel> levels;
+  platform::TimelineRecords records;
+
+  void send(trace::TraceWriter& writer) const;
+};
+
+// A board of 16x6 pixels, all of whose buffers share two banks.
+platform::BoardConfig made_board();
+MadeTrace make_trace(const platform::BoardConfig& board, std::uint64_t frames);
+
+// A frame of `board` in whose rows all ports access bank 0, and each waits for each other. The counts differ
+// from row to row.
+platform::FrameRuns crowded_frame(const platform::BoardConfig& board);
+
+}  // namespace stereotlm::test

@@ -1,0 +1,295 @@
+#include "sw/trace/perfetto_writer.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "tests/support/file_size_limit.h"
+#include "tests/support/made_trace.h"
+#include "tests/support/perfetto_file.h"
+#include "tests/support/scratch_folder.h"
+
+namespace stereotlm::trace {
+namespace {
+
+using test::PerfettoFile;
+
+class PerfettoWriterTest : public ::testing::Test {
+ protected:
+  PerfettoFile written(const test::MadeTrace& trace) {
+    PerfettoWriter writer(path_, board_);
+    trace.send(writer);
+    writer.commit();
+    return PerfettoFile(bytes_ = test::read_file(path_));
+  }
+  // Sum of the argument `cycles` of the slices whose names contain `part`.
+  static std::uint64_t cycles_of(const std::vector<PerfettoFile::Slice>& slices, const std::string& part) {
+    std::uint64_t sum = 0;
+    for (const PerfettoFile::Slice& slice : slices) {
+      if (slice.name.find(part) != std::string::npos) sum += slice.arguments.at("cycles");
+    }
+    return sum;
+  }
+  std::uint64_t ns(std::uint64_t cycle) const { return Clock(board_.fpga.clock_mhz).edge_ps(cycle) / 1000; }
+
+  test::ScratchFolder scratch_;
+  std::filesystem::path path_ = scratch_.path() / "file.perfetto-trace";
+  platform::BoardConfig board_ = test::made_board();
+  std::string bytes_;
+};
+
+TEST_F(PerfettoWriterTest, EachRunIsASliceAsLongAsItsCycles) {
+  const test::MadeTrace trace = test::make_trace(board_, 2);
+  const PerfettoFile file = written(trace);
+  for (const platform::FrameRuns& frame : trace.frames) {
+    for (const platform::TraceRun& run : frame.runs) {
+      const std::string requester = fpga::requester_name(run.requester);
+      const std::string bank = board_.banks[run.bank].name;
+      const std::string name =
+          run.by ? fmt::format("{} waits {} cycles for {} on {}", requester, run.count,
+                               fpga::requester_name(*run.by), bank)
+                 : fmt::format("{} {} x{}", writes(run.requester) ? "writes" : "reads", bank, run.count);
+      std::size_t found = 0;
+      for (const PerfettoFile::Slice& slice : file.slices_of(requester)) {
+        const bool is_in_strip = slice.begin_ns >= ns(run.first_cycle) && slice.end_ns <= ns(run.end_cycle);
+        if (slice.name != name || !is_in_strip) continue;
+        ++found;
+        EXPECT_EQ(slice.end_ns - slice.begin_ns, ns(run.count));
+      }
+      EXPECT_EQ(found, 1) << name;
+    }
+  }
+}
+
+TEST_F(PerfettoWriterTest, CyclesOfAWindowHaveTheSumsOfTheRuns) {
+  const test::MadeTrace trace = test::make_trace(board_, 2);
+  const PerfettoFile file = written(trace);
+  std::map<std::string, std::uint64_t> grants;
+  std::map<std::pair<std::string, std::string>, std::uint64_t> waits;
+  std::map<std::string, std::uint64_t> owned;
+  for (const platform::FrameRuns& frame : trace.frames) {
+    for (const platform::TraceRun& run : frame.runs) {
+      const std::string requester = fpga::requester_name(run.requester);
+      const std::string bank = board_.banks[run.bank].name;
+      if (run.by)
+        waits[{requester, fmt::format("for {} on {}", fpga::requester_name(*run.by), bank)}] += run.count;
+      else
+        grants[requester] += run.count, owned[bank + " cycles"] += run.count;
+    }
+  }
+  EXPECT_GT(waits.size(), 5);
+  for (const auto& [key, cycles] : waits)
+    EXPECT_EQ(cycles_of(file.slices_of(key.first + " cycles"), key.second), cycles) << key.first;
+  for (const auto& [requester, count] : grants) {
+    std::uint64_t found = 0;
+    for (const PerfettoFile::Slice& slice : file.slices_of(requester + " cycles"))
+      found += slice.arguments.count("address");
+    EXPECT_EQ(found, count) << requester;
+  }
+  for (const auto& [track, cycles] : owned) EXPECT_EQ(cycles_of(file.slices_of(track), ""), cycles) << track;
+}
+
+TEST_F(PerfettoWriterTest, SlicesOfATrackNeverCross) {
+  board_.fpga.clock_mhz = 333.3;  // its cycles are no whole ns
+  const PerfettoFile file = written(test::make_trace(board_, 1));
+  for (const auto& [uuid, track] : file.tracks) {
+    std::uint64_t free_ns = 0;
+    for (const PerfettoFile::Slice& slice : file.slices) {
+      if (slice.track != uuid || slice.depth > 0) continue;
+      EXPECT_GE(slice.begin_ns, free_ns) << track;
+      EXPECT_GE(slice.end_ns, slice.begin_ns) << track;
+      free_ns = slice.end_ns;
+    }
+  }
+  for (const PerfettoFile::Slice& slice : file.slices_of("left_lut cycles")) {
+    if (slice.arguments.count("slot") != 0) {
+      EXPECT_THAT(slice.end_ns - slice.begin_ns, ::testing::AnyOf(3, 4));
+    }
+  }
+}
+
+TEST_F(PerfettoWriterTest, AnArrowLeadsFromTheWinnerToEachWait) {
+  const PerfettoFile file = written(test::make_trace(board_, 1));
+  std::size_t waits = 0;
+  for (const PerfettoFile::Slice& wait : file.slices) {
+    const std::size_t place = wait.name.find(" cycles for ");
+    if (place == std::string::npos) continue;
+    ++waits;
+    const bool is_cycles = file.tracks.at(wait.track).find(" cycles") != std::string::npos;
+    const std::string winner =
+        wait.name.substr(place + 12, wait.name.find(" on ") - place - 12) + (is_cycles ? " cycles" : "");
+    const std::string bank = wait.name.substr(wait.name.find(" on ") + 4);
+    ASSERT_EQ(wait.flows.size(), 1);
+    std::size_t found = 0;
+    for (const PerfettoFile::Slice& slice : file.slices_of(winner)) {
+      if (std::count(slice.flows.begin(), slice.flows.end(), wait.flows[0]) == 0) continue;
+      ++found;
+      EXPECT_NE(slice.name.find(bank), std::string::npos);
+      EXPECT_LE(slice.begin_ns, wait.begin_ns);
+      if (is_cycles) {
+        EXPECT_EQ(slice.begin_ns, wait.begin_ns);
+      }
+    }
+    EXPECT_EQ(found, 1) << wait.name;
+  }
+  EXPECT_GT(waits, 20);
+}
+
+TEST_F(PerfettoWriterTest, ArrowsLeadFromATableEntryToItsPixelAndToItsResult) {
+  const PerfettoFile file = written(test::make_trace(board_, 1));
+  std::map<std::uint64_t, std::vector<const PerfettoFile::Slice*>> by_flow;
+  for (const PerfettoFile::Slice& slice : file.slices) {
+    for (const std::uint64_t flow : slice.flows) by_flow[flow].push_back(&slice);
+  }
+  std::size_t to_results = 0;
+  for (const auto& [flow, slices] : by_flow) {
+    if (file.tracks.at(slices[0]->track) != "left_lut cycles" || slices.size() < 3) continue;
+    ++to_results;
+    EXPECT_EQ(file.tracks.at(slices[1]->track), "left_pixel cycles");
+    EXPECT_EQ(file.tracks.at(slices[2]->track), "result cycles");
+    EXPECT_EQ(slices[1]->arguments.at("slot"), slices[0]->arguments.at("slot"));
+    EXPECT_EQ(slices[2]->arguments.at("row"), slices[0]->arguments.at("row"));
+    EXPECT_EQ(slices[2]->arguments.at("column"), slices[0]->arguments.at("column") / 4 * 4);
+  }
+  EXPECT_EQ(to_results, 16 * 6);
+}
+
+TEST_F(PerfettoWriterTest, CountersHaveUseAndWaitsOfEachRowAndEndAtZero) {
+  const test::MadeTrace trace = test::make_trace(board_, 1);
+  const PerfettoFile file = written(trace);
+  const auto waits = file.counts_of("left_lut waits in each row");
+  const auto use = file.counts_of("bank0 use");
+  ASSERT_FALSE(waits.empty() || use.empty());
+  const platform::FrameRuns& frame = trace.frames[0];
+  for (std::size_t strip = 0; strip < frame.strip_ends.size(); ++strip) {
+    double sum = 0;
+    double accesses = 0;
+    std::uint64_t first = 0;
+    for (const platform::TraceRun& run : frame.runs) {
+      if (run.strip != strip) continue;
+      first = run.first_cycle;
+      if (run.by && run.requester == 0) sum += static_cast<double>(run.count);
+      if (!run.by && run.bank == 0) accesses += static_cast<double>(run.count);
+    }
+    const auto value_at = [&](const auto& counts) {
+      double value = 0;
+      for (const auto& [time, count] : counts) {
+        if (time <= ns(first)) value = count;
+      }
+      return value;
+    };
+    EXPECT_EQ(value_at(waits), sum);
+    EXPECT_DOUBLE_EQ(value_at(use), 100 * accesses / static_cast<double>(frame.strip_ends[strip] - first));
+  }
+  EXPECT_EQ(waits.back(), std::pair(ns(frame.end_cycle), 0.0));
+  EXPECT_EQ(use.back(), std::pair(ns(frame.end_cycle), 0.0));
+}
+
+TEST_F(PerfettoWriterTest, ABurstHasItsPhasesAndItsWait) {
+  const PerfettoFile file = written(test::make_trace(board_, 1));
+  const auto bursts = file.slices_of("pci");
+  ASSERT_EQ(bursts.size(), 6);
+  const std::uint64_t first = ns(100);
+  EXPECT_EQ(bursts[0].name, "left_capture writes bridge");
+  EXPECT_EQ(bursts[0].begin_ns, first + 30);
+  EXPECT_EQ(bursts[0].end_ns, first + 900);
+  EXPECT_EQ(bursts[0].arguments.at("words"), 32);
+  EXPECT_EQ(bursts[1].name, "address");
+  EXPECT_EQ(bursts[1].depth, 1);
+  EXPECT_EQ(bursts[2].name, "data");
+  EXPECT_EQ(bursts[2].begin_ns, first + 60);
+  const auto waits = file.slices_of("pci waits");
+  ASSERT_EQ(waits.size(), 2);
+  EXPECT_EQ(waits[1].name, "bridge waits");
+  EXPECT_EQ(waits[1].end_ns - waits[1].begin_ns, 430);
+  EXPECT_EQ(file.counts_of("posted").size(), 2);
+}
+
+TEST_F(PerfettoWriterTest, EventsThatOverlapHaveTracksOfOneName) {
+  const PerfettoFile file = written(test::make_trace(board_, 1));
+  const auto waits = file.slices_of("wait pair");
+  ASSERT_EQ(waits.size(), 2);
+  EXPECT_NE(waits[0].track, waits[1].track);
+  EXPECT_EQ(file.parents.at(waits[0].track), file.parents.at(waits[1].track));
+  EXPECT_EQ(waits[0].name, "pair waits: core");
+  const auto capture = file.slices_of("left");
+  ASSERT_EQ(capture.size(), 1);
+  EXPECT_EQ(capture[0].end_ns, 1500);  // rounded down from 1500.5 ns
+  EXPECT_EQ(capture[0].arguments.at("dropped pixels"), 3);
+  const auto drop = file.slices_of("right");
+  ASSERT_EQ(drop.size(), 1);
+  EXPECT_TRUE(drop[0].is_instant);
+  EXPECT_EQ(drop[0].name, "drop: not_armed");
+}
+
+TEST_F(PerfettoWriterTest, QueuesAndPortsAreEmptyWhereCyclesAreLeftOut) {
+  test::MadeTrace trace = test::make_trace(board_, 1);
+  const auto gap = trace.cycles.begin() + 300;
+  const std::uint64_t begin = gap->cycle;
+  trace.cycles.erase(gap, gap + 20);
+  trace.cycles.resize(400);
+  const PerfettoFile file = written(trace);
+  EXPECT_THAT(file.counts_of("left lane"), ::testing::Contains(std::pair(ns(begin), 0.0)));
+  EXPECT_EQ(file.counts_of("left lane").back(), std::pair(ns(trace.cycles.back().cycle + 1), 0.0));
+  for (const PerfettoFile::Slice& slice : file.slices) {
+    if (file.tracks.at(slice.track).find(" cycles") != std::string::npos) {
+      EXPECT_FALSE(slice.begin_ns < ns(begin + 20) && slice.end_ns > ns(begin)) << slice.name;
+    }
+  }
+}
+
+TEST_F(PerfettoWriterTest, AFrameInWhichEachPortWaitsForEachOtherIsBelowOneMegabyte) {
+  board_ = {};
+  PerfettoWriter writer(path_, board_);
+  writer.frame(test::crowded_frame(board_));
+  writer.commit();
+  EXPECT_LT(std::filesystem::file_size(path_), 1'000'000);
+}
+
+TEST_F(PerfettoWriterTest, TheTableOfNamesIsBegunAnewWhenItIsFull) {
+  board_ = {};
+  platform::FrameRuns frame;
+  for (std::uint64_t strip = 0; strip < 5000; ++strip) {
+    frame.strip_ends.push_back((strip + 1) * 10'000);
+    frame.runs.push_back({strip, strip * 10'000, (strip + 1) * 10'000, 0, 0, std::nullopt, strip + 1});
+  }
+  PerfettoWriter writer(path_, board_);
+  writer.frame(frame);
+  writer.commit();
+  const std::string bytes = test::read_file(path_);
+  const auto slices = PerfettoFile(bytes).slices_of("left_lut");
+  ASSERT_EQ(slices.size(), 5000);
+  EXPECT_EQ(slices.back().name, "reads bank0 x5000");
+  EXPECT_EQ(slices.back().begin_ns, ns(4999 * 10'000));
+}
+
+TEST_F(PerfettoWriterTest, LeavesTheEarlierFileWithoutACommitOrWhenTheDiskIsFull) {
+  test::write_file(path_, "earlier");
+  const test::MadeTrace trace = test::make_trace(board_, 1);
+  {
+    PerfettoWriter writer(path_, board_);
+    trace.send(writer);
+  }
+  EXPECT_EQ(test::read_file(path_), "earlier");
+  {
+    PerfettoWriter writer(path_, board_);
+    trace.send(writer);
+    const test::FileSizeLimit limit(1000);
+    EXPECT_EQ(test::message_of([&] { writer.commit(); }), path_.string() + ": File too large");
+  }
+  EXPECT_EQ(test::read_file(path_), "earlier");
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(scratch_.path()), {}), 1);
+}
+
+TEST_F(PerfettoWriterTest, RefusesAFolderThatIsNotThere) {
+  const std::filesystem::path path = scratch_.path() / "none" / "file.perfetto-trace";
+  EXPECT_EQ(test::message_of([&] { PerfettoWriter(path, board_); }),
+            path.string() + ": No such file or directory");
+}
+
+}  // namespace
+}  // namespace stereotlm::trace
