@@ -278,8 +278,8 @@ int allocate(const AllocateOptions& options) {
                                 *options.banks, search.placements(),
                                 fewest_text(*board, *options.banks, run)));
   }
-  check_store(sweep, *board);
   process::catch_interrupts();
+  check_store(sweep, *board);
   runs::PointSimulator simulator = calibration ? runs::PointSimulator(tables) : runs::PointSimulator();
   const auto evaluate = [&](const explore::Point& point) {
     const double rate = search.rate_to_reach(point.number);

@@ -227,8 +227,12 @@ Json rates_document(const AllocationReport& report, const BestPlacement& best) {
 }
 
 Json row_document(const AllocationReport& report, const BestPlacement& best) {
-  Json row = {{"banks", best.banks},          {"allocations", best.placements}, {"simulated", best.known},
-              {"given_up", best.given_up},    {"losing_pixels", best.losing},   {"failed", best.failed},
+  Json row = {{"banks", best.banks},
+              {"allocations", best.placements},
+              {"simulated", best.known + best.given_up},
+              {"given_up", best.given_up},
+              {"losing_pixels", best.losing},
+              {"failed", best.failed},
               {"reached_by", best.reached_by}};
   if (!counts(best)) return row;
   const BoardConfig one = witness_of(report, best);
