@@ -216,6 +216,7 @@ class Allocate(ProgramTest):
             self.store.unlink()
             name.unlink()
 
+    @program.slow
     def test_the_command_has_the_calibration_and_quotes_what_a_shell_would_read(self):
         rig, _ = program.made_rig()
         board = self.file("a board's.yaml", "extends: fpl2003\nname: rig\n")
