@@ -193,8 +193,10 @@ std::unique_ptr<files::ReplacedFile> open_written(const AllocateOptions& options
   if (!options.write.is_given()) return nullptr;
   const std::string& path = options.write.text;
   std::error_code error;
-  if (std::filesystem::equivalent(path, options.board.name(), error)) {
-    problems.add(fmt::format("--write '{}': must be another file than BOARD", path));
+  const std::filesystem::path whole = std::filesystem::weakly_canonical(path, error);
+  for (const auto& [name, other] : {std::pair("BOARD", options.board.name()), {"--out", options.out.text}}) {
+    if (whole != std::filesystem::weakly_canonical(other, error)) continue;
+    problems.add(fmt::format("--write '{}': must be another file than {}", path, name));
     return nullptr;
   }
   if (std::filesystem::is_regular_file(path, error) && !is_written_board(path, board)) {

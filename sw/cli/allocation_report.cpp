@@ -15,7 +15,7 @@
 #include "platform/config/buffer_layout.h"
 #include "sw/explore/plan/points.h"
 #include "sw/explore/search/allocations.h"
-#include "sw/process/shell_word.h"
+#include "sw/files/shell_word.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -199,7 +199,7 @@ std::string not_counted_text(const AllocationReport& report) {
     text += fmt::format(
         "{} could not be simulated, and do not count. The first:\n  {}\nTo try again:\n"
         "  sqlite3 {} \"DELETE FROM points WHERE status = 'failed'\"\n",
-        failed, report.search.first_failure(), process::shell_word(report.store));
+        failed, report.search.first_failure(), files::shell_word(report.store));
   }
   return text;
 }
@@ -215,7 +215,7 @@ std::string command_text(const AllocationReport& report) {
   const BestPlacement* const top = best_of_all(report.all);
   if (top == nullptr) return "";
   std::string text = fmt::format("This command runs the best allocation, and gives {:.3f} frames/s:\n  {}\n",
-                                 top->frames_per_second, process::shell_command(command_of(report, *top)));
+                                 top->frames_per_second, files::shell_command(command_of(report, *top)));
   if (report.written) text += *report.written + ": the board with the best allocation\n";
   return text;
 }

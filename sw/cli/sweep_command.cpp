@@ -21,9 +21,9 @@
 #include "sw/explore/store/store_reader.h"
 #include "sw/explore/sweep/sweep.h"
 #include "sw/files/replaced_file.h"
+#include "sw/files/shell_word.h"
 #include "sw/files/whole_file.h"
 #include "sw/process/interrupt.h"
-#include "sw/process/shell_word.h"
 #include "sw/process/streams.h"
 #include "sw/runs/progress.h"
 #include "sw/runs/simulation/simulate_point.h"
@@ -131,7 +131,7 @@ std::string reasons(explore::Database& store) {
     text += fmt::format(
         "All reasons:\n  sqlite3 {} \"SELECT count(*), status, reason FROM points WHERE status <> 'ok' "
         "GROUP BY status, reason\"\n",
-        process::shell_word(store.path()));
+        files::shell_word(store.path()));
   }
   return text;
 }

@@ -15,8 +15,8 @@
 #include "sw/explore/plan/knobs.h"
 #include "sw/explore/search/allocation_run.h"
 #include "sw/explore/search/allocation_search.h"
+#include "sw/files/shell_word.h"
 #include "sw/files/temporary_folder.h"
-#include "sw/process/shell_word.h"
 #include "sw/report/accuracy.h"
 
 namespace stereotlm::paper {
@@ -45,7 +45,7 @@ std::string identity_of(const BoardRun& run) {
 // The words that name the board on a command line: "fpl2003 --set matcher.window=7".
 std::string words_of(const BoardRun& run) {
   std::string text = run.preset;
-  for (const std::string& set : run.sets) text += " --set " + process::shell_word(set);
+  for (const std::string& set : run.sets) text += " --set " + files::shell_word(set);
   return text;
 }
 
@@ -405,7 +405,7 @@ std::vector<SceneFinding> scenes_of(const ClaimFinding& found) {
 std::string command_of(const BoardRun& run) {
   if (run.scene) {
     std::string text = fmt::format("stereotlm run {} --source preloaded", words_of(run));
-    for (const std::string& option : run.scene->options) text += ' ' + process::shell_word(option);
+    for (const std::string& option : run.scene->options) text += ' ' + files::shell_word(option);
     return text;
   }
   const explore::PointRun point_run = {run.camera, 0, ""};

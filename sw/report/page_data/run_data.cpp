@@ -22,9 +22,9 @@
 #include "platform/config/board_yaml.h"
 #include "platform/config/buffer_layout.h"
 #include "sw/files/base64.h"
+#include "sw/files/shell_word.h"
 #include "sw/files/whole_file.h"
 #include "sw/process/interrupt.h"
-#include "sw/process/shell_word.h"
 #include "sw/report/chart/memory_chart.h"
 #include "sw/report/page_data/recording_data.h"
 #include "sw/runs/progress.h"
@@ -42,9 +42,9 @@ constexpr std::chrono::milliseconds kBetweenPolls{100};
 std::string command_of(const runs::RecordedRun& run) {
   const runs::RecordedOptions& options = run.options;
   std::string text =
-      "stereotlm run " + process::shell_word((std::filesystem::path(run.folder) / "config.yaml").string());
+      "stereotlm run " + files::shell_word((std::filesystem::path(run.folder) / "config.yaml").string());
   const auto add = [&text](const char* name, const std::string& value) {
-    text += fmt::format(" {} {}", name, process::shell_word(value));
+    text += fmt::format(" {} {}", name, files::shell_word(value));
   };
   if (options.source != "camera") add("--source", options.source);
   if (options.fidelity != "fast") add("--fidelity", options.fidelity);
@@ -54,7 +54,7 @@ std::string command_of(const runs::RecordedRun& run) {
   if (options.sequence) add("--sequence", options.sequence->path);
   if (!options.video.empty()) {
     text += " --video";
-    for (const runs::InputFile& file : options.video) text += " " + process::shell_word(file.path);
+    for (const runs::InputFile& file : options.video) text += " " + files::shell_word(file.path);
     add("--video-layout", options.video_layout);
   }
   if (options.synthetic) add("--synthetic", std::to_string(*options.synthetic));

@@ -305,6 +305,10 @@ class Allocate(ProgramTest):
             self.refused_in_one_line(process, f"--write '{path}': {text}")
             self.assertFalse(self.store.exists())
         self.assertEqual(mine.read_text(), "extends: fpl2003\n")
+        database = self.folder / "found.yaml"
+        process = run("allocate", board, "--banks", 2, "--out", database, "--write", f"{self.folder}/./found.yaml")
+        self.refused_in_one_line(process, "must be another file than --out")
+        self.assertFalse(database.exists())
         best = self.folder / "best.yaml"
         self.succeeds(self.allocate(*PRELOADED, "--write", best))
         first = best.read_text()

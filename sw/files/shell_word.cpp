@@ -1,6 +1,6 @@
-#include "sw/process/shell_word.h"
+#include "sw/files/shell_word.h"
 
-namespace stereotlm::process {
+namespace stereotlm::files {
 
 std::string shell_word(const std::string& word) {
   constexpr const char* kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=:,./@%";
@@ -16,4 +16,4 @@ std::string shell_command(const std::vector<std::string>& words) {
   return text;
 }
 
-}  // namespace stereotlm::process
+}  // namespace stereotlm::files

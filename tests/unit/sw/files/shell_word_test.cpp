@@ -1,4 +1,4 @@
-#include "sw/process/shell_word.h"
+#include "sw/files/shell_word.h"
 
 #include <gtest/gtest.h>
 
@@ -7,13 +7,14 @@
 
 #include "sw/process/command.h"
 
-namespace stereotlm::process {
+namespace stereotlm::files {
 namespace {
 
 TEST(ShellCommand, IsReadByAShellAsItsWords) {
   const std::vector<std::string> words = {"printf", "%s|",    "fpl2003", "a b", "",
                                           "it's",   "[x, y]", "$HOME",   "*",   "\"\\"};
-  EXPECT_EQ(run_command({"sh", "-c", shell_command(words)}).out, "fpl2003|a b||it's|[x, y]|$HOME|*|\"\\|");
+  EXPECT_EQ(process::run_command({"sh", "-c", shell_command(words)}).out,
+            "fpl2003|a b||it's|[x, y]|$HOME|*|\"\\|");
 }
 
 TEST(ShellWord, IsQuotedOnlyIfItMustBe) {
@@ -23,4 +24,4 @@ TEST(ShellWord, IsQuotedOnlyIfItMustBe) {
 }
 
 }  // namespace
-}  // namespace stereotlm::process
+}  // namespace stereotlm::files
