@@ -245,18 +245,22 @@ int finish(AllocationReport& report, const AllocateOptions& options,
   return kInterrupted;
 }
 
+void check_banks(const AllocateOptions& options, const BoardConfig& board, process::Problems& problems) {
+  if (const auto problem = explore::bank_names_problem(board))
+    problems.add(fmt::format("{}: {}", options.board.name(), *problem));
+  if (*options.banks > static_cast<int>(board.banks.size())) {
+    problems.add(
+        fmt::format("--banks = {}: must be 1..{}, the banks of the board; --set 'ssram.banks.NEW={{}}' "
+                    "gives it one more",
+                    *options.banks, board.banks.size()));
+  }
+}
+
 int allocate(const AllocateOptions& options) {
   process::Problems problems;
   const auto board = options.board.load(problems);
   const auto calibration = options.board.load_calibration(board ? &*board : nullptr, problems);
-  if (const auto problem = board ? explore::bank_names_problem(*board) : std::nullopt)
-    problems.add(fmt::format("{}: {}", options.board.name(), *problem));
-  if (board && *options.banks > static_cast<int>(board->banks.size())) {
-    problems.add(
-        fmt::format("--banks = {}: must be 1..{}, the banks of the board; --set 'ssram.banks.NEW={{}}' "
-                    "gives it one more",
-                    *options.banks, board->banks.size()));
-  }
+  if (board) check_banks(options, *board, problems);
   auto written = board ? open_written(options, *board, problems) : nullptr;
   problems.check();
   explore::SweepOptions sweep;
