@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <string_view>
+#include <tuple>
 
 #include "models/fpga/local_bus_control.h"
 #include "models/memory/crossbar_address.h"
@@ -37,6 +39,14 @@ BusTrace::BusTrace(const BoardConfig& board, const fpga::CycleWindow& window, Bu
 
 void BusTrace::hand_out(std::uint64_t now_ps) {
   settle_posted(now_ps);
+  // The order in which the two buses and the queues report depends on the fidelity.
+  std::sort(bursts_.begin(), bursts_.end(), [](const EndedBurst& a, const EndedBurst& b) {
+    return std::tie(a.burst.end_ps, a.burst.bus) < std::tie(b.burst.end_ps, b.burst.bus);
+  });
+  std::stable_sort(levels_.begin(), levels_.end(), [](const QueueLevel& a, const QueueLevel& b) {
+    return std::make_tuple(a.time_ps, std::string_view(a.queue)) <
+           std::make_tuple(b.time_ps, std::string_view(b.queue));
+  });
   // The end of the frame of the window may have become known since they came.
   for (const EndedBurst& ended : bursts_) {
     if (ended.free_ps <= now_ps && is_in_window(ended.burst)) observer_.burst(ended.burst);

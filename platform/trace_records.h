@@ -51,8 +51,7 @@ struct QueueLevel {
   std::uint64_t words = 0;
 };
 
-// Receives the bursts of one bus in the order of their ends, and the levels of one queue in the order of their
-// times. Plain C++.
+// Receives the bursts in the order of their ends, and the levels in the order of their times. Plain C++.
 class BusObserver {
  public:
   virtual ~BusObserver() = default;

@@ -127,7 +127,7 @@ class InputLoader {
     for (const trace::TraceFile& file : trace.files) check_trace_file(file.path);
     if (!problems_.empty()) return;
     input_.trace_window = trace.window;
-    attempt("--trace", [&] { input_.trace = trace::make_writer(trace.files, input_.board); });
+    attempt("--trace", [&] { input_.trace = trace::make_writer(trace.files, input_.board, trace.window); });
   }
 
   // Reports a file that would be lost: an input, or a trace in the result folder.

@@ -3,9 +3,11 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "models/fpga/core_cycle.h"
 #include "platform/config/board_config.h"
 #include "sw/trace/trace_writer.h"
 
@@ -20,9 +22,10 @@ struct TraceFile {
   std::string path;
 };
 
-// The writer of one or more traces of a run. Throws std::runtime_error, with the name of the file, if one cannot
+// The writer of one or more traces of a run with this window. Throws std::runtime_error, with the name of the file, if one cannot
 // be written.
 std::unique_ptr<TraceWriter> make_writer(const std::vector<TraceFile>& files,
-                                         const platform::BoardConfig& board);
+                                         const platform::BoardConfig& board,
+                                         const std::optional<fpga::CycleWindow>& window);
 
 }  // namespace stereotlm::trace

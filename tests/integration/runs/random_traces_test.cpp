@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <filesystem>
+#include <map>
 #include <memory>
 #include <random>
 #include <string>
@@ -17,10 +19,14 @@
 #include "models/clock.h"
 #include "platform/config/board_yaml.h"
 #include "platform/trace_runs.h"
+#include "sw/explore/store/database.h"
 #include "sw/runs/simulation/make_simulation.h"
+#include "sw/trace/trace_file.h"
 #include "tests/support/board_of_random.h"
 #include "tests/support/fork.h"
+#include "tests/support/perfetto_file.h"
 #include "tests/support/random_computer.h"
+#include "tests/support/scratch_folder.h"
 #include "tests/support/transaction_log.h"
 
 namespace stereotlm::simulation {
@@ -70,10 +76,11 @@ Case case_of(std::uint64_t seed, bool with_knobs, bool camera) {
 
 class KeptCycles : public fpga::CycleObserver {
  public:
-  explicit KeptCycles(bool keeps) : keeps_(keeps) {}
+  KeptCycles(bool keeps, trace::TraceWriter& writer) : keeps_(keeps), writer_(writer) {}
   void cycle(const fpga::CoreCycle& cycle) override {
     EXPECT_TRUE(last_ == UINT64_MAX || cycle.cycle > last_) << cycle.cycle << " after " << last_;
     last_ = cycle.cycle;
+    writer_.cycle(cycle);
     if (keeps_) cycles.push_back(cycle);
     if (!cycle.frame) return;
     for (std::size_t port = 0; port < fpga::kPortCount; ++port)
@@ -85,15 +92,78 @@ class KeptCycles : public fpga::CycleObserver {
 
  private:
   bool keeps_;
+  trace::TraceWriter& writer_;
   std::uint64_t last_ = UINT64_MAX;
 };
 
-// random_bus_traces_test.cpp compares these.
-class Buses : public platform::BusObserver {
- public:
-  void burst(const platform::BusBurst& /*burst*/) override {}
-  void level(const platform::QueueLevel& /*level*/) override {}
-};
+// What a trace adds up to: cycles by port, "grants" or "waits", and, of waits, bank and culprit.
+using Sums = std::map<std::string, std::uint64_t>;
+
+std::string port_of(const std::string& requester) { return requester.substr(0, requester.find(' ')); }
+
+std::string wait_key(const std::string& requester, const std::string& bank, const std::string& by) {
+  return fmt::format("{} waits on {} for {}", port_of(requester), bank, port_of(by));
+}
+
+Sums sums_of(const platform::Statistics& statistics) {
+  Sums sums;
+  for (const platform::PortStatistics& port : statistics.ports) {
+    if (port.grants != 0) sums[port.name + " grants"] = port.grants;
+  }
+  for (const platform::BlameRow& row : statistics.blame)
+    sums[wait_key(row.port, row.bank, row.by)] = row.cycles;
+  return sums;
+}
+
+Sums sums_of_perfetto(const std::filesystem::path& path) {
+  const std::string bytes = test::read_file(path);
+  const test::PerfettoFile file(bytes);
+  Sums sums;
+  for (std::size_t requester = 0; requester < fpga::kRequesters; ++requester) {
+    const std::string name = fpga::requester_name(requester);
+    for (const test::PerfettoFile::Slice& slice : file.slices_of(name)) {
+      const std::size_t waits = slice.name.find(" waits ");
+      if (waits == std::string::npos) {
+        sums[port_of(name) + " grants"] += std::stoull(slice.name.substr(slice.name.rfind('x') + 1));
+        continue;
+      }
+      const std::size_t by = slice.name.find(" cycles for ") + 12;
+      const std::size_t bank = slice.name.rfind(" on ");
+      sums[wait_key(name, slice.name.substr(bank + 4), slice.name.substr(by, bank - by))] +=
+          std::stoull(slice.name.substr(waits + 7));
+    }
+  }
+  return sums;
+}
+
+Sums sums_of_sqlite(const std::filesystem::path& path) {
+  explore::Database database(path.string(), explore::Database::Access::kRead);
+  EXPECT_EQ(database.number("SELECT count(*) FROM pragma_integrity_check WHERE integrity_check = 'ok'"), 1);
+  Sums sums;
+  explore::Statement runs(database, "SELECT port, bank, by, count FROM runs");
+  while (runs.step()) {
+    const std::string by = runs.text(2);
+    const std::string key =
+        by.empty() ? port_of(runs.text(0)) + " grants" : wait_key(runs.text(0), runs.text(1), by);
+    sums[key] += static_cast<std::uint64_t>(runs.integer(3));
+  }
+  return sums;
+}
+
+std::string differences(const std::string& name, const Sums& found, const Sums& expected) {
+  std::string text;
+  for (const Sums* all : {&found, &expected}) {
+    for (const auto& [key, unused] : *all) {
+      const auto value = [key = key](const Sums& sums) {
+        const auto place = sums.find(key);
+        return place == sums.end() ? 0 : place->second;
+      };
+      if (value(found) != value(expected))
+        text += fmt::format("{}: {} = {}, expected {}\n", name, key, value(found), value(expected));
+    }
+  }
+  return text;
+}
 
 struct Traced {
   std::vector<platform::FrameRuns> runs;
@@ -101,6 +171,7 @@ struct Traced {
   std::array<fpga::PortCycles, fpga::kPortCount> sums{};
   std::vector<test::LoggedTransaction> log;
   platform::Statistics statistics;
+  std::string wrong_files;
 };
 
 Traced trace(const Case& of, Fidelity fidelity, const CycleWindow& window, bool keeps_cycles) {
@@ -108,20 +179,29 @@ Traced trace(const Case& of, Fidelity fidelity, const CycleWindow& window, bool 
   PicturesOfCase pictures(of);
   const std::unique_ptr<runs::Simulation> simulation =
       runs::make_simulation(of.board, of.tables, pictures, {of.camera, fidelity, of.frames, true}, binder);
-  KeptCycles cycles(keeps_cycles);
-  Buses buses;
-  simulation->trace(window, cycles, buses);
+  const test::ScratchFolder scratch;
+  const std::vector<trace::TraceFile> files = {{trace::Format::kPerfetto, scratch.path() / "perfetto"},
+                                               {trace::Format::kSqlite, scratch.path() / "sqlite"}};
+  const std::unique_ptr<trace::TraceWriter> writer = trace::make_writer(files, of.board, window);
+  KeptCycles cycles(keeps_cycles, *writer);
+  simulation->trace(window, cycles, *writer);
   Traced traced;
   while (!simulation->finished()) {
     simulation->advance();
-    for (const fpga::FrameConflicts& frame : simulation->take_conflicts())
+    for (const fpga::FrameConflicts& frame : simulation->take_conflicts()) {
       traced.runs.push_back(platform::frame_runs(frame));
-    simulation->take_timeline();
+      writer->frame(traced.runs.back());
+    }
+    writer->events(simulation->take_timeline());
   }
+  writer->commit();
   traced.cycles = std::move(cycles.cycles);
   traced.sums = cycles.sums;
   traced.log = binder.log();
   traced.statistics = simulation->statistics();
+  const Sums expected = sums_of(traced.statistics);
+  traced.wrong_files = differences("perfetto", sums_of_perfetto(files[0].path), expected) +
+                       differences("sqlite", sums_of_sqlite(files[1].path), expected);
   return traced;
 }
 
@@ -270,7 +350,7 @@ std::string problems_of(std::uint64_t seed, bool with_knobs, bool camera) {
   const auto run = [&](Fidelity fidelity) {
     return [&, fidelity]() -> std::string {
       const Traced traced = trace(of, fidelity, window, !whole_run);
-      std::string wrong = wrong_sums(traced, whole_run);
+      std::string wrong = wrong_sums(traced, whole_run) + traced.wrong_files;
       if (fidelity == Fidelity::kCycle) wrong += wrong_accesses(of, traced);
       return wrong.empty() ? text_of(traced) : "WRONG\n" + wrong;
     };

@@ -1,0 +1,3 @@
+#pragma once
+#include "sw/trace/sqlite_writer.h"
+namespace stereotlm::trace { class VcdWriter : public SqliteWriter { public: using SqliteWriter::SqliteWriter; }; }
