@@ -74,12 +74,12 @@ class BusTrace : private pci::PciBusObserver,
     std::uint64_t free_ps = 0;  // its bus is free
   };
 
-  void pci_burst_ended(const pci::PciBusBurst& burst) override;
+  void pci_burst_ended(const pci::EndedPciBurst& burst) override;
   void words_posted(std::uint64_t now_ps, std::size_t words) override;
   void transfer_waits(std::uint64_t now_ps, pci::LocalBusSource source) override;
   void burst_begins(std::uint64_t now_ps, pci::LocalBusSource source, std::size_t words) override;
   void posted_words_leave(std::uint64_t at_ps, std::size_t words) override { leaving_ = {at_ps, words}; }
-  void local_burst_ended(const fpga::LocalBusBurst& burst) override;
+  void local_burst_ended(const fpga::EndedLocalBurst& burst) override;
   void frame_begun(std::uint64_t strobe_ps) override;
   void frame_ended(const fpga::FrameTimes& times) override;
 

@@ -212,8 +212,8 @@ void PciBusControl::end(std::uint64_t now_ps) {
   await_request();
 }
 
-PciBusBurst PciBusControl::observed() const {
-  PciBusBurst burst;
+EndedPciBurst PciBusControl::observed() const {
+  EndedPciBurst burst;
   burst.master = running_.master;
   if (running_.window != nullptr) burst.window = static_cast<std::size_t>(running_.window - windows_.data());
   burst.write = running_.burst.write;

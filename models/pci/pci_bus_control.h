@@ -169,7 +169,7 @@ class PciBusControl {
   void end_words(std::uint64_t now_ps);
   void end_at(std::uint64_t clock, const BurstResult& result);
   void end(std::uint64_t now_ps);
-  PciBusBurst observed() const;
+  EndedPciBurst observed() const;
 
   // These access the target.
   Window* window_of(const PciBurst& burst);
