@@ -28,10 +28,11 @@ struct FrameRuns {
   std::vector<TraceRun> runs;
 };
 
-// A burst on the PCI bus or on the local bus. Times are since power-up, and are those of clocks of the bus.
+// A burst on the PCI bus or on the local bus. Times are since power-up, and each is the beginning of a clock of
+// the bus.
 //
-// On the local bus a posted burst requests the bus from the post of its first word on, a read and a burst of DMA
-// from their start on. A burst that the local bus refuses is none.
+// On the local bus a posted burst requests the bus from the post of its first word on, a read and a burst of
+// DMA from their start on. The list has no burst that the local bus refuses.
 struct BusBurst {
   enum class Bus : std::uint8_t { kPci, kLocal };
 
@@ -39,8 +40,8 @@ struct BusBurst {
   // PCI bus: "host", "left_capture", "right_capture", "bridge", "load". Local bus: "posted", "read", "dma0",
   // "dma1".
   const char* master = "";
-  // PCI bus: "host_memory", "bridge", "bridge_registers", "left_capture", "right_capture", "load", or "none" for a
-  // master abort. Local bus: the name of a bank, or "registers" for those of the core.
+  // PCI bus: "host_memory", "bridge", "bridge_registers", "left_capture", "right_capture", "load", or "none" for
+  // a master abort. Local bus: the name of a bank, or "registers" for those of the core.
   const char* target = "";
   bool write = false;
   std::uint64_t address = 0;     // on the bus
@@ -53,19 +54,19 @@ struct BusBurst {
 
 // A queue holds this number of words from a time on.
 //
-// - The FIFO of a capture board: the complete words, as each burst of the board begins (address_ps) and as it ends
-//   (end_ps). A word that is being filled does not count. Between these times pixels arrive and words leave, and no
-//   level is given.
-// - The posted words: as each write is posted, and as the places of a posted burst become free, with the end of
-//   its idle clock. Two levels may have the same time; then the later one holds.
+// - The FIFO of a capture board: its complete words, as each burst of the board begins (address_ps) and as it
+//   ends (end_ps). A word that is being filled does not count. No level is given between these times, when
+//   pixels arrive and words leave.
+// - The posted words: as each write is posted, and as the places of a posted burst become free, which is the
+//   end of its idle clock. Of two levels at the same time the later one holds.
 struct QueueLevel {
   const char* queue = "";  // "left_capture", "right_capture", "posted"
   std::uint64_t time_ps = 0;
   std::uint64_t words = 0;
 };
 
-// Receives the bursts of each bus in the order of their ends, and the levels of each queue in the order of their
-// times. The names in a record are valid as long as the BusTrace that gives them. Plain C++.
+// Receives the bursts of each bus in the order of their ends, and the levels of each queue in the order of
+// their times. The names in a record are valid as long as the BusTrace that gives them. Plain C++.
 class BusObserver {
  public:
   virtual ~BusObserver() = default;

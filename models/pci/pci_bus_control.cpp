@@ -119,18 +119,17 @@ void PciBusControl::decide(std::uint64_t now_ps) {
     const PciBurst burst = request.from->begin_burst(now_ps);
     if (burst.words == nullptr || burst.words->empty()) continue;
     master_stats_[master].wait_clocks += clock - request_clock;
-    begin(now_ps, {master, burst, window_of(burst), burst.words->size(), request_clock, clock, 0, {}});
+    begin(now_ps, master, burst, request_clock, clock);
     return;
   }
   state_ = State::kFree;
   await_request();
 }
 
-void PciBusControl::begin(std::uint64_t now_ps, const Running& running) {
+void PciBusControl::begin(std::uint64_t now_ps, std::size_t master, const PciBurst& burst,
+                          std::uint64_t request_clock, std::uint64_t clock) {
   burst_runs_ = true;
-  running_ = running;
-  const PciBurst& burst = running_.burst;
-  const std::uint64_t clock = running_.address_clock;
+  running_ = {master, burst, window_of(burst), burst.words->size(), request_clock, clock, 0, {}};
   if (running_.window == nullptr) {
     const std::uint64_t end_clock = clock + 1 + kDevselClocks;
     end_at(end_clock, {BurstEnd::kMasterAbort, 0, end_clock});

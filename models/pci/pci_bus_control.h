@@ -162,7 +162,8 @@ class PciBusControl {
   void await_request();
 
   // These step through a burst.
-  void begin(std::uint64_t now_ps, const Running& running);
+  void begin(std::uint64_t now_ps, std::size_t master, const PciBurst& burst, std::uint64_t request_clock,
+             std::uint64_t clock);
   void begin_words(std::uint64_t first_clock);
   void cut_words();
   void end_words_at(std::uint64_t clock);

@@ -384,8 +384,8 @@ class ListedBursts : public PciBusObserver {
   std::vector<EndedPciBurst> bursts;
 };
 
-// Master 1 requests while the burst of master 0 runs: that is cut in clock 8, the end of its latency timer. Master 2
-// finds no target.
+// Master 1 requests while the burst of master 0 runs, which its latency timer cuts in clock 10. Master 2 finds no
+// target.
 TEST_F(PciBusControlTest, ShowsEachBurstAtItsEndToAnObserver) {
   ListedBursts observer;
   bus.observe(observer);
@@ -407,7 +407,7 @@ TEST_F(PciBusControlTest, ShowsEachBurstAtItsEndToAnObserver) {
     std::uint64_t begin;
     std::uint64_t end;
   };
-  // Address clock, 4 wait clocks, words; or address clock and 4 clocks without target. An idle clock between them.
+  // Address clock, 4 wait clocks, words; or address clock and 4 clocks without target. Then an idle clock.
   const std::vector<Expected> expected = {{0, 0, true, kWindowBase + 8, 4, 2, 2, 11},
                                           {1, 0, false, kWindowBase, 2, 6, 12, 19},
                                           {2, std::nullopt, true, 0, 0, 7, 20, 25}};
