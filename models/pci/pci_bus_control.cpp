@@ -205,13 +205,13 @@ void PciBusControl::end(std::uint64_t now_ps) {
   count(running_.master, running_.result);
   free_clock_ = running_.end_clock + 1;
   running_.result.end_ps = now_ps;
-  if (observer_ != nullptr) observer_->pci_burst_ended(observed());
+  if (observer_ != nullptr) report();
   requests_[running_.master].from->end_burst(running_.result);
   state_ = State::kFree;
   await_request();
 }
 
-EndedPciBurst PciBusControl::observed() const {
+void PciBusControl::report() const {
   EndedPciBurst burst;
   burst.master = running_.master;
   if (running_.window != nullptr) burst.window = static_cast<std::size_t>(running_.window - windows_.data());
@@ -222,7 +222,7 @@ EndedPciBurst PciBusControl::observed() const {
   burst.address_ps = clock_.edge_ps(running_.address_clock);
   burst.data_ps = clock_.edge_ps(running_.address_clock + 1);
   burst.end_ps = clock_.edge_ps(running_.end_clock);
-  return burst;
+  observer_->pci_burst_ended(burst);
 }
 
 // Makes the access of the running burst: of a write when its words have been transferred, of a read at the
