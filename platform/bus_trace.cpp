@@ -62,7 +62,7 @@ void BusTrace::hand_out(std::uint64_t now_ps) {
                 levels_.end());
 }
 
-void BusTrace::pci_burst_ended(const pci::PciBusBurst& burst) {
+void BusTrace::pci_burst_ended(const pci::EndedPciBurst& burst) {
   add({BusBurst::Bus::kPci, kPciMasterNames[burst.master],
        burst.window ? kPciTargetNames[*burst.window] : "none", burst.write, burst.address, burst.words,
        burst.request_ps, burst.address_ps, burst.data_ps, burst.end_ps},
@@ -108,7 +108,7 @@ void BusTrace::settle_posted(std::uint64_t now_ps) {
   leaving_ = {};
 }
 
-void BusTrace::local_burst_ended(const fpga::LocalBusBurst& burst) {
+void BusTrace::local_burst_ended(const fpga::EndedLocalBurst& burst) {
   add({BusBurst::Bus::kLocal, kSourceNames[index_of(source_)], local_target(burst.address), burst.write,
        burst.address, burst.words, request_ps_, burst.address_ps, burst.data_ps, burst.end_ps},
       burst.free_ps);

@@ -22,20 +22,19 @@
 namespace stereotlm::platform {
 
 // Traces the buses and the queues of a computer in a window, at every fidelity with the same records
-// (trace_records.h). The controls of the blocks report what they do. A computer skips no burst that belongs to the
-// window. Plain C++.
+// (trace_records.h). The controls of the blocks report what they do. A computer skips no burst that belongs to
+// the window. Plain C++.
 //
-// The window is a range of times, or the time of a frame of the core, from its start strobe to its end. A burst
-// belongs to it if the burst ends after the window begins, and requests its bus before the window ends. A level
-// belongs to it if its time is after the beginning of the window, and not after its end.
+// The window is a range of times, or the time of a frame of the core, from its start strobe to its end. A
+// burst belongs to it if the burst ends after the window begins, and requests its bus before the window ends.
+// A level belongs to it if its time is after the beginning of the window, and not after its end.
 class BusTrace : private pci::PciBusObserver,
                  private pci::LocalBusMasterObserver,
                  private fpga::LocalBusObserver,
                  private fpga::FrameObserver {
  public:
-  // If the window names a frame, the whole frame is traced. `observer` outlives this object, whose records have
-  // names that are valid as long as this object. Throws std::invalid_argument if a window of rows names no frame,
-  // or if a clock of the board is out of range.
+  // If the window names a frame, the whole frame is traced. `observer` outlives this object. Throws
+  // std::invalid_argument if a window of rows names no frame, or if a clock of the board is out of range.
   BusTrace(const BoardConfig& board, const fpga::CycleWindow& window, BusObserver& observer);
   BusTrace(const BusTrace&) = delete;
   BusTrace& operator=(const BusTrace&) = delete;
@@ -50,9 +49,9 @@ class BusTrace : private pci::PciBusObserver,
   // Bursts that begin at `now_ps` or later may be skipped if they end before this time.
   std::uint64_t skips_end_ps(std::uint64_t now_ps) const { return now_ps <= end_ps_ ? begin_ps_ : kNever; }
 
-  // Hands out the bursts after which their bus is free by `now_ps`, and the levels up to then, each once. To be
-  // called regularly, because they fill memory, and with the end of the run. A computer may be ahead of
-  // `now_ps`.
+  // Hands out the bursts whose bus is free again by `now_ps`, and the levels up to then, each once. To be
+  // called regularly, because they fill memory, and with the time of the end of the run. A computer may be
+  // ahead of `now_ps`.
   void hand_out(std::uint64_t now_ps);
 
  private:
@@ -74,12 +73,12 @@ class BusTrace : private pci::PciBusObserver,
     std::uint64_t free_ps = 0;  // its bus is free
   };
 
-  void pci_burst_ended(const pci::PciBusBurst& burst) override;
+  void pci_burst_ended(const pci::EndedPciBurst& burst) override;
   void words_posted(std::uint64_t now_ps, std::size_t words) override;
   void transfer_waits(std::uint64_t now_ps, pci::LocalBusSource source) override;
   void burst_begins(std::uint64_t now_ps, pci::LocalBusSource source, std::size_t words) override;
   void posted_words_leave(std::uint64_t at_ps, std::size_t words) override { leaving_ = {at_ps, words}; }
-  void local_burst_ended(const fpga::LocalBusBurst& burst) override;
+  void local_burst_ended(const fpga::EndedLocalBurst& burst) override;
   void frame_begun(std::uint64_t strobe_ps) override;
   void frame_ended(const fpga::FrameTimes& times) override;
 

@@ -5,7 +5,7 @@
 namespace stereotlm::fpga {
 
 // A burst on the local bus. Each time is that at which a clock of the bus begins.
-struct LocalBusBurst {
+struct EndedLocalBurst {
   bool write = false;
   std::uint64_t address = 0;  // on the local bus
   std::uint64_t words = 0;
@@ -21,7 +21,7 @@ class LocalBusObserver {
   virtual ~LocalBusObserver() = default;
   // Called once for each burst, in their order, as soon as its end is known. That is at free_ps or earlier. A
   // burst that was refused is none.
-  virtual void local_burst_ended(const LocalBusBurst& burst) = 0;
+  virtual void local_burst_ended(const EndedLocalBurst& burst) = 0;
 };
 
 }  // namespace stereotlm::fpga

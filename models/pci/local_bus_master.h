@@ -83,7 +83,11 @@ class LocalBusMaster final : public LocalBusMasterIf {
   bool serve(std::uint64_t now_ps);
   bool serve(std::uint64_t now_ps, BridgeTransfer& transfer);
   void begin(std::uint64_t now_ps, BridgeTransfer* transfer, const LocalBurst& burst);
-  LocalBusSource source_of(const BridgeTransfer* transfer) const;
+  // Without an observer these cost nothing beside the branches around them.
+  [[gnu::cold, gnu::noinline]] void report_start(std::uint64_t now_ps, const BridgeTransfer& transfer) const;
+  [[gnu::cold, gnu::noinline]] void report_begin(std::uint64_t now_ps, std::size_t words) const;
+  [[gnu::cold, gnu::noinline]] void report_end() const;
+  LocalBusSource source_of(const BridgeTransfer& transfer) const;
   void end(std::uint64_t now_ps);
   void plan();
   bool end_is_awaited() const;

@@ -119,18 +119,17 @@ void PciBusControl::decide(std::uint64_t now_ps) {
     const PciBurst burst = request.from->begin_burst(now_ps);
     if (burst.words == nullptr || burst.words->empty()) continue;
     master_stats_[master].wait_clocks += clock - request_clock;
-    begin(now_ps, {master, burst, window_of(burst), burst.words->size(), request_clock, clock, 0, {}});
+    begin(now_ps, master, burst, request_clock, clock);
     return;
   }
   state_ = State::kFree;
   await_request();
 }
 
-void PciBusControl::begin(std::uint64_t now_ps, const Running& running) {
+void PciBusControl::begin(std::uint64_t now_ps, std::size_t master, const PciBurst& burst,
+                          std::uint64_t request_clock, std::uint64_t clock) {
   burst_runs_ = true;
-  running_ = running;
-  const PciBurst& burst = running_.burst;
-  const std::uint64_t clock = running_.address_clock;
+  running_ = {master, burst, window_of(burst), burst.words->size(), request_clock, clock, 0, {}};
   if (running_.window == nullptr) {
     const std::uint64_t end_clock = clock + 1 + kDevselClocks;
     end_at(end_clock, {BurstEnd::kMasterAbort, 0, end_clock});
@@ -206,14 +205,14 @@ void PciBusControl::end(std::uint64_t now_ps) {
   count(running_.master, running_.result);
   free_clock_ = running_.end_clock + 1;
   running_.result.end_ps = now_ps;
-  if (observer_ != nullptr) observer_->pci_burst_ended(observed());
+  if (observer_ != nullptr) report();
   requests_[running_.master].from->end_burst(running_.result);
   state_ = State::kFree;
   await_request();
 }
 
-PciBusBurst PciBusControl::observed() const {
-  PciBusBurst burst;
+void PciBusControl::report() const {
+  EndedPciBurst burst;
   burst.master = running_.master;
   if (running_.window != nullptr) burst.window = static_cast<std::size_t>(running_.window - windows_.data());
   burst.write = running_.burst.write;
@@ -223,7 +222,7 @@ PciBusBurst PciBusControl::observed() const {
   burst.address_ps = clock_.edge_ps(running_.address_clock);
   burst.data_ps = clock_.edge_ps(running_.address_clock + 1);
   burst.end_ps = clock_.edge_ps(running_.end_clock);
-  return burst;
+  observer_->pci_burst_ended(burst);
 }
 
 // Makes the access of the running burst: of a write when its words have been transferred, of a read at the

@@ -7,7 +7,7 @@
 namespace stereotlm::pci {
 
 // A burst on the PCI bus that has ended. Each time is that at which a clock of the bus begins.
-struct PciBusBurst {
+struct EndedPciBurst {
   std::size_t master = 0;             // its slot
   std::optional<std::size_t> window;  // none: a master abort
   bool write = false;
@@ -24,7 +24,7 @@ class PciBusObserver {
  public:
   virtual ~PciBusObserver() = default;
   // Called at the end of each burst.
-  virtual void pci_burst_ended(const PciBusBurst& burst) = 0;
+  virtual void pci_burst_ended(const EndedPciBurst& burst) = 0;
 };
 
 }  // namespace stereotlm::pci

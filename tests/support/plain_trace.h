@@ -13,8 +13,8 @@ struct PlainBusBurst {
   bool write = false;
   std::uint64_t word = 0;  // the first one, on the local bus; 0 on the PCI bus
   std::uint64_t words = 0;
-  // The beginnings of clocks: the first one that could be granted, the address clock, the next one, and the idle
-  // clock.
+  // The beginnings of clocks: the first one that could be granted, the address clock, the next one, and the
+  // idle clock.
   PlainTime request_ps = 0;
   PlainTime address_ps = 0;
   PlainTime data_ps = 0;

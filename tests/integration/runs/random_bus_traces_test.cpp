@@ -1,6 +1,6 @@
-// The traces of the buses and queues of random computers, each run in a process of its own: at each fidelity the
-// same, in windows at random places; the whole trace as the plain loop over events has it, and its sums equal to
-// the figures of the run.
+// The traces of the buses and queues of random computers, each run in a process of its own. In windows at random
+// places they are the same at each fidelity. The whole trace equals that of the plain loop over events, and its
+// sums equal the figures of the run.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -149,7 +149,8 @@ std::string differing_sums(const BusRecords& records, const platform::BoardConfi
   return text;
 }
 
-// A fourth of the computers is traced as a whole, a fourth in a frame of the core, the others in a range of cycles.
+// A fourth of the computers is traced as a whole, a fourth in a frame of the core, the others in a range of
+// cycles.
 CycleWindow random_window(std::uint64_t seed, const test::PlainComputerInput& input) {
   test::SplitMix64 random(seed + 5'000'000);
   CycleWindow window;

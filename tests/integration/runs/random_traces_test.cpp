@@ -174,14 +174,17 @@ struct Traced {
   std::string wrong_files;
 };
 
-Traced trace(const Case& of, Fidelity fidelity, const CycleWindow& window, bool keeps_cycles) {
+Traced trace(const Case& of, Fidelity fidelity, const CycleWindow& window, bool keeps_cycles,
+             bool writes_files) {
   test::LoggingBinder binder;
   PicturesOfCase pictures(of);
   const std::unique_ptr<runs::Simulation> simulation =
       runs::make_simulation(of.board, of.tables, pictures, {of.camera, fidelity, of.frames, true}, binder);
   const test::ScratchFolder scratch;
-  const std::vector<trace::TraceFile> files = {{trace::Format::kPerfetto, scratch.path() / "perfetto"},
-                                               {trace::Format::kSqlite, scratch.path() / "sqlite"}};
+  std::vector<trace::TraceFile> files;
+  if (writes_files)
+    files = {{trace::Format::kPerfetto, scratch.path() / "perfetto"},
+             {trace::Format::kSqlite, scratch.path() / "sqlite"}};
   const std::unique_ptr<trace::TraceWriter> writer = trace::make_writer(files, of.board, window);
   KeptCycles cycles(keeps_cycles, *writer);
   simulation->trace(window, cycles, *writer);
@@ -199,6 +202,7 @@ Traced trace(const Case& of, Fidelity fidelity, const CycleWindow& window, bool 
   traced.sums = cycles.sums;
   traced.log = binder.log();
   traced.statistics = simulation->statistics();
+  if (!writes_files) return traced;
   const Sums expected = sums_of(traced.statistics);
   traced.wrong_files = differences("perfetto", sums_of_perfetto(files[0].path), expected) +
                        differences("sqlite", sums_of_sqlite(files[1].path), expected);
@@ -348,8 +352,9 @@ std::string problems_of(std::uint64_t seed, bool with_knobs, bool camera) {
   }
   std::string problems;
   const auto run = [&](Fidelity fidelity) {
-    return [&, fidelity]() -> std::string {
-      const Traced traced = trace(of, fidelity, window, !whole_run);
+    const bool writes_files = fidelity == kEachFidelity[seed % kEachFidelity.size()];  // which takes long
+    return [&, fidelity, writes_files]() -> std::string {
+      const Traced traced = trace(of, fidelity, window, !whole_run, writes_files);
       std::string wrong = wrong_sums(traced, whole_run) + traced.wrong_files;
       if (fidelity == Fidelity::kCycle) wrong += wrong_accesses(of, traced);
       return wrong.empty() ? text_of(traced) : "WRONG\n" + wrong;
@@ -384,7 +389,7 @@ class RandomTraces : public testing::TestWithParam<std::tuple<bool, bool>> {};
 TEST_P(RandomTraces, EqualTheCountersAndTheTransactionsAtEachFidelity) {
   const auto [with_knobs, camera] = GetParam();
   std::vector<test::ChildWork> jobs;
-  const std::uint64_t count = camera ? test::random_computers(30) : test::random_boards(60);
+  const std::uint64_t count = camera ? test::random_computers(20) : test::random_boards(30);
   for (std::uint64_t seed = 0; seed < count; ++seed) {
     jobs.push_back(
         [seed, with_knobs = with_knobs, camera = camera] { return problems_of(seed, with_knobs, camera); });
