@@ -58,6 +58,15 @@ void Computer::record(Timeline& timeline) {
   board.core.observe(timeline.core());
 }
 
+void Computer::trace_buses(BusTrace& trace) {
+  pci_bus.observe(trace.pci_bus());
+  bridge.observe(trace.bridge());
+  board.core.observe(trace.local_bus());
+  board.core.observe(trace.core());
+  left_capture.observe(trace.capture_fifo(0));
+  right_capture.observe(trace.capture_fifo(1));
+}
+
 std::uint64_t Computer::work_done() {
   board.core.catch_up();
   return board.core.control().work() + words_for_results(pci_bus.stats());

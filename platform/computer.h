@@ -38,7 +38,9 @@ class Computer : public sc_core::sc_module, public ComputerView {
   std::uint64_t work_done() override;
   std::string waits() override { return board.core.waits(); }
   void record(Timeline& timeline) override;
+  void trace_buses(BusTrace& trace) override;
   void record(fpga::ConflictRecorder& conflicts) override { board.core.record(conflicts); }
+  void record(fpga::CycleRecorder& cycles) override { board.core.record(cycles); }
   void record_rows() override { board.core.record_rows(); }
   std::vector<fpga::RowProfile> take_rows() override { return board.core.take_rows(); }
 

@@ -107,15 +107,16 @@ void ComputerLoop::run(std::uint64_t end_ps) {
 // Nothing is skipped that comes after what the processor is to see.
 bool ComputerLoop::skip(Kind kind, std::uint64_t end_ps) {
   if (kind == kPciDecides) {
-    return lines_.begins() && lines_.skip(now_ps_, std::min(end_ps, next_ps_beside_buses()));
+    return lines_.begins() && lines_.skip(now_ps_, skips_end_ps(end_ps));
   }
-  return kind == kLocalBusChooses && !noticed_ &&
-         dma_.skip(now_ps_, std::min(end_ps, next_ps_beside_buses()));
+  return kind == kLocalBusChooses && !noticed_ && dma_.skip(now_ps_, skips_end_ps(end_ps));
 }
 
-// The next time at which something but the PCI bus and the bridge has an event.
-std::uint64_t ComputerLoop::next_ps_beside_buses() const {
-  return std::min({board_.next_ps(), board_.local_bus().next_ps(), captures_[0].next_ps(),
+// The end of what can be skipped: `end_ps`, or the next time at which something but the PCI bus and the bridge
+// has an event, or at which the buses are traced.
+std::uint64_t ComputerLoop::skips_end_ps(std::uint64_t end_ps) const {
+  if (trace_ != nullptr) end_ps = std::min(end_ps, trace_->skips_end_ps(now_ps_));
+  return std::min({end_ps, board_.next_ps(), board_.local_bus().next_ps(), captures_[0].next_ps(),
                    captures_[1].next_ps(), cameras_[0].next_ps(), cameras_[1].next_ps(),
                    bridge_slave_.next_ps()});
 }
@@ -162,6 +163,16 @@ void ComputerLoop::record(Timeline& timeline) {
     captures_[side].observe(timeline.capture_board(side));
   bridge_.observe(timeline.bridge());
   board_.observe(timeline.core());
+}
+
+void ComputerLoop::trace_buses(BusTrace& trace) {
+  pci_bus_.observe(trace.pci_bus());
+  bridge_.observe(trace.bridge());
+  board_.local_bus().observe(trace.local_bus());
+  board_.observe(trace.core());
+  for (std::size_t side = 0; side < captures_.size(); ++side)
+    captures_[side].observe(trace.capture_fifo(side));
+  trace_ = &trace;
 }
 
 std::uint64_t ComputerLoop::work_done() {

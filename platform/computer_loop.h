@@ -12,6 +12,7 @@
 #include "models/pci/pci_bus_control.h"
 #include "models/pci/traffic_control.h"
 #include "models/time_ps.h"
+#include "platform/bus_trace.h"
 #include "platform/camera_lines.h"
 #include "platform/collect_computer.h"
 #include "platform/config/board_config.h"
@@ -57,6 +58,7 @@ class ComputerLoop : private FastBoard::Doorbell, private pci::BridgeControl::Ho
   // See ComputerView.
   std::uint64_t work_done();
   void record(Timeline& timeline);
+  void trace_buses(BusTrace& trace);
   const pci::PciBusControl& pci_bus() const { return pci_bus_; }
   // Lines of the cameras that were skipped.
   std::uint64_t skipped_lines() const { return lines_.skipped(); }
@@ -142,7 +144,7 @@ class ComputerLoop : private FastBoard::Doorbell, private pci::BridgeControl::Ho
   std::uint64_t next_event() const;
   bool skip(Kind kind, std::uint64_t end_ps);
   void step(Kind kind);
-  std::uint64_t next_ps_beside_buses() const;
+  std::uint64_t skips_end_ps(std::uint64_t end_ps) const;
   void note_step(Kind kind);
   void ring(std::uint64_t now_ps) override { bridge_.ring(now_ps); }
   void slave_read_ended(std::uint64_t now_ps, bool ok) override { pci_bus_.answer(now_ps, {now_ps, ok}); }
@@ -161,6 +163,7 @@ class ComputerLoop : private FastBoard::Doorbell, private pci::BridgeControl::Ho
   TrafficTarget traffic_device_;
   CameraLines lines_;
   DmaBursts dma_;
+  const BusTrace* trace_ = nullptr;
   std::uint64_t now_ps_ = 0;
   bool interrupt_ = false;  // level after the last step
   bool noticed_ = false;

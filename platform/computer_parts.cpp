@@ -21,14 +21,14 @@ pci::PciBusConfig pci_config(const BoardConfig& board, std::uint64_t host_memory
   config.clock_mhz = board.pci.clock_mhz;
   config.latency_timer_clocks = board.pci.latency_timer_clocks;
   config.width_bits = board.pci.width_bits;
-  config.masters = {"host", "left_capture", "right_capture", "bridge"};
+  config.masters.assign(kPciMasterNames.begin(), kPciMasterNames.begin() + kTrafficGenerator);
   config.windows = {window(map.host_memory, host_memory_bytes, board.pci.memory_wait_clocks),
                     window(map.bridge_slave, pci::bridge::kSlaveWindowBytes, bridge_wait),
                     window(map.bridge_registers, pci::bridge::kRegisterWindowBytes, bridge_wait),
                     window(map.left_capture, capture::registers::kEnd, bridge_wait),
                     window(map.right_capture, capture::registers::kEnd, bridge_wait)};
   if (board.pci.load) {
-    config.masters.emplace_back("load");
+    config.masters.emplace_back(kPciMasterNames[kTrafficGenerator]);
     config.windows.push_back(
         window(map.traffic_generator, 4 * static_cast<std::uint64_t>(board.pci.load->burst_words), 0));
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -13,6 +14,8 @@ namespace stereotlm::platform {
 
 // Masters of the PCI bus: indices of its slots and of its statistics.
 enum PciMaster : std::size_t { kHost, kLeftCapture, kRightCapture, kBridge, kTrafficGenerator };
+inline constexpr std::array<const char*, 5> kPciMasterNames = {"host", "left_capture", "right_capture",
+                                                               "bridge", "load"};
 // Windows of the PCI bus.
 enum PciTargetWindow : std::size_t {
   kHostMemory,
@@ -22,6 +25,8 @@ enum PciTargetWindow : std::size_t {
   kRightRegisters,
   kTrafficDevice
 };
+inline constexpr std::array<const char*, 6> kPciTargetNames = {
+    "host_memory", "bridge", "bridge_registers", "left_capture", "right_capture", "load"};
 
 pci::PciBusConfig pci_config(const BoardConfig& board, std::uint64_t host_memory_bytes);
 pci::PciBridgeConfig bridge_config(const BoardConfig& board);

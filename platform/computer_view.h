@@ -6,6 +6,7 @@
 
 #include "models/fpga/frame_run.h"
 #include "models/fpga/row_profile.h"
+#include "platform/bus_trace.h"
 #include "platform/collect_computer.h"
 #include "platform/timeline.h"
 
@@ -24,8 +25,11 @@ class ComputerView {
   virtual std::string waits() = 0;
   // Hands everything that happens to `timeline`, which outlives the computer. To be called at time 0.
   virtual void record(Timeline& timeline) = 0;
+  // Hands what the buses and the queues do to `trace`, which outlives the computer. To be called at time 0.
+  virtual void trace_buses(BusTrace& trace) = 0;
   // See FrameRun.
   virtual void record(fpga::ConflictRecorder& conflicts) = 0;
+  virtual void record(fpga::CycleRecorder& cycles) = 0;
   virtual void record_rows() = 0;
   virtual std::vector<fpga::RowProfile> take_rows() = 0;
 };

@@ -78,6 +78,7 @@ class FastBoard : private fpga::LocalBusControl::Core,
   // See FrameRun.
   void observe(fpga::FrameObserver& observer) { frames_.observe(observer); }
   void record(fpga::ConflictRecorder& conflicts) { frames_.record(conflicts); }
+  void record(fpga::CycleRecorder& cycles) { host_port_.record(cycles); }
   void record_rows() { frames_.record_rows(); }
   std::vector<fpga::RowProfile> take_rows() { return frames_.take_rows(); }
   std::string waits() { return frames_.waits(local_bus_.word_waits()); }

@@ -42,7 +42,9 @@ class FastComputer : public sc_core::sc_module,
   std::uint64_t work_done() override { return loop_.work_done(); }
   std::string waits() override { return loop_.board().waits(); }
   void record(Timeline& timeline) override { loop_.record(timeline); }
+  void trace_buses(BusTrace& trace) override { loop_.trace_buses(trace); }
   void record(fpga::ConflictRecorder& conflicts) override { loop_.board().record(conflicts); }
+  void record(fpga::CycleRecorder& cycles) override { loop_.board().record(cycles); }
   void record_rows() override { loop_.board().record_rows(); }
   std::vector<fpga::RowProfile> take_rows() override { return loop_.board().take_rows(); }
 

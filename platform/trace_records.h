@@ -22,37 +22,51 @@ struct TraceRun {
 // The runs of one frame of the core, by strip, then by requester, bank and `by`, grants first.
 struct FrameRuns {
   std::uint64_t frame = 0;
-  std::uint64_t first_cycle = 0;  // since power-up
-  std::uint64_t end_cycle = 0;    // the first one behind the last write
+  std::uint64_t first_cycle = 0;          // since power-up
+  std::uint64_t end_cycle = 0;            // the first one behind the last write
   std::vector<std::uint64_t> strip_ends;  // [strip]: the first cycle behind it
   std::vector<TraceRun> runs;
 };
 
-// A burst on the PCI bus or on the local bus. Times are since power-up.
+// A burst on the PCI bus or on the local bus. Times are since power-up, and each is the beginning of a clock of
+// the bus.
+//
+// On the local bus a posted burst requests the bus from the post of its first word on, a read and a burst of
+// DMA from their start on. The list has no burst that the local bus refuses.
 struct BusBurst {
   enum class Bus : std::uint8_t { kPci, kLocal };
 
   Bus bus = Bus::kPci;
-  const char* master = "";  // "left_capture", "bridge"; on the local bus "posted", "dma0", "dma1", "read"
-  const char* target = "";  // "bridge", "host_memory", "bank3", "registers"
+  // PCI bus: "host", "left_capture", "right_capture", "bridge", "load". Local bus: "posted", "read", "dma0",
+  // "dma1".
+  const char* master = "";
+  // PCI bus: "host_memory", "bridge", "bridge_registers", "left_capture", "right_capture", "load", or "none" for
+  // a master abort. Local bus: the name of a bank, or "registers" for those of the core.
+  const char* target = "";
   bool write = false;
   std::uint64_t address = 0;     // on the bus
   std::uint64_t words = 0;       // transferred
   std::uint64_t request_ps = 0;  // the first clock that could be granted begins
   std::uint64_t address_ps = 0;  // the address clock begins
-  std::uint64_t data_ps = 0;     // it ends; waits and data follow
-  std::uint64_t end_ps = 0;      // the last data clock ends
+  std::uint64_t data_ps = 0;     // the address clock ends; wait or decode clocks, and the data follow
+  std::uint64_t end_ps = 0;      // the last data clock ends, and the idle clock begins
 };
 
 // A queue holds this number of words from a time on.
+//
+// - The FIFO of a capture board: its complete words, as each burst of the board begins (address_ps) and as it
+//   ends (end_ps). A word that is being filled does not count. No level is given between these times, when
+//   pixels arrive and words leave.
+// - The posted words: as each write is posted, and as the places of a posted burst become free, which is the
+//   end of its idle clock. Of two levels at the same time the later one holds.
 struct QueueLevel {
   const char* queue = "";  // "left_capture", "right_capture", "posted"
   std::uint64_t time_ps = 0;
   std::uint64_t words = 0;
 };
 
-// Receives the bursts of one bus in the order of their ends, and the levels of one queue in the order of their
-// times. Plain C++.
+// Receives the bursts of each bus in the order of their ends, and the levels of each queue in the order of
+// their times. The names in a record are valid as long as the BusTrace that gives them. Plain C++.
 class BusObserver {
  public:
   virtual ~BusObserver() = default;

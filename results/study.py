@@ -17,9 +17,9 @@ from points import Points  # noqa: E402
 
 style.use()
 
-# A row that `allocate` prints: banks, allocations, simulated, best rate, bound, steady rate (only for a whole
-# computer), number of allocations that reach the best rate, one of them.
-ROW = re.compile(r" +(\d+) +(\d+) +(\d+) +(\d+\.\d+) +(\d+\.\d+) +(?:(\d+\.\d+) +)?(\d+)  (.*)")
+# A row that `allocate` prints: banks, allocations, simulated, best rate, its percentage of the best of all, bound,
+# steady rate (only for a whole computer), number of allocations that reach the best rate, one of them.
+ROW = re.compile(r" +(\d+) +(\d+) +(\d+) +(\d+\.\d+) +\d+\.\d+ +(\d+\.\d+) +(?:(\d+\.\d+) +)?(\d+)  (.*)")
 
 
 def searched(path):

@@ -66,6 +66,7 @@ class CaptureBoard : public sc_core::sc_module,
 
   // See CaptureControl.
   void observe(CaptureObserver& observer) { control_.observe(observer); }
+  void observe(FifoObserver& observer) { control_.observe(observer); }
 
   // Counts up to the current time.
   Stats stats() const;

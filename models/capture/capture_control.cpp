@@ -132,6 +132,7 @@ pci::PciBurst CaptureControl::begin_burst(std::uint64_t address_clock_ps) {
   bus_state_ = BusState::kBurst;
   ++stats_.bursts;
   fifo_.advance(address_clock_ps);
+  show_fifo(address_clock_ps);
   const FrameWords words = fifo_.grant();
   burst_words_.resize(static_cast<std::size_t>(words.count));
   camera_->copy_words(words.first, words.count, burst_words_.data());
@@ -170,7 +171,13 @@ void CaptureControl::end_burst(const pci::BurstResult& result) {
     fifo_.transfer(result.end_ps, result, slot_->clock());
     stats_.words += result.words;
   }
+  show_fifo(result.end_ps);
   proceed(result.end_ps);
+}
+
+void CaptureControl::show_fifo(std::uint64_t now_ps) const {
+  if (fifo_observer_ != nullptr)
+    fifo_observer_->fifo_holds(now_ps, static_cast<std::size_t>(fifo_.complete_words()));
 }
 
 void CaptureControl::skip_line(std::uint64_t now_ps, std::uint64_t bursts) {

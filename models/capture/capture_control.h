@@ -58,6 +58,7 @@ class CaptureControl : public FrameReceiver, public CapturePartner, public pci::
 
   // `observer` outlives the board.
   void observe(CaptureObserver& observer) { observer_ = &observer; }
+  void observe(FifoObserver& observer) { fifo_observer_ = &observer; }
 
   // The time at which step() is to be called next; kNever: a call may change it.
   std::uint64_t next_ps() const { return next_ps_; }
@@ -116,6 +117,7 @@ class CaptureControl : public FrameReceiver, public CapturePartner, public pci::
   void proceed(std::uint64_t now_ps);
   void finish(std::uint64_t now_ps);
   bool fits(const pci::BurstResult& result) const;
+  void show_fifo(std::uint64_t now_ps) const;
   int next_line_word() const { return fifo_.next_row() * fifo_.words_per_line(); }
 
   CaptureRegisterFile register_file_;
@@ -125,6 +127,7 @@ class CaptureControl : public FrameReceiver, public CapturePartner, public pci::
   CapturePartner* partner_ = nullptr;
   std::vector<FrameCamera*> triggered_;
   CaptureObserver* observer_ = nullptr;
+  FifoObserver* fifo_observer_ = nullptr;
 
   VideoFrame frame_;                                // the last frame that has begun; without timing: none
   Readiness readiness_ = Readiness::kNotEvaluated;  // for that frame

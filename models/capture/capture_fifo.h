@@ -55,6 +55,8 @@ class CaptureFifo {
   // Returns the time at which the FIFO requests the bus or the frame finishes; the present if that time has
   // passed. Not to be called while a burst runs.
   std::uint64_t next_ps() const;
+  // The number of words in the FIFO that are complete.
+  int complete_words() const;
   // Whether the frame finishes at next_ps(), without a further request.
   bool finishes_next() const { return occupancy_ == 0 && next_line_ps_ == kNever && takes_no_more(); }
   // To skip lines that repeat:
@@ -95,7 +97,6 @@ class CaptureFifo {
   void remove(int words);
   void begin_line(int row);
   bool takes_no_more() const { return drops_line_ || taken_ == words_per_line_; }
-  int complete_words() const;
   std::uint64_t arrival_ps(int column, int row) const { return begin_ps_ + timing_->pixel_ps(column, row); }
 
   int fifo_words_;

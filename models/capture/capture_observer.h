@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "models/capture/capture_register_file.h"
@@ -21,6 +22,14 @@ class CaptureObserver {
   virtual void capture_ended(const Capture& capture) = 0;
   // The program has cleared the interrupt.
   virtual void interrupt_cleared(std::uint64_t now_ps) = 0;
+};
+
+// Receives the level of a capture board's FIFO, for traces. Plain C++.
+class FifoObserver {
+ public:
+  virtual ~FifoObserver() = default;
+  // The FIFO holds this number of complete words. Called as each burst of the board begins, and as it ends.
+  virtual void fifo_holds(std::uint64_t now_ps, std::size_t words) = 0;
 };
 
 }  // namespace stereotlm::capture

@@ -1,7 +1,9 @@
 #include "models/fpga/conflict_recorder.h"
 
 #include <algorithm>
+#include <map>
 #include <tuple>
+#include <utility>
 
 namespace stereotlm::fpga {
 namespace {
@@ -60,25 +62,32 @@ ConflictRecorder::ConflictRecorder(const CoreConfig& config,
   if (may_refuse) ends_.resize(cycles_up_to_.size());
 }
 
-bool ConflictRecorder::start_frame(std::uint64_t cycle, const CoreControl& control) {
+bool ConflictRecorder::start_frame(std::uint64_t cycle, const CoreControl& control,
+                                   const memory::Arbitration& arbitration) {
   is_recording_ = frames_begun_++ < frames_wanted_;
   if (!is_recording_) return false;
   first_cycle_ = cycle_ = cycle;
   strip_ = group_ = strip_tile_ = 0;
-  for (std::size_t port = 0; port < kCorePortCount; ++port)
+  for (std::size_t port = 0; port < kCorePortCount; ++port) {
     grants_[port] = control.port_cycles(port).granted();
+    frame_.bank_of_port[port] = arbitration.bank_of(port);
+  }
   assumed_ = {};
   served_.clear();
+  frame_.number = frames_begun_ - 1;
+  frame_.first_cycle = cycle;
   frame_.banks = banks_;
   frame_.strips.assign(strips_, {});
   frame_.accesses.assign(strips_ * banks_, {});
+  frame_.stalls.clear();
   return true;
 }
 
-std::uint64_t* ConflictRecorder::first_stalls_of(std::size_t requester, std::size_t bank, std::size_t by) {
-  stalls_.push_back({requester, bank, by, std::vector<std::uint64_t>(tiles())});
+std::size_t ConflictRecorder::first_cause(std::size_t requester, std::size_t bank, std::size_t by) {
+  stalls_.push_back({{requester, bank, by}, std::vector<std::uint64_t>(tiles())});
+  of_strip_.push_back(0);
   indices_[(requester * banks_ + bank) * (kRequesters + 1) + by] = stalls_.size();
-  return stalls_.back().cycles.data();
+  return stalls_.size() - 1;
 }
 
 void ConflictRecorder::step(memory::PortMask requests, memory::PortMask granted,
@@ -87,18 +96,17 @@ void ConflictRecorder::step(memory::PortMask requests, memory::PortMask granted,
     ++host_accesses(strip_, arbitration.bank_of(kHostPort), traffic_);
   for (auto stalled = static_cast<unsigned>(requests & ~granted); stalled != 0; stalled &= stalled - 1) {
     const memory::Port port = memory::lowest_port(static_cast<memory::PortMask>(stalled));
-    const std::size_t requester = requester_of_port(port);
     const std::size_t by = requester_of_port(arbitration.cause_of(port, granted));
-    ++stalls_of(requester, arbitration.bank_of(port), by)[tile()];
-    ++frame_.strips[strip_].stalls[requester];
+    const std::size_t cause = cause_of(requester_of_port(port), arbitration.bank_of(port), by);
+    ++stalls_[cause].cycles[tile()];
+    ++of_strip_[cause];
   }
 }
 
-void ConflictRecorder::end_group(std::uint64_t next_cycle, const CoreControl& control,
-                                 const memory::Arbitration& arbitration) {
+void ConflictRecorder::end_group(std::uint64_t next_cycle, const CoreControl& control) {
   cycle_ = next_cycle;
   end_group_of_strip();
-  if (is_at_strip_end()) end_strip(control, arbitration);
+  if (is_at_strip_end()) end_strip(control);
 }
 
 void ConflictRecorder::add_part(const GroupConflicts& part, const memory::Arbitration& arbitration) {
@@ -149,10 +157,10 @@ void ConflictRecorder::repeat(const GroupConflicts* const* groups, std::size_t s
 void ConflictRecorder::add_stalls(const GroupConflicts& group, std::size_t first, std::size_t count,
                                   std::size_t step, const memory::Arbitration& arbitration) {
   for (const memory::Stall& stall : group.stalls) {
-    const std::size_t requester = requester_of_port(stall.port);
-    const std::size_t by = requester_of_port(stall.by);
-    std::uint64_t* const cycles = stalls_of(requester, arbitration.bank_of(stall.port), by);
-    frame_.strips[strip_].stalls[requester] += stall.cycles * count;
+    const std::size_t cause =
+        cause_of(requester_of_port(stall.port), arbitration.bank_of(stall.port), requester_of_port(stall.by));
+    std::uint64_t* const cycles = stalls_[cause].cycles.data();
+    of_strip_[cause] += stall.cycles * count;
     if (strip_ == 0) {
       cycles[0] += stall.cycles * count;
       continue;
@@ -168,18 +176,18 @@ void ConflictRecorder::add_stalls(const GroupConflicts& group, std::size_t first
   }
 }
 
-void ConflictRecorder::end_strip(const CoreControl& control, const memory::Arbitration& arbitration) {
+void ConflictRecorder::end_strip(const CoreControl& control) {
   if (strip_ + 1 == strips_) return;  // the last strip ends with the frame
   if (strip_ == 0) end_place(0);
   strip_ends_[strip_] = cycle_;
-  count_grants(control, arbitration);
+  count_strip(control);
   ++strip_;
   group_ = 0;
   strip_tile_ = tile_of(strip_);
 }
 
-// Counts the accesses of the core since the end of the strip before.
-void ConflictRecorder::count_grants(const CoreControl& control, const memory::Arbitration& arbitration) {
+// Counts the grants of the core and all stalls since the end of the strip before.
+void ConflictRecorder::count_strip(const CoreControl& control) {
   for (std::size_t port = 0; port < kCorePortCount; ++port) {
     std::uint64_t grants = control.port_cycles(port).granted();
     for (const Side side : kSides) {
@@ -187,8 +195,12 @@ void ConflictRecorder::count_grants(const CoreControl& control, const memory::Ar
       if (assumed != nullptr && port == pixel_port(side))
         grants -= assumed->passes_before(control.lane(side).handled());
     }
-    if (grants != grants_[port]) accesses_of(strip_, arbitration.bank_of(port))[0] += grants - grants_[port];
-    grants_[port] = grants;
+    const std::uint64_t of_strip = grants - std::exchange(grants_[port], grants);
+    frame_.strips[strip_].grants[port] = of_strip;
+    accesses_of(strip_, frame_.bank_of_port[port])[0] += of_strip;
+  }
+  for (std::size_t cause = 0; cause < of_strip_.size(); ++cause) {
+    if (of_strip_[cause] != 0) frame_.stalls.push_back({strip_, cause, std::exchange(of_strip_[cause], 0)});
   }
 }
 
@@ -213,10 +225,9 @@ void ConflictRecorder::add_served(HostTraffic traffic, std::size_t bank, std::ui
   served_.push_back({cycle, cycles, bank, traffic, granted});
 }
 
-void ConflictRecorder::end_frame(std::uint64_t end_cycle, const CoreControl& control,
-                                 const memory::Arbitration& arbitration) {
+void ConflictRecorder::end_frame(std::uint64_t end_cycle, const CoreControl& control) {
   is_recording_ = false;
-  count_grants(control, arbitration);
+  count_strip(control);
   // The last group has ended in cycle_.
   cycles_up_to_.back() += end_cycle - cycle_;
   if (!ends_.empty()) ends_.back() = end_cycle;
@@ -227,16 +238,20 @@ void ConflictRecorder::end_frame(std::uint64_t end_cycle, const CoreControl& con
     begin = strip_ends_[strip];
   }
   count_served();
+  for (const FrameConflicts::Stalls& stalls : frame_.stalls)
+    frame_.strips[stalls.strip].stalls[stalls_[stalls.cause].requester] += stalls.cycles;
+  frame_.causes.assign(stalls_.begin(), stalls_.end());
   ++frames_;
   ended_.push_back(std::move(frame_));
 }
 
-// Distributes the words of uncontended bursts over the strips, and their stalls over the tiles.
+// Distributes the words of uncontended bursts over the strips, and their stalls over the tiles and the strips.
 void ConflictRecorder::count_served() {
   const auto first_behind = [](const std::vector<std::uint64_t>& ends, std::uint64_t cycle) {
     return static_cast<std::size_t>(std::upper_bound(ends.begin(), ends.end(), cycle) - ends.begin());
   };
-  std::size_t strip = 0;  // mostly that of the words before
+  std::map<std::pair<std::size_t, std::size_t>, std::uint64_t> stalls;  // [strip, cause]
+  std::size_t strip = 0;                                                // mostly that of the words before
   for (const Served& served : served_) {
     const std::size_t requester = requester_of(served.traffic);
     const std::uint64_t end = served.cycle + served.cycles;
@@ -250,12 +265,17 @@ void ConflictRecorder::count_served() {
         const std::size_t place = first_behind(ends_, cycle);
         until = std::min(until, ends_[place]);
         const std::size_t tile = tile_of(strip) + place - place_of(strip, 0);
-        stalls_of(requester, served.bank, kTurnaroundToBlame)[tile] += until - cycle;
-        frame_.strips[strip].stalls[requester] += until - cycle;
+        const std::size_t cause = cause_of(requester, served.bank, kTurnaroundToBlame);
+        stalls_[cause].cycles[tile] += until - cycle;
+        stalls[{strip, cause}] += until - cycle;
       }
       cycle = until;
     }
   }
+  if (stalls.empty()) return;
+  for (const FrameConflicts::Stalls& each : frame_.stalls) stalls[{each.strip, each.cause}] += each.cycles;
+  frame_.stalls.clear();
+  for (const auto& [place, cycles] : stalls) frame_.stalls.push_back({place.first, place.second, cycles});
 }
 
 std::vector<std::uint64_t> ConflictRecorder::tile_cycles() const {

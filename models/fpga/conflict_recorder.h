@@ -56,11 +56,19 @@ struct GroupConflicts {
   std::vector<memory::Stall> stalls;
 };
 
+// Who stalls at which bank because of whom.
+struct StallCause {
+  std::size_t requester = 0;
+  std::size_t bank = 0;
+  std::size_t by = 0;  // requester, or kTurnaroundToBlame
+};
+
 // The cycles of a strip of results in one frame: those after the last group of the strip before, up to its own
 // last group.
 struct StripConflicts {
   std::uint64_t cycles = 0;
-  std::array<std::uint64_t, kRequesters> stalls{};  // [requester]
+  std::array<std::uint64_t, kRequesters> stalls{};     // [requester]
+  std::array<std::uint64_t, kCorePortCount> grants{};  // [port]
 };
 
 // One frame. Strip 0 is the fill: the cycles before the first group with results. The last strip has the
@@ -69,10 +77,20 @@ struct FrameConflicts {
   // Accesses of a bank: those of the core, then those of each HostTraffic.
   static constexpr std::size_t kAccessKinds = 1 + kHostTraffics;
   using BankAccesses = std::array<std::uint64_t, kAccessKinds>;
+  struct Stalls {
+    std::size_t strip = 0;
+    std::size_t cause = 0;  // index in `causes`
+    std::uint64_t cycles = 0;
+  };
 
+  std::uint64_t number = 0;       // of the frame, among those of the core
+  std::uint64_t first_cycle = 0;  // since power-up
   std::vector<StripConflicts> strips;
+  std::array<std::size_t, kCorePortCount> bank_of_port{};  // without meaning for a port that does not exist
   std::size_t banks = 0;
   std::vector<BankAccesses> accesses;  // [strip * banks + bank]
+  std::vector<StallCause> causes;      // of all frames up to this one
+  std::vector<Stalls> stalls;          // by strip, then by cause; no zeros
 };
 
 // Records where in the picture, and when in a frame, the ports stall: the cycles of each frame are divided by
@@ -98,15 +116,14 @@ class ConflictRecorder {
   void record_only(std::uint64_t frames) { frames_wanted_ = frames; }
 
   // For FrameRun. A frame whose start returns false is not recorded: nothing else may be called for it.
-  bool start_frame(std::uint64_t cycle, const CoreControl& control);
-  void end_frame(std::uint64_t end_cycle, const CoreControl& control, const memory::Arbitration& arbitration);
+  bool start_frame(std::uint64_t cycle, const CoreControl& control, const memory::Arbitration& arbitration);
+  void end_frame(std::uint64_t end_cycle, const CoreControl& control);
 
   // For CoreStepper: these ports requested and were granted in a cycle. May be left out for a cycle in which
   // the host was not granted and nobody was refused.
   void step(memory::PortMask requests, memory::PortMask granted, const memory::Arbitration& arbitration);
   // The group has been completed in the cycle before `next_cycle`.
-  void end_group(std::uint64_t next_cycle, const CoreControl& control,
-                 const memory::Arbitration& arbitration);
+  void end_group(std::uint64_t next_cycle, const CoreControl& control);
 
   // For FastForward, which skips groups and parts of groups, from this cycle on.
   void skip_from(std::uint64_t cycle) { cycle_ = cycle; }
@@ -122,7 +139,7 @@ class ConflictRecorder {
   void repeat(const GroupConflicts* const* groups, std::size_t size, std::uint64_t times,
               const memory::Arbitration& arbitration);
   bool is_at_strip_end() const { return group_ == (strip_ == 0 ? groups_of_fill_ : groups_of_strip_); }
-  void end_strip(const CoreControl& control, const memory::Arbitration& arbitration);
+  void end_strip(const CoreControl& control);
   // [side]: the passes of the pixel port are counted as grants until this is called with null.
   void assume_accesses(const std::array<const AccessPattern*, 2>& assumed) { assumed_ = assumed; }
 
@@ -134,6 +151,15 @@ class ConflictRecorder {
   void add_served(HostTraffic traffic, std::size_t bank, std::uint64_t cycle, std::uint64_t cycles,
                   bool granted);
 
+  // Of a port, or of ArbiterStats::kTurnaround.
+  std::size_t requester_of_port(std::size_t port) const {
+    if (port == memory::ArbiterStats::kTurnaround) return kTurnaroundToBlame;
+    return port == kHostPort ? requester_of(traffic_) : port;
+  }
+  HostTraffic host_traffic() const { return traffic_; }
+  // The strip of the running frame to which the next cycle belongs.
+  std::size_t strip() const { return strip_; }
+
   // The frames that have ended since the last call. They fill memory until they are taken.
   std::vector<FrameConflicts> take_frames() { return std::exchange(ended_, {}); }
 
@@ -143,11 +169,8 @@ class ConflictRecorder {
   const TileGrid& grid() const { return grid_; }
   // [tile]: [0] is the fill; then the tiles, row by row.
   std::vector<std::uint64_t> tile_cycles() const;
-  // The stall cycles of one requester at one bank, because of one other.
-  struct Stalls {
-    std::size_t requester = 0;
-    std::size_t bank = 0;
-    std::size_t by = 0;                 // requester, or kTurnaroundToBlame
+  // The stall cycles of one cause.
+  struct Stalls : StallCause {
     std::vector<std::uint64_t> cycles;  // [tile]
   };
   // Those that have occurred, by requester, bank and `by`.
@@ -162,11 +185,6 @@ class ConflictRecorder {
     bool granted;
   };
 
-  // Of a port, or of ArbiterStats::kTurnaround.
-  std::size_t requester_of_port(std::size_t port) const {
-    if (port == memory::ArbiterStats::kTurnaround) return kTurnaroundToBlame;
-    return port == kHostPort ? requester_of(traffic_) : port;
-  }
   // The first tile of a strip.
   std::size_t tile_of(std::size_t strip) const {
     return strip == 0 ? 0 : 1 + (strip - 1) / grid_.strips_of_tile * grid_.columns;
@@ -179,12 +197,12 @@ class ConflictRecorder {
   std::size_t place_of(std::size_t strip, std::size_t group) const {
     return strip == 0 ? 0 : 1 + (strip - 1) * grid_.columns + (group >> group_shift_);
   }
-  // [tile]
-  std::uint64_t* stalls_of(std::size_t requester, std::size_t bank, std::size_t by) {
+  // The index in stalls_.
+  std::size_t cause_of(std::size_t requester, std::size_t bank, std::size_t by) {
     const std::size_t index = indices_[(requester * banks_ + bank) * (kRequesters + 1) + by];
-    return index != 0 ? stalls_[index - 1].cycles.data() : first_stalls_of(requester, bank, by);
+    return index != 0 ? index - 1 : first_cause(requester, bank, by);
   }
-  std::uint64_t* first_stalls_of(std::size_t requester, std::size_t bank, std::size_t by);
+  std::size_t first_cause(std::size_t requester, std::size_t bank, std::size_t by);
   FrameConflicts::BankAccesses& accesses_of(std::size_t strip, std::size_t bank) {
     return frame_.accesses[strip * banks_ + bank];
   }
@@ -195,7 +213,7 @@ class ConflictRecorder {
                         const memory::Arbitration& arbitration);
   void add_stalls(const GroupConflicts& group, std::size_t first, std::size_t count, std::size_t step,
                   const memory::Arbitration& arbitration);
-  void count_grants(const CoreControl& control, const memory::Arbitration& arbitration);
+  void count_strip(const CoreControl& control);
   std::size_t tiles() const { return 1 + grid_.columns * grid_.rows; }
   // The group ends before cycle_.
   void end_group_of_strip() {
@@ -243,8 +261,9 @@ class ConflictRecorder {
   // [place_of()]: cycles of the frames up to the end of the part of a tile in its strip. Sums, because one
   // addition for each group and frame is the main cost of recording.
   std::vector<std::uint64_t> cycles_up_to_;
-  std::vector<Stalls> stalls_;        // in the order of their first cycles
-  std::vector<std::size_t> indices_;  // [requester][bank][by]: 1 + the index in stalls_; 0: none yet
+  std::vector<Stalls> stalls_;           // in the order of their first cycles
+  std::vector<std::uint64_t> of_strip_;  // [index in stalls_]: cycles in the strip of the next group
+  std::vector<std::size_t> indices_;     // [requester][bank][by]: 1 + the index in stalls_; 0: none yet
 };
 
 }  // namespace stereotlm::fpga

@@ -5,6 +5,7 @@
 #include "models/fpga/conflict_recorder.h"
 #include "models/fpga/core_config.h"
 #include "models/fpga/core_control.h"
+#include "models/fpga/cycle_recorder.h"
 #include "models/fpga/row_recorder.h"
 #include "models/memory/arbitration.h"
 
@@ -33,12 +34,13 @@ class CoreStepper {
     const PortMask host = host_requests ? memory::mask_of(kHostPort) : PortMask{0};
     const auto requests = static_cast<PortMask>(decision.requests() | host);
     const PortMask granted = arbitration_.arbitrate(cycle, requests);
+    if (cycles_ != nullptr) cycles_->step(cycle, decision, host_requests, granted, control_, arbitration_);
     completed_group_ = control_.commit(decision, granted, move(decision, granted));
     control_.count_host(host_requests, (granted & host) != 0);
     if (control_.result().words_written() == rows_.next_words()) rows_.note(cycle, control_);
     if (conflicts_ != nullptr) {
       if (requests != granted || (granted & host) != 0) conflicts_->step(requests, granted, arbitration_);
-      if (completed_group_) conflicts_->end_group(cycle + 1, control_, arbitration_);
+      if (completed_group_) conflicts_->end_group(cycle + 1, control_);
     }
     return granted;
   }
@@ -52,6 +54,8 @@ class CoreStepper {
   // The recorder of the running frame; null if it is not recorded.
   void record(ConflictRecorder* conflicts) { conflicts_ = conflicts; }
   ConflictRecorder* conflicts() const { return conflicts_; }
+  // Told about each cycle; null: nobody.
+  void record(CycleRecorder* cycles) { cycles_ = cycles; }
   memory::Arbitration& arbitration() { return arbitration_; }
   const memory::Arbitration& arbitration() const { return arbitration_; }
 
@@ -60,6 +64,7 @@ class CoreStepper {
   RowRecorder rows_;
   memory::Arbitration& arbitration_;
   ConflictRecorder* conflicts_ = nullptr;
+  CycleRecorder* cycles_ = nullptr;
   bool completed_group_ = false;
 };
 

@@ -353,7 +353,7 @@ bool FastForward::hand_over(ConflictRecorder& conflicts, std::uint64_t cycle, st
   if (!conflicts.is_at_strip_end()) return false;
   sequence_.reset();
   catch_up(cycle);
-  conflicts.end_strip(control(), stepper_.arbitration());
+  conflicts.end_strip(control());
   return true;
 }
 

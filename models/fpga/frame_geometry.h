@@ -67,6 +67,17 @@ struct FrameGeometry {
   int first_row_of(int strip) const { return first_row + strip * rows; }
   // Whether a row lies inside the image. A slot outside it makes no access, but takes its turn.
   bool is_inside(int row) const { return is_row_of_image(row, height); }
+  // The place of a word of results in the buffer. Words are counted in the order in which they leave: a group
+  // of four columns has a word for each row of its strip that lies inside the image.
+  std::uint64_t place_of_result_word(std::uint64_t word) const {
+    const std::uint64_t words_of_row = columns_per_strip() / 4;
+    const auto rows_of_strip = static_cast<std::uint64_t>(rows);
+    const std::uint64_t strip_row = word / (words_of_row * rows_of_strip) * rows_of_strip;
+    const auto rows_inside = static_cast<std::uint64_t>(
+        strip_row + rows_of_strip <= static_cast<std::uint64_t>(height) ? rows : last_rows);
+    const std::uint64_t in_strip = word - strip_row * words_of_row;
+    return (strip_row + in_strip % rows_inside) * words_of_row + in_strip / rows_inside;
+  }
   std::uint64_t columns_per_strip() const { return static_cast<std::uint64_t>(width); }
 };
 

@@ -33,8 +33,27 @@ void FrameRun::begin(std::uint64_t cycle, const FrameBases& bases) {
   watchdog_.start_frame(cycle_, control().work());
   stepper_.start_frame(route_ports(bases));
   stepper_.arbitration().begin_counting(first_cycle_);
-  const bool is_recorded = conflicts_ != nullptr && conflicts_->start_frame(first_cycle_, control());
+  is_settled_ = false;
+  const bool is_recorded =
+      conflicts_ != nullptr && conflicts_->start_frame(first_cycle_, control(), stepper_.arbitration());
   stepper_.record(is_recorded ? conflicts_ : nullptr);
+  if (cycles_ != nullptr && is_recorded) cycles_->start_frame(frame_cycles_.size(), first_cycle_, bases);
+  stepper_.record(is_recorded ? cycles_ : nullptr);
+}
+
+// As run_ahead(), but steps the cycles that CycleRecorder needs.
+void FrameRun::run_ahead_recorded(std::uint64_t end) {
+  while (cycle_ < end && !control().frame_done()) {
+    const std::uint64_t stepped = is_recorded() ? cycles_->next_stepped(cycle_) : UINT64_MAX;
+    if (stepped != cycle_) {
+      cycle_ = fast_forward_.run_ahead(cycle_, std::min(end, stepped));
+      is_settled_ = false;
+      continue;
+    }
+    if (!is_settled_) fast_forward_.settle(cycle_);
+    is_settled_ = true;
+    step(false);
+  }
 }
 
 FrameLatencies FrameRun::route_ports(const FrameBases& bases) {
@@ -69,17 +88,17 @@ void FrameRun::finish() {
   fast_forward_.settle(cycle_);
   stepper_.arbitration().end_counting(cycle_);
   if (stepper_.conflicts() == nullptr) return;
-  conflicts_->end_frame(cycle_, control(), stepper_.arbitration());
-  stepper_.record(nullptr);
+  conflicts_->end_frame(cycle_, control());
+  if (cycles_ != nullptr) cycles_->end_frame(cycle_);
+  stepper_.record(static_cast<ConflictRecorder*>(nullptr));
 }
 
 void FrameRun::end() {
   state_ = State::kIdle;
   frame_cycles_.push_back(done_cycle_ - first_cycle_);
-  if (observer_ != nullptr) {
-    const auto pipeline = static_cast<std::uint64_t>(config_.pipeline_latency_cycles);
-    observer_->frame_ended({strobe_ps_, first_cycle_, done_cycle_ - pipeline, done_cycle_, writes()});
-  }
+  const auto pipeline = static_cast<std::uint64_t>(config_.pipeline_latency_cycles);
+  for (FrameObserver* const observer : observers_)
+    observer->frame_ended({strobe_ps_, first_cycle_, done_cycle_ - pipeline, done_cycle_, writes()});
   if (stepper_.rows().is_on()) row_profiles_.push_back(stepper_.rows().profile(first_cycle_));
 }
 

@@ -9,6 +9,7 @@
 #include "models/fpga/conflict_recorder.h"
 #include "models/fpga/core_ports.h"
 #include "models/fpga/core_stepper.h"
+#include "models/fpga/cycle_recorder.h"
 #include "models/fpga/fast_forward.h"
 #include "models/fpga/frame_observer.h"
 #include "models/fpga/row_profile.h"
@@ -28,12 +29,13 @@ class FrameRun {
            memory::Arbitration& arbitration, std::uint64_t stall_timeout_cycles,
            std::size_t most_groups = TransitionCache::kMost);
 
-  // `observer` outlives this object. Whoever observes frames names the strobe of each, by strobe().
-  void observe(FrameObserver& observer) { observer_ = &observer; }
+  // Adds an observer, which outlives this object. Whoever observes frames names the strobe of each, by
+  // strobe().
+  void observe(FrameObserver& observer) { observers_.push_back(&observer); }
   // To be called after a frame is started.
   void strobe(std::uint64_t time_ps) {
     strobe_ps_ = time_ps;
-    if (observer_ != nullptr) observer_->frame_begun(time_ps);
+    for (FrameObserver* const observer : observers_) observer->frame_begun(time_ps);
   }
 
   // Whether the bank in the value of a base register exists.
@@ -55,7 +57,13 @@ class FrameRun {
   // Runs cycle() of a direct frame.
   memory::PortMask step(bool host_requests) { return fast_forward_.step(cycle_++, host_requests); }
   // Runs the cycles of a direct frame up to `end`, `end` not included, or until the frame is done.
-  void run_ahead(std::uint64_t end) { cycle_ = fast_forward_.run_ahead(cycle_, end); }
+  void run_ahead(std::uint64_t end) {
+    if (cycles_ == nullptr) {
+      cycle_ = fast_forward_.run_ahead(cycle_, end);
+    } else {
+      run_ahead_recorded(end);
+    }
+  }
   // Makes `cycle` the next cycle to run. To be called only while no frame runs.
   void skip_to(std::uint64_t cycle) { cycle_ = cycle; }
   // Serves words of the host in a direct frame, see FastForward.
@@ -106,6 +114,14 @@ class FrameRun {
   // Records all frames from the next one on. `conflicts` outlives this object.
   void record(ConflictRecorder& conflicts) { conflicts_ = &conflicts; }
   ConflictRecorder* conflicts() { return conflicts_; }
+  // Records the cycles of a window, of all frames from the next one on. record(ConflictRecorder&) must have
+  // been called. `cycles` outlives this object.
+  void record(CycleRecorder& cycles) { cycles_ = &cycles; }
+  CycleRecorder* cycles() { return cycles_; }
+  // Whether a cycle of the running frame before `end` must be stepped.
+  bool must_step_before(std::uint64_t end) const {
+    return cycles_ != nullptr && cycles_->next_stepped(cycle_) < end;
+  }
   // Whether a frame is running that is recorded.
   bool is_recorded() const { return stepper_.conflicts() != nullptr; }
 
@@ -115,6 +131,7 @@ class FrameRun {
   FrameLatencies route_ports(const FrameBases& bases);
   std::uint64_t index_of_routes(const FrameBases& bases);
   void begin(std::uint64_t cycle, const FrameBases& bases);
+  void run_ahead_recorded(std::uint64_t end);
   std::uint64_t all_writes() const { return control().port_cycles(kResultPort).granted(); }
 
   CoreConfig config_;
@@ -129,8 +146,10 @@ class FrameRun {
   std::uint64_t first_cycle_ = 0;
   std::uint64_t done_cycle_ = 0;
   std::uint64_t strobe_ps_ = 0;
-  FrameObserver* observer_ = nullptr;
+  std::vector<FrameObserver*> observers_;
   ConflictRecorder* conflicts_ = nullptr;
+  CycleRecorder* cycles_ = nullptr;
+  bool is_settled_ = false;          // run_ahead_recorded() has settled fast_forward_
   std::uint64_t writes_before_ = 0;  // words written before the frame that was started last
   std::vector<std::uint64_t> frame_cycles_;
   std::vector<RowProfile> row_profiles_;  // not yet taken

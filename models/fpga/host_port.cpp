@@ -36,6 +36,11 @@ bool HostPort::access(std::uint64_t cycle, std::uint64_t edge_ps) {
   return !bus_.word_waits();
 }
 
+CycleRecorder::HostWord HostPort::next_word() const {
+  return {*burst_.bank, burst_.write, words_left().first - memory::crossbar_address(*burst_.bank, 0),
+          traffic()};
+}
+
 bool HostPort::is_contended() const { return is_contended(*burst_.bank); }
 
 bool HostPort::is_contended(std::size_t bank) const {
@@ -45,7 +50,9 @@ bool HostPort::is_contended(std::size_t bank) const {
 void HostPort::serve_contended() {
   const std::uint64_t first = clock_.edge_at_or_after(bus_.request_ps());
   move_burst();
-  if (is_joined_ || !is_moved_ || !is_in_step_ || !frames_.expects_known_burst(burst_.write)) {
+  if (is_joined_ || !is_moved_ || !is_in_step_ ||
+      frames_.must_step_before(std::max(frames_.cycle(), first) + FastForward::kMostHostCycles) ||
+      !frames_.expects_known_burst(burst_.write)) {
     step_contended(first);
     return;
   }
@@ -97,6 +104,7 @@ std::optional<std::uint64_t> HostPort::serve_uncontended(std::uint64_t horizon_p
     }
     const memory::BankArbiter::Outcome outcome = decide(cycle);
     served_.push_back({cycle, 1, outcome});
+    record_served(cycle, 1, arbitration_.grants(bank, outcome));
     if (arbitration_.grants(bank, outcome)) serve_word(cycle, edge_ps);
     ++cycle;
   }
@@ -138,6 +146,7 @@ void HostPort::serve_in_step(std::uint64_t first_cycle) {
   const std::uint64_t first = std::max(first_cycle, bus_.request_clock());
   const std::size_t words = bus_.words_left();
   served_.push_back({first, words, decide(first)});
+  record_served(first, words, true);
   const std::uint64_t last = first + words - 1;
   bus_.count_granted(words, clock_.edge_ps(last), usable_ps(last));
 }

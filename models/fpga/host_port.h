@@ -19,7 +19,7 @@ namespace stereotlm::fpga {
 // A burst is contended if it goes to a bank of the running frame: then each word is arbitrated in its cycle.
 // An uncontended burst is served independently of the frame. Its words are counted later, when it is known
 // whether their cycles belong to the frame. Plain C++.
-class HostPort {
+class HostPort : private CycleRecorder::Host {
  public:
   // All of these outlive this object.
   HostPort(LocalBusControl& bus, memory::DirectBanks& banks, memory::Arbitration& arbitration,
@@ -57,6 +57,15 @@ class HostPort {
   // later time, or the end of the finishing frame, which must be ended first. Returns nothing if no word waits
   // any more.
   std::optional<std::uint64_t> serve_uncontended(std::uint64_t horizon_ps);
+  // Names the words of the bursts to `cycles`, and tells it what is decided on words beside the frame.
+  void record(CycleRecorder& cycles) {
+    frames_.record(cycles);
+    cycles.set_host(*this);
+  }
+  // To be called for each cycle in which the host requests while no frame runs, if serve_uncontended() is not
+  // called.
+  void record_cycle(std::uint64_t cycle, bool granted) { record_served(cycle, 1, granted); }
+
   // Serves an uncontended burst that has just begun, if no frame can start within it.
   void serve_new_burst();
 
@@ -91,6 +100,10 @@ class HostPort {
     memory::BankArbiter::Outcome outcome;
   };
 
+  CycleRecorder::HostWord next_word() const override;
+  void record_served(std::uint64_t cycle, std::uint64_t cycles, bool granted) {
+    if (frames_.cycles() != nullptr) frames_.cycles()->served(next_word(), cycle, cycles, granted);
+  }
   bool is_contended(std::size_t bank) const;
   void move_burst();
   void step_contended(std::uint64_t first_cycle);

@@ -115,6 +115,8 @@ class LaneControl {
     next_slot_.advance(taken_ - taken_before);
   }
 
+  // The number of slots in the lane.
+  std::uint64_t slots() const { return taken_ - consumed_; }
   // The number of slots of the frame that the lane has taken, and the number that the pixel port has handled.
   std::uint64_t taken() const { return taken_; }
   std::uint64_t handled() const { return handled_; }

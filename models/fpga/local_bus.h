@@ -51,6 +51,8 @@ class LocalBus : public sc_core::sc_module,
   // Throws std::invalid_argument if the clock or the number of banks is out of range.
   LocalBus(const sc_core::sc_module_name& name, const LocalBusConfig& config, std::size_t banks);
 
+  // See LocalBusControl.
+  void observe(LocalBusObserver& observer) { control_.observe(observer); }
   LocalBusControl& control() { return control_; }
   bool word_waits() const { return control_.word_waits(); }
   std::uint64_t request_ps() const { return control_.request_ps(); }

@@ -134,7 +134,13 @@ void LocalBusControl::refuse_word() {
 void LocalBusControl::end(std::uint64_t idle_clock) {
   idle_clock_ = idle_clock;
   free_ps_ = clock_.edge_ps(idle_clock_ + 1);
+  if (observer_ != nullptr) report();
   master_->end_burst_at(free_ps_, ok_);
+}
+
+void LocalBusControl::report() const {
+  observer_->local_burst_ended({burst_.write, burst_.address, burst_.words, clock_.edge_ps(address_clock_),
+                                clock_.edge_ps(address_clock_ + 1), clock_.edge_ps(idle_clock_), free_ps_});
 }
 
 void LocalBusControl::skip_bursts(std::uint64_t bursts, std::uint64_t busy_clocks, std::uint64_t idle_clock) {

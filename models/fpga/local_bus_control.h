@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "models/clock.h"
+#include "models/fpga/local_bus_observer.h"
 #include "models/local_burst.h"
 #include "models/time_ps.h"
 #include "models/words_by_range.h"
@@ -74,6 +75,8 @@ class LocalBusControl final : public LocalBusIf {
   LocalBusControl(const LocalBusConfig& config, std::size_t banks, Core& core);
   // The master of the bus, which outlives this object. To be called before the first burst.
   void bind(LocalBusMasterIf& master) { master_ = &master; }
+  // `observer` outlives this object.
+  void observe(LocalBusObserver& observer) { observer_ = &observer; }
 
   bool begin_burst(std::uint64_t now_ps, const LocalBurst& burst) override;
   // Why begin_burst() refuses the burst.
@@ -134,11 +137,14 @@ class LocalBusControl final : public LocalBusIf {
   void advance(std::size_t words, std::uint64_t grant_ps, std::uint64_t usable_ps);
   void refuse_word();
   void end(std::uint64_t idle_clock);
+  // Without an observer it costs nothing beside the branch around it.
+  [[gnu::cold, gnu::noinline]] void report() const;
 
   Clock clock_;
   std::size_t banks_;
   Core& core_;
   LocalBusMasterIf* master_ = nullptr;
+  LocalBusObserver* observer_ = nullptr;
   LocalBurst burst_;                 // the last burst
   bool ok_ = true;                   // no word of it was refused
   std::size_t next_word_ = 0;        // of the burst

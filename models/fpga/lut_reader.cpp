@@ -1,5 +1,6 @@
 #include "models/fpga/lut_reader.h"
 
+#include "models/fpga/buffer_words.h"
 #include "models/kernels/rectification_table.h"
 #include "models/memory/direct_memory.h"
 
@@ -17,7 +18,7 @@ void LutReader::take(const Slot& slot) {
   const std::uint64_t pixel =
       static_cast<std::uint64_t>(slot.row) * width_ + static_cast<std::uint64_t>(slot.column);
   sc_core::sc_time delay = slot.at;
-  if (!access_.read(table_address_ + pixel * 4, delay)) ++stats_.errors;
+  if (!access_.read(table_address_ + entry_offset(pixel), delay)) ++stats_.errors;
   ++stats_.reads;
   const std::uint32_t word = access_.word();
   TableEntry left{word};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "models/fpga/buffer_words.h"
 #include "models/kernels/rectification_table.h"
 #include "models/kernels/words.h"
 #include "models/memory/direct_memory.h"
@@ -71,7 +72,7 @@ void PixelReader::deliver(std::uint64_t pixel, bool needs_access, const sc_core:
   std::uint32_t& word = words_[has_cache_ ? pixels_stored_ % slots_per_column_ : 0];
   if (needs_access) {
     sc_core::sc_time delay = at;
-    if (!access_.read(image_address_ + pixel / kernels::kPixelsPerWord * 4, delay)) ++stats_.errors;
+    if (!access_.read(image_address_ + pixel_word_offset(pixel), delay)) ++stats_.errors;
     ++stats_.reads;
     word = access_.word();
   } else {

@@ -42,6 +42,8 @@ class ResultControl {
     written_ += words;
   }
 
+  // The number of words in the queue.
+  int queued() const { return queued_; }
   // Numbers of words of the frame.
   std::uint64_t words_written() const { return written_; }
   std::uint64_t words_left() const { return words_per_frame_ - written_; }

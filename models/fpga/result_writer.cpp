@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "models/fpga/buffer_words.h"
 #include "models/memory/direct_memory.h"
 
 namespace stereotlm::fpga {
@@ -32,7 +33,7 @@ void ResultWriter::write(const sc_core::sc_time& at) {
   }
   sc_core::sc_time delay = at;
   const ResultWord& word = words_[written_++ % kRing];
-  if (!access_.write(disparity_address_ + 4 * word.place, word.word, delay)) ++stats_.errors;
+  if (!access_.write(disparity_address_ + result_word_offset(word.place), word.word, delay)) ++stats_.errors;
   ++stats_.writes;
 }
 

@@ -205,6 +205,7 @@ bool StereoCore::step(std::uint64_t edge_ps, const sc_core::sc_time& at) {
     if (control().frame_done()) finish_frame();
   } else {
     granted = crossbar_.arbitrate(cycle, host_requests ? memory::mask_of(kHostPort) : PortMask{0});
+    if (host_requests) host_port_.record_cycle(cycle, has_host(granted));
     frames_.skip_to(cycle + 1);
   }
   if (has_host(granted) && !host_is_served) serve_host();

@@ -77,9 +77,12 @@ class StereoCore : public sc_core::sc_module, private FastCore::Board {
   // Frames that were stepped cycle by cycle, at any fidelity.
   std::uint64_t stepped_frames() const { return stepped_frames_; }
 
+  // See LocalBusControl.
+  void observe(LocalBusObserver& observer) { local_bus_.observe(observer); }
   // See FrameRun.
   void observe(FrameObserver& observer) { frames_.observe(observer); }
   void record(ConflictRecorder& conflicts) { frames_.record(conflicts); }
+  void record(CycleRecorder& cycles) { host_port_.record(cycles); }
   void record_rows() { frames_.record_rows(); }
   std::vector<RowProfile> take_rows() { return frames_.take_rows(); }
   // Text for messages: what the ports wait for.

@@ -50,7 +50,7 @@ bool BridgeControl::write(std::uint64_t now_ps, std::uint64_t offset, const unsi
   }
   stats_.posted_words += words;
   stats_.most_posted_words = std::max<std::uint64_t>(stats_.most_posted_words, local_bus_.posted().words());
-  local_bus_.send_posted(now_ps);
+  local_bus_.send_posted(now_ps, words);
   return true;
 }
 
@@ -126,7 +126,7 @@ void BridgeControl::skip_dma(std::uint64_t now_ps, DmaChannel& channel, std::siz
     words_taken_.add(to.address + 4 * to.words.size(), words);  // those of the first burst are counted
   }
   channel.skip_bursts(bursts);
-  local_bus_.begin_at(now_ps);
+  local_bus_.start_at(now_ps, channel.on_local_bus());
   slot_.request(*this, now_ps);
 }
 

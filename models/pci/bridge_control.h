@@ -52,6 +52,7 @@ class BridgeControl final : public PciMasterIf, private LocalBusMaster::Listener
 
   // `observer` outlives the bridge.
   void observe(BridgeObserver& observer);
+  void observe(LocalBusMasterObserver& observer) { local_bus_.observe(observer); }
 
   // The receiver of the local bus's answers.
   LocalBusMaster& local_bus_master() { return local_bus_; }

@@ -22,7 +22,8 @@ std::size_t LocalBusMaster::free_places(std::uint64_t now_ps) const {
   return posted_.places() - (posted_.words() - sent);
 }
 
-void LocalBusMaster::send_posted(std::uint64_t now_ps) {
+void LocalBusMaster::send_posted(std::uint64_t now_ps, std::size_t words) {
+  if (observer_ != nullptr) observer_->words_posted(now_ps, words);
   if (busy_) {
     plan();
   } else {
@@ -40,11 +41,17 @@ void LocalBusMaster::start(std::uint64_t now_ps, BridgeTransfer& transfer) {
   settle(now_ps);
   transfer.under_way = true;
   transfer.failed = false;
+  if (observer_ != nullptr) report_start(now_ps, transfer);
   if (busy_) {
     plan();
   } else {
     next_ps_ = now_ps;  // other transfers may start at this time, before the bus chooses
   }
+}
+
+void LocalBusMaster::start_at(std::uint64_t now_ps, const BridgeTransfer& transfer) {
+  if (observer_ != nullptr) report_start(now_ps, transfer);
+  next_ps_ = now_ps;
 }
 
 void LocalBusMaster::step(std::uint64_t now_ps) {
@@ -94,12 +101,32 @@ void LocalBusMaster::begin(std::uint64_t now_ps, BridgeTransfer* transfer, const
   ok_ = true;
   end_ps_ = kNever;
   next_ps_ = kNever;
+  if (observer_ != nullptr) report_begin(now_ps, burst.words);
   if (!bus_.begin_burst(now_ps, burst)) end_burst_at(now_ps, false);
+}
+
+void LocalBusMaster::report_start(std::uint64_t now_ps, const BridgeTransfer& transfer) const {
+  observer_->transfer_waits(now_ps, source_of(transfer));
+}
+
+void LocalBusMaster::report_begin(std::uint64_t now_ps, std::size_t words) const {
+  observer_->burst_begins(now_ps, running_ == nullptr ? LocalBusSource::kPosted : source_of(*running_),
+                          words);
+}
+
+void LocalBusMaster::report_end() const {
+  if (running_ == nullptr) observer_->posted_words_leave(end_ps_, posted_.words_being_sent());
+}
+
+LocalBusSource LocalBusMaster::source_of(const BridgeTransfer& transfer) const {
+  if (&transfer == &read_) return LocalBusSource::kRead;
+  return transfer.channel->number() == 0 ? LocalBusSource::kDma0 : LocalBusSource::kDma1;
 }
 
 void LocalBusMaster::end_burst_at(std::uint64_t end_ps, bool ok) {
   end_ps_ = end_ps;
   ok_ = ok;
+  if (observer_ != nullptr) report_end();
   plan();
 }
 

@@ -5,6 +5,7 @@
 
 #include "models/local_burst.h"
 #include "models/pci/dma_channel.h"
+#include "models/pci/local_bus_master_observer.h"
 #include "models/pci/pci_config.h"
 #include "models/pci/posted_writes.h"
 #include "models/time_ps.h"
@@ -31,6 +32,9 @@ class LocalBusMaster final : public LocalBusMasterIf {
   // `config` must have no problems. `channels`, `bus` and `listener` outlive the master.
   LocalBusMaster(const PciBridgeConfig& config, DmaChannels& channels, LocalBusIf& bus, Listener& listener);
 
+  // `observer` outlives the master.
+  void observe(LocalBusMasterObserver& observer) { observer_ = &observer; }
+
   const PostedWrites& posted() const { return posted_; }
   // The number of words that can be posted now.
   std::size_t free_places(std::uint64_t now_ps) const;
@@ -39,8 +43,8 @@ class LocalBusMaster final : public LocalBusMasterIf {
   void post(std::uint64_t address, const void* words, std::size_t count) {
     posted_.push(address, words, count);
   }
-  // Starts to send the posted writes, immediately if the bus is free.
-  void send_posted(std::uint64_t now_ps);
+  // `words` words have been posted. Starts to send them, immediately if the bus is free.
+  void send_posted(std::uint64_t now_ps, std::size_t words);
 
   // Reads words after all writes posted before. To be called if no other read is under way.
   void read(std::uint64_t now_ps, std::uint64_t address, std::size_t count);
@@ -60,8 +64,8 @@ class LocalBusMaster final : public LocalBusMasterIf {
   void set_turn(std::size_t turn) { turn_ = turn; }
   // Whether no burst runs, and this transfer alone waits.
   bool is_to_begin_only(const BridgeTransfer& transfer) const;
-  // Moves the time at which the next burst begins.
-  void begin_at(std::uint64_t now_ps) { next_ps_ = now_ps; }
+  // Moves the time at which this transfer starts, which alone waits.
+  void start_at(std::uint64_t now_ps, const BridgeTransfer& transfer);
 
   // If the end of the running burst has come, ends the burst and begins the next one.
   void settle(std::uint64_t now_ps) {
@@ -79,6 +83,11 @@ class LocalBusMaster final : public LocalBusMasterIf {
   bool serve(std::uint64_t now_ps);
   bool serve(std::uint64_t now_ps, BridgeTransfer& transfer);
   void begin(std::uint64_t now_ps, BridgeTransfer* transfer, const LocalBurst& burst);
+  // Without an observer these cost nothing beside the branches around them.
+  [[gnu::cold, gnu::noinline]] void report_start(std::uint64_t now_ps, const BridgeTransfer& transfer) const;
+  [[gnu::cold, gnu::noinline]] void report_begin(std::uint64_t now_ps, std::size_t words) const;
+  [[gnu::cold, gnu::noinline]] void report_end() const;
+  LocalBusSource source_of(const BridgeTransfer& transfer) const;
   void end(std::uint64_t now_ps);
   void plan();
   bool end_is_awaited() const;
@@ -88,6 +97,7 @@ class LocalBusMaster final : public LocalBusMasterIf {
   DmaChannels& channels_;
   LocalBusIf& bus_;
   Listener& listener_;
+  LocalBusMasterObserver* observer_ = nullptr;
   PostedWrites posted_;
   BridgeTransfer read_;  // the read of the slave window
 

@@ -49,6 +49,7 @@ class PciBridge : public sc_core::sc_module,
 
   // See BridgeControl.
   void observe(BridgeObserver& observer) { control_.observe(observer); }
+  void observe(LocalBusMasterObserver& observer) { control_.observe(observer); }
   const Stats& stats() const { return control_.stats(); }
   const WordsByRange& words_taken() const { return control_.words_taken(); }
   WordsByRange words_held() const { return control_.words_held(); }

@@ -119,7 +119,7 @@ void PciBusControl::decide(std::uint64_t now_ps) {
     const PciBurst burst = request.from->begin_burst(now_ps);
     if (burst.words == nullptr || burst.words->empty()) continue;
     master_stats_[master].wait_clocks += clock - request_clock;
-    begin(now_ps, master, burst, clock);
+    begin(now_ps, master, burst, request_clock, clock);
     return;
   }
   state_ = State::kFree;
@@ -127,9 +127,9 @@ void PciBusControl::decide(std::uint64_t now_ps) {
 }
 
 void PciBusControl::begin(std::uint64_t now_ps, std::size_t master, const PciBurst& burst,
-                          std::uint64_t clock) {
+                          std::uint64_t request_clock, std::uint64_t clock) {
   burst_runs_ = true;
-  running_ = {master, burst, window_of(burst), burst.words->size(), clock, 0, {}};
+  running_ = {master, burst, window_of(burst), burst.words->size(), request_clock, clock, 0, {}};
   if (running_.window == nullptr) {
     const std::uint64_t end_clock = clock + 1 + kDevselClocks;
     end_at(end_clock, {BurstEnd::kMasterAbort, 0, end_clock});
@@ -205,9 +205,24 @@ void PciBusControl::end(std::uint64_t now_ps) {
   count(running_.master, running_.result);
   free_clock_ = running_.end_clock + 1;
   running_.result.end_ps = now_ps;
+  if (observer_ != nullptr) report();
   requests_[running_.master].from->end_burst(running_.result);
   state_ = State::kFree;
   await_request();
+}
+
+void PciBusControl::report() const {
+  EndedPciBurst burst;
+  burst.master = running_.master;
+  if (running_.window != nullptr) burst.window = static_cast<std::size_t>(running_.window - windows_.data());
+  burst.write = running_.burst.write;
+  burst.address = running_.burst.address;
+  burst.words = running_.result.words;
+  burst.request_ps = clock_.edge_ps(running_.request_clock);
+  burst.address_ps = clock_.edge_ps(running_.address_clock);
+  burst.data_ps = clock_.edge_ps(running_.address_clock + 1);
+  burst.end_ps = clock_.edge_ps(running_.end_clock);
+  observer_->pci_burst_ended(burst);
 }
 
 // Makes the access of the running burst: of a write when its words have been transferred, of a read at the

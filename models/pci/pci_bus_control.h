@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "models/clock.h"
+#include "models/pci/pci_bus_observer.h"
 #include "models/pci/pci_config.h"
 #include "models/pci/pci_slot.h"
 #include "models/time_ps.h"
@@ -71,6 +72,8 @@ class PciBusControl {
 
   // The target of each window outlives the bus. To be called before the first burst.
   void bind(std::size_t window, PciTarget& target) { windows_[window].target = &target; }
+  // `observer` outlives the bus.
+  void observe(PciBusObserver& observer) { observer_ = &observer; }
   PciSlot& slot(std::size_t master) { return slots_[master]; }
   const PciSlot& slot(std::size_t master) const { return slots_[master]; }
   const Clock& clock() const { return clock_; }
@@ -148,6 +151,7 @@ class PciBusControl {
     PciBurst burst;
     Window* window = nullptr;  // null: none has this address
     std::size_t accepted = 0;  // words that the target takes of a write; all words of a read
+    std::uint64_t request_clock = 0;
     std::uint64_t address_clock = 0;
     std::uint64_t end_clock = 0;  // the idle clock, as planned so far
     BurstResult result;
@@ -158,13 +162,16 @@ class PciBusControl {
   void await_request();
 
   // These step through a burst.
-  void begin(std::uint64_t now_ps, std::size_t master, const PciBurst& burst, std::uint64_t clock);
+  void begin(std::uint64_t now_ps, std::size_t master, const PciBurst& burst, std::uint64_t request_clock,
+             std::uint64_t clock);
   void begin_words(std::uint64_t first_clock);
   void cut_words();
   void end_words_at(std::uint64_t clock);
   void end_words(std::uint64_t now_ps);
   void end_at(std::uint64_t clock, const BurstResult& result);
   void end(std::uint64_t now_ps);
+  // Without an observer it costs nothing beside the branch around it.
+  [[gnu::cold, gnu::noinline]] void report() const;
 
   // These access the target.
   Window* window_of(const PciBurst& burst);
@@ -193,6 +200,7 @@ class PciBusControl {
   std::vector<std::uint32_t> read_words_;
   std::uint64_t busy_clocks_ = 0;  // clocks of the bursts that have ended
   std::vector<MasterStats> master_stats_;
+  PciBusObserver* observer_ = nullptr;
 };
 
 }  // namespace stereotlm::pci

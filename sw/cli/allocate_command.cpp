@@ -2,16 +2,18 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <thread>
-#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "platform/bounds.h"
-#include "platform/config/buffer_layout.h"
+#include "platform/config/board_yaml.h"
 #include "sw/cli/add_command.h"
+#include "sw/cli/allocation_report.h"
 #include "sw/cli/board_options.h"
 #include "sw/cli/commands.h"
 #include "sw/cli/exit_status.h"
@@ -22,6 +24,9 @@
 #include "sw/explore/store/store.h"
 #include "sw/explore/store/store_lock.h"
 #include "sw/explore/sweep/sweep.h"
+#include "sw/files/json_text.h"
+#include "sw/files/replaced_file.h"
+#include "sw/files/whole_file.h"
 #include "sw/media/synthetic_scene.h"
 #include "sw/process/installation.h"
 #include "sw/process/interrupt.h"
@@ -38,7 +43,6 @@ using explore::Placement;
 using platform::BoardConfig;
 
 constexpr double kDefaultKeepPercent = 99;
-constexpr const char* kInterruptedNote = "interrupted: run the same command to resume";
 
 struct AllocateOptions {
   BoardOptions board;
@@ -46,6 +50,8 @@ struct AllocateOptions {
   Typed source;
   Typed keep_option;
   Typed out;
+  Typed write;
+  bool json = false;
 
   // Set by check_usage().
   bool camera = true;
@@ -60,6 +66,8 @@ struct AllocateOptions {
     keep_option.add_to(command, "--keep-fps", "PERCENT",
                        "Say how few banks keep so much of the best frame rate (default 99)");
     out.add_to(command, "--out", "DB", "The database of the boards that are simulated, written or continued");
+    write.add_to(command, "--write", "F.yaml", "Write the board with the best allocation as a board file");
+    add_flag(command, "--json", json, "Print one JSON document instead of the text");
   }
 
   void check_usage() {
@@ -85,6 +93,8 @@ struct AllocateOptions {
       }
     }
     if (!out.is_given()) problems.add("--out: missing: the database to write, or to continue");
+    if (write.is_given() && std::filesystem::path(write.text).extension() != ".yaml")
+      problems.add(fmt::format("--write '{}': must end in .yaml", write.text));
     problems.check();
   }
 };
@@ -110,159 +120,36 @@ std::string text_of(const BoardConfig& board, const Placement& placement) {
   return explore::allocation_text(explore::placed(board, placement));
 }
 
-// The parts from which the functions below make the lines of the report: the search, its board, and the upper
-// bound of the frame rate of a board.
-struct Context {
-  const AllocationSearch& search;
-  const BoardConfig& board;
-  AllocationSearch::BoundOf bound;
-};
-
-std::string rate_text(double rate) { return fmt::format("{:.3f}", rate); }
-
-// Two rates that differ, with as many decimals as show it; at least three.
-std::pair<std::string, std::string> different_texts(double one, double other) {
-  for (int decimals = 3;; ++decimals) {
-    std::pair<std::string, std::string> texts = {fmt::format("{:.{}f}", one, decimals),
-                                                 fmt::format("{:.{}f}", other, decimals)};
-    if (texts.first != texts.second) return texts;
-  }
-}
-
-std::string table(const Context& context, const std::vector<BestPlacement>& all) {
-  const bool camera = context.search.run().camera;
-  std::string text = fmt::format("{:>5} {:>12} {:>10} {:>14} {:>10}", "banks", "allocations", "simulated",
-                                 "best frames/s", "bound");
-  if (camera) text += fmt::format(" {:>8}", "steady");
-  text += fmt::format(" {:>10}  one of them\n", "reached by");
-  for (const BestPlacement& best : all) {
-    text += fmt::format("{:>5} {:>12} {:>10}", best.banks, best.placements, best.known + best.given_up);
-    if (best.reached_by == 0) {
-      text += fmt::format(" {:>14}\n", best.failed == 0 ? "all lose pixels" : "none");
-      continue;
-    }
-    const BoardConfig one = explore::placed(context.board, best.witness);
-    text += fmt::format(" {:>14.3f} {:>10.3f}", best.frames_per_second, context.bound(one));
-    if (camera) text += fmt::format(" {:>8.3f}", best.outcome.steady.value_or(0));
-    text += fmt::format(" {:>10}  {}\n", best.reached_by, explore::allocation_text(one));
-  }
-  return text;
-}
-
 // Simulates the best allocation for each number of banks, with pixels: an ideal host supplies a different
 // pair for each frame. Throws if two allocations compute different disparities. For the core alone, also
-// throws if an allocation needs another number of cycles than the search has found. Returns a line with the
-// number of allocations; empty if there are none, or after an interrupt.
-std::string check_pixels(const Context& context, const platform::Tables& tables,
-                         const std::vector<BestPlacement>& all) {
-  ScenePairs pairs(context.board);
-  const std::uint64_t frames = platform::allocation_period_frames(context.board);
+// throws if an allocation needs another number of cycles than the search has found. Returns nullopt if there
+// are no allocations, and after an interrupt.
+std::optional<ComparedPixels> compare_pixels(const BoardConfig& board, const platform::Tables& tables,
+                                             bool camera, const std::vector<BestPlacement>& all) {
+  ScenePairs pairs(board);
+  ComparedPixels compared = {0, platform::allocation_period_frames(board)};
   std::string first;
   const Placement* first_witness = nullptr;
-  std::size_t checked = 0;
   for (const BestPlacement& best : all) {
-    if (process::interrupted()) return "";
+    if (process::interrupted()) return std::nullopt;
     if (best.reached_by == 0) continue;
     const auto run =
-        runs::simulate_pixels(explore::placed(context.board, best.witness), tables, pairs, frames);
-    if (checked++ == 0) {
+        runs::simulate_pixels(explore::placed(board, best.witness), tables, pairs, compared.frames);
+    if (compared.allocations++ == 0) {
       first = run.disparities_sha256;
       first_witness = &best.witness;
     }
     if (run.disparities_sha256 != first) {
       throw std::runtime_error(fmt::format("the disparities of {} differ from those of {}",
-                                           text_of(context.board, best.witness),
-                                           text_of(context.board, *first_witness)));
+                                           text_of(board, best.witness), text_of(board, *first_witness)));
     }
-    if (!context.search.run().camera && run.cycles != best.outcome.cycles) {
+    if (!camera && run.cycles != best.outcome.cycles) {
       throw std::runtime_error(fmt::format("{}: {} cycles with pixels, {} found",
-                                           text_of(context.board, best.witness), run.cycles,
-                                           best.outcome.cycles));
+                                           text_of(board, best.witness), run.cycles, best.outcome.cycles));
     }
   }
-  if (checked == 0) return "";
-  return fmt::format("The disparities of these {} allocations are the same, pixel by pixel, in {} frames.\n",
-                     checked, frames);
-}
-
-// The lines with the result of the search: the best rate of all, and the fewest banks that keep
-// `keep_percent` of it.
-std::string certificate(std::vector<BestPlacement> all, double keep_percent) {
-  const auto is_out = [](const BestPlacement& best) { return best.reached_by == 0; };
-  const bool holds_buffers_only = !all.empty() && is_out(all.front());
-  all.erase(std::remove_if(all.begin(), all.end(), is_out), all.end());
-  if (all.empty()) return "No allocation counts.\n";
-  const auto rate = [](const BestPlacement& best) { return best.frames_per_second; };
-  const auto by_rate = [&](const auto& a, const auto& b) { return rate(a) < rate(b); };
-  const auto top = std::max_element(all.begin(), all.end(), by_rate);
-  std::string top_text = rate_text(rate(*top));
-  std::string rest;
-  if (top != all.begin()) {
-    std::string fewer_text;
-    std::tie(top_text, fewer_text) =
-        different_texts(rate(*top), rate(*std::max_element(all.begin(), top, by_rate)));
-    rest = ": the best with fewer gives " + fewer_text;
-  } else {
-    rest = holds_buffers_only ? ", the fewest with an allocation that counts"
-                              : ", the fewest that hold the buffers";
-  }
-  std::string text =
-      fmt::format("The best of all is {} frames/s, and needs {} banks{}.\n", top_text, top->banks, rest);
-  const auto kept = std::find_if(all.begin(), all.end(), [&](const BestPlacement& best) {
-    return rate(best) * 100 >= rate(*top) * keep_percent;
-  });
-  return text +
-         fmt::format("{:g} % of it is kept with {} banks ({} frames/s, {:.2f} %), and not with fewer.\n",
-                     keep_percent, kept->banks, rate_text(rate(*kept)), 100 * rate(*kept) / rate(*top));
-}
-
-// The lines with the numbers of allocations that do not count, because they lose pixels or could not be
-// simulated.
-std::string not_counted_text(const Context& context, const std::vector<BestPlacement>& all,
-                             const std::string& store) {
-  std::uint64_t losing = 0;
-  std::uint64_t failed = 0;
-  for (const BestPlacement& best : all) {
-    losing += best.losing;
-    failed += best.failed;
-  }
-  std::string text;
-  if (losing > 0)
-    text += fmt::format("{} of those simulated to the end lose pixels, and do not count.\n", losing);
-  if (failed > 0) {
-    text += fmt::format(
-        "{} could not be simulated, and do not count. The first:\n  {}\nTo try again:\n"
-        "  sqlite3 {} \"DELETE FROM points WHERE status = 'failed'\"\n",
-        failed, context.search.first_failure(), store);
-  }
-  return text;
-}
-
-// The lines that state how many allocations were tried, and why no others are needed.
-std::string space_text(const Context& context, int banks) {
-  const AllocationSearch& search = context.search;
-  std::string text =
-      fmt::format("{}: {} buffers in at most {} of {} banks: {} different allocations, {} of them fit\n",
-                  context.board.name, platform::buffers(context.board).size(), banks,
-                  context.board.banks.size(), search.placements(), search.fitting());
-  if (search.by_frames()) {
-    return text +
-           fmt::format(
-               "{} boards of one frame are all that has to be simulated: with {} and without "
-               "turnaround a\nframe leaves nothing behind, so that its cycles depend on which of its own "
-               "buffers share a bank, and on nothing else\n",
-               search.size(), context.board.fpga.arbiter.policy);
-  }
-  text += search.run().camera
-              ? fmt::format(
-                    "frames/s: {} frames, from time 0 to the last delivery, without losing a pixel; steady: "
-                    "between the first and the last\n",
-                    explore::frames_of(search.run(), context.board))
-              : "a frame leaves arbiters or banks in another state: each allocation is a run of the first "
-                "turn of its lists\n";
-  return text +
-         "an allocation whose bound is below the best rate of as many banks was not simulated, or not to its "
-         "end\n";
+  if (process::interrupted() || compared.allocations == 0) return std::nullopt;
+  return compared;
 }
 
 AllocationSearch search_of(const BoardConfig& board, int banks, const explore::PointRun& run,
@@ -287,18 +174,94 @@ std::string fewest_text(const BoardConfig& board, int banks, const explore::Poin
   return "";
 }
 
+// Whether the file is the board as --write writes it, with any allocation.
+bool is_written_board(const std::string& path, const BoardConfig& board) {
+  try {
+    BoardConfig earlier = platform::load_board(path);
+    if (platform::to_yaml(earlier) != files::read_whole_file(path)) return false;
+    earlier.allocation = board.allocation;
+    return platform::to_yaml(earlier) == platform::to_yaml(board);
+  } catch (const std::runtime_error&) {
+    return false;
+  }
+}
+
+// The file of --write, open to be written; null without --write, or if there are problems, which it reports.
+// Replaces an earlier file only if --write has made it for the same board.
+std::unique_ptr<files::ReplacedFile> open_written(const AllocateOptions& options, const BoardConfig& board,
+                                                  process::Problems& problems) {
+  if (!options.write.is_given()) return nullptr;
+  const std::string& path = options.write.text;
+  std::error_code error;
+  const std::filesystem::path whole = std::filesystem::weakly_canonical(path, error);
+  for (const auto& [name, other] : {std::pair("BOARD", options.board.name()), {"--out", options.out.text}}) {
+    if (whole != std::filesystem::weakly_canonical(other, error)) continue;
+    problems.add(fmt::format("--write '{}': must be another file than {}", path, name));
+    return nullptr;
+  }
+  if (std::filesystem::is_regular_file(path, error) && !is_written_board(path, board)) {
+    problems.add(fmt::format(
+        "--write '{}': exists and is not this board with another allocation: must be moved away", path));
+    return nullptr;
+  }
+  try {
+    files::remove_left_aside(path);
+    return std::make_unique<files::ReplacedFile>(path);
+  } catch (const std::system_error& failure) {
+    problems.add(fmt::format("--write '{}': {}", path, failure.code().message()));
+    return nullptr;
+  }
+}
+
+void check_store(const explore::SweepOptions& sweep, const BoardConfig& board) {
+  std::vector<std::string> names;
+  for (const platform::BankConfig& bank : board.banks) names.push_back(bank.name);
+  try {
+    const explore::StoreLock lock(sweep.store);
+    explore::Store(sweep.store, sweep.version).check_banks(names);
+  } catch (const explore::DatabaseError& error) {
+    process::refuse(fmt::format("--out {}", error.what()));
+  }
+}
+
+bool show_progress(runs::ProgressLine& line, const explore::SearchProgress& progress) {
+  line.show([&progress](double seconds) { return runs::progress_text(progress, seconds); });
+  return !process::interrupted();
+}
+
+// Writes the best allocation, if any, and prints the report.
+int finish(AllocationReport& report, const AllocateOptions& options,
+           std::unique_ptr<files::ReplacedFile> written) {
+  const BestPlacement* const top = best_of_all(report.all);
+  if (written && top != nullptr) {
+    written->write(platform::to_yaml(explore::placed(report.board, top->witness)));
+    written->commit();
+    report.written = options.write.text;
+  }
+  process::print(options.json ? files::json_text(allocation_report_document(report))
+                              : allocation_report_text(report));
+  if (!process::interrupted()) return kDone;
+  process::say("note", "interrupted: run the same command to resume");
+  return kInterrupted;
+}
+
+void check_banks(const AllocateOptions& options, const BoardConfig& board, process::Problems& problems) {
+  if (const auto problem = explore::bank_names_problem(board))
+    problems.add(fmt::format("{}: {}", options.board.name(), *problem));
+  if (*options.banks > static_cast<int>(board.banks.size())) {
+    problems.add(
+        fmt::format("--banks = {}: must be 1..{}, the banks of the board; --set 'ssram.banks.NEW={{}}' "
+                    "gives it one more",
+                    *options.banks, board.banks.size()));
+  }
+}
+
 int allocate(const AllocateOptions& options) {
   process::Problems problems;
   const auto board = options.board.load(problems);
   const auto calibration = options.board.load_calibration(board ? &*board : nullptr, problems);
-  if (const auto problem = board ? explore::bank_names_problem(*board) : std::nullopt)
-    problems.add(fmt::format("{}: {}", options.board.name(), *problem));
-  if (board && *options.banks > static_cast<int>(board->banks.size())) {
-    problems.add(
-        fmt::format("--banks = {}: must be 1..{}, the banks of the board; --set 'ssram.banks.NEW={{}}' "
-                    "gives it one more",
-                    *options.banks, board->banks.size()));
-  }
+  if (board) check_banks(options, *board, problems);
+  auto written = board ? open_written(options, *board, problems) : nullptr;
   problems.check();
   explore::SweepOptions sweep;
   sweep.store = options.out.text;
@@ -321,43 +284,24 @@ int allocate(const AllocateOptions& options) {
                                 *options.banks, search.placements(),
                                 fewest_text(*board, *options.banks, run)));
   }
-  std::vector<std::string> names;
-  for (const platform::BankConfig& bank : board->banks) names.push_back(bank.name);
-  try {
-    const explore::StoreLock lock(sweep.store);
-    explore::Store(sweep.store, sweep.version).check_banks(names);
-  } catch (const explore::DatabaseError& error) {
-    process::refuse(fmt::format("--out {}", error.what()));
-  }
   process::catch_interrupts();
+  check_store(sweep, *board);
   runs::PointSimulator simulator = calibration ? runs::PointSimulator(tables) : runs::PointSimulator();
   const auto evaluate = [&](const explore::Point& point) {
     const double rate = search.rate_to_reach(point.number);
     return simulator(point,
                      [&](const platform::FrameBegin& last) { return rate_from(*point.board, last) < rate; });
   };
-  runs::ProgressLine progress;
-  const auto keep_going = [&progress](std::uint64_t done, std::uint64_t left) {
-    progress.show([&](double) { return fmt::format("{} boards simulated, {} left at most", done, left); });
-    return !process::interrupted();
-  };
-  const bool is_whole = explore::simulate(search, evaluate, sweep, keep_going);
-  progress.erase();
-  if (!is_whole) {
-    process::say("note", kInterruptedNote);
-    return kInterrupted;
-  }
-  const Context context = {search, *board, bound};
-  const std::vector<BestPlacement> all = search.best();
-  const std::string pixels = check_pixels(context, tables, all);
-  if (process::interrupted()) {
-    process::say("note", kInterruptedNote);
-    return kInterrupted;
-  }
-  process::print(space_text(context, *options.banks) + table(context, all) +
-                 certificate(all, options.keep_percent) + not_counted_text(context, all, sweep.store) +
-                 pixels);
-  return kDone;
+  runs::ProgressLine line;
+  AllocationReport report = {
+      search, *board, bound, sweep.store, *options.banks, options.keep_percent, options.board.words()};
+  report.is_whole = explore::simulate(search, evaluate, sweep, [&line](const explore::SearchProgress& done) {
+    return show_progress(line, done);
+  });
+  line.erase();
+  report.all = search.best();
+  if (report.is_whole) report.pixels = compare_pixels(*board, tables, options.camera, report.all);
+  return finish(report, options, std::move(written));
 }
 
 }  // namespace
@@ -369,8 +313,11 @@ void add_allocate(CLI::App& program, Action& action) {
       "by an exchange of banks that are alike count as one, and those whose bound is below the best rate\n"
       "of as many banks are not simulated, or not to the end. For each number of banks: how many\n"
       "placements fit, the best frame rate beside its bound, how many reach it, and one that does. An\n"
-      "allocation with which captures lose pixels does not count. DB is continued: after an interruption,\n"
-      "give the same command.");
+      "allocation with which captures lose pixels does not count. Last the command that runs the best\n"
+      "allocation.\n"
+      "Ctrl-C ends the search: the best so far is printed, and written by --write, with the most that\n"
+      "another allocation can be better. DB is continued: the same command resumes.\n"
+      "--write replaces an earlier file only if it is the same board with another allocation.");
 }
 
 }  // namespace stereotlm::cli

@@ -29,6 +29,13 @@ void BoardOptions::check_usage() {
   problems.check();
 }
 
+std::vector<std::string> BoardOptions::words() const {
+  std::vector<std::string> words = {board_.text};
+  if (calibration_) words.insert(words.end(), {"--calibration", *calibration_});
+  for (const std::string& set : sets_.text) words.insert(words.end(), {"--set", set});
+  return words;
+}
+
 std::optional<platform::BoardConfig> BoardOptions::load(process::Problems& problems) const {
   try {
     return platform::load_board(board_.text, sets_.text);

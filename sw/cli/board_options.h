@@ -31,6 +31,9 @@ class BoardOptions {
   // BOARD as typed.
   const std::string& name() const { return board_.text; }
 
+  // BOARD and the options as typed, as words of a command line.
+  std::vector<std::string> words() const;
+
   // Whether an option changes the board or its tables.
   bool is_changed() const { return sets_.is_given() || calibration_option_.is_given(); }
 

@@ -61,6 +61,9 @@ class InputLoader {
       input_.config_yaml = platform::to_yaml(input_.board);
       describe();
     });
+    options_.trace.check_window(input_.board, input_.frames, problems_);
+    problems_.check();
+    open_traces();
     problems_.check();
     for (const std::string& note : source_.notes) process::say("note", note);
     if (input_.calibration && !options_.timing_only) {
@@ -116,6 +119,32 @@ class InputLoader {
                       file.text(), *options_.out));
     }
     return reported.empty();
+  }
+
+  void open_traces() {
+    const TraceOptions& trace = options_.trace;
+    if (trace.files.empty()) return;
+    for (const trace::TraceFile& file : trace.files) check_trace_file(file.path);
+    if (!problems_.empty()) return;
+    input_.trace_window = trace.window;
+    attempt("--trace", [&] { input_.trace = trace::make_writer(trace.files, input_.board, trace.window); });
+  }
+
+  // Reports a file that would be lost: an input, or a trace in the result folder.
+  void check_trace_file(const std::string& path) {
+    std::error_code none;
+    const fs::path folder = fs::absolute(path).parent_path();
+    if (options_.out && (fs::equivalent(folder, *options_.out, none) || lies_in(folder, *options_.out))) {
+      problems_.add(
+          fmt::format("--trace '{}': inside the result folder '{}', which is replaced whole: must lie "
+                      "outside the folder of --out",
+                      path, *options_.out));
+    }
+    for (const runs::NamedFile& input : source_.files) {
+      if (fs::equivalent(path, input.path, none))
+        problems_.add(
+            fmt::format("--trace '{}': is the file of {}: must not replace an input", path, input.option));
+    }
   }
 
   // Prints how well the rows of the rectified pictures match. A poor match gives a warning: the calibration

@@ -44,7 +44,7 @@ std::uint64_t least_frame_cycles(const runs::RunInput& input) {
 // finished.
 void simulate(Simulation& simulation, const runs::RunInput& input, runs::Verification* verification) {
   const std::uint64_t frame_cycles = least_frame_cycles(input);
-  runs::RecordFiles records(input, [&input](const std::string& name, const std::string& text) {
+  runs::Records records(input, [&input](const std::string& name, const std::string& text) {
     input.folder->append(name, text);
   });
   runs::ProgressLine progress;
@@ -87,6 +87,7 @@ int run(const RunOptions& options) {
   runs::BlankPairs blank(input.board);
   host::FrameSource& pairs = input.timing_only ? static_cast<host::FrameSource&>(blank) : *input.pairs;
   const std::unique_ptr<Simulation> simulation = build(input, pairs, binder);
+  if (input.trace_window) simulation->trace(*input.trace_window, *input.trace, *input.trace);
   simulate(*simulation, input, verification ? &*verification : nullptr);
   const std::uint64_t done = simulation->frames_done();
   if (done < input.frames) {
@@ -101,6 +102,7 @@ int run(const RunOptions& options) {
   const bool compares = verification && done == input.frames;
   if (compares) compared = verification->compare(statistics);
   if (compared.interrupted) runs::leave_out_verify(input);
+  if (input.trace) input.trace->commit();
   if (!runs::deliver(input, statistics, simulation->last(), compared.failed)) return kFailed;
   if (done < input.frames || compared.interrupted) return kInterrupted;
   if (compares) say_verified(input);

@@ -58,17 +58,14 @@ void RunOptions::add_to(CLI::App& command) {
   add_flag(command, "--record,--conflicts", record,
            "Write where and when ports wait: rows.csv and conflicts.csv in the folder of --out; with cameras "
            "also what happened when, and why it waited: timeline.csv and latency.csv");
-  trace_.add_to(command);
+  trace.add_to(command);
   set_footer(command,
-             paragraph("", 0, fmt::format("Not in this version: {}.", trace_.name())) +
-                 "Ctrl-C ends the run with the results of the frames that are finished; with cameras "
-                 "those that the\ncore has begun are finished first.");
+             "Ctrl-C ends the run with the results of the frames that are finished; with cameras "
+             "those that the\ncore has begun are finished first.");
 }
 
 void RunOptions::check_usage() {
   process::Problems problems;
-  trace_.report(problems);
-  problems.check();  // now, because no other fault of such a run matters
   board.check_given(problems);
   pictures.check_given(problems, timing_only);
   const bool is_complete = problems.empty();
@@ -76,6 +73,7 @@ void RunOptions::check_usage() {
   check_choices(problems);
   check_numbers(problems);
   truth.check_usage(problems);
+  trace.check_usage(problems);
   check_combinations(problems);
   if (!is_complete) problems.add_note(std::string("a complete command: ") + kRunExample);
   problems.check();

@@ -6,9 +6,9 @@
 
 #include "sw/cli/board_options.h"
 #include "sw/cli/picture_options.h"
+#include "sw/cli/trace_options.h"
 #include "sw/cli/truth_options.h"
 #include "sw/cli/typed_option.h"
-#include "sw/cli/unbuilt.h"
 
 namespace CLI {
 class App;
@@ -32,6 +32,7 @@ class RunOptions {
   BoardOptions board;
   PictureOptions pictures;
   TruthOptions truth;
+  TraceOptions trace;
   // Set by check_usage().
   bool camera = true;  // false: preloaded
   bool fast = true;    // false: fidelity cycle
@@ -51,7 +52,6 @@ class RunOptions {
   Typed source_;
   Typed fidelity_;
   Typed out_;
-  UnbuiltOption trace_{"--trace"};
 };
 
 }  // namespace stereotlm::cli

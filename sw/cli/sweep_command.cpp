@@ -21,6 +21,7 @@
 #include "sw/explore/store/store_reader.h"
 #include "sw/explore/sweep/sweep.h"
 #include "sw/files/replaced_file.h"
+#include "sw/files/shell_word.h"
 #include "sw/files/whole_file.h"
 #include "sw/process/interrupt.h"
 #include "sw/process/streams.h"
@@ -107,19 +108,30 @@ std::string summary(const explore::SweepCounts& counts, const SweepCommandOption
   return text + '\n';
 }
 
-// The lines with the three most frequent reasons of points that failed, then of impossible ones, and the number
-// of points for each reason. One scan of the table; by name 'failed' comes before 'impossible'.
+// The lines with the reasons of points that failed, then of impossible ones, and the number of points for each
+// reason, the most frequent first. Of more than four reasons, a line counts those after the third, and the last
+// line says how to list all. One scan of the table; by name 'failed' comes before 'impossible'.
 std::string reasons(explore::Database& store) {
   explore::Statement statement(
       store,
-      "SELECT status, reason, points FROM ("
+      "SELECT status, reason, sum(points), count(*) FROM ("
       "  SELECT status, reason, count(*) AS points,"
-      "    row_number() OVER (PARTITION BY status ORDER BY count(*) DESC, reason) AS place"
+      "    min(4, row_number() OVER (PARTITION BY status ORDER BY count(*) DESC, reason)) AS place"
       "  FROM points WHERE status <> 'ok' GROUP BY status, reason)"
-      " WHERE place <= 3 ORDER BY status, place");
+      " GROUP BY status, place ORDER BY status, place");
   std::string text;
+  bool has_further = false;
   while (statement.step()) {
-    text += fmt::format("  {} {}: {}\n", statement.text(2), statement.text(0), statement.text(1));
+    const bool is_further = statement.integer(3) > 1;
+    has_further = has_further || is_further;
+    text += fmt::format("  {} {}: {}\n", statement.text(2), statement.text(0),
+                        is_further ? statement.text(3) + " further reasons" : statement.text(1));
+  }
+  if (has_further) {
+    text += fmt::format(
+        "All reasons:\n  sqlite3 {} \"SELECT count(*), status, reason FROM points WHERE status <> 'ok' "
+        "GROUP BY status, reason\"\n",
+        files::shell_word(store.path()));
   }
   return text;
 }

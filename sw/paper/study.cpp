@@ -15,6 +15,7 @@
 #include "sw/explore/plan/knobs.h"
 #include "sw/explore/search/allocation_run.h"
 #include "sw/explore/search/allocation_search.h"
+#include "sw/files/shell_word.h"
 #include "sw/files/temporary_folder.h"
 #include "sw/report/accuracy.h"
 
@@ -41,19 +42,10 @@ std::string identity_of(const BoardRun& run) {
   return text;
 }
 
-// A word of a shell command.
-std::string shell_word(const std::string& text) {
-  constexpr const char* kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=:,./@%";
-  if (!text.empty() && text.find_first_not_of(kPlain) == std::string::npos) return text;
-  std::string word = "'";
-  for (const char each : text) word += each == '\'' ? std::string("'\\''") : std::string(1, each);
-  return word + '\'';
-}
-
 // The words that name the board on a command line: "fpl2003 --set matcher.window=7".
 std::string words_of(const BoardRun& run) {
   std::string text = run.preset;
-  for (const std::string& set : run.sets) text += " --set " + shell_word(set);
+  for (const std::string& set : run.sets) text += " --set " + files::shell_word(set);
   return text;
 }
 
@@ -177,9 +169,9 @@ class BankSearch {
     std::uint64_t simulated = 0;
     progress.begin_part(most_);
     const bool is_whole =
-        explore::simulate(search_, means_.evaluate, sweep, [&](std::uint64_t done, std::uint64_t most_left) {
-          simulated = done;
-          return progress.keep_going(done, most_left);
+        explore::simulate(search_, means_.evaluate, sweep, [&](const explore::SearchProgress& search) {
+          simulated = search.done;
+          return progress.keep_going(search.done, search.most_left);
         });
     progress.end_part(simulated);
     return is_whole;
@@ -413,7 +405,7 @@ std::vector<SceneFinding> scenes_of(const ClaimFinding& found) {
 std::string command_of(const BoardRun& run) {
   if (run.scene) {
     std::string text = fmt::format("stereotlm run {} --source preloaded", words_of(run));
-    for (const std::string& option : run.scene->options) text += ' ' + shell_word(option);
+    for (const std::string& option : run.scene->options) text += ' ' + files::shell_word(option);
     return text;
   }
   const explore::PointRun point_run = {run.camera, 0, ""};

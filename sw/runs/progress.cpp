@@ -51,6 +51,14 @@ std::string progress_text(const explore::SweepCounts& counts, std::uint64_t befo
                      time_text((static_cast<double>(counts.total) - done) / rate));
 }
 
+std::string progress_text(const explore::SearchProgress& progress, double seconds) {
+  constexpr std::uint64_t kFewestSimulated = 8;
+  std::string text = fmt::format("{} boards simulated, {} left at most", progress.done, progress.most_left);
+  if (!progress.is_narrowed || progress.simulated < kFewestSimulated) return text;
+  const double rate = static_cast<double>(progress.simulated) / seconds;
+  return text + fmt::format(" ({} at this rate)", time_text(static_cast<double>(progress.most_left) / rate));
+}
+
 std::string verification_text(std::uint64_t frames_compared, std::uint64_t frames) {
   return fmt::format("verifying: {}/{} frames", frames_compared, frames);
 }

@@ -5,6 +5,7 @@
 #include <functional>
 #include <string>
 
+#include "sw/explore/search/allocation_run.h"
 #include "sw/explore/sweep/sweep.h"
 
 namespace stereotlm::runs {
@@ -25,6 +26,10 @@ std::string progress_text(const RunState& state, double seconds);
 // For a sweep: "3/10 points   30.0 %   2.0 points/s   0:04 left". `before`: points that were done before
 // `seconds` began.
 std::string progress_text(const explore::SweepCounts& counts, std::uint64_t before, double seconds);
+
+// For a search: "332 boards simulated, 120 left at most (0:05 at this rate)". Without the time while it
+// cannot be estimated: the boards left are not narrowed, or fewer than 8 were simulated.
+std::string progress_text(const explore::SearchProgress& progress, double seconds);
 
 // A time for a progress line: "0:08", "1:02:03", or "years" for more than 30 years.
 std::string time_text(double seconds);

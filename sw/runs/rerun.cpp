@@ -67,20 +67,20 @@ void run_again(const RecordedRun& run, bool record, const process::Child::Tell& 
   Binder binder;
   const auto simulation = make_simulation(input.board, input.tables, pairs, run_mode(input), binder);
   simulation->record_rows();
-  RecordFiles files(input, [&tell](const std::string& name, const std::string& text) {
+  Records records(input, [&tell](const std::string& name, const std::string& text) {
     tell(kRecord + name + '\n' + text);
   });
   std::deque<fpga::RowProfile> rows;  // rows of frames whose results are not delivered yet
   while (!simulation->finished()) {
     const std::vector<Result> results = simulation->advance();
     for (fpga::RowProfile& frame : simulation->take_rows()) rows.push_back(std::move(frame));
-    if (!results.empty()) files.add(*simulation);  // next() returns soon after
+    if (!results.empty()) records.add(*simulation);  // next() returns soon after
     for (const Result& result : results) {
       tell(message_of(result, rows.front()));
       rows.pop_front();
     }
   }
-  files.finish(*simulation);
+  records.finish(*simulation);
   tell(kFigures + figures_of(simulation->statistics(), simulation->last(), input));
 }
 

@@ -5,12 +5,14 @@
 #include <optional>
 #include <string>
 
+#include "models/fpga/core_cycle.h"
 #include "platform/config/board_config.h"
 #include "platform/config/tables.h"
 #include "sw/media/truth.h"
 #include "sw/runs/result_folder.h"
 #include "sw/runs/run_json.h"
 #include "sw/runs/sources/pair_source.h"
+#include "sw/trace/trace_writer.h"
 
 namespace stereotlm::calib {
 struct Calibration;
@@ -27,12 +29,14 @@ struct RunInput {
   bool camera = true;                 // --source camera, else preloaded
   bool fast = true;                   // --fidelity fast, else cycle
   bool timing_only = false;
-  bool record = false;                   // --record
-  std::uint64_t frames = 1;              // frames to deliver
-  std::optional<media::Truth> truth;     // ground truth of the pair that the last frame shows
-  std::string config_yaml;               // text of the result file config.yaml
-  RecordedOptions described;             // content of run.json; `frames` as requested
-  std::unique_ptr<ResultFolder> folder;  // null: no result files
+  bool record = false;                            // --record
+  std::unique_ptr<trace::TraceWriter> trace;      // null: no --trace
+  std::optional<fpga::CycleWindow> trace_window;  // --trace-window
+  std::uint64_t frames = 1;                       // frames to deliver
+  std::optional<media::Truth> truth;              // ground truth of the pair that the last frame shows
+  std::string config_yaml;                        // text of the result file config.yaml
+  RecordedOptions described;                      // content of run.json; `frames` as requested
+  std::unique_ptr<ResultFolder> folder;           // null: no result files
 };
 
 }  // namespace stereotlm::runs

@@ -6,6 +6,7 @@
 
 #include "calib/calibration.h"
 #include "calib/depth.h"
+#include "platform/trace_runs.h"
 #include "sw/process/streams.h"
 #include "sw/report/accuracy.h"
 #include "sw/report/conflicts_csv.h"
@@ -76,27 +77,32 @@ void save_frame(const RunInput& input, const Result& result) {
   input.folder->add(frame_file_name(result.number), media_functions().encode_png_gray(result.disparity));
 }
 
-RecordFiles::RecordFiles(const RunInput& input, Append append) : input_(input), append_(std::move(append)) {
-  if (!input.record) return;
+Records::Records(const RunInput& input, Append append) : input_(input), append_(std::move(append)) {
+  if (!input_.record) return;
   append_("rows.csv", report::rows_csv_head(input.board));
   if (!input.camera) return;
   append_("timeline.csv", report::timeline_csv_head());
   append_("latency.csv", report::latency_csv_head());
 }
 
-void RecordFiles::add(Simulation& simulation) {
-  if (!input_.record) return;
-  for (const fpga::FrameConflicts& frame : simulation.take_conflicts())
-    append_("rows.csv", report::rows_csv(input_.board, frames_++, frame));
+void Records::add(Simulation& simulation) {
+  for (const fpga::FrameConflicts& frame : simulation.take_conflicts()) add(frame);
   if (!input_.camera) return;
   const platform::TimelineRecords records = simulation.take_timeline();
+  if (input_.trace) input_.trace->events(records);
+  if (!input_.record) return;
   append_("timeline.csv", report::timeline_csv(records.events));
   append_("latency.csv", report::latency_csv(records.latencies));
 }
 
-void RecordFiles::finish(Simulation& simulation) {
-  if (!input_.record) return;
+void Records::add(const fpga::FrameConflicts& frame) {
+  if (input_.trace) input_.trace->frame(platform::frame_runs(frame));
+  if (input_.record) append_("rows.csv", report::rows_csv(input_.board, frame.number, frame));
+}
+
+void Records::finish(Simulation& simulation) {
   add(simulation);
+  if (!input_.record) return;
   report::conflicts_csv(input_.board, *simulation.conflicts(),
                         [this](const std::string& piece) { append_("conflicts.csv", piece); });
 }

@@ -15,21 +15,23 @@ namespace stereotlm::runs {
 // Throws std::runtime_error if they cannot be written.
 void save_frame(const RunInput& input, const Result& result);
 
-// With --record: hands out what the simulation has recorded since the last call, as text for the files of the
-// result folder. The constructor begins the files. finish() adds what is complete only at the end of the run.
-class RecordFiles {
+// Takes what the simulation has recorded since the last call: with --record as text for the files of the result
+// folder, with --trace for the traces, which it does not commit. The constructor begins the files. finish() adds
+// what is complete only at the end of the run.
+class Records {
  public:
   // Adds text to the end of a file.
   using Append = std::function<void(const std::string& name, const std::string& text)>;
 
-  RecordFiles(const RunInput& input, Append append);
+  Records(const RunInput& input, Append append);
   void add(Simulation& simulation);
   void finish(Simulation& simulation);
 
  private:
+  void add(const fpga::FrameConflicts& frame);
+
   const RunInput& input_;
   Append append_;
-  std::uint64_t frames_ = 0;  // in rows.csv
 };
 
 // For a run that ended after `frames_done` frames: drops --truth, and prints a note, if the last frame does

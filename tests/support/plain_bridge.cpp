@@ -35,8 +35,10 @@ void PlainBridge::Slave::write(std::uint64_t word, const PlainWords& words) {
   const bool to_core = word >= kPlainCoreWindow;
   std::uint64_t local = to_core ? kPlainCoreRegisters + word - kPlainCoreWindow
                                 : bridge_.pages_[word / kPlainApertureWords] + word % kPlainApertureWords;
-  for (const std::uint32_t value : words) bridge_.posted_.push_back({local++, value});
+  const PlainTime now_ps = bridge_.events_.now();
+  for (const std::uint32_t value : words) bridge_.posted_.push_back({local++, value, now_ps});
   bridge_.stats_.posted_words += words.size();
+  bridge_.posted_levels_.push_back({now_ps, bridge_.posted_.size() + bridge_.posted_on_local_});
   bridge_.ask();
 }
 
@@ -44,8 +46,12 @@ void PlainBridge::Slave::write(std::uint64_t word, const PlainWords& words) {
 void PlainBridge::Slave::read(std::uint64_t word, std::size_t count, PlainTime end_ps,
                               std::function<void(PlainWords)> answer) {
   bridge_.events_.at(end_ps, PlainPhase::kEffects, [this, word, count, answer] {
-    bridge_.read_ =
-        LocalBurst{false, kPlainCoreRegisters + word - kPlainCoreWindow, PlainWords(count), answer};
+    bridge_.read_ = LocalBurst{false,
+                               kPlainCoreRegisters + word - kPlainCoreWindow,
+                               PlainWords(count),
+                               answer,
+                               1,
+                               bridge_.events_.now()};
     bridge_.ask();
   });
 }
@@ -83,7 +89,7 @@ void PlainBridge::ask() {
 // Begins a burst: posted writes before reads before the channels in turn. False if nothing is pending.
 bool PlainBridge::serve() {
   if (!posted_.empty()) {
-    LocalBurst burst{true, posted_.front().word, {}, [](const PlainWords&) {}};
+    LocalBurst burst{true, posted_.front().word, {}, [](const PlainWords&) {}, 0, posted_.front().posted_ps};
     const auto follows = [&burst](std::uint64_t word) {
       return word == burst.word + burst.words.size() && bank_of(word) == bank_of(burst.word);
     };
@@ -153,6 +159,10 @@ void PlainBridge::word_ends(PlainTime begin_ps, PlainTime usable_ps) {
 
 void PlainBridge::end() {
   stats_.local_busy_clocks += *idle_clock_ - address_clock_;
+  local_bursts_.push_back({local_->source, local_->write, local_->word, local_->words.size(),
+                           clock_.edge(clock_.first_edge(local_->asked_ps)), clock_.edge(address_clock_),
+                           clock_.edge(address_clock_ + 1), clock_.edge(*idle_clock_)});
+  if (posted_on_local_ != 0) posted_levels_.push_back({events_.now(), posted_.size()});
   posted_on_local_ = 0;
   const LocalBurst burst = *std::exchange(local_, std::nullopt);
   if (!serve()) next_channel_ = (next_channel_ + 1) % channels_.size();
@@ -230,12 +240,16 @@ void PlainBridge::write_burst(std::size_t number) {
 
 void PlainBridge::start_on_local(std::size_t number, bool write, std::uint64_t word, PlainWords words) {
   channels_[number].on_local = true;
-  channels_[number].asks =
-      LocalBurst{write, word, std::move(words), [this, number, write](const PlainWords& moved) {
-                   channels_[number].on_local = false;
-                   if (!write) channels_[number].words = moved;
-                   proceed(number);
-                 }};
+  channels_[number].asks = LocalBurst{write,
+                                      word,
+                                      std::move(words),
+                                      [this, number, write](const PlainWords& moved) {
+                                        channels_[number].on_local = false;
+                                        if (!write) channels_[number].words = moved;
+                                        proceed(number);
+                                      },
+                                      2 + number,
+                                      events_.now()};
   ask();
 }
 

@@ -12,6 +12,7 @@
 #include "tests/support/plain_clock.h"
 #include "tests/support/plain_events.h"
 #include "tests/support/plain_pci_bus.h"
+#include "tests/support/plain_trace.h"
 
 // The PCI bridge and its local bus of contract section 3, one word at a time.
 namespace stereotlm::test {
@@ -88,6 +89,8 @@ class PlainBridge : private PlainMaster {
     std::uint64_t local_busy_clocks = 0;
   };
   Stats stats() const;
+  const std::vector<PlainBusBurst>& local_bursts() const { return local_bursts_; }
+  const std::vector<PlainLevel>& posted_levels() const { return posted_levels_; }
 
  private:
   struct Slave : PlainTarget {
@@ -111,6 +114,8 @@ class PlainBridge : private PlainMaster {
     std::uint64_t word = 0;
     PlainWords words;
     std::function<void(PlainWords)> ended;
+    std::size_t source = 0;  // see PlainBusBurst
+    PlainTime asked_ps = 0;
   };
   struct PciTransfer {
     std::size_t channel = 0;
@@ -122,6 +127,7 @@ class PlainBridge : private PlainMaster {
   struct PostedWord {
     std::uint64_t word = 0;
     std::uint32_t value = 0;
+    PlainTime posted_ps = 0;
   };
   struct Channel {
     std::vector<PlainDescriptor> chain;
@@ -180,6 +186,8 @@ class PlainBridge : private PlainMaster {
   std::optional<std::uint64_t> idle_clock_;  // once it is known
   std::size_t word_ = 0;                     // of the burst
   Stats stats_;
+  std::vector<PlainBusBurst> local_bursts_;  // that have ended
+  std::vector<PlainLevel> posted_levels_;
 };
 
 }  // namespace stereotlm::test

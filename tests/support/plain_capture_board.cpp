@@ -93,6 +93,7 @@ PlainBurst PlainCaptureBoard::burst() {
   asks_ = false;
   has_bus_ = true;
   owed_ = complete_words();
+  levels_.push_back({events_.now(), owed_});
   PlainBurst burst{true, place_.target, place_.wait_clocks, place_.word + fifo_.front().place, {}};
   for (const Word& word : fifo_) {
     if (word.pixels < 4 || word.place != fifo_.front().place + burst.words.size()) break;
@@ -114,6 +115,10 @@ void PlainCaptureBoard::lost() {
 
 void PlainCaptureBoard::ended(const PlainWords& /*words*/) {
   has_bus_ = false;
+  // A pixel that arrives at this time counts.
+  events_.at(events_.now(), PlainPhase::kLocalBusBegins, [this] {
+    levels_.push_back({events_.now(), complete_words()});
+  });
   request_or_finish();
 }
 

@@ -9,6 +9,7 @@
 #include "tests/support/plain_clock.h"
 #include "tests/support/plain_events.h"
 #include "tests/support/plain_pci_bus.h"
+#include "tests/support/plain_trace.h"
 
 // A camera's capture board of contract section 3, one pixel at a time.
 namespace stereotlm::test {
@@ -54,6 +55,8 @@ class PlainCaptureBoard : private PlainMaster {
   void drop_frame() { ++stats_.dropped_not_armed; }
 
   const Stats& stats() const { return stats_; }
+  // The complete words as each burst begins and ends.
+  const std::vector<PlainLevel>& levels() const { return levels_; }
 
  private:
   struct Word {
@@ -99,6 +102,7 @@ class PlainCaptureBoard : private PlainMaster {
   bool has_bus_ = false;
   std::size_t burst_words_ = 0;  // of the burst that has the bus
   Stats stats_;
+  std::vector<PlainLevel> levels_;
 };
 
 // The registers of a capture board on the PCI bus, in words.

@@ -392,6 +392,10 @@ class Computer {
     result.local_busy_clocks = bridge.local_busy_clocks;
     result.cameras = {PlainComputerResult::Camera{camera_frames_, left_.stats()},
                       PlainComputerResult::Camera{camera_frames_, right_.stats()}};
+    result.pci_bursts = bus_.bursts();
+    result.local_bursts = bridge_.local_bursts();
+    result.posted_levels = bridge_.posted_levels();
+    result.fifo_levels = {left_.levels(), right_.levels()};
     return result;
   }
 

@@ -12,6 +12,7 @@
 #include "tests/support/plain_core.h"
 #include "tests/support/plain_load.h"
 #include "tests/support/plain_pci_bus.h"
+#include "tests/support/plain_trace.h"
 #include "tests/support/random_board.h"
 
 // The whole computer of contract section 3 as a plain loop over events: one pixel, one word and one cycle at
@@ -62,6 +63,11 @@ struct PlainComputerResult {
   std::uint64_t local_clocks = 0;
   std::uint64_t local_busy_clocks = 0;
   std::array<Camera, 2> cameras;  // left, right
+  // Of each bus by their ends, of each queue by time.
+  std::vector<PlainBusBurst> pci_bursts;
+  std::vector<PlainBusBurst> local_bursts;
+  std::vector<PlainLevel> posted_levels;
+  std::array<std::vector<PlainLevel>, 2> fifo_levels;  // left, right
 };
 
 // From time 0 to the delivery of `frames` frames. Throws std::runtime_error if the frames never come.

@@ -31,7 +31,8 @@ void PlainPciBus::grant(std::uint64_t clock) {
     const std::size_t master = (next_turn_ + turn) % slots_.size();
     Slot& slot = slots_[master];
     if (!slot.request_ps) continue;
-    slot.stats.wait_clocks += clock - clock_.first_edge(*slot.request_ps);
+    request_clock_ = clock_.first_edge(*slot.request_ps);
+    slot.stats.wait_clocks += clock - request_clock_;
     slot.request_ps.reset();
     next_turn_ = (master + 1) % slots_.size();
     owner_ = master;
@@ -102,6 +103,8 @@ bool PlainPciBus::another_waits(std::uint64_t clock) const {
 // Called as the idle clock begins.
 void PlainPciBus::end(std::uint64_t idle_clock) {
   busy_clocks_ += idle_clock - address_clock_;
+  bursts_.push_back({owner_, burst_.write, 0, words_done_, clock_.edge(request_clock_),
+                     clock_.edge(address_clock_), clock_.edge(address_clock_ + 1), clock_.edge(idle_clock)});
   free_clock_ = idle_clock + 1;
   busy_ = false;
   Slot& slot = slots_[owner_];

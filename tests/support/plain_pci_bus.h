@@ -8,6 +8,7 @@
 
 #include "tests/support/plain_clock.h"
 #include "tests/support/plain_events.h"
+#include "tests/support/plain_trace.h"
 
 // The PCI bus of contract sections 3 and 7.10, one data clock at a time.
 namespace stereotlm::test {
@@ -78,6 +79,7 @@ class PlainPciBus : public PlainBus {
   // Both up to now.
   std::uint64_t clocks() const { return clock_.clocks_by(events_.now()); }
   std::uint64_t busy_clocks() const { return busy_clocks_ + (busy_ ? clocks() - address_clock_ : 0); }
+  const std::vector<PlainBusBurst>& bursts() const { return bursts_; }
   const MasterStats& stats(std::size_t master) const { return slots_[master].stats; }
 
  private:
@@ -108,10 +110,12 @@ class PlainPciBus : public PlainBus {
 
   // The burst that has the bus.
   std::size_t owner_ = 0;
+  std::uint64_t request_clock_ = 0;
   std::uint64_t address_clock_ = 0;
   PlainBurst burst_;
   std::size_t words_taken_ = 0;  // those that the target takes, or answers
   std::size_t words_done_ = 0;
+  std::vector<PlainBusBurst> bursts_;  // that have ended
 };
 
 }  // namespace stereotlm::test

@@ -333,6 +333,11 @@ void draw_knobs(RandomBoard& board, const RandomKnobs& knobs) {
 
 }  // namespace
 
+std::uint64_t random_boards(std::uint64_t without_it) {
+  const char* const asked = std::getenv("STEREOTLM_RANDOM_BOARDS");
+  return asked != nullptr ? std::stoull(asked) : without_it;
+}
+
 RandomBoard make_random_board(std::uint64_t seed, const RandomKnobs& knobs) {
   SplitMix64 random(seed);
   RandomBoard board;

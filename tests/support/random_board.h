@@ -70,6 +70,9 @@ struct RandomKnobs {
 
 // Without knobs a seed gives the board of sections 1 to 6 that it has always given. Each knob draws from a
 // generator of its own.
+// How many of them a test compares: as many as STEREOTLM_RANDOM_BOARDS says.
+std::uint64_t random_boards(std::uint64_t without_it);
+
 RandomBoard make_random_board(std::uint64_t seed, const RandomKnobs& knobs = {});
 
 // For the message of a failure.

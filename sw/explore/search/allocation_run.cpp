@@ -11,9 +11,9 @@
 namespace stereotlm::explore {
 namespace {
 
-// Records the results of some boards in the search. Reads them from the database. The sweep has given up a
-// board that is not in the database.
-void record_outcomes(const std::vector<std::size_t>& numbers, const std::string& path,
+// Records the results of some boards in the search. Reads them from the database. If the sweep of the boards
+// is whole, it has given up a board that is not in the database.
+void record_outcomes(const std::vector<std::size_t>& numbers, const std::string& path, bool is_whole,
                      AllocationSearch& search) {
   Database store(path, Database::Access::kRead);
   Statement find(
@@ -26,7 +26,7 @@ void record_outcomes(const std::vector<std::size_t>& numbers, const std::string&
     const Point point = search.point(number);
     find.bind(1, point.hash);
     if (!find.step()) {
-      search.record_given_up(number);
+      if (is_whole) search.record_given_up(number);
       find.reset();
       continue;
     }
@@ -52,16 +52,23 @@ void record_outcomes(const std::vector<std::size_t>& numbers, const std::string&
 }  // namespace
 
 bool simulate(AllocationSearch& search, const Evaluate& evaluate, const SweepOptions& sweep,
-              const std::function<bool(std::uint64_t done, std::uint64_t most_left)>& keep_going) {
-  std::uint64_t before = 0;
+              const std::function<bool(const SearchProgress& progress)>& keep_going) {
+  SearchProgress before;
+  before.is_narrowed = search.by_frames();
   for (auto numbers = search.next(); !numbers.empty(); numbers = search.next()) {
     const std::uint64_t left = search.most_left();
-    const auto counts = explore::sweep(
-        AllocationPoints(search, numbers), evaluate, sweep,
-        [&](const SweepCounts& done) { return keep_going(before + done.done(), left - done.done()); });
-    if (counts.done() < counts.total) return false;
-    record_outcomes(numbers, sweep.store, search);
-    before += numbers.size();
+    const auto progress_of = [&](const SweepCounts& counts) {
+      return SearchProgress{before.done + counts.done(), before.simulated + counts.done() - counts.known,
+                            left - counts.done(), before.is_narrowed};
+    };
+    const auto counts =
+        explore::sweep(AllocationPoints(search, numbers), evaluate, sweep,
+                       [&](const SweepCounts& running) { return keep_going(progress_of(running)); });
+    const bool is_whole = counts.done() == counts.total;
+    record_outcomes(numbers, sweep.store, is_whole, search);
+    if (!is_whole) return false;
+    before = progress_of(counts);
+    before.is_narrowed = true;
   }
   return true;
 }

@@ -119,14 +119,14 @@ bool AllocationSearch::can_win(std::size_t placement, const std::map<int, double
   return rate == best.end() || bounds_[placement] >= rate->second * (1 - kRounding);
 }
 
-AllocationOutcome AllocationSearch::outcome_of(std::size_t placement) const {
-  if (!by_frames_) return *outcomes_[placement];
+std::optional<AllocationOutcome> AllocationSearch::outcome_of(std::size_t placement) const {
+  if (!by_frames_) return outcomes_[placement];
   AllocationOutcome sum;
   for (std::uint64_t frame = 0; frame < turn_frames_; ++frame) {
     const std::string key = key_of(board_of_frame(board_, fitting_[placement], frame));
-    const AllocationOutcome& one = outcomes_.at(frame_numbers_.at(key)).value();
-    if (!one.failure.empty()) return one;
-    sum.cycles += one.cycles;
+    const std::optional<AllocationOutcome>& one = outcomes_.at(frame_numbers_.at(key));
+    if (!one || !one->failure.empty()) return one;
+    sum.cycles += one->cycles;
   }
   sum.frames_per_second =
       board_.fpga.clock_mhz * 1e6 * static_cast<double>(turn_frames_) / static_cast<double>(sum.cycles);
@@ -140,24 +140,38 @@ std::vector<BestPlacement> AllocationSearch::best() const {
     best.banks = banks_used(fitting_[place]);
     ++best.placements;
     if (!by_frames_ && given_up_[place]) ++best.given_up;
-    if (!is_known(place)) continue;
+    const std::optional<AllocationOutcome> outcome = outcome_of(place);
+    if (!outcome) continue;
     ++best.known;
-    const AllocationOutcome outcome = outcome_of(place);
-    if (outcome.loses_pixels || !outcome.failure.empty()) {
-      ++(outcome.failure.empty() ? best.losing : best.failed);
+    if (outcome->loses_pixels || !outcome->failure.empty()) {
+      ++(outcome->failure.empty() ? best.losing : best.failed);
       continue;
     }
-    if (best.reached_by == 0 || outcome.frames_per_second > best.frames_per_second) {
+    if (best.reached_by == 0 || outcome->frames_per_second > best.frames_per_second) {
       best.reached_by = 0;
-      best.frames_per_second = outcome.frames_per_second;
-      best.outcome = outcome;
+      best.frames_per_second = outcome->frames_per_second;
+      best.outcome = *outcome;
       best.witness = fitting_[place];
     }
-    if (outcome.frames_per_second == best.frames_per_second) ++best.reached_by;
+    if (outcome->frames_per_second == best.frames_per_second) ++best.reached_by;
   }
   std::vector<BestPlacement> all;
   for (const auto& [banks, best] : found) all.push_back(best);
   return all;
+}
+
+std::map<int, double> AllocationSearch::open_bounds(const BoundOf& bound) const {
+  const std::map<int, double> best = best_rates();
+  std::map<int, double> open;
+  for (std::size_t place = 0; place < fitting_.size(); ++place) {
+    const std::optional<AllocationOutcome> outcome = outcome_of(place);
+    const bool is_settled =
+        outcome ? outcome->failure.empty() : !by_frames_ && (given_up_[place] || !can_win(place, best));
+    if (is_settled) continue;
+    double& most = open[banks_used(fitting_[place])];
+    most = std::max(most, by_frames_ ? bound(placed(board_, fitting_[place])) : bounds_[place]);
+  }
+  return open;
 }
 
 std::string AllocationSearch::first_failure() const {

@@ -79,15 +79,19 @@ class AllocationSearch {
   std::size_t size() const { return outcomes_.size(); }
   Point point(std::size_t number) const;
 
-  // The best placement for each number of banks that can hold the buffers, the fewest banks first. Final once
-  // next() returns no boards.
+  // The best placement for each number of banks that can hold the buffers, the fewest banks first, among the
+  // results so far. Final once next() returns no boards.
   std::vector<BestPlacement> best() const;
+  // For each number of banks: the largest bound of the placements whose rate is unknown because they were not
+  // simulated yet, or have failed. Placements that were left out or given up do not count. A number of banks
+  // without such placements is absent. `bound`: that of the constructor.
+  std::map<int, double> open_bounds(const BoundOf& bound) const;
   // "ALLOCATION: REASON" of the first board whose run has failed; empty if no run has failed.
   std::string first_failure() const;
 
  private:
-  AllocationOutcome outcome_of(std::size_t placement) const;  // the placement must be known
-  bool is_known(std::size_t placement) const { return by_frames_ || outcomes_[placement].has_value(); }
+  // nullopt until all boards of the placement are simulated.
+  std::optional<AllocationOutcome> outcome_of(std::size_t placement) const;
   bool is_done(std::size_t placement) const {
     return outcomes_[placement].has_value() || given_up_[placement];
   }

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
@@ -11,7 +10,6 @@
 #include <set>
 #include <stdexcept>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -24,6 +22,7 @@
 #include "platform/config/board_yaml.h"
 #include "platform/config/buffer_layout.h"
 #include "sw/files/base64.h"
+#include "sw/files/shell_word.h"
 #include "sw/files/whole_file.h"
 #include "sw/process/interrupt.h"
 #include "sw/report/chart/memory_chart.h"
@@ -39,24 +38,13 @@ using platform::BoardConfig;
 
 constexpr std::chrono::milliseconds kBetweenPolls{100};
 
-// The word as a POSIX shell reads it.
-std::string quoted(const std::string& word) {
-  const auto is_plain = [](char letter) {
-    return std::isalnum(static_cast<unsigned char>(letter)) != 0 ||
-           std::string_view("_-./=:,+@%").find(letter) != std::string_view::npos;
-  };
-  if (!word.empty() && std::all_of(word.begin(), word.end(), is_plain)) return word;
-  std::string text = "'";
-  for (const char letter : word) text += letter == '\'' ? std::string("'\\''") : std::string(1, letter);
-  return text + "'";
-}
-
 // The command that runs the run again.
 std::string command_of(const runs::RecordedRun& run) {
   const runs::RecordedOptions& options = run.options;
-  std::string text = "stereotlm run " + quoted((std::filesystem::path(run.folder) / "config.yaml").string());
+  std::string text =
+      "stereotlm run " + files::shell_word((std::filesystem::path(run.folder) / "config.yaml").string());
   const auto add = [&text](const char* name, const std::string& value) {
-    text += fmt::format(" {} {}", name, quoted(value));
+    text += fmt::format(" {} {}", name, files::shell_word(value));
   };
   if (options.source != "camera") add("--source", options.source);
   if (options.fidelity != "fast") add("--fidelity", options.fidelity);
@@ -66,7 +54,7 @@ std::string command_of(const runs::RecordedRun& run) {
   if (options.sequence) add("--sequence", options.sequence->path);
   if (!options.video.empty()) {
     text += " --video";
-    for (const runs::InputFile& file : options.video) text += " " + quoted(file.path);
+    for (const runs::InputFile& file : options.video) text += " " + files::shell_word(file.path);
     add("--video-layout", options.video_layout);
   }
   if (options.synthetic) add("--synthetic", std::to_string(*options.synthetic));

@@ -31,7 +31,7 @@ double stall_timeout_seconds(const platform::BoardConfig& board) {
 CameraSimulation::CameraSimulation(const platform::BoardConfig& board, const platform::Tables& tables,
                                    host::FrameSource& pairs, std::uint64_t frames, Binder& binder,
                                    fpga::Fidelity fidelity)
-    : Simulation(board, pairs, frames, fidelity),
+    : Simulation(board, tables, pairs, frames, fidelity),
       board_(board),
       fidelity_(fidelity),
       tables_(tables),

@@ -8,6 +8,7 @@
 
 #include "models/binder.h"
 #include "models/capture/camera.h"
+#include "platform/bus_trace.h"
 #include "platform/collect_computer.h"
 #include "platform/computer_view.h"
 #include "platform/timeline.h"
@@ -29,6 +30,8 @@ class CameraSimulation : public Simulation, private driver::FrameListener {
   // Records the run from its beginning, for take_timeline(). To be called before advance(). statistics() then
   // also checks the identities of the records.
   void record_timeline();
+  // See ComputerView. To be called before advance().
+  void trace_buses(platform::BusTrace& buses) override { computer_->trace_buses(buses); }
 
   void end_early() override;
   void record_rows() override { computer_->record_rows(); }
@@ -56,6 +59,7 @@ class CameraSimulation : public Simulation, private driver::FrameListener {
   void frame_delivered(const driver::DeliveredFrame& frame) override;
   void check_progress() override;
   void record(fpga::ConflictRecorder& conflicts) override { computer_->record(conflicts); }
+  void record(fpga::CycleRecorder& cycles) override { computer_->record(cycles); }
 
   const platform::BoardConfig& board_;
   fpga::Fidelity fidelity_;

@@ -5,7 +5,7 @@ namespace stereotlm::runs {
 PreloadedSimulation::PreloadedSimulation(const platform::BoardConfig& board, const platform::Tables& tables,
                                          host::FrameSource& pairs, std::uint64_t frames, Binder& binder,
                                          fpga::Fidelity fidelity)
-    : Simulation(board, pairs, frames, fidelity),
+    : Simulation(board, tables, pairs, frames, fidelity),
       board_(board),
       tables_(tables),
       system_("system", board, tables, frames, *this, *this, binder, fidelity),

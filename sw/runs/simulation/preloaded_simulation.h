@@ -28,6 +28,7 @@ class PreloadedSimulation : public Simulation, private host::FrameSource, privat
  private:
   const host::StereoPair& pair(std::uint64_t frame) override { return load_pair(frame); }
   void record(fpga::ConflictRecorder& conflicts) override { system_.board.core.record(conflicts); }
+  void record(fpga::CycleRecorder& cycles) override { system_.board.core.record(cycles); }
   void take(std::uint64_t frame, const kernels::GrayImage& disparity) override;
 
   const platform::BoardConfig& board_;

@@ -6,6 +6,7 @@
 #include <systemc>
 #include <utility>
 
+#include "models/clock.h"
 #include "models/kernel_time.h"
 
 namespace stereotlm::runs {
@@ -18,9 +19,10 @@ constexpr double kFastSliceCycles = 2'000'000;
 
 }  // namespace
 
-Simulation::Simulation(const platform::BoardConfig& board, host::FrameSource& pairs, std::uint64_t frames,
-                       fpga::Fidelity fidelity)
+Simulation::Simulation(const platform::BoardConfig& board, const platform::Tables& tables,
+                       host::FrameSource& pairs, std::uint64_t frames, fpga::Fidelity fidelity)
     : board_(board),
+      tables_(tables),
       pairs_(pairs),
       slice_cycles_(fidelity == fpga::Fidelity::kCycle ? kSliceCycles : kFastSliceCycles),
       frames_(frames) {}
@@ -43,6 +45,15 @@ std::vector<Result> Simulation::advance() {
 }
 
 void Simulation::record_conflicts() { record(conflicts_.emplace(board_).recorder()); }
+
+void Simulation::trace(const fpga::CycleWindow& window, fpga::CycleObserver& cycles,
+                       platform::BusObserver& buses) {
+  cycles_.emplace(platform::core_config(board_), conflicts_->recorder(), window, cycles);
+  if (tables_.left) cycles_->set_entries(fpga::Side::kLeft, tables_.left->entries.data());
+  if (tables_.right) cycles_->set_entries(fpga::Side::kRight, tables_.right->entries.data());
+  record(*cycles_);
+  trace_buses(buses_.emplace(board_, window, buses));
+}
 
 std::vector<fpga::FrameConflicts> Simulation::take_conflicts() {
   return conflicts_ ? conflicts_->take_frames() : std::vector<fpga::FrameConflicts>();
@@ -72,6 +83,10 @@ void Simulation::add_result(Result result) {
   result.time_ps = kernel_time::to_ps(sc_core::sc_time_stamp());
   cycles_of_done_ = cycles();
   last_ = result;
+  if (cycles_) {
+    cycles_->hand_out(Clock(board_.fpga.clock_mhz).edge_at_or_after(result.time_ps));
+    buses_->hand_out(result.time_ps);
+  }
   new_.push_back(std::move(result));
   if (finished()) sc_core::sc_pause();  // nothing after the last frame matters
 }

@@ -5,11 +5,15 @@
 #include <optional>
 #include <vector>
 
+#include "models/fpga/core_cycle.h"
+#include "models/fpga/cycle_recorder.h"
 #include "models/fpga/fidelity.h"
 #include "models/fpga/row_profile.h"
 #include "models/host/frame_source.h"
 #include "models/kernels/gray_image.h"
+#include "platform/bus_trace.h"
 #include "platform/config/board_config.h"
+#include "platform/config/tables.h"
 #include "platform/conflicts.h"
 #include "platform/statistics.h"
 #include "platform/timeline_records.h"
@@ -68,15 +72,19 @@ class Simulation {
   // Null if conflicts are not recorded.
   const fpga::ConflictRecorder* conflicts() const { return conflicts_ ? &conflicts_->recorder() : nullptr; }
 
+  // Tells the observers what the core, and around it the buses and queues of a computer, do in the window. To be
+  // called after record_conflicts(), before advance(). The observers outlive the simulation.
+  void trace(const fpga::CycleWindow& window, fpga::CycleObserver& cycles, platform::BusObserver& buses);
+
   // The figures of the finished frames. May be called only if no frame is running that end_early() would let
   // finish, and for a whole computer only after the first result.
   virtual platform::Statistics statistics() const = 0;
   const Result& last() const { return last_; }
 
  protected:
-  // `board` and `pairs` outlive the simulation.
-  Simulation(const platform::BoardConfig& board, host::FrameSource& pairs, std::uint64_t frames,
-             fpga::Fidelity fidelity);
+  // The references outlive the simulation.
+  Simulation(const platform::BoardConfig& board, const platform::Tables& tables, host::FrameSource& pairs,
+             std::uint64_t frames, fpga::Fidelity fidelity);
 
   void set_frames(std::uint64_t frames) { frames_ = frames; }
   // Loads a pair, within a SystemC process. An exception of the source ends that process, and advance()
@@ -88,11 +96,15 @@ class Simulation {
   void check_conflicts(platform::Statistics& statistics) const;
   // Hands everything that the core does to the recorder.
   virtual void record(fpga::ConflictRecorder& conflicts) = 0;
+  virtual void record(fpga::CycleRecorder& cycles) = 0;
+  // Hands what the buses do to the trace. A board alone has none.
+  virtual void trace_buses(platform::BusTrace& /*buses*/) {}
   // Called by advance(). Throws std::runtime_error if the simulation has stalled.
   virtual void check_progress() {}
 
  private:
   const platform::BoardConfig& board_;
+  const platform::Tables& tables_;
   host::FrameSource& pairs_;
   double slice_cycles_;
   std::uint64_t frames_;
@@ -101,6 +113,8 @@ class Simulation {
   std::vector<Result> new_;  // results since the last advance() began
   Result last_;
   std::optional<platform::Conflicts> conflicts_;
+  std::optional<fpga::CycleRecorder> cycles_;
+  std::optional<platform::BusTrace> buses_;
   std::exception_ptr failure_;  // exception of the source
 };
 

@@ -2,12 +2,23 @@
 
 import contextlib
 import itertools
+import json
+import pathlib
 import re
+import shlex
+import signal
 import sqlite3
 
-import program
-from program import HEIGHT, PRELOADED, WIDTH, ProgramTest, run, sets
+import jsonschema
 
+import program
+from program import HEIGHT, PRELOADED, WIDTH, ProgramTest, run, sets, wait_until
+
+SCHEMA = json.loads((pathlib.Path(__file__).parents[3] / "sw/cli/schemas/allocate.schema.json").read_text())
+
+# A line of the table.
+ROW = re.compile(r" *(?P<banks>\d+) +(?P<allocations>\d+) +(?P<simulated>\d+) +(?P<rate>[\d.]+) +(?P<percent>[\d.]+)"
+                 r" +(?P<bound>[\d.]+) +((?P<steady>[\d.]+) +)?(?P<reached_by>\d+)  (?P<named>\w.*)$")
 BUFFERS = ["left_image", "right_image", "disparity", "left_lut", "right_lut"]
 # Five buffers, five banks, of which the last two are of another kind.
 BOARD = f"""
@@ -21,6 +32,8 @@ allocation: {{left_image: a, right_image: b, disparity: c, left_lut: d, right_lu
 """
 # With turnaround: a frame leaves something behind for the next.
 BURST = BOARD.replace("zbt_flow_through", "sync_burst, turnaround_cycles: 2")
+# Its search takes some seconds.
+LONG = ["fpl2003", *sets("image.width=160", "image.height=120")]
 # In one bank, and in most allocations to two, the captures lose pixels.
 LOSING = """
 extends: fpl2003
@@ -71,6 +84,23 @@ class Allocate(ProgramTest):
     def allocate(self, *more, board=None, banks=5):
         return run("allocate", board or self.board(), "--banks", banks, "--out", self.store, *more)
 
+    def found(self, process, status=0):
+        """The JSON document of a search, which is all that it prints."""
+        self.assertEqual(process.returncode, status, process.stderr)
+        document = json.loads(process.stdout)
+        jsonschema.Draft202012Validator(SCHEMA).validate(document)
+        return document
+
+    def rates_of(self, *arguments):
+        """The rates of a run of these arguments, as stats.json has them."""
+        self.succeeds(run("run", *arguments, "--out", self.out))
+        return self.stats()["frames_per_second"]
+
+    def pasted(self, said):
+        """The words after `stereotlm run` of the command that the text ends with, as a shell reads them."""
+        command = re.search(r"gives (\d+\.\d{3}) frames/s:\n  (stereotlm run .*)\n", said)
+        return command[1], shlex.split(command[2])[2:]
+
     def query(self, store, *statements):
         """The rows of the last one."""
         with contextlib.closing(sqlite3.connect(store)) as connection, connection:
@@ -80,9 +110,9 @@ class Allocate(ProgramTest):
         """The lines of the table by their number of banks."""
         found = {}
         for line in text.splitlines():
-            cells = re.match(r" *(\d+) +(\d+) +(\d+) +([\d.]+) +([\d.]+) +([\d.]+ +)?(\d+)  (\w.*)$", line)
+            cells = ROW.match(line)
             if cells:
-                found[int(cells[1])] = cells
+                found[int(cells["banks"])] = cells
         return found
 
     def rates_of_all(self, text, source, frames):
@@ -114,10 +144,12 @@ class Allocate(ProgramTest):
         self.assertEqual(sorted(rows), sorted(expected))
         best = {banks: max(rates) for banks, rates in expected.items()}
         for banks, rates in expected.items():
-            self.assertEqual(rows[banks][4], f"{best[banks]:.3f}")
-            self.assertEqual(int(rows[banks][7]), rates.count(best[banks]), banks)
-            self.assertGreaterEqual(float(rows[banks][5]), best[banks] - 0.001)
+            self.assertEqual(rows[banks]["rate"], f"{best[banks]:.3f}")
+            self.assertEqual(int(rows[banks]["reached_by"]), rates.count(best[banks]), banks)
+            self.assertGreaterEqual(float(rows[banks]["bound"]), best[banks] - 0.001)
         most = max(best.values())
+        for banks, rate in best.items():
+            self.assertEqual(rows[banks]["percent"], f"{100 * rate / most:.2f}")
         top = min(banks for banks in best if best[banks] == most)
         sentence = re.search(r"The best of all is (\d+\.\d+) frames/s, and needs (\d+) banks"
                              r"(?:: the best with fewer gives (\d+\.\d+))?", said)
@@ -134,13 +166,13 @@ class Allocate(ProgramTest):
 
     def test_finds_the_best_of_all_for_the_core(self):
         said, rows, _ = self.compare(BOARD, "preloaded", 1)
-        self.assertIn("boards of one frame are all that has to be simulated", said)
-        self.assertEqual([row[2] for row in rows.values()], [row[3] for row in rows.values()])
+        self.assertIn("boards of one frame give all rates", said)
+        self.assertEqual([row["allocations"] for row in rows.values()], [row["simulated"] for row in rows.values()])
         for row in rows.values():  # the allocation that is named gives the rate
-            named = (f"allocation.{buffer.replace(' ', '=', 1)}" for buffer in row[8].split(", "))
+            named = (f"allocation.{buffer.replace(' ', '=', 1)}" for buffer in row["named"].split(", "))
             named = sets(*named)
             self.succeeds(run("run", self.board(), *PRELOADED, "--timing-only", *named, "--out", self.out))
-            self.assertEqual(row[4], f"{self.stats()['frames_per_second']['core']:.3f}")
+            self.assertEqual(row["rate"], f"{self.stats()['frames_per_second']['core']:.3f}")
         before = self.store.read_bytes()  # which is continued
         self.succeeds(self.allocate(*PRELOADED))
         self.assertEqual(self.store.read_bytes(), before)
@@ -153,17 +185,151 @@ class Allocate(ProgramTest):
 
     def test_finds_the_best_of_all_for_the_core_with_turnaround(self):
         said, _, _ = self.compare(BURST, "preloaded", 1)
-        self.assertIn("each allocation is a run of the first turn of its lists", said)
+        self.assertIn("each allocation is a run of the first turn of its lists, because", said)
 
     @program.slow
     def test_finds_the_best_of_all_for_the_computer(self):
         said, rows, best = self.compare(BOARD, "camera", 13)
-        rule = "frames/s: 13 frames, from time 0 to the last delivery, without losing a pixel"
+        rule = "frames/s: 13 frames, from time 0 to the last delivery; an allocation that loses a pixel does not count"
         self.assertIn(rule, said)
-        self.assertLess(sum(int(row[3]) for row in rows.values()), sum(int(row[2]) for row in rows.values()))
+        total = lambda name: sum(int(row[name]) for row in rows.values())
+        self.assertLess(total("simulated"), total("allocations"))
         kept = min(banks for banks in best if best[banks] >= max(best.values()) * 0.7)
         again = self.succeeds(self.allocate("--keep-fps", 70))
         self.assertIn(f"70 % of it is kept with {kept} banks ({best[kept]:.3f} frames/s", again)
+
+    def test_the_command_and_the_file_give_the_rate_of_the_best(self):
+        name = self.folder / "it's the best.yaml"
+        for source, rate in (("preloaded", "core"), ("camera", "system")):
+            options = ["--source", source, *sets("fpga.lane_fifo_slots=8", "ssram.banks.f={}")]
+            text = self.succeeds(self.allocate(*options, "--write", name, banks=3))
+            self.assertTrue(text.endswith(f"\n{name}: the board with the best allocation\n"))
+            printed, words = self.pasted(text)
+            document = self.found(self.allocate(*options, "--json", "--write", name, banks=3))
+            best = document["best"]["frames_per_second"]
+            self.assertEqual(printed, f"{best[rate]:.3f}")
+            self.assertEqual(document["best"]["command"][2:], words)
+            self.assertEqual(document["written"], str(name))
+            for run_words in (words, [name, "--source", source, "--timing-only", "--frames", document["frames"]]):
+                rates = self.rates_of(*run_words)
+                self.assertEqual({key: rates[key] for key in best}, best)
+            self.store.unlink()
+            name.unlink()
+
+    @program.slow
+    def test_the_command_has_the_calibration_and_quotes_what_a_shell_would_read(self):
+        rig, _ = program.made_rig()
+        board = self.file("a board's.yaml", "extends: fpl2003\nname: rig\n")
+        options = [*PRELOADED, "--calibration", rig]
+        document = self.found(self.allocate(*options, "--json", board=board))
+        _, words = self.pasted(self.succeeds(self.allocate(*options, board=board)))
+        self.assertEqual(words[:3], [str(board), "--calibration", str(rig)])
+        self.assertEqual(self.rates_of(*words)["core"], document["best"]["frames_per_second"]["core"])
+
+    def test_the_document_has_the_figures_of_the_text(self):
+        for source, rate in (("preloaded", "core"), ("camera", "system")):
+            text = self.succeeds(self.allocate("--source", source, banks=3))
+            document = self.found(self.allocate("--source", source, "--json", banks=3))
+            self.assertEqual((document["state"], document["source"]), ("complete", source))
+            rows = self.rows(text)
+            self.assertEqual([row["banks"] for row in document["banks"]], sorted(rows))
+            for row in document["banks"]:
+                shown = rows[row["banks"]]
+                for key in ("allocations", "simulated", "reached_by"):
+                    self.assertEqual(shown[key], str(row[key]))
+                self.assertEqual(shown["rate"], f"{row['frames_per_second'][rate]:.3f}")
+                self.assertEqual(shown["bound"], f"{row['bound_frames_per_second']:.3f}")
+                if source == "camera":
+                    self.assertEqual(shown["steady"], f"{row['frames_per_second']['steady']:.3f}")
+                named = ", ".join(word.split(".")[1] for word in row["sets"])
+                self.assertEqual(shown["named"], re.sub(r"[][,](?!.)|[][]", "", named).replace("=", " "))
+            best = document["best"]
+            self.assertEqual(best["possible_gain_percent"], 0)
+            self.assertEqual(best["possible_frames_per_second"], best["frames_per_second"][rate])
+            self.assertIn("\nNo allocation to at most 3 banks gives more.\n", text)
+            self.assertIn(f"99 % of it is kept with {document['keeping']['banks']} banks", text)
+            self.store.unlink()
+
+    def test_an_interrupt_gives_the_best_so_far_and_what_is_possible(self):
+        count = "SELECT count(*) FROM points WHERE status = 'ok'"
+        written = self.folder / "best.yaml"
+        command = ["allocate", *LONG, "--banks", 3, "--out", self.store, "--write", written]
+
+        def known():
+            with contextlib.suppress(sqlite3.OperationalError):
+                return self.query(self.store, count)[0][0] if self.store.exists() else 0
+            return 0
+
+        for more in ([], ["--json"]):
+            enough = known() + 10
+            process = self.start(*command, *more)
+            wait_until(lambda: known() >= enough)
+            process.send_signal(signal.SIGINT)
+            out, errors = process.communicate(timeout=60)
+            self.assertEqual(process.returncode, 130)
+            self.assertEqual(errors, "stereotlm: note: interrupted: run the same command to resume\n")
+            best = self.query(self.store, """SELECT max("frames_per_second.system") FROM points WHERE status = 'ok'
+                AND "cameras.left.dropped_pixels" + "cameras.right.dropped_pixels" = 0""")[0][0]
+            self.assertEqual(self.rates_of(written, "--timing-only", "--frames", 13)["system"], best)
+            if not more:
+                self.assertIn(f"Interrupted. The best so far is {best:.3f} frames/s, with ", out)
+                self.assertRegex(out, r"\nAt most \d+\.\d\d % better can exist: ")
+                self.assertNotIn("are the same, pixel by pixel", out)
+                self.assertEqual(self.rates_of(*self.pasted(out)[1])["system"], best)
+                continue
+            document = json.loads(out)
+            jsonschema.Draft202012Validator(SCHEMA).validate(document)
+            self.assertEqual(document["state"], "interrupted")
+            found = document["best"]
+            self.assertEqual(found["frames_per_second"]["system"], best)
+            possible = best * (1 + found["possible_gain_percent"] / 100)
+            self.assertAlmostEqual(found["possible_frames_per_second"], possible)
+            # The bound is true: what the whole search finds is 27.598.
+            self.assertGreater(found["possible_frames_per_second"], 27.598)
+
+    def test_an_interrupted_search_is_resumed_to_the_same_result(self):
+        whole = self.succeeds(self.allocate(banks=3))
+        for part in ("substr(hash, 1, 1) < '8'", "substr(hash, 1, 1) > '2'"):
+            self.query(self.store, f"DELETE FROM blame WHERE {part}", f"DELETE FROM points WHERE {part}")
+            self.assertEqual(self.succeeds(self.allocate(banks=3)), whole)
+
+    def test_another_file_is_not_replaced_by_the_best(self):
+        board = self.board()
+        rule = "exists and is not this board with another allocation: must be moved away"
+        mine = self.file("mine.yaml", "extends: fpl2003\n")
+        for path, text in ((board, "must be another file than BOARD"), (mine, rule),
+                           (self.folder / "best.txt", "must end in .yaml"),
+                           (self.folder / "none/best.yaml", "No such file or directory"),
+                           (self.file("folder.yaml/x").parent, "Is a directory")):
+            process = self.allocate(*PRELOADED, "--write", path, board=board)
+            self.refused_in_one_line(process, f"--write '{path}': {text}")
+            self.assertFalse(self.store.exists())
+        self.assertEqual(mine.read_text(), "extends: fpl2003\n")
+        database = self.folder / "found.yaml"
+        process = run("allocate", board, "--banks", 2, "--out", database, "--write", f"{self.folder}/./found.yaml")
+        self.refused_in_one_line(process, "must be another file than --out")
+        self.assertFalse(database.exists())
+        best = self.folder / "best.yaml"
+        self.succeeds(self.allocate(*PRELOADED, "--write", best))
+        first = best.read_text()
+        self.succeeds(self.allocate(*PRELOADED, "--write", best, banks=2))
+        self.assertNotEqual(best.read_text(), first)
+        for change in (lambda text: text + "# mine\n", lambda text: text.replace("window: 7", "window: 5")):
+            self.file("best.yaml", change(first))
+            with self.unchanged(best):
+                self.refused_in_one_line(self.allocate(*PRELOADED, "--write", best), rule)
+
+    def test_a_failed_allocation_may_be_better_by_its_bound(self):
+        best = self.found(self.allocate(*PRELOADED, "--json"))["best"]["frames_per_second"]["core"]
+        rate = '"frames_per_second.core"'
+        self.query(self.store, "DELETE FROM blame",
+                   f"UPDATE points SET status = 'failed', reason = 'out of luck' WHERE {rate} > {best} * 0.999")
+        document = self.found(self.allocate(*PRELOADED, "--json"))
+        self.assertIn("out of luck", document["first_failure"])
+        self.assertLess(document["best"]["frames_per_second"]["core"], best)
+        self.assertGreaterEqual(document["best"]["possible_frames_per_second"], best)
+        said = self.succeeds(self.allocate(*PRELOADED))
+        self.assertRegex(said, r"\nAt most \d+\.\d\d % better can exist: no allocation whose rate is unknown has")
 
     def test_leaves_out_what_does_not_fit_or_needs_more_banks(self):
         said = self.succeeds(self.allocate(*PRELOADED, banks=2))
@@ -195,9 +361,14 @@ class Allocate(ProgramTest):
             "The disparities of these 1 allocations are the same",
         ):
             self.assertRegex(said, line)
-        said = self.succeeds(self.allocate(board=self.board(LOSING), banks=1))
+        written = self.folder / "best.yaml"
+        said = self.succeeds(self.allocate("--write", written, board=self.board(LOSING), banks=1))
         self.assertIn("No allocation counts.", said)
         self.assertNotIn("are the same", said)
+        self.assertNotIn("stereotlm run", said)
+        self.assertFalse(written.exists())
+        document = self.found(self.allocate("--json", board=self.board(LOSING), banks=1))
+        self.assertEqual(document.keys() & {"best", "keeping", "equal_disparities", "written"}, set())
 
     @program.slow
     def test_what_could_not_be_simulated_does_not_count(self):

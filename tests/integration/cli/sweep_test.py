@@ -2,6 +2,8 @@
 
 import os
 import pathlib
+import re
+import shlex
 import signal
 import sqlite3
 
@@ -58,6 +60,21 @@ class SweepTest(ProgramTest):
 
 
 class Sweep(SweepTest):
+    def test_reasons_that_are_not_printed_are_counted(self):
+        for count, shown in ((4, 4), (6, 3)):
+            values = list(range(5, 5 + count))  # above 4 disparities: each is impossible for its own reason
+            keys = f"set: {{matcher.disparities: 4}}\nvary: {{matcher.units: {values}}}\n"
+            store = self.folder / f"{count} points.db"
+            said = self.succeeds(run("sweep", self.file("plan.yaml", f"board: fpl2003\n{keys}"), "--out", store))
+            self.assertEqual(said.count("  1 impossible: matcher.units = "), shown)
+            further = re.search(r"  (\d) impossible: \1 further reasons\nAll reasons:\n  (sqlite3 .*)\n$", said)
+            if shown == count:
+                self.assertIsNone(further)
+                continue
+            self.assertEqual(int(further[1]), count - shown)
+            _, path, statement = shlex.split(further[2])
+            self.assertEqual(len(self.query(statement, path)), count)
+
     def test_each_point_keeps_what_its_run_says(self):
         said = self.succeeds(self.sweep())
         self.assertIn(f"{POINTS} points: {OK} ok, {IMPOSSIBLE} impossible, 0 failed", said)

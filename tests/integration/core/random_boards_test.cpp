@@ -151,7 +151,7 @@ RandomBoard board_of(std::uint64_t seed, bool with_knobs) {
 void expect_boards_equal_references(Fidelity fidelity, bool with_knobs, std::uint64_t boards,
                                     Comparison compare = compare_with_references) {
   const std::uint64_t first = from_environment("STEREOTLM_RANDOM_FIRST", 0);
-  const std::uint64_t count = from_environment("STEREOTLM_RANDOM_BOARDS", boards);
+  const std::uint64_t count = random_boards(boards);
   std::vector<ChildWork> jobs;
   for (std::uint64_t seed = first; seed < first + count; ++seed)
     jobs.push_back([=] { return compare(board_of(seed, with_knobs), fidelity); });

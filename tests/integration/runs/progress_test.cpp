@@ -17,6 +17,16 @@ TEST(ProgressText, CountsAFrameInProgressByItsCycles) {
             "2.00/2 frames   100.0 %   2.00 M cycles/s   2.00 frames/s   0:00 left");
 }
 
+TEST(ProgressText, OfASearchHasATimeOnceFirstResultsHaveLeftOutBoards) {
+  EXPECT_EQ(progress_text(explore::SearchProgress{40, 40, 2460, false}, 10),
+            "40 boards simulated, 2460 left at most");
+  EXPECT_EQ(progress_text(explore::SearchProgress{47, 7, 120, true}, 2),
+            "47 boards simulated, 120 left at most");
+  // Boards that the database had before do not count for the rate.
+  EXPECT_EQ(progress_text(explore::SearchProgress{48, 8, 120, true}, 2),
+            "48 boards simulated, 120 left at most (0:30 at this rate)");
+}
+
 TEST(VerificationText, CountsTheFramesCompared) {
   EXPECT_EQ(verification_text(0, 5), "verifying: 0/5 frames");
   EXPECT_EQ(verification_text(1, 5), "verifying: 1/5 frames");

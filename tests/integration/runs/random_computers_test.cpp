@@ -17,6 +17,7 @@
 #include "sw/report/conflicts_csv.h"
 #include "sw/report/timeline_csv.h"
 #include "sw/runs/simulation/camera_simulation.h"
+#include "tests/integration/runs/random_pictures.h"
 #include "tests/support/board_of_random.h"
 #include "tests/support/fork.h"
 #include "tests/support/monitoring_binder.h"
@@ -29,19 +30,7 @@ namespace {
 
 using fpga::Fidelity;
 
-// What the cameras of a random computer see.
-class Pictures : public host::FrameSource {
- public:
-  explicit Pictures(const test::RandomBoard& board) : board_(board) {}
-  const host::StereoPair& pair(std::uint64_t number) override {
-    pair_ = test::stereo_pair(board_, test::camera_pictures(board_, number));
-    return pair_;
-  }
-
- private:
-  const test::RandomBoard& board_;
-  host::StereoPair pair_;
-};
+using Pictures = test::RandomPictures;
 
 struct Outcome {
   std::vector<runs::Result> results;

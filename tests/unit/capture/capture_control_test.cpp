@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <map>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 #include "models/capture/camera_control.h"
@@ -145,6 +146,25 @@ TEST_F(CaptureControlTest, TriggersItsCamerasWhichStepThenOnly) {
   EXPECT_EQ(on_demand.next_ps(), kNever);
   EXPECT_EQ(board.next_ps(), 701U);
   EXPECT_EQ(camera.stats().ignored_triggers, 1U);
+}
+
+class CaptureControlLevels : public CaptureControlTest, public FifoObserver {
+ protected:
+  CaptureControlLevels() { board.observe(static_cast<FifoObserver&>(*this)); }
+  void fifo_holds(std::uint64_t now_ps, std::size_t words) override { levels.emplace_back(now_ps, words); }
+  std::vector<std::pair<std::uint64_t, std::size_t>> levels;
+};
+
+// The first burst begins as words 0 and 1 are complete, and ends with the first pixel of word 3.
+TEST_F(CaptureControlLevels, AreTheCompleteWordsAsEachBurstBeginsAndEnds) {
+  const Clock& clock = slot.clock();
+  const std::uint64_t first = clock.edge_at_or_after(pixel_ps(7, 0));
+  const std::uint64_t end = clock.edge_at_or_after(pixel_ps(12, 0));
+  slot.wait_clocks = end - first - 3;  // address clock, wait clocks, two words
+  arm(0);
+  run_to(clock.edge_ps(end));
+  EXPECT_EQ(levels, (std::vector<std::pair<std::uint64_t, std::size_t>>{{clock.edge_ps(first), 2},
+                                                                        {clock.edge_ps(end), 1}}));
 }
 
 }  // namespace

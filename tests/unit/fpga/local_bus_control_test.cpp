@@ -132,5 +132,40 @@ TEST_F(LocalBusControlTest, IsInStepWithAClockThatHasItsEdges) {
   EXPECT_FALSE(bus.is_in_step_with(Clock(80)));
 }
 
+class LocalBusControlBursts : public LocalBusControlTest, public LocalBusObserver {
+ protected:
+  LocalBusControlBursts() { bus.observe(*this); }
+  void local_burst_ended(const EndedLocalBurst& burst) override { bursts.push_back(burst); }
+  void expect(std::size_t index, bool write, std::uint64_t address, std::uint64_t count, std::uint64_t first,
+              std::uint64_t idle) {
+    ASSERT_GT(bursts.size(), index);
+    const EndedLocalBurst& burst = bursts[index];
+    EXPECT_EQ(burst.write, write);
+    EXPECT_EQ(burst.address, address);
+    EXPECT_EQ(burst.words, count);
+    EXPECT_EQ(burst.address_ps, first * kPs);
+    EXPECT_EQ(burst.data_ps, (first + 1) * kPs);
+    EXPECT_EQ(burst.end_ps, idle * kPs);
+    EXPECT_EQ(burst.free_ps, (idle + 1) * kPs);
+  }
+  std::vector<EndedLocalBurst> bursts;
+};
+
+// The word of the read is usable two clocks after its grant. The refused burst is none.
+TEST_F(LocalBusControlBursts, AreShownToAnObserverAsSoonAsTheirEndsAreKnown) {
+  EXPECT_TRUE(begin(kPs - 1, 8, 2));
+  EXPECT_TRUE(bursts.empty());
+  bus.count_granted(2, 5 * kPs, 7 * kPs);
+  expect(0, true, 8, 2, 1, 5);
+  EXPECT_FALSE(begin(6 * kPs, 2, 1));
+  EXPECT_TRUE(begin(10 * kPs, 64, 1, false));
+  bus.access(13 * kPs, 15 * kPs);
+  expect(1, false, 64, 1, 10, 15);
+  EXPECT_TRUE(begin(20 * kPs, kLocalRegisters + 4, 1));
+  bus.step(23 * kPs);
+  expect(2, true, kLocalRegisters + 4, 1, 20, 23);
+  EXPECT_EQ(bursts.size(), 3U);
+}
+
 }  // namespace
 }  // namespace stereotlm::fpga

@@ -4,10 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <cstring>
 #include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "models/fpga/local_bus_control.h"
@@ -266,6 +268,60 @@ TEST_F(BridgeControlTest, MovesTheWordsOfADmaChannel) {
   EXPECT_EQ(status(), bridge::kDmaDone);
   EXPECT_EQ(memory.at(std::uint64_t{1} << 28U | 12U), 4U);
   EXPECT_EQ(bridge.stats().dma_words, 4U);
+}
+
+class BridgeControlOnLocalBus : public BridgeControlTest, public LocalBusMasterObserver {
+ protected:
+  BridgeControlOnLocalBus() { bridge.observe(static_cast<LocalBusMasterObserver&>(*this)); }
+  void words_posted(std::uint64_t now_ps, std::size_t words) override { add("posted", now_ps, words); }
+  void transfer_waits(std::uint64_t now_ps, LocalBusSource source) override {
+    add(name_of(source) + " waits", now_ps, 0);
+  }
+  void burst_begins(std::uint64_t now_ps, LocalBusSource source, std::size_t words) override {
+    add(name_of(source) + " begins", now_ps, words);
+  }
+  void posted_words_leave(std::uint64_t at_ps, std::size_t words) override { add("leave", at_ps, words); }
+  void add(const std::string& what, std::uint64_t time_ps, std::size_t words) {
+    reports.push_back(what + ' ' + std::to_string(words) + " in clock " + std::to_string(time_ps / kPs));
+  }
+  static std::string name_of(LocalBusSource source) {
+    return std::array<const char*, 4>{"write", "read", "dma0", "dma1"}[static_cast<std::size_t>(source)];
+  }
+  std::vector<std::string> reports;
+};
+
+// A burst has its address, decode and idle clock beside its words.
+TEST_F(BridgeControlOnLocalBus, ShowsWhatWaitsAndWhatBeginsToAnObserver) {
+  std::uint32_t word = 0;
+  post(0, 0, 30);
+  post(10 * kPs, 120, 20);
+  bridge.read(11 * kPs, 0, reinterpret_cast<unsigned char*>(&word), 1);
+  run_to(100 * kPs);
+  EXPECT_EQ(reports, (std::vector<std::string>{"posted 30 in clock 0", "write begins 30 in clock 0",
+                                               "leave 30 in clock 33", "posted 20 in clock 10",
+                                               "read waits 0 in clock 11", "write begins 20 in clock 33",
+                                               "leave 20 in clock 56", "read begins 1 in clock 56"}));
+}
+
+TEST_F(BridgeControlOnLocalBus, ShowsThatTheWordsOfARefusedBurstLeaveAtOnce) {
+  bridge.write_register(0, bridge::kPage, kNoBank);
+  post(kPs, 0, 2);
+  EXPECT_EQ(reports, (std::vector<std::string>{"posted 2 in clock 1", "write begins 2 in clock 1",
+                                               "leave 2 in clock 1"}));
+}
+
+// Channel 1 moves five bursts of 32 words to bank 1, of which two are skipped.
+TEST_F(BridgeControlOnLocalBus, ShowsATransferAgainBehindThoseThatAreSkipped) {
+  bridge.write_register(0, bridge::kDmaDescriptor + bridge::kChannelStride, 0x100);
+  bridge.write_register(0, bridge::kDmaControl + bridge::kChannelStride, 1);
+  transfer(kPs, 4, {0x1000, 1U << 26U, 5 * 32, 0});
+  transfer(2 * kPs, 32, std::vector<std::uint32_t>(32, 7));
+  DmaChannel* const channel = bridge.lone_channel();
+  ASSERT_NE(channel, nullptr);
+  bridge.skip_dma(10 * kPs, *channel, 2);
+  run_to(10 * kPs);
+  EXPECT_EQ(reports, (std::vector<std::string>{"dma1 waits 0 in clock 2", "dma1 waits 0 in clock 10",
+                                               "dma1 begins 32 in clock 10"}));
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include <functional>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -375,6 +376,55 @@ TEST_F(PciBusControlTest, GrantsTheNextClockToAMasterThatRequestsAgainAsItReturn
   run();
   EXPECT_EQ(masters[0].granted_ps, (Times{5 * kClockPs, 6 * kClockPs, 7 * kClockPs, 8 * kClockPs}));
   EXPECT_EQ(bus.stats(20 * kClockPs).busy_clocks, 1 + kWaitClocks + 1);
+}
+
+class ListedBursts : public PciBusObserver {
+ public:
+  void pci_burst_ended(const EndedPciBurst& burst) override { bursts.push_back(burst); }
+  std::vector<EndedPciBurst> bursts;
+};
+
+// Master 1 requests while the burst of master 0 runs, which its latency timer cuts in clock 10. Master 2 finds no
+// target.
+TEST_F(PciBusControlTest, ShowsEachBurstAtItsEndToAnObserver) {
+  ListedBursts observer;
+  bus.observe(observer);
+  masters[0].add(true, 40, kWindowBase + 8);
+  masters[1].add(false, 2);
+  masters[2].add(true, 1, 0);
+  request(0, 2 * kClockPs - 1);
+  request_at(6, 1);
+  request_at(7, 2);
+  at(9 * kClockPs, [&] { EXPECT_TRUE(observer.bursts.empty()); });
+  run();
+  struct Expected {
+    std::size_t master;
+    std::optional<std::size_t> window;
+    bool write;
+    std::uint64_t address;
+    std::uint64_t words;
+    std::uint64_t request;  // clock
+    std::uint64_t begin;
+    std::uint64_t end;
+  };
+  // Address clock, 4 wait clocks, words; or address clock and 4 clocks without target. Then an idle clock.
+  const std::vector<Expected> expected = {{0, 0, true, kWindowBase + 8, 4, 2, 2, 11},
+                                          {1, 0, false, kWindowBase, 2, 6, 12, 19},
+                                          {2, std::nullopt, true, 0, 0, 7, 20, 25}};
+  ASSERT_EQ(observer.bursts.size(), expected.size());
+  for (std::size_t index = 0; index < expected.size(); ++index) {
+    SCOPED_TRACE(index);
+    const EndedPciBurst& burst = observer.bursts[index];
+    EXPECT_EQ(burst.master, expected[index].master);
+    EXPECT_EQ(burst.window, expected[index].window);
+    EXPECT_EQ(burst.write, expected[index].write);
+    EXPECT_EQ(burst.address, expected[index].address);
+    EXPECT_EQ(burst.words, expected[index].words);
+    EXPECT_EQ(burst.request_ps, expected[index].request * kClockPs);
+    EXPECT_EQ(burst.address_ps, expected[index].begin * kClockPs);
+    EXPECT_EQ(burst.data_ps, (expected[index].begin + 1) * kClockPs);
+    EXPECT_EQ(burst.end_ps, expected[index].end * kClockPs);
+  }
 }
 
 }  // namespace

@@ -39,6 +39,7 @@ struct Program {
   std::uint64_t disturb_ps = 0;  // while a picture is captured, it disturbs the lines as often; 0: never
   int undisturbed = 0;           // captures at the end in which it disturbs no line
   fpga::Fidelity fidelity = fpga::Fidelity::kFast;
+  std::optional<fpga::CycleWindow> window;  // that is traced
 };
 
 class LinesRun : public testing::LoopRun {
@@ -50,6 +51,7 @@ class LinesRun : public testing::LoopRun {
   }
 
   LoopOutcome outcome() {
+    if (program_.window) trace(*program_.window);
     for (std::size_t side = 0; side < 2; ++side) {
       write(testing::page_register(side), program_.pages[side]);
       write(kCaptures[side] + capture::registers::kBufferAddress, program_.buffers[side]);
@@ -81,7 +83,8 @@ class LinesRun : public testing::LoopRun {
         note("words {}\n", fmt::join(done.words, ","));
       }
     }
-    return {figures() + counters(), loop().skipped_lines()};
+    if (program_.window && program_.window->last == UINT64_MAX) expect_sums();
+    return {figures() + counters() + traced(), loop().skipped_lines()};
   }
 
  private:
@@ -195,7 +198,10 @@ TEST(CameraLines, StepsLinesThatGoElsewhereThanToTwoIndependentBanks) {
       {"in the way of a frame", {word(0, 0), word(7, 0)}, kBuffers, 3, 1, kLines * 2 / 3},
   };
   for (const auto& [what, pages, buffers, frame, least, most] : programs) {
-    const Program program = {pages, buffers, frame, 4};
+    Program program = kFourPictures;
+    program.pages = pages;
+    program.buffers = buffers;
+    program.first_bank_of_frame = frame;
     const std::uint64_t skipped = skipped_lines(board_of({}), program);
     EXPECT_GE(skipped, least) << what;
     EXPECT_LE(skipped, most) << what;
@@ -242,6 +248,25 @@ TEST(CameraLines, GiveTheSameFiguresAsSteppedLines) {
     ASSERT_FALSE(HasFailure()) << "seed " << seed;
   }
   EXPECT_GT(skipped, lines / 5);
+}
+
+// 24 lines of each picture of 48 are skipped at least, beside a window of up to an eighth of the run.
+TEST(CameraLines, GiveTheSameTraceAsSteppedLines) {
+  test::SplitMix64 random(1);
+  Program program = kFourPictures;
+  for (int number = 0; number < 25; ++number) {
+    program.fidelity = number % 2 == 0 ? fpga::Fidelity::kFast : fpga::Fidelity::kTiming;
+    const BoardConfig board = board_of({fmt::format("pci.clock_mhz={}", testing::decimal(random, 25, 70))});
+    program.window = testing::random_window(random, board, 4 * 2.1e12 / 297.3);
+    EXPECT_GT(skipped_lines(board, program), kLines / 2) << number;
+    ASSERT_FALSE(HasFailure()) << number;
+  }
+}
+
+TEST(CameraLines, AreAllSteppedWhereTheWholeRunIsTraced) {
+  Program program;
+  program.window.emplace();
+  EXPECT_EQ(skipped_lines(board_of({}), program), 0U);
 }
 
 }  // namespace

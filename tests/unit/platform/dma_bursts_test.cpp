@@ -57,6 +57,7 @@ struct DmaProgram {
   std::uint64_t delay_ps = 0;    // after the start of the frame
   std::uint64_t disturb_ps = 0;  // it accesses a register or a bank as often; 0: never
   fpga::Fidelity fidelity = fpga::Fidelity::kFast;
+  std::optional<fpga::CycleWindow> window;  // that is traced
 };
 
 class DmaRun : public testing::LoopRun {
@@ -69,6 +70,7 @@ class DmaRun : public testing::LoopRun {
 
   LoopOutcome outcome() {
     namespace bridge = pci::bridge;
+    if (program_.window) trace(*program_.window);
     const std::uint64_t registers = testing::kDevices.bridge_registers;
     write(testing::page_register(1), word_of(2, 0));
     write(testing::page_register(2), word_of(4, 0));
@@ -106,7 +108,8 @@ class DmaRun : public testing::LoopRun {
       note("memory {}\n", std::hash<std::string_view>()(bytes));
     }
     note("bank 4: {}\n", fmt::join(read(testing::aperture(2), kWordsOfBank), ","));
-    return {figures() + counters(), loop().skipped_dma_bursts()};
+    if (program_.window && program_.window->last == UINT64_MAX) expect_sums();
+    return {figures() + counters() + traced(), loop().skipped_dma_bursts()};
   }
 
  private:
@@ -303,6 +306,27 @@ TEST(DmaBursts, GiveTheSameFiguresAsSteppedBursts) {
     ASSERT_FALSE(HasFailure()) << "seed " << seed;
   }
   EXPECT_GT(skipped, bursts / 4) << bursts;
+}
+
+// A transfer of 60 bursts takes some 90 us, after the accesses of the program.
+TEST(DmaBursts, GiveTheSameTraceAsSteppedBursts) {
+  test::SplitMix64 random(2);
+  std::uint64_t skipped = 0;
+  for (int number = 0; number < 40; ++number) {
+    DmaProgram program = there_and_back(static_cast<std::size_t>(random.between(0, 1)));
+    program.fidelity = number % 2 == 0 ? fpga::Fidelity::kFast : fpga::Fidelity::kTiming;
+    const BoardConfig board = dma_board({fmt::format("pci.clock_mhz={}", testing::decimal(random, 15, 70))});
+    program.window = testing::random_window(random, board, 120e6);
+    skipped += skipped_bursts(board, program);
+    ASSERT_FALSE(HasFailure()) << number;
+  }
+  EXPECT_GT(skipped, 40U * 60 / 2);
+}
+
+TEST(DmaBursts, AreAllSteppedWhereTheWholeRunIsTraced) {
+  DmaProgram program = there_and_back();
+  program.window.emplace();
+  EXPECT_EQ(skipped_bursts(dma_board({}), program), 0U);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 // to look closer.
 import {addBrush} from './brush.js';
 import {addChart, canvasOf, cut, drawing, textWidth} from './chart.js';
+import {commandLine} from './chart_config.js';
 import {h, s} from './dom.js';
 import {settingOf, waitingRows} from './findings.js';
 import {count, percent, whole} from './format.js';
@@ -36,6 +37,21 @@ function columnsOf(run, {accesses, stalls}) {
                              waits: true
                            }))
   ];
+}
+
+// The command that traces the row among these lines in which ports wait longest, in the longest frame; null: no
+// port waits.
+function traceCommand(run, {stalls, height}, {from, to}) {
+  const waits = line => stalls.reduce((all, {values}) => all + values[line], 0);
+  let worst = from;
+  for (let line = from; line < to; ++line) {
+    if (waits(line) > waits(worst)) worst = line;
+  }
+  if (waits(worst) === 0) return null;
+  const cycles = run.stats.frame_cycles;
+  const frame = cycles.indexOf(cycles.reduce((a, b) => Math.max(a, b)));
+  return `${run.command} --trace vcd:waits.vcd --trace-window frame=${frame},rows=${worst * height}..${
+      worst * height}`;
 }
 
 export function addRows(page, run) {
@@ -132,8 +148,14 @@ export function addRows(page, run) {
     svg.style.position = 'relative';
   };
   const shownText = h('span', {class: 'note'});
+  const trace = h('div');
   const sayShown = () => {
     shownText.textContent = rowsText(recorded, state.from, state.to, imageHeight);
+    const command = traceCommand(run, recorded, state);
+    trace.replaceChildren(...command ? [
+      h('p', {class: 'note'}, 'The cycles of the row in which ports wait longest, for a waveform viewer:'),
+      commandLine(command)
+    ] : []);
   };
   const zoom = (from, to) => {
     state.from = Math.max(0, Math.min(lines - 4, Math.round(from)));
@@ -159,7 +181,7 @@ export function addRows(page, run) {
   const chart = addChart(page, {
     id: 'rows',
     draw,
-    body: tools,
+    body: [tools, trace],
     title: `Ports wait ${waitingRows(run) ?? 'in no row of the picture'}`,
     note: `Banks: the share of the cycles of each row with an access. Ports: the share in which they wait. ` +
         `Sums over ${count(frames, 'frame')}. The colours of banks end at 100 %${

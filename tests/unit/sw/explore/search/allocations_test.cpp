@@ -215,6 +215,26 @@ TEST(AllocationSearch, ByFramesFindsTheBestPlacementsWithoutFailedFrames) {
   EXPECT_EQ(all.back().outcome.cycles, 2000U) << "a bank for each buffer of a frame";
 }
 
+TEST(AllocationSearch, ByFramesKnowsAPlacementOnceAllItsFramesAreSimulated) {
+  AllocationSearch search = core_search(fpl2003(), 8);
+  const auto bound_of = [](const BoardConfig& board) { return static_cast<double>(banks_of(board)); };
+  for (const BestPlacement& best : search.best()) EXPECT_EQ(best.known, 0U);
+  EXPECT_EQ(search.open_bounds(bound_of),
+            (std::map<int, double>{{3, 3}, {4, 4}, {5, 5}, {6, 6}, {7, 7}, {8, 8}}));
+  // The board of both frames of a placement with a bank for each buffer.
+  const std::string apart = allocation_text(board_of_frame(fpl2003(), {0, 1, 2, 3, 4, 5, 6, 7}, 0));
+  for (const std::size_t number : search.next()) {
+    if (allocation_text(*search.point(number).board) == apart)
+      search.record(number, {2000, 0, {}, false, ""});
+  }
+  const BestPlacement most_banks = search.best().back();
+  EXPECT_EQ(most_banks.known, 1U);
+  EXPECT_EQ(most_banks.frames_per_second, 40e6 / 2000);
+  EXPECT_EQ(search.best().front().known, 0U);
+  EXPECT_EQ(search.open_bounds(bound_of).count(8), 0U);
+  EXPECT_EQ(search.open_bounds(bound_of).at(3), 3);
+}
+
 // Made-up runs of a computer, with rates from 10 to 20 frames/s, and bounds by up to a tenth above them.
 class ComputerSearch : public ::testing::Test {
  protected:
@@ -279,6 +299,35 @@ TEST_F(ComputerSearch, FindsTheBestPlacementsAndLeavesOutThoseThatABoundRulesOut
   }
   EXPECT_EQ(ended, simulated);
   EXPECT_GT(out, 0U) << "some lose pixels and some fail";
+}
+
+// At each time, the open bounds and the best rates so far are above the rates of all placements that count.
+TEST_F(ComputerSearch, HasABoundOfWhatIsNotKnownUntilItsEnd) {
+  std::map<int, double> most;  // [banks]
+  for (std::size_t number = 0; number < search.size(); ++number) {
+    const BoardConfig board = *search.point(number).board;
+    const AllocationOutcome outcome = outcome_of(board);
+    if (!outcome.loses_pixels && outcome.failure.empty())
+      most[banks_of(board)] = std::max(most[banks_of(board)], outcome.frames_per_second);
+  }
+  for (auto numbers = search.next(); !numbers.empty(); numbers = search.next()) {
+    const std::map<int, double> open = search.open_bounds(bound_of);
+    for (const BestPlacement& best : search.best()) {
+      const double bound = open.count(best.banks) > 0 ? open.at(best.banks) : 0;
+      EXPECT_GE(std::max(best.frames_per_second, bound), most[best.banks]);
+      EXPECT_TRUE(best.known > 0 || bound > 0);
+    }
+    for (const std::size_t number : numbers) search.record(number, outcome_of(*search.point(number).board));
+  }
+  double most_failed = 0;
+  for (std::size_t number = 0; number < search.size(); ++number) {
+    const BoardConfig board = *search.point(number).board;
+    if (outcome_of(board).failure.empty()) continue;
+    most_failed = std::max(most_failed, bound_of(board));
+  }
+  double most_open = 0;
+  for (const auto& [banks, bound] : search.open_bounds(bound_of)) most_open = std::max(most_open, bound);
+  EXPECT_EQ(most_open, most_failed) << "at the end, only those that failed are open";
 }
 
 TEST_F(ComputerSearch, RefusesARateAboveItsBoundUnlessPixelsAreLost) {

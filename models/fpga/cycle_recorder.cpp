@@ -1,0 +1,175 @@
+#include "models/fpga/cycle_recorder.h"
+
+#include <algorithm>
+
+#include "models/fpga/buffer_words.h"
+#include "models/fpga/register_map.h"
+#include "models/kernels/rectification_table.h"
+#include "models/memory/crossbar_address.h"
+
+namespace stereotlm::fpga {
+namespace {
+
+// a + b, but at most UINT64_MAX.
+std::uint64_t sum(std::uint64_t a, std::uint64_t b) { return a > UINT64_MAX - b ? UINT64_MAX : a + b; }
+
+}  // namespace
+
+CycleRecorder::CycleRecorder(const CoreConfig& config, const ConflictRecorder& conflicts,
+                             const CycleWindow& window, CycleObserver& observer)
+    : geometry_(config),
+      has_table_{has_table(config, Side::kLeft), has_table(config, Side::kRight)},
+      conflicts_(conflicts),
+      window_(window),
+      observer_(observer) {}
+
+void CycleRecorder::start_frame(std::uint64_t number, std::uint64_t first_cycle, const FrameBases& bases) {
+  tell_served(first_cycle);
+  frame_ = number;
+  first_cycle_ = first_cycle;
+  bases_ = bases;
+}
+
+void CycleRecorder::end_frame(std::uint64_t end_cycle) {
+  drop_served(end_cycle);
+  frame_.reset();
+}
+
+std::uint64_t CycleRecorder::next_stepped(std::uint64_t cycle) const {
+  if (window_.frame && window_.frame != frame_) return UINT64_MAX;
+  if (window_.unit == CycleWindow::Unit::kRows) {
+    const bool is_over = conflicts_.strip() > window_.last / static_cast<std::uint64_t>(geometry_.rows) + 1;
+    return is_over ? UINT64_MAX : cycle;  // in which cycle the rows begin is not known before
+  }
+  const std::uint64_t origin = window_.frame ? first_cycle_ : 0;
+  const std::uint64_t next = std::max(cycle, sum(origin, window_.first));
+  return next <= sum(origin, window_.last) ? next : UINT64_MAX;
+}
+
+bool CycleRecorder::is_inside(std::uint64_t cycle) const {
+  if (window_.frame && window_.frame != frame_) return false;
+  std::uint64_t place = cycle;
+  if (window_.unit == CycleWindow::Unit::kRows) {
+    if (conflicts_.strip() == 0) return false;
+    const auto rows = static_cast<std::uint64_t>(geometry_.rows);
+    const std::uint64_t first_row = (conflicts_.strip() - 1) * rows;
+    return first_row <= window_.last && window_.first < first_row + rows;
+  }
+  if (window_.frame) place -= first_cycle_;
+  return window_.first <= place && place <= window_.last;
+}
+
+void CycleRecorder::record(std::uint64_t cycle, const CoreControl::Decision& decision, bool host_requests,
+                           memory::PortMask granted, const CoreControl& control,
+                           const memory::Arbitration& arbitration) {
+  CoreCycle out;
+  out.cycle = cycle;
+  out.frame = frame_;
+  const auto blamed = [&](memory::Port port) {
+    return conflicts_.requester_of_port(arbitration.cause_of(port, granted));
+  };
+  for (memory::Port port = 0; port < kCorePortCount; ++port) {
+    PortCycle& of_port = out.ports[port];
+    of_port.intent = decision.intents[port];
+    if (of_port.intent == Intent::kRequest || of_port.intent == Intent::kPass)
+      set_item(of_port, port, control);
+    if (of_port.intent != Intent::kRequest) continue;
+    of_port.granted = (granted & memory::mask_of(port)) != 0;
+    of_port.bank = arbitration.bank_of(port);
+    of_port.address = registers::base_address(bases_[port]) - memory::crossbar_address(of_port.bank, 0) +
+                      address_of(port, of_port.item);
+    if (!of_port.granted) of_port.by = blamed(port);
+  }
+  if (host_requests) {
+    const bool is_granted = (granted & memory::mask_of(kHostPort)) != 0;
+    set_host(out, host_->next_word(), is_granted, is_granted ? 0 : blamed(kHostPort));
+  } else {
+    drop_served(cycle);
+    set_served(out);
+  }
+  for (const Side side : kSides) {
+    const LaneControl& lane = control.lane(side);
+    out.lane_slots[index_of(side)] = static_cast<std::uint32_t>(lane.slots());
+  }
+  out.result_words = static_cast<std::uint32_t>(control.result().queued());
+  out.works = decision.work;
+  observer_.cycle(out);
+}
+
+void CycleRecorder::set_item(PortCycle& port, memory::Port number, const CoreControl& control) const {
+  const CorePort& description = kPorts[number];
+  switch (description.stage) {
+    case PortStage::kLutReader:
+      port.item = control.lane(description.side).taken();
+      return;
+    case PortStage::kPixelReader:
+      port.item = control.lane(description.side).handled();
+      return;
+    case PortStage::kResultWriter:
+      port.item = control.result().words_written();
+      return;
+    case PortStage::kLocalBus:
+      return;
+  }
+}
+
+std::uint64_t CycleRecorder::address_of(memory::Port port, std::uint64_t item) const {
+  const CorePort& description = kPorts[port];
+  if (description.stage == PortStage::kResultWriter)
+    return result_word_offset(geometry_.place_of_result_word(item));
+  const std::uint64_t pixel = pixel_of_slot(item);
+  if (description.stage == PortStage::kLutReader) return entry_offset(pixel);
+  const std::size_t side = index_of(description.side);
+  if (!has_table_[side]) return pixel_word_offset(pixel);
+  const std::uint32_t entry = entries_[side][pixel];
+  return pixel_word_offset(static_cast<std::uint64_t>(kernels::entry_row(entry)) *
+                               geometry_.columns_per_strip() +
+                           static_cast<std::uint64_t>(kernels::entry_column(entry)));
+}
+
+// The pixel at the place of a slot that is not empty. Pixels are counted row by row.
+std::uint64_t CycleRecorder::pixel_of_slot(std::uint64_t slot) const {
+  SlotCursor cursor(geometry_);
+  cursor.advance(slot);
+  return static_cast<std::uint64_t>(cursor.row()) * geometry_.columns_per_strip() +
+         static_cast<std::uint64_t>(cursor.column());
+}
+
+void CycleRecorder::set_host(CoreCycle& cycle, const HostWord& word, bool granted, std::size_t by) {
+  cycle.ports[kHostPort] = {Intent::kRequest, granted, word.bank, word.address, by, 0};
+  cycle.host_traffic = word.traffic;
+  cycle.host_writes = word.write;
+}
+
+// Drops what was served before `end_cycle`.
+void CycleRecorder::drop_served(std::uint64_t end_cycle) {
+  while (!served_.empty() && served_.front().cycle < end_cycle) {
+    Served& served = served_.front();
+    const std::uint64_t cycles = std::min(served.cycles, end_cycle - served.cycle);
+    if (served.granted) served.word.address += 4 * cycles;
+    served.cycle += cycles;
+    served.cycles -= cycles;
+    if (served.cycles != 0) return;
+    served_.pop_front();
+  }
+}
+
+// Sets what the host's port does in the cycle, before which nothing is in served_ any more.
+void CycleRecorder::set_served(CoreCycle& cycle) const {
+  if (served_.empty() || cycle.cycle < served_.front().cycle) return;
+  const Served& served = served_.front();
+  set_host(cycle, served.word, served.granted, served.granted ? 0 : kTurnaroundToBlame);
+}
+
+// Tells what was served before `end_cycle` while no frame runs.
+void CycleRecorder::tell_served(std::uint64_t end_cycle) {
+  while (!served_.empty() && served_.front().cycle < end_cycle) {
+    CoreCycle out;
+    out.cycle = served_.front().cycle;
+    set_served(out);
+    if (is_inside(out.cycle)) observer_.cycle(out);
+    drop_served(out.cycle + 1);
+  }
+}
+
+}  // namespace stereotlm::fpga

@@ -1,0 +1,102 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <optional>
+
+#include "models/fpga/conflict_recorder.h"
+#include "models/fpga/core_control.h"
+#include "models/fpga/core_cycle.h"
+#include "models/fpga/core_ports.h"
+#include "models/memory/arbitration.h"
+
+namespace stereotlm::fpga {
+
+// Tells an observer what every port does in each cycle of a window. FastForward must not skip these cycles.
+// Addresses follow from the slots and from the look-up tables, so that memory need not hold them. Plain C++;
+// used at every fidelity, with the same cycles.
+class CycleRecorder {
+ public:
+  // A word of the host's port.
+  struct HostWord {
+    std::size_t bank = 0;
+    bool write = false;
+    std::uint64_t address = 0;  // byte address in the bank
+    HostTraffic traffic = HostTraffic::kCapture;
+  };
+  // Knows the word of the host that requests next.
+  class Host {
+   public:
+    virtual ~Host() = default;
+    virtual HostWord next_word() const = 0;
+  };
+
+  // `conflicts` records all frames, and is given to FrameRun too. All references outlive this object.
+  CycleRecorder(const CoreConfig& config, const ConflictRecorder& conflicts, const CycleWindow& window,
+                CycleObserver& observer);
+  // The entries of the table of a side, row by row. To be called for each side with table.
+  void set_entries(Side side, const std::uint32_t* entries) { entries_[index_of(side)] = entries; }
+  void set_host(const Host& host) { host_ = &host; }
+
+  // For FrameRun.
+  void start_frame(std::uint64_t number, std::uint64_t first_cycle, const FrameBases& bases);
+  // `end_cycle`: the first one behind the last write of the frame.
+  void end_frame(std::uint64_t end_cycle);
+  // The first cycle of the running frame, from this one on, that must be stepped; UINT64_MAX: there is none.
+  std::uint64_t next_stepped(std::uint64_t cycle) const;
+
+  // For CoreStepper, in a frame: what is decided and granted in a cycle. `control` is in the state before it.
+  void step(std::uint64_t cycle, const CoreControl::Decision& decision, bool host_requests,
+            memory::PortMask granted, const CoreControl& control, const memory::Arbitration& arbitration) {
+    if (is_inside(cycle)) record(cycle, decision, host_requests, granted, control, arbitration);
+  }
+
+  // For the owner of the host's port: what is decided on words that request beside a frame, or while no frame
+  // runs. In `cycle` and in the cycles behind it one word after the other is granted, or the first one waits
+  // because of the turnaround. To be called in the order of the cycles, and before the frame is stepped there.
+  void served(const HostWord& first, std::uint64_t cycle, std::uint64_t cycles, bool granted) {
+    served_.push_back({first, cycle, cycles, granted});
+  }
+
+  // Tells the cycles before `end_cycle`, as far as they are known, while no frame runs. To be called regularly,
+  // because they fill memory, and at the end of the run. What is served may be ahead of that.
+  void hand_out(std::uint64_t end_cycle) {
+    if (!frame_) tell_served(end_cycle);
+  }
+
+ private:
+  struct Served {
+    HostWord word;
+    std::uint64_t cycle;
+    std::uint64_t cycles;
+    bool granted;
+  };
+
+  bool is_inside(std::uint64_t cycle) const;
+  void record(std::uint64_t cycle, const CoreControl::Decision& decision, bool host_requests,
+              memory::PortMask granted, const CoreControl& control, const memory::Arbitration& arbitration);
+  void set_item(PortCycle& port, memory::Port number, const CoreControl& control) const;
+  std::uint64_t address_of(memory::Port port, std::uint64_t item) const;
+  std::uint64_t pixel_of_slot(std::uint64_t slot) const;
+  static void set_host(CoreCycle& cycle, const HostWord& word, bool granted, std::size_t by);
+  void set_served(CoreCycle& cycle) const;
+  void drop_served(std::uint64_t end_cycle);
+  void tell_served(std::uint64_t end_cycle);
+
+  FrameGeometry geometry_;
+  std::array<bool, 2> has_table_;  // [side]
+  const ConflictRecorder& conflicts_;
+  CycleWindow window_;
+  CycleObserver& observer_;
+  std::array<const std::uint32_t*, 2> entries_{};  // [side]
+  const Host* host_ = nullptr;
+
+  std::optional<std::uint64_t> frame_;  // that runs
+  std::uint64_t first_cycle_ = 0;       // of the frame
+  FrameBases bases_{};
+  std::deque<Served> served_;  // not told yet
+};
+
+}  // namespace stereotlm::fpga

@@ -1,0 +1,127 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "models/capture/capture_observer.h"
+#include "models/clock.h"
+#include "models/fpga/core_cycle.h"
+#include "models/fpga/frame_observer.h"
+#include "models/fpga/local_bus_observer.h"
+#include "models/pci/local_bus_master_observer.h"
+#include "models/pci/pci_bus_observer.h"
+#include "models/time_ps.h"
+#include "platform/config/board_config.h"
+#include "platform/trace_records.h"
+
+namespace stereotlm::platform {
+
+// Traces the buses and the queues of a computer in a window, at every fidelity with the same records
+// (trace_records.h). The controls of the blocks report what they do. A computer skips no burst that belongs to
+// the window. Plain C++.
+//
+// The window is a range of times, or the time of a frame of the core, from its start strobe to its end. A
+// burst belongs to it if the burst ends after the window begins, and requests its bus before the window ends.
+// A level belongs to it if its time is after the beginning of the window, and not after its end.
+class BusTrace : private pci::PciBusObserver,
+                 private pci::LocalBusMasterObserver,
+                 private fpga::LocalBusObserver,
+                 private fpga::FrameObserver {
+ public:
+  // If the window names a frame, the whole frame is traced. `observer` outlives this object. Throws
+  // std::invalid_argument if a window of rows names no frame, or if a clock of the board is out of range.
+  BusTrace(const BoardConfig& board, const fpga::CycleWindow& window, BusObserver& observer);
+  BusTrace(const BusTrace&) = delete;
+  BusTrace& operator=(const BusTrace&) = delete;
+
+  // The observers of the blocks. `side`: 0 left, 1 right.
+  pci::PciBusObserver& pci_bus() { return *this; }
+  pci::LocalBusMasterObserver& bridge() { return *this; }
+  fpga::LocalBusObserver& local_bus() { return *this; }
+  fpga::FrameObserver& core() { return *this; }
+  capture::FifoObserver& capture_fifo(std::size_t side) { return fifos_[side]; }
+
+  // Bursts that begin at `now_ps` or later may be skipped if they end before this time.
+  std::uint64_t skips_end_ps(std::uint64_t now_ps) const { return now_ps <= end_ps_ ? begin_ps_ : kNever; }
+
+  // Hands out the bursts whose bus is free again by `now_ps`, and the levels up to then, each once. To be
+  // called regularly, because they fill memory, and with the time of the end of the run. A computer may be
+  // ahead of `now_ps`.
+  void hand_out(std::uint64_t now_ps);
+
+ private:
+  class Fifo : public capture::FifoObserver {
+   public:
+    Fifo(BusTrace& trace, const char* name) : trace_(trace), name_(name) {}
+    void fifo_holds(std::uint64_t now_ps, std::size_t words) override { trace_.add({name_, now_ps, words}); }
+
+   private:
+    BusTrace& trace_;
+    const char* name_;
+  };
+  struct Words {
+    std::uint64_t time_ps = kNever;
+    std::size_t words = 0;
+  };
+  struct EndedBurst {
+    BusBurst burst;
+    std::uint64_t free_ps = 0;  // its bus is free
+  };
+
+  void pci_burst_ended(const pci::EndedPciBurst& burst) override;
+  void words_posted(std::uint64_t now_ps, std::size_t words) override;
+  void transfer_waits(std::uint64_t now_ps, pci::LocalBusSource source) override;
+  void burst_begins(std::uint64_t now_ps, pci::LocalBusSource source, std::size_t words) override;
+  void posted_words_leave(std::uint64_t at_ps, std::size_t words) override { leaving_ = {at_ps, words}; }
+  void local_burst_ended(const fpga::EndedLocalBurst& burst) override;
+  void frame_begun(std::uint64_t strobe_ps) override;
+  void frame_ended(const fpga::FrameTimes& times) override;
+
+  std::uint64_t take_posted(std::size_t words);
+  void settle_posted(std::uint64_t now_ps);
+  const char* local_target(std::uint64_t address) const;
+
+  bool is_in_window(const BusBurst& burst) const {
+    return burst.end_ps > begin_ps_ && burst.request_ps < end_ps_;
+  }
+  bool is_in_window(const QueueLevel& level) const {
+    return level.time_ps > begin_ps_ && level.time_ps <= end_ps_;
+  }
+  void add(const BusBurst& burst, std::uint64_t free_ps) {
+    if (is_in_window(burst)) bursts_.push_back({burst, free_ps});
+  }
+  void add(const QueueLevel& level) {
+    if (is_in_window(level)) levels_.push_back(level);
+  }
+
+  BusObserver& observer_;
+  Clock core_clock_;
+  Clock local_clock_;
+  std::vector<std::string> banks_;
+  std::array<Fifo, 2> fifos_{Fifo(*this, "left_capture"), Fifo(*this, "right_capture")};
+
+  // The window. Both are kNever until the frame of a window begins; the second is, until that frame ends.
+  std::uint64_t begin_ps_ = kNever;
+  std::uint64_t end_ps_ = kNever;
+  std::optional<std::uint64_t> frame_;
+  std::uint64_t frames_ended_ = 0;
+
+  std::deque<Words> posted_;                 // not in a burst yet, oldest first
+  Words leaving_;                            // of the posted burst that began last; kNever: they have left
+  std::size_t posted_words_ = 0;             // all that have not left
+  std::array<std::uint64_t, 4> waits_ps_{};  // [source]: the transfer waits from this time on
+  // The burst of the local bus that began last.
+  pci::LocalBusSource source_ = pci::LocalBusSource::kPosted;
+  std::uint64_t request_ps_ = 0;
+
+  // Not handed out yet.
+  std::vector<EndedBurst> bursts_;
+  std::vector<QueueLevel> levels_;
+};
+
+}  // namespace stereotlm::platform

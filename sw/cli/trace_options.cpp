@@ -1,0 +1,126 @@
+#include "sw/cli/trace_options.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <utility>
+
+namespace stereotlm::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kWindowForms =
+    "frame=F, frame=F,rows=A..B, frame=F,cycles=A..B or cycles=A..B, with integers and A not above B";
+
+std::vector<std::string_view> parts_of(std::string_view text, char separator) {
+  std::vector<std::string_view> parts;
+  for (;;) {
+    const std::size_t end = text.find(separator);
+    parts.push_back(text.substr(0, end));
+    if (end == std::string_view::npos) return parts;
+    text.remove_prefix(end + 1);
+  }
+}
+
+// "A..B" as the limits of the window. Returns false if it is none.
+bool read_range(std::string_view text, fpga::CycleWindow& window) {
+  const std::size_t dots = text.find("..");
+  if (dots == std::string_view::npos) return false;
+  const auto first = number_of<std::uint64_t>(text.substr(0, dots));
+  const auto last = number_of<std::uint64_t>(text.substr(dots + 2));
+  if (!first || !last || *first > *last) return false;
+  window.first = *first;
+  window.last = *last;
+  return true;
+}
+
+// Nothing if the text has none of the forms.
+std::optional<fpga::CycleWindow> window_of(std::string_view text) {
+  fpga::CycleWindow window;
+  bool has_range = false;
+  for (const std::string_view part : parts_of(text, ',')) {
+    const std::size_t equals = part.find('=');
+    if (equals == std::string_view::npos) return std::nullopt;
+    const std::string_view key = part.substr(0, equals);
+    const std::string_view value = part.substr(equals + 1);
+    if (key == "frame" && !window.frame) {
+      window.frame = number_of<std::uint64_t>(value);
+      if (!window.frame) return std::nullopt;
+    } else if ((key == "rows" || key == "cycles") && !has_range) {
+      has_range = true;
+      if (key == "rows") window.unit = fpga::CycleWindow::Unit::kRows;
+      if (!read_range(value, window)) return std::nullopt;
+    } else {
+      return std::nullopt;
+    }
+  }
+  if (window.unit == fpga::CycleWindow::Unit::kRows && !window.frame) return std::nullopt;
+  return window;
+}
+
+}  // namespace
+
+void TraceOptions::add_to(CLI::App& command) {
+  files_.add_to(command, "--trace", "FORMAT:FILE",
+                fmt::format("Write a trace of the run; FORMAT is {}; repeat it for more traces",
+                            fmt::join(trace::kFormatNames, ", ")));
+  files_.takes_one_at_a_time();
+  window_.add_to(
+      command, "--trace-window", "WINDOW",
+      "Trace each cycle of a part of the run: frame=F[,rows=A..B | ,cycles=A..B] or cycles=A..B, the "
+      "limits included; frames and rows count from 0, cycles from the frame's first or from power-up; "
+      "vcd needs it");
+}
+
+void TraceOptions::check_usage(process::Problems& problems) {
+  if (files_.is_given()) check_files(problems);
+  if (!window_.is_given()) return;
+  window = window_of(window_.text);
+  if (!window) problems.add(fmt::format("--trace-window = {}: must be {}", window_.text, kWindowForms));
+  if (!files_.is_given()) problems.add("--trace-window: goes with --trace FORMAT:FILE");
+}
+
+void TraceOptions::check_files(process::Problems& problems) {
+  for (const std::string& text : files_.text) {
+    const std::size_t colon = text.find(':');
+    const auto format =
+        std::find(trace::kFormatNames.begin(), trace::kFormatNames.end(), text.substr(0, colon));
+    if (colon == std::string::npos || format == trace::kFormatNames.end() || colon + 1 == text.size()) {
+      problems.add(fmt::format("--trace {}: must be FORMAT:FILE, where FORMAT is {}", text,
+                               platform::listed({trace::kFormatNames.begin(), trace::kFormatNames.end()})));
+      continue;
+    }
+    trace::TraceFile file{static_cast<trace::Format>(format - trace::kFormatNames.begin()),
+                          text.substr(colon + 1)};
+    const auto is_same = [&file](const trace::TraceFile& other) {
+      return fs::absolute(file.path).lexically_normal() == fs::absolute(other.path).lexically_normal();
+    };
+    if (std::any_of(files.begin(), files.end(), is_same))
+      problems.add(fmt::format("--trace {}: '{}' is given twice: each trace needs a file of its own", text,
+                               file.path));
+    if (file.format == trace::Format::kVcd && !window_.is_given())
+      problems.add(
+          fmt::format("--trace {}: goes with --trace-window: a vcd has each cycle of its window", text));
+    files.push_back(std::move(file));
+  }
+}
+
+void TraceOptions::check_window(const platform::BoardConfig& board, std::uint64_t frames,
+                                process::Problems& problems) const {
+  if (!window) return;
+  if (window->frame && *window->frame >= frames) {
+    problems.add(fmt::format("--trace-window = {}: frame {}: must be below the frames of the run, {}",
+                             window_.text, *window->frame, frames));
+  }
+  const auto height = static_cast<std::uint64_t>(board.image.height);
+  if (window->unit == fpga::CycleWindow::Unit::kRows && window->last >= height) {
+    problems.add(fmt::format("--trace-window = {}: row {}: must be below the rows of the image, {}",
+                             window_.text, window->last, height));
+  }
+}
+
+}  // namespace stereotlm::cli

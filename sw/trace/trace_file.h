@@ -1,0 +1,31 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "models/fpga/core_cycle.h"
+#include "platform/config/board_config.h"
+#include "sw/trace/trace_writer.h"
+
+namespace stereotlm::trace {
+
+enum class Format : std::uint8_t { kPerfetto, kVcd, kSqlite };
+inline constexpr std::array<const char*, 3> kFormatNames = {"perfetto", "vcd", "sqlite"};
+
+// A trace that a run is to write.
+struct TraceFile {
+  Format format = Format::kPerfetto;
+  std::string path;
+};
+
+// The writer of one or more traces of a run with this window. Throws std::runtime_error, with the name of the file, if one cannot
+// be written.
+std::unique_ptr<TraceWriter> make_writer(const std::vector<TraceFile>& files,
+                                         const platform::BoardConfig& board,
+                                         const std::optional<fpga::CycleWindow>& window);
+
+}  // namespace stereotlm::trace

@@ -1,0 +1,411 @@
+// What traces are made of, on random boards and random computers, each in a process of its own: the same at each
+// fidelity, equal to the figures of the run, and, cycle by cycle, equal to the transactions on the links.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <random>
+#include <string>
+#include <thread>
+#include <tuple>
+#include <vector>
+
+#include "models/clock.h"
+#include "platform/config/board_yaml.h"
+#include "platform/trace_runs.h"
+#include "sw/explore/store/database.h"
+#include "sw/runs/simulation/make_simulation.h"
+#include "sw/trace/trace_file.h"
+#include "tests/support/board_of_random.h"
+#include "tests/support/fork.h"
+#include "tests/support/perfetto_file.h"
+#include "tests/support/random_computer.h"
+#include "tests/support/scratch_folder.h"
+#include "tests/support/transaction_log.h"
+
+namespace stereotlm::simulation {
+namespace {
+
+using fpga::CycleWindow;
+using fpga::Fidelity;
+
+constexpr std::array kEachFidelity = {Fidelity::kCycle, Fidelity::kFast, Fidelity::kTiming};
+
+// A board alone, or a whole computer.
+struct Case {
+  platform::BoardConfig board;
+  platform::Tables tables;
+  test::RandomBoard pictures;
+  bool camera = false;
+  std::uint64_t frames = 1;
+};
+
+class PicturesOfCase : public host::FrameSource {
+ public:
+  explicit PicturesOfCase(const Case& of) : of_(of) {}
+  const host::StereoPair& pair(std::uint64_t number) override {
+    pair_ = of_.camera
+                ? test::stereo_pair(of_.pictures, test::camera_pictures(of_.pictures, number))
+                : test::stereo_pair(of_.pictures, static_cast<int>(number % of_.pictures.pictures.size()));
+    return pair_;
+  }
+
+ private:
+  const Case& of_;
+  host::StereoPair pair_;
+};
+
+Case case_of(std::uint64_t seed, bool with_knobs, bool camera) {
+  test::RandomKnobs knobs = with_knobs ? test::RandomKnobs::all() : test::RandomKnobs{};
+  knobs.large_images = false;
+  if (camera) {
+    const test::RandomComputer computer = test::make_random_computer(seed, knobs);
+    return {test::board_config(computer), test::board_tables(computer.board), computer.board, true,
+            static_cast<std::uint64_t>(computer.input.frames)};
+  }
+  const test::RandomBoard board = test::make_random_board(seed, knobs);
+  return {test::board_config(board), test::board_tables(board), board, false,
+          static_cast<std::uint64_t>(board.frames)};
+}
+
+class KeptCycles : public fpga::CycleObserver {
+ public:
+  KeptCycles(bool keeps, trace::TraceWriter& writer) : keeps_(keeps), writer_(writer) {}
+  void cycle(const fpga::CoreCycle& cycle) override {
+    EXPECT_TRUE(last_ == UINT64_MAX || cycle.cycle > last_) << cycle.cycle << " after " << last_;
+    last_ = cycle.cycle;
+    writer_.cycle(cycle);
+    if (keeps_) cycles.push_back(cycle);
+    if (!cycle.frame) return;
+    for (std::size_t port = 0; port < fpga::kPortCount; ++port)
+      sums[port].add(cycle.ports[port].intent, cycle.ports[port].granted);
+  }
+
+  std::vector<fpga::CoreCycle> cycles;
+  std::array<fpga::PortCycles, fpga::kPortCount> sums{};  // while frames run
+
+ private:
+  bool keeps_;
+  trace::TraceWriter& writer_;
+  std::uint64_t last_ = UINT64_MAX;
+};
+
+// What a trace adds up to: cycles by port, "grants" or "waits", and, of waits, bank and culprit.
+using Sums = std::map<std::string, std::uint64_t>;
+
+std::string port_of(const std::string& requester) { return requester.substr(0, requester.find(' ')); }
+
+std::string wait_key(const std::string& requester, const std::string& bank, const std::string& by) {
+  return fmt::format("{} waits on {} for {}", port_of(requester), bank, port_of(by));
+}
+
+Sums sums_of(const platform::Statistics& statistics) {
+  Sums sums;
+  for (const platform::PortStatistics& port : statistics.ports) {
+    if (port.grants != 0) sums[port.name + " grants"] = port.grants;
+  }
+  for (const platform::BlameRow& row : statistics.blame)
+    sums[wait_key(row.port, row.bank, row.by)] = row.cycles;
+  return sums;
+}
+
+Sums sums_of_perfetto(const std::filesystem::path& path) {
+  const std::string bytes = test::read_file(path);
+  const test::PerfettoFile file(bytes);
+  Sums sums;
+  for (std::size_t requester = 0; requester < fpga::kRequesters; ++requester) {
+    const std::string name = fpga::requester_name(requester);
+    for (const test::PerfettoFile::Slice& slice : file.slices_of(name)) {
+      const std::size_t waits = slice.name.find(" waits ");
+      if (waits == std::string::npos) {
+        sums[port_of(name) + " grants"] += std::stoull(slice.name.substr(slice.name.rfind('x') + 1));
+        continue;
+      }
+      const std::size_t by = slice.name.find(" cycles for ") + 12;
+      const std::size_t bank = slice.name.rfind(" on ");
+      sums[wait_key(name, slice.name.substr(bank + 4), slice.name.substr(by, bank - by))] +=
+          std::stoull(slice.name.substr(waits + 7));
+    }
+  }
+  return sums;
+}
+
+Sums sums_of_sqlite(const std::filesystem::path& path) {
+  explore::Database database(path.string(), explore::Database::Access::kRead);
+  EXPECT_EQ(database.number("SELECT count(*) FROM pragma_integrity_check WHERE integrity_check = 'ok'"), 1);
+  Sums sums;
+  explore::Statement runs(database, "SELECT port, bank, by, count FROM runs");
+  while (runs.step()) {
+    const std::string by = runs.text(2);
+    const std::string key =
+        by.empty() ? port_of(runs.text(0)) + " grants" : wait_key(runs.text(0), runs.text(1), by);
+    sums[key] += static_cast<std::uint64_t>(runs.integer(3));
+  }
+  return sums;
+}
+
+std::string differences(const std::string& name, const Sums& found, const Sums& expected) {
+  std::string text;
+  for (const Sums* all : {&found, &expected}) {
+    for (const auto& [key, unused] : *all) {
+      const auto value = [key = key](const Sums& sums) {
+        const auto place = sums.find(key);
+        return place == sums.end() ? 0 : place->second;
+      };
+      if (value(found) != value(expected))
+        text += fmt::format("{}: {} = {}, expected {}\n", name, key, value(found), value(expected));
+    }
+  }
+  return text;
+}
+
+struct Traced {
+  std::vector<platform::FrameRuns> runs;
+  std::vector<fpga::CoreCycle> cycles;
+  std::array<fpga::PortCycles, fpga::kPortCount> sums{};
+  std::vector<test::LoggedTransaction> log;
+  platform::Statistics statistics;
+  std::string wrong_files;
+};
+
+Traced trace(const Case& of, Fidelity fidelity, const CycleWindow& window, bool keeps_cycles,
+             bool writes_files) {
+  test::LoggingBinder binder;
+  PicturesOfCase pictures(of);
+  const std::unique_ptr<runs::Simulation> simulation =
+      runs::make_simulation(of.board, of.tables, pictures, {of.camera, fidelity, of.frames, true}, binder);
+  const test::ScratchFolder scratch;
+  std::vector<trace::TraceFile> files;
+  if (writes_files)
+    files = {{trace::Format::kPerfetto, scratch.path() / "perfetto"},
+             {trace::Format::kSqlite, scratch.path() / "sqlite"}};
+  const std::unique_ptr<trace::TraceWriter> writer = trace::make_writer(files, of.board, window);
+  KeptCycles cycles(keeps_cycles, *writer);
+  simulation->trace(window, cycles, *writer);
+  Traced traced;
+  while (!simulation->finished()) {
+    simulation->advance();
+    for (const fpga::FrameConflicts& frame : simulation->take_conflicts()) {
+      traced.runs.push_back(platform::frame_runs(frame));
+      writer->frame(traced.runs.back());
+    }
+    writer->events(simulation->take_timeline());
+  }
+  writer->commit();
+  traced.cycles = std::move(cycles.cycles);
+  traced.sums = cycles.sums;
+  traced.log = binder.log();
+  traced.statistics = simulation->statistics();
+  if (!writes_files) return traced;
+  const Sums expected = sums_of(traced.statistics);
+  traced.wrong_files = differences("perfetto", sums_of_perfetto(files[0].path), expected) +
+                       differences("sqlite", sums_of_sqlite(files[1].path), expected);
+  return traced;
+}
+
+std::string text_of(const platform::FrameRuns& frame) {
+  std::string text = fmt::format("frame {}: {}..{}\n", frame.frame, frame.first_cycle, frame.end_cycle);
+  for (const platform::TraceRun& run : frame.runs) {
+    text += fmt::format("{} {}..{} {} {} {} {}\n", run.strip, run.first_cycle, run.end_cycle,
+                        fpga::requester_name(run.requester), run.bank,
+                        run.by ? fpga::requester_name(*run.by) : "granted", run.count);
+  }
+  return text;
+}
+
+std::string text_of(const fpga::CoreCycle& cycle) {
+  std::string text = fmt::format("{} {}", cycle.cycle, cycle.frame ? std::to_string(*cycle.frame) : "-");
+  for (const fpga::PortCycle& port : cycle.ports) {
+    text += fmt::format(" | {} {} {} {} {} {}", static_cast<int>(port.intent), port.granted, port.bank,
+                        port.address, port.by, port.item);
+  }
+  return text + fmt::format(" | {} {} {} {} {} {}\n", static_cast<int>(cycle.host_traffic), cycle.host_writes,
+                            cycle.lane_slots[0], cycle.lane_slots[1], cycle.result_words, cycle.works);
+}
+
+std::string text_of(const Traced& traced) {
+  std::string text;
+  for (const platform::FrameRuns& frame : traced.runs) text += text_of(frame);
+  for (const fpga::CoreCycle& cycle : traced.cycles) text += text_of(cycle);
+  return text;
+}
+
+// What a window, the whole run or a part of it, adds up to.
+std::string wrong_sums(const Traced& traced, bool whole_run) {
+  std::string text;
+  const auto compare = [&text](const std::string& name, std::uint64_t found, std::uint64_t expected) {
+    if (found != expected) text += fmt::format("{} = {}, expected {}\n", name, found, expected);
+  };
+  const auto count = [&traced](const auto& wanted) {
+    std::uint64_t cycles = 0;
+    for (const platform::FrameRuns& frame : traced.runs) {
+      for (const platform::TraceRun& run : frame.runs) cycles += wanted(run) ? run.count : 0;
+    }
+    return cycles;
+  };
+  const auto& statistics = traced.statistics;
+  for (std::size_t port = 0; port < fpga::kPortCount; ++port) {
+    const platform::PortStatistics& of_port = statistics.ports[port];
+    const auto is_of_port = [port](std::size_t requester) {
+      return requester != fpga::kTurnaroundToBlame && fpga::port_of_requester(requester) == port;
+    };
+    compare(of_port.name + " granted in the runs",
+            count([&](const auto& run) { return is_of_port(run.requester) && !run.by; }), of_port.grants);
+    compare(of_port.name + " stalled in the runs",
+            count([&](const auto& run) { return is_of_port(run.requester) && run.by; }),
+            of_port.stall_cycles);
+    if (!whole_run) continue;
+    const fpga::PortCycles& sums = traced.sums[port];
+    compare(of_port.name + " granted", sums.granted(), of_port.grants);
+    compare(of_port.name + " stalled", sums.stalled(), of_port.stall_cycles);
+    compare(of_port.name + " passed", sums.passed(), of_port.passed_cycles);
+    compare(of_port.name + " blocked", sums.blocked(), of_port.blocked_cycles);
+    compare(of_port.name + " starved", sums.starved(), of_port.starved_cycles);
+    compare(of_port.name + " idle", sums.idle(), of_port.idle_cycles);
+  }
+  for (std::size_t bank = 0; bank < statistics.banks.size(); ++bank) {
+    compare(statistics.banks[bank].name + " accesses in the runs",
+            count([&](const auto& run) { return run.bank == bank && !run.by; }),
+            statistics.banks[bank].reads + statistics.banks[bank].writes);
+  }
+  for (const platform::BlameRow& row : statistics.blame) {
+    const auto is_of_row = [&](const platform::TraceRun& run) {
+      if (!run.by || statistics.banks[run.bank].name != row.bank) return false;
+      const auto name = [](std::size_t requester) {
+        return requester == fpga::kTurnaroundToBlame ? fpga::requester_name(requester)
+                                                     : fpga::kPorts[fpga::port_of_requester(requester)].name;
+      };
+      return name(run.requester) == row.port && name(*run.by) == row.by;
+    };
+    compare(row.port + " on " + row.bank + " for " + row.by, count(is_of_row), row.cycles);
+  }
+  for (const std::string& failed : statistics.failed) text += failed + '\n';
+  return text;
+}
+
+// The accesses in the window, as the links saw them and as the trace has them.
+std::string wrong_accesses(const Case& of, const Traced& traced) {
+  if (traced.cycles.empty()) return {};
+  const Clock clock(of.board.fpga.clock_mhz);
+  const std::uint64_t first = traced.cycles.front().cycle;
+  const std::uint64_t last = traced.cycles.back().cycle;
+  constexpr std::uint64_t kInBank = (std::uint64_t{1} << 28U) - 1;
+  std::vector<std::string> seen;
+  for (const test::LoggedTransaction& each : traced.log) {
+    const std::uint64_t cycle = clock.edge_at_or_after(each.time_ps + 1) - 1;
+    if (cycle < first || cycle > last) continue;
+    seen.push_back(fmt::format("{} {} {} {:x}", cycle, each.link, each.write, each.address & kInBank));
+  }
+  std::vector<std::string> expected;
+  for (const fpga::CoreCycle& cycle : traced.cycles) {
+    for (std::size_t port = 0; port < fpga::kPortCount; ++port) {
+      const fpga::PortCycle& access = cycle.ports[port];
+      if (!access.granted) continue;
+      const bool write = port == fpga::kHostPort ? cycle.host_writes : fpga::kPorts[port].write;
+      for (const std::string& link : {fmt::format("{}_to_crossbar", fpga::kPorts[port].name),
+                                      fmt::format("crossbar_to_{}", of.board.banks[access.bank].name)})
+        expected.push_back(fmt::format("{} {} {} {:x}", cycle.cycle, link, write, access.address));
+    }
+  }
+  std::sort(seen.begin(), seen.end());
+  std::sort(expected.begin(), expected.end());
+  std::vector<std::string> wrong;
+  std::set_symmetric_difference(seen.begin(), seen.end(), expected.begin(), expected.end(),
+                                std::back_inserter(wrong));
+  if (wrong.empty()) return {};
+  return fmt::format("{} accesses differ of {} seen and {} traced, such as {}\n", wrong.size(), seen.size(),
+                     expected.size(), fmt::join(wrong.begin(), wrong.begin() + 8, "; "));
+}
+
+// Windows of all kinds, also some in which nothing happens.
+CycleWindow random_window(std::uint64_t seed, const Case& of, std::uint64_t cycles_of_frame) {
+  std::mt19937_64 random(seed);
+  const auto draw = [&random](std::uint64_t end) { return random() % std::max<std::uint64_t>(end, 1); };
+  CycleWindow window;
+  const std::uint64_t kind = draw(3);
+  if (kind != 0) window.frame = draw(of.frames);
+  if (kind == 1) {
+    window.unit = CycleWindow::Unit::kRows;
+    window.first = draw(static_cast<std::uint64_t>(of.board.image.height));
+    window.last = window.first + draw(4);
+  } else {
+    window.first = draw(kind == 0 && !of.camera ? cycles_of_frame * of.frames : cycles_of_frame);
+    window.last = window.first + draw(3000);
+  }
+  return window;
+}
+
+std::string problems_of(std::uint64_t seed, bool with_knobs, bool camera) {
+  const Case of = case_of(seed, with_knobs, camera);
+  const bool whole_run = seed % 4 == 0;
+  CycleWindow window;
+  if (!whole_run) {
+    window = random_window(seed, of,
+                           static_cast<std::uint64_t>(of.board.image.width * of.board.image.height) *
+                               static_cast<std::uint64_t>(of.board.matcher.window));
+  }
+  std::string problems;
+  const auto run = [&](Fidelity fidelity) {
+    const bool writes_files = fidelity == kEachFidelity[seed % kEachFidelity.size()];  // which takes long
+    return [&, fidelity, writes_files]() -> std::string {
+      const Traced traced = trace(of, fidelity, window, !whole_run, writes_files);
+      std::string wrong = wrong_sums(traced, whole_run) + traced.wrong_files;
+      if (fidelity == Fidelity::kCycle) wrong += wrong_accesses(of, traced);
+      return wrong.empty() ? text_of(traced) : "WRONG\n" + wrong;
+    };
+  };
+  std::vector<std::string> texts;
+  for (const Fidelity fidelity : kEachFidelity) {
+    const test::ChildResult result = test::run_in_child(run(fidelity));
+    if (result.exit_status != 1 || result.text.rfind("WRONG", 0) == 0)
+      problems += fmt::format("fidelity {}: {}\n", static_cast<int>(fidelity), result.text);
+    texts.push_back(result.text);
+  }
+  for (std::size_t index = 1; problems.empty() && index < texts.size(); ++index) {
+    if (texts[index] == texts[0]) continue;
+    const auto a =
+        std::mismatch(texts[0].begin(), texts[0].end(), texts[index].begin(), texts[index].end()).first;
+    const auto begin = static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, a - texts[0].begin() - 200));
+    problems += fmt::format("fidelity {} differs from cycle:\n{}\n--- is\n{}\n",
+                            static_cast<int>(kEachFidelity[index]), texts[0].substr(begin, 500),
+                            texts[index].substr(begin, 500));
+  }
+  if (problems.empty()) return problems;
+  return problems +
+         fmt::format("window: frame {} unit {} {}..{}\n", window.frame ? int(*window.frame) : -1,
+                     static_cast<int>(window.unit), window.first, window.last) +
+         platform::to_yaml(of.board);
+}
+
+// [with knobs, whole computers]
+class RandomTraces : public testing::TestWithParam<std::tuple<bool, bool>> {};
+
+TEST_P(RandomTraces, EqualTheCountersAndTheTransactionsAtEachFidelity) {
+  const auto [with_knobs, camera] = GetParam();
+  std::vector<test::ChildWork> jobs;
+  const std::uint64_t count = camera ? test::random_computers(20) : test::random_boards(30);
+  for (std::uint64_t seed = 0; seed < count; ++seed) {
+    jobs.push_back(
+        [seed, with_knobs = with_knobs, camera = camera] { return problems_of(seed, with_knobs, camera); });
+  }
+  const int parallel = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  const std::vector<test::ChildResult> results =
+      test::run_in_children(jobs, parallel, std::chrono::seconds(180));
+  for (std::size_t seed = 0; seed < results.size(); ++seed)
+    EXPECT_TRUE(results[seed].ok()) << "seed " << seed << ":\n" << results[seed].text;
+}
+
+INSTANTIATE_TEST_SUITE_P(Drawn, RandomTraces, testing::Combine(testing::Bool(), testing::Bool()),
+                         [](const auto& suite) {
+                           return std::string(std::get<1>(suite.param) ? "Computers" : "Boards") +
+                                  (std::get<0>(suite.param) ? "WithKnobs" : "");
+                         });
+
+}  // namespace
+}  // namespace stereotlm::simulation
