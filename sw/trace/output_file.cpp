@@ -30,6 +30,11 @@ void OutputFile::flush() {
   buffer_.clear();
 }
 
+void OutputFile::write_through(std::string_view bytes) {
+  flush();
+  with_name(path_, [this, bytes] { file_.write(bytes); });
+}
+
 void OutputFile::complete() {
   flush();
   with_name(path_, [this] { file_.complete(); });

@@ -15,6 +15,7 @@ class OutputFile {
   explicit OutputFile(const std::filesystem::path& path);
 
   void write(std::string_view bytes) {
+    if (bytes.size() >= kBufferBytes) return write_through(bytes);
     buffer_.append(bytes);
     if (buffer_.size() >= kBufferBytes) flush();
   }
@@ -28,6 +29,7 @@ class OutputFile {
  private:
   static constexpr std::size_t kBufferBytes = std::size_t{1} << 18U;
   void flush();
+  void write_through(std::string_view bytes);
 
   std::filesystem::path path_;
   files::ReplacedFile file_;

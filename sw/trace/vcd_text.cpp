@@ -1,0 +1,187 @@
+#include "sw/trace/vcd_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <string_view>
+
+namespace stereotlm::trace {
+namespace {
+
+// The short name of a signal in the file.
+std::string code_of(std::size_t signal) {
+  constexpr std::size_t kCodes = 94;  // printable characters without the space
+  std::string code;
+  for (;; signal = signal / kCodes - 1) {
+    code += static_cast<char>('!' + signal % kCodes);
+    if (signal < kCodes) return code;
+  }
+}
+
+// The text of each byte in binary.
+const std::array<std::array<char, 8>, 256>& bits_of_bytes() {
+  static const auto texts = [] {
+    std::array<std::array<char, 8>, 256> made{};
+    for (std::size_t byte = 0; byte < made.size(); ++byte) {
+      for (std::size_t bit = 0; bit < 8; ++bit) made[byte][bit] = (byte >> (7 - bit) & 1U) != 0 ? '1' : '0';
+    }
+    return made;
+  }();
+  return texts;
+}
+
+// Writes the text of one file.
+class VcdText {
+ public:
+  VcdText(OutputFile& file, const VcdSignals& signals) : file_(file), signals_(signals) {
+    for (const VcdSignal& signal : signals.all()) {
+      codes_.push_back(" " + code_of(codes_.size()) + "\n");
+      values_.push_back(signal.idle);
+    }
+    next_values_ = values_;
+    is_touched_.resize(values_.size());
+  }
+
+  void header() {
+    std::string text = "$version stereotlm $end\n$timescale 1 ps $end\n";
+    const std::string* scope = nullptr;
+    for (std::size_t signal = 0; signal < codes_.size(); ++signal) {
+      const VcdSignal& its = signals_.all()[signal];
+      if (scope == nullptr || *scope != its.scope) {
+        if (scope != nullptr) text += "$upscope $end\n";
+        text += "$scope module " + its.scope + " $end\n";
+        scope = &its.scope;
+      }
+      const std::string_view code = std::string_view(codes_[signal]).substr(1, codes_[signal].size() - 2);
+      if (its.bits == 0)
+        fmt::format_to(std::back_inserter(text), "$var string 1 {} {} $end\n", code, its.name);
+      else if (its.bits == 1)
+        fmt::format_to(std::back_inserter(text), "$var wire 1 {} {} $end\n", code, its.name);
+      else
+        fmt::format_to(std::back_inserter(text), "$var wire {} {} {} [{}:0] $end\n", its.bits, code, its.name,
+                       its.bits - 1);
+    }
+    put(text + "$upscope $end\n$enddefinitions $end\n");
+  }
+
+  void set(std::uint32_t signal, std::uint32_t value) {
+    next_values_[signal] = value;
+    if (is_touched_[signal] != 0) return;
+    is_touched_[signal] = 1;
+    touched_.push_back(signal);
+  }
+  void all_at(std::uint64_t time_ps) {
+    forget_touched();
+    values_ = next_values_;
+    time(time_ps);
+    put("$dumpvars\n");
+    for (std::uint32_t signal = 0; signal < values_.size(); ++signal) value(signal);
+    put("$end\n");
+  }
+  void changes_at(std::uint64_t time_ps) {
+    bool has_time = false;
+    for (const std::uint32_t signal : touched_) {
+      if (values_[signal] == next_values_[signal]) continue;
+      if (!has_time) time(time_ps);
+      has_time = true;
+      values_[signal] = next_values_[signal];
+      value(signal);
+    }
+    forget_touched();
+  }
+  void flush() {
+    file_.write({text_.data(), size_});
+    size_ = 0;
+  }
+
+ private:
+  static constexpr std::size_t kTextBytes = std::size_t{1} << 19U;
+
+  void forget_touched() {
+    for (const std::uint32_t signal : touched_) is_touched_[signal] = 0;
+    touched_.clear();
+  }
+  void put(std::string_view text) {
+    if (text_.size() - size_ < text.size()) flush();
+    if (text_.size() < text.size()) return file_.write(text);
+    std::memcpy(text_.data() + size_, text.data(), text.size());
+    size_ += text.size();
+  }
+  void put(char character) { put({&character, 1}); }
+  void time(std::uint64_t time_ps) {
+    const fmt::format_int digits(time_ps);
+    put('#');
+    put({digits.data(), digits.size()});
+    put('\n');
+  }
+  void value(std::uint32_t signal) {
+    const unsigned bits = signals_.all()[signal].bits;
+    const std::uint32_t value = values_[signal];
+    if (bits == 0) {
+      put('s');
+      put(signals_.text(value));
+    } else if (bits == 1) {
+      put(value != 0 ? '1' : '0');
+      return put(std::string_view(codes_[signal]).substr(1));
+    } else if (value == VcdSignals::kNoNumber) {
+      put("bz");
+    } else {
+      binary(value);
+    }
+    put(codes_[signal]);
+  }
+  // Without leading zeros.
+  void binary(std::uint32_t value) {
+    std::array<char, 33> text;
+    for (std::size_t byte = 0; byte < 4; ++byte)
+      std::memcpy(text.data() + 1 + 8 * byte, bits_of_bytes_[value >> (24 - 8 * byte) & 0xFFU].data(), 8);
+    const auto zeros = static_cast<std::size_t>(__builtin_clz(value | 1U));
+    text[zeros] = 'b';
+    put({text.data() + zeros, text.size() - zeros});
+  }
+
+  OutputFile& file_;
+  const VcdSignals& signals_;
+  const std::array<std::array<char, 8>, 256>& bits_of_bytes_ = bits_of_bytes();
+  std::vector<std::string> codes_;  // [signal]: space, code, end of line
+  std::vector<std::uint32_t> values_;
+  std::vector<std::uint32_t> next_values_;
+  std::vector<char> is_touched_;
+  std::vector<std::uint32_t> touched_;
+  std::vector<char> text_ = std::vector<char>(kTextBytes);
+  std::size_t size_ = 0;  // bytes of text_ in use
+};
+
+}  // namespace
+
+VcdSpan write_vcd(OutputFile& file, const VcdSignals& signals, const std::vector<ChangeStream*>& streams) {
+  VcdText text(file, signals);
+  text.header();
+  for (ChangeStream* const stream : streams) stream->rewind();
+  VcdSpan span;
+  bool is_first = true;
+  while (true) {
+    std::uint64_t time_ps = UINT64_MAX;
+    for (const ChangeStream* const stream : streams) {
+      if (!stream->at_end()) time_ps = std::min(time_ps, stream->change().time_ps);
+    }
+    if (time_ps == UINT64_MAX) break;
+    for (ChangeStream* const stream : streams) {
+      for (; !stream->at_end() && stream->change().time_ps == time_ps; stream->advance())
+        text.set(stream->change().signal, stream->change().value);
+    }
+    if (is_first)
+      text.all_at(span.first_ps = time_ps);
+    else
+      text.changes_at(time_ps);
+    is_first = false;
+    span.last_ps = time_ps;
+  }
+  if (is_first) text.all_at(0);
+  text.flush();
+  return span;
+}
+
+}  // namespace stereotlm::trace

@@ -1,0 +1,258 @@
+#include "sw/trace/vcd_writer.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+#include "sw/process/command.h"
+#include "tests/support/file_size_limit.h"
+#include "tests/support/made_trace.h"
+#include "tests/support/scratch_folder.h"
+#include "tests/support/vcd_file.h"
+
+namespace stereotlm::trace {
+namespace {
+
+using test::VcdFile;
+
+class VcdWriterTest : public ::testing::Test {
+ protected:
+  VcdFile written(const test::MadeTrace& trace) {
+    VcdWriter writer(path_, board_);
+    trace.send(writer);
+    writer.commit();
+    return VcdFile(test::read_file(path_));
+  }
+  std::uint64_t ps(std::uint64_t cycle) const { return Clock(board_.fpga.clock_mhz).edge_ps(cycle); }
+  std::ptrdiff_t files() const {
+    return std::distance(std::filesystem::directory_iterator(scratch_.path()), {});
+  }
+
+  test::ScratchFolder scratch_;
+  std::filesystem::path path_ = scratch_.path() / "file.vcd";
+  std::filesystem::path layout_ = scratch_.path() / "file.gtkw";
+  platform::BoardConfig board_ = test::made_board();
+};
+
+std::string with_underscores(std::string name) {
+  std::replace(name.begin(), name.end(), ' ', '_');
+  return name;
+}
+
+// The state of a port, as its signal shows it.
+std::string state_of(const fpga::PortCycle& port, std::size_t requester) {
+  switch (port.intent) {
+    case fpga::Intent::kRequest:
+      return !port.granted ? "waits" : writes(requester) ? "writes" : "reads";
+    case fpga::Intent::kPass:
+      return "passes";
+    case fpga::Intent::kIdle:
+      return "idle";
+    case fpga::Intent::kBlocked:
+      return "blocked";
+    case fpga::Intent::kStarved:
+      return "starved";
+  }
+  return "";
+}
+
+TEST_F(VcdWriterTest, ShowsEachPortInEachCycle) {
+  board_.fpga.clock_mhz = 66.6;  // its cycles are no whole ps
+  const test::MadeTrace trace = test::make_trace(board_, 2);
+  const VcdFile file = written(trace);
+  for (const fpga::CoreCycle& cycle : trace.cycles) {
+    const std::uint64_t time = ps(cycle.cycle);
+    for (std::size_t port = 0; port < fpga::kPortCount; ++port) {
+      const fpga::PortCycle& now = cycle.ports[port];
+      const std::string name = fpga::kPorts[port].name;
+      const bool requests = now.intent == fpga::Intent::kRequest;
+      ASSERT_EQ(file.at(name + ".state", time), state_of(now, requester_of_port(port, cycle.host_traffic)));
+      ASSERT_EQ(file.at(name + ".bank", time), requests ? board_.banks[now.bank].name : "-");
+      ASSERT_EQ(file.at(name + ".waits_for", time),
+                requests && !now.granted ? with_underscores(fpga::requester_name(now.by)) : "-");
+      ASSERT_EQ(requests ? file.number(name + ".address", time) : 0, now.address);
+      ASSERT_EQ(file.at(name + ".address", time) == "z", !requests);
+    }
+    ASSERT_EQ(file.at("host.traffic", time),
+              cycle.ports[fpga::kHostPort].intent == fpga::Intent::kRequest ? "capture" : "-");
+  }
+}
+
+TEST_F(VcdWriterTest, ShowsEachBankAndQueueInEachCycle) {
+  const test::MadeTrace trace = test::make_trace(board_, 1);
+  const VcdFile file = written(trace);
+  for (const fpga::CoreCycle& cycle : trace.cycles) {
+    const std::uint64_t time = ps(cycle.cycle);
+    for (std::size_t bank = 0; bank < 2; ++bank) {
+      std::uint64_t requests = 0;
+      std::string owner = "-";
+      for (std::size_t port = 0; port < fpga::kPortCount; ++port) {
+        const fpga::PortCycle& now = cycle.ports[port];
+        if (now.intent != fpga::Intent::kRequest || now.bank != bank) continue;
+        ++requests;
+        if (now.granted)
+          owner = with_underscores(fpga::requester_name(requester_of_port(port, cycle.host_traffic)));
+      }
+      ASSERT_EQ(file.number(board_.banks[bank].name + ".requests", time), requests);
+      ASSERT_EQ(file.at(board_.banks[bank].name + ".owner", time), owner);
+    }
+    ASSERT_EQ(file.number("left_lane.slots", time), cycle.lane_slots[0]);
+    ASSERT_EQ(file.number("right_lane.slots", time), cycle.lane_slots[1]);
+    ASSERT_EQ(file.number("results.words", time), cycle.result_words);
+    ASSERT_EQ(file.at("matcher.works", time), cycle.works ? "1" : "0");
+  }
+}
+
+TEST_F(VcdWriterTest, IsIdleWhereCyclesAreLeftOutAndBehindTheWindow) {
+  test::MadeTrace trace = test::make_trace(board_, 1);
+  trace.bursts.clear();
+  trace.levels.clear();
+  const auto gap = trace.cycles.begin() + 300;
+  const std::uint64_t gap_ps = ps(gap->cycle);
+  trace.cycles.erase(gap, gap + 20);
+  trace.cycles.resize(400);
+  const VcdFile file = written(trace);
+  const std::uint64_t end_ps = ps(trace.cycles.back().cycle + 1);
+  EXPECT_EQ(file.times().front(), ps(trace.cycles.front().cycle));
+  EXPECT_EQ(file.times().back(), end_ps);
+  for (const std::uint64_t time : {gap_ps, end_ps}) {
+    EXPECT_EQ(file.at("left_lut.state", time), "idle");
+    EXPECT_EQ(file.at("bank0.owner", time), "-");
+    EXPECT_EQ(file.number("left_lane.slots", time), 0);
+  }
+  EXPECT_NE(file.number("left_lane.slots", gap_ps - 1), 0);
+}
+
+TEST_F(VcdWriterTest, ShowsThePhasesOfBurstsAndTheLevelsOfQueues) {
+  const test::MadeTrace trace = test::make_trace(board_, 1);
+  const VcdFile file = written(trace);
+  for (const platform::BusBurst& burst : trace.bursts) {
+    const std::string bus = burst.bus == platform::BusBurst::Bus::kPci ? "pci" : "local_bus";
+    EXPECT_EQ(file.at(bus + ".phase", burst.address_ps), "address");
+    EXPECT_EQ(file.at(bus + ".phase", burst.data_ps), "data");
+    EXPECT_EQ(file.at(bus + ".phase", burst.end_ps), "idle");
+    EXPECT_EQ(file.at(bus + ".owner", burst.end_ps - 1), burst.master);
+    EXPECT_EQ(file.at(bus + ".target", burst.end_ps - 1), burst.target);
+    EXPECT_EQ(file.at(bus + ".direction", burst.end_ps - 1), burst.write ? "writes" : "reads");
+    EXPECT_EQ(file.number(bus + ".address", burst.end_ps - 1), burst.address);
+    EXPECT_EQ(file.at(bus + ".owner", burst.end_ps), "-");
+  }
+  EXPECT_EQ(file.number("left_capture.fifo", trace.levels[0].time_ps), 32);
+  EXPECT_EQ(file.number("left_capture.fifo", trace.levels[1].time_ps), 0);
+  EXPECT_EQ(file.number("posted.words", trace.levels[3].time_ps), 16);
+  VcdWriter writer(path_, board_);
+  EXPECT_EQ(test::message_of([&] { writer.level({"left", 0, 1}); }), "queue = left: has no signal");
+}
+
+TEST_F(VcdWriterTest, ABurstThatBeginsAsAnotherEndsLeavesNoIdlePhaseBetween) {
+  using Bus = platform::BusBurst::Bus;
+  VcdWriter writer(path_, board_);
+  writer.burst({Bus::kPci, "bridge", "host_memory", false, 0, 1, 0, 10, 20, 30});
+  writer.burst({Bus::kPci, "bridge", "host_memory", false, 4, 1, 0, 30, 40, 50});
+  writer.commit();
+  const VcdFile file(test::read_file(path_));
+  EXPECT_EQ(file.at("pci.phase", 30), "address");
+  EXPECT_EQ(file.changes("pci.owner").size(), 2);
+}
+
+TEST_F(VcdWriterTest, ABankWithSeparatePortsHasTwoOwners) {
+  board_.banks[0].kind = memory::BankKind::kQdr;
+  fpga::CoreCycle cycle;
+  cycle.cycle = 7;
+  cycle.ports[0] = {fpga::Intent::kRequest, true, 0, 4, 0, 0};
+  cycle.ports[fpga::kResultPort] = {fpga::Intent::kRequest, true, 0, 8, 0, 0};
+  cycle.ports[2] = {fpga::Intent::kRequest, false, 1, 4, fpga::kTurnaroundToBlame, 0};
+  VcdWriter writer(path_, board_);
+  writer.cycle(cycle);
+  writer.commit();
+  const VcdFile file(test::read_file(path_));
+  EXPECT_EQ(file.at("bank0.read_owner", ps(7)), "left_lut");
+  EXPECT_EQ(file.at("bank0.write_owner", ps(7)), "result");
+  EXPECT_EQ(file.number("bank0.requests", ps(7)), 2);
+  EXPECT_EQ(file.at("bank1.owner", ps(7)), "turnaround");
+  EXPECT_EQ(file.at("left_pixel.waits_for", ps(7)), "turnaround");
+}
+
+TEST_F(VcdWriterTest, AnAbsentPortHasNoSignals) {
+  board_.allocation.left_lut.reset();
+  const VcdFile file = written({});
+  EXPECT_EQ(file.signals().count("left_lut.state"), 0);
+  EXPECT_EQ(file.signals().count("right_lut.state"), 1);
+  EXPECT_EQ(file.at("right_lut.state", 0), "idle");
+}
+
+TEST_F(VcdWriterTest, SixtyFourBanksHaveSignalsOfTheirOwn) {
+  while (board_.banks.size() < 64) board_.banks.push_back({"more" + std::to_string(board_.banks.size())});
+  fpga::CoreCycle cycle;
+  cycle.ports[0] = {fpga::Intent::kRequest, true, 63, 4, 0, 0};
+  VcdWriter writer(path_, board_);
+  writer.cycle(cycle);
+  writer.commit();
+  const VcdFile file(test::read_file(path_));
+  for (const platform::BankConfig& bank : board_.banks)
+    EXPECT_EQ(file.at(bank.name + ".owner", 0), bank.name == "more63" ? "left_lut" : "-");
+}
+
+TEST_F(VcdWriterTest, TheLayoutNamesTheFileAndEachSignal) {
+  const VcdFile file = written(test::make_trace(board_, 1));
+  const std::string layout = test::read_file(layout_);
+  EXPECT_THAT(layout, ::testing::StartsWith("[dumpfile] \"file.vcd\"\n"));
+  for (const auto& [signal, code] : file.signals()) {
+    const bool is_number = file.at(signal, UINT64_MAX).find_first_not_of("01z") == std::string::npos;
+    const std::string end = is_number && signal != "matcher.works" ? "[" : "\n";
+    EXPECT_THAT(layout, ::testing::HasSubstr("} " + signal + end));
+  }
+}
+
+TEST_F(VcdWriterTest, LeavesBothEarlierFilesWithoutACommitOrWhenTheDiskIsFull) {
+  test::write_file(path_, "earlier");
+  test::write_file(layout_, "earlier layout");
+  const test::MadeTrace trace = test::make_trace(board_, 1);
+  { VcdWriter(path_, board_).cycle(trace.cycles[0]); }
+  {
+    VcdWriter writer(path_, board_);
+    trace.send(writer);
+    const test::FileSizeLimit limit(100);
+    EXPECT_EQ(test::message_of([&] { writer.commit(); }), path_.string() + ": File too large");
+  }
+  EXPECT_EQ(test::read_file(path_), "earlier");
+  EXPECT_EQ(test::read_file(layout_), "earlier layout");
+  EXPECT_EQ(files(), 2);
+}
+
+TEST_F(VcdWriterTest, FstHasTheChangesOfVcd) {
+  try {
+    process::run_command({"vcd2fst", "--help"});
+  } catch (const process::CommandMissing&) {
+    GTEST_SKIP() << "vcd2fst is not installed";
+  }
+  const test::MadeTrace trace = test::make_trace(board_, 1);
+  const VcdFile expected = written(trace);
+  path_ = scratch_.path() / "other.fst";
+  VcdWriter writer(path_, board_);
+  trace.send(writer);
+  writer.commit();
+  EXPECT_EQ(files(), 4);
+  const VcdFile file(process::run_command({"fst2vcd", "-e", path_.string()}).out);
+  for (const auto& [signal, code] : expected.signals()) {
+    for (const auto& [time, value] : expected.changes(signal))
+      ASSERT_EQ(file.at(signal, time), value) << signal;
+  }
+}
+
+TEST_F(VcdWriterTest, RefusesFstWithoutItsProgram) {
+  const std::string before = std::getenv("PATH");
+  setenv("PATH", scratch_.path().c_str(), 1);
+  EXPECT_THAT(test::message_of([&] { VcdWriter(scratch_.path() / "file.fst", board_); }),
+              ::testing::HasSubstr("file.fst: FST is written by the program vcd2fst, which is not installed: "
+                                   "install the package gtkwave"));
+  setenv("PATH", before.c_str(), 1);
+  EXPECT_EQ(files(), 0);
+}
+
+}  // namespace
+}  // namespace stereotlm::trace
