@@ -44,7 +44,7 @@ class TraceTest(ProgramTest):
             elif words[:1] == ["$upscope"]:
                 scopes.pop()
             elif words[:1] == ["$var"]:
-                names[words[3]] = ".".join([*scopes[1:], words[4]])
+                names[words[3]] = ".".join([*scopes, words[4]])
             elif line.startswith("#"):
                 time = int(line[1:])
             elif time is not None and (change := re.fullmatch(r"(?:([01xz])|[bs](\S*) )(\S+)", line)):
@@ -86,9 +86,10 @@ class Files(TraceTest):
             cycles = collections.Counter()
             for (begin, state), (end, _) in zip(states, states[1:]):
                 cycles[state] += (end - begin) / period
-            for state, name in (("grant", "grants"), ("wait", "stall_cycles"), ("pass", "passed_cycles"),
+            for state, name in (("waits", "stall_cycles"), ("passes", "passed_cycles"),
                                 ("blocked", "blocked_cycles"), ("starved", "starved_cycles")):
                 self.assertEqual(cycles[state], port[name], (port["name"], state))
+            self.assertEqual(cycles["reads"] + cycles["writes"], port["grants"], port["name"])
 
     def test_of_a_window_have_its_accesses(self):
         self.traced(*trace("sqlite", "vcd"), "--trace-window", "cycles=5000..5999")
