@@ -113,11 +113,11 @@ void CycleRecorder::set_item(PortCycle& port, memory::Port number, const CoreCon
   }
 }
 
-std::uint64_t CycleRecorder::address_of(memory::Port port, std::uint64_t item) const {
+std::uint64_t CycleRecorder::address_of(memory::Port port, std::uint64_t item) {
   const CorePort& description = kPorts[port];
   if (description.stage == PortStage::kResultWriter)
     return result_word_offset(geometry_.place_of_result_word(item));
-  const std::uint64_t pixel = pixel_of_slot(item);
+  const std::uint64_t pixel = pixel_of_slot(port, item);
   if (description.stage == PortStage::kLutReader) return entry_offset(pixel);
   const std::size_t side = index_of(description.side);
   if (!has_table_[side]) return pixel_word_offset(pixel);
@@ -128,11 +128,17 @@ std::uint64_t CycleRecorder::address_of(memory::Port port, std::uint64_t item) c
 }
 
 // The pixel at the place of a slot that is not empty. Pixels are counted row by row.
-std::uint64_t CycleRecorder::pixel_of_slot(std::uint64_t slot) const {
-  SlotCursor cursor(geometry_);
-  cursor.advance(slot);
-  return static_cast<std::uint64_t>(cursor.row()) * geometry_.columns_per_strip() +
-         static_cast<std::uint64_t>(cursor.column());
+std::uint64_t CycleRecorder::pixel_of_slot(memory::Port port, std::uint64_t slot) {
+  Place& place = places_[port];
+  if (slot == place.slot + 1) {
+    place.cursor.advance();
+  } else if (slot != place.slot) {
+    place.cursor = SlotCursor(geometry_);
+    place.cursor.advance(slot);
+  }
+  place.slot = slot;
+  return static_cast<std::uint64_t>(place.cursor.row()) * geometry_.columns_per_strip() +
+         static_cast<std::uint64_t>(place.cursor.column());
 }
 
 void CycleRecorder::set_host(CoreCycle& cycle, const HostWord& word, bool granted, std::size_t by) {

@@ -78,8 +78,8 @@ class CycleRecorder {
   void record(std::uint64_t cycle, const CoreControl::Decision& decision, bool host_requests,
               memory::PortMask granted, const CoreControl& control, const memory::Arbitration& arbitration);
   void set_item(PortCycle& port, memory::Port number, const CoreControl& control) const;
-  std::uint64_t address_of(memory::Port port, std::uint64_t item) const;
-  std::uint64_t pixel_of_slot(std::uint64_t slot) const;
+  std::uint64_t address_of(memory::Port port, std::uint64_t item);
+  std::uint64_t pixel_of_slot(memory::Port port, std::uint64_t slot);
   static void set_host(CoreCycle& cycle, const HostWord& word, bool granted, std::size_t by);
   void set_served(CoreCycle& cycle) const;
   void drop_served(std::uint64_t end_cycle);
@@ -96,6 +96,12 @@ class CycleRecorder {
   std::optional<std::uint64_t> frame_;  // that runs
   std::uint64_t first_cycle_ = 0;       // of the frame
   FrameBases bases_{};
+  // [port]: the place of the last slot, from which the next one is mostly one step away.
+  struct Place {
+    std::uint64_t slot = UINT64_MAX - 1;  // none
+    SlotCursor cursor;
+  };
+  std::array<Place, kCorePortCount> places_{};
   std::deque<Served> served_;  // not told yet
 };
 

@@ -37,7 +37,7 @@ class VcdText {
  public:
   VcdText(OutputFile& file, const VcdSignals& signals) : file_(file), signals_(signals) {
     for (const VcdSignal& signal : signals.all()) {
-      codes_.push_back(" " + code_of(codes_.size()) + "\n");
+      codes_.push_back(make_code(codes_.size()));
       values_.push_back(signal.idle);
     }
     next_values_ = values_;
@@ -54,7 +54,7 @@ class VcdText {
         text += "$scope module " + its.scope + " $end\n";
         scope = &its.scope;
       }
-      const std::string_view code = std::string_view(codes_[signal]).substr(1, codes_[signal].size() - 2);
+      const std::string code = code_of(signal);
       if (its.bits == 0)
         fmt::format_to(std::back_inserter(text), "$var string 1 {} {} $end\n", code, its.name);
       else if (its.bits == 1)
@@ -98,6 +98,21 @@ class VcdText {
 
  private:
   static constexpr std::size_t kTextBytes = std::size_t{1} << 19U;
+  static constexpr std::size_t kCodeBytes = 8;
+  // What stands behind a value: a space, the code of the signal, the end of the line.
+  struct Code {
+    std::array<char, kCodeBytes> text{};
+    std::size_t size = 0;
+
+    std::string_view name_and_end() const { return {text.data() + 1, size - 1}; }
+  };
+
+  static Code make_code(std::size_t signal) {
+    const std::string text = ' ' + code_of(signal) + '\n';
+    Code code;
+    code.size = text.copy(code.text.data(), kCodeBytes);
+    return code;
+  }
 
   void forget_touched() {
     for (const std::uint32_t signal : touched_) is_touched_[signal] = 0;
@@ -110,6 +125,14 @@ class VcdText {
     size_ += text.size();
   }
   void put(char character) { put({&character, 1}); }
+  // Puts a text of at most `kMost` characters, which stands at the beginning of as many bytes. Copying all of
+  // them takes less time than copying the right number.
+  template <std::size_t kMost>
+  void put_short(const char* text, std::size_t size) {
+    if (text_.size() - size_ < kMost) flush();
+    std::memcpy(text_.data() + size_, text, kMost);
+    size_ += size;
+  }
   void time(std::uint64_t time_ps) {
     const fmt::format_int digits(time_ps);
     put('#');
@@ -124,28 +147,29 @@ class VcdText {
       put(signals_.text(value));
     } else if (bits == 1) {
       put(value != 0 ? '1' : '0');
-      return put(std::string_view(codes_[signal]).substr(1));
+      return put(codes_[signal].name_and_end());
     } else if (value == VcdSignals::kNoNumber) {
       put("bz");
     } else {
       binary(value);
     }
-    put(codes_[signal]);
+    const Code& code = codes_[signal];
+    put_short<kCodeBytes>(code.text.data(), code.size);
   }
   // Without leading zeros.
   void binary(std::uint32_t value) {
-    std::array<char, 33> text;
+    std::array<char, 2 * 33> text;
     for (std::size_t byte = 0; byte < 4; ++byte)
       std::memcpy(text.data() + 1 + 8 * byte, bits_of_bytes_[value >> (24 - 8 * byte) & 0xFFU].data(), 8);
     const auto zeros = static_cast<std::size_t>(__builtin_clz(value | 1U));
     text[zeros] = 'b';
-    put({text.data() + zeros, text.size() - zeros});
+    put_short<33>(text.data() + zeros, 33 - zeros);
   }
 
   OutputFile& file_;
   const VcdSignals& signals_;
   const std::array<std::array<char, 8>, 256>& bits_of_bytes_ = bits_of_bytes();
-  std::vector<std::string> codes_;  // [signal]: space, code, end of line
+  std::vector<Code> codes_;  // [signal]
   std::vector<std::uint32_t> values_;
   std::vector<std::uint32_t> next_values_;
   std::vector<char> is_touched_;

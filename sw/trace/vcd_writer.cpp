@@ -70,7 +70,7 @@ VcdWriter::Words VcdWriter::make_words() {
 void VcdWriter::cycle(const CoreCycle& cycle) {
   if (next_cycle_ && *next_cycle_ != cycle.cycle) end_cycles();
   next_cycle_ = cycle.cycle + 1;
-  now_ = idle_;
+  show_idle();
   for (std::size_t port = 0; port < fpga::kPortCount; ++port) {
     if (signals_.port(port) != VcdSignals::kNone) show_port(cycle, port);
   }
@@ -81,10 +81,21 @@ void VcdWriter::cycle(const CoreCycle& cycle) {
   add_changes(cycle.cycle);
 }
 
+// Bank and address of a port stay those of its last request, as on a bus, and so that a waveform has fewer changes.
+void VcdWriter::show_idle() {
+  now_ = idle_;
+  for (std::size_t port = 0; port < fpga::kPortCount; ++port) {
+    const std::size_t first = signals_.port(port);
+    if (first == VcdSignals::kNone) continue;
+    for (const std::size_t held : {first + VcdSignals::kBank, first + VcdSignals::kAddress})
+      now_[held] = shown_[held];
+  }
+}
+
 // The cycles that follow are left out, or behind the window.
 void VcdWriter::end_cycles() {
   if (!next_cycle_) return;
-  now_ = idle_;
+  show_idle();
   add_changes(*next_cycle_);
   next_cycle_.reset();
 }

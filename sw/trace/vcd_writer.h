@@ -45,6 +45,7 @@ class VcdWriter : public TraceWriter {
   bool is_fst() const { return path_.extension() == ".fst"; }
   Words make_words();
   void end_cycles();
+  void show_idle();
   void show_port(const fpga::CoreCycle& cycle, std::size_t port);
   void show_bank(const fpga::PortCycle& port, std::size_t requester);
   void add_changes(std::uint64_t cycle);
