@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "sw/report/wait_text.h"
+
 namespace stereotlm::report {
 namespace {
 
@@ -132,9 +134,9 @@ std::string conflicts_text(const platform::BoardConfig& board, const fpga::Confl
   if (stalls.empty()) text += "waits        none\n";
   for (const fpga::ConflictRecorder::Stalls* each : stalls) {
     const std::uint64_t lost = sum_of(each->cycles);
-    text += fmt::format("waits        {} on {} for {}: {} cycles ({:.2f} %), {}\n",
-                        fpga::requester_name(each->requester), board.banks[each->bank].name,
-                        fpga::requester_name(each->by), lost, percent_of(lost, cycles),
+    const std::string wait = wait_text(fpga::requester_name(each->requester), board.banks[each->bank].name,
+                                       fpga::requester_name(each->by));
+    text += fmt::format("waits        {}: {} cycles ({:.2f} %), {}\n", wait, lost, percent_of(lost, cycles),
                         where(board, recorder.grid(), each->cycles));
   }
   return text + table_of_rows(board, sums);
