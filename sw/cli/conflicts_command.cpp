@@ -13,6 +13,7 @@
 #include "sw/cli/add_command.h"
 #include "sw/cli/commands.h"
 #include "sw/cli/exit_status.h"
+#include "sw/cli/json_option.h"
 #include "sw/cli/load_run_input.h"
 #include "sw/cli/run_options.h"
 #include "sw/files/folder_entries.h"
@@ -54,12 +55,14 @@ struct ConflictsOptions {
   Typed out_option;
   Typed format;
   Typed size;
+  JsonOption json;
 
   void add_to(CLI::App& command) {
     run.add_simulation_to(command, "; or RUN, a folder that run --out has written");
     out_option.add_to(command, "--out", "DIR", "The folder to write, created if missing (default: no files)");
     format.add_to(command, "--format", "F,..", "Kinds of figures, out of png, svg, pdf; default png,svg");
     size.add_to(command, "--size", "WxH", "Width and height of each figure in inches");
+    json.add_to(command);
   }
 
   bool is_of_run() const { return fs::is_regular_file(fs::path(run.board.name()) / "run.json"); }
@@ -259,7 +262,13 @@ int conflicts(const ConflictsOptions& options) {
     folder->add(kMark, csv);
     folder->commit();
   }
-  process::print(report::conflicts_text(input.board, *simulation->conflicts(), shown.sums.sums()));
+  const report::ConflictSummary summary =
+      report::conflict_summary(input.board, *simulation->conflicts(), shown.sums.sums());
+  if (options.json.is_given) {
+    print_json(report::conflicts_document(summary));
+  } else {
+    process::print(report::conflicts_text(summary));
+  }
   return kDone;
 }
 

@@ -77,6 +77,10 @@ void RunOptions::check_usage() {
   check_numbers(problems);
   truth.check_usage(problems);
   check_combinations(problems);
+  if (!problems.empty() && board.is_given()) {  // all at once: those of its files too
+    const auto loaded = board.load(problems);
+    board.load_calibration(loaded ? &*loaded : nullptr, problems);
+  }
   if (!is_complete) problems.add_note(std::string("a complete command: ") + kRunExample);
   problems.check();
   if (out_.is_given()) out = out_.text;
