@@ -25,6 +25,7 @@
 #include "sw/process/streams.h"
 #include "sw/report/conflicts_csv.h"
 #include "sw/report/conflicts_text.h"
+#include "sw/runs/progress.h"
 #include "sw/runs/recorded_run.h"
 #include "sw/runs/rerun.h"
 #include "sw/runs/run_mode.h"
@@ -167,9 +168,13 @@ struct Shown {
 bool simulate(runs::Simulation& simulation, const runs::RunInput& input, files::OutputFolder* folder,
               Shown& shown) {
   if (folder != nullptr) folder->append("rows.csv", report::rows_csv_head(input.board));
+  runs::ProgressLine progress;
   while (!simulation.finished()) {
     if (process::interrupted()) return false;
     simulation.advance();
+    progress.show([&](double) {
+      return fmt::format("{}/{} frames simulated", simulation.frames_done(), simulation.frames());
+    });
     simulation.take_timeline();
     for (const fpga::FrameConflicts& frame : simulation.take_conflicts()) {
       if (folder != nullptr) folder->append("rows.csv", report::rows_csv(input.board, shown.frames, frame));

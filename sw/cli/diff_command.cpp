@@ -12,6 +12,7 @@
 #include "sw/cli/diff_text.h"
 #include "sw/cli/exit_status.h"
 #include "sw/cli/typed_option.h"
+#include "sw/cli/verdict_colours.h"
 #include "sw/process/interrupt.h"
 #include "sw/process/streams.h"
 #include "sw/report/rows_csv.h"
@@ -80,7 +81,7 @@ int diff(const DiffOptions& options) {
     return kInterrupted;
   }
   if (csv) csv->commit();
-  process::print(diff_text(*a, *b, aligned, limits));
+  process::print(with_coloured_sentence(diff_text(*a, *b, aligned, limits)));
   return kDone;
 }
 
