@@ -20,7 +20,7 @@ constexpr const char* kPlotFooter =
     "  units        the same against the number of modules, matcher.units\n"
     "  banks        frames per second against the banks that the allocation uses\n"
     "  states       what each port does in the cycles of a frame\n"
-    "  stalls       stall cycles of each port by their cause\n"
+    "  stalls       cycles in which each port waits, by their cause\n"
     "  use          how busy each bank is\n"
     "  pareto       two columns of the database, and the points that no other point dominates;\n"
     "               beside the columns there are banks_used and units_used\n"

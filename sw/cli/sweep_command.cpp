@@ -108,18 +108,22 @@ std::string summary(const explore::SweepCounts& counts, const SweepCommandOption
 }
 
 // The lines with the three most frequent reasons of points that failed, then of impossible ones, and the number
-// of points for each reason. One scan of the table; by name 'failed' comes before 'impossible'.
+// of points for each reason; then the number of those with other reasons. One scan of the table; by name
+// 'failed' comes before 'impossible'.
 std::string reasons(explore::Database& store) {
+  constexpr std::int64_t kMostReasons = 3;
   explore::Statement statement(
       store,
-      "SELECT status, reason, points FROM ("
+      "SELECT status, reason, sum(points), place FROM ("
       "  SELECT status, reason, count(*) AS points,"
-      "    row_number() OVER (PARTITION BY status ORDER BY count(*) DESC, reason) AS place"
+      "    min(4, row_number() OVER (PARTITION BY status ORDER BY count(*) DESC, reason)) AS place"
       "  FROM points WHERE status <> 'ok' GROUP BY status, reason)"
-      " WHERE place <= 3 ORDER BY status, place");
+      " GROUP BY status, place ORDER BY status, place");
   std::string text;
   while (statement.step()) {
-    text += fmt::format("  {} {}: {}\n", statement.text(2), statement.text(0), statement.text(1));
+    const bool is_rest = statement.integer(3) > kMostReasons;
+    text += fmt::format("  {} {}: {}\n", statement.text(2), statement.text(0),
+                        is_rest ? "other reasons, in column reason of table points" : statement.text(1));
   }
   return text;
 }

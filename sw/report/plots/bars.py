@@ -32,8 +32,8 @@ class Rows:
             self.note = f"{MOST} points, evenly from the lowest core frame rate to the highest."
             if most_stalled:
                 chosen = sorted(chosen, key=lambda place: -stalls[place])[:MOST]
-                self.left_out = {"with fewer stalls": len(rates) - MOST}
-                self.note = f"The {MOST} points with most stall cycles a frame."
+                self.left_out = {"with fewer waits": len(rates) - MOST}
+                self.note = f"The {MOST} points whose ports wait for most cycles a frame."
             else:
                 chosen = [chosen[number * (len(chosen) - 1) // (MOST - 1)] for number in range(MOST)]
         keys = [points.column(key) for key in points.varied]

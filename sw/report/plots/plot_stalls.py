@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The stall cycles of each port in a frame, point by point, by cause: the port that was granted, or turnaround."""
+"""The cycles of a frame in which each port waits, point by point, by cause: the port that was granted, or turnaround."""
 
 import sys
 
@@ -18,7 +18,7 @@ COLORS = dict(zip([*PORTS, TURNAROUND],
 
 def draw(points, options):
     if not any(points.stall_cycles()):
-        raise Unusable("no port stalls in any point")
+        raise Unusable("no port waits in any point")
     rows = bars.Rows(points, options, most_stalled=True)
     blame = {place: points.blame(place) for place in rows.places}
     stalled = [port for port in PORTS if any(row[0] == port for each in blame.values() for row in each)]
@@ -31,7 +31,7 @@ def draw(points, options):
     most = max(sum(cycles(place, port, by) for by in blamed) for place in rows.places for port in stalled)
     factor, word = in_words(most)
     sheet = Sheet("Which port waits, and for whom", options.size, options.format)
-    sheet.legend([(Patch(color=COLORS[by]), by if by == TURNAROUND else f"lost to {by}") for by in blamed])
+    sheet.legend([(Patch(color=COLORS[by]), by if by == TURNAROUND else f"for {by}") for by in blamed])
     sheet.note(rows.note)
     sheet.note(points.pixels_note(rows.places))
     sheet.note(points.note(len(rows.places), rows.left_out))
@@ -46,11 +46,11 @@ def draw(points, options):
         sheet.head(axes, port)
         rows.label(axes)
     ticks_of_columns(panels, most / factor)
-    sheet.below(f"{word}stall cycles of the port a frame")
+    sheet.below(f"{word}cycles a frame in which the port waits")
     header = ["hash", *points.varied, "frames", "port", "bank", "by", "cycles"]
     table = [[*(points.column(each)[place] for each in header[:-4]), *row]
              for place in rows.places for row in blame[place]]
-    said = f"{counted(len(rows.places), 'point')}, {counted(len(stalled), 'port')} with stalls"
+    said = f"{counted(len(rows.places), 'point')}, {counted(len(stalled), 'port')} that wait{'s' if len(stalled) == 1 else ''}"
     return Drawing(sheet, header, table, said)
 
 

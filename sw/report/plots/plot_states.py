@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What each port does in the cycles of a frame, point by point: granted, passed, stalled, blocked, starved or idle."""
+"""What each port does in the cycles of a frame, point by point: granted, passed, waiting, blocked, starved or idle."""
 
 import sys
 
@@ -15,7 +15,7 @@ from points import counted
 STATES = [
     ("grants", "granted", style.BLUE),
     ("passed_cycles", "passed without access", style.SKY),
-    ("stall_cycles", "stalled", style.VERMILION),
+    ("stall_cycles", "waiting", style.VERMILION),
     ("blocked_cycles", "blocked", style.ORANGE),
     ("starved_cycles", "starved", "#999999"),
     ("idle_cycles", "idle", "#DDDDDD"),

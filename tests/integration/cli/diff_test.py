@@ -133,7 +133,7 @@ class WorkedValues(DiffTest):
             "frames_per_second.core 18.596 9.32706 -9.26899",
             "bound.core_limited_by matcher bank bank0",
             "frame 0 2150995 4288597 +2137602",
-            "left_lut on bank0 to left_pixel 0 2137602 +2137602",
+            "left_lut on bank0 for left_pixel 0 2137602 +2137602",
             "left_lut stall_cycles 0 2137602 +2137602",
             "bank0 contended_cycles 0 2137602 +2137602",
             "bank6 busy_cycles 2142720 0 -2142720",
@@ -142,7 +142,7 @@ class WorkedValues(DiffTest):
             self.assertIn(line, lines)
         lines = self.lines(self.shared, self.alone)
         self.assertIn("frame 0 4288597 2150995 -2137602", lines)
-        self.assertIn("left_lut on bank0 to left_pixel 2137602 0 -2137602", lines)
+        self.assertIn("left_lut on bank0 for left_pixel 2137602 0 -2137602", lines)
         for line in self.succeeds(run("diff", self.alone, self.shared)).splitlines():
             self.assertLessEqual(len(line), max(100, len(str(self.alone)) + 3), line)
 
@@ -421,10 +421,10 @@ class Usage(DiffTest):
         ])
 
     def test_an_interrupt_compares_nothing(self):
-        a = shared_run("--timing-only", "--frames", "20000", *sets("image.height=1"))
+        a = shared_run("--timing-only", "--frames", "60000", *sets("image.height=1"))
         with self.unchanged(self.folder):
             terminal = Terminal(["diff", a, a, "--csv", self.folder / "rows.csv"])
-            status, out = terminal.interrupt(r"\d+/20000 frames compared", signal.SIGINT)
+            status, out = terminal.interrupt(r"\d+/60000 frames compared", signal.SIGINT)
             self.assertEqual((status, out), (130, ""))
             self.assertEqual(terminal.shown(), ["stereotlm: note: interrupted: nothing is compared", ""])
 

@@ -110,7 +110,7 @@ class Figures(FigureTest):
             "units        not drawn: all points have matcher.units = all",
             "banks        not drawn: all points use 8 banks",
             "states       12 points, 5 ports",
-            "stalls       not drawn: no port stalls in any point",
+            "stalls       not drawn: no port waits in any point",
             "use          12 points, 8 banks",
             "pareto       12 points, " + said[-2].split(", ")[1],
             f"{self.out}: 15 files: png, svg and csv of each figure that is drawn",
@@ -168,9 +168,9 @@ class Figures(FigureTest):
         stalls = self.table("stalls")
         shown = {row["hash"] for row in stalls}
         self.assertEqual(len(shown), 16)
-        note = "fpl2003, source preloaded: 16 of 24 points of points.db; not shown: 8 with fewer stalls."
-        self.shows("stalls", note, "The 16 points with most stall cycles a frame.",
-                   "thousand stall cycles of the port a frame", "lost to left_pixel")
+        note = "fpl2003, source preloaded: 16 of 24 points of points.db; not shown: 8 with fewer waits."
+        self.shows("stalls", note, "The 16 points whose ports wait for most cycles a frame.",
+                   "thousand cycles a frame in which the port waits", "for left_pixel")
         self.assertIn("disparity=[bank0,\N{NO-BREAK SPACE}bank0],", " ".join(self.texts("stalls")))
         found = [(row["hash"], row["port"], row["bank"], row["by"], int(row["cycles"])) for row in stalls]
         self.assertEqual(sorted(found), sorted(row for row in blame if row[0] in shown))

@@ -58,6 +58,24 @@ class SweepTest(ProgramTest):
 
 
 class Sweep(SweepTest):
+    def test_the_points_with_rare_reasons_are_counted_together(self):
+        text = """
+board: fpl2003
+run: {source: preloaded}
+vary:
+  matcher.rows: [2, 9]
+  matcher.fetch: [column, line_buffer]
+  image.width: [640, 2052]
+"""
+        said = self.succeeds(self.sweep(plan=self.file("reasons.yaml", text)))
+        found = dict(self.query("SELECT reason, count(*) FROM points WHERE status = 'impossible' GROUP BY reason"))
+        self.assertGreater(len(found), 4)
+        printed = [line.split(" impossible: ") for line in said.splitlines() if line.startswith("  ")]
+        self.assertEqual(len(printed), 4)
+        for number, reason in printed[:3]:
+            self.assertEqual(found.pop(reason), int(number))
+        self.assertEqual(printed[3], [f"  {sum(found.values())}", "other reasons, in column reason of table points"])
+
     def test_each_point_keeps_what_its_run_says(self):
         said = self.succeeds(self.sweep())
         self.assertIn(f"{POINTS} points: {OK} ok, {IMPOSSIBLE} impossible, 0 failed", said)
