@@ -59,6 +59,7 @@ struct ConflictsOptions {
   JsonOption json;
 
   void add_to(CLI::App& command) {
+    run.command_name = "conflicts";
     run.add_simulation_to(command, "; or RUN, a folder that run --out has written");
     out_option.add_to(command, "--out", "DIR", "The folder to write, created if missing (default: no files)");
     format.add_to(command, "--format", "F,..", "Kinds of figures, out of png, svg, pdf; default png,svg");
