@@ -28,6 +28,7 @@ class BoardOptions {
 
   // Whether --set or --calibration is given.
   bool changes_board() const { return sets_.is_given() || calibration_option_.is_given(); }
+  bool is_given() const { return board_.is_given(); }
   // BOARD as typed.
   const std::string& name() const { return board_.text; }
 

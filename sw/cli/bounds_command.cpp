@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,7 +15,9 @@
 #include "sw/cli/board_options.h"
 #include "sw/cli/commands.h"
 #include "sw/cli/exit_status.h"
+#include "sw/cli/json_option.h"
 #include "sw/process/streams.h"
+#include "sw/report/stats_json.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -23,7 +26,19 @@ using platform::BoardConfig;
 using platform::PlacedBuffer;
 using platform::ResourceBound;
 
+using Json = nlohmann::ordered_json;
 using Names = std::vector<std::string>;
+
+struct BoundsOptions {
+  BoardOptions board;
+  JsonOption json;
+
+  void add_to(CLI::App& command) {
+    board.add_to(command);
+    json.add_to(command);
+  }
+  void check_usage() { board.check_usage(); }
+};
 
 void add_new(Names& names, const std::string& name) {
   if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
@@ -120,13 +135,43 @@ std::string frames_text(const std::vector<std::uint64_t>& frames) {
   return text;
 }
 
-std::string lines_of(const Group& group, double clock_mhz) {
+// The share of the time of the slowest resource that a resource does not need, in percent.
+double headroom_percent(const Row& row, const Group& group) {
   std::uint64_t most = 0;
-  std::size_t width = 16;
-  for (const Row& row : group.rows) {
-    most = std::max(most, row.cycles);
-    width = std::max(width, row.label().size());
+  for (const Row& each : group.rows) most = std::max(most, each.cycles);
+  return 100 * (1 - static_cast<double>(row.cycles) / static_cast<double>(most));
+}
+
+// What `bounds` says of a board.
+struct BoardBounds {
+  const BoardConfig& board;
+  std::vector<Group> groups;
+  std::vector<platform::RateBound> computer;
+  platform::Bound bound;
+
+  double frames_per_second(const Row& row) const {
+    return board.fpga.clock_mhz * 1e6 / static_cast<double>(row.cycles);
   }
+};
+
+BoardBounds bounds_of(const BoardConfig& board, const platform::Tables& tables) {
+  const std::uint64_t frames = platform::allocation_period_frames(board);
+  BoardBounds all = {
+      board, {}, platform::computer_bounds(board, true), platform::core_bound(board, tables, frames)};
+  platform::add_system_bound(board, true, all.bound);
+  for (std::uint64_t frame = 0; frame < frames; ++frame) {
+    const Group group = group_of(board, tables, frame);
+    if (std::none_of(all.groups.begin(), all.groups.end(),
+                     [&](Group& known) { return take_in(known, group); })) {
+      all.groups.push_back(group);
+    }
+  }
+  return all;
+}
+
+std::string lines_of(const Group& group, const BoardBounds& all) {
+  std::size_t width = 16;
+  for (const Row& row : group.rows) width = std::max(width, row.label().size());
   std::string text = frames_text(group.frames);
   const char* separator = ": ";
   for (const List& list : group.lists) {
@@ -136,9 +181,8 @@ std::string lines_of(const Group& group, double clock_mhz) {
   text +=
       fmt::format("\n  {:<{}} {:>14} {:>14} {:>12}\n", "resource", width, "cycles", "frames/s", "headroom %");
   for (const Row& row : group.rows) {
-    const auto cycles = static_cast<double>(row.cycles);
     text += fmt::format("  {:<{}} {:>14} {:>14.3f} {:>12.2f}\n", row.label(), width, row.cycles,
-                        clock_mhz * 1e6 / cycles, 100 * (1 - cycles / static_cast<double>(most)));
+                        all.frames_per_second(row), headroom_percent(row, group));
   }
   return text;
 }
@@ -162,33 +206,77 @@ std::string area_lines(const BoardConfig& board) {
   return text;
 }
 
-int bounds(const BoardOptions& options) {
-  process::Problems problems;
-  const auto board = options.load(problems);
-  const auto calibration = options.load_calibration(board ? &*board : nullptr, problems);
-  problems.check();
-  const platform::Tables tables = runs::tables_of(*board, calibration);
-  const std::uint64_t frames = platform::allocation_period_frames(*board);
-  std::vector<Group> groups;
-  for (std::uint64_t frame = 0; frame < frames; ++frame) {
-    const Group group = group_of(*board, tables, frame);
-    if (std::none_of(groups.begin(), groups.end(), [&](Group& known) { return take_in(known, group); })) {
-      groups.push_back(group);
-    }
-  }
+std::string text_of(const BoardBounds& all) {
   std::string text;
-  for (const Group& group : groups) text += lines_of(group, board->fpga.clock_mhz);
-  platform::Bound bound = platform::core_bound(*board, tables, frames);
-  platform::add_system_bound(*board, true, bound);
+  for (const Group& group : all.groups) text += lines_of(group, all);
   text += fmt::format("around the board\n  {:<16} {:>14}\n", "resource", "frames/s");
-  for (const platform::RateBound& part : platform::computer_bounds(*board, true)) {
+  for (const platform::RateBound& part : all.computer)
     text += fmt::format("  {:<16} {:>14.3f}\n", part.resource, part.frames_per_second);
+  text += fmt::format("bound of the core: {:.3f} frames/s, limited by {}\n", all.bound.core,
+                      all.bound.core_limited_by);
+  text += fmt::format("bound of the system: {:.3f} frames/s, limited by {}\n", *all.bound.system,
+                      all.bound.system_limited_by);
+  return text + area_lines(all.board);
+}
+
+Json json_of(const Group& group, const BoardBounds& all) {
+  Json buffers = Json::array();
+  for (const List& list : group.lists) buffers.push_back({{"name", list.name}, {"banks", list.banks}});
+  Json resources = Json::array();
+  for (const Row& row : group.rows) {
+    Json resource = {{"resource", row.banks.empty() ? row.role : "bank"}};
+    if (!row.banks.empty()) resource["banks"] = row.banks;
+    resource["cycles"] = row.cycles;
+    resource["frames_per_second"] = all.frames_per_second(row);
+    resource["headroom_percent"] = headroom_percent(row, group);
+    resources.push_back(std::move(resource));
   }
-  text +=
-      fmt::format("bound of the core: {:.3f} frames/s, limited by {}\n", bound.core, bound.core_limited_by);
-  text += fmt::format("bound of the system: {:.3f} frames/s, limited by {}\n", *bound.system,
-                      bound.system_limited_by);
-  process::print(text + area_lines(*board));
+  return {{"frames", group.frames}, {"buffers", std::move(buffers)}, {"resources", std::move(resources)}};
+}
+
+Json area_document(const BoardConfig& board) {
+  const area::Area area = platform::area_of(board);
+  Json json = report::area_json(area);
+  json["fits"] = area.fits();
+  json["device"] = platform::device_of(board).name;
+  Json& parts = json["parts"] = Json::array();
+  for (const area::Item& item : platform::area_items(board)) {
+    parts.push_back({{"name", item.name},
+                     {"count", item.count},
+                     {"luts", item.all.luts},
+                     {"flip_flops", item.all.flip_flops},
+                     {"block_rams", item.all.block_rams},
+                     {"multipliers", item.all.multipliers}});
+  }
+  return json;
+}
+
+Json document_of(const BoardBounds& all) {
+  Json document = {{"schema", 1}, {"board", all.board.name}};
+  Json& groups = document["frames"] = Json::array();
+  for (const Group& group : all.groups) groups.push_back(json_of(group, all));
+  Json& computer = document["computer"] = Json::array();
+  for (const platform::RateBound& part : all.computer)
+    computer.push_back({{"resource", part.resource}, {"frames_per_second", part.frames_per_second}});
+  document["bound"] = {{"core", all.bound.core},
+                       {"core_limited_by", all.bound.core_limited_by},
+                       {"system", *all.bound.system},
+                       {"system_limited_by", all.bound.system_limited_by}};
+  document["area"] = area_document(all.board);
+  return document;
+}
+
+int bounds(const BoundsOptions& options) {
+  process::Problems problems;
+  const auto board = options.board.load(problems);
+  const auto calibration = options.board.load_calibration(board ? &*board : nullptr, problems);
+  problems.check();
+  const BoardBounds all = bounds_of(*board, runs::tables_of(*board, calibration));
+  if (options.json.is_given) {
+    print_json(document_of(all));
+  } else {
+    process::print(text_of(all));
+  }
   return kDone;
 }
 
@@ -199,10 +287,10 @@ void add_bounds(CLI::App& program, Action& action) {
       program, action, "bounds",
       "Say what limits the frame rate: ports, banks, matcher, cameras, buses; and the area", bounds,
       "For each frame until the allocation's lists begin anew, equal ones together: the fewest FPGA cycles\n"
-      "that a frame costs each resource alone, the frames a second that follow, and how much of the slowest\n"
-      "resource's time it has to spare. Then what cameras, PCI bus and bridge allow with --source camera\n"
-      "as long as no pixel is dropped. Last an estimate of what the core takes of its FPGA.\n"
-      "Tables, where the board has them, are the identity, or those of --calibration.");
+      "that a frame costs each resource alone, the frames a second that follow, and the headroom: the share\n"
+      "of the slowest resource's time that it does not need. Then what cameras, PCI bus and bridge allow\n"
+      "with --source camera as long as no pixel is dropped. Last an estimate of what the core takes of its\n"
+      "FPGA. Tables, where the board has them, are the identity, or those of --calibration.");
 }
 
 }  // namespace stereotlm::cli

@@ -2,6 +2,7 @@
 
 #include "sw/cli/add_command.h"
 #include "sw/cli/typed_option.h"
+#include "sw/process/streams.h"
 
 // Implements add_command.h and typed_option.h. The commands include these instead of CLI11, which takes long
 // to compile.
@@ -38,6 +39,7 @@ CLI::App& add_command(CLI::App& program, const std::string& name, const std::str
   CLI::App* command = program.add_subcommand(name, description);
   command->callback(parsed);
   command->footer(footer);
+  command->add_flag_callback("--quiet", process::leave_out_notes, "Leave out notes and progress");
   return *command;
 }
 

@@ -13,6 +13,7 @@
 #include "sw/cli/add_command.h"
 #include "sw/cli/commands.h"
 #include "sw/cli/exit_status.h"
+#include "sw/cli/json_option.h"
 #include "sw/cli/load_run_input.h"
 #include "sw/cli/run_options.h"
 #include "sw/files/folder_entries.h"
@@ -24,6 +25,7 @@
 #include "sw/process/streams.h"
 #include "sw/report/conflicts_csv.h"
 #include "sw/report/conflicts_text.h"
+#include "sw/runs/progress.h"
 #include "sw/runs/recorded_run.h"
 #include "sw/runs/rerun.h"
 #include "sw/runs/run_mode.h"
@@ -54,12 +56,15 @@ struct ConflictsOptions {
   Typed out_option;
   Typed format;
   Typed size;
+  JsonOption json;
 
   void add_to(CLI::App& command) {
+    run.command_name = "conflicts";
     run.add_simulation_to(command, "; or RUN, a folder that run --out has written");
     out_option.add_to(command, "--out", "DIR", "The folder to write, created if missing (default: no files)");
     format.add_to(command, "--format", "F,..", "Kinds of figures, out of png, svg, pdf; default png,svg");
     size.add_to(command, "--size", "WxH", "Width and height of each figure in inches");
+    json.add_to(command);
   }
 
   bool is_of_run() const { return fs::is_regular_file(fs::path(run.board.name()) / "run.json"); }
@@ -164,9 +169,13 @@ struct Shown {
 bool simulate(runs::Simulation& simulation, const runs::RunInput& input, files::OutputFolder* folder,
               Shown& shown) {
   if (folder != nullptr) folder->append("rows.csv", report::rows_csv_head(input.board));
+  runs::ProgressLine progress;
   while (!simulation.finished()) {
     if (process::interrupted()) return false;
     simulation.advance();
+    progress.show([&](double) {
+      return fmt::format("{}/{} frames simulated", simulation.frames_done(), simulation.frames());
+    });
     simulation.take_timeline();
     for (const fpga::FrameConflicts& frame : simulation.take_conflicts()) {
       if (folder != nullptr) folder->append("rows.csv", report::rows_csv(input.board, shown.frames, frame));
@@ -259,7 +268,13 @@ int conflicts(const ConflictsOptions& options) {
     folder->add(kMark, csv);
     folder->commit();
   }
-  process::print(report::conflicts_text(input.board, *simulation->conflicts(), shown.sums.sums()));
+  const report::ConflictSummary summary =
+      report::conflict_summary(input.board, *simulation->conflicts(), shown.sums.sums());
+  if (options.json.is_given) {
+    print_json(report::conflicts_document(summary));
+  } else {
+    process::print(report::conflicts_text(summary));
+  }
   return kDone;
 }
 

@@ -12,6 +12,7 @@
 #include "sw/cli/diff_text.h"
 #include "sw/cli/exit_status.h"
 #include "sw/cli/typed_option.h"
+#include "sw/cli/verdict_colours.h"
 #include "sw/process/interrupt.h"
 #include "sw/process/streams.h"
 #include "sw/report/rows_csv.h"
@@ -26,7 +27,8 @@ constexpr const char* kDiffFooter =
     "SHA-256, and must give the figures of their stats.json. What is not the same is printed;\n"
     "differences are B - A. A row of results is whole with the write of its last word. Its cycles are\n"
     "those since the row above was whole, those of the top row since the frame began; in the table of\n"
-    "rows they are sums over the frames.";
+    "rows they are sums over the frames. The last line says which run is faster, and where the difference\n"
+    "arises.";
 
 struct DiffOptions {
   Typed a;
@@ -36,8 +38,7 @@ struct DiffOptions {
   void add_to(CLI::App& command) {
     a.add_to(command, "A", " ", "A folder that run --out has written");
     b.add_to(command, "B", " ", "Another one");
-    csv_option.add_to(command, "--csv", "F.csv",
-                      "Write the cycles and stalls of every frame and row of both");
+    csv_option.add_to(command, "--csv", "F.csv", "Write the cycles and waits of every frame and row of both");
   }
 
   // Set by check_usage().
@@ -80,7 +81,7 @@ int diff(const DiffOptions& options) {
     return kInterrupted;
   }
   if (csv) csv->commit();
-  process::print(diff_text(*a, *b, aligned, limits));
+  process::print(with_coloured_sentence(diff_text(*a, *b, aligned, limits)));
   return kDone;
 }
 

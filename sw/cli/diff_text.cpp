@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "platform/config/board_yaml.h"
+#include "sw/cli/diff_verdict.h"
+#include "sw/cli/text.h"
 #include "sw/explore/plan/figures.h"
 #include "sw/report/difference_tables.h"
 
@@ -125,7 +127,11 @@ std::string diff_text(const runs::RecordedRun& run_a, const runs::RecordedRun& r
   const std::string pixels = limits.pixels.empty()
                                  ? report::pixels_line(aligned.pixels())
                                  : fmt::format("disparities: not compared: {}\n", limits.pixels);
-  return in_sections({fmt::format("A: {}\nB: {}\n", run_a.folder, run_b.folder), settings, figures, pixels});
+  const std::string verdict =
+      diff_verdict({a.document, run_a.board.fpga.clock_mhz}, {b.document, run_b.board.fpga.clock_mhz},
+                   limits.pixels.empty() ? &aligned.pixels() : nullptr);
+  return in_sections({fmt::format("A: {}\nB: {}\n", run_a.folder, run_b.folder), settings, figures, pixels,
+                      paragraph("", 0, verdict)});
 }
 
 }  // namespace stereotlm::cli

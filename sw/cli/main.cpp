@@ -26,7 +26,7 @@ int run_program(int argc, const char* const* argv) {
   try {
     return parse_command_line(argc, argv)();
   } catch (const process::Refused& refused) {
-    for (const std::string& line : refused.lines()) std::fprintf(stderr, "%s\n", line.c_str());
+    for (const std::string& line : refused.lines()) process::say_line(line);
     return kRefused;
   } catch (const sc_core::sc_report& report) {
     process::say("error", "the model stopped: " + text_of(report));

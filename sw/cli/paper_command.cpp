@@ -20,6 +20,7 @@
 #include "sw/cli/temporary_files.h"
 #include "sw/cli/truth_options.h"
 #include "sw/cli/typed_option.h"
+#include "sw/cli/verdict_colours.h"
 #include "sw/files/document_folder.h"
 #include "sw/files/whole_file.h"
 #include "sw/media/truth.h"
@@ -206,7 +207,8 @@ int compare_with_paper(const PaperOptions& options) {
   }
   files[paper::kDocument] = paper::document(*findings);
   folder->commit(files);
-  process::print(paper::summary(*findings) + fmt::format("{}: {} files\n", options.out.text, files.size()));
+  process::print(with_coloured_verdicts(paper::summary(*findings)) +
+                 fmt::format("{}: {} files\n", options.out.text, files.size()));
   return kDone;
 }
 

@@ -33,8 +33,8 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kReportFooter =
     "INPUT is a folder that run --out has written, a database of sweep, or two such folders, which are\n"
     "compared. The page is one file; a browser shows it without a network. Runs are run again for what\n"
-    "happens where in the picture, and when. For one run every knob of the board is also tried one step up\n"
-    "and down, as explain does.";
+    "happens where in the picture, and when. For one run each single change of the board is also tried, as\n"
+    "explain does.";
 
 struct ReportOptions {
   TypedList inputs;
@@ -45,7 +45,7 @@ struct ReportOptions {
     inputs.add_to(command, "INPUT", "...", "One run or database, or two runs");
     out.add_to(command, "--out", "F.html", "The page to write");
     add_flag(command, "--quick", quick,
-             "Simulate nothing: no gain of the knobs; rows and times only of a run with --record");
+             "Simulate nothing: no gain of the changes; rows and times only of a run with --record");
   }
 
   bool is_database() const {

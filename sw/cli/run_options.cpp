@@ -12,8 +12,6 @@
 namespace stereotlm::cli {
 namespace {
 
-constexpr const char* kRunExample = "stereotlm run fpl2003 --left left.png --right right.png";
-
 const std::vector<std::string> kSources = {"camera", "preloaded"};  // the first is the default
 const std::vector<std::string> kFidelities = {"fast", "cycle"};
 
@@ -75,7 +73,13 @@ void RunOptions::check_usage() {
   truth.check_usage(problems);
   trace.check_usage(problems);
   check_combinations(problems);
-  if (!is_complete) problems.add_note(std::string("a complete command: ") + kRunExample);
+  if (!problems.empty() && board.is_given()) {  // all at once: those of its files too
+    const auto loaded = board.load(problems);
+    board.load_calibration(loaded ? &*loaded : nullptr, problems);
+  }
+  if (!is_complete)
+    problems.add_note(fmt::format(
+        "a complete command: stereotlm {} fpl2003 --left left.png --right right.png", command_name));
   problems.check();
   if (out_.is_given()) out = out_.text;
 }

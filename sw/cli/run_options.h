@@ -29,6 +29,7 @@ class RunOptions {
   // To be called in the command's callback: throws Refused if options are wrong.
   void check_usage();
 
+  const char* command_name = "run";  // the command that has the options, for messages
   BoardOptions board;
   PictureOptions pictures;
   TruthOptions truth;

@@ -54,7 +54,7 @@ constexpr const char* kSweepFooter =
     "  frames       to deliver: by default one turn of the allocation's lists, with cameras 13\n"
     "  calibration  F.yaml of stereotlm calibrate: the tables; by default they are the identity\n\n"
     "Each point is a row of table `points` of DB, an SQLite database: its status, the reason if it is not\n"
-    "ok, the board in full, and a column for each key and for each figure of stats.json; stalls by port,\n"
+    "ok, the board in full, and a column for each key and for each figure of stats.json; waits by port,\n"
     "bank and cause are in table `blame`. For instance\n"
     "  sqlite3 DB \"SELECT name FROM pragma_table_info('points')\"      # all columns\n"
     "  sqlite3 -box DB 'SELECT \"matcher.window\", \"frames_per_second.core\" FROM points ORDER BY 1'\n"

@@ -393,19 +393,23 @@ std::string others_text(const ClaimFinding& found) {
   if (claim.quantity == Quantity::kAccuracyChange) {
     for (const CostRow& row : cost_rows(found)) {
       if (row.verdict.value_or(Verdict::kConfirmed) == Verdict::kConfirmed) continue;
-      lines += fmt::format("  {:<22} wrong {:+.3f}, answered {:+.3f} percentage points against sad{}\n",
-                           fmt::format("{}, {}", row.cost, row.scene), row.change.wrong_percent,
-                           row.change.answered_percent, row.verdict == Verdict::kOpen ? " (open)" : "");
+      lines += fmt::format(
+          "  {} on {}: wrong {:+.3f}, answered {:+.3f} percentage points "
+          "against sad{}\n",
+          row.cost, row.scene, row.change.wrong_percent, row.change.answered_percent,
+          row.verdict == Verdict::kOpen ? ", open" : "");
     }
   } else {
     for (std::size_t i = 0; i < found.cases.size(); ++i) {
       const Case& one = claim.cases[i];
       const CaseFinding& finding = found.cases[i];
       if (finding.verdict == Verdict::kConfirmed) continue;
-      std::string line =
-          fmt::format("  {:<55} {:>7} {:>9}  {:>9}", one.name, printed_text(claim, one.printed),
-                      modelled_text(claim, finding.modelled), deviation_text(claim, one, finding));
-      lines += line.erase(line.find_last_not_of(' ') + 1) + '\n';
+      const std::string deviation = deviation_text(claim, one, finding);
+      lines += fmt::format("  {}: {} {} in the paper, {} in the model{}{}\n", one.name,
+                           printed_text(claim, one.printed), unit_of(claim.quantity),
+                           modelled_text(claim, finding.modelled),
+                           deviation.empty() ? "" : fmt::format(" ({})", deviation),
+                           finding.verdict == Verdict::kOpen ? ", open" : "");
     }
   }
   return lines.empty() ? "" : fmt::format("{}: {}\n{}", claim.place, claim.says, lines);
@@ -426,18 +430,29 @@ std::string document(const Findings& findings) {
 }
 
 std::string summary(const Findings& findings) {
-  std::string text = fmt::format("{:<72} {:>9}  {}\n", "the paper", "confirmed", "verdict");
-  std::string others;
-  for (const ClaimFinding& found : findings.claims) {
-    text += fmt::format("{:<72} {:>9}  {}\n", found.claim.place + ": " + found.claim.says,
-                        confirmed_text(found), text_of(found.verdict));
-    const std::vector<std::string> clauses = scene_clauses(found);
-    if (!clauses.empty()) text += fmt::format("  {}\n", fmt::join(clauses, ";\n  "));
-    others += others_text(found);
+  std::vector<const ClaimFinding*> claims;  // those that are doubted first
+  std::string verdicts;
+  for (const Verdict verdict :
+       {Verdict::kNotConfirmed, Verdict::kInPart, Verdict::kOpen, Verdict::kConfirmed}) {
+    const std::size_t before = claims.size();
+    for (const ClaimFinding& found : findings.claims) {
+      if (found.verdict == verdict) claims.push_back(&found);
+    }
+    if (claims.size() > before)
+      verdicts +=
+          fmt::format("{}{} {}", verdicts.empty() ? "" : ", ", claims.size() - before, text_of(verdict));
   }
-  if (others.empty()) return text;
-  return text + fmt::format("{:<57} {:>7} {:>9}  {:>9}\n", "not confirmed", "paper", "model", "deviation") +
-         others;
+  std::string text = fmt::format("Of {} claims of the paper are {}.\n", claims.size(), verdicts);
+  text += fmt::format("{:<72} {:>9}  {}\n", "the paper", "confirmed", "verdict");
+  std::string others;
+  for (const ClaimFinding* found : claims) {
+    text += fmt::format("{:<72} {:>9}  {}\n", found->claim.place + ": " + found->claim.says,
+                        confirmed_text(*found), text_of(found->verdict));
+    const std::vector<std::string> clauses = scene_clauses(*found);
+    if (!clauses.empty()) text += fmt::format("  {}\n", fmt::join(clauses, ";\n  "));
+    others += others_text(*found);
+  }
+  return others.empty() ? text : text + "Where the model does not confirm the paper:\n" + others;
 }
 
 }  // namespace stereotlm::paper

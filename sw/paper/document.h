@@ -23,8 +23,8 @@ std::map<std::string, std::string> tables(const Findings& findings);
 // paper.md: each claim with its rule, its values and the commands that reproduce them.
 std::string document(const Findings& findings);
 
-// The text that `paper` prints: one line per claim, then one per case that is not confirmed; at most 100
-// columns.
+// The text that `paper` prints: how many claims have which verdict; a line for each claim, those that are not
+// confirmed first; a sentence for each case that is not confirmed. At most 100 columns.
 std::string summary(const Findings& findings);
 
 }  // namespace stereotlm::paper

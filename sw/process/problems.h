@@ -24,13 +24,21 @@ class Refused : public std::exception {
 // Collects everything that is wrong with a command, so that one message can report it all.
 class Problems {
  public:
-  void add(const std::string& text) { lines_.push_back("stereotlm: error: " + text); }
+  void add(const std::string& text) {
+    lines_.push_back("stereotlm: error: " + text);
+    diagnostics_.push_back({"command line", text});
+  }
   // The lines of a BoardError name the file and the position; they are added as they are.
-  void add(const platform::BoardError& error) { lines_.emplace_back(error.what()); }
+  void add(const platform::BoardError& error) {
+    lines_.emplace_back(error.what());
+    diagnostics_.insert(diagnostics_.end(), error.diagnostics().begin(), error.diagnostics().end());
+  }
 
   // Adds a hint about the problems.
   void add_note(const std::string& text) { lines_.push_back("stereotlm: note: " + text); }
   bool empty() const { return lines_.empty(); }
+  // All problems, without limit of their number. Those of no board have the place "command line".
+  const std::vector<platform::Diagnostic>& diagnostics() const { return diagnostics_; }
   // All lines, separated by semicolons, without the name of the program.
   std::string in_one_line() const {
     constexpr std::string_view kPrefix = "stereotlm: error: ";
@@ -49,6 +57,7 @@ class Problems {
 
  private:
   std::vector<std::string> lines_;
+  std::vector<platform::Diagnostic> diagnostics_;
 };
 
 // Refuses the command because of one problem.

@@ -3,13 +3,27 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <stdexcept>
+#include <utility>
 
 namespace stereotlm::process {
+namespace {
+
+constexpr const char* kProgram = "stereotlm: ";
+constexpr std::string_view kNote = "note:";
+const std::array<std::pair<const char*, Colour>, 3> kKinds = {
+    {{"error:", Colour::kRed}, {"warning:", Colour::kYellow}, {"note:", Colour::kDim}}};
+constexpr std::array kCodes = {"31", "32", "33", "2"};  // in the order of Colour
+
+bool notes_left_out = false;
+
+}  // namespace
 
 void print(std::string_view text) {
   while (!text.empty()) {
@@ -21,8 +35,29 @@ void print(std::string_view text) {
   }
 }
 
-void say(const std::string& kind, const std::string& text) {
-  std::fprintf(stderr, "stereotlm: %s: %s\n", kind.c_str(), text.c_str());
+void say(const std::string& kind, const std::string& text) { say_line("stereotlm: " + kind + ": " + text); }
+
+void say_line(const std::string& line) {
+  std::string shown = line;
+  for (const auto& [kind, colour] : kKinds) {
+    const std::string head = std::string(kProgram) + kind;
+    if (line.compare(0, head.size(), head) != 0) continue;
+    if (notes_left_out && kind == kNote) return;
+    shown = kProgram + coloured(STDERR_FILENO, colour, kind) + line.substr(head.size());
+  }
+  std::fprintf(stderr, "%s\n", shown.c_str());
+}
+
+void leave_out_notes() { notes_left_out = true; }
+bool leaves_out_notes() { return notes_left_out; }
+
+std::string coloured(int descriptor, Colour colour, const std::string& text) {
+  const auto value_of = [](const char* variable) {
+    const char* const value = std::getenv(variable);
+    return std::string_view(value == nullptr ? "" : value);
+  };
+  if (isatty(descriptor) == 0 || !value_of("NO_COLOR").empty() || value_of("TERM") == "dumb") return text;
+  return std::string("\033[") + kCodes[static_cast<std::size_t>(colour)] + "m" + text + "\033[0m";
 }
 
 void prepare_streams() {

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "sw/report/wait_text.h"
+
 namespace stereotlm::report {
 namespace {
 
@@ -94,14 +96,26 @@ std::string bank_lines(const platform::Statistics& statistics, double clock_mhz)
   return text;
 }
 
-std::string stall_line(const platform::Statistics& statistics) {
-  const auto worst = std::max_element(
+std::string wait_lines(const platform::Statistics& statistics,
+                       const std::optional<double>& waitless_frames_per_second) {
+  const auto longest = std::max_element(
       statistics.blame.begin(), statistics.blame.end(),
       [](const platform::BlameRow& a, const platform::BlameRow& b) { return a.cycles < b.cycles; });
-  if (worst == statistics.blame.end()) return fmt::format("{:<12} none\n", "worst stall");
-  return fmt::format("{:<12} {} on {} lost {} cycles ({:.2f} %) to {}\n", "worst stall", worst->port,
-                     shortened(worst->bank, 12), worst->cycles, 100 * share(worst->cycles, statistics.cycles),
-                     worst->by);
+  if (longest == statistics.blame.end()) return fmt::format("{:<12} none\n", "waits");
+  std::string text = fmt::format("{:<12} {}{}: {} cycles ({:.2f} %)\n", "waits",
+                                 statistics.blame.size() > 1 ? "mostly " : "",
+                                 wait_text(longest->port, shortened(longest->bank, 12), longest->by),
+                                 longest->cycles, 100 * share(longest->cycles, statistics.cycles));
+  if (waitless_frames_per_second) {
+    text += fmt::format("{:<12} {:>10.3f} frames/s   of {:.3f}, which the core reaches without waits\n",
+                        "waits cost", *waitless_frames_per_second - statistics.frames_per_second.core,
+                        *waitless_frames_per_second);
+  }
+  return text;
+}
+
+std::string disparities_line(double answered_percent) {
+  return fmt::format("{:<12} in {:.2f} % of the pixels of the last frame\n", "disparities", answered_percent);
 }
 
 std::string accuracy_line(const Accuracy& accuracy) {
@@ -116,10 +130,14 @@ std::string accuracy_line(const Accuracy& accuracy) {
 }  // namespace
 
 std::string console_table(const platform::Statistics& statistics, const BoardClocks& clocks,
-                          const std::optional<Accuracy>& accuracy) {
-  return rate_lines(statistics) + system_lines(statistics) + bank_lines(statistics, clocks.fpga_mhz) +
-         stall_line(statistics) + (statistics.computer ? computer_lines(*statistics.computer, clocks) : "") +
-         (accuracy ? accuracy_line(*accuracy) : "");
+                          const TableExtras& extras) {
+  std::string text = rate_lines(statistics) + system_lines(statistics) +
+                     bank_lines(statistics, clocks.fpga_mhz) +
+                     wait_lines(statistics, extras.waitless_frames_per_second);
+  if (statistics.computer) text += computer_lines(*statistics.computer, clocks);
+  if (extras.answered_percent) text += disparities_line(*extras.answered_percent);
+  if (extras.accuracy) text += accuracy_line(*extras.accuracy);
+  return text;
 }
 
 }  // namespace stereotlm::report

@@ -16,15 +16,23 @@ struct BoardClocks {
   int pci_width_bits = 32;
 };
 
+// What the table shows beside the statistics.
+struct TableExtras {
+  // Frames per second of the core if no port waited for a bank; nullopt: no port waits.
+  std::optional<double> waitless_frames_per_second = std::nullopt;
+  std::optional<double> answered_percent = std::nullopt;  // pixels of the last frame with a disparity
+  std::optional<Accuracy> accuracy = std::nullopt;
+};
+
 // The table that a run prints:
 // - Frames per second and their bounds.
 // - For each bank its traffic, and its share of the peak of one word per cycle (`use %`).
-// - The largest row of blame.
+// - Who waits longest at which bank for whom, and the frame rate that all waits cost.
 // - For a computer: each PCI master's traffic, its share of the peak (one word per clock, or two) and its mean
 //   wait for the bus; the use of both buses; dropped camera frames by reason; the latency.
-// - The accuracy, if given.
+// - How much of the last frame is answered, and the accuracy, if given.
 // Lines have at most 100 columns; a name of more than 24 characters is shortened. Text is ASCII except names.
 std::string console_table(const platform::Statistics& statistics, const BoardClocks& clocks,
-                          const std::optional<Accuracy>& accuracy);
+                          const TableExtras& extras = {});
 
 }  // namespace stereotlm::report

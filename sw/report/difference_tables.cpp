@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "models/fpga/core_ports.h"
+#include "sw/report/wait_text.h"
 
 namespace stereotlm::report {
 namespace {
@@ -161,12 +162,12 @@ std::string rows_table(const RowComparison& rows) {
                        parting->row, parting->cycles_a, parting->cycles_b);
   } else if (const auto& first = rows.other_stalls()) {
     text = fmt::format(
-        "every row is whole after as many cycles in both; stalls are others from frame {}, row {}\n",
+        "every row is whole after as many cycles in both; the ports wait otherwise from frame {}, row {}\n",
         first->frame, first->row);
   }
   const std::vector<RowComparison::Range> ranges = rows.ranges(kMostLines);
   if (ranges.empty()) return text;  // no difference, or differences of frames cancel out
-  text += fmt::format("{:>43}stall cycles of\n{:<11} {:>11} {:>15}", "", "rows", "difference", "each row");
+  text += fmt::format("{:>43}waiting cycles of\n{:<11} {:>11} {:>15}", "", "rows", "difference", "each row");
   for (std::size_t port = 0; port < fpga::kCorePortCount; ++port)
     text += fmt::format(" {:>11}", fpga::kPorts[port].name);
   text += '\n';
@@ -188,13 +189,12 @@ std::string blame_table(const std::vector<platform::BlameRow>& a, const std::vec
     const auto& [port, bank, by] = row;
     const auto difference = static_cast<std::int64_t>(cycles.second - cycles.first);
     if (difference == 0) continue;
-    lines.emplace_back(difference,
-                       line(fmt::format("  {} on {} to {}", port, bank, by), fmt::format("{}", cycles.first),
-                            fmt::format("{}", cycles.second), fmt::format("{:+}", difference)));
+    lines.emplace_back(difference, line("  " + wait_text(port, bank, by), fmt::format("{}", cycles.first),
+                                        fmt::format("{}", cycles.second), fmt::format("{:+}", difference)));
   }
   std::stable_sort(lines.begin(), lines.end(),
                    [](const auto& x, const auto& y) { return magnitude(x.first) > magnitude(y.first); });
-  std::string text = lines.empty() ? "" : head_line("cycles lost");
+  std::string text = lines.empty() ? "" : head_line("waits, cycles");
   for (const auto& [difference, written] : lines) text += written;
   return text;
 }

@@ -59,17 +59,6 @@ Json to_json(const platform::Percentiles& values) {
           {"max", values.max}};
 }
 
-Json to_json(const area::Area& area) {
-  return {{"slices", area.slices},
-          {"slices_percent", area.slices_percent},
-          {"luts", area.luts},
-          {"flip_flops", area.flip_flops},
-          {"block_rams", area.block_rams},
-          {"block_rams_percent", area.block_rams_percent},
-          {"multipliers", area.multipliers},
-          {"multipliers_percent", area.multipliers_percent}};
-}
-
 Json to_json(const Accuracy& accuracy) {
   Json result = Json::object();
   const auto add = [&result](const char* key, const std::optional<double>& percent) {
@@ -102,6 +91,17 @@ void add_computer(const platform::ComputerStatistics& computer, Json& document) 
 
 }  // namespace
 
+Json area_json(const area::Area& area) {
+  return {{"slices", area.slices},
+          {"slices_percent", area.slices_percent},
+          {"luts", area.luts},
+          {"flip_flops", area.flip_flops},
+          {"block_rams", area.block_rams},
+          {"block_rams_percent", area.block_rams_percent},
+          {"multipliers", area.multipliers},
+          {"multipliers_percent", area.multipliers_percent}};
+}
+
 Json stats_document(const platform::Statistics& statistics, const std::optional<Accuracy>& accuracy) {
   Json document = {{"schema", 1},
                    {"board", statistics.board},
@@ -122,7 +122,7 @@ Json stats_document(const platform::Statistics& statistics, const std::optional<
   document["ports"] = rows(statistics.ports);
   document["blame"] = rows(statistics.blame);
   if (statistics.computer) add_computer(*statistics.computer, document);
-  document["area"] = to_json(statistics.area);
+  document["area"] = area_json(statistics.area);
   if (!statistics.failed.empty()) document["failed"] = statistics.failed;
   if (accuracy) document["accuracy"] = to_json(*accuracy);
   return document;

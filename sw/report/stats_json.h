@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "models/area/area.h"
 #include "platform/statistics.h"
 #include "sw/report/accuracy.h"
 
@@ -15,5 +16,8 @@ namespace stereotlm::report {
 nlohmann::ordered_json stats_document(const platform::Statistics& statistics,
                                       const std::optional<Accuracy>& accuracy);
 std::string stats_json(const platform::Statistics& statistics, const std::optional<Accuracy>& accuracy);
+
+// The part `area` of stats.json.
+nlohmann::ordered_json area_json(const area::Area& area);
 
 }  // namespace stereotlm::report

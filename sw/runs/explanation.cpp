@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <optional>
@@ -20,13 +19,6 @@ namespace {
 
 std::optional<std::string> joint_problem(const platform::Tables& tables) {
   return tables.left && tables.right ? platform::joint_tables_problem(tables) : std::nullopt;
-}
-
-Explanation::Effect effect_of(const Explanation::Rate& now, const Explanation::Rate& rate) {
-  using Effect = Explanation::Effect;
-  if (rate.loses_pixels != now.loses_pixels) return Effect::kSeen;
-  const double gained = std::abs(rate.frames_per_second - now.frames_per_second);
-  return gained >= Explanation::kVisible ? Effect::kSeen : gained > 0 ? Effect::kTooSmall : Effect::kNone;
 }
 
 }  // namespace
@@ -94,12 +86,10 @@ Explanation::BusiestBank Explanation::busiest_bank_of(std::uint64_t number,
 Explanation::BusiestBank Explanation::busiest_bank() { return busiest_bank_of(0, board_); }
 
 std::vector<Explanation::Step> Explanation::steps() {
-  const Rate base = now();
   std::vector<Step> all;
   for (std::size_t i = 0; i < knobs_.possible.size(); ++i) {
     const explore::KnobStep& knob = knobs_.possible[i];
-    Step step{&knob, rate_of(i + 1), Effect::kNone, {}};
-    step.effect = effect_of(base, step.rate);
+    Step step{&knob, rate_of(i + 1), {}};
     if (step.rate.failure.empty()) step.busiest = busiest_bank_of(i + 1, knob.board);
     all.push_back(std::move(step));
   }
@@ -132,12 +122,12 @@ std::vector<Explanation::Resource> Explanation::resources() {
   for (std::uint64_t frame = 0; frame < std::min<std::uint64_t>(turn, frame_cycles.size()); ++frame) {
     for (const platform::ResourceBound& bound : platform::frame_bounds(board_, tables_, frame)) {
       const auto cycles = static_cast<double>(bound.cycles);
-      add({bound.resource, clock_hz / cycles, 100 * (stretch * frame_cycles[frame] / cycles - 1), frame});
+      add({bound.resource, clock_hz / cycles, 100 * (1 - cycles / (stretch * frame_cycles[frame])), frame});
     }
   }
   if (run_.camera) {
     for (const platform::RateBound& part : platform::computer_bounds(board_, !base.loses_pixels)) {
-      add({part.resource, part.frames_per_second, 100 * (part.frames_per_second / base.frames_per_second - 1),
+      add({part.resource, part.frames_per_second, 100 * (1 - base.frames_per_second / part.frames_per_second),
            0});
     }
   }

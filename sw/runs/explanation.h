@@ -44,14 +44,9 @@ class Explanation {
     double accesses_per_frame = 0;  // with separate ports: the larger of its reads and its writes
   };
 
-  // How much a step changes the rate: not at all, by less than kVisible, or by more.
-  enum class Effect { kNone, kTooSmall, kSeen };
-  static constexpr double kVisible = 0.0005;  // frames per second: half of the last printed digit
-
   struct Step {
     const explore::KnobStep* step = nullptr;
     Rate rate;
-    Effect effect = Effect::kNone;
     BusiestBank busiest;  // without meaning if the run has failed
   };
   // All steps, the best first; those that have failed last.
@@ -63,13 +58,13 @@ class Explanation {
   struct Resource {
     std::string name;
     double frames_per_second = 0;  // its bound
-    double headroom_percent = 0;   // by how much the bound exceeds the present rate
+    double headroom_percent = 0;   // share of the time of a frame that the resource does not need
     std::uint64_t frame = 0;       // the frame with the least headroom
     bool varies = false;           // the headroom is larger in other frames
   };
   // All resources, the least headroom first. For a resource of the core, the headroom is the least over the
-  // frames of one allocation period. The bound is compared with the time of the frame: its cycles and, for a
-  // whole computer, its share of the time between frames.
+  // frames of one allocation period. The time of a frame is its cycles and, for a whole computer, its share of
+  // the time between frames.
   std::vector<Resource> resources();
 
   // Who stalls for whom, the most cycles first.

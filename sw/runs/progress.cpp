@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "sw/process/streams.h"
+
 namespace stereotlm::runs {
 namespace {
 
@@ -64,7 +66,7 @@ std::string verification_text(std::uint64_t frames_compared, std::uint64_t frame
 }
 
 ProgressLine::ProgressLine()
-    : is_terminal_(isatty(STDERR_FILENO) != 0),
+    : is_shown_(isatty(STDERR_FILENO) != 0 && !process::leaves_out_notes()),
       start_(std::chrono::steady_clock::now()),
       next_(start_ + kBetweenDrawings) {}
 
@@ -73,7 +75,7 @@ void ProgressLine::show(const RunState& state) {
 }
 
 void ProgressLine::show(const std::function<std::string(double seconds)>& line) {
-  if (!is_terminal_) return;
+  if (!is_shown_) return;
   const Time now = std::chrono::steady_clock::now();
   if (now < next_) return;
   next_ = now + kBetweenDrawings;

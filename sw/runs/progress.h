@@ -37,7 +37,7 @@ std::string time_text(double seconds);
 // For the comparison of --verify: "verifying: 1/5 frames".
 std::string verification_text(std::uint64_t frames_compared, std::uint64_t frames);
 
-// A progress line on standard error, if that is a terminal. The destructor erases it.
+// A progress line on standard error, if that is a terminal and notes are not left out. The destructor erases it.
 class ProgressLine {
  public:
   ProgressLine();
@@ -55,7 +55,7 @@ class ProgressLine {
  private:
   using Time = std::chrono::steady_clock::time_point;
 
-  bool is_terminal_;
+  bool is_shown_;
   Time start_;
   Time next_;
   std::size_t columns_drawn_ = 0;

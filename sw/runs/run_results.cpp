@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "calib/calibration.h"
@@ -15,6 +16,7 @@
 #include "sw/report/timeline_csv.h"
 #include "sw/runs/sources/calibration_library.h"
 #include "sw/runs/sources/media_library.h"
+#include "sw/runs/waitless_core.h"
 
 namespace stereotlm::runs {
 namespace {
@@ -59,6 +61,25 @@ std::optional<report::Accuracy> accuracy_to_show(const RunInput& input, const Re
   const std::optional<media::Truth> truth = input.pairs->truth(last.number);
   if (!truth) return std::nullopt;
   return report::accuracy(last.disparity, *truth);
+}
+
+double answered_percent(const kernels::GrayImage& disparity) {
+  const auto& pixels = disparity.pixels;
+  const auto unanswered = std::count(pixels.begin(), pixels.end(), kernels::kInvalidDisparity);
+  return 100 - 100 * static_cast<double>(unanswered) / static_cast<double>(pixels.size());
+}
+
+// `accuracy`: against --truth.
+report::TableExtras extras_of(const RunInput& input, const platform::Statistics& statistics,
+                              const Result& last, const std::optional<report::Accuracy>& accuracy) {
+  report::TableExtras extras;
+  if (!statistics.blame.empty()) {
+    extras.waitless_frames_per_second =
+        waitless_frames_per_second(input.board, input.tables, statistics.frames);
+  }
+  if (!input.timing_only) extras.answered_percent = answered_percent(last.disparity);
+  extras.accuracy = accuracy_to_show(input, last, accuracy);
+  return extras;
 }
 
 // `accuracy`: the accuracy of the last frame against --truth.
@@ -133,7 +154,7 @@ bool deliver(RunInput& input, const platform::Statistics& statistics, const Resu
   process::print(report::console_table(
       statistics,
       {board.fpga.clock_mhz, board.pci.clock_mhz, board.bridge.local_clock_mhz, board.pci.width_bits},
-      accuracy_to_show(input, last, accuracy)));
+      extras_of(input, statistics, last, accuracy)));
   if (accuracy) say_if_doubtful(input, *accuracy);
   for (const std::string& difference : differences) process::say("error", difference);
   return statistics.failed.empty() && differences.empty();

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -27,6 +28,7 @@
 #include "sw/process/interrupt.h"
 #include "sw/report/chart/memory_chart.h"
 #include "sw/report/page_data/recording_data.h"
+#include "sw/report/stats_json.h"
 #include "sw/runs/progress.h"
 #include "sw/runs/sources/media_library.h"
 
@@ -37,6 +39,8 @@ using Json = nlohmann::ordered_json;
 using platform::BoardConfig;
 
 constexpr std::chrono::milliseconds kBetweenPolls{100};
+constexpr double kVisible =
+    0.0005;  // frames per second: a change that changes the rate by less has no effect
 
 // The command that runs the run again.
 std::string command_of(const runs::RecordedRun& run) {
@@ -155,15 +159,9 @@ Json bounds_of(const BoardConfig& board, const platform::Tables& tables, bool ca
 }
 
 Json json_of(const area::Area& area) {
-  return {{"slices", area.slices},
-          {"slices_percent", area.slices_percent},
-          {"luts", area.luts},
-          {"flip_flops", area.flip_flops},
-          {"block_rams", area.block_rams},
-          {"block_rams_percent", area.block_rams_percent},
-          {"multipliers", area.multipliers},
-          {"multipliers_percent", area.multipliers_percent},
-          {"fits", area.fits()}};
+  Json json = area_json(area);
+  json["fits"] = area.fits();
+  return json;
 }
 
 Json area_data(const BoardConfig& board) {
@@ -329,7 +327,8 @@ Json knobs_data(const BoardConfig& board, runs::Explanation& explanation) {
     }
     if (knob.only_best && !shown.insert(knob.knob).second) continue;
     step["frames_per_second"] = found.rate.frames_per_second;
-    step["has_effect"] = found.effect == Explanation::Effect::kSeen;
+    step["has_effect"] = found.rate.loses_pixels != now.loses_pixels ||
+                         std::abs(found.rate.frames_per_second - now.frames_per_second) >= kVisible;
     step["changes_disparities"] = knob.changes_disparities;
     step["loses_pixels"] = found.rate.loses_pixels;
     add_prices(knob.board, found.busiest, step);

@@ -158,7 +158,7 @@ class Bounds(ProgramTest):
         ((_, rows),), _ = self.groups(board="fpl2003-no-calibration")
         self.assertNotIn("port left_lut", rows)
 
-    def test_headroom_is_what_the_limiting_resource_takes_longer(self):
+    def test_headroom_is_the_share_of_the_slowest_resources_time_that_a_resource_does_not_need(self):
         ((_, rows),), last = self.groups(*SMALL[1::2])
         most = max(cycles for cycles, _, _ in rows.values())
         for cycles, rate, headroom in rows.values():
@@ -213,8 +213,9 @@ class Explain(ProgramTest):
         return self.succeeds(run("explain", "fpl2003", *SMALL, *options))
 
     def rows(self, text):
-        """(rate, gained, knob, to) of the steps."""
-        pattern = r"^ +([\d.]+) +([+-][\d.]+) +[+-][\d.]+  (.+?)(?: \*)?: .* -> (.*?)(?:  loses pixels)?$"
+        """(rate, gained, key, to) of the changes."""
+        pattern = (r"^ +([\d.]+) +([+-][\d.]+) +[+-][\d.]+(?: +[+-]?[\d.]+){2}  (.+?)(?: \*)?: .* -> (.*?)"
+                   r"(?:, [+-]\d+ multipliers)?(?:  does not fit)?(?:  loses pixels)?$")
         return re.findall(pattern, text, re.M)
 
     def rate(self, *options):
@@ -275,8 +276,15 @@ class Explain(ProgramTest):
         # bank0 and all ports but result have the least in the even frames, the others in the odd ones.
         self.rate(*PRELOADED, *SHARED)
         limits = zip(self.stats()["frame_cycles"], ("bank bank0", "matcher"))
-        least = min(100 * (cycles / 40e6 * float(found[name]) - 1) for cycles, name in limits)
+        least = min(100 * (1 - 40e6 / float(found[name]) / cycles) for cycles, name in limits)
         self.assertAlmostEqual(headrooms[0], least, delta=0.01)
+
+    def test_headroom_is_that_of_bounds_if_the_core_reaches_its_bound(self):
+        explained = self.explain(*PRELOADED)
+        bounds = self.succeeds(run("bounds", "fpl2003", *SMALL))
+        for resource in ("matcher", "port result"):
+            (of_bounds,) = re.findall(rf"(?m)^  {resource} .* ([\d.]+)$", bounds)
+            self.assertRegex(explained, rf"(?m)^ +{of_bounds} +[\d.]+  {resource}$")
 
     def test_the_steps_of_the_computer_are_those_of_runs_and_every_knob_is_named(self):
         text = self.explain(*CAMERA_RATES)
@@ -293,6 +301,25 @@ class Explain(ProgramTest):
         for key in set(keys) - no_knobs:
             if not key.startswith(("pci.load", "ssram.", "matcher.filter.", "matcher.cost.", "allocation.")):
                 self.assertIn(key, text)
+
+    def test_changes_have_their_price_and_those_without_effect_are_one_paragraph(self):
+        text = self.explain(*PRELOADED, *SHARED)
+        areas = []
+        for fetch in ("column", "line_buffer"):
+            bounds = self.succeeds(run("bounds", "fpl2003", *SMALL, *SHARED, *sets(f"matcher.fetch={fetch}")))
+            pattern = r"core: (\d+) of \d+ slices \(([\d.]+) %\), (\d+) of"
+            areas.append([float(number) for number in re.findall(pattern, bounds)[0]])
+        _, percent, rams = (after - before for before, after in zip(*areas))
+        price = rf" (\+[\d.]+) +{re.escape(f'{rams:+.0f}') if rams else 0}  matcher.fetch: column -> line_buffer\n"
+        (printed,) = re.findall(price, text)
+        self.assertAlmostEqual(float(printed), percent, delta=0.011)
+        table, _, small = text.partition("no effect, or less than 0.1 %: ")
+        names = re.sub(r"\s+", " ", small).strip().split("; ")
+        self.assertIn("fpga.pipeline_latency_cycles", names)
+        for row in re.findall(r"(?m)^ +[\d.]+ +[+-][\d.]+ +([+-][\d.]+) .*?  ([a-z_.]+)(?: \*)?: .* -> (.*?)(?:,.*)?$", table):
+            gained, key, to = row
+            self.assertNotIn(key, names)
+            self.assertNotIn(f"{key} -> {to}", names)
 
     def test_a_result_queue_that_is_too_short_is_named(self):
         rows = sets("matcher.rows=4", "matcher.disparities=4")

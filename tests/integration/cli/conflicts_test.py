@@ -141,6 +141,10 @@ class Command(ConflictsTest):
         self.succeeds(run("conflicts", *self.scene, *PRELOADED, *SHARED, "--format", "svg", "--out", self.out))
         self.assertIn("Board $x_{&lt;script&gt;}$", (self.out / "causes.svg").read_text())
 
+    def test_its_example_is_a_command_of_its_own(self):
+        example = self.refused(run("conflicts", "fpl2003"))[-1]
+        self.assertTrue(example.startswith("stereotlm: note: a complete command: stereotlm conflicts fpl2003 "), example)
+
     def test_what_does_not_fit_is_refused(self):
         recorded = self.folder / "recorded"
         self.succeeds(run("run", *self.scene, *PRELOADED, "--out", recorded))

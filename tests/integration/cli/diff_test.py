@@ -43,11 +43,21 @@ class DiffTest(ProgramTest):
         self.b = self.folder / "b"
 
     def lines(self, a, b, *more, **options):
-        """What it prints, with one space between two words."""
-        process = run("diff", a, b, *more, **options)
-        text = self.succeeds(process)
-        self.assertEqual(process.stderr, "")
+        """What it prints before the verdict, with one space between two words."""
+        text, _ = self.parts(a, b, *more, **options)
         return [" ".join(line.split()) for line in text.splitlines()]
+
+    def verdict(self, a, b):
+        """The last sentence."""
+        return " ".join(self.parts(a, b)[1].split())
+
+    def parts(self, a, b, *more, **options):
+        process = run("diff", a, b, *more, **options)
+        text, _, verdict = self.succeeds(process).rpartition("\n\n")
+        self.assertEqual(process.stderr, "")
+        for line in verdict.splitlines():
+            self.assertLessEqual(len(line), 100, line)
+        return text, verdict
 
     def change(self, path, old, new):
         text = path.read_text()
@@ -64,6 +74,30 @@ class Differences(DiffTest):
         same = "disparities: the same, pixel for pixel, in 3 frames"
         self.assertEqual(lines, [f"A: {a}", f"B: {self.b}", "", "no difference", "", same])
         self.assertIn("no difference", self.lines(a, a))
+
+    def test_the_verdict_says_which_run_is_faster_and_where_the_difference_arises(self):
+        a, b = shared_run(*SCENE, "--frames", "2"), shared_run(*SCENE, *SHARED, "--frames", "2")
+        of_a, of_b = stats_of(a), stats_of(b)
+        rates = [stats["frames_per_second"]["core"] for stats in (of_a, of_b)]
+        gain = f"{rates[0] - rates[1]:.3f} frames/s ({100 * (rates[0] / rates[1] - 1):.2f} %), core only"
+        most = max(of_b["blame"], key=lambda row: row["cycles"])
+        wait = f"{most['port']} waits {most['cycles'] / 2:.0f} cycles a frame more on {most['bank']} for {most['by']}"
+        self.assertEqual(self.verdict(a, b), f"A is faster by {gain}: in B {wait}; the disparities are the same.")
+        self.assertEqual(self.verdict(b, a), f"B is faster by {gain}: in A {wait}; the disparities are the same.")
+        same = f"A and B are equally fast, {rates[0]:.3f} frames/s, core only; the disparities are the same."
+        self.assertEqual(self.verdict(a, a), same)
+
+    def test_the_verdict_names_what_limits_if_no_wait_differs_and_the_clock_if_it_does(self):
+        a = shared_run(*SCENE, "--frames", "2")
+        lines = shared_run(*SCENE, *sets("matcher.fetch=line_buffer"), "--frames", "2")
+        self.assertRegex(self.verdict(a, lines), r"^B is faster .*: a frame takes \d+ cycles in A, limited by matcher, "
+                                                 r"and \d+ in B, limited by \w+.*; the disparities are the same\.$")
+        fast = shared_run(*SCENE, *sets("fpga.clock_mhz=50"), "--frames", "2")
+        self.assertIn("(25.00 %), core only: the core runs at 40 MHz in A and at 50 MHz in B;", self.verdict(a, fast))
+        timing = shared_run(*SMALL, "--timing-only", "--frames", "2")
+        self.assertIn("; the disparities are not compared.", self.verdict(a, timing))
+        other = shared_run(*SMALL, "--synthetic", "2", "--frames", "2")
+        self.assertIn("; the disparities differ.", self.verdict(a, other))
 
     def test_a_key_without_effect_changes_no_figure(self):
         lines = self.lines(shared_run(*SCENE), shared_run(*SCENE, *sets("cameras.frame_rate_hz=25")))
@@ -99,7 +133,7 @@ class WorkedValues(DiffTest):
             "frames_per_second.core 18.596 9.32706 -9.26899",
             "bound.core_limited_by matcher bank bank0",
             "frame 0 2150995 4288597 +2137602",
-            "left_lut on bank0 to left_pixel 0 2137602 +2137602",
+            "left_lut on bank0 for left_pixel 0 2137602 +2137602",
             "left_lut stall_cycles 0 2137602 +2137602",
             "bank0 contended_cycles 0 2137602 +2137602",
             "bank6 busy_cycles 2142720 0 -2142720",
@@ -108,7 +142,7 @@ class WorkedValues(DiffTest):
             self.assertIn(line, lines)
         lines = self.lines(self.shared, self.alone)
         self.assertIn("frame 0 4288597 2150995 -2137602", lines)
-        self.assertIn("left_lut on bank0 to left_pixel 2137602 0 -2137602", lines)
+        self.assertIn("left_lut on bank0 for left_pixel 2137602 0 -2137602", lines)
         for line in self.succeeds(run("diff", self.alone, self.shared)).splitlines():
             self.assertLessEqual(len(line), max(100, len(str(self.alone)) + 3), line)
 
@@ -387,10 +421,10 @@ class Usage(DiffTest):
         ])
 
     def test_an_interrupt_compares_nothing(self):
-        a = shared_run("--timing-only", "--frames", "20000", *sets("image.height=1"))
+        a = shared_run("--timing-only", "--frames", "60000", *sets("image.height=1"))
         with self.unchanged(self.folder):
             terminal = Terminal(["diff", a, a, "--csv", self.folder / "rows.csv"])
-            status, out = terminal.interrupt(r"\d+/20000 frames compared", signal.SIGINT)
+            status, out = terminal.interrupt(r"\d+/60000 frames compared", signal.SIGINT)
             self.assertEqual((status, out), (130, ""))
             self.assertEqual(terminal.shown(), ["stereotlm: note: interrupted: nothing is compared", ""])
 

@@ -15,7 +15,7 @@ import program
 from pictures import PYTHON, drawn, noise, pgm
 from program import HEIGHT as HEIGHT_OF_SMALL
 from program import WIDTH as WIDTH_OF_SMALL
-from program import ProgramTest, run, shared_folder, wait_until
+from program import ProgramTest, Terminal, run, shared_folder, wait_until
 
 SCRIPT = pathlib.Path(__file__).resolve().parents[3] / "sw" / "report" / "plots" / "plot_paper.py"
 TABLES = ["table1.csv", "table2.csv", "banks.csv", "costs.csv", "claims.csv"]
@@ -195,6 +195,18 @@ class Report(PaperTest):
             self.assertRegex(self.said, rf"(?m)^{place} +\d of \d  {row['claim_verdict']}$")
         for name in FIGURES:
             self.assertIn(f"({name}.png)", report)
+
+    def test_its_verdicts_are_coloured_on_a_terminal_and_those_that_are_not_confirmed_come_first(self):
+        plain = self.said[: self.said.index("Where the model")]
+        verdicts = re.findall(r"(?m)\d of \d  (.*)$", plain)
+        order = ["not confirmed", "in part", "open", "confirmed"]
+        self.assertEqual(verdicts, sorted(verdicts, key=order.index))
+        env = {key: value for key, value in os.environ.items() if key != "NO_COLOR"}
+        command = ["paper", "--out", self.out, *pair_with_truth()]
+        terminal = Terminal(command, stdout_too=True, env={**env, "TERM": "xterm"})
+        self.assertEqual(terminal.finish()[0], 0)
+        for verdict, code in (("not confirmed", 31), ("in part", 33), ("confirmed", 32)):
+            self.assertRegex(terminal.text, rf"\d of \d\x1b\[{code}m  {verdict}\x1b\[0m\r\n")
 
     def test_has_figures_that_are_not_blank(self):
         pictures = [self.file(name + ".png", self.files[name + ".png"]) for name in FIGURES]

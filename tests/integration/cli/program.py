@@ -233,14 +233,19 @@ class ProgramTest(unittest.TestCase):
 
 
 class Terminal:
-    """A process whose standard error is a terminal of its own."""
+    """A process whose standard error is a terminal of its own; with stdout_too also its standard output.
 
-    def __init__(self, arguments, columns=100, **options):
+    There are no colours unless env says so.
+    """
+
+    def __init__(self, arguments, columns=100, stdout_too=False, **options):
         self.master, slave = pty.openpty()
         os.set_blocking(self.master, False)
         fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("HHHH", 24, columns, 0, 0))
         command = words(arguments)
-        self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=slave, text=True, **options)
+        options.setdefault("env", {**os.environ, "NO_COLOR": "1"})
+        stdout = slave if stdout_too else subprocess.PIPE
+        self.process = subprocess.Popen(command, stdout=stdout, stderr=slave, text=True, **options)
         os.close(slave)
         self.text = ""
 
@@ -273,6 +278,8 @@ class Terminal:
 
     def finish(self):
         """(exit status, standard output)."""
+        while self.process.stdout is None and self.process.poll() is None:
+            self.read(0.1)
         out, _ = self.process.communicate(timeout=60)
         while self.read(0.1):
             pass

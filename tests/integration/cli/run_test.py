@@ -70,7 +70,7 @@ class Output(ProgramTest):
     def test_a_table_is_printed_and_nothing_on_standard_error(self):
         process = self.run_small()
         text = self.succeeds(process)
-        for word in ("core", "bound", "bank7", "worst stall"):
+        for word in ("core", "bound", "bank7", "waits"):
             self.assertIn(word, text)
         self.assertNotIn("SystemC", text)
         self.assertEqual(process.stderr, "")
@@ -204,7 +204,7 @@ class Interrupted(ProgramTest):
         self.assertTrue(self.result() == self.result(whole))
 
     def test_the_table_is_printed_without_out_too(self):
-        self.assertIn("worst stall", self.interrupt(number=signal.SIGTERM)[1])
+        self.assertIn("waits", self.interrupt(number=signal.SIGTERM)[1])
 
     def test_an_interrupt_in_the_first_frame_leaves_the_earlier_result(self):
         self.succeeds(self.run_small("--out", self.out))

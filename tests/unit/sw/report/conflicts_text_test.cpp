@@ -48,7 +48,7 @@ TEST(ConflictsText, SumsFramesAndShowsTheBanksThatAreUsed) {
   sums.add(frame());
   sums.add(frame());
   const platform::Conflicts none(board());
-  EXPECT_EQ(conflicts_text(board(), none.recorder(), sums.sums()),
+  EXPECT_EQ(conflicts_text(conflict_summary(board(), none.recorder(), sums.sums())),
             "core         0 cycles in 0 frames\n"
             "waits        none\n"
             "rows              waits %       a %       b %\n"

@@ -56,10 +56,10 @@ TEST(ConsoleTable, ShowsTheCoreAndTheComputerAroundIt) {
       "bank                  reads         writes   use %      MB/s peak MB/s\n"
       "image                  1500              0   75.00    120.00    160.00\n"
       "out                       0             20    1.00      1.60    160.00\n"
-      "worst stall  left_pixel on out lost 250 cycles (12.50 %) to turnaround\n";
-  EXPECT_EQ(console_table(two_banks(), {}, std::nullopt), core + banks);
+      "waits        mostly left_pixel on out for the turnaround: 250 cycles (12.50 %)\n";
+  EXPECT_EQ(console_table(two_banks(), {}), core + banks);
   EXPECT_EQ(
-      console_table(in_a_computer(), {40, 30, 40}, std::nullopt),
+      console_table(in_a_computer(), {40, 30, 40}),
       core +
           "system           17.500 frames/s   steady 17.980\n"
           "system bound     29.970 frames/s   limited by camera\n" +
@@ -76,7 +76,7 @@ TEST(ConsoleTable, ShowsTheCoreAndTheComputerAroundIt) {
 }
 
 TEST(ConsoleTable, ShowsTheRatesOfAPciBusOf64Bits) {
-  const std::string text = console_table(in_a_computer(), {40, 30, 40, 64}, std::nullopt);
+  const std::string text = console_table(in_a_computer(), {40, 30, 40, 64});
   EXPECT_THAT(
       text, HasSubstr("left_capture            100           3000   15.00     36.00    240.00        1.111\n"
                       "pci bus      busy 25.00 % of its clocks\n"));
@@ -85,34 +85,51 @@ TEST(ConsoleTable, ShowsTheRatesOfAPciBusOf64Bits) {
 TEST(ConsoleTable, KeepsTheColumnsUnderALongName) {
   platform::Statistics statistics = in_a_computer();
   statistics.computer->pci_masters.push_back({"right_capture", 100, 3000, 3333});
-  const std::string text = console_table(statistics, {40, 30, 40}, std::nullopt);
+  const std::string text = console_table(statistics, {40, 30, 40});
   EXPECT_THAT(text, HasSubstr("\npci master      transactions          words   use %"));
   EXPECT_THAT(text, HasSubstr("\nright_capture            100           3000   30.00"));
 }
 
 TEST(ConsoleTable, ShowsTheAccuracyIfThereIsGroundTruth) {
   EXPECT_THAT(
-      console_table(two_banks(), {}, Accuracy{4.256, 2, 81.5}),
+      console_table(two_banks(), {}, {std::nullopt, std::nullopt, Accuracy{4.256, 2, 81.5}}),
       HasSubstr("\naccuracy     off by more than 1: 4.26 %, by more than 2: 2.00 %, answered: 81.50 %\n"));
-  EXPECT_THAT(console_table(two_banks(), {}, Accuracy{std::nullopt, std::nullopt, 0}),
-              HasSubstr("\naccuracy     off by more than 1: n/a, by more than 2: n/a, answered: 0.00 %\n"));
-  EXPECT_THAT(console_table(two_banks(), {}, std::nullopt), Not(HasSubstr("accuracy")));
+  EXPECT_THAT(
+      console_table(two_banks(), {}, {std::nullopt, std::nullopt, Accuracy{std::nullopt, std::nullopt, 0}}),
+      HasSubstr("\naccuracy     off by more than 1: n/a, by more than 2: n/a, answered: 0.00 %\n"));
+  EXPECT_THAT(console_table(two_banks(), {}), Not(HasSubstr("accuracy")));
 }
 
-TEST(ConsoleTable, ShowsNoSteadyRateOfOneFrameAndNoStallWhereNothingStalled) {
+TEST(ConsoleTable, ShowsNoSteadyRateOfOneFrameAndNoWaitWhereNoPortWaits) {
   platform::Statistics statistics = in_a_computer();
   statistics.frames_per_second.steady.reset();
   statistics.blame.clear();
-  const std::string text = console_table(statistics, {62.5, 33, 40}, std::nullopt);
+  const std::string text = console_table(statistics, {62.5, 33, 40});
   EXPECT_THAT(text, HasSubstr("\nsystem           17.500 frames/s\n"));
-  EXPECT_THAT(text, HasSubstr("\nworst stall  none\n"));
+  EXPECT_THAT(text, HasSubstr("\nwaits        none\n"));
   EXPECT_THAT(text, HasSubstr("    120.00    250.00\n")) << "the peak follows from the clock";
+}
+
+TEST(ConsoleTable, ShowsWhatAllWaitsCostOfTheRateWithoutWaits) {
+  EXPECT_THAT(
+      console_table(two_banks(), {}, {39500, std::nullopt, std::nullopt}),
+      HasSubstr("\nwaits cost      168.500 frames/s   of 39500.000, which the core reaches without waits\n"));
+  platform::Statistics one_wait = two_banks();
+  one_wait.blame = {{"left_lut", "image", "left_pixel", 40}};
+  EXPECT_THAT(console_table(one_wait, {}),
+              HasSubstr("\nwaits        left_lut on image for left_pixel: 40 cycles (2.00 %)\n"));
+}
+
+TEST(ConsoleTable, ShowsHowManyPixelsHaveADisparity) {
+  EXPECT_THAT(console_table(two_banks(), {}, {std::nullopt, 81.504, std::nullopt}),
+              HasSubstr("\ndisparities  in 81.50 % of the pixels of the last frame\n"));
+  EXPECT_THAT(console_table(two_banks(), {}), Not(HasSubstr("disparities")));
 }
 
 TEST(ConsoleTable, ShowsThePeakOfAllPortsOfABank) {
   platform::Statistics statistics = two_banks();
   statistics.banks[0].ports = 2;
-  EXPECT_THAT(console_table(statistics, {}, std::nullopt), HasSubstr("    120.00    320.00\n"));
+  EXPECT_THAT(console_table(statistics, {}), HasSubstr("    120.00    320.00\n"));
 }
 
 TEST(ConsoleTable, StaysWithinAHundredColumns) {
@@ -125,17 +142,19 @@ TEST(ConsoleTable, StaysWithinAHundredColumns) {
   statistics.computer->cameras[0] = {"right", 9'999'999, 9'999'999, 9'999'999, 999'999'999'999, 1, 2, 3};
   statistics.banks[0].name = std::string(300, 'b');
   statistics.banks[0].reads = 9'999'999'999'999;
-  statistics.blame = {{"right_pixel", std::string(300, 'b'), "right_pixel", 999'999'999'999'999}};
-  statistics.cycles = 999'999'999'999'999;
+  statistics.blame = {{"right_pixel", std::string(300, 'b'), "right_pixel", 9'999'999'999'999},
+                      {"left_pixel", "b", "turnaround", 1}};
+  statistics.cycles = 9'999'999'999'999;
   statistics.bound.core_limited_by = std::string(300, 'l');
-  std::istringstream lines(console_table(statistics, {1000, 1000, 1000}, Accuracy{100, 100, 100}));
+  std::istringstream lines(
+      console_table(statistics, {1000, 1000, 1000}, {999999, 100, Accuracy{100, 100, 100}}));
   std::string line;
   int count = 0;
   while (std::getline(lines, line)) {
     EXPECT_LE(line.size(), 100U) << line;
     ++count;
   }
-  EXPECT_EQ(count, 18);
+  EXPECT_EQ(count, 20);
 }
 
 }  // namespace

@@ -121,7 +121,7 @@ TEST(RowsTable, ShowsTheFirstRowThatDiffersAndTheCostOfEachRange) {
   rows.add(rows_of({10, 20, 30, 40}, 0), rows_of({10, 25, 40, 48}, 3));
   EXPECT_EQ(words(rows_table(rows)),
             "they part in frame 0, row 1: whole after 20 cycles in A, 25 in B\n"
-            "stall cycles of\n"
+            "waiting cycles of\n"
             "rows difference each row left_lut right_lut left_pixel right_pixel result\n"
             "0 0 0 0 0 0 0 +3\n"
             "1..2 +10 +5 0 0 0 0 0\n"
@@ -151,7 +151,7 @@ TEST(RowsTable, NamesOnlyTheRowWhereTheFramesCancelOut) {
 
 TEST(RowsTable, ShowsRowsOfWhichOnlyTheStallsDiffer) {
   const std::string head =
-      "every row is whole after as many cycles in both; stalls are others from frame 1, row 1\n";
+      "every row is whole after as many cycles in both; the ports wait otherwise from frame 1, row 1\n";
   const fpga::RowProfile stalled = {{10, {0, 0, 0, 0, 0}}, {20, {0, 0, 0, 0, 4}}};
   RowComparison rows;
   rows.add(rows_of({10, 20}, 0), rows_of({10, 20}, 0));
@@ -171,9 +171,9 @@ TEST(BlameTable, IsSortedByTheDifference) {
                                              {"result", "bank1", "host", 5},
                                              {"result", "bank1", "turnaround", 90}};
   EXPECT_EQ(words(blame_table(a, b)),
-            "cycles lost A B difference\n"
-            "result on bank1 to turnaround 0 90 +90\n"
-            "left_lut on bank0 to host 10 15 +5\n");
+            "waits, cycles A B difference\n"
+            "result on bank1 for the turnaround 0 90 +90\n"
+            "left_lut on bank0 for host 10 15 +5\n");
   EXPECT_THAT(blame_table(b, a), HasSubstr("-90\n"));
   EXPECT_EQ(blame_table(a, a), "");
 }

@@ -1,0 +1,91 @@
+#include "sw/cli/diff_verdict.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <tuple>
+#include <utility>
+
+#include "sw/report/wait_text.h"
+
+namespace stereotlm::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Port, bank and cause of a wait.
+using Wait = std::tuple<std::string, std::string, std::string>;
+
+struct Rates {
+  const char* kind;
+  double a;
+  double b;
+};
+
+Rates rates_of(const Json& a, const Json& b) {
+  for (const auto& [key, kind] : {std::pair("steady", "steady"), std::pair("system", "including start-up")}) {
+    if (a.contains(key) && b.contains(key)) return {kind, a.at(key), b.at(key)};
+  }
+  return {"core only", a.at("core"), b.at("core")};
+}
+
+double cycles_a_frame(const Json& stats) {
+  return stats.at("cycles").get<double>() / stats.at("frames").get<double>();
+}
+
+std::map<Wait, double> waits_a_frame(const Json& stats) {
+  std::map<Wait, double> waits;
+  for (const Json& row : stats.at("blame"))
+    waits[{row.at("port"), row.at("bank"), row.at("by")}] =
+        row.at("cycles").get<double>() / stats.at("frames").get<double>();
+  return waits;
+}
+
+// Where the rates come apart. A wait is named if its change is at least half of that of the cycles.
+std::string cause(const JudgedRun& a, const JudgedRun& b) {
+  if (a.clock_mhz != b.clock_mhz)
+    return fmt::format("the core runs at {} MHz in A and at {} MHz in B", a.clock_mhz, b.clock_mhz);
+  const double more = cycles_a_frame(b.stats) - cycles_a_frame(a.stats);
+  if (more == 0) return "the core takes equally many cycles a frame, and the difference arises around it";
+  const auto& slower = more > 0 ? b : a;
+  const auto& faster = more > 0 ? a : b;
+  const std::map<Wait, double> before = waits_a_frame(faster.stats);
+  std::pair<Wait, double> largest = {{}, 0};
+  for (const auto& [wait, cycles] : waits_a_frame(slower.stats)) {
+    const auto found = before.find(wait);
+    const double longer = cycles - (found == before.end() ? 0 : found->second);
+    if (longer > largest.second) largest = {wait, longer};
+  }
+  if (largest.second >= std::abs(more) / 2) {
+    const auto& [port, bank, by] = largest.first;
+    return fmt::format("in {} {} waits {:.0f} cycles a frame more on {} for {}", more > 0 ? "B" : "A", port,
+                       largest.second, bank, report::cause_text(by));
+  }
+  return fmt::format("a frame takes {:.0f} cycles in A, limited by {}, and {:.0f} in B, limited by {}",
+                     cycles_a_frame(a.stats), a.stats.at("bound").at("core_limited_by").get<std::string>(),
+                     cycles_a_frame(b.stats), b.stats.at("bound").at("core_limited_by").get<std::string>());
+}
+
+std::string pixels_text(const report::PixelComparison* pixels) {
+  if (pixels == nullptr || pixels->frames() == 0) return "the disparities are not compared";
+  return pixels->first() ? "the disparities differ" : "the disparities are the same";
+}
+
+}  // namespace
+
+std::string diff_verdict(const JudgedRun& a, const JudgedRun& b, const report::PixelComparison* pixels) {
+  const Rates rates = rates_of(a.stats.at("frames_per_second"), b.stats.at("frames_per_second"));
+  if (rates.a == rates.b) {
+    return fmt::format("A and B are equally fast, {:.3f} frames/s, {}; {}.", rates.a, rates.kind,
+                       pixels_text(pixels));
+  }
+  const double slow = std::min(rates.a, rates.b);
+  const double gain = std::abs(rates.b - rates.a);
+  return fmt::format("{} is faster by {:.3f} frames/s ({:.2f} %), {}: {}; {}.", rates.b > rates.a ? "B" : "A",
+                     gain, 100 * gain / slow, rates.kind, cause(a, b), pixels_text(pixels));
+}
+
+}  // namespace stereotlm::cli

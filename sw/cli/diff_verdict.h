@@ -1,0 +1,21 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "sw/report/pixel_comparison.h"
+
+namespace stereotlm::cli {
+
+// A run as the verdict needs it: its stats.json, and the clock of its core.
+struct JudgedRun {
+  const nlohmann::ordered_json& stats;
+  double clock_mhz;
+};
+
+// The comparison of two runs in one sentence: which is faster, by how much, where the difference arises, and
+// whether the disparities are the same. The rates are the steady ones if both runs have them, else those
+// including the start-up, else those of the core. `pixels`: null if the disparities are not compared.
+std::string diff_verdict(const JudgedRun& a, const JudgedRun& b, const report::PixelComparison* pixels);
+
+}  // namespace stereotlm::cli

@@ -1,0 +1,239 @@
+#include "sw/cli/explanation_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "models/fpga/core_ports.h"
+#include "platform/bounds.h"
+#include "platform/config/board_area.h"
+#include "sw/cli/text.h"
+#include "sw/report/wait_text.h"
+
+namespace stereotlm::cli {
+namespace {
+
+using platform::BoardConfig;
+using runs::Explanation;
+
+constexpr int kMostBlames = 5;
+constexpr double kVisibleLoss = 0.01;      // of the cycles
+constexpr double kLeastGainPercent = 0.1;  // a change that gains or loses less is not in the table
+constexpr double kLeastSavedPercent = 1;   // of the FPGA: a change that saves as much is in the table anyway
+
+constexpr const char* kBankLess = "a bank less";
+
+// What a change takes of the FPGA beside the board as it is.
+struct Price {
+  std::int64_t slices = 0;
+  double slices_percent = 0;
+  std::int64_t block_rams = 0;
+  double block_rams_percent = 0;
+  std::int64_t multipliers = 0;
+  double multipliers_percent = 0;
+  bool fits = true;
+
+  bool saves() const {
+    return std::min({slices_percent, block_rams_percent, multipliers_percent}) <= -kLeastSavedPercent;
+  }
+};
+
+Price price_of(const BoardConfig& changed, const BoardConfig& board) {
+  const area::Area its = platform::area_of(changed);
+  const area::Area now = platform::area_of(board);
+  return {its.slices - now.slices,
+          its.slices_percent - now.slices_percent,
+          its.block_rams - now.block_rams,
+          its.block_rams_percent - now.block_rams_percent,
+          its.multipliers - now.multipliers,
+          its.multipliers_percent - now.multipliers_percent,
+          its.fits()};
+}
+
+std::string signed_text(std::int64_t number) { return number == 0 ? "0" : fmt::format("{:+}", number); }
+
+class ExplanationText {
+ public:
+  ExplanationText(const BoardConfig& board, Explanation& explanation)
+      : board_(board), explanation_(explanation), now_(explanation.now()), steps_(explanation.steps()) {}
+
+  std::string text() {
+    const std::string table = changes();  // notes the changes for without_effect()
+    return head() + result_queue() + resources() + blames() + table + without_effect() + forbidden() +
+           failures();
+  }
+
+ private:
+  std::string head() {
+    const explore::StoredRow& row = explanation_.figures();
+    const bool camera = explanation_.camera();
+    const char* const of = camera ? "bound.system" : "bound.core";
+    return fmt::format("{}, {}: {:.3f} frames/s{} ({} frames); bound {:.3f}, limited by {}{}\n", board_.name,
+                       camera ? "the whole computer" : "the core alone", now_.frames_per_second,
+                       camera ? " between the first and the last delivery" : "", explanation_.frames(),
+                       row.real(of), row.text(std::string(of) + "_limited_by"),
+                       now_.loses_pixels ? "; captures lose pixels" : "");
+  }
+
+  std::string result_queue() {
+    const double percent = result_queue_percent(explanation_);
+    return percent > 0 ? fmt::format(
+                             "the result queue is too short: in {:.2f} % of the cycles the matcher waits for "
+                             "fpga.result_fifo_words\n",
+                             percent)
+                       : "";
+  }
+
+  // The table of resources. Resources of one kind with the same values share a line.
+  std::string resources() {
+    const std::vector<Explanation::Resource> all = explanation_.resources();
+    const std::uint64_t turn = platform::allocation_period_frames(board_);
+    std::string text = fmt::format("  {:>12} {:>14}  {}\n", "headroom %", "bound frames/s", "resource");
+    for (auto first = all.begin(); first != all.end();) {
+      const std::string kind = first->name.substr(0, first->name.find(' ') + 1);
+      std::string label = first->name;
+      auto next = first + 1;
+      for (; next != all.end() && next->headroom_percent == first->headroom_percent && !kind.empty() &&
+             next->name.rfind(kind, 0) == 0 && next->varies == first->varies &&
+             (!first->varies || next->frame == first->frame);
+           ++next) {
+        label += ", " + next->name.substr(kind.size());
+      }
+      if (first->varies) label += fmt::format(", in frame {} of {}", first->frame, turn);
+      text += fmt::format("  {:>12.2f} {:>14.3f}  {}\n", first->headroom_percent, first->frames_per_second,
+                          label);
+      first = next;
+    }
+    return text;
+  }
+
+  std::string blames() {
+    const auto cycles = static_cast<double>(explanation_.figures().integer("cycles"));
+    std::string text = "who waits for whom, % of the cycles of the frames\n";
+    int rows = 0;
+    for (const explore::StoredBlame& blame : explanation_.blames()) {
+      if (rows == kMostBlames) return text + "  and others, less\n";
+      text += fmt::format("  {:<12} on {:<12} for {:<14} {:>8.3f}\n", blame.port, blame.bank,
+                          report::cause_text(blame.by), 100 * static_cast<double>(blame.cycles) / cycles);
+      ++rows;
+    }
+    return rows > 0 ? text : "no port waits for another\n";
+  }
+
+  double gained_percent(const Explanation::Step& step) const {
+    return 100 * (step.rate.frames_per_second / now_.frames_per_second - 1);
+  }
+
+  // Whether a change has a line of its own in the table: it changes the rate, or whether pixels are lost, or
+  // it saves a part of the FPGA or a bank.
+  bool is_listed(const Explanation::Step& step, const Price& price) const {
+    return std::abs(gained_percent(step)) >= kLeastGainPercent ||
+           step.rate.loses_pixels != now_.loses_pixels || price.saves() || step.step->knob == kBankLess;
+  }
+
+  // The table of the changes, the best first. Fills listed_ and small_.
+  std::string changes() {
+    std::string text =
+        fmt::format("one change at a time: {} boards simulated; *: the disparities change too\n",
+                    explanation_.knobs().possible.size());
+    text += fmt::format("  {:>8} {:>8} {:>8} {:>6} {:>4}  change: from -> to\n", "frames/s", "gained", "%",
+                        "FPGA %", "RAMs");
+    std::set<std::string> with_alternatives;  // only the best of them counts
+    for (const Explanation::Step& found : steps_) {
+      const explore::KnobStep& step = *found.step;
+      if (!found.rate.failure.empty()) continue;
+      if (step.only_best && !with_alternatives.insert(step.knob).second) continue;
+      const Price price = price_of(step.board, board_);
+      if (!is_listed(found, price)) {
+        small_.insert(&step);
+        continue;
+      }
+      listed_.insert(step.knob);
+      text += line_of(found, price);
+    }
+    return text;
+  }
+
+  std::string line_of(const Explanation::Step& found, const Price& price) const {
+    const explore::KnobStep& step = *found.step;
+    std::string text = fmt::format(
+        "  {:>8.3f} {:>+8.3f} {:>+8.2f} {:>6} {:>4}  {}{}: {} -> {}", found.rate.frames_per_second,
+        found.rate.frames_per_second - now_.frames_per_second, gained_percent(found),
+        price.slices == 0 ? "0" : fmt::format("{:+.2f}", price.slices_percent), signed_text(price.block_rams),
+        step.knob, step.changes_disparities ? " *" : "", step.from, step.to);
+    if (price.multipliers != 0) text += fmt::format(", {:+} multipliers", price.multipliers);
+    if (!price.fits) text += "  does not fit";
+    if (found.rate.loses_pixels && !now_.loses_pixels) text += "  loses pixels";
+    return text + '\n';
+  }
+
+  // A paragraph that names the changes without a line, in the order of the keys: by the key, or by its new
+  // value if other values of the key have a line.
+  std::string without_effect() const {
+    std::vector<std::string> names;
+    for (const explore::KnobStep& step : explanation_.knobs().possible) {
+      if (small_.count(&step) == 0) continue;
+      const std::string name = listed_.count(step.knob) == 0 ? step.knob : step.knob + " -> " + step.to;
+      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    }
+    return names.empty()
+               ? ""
+               : paragraph("no effect, or less than 0.1 %: ", 2, fmt::format("{}", fmt::join(names, "; ")));
+  }
+
+  std::string forbidden() const {
+    std::string text;
+    for (const explore::ForbiddenStep& step : explanation_.knobs().forbidden)
+      text += paragraph("not possible here: ", 2,
+                        fmt::format("{}: {} -> {}, because {}", step.knob, step.from, step.to, step.reason));
+    return text;
+  }
+
+  std::string failures() const {
+    std::string text;
+    for (const Explanation::Step& found : steps_) {
+      if (found.rate.failure.empty()) continue;
+      text += fmt::format("failed: {}: {} -> {}: {}\n", found.step->knob, found.step->from, found.step->to,
+                          found.rate.failure);
+    }
+    return text;
+  }
+
+  const BoardConfig& board_;
+  Explanation& explanation_;
+  Explanation::Rate now_;
+  std::vector<Explanation::Step> steps_;
+  std::set<std::string> listed_;              // keys with a line in the table
+  std::set<const explore::KnobStep*> small_;  // changes without a line
+};
+
+}  // namespace
+
+std::string explanation_text(const BoardConfig& board, Explanation& explanation) {
+  return ExplanationText(board, explanation).text();
+}
+
+double result_queue_percent(Explanation& explanation) {
+  const explore::StoredRow& row = explanation.figures();
+  const double cycles = static_cast<double>(row.integer("cycles"));
+  const double lost = cycles * (1 - row.real("frames_per_second.core") / row.real("bound.core"));
+  std::int64_t stalled = 0;
+  std::int64_t blocked = 0;
+  for (const fpga::CorePort& port : fpga::kPorts) {
+    const std::string name = std::string("ports.") + port.name;
+    stalled += row.integer(name + ".stall_cycles");
+    blocked = std::max(blocked, row.integer(name + ".blocked_cycles"));
+  }
+  const char* const of = explanation.camera() ? "bound.system_limited_by" : "bound.core_limited_by";
+  const bool is_too_short = row.text(of) == "matcher" && lost > kVisibleLoss * cycles && stalled == 0 &&
+                            static_cast<double>(blocked) > lost / 2;
+  return is_too_short ? 100 * lost / cycles : 0;
+}
+
+}  // namespace stereotlm::cli

@@ -1,0 +1,78 @@
+#include "sw/runs/waitless_core.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "platform/config/board_yaml.h"
+#include "platform/core_run.h"
+#include "tests/support/board_of_random.h"
+#include "tests/support/random_board.h"
+
+namespace stereotlm::runs {
+namespace {
+
+double rate_of(const platform::BoardConfig& board, std::uint64_t frames) {
+  return platform::run_core(board, platform::identity_tables(board), frames).frames_per_second.core;
+}
+
+double waitless_rate_of(const platform::BoardConfig& board, std::uint64_t frames) {
+  return waitless_frames_per_second(board, platform::identity_tables(board), frames);
+}
+
+TEST(WaitlessCore, RunsAsIfEachBufferHadABankOfItsOwn) {
+  const double uncontended = rate_of(platform::load_board("fpl2003"), 1);
+  const std::vector<std::vector<std::string>> shared = {
+      {"allocation.left_lut=bank0"},
+      {"allocation={left_image: bank0, right_image: bank0, disparity: bank0, left_lut: bank1, right_lut: "
+       "bank2}"}};
+  for (const auto& sets : shared) {
+    const platform::BoardConfig board = platform::load_board("fpl2003", sets);
+    EXPECT_LT(rate_of(board, 2), uncontended);
+    EXPECT_DOUBLE_EQ(waitless_rate_of(board, 2), uncontended);
+  }
+}
+
+TEST(WaitlessCore, CountsFramesOfAnUnfinishedTurnOfTheLists) {
+  const platform::BoardConfig board = platform::load_board(
+      "fpl2003-triple", {"image={width: 64, height: 48}",
+                         "ssram.banks={a: {kind: zbt_flow_through}, b: {}, c: {}, d: {kind: "
+                         "zbt_flow_through}, e: {}, f: {}, g: {}, "
+                         "h: {}, i: {}}",
+                         "allocation={left_image: [a, b, c], right_image: [d, e, f], disparity: g, left_lut: "
+                         "h, right_lut: i}"});
+  ASSERT_NE(rate_of(board, 1), rate_of(board, 2)) << "the frames differ";
+  for (const std::uint64_t frames : {1, 2, 3, 4, 5})
+    EXPECT_DOUBLE_EQ(waitless_rate_of(board, frames), rate_of(board, frames)) << frames;
+}
+
+TEST(WaitlessCore, IsAtLeastAsFastAsARandomBoardAndEquallyFastIfNoPortWaits) {
+  int waiting = 0;
+  int free_of_waits = 0;
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    const test::RandomBoard random = test::make_random_board(seed, test::RandomKnobs::all());
+    const platform::BoardConfig board = test::board_config(random);
+    const platform::Tables tables = test::board_tables(random);
+    const auto frames = static_cast<std::uint64_t>(random.frames);
+    platform::Statistics now;
+    try {
+      now = platform::run_core(board, tables, frames, 100'000);
+    } catch (const std::runtime_error&) {
+      continue;  // a frame that never ends
+    }
+    const double waitless = waitless_frames_per_second(board, tables, frames);
+    if (now.blame.empty()) {
+      ++free_of_waits;
+      EXPECT_DOUBLE_EQ(waitless, now.frames_per_second.core) << describe(random);
+    } else {
+      ++waiting;
+      EXPECT_GE(waitless, now.frames_per_second.core) << describe(random);
+    }
+  }
+  EXPECT_GT(waiting, 50);
+  EXPECT_GT(free_of_waits, 5);
+}
+
+}  // namespace
+}  // namespace stereotlm::runs
