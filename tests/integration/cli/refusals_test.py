@@ -14,10 +14,9 @@ from program import HEIGHT, PRELOADED, SMALL, WIDTH, ProgramTest, of_plain_user,
 COMMANDS = (
     "run check boards keys bounds explain calibrate sweep merge allocate plot conflicts diff diagram report paper"
 ).split()
-UNBUILT_OPTION_OF_RUN = ["--trace", "vcd"]
 OPTIONS_OF_RUN = (
     "BOARD,--left,--right,--sequence,--video F [F2],--video-layout,--synthetic,--frames,--truth,"
-    "--truth-scale,--set,--out,--save-frames,--record,--fidelity fast|cycle,--timing-only,--verify,--trace,default 1"
+    "--truth-scale,--set,--out,--save-frames,--record,--fidelity fast|cycle,--timing-only,--verify,--trace FORMAT:FILE,--trace-window,default 1"
 )
 NO_INTEGERS = ("-1", "1.5", "x", "", "18446744073709551616")
 
@@ -55,12 +54,6 @@ class CommandLine(ProgramTest):
             (["--"], "'--': a command comes first"),
             (["--frames", "1", "run", "fpl2003"], "'--frames': a command comes first"),
         ])
-
-    def test_what_is_not_in_this_version_is_refused(self):
-        text = "error: --trace: not in this version"
-        for arguments in (UNBUILT_OPTION_OF_RUN, UNBUILT_OPTION_OF_RUN[:1]):
-            self.refused_in_one_line(run("run", "fpl2003", *arguments), text)
-        self.refused_in_one_line(self.run_small(*UNBUILT_OPTION_OF_RUN), text)
 
     def test_unknown_options_are_refused_with_the_nearest(self):
         for command in COMMANDS:
