@@ -35,7 +35,8 @@ ROOMS = {
     "sw/explore/search": ["sw/explore/plan", "sw/explore/store", "sw/explore/sweep"],
     "sw/explore/slurm": ["sw/explore/plan", "sw/explore/store", "sw/explore/sweep", "sw/files", "sw/process"],
     "sw/paper": ["sw/explore", "sw/files", "sw/report"],
-    "sw/runs": ["sw/driver", "sw/explore", "sw/files", "sw/media", "sw/process", "sw/report"],
+    "sw/trace": ["sw/explore/store", "sw/files", "sw/process"],
+    "sw/runs": ["sw/driver", "sw/explore", "sw/files", "sw/media", "sw/process", "sw/report", "sw/trace"],
     "sw/demo": ["sw/files", "sw/media"],
     "sw/cli": ["sw"],
 }
@@ -61,7 +62,7 @@ FREE_OF = [
     (re.compile(r"models/pci/(bridge_register_file|dma_channel|local_bus_master)\."), SYSTEMC, "SystemC"),
     (re.compile(r"models/pci/(pci_slot|posted_writes)\."), SYSTEMC, "SystemC"),
     (re.compile(r"platform/(bridge_buses|computer_parts)\."), SYSTEMC, "SystemC"),
-    (re.compile(r"(sw/(driver|explore|files|media|paper|process|report)|calib)/"), SYSTEMC, "SystemC"),
+    (re.compile(r"(sw/(driver|explore|files|media|paper|process|report|trace)|calib)/"), SYSTEMC, "SystemC"),
     (re.compile(r"(models|platform)/"), OPENCV, "OpenCV"),
     (re.compile(r"(models|platform)/"), EIGEN, "Eigen"),
     (re.compile(r"models/"), FILES_OR_YAML, "YAML or files"),

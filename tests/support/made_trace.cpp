@@ -229,7 +229,7 @@ MadeTrace make_trace(const platform::BoardConfig& board, std::uint64_t frames) {
                           {EventKind::kCapture, "left", 0, 1, 1'000'000, 1'500'500, 24, 3, ""},
                           {EventKind::kWait, "pair", 0, 1, 1'100'000, 1'600'000, 0, 0, "core"},
                           {EventKind::kWait, "pair", 1, 2, 1'400'000, 1'700'000, 0, 0, "core"},
-                          {EventKind::kReadBack, "disparity", 0, 1, 1'000'000, 2'000'000, 24, 0, ""}};
+                          {EventKind::kReadBack, "disparity", 0, 1, 1'000'000, 20'000'000, 24, 0, ""}};
   return trace;
 }
 

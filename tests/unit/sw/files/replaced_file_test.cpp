@@ -47,6 +47,17 @@ TEST_F(ReplacedFileTest, IsAsItWasWithoutACommit) {
   EXPECT_EQ(files(), 1);
 }
 
+TEST_F(ReplacedFileTest, MayBeWrittenByItsPathAndCompletedBeforeTheCommit) {
+  test::write_file(path_, "old");
+  ReplacedFile file(path_);
+  test::write_file(file.aside(), "new");
+  file.complete();
+  EXPECT_EQ(test::read_file(path_), "old");
+  file.commit();
+  EXPECT_EQ(test::read_file(path_), "new");
+  EXPECT_EQ(files(), 1);
+}
+
 TEST_F(ReplacedFileTest, LeavesAllOtherFilesAlone) {
   for (const char* name : {"file.part", ".file.writing-", ".file.writing-0123456789abcdeg",
                            ".file.writing-0123456789abcdef0", ".other.writing-0123456789abcdef"})
