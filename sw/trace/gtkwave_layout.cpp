@@ -60,7 +60,8 @@ std::string gtkwave_layout(const std::string& file_name, const VcdSignals& signa
   for (std::size_t group = 0; group < kVcdGroupNames.size(); ++group) {
     fmt::format_to(std::back_inserter(text), "@{:x}\n-{}\n", kGroupBegin | kBlank, kVcdGroupNames[group]);
     for (const VcdSignal& signal : signals.all()) {
-      if (static_cast<std::size_t>(signal.group) == group) text += line_of(signal);
+      if (static_cast<std::size_t>(signal.group) == group && span.active_scopes.count(signal.scope) != 0)
+        text += line_of(signal);
     }
     fmt::format_to(std::back_inserter(text), "@{:x}\n-{}\n", kGroupEnd | kBlank, kVcdGroupNames[group]);
   }

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <set>
+#include <string>
 #include <string_view>
 
 namespace stereotlm::trace {
@@ -42,6 +44,7 @@ class VcdText {
     }
     next_values_ = values_;
     is_touched_.resize(values_.size());
+    is_active_.resize(values_.size());
   }
 
   void header() {
@@ -95,6 +98,13 @@ class VcdText {
     file_.write({text_.data(), size_});
     size_ = 0;
   }
+  std::set<std::string> active_scopes() const {
+    std::set<std::string> scopes;
+    for (std::size_t signal = 0; signal < is_active_.size(); ++signal) {
+      if (is_active_[signal] != 0) scopes.insert(signals_.all()[signal].scope);
+    }
+    return scopes;
+  }
 
  private:
   static constexpr std::size_t kTextBytes = std::size_t{1} << 19U;
@@ -142,6 +152,7 @@ class VcdText {
   void value(std::uint32_t signal) {
     const unsigned bits = signals_.all()[signal].bits;
     const std::uint32_t value = values_[signal];
+    is_active_[signal] |= static_cast<char>(value != signals_.all()[signal].idle);
     if (bits == 0) {
       put('s');
       put(signals_.text(value));
@@ -173,6 +184,7 @@ class VcdText {
   std::vector<std::uint32_t> values_;
   std::vector<std::uint32_t> next_values_;
   std::vector<char> is_touched_;
+  std::vector<char> is_active_;  // [signal]: has had another value than its idle one
   std::vector<std::uint32_t> touched_;
   std::vector<char> text_ = std::vector<char>(kTextBytes);
   std::size_t size_ = 0;  // bytes of text_ in use
@@ -205,6 +217,7 @@ VcdSpan write_vcd(OutputFile& file, const VcdSignals& signals, const std::vector
   }
   if (is_first) text.all_at(0);
   text.flush();
+  span.active_scopes = text.active_scopes();
   return span;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -10,10 +11,12 @@
 
 namespace stereotlm::trace {
 
-// The first and the last time at which a signal changes.
+// What a waveform shows.
 struct VcdSpan {
-  std::uint64_t first_ps = 0;
+  std::uint64_t first_ps = 0;  // the first and the last time at which a signal changes
   std::uint64_t last_ps = 0;
+  std::set<std::string> active_scopes =
+      {};  // scopes with a signal that has had another value than its idle one
 };
 
 // Writes the changes of all streams in the order of their times, as a value change dump of IEEE 1364. A signal

@@ -50,8 +50,9 @@ function traceCommand(run, {stalls, height}, {from, to}) {
   if (waits(worst) === 0) return null;
   const cycles = run.stats.frame_cycles;
   const frame = cycles.indexOf(cycles.reduce((a, b) => Math.max(a, b)));
-  return `${run.command} --trace vcd:waits.vcd --trace-window frame=${frame},rows=${worst * height}..${
-      worst * height}`;
+  const row = worst * height;
+  const command = run.command.replace(/ --out DIR$/, '');
+  return `${command} --trace vcd:waits.vcd --trace-window frame=${frame},rows=${row}..${row}`;
 }
 
 export function addRows(page, run) {
