@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <string>
@@ -64,18 +65,25 @@ TEST_F(VcdWriterTest, ShowsEachPortInEachCycle) {
   board_.fpga.clock_mhz = 66.6;  // its cycles are no whole ps
   const test::MadeTrace trace = test::make_trace(board_, 2);
   const VcdFile file = written(trace);
+  struct Held {
+    std::string bank = "-";
+    std::string address = "z";
+  };
+  std::array<Held, fpga::kPortCount> held;  // by the last request of each port
   for (const fpga::CoreCycle& cycle : trace.cycles) {
     const std::uint64_t time = ps(cycle.cycle);
     for (std::size_t port = 0; port < fpga::kPortCount; ++port) {
       const fpga::PortCycle& now = cycle.ports[port];
       const std::string name = fpga::kPorts[port].name;
       const bool requests = now.intent == fpga::Intent::kRequest;
+      if (requests) held[port] = {board_.banks[now.bank].name, std::to_string(now.address)};
       ASSERT_EQ(file.at(name + ".state", time), state_of(now, requester_of_port(port, cycle.host_traffic)));
-      ASSERT_EQ(file.at(name + ".bank", time), requests ? board_.banks[now.bank].name : "-");
+      ASSERT_EQ(file.at(name + ".bank", time), held[port].bank);
       ASSERT_EQ(file.at(name + ".waits_for", time),
                 requests && !now.granted ? with_underscores(fpga::requester_name(now.by)) : "-");
-      ASSERT_EQ(requests ? file.number(name + ".address", time) : 0, now.address);
-      ASSERT_EQ(file.at(name + ".address", time) == "z", !requests);
+      const std::string address = file.at(name + ".address", time);
+      ASSERT_EQ(address == "z" ? address : std::to_string(file.number(name + ".address", time)),
+                held[port].address);
     }
     ASSERT_EQ(file.at("host.traffic", time),
               cycle.ports[fpga::kHostPort].intent == fpga::Intent::kRequest ? "capture" : "-");
@@ -197,15 +205,28 @@ TEST_F(VcdWriterTest, SixtyFourBanksHaveSignalsOfTheirOwn) {
     EXPECT_EQ(file.at(bank.name + ".owner", 0), bank.name == "more63" ? "left_lut" : "-");
 }
 
-TEST_F(VcdWriterTest, TheLayoutNamesTheFileAndEachSignal) {
+TEST_F(VcdWriterTest, TheLayoutNamesTheFileAndEachSignalOfWhatDoesSomething) {
   const VcdFile file = written(test::make_trace(board_, 1));
   const std::string layout = test::read_file(layout_);
   EXPECT_THAT(layout, ::testing::StartsWith("[dumpfile] \"file.vcd\"\n"));
   for (const auto& [signal, code] : file.signals()) {
+    if (signal == "right_capture.fifo") continue;  // always empty here
     const bool is_number = file.at(signal, UINT64_MAX).find_first_not_of("01z") == std::string::npos;
     const std::string end = is_number && signal != "matcher.works" ? "[" : "\n";
     EXPECT_THAT(layout, ::testing::HasSubstr("} " + signal + end));
   }
+}
+
+TEST_F(VcdWriterTest, TheLayoutLeavesOutWhatDoesNothingInTheWindow) {
+  fpga::CoreCycle cycle;
+  cycle.ports[0] = {fpga::Intent::kRequest, true, 1, 4, 0, 0};
+  VcdWriter writer(path_, board_);
+  writer.cycle(cycle);
+  writer.commit();
+  const std::string layout = test::read_file(layout_);
+  for (const char* scope : {"bank1", "left_lut"}) EXPECT_THAT(layout, ::testing::HasSubstr(scope));
+  for (const char* scope : {"bank0", "right_lut", "pci", "left_capture"})
+    EXPECT_THAT(layout, ::testing::Not(::testing::HasSubstr(scope)));
 }
 
 TEST_F(VcdWriterTest, LeavesBothEarlierFilesWithoutACommitOrWhenTheDiskIsFull) {
@@ -225,11 +246,6 @@ TEST_F(VcdWriterTest, LeavesBothEarlierFilesWithoutACommitOrWhenTheDiskIsFull) {
 }
 
 TEST_F(VcdWriterTest, FstHasTheChangesOfVcd) {
-  try {
-    process::run_command({"vcd2fst", "--help"});
-  } catch (const process::CommandMissing&) {
-    GTEST_SKIP() << "vcd2fst is not installed";
-  }
   const test::MadeTrace trace = test::make_trace(board_, 1);
   const VcdFile expected = written(trace);
   path_ = scratch_.path() / "other.fst";
