@@ -31,24 +31,38 @@ class AllWriters : public TraceWriter {
     for (const auto& writer : writers_) writer->cycle(cycle);
   }
   void burst(const platform::BusBurst& burst) override {
-    if (is_of_frame_ && (burst.end_ps <= begin_ps_ || end_ps_ <= burst.request_ps)) return;
-    for (const auto& writer : writers_) writer->burst(burst);
+    is_of_frame_ ? bursts_.push_back(burst) : write(burst);
   }
   void level(const platform::QueueLevel& level) override {
-    if (is_of_frame_ && (level.time_ps <= begin_ps_ || end_ps_ < level.time_ps)) return;
-    for (const auto& writer : writers_) writer->level(level);
+    is_of_frame_ ? levels_.push_back(level) : write(level);
   }
   void commit() override {
+    for (const platform::BusBurst& burst : bursts_) {
+      if (burst.end_ps > begin_ps_ && burst.request_ps < end_ps_) write(burst);
+    }
+    for (const platform::QueueLevel& level : levels_) {
+      if (level.time_ps > begin_ps_ && level.time_ps <= end_ps_) write(level);
+    }
     for (const auto& writer : writers_) writer->commit();
   }
 
  private:
+  void write(const platform::BusBurst& burst) {
+    for (const auto& writer : writers_) writer->burst(burst);
+  }
+  void write(const platform::QueueLevel& level) {
+    for (const auto& writer : writers_) writer->level(level);
+  }
+
   std::vector<std::unique_ptr<TraceWriter>> writers_;
   Clock clock_;
   bool is_of_frame_;
-  // From the first to the last cycle so far. In the window of a frame all cycles come before the first burst.
+  // The cycles of the window: the beginning of the first one, and the end of the last one so far.
   std::uint64_t begin_ps_ = UINT64_MAX;
   std::uint64_t end_ps_ = 0;
+  // In the window of a frame: what the buses do in that frame, because it may come before the cycles.
+  std::vector<platform::BusBurst> bursts_;
+  std::vector<platform::QueueLevel> levels_;
 };
 
 std::unique_ptr<TraceWriter> make_writer(const TraceFile& file, const platform::BoardConfig& board) {

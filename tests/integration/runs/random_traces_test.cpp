@@ -28,6 +28,7 @@
 #include "tests/support/random_computer.h"
 #include "tests/support/scratch_folder.h"
 #include "tests/support/transaction_log.h"
+#include "tests/support/vcd_file.h"
 
 namespace stereotlm::simulation {
 namespace {
@@ -150,6 +151,41 @@ Sums sums_of_sqlite(const std::filesystem::path& path) {
   return sums;
 }
 
+// The cycles of the ports of the core, by their states. A waveform shows no difference between a cycle in which a
+// port is idle and one in which no frame runs.
+Sums states_of_vcd(const std::filesystem::path& path, const platform::BoardConfig& board) {
+  const Clock clock(board.fpga.clock_mhz);
+  const test::VcdFile file(test::read_file(path));
+  Sums sums;
+  for (std::size_t port = 0; port < fpga::kCorePortCount; ++port) {
+    const std::string name = fpga::kPorts[port].name;
+    if (file.signals().count(name + ".state") == 0) continue;
+    const std::map<std::uint64_t, std::string>& states = file.changes(name + ".state");
+    for (auto state = states.begin(); state != states.end(); ++state) {
+      if (state->second == "idle") continue;
+      const auto next = std::next(state);
+      if (next == states.end()) throw std::runtime_error(name + " is not idle in the end");
+      const bool is_access = state->second == "reads" || state->second == "writes";
+      sums[name + ' ' + (is_access ? "accesses" : state->second)] +=
+          clock.edge_at_or_after(next->first) - clock.edge_at_or_after(state->first);
+    }
+  }
+  return sums;
+}
+
+Sums states_of(const platform::Statistics& statistics) {
+  Sums sums;
+  for (std::size_t port = 0; port < fpga::kCorePortCount; ++port) {
+    const platform::PortStatistics& its = statistics.ports[port];
+    sums[its.name + " accesses"] = its.grants;
+    sums[its.name + " waits"] = its.stall_cycles;
+    sums[its.name + " passes"] = its.passed_cycles;
+    sums[its.name + " blocked"] = its.blocked_cycles;
+    sums[its.name + " starved"] = its.starved_cycles;
+  }
+  return sums;
+}
+
 std::string differences(const std::string& name, const Sums& found, const Sums& expected) {
   std::string text;
   for (const Sums* all : {&found, &expected}) {
@@ -171,6 +207,7 @@ struct Traced {
   std::array<fpga::PortCycles, fpga::kPortCount> sums{};
   std::vector<test::LoggedTransaction> log;
   platform::Statistics statistics;
+  std::string waveform;  // the text of the vcd
   std::string wrong_files;
 };
 
@@ -181,10 +218,11 @@ Traced trace(const Case& of, Fidelity fidelity, const CycleWindow& window, bool 
   const std::unique_ptr<runs::Simulation> simulation =
       runs::make_simulation(of.board, of.tables, pictures, {of.camera, fidelity, of.frames, true}, binder);
   const test::ScratchFolder scratch;
-  std::vector<trace::TraceFile> files;
-  if (writes_files)
-    files = {{trace::Format::kPerfetto, scratch.path() / "perfetto"},
-             {trace::Format::kSqlite, scratch.path() / "sqlite"}};
+  std::vector<trace::TraceFile> files = {{trace::Format::kVcd, scratch.path() / "vcd"}};
+  if (writes_files) {
+    files.push_back({trace::Format::kPerfetto, scratch.path() / "perfetto"});
+    files.push_back({trace::Format::kSqlite, scratch.path() / "sqlite"});
+  }
   const std::unique_ptr<trace::TraceWriter> writer = trace::make_writer(files, of.board, window);
   KeptCycles cycles(keeps_cycles, *writer);
   simulation->trace(window, cycles, *writer);
@@ -202,10 +240,16 @@ Traced trace(const Case& of, Fidelity fidelity, const CycleWindow& window, bool 
   traced.sums = cycles.sums;
   traced.log = binder.log();
   traced.statistics = simulation->statistics();
+  if (keeps_cycles) {
+    traced.waveform = test::read_file(files[0].path);
+  } else {  // all cycles are in the window
+    traced.wrong_files =
+        differences("vcd", states_of_vcd(files[0].path, of.board), states_of(traced.statistics));
+  }
   if (!writes_files) return traced;
   const Sums expected = sums_of(traced.statistics);
-  traced.wrong_files = differences("perfetto", sums_of_perfetto(files[0].path), expected) +
-                       differences("sqlite", sums_of_sqlite(files[1].path), expected);
+  traced.wrong_files += differences("perfetto", sums_of_perfetto(files[1].path), expected) +
+                        differences("sqlite", sums_of_sqlite(files[2].path), expected);
   return traced;
 }
 
@@ -233,7 +277,7 @@ std::string text_of(const Traced& traced) {
   std::string text;
   for (const platform::FrameRuns& frame : traced.runs) text += text_of(frame);
   for (const fpga::CoreCycle& cycle : traced.cycles) text += text_of(cycle);
-  return text;
+  return text + traced.waveform;
 }
 
 // What a window, the whole run or a part of it, adds up to.
