@@ -93,7 +93,7 @@ void CycleRecorder::record(std::uint64_t cycle, const CoreControl::Decision& dec
   }
   out.result_words = static_cast<std::uint32_t>(control.result().queued());
   out.works = decision.work;
-  observer_.cycle(out);
+  tell(out);
 }
 
 void CycleRecorder::set_item(PortCycle& port, memory::Port number, const CoreControl& control) const {
@@ -173,7 +173,7 @@ void CycleRecorder::tell_served(std::uint64_t end_cycle) {
     CoreCycle out;
     out.cycle = served_.front().cycle;
     set_served(out);
-    if (is_inside(out.cycle)) observer_.cycle(out);
+    if (is_inside(out.cycle)) tell(out);
     drop_served(out.cycle + 1);
   }
 }

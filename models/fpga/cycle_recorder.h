@@ -60,6 +60,9 @@ class CycleRecorder {
     served_.push_back({first, cycle, cycles, granted});
   }
 
+  // The number of cycles that the observer was told.
+  std::uint64_t told() const { return told_; }
+
   // Tells the cycles before `end_cycle`, as far as they are known, while no frame runs. To be called regularly,
   // because they fill memory, and at the end of the run. What is served may be ahead of that.
   void hand_out(std::uint64_t end_cycle) {
@@ -75,6 +78,10 @@ class CycleRecorder {
   };
 
   bool is_inside(std::uint64_t cycle) const;
+  void tell(const CoreCycle& cycle) {
+    ++told_;
+    observer_.cycle(cycle);
+  }
   void record(std::uint64_t cycle, const CoreControl::Decision& decision, bool host_requests,
               memory::PortMask granted, const CoreControl& control, const memory::Arbitration& arbitration);
   void set_item(PortCycle& port, memory::Port number, const CoreControl& control) const;
@@ -103,6 +110,7 @@ class CycleRecorder {
   };
   std::array<Place, kCorePortCount> places_{};
   std::deque<Served> served_;  // not told yet
+  std::uint64_t told_ = 0;
 };
 
 }  // namespace stereotlm::fpga

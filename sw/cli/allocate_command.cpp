@@ -294,7 +294,7 @@ int allocate(const AllocateOptions& options) {
   };
   runs::ProgressLine line;
   AllocationReport report = {
-      search, *board, bound, sweep.store, *options.banks, options.keep_percent, options.board.words()};
+      search, *board, bound, sweep.store, *options.banks, options.keep_percent, options.board.words_without_allocation()};
   report.is_whole = explore::simulate(search, evaluate, sweep, [&line](const explore::SearchProgress& done) {
     return show_progress(line, done);
   });

@@ -1,5 +1,7 @@
 #include "sw/cli/board_options.h"
 
+#include <string_view>
+
 #include "platform/config/board_yaml.h"
 
 namespace stereotlm::cli {
@@ -29,10 +31,13 @@ void BoardOptions::check_usage() {
   problems.check();
 }
 
-std::vector<std::string> BoardOptions::words() const {
+std::vector<std::string> BoardOptions::words_without_allocation() const {
+  constexpr std::string_view kSection = "allocation";
   std::vector<std::string> words = {board_.text};
   if (calibration_) words.insert(words.end(), {"--calibration", *calibration_});
-  for (const std::string& set : sets_.text) words.insert(words.end(), {"--set", set});
+  for (const std::string& set : sets_.text) {
+    if (set.substr(0, set.find_first_of(".=")) != kSection) words.insert(words.end(), {"--set", set});
+  }
   return words;
 }
 

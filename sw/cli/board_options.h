@@ -32,11 +32,8 @@ class BoardOptions {
   // BOARD as typed.
   const std::string& name() const { return board_.text; }
 
-  // BOARD and the options as typed, as words of a command line.
-  std::vector<std::string> words() const;
-
-  // Whether an option changes the board or its tables.
-  bool is_changed() const { return sets_.is_given() || calibration_option_.is_given(); }
+  // BOARD and the options as typed, as words of a command line, without --set of an allocation.
+  std::vector<std::string> words_without_allocation() const;
 
   // Loads the board. Reports all problems and returns nullopt if there are any.
   std::optional<platform::BoardConfig> load(process::Problems& problems) const;

@@ -53,7 +53,7 @@ struct DiagramOptions {
     std::error_code error;
     is_run = std::find(presets.begin(), presets.end(), board.name()) == presets.end() &&
              std::filesystem::is_directory(board.name(), error);
-    if (is_run && (source.is_given() || board.is_changed()))
+    if (is_run && (source.is_given() || board.changes_board()))
       problems.add(fmt::format(
           "'{}': a run has its board: --source, --set and --calibration do not go with it", board.name()));
     if (source.is_given() && is_one_of(kExtents, "--source", source.text, problems) &&

@@ -65,9 +65,11 @@ std::optional<fpga::CycleWindow> window_of(std::string_view text) {
 }  // namespace
 
 void TraceOptions::add_to(CLI::App& command) {
-  files_.add_to(command, "--trace", "FORMAT:FILE",
-                fmt::format("Write a trace of the run; FORMAT is {}; repeat it for more traces",
-                            fmt::join(trace::kFormatNames, ", ")));
+  files_.add_to(
+      command, "--trace", "FORMAT:FILE",
+      fmt::format("Write a trace of the run; FORMAT is {}; repeat it for more traces; a vcd whose FILE "
+                  "ends in .fst becomes FST",
+                  fmt::join(trace::kFormatNames, ", ")));
   files_.takes_one_at_a_time();
   window_.add_to(
       command, "--trace-window", "WINDOW",
@@ -80,7 +82,7 @@ void TraceOptions::check_usage(process::Problems& problems) {
   if (files_.is_given()) check_files(problems);
   if (!window_.is_given()) return;
   window = window_of(window_.text);
-  if (!window) problems.add(fmt::format("--trace-window = {}: must be {}", window_.text, kWindowForms));
+  if (!window) problems.add(fmt::format("--trace-window = '{}': must be {}", window_.text, kWindowForms));
   if (!files_.is_given()) problems.add("--trace-window: goes with --trace FORMAT:FILE");
 }
 
@@ -90,7 +92,7 @@ void TraceOptions::check_files(process::Problems& problems) {
     const auto format =
         std::find(trace::kFormatNames.begin(), trace::kFormatNames.end(), text.substr(0, colon));
     if (colon == std::string::npos || format == trace::kFormatNames.end() || colon + 1 == text.size()) {
-      problems.add(fmt::format("--trace {}: must be FORMAT:FILE, where FORMAT is {}", text,
+      problems.add(fmt::format("--trace '{}': must be FORMAT:FILE, where FORMAT is {}", text,
                                platform::listed({trace::kFormatNames.begin(), trace::kFormatNames.end()})));
       continue;
     }
@@ -100,11 +102,11 @@ void TraceOptions::check_files(process::Problems& problems) {
       return fs::absolute(file.path).lexically_normal() == fs::absolute(other.path).lexically_normal();
     };
     if (std::any_of(files.begin(), files.end(), is_same))
-      problems.add(fmt::format("--trace {}: '{}' is given twice: each trace needs a file of its own", text,
+      problems.add(fmt::format("--trace '{}': '{}' is given twice: each trace needs a file of its own", text,
                                file.path));
     if (file.format == trace::Format::kVcd && !window_.is_given())
       problems.add(
-          fmt::format("--trace {}: goes with --trace-window: a vcd has each cycle of its window", text));
+          fmt::format("--trace '{}': goes with --trace-window: a vcd has each cycle of its window", text));
     files.push_back(std::move(file));
   }
 }
@@ -113,12 +115,12 @@ void TraceOptions::check_window(const platform::BoardConfig& board, std::uint64_
                                 process::Problems& problems) const {
   if (!window) return;
   if (window->frame && *window->frame >= frames) {
-    problems.add(fmt::format("--trace-window = {}: frame {}: must be below the frames of the run, {}",
+    problems.add(fmt::format("--trace-window = '{}': frame {}: must be below the frames of the run, {}",
                              window_.text, *window->frame, frames));
   }
   const auto height = static_cast<std::uint64_t>(board.image.height);
   if (window->unit == fpga::CycleWindow::Unit::kRows && window->last >= height) {
-    problems.add(fmt::format("--trace-window = {}: row {}: must be below the rows of the image, {}",
+    problems.add(fmt::format("--trace-window = '{}': row {}: must be below the rows of the image, {}",
                              window_.text, window->last, height));
   }
 }

@@ -5,7 +5,7 @@ namespace stereotlm::trace {
 PerfettoWriter::PerfettoWriter(const std::filesystem::path& path, const platform::BoardConfig& board)
     : board_(board),
       file_(path),
-      tree_(file_, "stereotlm " + board.name),
+      tree_(file_, kProcessName + board.name),
       rows_(board_, tree_),
       cycles_(board_, tree_),
       computer_(tree_) {}
@@ -14,7 +14,7 @@ void PerfettoWriter::events(const platform::TimelineRecords& records) {
   for (const platform::TimelineEvent& event : records.events) computer_.event(event);
 }
 
-void PerfettoWriter::commit() {
+void PerfettoWriter::commit(const TimeSpan& /*window*/) {
   cycles_.end();
   file_.complete();
   file_.commit();

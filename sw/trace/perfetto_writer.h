@@ -15,6 +15,8 @@ namespace stereotlm::trace {
 // Writes a trace for ui.perfetto.dev. README.md describes its tracks.
 class PerfettoWriter : public TraceWriter {
  public:
+  static constexpr const char* kProcessName = "stereotlm ";  // followed by the name of the board
+
   PerfettoWriter(const std::filesystem::path& path, const platform::BoardConfig& board);
 
   void cycle(const fpga::CoreCycle& cycle) override { cycles_.cycle(cycle); }
@@ -22,7 +24,7 @@ class PerfettoWriter : public TraceWriter {
   void level(const platform::QueueLevel& level) override { computer_.level(level); }
   void frame(const platform::FrameRuns& frame) override { rows_.frame(frame); }
   void events(const platform::TimelineRecords& records) override;
-  void commit() override;
+  void commit(const TimeSpan& window) override;
 
  private:
   TraceBoard board_;

@@ -115,6 +115,7 @@ SqliteWriter::SqliteWriter(const std::filesystem::path& path, const platform::Bo
     database_->execute("PRAGMA journal_mode=OFF");
     database_->execute("PRAGMA synchronous=OFF");
     database_->execute("PRAGMA locking_mode=EXCLUSIVE");
+    database_->execute("PRAGMA application_id=0x53544C4D");  // kId
     database_->execute("BEGIN");
     database_->execute(kSchema);
     explore::Statement meta(*database_, insert("meta", 2));
@@ -273,7 +274,7 @@ void SqliteWriter::events(const platform::TimelineRecords& records) {
   });
 }
 
-void SqliteWriter::commit() {
+void SqliteWriter::commit(const TimeSpan& /*window*/) {
   guard([&] { database_->execute("COMMIT"); });
   for (auto* statement : {&run_, &transaction_, &burst_, &level_, &event_}) statement->reset();
   database_.reset();

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string_view>
 
 #include "sw/explore/store/database.h"
 #include "sw/trace/output_file.h"
@@ -17,6 +18,10 @@ namespace stereotlm::trace {
 // queries.
 class SqliteWriter : public TraceWriter {
  public:
+  // The application_id of the database, at this place in the file.
+  static constexpr std::string_view kId = "STLM";
+  static constexpr std::size_t kPlaceOfId = 68;
+
   SqliteWriter(const std::filesystem::path& path, const platform::BoardConfig& board);
 
   void cycle(const fpga::CoreCycle& cycle) override;
@@ -24,7 +29,7 @@ class SqliteWriter : public TraceWriter {
   void level(const platform::QueueLevel& level) override;
   void frame(const platform::FrameRuns& frame) override;
   void events(const platform::TimelineRecords& records) override;
-  void commit() override;
+  void commit(const TimeSpan& window) override;
 
  private:
   // The cycles in which a port has waited for its next access.

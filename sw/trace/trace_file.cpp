@@ -1,7 +1,14 @@
 #include "sw/trace/trace_file.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+#include <string>
+#include <string_view>
 #include <utility>
 
 #include "models/clock.h"
@@ -12,12 +19,29 @@
 namespace stereotlm::trace {
 namespace {
 
-// Hands everything to several writers. In the window of a frame the buses are traced for the whole frame, because
-// the cycles of its rows are not known before; here what lies beside the cycles of the window is left out.
+// The times of a window that names no frame.
+TimeSpan span_of(const fpga::CycleWindow& window, const Clock& clock) {
+  const std::uint64_t most_cycles = clock.edge_at_or_after(UINT64_MAX / 4);
+  const auto begin_of = [&](std::uint64_t cycle) {
+    return cycle < most_cycles ? clock.edge_ps(cycle) : UINT64_MAX;
+  };
+  return {begin_of(window.first), window.last < most_cycles ? begin_of(window.last + 1) : UINT64_MAX};
+}
+
+// Hands everything to several writers.
+//
+// In the window of a frame the buses are traced for the whole frame, because the cycles of its rows are not known
+// before. What lies beside these cycles is left out when all is known.
 class AllWriters : public TraceWriter {
  public:
-  AllWriters(std::vector<std::unique_ptr<TraceWriter>> writers, const Clock& clock, bool is_of_frame)
-      : writers_(std::move(writers)), clock_(clock), is_of_frame_(is_of_frame) {}
+  AllWriters(std::vector<std::unique_ptr<TraceWriter>> writers, const Clock& clock,
+             const std::optional<fpga::CycleWindow>& window)
+      : writers_(std::move(writers)), clock_(clock), is_of_frame_(window && window->frame) {
+    if (is_of_frame_)
+      span_ = {UINT64_MAX, 0};
+    else if (window)
+      span_ = span_of(*window, clock);
+  }
 
   void frame(const platform::FrameRuns& frame) override {
     for (const auto& writer : writers_) writer->frame(frame);
@@ -26,8 +50,10 @@ class AllWriters : public TraceWriter {
     for (const auto& writer : writers_) writer->events(records);
   }
   void cycle(const fpga::CoreCycle& cycle) override {
-    begin_ps_ = std::min(begin_ps_, clock_.edge_ps(cycle.cycle));
-    end_ps_ = clock_.edge_ps(cycle.cycle + 1);
+    if (is_of_frame_) {
+      span_.begin_ps = std::min(span_.begin_ps, clock_.edge_ps(cycle.cycle));
+      span_.end_ps = clock_.edge_ps(cycle.cycle + 1);
+    }
     for (const auto& writer : writers_) writer->cycle(cycle);
   }
   void burst(const platform::BusBurst& burst) override {
@@ -36,14 +62,14 @@ class AllWriters : public TraceWriter {
   void level(const platform::QueueLevel& level) override {
     is_of_frame_ ? levels_.push_back(level) : write(level);
   }
-  void commit() override {
+  void commit(const TimeSpan& /*window*/) override {
     for (const platform::BusBurst& burst : bursts_) {
-      if (burst.end_ps > begin_ps_ && burst.request_ps < end_ps_) write(burst);
+      if (burst.end_ps > span_.begin_ps && burst.request_ps < span_.end_ps) write(burst);
     }
     for (const platform::QueueLevel& level : levels_) {
-      if (level.time_ps > begin_ps_ && level.time_ps <= end_ps_) write(level);
+      if (level.time_ps > span_.begin_ps && level.time_ps <= span_.end_ps) write(level);
     }
-    for (const auto& writer : writers_) writer->commit();
+    for (const auto& writer : writers_) writer->commit(span_);
   }
 
  private:
@@ -57,13 +83,51 @@ class AllWriters : public TraceWriter {
   std::vector<std::unique_ptr<TraceWriter>> writers_;
   Clock clock_;
   bool is_of_frame_;
-  // The cycles of the window: the beginning of the first one, and the end of the last one so far.
-  std::uint64_t begin_ps_ = UINT64_MAX;
-  std::uint64_t end_ps_ = 0;
-  // In the window of a frame: what the buses do in that frame, because it may come before the cycles.
+  TimeSpan span_;  // of the window; in that of a frame: of its cycles so far
+  // In the window of a frame: what the buses do in that frame.
   std::vector<platform::BusBurst> bursts_;
   std::vector<platform::QueueLevel> levels_;
 };
+
+// Whether a file that begins so is a trace of this format, as the writers write it.
+bool is_trace(const TraceFile& file, const std::string& beginning) {
+  using namespace std::string_view_literals;
+  const auto has = [&beginning](std::size_t place, std::string_view bytes) {
+    return beginning.compare(place, bytes.size(), bytes) == 0;
+  };
+  switch (file.format) {
+    case Format::kPerfetto:  // a packet that names the process
+      return has(0, "\n"sv) && beginning.find(PerfettoWriter::kProcessName) != std::string::npos;
+    case Format::kVcd:
+      return VcdWriter::is_fst(file.path) ? has(0, "\0\0\0\0\0\0\0\1\x49"sv)  // the header's kind and length
+                                          : has(0, "$version stereotlm"sv);
+    case Format::kSqlite:
+      break;
+  }
+  return has(0, "SQLite format 3"sv) && has(SqliteWriter::kPlaceOfId, SqliteWriter::kId);
+}
+
+// Throws std::runtime_error if the file must not be written or replaced.
+void check(const TraceFile& file) {
+  namespace fs = std::filesystem;
+  const auto refuse = [&file](const char* why) {
+    throw std::runtime_error(fmt::format("'{}': {}", file.path, why));
+  };
+  const fs::path path = fs::absolute(file.path);
+  if (!fs::is_directory(path.parent_path())) refuse("there is no such folder");
+  if (file.format == Format::kVcd && path.extension() == ".gtkw")
+    refuse("must not end in .gtkw: that is the file with the layout of the waveform");
+  if (!fs::exists(path)) return;
+  if (!fs::is_regular_file(path)) refuse("is no file");
+  if (fs::file_size(path) == 0) return;
+  constexpr std::size_t kBytes = 100;
+  std::string beginning(kBytes, '\0');
+  std::ifstream stream(path, std::ios::binary);
+  stream.read(beginning.data(), kBytes);
+  beginning.resize(static_cast<std::size_t>(stream.gcount()));
+  if (!is_trace(file, beginning))
+    refuse("must be a new file or an earlier trace of this format, which is replaced");
+}
 
 std::unique_ptr<TraceWriter> make_writer(const TraceFile& file, const platform::BoardConfig& board) {
   switch (file.format) {
@@ -83,9 +147,11 @@ std::unique_ptr<TraceWriter> make_writer(const std::vector<TraceFile>& files,
                                          const platform::BoardConfig& board,
                                          const std::optional<fpga::CycleWindow>& window) {
   std::vector<std::unique_ptr<TraceWriter>> writers;
-  for (const TraceFile& file : files) writers.push_back(make_writer(file, board));
-  return std::make_unique<AllWriters>(std::move(writers), Clock(board.fpga.clock_mhz),
-                                      window && window->frame);
+  for (const TraceFile& file : files) {
+    check(file);
+    writers.push_back(make_writer(file, board));
+  }
+  return std::make_unique<AllWriters>(std::move(writers), Clock(board.fpga.clock_mhz), window);
 }
 
 }  // namespace stereotlm::trace

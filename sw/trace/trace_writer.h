@@ -1,10 +1,18 @@
 #pragma once
 
+#include <cstdint>
+
 #include "models/fpga/core_cycle.h"
 #include "platform/timeline_records.h"
 #include "platform/trace_records.h"
 
 namespace stereotlm::trace {
+
+// Times from `begin_ps` on, up to `end_ps`.
+struct TimeSpan {
+  std::uint64_t begin_ps = 0;
+  std::uint64_t end_ps = UINT64_MAX;
+};
 
 // Writes a trace of a run to a file, which appears whole with commit() or not at all. Memory does not grow with
 // the run. Every function throws std::runtime_error, with the name of the file, if a byte cannot be stored.
@@ -16,8 +24,8 @@ class TraceWriter : public fpga::CycleObserver, public platform::BusObserver {
   virtual void frame(const platform::FrameRuns& frame) = 0;
   // What has happened in the computer, by the ends of the events.
   virtual void events(const platform::TimelineRecords& records) = 0;
-  // The run has ended. To be called once, after everything else.
-  virtual void commit() = 0;
+  // The run has ended. To be called once, after everything else. `window`: the time of the window.
+  virtual void commit(const TimeSpan& window) = 0;
 };
 
 }  // namespace stereotlm::trace

@@ -192,7 +192,8 @@ class VcdText {
 
 }  // namespace
 
-VcdSpan write_vcd(OutputFile& file, const VcdSignals& signals, const std::vector<ChangeStream*>& streams) {
+VcdSpan write_vcd(OutputFile& file, const VcdSignals& signals, const std::vector<ChangeStream*>& streams,
+                  const TimeSpan& window) {
   VcdText text(file, signals);
   text.header();
   for (ChangeStream* const stream : streams) stream->rewind();
@@ -203,9 +204,10 @@ VcdSpan write_vcd(OutputFile& file, const VcdSignals& signals, const std::vector
     for (const ChangeStream* const stream : streams) {
       if (!stream->at_end()) time_ps = std::min(time_ps, stream->change().time_ps);
     }
-    if (time_ps == UINT64_MAX) break;
+    if (time_ps == UINT64_MAX || time_ps > window.end_ps) break;
+    time_ps = std::max(time_ps, window.begin_ps);
     for (ChangeStream* const stream : streams) {
-      for (; !stream->at_end() && stream->change().time_ps == time_ps; stream->advance())
+      for (; !stream->at_end() && stream->change().time_ps <= time_ps; stream->advance())
         text.set(stream->change().signal, stream->change().value);
     }
     if (is_first)

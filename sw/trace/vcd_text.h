@@ -7,6 +7,7 @@
 
 #include "sw/trace/change_stream.h"
 #include "sw/trace/output_file.h"
+#include "sw/trace/trace_writer.h"
 #include "sw/trace/vcd_signals.h"
 
 namespace stereotlm::trace {
@@ -21,6 +22,9 @@ struct VcdSpan {
 
 // Writes the changes of all streams in the order of their times, as a value change dump of IEEE 1364. A signal
 // has at most one change at a time: the last one of its stream.
-VcdSpan write_vcd(OutputFile& file, const VcdSignals& signals, const std::vector<ChangeStream*>& streams);
+//
+// A change before the window gives the value with which the window begins. Changes after it are left out.
+VcdSpan write_vcd(OutputFile& file, const VcdSignals& signals, const std::vector<ChangeStream*>& streams,
+                  const TimeSpan& window);
 
 }  // namespace stereotlm::trace

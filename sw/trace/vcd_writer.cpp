@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <fstream>
 #include <stdexcept>
 #include <string>
 
@@ -23,7 +24,7 @@ constexpr std::size_t kQueueStreams = 3;
 
 // Returns the path, for which vcd2fst is needed if it ends in ".fst".
 const fs::path& checked_path(const fs::path& path) {
-  if (path.extension() != ".fst") return path;
+  if (!VcdWriter::is_fst(path)) return path;
   try {
     process::run_command({"vcd2fst", "--help"});
   } catch (const process::CommandMissing&) {
@@ -37,6 +38,13 @@ const fs::path& checked_path(const fs::path& path) {
 
 fs::path layout_path(fs::path path) { return path.replace_extension(".gtkw"); }
 
+// Whether a file is there that GTKWave has saved, or somebody else.
+bool is_of_user(const fs::path& layout) {
+  std::ifstream file(layout);
+  std::string first_line;
+  return file && std::getline(file, first_line) && first_line != kLayoutMark;
+}
+
 }  // namespace
 
 VcdWriter::VcdWriter(const fs::path& path, const platform::BoardConfig& board)
@@ -45,8 +53,8 @@ VcdWriter::VcdWriter(const fs::path& path, const platform::BoardConfig& board)
       signals_(board_),
       words_(make_words()),
       file_(path),
-      layout_(layout_path(path)),
       core_(path) {
+  if (!is_of_user(layout_path(path))) layout_.emplace(layout_path(path));
   for (std::size_t bus = 0; bus < kBusStreams; ++bus) buses_.emplace_back(path);
   for (std::size_t queue = 0; queue < kQueueStreams; ++queue) queues_.emplace_back(path);
   for (std::size_t signal = 0; signal < signals_.core_size(); ++signal)
@@ -155,25 +163,25 @@ void VcdWriter::level(const platform::QueueLevel& level) {
                                                        static_cast<std::uint32_t>(level.words));
 }
 
-void VcdWriter::commit() {
+void VcdWriter::commit(const TimeSpan& window) {
   end_cycles();
   std::vector<ChangeStream*> streams = {&core_};
   for (ChangeStream& stream : buses_) streams.push_back(&stream);
   for (ChangeStream& stream : queues_) streams.push_back(&stream);
-  const VcdSpan span = write_waveform(streams);
-  layout_.write(gtkwave_layout(path_.filename().string(), signals_, span));
+  const VcdSpan span = write_waveform(streams, window);
+  if (layout_) layout_->write(gtkwave_layout(path_.filename().string(), signals_, span));
   file_.complete();
-  layout_.complete();
+  if (layout_) layout_->complete();
   file_.commit();
-  layout_.commit();
+  if (layout_) layout_->commit();
 }
 
-VcdSpan VcdWriter::write_waveform(const std::vector<ChangeStream*>& streams) {
-  if (!is_fst()) return write_vcd(file_, signals_, streams);
+VcdSpan VcdWriter::write_waveform(const std::vector<ChangeStream*>& streams, const TimeSpan& window) {
+  if (!is_fst(path_)) return write_vcd(file_, signals_, streams, window);
   const files::TemporaryFolder folder;
   const fs::path vcd = folder.path() / "trace.vcd";
   OutputFile text(vcd);
-  const VcdSpan span = write_vcd(text, signals_, streams);
+  const VcdSpan span = write_vcd(text, signals_, streams, window);
   text.complete();
   text.commit();
   const process::CommandEnd end = process::run_command({"vcd2fst", vcd.string(), file_.aside().string()});

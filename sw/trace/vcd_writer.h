@@ -23,6 +23,7 @@ class VcdWriter : public TraceWriter {
   // A path that ends in ".fst" gives the format of GTKWave, through its program vcd2fst; another one gives VCD.
   // Throws std::runtime_error also if vcd2fst is needed and not installed.
   VcdWriter(const std::filesystem::path& path, const platform::BoardConfig& board);
+  static bool is_fst(const std::filesystem::path& path) { return path.extension() == ".fst"; }
 
   void cycle(const fpga::CoreCycle& cycle) override;
   void burst(const platform::BusBurst& burst) override;
@@ -30,7 +31,7 @@ class VcdWriter : public TraceWriter {
   // A waveform shows the window alone.
   void frame(const platform::FrameRuns& /*frame*/) override {}
   void events(const platform::TimelineRecords& /*records*/) override {}
-  void commit() override;
+  void commit(const TimeSpan& window) override;
 
  private:
   // Words that cycles show.
@@ -42,22 +43,21 @@ class VcdWriter : public TraceWriter {
     std::array<std::uint32_t, fpga::kHostTraffics> traffics;
   };
 
-  bool is_fst() const { return path_.extension() == ".fst"; }
   Words make_words();
   void end_cycles();
   void show_idle();
   void show_port(const fpga::CoreCycle& cycle, std::size_t port);
   void show_bank(const fpga::PortCycle& port, std::size_t requester);
   void add_changes(std::uint64_t cycle);
-  VcdSpan write_waveform(const std::vector<ChangeStream*>& streams);
+  VcdSpan write_waveform(const std::vector<ChangeStream*>& streams, const TimeSpan& window);
 
   std::filesystem::path path_;
   TraceBoard board_;
   VcdSignals signals_;
   Words words_;
   OutputFile file_;
-  OutputFile layout_;
-  std::vector<std::uint32_t> idle_;  // [signal of the core]
+  std::optional<OutputFile> layout_;  // nothing: the user has a layout of this name
+  std::vector<std::uint32_t> idle_;   // [signal of the core]
   std::vector<std::uint32_t> now_;
   std::vector<std::uint32_t> shown_;
   std::optional<std::uint64_t> next_cycle_;  // the one behind the last cycle

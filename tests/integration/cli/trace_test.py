@@ -61,11 +61,16 @@ class Files(TraceTest):
         self.is_in(self.folder, "left.pgm", "right.pgm", "run.gtkw", "run.perfetto", "run.sqlite", "run.vcd")
 
     def test_replace_earlier_ones_as_a_whole(self):
+        window = ["--trace-window", "frame=0,rows=3..4"]
+        formats = ("perfetto", "sqlite", "vcd", "vcd:run.fst")
+        options = [word for form in formats for word in ("--trace", form if ":" in form else f"{form}:run.{form}")]
+        self.traced(*options, *window, "--frames", 3)
+        before = self.result(self.folder)
+        self.traced(*options, *window)
+        after = self.result(self.folder)
         for name in ("run.perfetto", "run.sqlite"):
-            self.file(name, "an earlier file")
-        self.traced(*trace("perfetto", "sqlite"))
-        self.assertEqual(self.rows_of("PRAGMA integrity_check"), [("ok",)])
-        self.assertNotIn(b"an earlier file", (self.folder / "run.perfetto").read_bytes())
+            self.assertTrue(before[name] != after[name], name)
+        self.assertEqual(self.rows_of("SELECT DISTINCT frame FROM runs"), [(0,)])
 
     def test_of_a_database_add_up_to_the_counters(self):
         self.traced("--frames", 3, *trace("sqlite"), "--out", self.out)
@@ -119,6 +124,12 @@ class Files(TraceTest):
         kinds = {kind for kind, in self.rows_of("SELECT DISTINCT kind FROM events")}
         self.assertLessEqual({"capture", "upload", "read_back", "frame", "interrupt", "wait"}, kinds)
 
+    def test_of_a_window_in_which_nothing_happens_say_so(self):
+        process = run("run", "fpl2003", *SMALL, *PRELOADED, *TIMING, *trace("sqlite"), "--trace-window",
+                      "frame=0,cycles=999999..1000000", cwd=self.folder)
+        self.assertIn("note: --trace-window: has no cycle in which a frame ran", process.stderr)
+        self.assertEqual(self.rows_of("SELECT count(*) FROM transactions"), [(0,)])
+
     def test_of_an_interrupted_run_are_those_of_the_finished_frames(self):
         command = ["run", "fpl2003", *SMALL, *PRELOADED, *TIMING, "--frames", 10**6, "--out", self.out, "--trace",
                    f"sqlite:{self.folder / 'run.sqlite'}"]
@@ -126,14 +137,15 @@ class Files(TraceTest):
         self.assertEqual(self.rows_of("SELECT count(DISTINCT frame) FROM runs"), [(self.stats()["frames"],)])
 
     def test_of_a_killed_run_are_not_there(self):
-        self.file("run.sqlite", "an earlier file")
+        self.traced(*trace("sqlite"))
+        earlier = (self.folder / "run.sqlite").read_bytes()
         process = self.start("run", "fpl2003", *SMALL, *PRELOADED, *TIMING, "--frames", 10**6,
                              *trace("perfetto", "sqlite"), cwd=self.folder)
         wait_until(lambda: len(os.listdir(self.folder)) > 4)
         process.kill()
         process.communicate()
         self.assertFalse((self.folder / "run.perfetto").exists())
-        self.assertEqual((self.folder / "run.sqlite").read_text(), "an earlier file")
+        self.assertEqual((self.folder / "run.sqlite").read_bytes(), earlier)
         self.traced(*trace("perfetto", "sqlite"))  # removes what the killed run has left
         self.is_in(self.folder, "left.pgm", "right.pgm", "run.perfetto", "run.sqlite")
 
@@ -153,20 +165,33 @@ class Refusals(TraceTest):
         window = ["--trace", a_file, "--trace-window"]
         forms = "must be frame=F, frame=F,rows=A..B, frame=F,cycles=A..B or cycles=A..B"
         self.all_refused([
-            ([*base, "--trace", "ftr:a"], "--trace ftr:a: must be FORMAT:FILE, where FORMAT is perfetto, vcd or sqlite"),
-            ([*base, "--trace", "vcd"], "--trace vcd: must be FORMAT:FILE"),
-            ([*base, "--trace", "vcd:"], "--trace vcd:: must be FORMAT:FILE"),
-            ([*base, "--trace", "vcd:a"], "--trace vcd:a: goes with --trace-window"),
+            ([*base, "--trace", "ftr:a"],
+             "--trace 'ftr:a': must be FORMAT:FILE, where FORMAT is perfetto, vcd or sqlite"),
+            ([*base, "--trace", "vcd"], "--trace 'vcd': must be FORMAT:FILE"),
+            ([*base, "--trace", "vcd:"], "--trace 'vcd:': must be FORMAT:FILE"),
+            ([*base, "--trace", "vcd:a"], "--trace 'vcd:a': goes with --trace-window"),
+            ([*base, "--trace", "vcd:a.gtkw", "--trace-window", "frame=0"], "'a.gtkw': must not end in .gtkw"),
             ([*base, "--trace", a_file, "--trace", f"sqlite:{self.folder}/./a"], "is given twice"),
             ([*base, "--trace-window", "frame=0"], "--trace-window: goes with --trace FORMAT:FILE"),
-            *(([*base, *window, text], f"--trace-window = {text}: {forms}")
+            *(([*base, *window, text], f"--trace-window = '{text}': {forms}")
               for text in ("", "3", "frame=", "frame=-1", "rows=1..2", "frame=0,rows=2..1", "frame=0,rows=1",
                            "cycles=1..x", "frame=0,frame=0", "frame=0,rows=1..2,cycles=1..2", "lines=1..2")),
             ([*base, *window, "frame=1"], "frame 1: must be below the frames of the run, 1"),
             ([*base, *window, "frame=0,rows=0..24"], "row 24: must be below the rows of the image, 24"),
-            ([*base, "--trace", f"sqlite:{self.folder}/none/a"], "none/a"),
-            ([*base, "--trace", f"perfetto:{self.folder}"], str(self.folder)),
+            ([*base, "--trace", f"sqlite:{self.folder}/none/a"], "none/a': there is no such folder"),
+            ([*base, "--trace", f"perfetto:{self.folder}"], f"'{self.folder}': is no file"),
         ])
+
+    def test_keep_files_that_are_no_traces(self):
+        text = self.file("notes.md", "what I found")
+        for form in ("perfetto", "sqlite", "vcd"):
+            process = run("run", "fpl2003", *SMALL, *PRELOADED, *TIMING, "--trace", f"{form}:{text}", "--trace-window",
+                          "frame=0")
+            self.refused_in_one_line(process, "notes.md': must be a new file or an earlier trace of this format")
+        self.assertEqual(text.read_text(), "what I found")
+        self.traced(*trace("sqlite"))
+        self.refused_in_one_line(run("run", "fpl2003", *SMALL, *PRELOADED, *TIMING, "--trace", "perfetto:run.sqlite",
+                                     cwd=self.folder), "must be a new file or an earlier trace of this format")
 
     def test_keep_inputs_and_results(self):
         self.refused_in_one_line(self.run_small("--trace", f"perfetto:{self.left}"),

@@ -235,7 +235,7 @@ Traced trace(const Case& of, Fidelity fidelity, const CycleWindow& window, bool 
     }
     writer->events(simulation->take_timeline());
   }
-  writer->commit();
+  writer->commit({});
   traced.cycles = std::move(cycles.cycles);
   traced.sums = cycles.sums;
   traced.log = binder.log();

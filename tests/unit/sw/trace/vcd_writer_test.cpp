@@ -25,7 +25,7 @@ class VcdWriterTest : public ::testing::Test {
   VcdFile written(const test::MadeTrace& trace) {
     VcdWriter writer(path_, board_);
     trace.send(writer);
-    writer.commit();
+    writer.commit({});
     return VcdFile(test::read_file(path_));
   }
   std::uint64_t ps(std::uint64_t cycle) const { return Clock(board_.fpga.clock_mhz).edge_ps(cycle); }
@@ -161,7 +161,7 @@ TEST_F(VcdWriterTest, ABurstThatBeginsAsAnotherEndsLeavesNoIdlePhaseBetween) {
   VcdWriter writer(path_, board_);
   writer.burst({Bus::kPci, "bridge", "host_memory", false, 0, 1, 0, 10, 20, 30});
   writer.burst({Bus::kPci, "bridge", "host_memory", false, 4, 1, 0, 30, 40, 50});
-  writer.commit();
+  writer.commit({});
   const VcdFile file(test::read_file(path_));
   EXPECT_EQ(file.at("pci.phase", 30), "address");
   EXPECT_EQ(file.changes("pci.owner").size(), 2);
@@ -176,7 +176,7 @@ TEST_F(VcdWriterTest, ABankWithSeparatePortsHasTwoOwners) {
   cycle.ports[2] = {fpga::Intent::kRequest, false, 1, 4, fpga::kTurnaroundToBlame, 0};
   VcdWriter writer(path_, board_);
   writer.cycle(cycle);
-  writer.commit();
+  writer.commit({});
   const VcdFile file(test::read_file(path_));
   EXPECT_EQ(file.at("bank0.read_owner", ps(7)), "left_lut");
   EXPECT_EQ(file.at("bank0.write_owner", ps(7)), "result");
@@ -199,7 +199,7 @@ TEST_F(VcdWriterTest, SixtyFourBanksHaveSignalsOfTheirOwn) {
   cycle.ports[0] = {fpga::Intent::kRequest, true, 63, 4, 0, 0};
   VcdWriter writer(path_, board_);
   writer.cycle(cycle);
-  writer.commit();
+  writer.commit({});
   const VcdFile file(test::read_file(path_));
   for (const platform::BankConfig& bank : board_.banks)
     EXPECT_EQ(file.at(bank.name + ".owner", 0), bank.name == "more63" ? "left_lut" : "-");
@@ -208,7 +208,7 @@ TEST_F(VcdWriterTest, SixtyFourBanksHaveSignalsOfTheirOwn) {
 TEST_F(VcdWriterTest, TheLayoutNamesTheFileAndEachSignalOfWhatDoesSomething) {
   const VcdFile file = written(test::make_trace(board_, 1));
   const std::string layout = test::read_file(layout_);
-  EXPECT_THAT(layout, ::testing::StartsWith("[dumpfile] \"file.vcd\"\n"));
+  EXPECT_THAT(layout, ::testing::StartsWith("[*] stereotlm\n[dumpfile] \"file.vcd\"\n"));
   for (const auto& [signal, code] : file.signals()) {
     if (signal == "right_capture.fifo") continue;  // always empty here
     const bool is_number = file.at(signal, UINT64_MAX).find_first_not_of("01z") == std::string::npos;
@@ -222,26 +222,47 @@ TEST_F(VcdWriterTest, TheLayoutLeavesOutWhatDoesNothingInTheWindow) {
   cycle.ports[0] = {fpga::Intent::kRequest, true, 1, 4, 0, 0};
   VcdWriter writer(path_, board_);
   writer.cycle(cycle);
-  writer.commit();
+  writer.commit({});
   const std::string layout = test::read_file(layout_);
   for (const char* scope : {"bank1", "left_lut"}) EXPECT_THAT(layout, ::testing::HasSubstr(scope));
   for (const char* scope : {"bank0", "right_lut", "pci", "left_capture"})
     EXPECT_THAT(layout, ::testing::Not(::testing::HasSubstr(scope)));
 }
 
+TEST_F(VcdWriterTest, LeavesALayoutThatGtkwaveHasSaved) {
+  test::write_file(layout_, "[*]\n[*] GTKWave Analyzer v3.3.118\n");
+  written(test::make_trace(board_, 1));
+  EXPECT_EQ(test::read_file(layout_), "[*]\n[*] GTKWave Analyzer v3.3.118\n");
+}
+
+TEST_F(VcdWriterTest, BeginsAndEndsWithTheWindow) {
+  using Bus = platform::BusBurst::Bus;
+  VcdWriter writer(path_, board_);
+  fpga::CoreCycle cycle;
+  cycle.cycle = 4;
+  cycle.ports[0] = {fpga::Intent::kRequest, true, 0, 4, 0, 0};
+  writer.cycle(cycle);
+  writer.burst({Bus::kPci, "bridge", "host_memory", false, 0, 1, 0, 10, 20, ps(6)});
+  writer.commit({ps(4), ps(5)});
+  const VcdFile file(test::read_file(path_));
+  EXPECT_EQ(file.times(), (std::vector<std::uint64_t>{ps(4), ps(5)}));
+  EXPECT_EQ(file.at("pci.phase", ps(4)), "data");  // has begun before
+  EXPECT_EQ(file.at("left_lut.state", ps(4)), "reads");
+}
+
 TEST_F(VcdWriterTest, LeavesBothEarlierFilesWithoutACommitOrWhenTheDiskIsFull) {
   test::write_file(path_, "earlier");
-  test::write_file(layout_, "earlier layout");
+  test::write_file(layout_, "[*] stereotlm\nearlier layout");
   const test::MadeTrace trace = test::make_trace(board_, 1);
   { VcdWriter(path_, board_).cycle(trace.cycles[0]); }
   {
     VcdWriter writer(path_, board_);
     trace.send(writer);
     const test::FileSizeLimit limit(100);
-    EXPECT_EQ(test::message_of([&] { writer.commit(); }), path_.string() + ": File too large");
+    EXPECT_EQ(test::message_of([&] { writer.commit({}); }), path_.string() + ": File too large");
   }
   EXPECT_EQ(test::read_file(path_), "earlier");
-  EXPECT_EQ(test::read_file(layout_), "earlier layout");
+  EXPECT_EQ(test::read_file(layout_), "[*] stereotlm\nearlier layout");
   EXPECT_EQ(files(), 2);
 }
 
@@ -251,7 +272,7 @@ TEST_F(VcdWriterTest, FstHasTheChangesOfVcd) {
   path_ = scratch_.path() / "other.fst";
   VcdWriter writer(path_, board_);
   trace.send(writer);
-  writer.commit();
+  writer.commit({});
   EXPECT_EQ(files(), 4);
   const VcdFile file(process::run_command({"fst2vcd", "-e", path_.string()}).out);
   for (const auto& [signal, code] : expected.signals()) {
