@@ -8,9 +8,6 @@
 namespace stereotlm::fpga {
 namespace {
 
-constexpr std::array<const char*, kHostTraffics> kTrafficNames = {"host capture", "host upload",
-                                                                  "host read-back"};
-
 std::size_t parts_of(std::size_t whole, std::size_t part) { return (whole + part - 1) / part; }
 
 std::size_t groups_of_strip(const FrameGeometry& geometry) {
@@ -22,11 +19,6 @@ std::size_t strips_of_results(const FrameGeometry& geometry) {
 }
 
 }  // namespace
-
-const char* requester_name(std::size_t requester) {
-  if (requester == kTurnaroundToBlame) return "turnaround";
-  return requester < kCorePortCount ? kPorts[requester].name : kTrafficNames[requester - kCorePortCount];
-}
 
 // Doubles the width or the height of the tiles, whichever is less, until they are few enough.
 TileGrid::TileGrid(const FrameGeometry& geometry, std::size_t most_tiles)

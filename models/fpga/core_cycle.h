@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <optional>
 
-#include "models/fpga/conflict_recorder.h"
 #include "models/fpga/core_ports.h"
 #include "models/fpga/port_cycles.h"
+#include "models/fpga/requesters.h"
 
 namespace stereotlm::fpga {
 
@@ -27,12 +27,10 @@ struct CoreCycle {
   std::uint64_t cycle = 0;             // since power-up
   std::optional<std::uint64_t> frame;  // the frame that runs; else only the host's port is set
   std::array<PortCycle, kPortCount> ports{};
-  // If the host requests.
-  HostTraffic host_traffic = HostTraffic::kCapture;
-  bool host_writes = false;
-  std::array<std::uint32_t, 2> lane_slots{};  // [side]: slots in the lane
-  std::uint32_t result_words = 0;             // in the queue of results
-  bool works = false;                         // the matcher works
+  HostTraffic host_traffic = HostTraffic::kCapture;  // if the host requests
+  std::array<std::uint32_t, 2> lane_slots{};         // [side]: slots in the lane
+  std::uint32_t result_words = 0;                    // in the queue of results
+  bool works = false;                                // the matcher works
 };
 
 // Receives each cycle of the core in a window, in the order of the cycles. A cycle that is left out is one in

@@ -54,7 +54,7 @@ class CoreStepper {
   // The recorder of the running frame; null if it is not recorded.
   void record(ConflictRecorder* conflicts) { conflicts_ = conflicts; }
   ConflictRecorder* conflicts() const { return conflicts_; }
-  // Told about each cycle; null: nobody.
+  // Receives each stepped cycle; null: none does.
   void record(CycleRecorder* cycles) { cycles_ = cycles; }
   memory::Arbitration& arbitration() { return arbitration_; }
   const memory::Arbitration& arbitration() const { return arbitration_; }

@@ -24,14 +24,14 @@ CycleRecorder::CycleRecorder(const CoreConfig& config, const ConflictRecorder& c
       observer_(observer) {}
 
 void CycleRecorder::start_frame(std::uint64_t number, std::uint64_t first_cycle, const FrameBases& bases) {
-  tell_served(first_cycle);
+  report_accesses(first_cycle);
   frame_ = number;
   first_cycle_ = first_cycle;
   bases_ = bases;
 }
 
 void CycleRecorder::end_frame(std::uint64_t end_cycle) {
-  drop_served(end_cycle);
+  drop_accesses(end_cycle);
   frame_.reset();
 }
 
@@ -84,8 +84,8 @@ void CycleRecorder::record(std::uint64_t cycle, const CoreControl::Decision& dec
     const bool is_granted = (granted & memory::mask_of(kHostPort)) != 0;
     set_host(out, host_->next_word(), is_granted, is_granted ? 0 : blamed(kHostPort));
   } else {
-    drop_served(cycle);
-    set_served(out);
+    drop_accesses(cycle);
+    set_access(out);
   }
   for (const Side side : kSides) {
     const LaneControl& lane = control.lane(side);
@@ -93,7 +93,7 @@ void CycleRecorder::record(std::uint64_t cycle, const CoreControl::Decision& dec
   }
   out.result_words = static_cast<std::uint32_t>(control.result().queued());
   out.works = decision.work;
-  tell(out);
+  report(out);
 }
 
 void CycleRecorder::set_item(PortCycle& port, memory::Port number, const CoreControl& control) const {
@@ -144,37 +144,36 @@ std::uint64_t CycleRecorder::pixel_of_slot(memory::Port port, std::uint64_t slot
 void CycleRecorder::set_host(CoreCycle& cycle, const HostWord& word, bool granted, std::size_t by) {
   cycle.ports[kHostPort] = {Intent::kRequest, granted, word.bank, word.address, by, 0};
   cycle.host_traffic = word.traffic;
-  cycle.host_writes = word.write;
 }
 
-// Drops what was served before `end_cycle`.
-void CycleRecorder::drop_served(std::uint64_t end_cycle) {
-  while (!served_.empty() && served_.front().cycle < end_cycle) {
-    Served& served = served_.front();
-    const std::uint64_t cycles = std::min(served.cycles, end_cycle - served.cycle);
-    if (served.granted) served.word.address += 4 * cycles;
-    served.cycle += cycles;
-    served.cycles -= cycles;
-    if (served.cycles != 0) return;
-    served_.pop_front();
+// Drops the accesses before `end_cycle`.
+void CycleRecorder::drop_accesses(std::uint64_t end_cycle) {
+  while (!accesses_.empty() && accesses_.front().cycle < end_cycle) {
+    Accesses& accesses = accesses_.front();
+    const std::uint64_t cycles = std::min(accesses.cycles, end_cycle - accesses.cycle);
+    if (accesses.granted) accesses.word.address += 4 * cycles;
+    accesses.cycle += cycles;
+    accesses.cycles -= cycles;
+    if (accesses.cycles != 0) return;
+    accesses_.pop_front();
   }
 }
 
-// Sets what the host's port does in the cycle, before which nothing is in served_ any more.
-void CycleRecorder::set_served(CoreCycle& cycle) const {
-  if (served_.empty() || cycle.cycle < served_.front().cycle) return;
-  const Served& served = served_.front();
-  set_host(cycle, served.word, served.granted, served.granted ? 0 : kTurnaroundToBlame);
+// Sets what the host's port does in the cycle, before which accesses_ has none.
+void CycleRecorder::set_access(CoreCycle& cycle) const {
+  if (accesses_.empty() || cycle.cycle < accesses_.front().cycle) return;
+  const Accesses& accesses = accesses_.front();
+  set_host(cycle, accesses.word, accesses.granted, accesses.granted ? 0 : kTurnaroundToBlame);
 }
 
-// Tells what was served before `end_cycle` while no frame runs.
-void CycleRecorder::tell_served(std::uint64_t end_cycle) {
-  while (!served_.empty() && served_.front().cycle < end_cycle) {
+// Reports the accesses before `end_cycle`, while no frame runs.
+void CycleRecorder::report_accesses(std::uint64_t end_cycle) {
+  while (!accesses_.empty() && accesses_.front().cycle < end_cycle) {
     CoreCycle out;
-    out.cycle = served_.front().cycle;
-    set_served(out);
-    if (is_inside(out.cycle)) tell(out);
-    drop_served(out.cycle + 1);
+    out.cycle = accesses_.front().cycle;
+    set_access(out);
+    if (is_inside(out.cycle)) report(out);
+    drop_accesses(out.cycle + 1);
   }
 }
 

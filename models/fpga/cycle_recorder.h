@@ -14,7 +14,7 @@
 
 namespace stereotlm::fpga {
 
-// Tells an observer what every port does in each cycle of a window. FastForward must not skip these cycles.
+// Reports to an observer what every port does in each cycle of a window. FastForward must not skip these cycles.
 // Addresses follow from the slots and from the look-up tables, so that memory need not hold them. Plain C++;
 // used at every fidelity, with the same cycles.
 class CycleRecorder {
@@ -22,11 +22,10 @@ class CycleRecorder {
   // A word of the host's port.
   struct HostWord {
     std::size_t bank = 0;
-    bool write = false;
     std::uint64_t address = 0;  // byte address in the bank
     HostTraffic traffic = HostTraffic::kCapture;
   };
-  // Knows the word of the host that requests next.
+  // Source of the word of the host that will request next.
   class Host {
    public:
     virtual ~Host() = default;
@@ -53,24 +52,24 @@ class CycleRecorder {
     if (is_inside(cycle)) record(cycle, decision, host_requests, granted, control, arbitration);
   }
 
-  // For the owner of the host's port: what is decided on words that request beside a frame, or while no frame
-  // runs. In `cycle` and in the cycles behind it one word after the other is granted, or the first one waits
-  // because of the turnaround. To be called in the order of the cycles, and before the frame is stepped there.
-  void served(const HostWord& first, std::uint64_t cycle, std::uint64_t cycles, bool granted) {
-    served_.push_back({first, cycle, cycles, granted});
+  // Reports accesses of the host that do not contend with the frame, or that come while no frame runs. If
+  // `granted`, consecutive words are granted in `cycles` cycles from `cycle` on. Otherwise the first word waits in
+  // these cycles because of the turnaround. To be called in the order of the cycles, and before the frame is
+  // stepped there.
+  void host_accesses(const HostWord& first, std::uint64_t cycle, std::uint64_t cycles, bool granted) {
+    accesses_.push_back({first, cycle, cycles, granted});
   }
 
-  // The number of cycles that the observer was told.
-  std::uint64_t told() const { return told_; }
-
-  // Tells the cycles before `end_cycle`, as far as they are known, while no frame runs. To be called regularly,
-  // because they fill memory, and at the end of the run. What is served may be ahead of that.
+  // Hands out the accesses of the host before `end_cycle` while no frame runs. To be called regularly, because they
+  // fill memory, and at the end of the run. Later accesses may be known by then.
   void hand_out(std::uint64_t end_cycle) {
-    if (!frame_) tell_served(end_cycle);
+    if (!frame_) report_accesses(end_cycle);
   }
+  // The number of cycles that the observer has received.
+  std::uint64_t observed_cycles() const { return observed_cycles_; }
 
  private:
-  struct Served {
+  struct Accesses {
     HostWord word;
     std::uint64_t cycle;
     std::uint64_t cycles;
@@ -78,8 +77,8 @@ class CycleRecorder {
   };
 
   bool is_inside(std::uint64_t cycle) const;
-  void tell(const CoreCycle& cycle) {
-    ++told_;
+  void report(const CoreCycle& cycle) {
+    ++observed_cycles_;
     observer_.cycle(cycle);
   }
   void record(std::uint64_t cycle, const CoreControl::Decision& decision, bool host_requests,
@@ -88,9 +87,9 @@ class CycleRecorder {
   std::uint64_t address_of(memory::Port port, std::uint64_t item);
   std::uint64_t pixel_of_slot(memory::Port port, std::uint64_t slot);
   static void set_host(CoreCycle& cycle, const HostWord& word, bool granted, std::size_t by);
-  void set_served(CoreCycle& cycle) const;
-  void drop_served(std::uint64_t end_cycle);
-  void tell_served(std::uint64_t end_cycle);
+  void set_access(CoreCycle& cycle) const;
+  void drop_accesses(std::uint64_t end_cycle);
+  void report_accesses(std::uint64_t end_cycle);
 
   FrameGeometry geometry_;
   std::array<bool, 2> has_table_;  // [side]
@@ -109,8 +108,8 @@ class CycleRecorder {
     SlotCursor cursor;
   };
   std::array<Place, kCorePortCount> places_{};
-  std::deque<Served> served_;  // not told yet
-  std::uint64_t told_ = 0;
+  std::deque<Accesses> accesses_;  // of the host, not handed out yet
+  std::uint64_t observed_cycles_ = 0;
 };
 
 }  // namespace stereotlm::fpga

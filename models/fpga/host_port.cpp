@@ -37,8 +37,7 @@ bool HostPort::access(std::uint64_t cycle, std::uint64_t edge_ps) {
 }
 
 CycleRecorder::HostWord HostPort::next_word() const {
-  return {*burst_.bank, burst_.write, words_left().first - memory::crossbar_address(*burst_.bank, 0),
-          traffic()};
+  return {*burst_.bank, words_left().first - memory::crossbar_address(*burst_.bank, 0), traffic()};
 }
 
 bool HostPort::is_contended() const { return is_contended(*burst_.bank); }

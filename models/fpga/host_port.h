@@ -102,7 +102,7 @@ class HostPort : private CycleRecorder::Host {
 
   CycleRecorder::HostWord next_word() const override;
   void record_served(std::uint64_t cycle, std::uint64_t cycles, bool granted) {
-    if (frames_.cycles() != nullptr) frames_.cycles()->served(next_word(), cycle, cycles, granted);
+    if (frames_.cycles() != nullptr) frames_.cycles()->host_accesses(next_word(), cycle, cycles, granted);
   }
   bool is_contended(std::size_t bank) const;
   void move_burst();

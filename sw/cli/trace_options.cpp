@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 namespace stereotlm::cli {
@@ -86,6 +87,20 @@ void TraceOptions::check_usage(process::Problems& problems) {
   if (!files_.is_given()) problems.add("--trace-window: goes with --trace FORMAT:FILE");
 }
 
+// A file that the trace would write, and another trace too; nothing if there is none.
+std::optional<std::filesystem::path> TraceOptions::shared_output(const trace::TraceFile& file) const {
+  try {
+    for (const fs::path& output : trace::outputs_of(file)) {
+      for (const trace::TraceFile& other : files) {
+        const std::vector<fs::path> others = trace::outputs_of(other);
+        if (std::find(others.begin(), others.end(), output) != others.end()) return output;
+      }
+    }
+  } catch (const std::system_error&) {  // make_writer() says why
+  }
+  return std::nullopt;
+}
+
 void TraceOptions::check_files(process::Problems& problems) {
   for (const std::string& text : files_.text) {
     const std::size_t colon = text.find(':');
@@ -98,15 +113,13 @@ void TraceOptions::check_files(process::Problems& problems) {
     }
     trace::TraceFile file{static_cast<trace::Format>(format - trace::kFormatNames.begin()),
                           text.substr(colon + 1)};
-    const auto is_same = [&file](const trace::TraceFile& other) {
-      return fs::absolute(file.path).lexically_normal() == fs::absolute(other.path).lexically_normal();
-    };
-    if (std::any_of(files.begin(), files.end(), is_same))
-      problems.add(fmt::format("--trace '{}': '{}' is given twice: each trace needs a file of its own", text,
-                               file.path));
+    if (const auto shared = shared_output(file)) {
+      problems.add(fmt::format("--trace '{}': '{}' is the file of two traces: each needs its own", text,
+                               shared->string()));
+    }
     if (file.format == trace::Format::kVcd && !window_.is_given())
       problems.add(
-          fmt::format("--trace '{}': goes with --trace-window: a vcd has each cycle of its window", text));
+          fmt::format("--trace '{}': needs --trace-window: a vcd has only the cycles of a window", text));
     files.push_back(std::move(file));
   }
 }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <vector>
 
@@ -31,6 +33,7 @@ class TraceOptions {
   std::optional<fpga::CycleWindow> window;
 
  private:
+  std::optional<std::filesystem::path> shared_output(const trace::TraceFile& file) const;
   void check_files(process::Problems& problems);
 
   TypedList files_;

@@ -114,8 +114,7 @@ void PerfettoComputer::event(const TimelineEvent& event) {
 
 OverlappingTracks& PerfettoComputer::track_of(const TimelineEvent& event) {
   const std::string name = track_name(event);
-  constexpr std::size_t kRanksOfKind = 8;
-  const std::size_t rank = 3 + static_cast<std::size_t>(event.kind) * kRanksOfKind;
+  const std::size_t rank = 3 + static_cast<std::size_t>(event.kind);
   return events_.try_emplace(name, tree_, group_of(event.kind), rank, name).first->second;
 }
 

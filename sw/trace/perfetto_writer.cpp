@@ -14,10 +14,11 @@ void PerfettoWriter::events(const platform::TimelineRecords& records) {
   for (const platform::TimelineEvent& event : records.events) computer_.event(event);
 }
 
-void PerfettoWriter::commit(const TimeSpan& /*window*/) {
+void PerfettoWriter::complete(const TimeSpan& /*window*/) {
   cycles_.end();
   file_.complete();
-  file_.commit();
 }
+
+void PerfettoWriter::commit() { file_.commit(); }
 
 }  // namespace stereotlm::trace

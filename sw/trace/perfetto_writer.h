@@ -24,7 +24,8 @@ class PerfettoWriter : public TraceWriter {
   void level(const platform::QueueLevel& level) override { computer_.level(level); }
   void frame(const platform::FrameRuns& frame) override { rows_.frame(frame); }
   void events(const platform::TimelineRecords& records) override;
-  void commit(const TimeSpan& window) override;
+  void complete(const TimeSpan& window) override;
+  void commit() override;
 
  private:
   TraceBoard board_;

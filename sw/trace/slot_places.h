@@ -31,15 +31,12 @@ class SlotPlaces {
 
   // The row and the first column of the four disparities in a word of the result.
   SlotPlace place_of_word(std::uint64_t word) const {
-    const auto rows = static_cast<std::uint64_t>(geometry_.rows);
     const std::uint64_t row_words = geometry_.columns_per_strip() / 4;
-    const std::uint64_t strip = word / (rows * row_words);
-    const std::uint64_t rows_inside =
-        std::min(rows, static_cast<std::uint64_t>(geometry_.height) - strip * rows);
-    const std::uint64_t in_strip = word - strip * rows * row_words;
-    return {strip + static_cast<std::uint64_t>(geometry_.lead_strips),
-            static_cast<int>(strip * rows + in_strip % rows_inside),
-            static_cast<int>(4 * (in_strip / rows_inside))};
+    const std::uint64_t place = geometry_.place_of_result_word(word);
+    const std::uint64_t row = place / row_words;
+    return {
+        row / static_cast<std::uint64_t>(geometry_.rows) + static_cast<std::uint64_t>(geometry_.lead_strips),
+        static_cast<int>(row), static_cast<int>(4 * (place % row_words))};
   }
 
   // The slots of the pixels whose disparities the word holds. With the fetch `column` a pixel has several

@@ -220,7 +220,7 @@ void SqliteWriter::add_transaction(const fpga::CoreCycle& cycle, std::size_t por
       .number(cycle.cycle)
       .text(fpga::requester_name(requester_of_port(port, cycle.host_traffic)))
       .text(board_.bank_name(access.bank).c_str())
-      .number(is_host ? cycle.host_writes : fpga::kPorts[port].write)
+      .number(writes(requester_of_port(port, cycle.host_traffic)))
       .number(access.address)
       .number(waited_[port].cycles);
   waited_[port].cycles != 0 ? row.text(fpga::requester_name(waited_[port].by)) : row.null();
@@ -274,12 +274,13 @@ void SqliteWriter::events(const platform::TimelineRecords& records) {
   });
 }
 
-void SqliteWriter::commit(const TimeSpan& /*window*/) {
+void SqliteWriter::complete(const TimeSpan& /*window*/) {
   guard([&] { database_->execute("COMMIT"); });
   for (auto* statement : {&run_, &transaction_, &burst_, &level_, &event_}) statement->reset();
   database_.reset();
   file_.complete();
-  file_.commit();
 }
+
+void SqliteWriter::commit() { file_.commit(); }
 
 }  // namespace stereotlm::trace

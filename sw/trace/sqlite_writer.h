@@ -29,7 +29,8 @@ class SqliteWriter : public TraceWriter {
   void level(const platform::QueueLevel& level) override;
   void frame(const platform::FrameRuns& frame) override;
   void events(const platform::TimelineRecords& records) override;
-  void commit(const TimeSpan& window) override;
+  void complete(const TimeSpan& window) override;
+  void commit() override;
 
  private:
   // The cycles in which a port has waited for its next access.

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "models/clock.h"
+#include "sw/files/replaced_file.h"
 #include "sw/trace/perfetto_writer.h"
 #include "sw/trace/sqlite_writer.h"
 #include "sw/trace/vcd_writer.h"
@@ -28,10 +29,9 @@ TimeSpan span_of(const fpga::CycleWindow& window, const Clock& clock) {
   return {begin_of(window.first), window.last < most_cycles ? begin_of(window.last + 1) : UINT64_MAX};
 }
 
-// Hands everything to several writers.
-//
-// In the window of a frame the buses are traced for the whole frame, because the cycles of its rows are not known
-// before. What lies beside these cycles is left out when all is known.
+// Forwards to several writers. For the window of a frame BusTrace reports the whole frame, because the cycles of
+// its rows are not known before. This class keeps these bursts and levels, and leaves out those beside the cycles of
+// the window at the end.
 class AllWriters : public TraceWriter {
  public:
   AllWriters(std::vector<std::unique_ptr<TraceWriter>> writers, const Clock& clock,
@@ -62,14 +62,17 @@ class AllWriters : public TraceWriter {
   void level(const platform::QueueLevel& level) override {
     is_of_frame_ ? levels_.push_back(level) : write(level);
   }
-  void commit(const TimeSpan& /*window*/) override {
+  void complete(const TimeSpan& /*window*/) override {
     for (const platform::BusBurst& burst : bursts_) {
       if (burst.end_ps > span_.begin_ps && burst.request_ps < span_.end_ps) write(burst);
     }
     for (const platform::QueueLevel& level : levels_) {
       if (level.time_ps > span_.begin_ps && level.time_ps <= span_.end_ps) write(level);
     }
-    for (const auto& writer : writers_) writer->commit(span_);
+    for (const auto& writer : writers_) writer->complete(span_);
+  }
+  void commit() override {
+    for (const auto& writer : writers_) writer->commit();
   }
 
  private:
@@ -142,6 +145,14 @@ std::unique_ptr<TraceWriter> make_writer(const TraceFile& file, const platform::
 }
 
 }  // namespace
+
+std::vector<std::filesystem::path> outputs_of(const TraceFile& file) {
+  namespace fs = std::filesystem;
+  std::vector<fs::path> outputs = {file.path};
+  if (file.format == Format::kVcd) outputs.push_back(VcdWriter::layout_of(file.path));
+  for (fs::path& output : outputs) output = fs::weakly_canonical(files::linked_file(fs::absolute(output)));
+  return outputs;
+}
 
 std::unique_ptr<TraceWriter> make_writer(const std::vector<TraceFile>& files,
                                          const platform::BoardConfig& board,

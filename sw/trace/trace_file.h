@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -21,6 +22,10 @@ struct TraceFile {
   Format format = Format::kPerfetto;
   std::string path;
 };
+
+// The files that the trace is written to, without links: the file itself, and the layout of a waveform. Throws
+// std::system_error if links cannot be followed.
+std::vector<std::filesystem::path> outputs_of(const TraceFile& file);
 
 // The writer of one or more traces of a run with this window. Throws std::runtime_error, with the name of the file, if one cannot
 // be written.

@@ -7,7 +7,10 @@ namespace stereotlm::trace {
 namespace {
 
 constexpr unsigned kBusAddressBits = 32;
-constexpr unsigned kCountBits = 16;  // a queue has at most 4096 words
+constexpr unsigned kCountBits = 16;
+constexpr unsigned kRequestBits = 3;
+static_assert(fpga::kPortCount < 1U << kRequestBits);
+static_assert(fpga::kLaneFifoRule.max < 1 << kCountBits && fpga::kResultFifoRule.max < 1 << kCountBits);
 
 // The queues of the computer, as QueueLevel names them, and the names of their signals.
 constexpr std::array<std::array<const char*, 2>, 3> kQueues = {
@@ -38,7 +41,6 @@ VcdSignals::VcdSignals(const TraceBoard& board) {
 void VcdSignals::add_banks(const TraceBoard& board) {
   for (std::size_t bank = 0; bank < board.banks.size(); ++bank) {
     const std::string& name = board.bank_name(bank);
-    constexpr unsigned kRequestBits = 3;
     banks_.push_back(add(VcdGroup::kBanks, name, "requests", kRequestBits, 0));
     if (board.has_separate_ports(bank)) {
       add_words(VcdGroup::kBanks, name, "read_owner", "-");
@@ -56,7 +58,7 @@ void VcdSignals::add_ports(const TraceBoard& board) {
     const std::string name = fpga::kPorts[port].name;
     ports_[port] = add_words(VcdGroup::kPorts, name, "state", "idle");
     add_words(VcdGroup::kPorts, name, "bank", "-");
-    add(VcdGroup::kPorts, name, "address", address_bits(board), kNoNumber);
+    add(VcdGroup::kPorts, name, "address", address_bits(board), kUnknown);
     add_words(VcdGroup::kPorts, name, "waits_for", "-");
   }
   host_traffic_ = add_words(VcdGroup::kPorts, "host", "traffic", "-");
@@ -72,7 +74,7 @@ void VcdSignals::add_computer() {
     add(VcdGroup::kBuses, name, "address", kBusAddressBits, kNoNumber);
   }
   first_level_ = signals_.size();
-  for (const auto& [scope, name] : kQueues) add(VcdGroup::kQueues, scope, name, kCountBits, 0);
+  for (const auto& [scope, name] : kQueues) add(VcdGroup::kQueues, scope, name, kCountBits, kUnknown);
 }
 
 std::size_t VcdSignals::add(VcdGroup group, std::string scope, std::string name, unsigned bits,

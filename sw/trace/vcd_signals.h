@@ -26,10 +26,12 @@ struct VcdSignal {
   std::uint32_t idle = 0;  // its value outside of the window
 };
 
-// The signals of a board, and the words that they show. A value is kNoNumber if a signal has no number.
+// The signals of a board, and the words that they show. A value is kNoNumber
+// while a signal has no number, and kUnknown before its first change in the window.
 class VcdSignals {
  public:
   static constexpr std::uint32_t kNoNumber = UINT32_MAX;
+  static constexpr std::uint32_t kUnknown = UINT32_MAX - 1;
   static constexpr std::size_t kNone = SIZE_MAX;
 
   // Indices of the signals of a port, in this order from its first one.

@@ -159,8 +159,8 @@ class VcdText {
     } else if (bits == 1) {
       put(value != 0 ? '1' : '0');
       return put(codes_[signal].name_and_end());
-    } else if (value == VcdSignals::kNoNumber) {
-      put("bz");
+    } else if (value >= VcdSignals::kUnknown) {
+      put(value == VcdSignals::kNoNumber ? "bz" : "bx");
     } else {
       binary(value);
     }
@@ -169,7 +169,7 @@ class VcdText {
   }
   // Without leading zeros.
   void binary(std::uint32_t value) {
-    std::array<char, 2 * 33> text;
+    std::array<char, 2 * 33> text{};
     for (std::size_t byte = 0; byte < 4; ++byte)
       std::memcpy(text.data() + 1 + 8 * byte, bits_of_bytes_[value >> (24 - 8 * byte) & 0xFFU].data(), 8);
     const auto zeros = static_cast<std::size_t>(__builtin_clz(value | 1U));

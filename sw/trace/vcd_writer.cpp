@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "sw/files/temporary_folder.h"
+#include "models/memory/crossbar_address.h"
 #include "sw/process/command.h"
 #include "sw/trace/gtkwave_layout.h"
 
@@ -36,8 +36,6 @@ const fs::path& checked_path(const fs::path& path) {
   return path;
 }
 
-fs::path layout_path(fs::path path) { return path.replace_extension(".gtkw"); }
-
 // Whether a file is there that GTKWave has saved, or somebody else.
 bool is_of_user(const fs::path& layout) {
   std::ifstream file(layout);
@@ -53,10 +51,10 @@ VcdWriter::VcdWriter(const fs::path& path, const platform::BoardConfig& board)
       signals_(board_),
       words_(make_words()),
       file_(path),
-      core_(path) {
-  if (!is_of_user(layout_path(path))) layout_.emplace(layout_path(path));
-  for (std::size_t bus = 0; bus < kBusStreams; ++bus) buses_.emplace_back(path);
-  for (std::size_t queue = 0; queue < kQueueStreams; ++queue) queues_.emplace_back(path);
+      core_(files::linked_file(path)) {
+  if (!is_of_user(layout_of(path))) layout_.emplace(layout_of(path));
+  for (std::size_t bus = 0; bus < kBusStreams; ++bus) buses_.emplace_back(files::linked_file(path));
+  for (std::size_t queue = 0; queue < kQueueStreams; ++queue) queues_.emplace_back(files::linked_file(path));
   for (std::size_t signal = 0; signal < signals_.core_size(); ++signal)
     idle_.push_back(signals_.all()[signal].idle);
   shown_ = idle_;
@@ -151,7 +149,9 @@ void VcdWriter::burst(const BusBurst& burst) {
   stream.add(burst.address_ps, first + VcdSignals::kPhase, signals_.word("address"));
   stream.add(burst.address_ps, first + VcdSignals::kDirection, words_.accesses[burst.write ? 1 : 0]);
   stream.add(burst.address_ps, first + VcdSignals::kTarget, signals_.word(burst.target));
-  stream.add(burst.address_ps, first + VcdSignals::kBusAddress, static_cast<std::uint32_t>(burst.address));
+  const bool is_local = burst.bus == BusBurst::Bus::kLocal;
+  const std::uint64_t address = is_local ? memory::address_in_bank(burst.address) : burst.address;
+  stream.add(burst.address_ps, first + VcdSignals::kBusAddress, static_cast<std::uint32_t>(address));
   stream.add(burst.data_ps, first + VcdSignals::kPhase, signals_.word("data"));
   for (std::uint32_t signal = first; signal <= first + VcdSignals::kBusAddress; ++signal)
     stream.add(burst.end_ps, signal, signals_.all()[signal].idle);
@@ -163,7 +163,7 @@ void VcdWriter::level(const platform::QueueLevel& level) {
                                                        static_cast<std::uint32_t>(level.words));
 }
 
-void VcdWriter::commit(const TimeSpan& window) {
+void VcdWriter::complete(const TimeSpan& window) {
   end_cycles();
   std::vector<ChangeStream*> streams = {&core_};
   for (ChangeStream& stream : buses_) streams.push_back(&stream);
@@ -172,19 +172,20 @@ void VcdWriter::commit(const TimeSpan& window) {
   if (layout_) layout_->write(gtkwave_layout(path_.filename().string(), signals_, span));
   file_.complete();
   if (layout_) layout_->complete();
+}
+
+void VcdWriter::commit() {
   file_.commit();
   if (layout_) layout_->commit();
 }
 
 VcdSpan VcdWriter::write_waveform(const std::vector<ChangeStream*>& streams, const TimeSpan& window) {
   if (!is_fst(path_)) return write_vcd(file_, signals_, streams, window);
-  const files::TemporaryFolder folder;
-  const fs::path vcd = folder.path() / "trace.vcd";
-  OutputFile text(vcd);
+  OutputFile text(path_.string() + ".vcd");  // never committed
   const VcdSpan span = write_vcd(text, signals_, streams, window);
   text.complete();
-  text.commit();
-  const process::CommandEnd end = process::run_command({"vcd2fst", vcd.string(), file_.aside().string()});
+  const process::CommandEnd end =
+      process::run_command({"vcd2fst", text.aside().string(), file_.aside().string()});
   if (end.status != 0 || fs::file_size(file_.aside()) == 0)
     throw std::runtime_error(
         fmt::format("{}: vcd2fst ends with status {}: {}", path_.string(), end.status, end.errors));

@@ -23,6 +23,10 @@ class VcdWriter : public TraceWriter {
   // A path that ends in ".fst" gives the format of GTKWave, through its program vcd2fst; another one gives VCD.
   // Throws std::runtime_error also if vcd2fst is needed and not installed.
   VcdWriter(const std::filesystem::path& path, const platform::BoardConfig& board);
+  // The save file of GTKWave beside the waveform.
+  static std::filesystem::path layout_of(std::filesystem::path path) {
+    return path.replace_extension(".gtkw");
+  }
   static bool is_fst(const std::filesystem::path& path) { return path.extension() == ".fst"; }
 
   void cycle(const fpga::CoreCycle& cycle) override;
@@ -31,7 +35,8 @@ class VcdWriter : public TraceWriter {
   // A waveform shows the window alone.
   void frame(const platform::FrameRuns& /*frame*/) override {}
   void events(const platform::TimelineRecords& /*records*/) override {}
-  void commit(const TimeSpan& window) override;
+  void complete(const TimeSpan& window) override;
+  void commit() override;
 
  private:
   // Words that cycles show.

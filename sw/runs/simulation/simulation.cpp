@@ -48,11 +48,14 @@ void Simulation::record_conflicts() { record(conflicts_.emplace(board_).recorder
 
 void Simulation::trace(const fpga::CycleWindow& window, fpga::CycleObserver& cycles,
                        platform::BusObserver& buses) {
-  cycles_.emplace(platform::core_config(board_), conflicts_->recorder(), window, cycles);
+  cycle_observer_ = &cycles;
+  bus_observer_ = &buses;
+  cycles_.emplace(platform::core_config(board_), conflicts_->recorder(), window,
+                  static_cast<fpga::CycleObserver&>(*this));
   if (tables_.left) cycles_->set_entries(fpga::Side::kLeft, tables_.left->entries.data());
   if (tables_.right) cycles_->set_entries(fpga::Side::kRight, tables_.right->entries.data());
   record(*cycles_);
-  trace_buses(buses_.emplace(board_, window, buses));
+  trace_buses(buses_.emplace(board_, window, static_cast<platform::BusObserver&>(*this)));
 }
 
 std::vector<fpga::FrameConflicts> Simulation::take_conflicts() {

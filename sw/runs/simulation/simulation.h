@@ -29,9 +29,9 @@ struct Result {
 
 // Simulates a board and its surroundings on the pairs of a source until `frames` results are delivered. One
 // object per process: SystemC elaborates once.
-class Simulation {
+class Simulation : private fpga::CycleObserver, private platform::BusObserver {
  public:
-  virtual ~Simulation() = default;
+  ~Simulation() override = default;
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
 
@@ -74,10 +74,11 @@ class Simulation {
 
   // Tells the observers what the core, and around it the buses and queues of a computer, do in the window. To be
   // called after record_conflicts(), before advance(). The observers outlive the simulation.
+  // An exception of an observer ends the simulation, and advance() throws it.
   void trace(const fpga::CycleWindow& window, fpga::CycleObserver& cycles, platform::BusObserver& buses);
 
   // The number of cycles that were traced.
-  std::uint64_t traced_cycles() const { return cycles_ ? cycles_->told() : 0; }
+  std::uint64_t traced_cycles() const { return cycles_ ? cycles_->observed_cycles() : 0; }
 
   // The figures of the finished frames. May be called only if no frame is running that end_early() would let
   // finish, and for a whole computer only after the first result.
@@ -106,6 +107,26 @@ class Simulation {
   virtual void check_progress() {}
 
  private:
+  void cycle(const fpga::CoreCycle& cycle) override {
+    keep_failure([&] { cycle_observer_->cycle(cycle); });
+  }
+  void burst(const platform::BusBurst& burst) override {
+    keep_failure([&] { bus_observer_->burst(burst); });
+  }
+  void level(const platform::QueueLevel& level) override {
+    keep_failure([&] { bus_observer_->level(level); });
+  }
+  // Calls `action` within a SystemC process. The kernel replaces its exception by a report.
+  template <typename Action>
+  void keep_failure(const Action& action) {
+    try {
+      action();
+    } catch (...) {
+      failure_ = std::current_exception();
+      throw;
+    }
+  }
+
   const platform::BoardConfig& board_;
   const platform::Tables& tables_;
   host::FrameSource& pairs_;
@@ -118,7 +139,9 @@ class Simulation {
   std::optional<platform::Conflicts> conflicts_;
   std::optional<fpga::CycleRecorder> cycles_;
   std::optional<platform::BusTrace> buses_;
-  std::exception_ptr failure_;  // exception of the source
+  fpga::CycleObserver* cycle_observer_ = nullptr;
+  platform::BusObserver* bus_observer_ = nullptr;
+  std::exception_ptr failure_;  // exception of the source or of an observer
 };
 
 }  // namespace stereotlm::runs

@@ -235,7 +235,8 @@ Traced trace(const Case& of, Fidelity fidelity, const CycleWindow& window, bool 
     }
     writer->events(simulation->take_timeline());
   }
-  writer->commit({});
+  writer->complete({});
+  writer->commit();
   traced.cycles = std::move(cycles.cycles);
   traced.sums = cycles.sums;
   traced.log = binder.log();
@@ -269,8 +270,8 @@ std::string text_of(const fpga::CoreCycle& cycle) {
     text += fmt::format(" | {} {} {} {} {} {}", static_cast<int>(port.intent), port.granted, port.bank,
                         port.address, port.by, port.item);
   }
-  return text + fmt::format(" | {} {} {} {} {} {}\n", static_cast<int>(cycle.host_traffic), cycle.host_writes,
-                            cycle.lane_slots[0], cycle.lane_slots[1], cycle.result_words, cycle.works);
+  return text + fmt::format(" | {} {} {} {} {}\n", static_cast<int>(cycle.host_traffic), cycle.lane_slots[0],
+                            cycle.lane_slots[1], cycle.result_words, cycle.works);
 }
 
 std::string text_of(const Traced& traced) {
@@ -351,7 +352,8 @@ std::string wrong_accesses(const Case& of, const Traced& traced) {
     for (std::size_t port = 0; port < fpga::kPortCount; ++port) {
       const fpga::PortCycle& access = cycle.ports[port];
       if (!access.granted) continue;
-      const bool write = port == fpga::kHostPort ? cycle.host_writes : fpga::kPorts[port].write;
+      const bool write = port == fpga::kHostPort ? cycle.host_traffic != fpga::HostTraffic::kReadBack
+                                                 : fpga::kPorts[port].write;
       for (const std::string& link : {fmt::format("{}_to_crossbar", fpga::kPorts[port].name),
                                       fmt::format("crossbar_to_{}", of.board.banks[access.bank].name)})
         expected.push_back(fmt::format("{} {} {} {:x}", cycle.cycle, link, write, access.address));

@@ -23,7 +23,8 @@ class PerfettoWriterTest : public ::testing::Test {
   PerfettoFile written(const test::MadeTrace& trace) {
     PerfettoWriter writer(path_, board_);
     trace.send(writer);
-    writer.commit({});
+    writer.complete({});
+    writer.commit();
     return PerfettoFile(bytes_ = test::read_file(path_));
   }
   // Sum of the argument `cycles` of the slices whose names contain `part`.
@@ -246,7 +247,8 @@ TEST_F(PerfettoWriterTest, AFrameInWhichEachPortWaitsForEachOtherIsBelowOneMegab
   board_ = {};
   PerfettoWriter writer(path_, board_);
   writer.frame(test::crowded_frame(board_));
-  writer.commit({});
+  writer.complete({});
+  writer.commit();
   EXPECT_LT(std::filesystem::file_size(path_), 1'000'000);
 }
 
@@ -259,7 +261,8 @@ TEST_F(PerfettoWriterTest, TheTableOfNamesIsBegunAnewWhenItIsFull) {
   }
   PerfettoWriter writer(path_, board_);
   writer.frame(frame);
-  writer.commit({});
+  writer.complete({});
+  writer.commit();
   const std::string bytes = test::read_file(path_);
   const auto slices = PerfettoFile(bytes).slices_of("left_lut");
   ASSERT_EQ(slices.size(), 5000);
@@ -279,7 +282,7 @@ TEST_F(PerfettoWriterTest, LeavesTheEarlierFileWithoutACommitOrWhenTheDiskIsFull
     PerfettoWriter writer(path_, board_);
     trace.send(writer);
     const test::FileSizeLimit limit(1000);
-    EXPECT_EQ(test::message_of([&] { writer.commit({}); }), path_.string() + ": File too large");
+    EXPECT_EQ(test::message_of([&] { writer.complete({}); }), path_.string() + ": File too large");
   }
   EXPECT_EQ(test::read_file(path_), "earlier");
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(scratch_.path()), {}), 1);

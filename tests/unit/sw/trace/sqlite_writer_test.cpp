@@ -23,7 +23,8 @@ class SqliteWriterTest : public ::testing::Test {
   void write(const test::MadeTrace& trace) {
     SqliteWriter writer(path_, board_);
     trace.send(writer);
-    writer.commit({});
+    writer.complete({});
+    writer.commit();
   }
   std::int64_t number(const std::string& sql) const {
     return Database(path_, Database::Access::kRead).number(sql);
@@ -128,7 +129,7 @@ TEST_F(SqliteWriterTest, LeavesTheEarlierFileWithoutACommitOrWhenTheDiskIsFull) 
     SqliteWriter writer(path_, board_);
     trace.send(writer);
     const test::FileSizeLimit limit(1000);
-    EXPECT_THAT(test::message_of([&] { writer.commit({}); }), ::testing::StartsWith(path_.string() + ": "));
+    EXPECT_THAT(test::message_of([&] { writer.complete({}); }), ::testing::StartsWith(path_.string() + ": "));
   }
   EXPECT_EQ(test::read_file(path_), "earlier");
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(scratch_.path()), {}), 1);

@@ -25,7 +25,8 @@ class VcdWriterTest : public ::testing::Test {
   VcdFile written(const test::MadeTrace& trace) {
     VcdWriter writer(path_, board_);
     trace.send(writer);
-    writer.commit({});
+    writer.complete({});
+    writer.commit();
     return VcdFile(test::read_file(path_));
   }
   std::uint64_t ps(std::uint64_t cycle) const { return Clock(board_.fpga.clock_mhz).edge_ps(cycle); }
@@ -67,7 +68,7 @@ TEST_F(VcdWriterTest, ShowsEachPortInEachCycle) {
   const VcdFile file = written(trace);
   struct Held {
     std::string bank = "-";
-    std::string address = "z";
+    std::string address = "x";
   };
   std::array<Held, fpga::kPortCount> held;  // by the last request of each port
   for (const fpga::CoreCycle& cycle : trace.cycles) {
@@ -82,7 +83,7 @@ TEST_F(VcdWriterTest, ShowsEachPortInEachCycle) {
       ASSERT_EQ(file.at(name + ".waits_for", time),
                 requests && !now.granted ? with_underscores(fpga::requester_name(now.by)) : "-");
       const std::string address = file.at(name + ".address", time);
-      ASSERT_EQ(address == "z" ? address : std::to_string(file.number(name + ".address", time)),
+      ASSERT_EQ(address == "x" ? address : std::to_string(file.number(name + ".address", time)),
                 held[port].address);
     }
     ASSERT_EQ(file.at("host.traffic", time),
@@ -161,7 +162,8 @@ TEST_F(VcdWriterTest, ABurstThatBeginsAsAnotherEndsLeavesNoIdlePhaseBetween) {
   VcdWriter writer(path_, board_);
   writer.burst({Bus::kPci, "bridge", "host_memory", false, 0, 1, 0, 10, 20, 30});
   writer.burst({Bus::kPci, "bridge", "host_memory", false, 4, 1, 0, 30, 40, 50});
-  writer.commit({});
+  writer.complete({});
+  writer.commit();
   const VcdFile file(test::read_file(path_));
   EXPECT_EQ(file.at("pci.phase", 30), "address");
   EXPECT_EQ(file.changes("pci.owner").size(), 2);
@@ -176,7 +178,8 @@ TEST_F(VcdWriterTest, ABankWithSeparatePortsHasTwoOwners) {
   cycle.ports[2] = {fpga::Intent::kRequest, false, 1, 4, fpga::kTurnaroundToBlame, 0};
   VcdWriter writer(path_, board_);
   writer.cycle(cycle);
-  writer.commit({});
+  writer.complete({});
+  writer.commit();
   const VcdFile file(test::read_file(path_));
   EXPECT_EQ(file.at("bank0.read_owner", ps(7)), "left_lut");
   EXPECT_EQ(file.at("bank0.write_owner", ps(7)), "result");
@@ -199,7 +202,8 @@ TEST_F(VcdWriterTest, SixtyFourBanksHaveSignalsOfTheirOwn) {
   cycle.ports[0] = {fpga::Intent::kRequest, true, 63, 4, 0, 0};
   VcdWriter writer(path_, board_);
   writer.cycle(cycle);
-  writer.commit({});
+  writer.complete({});
+  writer.commit();
   const VcdFile file(test::read_file(path_));
   for (const platform::BankConfig& bank : board_.banks)
     EXPECT_EQ(file.at(bank.name + ".owner", 0), bank.name == "more63" ? "left_lut" : "-");
@@ -222,7 +226,8 @@ TEST_F(VcdWriterTest, TheLayoutLeavesOutWhatDoesNothingInTheWindow) {
   cycle.ports[0] = {fpga::Intent::kRequest, true, 1, 4, 0, 0};
   VcdWriter writer(path_, board_);
   writer.cycle(cycle);
-  writer.commit({});
+  writer.complete({});
+  writer.commit();
   const std::string layout = test::read_file(layout_);
   for (const char* scope : {"bank1", "left_lut"}) EXPECT_THAT(layout, ::testing::HasSubstr(scope));
   for (const char* scope : {"bank0", "right_lut", "pci", "left_capture"})
@@ -243,7 +248,8 @@ TEST_F(VcdWriterTest, BeginsAndEndsWithTheWindow) {
   cycle.ports[0] = {fpga::Intent::kRequest, true, 0, 4, 0, 0};
   writer.cycle(cycle);
   writer.burst({Bus::kPci, "bridge", "host_memory", false, 0, 1, 0, 10, 20, ps(6)});
-  writer.commit({ps(4), ps(5)});
+  writer.complete({ps(4), ps(5)});
+  writer.commit();
   const VcdFile file(test::read_file(path_));
   EXPECT_EQ(file.times(), (std::vector<std::uint64_t>{ps(4), ps(5)}));
   EXPECT_EQ(file.at("pci.phase", ps(4)), "data");  // has begun before
@@ -259,11 +265,17 @@ TEST_F(VcdWriterTest, LeavesBothEarlierFilesWithoutACommitOrWhenTheDiskIsFull) {
     VcdWriter writer(path_, board_);
     trace.send(writer);
     const test::FileSizeLimit limit(100);
-    EXPECT_EQ(test::message_of([&] { writer.commit({}); }), path_.string() + ": File too large");
+    EXPECT_EQ(test::message_of([&] { writer.complete({}); }), path_.string() + ": File too large");
   }
   EXPECT_EQ(test::read_file(path_), "earlier");
   EXPECT_EQ(test::read_file(layout_), "[*] stereotlm\nearlier layout");
   EXPECT_EQ(files(), 2);
+}
+
+// fst2vcd writes an unknown number with an x for each bit.
+std::string with_one_x(const std::string& value) {
+  const bool is_unknown = !value.empty() && value.find_first_not_of('x') == std::string::npos;
+  return is_unknown ? "x" : value;
 }
 
 TEST_F(VcdWriterTest, FstHasTheChangesOfVcd) {
@@ -272,12 +284,13 @@ TEST_F(VcdWriterTest, FstHasTheChangesOfVcd) {
   path_ = scratch_.path() / "other.fst";
   VcdWriter writer(path_, board_);
   trace.send(writer);
-  writer.commit({});
+  writer.complete({});
+  writer.commit();
   EXPECT_EQ(files(), 4);
   const VcdFile file(process::run_command({"fst2vcd", "-e", path_.string()}).out);
   for (const auto& [signal, code] : expected.signals()) {
     for (const auto& [time, value] : expected.changes(signal))
-      ASSERT_EQ(file.at(signal, time), value) << signal;
+      ASSERT_EQ(with_one_x(file.at(signal, time)), value) << signal;
   }
 }
 

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "models/fpga/core_ports.h"
+
+namespace stereotlm::fpga {
+
+// What a burst of the host is for. A read of a bank is a read-back. A write is of a capture if the capture
+// boards write to its address, else an upload.
+enum class HostTraffic : std::uint8_t { kCapture, kUpload, kReadBack };
+inline constexpr std::size_t kHostTraffics = 3;
+
+// Who requests banks, or is to blame: the ports of the core, then the host's port for each HostTraffic. To
+// blame may also be the turnaround.
+inline constexpr std::size_t kRequesters = kCorePortCount + kHostTraffics;
+inline constexpr std::size_t kTurnaroundToBlame = kRequesters;
+constexpr std::size_t requester_of(HostTraffic traffic) {
+  return kCorePortCount + static_cast<std::size_t>(traffic);
+}
+// "left_lut", "host capture", "turnaround".
+const char* requester_name(std::size_t requester);
+// The port of a requester.
+constexpr memory::Port port_of_requester(std::size_t requester) {
+  return requester < kCorePortCount ? requester : kHostPort;
+}
+
+}  // namespace stereotlm::fpga
