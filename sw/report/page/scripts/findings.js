@@ -147,14 +147,16 @@ function whoWaits(run) {
   ];
 }
 
-// The first and the last of the amounts that hold all but 1 %, half of it at each end.
+// The first and the last amount of the main part. Each end leaves out 0.5 % of the total at most, and only
+// amounts below half of the mean.
 function mainPart(amounts) {
   const total = sum(amounts);
+  const little = total / amounts.length / 2;
   let first = 0;
-  for (let below = amounts[0]; below < 0.005 * total; below += amounts[++first])
+  for (let below = amounts[0]; below < 0.005 * total && amounts[first] < little; below += amounts[++first])
     ;
   let last = amounts.length - 1;
-  for (let above = amounts[last]; above < 0.005 * total; above += amounts[--last])
+  for (let above = amounts[last]; above < 0.005 * total && amounts[last] < little; above += amounts[--last])
     ;
   return {first, last, total};
 }
@@ -197,15 +199,18 @@ export function waitingRows(run) {
   if (sum(amounts) === 0) return null;
   const imageHeight = settingOf(run, 'image.height');
   const {first, last, total} = mainPart(amounts);
-  const densest = densestLines(amounts, total / (last + 1 - first));
   const waiting = last + 1 - first;
+  const waits = sum(amounts.slice(first, last + 1));
+  const densest = densestLines(amounts, waits / waiting);
   if (densest.sum / total > 2 * (densest.to - densest.from) / waiting) {
     return `most often in ${rowsText(recorded, densest.from, densest.to, imageHeight)}: ${
-        percent(densest.sum / total, 0)} of all waits in ${percent((densest.to - densest.from) / lines, 0)} of the rows`;
+        percent(
+            densest.sum / total,
+            0)} of all waits in ${percent((densest.to - densest.from) / lines, 0)} of the rows`;
   }
-  const mean = total / frames / (last + 1 - first) / height;
+  const rows = Math.min((last + 1) * height, imageHeight) - first * height;
   return `in ${rowsText(recorded, first, last + 1, imageHeight)} of ${imageHeight}, evenly: ${
-      whole(mean)} cycles of waiting a row and frame`;
+      whole(waits / frames / rows)} cycles of waiting a row and frame`;
 }
 
 // Where in the picture ports wait.
