@@ -58,8 +58,8 @@ void RunOptions::add_to(CLI::App& command) {
            "also what happened when, and why it waited: timeline.csv and latency.csv");
   trace.add_to(command);
   set_footer(command,
-             "Ctrl-C ends the run with the results of the frames that are finished; with cameras, --record "
-             "or --trace those\nthat the core has begun are finished first.");
+             "Ctrl-C ends the run with the results of the frames that are finished; with cameras, --record or\n"
+             "--trace those that the core has begun are finished first.");
 }
 
 void RunOptions::check_usage() {
