@@ -10,7 +10,7 @@
 namespace stereotlm::host {
 namespace {
 
-constexpr char kReport[] = "/stereotlm/cpu";
+constexpr char kCpuReport[] = "/stereotlm/cpu";
 constexpr int kStackBytes = 1 << 20;  // large, because the program is not written to run in a coroutine
 
 std::string hex(std::uint64_t value) {
@@ -54,7 +54,7 @@ void Cpu::run() {
   } catch (...) {
     problem = "exception of an unknown type";
   }
-  if (problem) SC_REPORT_ERROR(kReport, (std::string(name()) + ": " + *problem).c_str());
+  if (problem) SC_REPORT_ERROR(kCpuReport, (std::string(name()) + ": " + *problem).c_str());
 }
 
 std::uint32_t Cpu::read(std::uint64_t address) {

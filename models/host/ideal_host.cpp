@@ -11,7 +11,7 @@ namespace {
 
 namespace registers_of = fpga::registers;
 
-constexpr char kReport[] = "/stereotlm/ideal_host";
+constexpr char kIdealHostReport[] = "/stereotlm/ideal_host";
 
 std::uint32_t in_turn(const std::vector<std::uint32_t>& list, std::uint64_t frame) {
   return list[frame % list.size()];
@@ -85,11 +85,11 @@ bool IdealHost::load_pictures(std::uint32_t left, std::uint32_t right) {
   const StereoPair& pair = source_.pair(frames_done_);
   for (const kernels::GrayImage* image : {&pair.left, &pair.right}) {
     if (image->width == config_.width && image->height == config_.height) continue;
-    SC_REPORT_ERROR(
-        kReport, ("frame " + std::to_string(frames_done_) + ": picture of " + std::to_string(image->width) +
-                  " x " + std::to_string(image->height) + " for images of " + std::to_string(config_.width) +
-                  " x " + std::to_string(config_.height))
-                     .c_str());
+    SC_REPORT_ERROR(kIdealHostReport, ("frame " + std::to_string(frames_done_) + ": picture of " +
+                                       std::to_string(image->width) + " x " + std::to_string(image->height) +
+                                       " for images of " + std::to_string(config_.width) + " x " +
+                                       std::to_string(config_.height))
+                                          .c_str());
     return false;
   }
   preload(left, pair.left.pixels.data(), pair.left.pixels.size());
@@ -111,15 +111,15 @@ bool IdealHost::start_frame() {
                       with_value(", disparity", disparity);
   if (config_.buffers.left_lut) bases += with_value(", left_lut", *config_.buffers.left_lut);
   if (config_.buffers.right_lut) bases += with_value(", right_lut", *config_.buffers.right_lut);
-  SC_REPORT_ERROR(kReport, ("frame " + std::to_string(frames_done_) +
-                            ": the core refuses to start with the bases " + bases)
-                               .c_str());
+  SC_REPORT_ERROR(kIdealHostReport, ("frame " + std::to_string(frames_done_) +
+                                     ": the core refuses to start with the bases " + bases)
+                                        .c_str());
   return false;
 }
 
 bool IdealHost::end_frame() {
   if ((read_status() & registers_of::kStatusError) != 0) {
-    SC_REPORT_ERROR(kReport,
+    SC_REPORT_ERROR(kIdealHostReport,
                     ("frame " + std::to_string(frames_done_) + ": the core reports an error").c_str());
     return false;
   }
@@ -135,14 +135,14 @@ bool IdealHost::end_frame() {
 void IdealHost::write_register(std::uint64_t address, std::uint32_t value) {
   sc_core::sc_time delay;
   if (!access_.write(address, value, delay)) {
-    SC_REPORT_ERROR(kReport, ("register " + std::to_string(address) + " refuses a write").c_str());
+    SC_REPORT_ERROR(kIdealHostReport, ("register " + std::to_string(address) + " refuses a write").c_str());
   }
 }
 
 std::uint32_t IdealHost::read_status() {
   sc_core::sc_time delay;
   if (!access_.read(registers_of::kStatus, delay)) {
-    SC_REPORT_ERROR(kReport,
+    SC_REPORT_ERROR(kIdealHostReport,
                     ("register " + std::to_string(registers_of::kStatus) + " refuses a read").c_str());
   }
   return access_.word();
@@ -167,9 +167,9 @@ void IdealHost::debug(tlm::tlm_command command, std::uint32_t base, unsigned cha
   access.set_streaming_width(static_cast<unsigned>(size));
   const unsigned moved = memory->transport_dbg(access);
   if (moved != size) {
-    SC_REPORT_ERROR(kReport, ("the buffer at base " + std::to_string(base) + " takes " +
-                              std::to_string(moved) + " of " + std::to_string(size) + " bytes")
-                                 .c_str());
+    SC_REPORT_ERROR(kIdealHostReport, ("the buffer at base " + std::to_string(base) + " takes " +
+                                       std::to_string(moved) + " of " + std::to_string(size) + " bytes")
+                                          .c_str());
   }
 }
 

@@ -8,7 +8,7 @@
 namespace stereotlm::pci {
 namespace {
 
-constexpr char kReport[] = "/stereotlm/pci_bus";
+constexpr char kPciBusReport[] = "/stereotlm/pci_bus";
 
 }  // namespace
 
@@ -42,7 +42,7 @@ void PciBus::Slot::request(PciMasterIf& master, std::uint64_t from_ps) {
 PciBurst PciBus::Slot::begin_burst(std::uint64_t address_clock_ps) {
   const PciBurst burst = master_->begin_burst(address_clock_ps);
   if (burst.address % 4 != 0) {
-    SC_REPORT_ERROR(kReport,
+    SC_REPORT_ERROR(kPciBusReport,
                     ("address = " + std::to_string(burst.address) + ": must be a multiple of 4").c_str());
   }
   return burst;
@@ -54,9 +54,9 @@ std::size_t PciBus::Target::writable_words(std::uint64_t /*now_ps*/, std::uint64
   if (stop.size() == 0) return words;
   const std::size_t taken = stop->writable_words(address, words);
   if (taken <= words) return taken;
-  SC_REPORT_ERROR(kReport, (std::string(stop.name()) + ": " + std::to_string(taken) + " of " +
-                            std::to_string(words) + " words can be written")
-                               .c_str());
+  SC_REPORT_ERROR(kPciBusReport, (std::string(stop.name()) + ": " + std::to_string(taken) + " of " +
+                                  std::to_string(words) + " words can be written")
+                                     .c_str());
   return words;
 }
 

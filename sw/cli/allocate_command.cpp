@@ -293,8 +293,13 @@ int allocate(const AllocateOptions& options) {
                      [&](const platform::FrameBegin& last) { return rate_from(*point.board, last) < rate; });
   };
   runs::ProgressLine line;
-  AllocationReport report = {
-      search, *board, bound, sweep.store, *options.banks, options.keep_percent, options.board.words_without_allocation()};
+  AllocationReport report = {search,
+                             *board,
+                             bound,
+                             sweep.store,
+                             *options.banks,
+                             options.keep_percent,
+                             options.board.words_without_allocation()};
   report.is_whole = explore::simulate(search, evaluate, sweep, [&line](const explore::SearchProgress& done) {
     return show_progress(line, done);
   });

@@ -44,7 +44,7 @@ class ReplacedFile {
   bool make();
 
   std::filesystem::path path_;
-  std::filesystem::path aside_;  // empty after commit()
+  std::filesystem::path aside_;    // empty after commit()
   std::unique_ptr<NewFile> file_;  // null after complete()
   int lock_ = -1;  // descriptor of the file aside, which is locked while this process writes it
 };

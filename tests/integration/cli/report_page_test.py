@@ -7,6 +7,7 @@ import io
 import json
 import random
 import re
+import shlex
 import sqlite3
 import tempfile
 import unittest
@@ -358,6 +359,18 @@ class Tools(PageTest):
         self.assertEqual(shown(), "rows 9 to 14")
         self.browser.button("rows", "All rows")
         self.assertEqual(shown(), "rows 0 to 23")
+
+    def test_the_row_that_waits_longest_among_those_shown_is_traced_by_the_command(self):
+        self.browser.open(page_of(core()))
+        self.browser.drag("#rows .brush-y", (0.5, 0.26), (0.5, 0.74))
+        words = shlex.split(self.browser.text("#rows .command code"))
+        first, last = re.fullmatch(r"frame=\d+,rows=(\d+)\.\.(\d+)", words[-1]).groups()
+        self.assertEqual(first, last)
+        self.assertIn(int(first), range(6, 18))
+        self.succeeds(run(*words[1:], cwd=self.folder))
+        self.assertIn("swaits ", (self.folder / "waits.vcd").read_text())
+        self.browser.open(page_of(shared_run("alone", *PRELOADED)))
+        self.assertEqual(self.browser.all("#rows .command"), [])
 
     def test_the_time_line_is_zoomed_by_brush_overview_and_buttons(self):
         self.browser.open(page_of(computer()))

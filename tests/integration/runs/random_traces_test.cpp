@@ -435,7 +435,7 @@ class RandomTraces : public testing::TestWithParam<std::tuple<bool, bool>> {};
 TEST_P(RandomTraces, EqualTheCountersAndTheTransactionsAtEachFidelity) {
   const auto [with_knobs, camera] = GetParam();
   std::vector<test::ChildWork> jobs;
-  const std::uint64_t count = camera ? test::random_computers(20) : test::random_boards(30);
+  const std::uint64_t count = (camera ? test::random_computers(40) : test::random_boards(60)) / 2;
   for (std::uint64_t seed = 0; seed < count; ++seed) {
     jobs.push_back(
         [seed, with_knobs = with_knobs, camera = camera] { return problems_of(seed, with_knobs, camera); });
