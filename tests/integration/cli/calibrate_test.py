@@ -73,6 +73,7 @@ class Made(CalibrateTest):
             self.assertEqual(table, (self.home / f"rig_{side}.lut").read_bytes())
         self.assertFalse((self.folder / "new_pictures").exists())
 
+    @program.slow
     def test_replaces_an_earlier_calibration(self):
         self.succeeds(self.calibrate("--disparity-offset", "70"))
         self.assertEqual(len(list((self.folder / "new_drawings").iterdir())), 8)

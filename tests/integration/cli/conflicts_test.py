@@ -99,6 +99,7 @@ class Command(ConflictsTest):
         text = self.succeeds(run("conflicts", *self.scene, *PRELOADED))
         self.assertIn("waits        none\n", text)
 
+    @program.slow
     def test_it_writes_tables_and_figures(self):
         options = ["--format", "png,svg,pdf", "--out", self.out]
         self.succeeds(run("conflicts", *self.scene, *CAPTURES, *options))
