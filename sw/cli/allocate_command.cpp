@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <system_error>
@@ -17,6 +18,7 @@
 #include "sw/cli/board_options.h"
 #include "sw/cli/commands.h"
 #include "sw/cli/exit_status.h"
+#include "sw/cli/json_option.h"
 #include "sw/cli/typed_option.h"
 #include "sw/explore/search/allocation_run.h"
 #include "sw/explore/search/allocation_search.h"
@@ -24,7 +26,6 @@
 #include "sw/explore/store/store.h"
 #include "sw/explore/store/store_lock.h"
 #include "sw/explore/sweep/sweep.h"
-#include "sw/files/json_text.h"
 #include "sw/files/replaced_file.h"
 #include "sw/files/whole_file.h"
 #include "sw/media/synthetic_scene.h"
@@ -51,7 +52,7 @@ struct AllocateOptions {
   Typed keep_option;
   Typed out;
   Typed write;
-  bool json = false;
+  JsonOption json;
 
   // Set by check_usage().
   bool camera = true;
@@ -67,7 +68,7 @@ struct AllocateOptions {
                        "Say how few banks keep so much of the best frame rate (default 99)");
     out.add_to(command, "--out", "DB", "The database of the boards that are simulated, written or continued");
     write.add_to(command, "--write", "F.yaml", "Write the board with the best allocation as a board file");
-    add_flag(command, "--json", json, "Print one JSON document instead of the text");
+    json.add_to(command);
   }
 
   void check_usage() {
@@ -238,8 +239,11 @@ int finish(AllocationReport& report, const AllocateOptions& options,
     written->commit();
     report.written = options.write.text;
   }
-  process::print(options.json ? files::json_text(allocation_report_document(report))
-                              : allocation_report_text(report));
+  if (options.json.is_given) {
+    print_json(allocation_report_document(report));
+  } else {
+    process::print(allocation_report_text(report));
+  }
   if (!process::interrupted()) return kDone;
   process::say("note", "interrupted: run the same command to resume");
   return kInterrupted;

@@ -165,7 +165,7 @@ std::string best_text(const AllocationReport& report, const BestPlacement& top) 
 std::string certificate_text(const AllocationReport& report, const BestPlacement& top) {
   const double most = highest_possible_rate(report);
   if (most <= top.frames_per_second)
-    return fmt::format("No allocation to at most {} banks gives more.\n", report.most_banks);
+    return fmt::format("No allocation that uses at most {} banks gives more.\n", report.most_banks);
   return fmt::format(
       "At most {:.2f} % better can exist: no allocation whose rate is unknown has a bound above {:.3f} "
       "frames/s.\n",
@@ -205,7 +205,7 @@ std::string not_counted_text(const AllocationReport& report) {
 }
 
 std::string pixels_text(const AllocationReport& report) {
-  if (!report.pixels) return "";
+  if (!report.pixels || report.pixels->allocations < 2) return "";
   return fmt::format("The disparities of these {} allocations are the same, pixel by pixel, in {} frames.\n",
                      report.pixels->allocations, report.pixels->frames);
 }
@@ -214,8 +214,10 @@ std::string pixels_text(const AllocationReport& report) {
 std::string command_text(const AllocationReport& report) {
   const BestPlacement* const top = best_of_all(report.all);
   if (top == nullptr) return "";
-  std::string text = fmt::format("This command runs the best allocation, and gives {:.3f} frames/s:\n  {}\n",
-                                 top->frames_per_second, files::shell_command(command_of(report, *top)));
+  std::string text =
+      fmt::format("This command runs the best allocation, and prints {:.3f} frames/s as {}:\n  {}\n",
+                  top->frames_per_second, report.search.run().camera ? "system" : "core",
+                  files::shell_command(command_of(report, *top)));
   if (report.written) text += *report.written + ": the board with the best allocation\n";
   return text;
 }

@@ -44,14 +44,17 @@ std::map<Wait, double> waits_a_frame(const Json& stats) {
   return waits;
 }
 
-// Where the rates come apart. A wait is named if its change is at least half of that of the cycles.
-std::string cause(const JudgedRun& a, const JudgedRun& b) {
+// Why one run is faster. `b_is_faster`: by the rates, which need not be those of the core. A wait is named if its
+// change is at least half of that of the cycles.
+std::string cause(const JudgedRun& a, const JudgedRun& b, bool b_is_faster) {
+  const JudgedRun& slower = b_is_faster ? a : b;
+  const JudgedRun& faster = b_is_faster ? b : a;
+  const double more = cycles_a_frame(slower.stats) - cycles_a_frame(faster.stats);
+  if (cycles_a_frame(slower.stats) / slower.clock_mhz <= cycles_a_frame(faster.stats) / faster.clock_mhz)
+    return fmt::format("the core is not faster in {}, and the difference arises around it",
+                       b_is_faster ? "B" : "A");
   if (a.clock_mhz != b.clock_mhz)
     return fmt::format("the core runs at {} MHz in A and at {} MHz in B", a.clock_mhz, b.clock_mhz);
-  const double more = cycles_a_frame(b.stats) - cycles_a_frame(a.stats);
-  if (more == 0) return "the core takes equally many cycles a frame, and the difference arises around it";
-  const auto& slower = more > 0 ? b : a;
-  const auto& faster = more > 0 ? a : b;
   const std::map<Wait, double> before = waits_a_frame(faster.stats);
   std::pair<Wait, double> largest = {{}, 0};
   for (const auto& [wait, cycles] : waits_a_frame(slower.stats)) {
@@ -59,10 +62,10 @@ std::string cause(const JudgedRun& a, const JudgedRun& b) {
     const double longer = cycles - (found == before.end() ? 0 : found->second);
     if (longer > largest.second) largest = {wait, longer};
   }
-  if (largest.second >= std::abs(more) / 2) {
+  if (largest.second >= more / 2) {
     const auto& [port, bank, by] = largest.first;
-    return fmt::format("in {} {} waits {:.0f} cycles a frame more on {} for {}", more > 0 ? "B" : "A", port,
-                       largest.second, bank, report::cause_text(by));
+    return fmt::format("in {} {} waits {:.0f} cycles a frame more on {} for {}", b_is_faster ? "A" : "B",
+                       port, largest.second, bank, report::cause_text(by));
   }
   return fmt::format("a frame takes {:.0f} cycles in A, limited by {}, and {:.0f} in B, limited by {}",
                      cycles_a_frame(a.stats), a.stats.at("bound").at("core_limited_by").get<std::string>(),
@@ -82,10 +85,14 @@ std::string diff_verdict(const JudgedRun& a, const JudgedRun& b, const report::P
     return fmt::format("A and B are equally fast, {:.3f} frames/s, {}; {}.", rates.a, rates.kind,
                        pixels_text(pixels));
   }
-  const double slow = std::min(rates.a, rates.b);
+  const bool b_is_faster = rates.b > rates.a;
+  const std::string why = cause(a, b, b_is_faster) + "; " + pixels_text(pixels);
   const double gain = std::abs(rates.b - rates.a);
-  return fmt::format("{} is faster by {:.3f} frames/s ({:.2f} %), {}: {}; {}.", rates.b > rates.a ? "B" : "A",
-                     gain, 100 * gain / slow, rates.kind, cause(a, b), pixels_text(pixels));
+  constexpr double kShown = 0.0005;  // frames/s; less rounds to 0.000
+  if (gain < kShown)
+    return fmt::format("A and B are equally fast to 0.001 frames/s, {}: {}.", rates.kind, why);
+  return fmt::format("{} is faster by {:.3f} frames/s ({:.2f} %), {}: {}.", b_is_faster ? "B" : "A", gain,
+                     100 * gain / std::min(rates.a, rates.b), rates.kind, why);
 }
 
 }  // namespace stereotlm::cli

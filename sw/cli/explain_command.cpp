@@ -70,11 +70,10 @@ void add_explain(CLI::App& program, Action& action) {
       explain,
       "The board is simulated, and then once more for each change: one key one step up or down, such as a\n"
       "cycle, a MHz, a place in a queue, a word of a burst, a buffer or a bank. The changes are sorted by\n"
-      "their frame rate; slices, FPGA % and RAMs are what a change takes of the FPGA, or frees. A bank more "
-      "is\n"
-      "the best way to give one buffer a new bank of its own, a bank less the best way to move all buffers "
-      "of\n"
-      "one bank into another. The size of the images, the depth of banks and the device stay.");
+      "their frame rate. FPGA % (of the slices) and RAMs are what a change takes of the FPGA, or frees. A\n"
+      "bank more is the best way to give one buffer a new bank of its own, a bank less the best way to\n"
+      "move all buffers of one bank into another. The size of the images, the depth of banks and the\n"
+      "device stay.");
 }
 
 }  // namespace stereotlm::cli

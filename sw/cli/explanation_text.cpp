@@ -170,6 +170,7 @@ class ExplanationText {
     if (price.multipliers != 0) text += fmt::format(", {:+} multipliers", price.multipliers);
     if (!price.fits) text += "  does not fit";
     if (found.rate.loses_pixels && !now_.loses_pixels) text += "  loses pixels";
+    if (!found.rate.loses_pixels && now_.loses_pixels) text += "  loses no pixels";
     return text + '\n';
   }
 

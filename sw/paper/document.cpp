@@ -442,7 +442,7 @@ std::string summary(const Findings& findings) {
       verdicts +=
           fmt::format("{}{} {}", verdicts.empty() ? "" : ", ", claims.size() - before, text_of(verdict));
   }
-  std::string text = fmt::format("Of {} claims of the paper are {}.\n", claims.size(), verdicts);
+  std::string text = fmt::format("{} claims of the paper: {}.\n", claims.size(), verdicts);
   text += fmt::format("{:<72} {:>9}  {}\n", "the paper", "confirmed", "verdict");
   std::string others;
   for (const ClaimFinding* found : claims) {

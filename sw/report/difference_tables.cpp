@@ -162,7 +162,7 @@ std::string rows_table(const RowComparison& rows) {
                        parting->row, parting->cycles_a, parting->cycles_b);
   } else if (const auto& first = rows.other_stalls()) {
     text = fmt::format(
-        "every row is whole after as many cycles in both; the ports wait otherwise from frame {}, row {}\n",
+        "every row is whole after as many cycles in both; the waits differ from frame {}, row {} on\n",
         first->frame, first->row);
   }
   const std::vector<RowComparison::Range> ranges = rows.ranges(kMostLines);

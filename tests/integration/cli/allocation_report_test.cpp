@@ -54,7 +54,7 @@ TEST_F(InterruptedSearch, RoundsUpWhatIsPossible) {
 TEST_F(InterruptedSearch, MayHaveProvedItsBest) {
   search.record(search.next().front(), AllocationOutcome{1000, 20.00001, 21.0, false, ""});
   EXPECT_THAT(allocation_report_text(report()),
-              HasSubstr("\nNo allocation to at most 8 banks gives more.\n"));
+              HasSubstr("\nNo allocation that uses at most 8 banks gives more.\n"));
   EXPECT_EQ(allocation_report_document(report())["best"]["possible_gain_percent"], 0);
 }
 

@@ -94,6 +94,9 @@ class Differences(DiffTest):
                                                  r"and \d+ in B, limited by \w+.*; the disparities are the same\.$")
         fast = shared_run(*SCENE, *sets("fpga.clock_mhz=50"), "--frames", "2")
         self.assertIn("(25.00 %), core only: the core runs at 40 MHz in A and at 50 MHz in B;", self.verdict(a, fast))
+        cache = shared_run(*SCENE, *sets("fpga.clock_mhz=40.000001"), "--frames", "2")
+        self.assertIn("A and B are equally fast to 0.001 frames/s, core only: the core runs at 40 MHz in A and at",
+                      self.verdict(a, cache).replace("\n", " "))
         timing = shared_run(*SMALL, "--timing-only", "--frames", "2")
         self.assertIn("; the disparities are not compared.", self.verdict(a, timing))
         other = shared_run(*SMALL, "--synthetic", "2", "--frames", "2")
@@ -225,6 +228,18 @@ class Computer(DiffTest):
     def write(self, folder, *options):
         source = [*CAMERA_RATES, "--sequence", self.pairs]
         self.succeeds(run("run", "fpl2003", *SMALL, *source, *options, "--out", folder))
+
+    def test_no_wait_of_the_core_is_named_if_the_faster_computer_has_the_slower_core(self):
+        one_buffer = sets("allocation.left_image=bank0", "allocation.right_image=bank2")
+        for folder, allocation in ((self.a, one_buffer), (self.b, sets("allocation.disparity=bank0"))):
+            options = [*SMALL, *CAMERA_RATES, "--timing-only", "--frames", "13", *allocation, "--out", folder]
+            self.succeeds(run("run", "fpl2003", *options))
+        rates = [stats_of(folder)["frames_per_second"] for folder in (self.a, self.b)]
+        self.assertGreater(rates[1]["steady"], rates[0]["steady"])
+        self.assertLess(rates[1]["core"], rates[0]["core"])
+        for runs, name in (((self.a, self.b), "B"), ((self.b, self.a), "A")):
+            self.assertRegex(self.verdict(*runs), rf"^{name} is faster by .*, steady: the core is not faster in {name}, "
+                                                  "and the difference arises around it; ")
 
     def test_its_figures_and_disparities_of_the_same_camera_frame_are_compared(self):
         # With one buffer for each input the cameras' frames are others.

@@ -179,8 +179,8 @@ TEST(Document, SummaryBeginsWithTheClaimsThatAreNotConfirmed) {
   findings.claims[2].verdict = Verdict::kOpen;
   findings.claims[4].verdict = Verdict::kNotConfirmed;
   const std::string text = summary(findings);
-  EXPECT_THAT(text, StartsWith("Of " + std::to_string(claims) +
-                               " claims of the paper are 1 not confirmed, 1 in "
+  EXPECT_THAT(text, StartsWith(std::to_string(claims) +
+                               " claims of the paper: 1 not confirmed, 1 in "
                                "part, 1 open, " +
                                std::to_string(claims - 3) + " confirmed.\n"));
   const auto line_of = [&](std::size_t claim) {

@@ -151,7 +151,7 @@ TEST(RowsTable, NamesOnlyTheRowWhereTheFramesCancelOut) {
 
 TEST(RowsTable, ShowsRowsOfWhichOnlyTheStallsDiffer) {
   const std::string head =
-      "every row is whole after as many cycles in both; the ports wait otherwise from frame 1, row 1\n";
+      "every row is whole after as many cycles in both; the waits differ from frame 1, row 1 on\n";
   const fpga::RowProfile stalled = {{10, {0, 0, 0, 0, 0}}, {20, {0, 0, 0, 0, 4}}};
   RowComparison rows;
   rows.add(rows_of({10, 20}, 0), rows_of({10, 20}, 0));
