@@ -17,7 +17,8 @@ class Audit {
     if (left == right) return;
     failed_.push_back(fmt::format("{} = {}, but {} = {}", what, left, as, right));
   }
-  void at_most(const std::string& what, double value, const std::string& as, double limit) {
+  template <class Number>
+  void at_most(const std::string& what, Number value, const std::string& as, Number limit) {
     if (value <= limit) return;
     failed_.push_back(fmt::format("{} = {}, but {} = {}", what, value, as, limit));
   }

@@ -182,25 +182,30 @@ void add_system_bound(const BoardConfig& board, bool whole_pictures, Bound& boun
   }
 }
 
-Bound core_bound(const BoardConfig& board, const Tables& tables, std::uint64_t frames) {
-  return core_bound(board, frame_accesses(board, tables), frames);
+std::vector<ResourceBound> turn_bounds(const BoardConfig& board, const FrameAccesses& accesses) {
+  std::vector<ResourceBound> turn(allocation_period_frames(board));
+  for (std::size_t frame = 0; frame < turn.size(); ++frame) {
+    for (const ResourceBound& bound : frame_bounds(board, accesses, frame)) {
+      if (bound.cycles >= turn[frame].cycles) turn[frame] = bound;
+    }
+  }
+  return turn;
 }
 
-Bound core_bound(const BoardConfig& board, const FrameAccesses& accesses, std::uint64_t frames) {
-  if (frames == 0) throw std::invalid_argument("frames = 0: must be 1 or more");
-  const std::uint64_t period = allocation_period_frames(board);
+Bound core_bound(const BoardConfig& board, const Tables& tables) {
+  return core_bound(board, frame_accesses(board, tables));
+}
+
+Bound core_bound(const BoardConfig& board, const FrameAccesses& accesses) {
+  const std::vector<ResourceBound> turn = turn_bounds(board, accesses);
   std::uint64_t total = 0;
   ResourceBound slowest;
-  for (std::uint64_t frame = 0; frame < std::min(period, frames); ++frame) {
-    ResourceBound limiting;
-    for (const ResourceBound& bound : frame_bounds(board, accesses, frame)) {
-      if (bound.cycles >= limiting.cycles) limiting = bound;
-    }
-    if (limiting.cycles > slowest.cycles) slowest = limiting;
-    total += limiting.cycles * ((frames - frame + period - 1) / period);
+  for (const ResourceBound& frame : turn) {
+    total += frame.cycles;
+    if (frame.cycles > slowest.cycles) slowest = frame;
   }
   Bound bound;
-  bound.core = board.fpga.clock_mhz * 1e6 * static_cast<double>(frames) / static_cast<double>(total);
+  bound.core = board.fpga.clock_mhz * 1e6 * static_cast<double>(turn.size()) / static_cast<double>(total);
   bound.core_limited_by = slowest.resource;
   return bound;
 }
@@ -210,7 +215,6 @@ double least_delivery_s(const BoardConfig& board, const FrameAccesses& accesses,
   const BufferLayout layout = layout_buffers(board);
   // A picture has as many words as a result.
   const std::uint64_t words = fpga::FrameGeometry(core_config(board)).result_words;
-  const std::uint64_t period = allocation_period_frames(board);
   std::uint64_t one_by_one = 0;
   std::vector<std::uint64_t> cycles_of_banks(board.banks.size());
   // With separate ports the writes are made beside the reads. They alone are never the limit: a frame has at
@@ -218,15 +222,9 @@ double least_delivery_s(const BoardConfig& board, const FrameAccesses& accesses,
   const auto use = [&](int bank, std::uint64_t reads, std::uint64_t writes) {
     cycles_of_banks[static_cast<std::size_t>(bank)] += reads + (has_separate_ports(board, bank) ? 0 : writes);
   };
-  std::vector<std::uint64_t> frame_cycles;
-  for (std::uint64_t frame = 0; frame < std::min(period, frames); ++frame) {
-    std::uint64_t most = 0;
-    for (const ResourceBound& bound : frame_bounds(board, accesses, frame))
-      most = std::max(most, bound.cycles);
-    frame_cycles.push_back(most);
-  }
+  const std::vector<ResourceBound> turn = turn_bounds(board, accesses);
   for (std::uint64_t frame = from.frame; frame < frames; ++frame) {
-    one_by_one += frame_cycles[frame % period];
+    one_by_one += turn[frame % turn.size()].cycles;
     const std::uint64_t pair_words = frame - from.frame < layout.left_image.size() ? 0 : words;
     use(bank_in_turn(layout.left_image, frame), accesses.left.pixel, pair_words);
     use(bank_in_turn(layout.right_image, frame), accesses.right.pixel, pair_words);

@@ -49,8 +49,17 @@ struct ResourceBound {
 // last the matcher. Throws std::invalid_argument if the board has problems.
 std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const Tables& tables, std::uint64_t frame);
 
-// An upper bound for the frame rate that one part of the computer around the board allows. The rate counts
-// from time 0 to the last delivery.
+// For each frame of one turn of the allocation's lists, the resource of frame_bounds() that needs the most
+// cycles. If several need as many, it is the last of them in the order of frame_bounds(). Throws as
+// frame_bounds() does.
+std::vector<ResourceBound> turn_bounds(const BoardConfig& board, const FrameAccesses& accesses);
+
+// The upper bound for the frame rate of the core over whole turns of the allocation's lists, and the resource
+// that limits the slowest frame of a turn. Throws as frame_bounds() does.
+Bound core_bound(const BoardConfig& board, const FrameAccesses& accesses);
+Bound core_bound(const BoardConfig& board, const Tables& tables);
+
+// An upper bound for the frame rate that one part of the computer around the board allows.
 //
 // | resource | limit                                                                                      |
 // |----------|--------------------------------------------------------------------------------------------|
@@ -89,11 +98,5 @@ struct FrameBegin {
 // Throws std::invalid_argument if the board has problems.
 double least_delivery_s(const BoardConfig& board, const FrameAccesses& accesses, std::uint64_t frames,
                         const FrameBegin& from);
-
-// The upper bound for the frame rate of the core over frames 0..frames-1, and the resource that limits the
-// slowest of these frames. If several resources limit it equally, it is the last of them in the order of
-// frame_bounds(). Throws std::invalid_argument if the board has problems or `frames` is 0.
-Bound core_bound(const BoardConfig& board, const FrameAccesses& accesses, std::uint64_t frames);
-Bound core_bound(const BoardConfig& board, const Tables& tables, std::uint64_t frames);
 
 }  // namespace stereotlm::platform

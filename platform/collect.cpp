@@ -96,6 +96,17 @@ void audit_flow(const fpga::FrameGeometry& geometry, const BoardCounters& counte
   audit.equal("result writer: words", counters.written_words, "words of the images", words);
 }
 
+// No frame takes fewer cycles than its bound. Reports the first that does.
+void audit_frames(const std::vector<std::uint64_t>& frame_cycles, const std::vector<ResourceBound>& turn,
+                  Audit& audit) {
+  for (std::size_t frame = 0; frame < frame_cycles.size(); ++frame) {
+    const ResourceBound& bound = turn[frame % turn.size()];
+    if (frame_cycles[frame] >= bound.cycles) continue;
+    return audit.at_most("bound of " + bound.resource, bound.cycles, fmt::format("frame_cycles[{}]", frame),
+                         frame_cycles[frame]);
+  }
+}
+
 }  // namespace
 
 BoardCounters counters_of(const fpga::FrameRun& frames, const std::vector<memory::BankArbiter>& arbiters) {
@@ -163,9 +174,9 @@ Statistics collect_statistics(const BoardConfig& config, const Tables& tables, c
   if (statistics.frames > 0) {
     statistics.frames_per_second.core = config.fpga.clock_mhz * 1e6 * static_cast<double>(statistics.frames) /
                                         static_cast<double>(all_cycles);
-    statistics.bound = core_bound(config, tables, statistics.frames);
-    audit.at_most("frames_per_second.core", statistics.frames_per_second.core, "bound.core",
-                  statistics.bound.core);
+    const FrameAccesses accesses = frame_accesses(config, tables);
+    statistics.bound = core_bound(config, accesses);
+    audit_frames(statistics.frame_cycles, turn_bounds(config, accesses), audit);
   }
   statistics.failed = std::move(audit).failed();
   return statistics;

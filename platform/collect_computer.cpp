@@ -43,6 +43,25 @@ Percentiles percentiles(std::vector<std::uint64_t> values_ps) {
   return {rank(0), rank(50), rank(95), rank(99), rank(100)};
 }
 
+std::uint64_t latency_ps(const Delivery& delivery) { return delivery.host_ps - delivery.capture_ps; }
+
+// `turn`: L of SteadyRate.
+std::optional<SteadyRate> steady_rate(const std::vector<Delivery>& deliveries, std::uint64_t turn) {
+  if (deliveries.size() < 2 * turn) return std::nullopt;
+  SteadyRate steady;
+  steady.frames = (deliveries.size() - turn) / turn * turn;
+  const auto before = deliveries.end() - 1 - static_cast<std::ptrdiff_t>(steady.frames);
+  const auto [least, greatest] =
+      std::minmax_element(before, deliveries.end(),
+                          [](const Delivery& a, const Delivery& b) { return latency_ps(a) < latency_ps(b); });
+  const std::uint64_t window_ps = deliveries.back().host_ps - before->host_ps;
+  steady.frames_per_second = static_cast<double>(steady.frames) / seconds(window_ps);
+  steady.uncertainty = steady.frames_per_second *
+                       static_cast<double>(latency_ps(*greatest) - latency_ps(*least)) /
+                       static_cast<double>(window_ps);
+  return steady;
+}
+
 void audit_words(const BoardConfig& config, const ComputerCounters::Words& words, Audit& audit) {
   std::vector<std::string> names;
   for (const PlacedBuffer& buffer : buffers(config)) names.push_back(buffer.path());
@@ -76,6 +95,28 @@ void audit_cameras(const ComputerStatistics& computer, const ComputerCounters& c
   }
 }
 
+// The frames from power-up need not be whole turns of the lists. Their rate is compared with the bounds of just
+// these frames.
+void audit_rates(const BoardConfig& config, const FrameAccesses& accesses, bool whole_pictures,
+                 const Statistics& statistics, Audit& audit) {
+  constexpr double kRoundingFactor = 1 + 1e-9;  // rates are rounded quotients
+  const std::vector<ResourceBound> turn = turn_bounds(config, accesses);
+  std::uint64_t cycles = 0;
+  for (std::uint64_t frame = 0; frame < statistics.frames; ++frame)
+    cycles += turn[frame % turn.size()].cycles;
+  const double frames = static_cast<double>(statistics.frames);
+  double bound = config.fpga.clock_mhz * 1e6 * frames / static_cast<double>(cycles);
+  for (const RateBound& part : computer_bounds(config, whole_pictures))
+    bound = std::min(bound, part.frames_per_second);
+  const FramesPerSecond& rate = statistics.frames_per_second;
+  audit.at_most("frames_per_second.system", *rate.system, "the bound of these frames",
+                bound * kRoundingFactor);
+  if (!rate.steady) return;
+  audit.at_most("frames_per_second.steady - steady_uncertainty",
+                rate.steady->frames_per_second - rate.steady->uncertainty, "bound.system",
+                *statistics.bound.system * kRoundingFactor);
+}
+
 }  // namespace
 
 std::uint64_t words_for_results(const pci::PciBusControl::Stats& bus) {
@@ -88,12 +129,9 @@ Statistics collect_statistics(const BoardConfig& config, const Tables& tables, c
                               const std::vector<std::uint64_t>& frame_cycles,
                               const ComputerCounters& counters, const std::vector<Delivery>& deliveries) {
   Statistics statistics = collect_statistics(config, tables, fidelity, frame_cycles, counters.board);
-  const double delivered = static_cast<double>(deliveries.size());
-  const Delivery& first = deliveries.front();
-  const Delivery& last = deliveries.back();
-  statistics.frames_per_second.system = delivered / seconds(last.host_ps);
-  if (deliveries.size() > 1)
-    statistics.frames_per_second.steady = (delivered - 1) / seconds(last.host_ps - first.host_ps);
+  statistics.frames_per_second.system =
+      static_cast<double>(deliveries.size()) / seconds(deliveries.back().host_ps);
+  statistics.frames_per_second.steady = steady_rate(deliveries, allocation_period_frames(config));
   const bool whole_pictures =
       counters.cameras[0].capture.dropped_pixels + counters.cameras[1].capture.dropped_pixels == 0;
   add_system_bound(config, whole_pictures, statistics.bound);
@@ -112,7 +150,7 @@ Statistics collect_statistics(const BoardConfig& config, const Tables& tables, c
                     camera_statistics("right", counters.cameras[1])};
   std::vector<std::uint64_t> latencies_ps;
   latencies_ps.reserve(deliveries.size());
-  for (const Delivery& delivery : deliveries) latencies_ps.push_back(delivery.host_ps - delivery.capture_ps);
+  for (const Delivery& delivery : deliveries) latencies_ps.push_back(latency_ps(delivery));
   around.capture_to_host_ms = percentiles(std::move(latencies_ps));
 
   Audit audit;
@@ -120,8 +158,7 @@ Statistics collect_statistics(const BoardConfig& config, const Tables& tables, c
   audit_words(config, counters.words, audit);
   audit_host_port(counters, audit);
   audit_cameras(around, counters, audit);
-  audit.at_most("frames_per_second.system", *statistics.frames_per_second.system, "bound.system",
-                *statistics.bound.system);
+  audit_rates(config, frame_accesses(config, tables), whole_pictures, statistics, audit);
   for (std::string& failed : std::move(audit).failed()) statistics.failed.push_back(std::move(failed));
   return statistics;
 }

@@ -42,14 +42,25 @@ struct BlameRow {
   std::uint64_t cycles = 0;
 };
 
+// The rate of a whole computer without its start-up. L is allocation_period_frames(). The first L deliveries
+// are warm-up; the window is the greatest multiple of L of the last frames that the others allow.
+struct SteadyRate {
+  double frames_per_second = 0;  // frames of the window / time from the delivery before it to the last one
+  // What the window leaves open: frames_per_second * (greatest - least latency of the window and of the
+  // delivery before it) / its time.
+  double uncertainty = 0;
+  std::uint64_t frames = 0;  // of the window
+};
+
 struct FramesPerSecond {
   double core = 0;  // frames / the time that the core runs
   // The other rates belong to a whole computer; nullopt for a board without a computer.
-  std::optional<double> system;  // deliveries / time of the last delivery
-  std::optional<double> steady;  // (deliveries - 1) / time between the first and the last; nullopt for one
+  std::optional<double> system;      // deliveries / time of the last delivery
+  std::optional<SteadyRate> steady;  // nullopt where fewer than 2 * L frames are delivered
 };
 
-// Upper bounds for the rates `core` and `system` of FramesPerSecond, and the resource that sets each of them.
+// Upper bounds for the rates `core` and `steady` of FramesPerSecond over whole turns of the allocation's
+// lists, and the resource that sets each of them.
 struct Bound {
   double core = 0;
   std::string core_limited_by;

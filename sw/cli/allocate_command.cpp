@@ -280,7 +280,7 @@ int allocate(const AllocateOptions& options) {
     return static_cast<double>(frames) / platform::least_delivery_s(one, accesses, frames, begin);
   };
   const AllocationSearch::BoundOf bound = [&](const BoardConfig& one) {
-    return options.camera ? rate_from(one, first) : platform::core_bound(one, accesses, frames).core;
+    return options.camera ? rate_from(one, first) : platform::core_bound(one, accesses).core;
   };
   AllocationSearch search = search_of(*board, *options.banks, run, bound);
   if (search.fitting() == 0) {

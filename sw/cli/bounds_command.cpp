@@ -156,8 +156,7 @@ struct BoardBounds {
 
 BoardBounds bounds_of(const BoardConfig& board, const platform::Tables& tables) {
   const std::uint64_t frames = platform::allocation_period_frames(board);
-  BoardBounds all = {
-      board, {}, platform::computer_bounds(board, true), platform::core_bound(board, tables, frames)};
+  BoardBounds all = {board, {}, platform::computer_bounds(board, true), platform::core_bound(board, tables)};
   platform::add_system_bound(board, true, all.bound);
   for (std::uint64_t frame = 0; frame < frames; ++frame) {
     const Group group = group_of(board, tables, frame);

@@ -26,7 +26,7 @@ struct Rates {
 };
 
 Rates rates_of(const Json& a, const Json& b) {
-  for (const auto& [key, kind] : {std::pair("steady", "steady"), std::pair("system", "including start-up")}) {
+  for (const auto& [key, kind] : {std::pair("steady", "steady"), std::pair("system", "from power-up")}) {
     if (a.contains(key) && b.contains(key)) return {kind, a.at(key), b.at(key)};
   }
   return {"core only", a.at("core"), b.at("core")};

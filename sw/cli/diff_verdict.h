@@ -15,7 +15,7 @@ struct JudgedRun {
 
 // The comparison of two runs in one sentence: which is faster, by how much, where the difference arises, and
 // whether the disparities are the same. The rates are the steady ones if both runs have them, else those
-// including the start-up, else those of the core. `pixels`: null if the disparities are not compared.
+// from power-up, else those of the core. `pixels`: null if the disparities are not compared.
 std::string diff_verdict(const JudgedRun& a, const JudgedRun& b, const report::PixelComparison* pixels);
 
 }  // namespace stereotlm::cli

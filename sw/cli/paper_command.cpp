@@ -147,8 +147,8 @@ std::optional<paper::Findings> study(const std::optional<LoadedPair>& given) {
   runs::ProgressLine progress;
   paper::Means means;
   means.evaluate = [&simulator](const explore::Point& point) { return simulator(point); };
-  means.bound = [](const platform::BoardConfig& board, std::uint64_t frames) {
-    return platform::core_bound(board, runs::tables_of(board, std::nullopt), frames);
+  means.bound = [](const platform::BoardConfig& board) {
+    return platform::core_bound(board, runs::tables_of(board, std::nullopt));
   };
   means.quality = [&given](const platform::BoardConfig& board, const paper::Scene& scene) {
     return scene.synthetic ? quality(board, synthetic_pictures(board, *scene.synthetic))

@@ -51,7 +51,7 @@ constexpr const char* kSweepFooter =
     "(see stereotlm keys). What may stand in `run`:\n"
     "  source       preloaded, the core alone, fed by an ideal host (the default here), or camera, the\n"
     "               whole computer\n"
-    "  frames       to deliver: by default one turn of the allocation's lists, with cameras 13\n"
+    "  frames       to deliver: by default one turn of the allocation's lists, with cameras 12 more\n"
     "  calibration  F.yaml of stereotlm calibrate: the tables; by default they are the identity\n\n"
     "Each point is a row of table `points` of DB, an SQLite database: its status, the reason if it is not\n"
     "ok, the board in full, and a column for each key and for each figure of stats.json; waits by port,\n"

@@ -27,8 +27,7 @@ constexpr const char* kHead =
     "it\n"
     "  or is more.\n"
     "- *The core alone* is fed by an ideal host; *the whole computer* has free-running cameras at 29.97 Hz,\n"
-    "  capture boards, PCI bus and driver, and its rate is that between the first and the last of 13\n"
-    "  deliveries (of so few frames it can be a little above the bound, which holds for long runs).\n"
+    "  capture boards, PCI bus and driver, and its rate is the steady one, without start-up.\n"
     "- *MHz* is the clock at which the core alone would give what is printed, over the range that is\n"
     "  printed so; the cycles of a frame do not depend on the clock.\n";
 

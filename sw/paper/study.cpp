@@ -151,7 +151,6 @@ class BankSearch {
       : claim_(claim),
         means_(means),
         board_(load(claim.cases.front().runs.front())),
-        frames_(explore::frames_of(kAlone, board_)),
         search_(board_, static_cast<int>(board_.banks.size()), kAlone,
                 [this](const BoardConfig& one) { return bound(one).core; }),
         most_(search_.most_left()) {}
@@ -206,12 +205,11 @@ class BankSearch {
   inline static const explore::PointRun kAlone = {false, 0, ""};
 
   static BoardConfig load(const BoardRun& run) { return platform::load_board(run.preset, run.sets); }
-  platform::Bound bound(const BoardConfig& one) const { return means_.bound(one, frames_); }
+  platform::Bound bound(const BoardConfig& one) const { return means_.bound(one); }
 
   const Claim& claim_;
   const Means& means_;
   BoardConfig board_;
-  std::uint64_t frames_;
   explore::AllocationSearch search_;
   std::uint64_t most_;
 };

@@ -69,8 +69,8 @@ struct Findings {
 // What study() needs to simulate boards.
 struct Means {
   explore::Evaluate evaluate;
-  // platform::core_bound() of the core alone, without calibration, for this number of frames.
-  std::function<platform::Bound(const platform::BoardConfig& board, std::uint64_t frames)> bound;
+  // platform::core_bound() without calibration.
+  std::function<platform::Bound(const platform::BoardConfig& board)> bound;
   // Simulates one frame of the core alone, without calibration, that shows the scene. Throws
   // std::runtime_error if a share has no pixels.
   std::function<Quality(const platform::BoardConfig& board, const Scene& scene)> quality;

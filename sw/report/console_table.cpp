@@ -21,7 +21,7 @@ double share(std::uint64_t part, std::uint64_t whole) {
 }
 
 std::string bound_line(const char* name, double bound, const std::string& limited_by) {
-  return fmt::format("{:<12} {:>10.3f} frames/s   limited by {}\n", name, bound, shortened(limited_by, 48));
+  return fmt::format("{:<14} {:>8.3f} frames/s   limited by {}\n", name, bound, shortened(limited_by, 48));
 }
 
 std::string rate_lines(const platform::Statistics& statistics) {
@@ -34,12 +34,16 @@ std::string rate_lines(const platform::Statistics& statistics) {
          bound_line("core bound", statistics.bound.core, statistics.bound.core_limited_by);
 }
 
-std::string system_lines(const platform::Statistics& statistics) {
+std::string computer_rate_lines(const platform::Statistics& statistics) {
   const platform::FramesPerSecond& rate = statistics.frames_per_second;
   if (!rate.system || !statistics.bound.system) return "";
-  const std::string steady = rate.steady ? fmt::format("   steady {:.3f}", *rate.steady) : "";
-  return fmt::format("{:<12} {:>10.3f} frames/s{}\n", "system", *rate.system, steady) +
-         bound_line("system bound", *statistics.bound.system, statistics.bound.system_limited_by);
+  const std::string line =
+      rate.steady
+          ? fmt::format("{} frames/s   steady over {} frames; {:.3f} from power-up",
+                        steady_text(*rate.steady), rate.steady->frames, *rate.system)
+          : fmt::format("{:.3f} frames/s   from power-up; too few frames for a steady rate", *rate.system);
+  return fmt::format("{:<14} {:>{}}\n", "computer", line, line.size() + 8 - line.find(' ')) +
+         bound_line("computer bound", *statistics.bound.system, statistics.bound.system_limited_by);
 }
 
 std::string pci_lines(const platform::ComputerStatistics& computer, const BoardClocks& clocks) {
@@ -129,9 +133,13 @@ std::string accuracy_line(const Accuracy& accuracy) {
 
 }  // namespace
 
+std::string steady_text(const platform::SteadyRate& steady) {
+  return fmt::format("{:.3f} ± {:.3f}", steady.frames_per_second, steady.uncertainty);
+}
+
 std::string console_table(const platform::Statistics& statistics, const BoardClocks& clocks,
                           const TableExtras& extras) {
-  std::string text = rate_lines(statistics) + system_lines(statistics) +
+  std::string text = rate_lines(statistics) + computer_rate_lines(statistics) +
                      bank_lines(statistics, clocks.fpga_mhz) +
                      wait_lines(statistics, extras.waitless_frames_per_second);
   if (statistics.computer) text += computer_lines(*statistics.computer, clocks);

@@ -24,6 +24,9 @@ struct TableExtras {
   std::optional<Accuracy> accuracy = std::nullopt;
 };
 
+// "17.982 ± 0.004"
+std::string steady_text(const platform::SteadyRate& steady);
+
 // The table that a run prints:
 // - Frames per second and their bounds.
 // - For each bank its traffic, and its share of the peak of one word per cycle (`use %`).
@@ -31,7 +34,7 @@ struct TableExtras {
 // - For a computer: each PCI master's traffic, its share of the peak (one word per clock, or two) and its mean
 //   wait for the bus; the use of both buses; dropped camera frames by reason; the latency.
 // - How much of the last frame is answered, and the accuracy, if given.
-// Lines have at most 100 columns; a name of more than 24 characters is shortened. Text is ASCII except names.
+// Lines have at most 100 columns; a name of more than 24 characters is shortened. Text is ASCII except names and ±.
 std::string console_table(const platform::Statistics& statistics, const BoardClocks& clocks,
                           const TableExtras& extras = {});
 

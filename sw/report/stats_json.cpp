@@ -111,7 +111,10 @@ Json stats_document(const platform::Statistics& statistics, const std::optional<
                    {"frame_cycles", statistics.frame_cycles}};
   Json& rate = document["frames_per_second"] = {{"core", statistics.frames_per_second.core}};
   if (statistics.frames_per_second.system) rate["system"] = *statistics.frames_per_second.system;
-  if (statistics.frames_per_second.steady) rate["steady"] = *statistics.frames_per_second.steady;
+  if (statistics.frames_per_second.steady) {
+    rate["steady"] = statistics.frames_per_second.steady->frames_per_second;
+    rate["steady_uncertainty"] = statistics.frames_per_second.steady->uncertainty;
+  }
   Json& bound = document["bound"] = {{"core", statistics.bound.core},
                                      {"core_limited_by", statistics.bound.core_limited_by}};
   if (statistics.bound.system) {

@@ -9,7 +9,7 @@ namespace stereotlm::explore {
 
 std::uint64_t frames_of(const PointRun& run, const platform::BoardConfig& board) {
   if (run.frames > 0) return run.frames;
-  return run.camera ? kCameraFrames : platform::allocation_period_frames(board);
+  return platform::allocation_period_frames(board) + (run.camera ? kSteadyFrames : 0);
 }
 
 bool may_vary(const std::string& run_key) { return run_key == kSourcePath || run_key == kFramesPath; }

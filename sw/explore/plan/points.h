@@ -24,13 +24,13 @@ struct PointRun {
   std::string calibration;   // SHA-256 of the tables; empty: the tables are the identity
 };
 
-// The default number of frames of the whole computer. In the 12 frame intervals between the first and
-// the last delivery every buffer of a list of 1, 2 or 3 is used equally often.
-inline constexpr std::uint64_t kCameraFrames = 13;
+// The least window of the steady rate (platform::SteadyRate) in a run of the default length. It is whole turns
+// of lists of 1, 2 or 3.
+inline constexpr std::uint64_t kSteadyFrames = 12;
 
-// The number of frames of a run: run.frames if it is not 0. The default is kCameraFrames for the whole
-// computer, and one turn of the allocation's lists for the board alone. If no frame affects the next, one
-// turn has the same frame rate as any number of turns.
+// The number of frames of a run: run.frames if it is not 0. The default for the board alone is one turn of the
+// allocation's lists. If no frame affects the next, one turn has the same frame rate as any number of turns.
+// The default for the whole computer is one turn more than kSteadyFrames.
 std::uint64_t frames_of(const PointRun& run, const platform::BoardConfig& board);
 
 // Whether the points of a plan may differ in this key of the run.

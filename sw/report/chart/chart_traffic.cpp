@@ -176,9 +176,9 @@ class TrafficReader {
     const Json& rates = stats_.at("frames_per_second");
     const auto rate = [&rates](const char* key) { return rate_text(rates.at(key).get<double>()); };
     std::string text = rate(is_whole ? "system" : "core") + " frames/s" +
-                       (is_whole ? ", including start-up" : ", core only");
+                       (is_whole ? ", from power-up" : ", core only");
     if (is_whole && rates.contains("steady"))
-      text = rate("steady") + " frames/s, steady; " + rate("system") + " including start-up";
+      text = rate("steady") + " frames/s, steady; " + rate("system") + " from power-up";
     traffic_.summary = {fmt::format("{}; {} frame{}", text, frames_, frames_ == 1 ? "" : "s")};
     const Json& bound = stats_.at("bound");
     const double limit = bound.at(is_whole ? "system" : "core").get<double>();

@@ -44,7 +44,7 @@ TEST_P(CameraRates, AreThoseOfTheSlowestPartOverSixtyFrames) {
   const auto& pairs_a_camera_frame = GetParam().pairs_a_camera_frame;
   const double expected = pairs_a_camera_frame ? *pairs_a_camera_frame * board.cameras.frame_rate_hz
                                                : statistics.frames_per_second.core;
-  EXPECT_NEAR(*statistics.frames_per_second.steady / expected, 1, 0.01);
+  EXPECT_NEAR(statistics.frames_per_second.steady->frames_per_second / expected, 1, 0.01);
 }
 
 // A sixteenth of the pixels from cameras that are sixteen times as fast: the core needs nearly the same part

@@ -69,7 +69,7 @@ TEST_F(CameraSimulationTest, DeliversTheDisparitiesOfThreePairsInFiveCameraFrame
   EXPECT_EQ(simulation->last().number, results.back().number);
   const platform::Statistics statistics = simulation->statistics();
   EXPECT_THAT(statistics.failed, IsEmpty());
-  EXPECT_NEAR(*statistics.frames_per_second.steady, 600, 6);
+  EXPECT_NEAR(statistics.frames_per_second.steady->frames_per_second, 600, 6);
 }
 
 TEST_F(CameraSimulationTest, HasNoSteadyRateOfOneFrame) {

@@ -41,20 +41,21 @@ class CollectComputer : public testing::Test {
   platform::Tables tables = platform::identity_tables(board);
   test::NoisePairs pairs{32, 24};
   test::MonitoringBinder binder;
-  runs::CameraSimulation simulation{board, tables, pairs, 3, binder};
+  runs::CameraSimulation simulation{board, tables, pairs, 5, binder};
   ComputerCounters counters;
   std::vector<Delivery> deliveries = {
-      {1'000'000'000, 3'000'000'000}, {2'000'000'000, 5'000'000'000}, {4'000'000'000, 9'000'000'000}};
+      {1'000'000'000, 3'000'000'000},  {2'000'000'000, 5'000'000'000},   {4'000'000'000, 9'000'000'000},
+      {8'000'000'000, 11'000'000'000}, {10'000'000'000, 14'000'000'000},
+  };
 };
 
 TEST_F(CollectComputer, TakesRatesAndLatenciesFromTheDeliveries) {
   const platform::Statistics found = statistics();
   EXPECT_THAT(found.failed, IsEmpty());
-  EXPECT_DOUBLE_EQ(*found.frames_per_second.system, 3 / 9e-3);
-  EXPECT_DOUBLE_EQ(*found.frames_per_second.steady, 2 / 6e-3);
+  EXPECT_DOUBLE_EQ(*found.frames_per_second.system, 5 / 14e-3);
   const platform::Percentiles& latency = found.computer->capture_to_host_ms;
   EXPECT_EQ(latency.min, 2);
-  EXPECT_EQ(latency.p50, 3);  // nearest rank: the second of three
+  EXPECT_EQ(latency.p50, 3);  // nearest rank: the third of five
   EXPECT_EQ(latency.p95, 5);
   EXPECT_EQ(latency.p99, 5);
   EXPECT_EQ(latency.max, 5);
@@ -67,6 +68,48 @@ TEST_F(CollectComputer, TakesRatesAndLatenciesFromTheDeliveries) {
   EXPECT_EQ(of_hundred.p95, 95);
   EXPECT_EQ(of_hundred.p99, 99);
   EXPECT_EQ(of_hundred.max, 100);
+}
+
+// The lists have two buffers. So two deliveries are warm-up, and the window has whole pairs of frames.
+TEST_F(CollectComputer, TakesTheSteadyRateOverWholeTurnsOfTheLists) {
+  const auto steady = [this](std::size_t count) {
+    const std::vector<Delivery> all = deliveries;
+    deliveries.resize(count);
+    const auto found = statistics().frames_per_second.steady;
+    deliveries = all;
+    return found;
+  };
+  EXPECT_FALSE(steady(3));
+  ASSERT_TRUE(steady(4));
+  EXPECT_EQ(steady(4)->frames, 2U);
+  EXPECT_DOUBLE_EQ(steady(4)->frames_per_second, 2 / 6e-3);    // from 5 ms to 11 ms
+  EXPECT_DOUBLE_EQ(steady(4)->uncertainty, 2 / 6e-3 * 2 / 6);  // latencies: 3, 5 and 3 ms
+  EXPECT_EQ(steady(5)->frames, 2U);
+  EXPECT_DOUBLE_EQ(steady(5)->frames_per_second, 2 / 5e-3);    // from 9 ms to 14 ms
+  EXPECT_DOUBLE_EQ(steady(5)->uncertainty, 2 / 5e-3 * 2 / 5);  // latencies: 5, 3 and 4 ms
+  deliveries.push_back({14'000'000'000, 17'000'000'000});
+  EXPECT_EQ(steady(6)->frames, 4U);
+  EXPECT_DOUBLE_EQ(steady(6)->frames_per_second, 4 / 12e-3);
+}
+
+// The cameras give 1000 frames a second.
+TEST_F(CollectComputer, FindsASteadyRateAboveItsBoundByMoreThanItsUncertainty) {
+  const auto deliver = [this](std::uint64_t last_capture_ps) {
+    deliveries = {{0, 30'000'000'000},
+                  {0, 40'000'000'000},
+                  {0, 41'000'000'000},
+                  {40'000'000'000, 41'300'000'000},
+                  {last_capture_ps, 41'600'000'000}};
+    return statistics();
+  };
+  // Two frames in 0.6 ms. Their latencies differ by 40 ms.
+  EXPECT_THAT(deliver(40'900'000'000).failed, IsEmpty());
+  for (Delivery& delivery : deliveries) delivery.capture_ps = delivery.host_ps - 1'000'000'000;
+  const platform::Statistics found = statistics();
+  EXPECT_THAT(found.failed, ElementsAre(fmt::format("frames_per_second.steady - steady_uncertainty = {}, but "
+                                                    "bound.system = {}",
+                                                    found.frames_per_second.steady->frames_per_second,
+                                                    *found.bound.system * (1 + 1e-9))));
 }
 
 // Each identity is broken alone, by one counter of a valid run.

@@ -90,8 +90,10 @@ std::string figures_of(const Outcome& outcome, bool with_pixels) {
   figures.line("frame_cycles", fmt::join(statistics.frame_cycles, " "));
   figures.decimal("frames_per_second.core", statistics.frames_per_second.core);
   figures.decimal("frames_per_second.system", *statistics.frames_per_second.system);
-  if (statistics.frames_per_second.steady)
-    figures.decimal("frames_per_second.steady", *statistics.frames_per_second.steady);
+  if (const auto& steady = statistics.frames_per_second.steady) {
+    figures.decimal("frames_per_second.steady", steady->frames_per_second);
+    figures.decimal("frames_per_second.steady_uncertainty", steady->uncertainty);
+  }
   for (const platform::BankStatistics& bank : statistics.banks) {
     figures.line("bank " + bank.name, bank.reads, bank.writes, bank.busy_cycles, bank.turnaround_cycles,
                  bank.idle_cycles, bank.contended_cycles);
@@ -120,6 +122,15 @@ std::string figures_of(const Outcome& outcome, bool with_pixels) {
   return figures.text();
 }
 
+// The frames after which every list of buffers begins anew.
+std::size_t turn_of(const test::PlainCycleInput& board) {
+  std::size_t turn = 1;
+  while (turn % board.left_image.size() != 0 || turn % board.right_image.size() != 0 ||
+         turn % board.disparity.size() != 0)
+    ++turn;
+  return turn;
+}
+
 const char* name_of(const std::optional<test::PlainPort>& by) {
   return by ? test::name_of(*by) : "turnaround";
 }
@@ -137,7 +148,6 @@ std::string figures_of(const test::PlainComputerResult& plain, const test::Plain
   figures.line("cycles", core.counted_cycles);
   figures.line("frame_cycles", fmt::join(core.frame_cycles, " "));
   const double frames = static_cast<double>(plain.deliveries.size());
-  const test::PlainTime first_ps = plain.deliveries.front().host_ps;
   const test::PlainTime last_ps = plain.deliveries.back().host_ps;
   double cycles = 0;
   for (const std::uint64_t frame : core.frame_cycles) cycles += static_cast<double>(frame);
@@ -145,9 +155,17 @@ std::string figures_of(const test::PlainComputerResult& plain, const test::Plain
   figures.decimal("frames_per_second.core", 1e6 * static_cast<double>(mhz.numerator) /
                                                 static_cast<double>(mhz.denominator) * frames / cycles);
   figures.decimal("frames_per_second.system", frames * 1e12 / static_cast<double>(last_ps));
-  if (frames > 1) {
-    figures.decimal("frames_per_second.steady",
-                    (frames - 1) * 1e12 / static_cast<double>(last_ps - first_ps));
+  const std::size_t turn = turn_of(input.board);
+  std::size_t window = 0;
+  while (turn + window + turn <= plain.deliveries.size()) window += turn;
+  if (window > 0) {
+    const std::size_t before = plain.deliveries.size() - 1 - window;
+    const double window_ps = static_cast<double>(last_ps - plain.deliveries[before].host_ps);
+    const double steady = static_cast<double>(window) * 1e12 / window_ps;
+    const auto first = latencies.begin() + static_cast<std::ptrdiff_t>(before);
+    const auto spread = *std::max_element(first, latencies.end()) - *std::min_element(first, latencies.end());
+    figures.decimal("frames_per_second.steady", steady);
+    figures.decimal("frames_per_second.steady_uncertainty", steady * static_cast<double>(spread) / window_ps);
   }
   for (std::size_t index = 0; index < core.banks.size(); ++index) {
     const test::PlainBankStates& bank = core.banks[index];

@@ -43,7 +43,7 @@ TEST_F(CollectStatistics, GivesTheFiguresOfTheFramesThatEnded) {
   EXPECT_EQ(statistics.frame_cycles, (std::vector<uint64_t>{frame, frame}));
   EXPECT_EQ(statistics.cycles, 2 * (frame - kPipeline));
   EXPECT_DOUBLE_EQ(statistics.frames_per_second.core, 40e6 / static_cast<double>(frame));
-  EXPECT_EQ(statistics.bound.core, core_bound(board, identity_tables(board), 2).core);
+  EXPECT_EQ(statistics.bound.core, core_bound(board, identity_tables(board)).core);
   EXPECT_EQ(statistics.bound.core_limited_by, "matcher");
   EXPECT_GT(statistics.area.slices, 0);
   EXPECT_EQ(statistics.area.slices, area_of(board).slices);

@@ -6,19 +6,17 @@ import {linesOf, rowsText, tilesOf} from './recording.js';
 const kLeastShare = 0.0005;  // of all cycles that a port waits, to be named
 const kFewTiles = 0.35;      // a share of the tiles that is named if it holds half of the waits
 const kMostCauses = 3;       // of a port that are named
-const kAbout = 1 + 1e-6;     // a rate that reaches its bound may be above it by rounding
 
 export const settingOf = (run, key) => run.settings.find(setting => setting.key === key)?.value;
 
-// The rate of a run, what kind of rate it is, and its bound. The bound of a computer is that of the rate that
-// includes the start-up; of a few frames the steady rate may be above it, and is then not compared with it.
+// The rate of a run, what kind of rate it is, and its bound.
 export function rateOf(run) {
   const {frames_per_second: rates, bound} = run.stats;
   const computer = rates.system !== undefined;
   const limit = computer ? bound.system : bound.core;
-  const steady = rates.steady <= limit * kAbout;
-  const now = steady ? rates.steady : rates.system ?? rates.core;
-  const kind = steady ? 'steady' : computer ? 'including start-up' : 'core only';
+  const steady = rates.steady !== undefined;
+  const now = rates.steady ?? rates.system ?? rates.core;
+  const kind = steady ? 'steady' : computer ? 'from power-up' : 'core only';
   const by = computer ? bound.system_limited_by : bound.core_limited_by;
   return {now, kind, limit, by, computer, share: now / limit};
 }

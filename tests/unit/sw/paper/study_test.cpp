@@ -120,7 +120,7 @@ explore::Figures made_up_frame(const explore::Point& point) {
 Means proving_means() {
   Means proving = means();
   proving.evaluate = made_up_frame;
-  proving.bound = [](const BoardConfig&, std::uint64_t) {
+  proving.bound = [](const BoardConfig&) {
     platform::Bound bound;
     bound.core = 40;
     bound.core_limited_by = "matcher";

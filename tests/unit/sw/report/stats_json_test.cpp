@@ -68,7 +68,7 @@ TEST(StatsJson, HasTheKeysOfTheContractInTheirOrder) {
 TEST(StatsJson, HasTheKeysOfAComputer) {
   platform::Statistics statistics = small_run();
   statistics.frames_per_second.system = 17.5;
-  statistics.frames_per_second.steady = 17.75;
+  statistics.frames_per_second.steady = {17.75, 0.5, 12};
   statistics.bound.system = 18.5;
   statistics.bound.system_limited_by = "pci";
   platform::ComputerStatistics& computer = statistics.computer.emplace();
@@ -83,7 +83,7 @@ TEST(StatsJson, HasTheKeysOfAComputer) {
   computer.capture_to_host_ms = {77.5, 80, 90.25, 99, 100};
   const std::string text = stats_json(statistics, std::nullopt);
   EXPECT_THAT(text, HasSubstr(R"(
-  "frames_per_second": {"core": 18.6, "system": 17.5, "steady": 17.75},
+  "frames_per_second": {"core": 18.6, "system": 17.5, "steady": 17.75, "steady_uncertainty": 0.5},
   "bound": {"core": 19.25, "core_limited_by": "left_pixel", "system": 18.5, "system_limited_by": "pci"},
 )"));
   EXPECT_THAT(text, HasSubstr(R"(
