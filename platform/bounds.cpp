@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <stdexcept>
 #include <utility>
@@ -128,6 +129,129 @@ std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const FrameAcc
   return bounds;
 }
 
+// Equal transfers over the PCI bus that a frame needs.
+struct Transfers {
+  std::uint64_t words = 0;
+  int burst_words = 1;     // the most in a burst
+  int clocks_a_burst = 0;  // address, wait and idle clocks
+  int times = 1;           // in a frame
+};
+
+// The transfers of a frame, by master: bridge, left and right capture board.
+std::vector<std::vector<Transfers>> pci_transfers(const BoardConfig& board, bool whole_pictures) {
+  const auto picture =
+      static_cast<std::uint64_t>(board.image.width) * static_cast<std::uint64_t>(board.image.height) / 4;
+  const bool to_host = board.capture.destination == CaptureDestination::kHostMemory;
+  constexpr int kAddressAndIdle = 2;
+  const int memory_burst = kAddressAndIdle + board.pci.memory_wait_clocks;
+  const int bridge_burst = kAddressAndIdle + board.pci.bridge_wait_clocks;
+  const int moved = to_host ? 3 : 1;
+  std::vector<std::vector<Transfers>> masters = {
+      // Each transfer of the DMA: a descriptor of 4 words, then a picture or result.
+      {{4, 4, memory_burst, moved}, {picture, board.bridge.dma_burst_words, memory_burst, moved}}};
+  const Transfers captured =
+      to_host
+          ? Transfers{picture, board.capture.fifo_words, memory_burst}
+          : Transfers{picture, std::min(board.capture.fifo_words, board.bridge.posted_words), bridge_burst};
+  if (whole_pictures) masters.insert(masters.end(), 2, {captured});
+  return masters;
+}
+
+struct PciDemand {
+  std::uint64_t clocks = 0;
+  std::uint64_t bursts = 0;  // of the master with the most
+};
+
+// `latency_timer`: the clock with whose word a burst ends; nullopt: no burst is cut.
+PciDemand pci_demand(const BoardConfig& board, bool whole_pictures, std::optional<int> latency_timer) {
+  const int words_a_clock = board.pci.width_bits / 32;
+  PciDemand demand;
+  for (const std::vector<Transfers>& master : pci_transfers(board, whole_pictures)) {
+    std::uint64_t bursts = 0;
+    for (const Transfers& transfers : master) {
+      int most = transfers.burst_words;
+      if (latency_timer)
+        most = std::min(most, words_a_clock * std::max(1, *latency_timer + 2 - transfers.clocks_a_burst));
+      const auto times = static_cast<std::uint64_t>(transfers.times);
+      demand.clocks += times * pci_clocks_of(board, transfers.words, most, transfers.clocks_a_burst);
+      bursts += times * bursts_of(transfers.words, most);
+    }
+    demand.bursts = std::max(demand.bursts, bursts);
+  }
+  return demand;
+}
+
+// The load makes its transfers on time, or it requests the bus all the time. In the latter case it gets a burst
+// between any two bursts of another master, and the latency timer cuts all bursts. Of the bursts of the load in
+// a frame one is left out, because frames and bursts need not begin together.
+double pci_rate(const BoardConfig& board, bool whole_pictures) {
+  const double hz = board.pci.clock_mhz * 1e6;
+  const double alone = static_cast<double>(pci_demand(board, whole_pictures, std::nullopt).clocks);
+  if (!board.pci.load || board.pci.load->first_us > 0) return hz / alone;
+  const PciLoadConfig& load = *board.pci.load;
+  const int timer = board.pci.latency_timer_clocks;
+  const double wait_clocks = std::floor(load.access_us * board.pci.clock_mhz);
+  const double data_clocks = std::ceil(load.burst_words / (board.pci.width_bits / 32.0));
+  const double cut_burst = 2 + std::min(wait_clocks + data_clocks, std::max<double>(timer, wait_clocks + 1));
+  const PciDemand cut = pci_demand(board, whole_pictures, timer);
+  const double contended = static_cast<double>(cut.clocks) + static_cast<double>(cut.bursts - 1) * cut_burst;
+  const double whole_burst = 2 + wait_clocks + data_clocks;
+  const double share = whole_burst / (load.interval_us * board.pci.clock_mhz);
+  const double on_time = share < 1 ? std::max(alone, (alone - whole_burst) / (1 - share)) : contended;
+  return hz / std::min(on_time, contended);
+}
+
+double bridge_rate(const BoardConfig& board, bool whole_pictures) {
+  const auto picture =
+      static_cast<std::uint64_t>(board.image.width) * static_cast<std::uint64_t>(board.image.height) / 4;
+  // The local bus moves the result, and the pair either by DMA or as it was captured. A cycle of the FPGA
+  // grants one word at most. From one word of a burst to the next it takes at least one local clock. From the
+  // last word of a burst to the first of the next burst it takes four: idle, address, decode and word.
+  const bool to_host = board.capture.destination == CaptureDestination::kHostMemory;
+  const double pictures = to_host || whole_pictures ? 3 : 1;
+  const double words = pictures * static_cast<double>(picture);
+  const double bursts = pictures * static_cast<double>(bursts_of(picture, board.bridge.dma_burst_words));
+  const double local_us = 1 / board.bridge.local_clock_mhz;
+  const double fpga_us = 1 / board.fpga.clock_mhz;
+  return 1e6 /
+         std::max(words * fpga_us, bursts * 4 * local_us + (words - bursts) * std::max(local_us, fpga_us));
+}
+
+// The accesses of the core and of the host to each bank for frames 0..frames-1. With separate ports it is the
+// larger of the reads and the writes.
+std::vector<std::uint64_t> bank_accesses(const BoardConfig& board, const FrameAccesses& accesses,
+                                         bool pairs_are_written, std::uint64_t frames) {
+  const BufferLayout layout = layout_buffers(board);
+  // A picture has as many words as a result.
+  const std::uint64_t words = fpga::FrameGeometry(core_config(board)).result_words;
+  std::vector<std::uint64_t> reads(board.banks.size());
+  std::vector<std::uint64_t> writes(board.banks.size());
+  const auto read = [&reads](int bank, std::uint64_t count) {
+    reads[static_cast<std::size_t>(bank)] += count;
+  };
+  const auto write = [&](int bank) { writes[static_cast<std::size_t>(bank)] += words; };
+  for (std::uint64_t frame = 0; frame < frames; ++frame) {
+    const int left = bank_in_turn(layout.left_image, frame);
+    const int right = bank_in_turn(layout.right_image, frame);
+    read(left, accesses.left.pixel);
+    read(right, accesses.right.pixel);
+    if (layout.left_lut) read(layout.left_lut->bank, accesses.left.lut);
+    if (layout.right_lut) read(layout.right_lut->bank, accesses.right.lut);
+    if (pairs_are_written) {
+      write(left);
+      write(right);
+    }
+    const int disparity = bank_in_turn(layout.disparity, frame);
+    write(disparity);
+    read(disparity, words);  // by the host
+  }
+  for (std::size_t bank = 0; bank < reads.size(); ++bank) {
+    const bool is_beside = has_separate_ports(board, static_cast<int>(bank));
+    reads[bank] = is_beside ? std::max(reads[bank], writes[bank]) : reads[bank] + writes[bank];
+  }
+  return reads;
+}
+
 }  // namespace
 
 FrameAccesses frame_accesses(const BoardConfig& board, const Tables& tables) {
@@ -141,41 +265,32 @@ std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const Tables& 
   return frame_bounds(board, frame_accesses(board, tables), frame);
 }
 
-std::vector<RateBound> computer_bounds(const BoardConfig& board, bool whole_pictures) {
-  static_cast<void>(layout_buffers(board));
-  const std::uint64_t picture =
-      static_cast<std::uint64_t>(board.image.width) * static_cast<std::uint64_t>(board.image.height) / 4;
-  const bool to_host = board.capture.destination == CaptureDestination::kHostMemory;
-  constexpr int kAddressAndIdle = 2;
-  const int memory_burst = kAddressAndIdle + board.pci.memory_wait_clocks;
-  // The clocks of one DMA transfer: a descriptor of 4 words, then a picture or result.
-  const std::uint64_t moved = pci_clocks_of(board, 4, 4, memory_burst) +
-                              pci_clocks_of(board, picture, board.bridge.dma_burst_words, memory_burst);
-  const std::uint64_t captured =
-      to_host ? pci_clocks_of(board, picture, board.capture.fifo_words, memory_burst)
-              : pci_clocks_of(board, picture, std::min(board.capture.fifo_words, board.bridge.posted_words),
-                              kAddressAndIdle + board.pci.bridge_wait_clocks);
-  const std::uint64_t pci_clocks = (to_host ? 3 : 1) * moved + (whole_pictures ? 2 : 0) * captured;
-  // The local bus moves the result, and the pair either by DMA or as it was captured. A cycle of the FPGA
-  // grants one word at most. From one word of a burst to the next it takes at least one local clock. From the
-  // last word of a burst to the first of the next burst it takes four: idle, address, decode and word.
-  const double local_pictures = to_host || whole_pictures ? 3 : 1;
-  const double words = local_pictures * static_cast<double>(picture);
-  const double bursts =
-      local_pictures * static_cast<double>(bursts_of(picture, board.bridge.dma_burst_words));
-  const double local_us = 1 / board.bridge.local_clock_mhz;
-  const double fpga_us = 1 / board.fpga.clock_mhz;
-  const double bridge_us =
-      std::max(words * fpga_us, bursts * 4 * local_us + (words - bursts) * std::max(local_us, fpga_us));
-  return {{"camera", camera_rate(board)},
-          {"pci", board.pci.clock_mhz * 1e6 / static_cast<double>(pci_clocks)},
-          {"bridge", 1e6 / bridge_us}};
+std::vector<RateBound> computer_bounds(const BoardConfig& board, const FrameAccesses& accesses,
+                                       bool whole_pictures) {
+  return computer_bounds(board, accesses, whole_pictures, allocation_period_frames(board));
 }
 
-void add_system_bound(const BoardConfig& board, bool whole_pictures, Bound& bound) {
+std::vector<RateBound> computer_bounds(const BoardConfig& board, const FrameAccesses& accesses,
+                                       bool whole_pictures, std::uint64_t frames) {
+  const bool to_host = board.capture.destination == CaptureDestination::kHostMemory;
+  const auto of_banks = bank_accesses(board, accesses, to_host || whole_pictures, frames);
+  std::vector<RateBound> bounds = {{"camera", camera_rate(board)},
+                                   {"pci", pci_rate(board, whole_pictures)},
+                                   {"bridge", bridge_rate(board, whole_pictures)}};
+  for (std::size_t bank = 0; bank < of_banks.size(); ++bank) {
+    if (of_banks[bank] == 0) continue;
+    bounds.push_back(
+        {"bank " + board.banks[bank].name,
+         board.fpga.clock_mhz * 1e6 * static_cast<double>(frames) / static_cast<double>(of_banks[bank])});
+  }
+  return bounds;
+}
+
+void add_system_bound(const BoardConfig& board, const FrameAccesses& accesses, bool whole_pictures,
+                      Bound& bound) {
   bound.system = bound.core;
   bound.system_limited_by = bound.core_limited_by;
-  for (const RateBound& part : computer_bounds(board, whole_pictures)) {
+  for (const RateBound& part : computer_bounds(board, accesses, whole_pictures)) {
     if (part.frames_per_second >= *bound.system) continue;
     bound.system = part.frames_per_second;
     bound.system_limited_by = part.resource;

@@ -59,28 +59,35 @@ std::vector<ResourceBound> turn_bounds(const BoardConfig& board, const FrameAcce
 Bound core_bound(const BoardConfig& board, const FrameAccesses& accesses);
 Bound core_bound(const BoardConfig& board, const Tables& tables);
 
-// An upper bound for the frame rate that one part of the computer around the board allows.
+// An upper bound for the frame rate that one part of the computer allows. It counts every master of the part.
 //
 // | resource | limit                                                                                      |
 // |----------|--------------------------------------------------------------------------------------------|
 // | camera   | Its frame clock. On demand: the time from the first to the last pixel of a frame.          |
 // | pci      | The clocks of the words of a pair and a result, and of the fewest bursts that hold them.   |
+// |          | Of pci.load, if it begins at time 0, the bursts that the bus cannot refuse.                |
 // | bridge   | The same for the local bus, which moves at most one word per cycle of the FPGA.            |
+// | bank B   | One cycle per access of the core, of the pictures that are written and of the results that |
+// |          | are read back; with separate ports one cycle per read or per write, whichever are more.    |
 //
 // A run that drops pixels moves fewer words. With `whole_pictures` false, as for such a run, the words that
 // the capture boards write are not counted.
 struct RateBound {
-  std::string resource;  // "camera", "pci", "bridge"
+  std::string resource;  // "camera", "pci", "bridge", "bank bank0"
   double frames_per_second = 0;
 };
 
-// The bounds of the computer, in the order of the table at RateBound. Throws std::invalid_argument if the
-// board has problems.
-std::vector<RateBound> computer_bounds(const BoardConfig& board, bool whole_pictures);
+// The bounds of the computer, in the order of the table at RateBound: over whole turns of the allocation's
+// lists, or over frames 0..frames-1. Throws std::invalid_argument if the board has problems.
+std::vector<RateBound> computer_bounds(const BoardConfig& board, const FrameAccesses& accesses,
+                                       bool whole_pictures);
+std::vector<RateBound> computer_bounds(const BoardConfig& board, const FrameAccesses& accesses,
+                                       bool whole_pictures, std::uint64_t frames);
 
 // Sets bound.system to the least of bound.core and the bounds of computer_bounds(), and
 // bound.system_limited_by to its resource. Throws as computer_bounds() does.
-void add_system_bound(const BoardConfig& board, bool whole_pictures, Bound& bound);
+void add_system_bound(const BoardConfig& board, const FrameAccesses& accesses, bool whole_pictures,
+                      Bound& bound);
 
 // The start of a frame in the run of a computer: the core starts frame number `frame` at `start_s`, in
 // seconds from time 0.

@@ -106,7 +106,7 @@ void audit_rates(const BoardConfig& config, const FrameAccesses& accesses, bool 
     cycles += turn[frame % turn.size()].cycles;
   const double frames = static_cast<double>(statistics.frames);
   double bound = config.fpga.clock_mhz * 1e6 * frames / static_cast<double>(cycles);
-  for (const RateBound& part : computer_bounds(config, whole_pictures))
+  for (const RateBound& part : computer_bounds(config, accesses, whole_pictures, statistics.frames))
     bound = std::min(bound, part.frames_per_second);
   const FramesPerSecond& rate = statistics.frames_per_second;
   audit.at_most("frames_per_second.system", *rate.system, "the bound of these frames",
@@ -134,7 +134,8 @@ Statistics collect_statistics(const BoardConfig& config, const Tables& tables, c
   statistics.frames_per_second.steady = steady_rate(deliveries, allocation_period_frames(config));
   const bool whole_pictures =
       counters.cameras[0].capture.dropped_pixels + counters.cameras[1].capture.dropped_pixels == 0;
-  add_system_bound(config, whole_pictures, statistics.bound);
+  const FrameAccesses accesses = frame_accesses(config, tables);
+  add_system_bound(config, accesses, whole_pictures, statistics.bound);
 
   ComputerStatistics& around = statistics.computer.emplace();
   around.pci_clocks = counters.pci.clocks;
@@ -158,7 +159,7 @@ Statistics collect_statistics(const BoardConfig& config, const Tables& tables, c
   audit_words(config, counters.words, audit);
   audit_host_port(counters, audit);
   audit_cameras(around, counters, audit);
-  audit_rates(config, frame_accesses(config, tables), whole_pictures, statistics, audit);
+  audit_rates(config, accesses, whole_pictures, statistics, audit);
   for (std::string& failed : std::move(audit).failed()) statistics.failed.push_back(std::move(failed));
   return statistics;
 }

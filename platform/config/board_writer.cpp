@@ -1,5 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstdint>
+#include <map>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -53,6 +56,21 @@ class BoardWriter {
   std::string write() {
     write_children("", "");
     return std::move(out_);
+  }
+
+  // The values of `--set` that give a board with the banks `from` those of this board.
+  std::vector<std::string> bank_sets(const std::vector<BankConfig>& from) const {
+    std::vector<std::string> sets;
+    std::vector<std::string> whole;
+    for (const BankConfig& bank : board_.banks) {
+      whole.push_back(fmt::format("{}: {}", scalar_text(bank.name), bank_text(bank)));
+      const bool is_known = std::any_of(from.begin(), from.end(), [&](const BankConfig& other) {
+        return other.name == bank.name && whole_bank_text(other) == whole_bank_text(bank);
+      });
+      if (!is_known) sets.push_back(fmt::format("ssram.banks.{}={}", bank.name, whole_bank_text(bank)));
+    }
+    if (sets.size() < 2) return sets;
+    return {"ssram.default=" + default_text(), fmt::format("ssram.banks={{{}}}", fmt::join(whole, ", "))};
   }
 
   std::vector<BoardValue> values() {
@@ -167,15 +185,15 @@ class BoardWriter {
     throw std::logic_error(key.path + ": a key that the writer does not know");
   }
 
+  static std::string whole_bank_text(const BankConfig& bank) {
+    return fmt::format("{{words: {}, {}}}", bank.words, kind_text(bank));
+  }
   static std::string kind_text(const BankConfig& bank) {
     const memory::BankTraits& traits = memory::traits_of(bank.kind);
     if (!traits.has_turnaround) return fmt::format("kind: {}", traits.name);
     return fmt::format("kind: {}, turnaround_cycles: {}", traits.name, bank.turnaround_cycles);
   }
-  std::string default_text() const {
-    const BankConfig& bank = board_.banks.front();
-    return fmt::format("{{words: {}, {}}}", bank.words, kind_text(bank));
-  }
+  std::string default_text() const { return whole_bank_text(board_.banks.front()); }
   std::string bank_text(const BankConfig& bank) const {
     const BankConfig& first = board_.banks.front();
     std::vector<std::string> parts;
@@ -198,6 +216,22 @@ std::string to_yaml(const BoardConfig& board) {
   const std::vector<std::string> found = problems(board);
   if (!found.empty()) throw std::invalid_argument(fmt::format("{}", fmt::join(found, "\n")));
   return BoardWriter(board).write();
+}
+
+std::vector<std::string> sets_between(const BoardConfig& from, const BoardConfig& to) {
+  const auto text_of = [](const BoardValue& value) {
+    if (const auto* const decimal = std::get_if<double>(&value.value)) return decimal_text(*decimal);
+    if (const auto* const integer = std::get_if<std::int64_t>(&value.value)) return std::to_string(*integer);
+    return std::get<std::string>(value.value);
+  };
+  std::map<std::string, std::string> before;
+  for (const BoardValue& value : values_of(from)) before[value.path] = text_of(value);
+  std::vector<std::string> sets = BoardWriter(to).bank_sets(from.banks);
+  for (const BoardValue& value : values_of(to)) {
+    if (value.path.rfind("ssram.", 0) != 0 && before[value.path] != text_of(value))
+      sets.push_back(value.path + "=" + text_of(value));
+  }
+  return sets;
 }
 
 std::vector<BoardValue> values_of(const BoardConfig& board) { return BoardWriter(board).values(); }

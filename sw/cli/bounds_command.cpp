@@ -156,8 +156,10 @@ struct BoardBounds {
 
 BoardBounds bounds_of(const BoardConfig& board, const platform::Tables& tables) {
   const std::uint64_t frames = platform::allocation_period_frames(board);
-  BoardBounds all = {board, {}, platform::computer_bounds(board, true), platform::core_bound(board, tables)};
-  platform::add_system_bound(board, true, all.bound);
+  const platform::FrameAccesses accesses = platform::frame_accesses(board, tables);
+  BoardBounds all = {
+      board, {}, platform::computer_bounds(board, accesses, true), platform::core_bound(board, accesses)};
+  platform::add_system_bound(board, accesses, true, all.bound);
   for (std::uint64_t frame = 0; frame < frames; ++frame) {
     const Group group = group_of(board, tables, frame);
     if (std::none_of(all.groups.begin(), all.groups.end(),
@@ -208,7 +210,7 @@ std::string area_lines(const BoardConfig& board) {
 std::string text_of(const BoardBounds& all) {
   std::string text;
   for (const Group& group : all.groups) text += lines_of(group, all);
-  text += fmt::format("around the board\n  {:<16} {:>14}\n", "resource", "frames/s");
+  text += fmt::format("the whole computer, with all masters\n  {:<16} {:>14}\n", "resource", "frames/s");
   for (const platform::RateBound& part : all.computer)
     text += fmt::format("  {:<16} {:>14.3f}\n", part.resource, part.frames_per_second);
   text += fmt::format("bound of the core: {:.3f} frames/s, limited by {}\n", all.bound.core,

@@ -20,13 +20,18 @@ namespace {
 struct ExplainOptions {
   BoardOptions board;
   Typed source;
+  Typed frames;
   JsonOption json;
-  bool camera = true;  // set by check_usage()
+  bool camera = true;             // set by check_usage()
+  std::uint64_t frame_count = 0;  // the same; 0: the default
 
   void add_to(CLI::App& command) {
     board.add_to(command);
     source.add_to(command, "--source", "camera|preloaded",
                   "The whole computer, the default, or the core alone, fed by an ideal host");
+    frames.add_to(command, "--frames", "N",
+                  fmt::format("Frames of each board; by default {}, of the whole computer {}",
+                              runs::Explanation::kCoreFrames, runs::Explanation::kComputerFrames));
     json.add_to(command);
   }
 
@@ -35,6 +40,15 @@ struct ExplainOptions {
     board.check_given(problems);
     if (source.is_given() && is_one_of({"camera", "preloaded"}, "--source", source.text, problems)) {
       camera = source.text == "camera";
+    }
+    if (frames.is_given()) {
+      const platform::IntegerRule rule = {
+          camera ? static_cast<std::int64_t>(runs::Explanation::kLeastComputerFrames) : 1, 1'000'000};
+      const auto number = number_of<std::int64_t>(frames.text);
+      if (!number || !rule.allows(*number))
+        problems.add(fmt::format("--frames = {}: {}{}", frames.text, rule.text(),
+                                 camera ? ", so that every board has a steady rate" : ""));
+      frame_count = static_cast<std::uint64_t>(number.value_or(0));
     }
     problems.check();
   }
@@ -50,7 +64,7 @@ int explain(const ExplainOptions& options) {
   problems.check();
   const platform::Tables tables = runs::tables_of(*board, calibration);
   process::catch_interrupts();
-  runs::Explanation explanation(*board, tables, options.camera);
+  runs::Explanation explanation(*board, tables, options.camera, options.frame_count);
   if (!explanation.simulate(calibration ? runs::PointSimulator(tables) : runs::PointSimulator())) {
     return kInterrupted;
   }

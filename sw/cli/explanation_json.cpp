@@ -1,13 +1,12 @@
 #include "sw/cli/explanation_json.h"
 
 #include <cstdint>
-#include <set>
 #include <string>
 #include <utility>
 
 #include "platform/config/board_area.h"
-#include "sw/cli/explanation_text.h"
 #include "sw/report/stats_json.h"
+#include "sw/runs/limiter_text.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -21,7 +20,8 @@ Json resources_json(Explanation& explanation) {
   for (const Explanation::Resource& resource : explanation.resources()) {
     Json row = {{"resource", resource.name},
                 {"frames_per_second", resource.frames_per_second},
-                {"headroom_percent", resource.headroom_percent}};
+                {"headroom_percent", resource.headroom_percent},
+                {"busy_percent", resource.busy_percent}};
     if (resource.varies) row["frame"] = resource.frame;
     all.push_back(std::move(row));
   }
@@ -53,12 +53,11 @@ Json change_json(const Step& step) {
   return {{"key", step.knob}, {"from", step.from}, {"to", step.to}};
 }
 
-// Adds `changes`, the best first, `failed` and `impossible`. Of alternatives only the best counts.
+// Adds `changes`, the best first, `failed` and `impossible`.
 void add_changes(Explanation& explanation, Json& document) {
   const double now = explanation.now().frames_per_second;
   Json changes = Json::array();
   Json failed = Json::array();
-  std::set<std::string> with_alternatives;
   for (const Explanation::Step& found : explanation.steps()) {
     const explore::KnobStep& step = *found.step;
     Json change = change_json(step);
@@ -67,13 +66,13 @@ void add_changes(Explanation& explanation, Json& document) {
       failed.push_back(std::move(change));
       continue;
     }
-    if (step.only_best && !with_alternatives.insert(step.knob).second) continue;
     const double rate = found.rate.frames_per_second;
     change["frames_per_second"] = rate;
     change["gained_frames_per_second"] = rate - now;
     change["gained_percent"] = 100 * (rate / now - 1);
     change["changes_disparities"] = step.changes_disparities;
     change["loses_pixels"] = found.rate.loses_pixels;
+    change["sets"] = step.sets;
     change["area"] = area_json(step.board);
     changes.push_back(std::move(change));
   }
@@ -100,7 +99,12 @@ Json explanation_document(const BoardConfig& board, Explanation& explanation) {
       {"frames_per_second", now.frames_per_second},
       {"loses_pixels", now.loses_pixels},
       {"bound", {{"frames_per_second", row.real(of)}, {"limited_by", row.text(of + "_limited_by")}}}};
-  const double queue = result_queue_percent(explanation);
+  if (explanation.camera()) document["uncertainty_frames_per_second"] = now.uncertainty;
+  document["limited_by"] = runs::limiter_text(explanation);
+  const runs::Explanation::Budget& budget = explanation.budget();
+  document["time_percent"] = {{"bound", budget.bound}, {"queues", budget.queues}, {"waits", budget.waits}};
+  for (const auto& [why, share] : budget.core_waits) document["time_percent"]["core_waits"][why] = share;
+  const double queue = runs::result_queue_percent(explanation);
   if (queue > 0) document["result_queue_wait_percent"] = queue;
   document["resources"] = resources_json(explanation);
   document["blame"] = blame_json(explanation);

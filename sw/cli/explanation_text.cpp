@@ -10,11 +10,12 @@
 #include <utility>
 #include <vector>
 
-#include "models/fpga/core_ports.h"
 #include "platform/bounds.h"
 #include "platform/config/board_area.h"
 #include "sw/cli/text.h"
+#include "sw/files/shell_word.h"
 #include "sw/report/wait_text.h"
+#include "sw/runs/limiter_text.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -23,7 +24,6 @@ using platform::BoardConfig;
 using runs::Explanation;
 
 constexpr int kMostBlames = 5;
-constexpr double kVisibleLoss = 0.01;      // of the cycles
 constexpr double kLeastGainPercent = 0.1;  // a change that gains or loses less is not in the table
 constexpr double kLeastSavedPercent = 1;   // of the FPGA: a change that saves as much is in the table anyway
 
@@ -65,49 +65,43 @@ class ExplanationText {
 
   std::string text() {
     const std::string table = changes();  // notes the changes for without_effect()
-    return head() + result_queue() + resources() + blames() + table + without_effect() + forbidden() +
-           failures();
+    return head() + resources() + blames() + table + without_effect() + forbidden() + failures();
   }
 
  private:
   std::string head() {
     const explore::StoredRow& row = explanation_.figures();
     const bool camera = explanation_.camera();
-    const char* const of = camera ? "bound.system" : "bound.core";
-    return fmt::format("{}, {}: {:.3f} frames/s{} ({} frames); bound {:.3f}, limited by {}{}\n", board_.name,
-                       camera ? "the whole computer" : "the core alone", now_.frames_per_second,
-                       camera ? " between the first and the last delivery" : "", explanation_.frames(),
-                       row.real(of), row.text(std::string(of) + "_limited_by"),
+    const std::string of = camera ? "bound.system" : "bound.core";
+    const std::string rate = camera ? fmt::format("{:.3f} ± {:.3f}", now_.frames_per_second, now_.uncertainty)
+                                    : fmt::format("{:.3f}", now_.frames_per_second);
+    return paragraph(fmt::format("{}, {}: ", board_.name, camera ? "the whole computer" : "the core alone"),
+                     2, fmt::format("{} frames/s, limited by {}", rate, runs::limiter_text(explanation_))) +
+           paragraph("the time of a frame: ", 2, runs::budget_text(explanation_)) +
+           fmt::format("bound {:.3f} frames/s: {}; {} frames simulated{}\n", row.real(of),
+                       runs::resource_text(row.text(of + "_limited_by")), explanation_.frames(),
                        now_.loses_pixels ? "; captures lose pixels" : "");
-  }
-
-  std::string result_queue() {
-    const double percent = result_queue_percent(explanation_);
-    return percent > 0 ? fmt::format(
-                             "the result queue is too short: in {:.2f} % of the cycles the matcher waits for "
-                             "fpga.result_fifo_words\n",
-                             percent)
-                       : "";
   }
 
   // The table of resources. Resources of one kind with the same values share a line.
   std::string resources() {
     const std::vector<Explanation::Resource> all = explanation_.resources();
     const std::uint64_t turn = platform::allocation_period_frames(board_);
-    std::string text = fmt::format("  {:>12} {:>14}  {}\n", "headroom %", "bound frames/s", "resource");
+    std::string text =
+        fmt::format("  {:>12} {:>8} {:>14}  {}\n", "headroom %", "busy %", "bound frames/s", "resource");
     for (auto first = all.begin(); first != all.end();) {
       const std::string kind = first->name.substr(0, first->name.find(' ') + 1);
       std::string label = first->name;
       auto next = first + 1;
       for (; next != all.end() && next->headroom_percent == first->headroom_percent && !kind.empty() &&
-             next->name.rfind(kind, 0) == 0 && next->varies == first->varies &&
-             (!first->varies || next->frame == first->frame);
+             next->busy_percent == first->busy_percent && next->name.rfind(kind, 0) == 0 &&
+             next->varies == first->varies && (!first->varies || next->frame == first->frame);
            ++next) {
         label += ", " + next->name.substr(kind.size());
       }
       if (first->varies) label += fmt::format(", in frame {} of {}", first->frame, turn);
-      text += fmt::format("  {:>12.2f} {:>14.3f}  {}\n", first->headroom_percent, first->frames_per_second,
-                          label);
+      text += fmt::format("  {:>12.2f} {:>8.2f} {:>14.3f}  {}\n", first->headroom_percent,
+                          first->busy_percent, first->frames_per_second, label);
       first = next;
     }
     return text;
@@ -139,16 +133,15 @@ class ExplanationText {
 
   // The table of the changes, the best first. Fills listed_ and small_.
   std::string changes() {
-    std::string text =
-        fmt::format("one change at a time: {} boards simulated; *: the disparities change too\n",
-                    explanation_.knobs().possible.size());
+    std::string text = fmt::format(
+        "one change at a time: {} boards simulated; *: the disparities change too\n"
+        "KEY: FROM -> TO is --set KEY=TO behind the others, in place of an earlier --set of KEY\n",
+        explanation_.knobs().possible.size());
     text += fmt::format("  {:>8} {:>8} {:>8} {:>6} {:>4}  change: from -> to\n", "frames/s", "gained", "%",
                         "FPGA %", "RAMs");
-    std::set<std::string> with_alternatives;  // only the best of them counts
     for (const Explanation::Step& found : steps_) {
       const explore::KnobStep& step = *found.step;
       if (!found.rate.failure.empty()) continue;
-      if (step.only_best && !with_alternatives.insert(step.knob).second) continue;
       const Price price = price_of(step.board, board_);
       if (!is_listed(found, price)) {
         small_.insert(&step);
@@ -171,7 +164,11 @@ class ExplanationText {
     if (!price.fits) text += "  does not fit";
     if (found.rate.loses_pixels && !now_.loses_pixels) text += "  loses pixels";
     if (!found.rate.loses_pixels && now_.loses_pixels) text += "  loses no pixels";
-    return text + '\n';
+    text += '\n';
+    if (step.sets == std::vector<std::string>{step.knob + "=" + step.to}) return text;
+    for (const std::string& set : step.sets)
+      text += fmt::format("{:41}--set {}\n", "", files::shell_word(set));
+    return text;
   }
 
   // A paragraph that names the changes without a line, in the order of the keys: by the key, or by its new
@@ -218,23 +215,6 @@ class ExplanationText {
 
 std::string explanation_text(const BoardConfig& board, Explanation& explanation) {
   return ExplanationText(board, explanation).text();
-}
-
-double result_queue_percent(Explanation& explanation) {
-  const explore::StoredRow& row = explanation.figures();
-  const double cycles = static_cast<double>(row.integer("cycles"));
-  const double lost = cycles * (1 - row.real("frames_per_second.core") / row.real("bound.core"));
-  std::int64_t stalled = 0;
-  std::int64_t blocked = 0;
-  for (const fpga::CorePort& port : fpga::kPorts) {
-    const std::string name = std::string("ports.") + port.name;
-    stalled += row.integer(name + ".stall_cycles");
-    blocked = std::max(blocked, row.integer(name + ".blocked_cycles"));
-  }
-  const char* const of = explanation.camera() ? "bound.system_limited_by" : "bound.core_limited_by";
-  const bool is_too_short = row.text(of) == "matcher" && lost > kVisibleLoss * cycles && stalled == 0 &&
-                            static_cast<double>(blocked) > lost / 2;
-  return is_too_short ? 100 * lost / cycles : 0;
 }
 
 }  // namespace stereotlm::cli

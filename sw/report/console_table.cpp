@@ -37,12 +37,12 @@ std::string rate_lines(const platform::Statistics& statistics) {
 std::string computer_rate_lines(const platform::Statistics& statistics) {
   const platform::FramesPerSecond& rate = statistics.frames_per_second;
   if (!rate.system || !statistics.bound.system) return "";
-  const std::string line =
-      rate.steady
-          ? fmt::format("{} frames/s   steady over {} frames; {:.3f} from power-up",
-                        steady_text(*rate.steady), rate.steady->frames, *rate.system)
-          : fmt::format("{:.3f} frames/s   from power-up; too few frames for a steady rate", *rate.system);
-  return fmt::format("{:<14} {:>{}}\n", "computer", line, line.size() + 8 - line.find(' ')) +
+  const std::string rest =
+      rate.steady ? fmt::format(" ± {:.3f} frames/s   steady over {} frames; {:.3f} from power-up",
+                                rate.steady->uncertainty, rate.steady->frames, *rate.system)
+                  : " frames/s   from power-up; too few frames for a steady rate";
+  return fmt::format("{:<14} {:>8.3f}{}\n", "computer",
+                     rate.steady ? rate.steady->frames_per_second : *rate.system, rest) +
          bound_line("computer bound", *statistics.bound.system, statistics.bound.system_limited_by);
 }
 
@@ -132,10 +132,6 @@ std::string accuracy_line(const Accuracy& accuracy) {
 }
 
 }  // namespace
-
-std::string steady_text(const platform::SteadyRate& steady) {
-  return fmt::format("{:.3f} ± {:.3f}", steady.frames_per_second, steady.uncertainty);
-}
 
 std::string console_table(const platform::Statistics& statistics, const BoardClocks& clocks,
                           const TableExtras& extras) {

@@ -24,9 +24,6 @@ struct TableExtras {
   std::optional<Accuracy> accuracy = std::nullopt;
 };
 
-// "17.982 ± 0.004"
-std::string steady_text(const platform::SteadyRate& steady);
-
 // The table that a run prints:
 // - Frames per second and their bounds.
 // - For each bank its traffic, and its share of the peak of one word per cycle (`use %`).

@@ -6,27 +6,44 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <thread>
 #include <utility>
 
+#include "models/fpga/frame_geometry.h"
 #include "sw/process/installation.h"
 #include "sw/process/interrupt.h"
 #include "sw/runs/progress.h"
+#include "sw/runs/waitless_core.h"
 
 namespace stereotlm::runs {
 namespace {
+
+// A rate that is below its bound by less than this share is that of the bound.
+constexpr double kAtBound = 0.005;
 
 std::optional<std::string> joint_problem(const platform::Tables& tables) {
   return tables.left && tables.right ? platform::joint_tables_problem(tables) : std::nullopt;
 }
 
+bool is_bank(const std::string& resource) { return resource.rfind("bank ", 0) == 0; }
+
+double mean_of(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
 }  // namespace
 
-Explanation::Explanation(const platform::BoardConfig& board, const platform::Tables& tables, bool camera)
+Explanation::Explanation(const platform::BoardConfig& board, const platform::Tables& tables, bool camera,
+                         std::uint64_t frames)
     : board_(board),
       tables_(tables),
-      run_{camera, 0, ""},
+      run_{camera,
+           frames > 0 ? frames
+           : camera   ? kComputerFrames
+                      : kCoreFrames,
+           ""},
       knobs_(explore::knob_steps(board, camera, joint_problem(tables))),
       points_(boards(), run_) {}
 
@@ -52,9 +69,11 @@ Explanation::Rate Explanation::rate_of(std::uint64_t number) {
     const explore::StoredRow& row = batch_.row_of(points_.point(number));
     const auto lost =
         row.integer("cameras.left.dropped_pixels") + row.integer("cameras.right.dropped_pixels");
-    return {row.real(run_.camera ? "frames_per_second.steady" : "frames_per_second.core"), lost > 0, ""};
+    if (!run_.camera) return {row.real("frames_per_second.core"), 0, false, ""};
+    return {row.real("frames_per_second.steady"), row.real("frames_per_second.steady_uncertainty"), lost > 0,
+            ""};
   } catch (const explore::PointFailed& failed) {
-    return {0, false, failed.what()};
+    return {0, 0, false, failed.what()};
   }
 }
 
@@ -97,14 +116,43 @@ std::vector<Explanation::Step> Explanation::steps() {
     if (a.rate.failure.empty() != b.rate.failure.empty()) return a.rate.failure.empty();
     return a.rate.frames_per_second > b.rate.frames_per_second;
   });
+  std::set<std::string> groups;
+  const auto is_alternative = [&groups](const Step& step) {
+    return !step.step->group.empty() && step.rate.failure.empty() && !groups.insert(step.step->group).second;
+  };
+  all.erase(std::remove_if(all.begin(), all.end(), is_alternative), all.end());
   return all;
+}
+
+std::vector<double> Explanation::frame_cycles() {
+  return nlohmann::json::parse(figures().text("frame_cycles")).get<std::vector<double>>();
+}
+
+double Explanation::busy_percent(const std::string& resource) {
+  const explore::StoredRow& row = figures();
+  const auto number = [&row](const std::string& path) { return static_cast<double>(row.integer(path)); };
+  const std::size_t space = resource.find(' ');
+  const std::string name = space == std::string::npos ? "" : resource.substr(space + 1);
+  if (resource == "camera")
+    return 100 * number("cameras.left.captured_frames") / number("cameras.left.frames");
+  if (resource == "pci") return 100 * number("pci.busy_clocks") / number("pci.clocks");
+  if (resource == "bridge") return 100 * number("bridge.local_busy_clocks") / number("bridge.local_clocks");
+  if (resource == "matcher") {
+    const fpga::FrameGeometry geometry(platform::core_config(board_));
+    const auto of_frame = static_cast<double>((geometry.slots + geometry.drain_cycles) *
+                                              static_cast<unsigned>(geometry.passes));
+    return 100 * number("frames") * of_frame / number("cycles");
+  }
+  if (resource.rfind("bank ", 0) == 0)
+    return 100 * number("banks." + name + ".busy_cycles") / number("cycles");
+  const std::string port = "ports." + name;
+  return 100 * (number(port + ".grants") + number(port + ".passed_cycles")) / number("cycles");
 }
 
 std::vector<Explanation::Resource> Explanation::resources() {
   const Rate base = now();
-  const auto frame_cycles = nlohmann::json::parse(figures().text("frame_cycles")).get<std::vector<double>>();
-  const double mean = std::accumulate(frame_cycles.begin(), frame_cycles.end(), 0.0) /
-                      static_cast<double>(frame_cycles.size());
+  const std::vector<double> cycles = frame_cycles();
+  const double mean = mean_of(cycles);
   const double clock_hz = board_.fpga.clock_mhz * 1e6;
   const double stretch = clock_hz / mean / base.frames_per_second;
   std::vector<Resource> all;
@@ -119,22 +167,71 @@ std::vector<Explanation::Resource> Explanation::resources() {
     }
   };
   const std::uint64_t turn = platform::allocation_period_frames(board_);
-  for (std::uint64_t frame = 0; frame < std::min<std::uint64_t>(turn, frame_cycles.size()); ++frame) {
+  for (std::uint64_t frame = 0; frame < std::min<std::uint64_t>(turn, cycles.size()); ++frame) {
     for (const platform::ResourceBound& bound : platform::frame_bounds(board_, tables_, frame)) {
-      const auto cycles = static_cast<double>(bound.cycles);
-      add({bound.resource, clock_hz / cycles, 100 * (1 - cycles / (stretch * frame_cycles[frame])), frame});
+      if (run_.camera && is_bank(bound.resource)) continue;  // below, with the accesses of the host
+      const auto needed = static_cast<double>(bound.cycles);
+      add({bound.resource, clock_hz / needed, 100 * (1 - needed / (stretch * cycles[frame])),
+           busy_percent(bound.resource), frame});
     }
   }
   if (run_.camera) {
-    for (const platform::RateBound& part : platform::computer_bounds(board_, !base.loses_pixels)) {
+    const platform::FrameAccesses accesses = platform::frame_accesses(board_, tables_);
+    for (const platform::RateBound& part : platform::computer_bounds(board_, accesses, !base.loses_pixels)) {
       add({part.resource, part.frames_per_second, 100 * (1 - base.frames_per_second / part.frames_per_second),
-           0});
+           busy_percent(part.resource), 0});
     }
   }
   std::stable_sort(all.begin(), all.end(), [](const Resource& a, const Resource& b) {
     return a.headroom_percent < b.headroom_percent;
   });
   return all;
+}
+
+const Explanation::Budget& Explanation::budget() {
+  if (budget_) return *budget_;
+  budget_.emplace();
+  double frames_share = 100;
+  if (run_.camera) {
+    for (const auto& [why, share] : core_time(board_, tables_, run_.frames)) {
+      if (why.empty()) {
+        frames_share = 100 * share;
+      } else {
+        budget_->core_waits[why] = 100 * share;
+      }
+    }
+  }
+  std::vector<double> cycles = frame_cycles();
+  const std::uint64_t turn = platform::allocation_period_frames(board_);
+  cycles.erase(cycles.begin(), cycles.begin() + static_cast<std::ptrdiff_t>(cycles.size() % turn));
+  const double mean = mean_of(cycles);
+  double needed = 0;  // by matcher and ports
+  for (std::uint64_t frame = 0; frame < turn; ++frame) {
+    double most = 0;
+    for (const platform::ResourceBound& bound : platform::frame_bounds(board_, tables_, frame)) {
+      if (!is_bank(bound.resource)) most = std::max(most, static_cast<double>(bound.cycles));
+    }
+    needed += most / static_cast<double>(turn);
+  }
+  const double waitless =
+      board_.fpga.clock_mhz * 1e6 / waitless_frames_per_second(board_, tables_, run_.frames / turn * turn);
+  budget_->bound = frames_share * needed / mean;
+  budget_->queues = frames_share * (waitless - needed) / mean;
+  budget_->waits = frames_share * (mean - waitless) / mean;
+  return *budget_;
+}
+
+Explanation::Limiter Explanation::limiter() {
+  const Rate rate = now();
+  if (rate.loses_pixels) return Limiter::kLostPixels;
+  const double bound = figures().real(run_.camera ? "bound.system" : "bound.core");
+  if (rate.frames_per_second >= bound * (1 - kAtBound)) return Limiter::kBound;
+  double core_waits = 0;
+  for (const auto& [why, share] : budget().core_waits) core_waits += share;
+  const double most = std::max({budget().waits, budget().queues, core_waits});
+  return most == budget().waits ? Limiter::kWaits
+         : most == core_waits   ? Limiter::kCoreWaits
+                                : Limiter::kQueues;
 }
 
 std::vector<explore::StoredBlame> Explanation::blames() {

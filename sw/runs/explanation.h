@@ -2,6 +2,8 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,15 +21,25 @@ namespace stereotlm::runs {
 // and what each step gains or costs.
 class Explanation {
  public:
-  // `camera`: the whole computer, else the core alone. `board` and `tables` outlive the object.
-  Explanation(const platform::BoardConfig& board, const platform::Tables& tables, bool camera);
+  // The default numbers of frames of each board: of the core alone, whole turns of all lists of 1, 2 or 3
+  // buffers; of the whole computer as many for the warm-up, and 36 for the steady rate.
+  static constexpr std::uint64_t kCoreFrames = 6;
+  static constexpr std::uint64_t kComputerFrames = 42;
+  // The fewest frames of the whole computer that give every board a steady rate.
+  static constexpr std::uint64_t kLeastComputerFrames = 12;
+
+  // `camera`: the whole computer, else the core alone. `frames`: 0 for the default. `board` and `tables`
+  // outlive the object.
+  Explanation(const platform::BoardConfig& board, const platform::Tables& tables, bool camera,
+              std::uint64_t frames = 0);
 
   // Returns false if interrupted. Everything below needs a call that has returned true.
   bool simulate(PointSimulator simulator);
 
   // The result of the simulation of one board.
   struct Rate {
-    double frames_per_second = 0;
+    double frames_per_second = 0;  // of the core; of the whole computer the steady rate
+    double uncertainty = 0;        // of the steady rate
     bool loses_pixels = false;
     std::string failure;  // the reason if the run has failed; else empty
   };
@@ -49,7 +61,7 @@ class Explanation {
     Rate rate;
     BusiestBank busiest;  // without meaning if the run has failed
   };
-  // All steps, the best first; those that have failed last.
+  // All steps, the best first; those that have failed last. Of a group only the best.
   std::vector<Step> steps();
   BusiestBank busiest_bank();
   const explore::KnobSteps& knobs() const { return knobs_; }
@@ -59,13 +71,37 @@ class Explanation {
     std::string name;
     double frames_per_second = 0;  // its bound
     double headroom_percent = 0;   // share of the time of a frame that the resource does not need
-    std::uint64_t frame = 0;       // the frame with the least headroom
-    bool varies = false;           // the headroom is larger in other frames
+    // The measured share of the time in which it is used: a port and the matcher work on a slot, a word or a
+    // column, a bank makes an access, both in the cycles of the frames; a bus is not idle; a camera frame is
+    // captured.
+    double busy_percent = 0;
+    std::uint64_t frame = 0;  // the frame with the least headroom
+    bool varies = false;      // the headroom is larger in other frames
   };
-  // All resources, the least headroom first. For a resource of the core, the headroom is the least over the
-  // frames of one allocation period. The time of a frame is its cycles and, for a whole computer, its share of
-  // the time between frames.
+  // All resources, the least headroom first. For ports and matcher, and for the banks of the core alone, the
+  // headroom is the least over the frames of one turn of the lists. The time of a frame is its cycles and, for
+  // a whole computer, its share of the time between frames.
   std::vector<Resource> resources();
+
+  // What the time of a frame goes to, in percent of it. The shares sum to 100.
+  struct Budget {
+    double bound = 0;   // the frame takes as long as its matcher and ports need for it
+    double queues = 0;  // queues and latencies of the core
+    double waits = 0;   // ports wait for banks
+    // The core waits for its next start, by reason (sw/report/README.md, Time line); of the core alone empty.
+    std::map<std::string, double> core_waits;
+  };
+  const Budget& budget();
+
+  // Why the board is not faster.
+  enum class Limiter {
+    kLostPixels,  // captures lose pixels: PCI or bridge are too slow for the cameras
+    kBound,       // the rate is that of the bound: its resource
+    kWaits,       // ports wait for banks
+    kQueues,      // queues or latencies of the core
+    kCoreWaits,   // the core waits for its next start
+  };
+  Limiter limiter();
 
   // Who stalls for whom, the most cycles first.
   std::vector<explore::StoredBlame> blames();
@@ -75,12 +111,16 @@ class Explanation {
   Rate rate_of(std::uint64_t number);
   BusiestBank busiest_bank_of(std::uint64_t number, const platform::BoardConfig& board);
 
+  std::vector<double> frame_cycles();
+  double busy_percent(const std::string& resource);
+
   const platform::BoardConfig& board_;
   const platform::Tables& tables_;
   explore::PointRun run_;
   explore::KnobSteps knobs_;
   explore::BoardPoints points_;
   explore::Batch batch_;
+  std::optional<Budget> budget_;
 };
 
 }  // namespace stereotlm::runs

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <map>
 #include <set>
 #include <utility>
 #include <variant>
@@ -26,8 +27,9 @@ using platform::cost_text;
 using platform::Key;
 using platform::PlacedBuffer;
 
-constexpr int kTurnaroundCycles = 2;  // typical, contract section 2
-constexpr int kCensusSize = 5;        // of a board that gets the census cost
+constexpr int kTurnaroundCycles = 2;    // typical, contract section 2
+constexpr int kCensusSize = 5;          // of a board that gets the census cost
+constexpr std::size_t kQuietBanks = 4;  // that a new buffer is tried in
 
 bool begins_with(const std::string& text, const char* beginning) { return text.rfind(beginning, 0) == 0; }
 
@@ -39,6 +41,8 @@ bool is_of_computer(const std::string& path) {
   return begins_with(path, "cameras.") || begins_with(path, "capture.") || begins_with(path, "pci.") ||
          begins_with(path, "bridge.");
 }
+
+using List = std::vector<std::string> platform::AllocationConfig::*;
 
 class Steps {
  public:
@@ -94,9 +98,9 @@ class Steps {
     }
     BoardConfig changed = board_;
     changed.fpga.joint_tables = false;
-    const std::uint64_t words = buffer_words(platform::buffers(changed).back(), board_.image);  // right_lut
+    const PlacedBuffer right_lut = platform::buffers(changed).back();
     const auto free = std::find_if(board_.banks.begin(), board_.banks.end(), [&](const BankConfig& bank) {
-      return buffers_in(bank.name) == 0 && static_cast<std::uint64_t>(bank.words) >= words;
+      return buffers_in(bank.name) == 0 && can_hold(bank, right_lut);
     });
     if (free != board_.banks.end()) changed.allocation.right_lut = free->name;
     std::string to = "separate, right_lut in " + *changed.allocation.right_lut;
@@ -170,29 +174,23 @@ class Steps {
   }
 
   void add_buffers() {
-    using List = std::vector<std::string>;
-    const auto add_lists = [this](const std::string& knob,
-                                  const std::vector<List platform::AllocationConfig::*>& lists) {
+    const auto add_lists = [this](const std::string& knob, const std::vector<List>& lists) {
       const std::size_t size = (board_.allocation.*lists.front()).size();
-      for (const bool more : {true, false}) {
+      for (const std::vector<std::string>& banks : choices_of(quiet_banks(), lists.size())) {
         BoardConfig changed = board_;
-        for (const auto member : lists) {
-          List& list = changed.allocation.*member;
-          if (more) {
-            list.push_back(list.front());
-          } else {
-            list.pop_back();
-          }
-        }
-        add({knob, counted(size), counted(more ? size + 1 : size - 1), std::move(changed)});
+        for (std::size_t i = 0; i < lists.size(); ++i) (changed.allocation.*lists[i]).push_back(banks[i]);
+        add({knob, counted(size), fmt::format("{}, in {}", counted(size + 1), fmt::join(banks, " and ")),
+             std::move(changed), false, knob + " more"});
       }
+      BoardConfig changed = board_;
+      for (const List list : lists) (changed.allocation.*list).pop_back();
+      add({knob, counted(size), counted(size - 1), std::move(changed)});
     };
     add_lists(fmt::format("{}, {}", key_of(Buffer::kLeftImage), name_of(Buffer::kRightImage)),
               {&platform::AllocationConfig::left_image, &platform::AllocationConfig::right_image});
     add_lists(key_of(Buffer::kDisparity), {&platform::AllocationConfig::disparity});
   }
 
-  // The new bank is like the bank that the buffer leaves.
   void add_banks_more() {
     std::string name = "new_bank";
     const auto is_name = [&](const BankConfig& bank) {
@@ -201,12 +199,22 @@ class Steps {
     while (std::any_of(board_.banks.begin(), board_.banks.end(), is_name)) name += '_';
     for (const PlacedBuffer& buffer : platform::buffers(board_)) {
       if (buffers_in(buffer.bank) < 2) continue;
+      const auto move_to = [&](BoardConfig changed, const std::string& bank, const std::string& to) {
+        move_buffer(changed, buffer, bank);
+        add_best(
+            {"a bank more", fmt::format("{} in {}", buffer.label(), buffer.bank), to, std::move(changed)});
+      };
+      bool is_held = false;
+      for (const BankConfig& bank : board_.banks) {
+        if (buffers_in(bank.name) > 0 || !can_hold(bank, buffer)) continue;
+        is_held = true;
+        move_to(board_, bank.name, "in " + bank.name);
+      }
+      if (is_held) continue;
       BoardConfig changed = board_;
       changed.banks.push_back(bank_of(buffer.bank));
       changed.banks.back().name = name;
-      move_buffer(changed, buffer, name);
-      add_best({"a bank more", fmt::format("{} in {}", buffer.label(), buffer.bank), "in one of its own",
-                std::move(changed)});
+      move_to(std::move(changed), name, "in a new bank");
     }
   }
 
@@ -225,12 +233,10 @@ class Steps {
 
   KnobSteps take() {
     KnobSteps all = {std::move(steps_), {}};
-    std::set<std::string> alternatives;  // knobs with a possible or a listed step
-    for (const KnobStep& step : all.possible) {
-      if (step.only_best) alternatives.insert(step.knob);
-    }
-    for (auto& [step, is_alternative] : forbidden_) {
-      if (!is_alternative || alternatives.insert(step.knob).second) all.forbidden.push_back(std::move(step));
+    std::set<std::string> groups;  // with a possible or a listed step
+    for (const KnobStep& step : all.possible) groups.insert(step.group);
+    for (auto& [step, group] : forbidden_) {
+      if (group.empty() || groups.insert(group).second) all.forbidden.push_back(std::move(step));
     }
     return all;
   }
@@ -242,6 +248,7 @@ class Steps {
       if (step.board.fpga.joint_tables && joint_problem_) {
         forbid(step, *joint_problem_);
       } else {
+        step.sets = platform::sets_between(board_, step.board);
         steps_.push_back(std::move(step));
       }
       return;
@@ -255,11 +262,11 @@ class Steps {
     forbid(step, problems.front());
   }
   void forbid(const KnobStep& step, const std::string& reason) {
-    forbidden_.push_back({{step.knob, step.from, step.to, reason}, step.only_best});
+    forbidden_.push_back({{step.knob, step.from, step.to, reason}, step.group});
   }
   // One of several alternatives.
   void add_best(KnobStep step) {
-    step.only_best = true;
+    step.group = step.knob;
     add(std::move(step));
   }
 
@@ -315,6 +322,48 @@ class Steps {
     for (const PlacedBuffer& buffer : platform::buffers(board_)) count += buffer.bank == bank ? 1 : 0;
     return count;
   }
+  bool can_hold(const BankConfig& empty, const PlacedBuffer& buffer) const {
+    return static_cast<std::uint64_t>(empty.words) >= buffer_words(buffer, board_.image);
+  }
+
+  // The names of kQuietBanks banks, those with the fewest accesses first. A picture or table has an access for
+  // each slot, a result two for each four pixels.
+  std::vector<std::string> quiet_banks() const {
+    const int slots =
+        board_.matcher.fetch == fpga::Fetch::kColumn ? board_.matcher.window + board_.matcher.rows - 1 : 1;
+    const std::vector<PlacedBuffer> all = platform::buffers(board_);
+    std::map<std::string, double> accesses;
+    for (const PlacedBuffer& buffer : all) {
+      const auto in_list = std::count_if(
+          all.begin(), all.end(), [&](const PlacedBuffer& other) { return other.buffer == buffer.buffer; });
+      const double of_list = buffer.buffer == Buffer::kDisparity ? 0.5 : slots;
+      accesses[buffer.bank] += of_list / static_cast<double>(in_list);
+    }
+    std::vector<std::string> banks;
+    for (const BankConfig& bank : board_.banks) banks.push_back(bank.name);
+    std::stable_sort(banks.begin(), banks.end(),
+                     [&](const std::string& a, const std::string& b) { return accesses[a] < accesses[b]; });
+    banks.resize(std::min(banks.size(), kQuietBanks));
+    return banks;
+  }
+
+  // Every choice of one of `banks` for each of `buffers` buffers.
+  static std::vector<std::vector<std::string>> choices_of(const std::vector<std::string>& banks,
+                                                          std::size_t buffers) {
+    std::vector<std::vector<std::string>> choices = {{}};
+    for (std::size_t buffer = 0; buffer < buffers; ++buffer) {
+      std::vector<std::vector<std::string>> longer;
+      for (const std::vector<std::string>& choice : choices) {
+        for (const std::string& bank : banks) {
+          longer.push_back(choice);
+          longer.back().push_back(bank);
+        }
+      }
+      choices = std::move(longer);
+    }
+    return choices;
+  }
+
   const BankConfig& bank_of(const std::string& name) const {
     return *std::find_if(board_.banks.begin(), board_.banks.end(),
                          [&](const BankConfig& bank) { return bank.name == name; });
@@ -323,7 +372,7 @@ class Steps {
   const BoardConfig& board_;
   const std::optional<std::string>& joint_problem_;
   std::vector<KnobStep> steps_;
-  std::vector<std::pair<ForbiddenStep, bool>> forbidden_;  // second: only_best of the step
+  std::vector<std::pair<ForbiddenStep, std::string>> forbidden_;  // second: the group of the step
 };
 
 }  // namespace

@@ -16,9 +16,10 @@ struct KnobStep {
   std::string to;
   platform::BoardConfig board;
   bool changes_disparities = false;  // the changed board computes other disparities
-  // The steps of this knob are alternatives (which buffer gets the new bank), and only the best of them
-  // counts.
-  bool only_best = false;
+  // Steps of one group are alternatives (which buffer gets the bank), and only the best of them counts. Empty:
+  // the step has no alternatives.
+  std::string group{};
+  std::vector<std::string> sets{};  // the values of `--set` that make the changed board
 };
 
 // A step that a rule between several keys forbids, or that the tables forbid.
@@ -31,7 +32,7 @@ struct ForbiddenStep {
 
 struct KnobSteps {
   std::vector<KnobStep> possible;
-  // Without steps of a knob whose steps are alternatives, if one of them is possible; else the first of them.
+  // Of a group none, if one of its steps is possible; else the first.
   std::vector<ForbiddenStep> forbidden;
 };
 
@@ -45,9 +46,10 @@ struct KnobSteps {
 //   fpga.priority: two neighbours exchanged
 //   ssram.banks.*.kind: all banks get another kind (a bank that gains turnaround has 2 cycles of it)
 //   ssram.banks.*.turnaround_cycles: up and down by one, in all banks that have turnaround
-//   allocation.left_image, right_image, and allocation.disparity: a buffer more, in the bank of the first, or
-//   one less
-//   a bank more: a buffer that shares its bank gets a new bank, which is like the shared one
+//   allocation.left_image, right_image, and allocation.disparity: a buffer more, in one of the banks with the
+//   fewest accesses, or one less
+//   a bank more: a buffer that shares its bank gets a bank that holds nothing; if there is none that can hold
+//   it, a new bank, which is like the shared one
 //   a bank less: all buffers of one bank move into another bank that is used
 // The size of the images, the depth of banks and the device do not change. `camera`: whether the knobs of the
 // computer around the board are included. `joint_problem`: why the tables of the board cannot be joined;

@@ -29,6 +29,7 @@
 #include "sw/report/chart/memory_chart.h"
 #include "sw/report/page_data/recording_data.h"
 #include "sw/report/stats_json.h"
+#include "sw/runs/limiter_text.h"
 #include "sw/runs/progress.h"
 #include "sw/runs/sources/media_library.h"
 
@@ -151,7 +152,8 @@ Json bounds_of(const BoardConfig& board, const platform::Tables& tables, bool ca
   Json bounds = {{"core", std::move(core)}};
   if (!camera) return bounds;
   bounds["computer"] = Json::array();
-  for (const platform::RateBound& bound : platform::computer_bounds(board, true)) {
+  for (const platform::RateBound& bound :
+       platform::computer_bounds(board, platform::frame_accesses(board, tables), true)) {
     bounds["computer"].push_back(
         {{"resource", bound.resource}, {"frames_per_second", bound.frames_per_second}});
   }
@@ -312,11 +314,11 @@ Json knobs_data(const BoardConfig& board, runs::Explanation& explanation) {
   const Explanation::Rate now = explanation.now();
   Json base = {{"frames_per_second", now.frames_per_second},
                {"frames", explanation.frames()},
-               {"loses_pixels", now.loses_pixels}};
+               {"loses_pixels", now.loses_pixels},
+               {"limited_by", runs::limiter_text(explanation)}};
   add_prices(board, explanation.busiest_bank(), base);
   Json steps = Json::array();
   Json failed = Json::array();
-  std::set<std::string> shown;  // knobs of which only the best step counts
   for (const Explanation::Step& found : explanation.steps()) {
     const explore::KnobStep& knob = *found.step;
     Json step = {{"knob", knob.knob}, {"from", knob.from}, {"to", knob.to}};
@@ -325,12 +327,12 @@ Json knobs_data(const BoardConfig& board, runs::Explanation& explanation) {
       failed.push_back(std::move(step));
       continue;
     }
-    if (knob.only_best && !shown.insert(knob.knob).second) continue;
     step["frames_per_second"] = found.rate.frames_per_second;
     step["has_effect"] = found.rate.loses_pixels != now.loses_pixels ||
                          std::abs(found.rate.frames_per_second - now.frames_per_second) >= kVisible;
     step["changes_disparities"] = knob.changes_disparities;
     step["loses_pixels"] = found.rate.loses_pixels;
+    step["sets"] = knob.sets;
     add_prices(knob.board, found.busiest, step);
     add_banks_taken(board, knob.board, step);
     steps.push_back(std::move(step));

@@ -26,6 +26,12 @@ double seconds(const platform::BoardConfig& board, std::uint64_t cycle) {
   return static_cast<double>(Clock(board.fpga.clock_mhz).edge_ps(cycle)) / 1e12;
 }
 
+// The number of the first frame in the window of the steady rate.
+std::uint64_t first_steady_frame(const platform::BoardConfig& board, std::uint64_t frames) {
+  const std::uint64_t turn = platform::allocation_period_frames(board);
+  return frames - (frames - turn) / turn * turn;
+}
+
 bool is_table_of(const std::optional<kernels::RectificationTable>& table, const platform::BoardConfig& board,
                  bool is_used) {
   if (!table || !is_used) return table.has_value() == is_used;
@@ -90,6 +96,38 @@ double first_start_s(const platform::BoardConfig& board, const platform::Tables&
   const std::uint64_t cycle = std::stoull(child.next().value());
   child.next();
   return seconds(board, cycle);
+}
+
+std::map<std::string, double> core_time(const platform::BoardConfig& board, const platform::Tables& tables,
+                                        std::uint64_t frames) {
+  process::Child child([&](const process::Child::Tell& tell) {
+    Binder binder;
+    BlankPairs blank(board);
+    CameraSimulation simulation(board, tables, blank, frames, binder, fpga::Fidelity::kTiming);
+    simulation.record_timeline();
+    std::map<std::string, std::uint64_t> times_ps;
+    const auto take = [&] {
+      for (const platform::TimelineEvent& event : simulation.take_timeline().events) {
+        const bool is_wait = event.kind == platform::EventKind::kWait && event.what == std::string("core");
+        if (!is_wait && event.kind != platform::EventKind::kFrame) continue;
+        if (event.frame.value() >= first_steady_frame(board, frames))
+          times_ps[event.why] += event.end_ps - event.begin_ps;
+      }
+    };
+    while (!simulation.finished()) {
+      simulation.advance();
+      take();
+    }
+    simulation.statistics();
+    take();
+    tell(Json(times_ps).dump());
+  });
+  auto times = Json::parse(child.next().value()).get<std::map<std::string, double>>();
+  child.next();
+  double whole = 0;
+  for (const auto& [why, time] : times) whole += time;
+  for (auto& [why, time] : times) time /= whole;
+  return times;
 }
 
 PixelRun simulate_pixels(const platform::BoardConfig& board, const platform::Tables& tables,

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <string>
 
 #include "models/host/frame_source.h"
@@ -40,6 +41,12 @@ class PointSimulator {
 // banks, and it only writes. One exception: if the two pictures are adjacent in one bank, one burst of the
 // local bus may be saved. Throws as PointSimulator does.
 double first_start_s(const platform::BoardConfig& board, const platform::Tables& tables);
+
+// What the core of a whole computer does in the window of the steady rate: shares of its time, which sum to 1.
+// The key is empty for its frames, else the reason for which it waits for its next start (sw/report/README.md,
+// Time line). The run of `frames` frames must have a steady rate. Throws as PointSimulator does.
+std::map<std::string, double> core_time(const platform::BoardConfig& board, const platform::Tables& tables,
+                                        std::uint64_t frames);
 
 // The result of simulate_pixels().
 struct PixelRun {

@@ -1,5 +1,6 @@
 """check, boards, keys and bounds; explain: what each knob does, compared with runs."""
 
+import json
 import os
 import re
 
@@ -132,7 +133,7 @@ class Bounds(ProgramTest):
         """For each group of frames the line above it and {resource: its numbers}; the bound of the core."""
         lines, _ = self.parts(*assignments, board=board)
         groups = []
-        for line in lines[: lines.index("around the board")]:
+        for line in lines[: lines.index("the whole computer, with all masters")]:
             if line.startswith("frame"):
                 groups.append((line, {}))
             elif not line.split()[0] == "resource":
@@ -143,8 +144,8 @@ class Bounds(ProgramTest):
     def around_the_board(self, *assignments):
         """What each part of the computer allows, and the bound of the system."""
         lines, _ = self.parts(*assignments)
-        parts = [line.split() for line in lines[lines.index("around the board") + 2 : -2]]
-        return {name: float(rate) for name, rate in parts}, lines[-1]
+        parts = [line.rsplit(maxsplit=1) for line in lines[lines.index("the whole computer, with all masters") + 2 : -2]]
+        return {name.strip(): float(rate) for name, rate in parts}, lines[-1]
 
     def test_lists_each_resource(self):
         ((head, rows),), last = self.groups()
@@ -187,7 +188,7 @@ class Bounds(ProgramTest):
 
     def test_names_the_part_of_the_computer_that_limits(self):
         parts, last = self.around_the_board()
-        self.assertEqual((list(parts), parts["camera"]), (["camera", "pci", "bridge"], 29.97))
+        self.assertEqual((list(parts), parts["camera"]), (["camera", "pci", "bridge", *(f"bank bank{number}" for number in range(8))], 29.97))
         self.assertEqual(last, "bound of the system: 18.596 frames/s, limited by matcher")
         limits = {"name=fast": "camera", "pci.clock_mhz=1": "pci", "bridge.local_clock_mhz=1": "bridge"}
         for key, part in limits.items():
@@ -208,6 +209,10 @@ class Bounds(ProgramTest):
         self.assertRegex(lines[-1], rf"^area of the core: {area}$")
 
 
+def unwrapped(text):
+    return re.sub(r"\n  (?=\S)", " ", text)
+
+
 class Explain(ProgramTest):
     def explain(self, *options):
         return self.succeeds(run("explain", "fpl2003", *SMALL, *options))
@@ -220,7 +225,7 @@ class Explain(ProgramTest):
 
     def rate(self, *options):
         """That of a run with these options."""
-        frames = 2 if "preloaded" in options else 13
+        frames = 6 if "preloaded" in options else 42
         command = ["run", "fpl2003", *SMALL, "--timing-only", "--frames", frames, "--out", self.out]
         self.succeeds(run(*command, *options))
         rates = self.stats()["frames_per_second"]
@@ -246,15 +251,18 @@ class Explain(ProgramTest):
         text = self.explain(*PRELOADED, *SHARED)
         self.compare(text, *PRELOADED, *SHARED)
         (bank_more,) = (row for row in self.rows(text) if row[2] == "a bank more")
-        self.assertEqual(bank_more[3], "in one of its own")
+        self.assertEqual(bank_more[3], "in bank6")
         self.assertEqual(bank_more[0], f"{self.rate(*PRELOADED):.3f}", "as with bank6")
         now = self.rate(*PRELOADED, *SHARED)
         stats = self.stats()
-        bound = f"bound {stats['bound']['core']:.3f}, limited by {stats['bound']['core_limited_by']}"
-        self.assertIn(f"fpl2003, the core alone: {now:.3f} frames/s (2 frames); {bound}\n", text)
         most = max(stats["blame"], key=lambda row: row["cycles"])
-        percent = f"{100 * most['cycles'] / stats['cycles']:.3f}"
-        self.assertRegex(text, rf"\n  {most['port']} +on {most['bank']} +for {most['by']} +{percent}\n")
+        percent = 100 * most["cycles"] / stats["cycles"]
+        wait = f"{most['port']} waits there for {most['by']} in {percent:.2f} % of the cycles"
+        bound = f"{stats['bound']['core']:.3f} frames/s"
+        limiter = f"limited by waits at {most['bank']}: {wait}; all waits cost"
+        self.assertTrue(unwrapped(text).startswith(f"fpl2003, the core alone: {now:.3f} frames/s, {limiter}"))
+        self.assertIn(f"\nbound {bound}: {most['bank']}; 6 frames simulated\n", text)
+        self.assertRegex(text, rf"\n  {most['port']} +on {most['bank']} +for {most['by']} +{percent:.3f}\n")
         self.assertNotIn("cameras.", text)
         self.assertNotIn("pci", text)
 
@@ -263,10 +271,18 @@ class Explain(ProgramTest):
         bounds = self.succeeds(run("bounds", "fpl2003", *SMALL, *SHARED))
         found = {}
         headrooms = []
-        resources = re.findall(r"^ +([\d.]+) +([\d.]+)  ((?:port|bank|matcher).*)$", text, re.M)
-        for headroom, rate, names in resources:
+        resources = re.findall(r"^ +([\d.]+) +([\d.]+) +([\d.]+)  ((?:port|bank|matcher).*)$", text, re.M)
+        self.rate(*PRELOADED, *SHARED)
+        stats = self.stats()
+        busy = {f"bank {bank['name']}": 100 * bank["utilization"] for bank in stats["banks"]}
+        for port in stats["ports"]:
+            busy[f"port {port['name']}"] = 100 * (port["grants"] + port["passed_cycles"]) / stats["cycles"]
+        for headroom, percent, rate, names in resources:
             kind, _, names = re.sub(r", in frame \d of 2", "", names).partition(" ")
             headrooms.append(float(headroom))
+            for name in names.split(", "):
+                if kind != "matcher":
+                    self.assertAlmostEqual(float(percent), busy[f"{kind} {name}"], delta=0.0051)
             found.update({f"{kind} {name}".strip(): rate for name in names.split(", ")})
         ports = [f"port {port}" for port in ("left_lut", "right_lut", "left_pixel", "right_pixel", "result")]
         for port in ports:
@@ -284,15 +300,28 @@ class Explain(ProgramTest):
         bounds = self.succeeds(run("bounds", "fpl2003", *SMALL))
         for resource in ("matcher", "port result"):
             (of_bounds,) = re.findall(rf"(?m)^  {resource} .* ([\d.]+)$", bounds)
-            self.assertRegex(explained, rf"(?m)^ +{of_bounds} +[\d.]+  {resource}$")
+            self.assertRegex(explained, rf"(?m)^ +{of_bounds} +[\d.]+ +[\d.]+  {resource}$")
 
     def test_the_steps_of_the_computer_are_those_of_runs_and_every_knob_is_named(self):
         text = self.explain(*CAMERA_RATES)
-        rate = f"{self.rate(*CAMERA_RATES):.3f} frames/s between the first and the last delivery (13 frames)"
-        self.assertIn(f"the whole computer: {rate}", text)
+        rate = self.rate(*CAMERA_RATES)
+        stats = self.stats()
+        uncertainty = stats["frames_per_second"]["steady_uncertainty"]
+        self.assertTrue(text.startswith(f"fpl2003, the whole computer: {rate:.3f} ± {uncertainty:.3f} frames/s, "))
         self.compare(text, *CAMERA_RATES)
-        for resource in ("camera", "pci", "bridge"):
-            self.assertRegex(text, rf"(?m)^ +[\d.]+ +[\d.]+  {resource}$")
+        # The headroom is of the time from one frame of the computer to the next, and not only of the core's.
+        bounds = json.loads(self.succeeds(run("bounds", "fpl2003", *SMALL, *CAMERA_RATES, "--json")))
+        limits = {row["resource"]: row["frames_per_second"] for row in bounds["computer"]}
+        limits["matcher"] = stats["bound"]["core"]
+        self.assertLess(rate, 0.97 * stats["frames_per_second"]["core"])
+        busy = {"pci": stats["pci"]["busy_clocks"] / stats["pci"]["clocks"],
+                "bridge": stats["bridge"]["local_busy_clocks"] / stats["bridge"]["local_clocks"],
+                "camera": stats["cameras"][0]["captured_frames"] / stats["cameras"][0]["frames"]}
+        for resource in ("matcher", "camera", "pci", "bridge", "bank bank0"):
+            ((headroom, percent),) = re.findall(rf"(?m)^ +([\d.]+) +([\d.]+) +[\d.]+  {resource}(?:,.*)?$", text)
+            self.assertAlmostEqual(float(headroom), 100 * (1 - rate / limits[resource]), delta=0.006, msg=resource)
+            if resource in busy:
+                self.assertAlmostEqual(float(percent), 100 * busy[resource], delta=0.0051)
         self.assertIn("no port waits for another", text)
         text = re.sub(r"\n  (?=\w)", " ", text)
         keys = re.findall(r"(?m)^([a-z_]+\.[a-z_.]+)", self.succeeds(run("keys")))
@@ -301,6 +330,49 @@ class Explain(ProgramTest):
         for key in set(keys) - no_knobs:
             if not key.startswith(("pci.load", "ssram.", "matcher.filter.", "matcher.cost.", "allocation.")):
                 self.assertIn(key, text)
+
+    def test_pasted_changes_give_their_rates(self):
+        """Each change, pasted into run in place of earlier sets of the same key."""
+        cases = [(PRELOADED, SHARED), ([], [*CAMERA_RATES, *sets("allocation.disparity=[bank0, bank5]")])]
+        for source, options in cases:
+            explained = self.succeeds(run("explain", "fpl2003", *SMALL, *source, *options, "--json"))
+            document = json.loads(explained)
+            changes = document["changes"]
+            self.assertGreater(len(changes), 30)
+            for change in changes[::4] + [one for one in changes if one["key"].startswith(("allocation", "a bank"))]:
+                keys = [pasted.partition("=")[0] for pasted in change["sets"]]
+                earlier = [*SMALL, *options]
+                kept = [earlier[i + 1] for i in range(0, len(earlier), 2) if earlier[i + 1].partition("=")[0] not in keys]
+                command = ["run", "fpl2003", *source, "--timing-only", "--frames", document["frames"], "--out", self.out]
+                self.succeeds(run(*command, *sets(*kept, *change["sets"])))
+                rates = self.stats()["frames_per_second"]
+                self.assertEqual(rates["core" if source else "steady"], change["frames_per_second"], change["sets"])
+
+    def test_a_change_whose_sets_are_not_its_text_has_them_below(self):
+        text = self.explain(*PRELOADED, *SHARED)
+        self.assertRegex(text, r"a bank more: left_image\[0\] in bank0 -> in bank6\n"
+                         r" {41}--set 'allocation.left_image=\[bank6, bank1\]'\n")
+        self.assertRegex(text, r"matcher.fetch: column -> line_buffer\n(?! +--set)")
+
+    def test_the_limiter_is_named_first(self):
+        shared = sets("allocation.left_image=[bank0, bank0]")
+        full_size = sets("image={width: 320, height: 240}", "cameras.frame_rate_hz=120")
+        cases = [
+            ([*full_size, *shared], r"waits at bank0: left_pixel waits there for host in [\d.]+ %"),
+            (full_size, r"the captures: the core waits [\d.]+ % of the time"),
+            ([*full_size, *sets("pci.load={burst_words: 1, interval_us: 0, access_us: 50}")],
+             r"the PCI bus: captures lose \d+ pixels in 42 frames, so pictures are torn"),
+            ([*full_size, *sets("matcher.fetch=line_buffer")], "the cameras, at their bound of 120.000 frames/s"),
+        ]
+        for options, limiter in cases:
+            text = unwrapped(self.succeeds(run("explain", "fpl2003", *options)))
+            self.assertRegex(text, rf"^fpl2003, the whole computer: [\d.]+ ± [\d.]+ frames/s, limited by {limiter}")
+
+    def test_frames_are_those_of_the_option(self):
+        text = self.explain(*CAMERA_RATES, "--frames", 12)
+        self.assertIn("; 12 frames simulated\n", text)
+        wrong = run("explain", "fpl2003", "--frames", 11)
+        self.refused_in_one_line(wrong, "--frames = 11: 12..1000000, so that every board has a steady rate")
 
     def test_changes_have_their_price_and_those_without_effect_are_one_paragraph(self):
         text = self.explain(*PRELOADED, *SHARED)
@@ -326,14 +398,14 @@ class Explain(ProgramTest):
     def test_a_result_queue_that_is_too_short_is_named(self):
         rows = sets("matcher.rows=4", "matcher.disparities=4")
         short = [*PRELOADED, *rows, *sets("fpga.result_fifo_words=4")]
-        said = "the result queue is too short: in"
+        said = "limited by the result queue, which is too short: in"
         text = self.explain(*short)
         rate = self.rate(*short)
         lost = 100 * (1 - rate / self.stats()["bound"]["core"])
         self.assertGreater(lost, 1)
-        lines = text.splitlines()
-        self.assertEqual(lines[1], f"{said} {lost:.2f} % of the cycles the matcher waits for fpga.result_fifo_words")
-        self.assertLessEqual(max(map(len, lines)), 100)
+        self.assertIn(f"{said} {lost:.2f} % of the cycles the matcher waits for fpga.result_fifo_words\n",
+                      unwrapped(text))
+        self.assertLessEqual(max(map(len, text.splitlines())), 100)
         # The step to five rows would need a longer queue. That to the line buffer is one to a single row.
         self.assertIn("\nnot possible here: matcher.rows: 4 -> 5, because fpga.result_fifo_words = 4: at least 5", text)
         (fetch,) = (row for row in self.rows(text) if row[2] == "matcher.fetch")
@@ -341,10 +413,10 @@ class Explain(ProgramTest):
         line_buffer = sets("matcher.disparities=4", "matcher.fetch=line_buffer", "fpga.result_fifo_words=4")
         self.assertEqual(fetch[0], f"{self.rate(*PRELOADED, *line_buffer):.3f}")
         text = self.explain(*PRELOADED, *rows)  # with 8 words
-        self.assertNotIn(said, text)
+        self.assertNotIn(said, unwrapped(text))
         self.assertNotIn("not possible", text)
         # With stalls it cannot be told.
-        self.assertNotIn(said, self.explain(*short, *sets("allocation.left_lut=bank0")))
+        self.assertNotIn(said, unwrapped(self.explain(*short, *sets("allocation.left_lut=bank0"))))
 
     def test_wrong_options_are_refused(self):
         self.refused(run("explain"), "BOARD: missing")

@@ -52,12 +52,17 @@ class Json(ProgramTest):
         document, text = self.both("explain", "fpl2003", *SMALL, *PRELOADED, *SHARED)
         now = document["frames_per_second"]
         bound = document["bound"]
-        limit = f"bound {bound['frames_per_second']:.3f}, limited by {bound['limited_by']}"
-        self.assertIn(f"fpl2003, the core alone: {now:.3f} frames/s ({document['frames']} frames); {limit}\n", text)
+        unwrapped = re.sub(r"\n  (?=\S)", " ", text)
+        self.assertIn(f"fpl2003, the core alone: {now:.3f} frames/s, limited by {document['limited_by']}\n", unwrapped)
+        owner = bound["limited_by"].removeprefix("bank ")
+        frames = f"{document['frames']} frames simulated"
+        self.assertIn(f"\nbound {bound['frames_per_second']:.3f} frames/s: {owner}; {frames}\n", text)
+        self.assertAlmostEqual(sum(document["time_percent"].values()), 100)
+        self.assertIn(f"{document['time_percent']['waits']:.2f} % waits for banks", unwrapped)
         for row in document["resources"]:
             *_, name = row["resource"].split()
             in_frame = f", in frame {row['frame']} of 2" if "frame" in row else ""
-            numbers = rf"{row['headroom_percent']:.2f} +{row['frames_per_second']:.3f}"
+            numbers = rf"{row['headroom_percent']:.2f} +{row['busy_percent']:.2f} +{row['frames_per_second']:.3f}"
             self.assertRegex(text, rf"(?m)^ +{numbers}  .*\b{name}\b.*{in_frame}$")
         for row in document["blame"]:
             percent = f"{row['cycles_percent']:.3f}"
@@ -83,7 +88,8 @@ class Json(ProgramTest):
     def test_explain_names_what_is_impossible_and_a_queue_that_is_too_short(self):
         short = sets("matcher.rows=4", "matcher.disparities=4", "fpga.result_fifo_words=4")
         document, text = self.both("explain", "fpl2003", *SMALL, *PRELOADED, *short)
-        self.assertIn(f"in {document['result_queue_wait_percent']:.2f} % of the cycles", text)
+        unwrapped = re.sub(r"\n  (?=\S)", " ", text)
+        self.assertIn(f"in {document['result_queue_wait_percent']:.2f} % of the cycles", unwrapped)
         change = document["impossible"][0]
         words = f"not possible here: {change['key']}: {change['from']} -> {change['to']}, because {change['reason']}"
         self.assertIn(words, re.sub(r"\n  ", " ", text))

@@ -13,13 +13,14 @@ constexpr double kPicture = 640 * 480 / 4;
 class ComputerBounds : public ::testing::Test {
  protected:
   double bound_of(const std::string& resource, bool whole_pictures = true) const {
-    for (const RateBound& bound : computer_bounds(board, whole_pictures)) {
+    for (const RateBound& bound : computer_bounds(board, accesses, whole_pictures)) {
       if (bound.resource == resource) return bound.frames_per_second;
     }
     return 0;
   }
 
   BoardConfig board;
+  FrameAccesses accesses;  // none: only what the host moves counts
 };
 
 TEST_F(ComputerBounds, GiveCamerasTheirFrameClockOrOnDemandTheTimeToTheLastPixel) {
@@ -83,21 +84,21 @@ TEST_F(ComputerBounds, GiveTheSystemTheLeastBound) {
   Bound bound;
   bound.core = 18.5;
   bound.core_limited_by = "matcher";
-  add_system_bound(board, true, bound);
+  add_system_bound(board, accesses, true, bound);
   EXPECT_EQ(bound.system, 18.5);
   EXPECT_EQ(bound.system_limited_by, "matcher");
   bound.core = 130;
-  add_system_bound(board, true, bound);
+  add_system_bound(board, accesses, true, bound);
   EXPECT_EQ(bound.system, 29.97);
   EXPECT_EQ(bound.system_limited_by, "camera");
   board.pci.clock_mhz = 1;
-  add_system_bound(board, true, bound);
+  add_system_bound(board, accesses, true, bound);
   EXPECT_EQ(bound.system_limited_by, "pci");
 }
 
 TEST_F(ComputerBounds, RefuseABoardWithProblems) {
   board.cameras.frame_rate_hz = 0;
-  EXPECT_THROW(computer_bounds(board, true), std::invalid_argument);
+  EXPECT_THROW(computer_bounds(board, accesses, true), std::invalid_argument);
 }
 
 }  // namespace

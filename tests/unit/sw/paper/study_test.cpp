@@ -101,7 +101,7 @@ TEST(Study, FindsTheFewestBanksThatReachTheFirstRun) {
   ASSERT_NE(row, found.banks.end());
   EXPECT_EQ(row->allocations, std::nullopt);
   EXPECT_EQ(row->command,
-            "stereotlm run fpl2003 --set 'allocation.disparity=[bank4, bank4]' --timing-only --frames 13");
+            "stereotlm run fpl2003 --set 'allocation.disparity=[bank4, bank4]' --timing-only --frames 14");
   EXPECT_THAT(row->allocation, HasSubstr("disparity bank4 bank4, left_lut bank6"));
   EXPECT_EQ(found.banks.back().banks, 8);
 }
@@ -340,7 +340,7 @@ TEST(Study, CommandsGiveTheFiguresOfANumber) {
       "stereotlm run fpl2003 --set matcher.window=5 --source preloaded --timing-only --frames 2";
   EXPECT_THAT(commands(Quantity::kRate), ElementsAre(core));
   EXPECT_THAT(commands(Quantity::kSpeedUp),
-              ElementsAre(core, "stereotlm run fpl2003 --set matcher.window=7 --timing-only --frames 13"));
+              ElementsAre(core, "stereotlm run fpl2003 --set matcher.window=7 --timing-only --frames 14"));
   // A cost that is shown beside has no command in the row of another.
   const Claim costs = cost_claim();
   EXPECT_THAT(commands_of(costs, costs.cases[1]),

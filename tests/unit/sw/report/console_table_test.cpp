@@ -51,7 +51,7 @@ platform::Statistics in_a_computer() {
 TEST(ConsoleTable, ShowsTheCoreAndTheComputerAroundIt) {
   const std::string core =
       "core          39331.500 frames/s   1017 cycles a frame, 2 frames\n"
-      "core bound    40000.000 frames/s   limited by left_pixel\n";
+      "core bound     40000.000 frames/s   limited by left_pixel\n";
   const std::string banks =
       "bank                  reads         writes   use %      MB/s peak MB/s\n"
       "image                  1500              0   75.00    120.00    160.00\n"

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+
+#include "sw/runs/explanation.h"
+
+namespace stereotlm::runs {
+
+// The part of a board or computer in words: "the matcher", "bank0", "port left_lut", "the PCI bus". `resource`:
+// as in stats.json.
+std::string resource_text(const std::string& resource);
+
+// Why a board is not faster, after "limited by": "the matcher, at its bound of 18.596 frames/s".
+std::string limiter_text(Explanation& explanation);
+
+// What the time of a frame goes to: "96.69 % the matcher and the ports, 3.31 % the core waits for ..".
+std::string budget_text(Explanation& explanation);
+
+// The share of the cycles in which the matcher waits because the result queue is too short, in percent; 0 if
+// it does not limit the board.
+double result_queue_percent(Explanation& explanation);
+
+}  // namespace stereotlm::runs
