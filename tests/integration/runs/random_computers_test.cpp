@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <thread>
 #include <tuple>
@@ -14,6 +16,8 @@
 #include <vector>
 
 #include "platform/config/board_yaml.h"
+#include "sw/explore/plan/points.h"
+#include "sw/process/child.h"
 #include "sw/report/conflicts_csv.h"
 #include "sw/report/timeline_csv.h"
 #include "sw/runs/simulation/camera_simulation.h"
@@ -358,6 +362,55 @@ INSTANTIATE_TEST_SUITE_P(Fidelities, RandomConflicts,
                          testing::Combine(testing::Values(Fidelity::kCycle, Fidelity::kTiming),
                                           testing::Bool()),
                          suite_name);
+
+// What is wrong with the steady rate of the default number of frames, beside that of many.
+std::string steady_problems(std::uint64_t seed) {
+  test::RandomKnobs knobs = test::RandomKnobs::all();
+  knobs.large_images = false;
+  const test::RandomComputer computer = test::make_random_computer(seed, knobs);
+  const platform::BoardConfig board = test::board_config(computer);
+  const platform::Tables tables = test::board_tables(computer.board);
+  const auto run = [&](std::uint64_t frames) {
+    Pictures pictures(computer.board);
+    test::MonitoringBinder binder;
+    runs::CameraSimulation simulation(board, tables, pictures, frames, binder, Fidelity::kTiming);
+    while (!simulation.finished()) simulation.advance();
+    return simulation.statistics();
+  };
+  constexpr std::uint64_t kMany = 400;
+  std::array<std::string, 2> texts;  // each in a process of its own
+  for (const bool is_long : {false, true}) {
+    process::Child child([&](const process::Child::Tell& tell) {
+      const platform::Statistics statistics = run(is_long ? kMany : explore::frames_of({true, 0, ""}, board));
+      tell(fmt::format("{} {} {}", statistics.frames_per_second.steady->frames_per_second,
+                       statistics.frames_per_second.steady->uncertainty, fmt::join(statistics.failed, "; ")));
+    });
+    texts[is_long ? 1 : 0] = child.next().value();
+    child.next();
+  }
+  std::array<double, 2> rates{};
+  std::array<double, 2> uncertainties{};
+  for (std::size_t i = 0; i < 2; ++i) {
+    std::istringstream text(texts[i]);
+    std::string failed;
+    text >> rates[i] >> uncertainties[i];
+    std::getline(text, failed);
+    if (failed != " ") return texts[i];
+  }
+  // The window has a sample of the latencies. Clocks that beat slowly show more of them in more frames.
+  const double allowed = 1.25 * uncertainties[0] + 1e-5 * rates[0];
+  if (std::abs(rates[0] - rates[1]) <= allowed) return "";
+  return fmt::format("{}\n{}\n{}", texts[0], texts[1], platform::to_yaml(board));
+}
+
+TEST(RandomSteadyRates, AreWithinTheirUncertaintyOfTheRateOfManyFrames) {
+  std::vector<test::ChildWork> jobs;
+  for (std::uint64_t seed = 0; seed < computers(); ++seed)
+    jobs.push_back([seed] { return steady_problems(seed); });
+  const std::vector<test::ChildResult> results = test::run_in_children(jobs, processors());
+  for (std::size_t seed = 0; seed < results.size(); ++seed)
+    EXPECT_TRUE(results[seed].ok()) << "seed " << seed << ":\n" << results[seed].text;
+}
 
 // Four local clocks per cycle of the FPGA and one word per burst: the clocks between two words cost no cycle.
 TEST(SaturatedLocalBus, StaysBelowItsBound) {
