@@ -42,8 +42,6 @@ bool is_of_computer(const std::string& path) {
          begins_with(path, "bridge.");
 }
 
-using List = std::vector<std::string> platform::AllocationConfig::*;
-
 class Steps {
  public:
   Steps(const BoardConfig& board, const std::optional<std::string>& joint_problem)
@@ -174,21 +172,37 @@ class Steps {
   }
 
   void add_buffers() {
-    const auto add_lists = [this](const std::string& knob, const std::vector<List>& lists) {
-      const std::size_t size = (board_.allocation.*lists.front()).size();
-      for (const std::vector<std::string>& banks : choices_of(quiet_banks(), lists.size())) {
-        BoardConfig changed = board_;
-        for (std::size_t i = 0; i < lists.size(); ++i) (changed.allocation.*lists[i]).push_back(banks[i]);
-        add({knob, counted(size), fmt::format("{}, in {}", counted(size + 1), fmt::join(banks, " and ")),
-             std::move(changed), false, knob + " more"});
-      }
-      BoardConfig changed = board_;
-      for (const List list : lists) (changed.allocation.*list).pop_back();
-      add({knob, counted(size), counted(size - 1), std::move(changed)});
+    using Banks = std::vector<std::string>;
+    const auto lengthen = [this](const std::string& knob, std::size_t size, const Banks& banks,
+                                 BoardConfig changed) {
+      add({knob, counted(size), fmt::format("{}, in {}", counted(size + 1), fmt::join(banks, " and ")),
+           std::move(changed), false, knob + " more"});
     };
-    add_lists(fmt::format("{}, {}", key_of(Buffer::kLeftImage), name_of(Buffer::kRightImage)),
-              {&platform::AllocationConfig::left_image, &platform::AllocationConfig::right_image});
-    add_lists(key_of(Buffer::kDisparity), {&platform::AllocationConfig::disparity});
+    const std::string pairs = fmt::format("{}, {}", key_of(Buffer::kLeftImage), name_of(Buffer::kRightImage));
+    const std::size_t size = board_.allocation.left_image.size();
+    for (const std::string& left : quiet_banks(Buffer::kLeftImage)) {
+      for (const std::string& right : quiet_banks(Buffer::kRightImage)) {
+        BoardConfig changed = board_;
+        changed.allocation.left_image.push_back(left);
+        changed.allocation.right_image.push_back(right);
+        lengthen(pairs, size, {left, right}, std::move(changed));
+      }
+    }
+    BoardConfig fewer = board_;
+    fewer.allocation.left_image.pop_back();
+    fewer.allocation.right_image.pop_back();
+    add({pairs, counted(size), counted(size - 1), std::move(fewer)});
+
+    const std::string results = key_of(Buffer::kDisparity);
+    const std::size_t count = board_.allocation.disparity.size();
+    for (const std::string& bank : quiet_banks(Buffer::kDisparity)) {
+      BoardConfig changed = board_;
+      changed.allocation.disparity.push_back(bank);
+      lengthen(results, count, {bank}, std::move(changed));
+    }
+    fewer = board_;
+    fewer.allocation.disparity.pop_back();
+    add({results, counted(count), counted(count - 1), std::move(fewer)});
   }
 
   void add_banks_more() {
@@ -326,42 +340,27 @@ class Steps {
     return static_cast<std::uint64_t>(empty.words) >= buffer_words(buffer, board_.image);
   }
 
-  // The names of kQuietBanks banks, those with the fewest accesses first. A picture or table has an access for
-  // each slot, a result two for each four pixels.
-  std::vector<std::string> quiet_banks() const {
+  // The names of kQuietBanks banks for one more buffer of this list. First come those without a buffer of the
+  // list, then those with fewer accesses: a picture or table has one for each slot, a result two for each four
+  // pixels.
+  std::vector<std::string> quiet_banks(Buffer list) const {
     const int slots =
         board_.matcher.fetch == fpga::Fetch::kColumn ? board_.matcher.window + board_.matcher.rows - 1 : 1;
     const std::vector<PlacedBuffer> all = platform::buffers(board_);
-    std::map<std::string, double> accesses;
+    std::map<std::string, std::pair<bool, double>> order;
     for (const PlacedBuffer& buffer : all) {
       const auto in_list = std::count_if(
           all.begin(), all.end(), [&](const PlacedBuffer& other) { return other.buffer == buffer.buffer; });
-      const double of_list = buffer.buffer == Buffer::kDisparity ? 0.5 : slots;
-      accesses[buffer.bank] += of_list / static_cast<double>(in_list);
+      auto& [has_list, accesses] = order[buffer.bank];
+      has_list = has_list || buffer.buffer == list;
+      accesses += (buffer.buffer == Buffer::kDisparity ? 0.5 : slots) / static_cast<double>(in_list);
     }
     std::vector<std::string> banks;
     for (const BankConfig& bank : board_.banks) banks.push_back(bank.name);
     std::stable_sort(banks.begin(), banks.end(),
-                     [&](const std::string& a, const std::string& b) { return accesses[a] < accesses[b]; });
+                     [&](const std::string& a, const std::string& b) { return order[a] < order[b]; });
     banks.resize(std::min(banks.size(), kQuietBanks));
     return banks;
-  }
-
-  // Every choice of one of `banks` for each of `buffers` buffers.
-  static std::vector<std::vector<std::string>> choices_of(const std::vector<std::string>& banks,
-                                                          std::size_t buffers) {
-    std::vector<std::vector<std::string>> choices = {{}};
-    for (std::size_t buffer = 0; buffer < buffers; ++buffer) {
-      std::vector<std::vector<std::string>> longer;
-      for (const std::vector<std::string>& choice : choices) {
-        for (const std::string& bank : banks) {
-          longer.push_back(choice);
-          longer.back().push_back(bank);
-        }
-      }
-      choices = std::move(longer);
-    }
-    return choices;
   }
 
   const BankConfig& bank_of(const std::string& name) const {

@@ -50,7 +50,7 @@ TEST(KnobSteps, GoFromTheValueOfTheBoardToItsValidNeighbours) {
     std::string steps;
   };
   std::string pairs;
-  for (const std::string left : {"bank4", "bank5", "bank0", "bank1"}) {
+  for (const std::string left : {"bank4", "bank5", "bank2", "bank3"}) {
     for (const std::string right : {"bank4", "bank5", "bank0", "bank1"})
       pairs += "2 buffers -> 3 buffers, in " + left + " and " + right + "; ";
   }
@@ -111,12 +111,12 @@ TEST(KnobSteps, GoFromTheValueOfTheBoardToItsValidNeighbours) {
       {kTurnaround,
        {burst("bank3", 5), burst("bank4", 2)},
        "different -> one more each; different -> one less each; "},
-      // Results make the fewest accesses. Of equal banks the first ones are tried.
+      // Results make the fewest accesses. Banks with pictures of the same side come last.
       {kBufferPairs, {}, pairs + "2 buffers -> 1 buffer; "},
       {"allocation.disparity",
        {"allocation.disparity=bank4"},
-       "1 buffer -> 2 buffers, in bank5; 1 buffer -> 2 buffers, in bank4; 1 buffer -> 2 buffers, in bank0; "
-       "1 buffer -> 2 buffers, in bank1; "},
+       "1 buffer -> 2 buffers, in bank5; 1 buffer -> 2 buffers, in bank0; 1 buffer -> 2 buffers, in bank1; "
+       "1 buffer -> 2 buffers, in bank2; "},
       {"a bank more", {}, ""},
       {"a bank more",
        {"allocation.disparity=[bank0, bank5]"},
