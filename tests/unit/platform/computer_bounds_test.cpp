@@ -71,6 +71,49 @@ TEST_F(ComputerBounds, CountTheLocalBusOfAllThreePictures) {
   EXPECT_DOUBLE_EQ(bound_of("bridge"), 40e6 / (3 * (kPicture - 4800 + 4800 * 2)));
 }
 
+// A load that requests the bus all the time gets a burst between two of the bridge, which has the most. Then the
+// latency timer of 64 clocks cuts each burst behind its word in clock 64: captures after 60 words, behind 4 wait
+// clocks, and the load after 64.
+TEST_F(ComputerBounds, CountTheBurstsOfALoadThatTheBusCannotRefuse) {
+  const double alone = 33.333e6 / bound_of("pci");
+  board.pci.load = PciLoadConfig{100, 0, 0, 0};
+  const double capture = 2 * (kPicture + 1280 * (1 + 4 + 1));
+  const double result = (4 + 1 + 8 + 1) + kPicture + 2400 * (1 + 8 + 1);
+  EXPECT_DOUBLE_EQ(bound_of("pci"), 33.333e6 / (capture + result + 2400 * (1 + 64 + 1)));
+  board.pci.load->burst_words = 5;
+  EXPECT_DOUBLE_EQ(bound_of("pci"), 33.333e6 / (capture + result + 2400 * (1 + 5 + 1)));
+  // 1 us are 33 whole clocks. A load on time takes 43 of 3333.3 clocks.
+  board.pci.load = PciLoadConfig{8, 100, 0, 1};
+  EXPECT_DOUBLE_EQ(bound_of("pci"), 33.333e6 / ((alone - 43) / (1 - 43 / 3333.3)));
+  board.pci.load->first_us = 5;  // it may begin at the end of the run
+  EXPECT_DOUBLE_EQ(bound_of("pci"), 33.333e6 / alone);
+}
+
+// The lists have two buffers: a bank is used in every second frame.
+TEST_F(ComputerBounds, CountTheAccessesOfTheCoreAndOfTheHostToABank) {
+  EXPECT_DOUBLE_EQ(bound_of("bank bank0"), 40e6 * 2 / kPicture);
+  EXPECT_DOUBLE_EQ(bound_of("bank bank4"), 40e6 * 2 / (2 * kPicture));  // written, and read back
+  EXPECT_EQ(bound_of("bank bank6"), 0) << "no access";
+  EXPECT_EQ(bound_of("bank bank0", false), 0);
+  accesses = {{500, 1000}, {700, 2000}};
+  EXPECT_DOUBLE_EQ(bound_of("bank bank0"), 40e6 * 2 / (kPicture + 1000));
+  EXPECT_DOUBLE_EQ(bound_of("bank bank3"), 40e6 * 2 / (kPicture + 2000));
+  EXPECT_DOUBLE_EQ(bound_of("bank bank6"), 40e6 / 500);
+  EXPECT_DOUBLE_EQ(bound_of("bank bank7"), 40e6 / 700);
+  board.allocation.left_image = {"bank0", "bank0"};
+  EXPECT_DOUBLE_EQ(bound_of("bank bank0"), 40e6 / (kPicture + 1000));
+  board.banks[0].kind = memory::BankKind::kQdr;
+  EXPECT_DOUBLE_EQ(bound_of("bank bank0"), 40e6 / kPicture) << "more writes than reads";
+  // Pictures that are copied are whole, also where captures lose pixels.
+  board.capture.destination = CaptureDestination::kHostMemory;
+  EXPECT_DOUBLE_EQ(bound_of("bank bank0", false), 40e6 / kPicture);
+  // Of one frame.
+  const auto first = computer_bounds(board, accesses, true, 1);
+  EXPECT_EQ(first[4].resource, "bank bank2");
+  EXPECT_DOUBLE_EQ(first[4].frames_per_second, 40e6 / (kPicture + 2000));
+  EXPECT_EQ(first[5].resource, "bank bank4");
+}
+
 TEST_F(ComputerBounds, LeaveOutTheWordsOfCapturesWherePixelsAreDropped) {
   const double moved = (4 + 1 + 8 + 1) + kPicture + 2400 * (1 + 8 + 1);
   EXPECT_DOUBLE_EQ(bound_of("pci", false), 33.333e6 / moved);
