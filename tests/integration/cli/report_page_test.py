@@ -14,6 +14,7 @@ import unittest
 
 import program
 from browser import Browser, number
+from plots import make_database, script
 from program import CAMERA_RATES, PRELOADED, SMALL, ProgramTest, run, sets, shared_folder
 from report_data import data_of, with_data
 from selenium.webdriver.common.keys import Keys
@@ -94,6 +95,12 @@ class PageTest(ProgramTest):
 
     def charts(self):
         return [card.get_attribute("id") for card in self.browser.all("section.card")]
+
+    def answer(self, question):
+        texts = self.browser.run(
+            "return [...document.querySelectorAll('.answers > div')]"
+            ".find(each => each.firstChild.textContent === arguments[0]).textContent", question)
+        return texts.removeprefix(question).replace("\u00a0", " ")
 
     def rows_by_name(self, chart):
         return {row["name"]: row for row in self.browser.table(chart)}
@@ -343,6 +350,86 @@ class Database(PageTest):
         self.assertEqual([number(cell) for cell in cells], sorted(number(cell) for cell in cells))
 
 
+class Rates(PageTest):
+    """Rates that tie, and what sets their bounds. The page and `plot` have the same front."""
+
+    HEADER = ["name", "run.source", "allocation.left_lut", "allocation.left_image", "area.slices", "area.slices_percent",
+              "cameras.left.dropped_pixels", "frames_per_second.core", "frames_per_second.steady",
+              "frames_per_second.steady_uncertainty", "bound.core_limited_by", "bound.system_limited_by",
+              "bound.system"]
+
+    def open(self, *points):
+        """A database of points (slices, banks, steady rate, its uncertainty, % of the slices, lost pixels)."""
+        rows = []
+        for slices, banks, rate, uncertainty, percent, pixels in ((*point, 50, 0)[:6] for point in points):
+            pictures = "[" + ", ".join(f"bank{i}" for i in range(1, banks)) + "]"
+            limits = ("bank bank0", "camera" if rate > 29 else "bank bank0")
+            rows.append(("made", "camera", "bank0", pictures, slices, percent, pixels, 99, rate, uncertainty, *limits,
+                         31))
+        self.store = make_database(self.folder / "made.db", self.HEADER, rows)
+        self.succeeds(run("report", self.store, "--out", self.folder / "made.html"))
+        self.browser.open(self.folder / "made.html")
+
+    def fronts(self, *axes):
+        """That of the page and that of `plot`, each from left to right."""
+        for name, axis in zip("xy", axes):
+            column, sense = axis.split(":")
+            self.browser.choose(f"scatter-{name}", column)
+            self.browser.choose(f"best-{name}", sense)
+        self.succeeds(script("plot_pareto.py", self.store, "--out", self.out, "--pareto", ",".join(axes)))
+        shown, drawn = (list(csv.DictReader(io.StringIO(text)))
+                        for text in (self.browser.csv("scatter"), (self.out / "pareto.csv").read_text()))
+        return [sorted((float(row["area.slices"]), float(row["frames_per_second.steady"])) for row in rows)
+                for rows in (shown, [row for row in drawn if row["front"] == "1"])]
+
+    def test_within_the_uncertainty_tie_and_the_cheapest_is_named(self):
+        slow, tie, best = (5000, 3, 20, 0.1), (14000, 8, 30, 0.002), (22500, 8, 30.003, 0.002)
+        cheap, worse = (14000, 7, 30.0015, 0), (14000, 4, 29.99, 0.0001)
+        self.open(slow, tie, best, cheap, worse)
+        self.assertEqual(self.browser.text("h1"), "5 points: at most 30.00 frames/s, steady")
+        fastest = self.answer("Which is the fastest?")
+        self.assertTrue(fastest.startswith("30.00 frames/s, steady: "), fastest)
+        self.assertIn("left_image [bank1, bank2, bank3, bank4, bank5, bank6].", fastest)
+        self.assertIn("3 points tie within the uncertainty of their rates. This is the cheapest: 7 banks, 14,000 slices.",
+                      fastest)
+        front = sorted((slices, rate) for slices, _, rate, _ in (slow, tie, cheap))
+        for axes in (("area.slices:min", "frames_per_second.steady:max"),
+                     ("frames_per_second.steady:max", "area.slices:min")):
+            self.assertEqual(self.fronts(*axes), [front, front])
+            self.assertIn("What lies within the uncertainty ties.", self.browser.text("#front-text"))
+
+    def test_of_boards_that_do_not_fit_or_lose_pixels_are_not_the_fastest(self):
+        self.open((14000, 8, 20, 0.5), (14000, 8, 30, 0, 101), (14000, 8, 30, 0, 99, 4))
+        self.assertTrue(self.answer("Which is the fastest?").startswith("20.00 ± 0.50 frames/s, steady."))
+
+    def test_of_computers_have_the_bound_of_the_computer(self):
+        self.open((14000, 8, 30, 0), (5000, 8, 20, 0.5), (5001, 8, 20, 0.5), (5002, 8, 19, 0.5))
+        self.assertEqual(self.answer("What limits?"), "Bank0 in 3 points, the cameras in 1.")
+
+    def test_on_the_front_are_joined_by_steps(self):
+        self.open((14000, 8, 30, 0), (9000, 8, 25, 0), (5000, 8, 20, 0))
+        places = lambda script: [tuple(float(each) for each in pair) for pair in self.browser.run(script)]
+        line = places("return document.querySelector('#scatter .front').getAttribute('points').split(' ')"
+                      ".map(pair => pair.split(','))")
+        spots = places("return [...document.querySelectorAll('#scatter .on-front')]"
+                       ".map(spot => [spot.getAttribute('cx'), spot.getAttribute('cy')])")
+        corners = [(after[0], before[1]) for before, after in zip(spots, spots[1:])]
+        self.assertEqual(len(corners), 2)
+        self.assertLessEqual({*spots, *corners}, set(line))
+        for before, after in zip(line, line[1:]):
+            self.assertTrue(before[0] == after[0] or before[1] == after[1], line)
+
+    def test_of_one_point_or_none_are_shown(self):
+        self.open((14000, 8, 30, 0))
+        self.assertEqual(self.browser.text("h1"), "1 point: at most 30.00 frames/s, steady")
+        self.assertEqual(self.answer("What limits?"), "The cameras in 1 point.")
+        plan = self.file("plan.yaml", "board: fpl2003\nset: {matcher.fetch: line_buffer}\nvary: {matcher.rows: [2, 3]}\n")
+        self.succeeds(run("sweep", plan, "--out", self.folder / "none.db"))
+        self.succeeds(run("report", self.folder / "none.db", "--out", self.folder / "none.html"))
+        self.browser.open(self.folder / "none.html")
+        self.assertEqual(self.browser.text("h1"), "2 points: none has a rate")
+
+
 class Tools(PageTest):
     """Zoom, sliders and search."""
 
@@ -456,12 +543,6 @@ class Answers(PageTest):
         data = data_of(page_of(folder))
         change(data["run"])
         self.browser.open(with_data(page_of(folder), data, self.folder / "page.html"))
-
-    def answer(self, question):
-        texts = self.browser.run(
-            "return [...document.querySelectorAll('.answers > div')]"
-            ".find(each => each.firstChild.textContent === arguments[0]).textContent", question)
-        return texts.removeprefix(question).replace("\u00a0", " ")
 
     def test_the_port_that_waits_most_in_all_is_the_first(self):
         def change(run):

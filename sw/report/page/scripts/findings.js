@@ -1,6 +1,6 @@
 // What a run shows, in plain words: what limits, who waits for whom, where, what to change first, its price.
 import {adviceOf, limitReached, priceText, stepText} from './advice.js';
-import {capital, count, fixed, gainText, percent, rate, sum, whole} from './format.js';
+import {capital, count, fixed, gainText, percent, rate, rateWith, sum, whole} from './format.js';
 import {linesOf, rowsText, tilesOf} from './recording.js';
 
 const kLeastShare = 0.0005;  // of all cycles that a port waits, to be named
@@ -18,7 +18,8 @@ export function rateOf(run) {
   const now = rates.steady ?? rates.system ?? rates.core;
   const kind = steady ? 'steady' : computer ? 'from power-up' : 'core only';
   const by = computer ? bound.system_limited_by : bound.core_limited_by;
-  return {now, kind, limit, by, computer, share: now / limit};
+  const text = rateWith(now, rates.steady_uncertainty);
+  return {now, text, kind, limit, by, computer, share: now / limit};
 }
 
 // The kind of the rates of single changes.
@@ -77,10 +78,10 @@ export function waitText({port, share, causes}) {
 const lostPixels = run => sum((run.stats.cameras ?? []).map(camera => camera.dropped_pixels));
 
 function whatLimits(run) {
-  const {by, limit, share, now, kind: kindOfRate, computer} = rateOf(run);
+  const {by, limit, share, text, kind: kindOfRate, computer} = rateOf(run);
   const [kind, name] = by.split(' ');
-  const reached = `The run reaches ${percent(share)} of the bound of ${rate(limit)} frames/s: ${rate(now)}, ${
-      kindOfRate}`;
+  const reached =
+      `The run reaches ${percent(share)} of the bound of ${rate(limit)} frames/s: ${text}, ${kindOfRate}`;
   const because = {
     bank: () => {
       const bank = run.banks.find(each => each.name === name);
@@ -264,8 +265,8 @@ function whatItCosts(run) {
 }
 
 export function headlineOf(run) {
-  const {now, kind, limit, by, share} = rateOf(run);
-  return `${rate(now)} frames/s, ${kind}: ${percent(share)} of the bound ${rate(limit)}, which ${
+  const {text, kind, limit, by, share} = rateOf(run);
+  return `${text} frames/s, ${kind}: ${percent(share)} of the bound ${rate(limit)}, which ${
              withVerb(by, 'set')}` +
       (lostPixels(run) > 0 ? '; captures lose pixels' : '');
 }

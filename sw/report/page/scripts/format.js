@@ -13,6 +13,9 @@ export function percent(share, digits = 1) {
   return `${isLess ? `<${fixed(least, digits)}` : fixed(100 * share, digits)} %`;
 }
 export const rate = number => fixed(number, number < 100 ? 2 : 1);
+// With what a finite run leaves open, if that can be seen.
+export const rateWith = (number, uncertainty = 0) =>
+    rate(number) + (uncertainty < 0.005 ? '' : ` ± ${rate(uncertainty)}`);
 export const signed = (number, text) => `${number < 0 ? '−' : '+'}${text(Math.abs(number))}`;
 // A gain, as a share of what there was.
 export const gainText = gain => Math.abs(gain) < 0.0005 ? '≈ 0' : signed(gain, percent);
