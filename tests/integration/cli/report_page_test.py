@@ -520,6 +520,19 @@ class Tools(PageTest):
         self.assertEqual(rows["left_lut – bank6"]["megabytes_per_second_b"], "0")
         self.assertEqual(rows["left_lut – bank0"]["megabytes_per_second_a"], "0")
 
+    def test_a_chart_wider_than_the_page_opens_where_something_is(self):
+        for page in (page_of(computer()), page_of(shared_run("plain_computer", *CAMERA_RATES, "--frames", "6"), computer())):
+            self.browser.open(page, width=390)
+            left, right = self.browser.run(
+                "const box = element => element.getBoundingClientRect();"
+                "const memory = document.querySelector('.memory');"
+                "const blocks = [...memory.querySelectorAll('svg:not([hidden]) .block')].map(box);"
+                "const highest = Math.min(...blocks.map(each => each.top));"
+                "const first = blocks.find(each => each.top === highest);"
+                "return [first.left - box(memory).left, box(memory).right - first.right]")
+            self.assertGreater(left, 0)
+            self.assertGreater(right, 0)
+
     def test_keys_are_searched(self):
         self.browser.open(page_of(core()))
         self.browser.choose("search-keys", "left_lut")
@@ -668,6 +681,34 @@ class Answers(PageTest):
                                 (early * 1.2, "% because the capture of the next pair runs")):
             self.opened(computer(), change)
             self.assertIn(text, self.browser.text("#time h2"))
+
+
+class TwoRuns(PageTest):
+    def test_lead_with_the_change_and_have_the_words_of_one_run(self):
+        a, b = shared_run("plain_computer", *CAMERA_RATES, "--frames", "6"), computer()
+        data = data_of(page_of(a, b))
+        data["runs"][1]["settings"][0]["value"] = "another name"
+        data["difference"]["verdict"] = "in B left_lut waits 123456 cycles a frame more"
+        self.assertEqual(data["runs"][1]["settings"][0]["key"], "name")
+        self.browser.open(with_data(page_of(a, b), data, self.folder / "page.html"))
+        (rate_a, rate_b) = (self.stats(folder)["frames_per_second"]["steady"] for folder in (a, b))
+        head = self.browser.text("h1")
+        self.assertTrue(head.startswith("allocation.left_lut: bank6 → bank0 and 1 more: −"), head)
+        self.assertRegex(head, rf"from {rate_a:,.1f}( ± .*)? to {rate_b:,.1f}( ± .*)? frames/s, steady$")
+        self.assertEqual(self.answer("What was changed?"), "allocation.left_lut: bank6 → bank0name: fpl2003 → another name")
+        self.assertTrue(self.answer("Which is faster, and why?").startswith("in B left_lut waits 123,456 cycles a frame more"))
+        self.assertIn("% for host capture", self.answer("Who waits for whom?"))
+        self.assertIn("host capture", {row["by"] for row in self.browser.table("blame")})
+        self.assertIn(f"Camera frame {data['difference']['camera_frame']} in both.", self.browser.text("#picture .note"))
+
+    def test_within_the_uncertainty_have_no_gain(self):
+        a, b = shared_run("plain_computer", *CAMERA_RATES, "--frames", "6"), computer()
+        data = data_of(page_of(a, b))
+        for run_data, rate in zip(data["runs"], (20, 20.5)):
+            run_data["stats"]["frames_per_second"].update(steady=rate, steady_uncertainty=0.25)
+        self.browser.open(with_data(page_of(a, b), data, self.folder / "page.html"))
+        self.assertEqual(self.browser.text("h1"),
+                         "allocation.left_lut: bank6 → bank0: ≈ 0, from 20.00 ± 0.25 to 20.50 ± 0.25 frames/s, steady")
 
 
 class Names(PageTest):

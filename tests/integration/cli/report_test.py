@@ -1,5 +1,6 @@
 """report: the page's data, and what is refused. The page itself: report_page_test.py."""
 
+import base64
 import json
 import os
 import shutil
@@ -127,6 +128,30 @@ class TwoRuns(ReportTest):
         self.assertEqual(sum(difference["rows"]["cycles"]), self.stats(b)["cycles"] - self.stats(a)["cycles"])
         self.assertEqual(difference["rows"]["parting"]["row"], 0)
         self.assertEqual(difference["pixels"]["pixels"], 0)
+
+    def test_have_the_verdict_of_diff_and_the_last_camera_frame_of_both(self):
+        frames = ["--frames", "6", "--save-frames"]
+        a = self.run_of("a", *CAMERA_RATES, *frames)
+        b = self.run_of("b", *CAMERA_RATES, *SHARED, *frames)
+        data = self.data(a, b)
+        verdict = self.succeeds(run("diff", a, b)).split("\n\n")[-1]
+        self.assertEqual(data["difference"]["verdict"].split(), verdict.split())
+        names_a, names_b = ({path.name for path in (folder / "frames").iterdir()} for folder in (a, b))
+        last = max(names_a & names_b)
+        self.assertNotEqual([last, last], [max(names_a), max(names_b)])
+        self.assertEqual(data["difference"]["camera_frame"], int(last.split(".")[0]))
+        for folder, of_run in zip((a, b), data["runs"]):
+            url = of_run["pictures"]["disparity"].removeprefix("data:image/png;base64,")
+            self.assertEqual(base64.b64decode(url), (folder / "frames" / last).read_bytes())
+
+    def test_divide_the_waits_for_the_host_by_what_it_moves(self):
+        a = self.run_of("a", *CAMERA_RATES, "--frames", "4")
+        b = self.run_of("b", *CAMERA_RATES, *SHARED, "--frames", "4")
+        (_, of_b) = self.data(a, b)["runs"]
+        stalls = [(row["by"], sum(unpacked(row["rows"], 1 + of_b["recording"]["rows"]["lines"])))
+                  for row in of_b["recording"]["stalls"]]
+        self.assertIn("host capture", dict(stalls))
+        self.assertEqual(sum(cycles for _, cycles in stalls), sum(row["cycles"] for row in self.stats(b)["blame"]))
 
     def test_of_different_sizes_have_no_rows(self):
         a = self.run_of("a", *PRELOADED)

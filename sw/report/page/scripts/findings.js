@@ -40,7 +40,7 @@ export const blamesOf = run => run.stats.blame.map(row => ({...row, share: row.c
                                    .sort((a, b) => b.cycles - a.cycles);
 
 // The same, with what the host moved as its name, if all frames were recorded.
-function detailedBlamesOf(run) {
+export function detailedBlamesOf(run) {
   const recorded = linesOf(run);
   if (!recorded || recorded.frames !== run.stats.frame_cycles.length) return blamesOf(run);
   return recorded.stalls.map(

@@ -6,6 +6,8 @@ export const kPsOfMs = 1e9;
 export const fixed = (number, digits) => number.toLocaleString(
     'en-US', {minimumFractionDigits: digits, maximumFractionDigits: digits, useGrouping: 'min2'});
 export const whole = number => fixed(Math.round(number), 0);
+// A text with its counts as numbers of the page.
+export const grouped = text => text.replace(/(?<![\w.])\d{5,}(?![\w.])/g, digits => whole(Number(digits)));
 // What is more than nothing does not look like it: <0.1 %.
 export function percent(share, digits = 1) {
   const least = 10 ** -digits;
