@@ -577,6 +577,28 @@ class Answers(PageTest):
         self.opened(computer(), lambda run: None)
         self.assertRegex(self.answer("Who waits for whom?"), r"left_lut waits in .* % for host capture")
 
+    def test_few_tiles_with_half_of_the_waits_are_named(self):
+        def change(run):
+            recording = run["recording"]
+            recording["tiles"] = {"columns": 10, "rows": 10, "width": 4, "height": 3}
+            recording["stalls"] = recording["stalls"][:1]
+            recording["stalls"][0]["tiles"] = {"list": few * [100 - few] + (100 - few) * [few]}
+
+        for few, text in ((34, "Over all columns; half of all waits are in 34 % of the picture."),
+                          (35, "Over all columns.")):
+            self.opened(core(), change)
+            self.assertIn(text, self.answer("Where in the picture?"))
+
+    def test_each_resource_of_the_fpga_has_its_own_number(self):
+        def change(run):
+            run["area"]["device"].update(block_rams=50, multipliers=200)
+            run["area"]["total"].update(block_rams=10, multipliers=10)
+
+        self.opened(core(), change)
+        uses = self.browser.text("#area .uses")
+        self.assertIn("block RAMs 10 of 50  20.0 %", uses)
+        self.assertIn("multipliers 10 of 200  5.0 %", uses)
+
     def test_the_bound_says_what_it_leaves_out(self):
         def change(run):
             run["stats"]["bound"]["system_limited_by"] = limit

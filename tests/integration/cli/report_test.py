@@ -1,6 +1,7 @@
 """report: the page's data, and what is refused. The page itself: report_page_test.py."""
 
 import base64
+import csv
 import json
 import os
 import shutil
@@ -47,9 +48,10 @@ class Run(ReportTest):
         self.assertEqual(data["memory_chart"], chart.read_text())
 
     def test_holds_where_ports_stall_as_the_repetition_records_it(self):
-        folder = self.run_of("a", *PRELOADED, *SHARED, "--set", "matcher.rows=5", "--frames", "3")
+        folder = self.run_of("a", *PRELOADED, *SHARED, "--set", "matcher.rows=5", "--frames", "3", "--record")
         stats = self.stats(folder)
         recording = self.data(folder)["run"]["recording"]
+        self.assertEqual(recording["frames"], 3)
         lines = recording["rows"]["lines"]
         self.assertEqual((lines, recording["rows"]["height"]), (5, 5))
         values = lambda column: unpacked(column, 1 + lines)
@@ -58,9 +60,16 @@ class Run(ReportTest):
         blame = {(row["port"], row["bank"], row["by"]): row["cycles"] for row in stats["blame"]}
         self.assertEqual({cause: sum(values(each["rows"])) for cause, each in stalls.items()}, blame)
         tiles = recording["tiles"]
-        for each in stalls.values():
-            inside = unpacked(each["tiles"], tiles["columns"] * tiles["rows"])
-            self.assertEqual(sum(inside), sum(values(each["rows"])[1:]))
+        with open(folder / "conflicts.csv", newline="") as file:
+            recorded = [row for row in csv.DictReader(file) if row["first_row"]]
+        for cause, each in stalls.items():
+            expected = [0] * (tiles["columns"] * tiles["rows"])
+            for row in recorded:
+                if (row["port"], row["bank"], row["by"]) == cause:
+                    line, column = int(row["first_row"]) // tiles["height"], int(row["first_column"]) // tiles["width"]
+                    expected[line * tiles["columns"] + column] += int(row["cycles"])
+            self.assertEqual(unpacked(each["tiles"], len(expected)), expected)
+            self.assertEqual(sum(expected), sum(values(each["rows"])[1:]))
         accesses = {bank["name"]: 0 for bank in stats["banks"]}
         for each in recording["rows"]["accesses"]:
             accesses[each["bank"]] += sum(values(each["accesses"]))
