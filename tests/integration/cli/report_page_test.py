@@ -383,16 +383,16 @@ class Rates(PageTest):
                 for rows in (shown, [row for row in drawn if row["front"] == "1"])]
 
     def test_within_the_uncertainty_tie_and_the_cheapest_is_named(self):
-        slow, tie, best = (5000, 3, 20, 0.1), (14000, 8, 30, 0.002), (22500, 8, 30.003, 0.002)
-        cheap, worse = (14000, 7, 30.0015, 0), (14000, 4, 29.99, 0.0001)
-        self.open(slow, tie, best, cheap, worse)
-        self.assertEqual(self.browser.text("h1"), "5 points: at most 30.00 frames/s, steady")
+        slow, best, worse = (5000, 3, 20, 0.1), (22500, 8, 30.003, 0.002), (14000, 4, 29.99, 0.0001)
+        same, twin, cheap = (14000, 8, 30, 0.002), (14000, 8, 30.0012, 0), (14100, 7, 30.0012, 0)
+        self.open(slow, best, worse, same, twin, cheap, (14200, 7, 30.0025, 0.002))
+        self.assertEqual(self.browser.text("h1"), "7 points: at most 30.00 frames/s, steady")
         fastest = self.answer("Which is the fastest?")
         self.assertTrue(fastest.startswith("30.00 frames/s, steady: "), fastest)
         self.assertIn("left_image [bank1, bank2, bank3, bank4, bank5, bank6].", fastest)
-        self.assertIn("3 points tie within the uncertainty of their rates. This is the cheapest: 7 banks, 14,000 slices.",
+        self.assertIn("5 points tie within the uncertainty of their rates. This is the cheapest: 7 banks, 14,100 slices.",
                       fastest)
-        front = sorted((slices, rate) for slices, _, rate, _ in (slow, tie, cheap))
+        front = sorted((slices, rate) for slices, _, rate, _ in (slow, same, twin))
         for axes in (("area.slices:min", "frames_per_second.steady:max"),
                      ("frames_per_second.steady:max", "area.slices:min")):
             self.assertEqual(self.fronts(*axes), [front, front])
