@@ -3,7 +3,7 @@ import {addBrush} from './brush.js';
 import {addChart, canvasOf, drawing, legend} from './chart.js';
 import {h, s} from './dom.js';
 import {count, value, whole} from './format.js';
-import {kRates} from './points.js';
+import {kRateColumns} from './points.js';
 import {axisBelow, axisLeft} from './scale.js';
 import {coloursOf, kMostColours, scaleOf, stepsOf} from './scatter_parts.js';
 import {styleColour} from './theme.js';
@@ -20,7 +20,7 @@ const kReach = 14;  // pixels from the pointer to the point that it means
 export function addScatter(page, points, {choose}) {
   const numeric = points.names.filter(name => points.isNumeric(name));
   const y = {
-    name: [...kRates.keys()].find(name => points.figures.includes(name)) ?? numeric[0],
+    name: kRateColumns.find(name => points.figures.includes(name)) ?? numeric[0],
     best: 'max',
     log: false
   };

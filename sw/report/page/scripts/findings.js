@@ -1,6 +1,6 @@
 // What a run shows, in plain words: what limits, who waits for whom, where, what to change first, its price.
 import {adviceOf, limitReached, priceText, stepText} from './advice.js';
-import {capital, count, fixed, gainText, percent, rate, rateWith, sum, whole} from './format.js';
+import {capital, count, fixed, gainText, kRates, percent, rate, rateWith, sum, whole} from './format.js';
 import {linesOf, rowsText, tilesOf} from './recording.js';
 
 const kLeastShare = 0.0005;  // of all cycles that a port waits, to be named
@@ -9,14 +9,17 @@ const kMostCauses = 3;       // of a port that are named
 
 export const settingOf = (run, key) => run.settings.find(setting => setting.key === key)?.value;
 
+// The first kind of rate that all these runs have: [name in stats.json, kind].
+export const kindOfRate = (...runs) =>
+    kRates.find(([name]) => runs.every(run => run.stats.frames_per_second[name] !== undefined));
+
 // The rate of a run, what kind of rate it is, and its bound.
 export function rateOf(run) {
   const {frames_per_second: rates, bound} = run.stats;
   const computer = rates.system !== undefined;
   const limit = computer ? bound.system : bound.core;
-  const steady = rates.steady !== undefined;
-  const now = rates.steady ?? rates.system ?? rates.core;
-  const kind = steady ? 'steady' : computer ? 'from power-up' : 'core only';
+  const [name, kind] = kindOfRate(run);
+  const now = rates[name];
   const by = computer ? bound.system_limited_by : bound.core_limited_by;
   const text = rateWith(now, rates.steady_uncertainty);
   return {now, text, kind, limit, by, computer, share: now / limit};
@@ -78,10 +81,10 @@ export function waitText({port, share, causes}) {
 const lostPixels = run => sum((run.stats.cameras ?? []).map(camera => camera.dropped_pixels));
 
 function whatLimits(run) {
-  const {by, limit, share, text, kind: kindOfRate, computer} = rateOf(run);
+  const {by, limit, share, text, kind: rateKind, computer} = rateOf(run);
   const [kind, name] = by.split(' ');
   const reached =
-      `The run reaches ${percent(share)} of the bound of ${rate(limit)} frames/s: ${text}, ${kindOfRate}`;
+      `The run reaches ${percent(share)} of the bound of ${rate(limit)} frames/s: ${text}, ${rateKind}`;
   const because = {
     bank: () => {
       const bank = run.banks.find(each => each.name === name);

@@ -15,6 +15,8 @@ export function percent(share, digits = 1) {
   return `${isLess ? `<${fixed(least, digits)}` : fixed(100 * share, digits)} %`;
 }
 export const rate = number => fixed(number, number < 100 ? 2 : 1);
+// The kinds of rates by their names in stats.json, the one to speak of first.
+export const kRates = [['steady', 'steady'], ['system', 'from power-up'], ['core', 'core only']];
 // With what a finite run leaves open, if that can be seen.
 export const rateWith = (number, uncertainty = 0) =>
     rate(number) + (uncertainty < 0.005 ? '' : ` ± ${rate(uncertainty)}`);

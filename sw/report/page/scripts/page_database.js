@@ -6,9 +6,9 @@ import {addScatter} from './chart_scatter.js';
 import {addFilters, addTable} from './database_table.js';
 import {h} from './dom.js';
 import {resourceText} from './findings.js';
-import {capital, count, fixed, rateWith, value, whole} from './format.js';
+import {capital, count, fixed, kRates, rateWith, value, whole} from './format.js';
 import {addAnswers, addGroup, addHead} from './page_parts.js';
-import {kRates, Points} from './points.js';
+import {kRateColumns, Points} from './points.js';
 import {Boards} from './table.js';
 
 
@@ -17,13 +17,13 @@ export function showDatabase(page, {database}) {
   const boards = new Boards(database.boards, points.size);
   const hasNumbers = name =>
       points.table.has(name) && points.column(name).some(each => typeof each === 'number');
-  const rateName = [...kRates.keys()].find(hasNumbers) ?? points.figures[0];
+  const rateName = kRateColumns.find(hasNumbers) ?? points.figures[0];
+  const kind = kRates[kRateColumns.indexOf(rateName)];
   const {best, ties} = points.fastest(rateName);
   const [named] = ties;
   const rateText = row => {
     const [amount, open] = [points.column(rateName)[row], points.uncertainty(rateName)[row]];
-    return kRates.has(rateName) ? `${rateWith(amount, open)} frames/s, ${kRates.get(rateName)}` :
-                                  `${fixed(amount, 2)} ${rateName}`;
+    return kind ? `${rateWith(amount, open)} frames/s, ${kind[1]}` : `${fixed(amount, 2)} ${rateName}`;
   };
   const keysOf = row => points.keys.map(key => `${key} ${value(points.column(key)[row])}`).join(', ');
   const statuses = points.table.has('status') ? points.column('status') : [];

@@ -8,9 +8,8 @@ import {addFrames} from './chart_frames.js';
 import {addMemoryOfTwo} from './chart_memory.js';
 import {addPicture} from './chart_picture.js';
 import {addPortStates} from './chart_states.js';
-import {rateOf, resourceText, settingOf, waitsOf, waitText} from './findings.js';
+import {kindOfRate, rateOf, resourceText, settingOf, waitsOf, waitText} from './findings.js';
 import {addAnswers, addGroup, addHead} from './page_parts.js';
-import {kRates} from './points.js';
 import {axisBelow, axisLeft, linear} from './scale.js';
 import {namedColour} from './theme.js';
 import {mark} from './tooltip.js';
@@ -138,9 +137,7 @@ function pixelText({pixels, no_pixels: reason}) {
 // What was changed, and what it does to the rate that both runs have.
 function headlineOfTwo(a, b, settings) {
   const [ratesA, ratesB] = [a, b].map(run => run.stats.frames_per_second);
-  const [name, kind] = [...kRates]
-                           .map(([column, kind]) => [column.split('.')[1], kind])
-                           .find(([name]) => name in ratesA && name in ratesB);
+  const [name, kind] = kindOfRate(a, b);
   const [before, after] = [ratesA[name], ratesB[name]];
   const [openA, openB] = [ratesA, ratesB].map(rates => rates[`${name}_uncertainty`] ?? 0);
   const isTie = Math.abs(after - before) <= openA + openB;

@@ -1,16 +1,12 @@
 // The points of a database: their columns, which of them are selected, and the front of Pareto.
-import {value} from './format.js';
+import {kRates, value} from './format.js';
 import {Table} from './table.js';
 
-// The rates by their columns, the one to speak of first.
-export const kRates = new Map([
-  ['frames_per_second.steady', 'steady'], ['frames_per_second.system', 'from power-up'],
-  ['frames_per_second.core', 'core only']
-]);
+export const kRateColumns = kRates.map(([name]) => `frames_per_second.${name}`);
 
 // Rates and prices first, then keys, then the other figures.
 const kFirst = [
-  ...kRates.keys(), 'bound.system', 'bound.core', 'area.slices', 'area.block_rams', 'area.multipliers',
+  ...kRateColumns, 'bound.system', 'bound.core', 'area.slices', 'area.block_rams', 'area.multipliers',
   'latency_ms.capture_to_host.p50'
 ];
 
