@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "platform/config/board_yaml.h"
-#include "sw/cli/diff_verdict.h"
 #include "sw/cli/text.h"
 #include "sw/explore/plan/figures.h"
+#include "sw/report/diff_verdict.h"
 #include "sw/report/difference_tables.h"
 
 namespace stereotlm::cli {
@@ -128,8 +128,8 @@ std::string diff_text(const runs::RecordedRun& run_a, const runs::RecordedRun& r
                                  ? report::pixels_line(aligned.pixels())
                                  : fmt::format("disparities: not compared: {}\n", limits.pixels);
   const std::string verdict =
-      diff_verdict({a.document, run_a.board.fpga.clock_mhz}, {b.document, run_b.board.fpga.clock_mhz},
-                   limits.pixels.empty() ? &aligned.pixels() : nullptr);
+      report::diff_verdict({a.document, run_a.board.fpga.clock_mhz}, {b.document, run_b.board.fpga.clock_mhz},
+                           limits.pixels.empty() ? &aligned.pixels() : nullptr);
   return in_sections({fmt::format("A: {}\nB: {}\n", run_a.folder, run_b.folder), settings, figures, pixels,
                       paragraph("", 0, verdict)});
 }

@@ -108,11 +108,16 @@ std::optional<Json> data_of_two_runs(const ReportOptions& options, process::Prob
   problems.check();
   process::catch_interrupts();
   const runs::DiffLimits limits(*a, *b);
-  runs::FrameAlignment aligned(*a, *b, limits, nullptr);
+  report::ComparedRun of_a(*a, input_a.tables);
+  report::ComparedRun of_b(*b, input_b.tables);
+  const auto record = [](report::ComparedRun& run) -> runs::Rerun::Record {
+    return [&run](const std::string& name, const std::string& text) { run.record(name, text); };
+  };
+  runs::FrameAlignment aligned(*a, *b, limits, nullptr, record(of_a), record(of_b));
   if (!aligned.run()) return std::nullopt;
-  return Json{{"kind", "two_runs"},
-              {"runs", {report::run_data(*a, input_a.tables), report::run_data(*b, input_b.tables)}},
-              {"difference", report::difference_data(a->board.image, aligned, limits)}};
+  Json data = {{"kind", "two_runs"}};
+  data.update(report::two_runs_data(of_a, of_b, aligned, limits));
+  return data;
 }
 
 std::optional<Json> data_of(const ReportOptions& options, process::Problems& problems) {

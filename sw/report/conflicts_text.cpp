@@ -26,7 +26,7 @@ double percent_of(std::uint64_t part, std::uint64_t whole) {
   return whole == 0 ? 0 : 100 * static_cast<double>(part) / static_cast<double>(whole);
 }
 
-// The shortest run of neighbours that has kMost of all: [first, end).
+// The first of the shortest runs of neighbours that have kMost of all: [first, end).
 std::pair<std::size_t, std::size_t> shortest_run(const std::vector<std::uint64_t>& values) {
   const double wanted = kMost * static_cast<double>(sum_of(values));
   std::pair<std::size_t, std::size_t> best = {0, values.size()};
@@ -37,15 +37,6 @@ std::pair<std::size_t, std::size_t> shortest_run(const std::vector<std::uint64_t
     if (end - first < best.second - best.first) best = {first, end};
   }
   return best;
-}
-
-// The shortest range of rows or columns that has kMost of the values; nullopt if that is most of them.
-// `length`: rows or columns of a value; `whole`: those of the picture.
-std::optional<Range> place_of(const std::vector<std::uint64_t>& values, std::size_t length, int whole) {
-  const auto [first, end] = shortest_run(values);
-  if (static_cast<double>(end - first) >= 0.75 * static_cast<double>(values.size())) return std::nullopt;
-  return Range{static_cast<int>(first * length),
-               static_cast<int>(std::min(end * length, static_cast<std::size_t>(whole))) - 1};
 }
 
 ConflictSummary::Wait wait_of(const platform::BoardConfig& board, const fpga::TileGrid& grid,
@@ -161,6 +152,13 @@ nlohmann::ordered_json json_of(const ConflictSummary::Band& band, const std::vec
 }
 
 }  // namespace
+
+std::optional<Range> place_of(const std::vector<std::uint64_t>& values, std::size_t length, int whole) {
+  const auto [first, end] = shortest_run(values);
+  if (static_cast<double>(end - first) >= 0.75 * static_cast<double>(values.size())) return std::nullopt;
+  return Range{static_cast<int>(first * length),
+               static_cast<int>(std::min(end * length, static_cast<std::size_t>(whole))) - 1};
+}
 
 void StripSums::add(const fpga::FrameConflicts& frame) {
   if (sums_.strips.empty()) {

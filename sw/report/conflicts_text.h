@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -27,11 +28,14 @@ struct Range {
   int last = 0;
 };
 
+// The first of the shortest ranges of rows or columns that have 80 % of the values; nullopt if that is most of
+// them. `length`: rows or columns of a value; `whole`: those of the picture.
+std::optional<Range> place_of(const std::vector<std::uint64_t>& values, std::size_t length, int whole);
+
 // What `conflicts` says of a run: who waits where for whom, and where in the picture; how busy the banks are
 // from top to bottom.
 struct ConflictSummary {
-  // A port that waits at a bank. The ranges are the shortest that have kMost of the cycles; nullopt: that is
-  // most of the picture.
+  // A port that waits at a bank. The ranges are those of place_of() its cycles.
   struct Wait {
     std::string port;
     std::string bank;

@@ -28,8 +28,12 @@ DiffLimits::DiffLimits(const RecordedRun& a, const RecordedRun& b) {
 }
 
 FrameAlignment::FrameAlignment(const RecordedRun& a, const RecordedRun& b, const DiffLimits& limits,
-                               report::RowsCsv* csv)
-    : limits_(limits), csv_(csv), frames_(std::max(a.options.frames, b.options.frames)), a_(a), b_(b) {}
+                               report::RowsCsv* csv, Rerun::Record record_a, Rerun::Record record_b)
+    : limits_(limits),
+      csv_(csv),
+      frames_(std::max(a.options.frames, b.options.frames)),
+      a_(a, std::move(record_a)),
+      b_(b, std::move(record_b)) {}
 
 bool FrameAlignment::run() {
   bool goes_on = read(a_) && read(b_);
@@ -38,8 +42,10 @@ bool FrameAlignment::run() {
   while (goes_on && (a_.ahead || b_.ahead)) {
     const bool takes_a = a_.ahead && (!b_.ahead || a_.ahead->number <= b_.ahead->number);
     const bool takes_b = b_.ahead && (!a_.ahead || b_.ahead->number <= a_.ahead->number);
-    if (takes_a && takes_b && limits_.pixels.empty())
+    if (takes_a && takes_b && limits_.pixels.empty()) {
       pixels_.add(a_.ahead->number, a_.ahead->disparity, b_.ahead->disparity);
+      last_common_ = {a_.ahead->number, std::move(a_.ahead->disparity), std::move(b_.ahead->disparity)};
+    }
     goes_on = (!takes_a || advance(a_, b_)) && (!takes_b || advance(b_, a_));
     compare_rows();
   }

@@ -4,6 +4,7 @@
 #include <deque>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "models/fpga/row_profile.h"
 #include "sw/report/pixel_comparison.h"
@@ -28,8 +29,10 @@ struct DiffLimits {
 // core, and the disparities of frames that show the same camera frame.
 class FrameAlignment {
  public:
-  // Starts both runs. All arguments outlive the object. `csv`: gets the compared rows; may be null.
-  FrameAlignment(const RecordedRun& a, const RecordedRun& b, const DiffLimits& limits, report::RowsCsv* csv);
+  // Starts both runs. All arguments outlive the object. `csv`: gets the compared rows; may be null. `record_a`
+  // and `record_b`: what Rerun hands to a record; may be null.
+  FrameAlignment(const RecordedRun& a, const RecordedRun& b, const DiffLimits& limits, report::RowsCsv* csv,
+                 Rerun::Record record_a = nullptr, Rerun::Record record_b = nullptr);
 
   // Returns true when both runs have ended, and false at the first interrupt. Throws what Rerun::next()
   // throws.
@@ -38,10 +41,18 @@ class FrameAlignment {
   const report::RowComparison& rows() const { return rows_; }
   const report::PixelComparison& pixels() const { return pixels_; }
 
+  // The last camera frame that both runs computed, and its disparities.
+  struct CommonFrame {
+    std::uint64_t number = 0;
+    kernels::GrayImage a;
+    kernels::GrayImage b;
+  };
+  const std::optional<CommonFrame>& last_common() const { return last_common_; }
+
  private:
   // One of the two runs, and the frames of it that are still to be compared.
   struct Side {
-    explicit Side(const RecordedRun& run) : rerun(run) {}
+    Side(const RecordedRun& run, Rerun::Record record) : rerun(run, std::move(record)) {}
 
     Rerun rerun;
     std::optional<Rerun::Frame> ahead;  // next frame of the run; nullopt after the last
@@ -57,6 +68,7 @@ class FrameAlignment {
   std::uint64_t frames_;  // frames of the longer run
   report::RowComparison rows_;
   report::PixelComparison pixels_;
+  std::optional<CommonFrame> last_common_;
   Side a_;
   Side b_;
   ProgressLine progress_;

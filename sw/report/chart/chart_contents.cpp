@@ -36,7 +36,11 @@ BankLines bank_lines(const BoardConfig& board, const platform::BankConfig& bank,
     if (buffer.bank != bank.name) continue;
     const std::uint64_t words = platform::buffer_words(buffer, board.image);
     const bool is_joint = board.fpga.joint_tables && buffer.buffer == platform::Buffer::kLeftLut;
-    lines.buffers.push_back({is_joint ? "left_lut, right_lut" : buffer.label(), words});
+    const auto port =
+        std::find_if(fpga::kPorts.begin(), fpga::kPorts.end(), [&buffer](const fpga::CorePort& each) {
+          return std::string(platform::name_of(buffer.buffer)) == each.buffer;
+        });
+    lines.buffers.push_back({is_joint ? "left_lut, right_lut" : buffer.label(), port->name, words});
     used += words;
   }
   const memory::BankTraits& traits = memory::traits_of(bank.kind);
@@ -45,6 +49,7 @@ BankLines bank_lines(const BoardConfig& board, const platform::BankConfig& bank,
   if (traits.has_turnaround) lines.kind += fmt::format(", {} lost", bank.turnaround_cycles);
   lines.bandwidth = short_number(4 * traits.ports * board.fpga.clock_mhz) + " MB/s";
   if (traffic == nullptr) return lines;
+  lines.busy_percent = traffic->busy_percent.at("bank-" + bank.name);
   double sum = 0;
   for (const ChartLink& link : chart_links(board, traffic->extent)) {
     if (link.to == "bank-" + bank.name) sum += traffic->megabytes_per_second.at(link.id());
@@ -181,7 +186,9 @@ ChartLines subtitle_lines(const BoardConfig& board, ChartExtent extent, const Ch
 
 ChartLines legend_lines(ChartExtent extent, const ChartTraffic* traffic) {
   if (traffic == nullptr) return {"Numbers at the links: peak MB/s (million bytes/s)"};
-  ChartLines lines = {"Links: MB/s (million bytes/s), width by MB/s,", "colour by % of the link's peak:"};
+  ChartLines lines = {"Links: MB/s (million bytes/s), width by MB/s",
+                      "Bars of a bank: % of cycles busy; words of buffers",
+                      "Colour: % of the peak of a link, % busy of a bank"};
   lines.emplace_back("No number: nothing was moved");
   lines.emplace_back("Thick outline: sets the bound of the frame rate");
   lines.emplace_back(extent == ChartExtent::kBoard ? "While the core works on a frame"

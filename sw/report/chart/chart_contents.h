@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,15 +13,17 @@ namespace stereotlm::report {
 using ChartLines = std::vector<std::string>;
 
 struct BankLines {
-  std::string bandwidth;  // beside the name: "160 MB/s"; of a run "159.0 of 160 MB/s"
-  std::string size;       // "76,800 of 512K words"
-  std::string kind;       // "zbt_pipelined", "sync_burst, 2 lost"
+  std::string bandwidth;               // beside the name: "160 MB/s"; of a run "159.0 of 160 MB/s"
+  std::string size;                    // "76,800 of 512K words"
+  std::string kind;                    // "zbt_pipelined", "sync_burst, 2 lost"
+  std::optional<double> busy_percent;  // of a run
   struct Held {
     std::string label;  // "left_image[0]"
+    std::string port;   // that accesses it
     std::uint64_t words = 0;
   };
-  std::vector<Held> buffers;
-  std::uint64_t words = 0;  // of the bank
+  std::vector<Held> buffers;  // those of one port follow each other
+  std::uint64_t words = 0;    // of the bank
 };
 BankLines bank_lines(const platform::BoardConfig& board, const platform::BankConfig& bank,
                      const ChartTraffic* traffic);

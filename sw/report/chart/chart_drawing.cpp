@@ -11,10 +11,10 @@ constexpr std::array<double, kLoadSteps - 1> kStepPercents = {1, 25, 50, 90};  /
 
 }  // namespace
 
-int load_step(double megabytes_per_second, double peak) {
+int load_step(double load, double peak) {
   int step = 0;
   for (const double percent : kStepPercents) {
-    if (100 * megabytes_per_second >= percent * peak) ++step;
+    if (100 * load >= percent * peak) ++step;
   }
   return step;
 }

@@ -46,6 +46,12 @@ struct WordsBar {
   std::vector<ChartBox> buffers;
 };
 
+// In how many of the cycles a bank is busy, as a bar. The bank has its colour.
+struct BusyBar {
+  ChartBox all;
+  double percent = 0;
+};
+
 struct ChartBlock {
   std::string id;
   BlockKind kind = BlockKind::kLogic;
@@ -54,11 +60,12 @@ struct ChartBlock {
   std::string title;  // the whole name and all figures, for a tooltip
   bool limits = false;
   std::optional<WordsBar> words;
+  std::optional<BusyBar> busy;  // of a run
 };
 
-// How much of its peak a link carries, in five steps.
+// How much of its peak a link carries, and how busy a bank is, in five steps.
 inline constexpr int kLoadSteps = 5;
-int load_step(double megabytes_per_second, double peak);
+int load_step(double load, double peak);
 std::string load_text(int step);  // "below 1", "from 25": % of the peak
 
 struct ChartEdge {

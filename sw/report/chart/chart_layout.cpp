@@ -28,7 +28,8 @@ constexpr double kShortEdge = 36;  // length of an edge between blocks that stan
 
 constexpr double kBankWidth = 256;
 constexpr double kBetweenBanks = 10;
-constexpr double kWordsBar = 6;
+constexpr double kWordsBar = 6;  // heights of the bars
+constexpr double kBusyBar = 8;
 constexpr double kLabelFromBank = 18;
 constexpr double kTracksFromBank = 70;
 
@@ -122,6 +123,8 @@ class Layout {
   struct Bank {
     BankLines lines;
     std::vector<std::size_t> edges;  // from top to bottom
+    std::vector<double> ends;        // where they leave the bank, below its top
+    std::vector<double> rows;        // tops of the buffers' lines, below its top
     ChartBox box;                    // x is kMargin
   };
   struct Port {
@@ -169,24 +172,41 @@ class Layout {
     return edge.width + kAboveLabel + (edge.label.text.empty() ? 0 : kLabelHeight);
   }
 
+  // A link leaves a bank at the buffers that it carries, that of the host, which carries all, at its name. The
+  // lines of the buffers are as far apart as the links need.
   void measure_banks() {
     for (const platform::BankConfig& config : board_.banks) {
       Bank bank;
       bank.lines = bank_lines(board_, config, traffic_);
-      double slots = 0;
-      for (const std::string& port : ports_) {
-        for (std::size_t i = 0; i < chart_.edges.size(); ++i) {
-          const ChartLink& link = chart_.edges[i].link;
-          if (link.from != "port-" + port || link.to != "bank-" + config.name) continue;
-          bank.edges.push_back(i);
-          slots += slot_of(chart_.edges[i]);
-        }
+      if (is_computer()) leave(bank, config.name, "host", kPadding + kNameStep / 2);
+      double y = kPadding + kNameStep + (traffic_ == nullptr ? 0 : kNoteStep) + kNoteStep + kWordsBar + 4;
+      const std::vector<BankLines::Held>& buffers = bank.lines.buffers;
+      for (auto first = buffers.begin(); first != buffers.end();) {
+        const auto end = std::find_if(
+            first, buffers.end(), [&first](const BankLines::Held& held) { return held.port != first->port; });
+        const double half = kNoteStep * static_cast<double>(end - first) / 2;
+        y = leave(bank, config.name, first->port, y + half) - half;
+        for (; first != end; ++first, y += kNoteStep) bank.rows.push_back(y);
       }
-      const double rows = static_cast<double>(std::max<std::size_t>(bank.lines.buffers.size(), 1));
-      const double text = 2 * kPadding + kNameStep + kNoteStep + kWordsBar + 4 + kNoteStep * rows;
-      bank.box = {kMargin, 0, kBankWidth, std::max(text, slots + 4)};
+      bank.box = {kMargin, 0, kBankWidth, y + (buffers.empty() ? kNoteStep : 0) + kPadding};
       banks_.push_back(std::move(bank));
     }
+  }
+
+  // Lets the link of the port leave the bank, at `y` below its top or as far below as the link above needs.
+  // Returns where.
+  double leave(Bank& bank, const std::string& name, const std::string& port, double y) {
+    const auto found = std::find_if(chart_.edges.begin(), chart_.edges.end(), [&](const ChartEdge& each) {
+      return each.link.from == "port-" + port && each.link.to == "bank-" + name;
+    });
+    if (found == chart_.edges.end()) return y;
+    if (!bank.ends.empty()) {
+      const double above = chart_.edges[bank.edges.back()].width / 2;
+      y = std::max(y, bank.ends.back() + above + slot_of(*found) - found->width / 2);
+    }
+    bank.edges.push_back(static_cast<std::size_t>(found - chart_.edges.begin()));
+    bank.ends.push_back(y);
+    return y;
   }
 
   void measure_ports() {
@@ -257,13 +277,7 @@ class Layout {
   void route() {
     std::map<std::size_t, double> bank_y;  // by edge
     for (const Bank& bank : banks_) {
-      double slots = 0;
-      for (const std::size_t i : bank.edges) slots += slot_of(chart_.edges[i]);
-      double y = bank.box.middle_y() - slots / 2;
-      for (const std::size_t i : bank.edges) {
-        y += slot_of(chart_.edges[i]);
-        bank_y[i] = y - chart_.edges[i].width / 2;
-      }
+      for (std::size_t i = 0; i < bank.edges.size(); ++i) bank_y[bank.edges[i]] = bank.box.y + bank.ends[i];
     }
     std::vector<ChannelNet> nets;
     for (const std::string& name : ports_) {
@@ -325,6 +339,15 @@ class Layout {
         text_at(name, left, y, ChartAnchor::kStart, right - left - rate.box.width - 8, kNameSize, true));
     block.texts.push_back(rate);
     y += kNameStep;
+    if (bank.lines.busy_percent) {
+      const double percent = *bank.lines.busy_percent;
+      const ChartText busy =
+          text_at(fmt::format("busy {} %", measured(percent)), left, y, ChartAnchor::kStart, 90);
+      block.texts.push_back(busy);
+      block.busy = {{left + 90, busy.box.middle_y() - kBusyBar / 2, right - left - 90, kBusyBar}, percent};
+      block.title += "\n" + busy.text + " of the cycles";
+      y += kNoteStep;
+    }
     const ChartText size = text_at(bank.lines.size, left, y, ChartAnchor::kStart, right - left);
     block.texts.push_back(size);
     block.texts.push_back(
@@ -334,7 +357,9 @@ class Layout {
     bar.all = {left, y, right - left, kWordsBar};
     double x = left;
     y += kWordsBar + 2;
-    for (const BankLines::Held& held : bank.lines.buffers) {
+    for (std::size_t i = 0; i < bank.rows.size(); ++i) {
+      const BankLines::Held& held = bank.lines.buffers[i];
+      y = bank.box.y + bank.rows[i];
       const double width =
           bar.all.width * static_cast<double>(held.words) / static_cast<double>(bank.lines.words);
       bar.buffers.push_back({x, bar.all.y, width, kWordsBar});
@@ -345,7 +370,6 @@ class Layout {
       label.faint = false;
       block.texts.push_back(label);
       block.texts.push_back(text_at(words, right, y, ChartAnchor::kEnd, 66));
-      y += kNoteStep;
     }
     if (bank.lines.buffers.empty())
       block.texts.push_back(text_at("no buffer", left, y, ChartAnchor::kStart, 100));
@@ -506,7 +530,7 @@ class Layout {
     for (const std::string& line : legend_lines(extent_, traffic_)) {
       chart_.texts.push_back(text_at(line, legend_.x, y, ChartAnchor::kStart, legend_.width));
       y += kNoteStep;
-      if (line.find("colour") == std::string::npos) continue;
+      if (line.find("Colour") == std::string::npos) continue;
       y += 2;
       constexpr double kSwatch = 56;
       for (int step = 0; step < kLoadSteps; ++step) {

@@ -20,10 +20,10 @@ struct Color {
 constexpr std::array kColors = {
     Color{"page", "#ffffff", "#0d1117"},     Color{"ink", "#1f2328", "#e6edf3"},
     Color{"faint", "#59636e", "#9aa4af"},    Color{"line", "#59636e", "#9aa4af"},
-    Color{"frame", "#afb8c1", "#4a535e"},    Color{"memory", "#fff1d6", "#3a2d18"},
+    Color{"frame", "#afb8c1", "#4a535e"},    Color{"memory", "#f1ebfb", "#2c2440"},
     Color{"logic", "#ddf4ff", "#12324f"},    Color{"bus", "#e6eaef", "#2b323b"},
     Color{"computer", "#dafbe1", "#173d24"}, Color{"free", "#ffffff", "#0d1117"},
-    Color{"used", "#d9a03f", "#c08a35"},     Color{"load0", "#b3bcc5", "#59636e"},
+    Color{"used", "#8b96a1", "#7d8792"},     Color{"load0", "#b3bcc5", "#59636e"},
     Color{"load1", "#86b6dd", "#3d74a8"},    Color{"load2", "#2f7fc1", "#5aa5e6"},
     Color{"load3", "#e08a1e", "#e8a33d"},    Color{"load4", "#c4302b", "#ff6b5e"},
 };
@@ -184,7 +184,18 @@ std::string block_element(const ChartBlock& block) {
       fmt::format("<g id=\"{}\" class=\"block{}\">\n", xml_text(block.id), block.limits ? " limits" : "");
   text += title_element(block.title);
   text += rect(block.box, 4,
-               paint(kFills[static_cast<std::size_t>(block.kind)], block.limits ? "ink" : "line") + outline);
+               paint(block.busy ? "free" : kFills[static_cast<std::size_t>(block.kind)],
+                     block.limits ? "ink" : "line") +
+                   outline);
+  if (block.busy) {
+    const BusyBar& busy = *block.busy;
+    const std::string load = fmt::format("load{}", load_step(busy.percent, 100));
+    text += rect(block.box, 4, paint(load, "") + " fill-opacity=\"0.2\"");
+    text += rect(busy.all, 2, paint("free", ""));
+    text += rect({busy.all.x, busy.all.y, busy.all.width * busy.percent / 100, busy.all.height}, 2,
+                 paint(load, ""));
+    text += rect(busy.all, 2, paint("none", "line") + " stroke-width=\"0.75\"");
+  }
   if (block.words) {
     text += rect(block.words->all, 2, paint("free", ""));
     for (const ChartBox& buffer : block.words->buffers) text += rect(buffer, 0, paint("used", "memory"));

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "models/fpga/core_ports.h"
+#include "sw/report/diff_verdict.h"
+#include "sw/report/page_data/run_data.h"
 
 namespace stereotlm::report {
 namespace {
@@ -51,13 +53,24 @@ Json pixels_data(const PixelComparison& pixels) {
   return data;
 }
 
-}  // namespace
+Json run_data_of(const ComparedRun& compared) {
+  Json data = run_data(compared.run, compared.tables);
+  Json waits = compared.waits.json();
+  waits.erase("tiles");
+  for (Json& stalls : waits["stalls"]) stalls.erase("tiles");
+  data["recording"] = std::move(waits);
+  return data;
+}
 
-Json difference_data(const platform::ImageConfig& image, const runs::FrameAlignment& aligned,
+Json difference_data(const ComparedRun& a, const ComparedRun& b, const runs::FrameAlignment& aligned,
                      const runs::DiffLimits& limits) {
-  Json data = Json::object();
+  const Json stats_a = Json::parse(a.run.stats_json);
+  const Json stats_b = Json::parse(b.run.stats_json);
+  Json data = {
+      {"verdict", diff_verdict({stats_a, a.run.board.fpga.clock_mhz}, {stats_b, b.run.board.fpga.clock_mhz},
+                               limits.pixels.empty() ? &aligned.pixels() : nullptr)}};
   if (limits.rows.empty()) {
-    data["rows"] = rows_data(aligned.rows(), static_cast<std::size_t>(image.height));
+    data["rows"] = rows_data(aligned.rows(), static_cast<std::size_t>(a.run.board.image.height));
   } else {
     data["no_rows"] = limits.rows;
   }
@@ -65,6 +78,25 @@ Json difference_data(const platform::ImageConfig& image, const runs::FrameAlignm
     data["pixels"] = pixels_data(aligned.pixels());
   } else {
     data["no_pixels"] = limits.pixels;
+  }
+  return data;
+}
+
+}  // namespace
+
+void ComparedRun::record(const std::string& name, std::string_view text) {
+  if (name == "rows.csv") waits.add_rows(text);
+  if (name == "conflicts.csv") waits.add_tiles(text);
+}
+
+Json two_runs_data(const ComparedRun& a, const ComparedRun& b, const runs::FrameAlignment& aligned,
+                   const runs::DiffLimits& limits) {
+  Json data = {{"runs", {run_data_of(a), run_data_of(b)}},
+               {"difference", difference_data(a, b, aligned, limits)}};
+  if (const auto& common = aligned.last_common()) {
+    data["runs"][0]["pictures"]["disparity"] = picture_url(common->a);
+    data["runs"][1]["pictures"]["disparity"] = picture_url(common->b);
+    data["difference"]["camera_frame"] = common->number;
   }
   return data;
 }

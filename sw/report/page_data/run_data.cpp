@@ -250,6 +250,11 @@ void add_prices(const BoardConfig& board, const runs::Explanation::BusiestBank& 
 
 }  // namespace
 
+std::string picture_url(const kernels::GrayImage& picture) {
+  const std::vector<std::uint8_t> png = runs::media_functions().encode_png_gray(picture);
+  return png_url(std::string(png.begin(), png.end()));
+}
+
 Json run_data(const runs::RecordedRun& run, const platform::Tables& tables) {
   const BoardConfig& board = run.board;
   const ChartTraffic traffic = traffic_of(run);
@@ -295,8 +300,7 @@ bool add_repetition(const runs::RecordedRun& run, runs::RunInput& input, Json& d
   if (run.options.timing_only) return true;
   kernels::GrayImage left = input.pairs->pair(last).left;
   if (input.tables.left) left = kernels::rectify(left, *input.tables.left);
-  const std::vector<std::uint8_t> png = runs::media_functions().encode_png_gray(left);
-  data["pictures"]["left"] = png_url(std::string(png.begin(), png.end()));
+  data["pictures"]["left"] = picture_url(left);
   return true;
 }
 

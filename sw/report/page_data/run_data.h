@@ -2,7 +2,9 @@
 
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string>
 
+#include "models/kernels/gray_image.h"
 #include "platform/config/tables.h"
 #include "sw/runs/explanation.h"
 #include "sw/runs/recorded_run.h"
@@ -11,6 +13,9 @@
 namespace stereotlm::report {
 
 // Parts of a page's data (sw/report/page/README.md).
+
+// The URL of a picture.
+std::string picture_url(const kernels::GrayImage& picture);
 
 // A recorded run: what its folder holds, and what follows from its board without a simulation.
 nlohmann::ordered_json run_data(const runs::RecordedRun& run, const platform::Tables& tables);

@@ -124,15 +124,13 @@ def handles(families, panels, best, with_dots):
 
 
 def above_note(points, places, panels):
-    """A note if rates exceed their bounds, which hold for long runs and not for few frames; otherwise empty."""
+    """A note if rates exceed their bounds, which they do by their uncertainty at most; otherwise empty."""
     for panel in panels:
         if panel.bound == "bound.system":
             values, bounds = points.column(panel.column), points.column(panel.bound)
             above = [place for place in places if values[place] is not None and values[place] > bounds[place]]
             if above:
-                frames = points.frames()
-                return (f"{len(above)} steady rates are above their bounds, which hold for long runs: they are of "
-                        f"{min(frames[place] for place in above)} frames, from the first delivered to the last.")
+                return f"Above the bound by no more than the uncertainty: {counted(len(above), 'steady rate')}."
     return ""
 
 

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """Any two columns against each other, and their Pareto front: the points that no other point dominates."""
 
+import math
 import re
 import sys
 
@@ -39,19 +40,33 @@ def check(points, options):
     return [f"--pareto = {options.pareto}: {problem}" for problem in problems if problem]
 
 
-def front_of(xs, ys, senses):
+def uncertainty_of(points, column, places):
+    """How far the values of a column may be off; None if they are exact."""
+    name = f"{column}_uncertainty"
+    if name not in points.names:
+        return None
+    points.need_numbers([name], places)
+    return [points.column(name)[place] for place in places]
+
+
+def front_of(columns, senses, uncertainties):
     """Indices of the points of the Pareto front, from the best x on.
 
-    A point is on the front if no other point is better in one coordinate and at least as good in the other.
+    From one point to the next one column, which is exact, becomes worse, and the other one better by more than the
+    uncertainty of both points. Points that are the same in the former, and tie in the latter, are all on the front.
+    columns, senses, uncertainties: of x and y.
     """
-    signs = [1 if sense == "min" else -1 for sense in senses]
-    order = sorted(range(len(xs)), key=lambda place: (signs[0] * xs[place], signs[1] * ys[place]))
-    front = []
-    for place in order:
-        is_better = not front or signs[1] * ys[place] < signs[1] * ys[front[-1]]
-        if is_better or (xs[place], ys[place]) == (xs[front[-1]], ys[front[-1]]):
+    xs, ys = ([value if sense == "min" else -value for value in column] for column, sense in zip(columns, senses))
+    along, across, doubt = (xs, ys, uncertainties[1]) if uncertainties[0] is None else (ys, xs, uncertainties[0])
+    front, last = [], None  # last: the next point has to beat it
+    for place in sorted(range(len(xs)), key=lambda place: (along[place], across[place])):
+        loss = -math.inf if last is None else across[place] - across[last]
+        both = doubt[place] + doubt[last] if doubt and last is not None else 0
+        if loss < -both:
+            last = place
+        if place == last or (loss <= both and along[place] == along[last]):
             front.append(place)
-    return front
+    return sorted(front, key=lambda place: (xs[place], -ys[place]))
 
 
 def draw(points, options):
@@ -66,7 +81,8 @@ def draw(points, options):
     points.need_numbers([x, y], places)
     xs = [points.column(x)[place] for place in places]
     ys = [points.column(y)[place] for place in places]
-    front = front_of(xs, ys, (x_sense, y_sense))
+    uncertainties = [uncertainty_of(points, column, places) for column in (x, y)]
+    front = front_of((xs, ys), (x_sense, y_sense), uncertainties)
     corners = list(dict.fromkeys((xs[place], ys[place]) for place in front))
     bounds = {axis: points.column(bound_of(column)) for axis, column in (("x", x), ("y", y)) if bound_of(column)}
     points.need_numbers(filter(None, (bound_of(x), bound_of(y))), [places[at] for at in front])
@@ -85,6 +101,8 @@ def draw(points, options):
         sheet.list_entry(number, text)
     if len(names) > MOST_NAMED:
         sheet.note(f"{len(names) - MOST_NAMED} more of the front are in the table.")
+    if any(uncertainties):
+        sheet.note("What lies within the uncertainty ties.")
     sheet.note(points.pixels_note(places))
     sheet.note(points.size_note(places))
     sheet.note(points.note(len(places)))
@@ -107,7 +125,9 @@ def draw(points, options):
 
     of_front = {place: number for number, place in enumerate(front)}
     lost = [each for each in LOST_PIXELS if each in points.names]
-    columns = list(dict.fromkeys(["hash", *points.varied, x, y, *filter(None, (bound_of(x), bound_of(y))), *lost]))
+    doubts = [f"{column}_uncertainty" for column, doubt in zip((x, y), uncertainties) if doubt]
+    columns = list(dict.fromkeys(["hash", *points.varied, x, y, *doubts, *filter(None, (bound_of(x), bound_of(y))),
+                                  *lost]))
     order = sorted(range(len(places)), key=lambda at: (of_front.get(at, len(front)), points.hashes[places[at]]))
     rows = [[*(points.column(each)[places[at]] for each in columns), int(at in of_front)] for at in order]
     said = f"{counted(len(places), 'point')}, {len(front)} of them on the front"

@@ -215,7 +215,7 @@ class Figures(FigureTest):
         self.assertAlmostEqual(*heights, places=3)
 
     def test_the_whole_computer_has_two_rates(self):
-        store = self.sweep(WINDOWS.replace("preloaded", "camera, frames: 3"))
+        store = self.sweep(WINDOWS.replace("preloaded", "camera, frames: 4"))
         self.plot("window", store)
         self.is_in(self.out, *("window" + ending for ending in ENDINGS))
         self.is_from(store, self.table("window"))
@@ -223,6 +223,9 @@ class Figures(FigureTest):
         self.assertLessEqual(rates, set(self.table("window")[0]))
         self.shows("window", "whole computer, steady frames/s", "from power-up, tables included")
         self.assertEqual((len(self.curves("window")), len(self.bounds("window"))), (2, 2))
+        change(store, 'UPDATE points SET "bound.system" = 0.9 * "frames_per_second.steady" WHERE "matcher.window" = 3')
+        self.plot("window", store)
+        self.shows("window", "Above the bound by no more than the uncertainty: 1 steady rate.")
 
     def test_points_that_lose_pixels_are_marked(self):
         store = self.sweep(LOSING)
@@ -620,7 +623,7 @@ class Studies(FigureTest):
                 for disparities, *area in ((80, 50, 9, 10, 0), (120, 70, 9, 100, 100), (160, 80, 9, 101, 0),
                                            (200, 90, 9, 50, 101), (240, 101, 9, 50, 0))]
         core = make_database(self.folder / "core.db", header, rows)
-        run_it = "run: {source: camera, frames: 3}"
+        run_it = "run: {source: camera, frames: 4}"
         plan = f"board: fpl2003\n{run_it}\nvary: {{matcher.fetch: [column, line_buffer]}}\n"
         report = self.folder / "results" / "fetch" / "report.py"
         command = [PYTHON, "-B", report, core, self.sweep(plan)]

@@ -14,6 +14,7 @@ import unittest
 
 import program
 from browser import Browser, number
+from plots import make_database, script
 from program import CAMERA_RATES, PRELOADED, SMALL, ProgramTest, run, sets, shared_folder
 from report_data import data_of, with_data
 from selenium.webdriver.common.keys import Keys
@@ -56,6 +57,11 @@ def computer():
     return shared_run("computer", *CAMERA_RATES, *SHARED, "--frames", "6", "--record")
 
 
+def two_computers():
+    """That computer behind one in which left_lut has a bank of its own."""
+    return shared_run("plain_computer", *CAMERA_RATES, "--frames", "6"), computer()
+
+
 @functools.cache
 def page_of(*inputs):
     out = shared_folder() / ("_".join(path.name.replace(".", "_") for path in inputs) + ".html")
@@ -94,6 +100,12 @@ class PageTest(ProgramTest):
 
     def charts(self):
         return [card.get_attribute("id") for card in self.browser.all("section.card")]
+
+    def answer(self, question):
+        texts = self.browser.run(
+            "return [...document.querySelectorAll('.answers > div')]"
+            ".find(each => each.firstChild.textContent === arguments[0]).textContent", question)
+        return texts.removeprefix(question).replace("\u00a0", " ")
 
     def rows_by_name(self, chart):
         return {row["name"]: row for row in self.browser.table(chart)}
@@ -343,6 +355,87 @@ class Database(PageTest):
         self.assertEqual([number(cell) for cell in cells], sorted(number(cell) for cell in cells))
 
 
+class Rates(PageTest):
+    """Rates that tie, and what sets their bounds. The page and `plot` have the same front."""
+
+    HEADER = ["name", "run.source", "allocation.left_lut", "allocation.left_image", "area.slices",
+              "area.slices_percent", "cameras.left.dropped_pixels", "frames_per_second.core", "frames_per_second.steady",
+              "frames_per_second.steady_uncertainty", "bound.core_limited_by", "bound.system_limited_by",
+              "bound.system"]
+
+    def open(self, *points):
+        """A database of points (slices, banks, steady rate, its uncertainty, % of the slices, lost pixels)."""
+        rows = []
+        for slices, banks, rate, uncertainty, percent, pixels in ((*point, 50, 0)[:6] for point in points):
+            pictures = "[" + ", ".join(f"bank{i}" for i in range(1, banks)) + "]"
+            limits = ("bank bank0", "camera" if rate > 29 else "bank bank0")
+            rows.append(("made", "camera", "bank0", pictures, slices, percent, pixels, 99, rate, uncertainty, *limits,
+                         31))
+        self.store = make_database(self.folder / "made.db", self.HEADER, rows)
+        self.succeeds(run("report", self.store, "--out", self.folder / "made.html"))
+        self.browser.open(self.folder / "made.html")
+
+    def fronts(self, *axes):
+        """That of the page and that of `plot`, each from left to right."""
+        for name, axis in zip("xy", axes):
+            column, sense = axis.split(":")
+            self.browser.choose(f"scatter-{name}", column)
+            self.browser.choose(f"best-{name}", sense)
+        self.succeeds(script("plot_pareto.py", self.store, "--out", self.out, "--pareto", ",".join(axes)))
+        shown, drawn = (list(csv.DictReader(io.StringIO(text)))
+                        for text in (self.browser.csv("scatter"), (self.out / "pareto.csv").read_text()))
+        return [sorted((float(row["area.slices"]), float(row["frames_per_second.steady"])) for row in rows)
+                for rows in (shown, [row for row in drawn if row["front"] == "1"])]
+
+    def test_within_the_uncertainty_tie_and_the_cheapest_is_named(self):
+        slow, best, worse = (5000, 3, 20, 0.1), (22500, 8, 30.003, 0.002), (14000, 4, 29.99, 0.0001)
+        same, twin, cheap = (14000, 8, 30, 0.002), (14000, 8, 30.0012, 0), (14100, 7, 30.0012, 0)
+        self.open(slow, best, worse, same, twin, cheap, (14200, 7, 30.0025, 0.002))
+        self.assertEqual(self.browser.text("h1"), "7 points: at most 30.00 frames/s, steady")
+        fastest = self.answer("Which is the fastest?")
+        self.assertTrue(fastest.startswith("30.00 frames/s, steady: "), fastest)
+        self.assertIn("left_image [bank1, bank2, bank3, bank4, bank5, bank6].", fastest)
+        self.assertIn("5 points tie within the uncertainty of their rates. "
+                      "This is the cheapest: 7 banks, 14,100 slices.", fastest)
+        front = sorted((slices, rate) for slices, _, rate, _ in (slow, same, twin))
+        for axes in (("area.slices:min", "frames_per_second.steady:max"),
+                     ("frames_per_second.steady:max", "area.slices:min")):
+            self.assertEqual(self.fronts(*axes), [front, front])
+            self.assertIn("What lies within the uncertainty ties.", self.browser.text("#front-text"))
+
+    def test_of_boards_that_do_not_fit_or_lose_pixels_are_not_the_fastest(self):
+        self.open((14000, 8, 20, 0.5), (14000, 8, 30, 0, 101), (14000, 8, 30, 0, 99, 4))
+        self.assertTrue(self.answer("Which is the fastest?").startswith("20.00 ± 0.50 frames/s, steady."))
+
+    def test_of_computers_have_the_bound_of_the_computer(self):
+        self.open((14000, 8, 30, 0), (5000, 8, 20, 0.5), (5001, 8, 20, 0.5), (5002, 8, 19, 0.5))
+        self.assertEqual(self.answer("What limits?"), "Bank0 in 3 points, the cameras in 1.")
+
+    def test_on_the_front_are_joined_by_steps(self):
+        self.open((14000, 8, 30, 0), (9000, 8, 25, 0), (5000, 8, 20, 0))
+        places = lambda script: [tuple(float(each) for each in pair) for pair in self.browser.run(script)]
+        line = places("return document.querySelector('#scatter .front').getAttribute('points').split(' ')"
+                      ".map(pair => pair.split(','))")
+        spots = places("return [...document.querySelectorAll('#scatter .on-front')]"
+                       ".map(spot => [spot.getAttribute('cx'), spot.getAttribute('cy')])")
+        corners = [(after[0], before[1]) for before, after in zip(spots, spots[1:])]
+        self.assertEqual(len(corners), 2)
+        self.assertLessEqual({*spots, *corners}, set(line))
+        for before, after in zip(line, line[1:]):
+            self.assertTrue(before[0] == after[0] or before[1] == after[1], line)
+
+    def test_of_one_point_or_none_are_shown(self):
+        self.open((14000, 8, 30, 0))
+        self.assertEqual(self.browser.text("h1"), "1 point: at most 30.00 frames/s, steady")
+        self.assertEqual(self.answer("What limits?"), "The cameras in 1 point.")
+        plan = self.file("plan.yaml", "board: fpl2003\nset: {matcher.fetch: line_buffer}\n"
+                         "vary: {matcher.rows: [2, 3]}\n")
+        self.succeeds(run("sweep", plan, "--out", self.folder / "none.db"))
+        self.succeeds(run("report", self.folder / "none.db", "--out", self.folder / "none.html"))
+        self.browser.open(self.folder / "none.html")
+        self.assertEqual(self.browser.text("h1"), "2 points: none has a rate")
+
+
 class Tools(PageTest):
     """Zoom, sliders and search."""
 
@@ -433,6 +526,19 @@ class Tools(PageTest):
         self.assertEqual(rows["left_lut – bank6"]["megabytes_per_second_b"], "0")
         self.assertEqual(rows["left_lut – bank0"]["megabytes_per_second_a"], "0")
 
+    def test_a_chart_wider_than_the_page_opens_where_something_is(self):
+        for page in (page_of(computer()), page_of(*two_computers())):
+            self.browser.open(page, width=390)
+            left, right = self.browser.run(
+                "const box = element => element.getBoundingClientRect();"
+                "const memory = document.querySelector('.memory');"
+                "const blocks = [...memory.querySelectorAll('svg:not([hidden]) .block')].map(box);"
+                "const highest = Math.min(...blocks.map(each => each.top));"
+                "const first = blocks.find(each => each.top === highest);"
+                "return [first.left - box(memory).left, box(memory).right - first.right]")
+            self.assertGreater(left, 0)
+            self.assertGreater(right, 0)
+
     def test_keys_are_searched(self):
         self.browser.open(page_of(core()))
         self.browser.choose("search-keys", "left_lut")
@@ -457,12 +563,6 @@ class Answers(PageTest):
         change(data["run"])
         self.browser.open(with_data(page_of(folder), data, self.folder / "page.html"))
 
-    def answer(self, question):
-        texts = self.browser.run(
-            "return [...document.querySelectorAll('.answers > div')]"
-            ".find(each => each.firstChild.textContent === arguments[0]).textContent", question)
-        return texts.removeprefix(question).replace("\u00a0", " ")
-
     def test_the_port_that_waits_most_in_all_is_the_first(self):
         def change(run):
             cause = lambda port, bank, by, share: {"port": port, "bank": bank, "by": by,
@@ -482,6 +582,28 @@ class Answers(PageTest):
     def test_a_recording_names_what_the_host_moves(self):
         self.opened(computer(), lambda run: None)
         self.assertRegex(self.answer("Who waits for whom?"), r"left_lut waits in .* % for host capture")
+
+    def test_few_tiles_with_half_of_the_waits_are_named(self):
+        def change(run):
+            recording = run["recording"]
+            recording["tiles"] = {"columns": 10, "rows": 10, "width": 4, "height": 3}
+            recording["stalls"] = recording["stalls"][:1]
+            recording["stalls"][0]["tiles"] = {"list": few * [100 - few] + (100 - few) * [few]}
+
+        for few, text in ((34, "Over all columns; half of all waits are in 34 % of the picture."),
+                          (35, "Over all columns.")):
+            self.opened(core(), change)
+            self.assertIn(text, self.answer("Where in the picture?"))
+
+    def test_each_resource_of_the_fpga_has_its_own_number(self):
+        def change(run):
+            run["area"]["device"].update(block_rams=50, multipliers=200)
+            run["area"]["total"].update(block_rams=10, multipliers=10)
+
+        self.opened(core(), change)
+        uses = self.browser.text("#area .uses")
+        self.assertIn("block RAMs 10 of 50  20.0 %", uses)
+        self.assertIn("multipliers 10 of 200  5.0 %", uses)
 
     def test_the_bound_says_what_it_leaves_out(self):
         def change(run):
@@ -587,6 +709,36 @@ class Answers(PageTest):
                                 (early * 1.2, "% because the capture of the next pair runs")):
             self.opened(computer(), change)
             self.assertIn(text, self.browser.text("#time h2"))
+
+
+class TwoRuns(PageTest):
+    def test_lead_with_the_change_and_have_the_words_of_one_run(self):
+        a, b = two_computers()
+        data = data_of(page_of(a, b))
+        data["runs"][1]["settings"][0]["value"] = "another name"
+        data["difference"]["verdict"] = "in B left_lut waits 123456 cycles a frame more"
+        self.assertEqual(data["runs"][1]["settings"][0]["key"], "name")
+        self.browser.open(with_data(page_of(a, b), data, self.folder / "page.html"))
+        (rate_a, rate_b) = (self.stats(folder)["frames_per_second"]["steady"] for folder in (a, b))
+        head = self.browser.text("h1")
+        self.assertTrue(head.startswith("allocation.left_lut: bank6 → bank0 and 1 more: −"), head)
+        self.assertRegex(head, rf"from {rate_a:,.1f}( ± .*)? to {rate_b:,.1f}( ± .*)? frames/s, steady$")
+        self.assertEqual(self.answer("What was changed?"),
+                         "allocation.left_lut: bank6 → bank0name: fpl2003 → another name")
+        self.assertIn("in B left_lut waits 123,456 cycles a frame more", self.answer("Which is faster, and why?"))
+        self.assertIn("% for host capture", self.answer("Who waits for whom?"))
+        self.assertIn("host capture", {row["by"] for row in self.browser.table("blame")})
+        frame = data["difference"]["camera_frame"]
+        self.assertIn(f"Camera frame {frame} in both.", self.browser.text("#picture .note"))
+
+    def test_within_the_uncertainty_have_no_gain(self):
+        a, b = two_computers()
+        data = data_of(page_of(a, b))
+        for run_data, rate in zip(data["runs"], (20, 20.5)):
+            run_data["stats"]["frames_per_second"].update(steady=rate, steady_uncertainty=0.25)
+        self.browser.open(with_data(page_of(a, b), data, self.folder / "page.html"))
+        self.assertEqual(self.browser.text("h1"), "allocation.left_lut: bank6 → bank0: ≈ 0, "
+                         "from 20.00 ± 0.25 to 20.50 ± 0.25 frames/s, steady")
 
 
 class Names(PageTest):

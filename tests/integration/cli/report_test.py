@@ -1,5 +1,7 @@
 """report: the page's data, and what is refused. The page itself: report_page_test.py."""
 
+import base64
+import csv
 import json
 import os
 import shutil
@@ -46,9 +48,10 @@ class Run(ReportTest):
         self.assertEqual(data["memory_chart"], chart.read_text())
 
     def test_holds_where_ports_stall_as_the_repetition_records_it(self):
-        folder = self.run_of("a", *PRELOADED, *SHARED, "--set", "matcher.rows=5", "--frames", "3")
+        folder = self.run_of("a", *PRELOADED, *SHARED, "--set", "matcher.rows=5", "--frames", "3", "--record")
         stats = self.stats(folder)
         recording = self.data(folder)["run"]["recording"]
+        self.assertEqual(recording["frames"], 3)
         lines = recording["rows"]["lines"]
         self.assertEqual((lines, recording["rows"]["height"]), (5, 5))
         values = lambda column: unpacked(column, 1 + lines)
@@ -57,9 +60,16 @@ class Run(ReportTest):
         blame = {(row["port"], row["bank"], row["by"]): row["cycles"] for row in stats["blame"]}
         self.assertEqual({cause: sum(values(each["rows"])) for cause, each in stalls.items()}, blame)
         tiles = recording["tiles"]
-        for each in stalls.values():
-            inside = unpacked(each["tiles"], tiles["columns"] * tiles["rows"])
-            self.assertEqual(sum(inside), sum(values(each["rows"])[1:]))
+        with open(folder / "conflicts.csv", newline="") as file:
+            recorded = [row for row in csv.DictReader(file) if row["first_row"]]
+        for cause, each in stalls.items():
+            expected = [0] * (tiles["columns"] * tiles["rows"])
+            for row in recorded:
+                if (row["port"], row["bank"], row["by"]) == cause:
+                    line, column = int(row["first_row"]) // tiles["height"], int(row["first_column"]) // tiles["width"]
+                    expected[line * tiles["columns"] + column] += int(row["cycles"])
+            self.assertEqual(unpacked(each["tiles"], len(expected)), expected)
+            self.assertEqual(sum(expected), sum(values(each["rows"])[1:]))
         accesses = {bank["name"]: 0 for bank in stats["banks"]}
         for each in recording["rows"]["accesses"]:
             accesses[each["bank"]] += sum(values(each["accesses"]))
@@ -127,6 +137,30 @@ class TwoRuns(ReportTest):
         self.assertEqual(sum(difference["rows"]["cycles"]), self.stats(b)["cycles"] - self.stats(a)["cycles"])
         self.assertEqual(difference["rows"]["parting"]["row"], 0)
         self.assertEqual(difference["pixels"]["pixels"], 0)
+
+    def test_have_the_verdict_of_diff_and_the_last_camera_frame_of_both(self):
+        frames = ["--frames", "6", "--save-frames"]
+        a = self.run_of("a", *CAMERA_RATES, *frames)
+        b = self.run_of("b", *CAMERA_RATES, *SHARED, *frames)
+        data = self.data(a, b)
+        verdict = self.succeeds(run("diff", a, b)).split("\n\n")[-1]
+        self.assertEqual(data["difference"]["verdict"].split(), verdict.split())
+        names_a, names_b = ({path.name for path in (folder / "frames").iterdir()} for folder in (a, b))
+        last = max(names_a & names_b)
+        self.assertNotEqual([last, last], [max(names_a), max(names_b)])
+        self.assertEqual(data["difference"]["camera_frame"], int(last.split(".")[0]))
+        for folder, of_run in zip((a, b), data["runs"]):
+            url = of_run["pictures"]["disparity"].removeprefix("data:image/png;base64,")
+            self.assertEqual(base64.b64decode(url), (folder / "frames" / last).read_bytes())
+
+    def test_divide_the_waits_for_the_host_by_what_it_moves(self):
+        a = self.run_of("a", *CAMERA_RATES, "--frames", "4")
+        b = self.run_of("b", *CAMERA_RATES, *SHARED, "--frames", "4")
+        (_, of_b) = self.data(a, b)["runs"]
+        stalls = [(row["by"], sum(unpacked(row["rows"], 1 + of_b["recording"]["rows"]["lines"])))
+                  for row in of_b["recording"]["stalls"]]
+        self.assertIn("host capture", dict(stalls))
+        self.assertEqual(sum(cycles for _, cycles in stalls), sum(row["cycles"] for row in self.stats(b)["blame"]))
 
     def test_of_different_sizes_have_no_rows(self):
         a = self.run_of("a", *PRELOADED)

@@ -48,6 +48,13 @@ TEST(AreaTotal, IsAShareOfTheDevice) {
   EXPECT_DOUBLE_EQ(area.multipliers_percent, 50);
 }
 
+TEST(AreaTotal, IsAShareOfEachResourceOfItsOwnNumber) {
+  constexpr Device kMade = {"made", 1000, 50, 200};
+  const Area area = total({{"parts", 1, {0, 0, 10, 10}}}, kMade);
+  EXPECT_DOUBLE_EQ(area.block_rams_percent, 20);
+  EXPECT_DOUBLE_EQ(area.multipliers_percent, 5);
+}
+
 TEST(AreaTotal, FitsUpToTheLastOfEachResource) {
   const Area full = total_of({54'345, 0, 144, 144});
   EXPECT_EQ(full.slices, 33'792);

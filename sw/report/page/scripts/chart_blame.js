@@ -2,7 +2,7 @@
 // of a column is the stalls that the port itself has counted.
 import {addChart, cut, drawing, textWidth} from './chart.js';
 import {s} from './dom.js';
-import {blamesOf, blameText, waitsOf, waitText} from './findings.js';
+import {blamesOf, blameText, detailedBlamesOf, waitsOf, waitText} from './findings.js';
 import {percent, whole} from './format.js';
 import {css, heat, inkOn} from './theme.js';
 import {mark} from './tooltip.js';
@@ -100,7 +100,7 @@ export function addBlame(page, run) {
 export function addBlameDifference(page, a, b) {
   const all = new Map();
   for (const [run, sign] of [[a, -1], [b, 1]]) {
-    for (const row of run.stats.blame) {
+    for (const row of detailedBlamesOf(run)) {
       const key = JSON.stringify([row.port, row.bank, row.by]);
       const known = all.get(key) ?? {port: row.port, bank: row.bank, by: row.by, a: 0, b: 0};
       known[sign < 0 ? 'a' : 'b'] += row.cycles;

@@ -8,6 +8,7 @@ import {linkMarks, mark} from './tooltip.js';
 
 const kBytesPerWord = 4;
 const kMostEnlarged = 1.4;  // of its own size
+const kMargin = 8;          // pixels
 
 // The drawing as elements: without scripts, without handlers, without links to elsewhere.
 function parsedSvg(text) {
@@ -53,6 +54,13 @@ function useInPage(svg, links, moreLines = () => []) {
 
 const kHowTo = 'Each block and link has its figures: point at it, or go there with the arrow keys.';
 
+// Where the drawing is wider than the page, begins with its highest block: there may be nothing on its left.
+function openAtHighest(body, svg) {
+  const boxes = [...svg.querySelectorAll('.block')].map(block => block.getBoundingClientRect());
+  const highest = boxes.reduce((a, b) => b.top < a.top ? b : a);
+  body.scrollLeft += highest.left - body.getBoundingClientRect().left - kMargin;
+}
+
 export function addMemory(page, run) {
   const svg = parsedSvg(run.memory_chart);
   const links = linksOf(svg);
@@ -75,6 +83,7 @@ export function addMemory(page, run) {
         ['from', 'to', 'megabytes_per_second', 'peak', 'percent'],
         links.map(({from, to, rate, peak}) => [from, to, rate, peak, 100 * rate / peak])]
   });
+  openAtHighest(body, svg);
 }
 
 // Both boards at the same place, one shown at a time.
@@ -123,4 +132,5 @@ export function addMemoryOfTwo(page, a, b) {
     numbers: () => [['link', 'megabytes_per_second_a', 'megabytes_per_second_b', 'difference'], differences]
   });
   show(0);
+  openAtHighest(body, svgs[0]);
 }

@@ -3,8 +3,9 @@ import {addBrush} from './brush.js';
 import {addChart, canvasOf, drawing, legend} from './chart.js';
 import {h, s} from './dom.js';
 import {count, value, whole} from './format.js';
+import {kRateColumns} from './points.js';
 import {axisBelow, axisLeft} from './scale.js';
-import {coloursOf, kMostColours, scaleOf} from './scatter_parts.js';
+import {coloursOf, kMostColours, scaleOf, stepsOf} from './scatter_parts.js';
 import {styleColour} from './theme.js';
 import {hideTooltip, linkMarks, mark, showTooltip} from './tooltip.js';
 
@@ -19,7 +20,7 @@ const kReach = 14;  // pixels from the pointer to the point that it means
 export function addScatter(page, points, {choose}) {
   const numeric = points.names.filter(name => points.isNumeric(name));
   const y = {
-    name: points.figures.find(name => name.startsWith('frames_per_second')) ?? numeric[0],
+    name: kRateColumns.find(name => points.figures.includes(name)) ?? numeric[0],
     best: 'max',
     log: false
   };
@@ -127,7 +128,8 @@ export function addScatter(page, points, {choose}) {
       frontLayer.replaceChildren();
       const front = points.isNumeric(x.name) && points.isNumeric(y.name) ? points.front(x, y) : [];
       const spot = row => [at[0][row] - kMargins.left, at[1][row] - kMargins.top];
-      frontLayer.append(s('polyline', {class: 'front', points: front.map(spot).join(' ')}));
+      const edges = [x.best === 'min' ? inner : 0, y.best === 'min' ? 0 : height];
+      frontLayer.append(s('polyline', {class: 'front', points: stepsOf(front.map(spot), edges).join(' ')}));
       for (const row of front) {
         const [cx, cy] = spot(row);
         const go = event => (event.type === 'click' || event.key === 'Enter') && choose(row);
@@ -140,7 +142,10 @@ export function addScatter(page, points, {choose}) {
       }
       linkMarks(host);
       note.textContent = `${count(points.count, 'point')} of ${whole(points.size)} selected; ${
-          whole(front.length)} of them on the front.`;
+          whole(front.length)} of them on the front.${
+              [x, y].some(({name}) => points.hasUncertainty(name)) ?
+              ' What lies within the uncertainty ties.' :
+              ''}`;
     };
     repaint(true);
   };

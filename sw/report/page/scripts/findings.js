@@ -1,6 +1,6 @@
 // What a run shows, in plain words: what limits, who waits for whom, where, what to change first, its price.
 import {adviceOf, limitReached, priceText, stepText} from './advice.js';
-import {capital, count, fixed, gainText, percent, rate, sum, whole} from './format.js';
+import {capital, count, fixed, gainText, kRates, percent, rate, rateWith, sum, whole} from './format.js';
 import {linesOf, rowsText, tilesOf} from './recording.js';
 
 const kLeastShare = 0.0005;  // of all cycles that a port waits, to be named
@@ -9,16 +9,20 @@ const kMostCauses = 3;       // of a port that are named
 
 export const settingOf = (run, key) => run.settings.find(setting => setting.key === key)?.value;
 
+// The first kind of rate that all these runs have: [name in stats.json, kind].
+export const kindOfRate = (...runs) =>
+    kRates.find(([name]) => runs.every(run => run.stats.frames_per_second[name] !== undefined));
+
 // The rate of a run, what kind of rate it is, and its bound.
 export function rateOf(run) {
   const {frames_per_second: rates, bound} = run.stats;
   const computer = rates.system !== undefined;
   const limit = computer ? bound.system : bound.core;
-  const steady = rates.steady !== undefined;
-  const now = rates.steady ?? rates.system ?? rates.core;
-  const kind = steady ? 'steady' : computer ? 'from power-up' : 'core only';
+  const [name, kind] = kindOfRate(run);
+  const now = rates[name];
   const by = computer ? bound.system_limited_by : bound.core_limited_by;
-  return {now, kind, limit, by, computer, share: now / limit};
+  const text = rateWith(now, rates.steady_uncertainty);
+  return {now, text, kind, limit, by, computer, share: now / limit};
 }
 
 // The kind of the rates of single changes.
@@ -39,7 +43,7 @@ export const blamesOf = run => run.stats.blame.map(row => ({...row, share: row.c
                                    .sort((a, b) => b.cycles - a.cycles);
 
 // The same, with what the host moved as its name, if all frames were recorded.
-function detailedBlamesOf(run) {
+export function detailedBlamesOf(run) {
   const recorded = linesOf(run);
   if (!recorded || recorded.frames !== run.stats.frame_cycles.length) return blamesOf(run);
   return recorded.stalls.map(
@@ -77,10 +81,10 @@ export function waitText({port, share, causes}) {
 const lostPixels = run => sum((run.stats.cameras ?? []).map(camera => camera.dropped_pixels));
 
 function whatLimits(run) {
-  const {by, limit, share, now, kind: kindOfRate, computer} = rateOf(run);
+  const {by, limit, share, text, kind: rateKind, computer} = rateOf(run);
   const [kind, name] = by.split(' ');
-  const reached = `The run reaches ${percent(share)} of the bound of ${rate(limit)} frames/s: ${rate(now)}, ${
-      kindOfRate}`;
+  const reached =
+      `The run reaches ${percent(share)} of the bound of ${rate(limit)} frames/s: ${text}, ${rateKind}`;
   const because = {
     bank: () => {
       const bank = run.banks.find(each => each.name === name);
@@ -264,8 +268,8 @@ function whatItCosts(run) {
 }
 
 export function headlineOf(run) {
-  const {now, kind, limit, by, share} = rateOf(run);
-  return `${rate(now)} frames/s, ${kind}: ${percent(share)} of the bound ${rate(limit)}, which ${
+  const {text, kind, limit, by, share} = rateOf(run);
+  return `${text} frames/s, ${kind}: ${percent(share)} of the bound ${rate(limit)}, which ${
              withVerb(by, 'set')}` +
       (lostPixels(run) > 0 ? '; captures lose pixels' : '');
 }

@@ -6,6 +6,8 @@ export const kPsOfMs = 1e9;
 export const fixed = (number, digits) => number.toLocaleString(
     'en-US', {minimumFractionDigits: digits, maximumFractionDigits: digits, useGrouping: 'min2'});
 export const whole = number => fixed(Math.round(number), 0);
+// A text with its counts as numbers of the page.
+export const grouped = text => text.replace(/(?<![\w.])\d{5,}(?![\w.])/g, digits => whole(Number(digits)));
 // What is more than nothing does not look like it: <0.1 %.
 export function percent(share, digits = 1) {
   const least = 10 ** -digits;
@@ -13,6 +15,11 @@ export function percent(share, digits = 1) {
   return `${isLess ? `<${fixed(least, digits)}` : fixed(100 * share, digits)} %`;
 }
 export const rate = number => fixed(number, number < 100 ? 2 : 1);
+// The kinds of rates by their names in stats.json, the one to speak of first.
+export const kRates = [['steady', 'steady'], ['system', 'from power-up'], ['core', 'core only']];
+// With what a finite run leaves open, if that can be seen.
+export const rateWith = (number, uncertainty = 0) =>
+    rate(number) + (uncertainty < 0.005 ? '' : ` ± ${rate(uncertainty)}`);
 export const signed = (number, text) => `${number < 0 ? '−' : '+'}${text(Math.abs(number))}`;
 // A gain, as a share of what there was.
 export const gainText = gain => Math.abs(gain) < 0.0005 ? '≈ 0' : signed(gain, percent);

@@ -5,49 +5,72 @@ import {addParallel} from './chart_parallel.js';
 import {addScatter} from './chart_scatter.js';
 import {addFilters, addTable} from './database_table.js';
 import {h} from './dom.js';
-import {count, fixed, value, whole} from './format.js';
+import {resourceText} from './findings.js';
+import {capital, count, fixed, kRates, rateWith, value, whole} from './format.js';
 import {addAnswers, addGroup, addHead} from './page_parts.js';
-import {Points} from './points.js';
+import {kRateColumns, Points} from './points.js';
 import {Boards} from './table.js';
 
 
 export function showDatabase(page, {database}) {
   const points = new Points(database);
   const boards = new Boards(database.boards, points.size);
-  const rateName = points.figures.find(name => name.startsWith('frames_per_second')) ?? points.figures[0];
-  const rates = points.column(rateName);
-  let best = 0;
-  for (let row = 1; row < points.size; ++row)
-    if (!(rates[row] <= rates[best])) best = row;
+  const hasNumbers = name =>
+      points.table.has(name) && points.column(name).some(each => typeof each === 'number');
+  const rateName = kRateColumns.find(hasNumbers) ?? points.figures[0];
+  const kind = kRates[kRateColumns.indexOf(rateName)];
+  const {best, ties} = points.fastest(rateName);
+  const [named] = ties;
+  const rateText = row => {
+    const [amount, open] = [points.column(rateName)[row], points.uncertainty(rateName)[row]];
+    return kind ? `${rateWith(amount, open)} frames/s, ${kind[1]}` : `${fixed(amount, 2)} ${rateName}`;
+  };
   const keysOf = row => points.keys.map(key => `${key} ${value(points.column(key)[row])}`).join(', ');
   const statuses = points.table.has('status') ? points.column('status') : [];
   const bad = statuses.filter(status => status !== 'ok').length;
   addHead(page, {
     kind: 'database',
     name: database.path,
-    headline: `${count(points.size, 'point')}: at most ${fixed(rates[best], 2)} ${
-        rateName.startsWith('frames') ? 'frames/s' : rateName}`,
+    headline: `${count(points.size, 'point')}: ${named ? `at most ${rateText(best)}` : 'none has a rate'}`,
     sub:
         h('p', {class: 'note'},
           `${points.keys.length} keys vary${
               bad ? `; ${whole(bad)} points are impossible or have failed` : ''}.`)
   });
-  const limited = points.figures.find(name => name.endsWith('limited_by'));
+  // Of points with cameras, what sets the bound of the whole computer.
+  const [ofSystem, ofCore] = ['system', 'core']
+                                 .map(each => `bound.${each}_limited_by`)
+                                 .map(name => points.table.has(name) ? points.column(name) : []);
   const tally = new Map();
-  if (limited)
-    for (const name of points.column(limited)) tally.set(name, (tally.get(name) ?? 0) + 1);
+  for (let row = 0; row < points.size; ++row) {
+    const name = ofSystem[row] ?? ofCore[row];
+    if (name) tally.set(name, (tally.get(name) ?? 0) + 1);
+  }
   addAnswers(page, [
-    ['Which is the fastest?', [`${fixed(rates[best], 2)} frames/s: ${keysOf(best)}.`]],
+    [
+      'Which is the fastest?',
+      named ?
+          [
+            `${[rateText(named.row), keysOf(named.row)].filter(Boolean).join(': ')}.`,
+            ties.length > 1 &&
+                `${count(ties.length, 'point')} ${
+                    points.hasUncertainty(rateName) ? 'tie within the uncertainty of their rates' :
+                                                      'have this rate'}. This is the cheapest: ${
+                    count(named.banks, 'bank')}, ${whole(named.slices)} slices.`
+          ] :
+          []
+    ],
     [
       'What limits?',
-      limited ?
-          [[...tally]
-               .filter(([name]) => name !== null)
-               .sort((a, b) => b[1] - a[1])
-               .slice(0, 4)
-               .map(([name, all]) => `${name} in ${whole(all)}`)
-               .join(', ') +
-           ' points.'] :
+      tally.size > 0 ?
+          [`${
+              capital([...tally]
+                          .sort((a, b) => b[1] - a[1])
+                          .slice(0, 4)
+                          .map(
+                              ([name, all], i) =>
+                                  `${resourceText(name)} in ${i ? whole(all) : count(all, 'point')}`)
+                          .join(', '))}.`] :
           []
     ],
     [

@@ -1,6 +1,6 @@
 // The page of two runs: what differs in B.
 import {h, s} from './dom.js';
-import {capital, count, gainText, rate, shortened, signed, whole} from './format.js';
+import {count, gainText, grouped, rate, rateWith, shortened, signed, whole} from './format.js';
 import {addBlameDifference} from './chart_blame.js';
 import {addChart, drawing, htmlTable, legend} from './chart.js';
 import {commandLine} from './chart_config.js';
@@ -8,7 +8,7 @@ import {addFrames} from './chart_frames.js';
 import {addMemoryOfTwo} from './chart_memory.js';
 import {addPicture} from './chart_picture.js';
 import {addPortStates} from './chart_states.js';
-import {rateOf, resourceText, settingOf, waitsOf, waitText} from './findings.js';
+import {kindOfRate, rateOf, resourceText, settingOf, waitsOf, waitText} from './findings.js';
 import {addAnswers, addGroup, addHead} from './page_parts.js';
 import {axisBelow, axisLeft, linear} from './scale.js';
 import {namedColour} from './theme.js';
@@ -16,9 +16,10 @@ import {mark} from './tooltip.js';
 
 const kMostBands = 240;
 
-// Settings that differ: [key, value in A, value in B].
+// Settings that differ: [key, value in A, value in B]. The name of the board is the last.
 function settingsThatDiffer(a, b) {
-  const keys = [...new Set([...a.settings, ...b.settings].map(setting => setting.key))];
+  const keys = [...new Set([...a.settings, ...b.settings].map(setting => setting.key))].sort(
+      (x, y) => (x === 'name') - (y === 'name'));
   return keys.map(key => [key, settingOf(a, key) ?? '–', settingOf(b, key) ?? '–']).filter(([, x,
                                                                                              y]) => x !== y);
 }
@@ -133,17 +134,30 @@ function pixelText({pixels, no_pixels: reason}) {
              pixels.first.camera_frame}`;
 }
 
+// What was changed, and what it does to the rate that both runs have.
+function headlineOfTwo(a, b, settings) {
+  const [ratesA, ratesB] = [a, b].map(run => run.stats.frames_per_second);
+  const [name, kind] = kindOfRate(a, b);
+  const [before, after] = [ratesA[name], ratesB[name]];
+  const [openA, openB] = [ratesA, ratesB].map(rates => rates[`${name}_uncertainty`] ?? 0);
+  const isTie = Math.abs(after - before) <= openA + openB;
+  const change = settings.length === 0 ?
+      'The same board' :
+      changeText(settings[0]) + (settings.length > 1 ? ` and ${settings.length - 1} more` : '');
+  return `${change}: ${isTie ? '≈ 0' : gainText(after / before - 1)}, from ${rateWith(before, openA)} to ${
+      rateWith(after, openB)} frames/s, ${kind}`;
+}
+
+const changeText = ([key, x, y]) => `${key}: ${x} → ${y}`;
+
 export function showTwoRuns(page, {runs: [a, b], difference}) {
   const [rateA, rateB] = [rateOf(a), rateOf(b)];
   const settings = settingsThatDiffer(a, b);
-  const gain = rateB.now / rateA.now - 1;
   const blame = run => waitsOf(run).length ? `${waitText(waitsOf(run)[0])}.` : 'Nobody.';
   addHead(page, {
     kind: 'two runs',
     name: `A ${a.folder} · B ${b.folder}`,
-    headline: gain === 0 ? `B runs at the rate of A: ${rate(rateA.now)} frames/s, ${rateA.kind}` :
-                           `B runs at ${rate(rateB.now)} frames/s (${rateB.kind}), A at ${rate(rateA.now)}${
-                               rateA.kind === rateB.kind ? '' : ` (${rateA.kind})`}: ${gainText(gain)}`,
+    headline: headlineOfTwo(a, b, settings),
     sub: [commandLine(a.command), commandLine(b.command)]
   });
   const {rows} = difference;
@@ -151,10 +165,11 @@ export function showTwoRuns(page, {runs: [a, b], difference}) {
     [
       'What was changed?',
       settings.length ? settings.slice(0, 4)
-                            .map(([key, x, y]) => `${key}: ${x} → ${y}`)
+                            .map(changeText)
                             .concat(settings.length > 4 ? `and ${settings.length - 4} more` : []) :
                                                           ['Nothing on the board.']
     ],
+    ['Which is faster, and why?', [grouped(difference.verdict), `Disparities: ${pixelText(difference)}.`]],
     ['Who waits for whom?', [`A: ${blame(a)}`, `B: ${blame(b)}`]],
     [
       'Where do they part?',
@@ -168,8 +183,7 @@ export function showTwoRuns(page, {runs: [a, b], difference}) {
         `A: ${resourceText(rateA.by)}, at ${rate(rateA.limit)} frames/s.`,
         `B: ${resourceText(rateB.by)}, at ${rate(rateB.limit)} frames/s.`
       ]
-    ],
-    ['Are the disparities the same?', [`${capital(pixelText(difference))}.`]]
+    ]
   ]);
 
   const where = addGroup(page, 'Where and when');
@@ -177,7 +191,10 @@ export function showTwoRuns(page, {runs: [a, b], difference}) {
   if (a.pictures && b.pictures) {
     addPicture(where, {
       title: `Disparities of A and B: ${pixelText(difference)}`,
-      note: 'The last frame of each run, with the rows that take longer in B.',
+      note: (difference.camera_frame === undefined ?
+                 'The last frame of each run, because no camera frame was computed by both.' :
+                 `Camera frame ${difference.camera_frame} in both.`) +
+          ' With the rows that take longer in B.',
       pictures: [a, b].map(({pictures: {disparity, disparities}}) => ({url: disparity, disparities})),
       names: ['A', 'B'],
       frames: rows?.frames,

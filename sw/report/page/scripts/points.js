@@ -1,10 +1,13 @@
 // The points of a database: their columns, which of them are selected, and the front of Pareto.
+import {kRates, value} from './format.js';
 import {Table} from './table.js';
+
+export const kRateColumns = kRates.map(([name]) => `frames_per_second.${name}`);
 
 // Rates and prices first, then keys, then the other figures.
 const kFirst = [
-  'frames_per_second.steady', 'frames_per_second.system', 'frames_per_second.core', 'bound.system',
-  'bound.core', 'area.slices', 'area.block_rams', 'area.multipliers', 'latency_ms.capture_to_host.p50'
+  ...kRateColumns, 'bound.system', 'bound.core', 'area.slices', 'area.block_rams', 'area.multipliers',
+  'latency_ms.capture_to_host.p50'
 ];
 
 export class Points {
@@ -14,7 +17,9 @@ export class Points {
     this.addShares();
     this.keys = keys.filter(key => this.table.has(key) && !this.table.isConstant(key));
     this.constantKeys = keys.filter(key => this.table.has(key) && this.table.isConstant(key));
-    this.figures = this.table.names.filter(name => !keys.includes(name) && !this.table.isConstant(name));
+    const figures = this.table.names.filter(name => !keys.includes(name));
+    const differ = figures.filter(name => !this.table.isConstant(name));
+    this.figures = differ.length > 0 ? differ : figures;
     this.figures.sort((a, b) => this.rank(a) - this.rank(b));
     this.filters = new Map();  // of a name: row => whether the point passes
     this.selected = new Uint8Array(points).fill(1);
@@ -70,24 +75,71 @@ export class Points {
     return this.selected.reduce((sum, is) => sum + is, 0);
   }
 
-  // The selected points than which none is better in both columns, from left to right.
+  hasUncertainty(name) {
+    return this.table.has(`${name}_uncertainty`);
+  }
+  // How far each value of a column may be off.
+  uncertainty(name) {
+    return this.hasUncertainty(name) ? this.column(`${name}_uncertainty`) : new Float64Array(this.size);
+  }
+
+  // The number of banks that the allocation of a point names.
+  banksUsed(row) {
+    const names = this.table.names.filter(name => name.startsWith('allocation.'))
+                      .flatMap(name => value(this.column(name)[row]).match(/[^[\], ]+/g) ?? []);
+    return new Set(names.filter(name => name !== 'none')).size;
+  }
+
+  // The points with a number in this column whose board fits its FPGA and loses no pixels; all of them if there
+  // is none.
+  sound(name) {
+    const numbers = this.column(name);
+    const limits = this.table.names.filter(each => /^area\..*_percent$/.test(each))
+                       .map(each => [each, 100])
+                       .concat(['left', 'right'].map(side => [`cameras.${side}.dropped_pixels`, 0]))
+                       .filter(([each]) => this.table.has(each))
+                       .map(([each, most]) => [this.column(each), most]);
+    const all = [...numbers.keys()].filter(row => typeof numbers[row] === 'number');
+    const sound = all.filter(row => limits.every(([values, most]) => values[row] <= most));
+    return sound.length > 0 ? sound : all;
+  }
+
+  // The fastest points that tie within the uncertainty of their rates, the cheapest first: that with the fewest
+  // banks, then with the fewest slices.
+  fastest(name) {
+    const [rates, open] = [this.column(name), this.uncertainty(name)];
+    const rows = this.sound(name);
+    const best = rows.reduce((a, b) => rates[b] > rates[a] ? b : a, rows[0]);
+    const slices = this.table.has('area.slices') ? this.column('area.slices') : rates.map(() => 0);
+    const ties = rows.filter(row => rates[best] - rates[row] <= open[best] + open[row])
+                     .map(row => ({row, banks: this.banksUsed(row), slices: slices[row], rate: rates[row]}));
+    ties.sort((a, b) => a.banks - b.banks || a.slices - b.slices || b.rate - a.rate);
+    return {best, ties};
+  }
+
+  // The selected points that no other beats, from the best x on. From one point to the next the column without
+  // uncertainty becomes worse, and the other one better by more than the uncertainty of both. Points that are the
+  // same in the former, and tie in the latter, are all on the front.
   front(x, y) {
-    const [xs, ys] = [this.column(x.name), this.column(y.name)];
-    const rows = [];
-    for (let row = 0; row < this.size; ++row) {
-      if (this.selected[row] && typeof xs[row] === 'number' && typeof ys[row] === 'number') rows.push(row);
-    }
-    const sign = axis => axis.best === 'min' ? 1 : -1;
-    rows.sort((a, b) => sign(x) * (xs[a] - xs[b]) || sign(y) * (ys[a] - ys[b]));
+    const worse = axis => this.column(axis.name).map(
+        v => typeof v !== 'number' ? NaN :
+            axis.best === 'min'    ? v :
+                                     -v);
+    const [xs, ys] = [worse(x), worse(y)];
+    const isOpen = this.hasUncertainty(x.name);
+    const [along, across] = isOpen ? [ys, xs] : [xs, ys];
+    const open = this.uncertainty((isOpen ? x : y).name);
+    const rows =
+        [...this.selected.keys()].filter(row => this.selected[row] && !Number.isNaN(xs[row] + ys[row]));
+    rows.sort((a, b) => along[a] - along[b] || across[a] - across[b]);
     const front = [];
-    let best = Infinity;
-    let bestX = NaN;
+    let last = rows[0];  // the next one has to beat it
     for (const row of rows) {
-      const value = sign(y) * ys[row];
-      if (value > best || (value === best && xs[row] !== bestX)) continue;
-      [best, bestX] = [value, xs[row]];
-      front.push(row);
+      const loss = across[row] - across[last];
+      const both = row === last ? 0 : open[row] + open[last];
+      if (loss < -both) last = row;
+      if (row === last || (loss <= both && along[row] === along[last])) front.push(row);
     }
-    return front.sort((a, b) => xs[a] - xs[b]);
+    return front.sort((a, b) => xs[a] - xs[b] || ys[b] - ys[a]);
   }
 }

@@ -16,6 +16,19 @@ export function scaleOf(points, axis, range) {
                                linear([low - room, high + room], range);
 }
 
+// The line around what a front beats, from the best x on: steps between its points, and on to the edges of the
+// drawing. `spots`: places of the points; `edges`: the worst x and y.
+export function stepsOf(spots, edges) {
+  if (spots.length === 0) return [];
+  const worse = edges.map(edge => edge === 0 ? Math.min : Math.max);
+  return spots
+      .flatMap((spot, i) => {
+        const before = spots[i - 1] ?? [spot[0], edges[1]];
+        return [worse.map((worst, axis) => worst(before[axis], spot[axis])), spot];
+      })
+      .concat([[edges[0], spots.at(-1)[1]]]);
+}
+
 // The colour of each point: [function of a row, entries of the legend].
 export function coloursOf(points, name) {
   if (!name) return [() => styleColour('--blue'), []];

@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <optional>
+#include <utility>
+#include <vector>
+
 #include "platform/config/board_yaml.h"
 #include "platform/conflicts.h"
 #include "platform/core_run.h"
@@ -41,6 +45,18 @@ TEST(RowsCsv, HasALineForEachStripOfAFrame) {
             "12,,,10,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0\n"
             "12,0,1,200,50,0,0,0,0,0,0,7,150,0,0,0,0,1,2,3\n"
             "12,2,2,100,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0\n");
+}
+
+TEST(ConflictsText, NamesTheFirstOfTheShortestPlacesWithMostOfTheWaits) {
+  const auto place = [](const std::vector<std::uint64_t>& values, std::size_t length = 1, int whole = 8) {
+    const std::optional<Range> found = place_of(values, length, whole);
+    return found ? std::pair(found->first, found->last) : std::pair(-1, -1);
+  };
+  EXPECT_EQ(place({20, 60, 20, 0, 0, 0, 0, 0}), std::pair(0, 1)) << "not rows 1..2";
+  EXPECT_EQ(place({10, 10, 0, 80, 0, 0, 0, 0}), std::pair(3, 3)) << "not rows 0..3";
+  EXPECT_EQ(place({0, 0, 0, 0, 0, 0, 20, 80}, 2, 15), std::pair(14, 14)) << "the last rows are fewer";
+  EXPECT_EQ(place({16, 16, 16, 16, 16, 7, 7, 6}), std::pair(0, 4));
+  EXPECT_EQ(place({14, 14, 14, 14, 14, 10, 10, 10}), std::pair(-1, -1)) << "six of eight are most of them";
 }
 
 TEST(ConflictsText, SumsFramesAndShowsTheBanksThatAreUsed) {

@@ -4,9 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
 #include <vector>
+
+#include "sw/report/diff_verdict.h"
 
 namespace stereotlm::report {
 namespace {
@@ -30,6 +33,26 @@ std::string words(const std::string& text) {
     if (c != ' ' || (!words.empty() && words.back() != ' ' && words.back() != '\n')) words += c;
   }
   return words;
+}
+
+TEST(DiffVerdict, TakesNoDifferenceWithinTheUncertaintyForAGain) {
+  const auto stats = [](double steady, double uncertainty) {
+    nlohmann::ordered_json json = {
+        {"frames", 10}, {"cycles", 1000}, {"blame", nlohmann::ordered_json::array()}};
+    json["frames_per_second"] = {{"core", 40}, {"steady", steady}, {"steady_uncertainty", uncertainty}};
+    return json;
+  };
+  const auto verdict = [&stats](double steady, double uncertainty) {
+    const nlohmann::ordered_json a = stats(20, 0.25);
+    const nlohmann::ordered_json b = stats(steady, uncertainty);
+    return diff_verdict({a, 40}, {b, 40}, nullptr);
+  };
+  EXPECT_THAT(verdict(20.5, 0.25),
+              StartsWith("A and B are equally fast within the uncertainty of 0.500 frames/s, "
+                         "steady: the core is not faster in B"));
+  EXPECT_THAT(verdict(20.5, 0.125), StartsWith("B is faster by 0.500 frames/s (2.50 %), steady: "));
+  EXPECT_THAT(verdict(19.5, 0.25), StartsWith("A and B are equally fast within the uncertainty"));
+  EXPECT_THAT(verdict(20, 0), StartsWith("A and B are equally fast, 20.000 frames/s, steady; "));
 }
 
 TEST(SettingsTable, ListsTheValuesThatDiffer) {

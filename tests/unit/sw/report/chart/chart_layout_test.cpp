@@ -152,6 +152,31 @@ void expect_all_named(const MemoryChart& chart, const platform::BoardConfig& boa
   EXPECT_EQ(drawn, links);
 }
 
+// The link of a port leaves a bank at its buffers there, that of the host at the name of the bank.
+void expect_links_at_buffers(const MemoryChart& chart, const platform::BoardConfig& board) {
+  for (const ChartEdge& edge : chart.edges) {
+    if (edge.link.to.compare(0, 5, "bank-") != 0) continue;
+    const std::vector<ChartText>& texts = block_named(chart, edge.link.to).texts;
+    double top = texts.front().box.y;
+    double bottom = texts.front().box.bottom();
+    for (const fpga::CorePort& port : fpga::kPorts) {
+      if (edge.link.from != std::string("port-") + port.name || edge.link.from == "port-host") continue;
+      top = chart.height;
+      bottom = 0;
+      for (const platform::PlacedBuffer& buffer : platform::buffers(board)) {
+        if (port.buffer != std::string(platform::name_of(buffer.buffer))) continue;
+        for (const ChartText& text : texts) {
+          if (text.text.find(buffer.label()) == std::string::npos) continue;
+          top = std::min(top, text.box.y);
+          bottom = std::max(bottom, text.box.bottom());
+        }
+      }
+    }
+    const double y = edge.way.back().y;
+    EXPECT_TRUE(y > top && y < bottom) << edge.link.id() << ": " << y << " in " << top << ".." << bottom;
+  }
+}
+
 TEST(ChartLayout, OfRandomBoardsHasRoomForEverything) {
   for (std::uint64_t seed = 0; seed < 400 && !testing::Test::HasFailure(); ++seed) {
     SCOPED_TRACE(seed);
@@ -165,6 +190,7 @@ TEST(ChartLayout, OfRandomBoardsHasRoomForEverything) {
     expect_edges_clear(chart);
     expect_edges_apart(chart);
     expect_all_named(chart, board, extent);
+    expect_links_at_buffers(chart, board);
   }
 }
 

@@ -57,14 +57,21 @@ void expect_sums_of(const Statistics& statistics, const BoardConfig& board) {
   if (!statistics.computer) return;
   const platform::ComputerStatistics& around = *statistics.computer;
   const double us = static_cast<double>(around.pci_clocks) / board.pci.clock_mhz;
+  const bool to_host = board.capture.destination == platform::CaptureDestination::kHostMemory;
+  std::uint64_t of_host_memory = 0;
   const std::map<std::string, std::string> links = {{"host", "edge-cpu-pci"},
                                                     {"left_capture", "edge-left_capture-pci"},
                                                     {"right_capture", "edge-right_capture-pci"},
                                                     {"bridge", "edge-bridge-pci"},
                                                     {"load", "edge-load-pci"}};
-  for (const platform::PciMasterStatistics& master : around.pci_masters)
+  for (const platform::PciMasterStatistics& master : around.pci_masters) {
     expect_close(traffic.megabytes_per_second.at(links.at(master.name)),
                  4 * static_cast<double>(master.words) / us, master.name);
+    const bool is_capture = master.name == "left_capture" || master.name == "right_capture";
+    if (master.name == "bridge" || (to_host && is_capture)) of_host_memory += master.words;
+  }
+  expect_close(traffic.megabytes_per_second.at("edge-pci-host_memory"),
+               4 * static_cast<double>(of_host_memory) / us, "host memory");
   expect_close(traffic.megabytes_per_second.at("edge-pci-bridge"),
                4 * static_cast<double>(around.posted_words) / us, "posted");
 }

@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <tuple>
+
+#include "sw/report/chart/chart_text.h"
 #include "tests/unit/sw/report/chart/random_chart.h"
 
 namespace stereotlm::report {
@@ -32,6 +35,25 @@ TEST(MemoryChart, HasTheWholeNumberOfEachLinkOfARun) {
   EXPECT_THAT(svg, Not(HasSubstr("part-pci")));
 }
 
+TEST(MemoryChart, ColoursABankAndItsBarByHowBusyItIs) {
+  test::SplitMix64 random(7);
+  ChartTraffic traffic = random_chart_traffic({}, ChartExtent::kBoard, random);
+  for (const auto& [percent, colour, width] :
+       {std::tuple(99.8, "load4", "147.7"), std::tuple(50.0, "load3", "74"),
+        std::tuple(24.9, "load1", "36.85"), std::tuple(0.0, "load0", "0")}) {
+    traffic.busy_percent["bank-bank0"] = percent;
+    std::string svg = memory_chart_svg({}, traffic);
+    svg.erase(0, svg.find("id=\"bank-bank0\""));
+    svg.erase(svg.find("</g>"));
+    const std::string fill = std::string("class=\"fill-") + colour + '"';
+    EXPECT_THAT(svg, HasSubstr("rx=\"4\" " + fill)) << percent;
+    EXPECT_THAT(svg, HasSubstr(std::string("width=\"") + width + "\" height=\"8\" rx=\"2\" " + fill))
+        << "of 148";
+    EXPECT_THAT(svg, HasSubstr(">busy " + measured(percent) + " %</text>"));
+    EXPECT_THAT(svg, HasSubstr("rx=\"0\" class=\"fill-used stroke-memory\"")) << "words";
+  }
+}
+
 TEST(MemoryChart, ShowsNamesAsText) {
   platform::BoardConfig board;
   board.name = "<script>alert(\"1\")</script>";
@@ -47,15 +69,15 @@ TEST(MemoryChart, ShowsNamesAsText) {
 // A viewer without CSS variables takes the attributes, and one that has them either theme.
 TEST(MemoryChart, HasEachColourAsAttributeAndAsVariableOfBothThemes) {
   const std::string svg = memory_chart_svg({}, ChartExtent::kComputer);
-  EXPECT_THAT(svg, HasSubstr("class=\"fill-memory stroke-line\" fill=\"#fff1d6\" stroke=\"#59636e\""));
+  EXPECT_THAT(svg, HasSubstr("class=\"fill-memory stroke-line\" fill=\"#f1ebfb\" stroke=\"#59636e\""));
   const std::string rules = svg.substr(0, svg.find("</style>"));
   const auto count = [&rules](const std::string& text) {
     int found = 0;
     for (std::size_t at = rules.find(text); at != std::string::npos; at = rules.find(text, at + 1)) ++found;
     return found;
   };
-  EXPECT_EQ(count("--mc-memory: #fff1d6;"), 2) << "light, and print";
-  EXPECT_EQ(count("--mc-memory: #3a2d18;"), 2) << "dark, and forced dark";
+  EXPECT_EQ(count("--mc-memory: #f1ebfb;"), 2) << "light, and print";
+  EXPECT_EQ(count("--mc-memory: #2c2440;"), 2) << "dark, and forced dark";
   EXPECT_EQ(count("fill: var(--mc-memory)"), 1);
   EXPECT_EQ(rules.find("var("), rules.find("@supports (color: var(") + 18)
       << "only where variables are known";

@@ -5,7 +5,7 @@
 
 #include "sw/report/pixel_comparison.h"
 
-namespace stereotlm::cli {
+namespace stereotlm::report {
 
 // A run as the verdict needs it: its stats.json, and the clock of its core.
 struct JudgedRun {
@@ -15,7 +15,7 @@ struct JudgedRun {
 
 // The comparison of two runs in one sentence: which is faster, by how much, where the difference arises, and
 // whether the disparities are the same. The rates are the steady ones if both runs have them, else those
-// from power-up, else those of the core. `pixels`: null if the disparities are not compared.
-std::string diff_verdict(const JudgedRun& a, const JudgedRun& b, const report::PixelComparison* pixels);
+// from power-up, else those of the core. What lies within the uncertainty of both is no difference. `pixels`: null if the disparities are not compared.
+std::string diff_verdict(const JudgedRun& a, const JudgedRun& b, const PixelComparison* pixels);
 
-}  // namespace stereotlm::cli
+}  // namespace stereotlm::report

@@ -1,4 +1,4 @@
-#include "sw/cli/diff_verdict.h"
+#include "sw/report/diff_verdict.h"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,7 @@
 
 #include "sw/report/wait_text.h"
 
-namespace stereotlm::cli {
+namespace stereotlm::report {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -23,13 +23,16 @@ struct Rates {
   const char* kind;
   double a;
   double b;
+  double uncertainty;  // of both
 };
 
 Rates rates_of(const Json& a, const Json& b) {
   for (const auto& [key, kind] : {std::pair("steady", "steady"), std::pair("system", "from power-up")}) {
-    if (a.contains(key) && b.contains(key)) return {kind, a.at(key), b.at(key)};
+    if (!a.contains(key) || !b.contains(key)) continue;
+    const std::string uncertainty = std::string(key) + "_uncertainty";
+    return {kind, a.at(key), b.at(key), a.value(uncertainty, 0.0) + b.value(uncertainty, 0.0)};
   }
-  return {"core only", a.at("core"), b.at("core")};
+  return {"core only", a.at("core"), b.at("core"), 0};
 }
 
 double cycles_a_frame(const Json& stats) {
@@ -65,21 +68,21 @@ std::string cause(const JudgedRun& a, const JudgedRun& b, bool b_is_faster) {
   if (largest.second >= more / 2) {
     const auto& [port, bank, by] = largest.first;
     return fmt::format("in {} {} waits {:.0f} cycles a frame more on {} for {}", b_is_faster ? "A" : "B",
-                       port, largest.second, bank, report::cause_text(by));
+                       port, largest.second, bank, cause_text(by));
   }
   return fmt::format("a frame takes {:.0f} cycles in A, limited by {}, and {:.0f} in B, limited by {}",
                      cycles_a_frame(a.stats), a.stats.at("bound").at("core_limited_by").get<std::string>(),
                      cycles_a_frame(b.stats), b.stats.at("bound").at("core_limited_by").get<std::string>());
 }
 
-std::string pixels_text(const report::PixelComparison* pixels) {
+std::string pixels_text(const PixelComparison* pixels) {
   if (pixels == nullptr || pixels->frames() == 0) return "the disparities are not compared";
   return pixels->first() ? "the disparities differ" : "the disparities are the same";
 }
 
 }  // namespace
 
-std::string diff_verdict(const JudgedRun& a, const JudgedRun& b, const report::PixelComparison* pixels) {
+std::string diff_verdict(const JudgedRun& a, const JudgedRun& b, const PixelComparison* pixels) {
   const Rates rates = rates_of(a.stats.at("frames_per_second"), b.stats.at("frames_per_second"));
   if (rates.a == rates.b) {
     return fmt::format("A and B are equally fast, {:.3f} frames/s, {}; {}.", rates.a, rates.kind,
@@ -91,8 +94,11 @@ std::string diff_verdict(const JudgedRun& a, const JudgedRun& b, const report::P
   constexpr double kShown = 0.0005;  // frames/s; less rounds to 0.000
   if (gain < kShown)
     return fmt::format("A and B are equally fast to 0.001 frames/s, {}: {}.", rates.kind, why);
+  if (gain <= rates.uncertainty)
+    return fmt::format("A and B are equally fast within the uncertainty of {:.3f} frames/s, {}: {}.",
+                       rates.uncertainty, rates.kind, why);
   return fmt::format("{} is faster by {:.3f} frames/s ({:.2f} %), {}: {}.", b_is_faster ? "B" : "A", gain,
                      100 * gain / std::min(rates.a, rates.b), rates.kind, why);
 }
 
-}  // namespace stereotlm::cli
+}  // namespace stereotlm::report
