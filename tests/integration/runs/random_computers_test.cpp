@@ -155,7 +155,7 @@ std::string figures_of(const test::PlainComputerResult& plain, const test::Plain
   figures.decimal("frames_per_second.core", 1e6 * static_cast<double>(mhz.numerator) /
                                                 static_cast<double>(mhz.denominator) * frames / cycles);
   figures.decimal("frames_per_second.system", frames * 1e12 / static_cast<double>(last_ps));
-  const std::size_t turn = turn_of(input.board);
+  const std::size_t turn = turn_of(input.board.core);
   std::size_t window = 0;
   while (turn + window + turn <= plain.deliveries.size()) window += turn;
   if (window > 0) {

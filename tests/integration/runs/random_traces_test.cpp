@@ -223,7 +223,8 @@ Traced trace(const Case& of, Fidelity fidelity, const CycleWindow& window, bool 
     files.push_back({trace::Format::kPerfetto, scratch.path() / "perfetto"});
     files.push_back({trace::Format::kSqlite, scratch.path() / "sqlite"});
   }
-  const std::unique_ptr<trace::TraceWriter> writer = trace::make_writer(files, of.board, window);
+  const std::unique_ptr<trace::TraceWriter> writer =
+      trace::make_writer(files, of.board, trace::TraceWindow{window});
   KeptCycles cycles(keeps_cycles, *writer);
   simulation->trace(window, cycles, *writer);
   Traced traced;

@@ -149,12 +149,9 @@ TEST_F(PerfettoWriterTest, AnArrowLeadsFromTheAccessesAtTheBankOfTheWaitAlone) {
   const std::size_t host = fpga::requester_of(fpga::HostTraffic::kCapture);
   platform::FrameRuns frame;
   frame.strip_ends = {100};
-  frame.runs = {{0, 0, 100, 0, 0, std::nullopt, 4},
-                {0, 0, 100, 0, 0, host, 1},
-                {0, 0, 100, 1, 1, std::nullopt, 4},
-                {0, 0, 100, 1, 1, host, 3},
-                {0, 0, 100, host, 0, std::nullopt, 1},
-                {0, 0, 100, host, 1, std::nullopt, 3}};
+  frame.runs = {{0, 0, 100, 0, 0, std::nullopt, 4},    {0, 0, 100, 0, 0, host, 1},
+                {0, 0, 100, 1, 1, std::nullopt, 4},    {0, 0, 100, 1, 1, host, 3},
+                {0, 0, 100, host, 0, std::nullopt, 1}, {0, 0, 100, host, 1, std::nullopt, 3}};
   test::MadeTrace trace;
   trace.frames = {frame};
   EXPECT_EQ(expect_arrows_to_waits(written(trace)), 2);
