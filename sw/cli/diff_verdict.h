@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -17,5 +18,8 @@ struct JudgedRun {
 // whether the disparities are the same. The rates are the steady ones if both runs have them, else those
 // from power-up, else those of the core. `pixels`: null if the disparities are not compared.
 std::string diff_verdict(const JudgedRun& a, const JudgedRun& b, const report::PixelComparison* pixels);
+
+// The sum of `frame_cycles`.
+std::uint64_t cycles_of_frames(const nlohmann::ordered_json& stats);
 
 }  // namespace stereotlm::cli
