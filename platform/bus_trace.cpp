@@ -39,6 +39,8 @@ BusTrace::BusTrace(const BoardConfig& board, const fpga::CycleWindow& window, Bu
 
 void BusTrace::hand_out(std::uint64_t now_ps) {
   settle_posted(now_ps);
+  if (show_words_) show_words_(now_ps);
+  for (Fifo& fifo : fifos_) fifo.settle(now_ps);
   // The order in which the two buses and the queues report depends on the fidelity.
   std::sort(bursts_.begin(), bursts_.end(), [](const EndedBurst& a, const EndedBurst& b) {
     return std::tie(a.burst.end_ps, a.burst.bus) < std::tie(b.burst.end_ps, b.burst.bus);
@@ -60,6 +62,18 @@ void BusTrace::hand_out(std::uint64_t now_ps) {
   levels_.erase(std::remove_if(levels_.begin(), levels_.end(),
                                [=](const QueueLevel& level) { return level.time_ps <= now_ps; }),
                 levels_.end());
+}
+
+void BusTrace::Fifo::settle(std::uint64_t now_ps) {
+  std::sort(changes_.begin(), changes_.end(),
+            [](const Change& a, const Change& b) { return a.time_ps < b.time_ps; });
+  auto change = changes_.begin();
+  while (change != changes_.end() && change->time_ps <= now_ps) {
+    const std::uint64_t time_ps = change->time_ps;
+    for (; change != changes_.end() && change->time_ps == time_ps; ++change) words_ += change->words;
+    trace_.add({name_, time_ps, static_cast<std::uint64_t>(words_)});
+  }
+  changes_.erase(changes_.begin(), change);
 }
 
 void BusTrace::pci_burst_ended(const pci::EndedPciBurst& burst) {

@@ -4,8 +4,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "models/capture/capture_observer.h"
@@ -45,6 +47,8 @@ class BusTrace : private pci::PciBusObserver,
   fpga::LocalBusObserver& local_bus() { return *this; }
   fpga::FrameObserver& core() { return *this; }
   capture::FifoObserver& capture_fifo(std::size_t side) { return fifos_[side]; }
+  // `show(now_ps)` lets both observers of FIFOs receive all words up to a time.
+  void set_show_words(std::function<void(std::uint64_t)> show) { show_words_ = std::move(show); }
 
   // Bursts that begin at `now_ps` or later may be skipped if they end before this time.
   std::uint64_t skips_end_ps(std::uint64_t now_ps) const { return now_ps <= end_ps_ ? begin_ps_ : kNever; }
@@ -58,11 +62,31 @@ class BusTrace : private pci::PciBusObserver,
   class Fifo : public capture::FifoObserver {
    public:
     Fifo(BusTrace& trace, const char* name) : trace_(trace), name_(name) {}
-    void fifo_holds(std::uint64_t now_ps, std::size_t words) override { trace_.add({name_, now_ps, words}); }
+    void word_came(std::uint64_t time_ps) override { add(came_ps_, time_ps, 1); }
+    void words_left(std::uint64_t time_ps, std::size_t words) override {
+      add(left_ps_, time_ps, -static_cast<std::int64_t>(words));
+    }
+    // All words up to `now_ps` have come or left.
+    void settle(std::uint64_t now_ps);
 
    private:
+    struct Change {
+      std::uint64_t time_ps;
+      std::int64_t words;
+    };
+    // A change that is reported again is left out.
+    void add(std::uint64_t& last_ps, std::uint64_t time_ps, std::int64_t words) {
+      if (time_ps <= last_ps) return;
+      last_ps = time_ps;
+      changes_.push_back({time_ps, words});
+    }
+
     BusTrace& trace_;
     const char* name_;
+    std::uint64_t came_ps_ = 0;  // the last word that has come
+    std::uint64_t left_ps_ = 0;
+    std::vector<Change> changes_;
+    std::int64_t words_ = 0;
   };
   struct Words {
     std::uint64_t time_ps = kNever;
@@ -103,6 +127,7 @@ class BusTrace : private pci::PciBusObserver,
   Clock core_clock_;
   Clock local_clock_;
   std::vector<std::string> banks_;
+  std::function<void(std::uint64_t)> show_words_;
   std::array<Fifo, 2> fifos_{Fifo(*this, "left_capture"), Fifo(*this, "right_capture")};
 
   // The window. Both are kNever until the frame of a window begins; the second is, until that frame ends.

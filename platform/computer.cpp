@@ -65,6 +65,10 @@ void Computer::trace_buses(BusTrace& trace) {
   board.core.observe(trace.core());
   left_capture.observe(trace.capture_fifo(0));
   right_capture.observe(trace.capture_fifo(1));
+  trace.set_show_words([this](std::uint64_t now_ps) {
+    left_capture.show_words(now_ps);
+    right_capture.show_words(now_ps);
+  });
 }
 
 std::uint64_t Computer::work_done() {

@@ -172,6 +172,9 @@ void ComputerLoop::trace_buses(BusTrace& trace) {
   board_.observe(trace.core());
   for (std::size_t side = 0; side < captures_.size(); ++side)
     captures_[side].observe(trace.capture_fifo(side));
+  trace.set_show_words([this](std::uint64_t now_ps) {
+    for (const capture::CaptureControl& capture : captures_) capture.show_words(now_ps);
+  });
   trace_ = &trace;
 }
 

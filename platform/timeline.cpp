@@ -172,7 +172,19 @@ void Timeline::dma_started(unsigned channel, std::uint64_t now_ps) {
     wait("ring", number, pair(number).captured_ps, now_ps,
          {{"copy", earlier(number, 1, &Pair::copy_end_ps)},
           {"input_buffer", earlier(number, inputs_, &Pair::done_ps)}});
+    fetch(Buffer::kLeftImage, now_ps);
   }
+}
+
+// The DMA begins to fetch the descriptor of a picture of the pair that is copied.
+void Timeline::fetch(Buffer picture, std::uint64_t now_ps) {
+  TimelineEvent event;
+  event.kind = EventKind::kUpload;
+  event.what = platform::name_of(picture);
+  event.frame = copies_begun_ - 1;
+  event.camera_frame = pair(*event.frame).camera_frame;
+  event.begin_ps = now_ps;
+  transfers_[kToBoard] = event;
 }
 
 void Timeline::dma_done(unsigned channel, std::uint64_t now_ps) {
@@ -206,11 +218,12 @@ void Timeline::transfer_begun(const pci::DmaTransfer& transfer) {
 }
 
 void Timeline::transfer_ended(unsigned channel, std::uint64_t now_ps) {
-  TimelineEvent& event = *transfers_[channel];
+  TimelineEvent event = *std::exchange(transfers_[channel], std::nullopt);
   event.end_ps = now_ps;
   dma_words_ += event.words;
   ended_.push_back(event);
-  transfers_[channel].reset();
+  if (event.what == std::string_view(platform::name_of(Buffer::kLeftImage)))
+    fetch(Buffer::kRightImage, now_ps);
 }
 
 void Timeline::frame_begun(std::uint64_t strobe_ps) {

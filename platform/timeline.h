@@ -119,6 +119,7 @@ class Timeline : private pci::BridgeObserver, private fpga::FrameObserver {
 
   void begin_interrupt(std::size_t interrupt, std::optional<std::uint64_t> frame, std::uint64_t now_ps);
   void end_interrupt(std::size_t interrupt, std::uint64_t now_ps);
+  void fetch(Buffer picture, std::uint64_t now_ps);
   void dma_done(unsigned channel, std::uint64_t now_ps);
   void wait(const char* who, std::uint64_t frame, std::uint64_t from_ps, std::uint64_t to_ps,
             std::initializer_list<Reason> reasons);

@@ -54,9 +54,8 @@ struct BusBurst {
 
 // A queue holds this number of words from a time on.
 //
-// - The FIFO of a capture board: its complete words, as each burst of the board begins (address_ps) and as it
-//   ends (end_ps). A word that is being filled does not count. No level is given between these times, when
-//   pixels arrive and words leave.
+// - The FIFO of a capture board: its complete words. A word comes with its last pixel, and leaves at the end of
+//   its data clock, or of the burst that loses it. There is one level for each time.
 // - The posted words: as each write is posted, and as the places of a posted burst become free, which is the
 //   end of its idle clock. Of two levels at the same time the later one holds.
 struct QueueLevel {

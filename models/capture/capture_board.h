@@ -67,6 +67,7 @@ class CaptureBoard : public sc_core::sc_module,
   // See CaptureControl.
   void observe(CaptureObserver& observer) { control_.observe(observer); }
   void observe(FifoObserver& observer) { control_.observe(observer); }
+  void show_words(std::uint64_t now_ps) const { control_.show_words(now_ps); }
 
   // Counts up to the current time.
   Stats stats() const;

@@ -132,7 +132,6 @@ pci::PciBurst CaptureControl::begin_burst(std::uint64_t address_clock_ps) {
   bus_state_ = BusState::kBurst;
   ++stats_.bursts;
   fifo_.advance(address_clock_ps);
-  show_fifo(address_clock_ps);
   const FrameWords words = fifo_.grant();
   burst_words_.resize(static_cast<std::size_t>(words.count));
   camera_->copy_words(words.first, words.count, burst_words_.data());
@@ -171,13 +170,7 @@ void CaptureControl::end_burst(const pci::BurstResult& result) {
     fifo_.transfer(result.end_ps, result, slot_->clock());
     stats_.words += result.words;
   }
-  show_fifo(result.end_ps);
   proceed(result.end_ps);
-}
-
-void CaptureControl::show_fifo(std::uint64_t now_ps) const {
-  if (fifo_observer_ != nullptr)
-    fifo_observer_->fifo_holds(now_ps, static_cast<std::size_t>(fifo_.complete_words()));
 }
 
 void CaptureControl::skip_line(std::uint64_t now_ps, std::uint64_t bursts) {
@@ -188,15 +181,19 @@ void CaptureControl::skip_line(std::uint64_t now_ps, std::uint64_t bursts) {
   proceed(now_ps);
 }
 
-CaptureControl::Stats CaptureControl::stats(std::uint64_t now_ps) const {
-  Stats stats = stats_;
+CaptureFifo CaptureControl::fifo_at(std::uint64_t now_ps) const {
   CaptureFifo fifo = fifo_;
   if (bus_state_ == BusState::kBurst) {
     fifo.transfer(now_ps, slot_->transferred(now_ps), slot_->clock());
   } else if (capturing()) {
     fifo.advance(now_ps);
   }
-  stats.dropped_pixels = fifo.dropped_pixels();
+  return fifo;
+}
+
+CaptureControl::Stats CaptureControl::stats(std::uint64_t now_ps) const {
+  Stats stats = stats_;
+  stats.dropped_pixels = fifo_at(now_ps).dropped_pixels();
   return stats;
 }
 

@@ -58,7 +58,11 @@ class CaptureControl : public FrameReceiver, public CapturePartner, public pci::
 
   // `observer` outlives the board.
   void observe(CaptureObserver& observer) { observer_ = &observer; }
-  void observe(FifoObserver& observer) { fifo_observer_ = &observer; }
+  void observe(FifoObserver& observer) { fifo_.observe(observer); }
+  // The observer has received all words up to `now_ps` when this returns.
+  void show_words(std::uint64_t now_ps) const {
+    if (fifo_.now_ps() < now_ps) fifo_at(now_ps);
+  }
 
   // The time at which step() is to be called next; kNever: a call may change it.
   std::uint64_t next_ps() const { return next_ps_; }
@@ -117,7 +121,7 @@ class CaptureControl : public FrameReceiver, public CapturePartner, public pci::
   void proceed(std::uint64_t now_ps);
   void finish(std::uint64_t now_ps);
   bool fits(const pci::BurstResult& result) const;
-  void show_fifo(std::uint64_t now_ps) const;
+  CaptureFifo fifo_at(std::uint64_t now_ps) const;
   int next_line_word() const { return fifo_.next_row() * fifo_.words_per_line(); }
 
   CaptureRegisterFile register_file_;
@@ -127,7 +131,6 @@ class CaptureControl : public FrameReceiver, public CapturePartner, public pci::
   CapturePartner* partner_ = nullptr;
   std::vector<FrameCamera*> triggered_;
   CaptureObserver* observer_ = nullptr;
-  FifoObserver* fifo_observer_ = nullptr;
 
   VideoFrame frame_;                                // the last frame that has begun; without timing: none
   Readiness readiness_ = Readiness::kNotEvaluated;  // for that frame

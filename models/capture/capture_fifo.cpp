@@ -29,7 +29,7 @@ void CaptureFifo::begin_line(int row) {
   line_end_ps_ = arrival_ps(timing_->width() - 1, row);
   next_line_ps_ = row + 1 < timing_->height() ? arrival_ps(0, row + 1) : kNever;
   pixels_ = 0;
-  taken_ = 0;
+  taken_ = shown_ = 0;
   drops_line_ = false;
 }
 
@@ -43,6 +43,7 @@ void CaptureFifo::take(std::uint64_t now_ps, const LeftBy& left_by) {
   for (;; begin_line(row_ + 1)) {
     pixels_ = line_end_ps_ <= now_ps ? timing_->width() : timing_->pixels_by(row_, now_ps - begin_ps_);
     take_words((pixels_ + kPixelsPerWord - 1) / kPixelsPerWord, left_by);
+    if (observer_ != nullptr) show_words();
     if (now_ps < next_line_ps_) return;
   }
 }
@@ -63,11 +64,19 @@ void CaptureFifo::take_words(int end, const LeftBy& left_by) {
   dropped_pixels_ += static_cast<std::uint64_t>(timing_->width() - word * kPixelsPerWord);
 }
 
+void CaptureFifo::show_words() {
+  for (; shown_ < std::min(taken_, pixels_ / kPixelsPerWord); ++shown_)
+    observer_->word_came(arrival_ps((shown_ + 1) * kPixelsPerWord - 1, row_));
+}
+
 void CaptureFifo::skip_line(std::uint64_t now_ps) {
   begin_line(row_ + 1);
   pixels_ = timing_->width();
   taken_ = words_per_line_;
   now_ps_ = now_ps;
+  if (observer_ == nullptr) return;
+  show_words();
+  observer_->words_left(now_ps, static_cast<std::size_t>(taken_));
 }
 
 // The number of words changes with the first and with the last pixel of each word.
@@ -126,11 +135,17 @@ void CaptureFifo::transfer(std::uint64_t now_ps, const pci::BurstResult& transfe
     return static_cast<int>(transferred.words_before(running_clock));
   });
   remove(static_cast<int>(transferred.words));
+  if (observer_ == nullptr) return;
+  for (std::size_t left = 0; left < transferred.words; left += transferred.words_per_clock) {
+    const std::uint64_t data_clock = transferred.first_data_clock + left / transferred.words_per_clock;
+    observer_->words_left(clock.edge_ps(data_clock + 1), transferred.words_before(data_clock + 1) - left);
+  }
 }
 
 void CaptureFifo::lose(std::uint64_t now_ps, int words) {
   take(now_ps, [=](std::uint64_t time_ps) { return time_ps < now_ps ? 0 : words; });
   remove(words);
+  if (observer_ != nullptr) observer_->words_left(now_ps, static_cast<std::size_t>(words));
 }
 
 std::uint64_t CaptureFifo::next_ps() const {

@@ -7,6 +7,7 @@
 
 #include "models/capture/camera_timing.h"
 #include "models/capture/capture_config.h"
+#include "models/capture/capture_observer.h"
 #include "models/clock.h"
 #include "models/kernels/words.h"
 #include "models/pci/pci_slot.h"
@@ -37,6 +38,9 @@ class CaptureFifo {
   // Throws std::invalid_argument if the configuration has problems.
   explicit CaptureFifo(const CaptureBoardConfig& config);
 
+  // `observer` outlives the FIFO. Copies of the FIFO report to it too.
+  void observe(FifoObserver& observer) { observer_ = &observer; }
+
   // The FIFO must be empty. `timing` outlives the frame.
   void begin_frame(const CameraTiming& timing, std::uint64_t begin_ps);
   // Advances the FIFO to `now_ps`: pixels have arrived up to then, and no word has left.
@@ -52,6 +56,7 @@ class CaptureFifo {
 
   // The following functions give the state at the time of the last advance(), transfer() or lose().
 
+  std::uint64_t now_ps() const { return now_ps_; }
   // Returns the time at which the FIFO requests the bus or the frame finishes; the present if that time has
   // passed. Not to be called while a burst runs.
   std::uint64_t next_ps() const;
@@ -96,11 +101,13 @@ class CaptureFifo {
   void append(int words);
   void remove(int words);
   void begin_line(int row);
+  void show_words();
   bool takes_no_more() const { return drops_line_ || taken_ == words_per_line_; }
   std::uint64_t arrival_ps(int column, int row) const { return begin_ps_ + timing_->pixel_ps(column, row); }
 
   int fifo_words_;
   int trigger_words_;
+  FifoObserver* observer_ = nullptr;
   const CameraTiming* timing_ = nullptr;
   std::uint64_t begin_ps_ = 0;
   std::uint64_t now_ps_ = 0;
@@ -113,6 +120,7 @@ class CaptureFifo {
   std::uint64_t next_line_ps_ = 0;    // the first pixel of the next line arrives; kNever: no next line
   int pixels_ = 0;                    // how many of its pixels have arrived
   int taken_ = 0;                     // how many of its words have entered the FIFO
+  int shown_ = 0;                     // how many of its words the observer has received
   bool drops_line_ = false;           // its other words are dropped
   std::uint64_t dropped_pixels_ = 0;  // pixels dropped up to the end of the line
 

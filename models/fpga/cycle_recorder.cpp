@@ -93,7 +93,7 @@ void CycleRecorder::record(std::uint64_t cycle, const CoreControl::Decision& dec
   }
   out.result_words = static_cast<std::uint32_t>(control.result().queued());
   out.works = decision.work;
-  report(out);
+  observer_.cycle(out);
 }
 
 void CycleRecorder::set_item(PortCycle& port, memory::Port number, const CoreControl& control) const {
@@ -172,7 +172,7 @@ void CycleRecorder::report_accesses(std::uint64_t end_cycle) {
     CoreCycle out;
     out.cycle = accesses_.front().cycle;
     set_access(out);
-    if (is_inside(out.cycle)) report(out);
+    if (is_inside(out.cycle)) observer_.cycle(out);
     drop_accesses(out.cycle + 1);
   }
 }

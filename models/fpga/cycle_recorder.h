@@ -65,8 +65,6 @@ class CycleRecorder {
   void hand_out(std::uint64_t end_cycle) {
     if (!frame_) report_accesses(end_cycle);
   }
-  // The number of cycles that the observer has received.
-  std::uint64_t observed_cycles() const { return observed_cycles_; }
 
  private:
   struct Accesses {
@@ -77,10 +75,6 @@ class CycleRecorder {
   };
 
   bool is_inside(std::uint64_t cycle) const;
-  void report(const CoreCycle& cycle) {
-    ++observed_cycles_;
-    observer_.cycle(cycle);
-  }
   void record(std::uint64_t cycle, const CoreControl::Decision& decision, bool host_requests,
               memory::PortMask granted, const CoreControl& control, const memory::Arbitration& arbitration);
   void set_item(PortCycle& port, memory::Port number, const CoreControl& control) const;
@@ -109,7 +103,6 @@ class CycleRecorder {
   };
   std::array<Place, kCorePortCount> places_{};
   std::deque<Accesses> accesses_;  // of the host, not handed out yet
-  std::uint64_t observed_cycles_ = 0;
 };
 
 }  // namespace stereotlm::fpga

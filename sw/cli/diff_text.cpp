@@ -43,6 +43,7 @@ struct RunFigures {
       };
       if (ends_in(".utilization") || ends_in(".megabytes_per_second") || value.path == "frame_cycles")
         continue;
+      if (value.path == "cycles") value.value = static_cast<std::int64_t>(report::cycles_of_frames(document));
       values.push_back(std::move(value));
     }
   }

@@ -126,7 +126,7 @@ class InputLoader {
     if (trace.files.empty()) return;
     for (const trace::TraceFile& file : trace.files) check_trace_file(file.path);
     if (!problems_.empty()) return;
-    input_.trace_window = trace.window;
+    if (trace.window) input_.trace_window = trace.window->cycles;
     attempt("--trace", [&] { input_.trace = trace::make_writer(trace.files, input_.board, trace.window); });
   }
 

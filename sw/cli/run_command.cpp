@@ -102,8 +102,6 @@ int run(const RunOptions& options) {
   const bool compares = verification && done == input.frames;
   if (compares) compared = verification->compare(statistics);
   if (compared.interrupted) runs::leave_out_verify(input);
-  if (input.trace_window && simulation->traced_cycles() == 0)
-    process::say("note", "--trace-window: has no cycle in which a frame ran or the host accessed a bank");
   if (input.trace) input.trace->complete({});  // before the earlier result is replaced: this may fail
   const bool is_right = runs::deliver(input, statistics, simulation->last(), compared.failed);
   if (input.trace) input.trace->commit();

@@ -15,7 +15,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kWindowForms =
-    "frame=F, frame=F,rows=A..B, frame=F,cycles=A..B or cycles=A..B, with integers and A not above B";
+    "frame=F, frame=F,rows=A..B, frame=F,cycles=A..B or cycles=A..B, with integers and A not above B; each "
+    "may "
+    "end with ,longest-wait";
 
 std::vector<std::string_view> parts_of(std::string_view text, char separator) {
   std::vector<std::string_view> parts;
@@ -40,15 +42,18 @@ bool read_range(std::string_view text, fpga::CycleWindow& window) {
 }
 
 // Nothing if the text has none of the forms.
-std::optional<fpga::CycleWindow> window_of(std::string_view text) {
-  fpga::CycleWindow window;
+std::optional<trace::TraceWindow> window_of(std::string_view text) {
+  trace::TraceWindow found;
+  fpga::CycleWindow& window = found.cycles;
   bool has_range = false;
   for (const std::string_view part : parts_of(text, ',')) {
-    const std::size_t equals = part.find('=');
-    if (equals == std::string_view::npos) return std::nullopt;
+    if (found.around_longest_wait) return std::nullopt;  // was not the last part
+    const std::size_t equals = std::min(part.find('='), part.size());
     const std::string_view key = part.substr(0, equals);
-    const std::string_view value = part.substr(equals + 1);
-    if (key == "frame" && !window.frame) {
+    const std::string_view value = part.substr(std::min(equals + 1, part.size()));
+    if (part == "longest-wait" && (has_range || window.frame)) {
+      found.around_longest_wait = true;
+    } else if (key == "frame" && !window.frame) {
       window.frame = number_of<std::uint64_t>(value);
       if (!window.frame) return std::nullopt;
     } else if ((key == "rows" || key == "cycles") && !has_range) {
@@ -60,7 +65,7 @@ std::optional<fpga::CycleWindow> window_of(std::string_view text) {
     }
   }
   if (window.unit == fpga::CycleWindow::Unit::kRows && !window.frame) return std::nullopt;
-  return window;
+  return found;
 }
 
 }  // namespace
@@ -76,7 +81,7 @@ void TraceOptions::add_to(CLI::App& command) {
       command, "--trace-window", "WINDOW",
       "Trace each cycle of a part of the run: frame=F[,rows=A..B | ,cycles=A..B] or cycles=A..B, the "
       "limits included; frames and rows count from 0, cycles from the frame's first or from power-up; "
-      "vcd needs it");
+      "with ,longest-wait only the cycles around the longest wait in it; vcd needs a window");
 }
 
 void TraceOptions::check_usage(process::Problems& problems) {
@@ -127,14 +132,15 @@ void TraceOptions::check_files(process::Problems& problems) {
 void TraceOptions::check_window(const platform::BoardConfig& board, std::uint64_t frames,
                                 process::Problems& problems) const {
   if (!window) return;
-  if (window->frame && *window->frame >= frames) {
+  const fpga::CycleWindow& cycles = window->cycles;
+  if (cycles.frame && *cycles.frame >= frames) {
     problems.add(fmt::format("--trace-window = '{}': frame {}: must be below the frames of the run, {}",
-                             window_.text, *window->frame, frames));
+                             window_.text, *cycles.frame, frames));
   }
   const auto height = static_cast<std::uint64_t>(board.image.height);
-  if (window->unit == fpga::CycleWindow::Unit::kRows && window->last >= height) {
+  if (cycles.unit == fpga::CycleWindow::Unit::kRows && cycles.last >= height) {
     problems.add(fmt::format("--trace-window = '{}': row {}: must be below the rows of the image, {}",
-                             window_.text, window->last, height));
+                             window_.text, cycles.last, height));
   }
 }
 

@@ -5,7 +5,6 @@
 #include <optional>
 #include <vector>
 
-#include "models/fpga/core_cycle.h"
 #include "platform/config/board_config.h"
 #include "sw/cli/typed_option.h"
 #include "sw/process/problems.h"
@@ -30,7 +29,7 @@ class TraceOptions {
 
   // Set by check_usage().
   std::vector<trace::TraceFile> files;
-  std::optional<fpga::CycleWindow> window;
+  std::optional<trace::TraceWindow> window;
 
  private:
   std::optional<std::filesystem::path> shared_output(const trace::TraceFile& file) const;

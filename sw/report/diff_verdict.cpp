@@ -6,8 +6,10 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <numeric>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 #include "sw/report/wait_text.h"
 
@@ -36,7 +38,7 @@ Rates rates_of(const Json& a, const Json& b) {
 }
 
 double cycles_a_frame(const Json& stats) {
-  return stats.at("cycles").get<double>() / stats.at("frames").get<double>();
+  return static_cast<double>(cycles_of_frames(stats)) / stats.at("frames").get<double>();
 }
 
 std::map<Wait, double> waits_a_frame(const Json& stats) {
@@ -81,6 +83,11 @@ std::string pixels_text(const PixelComparison* pixels) {
 }
 
 }  // namespace
+
+std::uint64_t cycles_of_frames(const Json& stats) {
+  const std::vector<std::uint64_t> frames = stats.at("frame_cycles");
+  return std::accumulate(frames.begin(), frames.end(), std::uint64_t{0});
+}
 
 std::string diff_verdict(const JudgedRun& a, const JudgedRun& b, const PixelComparison* pixels) {
   const Rates rates = rates_of(a.stats.at("frames_per_second"), b.stats.at("frames_per_second"));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -15,7 +16,11 @@ struct JudgedRun {
 
 // The comparison of two runs in one sentence: which is faster, by how much, where the difference arises, and
 // whether the disparities are the same. The rates are the steady ones if both runs have them, else those
-// from power-up, else those of the core. What lies within the uncertainty of both is no difference. `pixels`: null if the disparities are not compared.
+// from power-up, else those of the core. What lies within the uncertainty of both is no difference. `pixels`:
+// null if the disparities are not compared.
 std::string diff_verdict(const JudgedRun& a, const JudgedRun& b, const PixelComparison* pixels);
+
+// The sum of `frame_cycles`.
+std::uint64_t cycles_of_frames(const nlohmann::ordered_json& stats);
 
 }  // namespace stereotlm::report

@@ -51,9 +51,9 @@ double zoom_of(const VcdSpan& span) {
 }  // namespace
 
 std::string gtkwave_layout(const std::string& file_name, const VcdSignals& signals, const VcdSpan& span) {
-  std::string text =
-      fmt::format("{}\n[dumpfile] \"{}\"\n[timestart] {}\n[size] 1400 900\n[pos] -1 -1\n*{:.6f} -1",
-                  kLayoutMark, file_name, span.first_ps, zoom_of(span));
+  std::string text = fmt::format(
+      "{}\n[dumpfile] \"{}\"\n[timestart] {}\n[size] 1400 900\n[pos] -1 -1\n*{:.6f} {}", kLayoutMark,
+      file_name, span.first_ps, zoom_of(span), span.wait_ps ? fmt::to_string(*span.wait_ps) : "-1");
   constexpr int kMarkers = 26;
   for (int marker = 0; marker < kMarkers; ++marker) text += " -1";
   text += "\n[sst_width] 60\n[signals_width] 240\n[sst_expanded] 0\n";

@@ -113,8 +113,7 @@ void PerfettoCycles::write_run(const PortRun& run, std::uint64_t end_cycle) {
     case State::kNone:
       return;
     case State::kWaits:
-      name = fmt::format("{} waits {} cycles for {} on {}", fpga::requester_name(run.requester), cycles,
-                         fpga::requester_name(run.by), board_.bank_name(run.bank));
+      name = board_.wait_text(run.requester, cycles, run.by, run.bank);
       if (run.flow != 0) flows.push_back(run.flow);
       break;
     case State::kPasses:
@@ -155,25 +154,26 @@ void PerfettoCycles::write_access(const CoreCycle& cycle, std::size_t port) {
 }
 
 // The arrows of a pixel: from its table entry to itself, and from the left pixel to the word that holds its
-// disparity.
+// disparity. Each has a number of its own, because a pixel that is passed ends the first and begins none.
 void PerfettoCycles::add_data_flows(const CoreCycle& cycle, std::size_t port) {
   if (port == fpga::kHostPort || !cycle.frame) return;
   std::vector<std::uint64_t>& flows = flows_[port];
+  const auto add = [&](Arrow arrow, fpga::Side side, std::uint64_t slot) {
+    const std::uint64_t pixel = (*cycle.frame * board_.geometry.slots + slot) * 2 + fpga::index_of(side);
+    flows.push_back(kDataFlow | (pixel * 2 + static_cast<std::uint64_t>(arrow)));
+  };
   const std::uint64_t item = cycle.ports[port].item;
   if (port == fpga::kResultPort) {
     const auto slots = slots_.slots_of_word(item);
     if (!slots) return;
-    for (const std::uint64_t slot : *slots) flows.push_back(data_flow(fpga::Side::kLeft, *cycle.frame, slot));
+    for (const std::uint64_t slot : *slots) add(Arrow::kToResult, fpga::Side::kLeft, slot);
     return;
   }
   const fpga::Side side = fpga::kPorts[port].side;
-  flows.push_back(data_flow(side, *cycle.frame, item));
+  add(Arrow::kToPixel, side, item);
+  if (port == fpga::pixel_port(fpga::Side::kLeft)) add(Arrow::kToResult, side, item);
   if (board_.core.joint_tables && port == fpga::lut_port(fpga::Side::kLeft))
-    flows.push_back(data_flow(fpga::Side::kRight, *cycle.frame, item));
-}
-
-std::uint64_t PerfettoCycles::data_flow(fpga::Side side, std::uint64_t frame, std::uint64_t slot) const {
-  return kDataFlow | ((frame * board_.geometry.slots + slot) * 2 + fpga::index_of(side));
+    add(Arrow::kToPixel, fpga::Side::kRight, item);
 }
 
 void PerfettoCycles::set_owner(const CoreCycle& cycle, std::size_t port) {

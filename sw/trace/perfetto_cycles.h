@@ -24,6 +24,7 @@ class PerfettoCycles {
 
  private:
   enum class State : std::uint8_t { kNone, kWaits, kPasses, kBlocked, kStarved };
+  enum class Arrow : std::uint8_t { kToPixel, kToResult };
   // Consecutive cycles of a port in one state.
   struct PortRun {
     State state = State::kNone;
@@ -47,7 +48,6 @@ class PerfettoCycles {
   void write_run(const PortRun& run, std::uint64_t end_cycle);
   void write_access(const fpga::CoreCycle& cycle, std::size_t port);
   void add_data_flows(const fpga::CoreCycle& cycle, std::size_t port);
-  std::uint64_t data_flow(fpga::Side side, std::uint64_t frame, std::uint64_t slot) const;
   void set_owner(const fpga::CoreCycle& cycle, std::size_t port);
   void change_owner(BankRun& run, std::uint64_t cycle);
   void set_working(bool works, std::uint64_t cycle);

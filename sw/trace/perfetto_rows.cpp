@@ -88,10 +88,7 @@ void PerfettoRows::write_wait(const Strip& strip, const TraceRun& run) {
   std::vector<std::uint64_t> flows;
   if (*run.by != fpga::kTurnaroundToBlame)
     flows.push_back(strip.first_flow + static_cast<std::uint64_t>(&run - strip.begin));
-  write_run(ports_[run.requester], run,
-            fmt::format("{} waits {} cycles for {} on {}", fpga::requester_name(run.requester), run.count,
-                        fpga::requester_name(*run.by), board_.bank_name(run.bank)),
-            flows);
+  write_run(ports_[run.requester], run, board_.wait_text(run.requester, run.count, *run.by, run.bank), flows);
 }
 
 void PerfettoRows::write_run(Row& row, const TraceRun& run, std::string_view name,

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <fmt/format.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -24,6 +26,11 @@ struct TraceBoard {
 
   std::uint64_t ps(std::uint64_t cycle) const { return clock.edge_ps(cycle); }
   const std::string& bank_name(std::size_t bank) const { return banks[bank].name; }
+  // The name of the slice of a wait.
+  std::string wait_text(std::size_t requester, std::uint64_t cycles, std::size_t by, std::size_t bank) const {
+    return fmt::format("{} waits {} cycle{} for {} on {}", fpga::requester_name(requester), cycles,
+                       cycles == 1 ? "" : "s", fpga::requester_name(by), bank_name(bank));
+  }
   // Whether two ports can be granted in one cycle: one that reads and one that writes.
   bool has_separate_ports(std::size_t bank) const { return memory::has_separate_ports(banks[bank].kind); }
 

@@ -23,6 +23,12 @@ struct TraceFile {
   std::string path;
 };
 
+// What the window of a trace shows: these cycles, or those of them around the longest wait of a port.
+struct TraceWindow {
+  fpga::CycleWindow cycles;
+  bool around_longest_wait = false;
+};
+
 // The files that the trace is written to, without links: the file itself, and the layout of a waveform. Throws
 // std::system_error if links cannot be followed.
 std::vector<std::filesystem::path> outputs_of(const TraceFile& file);
@@ -31,6 +37,6 @@ std::vector<std::filesystem::path> outputs_of(const TraceFile& file);
 // be written.
 std::unique_ptr<TraceWriter> make_writer(const std::vector<TraceFile>& files,
                                          const platform::BoardConfig& board,
-                                         const std::optional<fpga::CycleWindow>& window);
+                                         const std::optional<TraceWindow>& window);
 
 }  // namespace stereotlm::trace

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "models/fpga/core_cycle.h"
 #include "platform/timeline_records.h"
@@ -12,6 +13,7 @@ namespace stereotlm::trace {
 struct TimeSpan {
   std::uint64_t begin_ps = 0;
   std::uint64_t end_ps = UINT64_MAX;
+  std::optional<std::uint64_t> wait_ps = std::nullopt;  // the longest wait of a port in it begins
 };
 
 // Writes a trace of a run to a file, which appears whole with commit() or not at all. Memory does not grow with

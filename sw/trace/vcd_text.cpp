@@ -94,6 +94,10 @@ class VcdText {
     }
     forget_touched();
   }
+  void end_at(std::uint64_t time_ps) {
+    if (time_ps != last_ps_) time(time_ps);
+  }
+  std::uint64_t last_ps() const { return last_ps_; }
   void flush() {
     file_.write({text_.data(), size_});
     size_ = 0;
@@ -144,6 +148,7 @@ class VcdText {
     size_ += size;
   }
   void time(std::uint64_t time_ps) {
+    last_ps_ = time_ps;
     const fmt::format_int digits(time_ps);
     put('#');
     put({digits.data(), digits.size()});
@@ -188,6 +193,7 @@ class VcdText {
   std::vector<std::uint32_t> touched_;
   std::vector<char> text_ = std::vector<char>(kTextBytes);
   std::size_t size_ = 0;  // bytes of text_ in use
+  std::uint64_t last_ps_ = 0;
 };
 
 }  // namespace
@@ -197,30 +203,26 @@ VcdSpan write_vcd(OutputFile& file, const VcdSignals& signals, const std::vector
   VcdText text(file, signals);
   text.header();
   for (ChangeStream* const stream : streams) stream->rewind();
-  VcdSpan span;
-  bool is_first = true;
+  const auto take_up_to = [&](std::uint64_t time_ps) {
+    for (ChangeStream* const stream : streams) {
+      for (; !stream->at_end() && stream->change().time_ps <= time_ps; stream->advance())
+        text.set(stream->change().signal, stream->change().value);
+    }
+  };
+  take_up_to(window.begin_ps);
+  text.all_at(window.begin_ps);
   while (true) {
     std::uint64_t time_ps = UINT64_MAX;
     for (const ChangeStream* const stream : streams) {
       if (!stream->at_end()) time_ps = std::min(time_ps, stream->change().time_ps);
     }
     if (time_ps == UINT64_MAX || time_ps > window.end_ps) break;
-    time_ps = std::max(time_ps, window.begin_ps);
-    for (ChangeStream* const stream : streams) {
-      for (; !stream->at_end() && stream->change().time_ps <= time_ps; stream->advance())
-        text.set(stream->change().signal, stream->change().value);
-    }
-    if (is_first)
-      text.all_at(span.first_ps = time_ps);
-    else
-      text.changes_at(time_ps);
-    is_first = false;
-    span.last_ps = time_ps;
+    take_up_to(time_ps);
+    text.changes_at(time_ps);
   }
-  if (is_first) text.all_at(0);
+  if (window.end_ps != UINT64_MAX) text.end_at(window.end_ps);
   text.flush();
-  span.active_scopes = text.active_scopes();
-  return span;
+  return {window.begin_ps, text.last_ps(), window.wait_ps, text.active_scopes()};
 }
 
 }  // namespace stereotlm::trace

@@ -219,8 +219,8 @@ MadeTrace make_trace(const platform::BoardConfig& board, std::uint64_t frames) {
                    first_ps + 60'000, first_ps + 900'000},
                   {Bus::kPci, "bridge", "host_memory", false, 0x9000, 4, first_ps + 500'000,
                    first_ps + 930'000, first_ps + 960'000, first_ps + 1'500'000},
-                  {Bus::kLocal, "posted", "bank0", true, 0x100, 16, first_ps + 1'000'000,
-                   first_ps + 1'000'000, first_ps + 1'050'000, first_ps + 1'600'000}};
+                  {Bus::kLocal, "posted", "bank1", true, (std::uint64_t{1} << 28U) + 0x100, 16,
+                   first_ps + 1'000'000, first_ps + 1'000'000, first_ps + 1'050'000, first_ps + 1'600'000}};
   trace.levels = {{"left_capture", first_ps, 32},
                   {"left_capture", first_ps + 900'000, 0},
                   {"posted", first_ps + 900'000, 32},

@@ -56,7 +56,7 @@ void PlainCaptureBoard::pixel_arrives() {
     ++stats_.dropped_pixels;
   } else {
     fifo_.back().value |= std::uint32_t{pixels_[index]} << (8 * fifo_.back().pixels);
-    ++fifo_.back().pixels;
+    if (++fifo_.back().pixels == 4) note_level();
   }
   if (++column_ == config_.camera.width) {
     column_ = 0;
@@ -70,6 +70,11 @@ void PlainCaptureBoard::pixel_arrives() {
 std::size_t PlainCaptureBoard::complete_words() const {
   return static_cast<std::size_t>(
       std::count_if(fifo_.begin(), fifo_.end(), [](const Word& word) { return word.pixels == 4; }));
+}
+
+void PlainCaptureBoard::note_level() {
+  if (levels_.empty() || levels_.back().time_ps != events_.now()) levels_.push_back({events_.now(), 0});
+  levels_.back().words = complete_words();
 }
 
 void PlainCaptureBoard::request_or_finish() {
@@ -93,7 +98,6 @@ PlainBurst PlainCaptureBoard::burst() {
   asks_ = false;
   has_bus_ = true;
   owed_ = complete_words();
-  levels_.push_back({events_.now(), owed_});
   PlainBurst burst{true, place_.target, place_.wait_clocks, place_.word + fifo_.front().place, {}};
   for (const Word& word : fifo_) {
     if (word.pixels < 4 || word.place != fifo_.front().place + burst.words.size()) break;
@@ -106,6 +110,7 @@ PlainBurst PlainCaptureBoard::burst() {
 void PlainCaptureBoard::word_gone() {
   fifo_.pop_front();
   --owed_;
+  note_level();
 }
 
 void PlainCaptureBoard::lost() {
@@ -115,10 +120,6 @@ void PlainCaptureBoard::lost() {
 
 void PlainCaptureBoard::ended(const PlainWords& /*words*/) {
   has_bus_ = false;
-  // A pixel that arrives at this time counts.
-  events_.at(events_.now(), PlainPhase::kLocalBusBegins, [this] {
-    levels_.push_back({events_.now(), complete_words()});
-  });
   request_or_finish();
 }
 

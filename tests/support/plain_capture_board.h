@@ -55,7 +55,7 @@ class PlainCaptureBoard : private PlainMaster {
   void drop_frame() { ++stats_.dropped_not_armed; }
 
   const Stats& stats() const { return stats_; }
-  // The complete words as each burst begins and ends.
+  // The complete words as each comes and leaves.
   const std::vector<PlainLevel>& levels() const { return levels_; }
 
  private:
@@ -75,6 +75,7 @@ class PlainCaptureBoard : private PlainMaster {
   void pixel_arrives();
   bool all_pixels_have_come() const { return row_ == config_.camera.height; }
   std::size_t complete_words() const;
+  void note_level();
   void request_or_finish();
 
   PlainEvents& events_;

@@ -77,9 +77,6 @@ class Simulation : private fpga::CycleObserver, private platform::BusObserver {
   // An exception of an observer ends the simulation, and advance() throws it.
   void trace(const fpga::CycleWindow& window, fpga::CycleObserver& cycles, platform::BusObserver& buses);
 
-  // The number of cycles that were traced.
-  std::uint64_t traced_cycles() const { return cycles_ ? cycles_->observed_cycles() : 0; }
-
   // The figures of the finished frames. May be called only if no frame is running that end_early() would let
   // finish, and for a whole computer only after the first result.
   virtual platform::Statistics statistics() const = 0;

@@ -128,7 +128,7 @@ Sums sums_of_perfetto(const std::filesystem::path& path) {
         sums[port_of(name) + " grants"] += std::stoull(slice.name.substr(slice.name.rfind('x') + 1));
         continue;
       }
-      const std::size_t by = slice.name.find(" cycles for ") + 12;
+      const std::size_t by = slice.name.find(" for ") + 5;
       const std::size_t bank = slice.name.rfind(" on ");
       sums[wait_key(name, slice.name.substr(bank + 4), slice.name.substr(by, bank - by))] +=
           std::stoull(slice.name.substr(waits + 7));
@@ -223,7 +223,8 @@ Traced trace(const Case& of, Fidelity fidelity, const CycleWindow& window, bool 
     files.push_back({trace::Format::kPerfetto, scratch.path() / "perfetto"});
     files.push_back({trace::Format::kSqlite, scratch.path() / "sqlite"});
   }
-  const std::unique_ptr<trace::TraceWriter> writer = trace::make_writer(files, of.board, window);
+  const std::unique_ptr<trace::TraceWriter> writer =
+      trace::make_writer(files, of.board, trace::TraceWindow{window});
   KeptCycles cycles(keeps_cycles, *writer);
   simulation->trace(window, cycles, *writer);
   Traced traced;

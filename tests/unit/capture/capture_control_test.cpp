@@ -151,20 +151,28 @@ TEST_F(CaptureControlTest, TriggersItsCamerasWhichStepThenOnly) {
 class CaptureControlLevels : public CaptureControlTest, public FifoObserver {
  protected:
   CaptureControlLevels() { board.observe(static_cast<FifoObserver&>(*this)); }
-  void fifo_holds(std::uint64_t now_ps, std::size_t words) override { levels.emplace_back(now_ps, words); }
-  std::vector<std::pair<std::uint64_t, std::size_t>> levels;
+  void word_came(std::uint64_t time_ps) override { came.push_back(time_ps); }
+  void words_left(std::uint64_t time_ps, std::size_t words) override { left.emplace_back(time_ps, words); }
+  std::vector<std::uint64_t> came;
+  std::vector<std::pair<std::uint64_t, std::size_t>> left;
 };
 
 // The first burst begins as words 0 and 1 are complete, and ends with the first pixel of word 3.
-TEST_F(CaptureControlLevels, AreTheCompleteWordsAsEachBurstBeginsAndEnds) {
+TEST_F(CaptureControlLevels, HaveEachWordAsItComesAndAsItLeaves) {
   const Clock& clock = slot.clock();
   const std::uint64_t first = clock.edge_at_or_after(pixel_ps(7, 0));
   const std::uint64_t end = clock.edge_at_or_after(pixel_ps(12, 0));
   slot.wait_clocks = end - first - 3;  // address clock, wait clocks, two words
   arm(0);
   run_to(clock.edge_ps(end));
-  EXPECT_EQ(levels, (std::vector<std::pair<std::uint64_t, std::size_t>>{{clock.edge_ps(first), 2},
-                                                                        {clock.edge_ps(end), 1}}));
+  EXPECT_EQ(came, (std::vector<std::uint64_t>{pixel_ps(3, 0), pixel_ps(7, 0), pixel_ps(11, 0)}));
+  EXPECT_EQ(left, (std::vector<std::pair<std::uint64_t, std::size_t>>{{clock.edge_ps(end - 1), 1},
+                                                                      {clock.edge_ps(end), 1}}));
+  // Words that have come since are received when asked for, and not before.
+  board.show_words(pixel_ps(15, 0) - 1);
+  EXPECT_EQ(came.size(), 3);
+  board.show_words(pixel_ps(15, 0));
+  EXPECT_EQ(came.back(), pixel_ps(15, 0));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdint>
 
 namespace stereotlm::capture {
@@ -78,6 +79,34 @@ TEST_F(CaptureFifoTest, IsInTheSameStateAfterALineThatIsSkipped) {
   EXPECT_TRUE(skipping.finishes_next());
   EXPECT_FALSE(skipping.has_row(4));
   EXPECT_TRUE(skipping.has_row(3));
+}
+
+class CountedWords : public FifoObserver {
+ public:
+  void word_came(std::uint64_t time_ps) override {
+    came += time_ps > last_ps ? 1 : 0;
+    last_ps = std::max(last_ps, time_ps);
+  }
+  void words_left(std::uint64_t /*time_ps*/, std::size_t words) override { left += words; }
+  std::uint64_t last_ps = 0;
+  std::size_t came = 0;
+  std::size_t left = 0;
+};
+
+// Its observer has received the first word of the line when the line is skipped.
+TEST_F(CaptureFifoTest, ReportsAsManyWordsThatComeAsLeaveInALineThatIsSkipped) {
+  CaptureFifo fifo(config);
+  CountedWords words;
+  fifo.observe(words);
+  fifo.begin_frame(timing, kBeginPs);
+  const std::uint64_t end_ps = step_line(fifo);
+  CaptureFifo shown = fifo;
+  shown.advance(arrival_ps(3, 1));
+  EXPECT_EQ(words.came, 3);
+  EXPECT_EQ(words.left, 2);
+  fifo.skip_line(end_ps + arrival_ps(0, 1) - arrival_ps(0, 0));
+  EXPECT_EQ(words.came, 4);
+  EXPECT_EQ(words.left, 4);
 }
 
 // With two places, the second word of a line needs no check and the third one does.

@@ -128,12 +128,30 @@ TEST_F(BusTraceTest, HoldsBurstsThatEndAfterItsBeginningAndRequestBeforeItsEnd) 
   pci(kEnd - 1, kEnd + 100);
   pci(kEnd, kEnd + 200);
   for (const std::uint64_t time_ps : {kBegin, kBegin + 1, kEnd, kEnd + 1})
-    to.capture_fifo(1).fifo_holds(time_ps, 7);
+    to.capture_fifo(1).word_came(time_ps);
   EXPECT_EQ(handed_out(), (Lines{pci_line(kBegin - 90, kBegin + 1), pci_line(kEnd - 1, kEnd + 100),
-                                 "right_capture 7@2500001", "right_capture 7@5000000"}));
+                                 "right_capture 2@2500001", "right_capture 3@5000000"}));
   EXPECT_EQ(to.skips_end_ps(0), kBegin);
   EXPECT_EQ(to.skips_end_ps(kEnd), kBegin);  // nothing is skipped
   EXPECT_EQ(to.skips_end_ps(kEnd + 1), kNever);
+}
+
+// Words that leave are reported later, and what was asked for early is reported again.
+TEST_F(BusTraceTest, HasOneLevelOfAFifoForEachTimeAtWhichWordsComeOrLeave) {
+  BusTrace& to = trace();
+  capture::FifoObserver& fifo = to.capture_fifo(0);
+  to.set_show_words([&fifo](std::uint64_t now_ps) {
+    for (std::uint64_t time_ps = 10; time_ps <= now_ps && time_ps <= 50; time_ps += 10)
+      fifo.word_came(time_ps);
+  });
+  EXPECT_EQ(handed_out(25), (Lines{"left_capture 1@10", "left_capture 2@20"}));
+  fifo.word_came(10);
+  fifo.words_left(30, 1);
+  fifo.words_left(35, 2);
+  fifo.words_left(60, 1);
+  EXPECT_EQ(handed_out(50),
+            (Lines{"left_capture 2@30", "left_capture 0@35", "left_capture 1@40", "left_capture 2@50"}));
+  EXPECT_EQ(handed_out(), (Lines{"left_capture 1@60"}));
 }
 
 TEST_F(BusTraceTest, HoldsAFrameOfTheCoreFromItsStrobeToItsEnd) {

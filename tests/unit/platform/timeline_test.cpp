@@ -314,12 +314,12 @@ TEST_F(TwoRecordedFrames, HoldBackWhatLaterRecordsMayPrecede) {
   EXPECT_EQ(last_taken(), "interrupt right 2/4 330000..330050") << "the core runs since 350000";
 }
 
-// A ring of pairs in host memory, one input buffer and no tables.
+// A ring of pairs in host memory, one input buffer or more, and no tables.
 class RecordedRing : public TimelineSteps {
  protected:
-  RecordedRing()
-      : TimelineSteps({"capture.destination=host_memory", "allocation.left_image=bank0",
-                       "allocation.right_image=bank2", "allocation.left_lut=none",
+  explicit RecordedRing(const std::string& left = "bank0", const std::string& right = "bank2")
+      : TimelineSteps({"capture.destination=host_memory", "allocation.left_image=" + left,
+                       "allocation.right_image=" + right, "allocation.left_lut=none",
                        "allocation.right_lut=none"}) {}
   void copy(std::uint64_t begin_ps, std::uint64_t end_ps) {
     timeline.bridge().dma_started(0, begin_ps);
@@ -352,6 +352,33 @@ TEST_F(RecordedRing, NamesWhyAPairWaitsForItsCopy) {
   EXPECT_THAT(latencies[0].parts_ps, ElementsAre(10'000, 1000, 30'000, 9000, 50'000, 20'000, 10'000, 1000));
 }
 
+class RecordedRingOfTwoBuffers : public RecordedRing {
+ protected:
+  RecordedRingOfTwoBuffers() : RecordedRing("[bank0, bank1]", "[bank2, bank3]") {}
+};
+
+// Pair 2 gets the buffer of pair 0. The core still works on pair 1.
+TEST_F(RecordedRingOfTwoBuffers, WaitForTheFrameThatHoldsTheirBuffer) {
+  for (const std::uint64_t pair : {0U, 1U}) {
+    capture(pair, 20'000 * pair, 20'000 * pair + 10'000);
+    copy(20'000 * pair + 10'000, 20'000 * pair + 15'000);
+  }
+  capture(2, 40'000, 60'000);
+  run_core(50'000, 2, 3, 4);
+  timeline.core().frame_begun(101'000);
+  copy(102'000, 110'000);
+  read_back(103'000, 120'000);
+  timeline.core().frame_ended({101'000, 5, 6, 8, 8});
+  timeline.deliver({0, 300'000});
+  timeline.mark_end(counters);
+  std::vector<std::string> waits;
+  for (const std::string& line : lines(timeline.finish())) {
+    if (line.rfind("wait ring 2", 0) == 0) waits.push_back(line);
+  }
+  EXPECT_THAT(waits,
+              ElementsAre("wait ring 2/2 60000..100000 input_buffer", "wait ring 2/2 100000..102000 host"));
+}
+
 TEST_F(RecordedRing, CountsTheWordsOfACopyThatTheEndOfTheRunCuts) {
   capture(0, 0, 10'000);
   timeline.bridge().dma_started(0, 11'000);
@@ -367,6 +394,26 @@ TEST_F(RecordedRing, CountsTheWordsOfACopyThatTheEndOfTheRunCuts) {
   lines(timeline.take());
   const std::vector<std::string> last = lines(timeline.finish());
   EXPECT_EQ(last.back(), "upload right_image 0/0 12000..120000 words 3");
+}
+
+// The DMA fetches the descriptor of the left picture, or of the right one.
+TEST_F(RecordedRing, HasACopyWithoutAWordThatTheEndOfTheRunCuts) {
+  capture(0, 0, 10'000);
+  copy(11'000, 41'000);
+  capture(1, 20'000, 30'000);
+  run_core(50'000, 2, 3, 4);
+  read_back(101'000, 110'000);
+  timeline.bridge().dma_started(0, 111'000);
+  timeline.deliver({0, 112'000});
+  counters.bridge.dma_words = 28;
+  timeline.mark_end(counters);
+  transfer(0, Buffer::kLeftImage, 111'000, 120'000, 10);
+  EXPECT_EQ(lines(timeline.finish()).back(), "upload left_image 1/1 111000..112000");
+
+  timeline.deliver({0, 121'000});
+  counters.bridge.dma_words = 38;
+  timeline.mark_end(counters);
+  EXPECT_EQ(lines(timeline.finish()).back(), "upload right_image 1/1 120000..121000");
 }
 
 }  // namespace

@@ -39,20 +39,14 @@ function columnsOf(run, {accesses, stalls}) {
   ];
 }
 
-// The command that traces the row among these lines in which ports wait longest, in the longest frame; null: no
-// port waits.
+// The command that traces the longest wait among these lines in the longest frame; null: no port waits.
 function traceCommand(run, {stalls, height}, {from, to}) {
-  const waits = line => stalls.reduce((all, {values}) => all + values[line], 0);
-  let worst = from;
-  for (let line = from; line < to; ++line) {
-    if (waits(line) > waits(worst)) worst = line;
-  }
-  if (waits(worst) === 0) return null;
+  if (!stalls.some(({values}) => values.slice(from, to).some(each => each !== 0))) return null;
   const cycles = run.stats.frame_cycles;
   const frame = cycles.indexOf(cycles.reduce((a, b) => Math.max(a, b)));
-  const row = worst * height;
+  const last = Math.min(to * height, settingOf(run, 'image.height')) - 1;
   const command = run.command.replace(/ --out DIR$/, '');
-  return `${command} --trace vcd:waits.vcd --trace-window frame=${frame},rows=${row}..${row}`;
+  return `${command} --trace vcd:waits.vcd --trace-window frame=${frame},rows=${from * height}..${last},longest-wait`;
 }
 
 export function addRows(page, run) {
@@ -154,7 +148,7 @@ export function addRows(page, run) {
     shownText.textContent = rowsText(recorded, state.from, state.to, imageHeight);
     const command = traceCommand(run, recorded, state);
     trace.replaceChildren(...command ? [
-      h('p', {class: 'note'}, 'The cycles of the row in which ports wait longest, for a waveform viewer:'),
+      h('p', {class: 'note'}, 'The cycles around the longest wait in these rows of the longest frame, for a waveform viewer:'),
       commandLine(command)
     ] : []);
   };

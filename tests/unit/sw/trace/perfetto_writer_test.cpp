@@ -6,6 +6,8 @@
 
 #include <filesystem>
 #include <map>
+#include <regex>
+#include <set>
 #include <string>
 
 #include "tests/support/file_size_limit.h"
@@ -51,8 +53,8 @@ TEST_F(PerfettoWriterTest, EachRunIsASliceAsLongAsItsCycles) {
       const std::string requester = fpga::requester_name(run.requester);
       const std::string bank = board_.banks[run.bank].name;
       const std::string name =
-          run.by ? fmt::format("{} waits {} cycles for {} on {}", requester, run.count,
-                               fpga::requester_name(*run.by), bank)
+          run.by ? fmt::format("{} waits {} {} for {} on {}", requester, run.count,
+                               run.count == 1 ? "cycle" : "cycles", fpga::requester_name(*run.by), bank)
                  : fmt::format("{} {} x{}", writes(run.requester) ? "writes" : "reads", bank, run.count);
       std::size_t found = 0;
       for (const PerfettoFile::Slice& slice : file.slices_of(requester)) {
@@ -113,23 +115,22 @@ TEST_F(PerfettoWriterTest, SlicesOfATrackNeverCross) {
   }
 }
 
-TEST_F(PerfettoWriterTest, AnArrowLeadsFromTheWinnerToEachWait) {
-  const PerfettoFile file = written(test::make_trace(board_, 1));
+// Returns the number of waits. Each has an arrow from the accesses of its winner at its bank.
+std::size_t expect_arrows_to_waits(const PerfettoFile& file) {
   std::size_t waits = 0;
   for (const PerfettoFile::Slice& wait : file.slices) {
-    const std::size_t place = wait.name.find(" cycles for ");
-    if (place == std::string::npos) continue;
+    static const std::regex kWait("(.*) waits (1 cycle|[0-9]+ cycles) for (.*) on (.*)");
+    std::smatch parts;
+    if (!std::regex_match(wait.name, parts, kWait)) continue;
     ++waits;
+    EXPECT_NE(parts[2], "1 cycles");
     const bool is_cycles = file.tracks.at(wait.track).find(" cycles") != std::string::npos;
-    const std::string winner =
-        wait.name.substr(place + 12, wait.name.find(" on ") - place - 12) + (is_cycles ? " cycles" : "");
-    const std::string bank = wait.name.substr(wait.name.find(" on ") + 4);
-    ASSERT_EQ(wait.flows.size(), 1);
+    EXPECT_EQ(wait.flows.size(), 1);
     std::size_t found = 0;
-    for (const PerfettoFile::Slice& slice : file.slices_of(winner)) {
-      if (std::count(slice.flows.begin(), slice.flows.end(), wait.flows[0]) == 0) continue;
+    for (const PerfettoFile::Slice& slice : file.slices_of(parts[3].str() + (is_cycles ? " cycles" : ""))) {
+      if (std::count(slice.flows.begin(), slice.flows.end(), wait.flows.at(0)) == 0) continue;
       ++found;
-      EXPECT_NE(slice.name.find(bank), std::string::npos);
+      EXPECT_NE(slice.name.find(parts[4]), std::string::npos) << wait.name << ": " << slice.name;
       EXPECT_LE(slice.begin_ns, wait.begin_ns);
       if (is_cycles) {
         EXPECT_EQ(slice.begin_ns, wait.begin_ns);
@@ -137,26 +138,117 @@ TEST_F(PerfettoWriterTest, AnArrowLeadsFromTheWinnerToEachWait) {
     }
     EXPECT_EQ(found, 1) << wait.name;
   }
-  EXPECT_GT(waits, 20);
+  return waits;
 }
 
-TEST_F(PerfettoWriterTest, ArrowsLeadFromATableEntryToItsPixelAndToItsResult) {
-  const PerfettoFile file = written(test::make_trace(board_, 1));
-  std::map<std::uint64_t, std::vector<const PerfettoFile::Slice*>> by_flow;
+TEST_F(PerfettoWriterTest, AnArrowLeadsFromTheWinnerToEachWait) {
+  EXPECT_GT(expect_arrows_to_waits(written(test::make_trace(board_, 1))), 20);
+}
+
+TEST_F(PerfettoWriterTest, AnArrowLeadsFromTheAccessesAtTheBankOfTheWaitAlone) {
+  const std::size_t host = fpga::requester_of(fpga::HostTraffic::kCapture);
+  platform::FrameRuns frame;
+  frame.strip_ends = {100};
+  frame.runs = {{0, 0, 100, 0, 0, std::nullopt, 4},    {0, 0, 100, 0, 0, host, 1},
+                {0, 0, 100, 1, 1, std::nullopt, 4},    {0, 0, 100, 1, 1, host, 3},
+                {0, 0, 100, host, 0, std::nullopt, 1}, {0, 0, 100, host, 1, std::nullopt, 3}};
+  test::MadeTrace trace;
+  trace.frames = {frame};
+  EXPECT_EQ(expect_arrows_to_waits(written(trace)), 2);
+}
+
+bool is_wait(const PerfettoFile::Slice& slice) { return slice.name.find(" waits ") != std::string::npos; }
+
+using SlicesByFlow = std::map<std::uint64_t, std::vector<const PerfettoFile::Slice*>>;
+
+SlicesByFlow by_flow(const PerfettoFile& file) {
+  SlicesByFlow found;
   for (const PerfettoFile::Slice& slice : file.slices) {
-    for (const std::uint64_t flow : slice.flows) by_flow[flow].push_back(&slice);
+    for (const std::uint64_t flow : slice.flows) found[flow].push_back(&slice);
   }
+  return found;
+}
+
+TEST_F(PerfettoWriterTest, ArrowsLeadFromATableEntryToItsPixelAndFromThereToItsResult) {
+  const PerfettoFile file = written(test::make_trace(board_, 1));
+  std::size_t to_pixels = 0;
   std::size_t to_results = 0;
-  for (const auto& [flow, slices] : by_flow) {
-    if (file.tracks.at(slices[0]->track) != "left_lut cycles" || slices.size() < 3) continue;
-    ++to_results;
-    EXPECT_EQ(file.tracks.at(slices[1]->track), "left_pixel cycles");
-    EXPECT_EQ(file.tracks.at(slices[2]->track), "result cycles");
-    EXPECT_EQ(slices[1]->arguments.at("slot"), slices[0]->arguments.at("slot"));
-    EXPECT_EQ(slices[2]->arguments.at("row"), slices[0]->arguments.at("row"));
-    EXPECT_EQ(slices[2]->arguments.at("column"), slices[0]->arguments.at("column") / 4 * 4);
+  for (const auto& [flow, slices] : by_flow(file)) {
+    if (slices.size() < 2 || is_wait(*slices[1])) continue;
+    const std::string to = file.tracks.at(slices[1]->track);
+    if (to == "left_pixel cycles") {
+      ++to_pixels;
+      EXPECT_EQ(file.tracks.at(slices[0]->track), "left_lut cycles");
+      EXPECT_EQ(slices[1]->arguments.at("slot"), slices[0]->arguments.at("slot"));
+    } else if (to == "result cycles") {
+      ++to_results;
+      EXPECT_EQ(slices.size(), 2);
+      EXPECT_EQ(file.tracks.at(slices[0]->track), "left_pixel cycles");
+      EXPECT_EQ(slices[1]->arguments.at("row"), slices[0]->arguments.at("row"));
+      EXPECT_EQ(slices[1]->arguments.at("column"), slices[0]->arguments.at("column") / 4 * 4);
+    }
   }
+  EXPECT_GE(to_pixels, 16 * 6);
   EXPECT_EQ(to_results, 16 * 6);
+}
+
+// Its word is held, or its entry is not valid. Every fourth pixel is read here.
+TEST_F(PerfettoWriterTest, NoArrowLeadsOverAPixelThatIsPassed) {
+  test::MadeTrace trace = test::make_trace(board_, 1);
+  for (fpga::CoreCycle& cycle : trace.cycles) {
+    for (const std::size_t port : fpga::kPixelPorts) {
+      fpga::PortCycle& pixel = cycle.ports[port];
+      if (pixel.granted && pixel.item % 4 != 0) pixel = {fpga::Intent::kPass, false, 0, 0, 0, pixel.item};
+    }
+  }
+  const PerfettoFile file = written(trace);
+  std::size_t arrows = 0;
+  for (const auto& [flow, slices] : by_flow(file)) {
+    if (slices.size() < 2 || is_wait(*slices[0]) || is_wait(*slices[1])) continue;
+    ++arrows;
+    EXPECT_EQ(slices[0]->arguments.at("slot") % 4, 0);
+    const bool from_entry = file.tracks.at(slices[0]->track).find("_lut") != std::string::npos;
+    EXPECT_EQ(from_entry, file.tracks.at(slices[1]->track).find("_pixel") != std::string::npos);
+  }
+  EXPECT_GT(arrows, 16 * 6 / 4);
+}
+
+// The second columns of the guide's tables of tracks.
+std::set<std::string> names_of_guide() {
+  const std::string guide = test::read_file(STEREOTLM_TRACE_GUIDE);
+  const std::size_t begin = guide.find("## Perfetto");
+  const std::string part = guide.substr(begin, guide.find("## Waveforms") - begin);
+  static const std::regex kRow("\n\\|[^|\n]*\\|([^|\n]*)\\|");
+  static const std::regex kName("`([^`]*)`");
+  std::set<std::string> names;
+  for (std::sregex_iterator row(part.begin(), part.end(), kRow), end; row != end; ++row) {
+    const std::string cell = (*row)[1];
+    for (std::sregex_iterator name(cell.begin(), cell.end(), kName); name != end; ++name)
+      names.insert((*name)[1]);
+  }
+  return names;
+}
+
+// The guide names the first port, bank, interrupt and wait for all.
+TEST_F(PerfettoWriterTest, TheGuideHasTheNameOfEachTrack) {
+  using platform::EventKind;
+  board_.banks[1].kind = memory::BankKind::kQdr;
+  test::MadeTrace trace = test::make_trace(board_, 1);
+  for (const EventKind kind : {EventKind::kUpload, EventKind::kFrame, EventKind::kInterrupt}) {
+    trace.records.events.push_back(trace.records.events[0]);
+    trace.records.events.back().kind = kind;
+  }
+  const std::set<std::string> guide = names_of_guide();
+  const PerfettoFile file = written(trace);
+  for (auto [uuid, name] : file.tracks) {
+    for (const auto& [all, first] :
+         {std::pair("^(right_lut|(left|right)_pixel|result|host capture)( cycles| waits.*)?$", "left_lut$3"),
+          std::pair("^bank1", "bank0"), std::pair("^interrupt .*", "interrupt left"),
+          std::pair("^wait .*", "wait pair")})
+      name = std::regex_replace(name, std::regex(all), first);
+    const bool is_group = file.parents.count(uuid) == 0 || file.parents.count(file.parents.at(uuid)) == 0;
+    EXPECT_TRUE(is_group || guide.count(name) == 1) << name;
+  }
 }
 
 TEST_F(PerfettoWriterTest, CountersHaveUseAndWaitsOfEachRowAndEndAtZero) {
