@@ -153,6 +153,7 @@ const changeText = ([key, x, y]) => `${key}: ${x} → ${y}`;
 export function showTwoRuns(page, {runs: [a, b], difference}) {
   const [rateA, rateB] = [rateOf(a), rateOf(b)];
   const settings = settingsThatDiffer(a, b);
+  const isSame = difference.pixels?.frames > 0 && difference.pixels.pixels === 0;
   const blame = run => waitsOf(run).length ? `${waitText(waitsOf(run)[0])}.` : 'Nobody.';
   addHead(page, {
     kind: 'two runs',
@@ -169,7 +170,10 @@ export function showTwoRuns(page, {runs: [a, b], difference}) {
                             .concat(settings.length > 4 ? `and ${settings.length - 4} more` : []) :
                                                           ['Nothing on the board.']
     ],
-    ['Which is faster, and why?', [grouped(difference.verdict), `Disparities: ${pixelText(difference)}.`]],
+    [
+      'Which is faster, and why?',
+      [grouped(difference.verdict), !isSame && `Disparities: ${pixelText(difference)}.`]
+    ],
     ['Who waits for whom?', [`A: ${blame(a)}`, `B: ${blame(b)}`]],
     [
       'Where do they part?',

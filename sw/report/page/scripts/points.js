@@ -83,11 +83,14 @@ export class Points {
     return this.hasUncertainty(name) ? this.column(`${name}_uncertainty`) : new Float64Array(this.size);
   }
 
-  // The number of banks that the allocation of a point names.
-  banksUsed(row) {
-    const names = this.table.names.filter(name => name.startsWith('allocation.'))
-                      .flatMap(name => value(this.column(name)[row]).match(/[^[\], ]+/g) ?? []);
-    return new Set(names.filter(name => name !== 'none')).size;
+  // Returns the number of banks that the allocation of a point names.
+  banksUsed() {
+    const lists =
+        this.table.names.filter(name => name.startsWith('allocation.')).map(name => this.column(name));
+    return row => {
+      const banks = new Set(lists.flatMap(list => value(list[row]).match(/[^[\], ]+/g) ?? []));
+      return banks.size - (banks.has('none') ? 1 : 0);
+    };
   }
 
   // The points with a number in this column whose board fits its FPGA and loses no pixels; all of them if there
@@ -109,10 +112,11 @@ export class Points {
   fastest(name) {
     const [rates, open] = [this.column(name), this.uncertainty(name)];
     const rows = this.sound(name);
+    const banksUsed = this.banksUsed();
     const best = rows.reduce((a, b) => rates[b] > rates[a] ? b : a, rows[0]);
     const slices = this.table.has('area.slices') ? this.column('area.slices') : rates.map(() => 0);
     const ties = rows.filter(row => rates[best] - rates[row] <= open[best] + open[row])
-                     .map(row => ({row, banks: this.banksUsed(row), slices: slices[row], rate: rates[row]}));
+                     .map(row => ({row, banks: banksUsed(row), slices: slices[row], rate: rates[row]}));
     ties.sort((a, b) => a.banks - b.banks || a.slices - b.slices || b.rate - a.rate);
     return {best, ties};
   }
