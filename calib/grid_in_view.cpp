@@ -37,9 +37,10 @@ int disparity_offset_for(const DisparityRange& range, int disparities) {
   const int least = static_cast<int>(std::floor(range.min));
   const int room = disparities - range.needed();
   if (room < 0) {
-    throw std::invalid_argument("disparities = " + std::to_string(disparities) + ": must be " +
+    throw std::invalid_argument("--disparities = " + std::to_string(disparities) + ": must be " +
                                 std::to_string(range.needed()) + " or more for the grid's own, " +
-                                std::to_string(least) + ".." + std::to_string(least + range.needed() - 1));
+                                std::to_string(least) + ".." + std::to_string(least + range.needed() - 1) +
+                                "; or --disparity-offset N, for a part of them");
   }
   return std::min(least, std::max(0, least - room / 2));
 }

@@ -38,7 +38,7 @@ struct DisparityRange {
 
 // The offset that `--disparity-offset auto` chooses. It centres `range` among the candidates, but is not
 // below 0 unless `range` is. Throws std::invalid_argument if `range` needs more than `disparities`
-// candidates.
+// candidates; the message names the options of `calibrate`.
 int disparity_offset_for(const DisparityRange& range, int disparities);
 
 }  // namespace stereotlm::calib

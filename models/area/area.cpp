@@ -357,4 +357,13 @@ Area total(const std::vector<Item>& items, const Device& device) {
   return area;
 }
 
+const Device* smallest_device(const Area& area) {
+  for (const Device& device : kDevices) {
+    if (area.slices <= device.slices && area.block_rams <= device.block_rams &&
+        area.multipliers <= device.multipliers)
+      return &device;
+  }
+  return nullptr;
+}
+
 }  // namespace stereotlm::area

@@ -57,4 +57,7 @@ struct Area {
 };
 Area total(const std::vector<Item>& items, const Device& device);
 
+// The smallest device of the family that holds the area; null if none does.
+const Device* smallest_device(const Area& area);
+
 }  // namespace stereotlm::area

@@ -2,13 +2,23 @@
 
 #include <algorithm>
 
+#include "models/fpga/core_config.h"
+#include "models/kernels/limits.h"
+#include "models/kernels/matching_cost.h"
+
 namespace stereotlm::fpga {
+namespace {
+
+constexpr kernels::IntegerRule kPixelBytesRule{1, kernels::kMostPixelBytes};
+
+}  // namespace
 
 RowBuffer::RowBuffer(const sc_core::sc_module_name& name, int width, int window, int pixel_bytes)
     : sc_module(name),
-      newest_row_(static_cast<std::size_t>(window - 1)),
-      pixel_bytes_(static_cast<std::size_t>(pixel_bytes)),
-      values_(static_cast<std::size_t>(width) * static_cast<std::size_t>(window) * pixel_bytes_),
+      newest_row_(static_cast<std::size_t>(kernels::kWindowRule.required("window", window) - 1)),
+      pixel_bytes_(static_cast<std::size_t>(kPixelBytesRule.required("pixel_bytes", pixel_bytes))),
+      values_(static_cast<std::size_t>(kWidthRule.required("width", width)) *
+              static_cast<std::size_t>(window) * pixel_bytes_),
       valid_(static_cast<std::size_t>(width)) {}
 
 void RowBuffer::take(const PixelColumn& pixel) {

@@ -26,7 +26,8 @@ class RowBuffer : public sc_core::sc_module {
  public:
   StreamIn<PixelColumn, RowBuffer, &RowBuffer::take> columns_in{"columns_in", this};
 
-  // `width`: pixels of a row of the image; `window`: n; `pixel_bytes`: bytes of a pixel (PixelColumn).
+  // `width`: pixels of a row of the image; `window`: n; `pixel_bytes`: bytes of a pixel (PixelColumn). Throws
+  // std::invalid_argument outside kWidthRule, kWindowRule and 1..kMostPixelBytes.
   RowBuffer(const sc_core::sc_module_name& name, int width, int window, int pixel_bytes);
 
   void start_frame() { column_ = 0; }

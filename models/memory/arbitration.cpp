@@ -1,17 +1,33 @@
 #include "models/memory/arbitration.h"
 
 #include <algorithm>
+#include <stdexcept>
 
 namespace stereotlm::memory {
 
 static_assert(kBankCountRule.max <= 64, "visited() has a bit for each bank");
 
-Arbitration::Arbitration(const ArbiterConfig& arbiter, const std::vector<SsramBankConfig>& banks) {
+Arbitration::Arbitration(const ArbiterConfig& arbiter, const std::vector<SsramBankConfig>& banks)
+    : port_count_(arbiter.priority.size()) {
   arbiters_.reserve(banks.size());
   for (const SsramBankConfig& bank : banks) arbiters_.emplace_back(arbiter, bank);
 }
 
+std::string Arbitration::route_problem(Port port, std::size_t bank) const {
+  const auto problem = [](const char* field, std::size_t value, std::size_t count) {
+    return field + (" = " + std::to_string(value)) + ": must be 0.." + std::to_string(count - 1);
+  };
+  if (port >= port_count_) return problem("port", port, port_count_);
+  return bank >= arbiters_.size() ? problem("bank", bank, arbiters_.size()) : "";
+}
+
+void Arbitration::check_route(Port port, std::size_t bank) const {
+  const std::string problem = route_problem(port, bank);
+  if (!problem.empty()) throw std::invalid_argument(problem);
+}
+
 void Arbitration::route(Port port, std::size_t bank, bool write) {
+  check_route(port, bank);
   settle();
   visited_ = 0;
   set_route(port, bank, write);
@@ -19,6 +35,7 @@ void Arbitration::route(Port port, std::size_t bank, bool write) {
 }
 
 void Arbitration::unroute(Port port) {
+  check_route(port, 0);
   settle();
   visited_ = 0;
   routed_ = static_cast<PortMask>(routed_ & ~mask_of(port));
@@ -26,6 +43,7 @@ void Arbitration::unroute(Port port) {
 }
 
 void Arbitration::visit(Port port, std::size_t bank, bool write) {
+  check_route(port, bank);
   const std::size_t index = index_of_shared(bank);
   if (index == shared_bank_count_ || is_alone(port)) {
     PortMask ports = mask_of(port);

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "models/memory/bank_arbiter.h"
@@ -23,8 +24,11 @@ class Arbitration {
  public:
   Arbitration(const ArbiterConfig& arbiter, const std::vector<SsramBankConfig>& banks);
 
-  // Routes the port to this bank from the next arbitrate() on. `write`: direction of all its requests. The
-  // bank must exist.
+  // The rule that a route of this port to this bank breaks: "port = 7: must be 0..5". Empty if both exist.
+  std::string route_problem(Port port, std::size_t bank) const;
+  // Routes the port to this bank from the next arbitrate() on. `write`: direction of all its requests. This
+  // and the next two throw std::invalid_argument if the port is not one of the priority list, or the bank does
+  // not exist.
   void route(Port port, std::size_t bank, bool write);
   // Removes the route of the port, which must not request from now on.
   void unroute(Port port);
@@ -141,6 +145,7 @@ class Arbitration {
     std::vector<BankArbiter::Outcome> recorded;
   };
 
+  void check_route(Port port, std::size_t bank) const;
   void set_route(Port port, std::size_t bank, bool write);
   std::size_t index_of_shared(std::size_t bank) const;
   void share_banks();
@@ -148,6 +153,7 @@ class Arbitration {
   void settle(PortMask ports = kAllPorts);
   PortMask arbitrate_shared(std::uint64_t cycle, PortMask requests);
 
+  std::size_t port_count_;
   mutable std::vector<BankArbiter> arbiters_;
   std::array<Route, kMostPorts> routes_{};
   PortMask routed_ = 0;

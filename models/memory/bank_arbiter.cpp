@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <stdexcept>
+#include <string>
 
 #include "models/memory/arbitration_policies.h"
 
@@ -25,16 +26,28 @@ const SsramBankConfig& checked(const SsramBankConfig& bank) {
 // With separate ports an access never delays one in the other direction: both may be granted in one cycle.
 BankArbiter::BankArbiter(const ArbiterConfig& config, const SsramBankConfig& bank)
     : table_(make_policy(config)),
+      port_count_(config.priority.size()),
       has_separate_ports_(has_separate_ports(checked(bank).kind)),
       positions_{PolicyPosition{&table_.row_of(0)}, PolicyPosition{&table_.row_of(0)}},
       other_direction_cycles_(has_separate_ports_ ? 0
                                                   : static_cast<std::uint64_t>(bank.turnaround_cycles) + 1) {}
 
+// Computes a decision of the row. Every decision is computed before it is used, so its requests are checked
+// here, and not in each cycle.
+void BankArbiter::fill(DecisionTable::Row& row, PortMask requests) {
+  if (requests == 0 || (requests >> port_count_) != 0) {
+    throw std::invalid_argument("requests = " + std::to_string(unsigned{requests}) +
+                                ": must be a mask of one or more of the ports 0.." +
+                                std::to_string(port_count_ - 1));
+  }
+  table_.fill(row, requests);
+}
+
 // Fills a missing row or decision, then decides. Seldom called, and out of line so that decide() stays small.
 BankArbiter::Outcome BankArbiter::prepare_and_decide(PolicyPosition& position, std::uint64_t cycle,
                                                      PortMask requests, PortMask writes) {
   position = {&position.at(cycle), cycle};
-  table_.fill(*position.row, requests);
+  fill(*position.row, requests);
   return decide_at(position, cycle, requests, writes);
 }
 
@@ -71,7 +84,7 @@ void BankArbiter::count_alone(PortMask port, bool write, std::uint64_t cycles) {
 // ArbitrationPolicy).
 void BankArbiter::grant_alone(PortMask port, bool write) {
   PolicyPosition& position = position_of(write);
-  table_.fill(*position.row, port);
+  fill(*position.row, port);
   position.row = position.row->decisions[port].if_granted;
   ++position.next_cycle;
 }

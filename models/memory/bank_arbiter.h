@@ -41,8 +41,8 @@ class BankArbiter {
   // problems.
   BankArbiter(const ArbiterConfig& config, const SsramBankConfig& bank);
 
-  // Decides one cycle with at least one request. `writes`: the ports that would write. `cycle` must increase
-  // from call to call; a cycle that is left out has no request. The caller passes the outcomes to count(), in
+  // Decides one cycle with at least one request. Throws std::invalid_argument if one of the ports
+  // 0 .. kMostPorts - 1 requests that is not in the priority list. `writes`: the ports that would write. `cycle` must increase from call to call; a cycle that is left out has no request. The caller passes the outcomes to count(), in
   // the order of the cycles.
   Outcome decide(std::uint64_t cycle, PortMask requests, PortMask writes) {
     return has_separate_ports_ ? decide_each_direction(cycle, requests, writes)
@@ -152,7 +152,10 @@ class BankArbiter {
     uncounted_accesses_ += static_cast<unsigned>(__builtin_popcount(granted_in(outcome))) * cycles;
   }
 
+  void fill(DecisionTable::Row& row, PortMask requests);
+
   DecisionTable table_;
+  std::size_t port_count_;
   bool has_separate_ports_;
   // Of [0] reads, [1] writes. Without separate ports [0] is of both.
   std::array<PolicyPosition, 2> positions_;

@@ -41,12 +41,21 @@ Crossbar::Crossbar(const sc_core::sc_module_name& name, const CrossbarConfig& co
     banks[bank].register_invalidate_direct_mem_ptr(this, &Crossbar::invalidate_dmi, static_cast<int>(bank));
 }
 
+bool Crossbar::can_route(Port port, std::size_t bank) const {
+  const std::string problem = arbitration_.route_problem(port, bank);
+  if (!problem.empty())
+    SC_REPORT_ERROR("/stereotlm/crossbar", (std::string(name()) + ": route: " + problem).c_str());
+  return problem.empty();
+}
+
 void Crossbar::route(Port port, std::size_t bank, bool write) {
+  if (!can_route(port, bank)) return;
   arbitration_.route(port, bank, write);
   aim(port, bank, write);
 }
 
 void Crossbar::aim(Port port, std::size_t bank, bool write) {
+  if (!can_route(port, bank)) return;
   targets_[port].route(bank, write, *banks[bank].operator->());
 }
 
@@ -76,6 +85,7 @@ bool Crossbar::may_have_changed(Port port, std::uint64_t first, std::uint64_t en
 }
 
 unsigned char* Crossbar::direct(std::uint64_t address, std::uint64_t bytes) {
+  if (!has_bank(address)) return nullptr;
   const std::size_t bank = bank_of_address(address);
   const std::uint64_t first = address & kOffsetMask;
   std::optional<tlm::tlm_dmi>& dmi = direct_banks_[bank];

@@ -31,6 +31,9 @@ struct CrossbarConfig {
 // one bank and one direction. The stage behind a granted port makes its access in the same cycle: one word by
 // b_transport, which takes no simulated time and adds the bank's read time to `delay`.
 //
+// A route to a bank or of a port that does not exist is reported with SC_REPORT_ERROR (type
+// /stereotlm/crossbar), and changes nothing.
+//
 // TLM_GENERIC_ERROR_RESPONSE refuses an access without a grant, an access of another bank or direction than
 // the port's route, and every nb_transport. TLM_ADDRESS_ERROR_RESPONSE refuses an address of a bank that does
 // not exist. Refused accesses reach no bank; other errors are responses of the bank. Debug transport and DMI
@@ -45,12 +48,14 @@ class Crossbar : public sc_core::sc_module, public DirectBanks {
   // Throws std::invalid_argument if the configuration has problems.
   Crossbar(const sc_core::sc_module_name& name, const CrossbarConfig& config);
 
-  // Routes the port from the next arbitrate() on. The bank must exist.
+  // Routes the port from the next arbitrate() on.
   void route(Port port, std::size_t bank, bool write);
   // Directs the accesses of the port to this bank without routing it: the port takes no part in arbitrate(),
   // and each of its accesses needs a grant().
   void aim(Port port, std::size_t bank, bool write);
-  void unroute(Port port) { arbitration_.unroute(port); }
+  void unroute(Port port) {
+    if (can_route(port, 0)) arbitration_.unroute(port);
+  }
   std::size_t bank_of(Port port) const { return arbitration_.bank_of(port); }  // bank of its last route
   // Decides the requests of one cycle, and returns the ports granted.
   PortMask arbitrate(std::uint64_t cycle, PortMask requests) {
@@ -99,6 +104,7 @@ class Crossbar : public sc_core::sc_module, public DirectBanks {
     std::uint64_t bank_base_ = 0;  // first address of the bank to which the port is directed
     tlm::tlm_blocking_transport_if<>* bank_port_ = nullptr;  // looked up once, for speed
   };
+  bool can_route(Port port, std::size_t bank) const;
   void refuse(tlm::tlm_generic_payload& access) const;
   unsigned debug(tlm::tlm_generic_payload& access);
   bool grant_dmi(PortMask port, tlm::tlm_generic_payload& access, tlm::tlm_dmi& dmi);

@@ -1,5 +1,7 @@
 #include "platform/config/board_area.h"
 
+#include <fmt/format.h>
+
 #include <stdexcept>
 
 #include "platform/config/board_keys.h"
@@ -9,7 +11,8 @@ namespace stereotlm::platform {
 const area::Device& device_of(const BoardConfig& board) {
   const area::Device* device = area::find_device(board.fpga.device);
   if (device == nullptr) {
-    throw std::invalid_argument("fpga.device = " + board.fpga.device + ": " + rule_text("fpga.device"));
+    throw std::invalid_argument("fpga.device = " + board.fpga.device + ": " + kMustBeOneOf +
+                                rule_text("fpga.device"));
   }
   return *device;
 }
@@ -17,5 +20,20 @@ const area::Device& device_of(const BoardConfig& board) {
 std::vector<area::Item> area_items(const BoardConfig& board) { return area::items(core_config(board)); }
 
 area::Area area_of(const BoardConfig& board) { return area::total(area_items(board), device_of(board)); }
+
+std::string device_text(const BoardConfig& board) {
+  const area::Area area = area_of(board);
+  const area::Device* const smallest = area::smallest_device(area);
+  return fmt::format("device {}: {}; the smallest that fits: {}", board.fpga.device,
+                     area.fits() ? "fits" : "does not fit", smallest == nullptr ? "none" : smallest->name);
+}
+
+std::string clock_remark(const BoardConfig& board) {
+  if (board.fpga.clock_mhz <= area::kPaperClockMhz) return "";
+  return fmt::format(
+      "fpga.clock_mhz = {}: above the {} MHz that the paper's core reached; nothing is placed or "
+      "routed here, so whether this core reaches it is open",
+      board.fpga.clock_mhz, area::kPaperClockMhz);
+}
 
 }  // namespace stereotlm::platform

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "models/area/area.h"
@@ -14,5 +15,11 @@ const area::Device& device_of(const BoardConfig& board);
 // std::invalid_argument if the board has problems.
 std::vector<area::Item> area_items(const BoardConfig& board);
 area::Area area_of(const BoardConfig& board);
+
+// "device xc2v6000: fits; the smallest that fits: xc2v1500". Throws as area_of().
+std::string device_text(const BoardConfig& board);
+
+// A remark on a clock above that of the paper's core; empty for any other.
+std::string clock_remark(const BoardConfig& board);
 
 }  // namespace stereotlm::platform

@@ -64,7 +64,7 @@ class FieldChecker {
   void check_key(const Key& key, const WordKey& word) {
     const int index = word.get(board_);
     if (index >= 0 && index < static_cast<int>(word.words.size())) return;
-    report(key.path, word.text(board_), key.rule_text);
+    report(key.path, word.text(board_), kMustBeOneOf + key.rule_text);
   }
   void check_key(const Key& key, const OtherKey&) {
     if (key.path == "name") {
@@ -116,7 +116,7 @@ class FieldChecker {
       if (!memory::kBankWordsRule.allows(bank.words))
         report(path + ".words", bank.words, memory::kBankWordsRule.text());
       if (!memory::is_bank_kind(bank.kind)) {
-        report(path + ".kind", static_cast<int>(bank.kind), board_key("ssram.banks.NAME.kind").rule_text);
+        report(path + ".kind", static_cast<int>(bank.kind), kMustBeOneOf + listed(bank_kind_names()));
       } else if (const auto rule = memory::broken_turnaround_rule(bank.kind, bank.turnaround_cycles);
                  !rule.empty()) {
         report(path + ".turnaround_cycles", bank.turnaround_cycles, rule);

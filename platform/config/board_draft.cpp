@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <optional>
+#include <set>
+#include <system_error>
 #include <tuple>
 #include <utility>
 
@@ -101,6 +104,11 @@ void advise_extends(std::vector<Finding>& findings) {
   findings.insert(findings.begin(), Finding({Place::kBoard, 1, 1}, text));
 }
 
+bool is_file(const std::filesystem::path& path) {
+  std::error_code none;
+  return std::filesystem::is_regular_file(path, none);
+}
+
 void set_source(YamlNode& node, int source) {
   node.place.source = source;
   for (YamlNode& item : node.items) set_source(item, source);
@@ -136,18 +144,20 @@ bool is_board_file(const std::string& board) {
 
 BoardDraft::BoardDraft(const std::string& board) {
   std::string text;
-  if (is_board_file(board)) {
+  const std::vector<std::string> names = preset_names();
+  if (std::find(names.begin(), names.end(), board) != names.end()) {
+    board_name_ = "preset " + board;
+    text = preset_text(board);
+  } else if (const std::filesystem::path inside = std::filesystem::path(board) / "config.yaml";
+             is_file(inside)) {
+    fail(board, fmt::format("a folder, not a board file; its board is {}", inside.string()));
+  } else if (is_board_file(board)) {
     board_name_ = board;
     text = read_text_file(board, "board file");
   } else {
-    const std::vector<std::string> names = preset_names();
-    if (std::find(names.begin(), names.end(), board) == names.end()) {
-      fail(board.empty() ? "(empty)" : board,
-           fmt::format("not a preset, and not a path, which has a / or ends in .yaml{}; presets: {}",
-                       nearest_text(board, names), listed(names)));
-    }
-    board_name_ = "preset " + board;
-    text = preset_text(board);
+    fail(board.empty() ? "(empty)" : board,
+         fmt::format("not a preset, and not a path, which has a / or ends in .yaml{}; presets: {}",
+                     nearest_text(board, names), listed(names)));
   }
   try {
     tree_ = parse_yaml(text, Place::kBoard);
@@ -280,9 +290,13 @@ BoardDraft::Reading BoardDraft::read_with_problems() const {
     return std::tie(a.place.source, a.place.line, a.place.column) <
            std::tie(b.place.source, b.place.line, b.place.column);
   });
+  // Two elements of a list may have the same problem, and within `--set` the same place.
+  std::set<std::pair<std::string, std::string>> reported;
   reading.problems.reserve(findings.size());
   for (Finding& finding : findings) {
-    reading.problems.push_back({text_of(finding.place), std::move(finding.text), finding.is_between_keys});
+    std::string place = text_of(finding.place);
+    if (!reported.emplace(place, finding.text).second) continue;
+    reading.problems.push_back({std::move(place), std::move(finding.text), finding.is_between_keys});
   }
   return reading;
 }

@@ -234,8 +234,8 @@ std::vector<Key> make_keys() {
       integer("fpga.lane_fifo_slots", "slots that may be in a lane, taken and not yet consumed", "slots",
               fpga::kLaneFifoRule, member<&B::fpga, &FpgaConfig::lane_fifo_slots>),
       integer("fpga.result_fifo_words",
-              "queue of result words before the result port; with fewer than 2 a row of matcher.rows the "
-              "matcher waits for it",
+              "queue of result words before the result port; with fewer than 2 for each of matcher.rows "
+              "the matcher waits for it",
               "words", fpga::kResultFifoRule, member<&B::fpga, &FpgaConfig::result_fifo_words>),
       integer("fpga.pipeline_latency_cycles", "cycles of registers that the model does not spell out",
               "cycles", fpga::kPipelineLatencyRule, member<&B::fpga, &FpgaConfig::pipeline_latency_cycles>),

@@ -82,6 +82,8 @@ std::string schema_path(const std::string& path);
 
 // Joins words: "a, b or c".
 std::string listed(const std::vector<std::string>& words);
+// What a message says before the listed() words to one of which a value must be equal.
+inline constexpr const char* kMustBeOneOf = "must be one of ";
 
 // A cost as a board file has it: "sad", "{census: 5}".
 std::string cost_text(const kernels::MatchingCost& cost);

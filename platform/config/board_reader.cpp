@@ -211,7 +211,7 @@ class BoardReader {
       board_.matcher.cost = {kind, 0};
       return;
     }
-    values_.report(key.path, node, key.rule_text);
+    values_.report(key.path, node, kMustBeOneOf + key.rule_text);
   }
 
   void read_filter(const Key& key, const YamlNode::Entry& entry) {

@@ -133,7 +133,7 @@ std::optional<int> ValueReader::read_word(const std::string& path, const YamlNod
   if (!check_use(path, node)) return std::nullopt;
   const auto found = std::find(words.begin(), words.end(), node.text);
   if (!node.is_scalar() || found == words.end()) {
-    report(path, node, listed(words));
+    report(path, node, kMustBeOneOf + listed(words));
     return std::nullopt;
   }
   accept(path, node.place);

@@ -2,7 +2,9 @@
 
 #include <string_view>
 
+#include "platform/config/board_area.h"
 #include "platform/config/board_yaml.h"
+#include "sw/process/streams.h"
 
 namespace stereotlm::cli {
 
@@ -54,6 +56,11 @@ std::optional<runs::CalibrationInput> BoardOptions::load_calibration(const platf
                                                                      process::Problems& problems) const {
   if (!calibration_) return std::nullopt;
   return runs::load_calibration(*calibration_, board, problems);
+}
+
+void say_clock_remark(const platform::BoardConfig& board) {
+  const std::string remark = platform::clock_remark(board);
+  if (!remark.empty()) process::say("note", remark);
 }
 
 }  // namespace stereotlm::cli

@@ -50,4 +50,7 @@ class BoardOptions {
   std::optional<std::string> calibration_;  // set by check_given()
 };
 
+// Prints a note if the board's clock is above that of the paper's core.
+void say_clock_remark(const platform::BoardConfig& board);
+
 }  // namespace stereotlm::cli

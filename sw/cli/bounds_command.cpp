@@ -18,6 +18,7 @@
 #include "sw/cli/json_option.h"
 #include "sw/process/streams.h"
 #include "sw/report/stats_json.h"
+#include "sw/report/wait_text.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -50,7 +51,7 @@ struct Row {
   std::uint64_t cycles = 0;
   Names banks;  // banks with this role; empty for a port
 
-  std::string label() const { return banks.empty() ? role : fmt::format("bank {}", fmt::join(banks, ", ")); }
+  std::string label() const { return banks.empty() ? role : fmt::format("{}", fmt::join(banks, ", ")); }
 };
 
 // A list of buffers in the allocation, such as left_image, and banks in it.
@@ -201,9 +202,9 @@ std::string area_lines(const BoardConfig& board) {
   }
   text += fmt::format(row, "all", "", area.luts, area.flip_flops, area.block_rams, area.multipliers);
   text += fmt::format(
-      "area of the core: {} of {} slices ({:.2f} %), {} of {} block RAMs, {} of {} multipliers{}\n",
+      "area of the core: {} of {} slices ({:.2f} %), {} of {} block RAMs, {} of {} multipliers\n{}\n",
       area.slices, device.slices, area.slices_percent, area.block_rams, device.block_rams, area.multipliers,
-      device.multipliers, area.fits() ? "" : ": does not fit");
+      device.multipliers, platform::device_text(board));
   return text;
 }
 
@@ -214,9 +215,9 @@ std::string text_of(const BoardBounds& all) {
   for (const platform::RateBound& part : all.computer)
     text += fmt::format("  {:<16} {:>14.3f}\n", part.resource, part.frames_per_second);
   text += fmt::format("bound of the core: {:.3f} frames/s, limited by {}\n", all.bound.core,
-                      all.bound.core_limited_by);
-  text += fmt::format("bound of the system: {:.3f} frames/s, limited by {}\n", *all.bound.system,
-                      all.bound.system_limited_by);
+                      report::resource_text(all.bound.core_limited_by));
+  text += fmt::format("bound of the computer: {:.3f} frames/s, limited by {}\n", *all.bound.system,
+                      report::resource_text(all.bound.system_limited_by));
   return text + area_lines(all.board);
 }
 
@@ -240,6 +241,8 @@ Json area_document(const BoardConfig& board) {
   Json json = report::area_json(area);
   json["fits"] = area.fits();
   json["device"] = platform::device_of(board).name;
+  if (const area::Device* const smallest = area::smallest_device(area))
+    json["smallest_device"] = smallest->name;
   Json& parts = json["parts"] = Json::array();
   for (const area::Item& item : platform::area_items(board)) {
     parts.push_back({{"name", item.name},
@@ -272,6 +275,7 @@ int bounds(const BoundsOptions& options) {
   const auto board = options.board.load(problems);
   const auto calibration = options.board.load_calibration(board ? &*board : nullptr, problems);
   problems.check();
+  say_clock_remark(*board);
   const BoardBounds all = bounds_of(*board, runs::tables_of(*board, calibration));
   if (options.json.is_given) {
     print_json(document_of(all));

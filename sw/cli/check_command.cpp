@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "platform/config/board_area.h"
 #include "sw/cli/add_command.h"
 #include "sw/cli/board_options.h"
 #include "sw/cli/commands.h"
@@ -28,9 +29,10 @@ struct CheckOptions {
 };
 
 std::string summary(const std::string& name, const platform::BoardConfig& board) {
-  return fmt::format("{}: ok: {}x{}, window {}x{}, {} disparities, {} banks, {} MHz\n", name,
+  return fmt::format("{}: ok: {}x{}, window {}x{}, {} disparities, {} banks, {} MHz\n{}\n", name,
                      board.image.width, board.image.height, board.matcher.window, board.matcher.window,
-                     board.matcher.disparities, board.banks.size(), board.fpga.clock_mhz);
+                     board.matcher.disparities, board.banks.size(), board.fpga.clock_mhz,
+                     platform::device_text(board));
 }
 
 Json json_of(const platform::Diagnostic& problem) {
@@ -55,6 +57,11 @@ Json document_of(const std::string& name, const platform::BoardConfig* board,
   document["disparities"] = board->matcher.disparities;
   document["banks"] = board->banks.size();
   document["clock_mhz"] = board->fpga.clock_mhz;
+  const area::Area area = platform::area_of(*board);
+  document["device"] = board->fpga.device;
+  document["fits"] = area.fits();
+  if (const area::Device* const smallest = area::smallest_device(area))
+    document["smallest_device"] = smallest->name;
   return document;
 }
 
@@ -62,6 +69,7 @@ int check(const CheckOptions& options) {
   process::Problems problems;
   const auto board = options.board.load(problems);
   options.board.load_calibration(board ? &*board : nullptr, problems);
+  if (problems.empty()) say_clock_remark(*board);
   if (options.json.is_given) {
     print_json(document_of(options.board.name(), board ? &*board : nullptr, problems));
     return problems.empty() ? kDone : kRefused;

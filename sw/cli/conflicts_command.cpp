@@ -29,6 +29,7 @@
 #include "sw/runs/recorded_run.h"
 #include "sw/runs/rerun.h"
 #include "sw/runs/run_mode.h"
+#include "sw/runs/run_results.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -270,6 +271,7 @@ int conflicts(const ConflictsOptions& options) {
   }
   const report::ConflictSummary summary =
       report::conflict_summary(input.board, *simulation->conflicts(), shown.sums.sums());
+  runs::say_lost_pixels(statistics);
   if (options.json.is_given) {
     print_json(report::conflicts_document(summary));
   } else {

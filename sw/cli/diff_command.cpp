@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <utility>
@@ -11,6 +12,7 @@
 #include "sw/cli/commands.h"
 #include "sw/cli/diff_text.h"
 #include "sw/cli/exit_status.h"
+#include "sw/cli/json_option.h"
 #include "sw/cli/typed_option.h"
 #include "sw/cli/verdict_colours.h"
 #include "sw/process/interrupt.h"
@@ -34,11 +36,13 @@ struct DiffOptions {
   Typed a;
   Typed b;
   Typed csv_option;
+  JsonOption json;
 
   void add_to(CLI::App& command) {
     a.add_to(command, "A", " ", "A folder that run --out has written");
     b.add_to(command, "B", " ", "Another one");
     csv_option.add_to(command, "--csv", "F.csv", "Write the cycles and waits of every frame and row of both");
+    json.add_to(command);
   }
 
   // Set by check_usage().
@@ -81,7 +85,11 @@ int diff(const DiffOptions& options) {
     return kInterrupted;
   }
   if (csv) csv->commit();
-  process::print(with_coloured_sentence(diff_text(*a, *b, aligned, limits)));
+  if (options.json.is_given) {
+    print_json(diff_document(*a, *b, aligned, limits));
+  } else {
+    process::print(with_coloured_sentence(diff_text(*a, *b, aligned, limits)));
+  }
   return kDone;
 }
 

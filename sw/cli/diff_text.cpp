@@ -6,8 +6,10 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <utility>
+#include <variant>
 #include <vector>
 
+#include "models/fpga/core_ports.h"
 #include "platform/config/board_yaml.h"
 #include "sw/cli/text.h"
 #include "sw/explore/plan/figures.h"
@@ -109,6 +111,65 @@ std::string computer_text(const RunFigures& a, const RunFigures& b) {
                       figures_text("latency_ms", a, b)});
 }
 
+std::string verdict_of(const runs::RecordedRun& run_a, const runs::RecordedRun& run_b, const RunFigures& a,
+                       const RunFigures& b, const runs::FrameAlignment& aligned,
+                       const runs::DiffLimits& limits) {
+  return report::diff_verdict({a.document, run_a.board.fpga.clock_mhz},
+                              {b.document, run_b.board.fpga.clock_mhz},
+                              limits.pixels.empty() ? &aligned.pixels() : nullptr);
+}
+
+Json differing_json(const Values& a, const Values& b) {
+  Json list = Json::array();
+  for (const report::Differing& each : report::differing(a, b)) {
+    Json json = {{"path", each.path}};
+    for (const auto& [name, value] : {std::pair("a", each.a), std::pair("b", each.b)}) {
+      if (value != nullptr) std::visit([&json, key = name](const auto& its) { json[key] = its; }, *value);
+    }
+    list.push_back(std::move(json));
+  }
+  return list;
+}
+
+Json frames_json(const std::vector<std::uint64_t>& a, const std::vector<std::uint64_t>& b) {
+  Json list = Json::array();
+  for (std::size_t frame = 0; frame < std::min(a.size(), b.size()); ++frame) {
+    if (a[frame] != b[frame]) list.push_back({{"frame", frame}, {"a", a[frame]}, {"b", b[frame]}});
+  }
+  return list;
+}
+
+Json waits_json(const std::vector<platform::BlameRow>& a, const std::vector<platform::BlameRow>& b) {
+  Json list = Json::array();
+  for (const report::DifferingWait& wait : report::differing_waits(a, b))
+    list.push_back({{"port", wait.row.port},
+                    {"bank", wait.row.bank},
+                    {"by", wait.row.by},
+                    {"a", wait.a},
+                    {"b", wait.b}});
+  return list;
+}
+
+Json json_of(const report::RowComparison& rows) {
+  Json ranges = Json::array();
+  for (const report::RowComparison::Range& range : rows.ranges(report::kMostLines)) {
+    Json waits = Json::object();
+    for (std::size_t port = 0; port < fpga::kCorePortCount; ++port)
+      waits[fpga::kPorts[port].name] = range.stalls[port];
+    ranges.push_back({{"first_row", range.first_row},
+                      {"last_row", range.last_row},
+                      {"cycles", range.cycles},
+                      {"waiting_cycles", std::move(waits)}});
+  }
+  return {{"frames", rows.frames()}, {"ranges", std::move(ranges)}};
+}
+
+Json json_of(const report::PixelComparison& pixels) {
+  return {{"frames", pixels.frames()},
+          {"frames_that_differ", pixels.frames_that_differ()},
+          {"pixels_that_differ", pixels.pixels()}};
+}
+
 }  // namespace
 
 std::string diff_text(const runs::RecordedRun& run_a, const runs::RecordedRun& run_b,
@@ -128,11 +189,26 @@ std::string diff_text(const runs::RecordedRun& run_a, const runs::RecordedRun& r
   const std::string pixels = limits.pixels.empty()
                                  ? report::pixels_line(aligned.pixels())
                                  : fmt::format("disparities: not compared: {}\n", limits.pixels);
-  const std::string verdict =
-      report::diff_verdict({a.document, run_a.board.fpga.clock_mhz}, {b.document, run_b.board.fpga.clock_mhz},
-                           limits.pixels.empty() ? &aligned.pixels() : nullptr);
   return in_sections({fmt::format("A: {}\nB: {}\n", run_a.folder, run_b.folder), settings, figures, pixels,
-                      paragraph("", 0, verdict)});
+                      paragraph("", 0, verdict_of(run_a, run_b, a, b, aligned, limits))});
+}
+
+Json diff_document(const runs::RecordedRun& run_a, const runs::RecordedRun& run_b,
+                   const runs::FrameAlignment& aligned, const runs::DiffLimits& limits) {
+  const RunFigures a(run_a);
+  const RunFigures b(run_b);
+  return {{"schema", 1},
+          {"a", run_a.folder},
+          {"b", run_b.folder},
+          {"settings", differing_json(platform::values_of(run_a.board), platform::values_of(run_b.board))},
+          {"options", differing_json(options_of(run_a), options_of(run_b))},
+          {"figures", differing_json(a.values, b.values)},
+          {"frames", frames_json(a.frame_cycles(), b.frame_cycles())},
+          {"waits", waits_json(a.blame(), b.blame())},
+          {"rows", limits.rows.empty() ? json_of(aligned.rows()) : Json{{"not_compared", limits.rows}}},
+          {"disparities",
+           limits.pixels.empty() ? json_of(aligned.pixels()) : Json{{"not_compared", limits.pixels}}},
+          {"verdict", verdict_of(run_a, run_b, a, b, aligned, limits)}};
 }
 
 }  // namespace stereotlm::cli

@@ -1,14 +1,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "platform/config/board_keys.h"
 #include "platform/config/board_yaml.h"
 #include "sw/cli/add_command.h"
 #include "sw/cli/commands.h"
 #include "sw/cli/exit_status.h"
+#include "sw/cli/json_option.h"
 #include "sw/cli/text.h"
 #include "sw/cli/typed_option.h"
 #include "sw/process/problems.h"
@@ -17,14 +20,16 @@
 namespace stereotlm::cli {
 namespace {
 
+using Json = nlohmann::ordered_json;
+using Names = std::vector<std::string>;
+
 // The purpose of a preset: its file begins with a comment line that states it.
 std::string description(std::string_view file) {
   const std::string line(file.substr(0, file.find('\n')));
   return line.substr(std::min(line.size(), line.find_first_not_of("# ")));
 }
 
-int list_boards() {
-  const auto names = platform::preset_names();
+int list_boards(const Names& names) {
   std::size_t width = 0;
   for (const std::string& name : names) width = std::max(width, name.size());
   std::string text;
@@ -34,17 +39,64 @@ int list_boards() {
   return kDone;
 }
 
-int show_board(const std::string& name) {
-  const auto names = platform::preset_names();
-  if (std::find(names.begin(), names.end(), name) == names.end()) {
-    process::refuse(fmt::format("--show = {}: not a preset{}; presets: {}", name,
-                                platform::nearest_text(name, names), platform::listed(names)));
+int print_boards_json(const Names& names) {
+  Json boards = Json::array();
+  for (const std::string& name : names) {
+    const std::string_view file = platform::preset_text(name);
+    boards.push_back({{"name", name}, {"description", description(file)}, {"file", file}});
   }
-  process::print(platform::preset_text(name));
+  print_json({{"schema", 1}, {"boards", std::move(boards)}});
   return kDone;
 }
 
-int list_keys() {
+struct BoardsOptions {
+  Typed show;
+  JsonOption json;
+
+  void add_to(CLI::App& command) {
+    show.add_to(command, "--show", "NAME", "Print the file of this preset");
+    json.add_to(command);
+  }
+  void check_usage() const {}
+};
+
+int print_boards(const BoardsOptions& options) {
+  Names names = platform::preset_names();
+  const std::string& shown = options.show.text;
+  if (options.show.is_given()) {
+    if (std::find(names.begin(), names.end(), shown) == names.end()) {
+      process::refuse(fmt::format("--show = {}: not a preset{}; presets: {}", shown,
+                                  platform::nearest_text(shown, names), platform::listed(names)));
+    }
+    names = {shown};
+  }
+  if (options.json.is_given) return print_boards_json(names);
+  if (!options.show.is_given()) return list_boards(names);
+  process::print(platform::preset_text(shown));
+  return kDone;
+}
+
+struct KeysOptions {
+  JsonOption json;
+
+  void add_to(CLI::App& command) { json.add_to(command); }
+  void check_usage() const {}
+};
+
+int print_keys_json() {
+  Json list = Json::array();
+  for (const auto& key : platform::keys()) {
+    Json json = {{"key", key.path}, {"meaning", key.meaning}};
+    if (!key.unit.empty()) json["unit"] = key.unit;
+    json["range"] = key.range;
+    list.push_back(std::move(json));
+  }
+  print_json({{"schema", 1}, {"keys", std::move(list)}});
+  return kDone;
+}
+
+int print_keys(const KeysOptions& options) {
+  if (options.json.is_given) return print_keys_json();
   const auto keys = platform::keys();
   std::size_t path_width = 0;
   std::size_t unit_width = 0;
@@ -67,17 +119,12 @@ int list_keys() {
 }  // namespace
 
 void add_boards(CLI::App& program, Action& action) {
-  const auto show = std::make_shared<Typed>();
-  const auto parsed = [show, &action] {
-    action = [is_one = show->is_given(), show] { return is_one ? show_board(show->text) : list_boards(); };
-  };
-  show->add_to(add_command(program, "boards", "List the preset boards, or show one", parsed), "--show",
-               "NAME", "Print the file of this preset");
+  add_command(program, action, "boards", "List the preset boards, or show one", print_boards);
 }
 
 void add_keys(CLI::App& program, Action& action) {
-  add_command(program, "keys", "List every key of a board file with its meaning, unit and range",
-              [&action] { action = list_keys; });
+  add_command(program, action, "keys", "List every key of a board file with its meaning, unit and range",
+              print_keys);
 }
 
 }  // namespace stereotlm::cli

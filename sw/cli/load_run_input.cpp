@@ -66,10 +66,8 @@ class InputLoader {
     open_traces();
     problems_.check();
     for (const std::string& note : source_.notes) process::say("note", note);
-    if (input_.calibration && !options_.timing_only) {
-      say_what_is_not_seen();
-      attempt("", [&] { say_how_rows_agree(); });
-    }
+    if (input_.calibration) say_what_is_not_seen();
+    if (input_.calibration && !options_.timing_only) attempt("", [&] { say_how_rows_agree(); });
     problems_.check();
     input_.pairs = std::move(source_.pairs);
     return std::move(input_);
@@ -191,6 +189,7 @@ class InputLoader {
     input_.fast = options_.fast;
     input_.timing_only = options_.timing_only;
     input_.record = options_.record;
+    input_.json = options_.json.is_given;
     input_.frames = options_.frames.value_or(has_end ? source_.pairs->length() : 1);
     runs::RecordedOptions& run = input_.described;
     run.program_version = process::kVersion;

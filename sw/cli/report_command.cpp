@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <cstdint>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -17,6 +18,7 @@
 #include "sw/process/installation.h"
 #include "sw/process/interrupt.h"
 #include "sw/process/streams.h"
+#include "sw/report/console_table.h"
 #include "sw/report/html_page.h"
 #include "sw/report/page_data/database_data.h"
 #include "sw/report/page_data/difference_data.h"
@@ -131,6 +133,16 @@ std::optional<Json> data_of(const ReportOptions& options, process::Problems& pro
   return std::nullopt;
 }
 
+// `run`: of run_data().
+void say_lost_pixels(const Json& run) {
+  std::uint64_t pixels = 0;
+  for (const Json& camera : run.at("stats").value("cameras", Json::array()))
+    pixels += camera.at("dropped_pixels").get<std::uint64_t>();
+  const std::string text = report::lost_pixels_text(pixels);
+  if (!text.empty())
+    process::say("warning", fmt::format("'{}': {}", run.at("folder").get<std::string>(), text));
+}
+
 int report(const ReportOptions& options) {
   process::Problems problems;
   std::optional<files::ReplacedFile> file;
@@ -150,6 +162,8 @@ int report(const ReportOptions& options) {
   const std::string page = report::html_page(whole);
   file->write(page);
   file->commit();
+  if (data->contains("run")) say_lost_pixels(data->at("run"));
+  for (const Json& run : data->value("runs", Json::array())) say_lost_pixels(run);
   process::print(fmt::format("{}: {} kB\n", options.out.text, (page.size() + 999) / 1000));
   return kDone;
 }

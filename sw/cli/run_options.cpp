@@ -57,6 +57,7 @@ void RunOptions::add_to(CLI::App& command) {
            "Write where and when ports wait: rows.csv and conflicts.csv in the folder of --out; with cameras "
            "also what happened when, and why it waited: timeline.csv and latency.csv");
   trace.add_to(command);
+  json.add_to(command);
   set_footer(
       command,
       "Ctrl-C ends the run with the results of the frames that are finished; with cameras, --record or\n"

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "sw/cli/board_options.h"
+#include "sw/cli/json_option.h"
 #include "sw/cli/picture_options.h"
 #include "sw/cli/trace_options.h"
 #include "sw/cli/truth_options.h"
@@ -34,6 +35,7 @@ class RunOptions {
   PictureOptions pictures;
   TruthOptions truth;
   TraceOptions trace;
+  JsonOption json;
   // Set by check_usage().
   bool camera = true;  // false: preloaded
   bool fast = true;    // false: fidelity cycle

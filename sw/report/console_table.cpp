@@ -21,7 +21,8 @@ double share(std::uint64_t part, std::uint64_t whole) {
 }
 
 std::string bound_line(const char* name, double bound, const std::string& limited_by) {
-  return fmt::format("{:<14} {:>8.3f} frames/s   limited by {}\n", name, bound, shortened(limited_by, 48));
+  return fmt::format("{:<14} {:>8.3f} frames/s   limited by {}\n", name, bound,
+                     shortened(resource_text(limited_by), 48));
 }
 
 std::string rate_lines(const platform::Statistics& statistics) {
@@ -53,7 +54,7 @@ std::string pci_lines(const platform::ComputerStatistics& computer, const BoardC
   for (const platform::PciMasterStatistics& master : computer.pci_masters)
     width = std::max(width, master.name.size());
   std::string text = fmt::format("{:<{}} {:>14} {:>14} {:>7} {:>9} {:>9} {:>12}\n", "pci master", width,
-                                 "transactions", "words", "use %", "MB/s", "peak MB/s", "mean wait us");
+                                 "transactions", "words", "data %", "MB/s", "peak MB/s", "mean wait us");
   for (const platform::PciMasterStatistics& master : computer.pci_masters) {
     const double use = share(master.words, computer.pci_clocks) / words_a_clock;
     text += fmt::format("{:<{}} {:>14} {:>14} {:>7.2f} {:>9.2f} {:>9.2f} {:>12.3f}\n", master.name, width,
@@ -91,7 +92,7 @@ std::string bank_lines(const platform::Statistics& statistics, double clock_mhz)
   std::size_t width = 12;
   for (const auto& bank : statistics.banks) width = std::max(width, shortened(bank.name).size());
   std::string text = fmt::format("{:<{}} {:>14} {:>14} {:>7} {:>9} {:>9}\n", "bank", width, "reads", "writes",
-                                 "use %", "MB/s", "peak MB/s");
+                                 "busy %", "MB/s", "peak MB/s");
   for (const auto& bank : statistics.banks) {
     text += fmt::format("{:<{}} {:>14} {:>14} {:>7.2f} {:>9.2f} {:>9.2f}\n", shortened(bank.name), width,
                         bank.reads, bank.writes, 100 * bank.utilization, bank.megabytes_per_second,
@@ -132,6 +133,12 @@ std::string accuracy_line(const Accuracy& accuracy) {
 }
 
 }  // namespace
+
+std::string lost_pixels_text(std::uint64_t pixels) {
+  if (pixels == 0) return "";
+  return fmt::format("captures lose {} pixel{}: pictures are torn, and disparities are wrong there", pixels,
+                     pixels == 1 ? "" : "s");
+}
 
 std::string console_table(const platform::Statistics& statistics, const BoardClocks& clocks,
                           const TableExtras& extras) {

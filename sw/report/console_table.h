@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -24,12 +25,15 @@ struct TableExtras {
   std::optional<Accuracy> accuracy = std::nullopt;
 };
 
+// What a run or a page says of torn pictures: "captures lose 7 pixels: ..". Empty if no pixel is lost.
+std::string lost_pixels_text(std::uint64_t pixels);
+
 // The table that a run prints:
 // - Frames per second and their bounds.
-// - For each bank its traffic, and its share of the peak of one word per cycle (`use %`).
+// - For each bank its traffic, and the share of the cycles in which it is busy (`busy %`).
 // - Who waits longest at which bank for whom, and the frame rate that all waits cost.
-// - For a computer: each PCI master's traffic, its share of the peak (one word per clock, or two) and its mean
-//   wait for the bus; the use of both buses; dropped camera frames by reason; the latency.
+// - For a computer: each PCI master's traffic, the share of the clocks that its data takes (`data %`) and its
+//   mean wait for the bus; the use of both buses; dropped camera frames by reason; the latency.
 // - How much of the last frame is answered, and the accuracy, if given.
 // Lines have at most 100 columns; a name of more than 24 characters is shortened. Text is ASCII except names and ±.
 std::string console_table(const platform::Statistics& statistics, const BoardClocks& clocks,

@@ -72,9 +72,10 @@ std::string cause(const JudgedRun& a, const JudgedRun& b, bool b_is_faster) {
     return fmt::format("in {} {} waits {:.0f} cycles a frame more on {} for {}", b_is_faster ? "A" : "B",
                        port, largest.second, bank, cause_text(by));
   }
-  return fmt::format("a frame takes {:.0f} cycles in A, limited by {}, and {:.0f} in B, limited by {}",
-                     cycles_a_frame(a.stats), a.stats.at("bound").at("core_limited_by").get<std::string>(),
-                     cycles_a_frame(b.stats), b.stats.at("bound").at("core_limited_by").get<std::string>());
+  return fmt::format(
+      "a frame takes {:.0f} cycles in A, limited by {}, and {:.0f} in B, limited by {}",
+      cycles_a_frame(a.stats), report::resource_text(a.stats.at("bound").at("core_limited_by")),
+      cycles_a_frame(b.stats), report::resource_text(b.stats.at("bound").at("core_limited_by")));
 }
 
 std::string pixels_text(const PixelComparison* pixels) {

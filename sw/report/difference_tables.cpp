@@ -41,30 +41,6 @@ std::string difference_text(const Value* a, const Value* b) {
   return fmt::format("{:+.6g}", number(*b) - number(*a));
 }
 
-struct Differing {
-  std::string path;
-  const Value* a;  // null: missing
-  const Value* b;
-};
-
-// The values that differ, in the order of A; values that only B has follow.
-std::vector<Differing> differing(const Values& a, const Values& b) {
-  const auto find = [](const Values& values, const std::string& path) -> const Value* {
-    const auto found = std::find_if(values.begin(), values.end(),
-                                    [&](const platform::BoardValue& value) { return value.path == path; });
-    return found == values.end() ? nullptr : &found->value;
-  };
-  std::vector<Differing> rows;
-  for (const platform::BoardValue& value : a) {
-    const Value* const other = find(b, value.path);
-    if (other == nullptr || *other != value.value) rows.push_back({value.path, &value.value, other});
-  }
-  for (const platform::BoardValue& value : b) {
-    if (find(a, value.path) == nullptr) rows.push_back({value.path, nullptr, &value.value});
-  }
-  return rows;
-}
-
 std::string line(const std::string& label, const std::string& a, const std::string& b,
                  const std::string& difference) {
   std::string text = fmt::format("{:<{}} {:>17} {:>17} {:>17}", label, kLabelColumns, a, b, difference);
@@ -97,6 +73,23 @@ std::string each_text(const RowComparison::Range& range) {
 }
 
 }  // namespace
+
+std::vector<Differing> differing(const Values& a, const Values& b) {
+  const auto find = [](const Values& values, const std::string& path) -> const Value* {
+    const auto found = std::find_if(values.begin(), values.end(),
+                                    [&](const platform::BoardValue& value) { return value.path == path; });
+    return found == values.end() ? nullptr : &found->value;
+  };
+  std::vector<Differing> rows;
+  for (const platform::BoardValue& value : a) {
+    const Value* const other = find(b, value.path);
+    if (other == nullptr || *other != value.value) rows.push_back({value.path, &value.value, other});
+  }
+  for (const platform::BoardValue& value : b) {
+    if (find(a, value.path) == nullptr) rows.push_back({value.path, nullptr, &value.value});
+  }
+  return rows;
+}
 
 std::string settings_table(const std::string& head, const Values& a, const Values& b) {
   const std::vector<Differing> rows = differing(a, b);
@@ -180,23 +173,28 @@ std::string rows_table(const RowComparison& rows) {
   return text;
 }
 
-std::string blame_table(const std::vector<platform::BlameRow>& a, const std::vector<platform::BlameRow>& b) {
+std::vector<DifferingWait> differing_waits(const std::vector<platform::BlameRow>& a,
+                                           const std::vector<platform::BlameRow>& b) {
   std::map<std::tuple<std::string, std::string, std::string>, std::pair<std::uint64_t, std::uint64_t>> all;
   for (const platform::BlameRow& row : a) all[{row.port, row.bank, row.by}].first = row.cycles;
   for (const platform::BlameRow& row : b) all[{row.port, row.bank, row.by}].second = row.cycles;
-  std::vector<std::pair<std::int64_t, std::string>> lines;
+  std::vector<DifferingWait> waits;
   for (const auto& [row, cycles] : all) {
     const auto& [port, bank, by] = row;
-    const auto difference = static_cast<std::int64_t>(cycles.second - cycles.first);
-    if (difference == 0) continue;
-    lines.emplace_back(difference, line("  " + wait_text(port, bank, by), fmt::format("{}", cycles.first),
-                                        fmt::format("{}", cycles.second), fmt::format("{:+}", difference)));
+    if (cycles.first != cycles.second) waits.push_back({{port, bank, by, 0}, cycles.first, cycles.second});
   }
-  std::stable_sort(lines.begin(), lines.end(),
-                   [](const auto& x, const auto& y) { return magnitude(x.first) > magnitude(y.first); });
-  std::string text = lines.empty() ? "" : head_line("waits, cycles");
-  for (const auto& [difference, written] : lines) text += written;
-  return text;
+  std::stable_sort(waits.begin(), waits.end(), [](const DifferingWait& x, const DifferingWait& y) {
+    return magnitude(x.difference()) > magnitude(y.difference());
+  });
+  return waits;
+}
+
+std::string blame_table(const std::vector<platform::BlameRow>& a, const std::vector<platform::BlameRow>& b) {
+  std::string text;
+  for (const DifferingWait& wait : differing_waits(a, b))
+    text += line("  " + wait_text(wait.row.port, wait.row.bank, wait.row.by), fmt::format("{}", wait.a),
+                 fmt::format("{}", wait.b), signed_text(wait.difference()));
+  return text.empty() ? text : head_line("waits, cycles") + text;
 }
 
 std::string pixels_line(const PixelComparison& pixels) {

@@ -17,6 +17,25 @@ namespace stereotlm::report {
 // Values with their paths. A value that one run does not have is "-" there.
 using Values = std::vector<platform::BoardValue>;
 
+// The values that differ, in the order of A; values that only B has follow. The pointers are into `a` and `b`.
+struct Differing {
+  std::string path;
+  const decltype(platform::BoardValue::value)* a;  // null: missing
+  const decltype(platform::BoardValue::value)* b;
+};
+std::vector<Differing> differing(const Values& a, const Values& b);
+
+// The waits that differ, the largest difference first. The cycles of `row` are 0.
+struct DifferingWait {
+  platform::BlameRow row;
+  std::uint64_t a = 0;
+  std::uint64_t b = 0;
+
+  std::int64_t difference() const { return static_cast<std::int64_t>(b - a); }
+};
+std::vector<DifferingWait> differing_waits(const std::vector<platform::BlameRow>& a,
+                                           const std::vector<platform::BlameRow>& b);
+
 // The table of settings. It shows at most kMostSettings. A value too long for its column has lines of its
 // own.
 inline constexpr std::size_t kMostSettings = 30;
@@ -35,7 +54,7 @@ std::string frames_table(const std::vector<std::uint64_t>& cycles_a,
 // (RowComparison::ranges(), at most kMostLines).
 std::string rows_table(const RowComparison& rows);
 
-// The rows of blame, the largest difference first.
+// The table of differing_waits().
 std::string blame_table(const std::vector<platform::BlameRow>& a, const std::vector<platform::BlameRow>& b);
 
 // The pixels that differ, in one line, which is not empty even if no frame was compared.

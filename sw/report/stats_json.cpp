@@ -1,6 +1,7 @@
 #include "sw/report/stats_json.h"
 
 #include "sw/files/json_text.h"
+#include "sw/report/console_table.h"
 
 namespace stereotlm::report {
 namespace {
@@ -128,6 +129,14 @@ Json stats_document(const platform::Statistics& statistics, const std::optional<
   document["area"] = area_json(statistics.area);
   if (!statistics.failed.empty()) document["failed"] = statistics.failed;
   if (accuracy) document["accuracy"] = to_json(*accuracy);
+  return document;
+}
+
+nlohmann::ordered_json run_document(const platform::Statistics& statistics, const TableExtras& extras) {
+  Json document = stats_document(statistics, extras.accuracy);
+  if (extras.waitless_frames_per_second)
+    document["waitless_frames_per_second"] = *extras.waitless_frames_per_second;
+  if (extras.answered_percent) document["disparities_percent"] = *extras.answered_percent;
   return document;
 }
 

@@ -17,6 +17,11 @@ nlohmann::ordered_json stats_document(const platform::Statistics& statistics,
                                       const std::optional<Accuracy>& accuracy);
 std::string stats_json(const platform::Statistics& statistics, const std::optional<Accuracy>& accuracy);
 
+// What `run --json` prints: stats.json, and what only the table shows: `waitless_frames_per_second` and
+// `disparities_percent` where they are given, and an accuracy against a made scene.
+struct TableExtras;
+nlohmann::ordered_json run_document(const platform::Statistics& statistics, const TableExtras& extras);
+
 // The part `area` of stats.json.
 nlohmann::ordered_json area_json(const area::Area& area);
 

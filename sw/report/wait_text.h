@@ -12,4 +12,10 @@ inline std::string wait_text(const std::string& port, const std::string& bank, c
   return port + " on " + bank + " for " + cause_text(by);
 }
 
+// The name of a resource of the bounds, such as "bank bank0", for people: "bank0".
+inline std::string resource_text(const std::string& resource) {
+  const std::string bank = "bank ";
+  return resource.compare(0, bank.size(), bank) == 0 ? resource.substr(bank.size()) : resource;
+}
+
 }  // namespace stereotlm::report

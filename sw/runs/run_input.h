@@ -30,6 +30,7 @@ struct RunInput {
   bool fast = true;                   // --fidelity fast, else cycle
   bool timing_only = false;
   bool record = false;                            // --record
+  bool json = false;                              // --json
   std::unique_ptr<trace::TraceWriter> trace;      // null: no --trace
   std::optional<fpga::CycleWindow> trace_window;  // --trace-window
   std::uint64_t frames = 1;                       // frames to deliver

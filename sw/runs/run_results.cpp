@@ -8,6 +8,7 @@
 #include "calib/calibration.h"
 #include "calib/depth.h"
 #include "platform/trace_runs.h"
+#include "sw/files/json_text.h"
 #include "sw/process/streams.h"
 #include "sw/report/accuracy.h"
 #include "sw/report/conflicts_csv.h"
@@ -143,6 +144,15 @@ void leave_out_verify(RunInput& input) {
   input.described.verify = false;
 }
 
+void say_lost_pixels(const platform::Statistics& statistics) {
+  if (!statistics.computer) return;
+  std::uint64_t pixels = 0;
+  for (const platform::CameraStatistics& camera : statistics.computer->cameras)
+    pixels += camera.dropped_pixels;
+  const std::string text = report::lost_pixels_text(pixels);
+  if (!text.empty()) process::say("warning", text);
+}
+
 bool deliver(RunInput& input, const platform::Statistics& statistics, const Result& last,
              const std::vector<std::string>& differences) {
   std::optional<report::Accuracy> accuracy;
@@ -151,10 +161,12 @@ bool deliver(RunInput& input, const platform::Statistics& statistics, const Resu
   for (const std::string& identity : statistics.failed)
     process::say("error", "identity does not hold: " + identity);
   const platform::BoardConfig& board = input.board;
-  process::print(report::console_table(
-      statistics,
-      {board.fpga.clock_mhz, board.pci.clock_mhz, board.bridge.local_clock_mhz, board.pci.width_bits},
-      extras_of(input, statistics, last, accuracy)));
+  const report::BoardClocks clocks = {board.fpga.clock_mhz, board.pci.clock_mhz, board.bridge.local_clock_mhz,
+                                      board.pci.width_bits};
+  const report::TableExtras extras = extras_of(input, statistics, last, accuracy);
+  process::print(input.json ? files::json_text(report::run_document(statistics, extras))
+                            : report::console_table(statistics, clocks, extras));
+  say_lost_pixels(statistics);
   if (accuracy) say_if_doubtful(input, *accuracy);
   for (const std::string& difference : differences) process::say("error", difference);
   return statistics.failed.empty() && differences.empty();

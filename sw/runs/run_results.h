@@ -42,7 +42,10 @@ void leave_out_truth_of_another_pair(RunInput& input, std::uint64_t frames_done)
 // claim a comparison that did not take place.
 void leave_out_verify(RunInput& input);
 
-// Writes the result files and prints the table. `last`: the result of the last frame. `differences`: found by
+// Prints a warning if captures have lost pixels.
+void say_lost_pixels(const platform::Statistics& statistics);
+
+// Writes the result files and prints the table, or with --json the document. `last`: the result of the last frame. `differences`: found by
 // --verify. Prints the differences and the identities that do not hold, and lists them as `failed` in
 // stats.json. Returns true if there are no differences and all identities hold. Throws std::runtime_error if
 // the files cannot be written; an earlier result is then unchanged.

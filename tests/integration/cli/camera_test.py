@@ -129,6 +129,21 @@ class Figures(CameraTest):
         self.assertGreaterEqual(stats["bridge"]["posted_words"], 2 * 20 * words)
         self.assertIn("\nlatency      capture to host, ms: min ", table)
 
+    def test_torn_pictures_are_warned_of_wherever_a_computer_runs(self):
+        torn = sets("capture.fifo_words=4", "capture.fifo_trigger_words=2",
+                    "pci.load={burst_words: 1, interval_us: 0, access_us: 50}")
+        process = run(*self.arguments(*torn, "--frames", "3", "--out", self.out))
+        self.succeeds(process)
+        lost = sum(camera["dropped_pixels"] for camera in self.stats()["cameras"])
+        self.assertGreater(lost, 0)
+        said = f"captures lose {lost} pixels: pictures are torn, and disparities are wrong there"
+        self.assertEqual(process.stderr, f"stereotlm: warning: {said}\n")
+        page = ["report", self.out, "--quick", "--out", self.folder / "page.html"]
+        self.assertEqual(run(*page).stderr, f"stereotlm: warning: '{self.out}': {said}\n")
+        _, *others = self.arguments(*torn, "--frames", "3")
+        self.assertEqual(run("conflicts", *others).stderr, f"stereotlm: warning: {said}\n")
+        self.assertEqual(run(*self.arguments("--frames", "3")).stderr, "")
+
     @program.slow
     def test_a_picture_of_more_than_4_mib_reaches_the_board_and_comes_back(self):
         size = sets("image.width=2056", "image.height=2048", "ssram.default.words=4194304",

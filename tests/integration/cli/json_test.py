@@ -1,5 +1,6 @@
-"""The option --json: documents that keep their schemas, with the numbers of the text."""
+"""The option --json: documents that keep their schemas, with the figures of runs, of their files and of the board."""
 
+import csv
 import json
 import pathlib
 import re
@@ -7,18 +8,18 @@ import re
 import jsonschema
 
 import program
-from program import PRELOADED, SMALL, ProgramTest, run, sets
+from program import CAMERA_RATES, PRELOADED, SMALL, ProgramTest, run, sets
 
 SCHEMAS = pathlib.Path(__file__).parents[3] / "sw" / "cli" / "schemas"
 SHARED = sets("allocation.left_lut=bank0")
 
 
 class Json(ProgramTest):
-    def both(self, command, *arguments):
-        """The document, which keeps its schema, and the text."""
+    def document(self, command, *arguments):
+        """The document, which keeps its schema."""
         process = run(command, *arguments, "--json")
         self.assertEqual(process.stderr, "")
-        return self.valid(command, self.succeeds(process)), self.succeeds(run(command, *arguments))
+        return self.valid(command, self.succeeds(process))
 
     def valid(self, command, text):
         schema = json.loads((SCHEMAS / f"{command}.schema.json").read_text())
@@ -27,88 +28,170 @@ class Json(ProgramTest):
         jsonschema.Draft202012Validator(schema).validate(document)
         return document
 
-    def test_bounds_has_the_numbers_of_its_text(self):
-        for board, *options in (("fpl2003", *SHARED), ("fpl2003-no-calibration",), ("megapixel-pci64",)):
-            document, text = self.both("bounds", board, *options)
-            lines = []
-            for group in document["frames"]:
-                for row in group["resources"]:
-                    name = f"bank {', '.join(row['banks'])}" if "banks" in row else row["resource"]
-                    lines.append(f"{name} {row['cycles']} {row['frames_per_second']:.3f} {row['headroom_percent']:.2f}")
-            lines += [f"{row['resource']} {row['frames_per_second']:.3f}" for row in document["computer"]]
-            columns = ("name", "count", "luts", "flip_flops", "block_rams", "multipliers")
-            area = document["area"]
-            lines += [" ".join(str(part[key]) for key in columns) for part in area["parts"]]
-            printed = [" ".join(line.split()) for line in text.splitlines() if line.startswith("  ")]
-            heads = ("resource ", "parts ", "all ")
-            self.assertEqual(lines, [line for line in printed if not line.startswith(heads)])
-            bound = document["bound"]
-            for of in ("core", "system"):
-                self.assertIn(f"bound of the {of}: {bound[of]:.3f} frames/s, limited by {bound[of + '_limited_by']}\n", text)
-            self.assertIn(f"core: {area['slices']} of", text)
-            self.assertEqual(area["fits"], "does not fit" not in text)
+    def small_run(self, *options):
+        """The result folder of a small preloaded run with a shared bank, and its stats.json."""
+        self.succeeds(run("run", "fpl2003", *SMALL, *PRELOADED, *SHARED, "--synthetic", 1, "--frames", 2, *options,
+                          "--out", self.out))
+        return self.stats()
 
-    def test_explain_has_the_numbers_of_its_text(self):
-        document, text = self.both("explain", "fpl2003", *SMALL, *PRELOADED, *SHARED)
-        now = document["frames_per_second"]
-        bound = document["bound"]
-        unwrapped = re.sub(r"\n  (?=\S)", " ", text)
-        self.assertIn(f"fpl2003, the core alone: {now:.3f} frames/s, limited by {document['limited_by']}\n", unwrapped)
-        owner = bound["limited_by"].removeprefix("bank ")
-        frames = f"{document['frames']} frames simulated"
-        self.assertIn(f"\nbound {bound['frames_per_second']:.3f} frames/s: {owner}; {frames}\n", text)
+    def test_bounds_are_those_of_a_run(self):
+        document = self.document("bounds", "fpl2003", *SMALL, *SHARED)
+        stats = self.small_run()
+        area = document["area"]
+        self.assertEqual({key: area[key] for key in stats["area"]}, stats["area"])
+        for part, count in (("luts", 1), ("flip_flops", 1), ("block_rams", 1), ("multipliers", 1)):
+            self.assertEqual(count * sum(row[part] for row in area["parts"]), stats["area"][part])
+        self.assertEqual((area["device"], area["fits"], area["smallest_device"]), ("xc2v6000", True, "xc2v1500"))
+        self.assertEqual(document["bound"]["core"], stats["bound"]["core"])
+        self.assertEqual(document["bound"]["core_limited_by"], stats["bound"]["core_limited_by"])
+        # Of the lists of two banks each frame is bound by its slowest resource; the bound is their mean.
+        slowest = []
+        for group in document["frames"]:
+            most = max(row["cycles"] for row in group["resources"])
+            slowest += [most] * len(group["frames"])
+            for row in group["resources"]:
+                self.assertAlmostEqual(row["frames_per_second"], 40e6 / row["cycles"])
+                self.assertAlmostEqual(row["headroom_percent"], 100 * (1 - row["cycles"] / most))
+        self.assertAlmostEqual(stats["bound"]["core"], 40e6 * len(slowest) / sum(slowest))
+        for bound, frame in zip(slowest, stats["frame_cycles"], strict=True):
+            self.assertLessEqual(bound, frame)
+        camera = {row["resource"]: row["frames_per_second"] for row in document["computer"]}["camera"]
+        self.assertEqual(camera, 29.97)
+
+    def test_explain_has_the_figures_of_runs(self):
+        document = self.document("explain", "fpl2003", *SMALL, *PRELOADED, *SHARED)
+        stats = self.small_run()
+        self.assertEqual(document["frames"], 6)  # three times those of the run
+        self.assertAlmostEqual(document["frames_per_second"], stats["frames_per_second"]["core"])
         self.assertAlmostEqual(sum(document["time_percent"].values()), 100)
-        self.assertIn(f"{document['time_percent']['waits']:.2f} % waits for banks", unwrapped)
-        for row in document["resources"]:
-            *_, name = row["resource"].split()
-            in_frame = f", in frame {row['frame']} of 2" if "frame" in row else ""
-            numbers = rf"{row['headroom_percent']:.2f} +{row['busy_percent']:.2f} +{row['frames_per_second']:.3f}"
-            self.assertRegex(text, rf"(?m)^ +{numbers}  .*\b{name}\b.*{in_frame}$")
-        for row in document["blame"]:
-            percent = f"{row['cycles_percent']:.3f}"
-            self.assertRegex(text, rf"\n  {row['port']} +on {row['bank']} +for {row['by']} +{percent}\n")
-        shown = 0
-        for row in document["changes"]:
-            saved = {key: row["area"][key] - document["area"][key] for key in row["area"]}
-            saves = min(saved[f"{part}_percent"] for part in ("slices", "block_rams", "multipliers")) <= -1
-            if abs(row["gained_percent"]) < 0.1 and not saves and row["key"] != "a bank less":
-                self.assertNotIn(f"  {row['key']}: {row['from']} -> {row['to']}\n", text)
-                continue
-            of_slices = f"{saved['slices_percent']:+.2f}" if saved["slices"] else "0"
-            price = [of_slices, f"{saved['block_rams']:+}" if saved["block_rams"] else "0"]
-            gained = f"{row['gained_frames_per_second']:+.3f} {row['gained_percent']:+.2f}"
-            mark = " *" if row["changes_disparities"] else ""
-            change = f"{row['key']}{mark}: {row['from']} -> {row['to']}"
-            line = f"{row['frames_per_second']:.3f} {gained} {' '.join(price)} {change}"
-            self.assertIn(f" {line}", re.sub(" +", " ", text))
-            shown += 1
-        self.assertGreater(shown, 10)
+        busy = {row["resource"]: row["busy_percent"] for row in document["resources"]}
+        for bank in stats["banks"]:
+            if bank["busy_cycles"] > 0:
+                self.assertAlmostEqual(busy[f"bank {bank['name']}"], 100 * bank["utilization"])
+        self.assertEqual(document["bound"]["frames_per_second"], stats["bound"]["core"])
+        self.assertEqual({key: document["area"][key] for key in stats["area"]}, stats["area"])
+        blame = {(row["port"], row["bank"], row["by"]): row["cycles_percent"] for row in document["blame"]}
+        expected = {(row["port"], row["bank"], row["by"]): 100 * row["cycles"] / stats["cycles"] for row in stats["blame"]}
+        self.assertEqual(blame.keys(), expected.keys())
+        for wait, percent in blame.items():
+            self.assertAlmostEqual(percent, expected[wait], places=6)
+        changes = {(row["key"], row["to"]): row for row in document["changes"]}
+        for key, to in (("matcher.window", "9"), ("matcher.fetch", "line_buffer"), ("matcher.filter", "none")):
+            change = changes[key, to]
+            changed = self.small_run(*sets(f"{key}={to}"))
+            self.assertAlmostEqual(change["frames_per_second"], changed["frames_per_second"]["core"])
+            gained = changed["frames_per_second"]["core"] - stats["frames_per_second"]["core"]
+            self.assertAlmostEqual(change["gained_frames_per_second"], gained)
+            self.assertEqual(change["area"]["slices"], changed["area"]["slices"])
         self.assertEqual((document["impossible"], document["failed"]), ([], []))
 
     def test_explain_names_what_is_impossible_and_a_queue_that_is_too_short(self):
         short = sets("matcher.rows=4", "matcher.disparities=4", "fpga.result_fifo_words=4")
-        document, text = self.both("explain", "fpl2003", *SMALL, *PRELOADED, *short)
-        unwrapped = re.sub(r"\n  (?=\S)", " ", text)
-        self.assertIn(f"in {document['result_queue_wait_percent']:.2f} % of the cycles", unwrapped)
+        document = self.document("explain", "fpl2003", *SMALL, *PRELOADED, *short)
+        stats = json.loads(self.succeeds(run("run", "fpl2003", *SMALL, *PRELOADED, *short, "--synthetic", 1, "--json")))
+        lost = 100 * (1 - stats["frames_per_second"]["core"] / stats["bound"]["core"])
+        self.assertAlmostEqual(document["result_queue_wait_percent"], lost)
         change = document["impossible"][0]
-        words = f"not possible here: {change['key']}: {change['from']} -> {change['to']}, because {change['reason']}"
-        self.assertIn(words, re.sub(r"\n  ", " ", text))
+        changed = sets("matcher.rows=4", "matcher.disparities=4", f"{change['key']}={change['to']}")
+        refused = self.refused(run("check", "fpl2003", *changed))
+        self.assertIn(change["reason"], refused[0])
 
-    def test_conflicts_has_the_numbers_of_its_text(self):
-        options = [*SMALL, *PRELOADED, *SHARED, "--synthetic", 1, "--frames", 2]
-        document, text = self.both("conflicts", "fpl2003", *options)
-        self.assertIn(f"core         {document['cycles']} cycles in {document['frames']} frames\n", text)
-        self.assertEqual(len(document["waits"]), text.count("\nwaits "))
+    def test_conflicts_has_the_figures_of_a_run(self):
+        document = self.document("conflicts", "fpl2003", *SMALL, *PRELOADED, *SHARED, "--synthetic", 1, "--frames", 2)
+        stats = self.small_run("--record")
+        self.assertEqual((document["cycles"], document["frames"]), (stats["cycles"], stats["frames"]))
+        waits = [{key: row[key] for key in ("port", "bank", "by", "cycles")} for row in document["waits"]]
+        blame = sorted(stats["blame"], key=lambda row: -row["cycles"])
+        self.assertEqual(sorted(waits, key=lambda row: -row["cycles"]), blame)
         for row in document["waits"]:
-            wait = f"{row['port']} on {row['bank']} for {row['by']}: {row['cycles']} cycles ({row['cycles_percent']:.2f} %)"
-            self.assertIn(f"waits        {wait}", text)
-        lines = []
-        for row in document["rows"]:
-            name = f"{row['first_row']}..{row['last_row']}" if "first_row" in row else "fill"
-            banks = [f"{bank['accesses_percent']:.2f}" for bank in row["banks"]]
-            lines.append(" ".join([name, f"{row['waits_percent']:.2f}", *banks]))
-        printed = text.split("rows  ")[1].splitlines()[1:]
-        self.assertEqual(lines, [" ".join(line.split()) for line in printed])
+            self.assertAlmostEqual(row["cycles_percent"], 100 * row["cycles"] / stats["cycles"], places=6)
+        with (self.out / "rows.csv").open() as rows:
+            recorded = list(csv.DictReader(rows))
+        in_percent = lambda rows, columns: 100 * sum(int(row[column]) for row in rows for column in columns) / sum(
+            int(row["cycles"]) for row in rows)
+        waiting = [column for column in recorded[0] if column.endswith("_stall_cycles")]
+        for band in document["rows"]:
+            first, last = band.get("first_row"), band.get("last_row")
+            rows = [row for row in recorded if (row["first_row"] == "" if first is None else row["first_row"] != "" and
+                                                first <= int(row["first_row"]) <= last)]
+            self.assertAlmostEqual(band["waits_percent"], in_percent(rows, waiting), places=6)
+            for bank in band["banks"]:
+                accesses = [column for column in recorded[0] if column.startswith(f"{bank['name']}_")]
+                self.assertAlmostEqual(bank["accesses_percent"], in_percent(rows, accesses), places=6)
+
+    def test_run_is_its_stats_json_and_what_the_table_says(self):
+        for options in ([*PRELOADED, *SHARED], [*CAMERA_RATES, "--timing-only"]):
+            arguments = [*SMALL, "--synthetic", 1, "--frames", 3, *options, "--out", self.out]
+            document = self.document("run", "fpl2003", *arguments)
+            table = self.succeeds(run("run", "fpl2003", *arguments))
+            beside = {key: document.pop(key) for key in set(document) - set(self.stats())}
+            self.assertEqual(document, self.stats())
+            if "--timing-only" in options:
+                self.assertEqual(beside, {})
+                continue
+            answered = re.search(r"disparities +in (.*) %", table)[1]
+            self.assertEqual(f"{beside['disparities_percent']:.2f}", answered)
+            self.assertEqual(f"{beside['waitless_frames_per_second']:.3f}", re.search(r"of (.*), which the core", table)[1])
+            self.assertEqual(f"{beside['accuracy']['answered_percent']:.2f}", re.search(r"answered: (.*) %", table)[1])
+
+    def test_diff_has_what_differs_of_both_runs(self):
+        a, b = self.folder / "a", self.folder / "b"
+        common = ["run", "fpl2003", *SMALL, *PRELOADED, "--synthetic", 1, "--frames", 2]
+        self.succeeds(run(*common, "--out", a))
+        self.succeeds(run(*common, *SHARED, "--out", b))
+        document = self.document("diff", a, b)
+        self.assertEqual((document["a"], document["b"]), (str(a), str(b)))
+        self.assertEqual(document["settings"], [{"path": "allocation.left_lut", "a": "bank6", "b": "bank0"}])
+        self.assertEqual(document["options"], [])
+        of_a, of_b = self.stats(a), self.stats(b)
+        figures = {row["path"]: (row["a"], row["b"]) for row in document["figures"]}
+        self.assertEqual(figures["cycles"], (of_a["cycles"], of_b["cycles"]))
+        self.assertEqual(figures["bound.core_limited_by"], ("matcher", "bank bank0"))
+        self.assertEqual(figures["frames_per_second.core"],
+                         (of_a["frames_per_second"]["core"], of_b["frames_per_second"]["core"]))
+        frames = list(enumerate(zip(of_a["frame_cycles"], of_b["frame_cycles"], strict=True)))
+        expected = [{"frame": frame, "a": x, "b": y} for frame, (x, y) in frames if x != y]
+        self.assertEqual(document["frames"], expected)
+        self.assertEqual(document["waits"], [{"port": row["port"], "bank": row["bank"], "by": row["by"], "a": 0,
+                                              "b": row["cycles"]} for row in of_b["blame"]])
+        rows = document["rows"]
+        self.assertEqual(rows["frames"], 2)
+        self.assertEqual(sum(row["cycles"] for row in rows["ranges"]), of_b["cycles"] - of_a["cycles"])
+        waiting = sum(row["waiting_cycles"]["left_lut"] for row in rows["ranges"])
+        self.assertEqual(waiting, sum(row["cycles"] for row in of_b["blame"] if row["port"] == "left_lut"))
+        self.assertEqual(document["disparities"], {"frames": 2, "frames_that_differ": 0, "pixels_that_differ": 0})
+        self.assertRegex(document["verdict"], r"^A is faster by .*\.$")
+        alone = self.document("diff", a, a)
+        for part in ("settings", "options", "figures", "frames", "waits"):
+            self.assertEqual(alone[part], [])
+
+    def test_diff_says_why_rows_and_disparities_are_not_compared(self):
+        a, b = self.folder / "a", self.folder / "b"
+        for folder, height in ((a, 24), (b, 28)):
+            size = sets("image.width=32", f"image.height={height}")
+            self.succeeds(run("run", "fpl2003", *size, *PRELOADED, "--synthetic", 1, "--out", folder))
+        document = self.document("diff", a, b)
+        for part in ("rows", "disparities"):
+            self.assertEqual(list(document[part]), ["not_compared"])
+
+    def test_boards_are_files_that_can_be_run(self):
+        boards = self.document("boards")["boards"]
+        self.assertEqual([board["name"] for board in boards][0], "fpl2003")
+        for board in boards:
+            self.assertEqual(board["file"], self.succeeds(run("boards", "--show", board["name"])))
+            self.assertEqual(board["file"].splitlines()[0], f"# {board['description']}")
+        self.assertEqual(self.document("boards", "--show", "two-banks")["boards"],
+                         [board for board in boards if board["name"] == "two-banks"])
+
+    def test_keys_are_those_of_a_board_file(self):
+        keys = {row["key"]: row for row in self.document("keys")["keys"]}
+        self.assertEqual(keys["matcher.window"], {"key": "matcher.window", "unit": "pixels", "range": "3..31, odd",
+                                                  "meaning": "rows and columns of the matching window"})
+        self.assertNotIn("unit", keys["cameras.trigger"])
+        board = self.succeeds(run("boards", "--show", "fpl2003"))
+        for section in ("cameras", "bridge"):
+            for key in re.search(rf"(?m)^{section}: {{(.*)}}", board)[1].split(","):
+                self.assertIn(f"{section}.{key.split(':')[0].strip()}", keys)
 
     def test_check_lists_the_problems_with_place_key_value_and_rule(self):
         text = "extends: fpl2003\nname: a\nmatcher:\n  window: 6\n  cost: {census: 4}\nfoo: 1\nimage: {width: [1, 2]}\n"
@@ -137,15 +220,17 @@ class Json(ProgramTest):
         self.assertIn("--calibration", problems[-1]["message"])
 
     def test_check_describes_a_board_without_problems(self):
-        document, text = self.both("check", "fpl2003", *SMALL)
-        image = document["image"]
-        board = f"{image['width']}x{image['height']}, window {document['window']}x{document['window']}, "
-        core = f"{document['disparities']} disparities, {document['banks']} banks, {document['clock_mhz']} MHz"
-        self.assertEqual(text, f"fpl2003: ok: {board}{core}\n")
-        self.assertTrue(document["ok"])
+        changes = ("matcher.window=5", "fpga.clock_mhz=33.5", "fpga.device=xc2v1000")
+        document = self.document("check", "fpl2003", *SMALL, *sets(*changes))
+        area = self.document("bounds", "fpl2003", *SMALL, *sets(*changes))["area"]
+        self.assertEqual(document, {
+            "schema": 1, "board": "fpl2003", "ok": True, "problems": [], "image": {"width": 32, "height": 24},
+            "window": 5, "disparities": 80, "banks": 8, "clock_mhz": 33.5, "device": "xc2v1000",
+            "fits": area["slices"] <= 5120, "smallest_device": "xc2v1500"})
+        self.assertGreater(area["slices"], 5120)
 
     def test_a_refused_command_prints_no_document(self):
-        for command in ("bounds", "explain", "conflicts"):
+        for command in ("bounds", "explain", "conflicts", "run"):
             self.refused(run(command, "fpl2003", "--json", *sets("matcher.window=6")), "matcher.window = 6")
         self.refused(run("check", "--json"), "BOARD: missing")
 

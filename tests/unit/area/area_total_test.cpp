@@ -1,22 +1,58 @@
 #include <gtest/gtest.h>
 
+#include <array>
+#include <string>
+#include <vector>
+
 #include "models/area/area.h"
 
 namespace stereotlm::area {
 namespace {
 
-constexpr Device kXc2v6000 = kDevices[0];
+const Device& kXc2v6000 = *find_device("xc2v6000");
 
 Area total_of(const Resources& resources) { return total({{"parts", 1, resources}}, kXc2v6000); }
 
 TEST(Device, IsFoundByItsName) {
-  const Device* device = find_device("xc2v6000");
-  ASSERT_NE(device, nullptr);
-  EXPECT_EQ(device->slices, 33'792);
-  EXPECT_EQ(device->block_rams, 144);
-  EXPECT_EQ(device->multipliers, 144);
+  EXPECT_EQ(find_device("xc2v6000")->name, "xc2v6000");
   EXPECT_EQ(find_device("xc2v6000 "), nullptr);
   EXPECT_EQ(find_device(""), nullptr);
+}
+
+// The smallest device has enough of each resource; one more than it has needs the next.
+TEST(Device, IsTheSmallestThatHoldsTheArea) {
+  const auto name_of_smallest = [](std::int64_t slices, std::int64_t block_rams, std::int64_t multipliers) {
+    Area area;
+    area.slices = slices;
+    area.block_rams = block_rams;
+    area.multipliers = multipliers;
+    const Device* const device = smallest_device(area);
+    return device == nullptr ? "none" : std::string(device->name);
+  };
+  EXPECT_EQ(name_of_smallest(0, 0, 0), "xc2v1000");
+  for (std::size_t i = 0; i < kDevices.size(); ++i) {
+    const Device& device = kDevices[i];
+    const std::string next = i + 1 < kDevices.size() ? std::string(kDevices[i + 1].name) : "none";
+    EXPECT_EQ(name_of_smallest(device.slices, device.block_rams, device.multipliers), device.name);
+    EXPECT_EQ(name_of_smallest(device.slices + 1, 0, 0), next);
+    EXPECT_EQ(name_of_smallest(0, device.block_rams + 1, 0), next);
+    EXPECT_EQ(name_of_smallest(0, 0, device.multipliers + 1), next);
+  }
+}
+
+// Xilinx DS031.
+TEST(Device, HasTheResourcesOfItsDataSheet) {
+  const std::vector<std::array<std::int64_t, 3>> sheet = {
+      {1000, 5'120, 40},   {1500, 7'680, 48},   {2000, 10'752, 56}, {3000, 14'336, 96},
+      {4000, 23'040, 120}, {6000, 33'792, 144}, {8000, 46'592, 168}};
+  ASSERT_EQ(kDevices.size(), sheet.size());
+  for (const auto& [number, slices, others] : sheet) {
+    const Device* const device = find_device("xc2v" + std::to_string(number));
+    ASSERT_NE(device, nullptr) << number;
+    EXPECT_EQ(device->slices, slices);
+    EXPECT_EQ(device->block_rams, others);
+    EXPECT_EQ(device->multipliers, others);
+  }
 }
 
 TEST(AreaItem, SharesPlacesBetweenLutsAndTheirFlipFlops) {

@@ -25,7 +25,8 @@ TEST(DisparityOffset, NamesTheDisparitiesNeededIfTheyDoNotFit) {
   EXPECT_EQ(test::message_of([] {
               disparity_offset_for({100.14, 203.4}, 104);
             }),
-            "disparities = 104: must be 105 or more for the grid's own, 100..204");
+            "--disparities = 104: must be 105 or more for the grid's own, 100..204; or --disparity-offset N, "
+            "for a part of them");
 }
 
 TEST(RowErrors, AverageAbsoluteValues) {

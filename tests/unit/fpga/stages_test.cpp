@@ -214,6 +214,12 @@ TEST_F(PixelReaderTest, ReportsASlotThatItDoesNotHave) {
   EXPECT_THROW(stage.release(), sc_core::sc_report);
 }
 
+TEST(RowBuffer, RefusesASizeOutsideItsRange) {
+  EXPECT_THROW(RowBuffer("narrow", 3, 3, 1), std::invalid_argument);
+  EXPECT_THROW(RowBuffer("even", 4, 2, 1), std::invalid_argument);
+  EXPECT_THROW(RowBuffer("empty", 4, 3, 0), std::invalid_argument);
+}
+
 TEST(RowBuffer, BeginsAFrameAtTheFirstColumn) {
   RowBuffer rows("rows", 4, 3, 1);
   Collected<PixelColumn> columns;

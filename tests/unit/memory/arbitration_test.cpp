@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -282,6 +283,39 @@ TEST(Arbitration, KnowsWhichOtherPortsAreRoutedToABankAndWhetherItHasTurnaround)
   EXPECT_FALSE(arbitration.is_used_beside(port::kHost, 1));
   for (std::size_t bank = 0; bank < kBanks; ++bank)
     EXPECT_EQ(arbitration.needs_turnaround(bank), bank == 2 || bank == 3);
+}
+
+// A read of a bank with separate ports waits for the read that is granted, not for the write beside it.
+TEST(Arbitration, BlamesAPortOfTheSameDirectionOfABankWithSeparatePorts) {
+  for (const bool write : {false, true}) {
+    Arbitration arbitration({"fixed_priority", {0, 1, 2}}, {{16, BankKind::kQdr}});
+    arbitration.route(0, 0, !write);
+    arbitration.route(1, 0, write);
+    arbitration.route(2, 0, write);
+    const PortMask granted = arbitration.arbitrate(0, mask_of(0) | mask_of(1) | mask_of(2));
+    EXPECT_EQ(granted, mask_of(0) | mask_of(1));
+    EXPECT_EQ(arbitration.cause_of(2, granted), 1U);
+  }
+}
+
+TEST(Arbitration, RoutesNoPortThatIsNotInThePriorityListAndNoneToABankThatDoesNotExist) {
+  Arbitration arbitration({"fixed_priority", {1, 0}}, {{16}, {16}, {16}});
+  const auto refusal = [](const auto& call) -> std::string {
+    try {
+      call();
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return "none";
+  };
+  const std::string no_port = "port = 2: must be 0..1";
+  const std::string no_bank = "bank = 9: must be 0..2";
+  EXPECT_EQ(refusal([&] { arbitration.route(2, 0, false); }), no_port);
+  EXPECT_EQ(refusal([&] { arbitration.visit(2, 0, false); }), no_port);
+  EXPECT_EQ(refusal([&] { arbitration.unroute(2); }), no_port);
+  EXPECT_EQ(refusal([&] { arbitration.route(0, 9, false); }), no_bank);
+  EXPECT_EQ(refusal([&] { arbitration.visit(0, 9, false); }), no_bank);
+  EXPECT_EQ(refusal([&] { arbitration.route(1, 2, true); }), "none");
 }
 
 TEST(Arbitration, GrantsNothingToAPortThatIsUnrouted) {

@@ -165,6 +165,17 @@ TEST(BankArbiter, WithSeparatePortsHasARoundRobinPlaceForEachDirection) {
   EXPECT_EQ(arbiter.state(10), before);
 }
 
+TEST(BankArbiter, RefusesARequestOfAPortThatIsNotInThePriorityList) {
+  for (const char* policy : {"fixed_priority", "round_robin", "age"}) {
+    BankArbiter arbiter({policy, {1, 0}}, {16});
+    EXPECT_EQ(BankArbiter::granted_in(arbiter.decide(0, 0b01, 0)), 0b01);
+    EXPECT_THROW(arbiter.decide(1, 0b100, 0), std::invalid_argument);
+    EXPECT_THROW(arbiter.decide(1, 0b101, 0), std::invalid_argument);
+    EXPECT_THROW(arbiter.decide(1, 0, 0), std::invalid_argument);
+    EXPECT_EQ(BankArbiter::granted_in(arbiter.decide(1, 0b10, 0)), 0b10);
+  }
+}
+
 TEST(BankArbiter, RefusesAConfigurationWithProblems) {
   EXPECT_THROW(BankArbiter(arbiter_of("lottery"), {}), std::invalid_argument);
   EXPECT_THROW(BankArbiter(kFixedPriority, {16, BankKind::kQdr, 1}), std::invalid_argument);

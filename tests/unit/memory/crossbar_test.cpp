@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "tests/support/expected_report.h"
 #include "tests/unit/memory/crossbar_bench.h"
 #include "tests/unit/support/scripted_link.h"
 
@@ -134,6 +135,20 @@ TEST(Crossbar, TellsEveryPortWhichDirectAccessABankRevokes) {
     EXPECT_EQ(host.invalidations[0].first, crossbar_address(1, 2));
     EXPECT_EQ(host.invalidations[0].second, crossbar_address(1, 4) - 1);
   }
+}
+
+TEST_F(CrossbarPorts, AreNotRoutedToABankOrFromAPortThatDoesNotExist) {
+  const test::ExpectedReport report("/stereotlm/crossbar", 4);
+  crossbar->route(port::kLeftPixel, kPipelined, false);
+  EXPECT_THROW(crossbar->route(port::kLeftPixel, 3, false), sc_core::sc_report);
+  EXPECT_EQ(report.text(), "crossbar: route: bank = 3: must be 0..2");
+  EXPECT_THROW(crossbar->route(kPortCount, kPipelined, false), sc_core::sc_report);
+  EXPECT_EQ(report.text(), "crossbar: route: port = 6: must be 0..5");
+  EXPECT_THROW(crossbar->aim(port::kHost, 3, true), sc_core::sc_report);
+  EXPECT_THROW(crossbar->unroute(kPortCount), sc_core::sc_report);
+  EXPECT_EQ(crossbar->bank_of(port::kLeftPixel), kPipelined);
+  EXPECT_EQ(arbitrate(0, kLeft), kLeft) << "its route has stayed";
+  EXPECT_EQ(crossbar->direct(crossbar_address(3, 0), 4), nullptr);
 }
 
 TEST(Crossbar, MayLeaveAPortUnbound) {

@@ -202,20 +202,28 @@ TEST_F(ProtocolMonitorHandshake, CatchesAPhaseReturnedAfterTheTransactionWasComp
 }
 
 TEST_F(ProtocolMonitorHandshake, DoesNotTouchATransactionThatTheInitiatorReleasesWithItsLastAnswer) {
-  class DeletingManager : public tlm::tlm_mm_interface {
+  // Spoils what is freed, so that the monitor reports a change if it still looks at it.
+  class SpoilingManager : public tlm::tlm_mm_interface {
    public:
-    void free(Payload* freed) override { delete freed; }
-  } deleting;
-  auto* heap = new Payload(&deleting);
-  prepare(*heap);
-  heap->acquire();
+    void free(Payload* payload) override {
+      ++freed;
+      payload->set_address(~payload->get_address());
+      payload->set_response_status(tlm::TLM_INCOMPLETE_RESPONSE);
+    }
+    int freed = 0;
+  } spoiling;
+  Payload released(&spoiling);
+  prepare(released);
+  released.acquire();
   elaborate();
-  forward(*heap, BEGIN_REQ);
-  initiator.on_backward = [](Payload& received, tlm_phase&, sc_time&) {
+  forward(released, BEGIN_REQ);
+  initiator.on_backward = [&spoiling](Payload& received, tlm_phase&, sc_time&) {
     received.release();
+    EXPECT_EQ(spoiling.freed, 0) << "the monitor holds it until it has looked at it";
     return tlm::TLM_COMPLETED;
   };
-  backward(*heap, BEGIN_RESP);
+  backward(released, BEGIN_RESP);
+  EXPECT_EQ(spoiling.freed, 1);
 }
 
 // Violations during a handshake: a payload that is wrong or changes, a forbidden call, time that passes or

@@ -47,15 +47,35 @@ TEST(BoardArea, ChangesOnlyWithTheKeysThatChangeTheStructure) {
   EXPECT_EQ(slices_after([](BoardConfig& b) { b.matcher.lr_tolerance = 5; }), slices);
 }
 
+// 7420 slices, 17 block RAMs and 22 multipliers.
+TEST(BoardArea, NamesTheSmallestDeviceThatFits) {
+  BoardConfig board;
+  EXPECT_EQ(device_text(board), "device xc2v6000: fits; the smallest that fits: xc2v1500");
+  board.fpga.device = "xc2v1000";
+  EXPECT_EQ(device_text(board), "device xc2v1000: does not fit; the smallest that fits: xc2v1500");
+  board.matcher.cost = {kernels::CostKind::kZncc, 0};
+  EXPECT_EQ(device_text(board), "device xc2v1000: does not fit; the smallest that fits: none");
+}
+
+TEST(BoardArea, RemarksOnAClockAboveThePapers) {
+  BoardConfig board;
+  EXPECT_EQ(clock_remark(board), "");
+  board.fpga.clock_mhz = 40.5;
+  EXPECT_EQ(clock_remark(board).substr(0, 69),
+            "fpga.clock_mhz = 40.5: above the 40 MHz that the paper's core reached");
+}
+
 TEST(BoardArea, IsRefusedForABoardWithProblems) {
   BoardConfig board;
-  board.fpga.device = "xc2v8000";
+  board.fpga.device = "xc4vlx25";
   EXPECT_THROW(area_of(board), std::invalid_argument);
   try {
     device_of(board);
     FAIL() << "no exception";
   } catch (const std::invalid_argument& error) {
-    EXPECT_STREQ(error.what(), "fpga.device = xc2v8000: xc2v6000");
+    EXPECT_STREQ(error.what(),
+                 "fpga.device = xc4vlx25: must be one of xc2v1000, xc2v1500, xc2v2000, xc2v3000, xc2v4000, "
+                 "xc2v6000 or xc2v8000");
   }
   board = BoardConfig();
   board.matcher.window = 4;

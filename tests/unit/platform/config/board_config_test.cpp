@@ -32,7 +32,7 @@ TEST(BoardConfig, ReportsEveryBrokenRuleInTheOrderOfTheFields) {
   board.capture.fifo_trigger_words = 141;
   board.pci.clock_mhz = std::numeric_limits<double>::infinity();
   board.pci.load = PciLoadConfig{0, -0.5, std::nan(""), 1000000.5};
-  board.fpga.device = "xc2v8000";
+  board.fpga.device = "xc4vlx25";
   board.fpga.arbiter.priority[0] = fpga::kResultPort;
   board.banks[1].name = "bank0";
   board.banks[2].name = "none";
@@ -63,9 +63,10 @@ TEST(BoardConfig, ReportsEveryBrokenRuleInTheOrderOfTheFields) {
                       "pci.load.interval_us = -0.5: 0..1000000000",
                       "pci.load.first_us = nan: 0..1000000000",
                       "pci.load.access_us = 1000000.5: 0..1000000",
-                      "fpga.device = xc2v8000: xc2v6000",
+                      "fpga.device = xc4vlx25: must be one of xc2v1000, xc2v1500, xc2v2000, xc2v3000, "
+                      "xc2v4000, xc2v6000 or xc2v8000",
                       priority_problem,
-                      "fpga.pixel_cache = 2: none or word",
+                      "fpga.pixel_cache = 2: must be one of none or word",
                       "ssram.banks = bank0: repeated name",
                       "ssram.banks = none: a bank's name is [A-Za-z][A-Za-z0-9_-]*, and not none",
                       "ssram.banks.bank3.words = 0: 1..67108864",
@@ -92,11 +93,13 @@ TEST(BoardConfig, DiffersInEachFieldOfALoad) {
 
 TEST(BoardConfig, RefusesEnumeratorsAndNamesThatDoNotExist) {
   EXPECT_EQ(problems_with([](BoardConfig& b) { b.cameras.trigger = static_cast<CameraTrigger>(2); }),
-            Problems{"cameras.trigger = 2: free_running or on_demand"});
-  EXPECT_EQ(problems_with([](BoardConfig& b) { b.banks[0].kind = static_cast<memory::BankKind>(4); }),
-            Problems{"ssram.banks.bank0.kind = 4: zbt_pipelined, zbt_flow_through, sync_burst or qdr"});
+            Problems{"cameras.trigger = 2: must be one of free_running or on_demand"});
+  EXPECT_EQ(
+      problems_with([](BoardConfig& b) { b.banks[0].kind = static_cast<memory::BankKind>(4); }),
+      Problems{
+          "ssram.banks.bank0.kind = 4: must be one of zbt_pipelined, zbt_flow_through, sync_burst or qdr"});
   EXPECT_EQ(problems_with([](BoardConfig& b) { b.fpga.arbiter.policy = "lottery"; }),
-            Problems{"fpga.arbitration = lottery: fixed_priority, round_robin or age"});
+            Problems{"fpga.arbitration = lottery: must be one of fixed_priority, round_robin or age"});
   EXPECT_EQ(problems_with([](BoardConfig& b) { b.fpga.arbiter.priority[0] = 6; }).size(), 1U);
 }
 

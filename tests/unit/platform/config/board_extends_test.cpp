@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -52,6 +53,8 @@ TEST(BoardPresets, AreTheDefaultBoardConfigWithAFewChanges) {
   const auto use_two_banks = [](BoardConfig& board) {
     board.fpga.joint_tables = true;
     board.fpga.pixel_cache = fpga::PixelCache::kWord;
+    auto& priority = board.fpga.arbiter.priority;
+    std::rotate(priority.begin(), priority.begin() + 1, priority.end());  // the host comes last
     board.banks.resize(2);
     const Names pictures = {"bank1", "bank1"};
     board.allocation = {pictures, pictures, pictures, "bank0", "bank0"};

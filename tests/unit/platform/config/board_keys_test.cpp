@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <set>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "platform/config/board_yaml.h"
@@ -159,9 +160,9 @@ std::vector<KeyCase> key_cases() {
       integer_case("bridge.dma_burst_words", 1, 1024),
       integer_case("bridge.posted_words", 1, 4096),
       {"fpga.device",
-       {"xc2v6000", "\"xc2v6000\""},
-       {"xc2v8000", "XC2V6000", "null", "[xc2v6000]"},
-       "xc2v6000"},
+       {"xc2v6000", "\"xc2v6000\"", "xc2v1000", "xc2v8000"},
+       {"xc4vlx25", "XC2V6000", "null", "[xc2v6000]"},
+       "xc2v1000, xc2v1500, xc2v2000, xc2v3000, xc2v4000, xc2v6000 or xc2v8000"},
       decimal_case("fpga.clock_mhz", "1", "0.999", "1000.001"),
       {"fpga.arbitration",
        {"fixed_priority", "round_robin", "age"},
@@ -232,7 +233,10 @@ TEST_P(BoardKeys, RefuseAValueBeyondTheirRuleAtItsPlace) {
   for (const std::string& value : key.refused) {
     const ChangedBoard board = board_with(key.path, value);
     const std::string shown = value.size() > 60 ? value.substr(0, 57) + "..." : value;
-    const std::string text = fmt::format("{} = {}: {}", key.path, shown, key.rule);
+    const bool is_word =
+        std::holds_alternative<WordKey>(board_key(key.path).rule) || key.path == "matcher.cost";
+    const std::string text =
+        fmt::format("{} = {}: {}{}", key.path, shown, is_word ? "must be one of " : "", key.rule);
     EXPECT_EQ(refusal_of(board.text), board.place + ": " + text);
     EXPECT_EQ(refusal_of(block_board(), {key.path + '=' + value}),
               fmt::format("--set {}: {}", key.path, text));

@@ -77,7 +77,8 @@ TEST(BoardBanks, TakeTheirWordsUpToBothLimits) {
 
 TEST(BoardBanks, TakeAKnownKind) {
   for (const std::string value : {"zbt", "null", "[sync_burst]", "0"}) {
-    const std::string rule = " = " + value + ": zbt_pipelined, zbt_flow_through, sync_burst or qdr";
+    const std::string rule =
+        " = " + value + ": must be one of zbt_pipelined, zbt_flow_through, sync_burst or qdr";
     EXPECT_EQ(refusal_of(banks_board("{default: {kind: " + value + "}, banks: {a: {}}}")),
               "board.yaml:2:25: ssram.default.kind" + rule);
     EXPECT_EQ(refusal_of(banks_board("{banks: {a: {kind: " + value + "}}}")),
@@ -218,9 +219,9 @@ TEST(BoardPriority, NamesEachPortOnce) {
             "board.yaml:2:18: fpga.priority = []: each port once; left_lut, right");
   EXPECT_EQ(refusal_of(head + "[host, result, left_pixel, right_pixel, left_lut, right_lut, host]}"),
             "board.yaml:2:79: fpga.priority = host: repeated; each port once");
-  EXPECT_EQ(
-      refusal_of(head + "[host, result, left_pixel, right_pixel, left_lut, lut]}"),
-      "board.yaml:2:68: fpga.priority = lut: left_lut, right_lut, left_pixel, right_pixel, result or host");
+  EXPECT_EQ(refusal_of(head + "[host, result, left_pixel, right_pixel, left_lut, lut]}"),
+            "board.yaml:2:68: fpga.priority = lut: must be one of left_lut, right_lut, left_pixel, "
+            "right_pixel, result or host");
   const BoardConfig board = load_text(head + "[right_lut, host, result, left_pixel, right_pixel, left_lut]}");
   EXPECT_EQ(board.fpga.arbiter.priority[0], fpga::lut_port(fpga::Side::kRight));
   EXPECT_EQ(board.fpga.arbiter.priority[1], fpga::kHostPort);
@@ -356,9 +357,9 @@ TEST(BoardCost, IsAWordOrACensusOfItsSize) {
 }
 
 TEST(BoardCost, SaysHowACensusIsWritten) {
-  EXPECT_EQ(
-      refusal_of(cost_board("census")),
-      "board.yaml:2:17: matcher.cost = census: sad, ssd, zncc, {census: 3}, {census: 5} or {census: 7}");
+  EXPECT_EQ(refusal_of(cost_board("census")),
+            "board.yaml:2:17: matcher.cost = census: must be one of sad, ssd, zncc, {census: 3}, {census: 5} "
+            "or {census: 7}");
   EXPECT_EQ(
       refusal_of(cost_board("{census:5}")),
       "board.yaml:2:18: matcher.cost.census:5 = (nothing): a blank is missing after the colon: census: 5");

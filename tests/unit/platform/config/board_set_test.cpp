@@ -74,6 +74,13 @@ TEST(BoardSet, IsAppliedInOrder) {
             5);
 }
 
+TEST(BoardSet, NamesAProblemOfSeveralElementsOfAListOnce) {
+  EXPECT_EQ(
+      refusal_of_board("fpl2003", {"allocation.disparity=[bank9, bankx, bank9]"}),
+      "--set allocation.disparity: allocation.disparity = bank9: not a bank of this board; nearest: bank0\n"
+      "--set allocation.disparity: allocation.disparity = bankx: not a bank of this board; nearest: bank0");
+}
+
 TEST(BoardSet, IsCheckedOnceAtTheEnd) {
   EXPECT_EQ(
       load_board("fpl2003", {"capture.fifo_words=8", "capture.fifo_trigger_words=8"}).capture.fifo_words, 8);

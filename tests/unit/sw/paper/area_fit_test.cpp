@@ -10,7 +10,7 @@
 namespace stereotlm::paper {
 namespace {
 
-constexpr area::Device kXc2v6000 = area::kDevices[0];
+const area::Device& kXc2v6000 = *area::find_device("xc2v6000");
 
 double modelled_percent(const PrintedArea& row) {
   return area::total(area::items(row.core), kXc2v6000).slices_percent;

@@ -53,7 +53,7 @@ TEST(ConsoleTable, ShowsTheCoreAndTheComputerAroundIt) {
       "core          39331.500 frames/s   1017 cycles a frame, 2 frames\n"
       "core bound     40000.000 frames/s   limited by left_pixel\n";
   const std::string banks =
-      "bank                  reads         writes   use %      MB/s peak MB/s\n"
+      "bank                  reads         writes  busy %      MB/s peak MB/s\n"
       "image                  1500              0   75.00    120.00    160.00\n"
       "out                       0             20    1.00      1.60    160.00\n"
       "waits        mostly left_pixel on out for the turnaround: 250 cycles (12.50 %)\n";
@@ -64,7 +64,7 @@ TEST(ConsoleTable, ShowsTheCoreAndTheComputerAroundIt) {
           "computer         17.980 ± 0.250 frames/s   steady over 12 frames; 17.500 from power-up\n"
           "computer bound   29.970 frames/s   limited by camera\n" +
           banks +
-          "pci master     transactions          words   use %      MB/s peak MB/s mean wait us\n"
+          "pci master     transactions          words  data %      MB/s peak MB/s mean wait us\n"
           "host                     10             20    0.20      0.24    120.00        0.000\n"
           "left_capture            100           3000   30.00     36.00    120.00        1.111\n"
           "pci bus      busy 25.00 % of its clocks\n"
@@ -86,7 +86,7 @@ TEST(ConsoleTable, KeepsTheColumnsUnderALongName) {
   platform::Statistics statistics = in_a_computer();
   statistics.computer->pci_masters.push_back({"right_capture", 100, 3000, 3333});
   const std::string text = console_table(statistics, {40, 30, 40});
-  EXPECT_THAT(text, HasSubstr("\npci master      transactions          words   use %"));
+  EXPECT_THAT(text, HasSubstr("\npci master      transactions          words  data %"));
   EXPECT_THAT(text, HasSubstr("\nright_capture            100           3000   30.00"));
 }
 
@@ -126,6 +126,18 @@ TEST(ConsoleTable, ShowsHowManyPixelsHaveADisparity) {
   EXPECT_THAT(console_table(two_banks(), {}, {std::nullopt, 81.504, std::nullopt}),
               HasSubstr("\ndisparities  in 81.50 % of the pixels of the last frame\n"));
   EXPECT_THAT(console_table(two_banks(), {}), Not(HasSubstr("disparities")));
+}
+
+TEST(ConsoleTable, NamesABankThatLimitsByItsNameAlone) {
+  platform::Statistics statistics = two_banks();
+  statistics.bound.core_limited_by = "bank image";
+  EXPECT_THAT(console_table(statistics, {}), HasSubstr("frames/s   limited by image\n"));
+}
+
+TEST(LostPixels, AreNamedIfThereAreAny) {
+  EXPECT_EQ(lost_pixels_text(0), "");
+  EXPECT_EQ(lost_pixels_text(1), "captures lose 1 pixel: pictures are torn, and disparities are wrong there");
+  EXPECT_EQ(lost_pixels_text(7).substr(0, 23), "captures lose 7 pixels:");
 }
 
 TEST(ConsoleTable, ShowsThePeakOfAllPortsOfABank) {

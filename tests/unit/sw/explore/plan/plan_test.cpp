@@ -191,8 +191,10 @@ TEST(Plan, RefusesValuesOfOptionalKeysThatNoBoardHas) {
   EXPECT_THAT(refusal("matcher.units: [all, none]"), HasSubstr("matcher.units = none: not an integer"));
   EXPECT_THAT(refusal("matcher.units: {from: 250, to: 256, step: 2}"), HasSubstr("1 of 4 values refused"));
   EXPECT_THAT(refusal("matcher.cost: [sad, {census: 4}]"), HasSubstr("matcher.cost.census = 4: 3, 5 or 7"));
-  EXPECT_THAT(refusal("matcher.cost: [ncc]"),
-              HasSubstr("matcher.cost = ncc: sad, ssd, zncc, {census: 3}, {census: 5} or {census: 7}"));
+  EXPECT_THAT(
+      refusal("matcher.cost: [ncc]"),
+      HasSubstr(
+          "matcher.cost = ncc: must be one of sad, ssd, zncc, {census: 3}, {census: 5} or {census: 7}"));
   EXPECT_THAT(refusal("matcher.rows: [1, 17]"), HasSubstr("matcher.rows = 17: 1..16"));
 }
 
@@ -443,7 +445,7 @@ TEST(PlanRefusals, CountTheRefusedValuesOfARangeAndNameOneThatDoesNotEnd) {
       {"run.frames", "{from: 0, to: 999999, step: 1}",
        "1 of 1000000 values refused, the first: run.frames = 0: 1..1000000, the frames"},
       {"matcher.fetch", "{from: 1, to: 3, step: 1}",
-       "3 of 3 values refused, the first: matcher.fetch = 1: column or line_buffer"},
+       "3 of 3 values refused, the first: matcher.fetch = 1: must be one of column or line_buffer"},
       {"matcher.filter.shift", "{from: 1, to: 3, step: 1}",
        "3 of 3 values refused, the first: matcher.filter.shift = 1: matcher.filter is not a map"},
       {"run.source", "{from: 1, to: 3, step: 1}",
