@@ -62,6 +62,7 @@ int explain(const ExplainOptions& options) {
   if (const auto problem = board ? explore::bank_names_problem(*board) : std::nullopt)
     problems.add(fmt::format("{}: {}", options.board.name(), *problem));
   problems.check();
+  say_clock_remark(*board);
   const platform::Tables tables = runs::tables_of(*board, calibration);
   process::catch_interrupts();
   runs::Explanation explanation(*board, tables, options.camera, options.frame_count);

@@ -79,8 +79,9 @@ class ExplanationText {
                      2, fmt::format("{} frames/s, limited by {}", rate, runs::limiter_text(explanation_))) +
            paragraph("the time of a frame: ", 2, runs::budget_text(explanation_)) +
            fmt::format("bound {:.3f} frames/s: {}; {} frames simulated{}\n", row.real(of),
-                       runs::resource_words(row.text(of + "_limited_by")), explanation_.frames(),
-                       now_.loses_pixels ? "; captures lose pixels" : "");
+                       report::resource_words(row.text(of + "_limited_by")), explanation_.frames(),
+                       now_.loses_pixels ? "; captures lose pixels" : "") +
+           platform::device_text(board_) + '\n';
   }
 
   // The table of resources. Resources of one kind with the same values share a line.

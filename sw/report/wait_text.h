@@ -18,4 +18,13 @@ inline std::string resource_text(const std::string& resource) {
   return resource.compare(0, bank.size(), bank) == 0 ? resource.substr(bank.size()) : resource;
 }
 
+// The same in a sentence: "the matcher", "the cameras", "bank0".
+inline std::string resource_words(const std::string& resource) {
+  if (resource == "matcher") return "the matcher";
+  if (resource == "camera") return "the cameras";
+  if (resource == "pci") return "the PCI bus";
+  if (resource == "bridge") return "the PCI bridge";
+  return resource_text(resource);
+}
+
 }  // namespace stereotlm::report

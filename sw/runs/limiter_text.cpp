@@ -54,7 +54,7 @@ std::string busy_bus_text(Explanation& explanation) {
   std::string text;
   for (const Explanation::Resource& resource : explanation.resources()) {
     if ((resource.name == "pci" || resource.name == "bridge") && resource.busy_percent >= kBusyPercent)
-      text += fmt::format("; {} is busy in {:.1f} % of its clocks", resource_words(resource.name),
+      text += fmt::format("; {} is busy in {:.1f} % of its clocks", report::resource_words(resource.name),
                           resource.busy_percent);
   }
   return text;
@@ -64,7 +64,7 @@ std::string bound_text(Explanation& explanation) {
   const explore::StoredRow& row = explanation.figures();
   const std::string bound = explanation.camera() ? "bound.system" : "bound.core";
   const std::string owner = row.text(bound + "_limited_by");
-  std::string text = fmt::format("{}, at {} bound of {:.3f} frames/s", resource_words(owner),
+  std::string text = fmt::format("{}, at {} bound of {:.3f} frames/s", report::resource_words(owner),
                                  owner == "camera" ? "their" : "its", row.real(bound));
   for (const explore::StoredBlame& wait : explanation.blames()) {
     if ("bank " + wait.bank == owner) return text + "; " + wait_of(explanation, wait);
@@ -89,7 +89,8 @@ std::string lost_pixels_text(Explanation& explanation) {
         ->busy_percent;
   };
   const char* const bus = busy_of("pci") >= busy_of("bridge") ? "pci" : "bridge";
-  return fmt::format("{}{}; it is busy in {:.1f} % of its clocks", resource_words(bus), text, busy_of(bus));
+  return fmt::format("{}{}; it is busy in {:.1f} % of its clocks", report::resource_words(bus), text,
+                     busy_of(bus));
 }
 
 std::string waits_text(Explanation& explanation) {
@@ -132,15 +133,6 @@ std::string core_waits_text(Explanation& explanation) {
 }
 
 }  // namespace
-
-std::string resource_words(const std::string& resource) {
-  static const std::map<std::string, std::string> kTexts = {{"matcher", "the matcher"},
-                                                            {"camera", "the cameras"},
-                                                            {"pci", "the PCI bus"},
-                                                            {"bridge", "the local bus"}};
-  if (const auto known = kTexts.find(resource); known != kTexts.end()) return known->second;
-  return report::resource_text(resource);
-}
 
 std::string limiter_text(Explanation& explanation) {
   switch (explanation.limiter()) {

@@ -6,9 +6,6 @@
 
 namespace stereotlm::runs {
 
-// A resource in a sentence: "the matcher", "bank0", "port left_lut", "the PCI bus". `resource`: as in stats.json.
-std::string resource_words(const std::string& resource);
-
 // Why a board is not faster, after "limited by": "the matcher, at its bound of 18.596 frames/s".
 std::string limiter_text(Explanation& explanation);
 

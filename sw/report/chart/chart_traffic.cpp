@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "sw/report/chart/chart_text.h"
+#include "sw/report/wait_text.h"
 
 namespace stereotlm::report {
 namespace {
@@ -32,15 +33,6 @@ const Json& entry(const Json& list, const std::string& name) {
 }
 
 std::uint64_t number(const Json& object, const char* key) { return object.at(key).get<std::uint64_t>(); }
-
-// What a resource of stats.json is called in a sentence.
-std::string resource_text(const std::string& resource) {
-  if (resource == "matcher") return "the matcher";
-  if (resource == "camera") return "the cameras";
-  if (resource == "pci") return "the PCI bus";
-  if (resource == "bridge") return "the PCI bridge";
-  return resource.substr(resource.find(' ') + 1);  // "bank bank0", "port left_lut"
-}
 
 class TrafficReader {
  public:
@@ -175,8 +167,8 @@ class TrafficReader {
     const bool is_whole = traffic_.extent == ChartExtent::kComputer;
     const Json& rates = stats_.at("frames_per_second");
     const auto rate = [&rates](const char* key) { return rate_text(rates.at(key).get<double>()); };
-    std::string text = rate(is_whole ? "system" : "core") + " frames/s" +
-                       (is_whole ? ", from power-up" : ", core only");
+    std::string text =
+        rate(is_whole ? "system" : "core") + " frames/s" + (is_whole ? ", from power-up" : ", core only");
     if (is_whole && rates.contains("steady"))
       text = rate("steady") + " frames/s, steady; " + rate("system") + " from power-up";
     traffic_.summary = {fmt::format("{}; {} frame{}", text, frames_, frames_ == 1 ? "" : "s")};
@@ -184,7 +176,7 @@ class TrafficReader {
     const double limit = bound.at(is_whole ? "system" : "core").get<double>();
     const std::string by = bound.at(is_whole ? "system_limited_by" : "core_limited_by").get<std::string>();
     traffic_.summary.push_back(
-        fmt::format("bound {} frames/s, set by {}", rate_text(limit), resource_text(by)));
+        fmt::format("bound {} frames/s, set by {}", rate_text(limit), resource_words(by)));
   }
 
   const platform::BoardConfig& board_;
