@@ -20,6 +20,7 @@ export function showDatabase(page, {database}) {
   for (let row = 1; row < points.size; ++row)
     if (!(rates[row] <= rates[best])) best = row;
   const keysOf = row => points.keys.map(key => `${key} ${value(points.column(key)[row])}`).join(', ');
+  const names = new Set(points.table.has('name') ? points.column('name') : []);
   const statuses = points.table.has('status') ? points.column('status') : [];
   const bad = statuses.filter(status => status !== 'ok').length;
   addHead(page, {
@@ -29,7 +30,7 @@ export function showDatabase(page, {database}) {
         rateName.startsWith('frames') ? 'frames/s' : rateName}`,
     sub:
         h('p', {class: 'note'},
-          `${points.keys.length} keys vary${
+          `${names.size === 1 ? `${[...names][0]}: ` : ''}${points.keys.length} keys vary${
               bad ? `; ${whole(bad)} points are impossible or have failed` : ''}.`)
   });
   const limited = points.figures.find(name => name.endsWith('limited_by'));

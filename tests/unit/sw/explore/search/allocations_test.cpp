@@ -111,6 +111,7 @@ TEST(BoardOfFrame, HasTheBuffersOfTheFrameInTheFirstBanksThatAreEqual) {
   const auto text_of = [&placement](const BoardConfig& board, std::uint64_t frame) {
     return allocation_text(board_of_frame(board, placement, frame));
   };
+  EXPECT_EQ(board_of_frame(fpl2003(), placement, 0).name, "one frame of fpl2003");
   EXPECT_EQ(text_of(fpl2003(), 0),
             "left_image bank0, right_image bank0, disparity bank1, left_lut bank2, right_lut bank3");
   EXPECT_EQ(text_of(fpl2003(), 1),
