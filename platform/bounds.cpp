@@ -325,31 +325,10 @@ Bound core_bound(const BoardConfig& board, const FrameAccesses& accesses) {
   return bound;
 }
 
-double least_delivery_s(const BoardConfig& board, const FrameAccesses& accesses, std::uint64_t frames,
-                        const FrameBegin& from) {
-  const BufferLayout layout = layout_buffers(board);
-  // A picture has as many words as a result.
-  const std::uint64_t words = fpga::FrameGeometry(core_config(board)).result_words;
-  std::uint64_t one_by_one = 0;
-  std::vector<std::uint64_t> cycles_of_banks(board.banks.size());
-  // With separate ports the writes are made beside the reads. They alone are never the limit: a frame has at
-  // least four slots for each word of a picture, and at most two pictures and one result are written.
-  const auto use = [&](int bank, std::uint64_t reads, std::uint64_t writes) {
-    cycles_of_banks[static_cast<std::size_t>(bank)] += reads + (has_separate_ports(board, bank) ? 0 : writes);
-  };
-  const std::vector<ResourceBound> turn = turn_bounds(board, accesses);
-  for (std::uint64_t frame = from.frame; frame < frames; ++frame) {
-    one_by_one += turn[frame % turn.size()].cycles;
-    const std::uint64_t pair_words = frame - from.frame < layout.left_image.size() ? 0 : words;
-    use(bank_in_turn(layout.left_image, frame), accesses.left.pixel, pair_words);
-    use(bank_in_turn(layout.right_image, frame), accesses.right.pixel, pair_words);
-    if (layout.left_lut) use(layout.left_lut->bank, accesses.left.lut, 0);
-    if (layout.right_lut) use(layout.right_lut->bank, accesses.right.lut, 0);
-    use(bank_in_turn(layout.disparity, frame), words, words);
-  }
-  const std::uint64_t cycles =
-      std::max(one_by_one, *std::max_element(cycles_of_banks.begin(), cycles_of_banks.end()));
-  return from.start_s + static_cast<double>(cycles) / (board.fpga.clock_mhz * 1e6);
+double steady_bound(const BoardConfig& board, const FrameAccesses& accesses) {
+  Bound bound = core_bound(board, accesses);
+  add_system_bound(board, accesses, true, bound);
+  return *bound.system;
 }
 
 }  // namespace stereotlm::platform

@@ -89,21 +89,8 @@ std::vector<RateBound> computer_bounds(const BoardConfig& board, const FrameAcce
 void add_system_bound(const BoardConfig& board, const FrameAccesses& accesses, bool whole_pictures,
                       Bound& bound);
 
-// The start of a frame in the run of a computer: the core starts frame number `frame` at `start_s`, in
-// seconds from time 0.
-struct FrameBegin {
-  std::uint64_t frame = 0;
-  double start_s = 0;
-};
-
-// A lower bound for the time of the last delivery in a run of frames 0..frames-1, in seconds from time 0. The
-// core starts frame from.frame at from.start_s, and no pixel is lost. Two things limit the run:
-// - The core runs its frames one after another, and each takes at least the cycles of its bound.
-// - A bank makes one access per cycle, with separate ports one read and one write: for the core, for the
-//   results that are read back, and for the pictures that are captured. The first pair of each buffer is left
-//   out, because its capture may have ended before `from`.
-// Throws std::invalid_argument if the board has problems.
-double least_delivery_s(const BoardConfig& board, const FrameAccesses& accesses, std::uint64_t frames,
-                        const FrameBegin& from);
+// An upper bound for the steady rate of a whole computer that loses no pixels: bound.system of core_bound() and
+// add_system_bound(). Throws as they do.
+double steady_bound(const BoardConfig& board, const FrameAccesses& accesses);
 
 }  // namespace stereotlm::platform

@@ -45,23 +45,6 @@ Percentiles percentiles(std::vector<std::uint64_t> values_ps) {
 
 std::uint64_t latency_ps(const Delivery& delivery) { return delivery.host_ps - delivery.capture_ps; }
 
-// `turn`: L of SteadyRate.
-std::optional<SteadyRate> steady_rate(const std::vector<Delivery>& deliveries, std::uint64_t turn) {
-  if (deliveries.size() < 2 * turn) return std::nullopt;
-  SteadyRate steady;
-  steady.frames = (deliveries.size() - turn) / turn * turn;
-  const auto before = deliveries.end() - 1 - static_cast<std::ptrdiff_t>(steady.frames);
-  const auto [least, greatest] =
-      std::minmax_element(before, deliveries.end(),
-                          [](const Delivery& a, const Delivery& b) { return latency_ps(a) < latency_ps(b); });
-  const std::uint64_t window_ps = deliveries.back().host_ps - before->host_ps;
-  steady.frames_per_second = static_cast<double>(steady.frames) / seconds(window_ps);
-  steady.uncertainty = steady.frames_per_second *
-                       static_cast<double>(latency_ps(*greatest) - latency_ps(*least)) /
-                       static_cast<double>(window_ps);
-  return steady;
-}
-
 void audit_words(const BoardConfig& config, const ComputerCounters::Words& words, Audit& audit) {
   std::vector<std::string> names;
   for (const PlacedBuffer& buffer : buffers(config)) names.push_back(buffer.path());
@@ -119,6 +102,23 @@ void audit_rates(const BoardConfig& config, const FrameAccesses& accesses, bool 
 
 }  // namespace
 
+std::optional<SteadyRate> steady_rate(const BoardConfig& config, const std::vector<Delivery>& deliveries) {
+  const std::uint64_t turn = allocation_period_frames(config);
+  if (deliveries.size() < 2 * turn) return std::nullopt;
+  SteadyRate steady;
+  steady.frames = (deliveries.size() - turn) / turn * turn;
+  const auto before = deliveries.end() - 1 - static_cast<std::ptrdiff_t>(steady.frames);
+  const auto [least, greatest] =
+      std::minmax_element(before, deliveries.end(),
+                          [](const Delivery& a, const Delivery& b) { return latency_ps(a) < latency_ps(b); });
+  const std::uint64_t window_ps = deliveries.back().host_ps - before->host_ps;
+  steady.frames_per_second = static_cast<double>(steady.frames) / seconds(window_ps);
+  steady.uncertainty = steady.frames_per_second *
+                       static_cast<double>(latency_ps(*greatest) - latency_ps(*least)) /
+                       static_cast<double>(window_ps);
+  return steady;
+}
+
 std::uint64_t words_for_results(const pci::PciBusControl::Stats& bus) {
   std::uint64_t words = 0;
   for (std::size_t master = 0; master < kTrafficGenerator; ++master) words += bus.masters[master].words;
@@ -131,7 +131,7 @@ Statistics collect_statistics(const BoardConfig& config, const Tables& tables, c
   Statistics statistics = collect_statistics(config, tables, fidelity, frame_cycles, counters.board);
   statistics.frames_per_second.system =
       static_cast<double>(deliveries.size()) / seconds(deliveries.back().host_ps);
-  statistics.frames_per_second.steady = steady_rate(deliveries, allocation_period_frames(config));
+  statistics.frames_per_second.steady = steady_rate(config, deliveries);
   const bool whole_pictures =
       counters.cameras[0].capture.dropped_pixels + counters.cameras[1].capture.dropped_pixels == 0;
   const FrameAccesses accesses = frame_accesses(config, tables);

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -48,6 +49,9 @@ struct ComputerCounters {
 
 // What the PCI masters have transferred for results. The words of the traffic generator do not count.
 std::uint64_t words_for_results(const pci::PciBusControl::Stats& bus);
+
+// The steady rate of a run with these deliveries; nullopt if they are too few.
+std::optional<SteadyRate> steady_rate(const BoardConfig& config, const std::vector<Delivery>& deliveries);
 
 // Returns the figures and the bounds of a run that ended with the last of `deliveries`. Checks the identities
 // of contract section 6; Statistics::failed lists those that do not hold. `counters` were taken at the end of

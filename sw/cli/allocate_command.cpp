@@ -49,6 +49,7 @@ struct AllocateOptions {
   BoardOptions board;
   Typed banks_option;
   Typed source;
+  Typed frames_option;
   Typed keep_option;
   Typed out;
   Typed write;
@@ -56,6 +57,7 @@ struct AllocateOptions {
 
   // Set by check_usage().
   bool camera = true;
+  std::uint64_t frames = 0;  // 0: the default
   std::optional<int> banks;
   double keep_percent = kDefaultKeepPercent;
 
@@ -64,6 +66,9 @@ struct AllocateOptions {
     banks_option.add_to(command, "--banks", "N", "Banks to use at most: 1 to those of the board");
     source.add_to(command, "--source", "camera|preloaded",
                   "The whole computer, the default, or the core alone, fed by an ideal host");
+    frames_option.add_to(command, "--frames", "N",
+                         "Frames of a run, whole turns of the lists of buffers: more frames make the steady "
+                         "rate more certain (default one turn; with cameras 120 more)");
     keep_option.add_to(command, "--keep-fps", "PERCENT",
                        "Say how few banks keep so much of the best frame rate (default 99)");
     out.add_to(command, "--out", "DB", "The database of the boards that are simulated, written or continued");
@@ -83,6 +88,12 @@ struct AllocateOptions {
       if (!banks || *banks < 1) {
         problems.add(fmt::format("--banks = {}: must be 1 or more", banks_option.text));
       }
+    }
+    if (frames_option.is_given()) {
+      frames = number_of<std::uint64_t>(frames_option.text).value_or(0);
+      if (!explore::kFramesRule.allows(static_cast<std::int64_t>(frames)))
+        problems.add(
+            fmt::format("--frames = {}: must be {}", frames_option.text, explore::kFramesRule.text()));
     }
     if (keep_option.is_given()) {
       const auto percent = number_of<double>(keep_option.text);
@@ -126,14 +137,16 @@ std::string text_of(const BoardConfig& board, const Placement& placement) {
 // throws if an allocation needs another number of cycles than the search has found. Returns nullopt if there
 // are no allocations, and after an interrupt.
 std::optional<ComparedPixels> compare_pixels(const BoardConfig& board, const platform::Tables& tables,
-                                             bool camera, const std::vector<BestPlacement>& all) {
+                                             const explore::PointRun& search,
+                                             const std::vector<BestPlacement>& all) {
   ScenePairs pairs(board);
-  ComparedPixels compared = {0, platform::allocation_period_frames(board)};
+  ComparedPixels compared = {
+      0, search.camera ? platform::allocation_period_frames(board) : explore::frames_of(search, board)};
   std::string first;
   const Placement* first_witness = nullptr;
   for (const BestPlacement& best : all) {
     if (process::interrupted()) return std::nullopt;
-    if (best.reached_by == 0) continue;
+    if (best.tied == 0) continue;
     const auto run =
         runs::simulate_pixels(explore::placed(board, best.witness), tables, pairs, compared.frames);
     if (compared.allocations++ == 0) {
@@ -144,7 +157,7 @@ std::optional<ComparedPixels> compare_pixels(const BoardConfig& board, const pla
       throw std::runtime_error(fmt::format("the disparities of {} differ from those of {}",
                                            text_of(board, best.witness), text_of(board, *first_witness)));
     }
-    if (!camera && run.cycles != best.outcome.cycles) {
+    if (!search.camera && run.cycles != best.outcome.cycles) {
       throw std::runtime_error(fmt::format("{}: {} cycles with pixels, {} found",
                                            text_of(board, best.witness), run.cycles, best.outcome.cycles));
     }
@@ -233,9 +246,8 @@ bool show_progress(runs::ProgressLine& line, const explore::SearchProgress& prog
 // Writes the best allocation, if any, and prints the report.
 int finish(AllocationReport& report, const AllocateOptions& options,
            std::unique_ptr<files::ReplacedFile> written) {
-  const BestPlacement* const top = best_of_all(report.all);
-  if (written && top != nullptr) {
-    written->write(platform::to_yaml(explore::placed(report.board, top->witness)));
+  if (written && report.best) {
+    written->write(platform::to_yaml(explore::placed(report.board, report.best->witness)));
     written->commit();
     report.written = options.write.text;
   }
@@ -247,6 +259,20 @@ int finish(AllocationReport& report, const AllocateOptions& options,
   if (!process::interrupted()) return kDone;
   process::say("note", "interrupted: run the same command to resume");
   return kInterrupted;
+}
+
+std::uint64_t frames_of(const AllocateOptions& options, const BoardConfig& board) {
+  if (options.frames > 0) return options.frames;
+  return platform::allocation_period_frames(board) + (options.camera ? explore::kSearchSteadyFrames : 0);
+}
+
+void check_frames(const AllocateOptions& options, const BoardConfig& board, process::Problems& problems) {
+  const std::uint64_t turn = platform::allocation_period_frames(board);
+  const std::uint64_t least = options.camera ? 2 * turn : turn;
+  const std::uint64_t frames = frames_of(options, board);
+  if (frames % turn == 0 && frames >= least) return;
+  problems.add(fmt::format("--frames = {}: must be a multiple of {}, one turn of the lists of buffers{}",
+                           frames, turn, options.camera ? ", and at least two turns" : ""));
 }
 
 void check_banks(const AllocateOptions& options, const BoardConfig& board, process::Problems& problems) {
@@ -265,6 +291,7 @@ int allocate(const AllocateOptions& options) {
   const auto board = options.board.load(problems);
   const auto calibration = options.board.load_calibration(board ? &*board : nullptr, problems);
   if (board) check_banks(options, *board, problems);
+  if (board) check_frames(options, *board, problems);
   auto written = board ? open_written(options, *board, problems) : nullptr;
   problems.check();
   explore::SweepOptions sweep;
@@ -272,15 +299,11 @@ int allocate(const AllocateOptions& options) {
   sweep.version = process::kVersion;
   sweep.jobs = std::max(1U, std::thread::hardware_concurrency());
   const platform::Tables tables = runs::tables_of(*board, calibration);
-  const explore::PointRun run = {options.camera, 0, calibration ? runs::sha256_of(calibration->tables) : ""};
-  const std::uint64_t frames = explore::frames_of(run, *board);
+  const explore::PointRun run = {options.camera, frames_of(options, *board),
+                                 calibration ? runs::sha256_of(calibration->tables) : ""};
   const platform::FrameAccesses accesses = platform::frame_accesses(*board, tables);
-  const platform::FrameBegin first = {0, options.camera ? runs::first_start_s(*board, tables) : 0};
-  const auto rate_from = [&](const BoardConfig& one, const platform::FrameBegin& begin) {
-    return static_cast<double>(frames) / platform::least_delivery_s(one, accesses, frames, begin);
-  };
   const AllocationSearch::BoundOf bound = [&](const BoardConfig& one) {
-    return options.camera ? rate_from(one, first) : platform::core_bound(one, accesses).core;
+    return options.camera ? platform::steady_bound(one, accesses) : platform::core_bound(one, accesses).core;
   };
   AllocationSearch search = search_of(*board, *options.banks, run, bound);
   if (search.fitting() == 0) {
@@ -293,8 +316,9 @@ int allocate(const AllocateOptions& options) {
   runs::PointSimulator simulator = calibration ? runs::PointSimulator(tables) : runs::PointSimulator();
   const auto evaluate = [&](const explore::Point& point) {
     const double rate = search.rate_to_reach(point.number);
-    return simulator(point,
-                     [&](const platform::FrameBegin& last) { return rate_from(*point.board, last) < rate; });
+    return simulator(point, [rate](const platform::SteadyRate& so_far) {
+      return so_far.frames >= explore::kSteadyFrames && so_far.frames_per_second + so_far.uncertainty < rate;
+    });
   };
   runs::ProgressLine line;
   AllocationReport report = {search,
@@ -309,7 +333,8 @@ int allocate(const AllocateOptions& options) {
   });
   line.erase();
   report.all = search.best();
-  if (report.is_whole) report.pixels = compare_pixels(*board, tables, options.camera, report.all);
+  report.best = search.best_of_all();
+  if (report.is_whole) report.pixels = compare_pixels(*board, tables, run, report.all);
   return finish(report, options, std::move(written));
 }
 
@@ -319,11 +344,12 @@ void add_allocate(CLI::App& program, Action& action) {
   add_command(
       program, action, "allocate", "Find the best allocation of the buffers to banks, and prove it", allocate,
       "Every different way to place the buffers in at most N banks is tried: placements that differ only\n"
-      "by an exchange of banks that are alike count as one, and those whose bound is below the best rate\n"
-      "of as many banks are not simulated, or not to the end. For each number of banks: how many\n"
-      "placements fit, the best frame rate beside its bound, how many reach it, and one that does. An\n"
-      "allocation with which captures lose pixels does not count. Last the command that runs the best\n"
-      "allocation.\n"
+      "by an exchange of banks that are alike count as one, and those that are known to be slower than\n"
+      "another of as many banks are not simulated, or not to the end. For each number of banks: how many\n"
+      "placements fit, the best frame rate beside its bound, how many tie, and one of them. Placements tie\n"
+      "if the uncertainty of their rates leaves open which is faster. An allocation with which captures\n"
+      "lose pixels does not count. Last the command that runs the best allocation: the fastest of those\n"
+      "with the fewest banks that tie.\n"
       "Ctrl-C ends the search: the best so far is printed, and written by --write, with the most that\n"
       "another allocation can be better. DB is continued: the same command resumes.\n"
       "--write replaces an earlier file only if it is the same board with another allocation.");

@@ -20,11 +20,13 @@
 namespace stereotlm::cli {
 namespace {
 
+using explore::AllocationOutcome;
+using explore::BestOfAll;
 using explore::BestPlacement;
 using platform::BoardConfig;
 using Json = nlohmann::ordered_json;
 
-bool counts(const BestPlacement& best) { return best.reached_by > 0; }
+bool counts(const BestPlacement& best) { return best.tied > 0; }
 
 double percent_of(double rate, double best) { return 100 * rate / best; }
 
@@ -34,8 +36,17 @@ double rounded_up(double value, int decimals) {
   return std::ceil(value * scale) / scale;
 }
 
-BoardConfig witness_of(const AllocationReport& report, const BestPlacement& best) {
-  return explore::placed(report.board, best.witness);
+BoardConfig witness_of(const AllocationReport& report, const explore::Placement& witness) {
+  return explore::placed(report.board, witness);
+}
+
+std::uint64_t frames_of(const AllocationReport& report) {
+  return explore::frames_of(report.search.run(), report.board);
+}
+
+std::string rate_text(const AllocationReport& report, const AllocationOutcome& outcome, int decimals = 3) {
+  const std::string rate = fmt::format("{:.{}f}", outcome.frames_per_second, decimals);
+  return report.search.run().camera ? fmt::format("{} ± {:.{}f}", rate, outcome.uncertainty, decimals) : rate;
 }
 
 // The values of --set that give a board the allocation of `board`: "allocation.left_lut=bank0", ..
@@ -50,33 +61,30 @@ std::vector<std::string> sets_of(const BoardConfig& board) {
 }
 
 // The command that runs a placement, and gives its rate.
-std::vector<std::string> command_of(const AllocationReport& report, const BestPlacement& best) {
+std::vector<std::string> command_of(const AllocationReport& report, const explore::Placement& witness) {
   std::vector<std::string> words = {"stereotlm", "run"};
   words.insert(words.end(), report.board_words.begin(), report.board_words.end());
   if (!report.search.run().camera) words.insert(words.end(), {"--source", "preloaded"});
-  const std::uint64_t frames = explore::frames_of(report.search.run(), report.board);
-  words.insert(words.end(), {"--timing-only", "--frames", std::to_string(frames)});
-  for (const std::string& set : sets_of(witness_of(report, best))) words.insert(words.end(), {"--set", set});
+  words.insert(words.end(), {"--timing-only", "--frames", std::to_string(frames_of(report))});
+  for (const std::string& set : sets_of(witness_of(report, witness)))
+    words.insert(words.end(), {"--set", set});
   return words;
 }
 
-// An upper bound for the rate of every placement that counts, or whose rate is unknown; the best rate if none
-// can be better. Bounds and rates are rounded quotients. 0 if there are no such placements.
-double highest_possible_rate(const AllocationReport& report) {
+// An upper bound for the rate of every placement whose rate is unknown, if it is above that of all others.
+std::optional<double> open_rate(const AllocationReport& report) {
   double rate = 0;
   for (const auto& [banks, bound] : report.search.open_bounds(report.bound)) rate = std::max(rate, bound);
-  const BestPlacement* const top = best_of_all(report.all);
-  constexpr double kRounding = 1e-9;
-  return top == nullptr || rate > top->frames_per_second * (1 + kRounding) ? rate : top->frames_per_second;
+  constexpr double kRounding = 1e-9;  // bounds and rates are rounded quotients
+  if (rate <= report.best->possible_frames_per_second * (1 + kRounding)) return std::nullopt;
+  return rate;
 }
 
-// Two rates that differ, with as many decimals as show it; at least three.
-std::pair<std::string, std::string> different_texts(double one, double other) {
-  for (int decimals = 3;; ++decimals) {
-    std::pair<std::string, std::string> texts = {fmt::format("{:.{}f}", one, decimals),
-                                                 fmt::format("{:.{}f}", other, decimals)};
-    if (texts.first != texts.second) return texts;
-  }
+// The fewest decimals, at least three, that show a difference of two rates.
+int decimals_of(double one, double other) {
+  int decimals = 3;
+  while (fmt::format("{:.{}f}", one, decimals) == fmt::format("{:.{}f}", other, decimals)) ++decimals;
+  return decimals;
 }
 
 // The lines that state how many allocations were tried, and why no others are needed.
@@ -94,93 +102,99 @@ std::string space_text(const AllocationReport& report) {
                search.size(), report.board.fpga.arbiter.policy);
   }
   if (search.run().camera) {
+    const std::uint64_t turn = platform::allocation_period_frames(report.board);
+    const std::uint64_t window = frames_of(report) - turn;
     text += fmt::format(
-        "frames/s: {} frames, from time 0 to the last delivery; an allocation that loses a pixel does not "
-        "count\nsteady: between the first and the last delivery. It does not rank, because a late first "
-        "delivery raises it\n",
-        explore::frames_of(search.run(), report.board));
+        "frames/s: steady, over {} frames, ± what these leave open (a tenth of it with --frames {});\n"
+        "an allocation that loses a pixel does not count\n",
+        window, 10 * window + turn);
   } else {
-    text +=
-        "each allocation is a run of the first turn of its lists, because a frame changes the state of "
-        "arbiters or banks\n";
+    text += fmt::format(
+        "each allocation is a run of {} frames, because a frame changes the state of arbiters or "
+        "banks\n",
+        frames_of(report));
   }
   return text +
-         "not simulated, or not to the end: allocations that cannot reach the best rate of as many banks\n";
+         "not simulated, or not to the end: allocations that are slower than another of as many banks\n";
 }
 
 std::string table(const AllocationReport& report) {
-  const bool camera = report.search.run().camera;
-  const BestPlacement* const top = best_of_all(report.all);
-  std::string text = fmt::format("{:>5} {:>12} {:>10} {:>14} {:>9} {:>10}", "banks", "allocations",
-                                 "simulated", "best frames/s", "% of best", "bound");
-  if (camera) text += fmt::format(" {:>8}", "steady");
-  text += fmt::format(" {:>10}  one of them\n", "reached by");
+  std::string text = fmt::format("{:>5} {:>12} {:>10} {:>16} {:>9} {:>10} {:>6}  one of them\n", "banks",
+                                 "allocations", "simulated", "best frames/s", "% of best", "bound", "tied");
   for (const BestPlacement& best : report.all) {
     text += fmt::format("{:>5} {:>12} {:>10}", best.banks, best.placements, best.known + best.given_up);
     if (!counts(best)) {
       const bool all_lose = best.known > 0 && best.known == best.losing;
-      text += fmt::format(" {:>14}\n", all_lose ? "all lose pixels" : "none");
+      text += fmt::format(" {:>16}\n", all_lose ? "all lose pixels" : "none");
       continue;
     }
-    const BoardConfig one = witness_of(report, best);
-    text += fmt::format(" {:>14.3f} {:>9.2f} {:>10.3f}", best.frames_per_second,
-                        percent_of(best.frames_per_second, top->frames_per_second), report.bound(one));
-    if (camera) text += fmt::format(" {:>8.3f}", best.outcome.steady.value_or(0));
-    text += fmt::format(" {:>10}  {}\n", best.reached_by, explore::allocation_text(one));
+    const BoardConfig one = witness_of(report, best.witness);
+    text += fmt::format(" {:>16} {:>9.2f} {:>10.3f} {:>6}  {}\n", rate_text(report, best.outcome),
+                        percent_of(best.outcome.frames_per_second, report.best->highest.frames_per_second),
+                        report.bound(one), best.tied, explore::allocation_text(one));
   }
   return text;
 }
 
 // The fewest banks that keep keep_percent of the best rate.
-const BestPlacement& kept_of(const AllocationReport& report, const BestPlacement& top) {
+const BestPlacement& kept_of(const AllocationReport& report) {
   return *std::find_if(report.all.begin(), report.all.end(), [&](const BestPlacement& best) {
-    return counts(best) && best.frames_per_second * 100 >= top.frames_per_second * report.keep_percent;
+    return counts(best) && best.outcome.frames_per_second * 100 >=
+                               report.best->highest.frames_per_second * report.keep_percent;
   });
 }
 
 // The lines with the best rate of a whole search, and with what fewer banks cost.
-std::string best_text(const AllocationReport& report, const BestPlacement& top) {
-  double fewer = 0;  // the best rate with fewer banks than `top`; 0: none
+std::string best_text(const AllocationReport& report) {
+  const BestOfAll& top = *report.best;
+  const BestPlacement* fewer = nullptr;  // the best with fewer banks than `top`
   for (const BestPlacement& best : report.all) {
-    if (best.banks < top.banks && counts(best)) fewer = std::max(fewer, best.frames_per_second);
+    if (best.banks >= top.banks || !counts(best)) continue;
+    if (fewer == nullptr || best.outcome.frames_per_second > fewer->outcome.frames_per_second) fewer = &best;
   }
-  std::string rate = fmt::format("{:.3f}", top.frames_per_second);
+  int decimals = 3;
   std::string rest;
-  if (fewer > 0) {
-    std::string fewer_text;
-    std::tie(rate, fewer_text) = different_texts(top.frames_per_second, fewer);
-    rest = ": the best with fewer gives " + fewer_text;
+  if (fewer != nullptr) {
+    decimals = decimals_of(top.highest.frames_per_second, fewer->outcome.frames_per_second);
+    rest = ": the best with fewer gives " + rate_text(report, fewer->outcome, decimals);
   } else {
     rest = report.all.front().banks < top.banks ? ", the fewest with an allocation that counts"
                                                 : ", the fewest that hold the buffers";
   }
-  const BestPlacement& kept = kept_of(report, top);
-  return fmt::format("The best of all is {} frames/s, and needs {} banks{}.\n", rate, top.banks, rest) +
-         fmt::format("{:g} % of it is kept with {} banks ({:.3f} frames/s, {:.2f} %), and not with fewer.\n",
-                     report.keep_percent, kept.banks, kept.frames_per_second,
-                     percent_of(kept.frames_per_second, top.frames_per_second));
+  const BestPlacement& kept = kept_of(report);
+  return fmt::format(
+             "The best of all is {} frames/s; {}.\n", rate_text(report, top.highest, decimals),
+             top.tied > 1 ? fmt::format("{} allocations tie", top.tied) : "no other allocation ties") +
+         fmt::format("It needs {} banks ({} frames/s){}.\n", top.banks,
+                     rate_text(report, top.outcome, decimals), rest) +
+         fmt::format("{:g} % of it is kept with {} banks ({} frames/s, {:.2f} %), and not with fewer.\n",
+                     report.keep_percent, kept.banks, rate_text(report, kept.outcome),
+                     percent_of(kept.outcome.frames_per_second, top.highest.frames_per_second));
 }
 
 // The line that states how much better another allocation can be at most.
-std::string certificate_text(const AllocationReport& report, const BestPlacement& top) {
-  const double most = highest_possible_rate(report);
-  if (most <= top.frames_per_second)
-    return fmt::format("No allocation that uses at most {} banks gives more.\n", report.most_banks);
-  return fmt::format(
-      "At most {:.2f} % better can exist: no allocation whose rate is unknown has a bound above {:.3f} "
-      "frames/s.\n",
-      rounded_up(percent_of(most, top.frames_per_second) - 100, 2), rounded_up(most, 3));
+std::string certificate_text(const AllocationReport& report) {
+  const BestOfAll& top = *report.best;
+  const double best = top.highest.frames_per_second;
+  if (const std::optional<double> open = open_rate(report)) {
+    return fmt::format(
+        "At most {:.2f} % better can exist: no allocation whose rate is unknown has a bound above {:.3f} "
+        "frames/s.\n",
+        rounded_up(percent_of(*open, best) - 100, 2), rounded_up(*open, 3));
+  }
+  const double most = top.possible_frames_per_second;
+  return fmt::format("No allocation that uses at most {} banks gives more{}.\n", report.most_banks,
+                     most > best ? fmt::format(" than {:.3f} frames/s", rounded_up(most, 3)) : "");
 }
 
 // The lines with the result of the search.
 std::string result_text(const AllocationReport& report) {
-  const BestPlacement* const top = best_of_all(report.all);
-  if (top == nullptr)
+  if (!report.best)
     return report.is_whole ? "No allocation counts.\n" : "Interrupted before an allocation was known.\n";
-  if (report.is_whole) return best_text(report, *top) + certificate_text(report, *top);
-  return fmt::format("Interrupted. The best so far is {:.3f} frames/s, with {} banks.\n",
-                     top->frames_per_second, top->banks) +
-         certificate_text(report, *top);
+  if (report.is_whole) return best_text(report) + certificate_text(report);
+  return fmt::format("Interrupted. The best so far is {} frames/s, with {} banks.\n",
+                     rate_text(report, report.best->outcome), report.best->banks) +
+         certificate_text(report);
 }
 
 // The lines with the numbers of allocations that do not count, because they lose pixels or could not be
@@ -212,20 +226,19 @@ std::string pixels_text(const AllocationReport& report) {
 
 // The lines with the command that runs the best allocation.
 std::string command_text(const AllocationReport& report) {
-  const BestPlacement* const top = best_of_all(report.all);
-  if (top == nullptr) return "";
+  if (!report.best) return "";
   std::string text =
-      fmt::format("This command runs the best allocation, and prints {:.3f} frames/s as {}:\n  {}\n",
-                  top->frames_per_second, report.search.run().camera ? "system" : "core",
-                  files::shell_command(command_of(report, *top)));
+      fmt::format("This command runs the best allocation, and prints {} frames/s as {}:\n  {}\n",
+                  rate_text(report, report.best->outcome), report.search.run().camera ? "computer" : "core",
+                  files::shell_command(command_of(report, report.best->witness)));
   if (report.written) text += *report.written + ": the board with the best allocation\n";
   return text;
 }
 
-// The rates of a placement as stats.json names them.
-Json rates_document(const AllocationReport& report, const BestPlacement& best) {
-  if (!report.search.run().camera) return {{"core", best.frames_per_second}};
-  return {{"system", best.frames_per_second}, {"steady", best.outcome.steady.value_or(0)}};
+// A rate as stats.json names it.
+Json rate_document(const AllocationReport& report, const AllocationOutcome& outcome) {
+  if (!report.search.run().camera) return {{"core", outcome.frames_per_second}};
+  return {{"steady", outcome.frames_per_second}, {"steady_uncertainty", outcome.uncertainty}};
 }
 
 Json row_document(const AllocationReport& report, const BestPlacement& best) {
@@ -235,34 +248,30 @@ Json row_document(const AllocationReport& report, const BestPlacement& best) {
               {"given_up", best.given_up},
               {"losing_pixels", best.losing},
               {"failed", best.failed},
-              {"reached_by", best.reached_by}};
+              {"tied", best.tied}};
   if (!counts(best)) return row;
-  const BoardConfig one = witness_of(report, best);
-  row["frames_per_second"] = rates_document(report, best);
+  const BoardConfig one = witness_of(report, best.witness);
+  row["frames_per_second"] = rate_document(report, best.outcome);
   row["bound_frames_per_second"] = report.bound(one);
   row["sets"] = sets_of(one);
   return row;
 }
 
-Json best_document(const AllocationReport& report, const BestPlacement& top) {
-  const double most = highest_possible_rate(report);
+Json best_document(const AllocationReport& report) {
+  const BestOfAll& top = *report.best;
+  const double highest = top.highest.frames_per_second;
+  const double most = open_rate(report).value_or(top.possible_frames_per_second);
   return {{"banks", top.banks},
-          {"frames_per_second", rates_document(report, top)},
+          {"frames_per_second", rate_document(report, top.outcome)},
+          {"tied", top.tied},
+          {"highest_frames_per_second", rate_document(report, top.highest)},
           {"possible_frames_per_second", most},
-          {"possible_gain_percent", percent_of(most - top.frames_per_second, top.frames_per_second)},
-          {"sets", sets_of(witness_of(report, top))},
-          {"command", command_of(report, top)}};
+          {"possible_gain_percent", percent_of(most - highest, highest)},
+          {"sets", sets_of(witness_of(report, top.witness))},
+          {"command", command_of(report, top.witness)}};
 }
 
 }  // namespace
-
-const BestPlacement* best_of_all(const std::vector<BestPlacement>& all) {
-  const BestPlacement* top = nullptr;
-  for (const BestPlacement& best : all) {
-    if (counts(best) && (top == nullptr || best.frames_per_second > top->frames_per_second)) top = &best;
-  }
-  return top;
-}
 
 std::string allocation_report_text(const AllocationReport& report) {
   return space_text(report) + table(report) + result_text(report) + not_counted_text(report) +
@@ -271,21 +280,21 @@ std::string allocation_report_text(const AllocationReport& report) {
 
 Json allocation_report_document(const AllocationReport& report) {
   const explore::AllocationSearch& search = report.search;
-  const BestPlacement* const top = best_of_all(report.all);
   Json document = {{"schema", 1},
                    {"state", report.is_whole ? "complete" : "interrupted"},
                    {"board", report.board.name},
                    {"source", search.run().camera ? "camera" : "preloaded"},
-                   {"frames", explore::frames_of(search.run(), report.board)},
+                   {"frames", frames_of(report)},
                    {"most_banks", report.most_banks},
                    {"allocations", search.placements()},
                    {"fitting_allocations", search.fitting()}};
-  if (top != nullptr) document["best"] = best_document(report, *top);
-  if (top != nullptr && report.is_whole) {
-    const BestPlacement& kept = kept_of(report, *top);
-    document["keeping"] = {{"least_percent", report.keep_percent},
-                           {"banks", kept.banks},
-                           {"percent", percent_of(kept.frames_per_second, top->frames_per_second)}};
+  if (report.best) document["best"] = best_document(report);
+  if (report.best && report.is_whole) {
+    const BestPlacement& kept = kept_of(report);
+    document["keeping"] = {
+        {"least_percent", report.keep_percent},
+        {"banks", kept.banks},
+        {"percent", percent_of(kept.outcome.frames_per_second, report.best->highest.frames_per_second)}};
   }
   document["banks"] = Json::array();
   for (const BestPlacement& best : report.all) document["banks"].push_back(row_document(report, best));

@@ -28,12 +28,10 @@ struct AllocationReport {
   std::vector<std::string> board_words;          // the board on a command line, without its allocation
   bool is_whole = false;                         // the search was not interrupted
   std::vector<explore::BestPlacement> all = {};  // of the search
+  std::optional<explore::BestOfAll> best = {};   // of the search
   std::optional<ComparedPixels> pixels = {};     // nullopt if they were not compared
   std::optional<std::string> written = {};       // the board file with the best allocation
 };
-
-// The placement with the highest rate. Among equal rates it has the fewest banks. Null if none counts.
-const explore::BestPlacement* best_of_all(const std::vector<explore::BestPlacement>& all);
 
 std::string allocation_report_text(const AllocationReport& report);
 

@@ -189,8 +189,8 @@ class BankSearch {
       row.of = claim_.name;
       row.banks = best.banks;
       row.allocations = best.placements;
-      row.reached_by = best.reached_by;
-      row.measured.rate = best.frames_per_second;
+      row.reached_by = best.tied;
+      row.measured.rate = best.outcome.frames_per_second;
       row.measured.bound = bound(one).core;
       row.measured.limited_by = bound(one).core_limited_by;
       row.measured.banks = best.banks;

@@ -17,11 +17,11 @@ void record_outcomes(const std::vector<std::size_t>& numbers, const std::string&
                      AllocationSearch& search) {
   Database store(path, Database::Access::kRead);
   Statement find(
-      store,
-      search.run().camera
-          ? "SELECT status, reason, cycles, \"frames_per_second.system\", \"frames_per_second.steady\", "
-            "\"cameras.left.dropped_pixels\" + \"cameras.right.dropped_pixels\" FROM points WHERE hash = ?"
-          : "SELECT status, reason, cycles, \"frames_per_second.core\" FROM points WHERE hash = ?");
+      store, search.run().camera
+                 ? "SELECT status, reason, cycles, \"frames_per_second.steady\", "
+                   "\"frames_per_second.steady_uncertainty\", \"cameras.left.dropped_pixels\" + "
+                   "\"cameras.right.dropped_pixels\" FROM points WHERE hash = ?"
+                 : "SELECT status, reason, cycles, \"frames_per_second.core\" FROM points WHERE hash = ?");
   for (const std::size_t number : numbers) {
     const Point point = search.point(number);
     find.bind(1, point.hash);
@@ -41,7 +41,7 @@ void record_outcomes(const std::vector<std::size_t>& numbers, const std::string&
     outcome.cycles = static_cast<std::uint64_t>(find.integer(2)) + point.run.frames * behind_last_write;
     outcome.frames_per_second = find.real(3);
     if (search.run().camera) {
-      outcome.steady = find.real(4);
+      outcome.uncertainty = find.real(4);
       outcome.loses_pixels = find.integer(5) > 0;
     }
     search.record(number, outcome);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <numeric>
 #include <stdexcept>
+#include <utility>
 
 #include "platform/config/buffer_layout.h"
 #include "sw/explore/search/allocations.h"
@@ -18,6 +19,8 @@ constexpr std::uint64_t kBoardsPerRound = 8;
 
 // Relative tolerance in comparisons of a bound with a rate, which are both rounded quotients.
 constexpr double kRounding = 1e-9;
+
+bool reaches(double rate, double rate_to_reach) { return rate >= rate_to_reach * (1 - kRounding); }
 
 // The banks of all buffers in one text, as a key of frame_numbers_.
 std::string key_of(const platform::BoardConfig& board) {
@@ -57,15 +60,16 @@ AllocationSearch::AllocationSearch(const platform::BoardConfig& board, int most_
 }
 
 Point AllocationSearch::point(std::size_t number) const {
-  return make_point(number, by_frames_ ? frame_boards_.at(number) : placed(board_, fitting_.at(number)),
-                    run_);
+  if (by_frames_) return make_point(number, frame_boards_.at(number), {false, 1, run_.calibration});
+  return make_point(number, placed(board_, fitting_.at(number)), run_);
 }
 
 void AllocationSearch::record(std::size_t number, const AllocationOutcome& outcome) {
-  if (!by_frames_ && !outcome.loses_pixels && outcome.frames_per_second > bounds_[number] * (1 + kRounding)) {
-    throw std::logic_error(fmt::format("{}: {} frames/s, above its bound of {}",
+  if (!by_frames_ && !outcome.loses_pixels &&
+      !reaches(bounds_[number], outcome.frames_per_second - outcome.uncertainty)) {
+    throw std::logic_error(fmt::format("{}: {} ± {} frames/s, above its bound of {}",
                                        allocation_text(*point(number).board), outcome.frames_per_second,
-                                       bounds_[number]));
+                                       outcome.uncertainty, bounds_[number]));
   }
   outcomes_.at(number) = outcome;
 }
@@ -78,45 +82,57 @@ std::vector<std::size_t> AllocationSearch::next() const {
     }
     return numbers;
   }
-  const std::map<int, double> best = best_rates();
+  const std::map<int, double> to_reach = rates_to_reach(rated());
   std::map<int, std::uint64_t> taken;
   for (const std::size_t place : by_bound_) {
-    if (is_done(place) || !can_win(place, best)) continue;
+    if (is_done(place) || !may_tie(place, to_reach)) continue;
     if (taken[banks_used(fitting_[place])]++ < kBoardsPerRound) numbers.push_back(place);
   }
   return numbers;
 }
 
 std::uint64_t AllocationSearch::most_left() const {
-  const std::map<int, double> best = best_rates();
+  if (by_frames_) return next().size();
+  const std::map<int, double> to_reach = rates_to_reach(rated());
   std::uint64_t left = 0;
   for (std::size_t number = 0; number < outcomes_.size(); ++number) {
-    if (!is_done(number) && (by_frames_ || can_win(number, best))) ++left;
+    if (!is_done(number) && may_tie(number, to_reach)) ++left;
   }
   return left;
 }
 
 double AllocationSearch::rate_to_reach(std::size_t number) const {
   if (by_frames_) return 0;
-  const std::map<int, double> best = best_rates();
-  const auto rate = best.find(banks_used(fitting_.at(number)));
-  return rate == best.end() ? 0 : rate->second * (1 - kRounding);
+  const std::map<int, double> to_reach = rates_to_reach(rated());
+  const auto rate = to_reach.find(banks_used(fitting_.at(number)));
+  return rate == to_reach.end() ? 0 : rate->second * (1 - kRounding);
 }
 
-// The best known rate for each number of banks; empty if by_frames_.
-std::map<int, double> AllocationSearch::best_rates() const {
-  std::map<int, double> best;
-  for (std::size_t place = 0; place < fitting_.size() && !by_frames_; ++place) {
-    if (!outcomes_[place] || outcomes_[place]->loses_pixels || !outcomes_[place]->failure.empty()) continue;
-    double& rate = best[banks_used(fitting_[place])];
-    rate = std::max(rate, outcomes_[place]->frames_per_second);
+std::vector<AllocationSearch::Rated> AllocationSearch::rated() const {
+  std::vector<Rated> all;
+  for (std::size_t place = 0; place < fitting_.size(); ++place) {
+    const std::optional<AllocationOutcome> outcome = outcome_of(place);
+    if (!outcome || outcome->loses_pixels || !outcome->failure.empty()) continue;
+    const double most = outcome->frames_per_second + outcome->uncertainty;
+    all.push_back({place, banks_used(fitting_[place]), *outcome,
+                   outcome->frames_per_second - outcome->uncertainty,
+                   by_frames_ ? most : std::min(most, bounds_[place])});
   }
-  return best;
+  return all;
 }
 
-bool AllocationSearch::can_win(std::size_t placement, const std::map<int, double>& best) const {
-  const auto rate = best.find(banks_used(fitting_[placement]));
-  return rate == best.end() || bounds_[placement] >= rate->second * (1 - kRounding);
+std::map<int, double> AllocationSearch::rates_to_reach(const std::vector<Rated>& rated) {
+  std::map<int, double> rates;
+  for (const Rated& one : rated) {
+    double& rate = rates[one.banks];
+    rate = std::max(rate, one.least);
+  }
+  return rates;
+}
+
+bool AllocationSearch::may_tie(std::size_t placement, const std::map<int, double>& rates_to_reach) const {
+  const auto rate = rates_to_reach.find(banks_used(fitting_[placement]));
+  return rate == rates_to_reach.end() || reaches(bounds_[placement], rate->second);
 }
 
 std::optional<AllocationOutcome> AllocationSearch::outcome_of(std::size_t placement) const {
@@ -130,6 +146,7 @@ std::optional<AllocationOutcome> AllocationSearch::outcome_of(std::size_t placem
   }
   sum.frames_per_second =
       board_.fpga.clock_mhz * 1e6 * static_cast<double>(turn_frames_) / static_cast<double>(sum.cycles);
+  sum.cycles *= frames_of(run_, board_) / turn_frames_;
   return sum;
 }
 
@@ -143,30 +160,51 @@ std::vector<BestPlacement> AllocationSearch::best() const {
     const std::optional<AllocationOutcome> outcome = outcome_of(place);
     if (!outcome) continue;
     ++best.known;
-    if (outcome->loses_pixels || !outcome->failure.empty()) {
+    if (outcome->loses_pixels || !outcome->failure.empty())
       ++(outcome->failure.empty() ? best.losing : best.failed);
-      continue;
-    }
-    if (best.reached_by == 0 || outcome->frames_per_second > best.frames_per_second) {
-      best.reached_by = 0;
-      best.frames_per_second = outcome->frames_per_second;
-      best.outcome = *outcome;
-      best.witness = fitting_[place];
-    }
-    if (outcome->frames_per_second == best.frames_per_second) ++best.reached_by;
+  }
+  const std::vector<Rated> all_rated = rated();
+  const std::map<int, double> to_reach = rates_to_reach(all_rated);
+  for (const Rated& one : all_rated) {
+    if (!reaches(one.most, to_reach.at(one.banks))) continue;
+    BestPlacement& best = found.at(one.banks);
+    if (best.tied++ > 0 && one.outcome.frames_per_second <= best.outcome.frames_per_second) continue;
+    best.outcome = one.outcome;
+    best.witness = fitting_[one.place];
   }
   std::vector<BestPlacement> all;
   for (const auto& [banks, best] : found) all.push_back(best);
   return all;
 }
 
+std::optional<BestOfAll> AllocationSearch::best_of_all() const {
+  const std::vector<Rated> all = rated();
+  if (all.empty()) return std::nullopt;
+  double to_reach = 0;
+  for (const auto& [banks, rate] : rates_to_reach(all)) to_reach = std::max(to_reach, rate);
+  BestOfAll best;
+  for (const Rated& one : all) {
+    if (!reaches(one.most, to_reach)) continue;
+    const double rate = one.outcome.frames_per_second;
+    best.possible_frames_per_second = std::max({best.possible_frames_per_second, one.most, rate});
+    if (best.tied == 0 || rate > best.highest.frames_per_second) best.highest = one.outcome;
+    if (best.tied++ > 0 &&
+        std::pair(one.banks, -rate) >= std::pair(best.banks, -best.outcome.frames_per_second))
+      continue;
+    best.banks = one.banks;
+    best.outcome = one.outcome;
+    best.witness = fitting_[one.place];
+  }
+  return best;
+}
+
 std::map<int, double> AllocationSearch::open_bounds(const BoundOf& bound) const {
-  const std::map<int, double> best = best_rates();
+  const std::map<int, double> to_reach = rates_to_reach(rated());
   std::map<int, double> open;
   for (std::size_t place = 0; place < fitting_.size(); ++place) {
     const std::optional<AllocationOutcome> outcome = outcome_of(place);
     const bool is_settled =
-        outcome ? outcome->failure.empty() : !by_frames_ && (given_up_[place] || !can_win(place, best));
+        outcome ? outcome->failure.empty() : !by_frames_ && (given_up_[place] || !may_tie(place, to_reach));
     if (is_settled) continue;
     double& most = open[banks_used(fitting_[place])];
     most = std::max(most, by_frames_ ? bound(placed(board_, fitting_[place])) : bounds_[place]);

@@ -16,14 +16,14 @@ namespace stereotlm::explore {
 // The result of the run of a board.
 struct AllocationOutcome {
   std::uint64_t cycles = 0;      // sum of frame_cycles of all frames
-  double frames_per_second = 0;  // of the core alone; or of a computer, from time 0 to the last delivery
-  std::optional<double> steady;  // frames per second of a computer, from the first to the last delivery
+  double frames_per_second = 0;  // of the core alone; or the steady rate of a computer
+  double uncertainty = 0;        // of the steady rate, see platform::SteadyRate
   bool loses_pixels = false;     // a capture of a computer has dropped pixels
   std::string failure;  // the reason if the board could not be simulated; the other members are empty
 };
 
 // The best of the placements that use a given number of banks. Placements that lose pixels or have failed do
-// not count.
+// not count. Placements tie if none of them is known to be slower than another, see AllocationSearch.
 struct BestPlacement {
   int banks = 0;
   std::uint64_t placements = 0;  // placements that use so many banks and fit
@@ -31,19 +31,32 @@ struct BestPlacement {
   std::uint64_t given_up = 0;    // placements whose run was given up
   std::uint64_t losing = 0;      // known placements that lose pixels
   std::uint64_t failed = 0;      // known placements whose run has failed
-  std::uint64_t reached_by = 0;  // placements with the best rate; 0: none counts, and the rest is empty
-  double frames_per_second = 0;  // the best rate
-  AllocationOutcome outcome;     // of the witness; if by_frames(), of one turn of the lists
-  Placement witness;             // the first placement with the best rate
+  std::uint64_t tied = 0;        // placements that tie for the best; 0: none counts, and the rest is empty
+  AllocationOutcome outcome;     // of the witness
+  Placement witness;             // of those that tie, the first with the highest rate
+};
+
+// The placements that tie for the best of all.
+struct BestOfAll {
+  std::uint64_t tied = 0;
+  AllocationOutcome highest;              // the highest rate of a placement that ties
+  double possible_frames_per_second = 0;  // no placement whose rate is known can have more
+  int banks = 0;                          // the fewest banks of a placement that ties
+  AllocationOutcome outcome;              // of the witness
+  Placement witness;                      // of those with so few banks, the first with the highest rate
 };
 
 // Finds the best placement of a board's buffers for each number of banks. It selects the boards to simulate,
 // and the caller records their results.
 //
+// The rate of a long run lies between the rate of a run less its uncertainty and that rate plus its
+// uncertainty. It is not above the bound of the placement. A placement is known to be slower than another if
+// the most that it can have is below the least that the other one has. All others tie.
+//
 // If frames_are_independent() and the core runs alone, the search is by frames. It needs a simulation of one
 // frame for each way in which the buffers of a frame share banks, and computes the rate of every placement
-// from these. Otherwise each placement is a run. A placement is left out if its bound is below the best known
-// rate for as many banks. A run may be given up as soon as it can no longer reach that rate.
+// from these. Otherwise each placement is a run. A placement is left out if its bound shows that it is slower
+// than another with as many banks. A run may be given up as soon as its rate shows that.
 class AllocationSearch {
  public:
   // An upper bound of the frames per second of a board that loses no pixels.
@@ -52,8 +65,8 @@ class AllocationSearch {
   // Limit of different placements, whether they fit or not.
   static constexpr std::uint64_t kMostPlacements = 5'000'000;
 
-  // most_banks: 1..banks of the board. run: the run of every point, with `frames` 0: the default of
-  // frames_of(). Throws std::length_error if there are more than kMostPlacements placements.
+  // most_banks: 1..banks of the board. run: the run of every placement, of whole turns of the lists. Throws
+  // std::length_error if there are more than kMostPlacements placements.
   AllocationSearch(const platform::BoardConfig& board, int most_banks, const PointRun& run,
                    const BoundOf& bound);
 
@@ -65,12 +78,12 @@ class AllocationSearch {
   // The numbers, below size(), of the boards to simulate next; none at the end of the search. They depend
   // only on the results recorded so far.
   std::vector<std::size_t> next() const;
-  // Throws std::logic_error if a run is faster than its bound.
+  // Throws std::logic_error if a run is faster than its bound by more than its uncertainty.
   void record(std::size_t number, const AllocationOutcome& outcome);
-  // Records that the run was given up, because it could no longer reach rate_to_reach().
+  // Records that the run was given up, because its rate plus its uncertainty was below rate_to_reach().
   void record_given_up(std::size_t number) { given_up_.at(number) = true; }
-  // The frames per second that a board must reach to be the best for its number of banks, among the results
-  // so far. 0: the board is simulated in any case.
+  // The frames per second that a board must reach to tie for the best of its number of banks, among the
+  // results so far. 0: the board is simulated in any case.
   double rate_to_reach(std::size_t number) const;
   // The largest number of boards that may still have to be simulated: all boards except those that were
   // recorded, given up or left out so far.
@@ -82,6 +95,8 @@ class AllocationSearch {
   // The best placement for each number of banks that can hold the buffers, the fewest banks first, among the
   // results so far. Final once next() returns no boards.
   std::vector<BestPlacement> best() const;
+  // nullopt if no placement counts so far.
+  std::optional<BestOfAll> best_of_all() const;
   // For each number of banks: the largest bound of the placements whose rate is unknown because they were not
   // simulated yet, or have failed. Placements that were left out or given up do not count. A number of banks
   // without such placements is absent. `bound`: that of the constructor.
@@ -95,8 +110,18 @@ class AllocationSearch {
   bool is_done(std::size_t placement) const {
     return outcomes_[placement].has_value() || given_up_[placement];
   }
-  std::map<int, double> best_rates() const;
-  bool can_win(std::size_t placement, const std::map<int, double>& best) const;
+  // A placement that counts.
+  struct Rated {
+    std::size_t place;  // index of fitting_
+    int banks;
+    AllocationOutcome outcome;
+    double least;  // frames per second of a long run
+    double most;
+  };
+  std::vector<Rated> rated() const;
+  // The frames per second that a placement must reach to tie, for each number of banks.
+  static std::map<int, double> rates_to_reach(const std::vector<Rated>& rated);
+  bool may_tie(std::size_t placement, const std::map<int, double>& rates_to_reach) const;
 
   platform::BoardConfig board_;
   PointRun run_;

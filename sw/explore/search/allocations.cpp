@@ -126,6 +126,7 @@ bool frames_are_independent(const BoardConfig& board) {
 
 BoardConfig board_of_frame(const BoardConfig& board, const Placement& placement, std::uint64_t frame) {
   BoardConfig result = board;
+  result.name = "one frame of " + board.name;
   FirstBanks banks(board);
   std::size_t first = 0;  // index in the placement of the list's first buffer, or of the table
   platform::AllocationConfig& allocation = result.allocation;

@@ -112,7 +112,7 @@ def handles(families, panels, best, with_dots):
     elif best:
         entries.append((line_handle(color, None if families.legend else "o"), "best allocation"))
         dots = line_handle(color, "o", "", markersize=3, alpha=0.5)
-        entries.append((dots if with_dots else Patch(color=color, alpha=ALL, linewidth=0), "every allocation"))
+        entries.append((dots if with_dots else Patch(color=color, alpha=ALL, linewidth=0), "simulated"))
     elif not families.legend:
         entries.append((line_handle(color, "o"), "simulated"))
     if any(panel.bound for panel in panels):

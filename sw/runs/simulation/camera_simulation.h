@@ -39,8 +39,10 @@ class CameraSimulation : public Simulation, private driver::FrameListener {
   platform::TimelineRecords take_timeline() override;
   platform::Statistics statistics() const override;
   const platform::ComputerView& computer() const { return *computer_; }
-  // The number of frames that the core has started.
-  std::uint64_t frames_started() const { return driver_.frames_started(); }
+  // The steady rate of the frames delivered so far; nullopt if they are too few.
+  std::optional<platform::SteadyRate> steady_rate() const {
+    return platform::steady_rate(board_, deliveries_);
+  }
 
  private:
   // The scene in front of one camera.

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "models/binder.h"
-#include "models/clock.h"
 #include "platform/core_run.h"
 #include "sw/explore/sweep/sweep.h"
 #include "sw/files/sha256.h"
@@ -21,10 +20,6 @@ namespace stereotlm::runs {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-double seconds(const platform::BoardConfig& board, std::uint64_t cycle) {
-  return static_cast<double>(Clock(board.fpga.clock_mhz).edge_ps(cycle)) / 1e12;
-}
 
 // The number of the first frame in the window of the steady rate.
 std::uint64_t first_steady_frame(const platform::BoardConfig& board, std::uint64_t frames) {
@@ -54,9 +49,9 @@ std::optional<Json> simulate_computer(const explore::Point& point, const platfor
       new CameraSimulation(board, tables, *blank, point.run.frames, *binder, fpga::Fidelity::kTiming);
   while (!simulation->finished()) {
     simulation->advance();
-    if (!hopeless || simulation->frames_started() == 0) continue;
-    const std::uint64_t begin = simulation->computer().core_frames().first_cycle();
-    if (hopeless({simulation->frames_started() - 1, seconds(board, begin)})) return std::nullopt;
+    if (!hopeless) continue;
+    const std::optional<platform::SteadyRate> so_far = simulation->steady_rate();
+    if (so_far && hopeless(*so_far)) return std::nullopt;
   }
   return document_of(simulation->statistics());
 }
@@ -83,19 +78,6 @@ explore::Figures PointSimulator::operator()(const explore::Point& point, const H
   if (!document) throw explore::GivenUp();
   child.next();
   return explore::figures_of(Json::from_cbor(*document));
-}
-
-double first_start_s(const platform::BoardConfig& board, const platform::Tables& tables) {
-  process::Child child([&](const process::Child::Tell& tell) {
-    Binder binder;
-    BlankPairs blank(board);
-    CameraSimulation simulation(board, tables, blank, 1, binder, fpga::Fidelity::kTiming);
-    while (!simulation.finished()) simulation.advance();
-    tell(std::to_string(simulation.computer().core_frames().first_cycle()));
-  });
-  const std::uint64_t cycle = std::stoull(child.next().value());
-  child.next();
-  return seconds(board, cycle);
 }
 
 std::map<std::string, double> core_time(const platform::BoardConfig& board, const platform::Tables& tables,

@@ -7,8 +7,8 @@
 
 #include "models/host/frame_source.h"
 #include "models/kernels/gray_image.h"
-#include "platform/bounds.h"
 #include "platform/config/tables.h"
+#include "platform/statistics.h"
 #include "sw/explore/plan/figures.h"
 #include "sw/explore/plan/points.h"
 
@@ -22,9 +22,9 @@ class PointSimulator {
   // Uses the tables of a calibration on boards that they fit.
   explicit PointSimulator(const platform::Tables& tables) : tables_(tables), is_calibrated_(true) {}
 
-  // Called repeatedly while a whole computer is simulated. `last`: the frame that its core has started last.
-  // Returns true to give up the simulation.
-  using Hopeless = std::function<bool(const platform::FrameBegin& last)>;
+  // Called repeatedly while a whole computer is simulated, with its steady rate so far. Returns true to give up
+  // the simulation.
+  using Hopeless = std::function<bool(const platform::SteadyRate& so_far)>;
 
   // Simulates a point. Throws std::runtime_error if that fails, and explore::GivenUp if it was given up.
   explore::Figures operator()(const explore::Point& point, const Hopeless& hopeless = {});
@@ -35,12 +35,6 @@ class PointSimulator {
   platform::Tables tables_;
   bool is_calibrated_ = false;
 };
-
-// Simulates the whole computer in a child process and returns the time of the first start of its core, in
-// seconds from time 0. The time does not depend on the allocation, because until then only the host uses the
-// banks, and it only writes. One exception: if the two pictures are adjacent in one bank, one burst of the
-// local bus may be saved. Throws as PointSimulator does.
-double first_start_s(const platform::BoardConfig& board, const platform::Tables& tables);
 
 // What the core of a whole computer does in the window of the steady rate: shares of its time, which sum to 1.
 // The key is empty for its frames, else the reason for which it waits for its next start (sw/report/README.md,

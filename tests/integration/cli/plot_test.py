@@ -13,7 +13,7 @@ import program
 from pictures import PYTHON, drawn
 from plots import ALLOCATIONS, ENDINGS, SCRIPTS, SMALL_BOARD, WINDOWS
 from plots import PlotTest, change, make_database, reader, script
-from program import run
+from program import PRELOADED, SMALL, run
 
 SIZES = [3, 5, 7]
 PLAN = SMALL_BOARD + f"""
@@ -199,8 +199,15 @@ class Figures(FigureTest):
             self.assertEqual(len(curve), 2)
             self.assertLess(curve[0][0], curve[1][0])
             self.assertAlmostEqual((zero - curve[0][1]) / (zero - curve[1][1]), 12 / 10, places=4)
-        self.shows("banks", "banks used by the allocation", "best allocation", "every allocation", "bound",
+        self.shows("banks", "banks used by the allocation", "best allocation", "simulated", "bound",
                    "fpga.clock_mhz = 1")
+
+    def test_boards_of_one_frame_are_called_so(self):
+        store = self.folder / "found.db"
+        self.succeeds(run("allocate", "fpl2003", *SMALL, *PRELOADED, "--banks", 3, "--out", store))
+        self.plot("banks", store)
+        count = len(self.table("banks"))
+        self.shows("banks", f"one frame of fpl2003, source preloaded: {count} of {count} points of found.db.")
 
     def test_an_allocation_that_loses_pixels_is_not_the_best(self):
         lost = ["cameras.left.dropped_pixels", "cameras.right.dropped_pixels"]

@@ -332,6 +332,9 @@ class Database(PageTest):
         config = self.file("point.yaml", self.browser.text("#board pre"))
         self.succeeds(run("check", config))
 
+    def test_names_the_board_of_all_points(self):
+        self.assertRegex(self.browser.text("header .note"), r"^fpl2003: \d+ keys vary")
+
     def test_front_holds_what_no_point_beats(self):
         pairs = lambda chart: sorted(
             (float(row["area.slices"]), float(row["frames_per_second.core"])) for row in self.rows(chart)

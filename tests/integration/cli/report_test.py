@@ -97,6 +97,13 @@ class Run(ReportTest):
                     if each["knob"] == "matcher.window":
                         self.assertEqual((each["idle_banks"], each["new_banks"]), ([], 0))
 
+    def test_a_change_has_an_effect_if_the_page_can_show_it(self):
+        knobs = self.data(self.run_of("slow", *PRELOADED, *sets("fpga.clock_mhz=1")))["run"]["knobs"]
+        gains = [abs(step["frames_per_second"] - knobs["board"]["frames_per_second"]) for step in knobs["steps"]]
+        self.assertEqual([step["has_effect"] for step in knobs["steps"]], [gain >= 0.0005 for gain in gains])
+        self.assertTrue(any(0 < gain < 0.0005 for gain in gains) or 0 in gains)
+        self.assertTrue(any(0.0005 <= gain < 0.5 for gain in gains))
+
     def test_names_the_command_that_repeats_it(self):
         folder = self.run_of("a b'c", *PRELOADED, "--frames", "2")
         command = self.data(folder)["run"]["command"]

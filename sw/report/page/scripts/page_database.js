@@ -26,6 +26,7 @@ export function showDatabase(page, {database}) {
     return kind ? `${rateWith(amount, open)} frames/s, ${kind[1]}` : `${fixed(amount, 2)} ${rateName}`;
   };
   const keysOf = row => points.keys.map(key => `${key} ${value(points.column(key)[row])}`).join(', ');
+  const names = new Set(points.table.has('name') ? points.column('name') : []);
   const statuses = points.table.has('status') ? points.column('status') : [];
   const bad = statuses.filter(status => status !== 'ok').length;
   addHead(page, {
@@ -34,7 +35,7 @@ export function showDatabase(page, {database}) {
     headline: `${count(points.size, 'point')}: ${named ? `at most ${rateText(best)}` : 'none has a rate'}`,
     sub:
         h('p', {class: 'note'},
-          `${points.keys.length} keys vary${
+          `${names.size === 1 ? `${[...names][0]}: ` : ''}${points.keys.length} keys vary${
               bad ? `; ${whole(bad)} points are impossible or have failed` : ''}.`)
   });
   // Of points with cameras, what sets the bound of the whole computer.
