@@ -42,9 +42,9 @@ std::string line_of(const VcdSignal& signal) {
                      range);
 }
 
-// The exponent of the zoom with which the span fills some 1040 pixels: 200 pixels show 2^-zoom units of time.
+// The exponent of the zoom with which the span fills some 990 pixels: 200 pixels show 2^-zoom units of time.
 double zoom_of(const VcdSpan& span) {
-  constexpr double kParts = 5.2;
+  constexpr double kParts = 4.95;
   return -std::log2(static_cast<double>(std::max<std::uint64_t>(span.last_ps - span.first_ps, 1)) / kParts);
 }
 
@@ -56,7 +56,7 @@ std::string gtkwave_layout(const std::string& file_name, const VcdSignals& signa
       file_name, span.first_ps, zoom_of(span), span.wait_ps ? fmt::to_string(*span.wait_ps) : "-1");
   constexpr int kMarkers = 26;
   for (int marker = 0; marker < kMarkers; ++marker) text += " -1";
-  text += "\n[sst_width] 60\n[signals_width] 240\n[sst_expanded] 0\n";
+  text += "\n[sst_width] 60\n[signals_width] 290\n[sst_expanded] 0\n";
   for (std::size_t group = 0; group < kVcdGroupNames.size(); ++group) {
     fmt::format_to(std::back_inserter(text), "@{:x}\n-{}\n", kGroupBegin | kBlank, kVcdGroupNames[group]);
     for (const VcdSignal& signal : signals.all()) {

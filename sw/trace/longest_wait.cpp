@@ -1,11 +1,12 @@
 #include "sw/trace/longest_wait.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace stereotlm::trace {
 
 void LongestWait::add(const fpga::CoreCycle& cycle) {
-  if (!first_added_) first_added_ = cycle.cycle;
+  if (next_cycle_ == 0) first_added_ = cycle.cycle;
   if (cycle.cycle != next_cycle_) waited_ = {};
   next_cycle_ = cycle.cycle + 1;
   const bool grew = std::exchange(grows_, false);
@@ -13,7 +14,8 @@ void LongestWait::add(const fpga::CoreCycle& cycle) {
     const fpga::PortCycle& now = cycle.ports[port];
     const bool waits = now.intent == fpga::Intent::kRequest && !now.granted;
     waited_[port] = waits ? waited_[port] + 1 : 0;
-    if (waited_[port] <= cycles()) continue;
+    const bool is_better = waited_[port] == cycles() ? lacks_cycles_before() : waited_[port] > cycles();
+    if (waited_[port] == 0 || !is_better) continue;
     first_ = next_cycle_ - waited_[port];
     end_ = next_cycle_;
     grows_ = true;

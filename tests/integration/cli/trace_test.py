@@ -124,11 +124,42 @@ class Files(TraceTest):
         kinds = {kind for kind, in self.rows_of("SELECT DISTINCT kind FROM events")}
         self.assertLessEqual({"capture", "upload", "read_back", "frame", "interrupt", "wait"}, kinds)
 
+    def times(self, name="run.vcd"):
+        return [int(line[1:]) for line in (self.folder / name).read_text().splitlines() if line.startswith("#")]
+
+    def test_of_a_window_are_waveforms_of_all_of_it(self):
+        tiny = [*sets("image.width=16", "image.height=6", "matcher.window=3", "matcher.disparities=4"), *PRELOADED,
+                "--timing-only", "--frames", 3, *trace("vcd"), "--trace-window"]
+        for first, last in ((740, 800), (5000, 5100)):  # the second one is behind the run
+            self.succeeds(run("run", "fpl2003", *tiny, f"cycles={first}..{last}", cwd=self.folder))
+            times = self.times()
+            self.assertEqual((times[0], times[-1]), (first * 25000, (last + 1) * 25000))
+
+    def test_around_the_longest_wait_have_sixty_cycles_and_the_marker(self):
+        rows = "frame=0,rows=3..4"
+        self.traced(*trace("sqlite"), "--trace-window", rows)
+        (begin, waited), = self.rows_of(
+            "SELECT cycle - waited, waited FROM transactions, (SELECT min(cycle) AS first FROM transactions) "
+            "ORDER BY waited DESC, cycle - waited < first + 30, cycle LIMIT 1")
+        self.traced(*trace("sqlite", "vcd"), "--trace-window", f"{rows},longest-wait")
+        shown = begin - 30
+        times = self.times()
+        self.assertEqual((times[0], times[-1]), (shown * 25000, (shown + 60 + waited) * 25000))
+        accesses = self.rows_of("SELECT min(cycle), max(cycle) FROM transactions")[0]
+        self.assertLessEqual(shown, accesses[0])
+        self.assertLess(accesses[1], shown + 60 + waited)
+        layout = (self.folder / "run.gtkw").read_text()
+        self.assertRegex(layout, rf"\n\*-[0-9.]+ {begin * 25000} -1")
+
     def test_of_a_window_in_which_nothing_happens_say_so(self):
         process = run("run", "fpl2003", *SMALL, *PRELOADED, *TIMING, *trace("sqlite"), "--trace-window",
                       "frame=0,cycles=999999..1000000", cwd=self.folder)
         self.assertIn("note: --trace-window: has no cycle in which a frame ran", process.stderr)
         self.assertEqual(self.rows_of("SELECT count(*) FROM transactions"), [(0,)])
+        process = run("run", "fpl2003", *SMALL, *PRELOADED, "--timing-only", *trace("vcd"), "--trace-window",
+                      "frame=0,longest-wait", cwd=self.folder)
+        self.assertIn("note: --trace-window: no port waits in it", process.stderr)
+        self.assertEqual(self.times(), [0])
 
     def test_of_an_interrupted_run_are_those_of_the_finished_frames(self):
         command = ["run", "fpl2003", *SMALL, *PRELOADED, *TIMING, "--frames", 10**6, "--out", self.out, "--trace",
@@ -179,7 +210,9 @@ class Refusals(TraceTest):
             ([*base, "--trace-window", "frame=0"], "--trace-window: goes with --trace FORMAT:FILE"),
             *(([*base, *window, text], f"--trace-window = '{text}': {forms}")
               for text in ("", "3", "frame=", "frame=-1", "rows=1..2", "frame=0,rows=2..1", "frame=0,rows=1",
-                           "cycles=1..x", "frame=0,frame=0", "frame=0,rows=1..2,cycles=1..2", "lines=1..2")),
+                           "cycles=1..x", "frame=0,frame=0", "frame=0,rows=1..2,cycles=1..2", "lines=1..2",
+                           "longest-wait", "longest-wait,frame=0", "frame=0,longest-wait,rows=1..2",
+                           "frame=0,longest-wait=1", "frame=0,longest-wait,longest-wait")),
             ([*base, *window, "frame=1"], "frame 1: must be below the frames of the run, 1"),
             ([*base, *window, "frame=0,rows=0..24"], "row 24: must be below the rows of the image, 24"),
             ([*base, "--trace", f"sqlite:{self.folder}/none/a"], "none/a': there is no such folder"),

@@ -164,8 +164,13 @@ TEST_F(BusTraceTest, HoldsAFrameOfTheCoreFromItsStrobeToItsEnd) {
   pci(900, 1'100);
   to.core().frame_ended({1'000, 1, 10, 20, 1});
   EXPECT_EQ(to.skips_end_ps(30 * kCycle), kNever);
+  pci(28 * kCycle, 29 * kCycle);
+  to.capture_fifo(0).word_came(28 * kCycle);
+  EXPECT_EQ(handed_out(29 * kCycle), Lines()) << "before the frame begins";
   pci(29 * kCycle, 30 * kCycle);
+  to.capture_fifo(0).word_came(30 * kCycle);
   to.core().frame_begun(30 * kCycle);
+  to.capture_fifo(0).word_came(30 * kCycle + 1);
   EXPECT_EQ(to.skips_end_ps(30 * kCycle), 30 * kCycle);
   pci(29 * kCycle, 31 * kCycle);
   // Its request is behind the end of the frame, which is not known yet.
@@ -180,7 +185,8 @@ TEST_F(BusTraceTest, HoldsAFrameOfTheCoreFromItsStrobeToItsEnd) {
   to.core().frame_begun(70 * kCycle);
   pci(70 * kCycle, 71 * kCycle);
   EXPECT_EQ(handed_out(),
-            (Lines{pci_line(29 * kCycle, 31 * kCycle), pci_line(40 * kCycle - 1, 50 * kCycle)}));
+            (Lines{pci_line(29 * kCycle, 31 * kCycle), pci_line(40 * kCycle - 1, 50 * kCycle),
+                   "left_capture 3@750001"}));
 }
 
 TEST_F(BusTraceTest, HandsOutWhatHasHappenedByATimeAndEachRecordOnce) {

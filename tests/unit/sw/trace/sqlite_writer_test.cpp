@@ -80,6 +80,28 @@ TEST_F(SqliteWriterTest, RunsHaveTheCyclesOfTheFrames) {
   EXPECT_GT(waits, 20);
 }
 
+// With 5 rows in strips of 2 the last strip has one row: a count of its own, because `count / rows` is the mean of a row.
+TEST_F(SqliteWriterTest, ALastStripWithFewerRowsIsARunOfItsOwn) {
+  board_.matcher.rows = 2;
+  platform::FrameRuns frame;
+  for (std::size_t strip = 0; strip <= 3; ++strip) {
+    frame.strip_ends.push_back(100 * (strip + 1));
+    frame.runs.push_back({strip, 100 * strip, 100 * (strip + 1), 0, 0, std::nullopt, 10});
+  }
+  test::MadeTrace trace;
+  trace.frames = {frame};
+  for (const auto& [height, runs] : {std::pair(5, "0+4: 20, 4+1: 10"), std::pair(6, "0+6: 30")}) {
+    board_.image.height = height;
+    write(trace);
+    const Database database(path_, Database::Access::kRead);
+    explore::Statement found(database,
+                             "SELECT group_concat(row || '+' || rows || ': ' || count, ', ') FROM runs "
+                             "WHERE row IS NOT NULL");
+    ASSERT_TRUE(found.step());
+    EXPECT_EQ(found.text(0), runs);
+  }
+}
+
 TEST_F(SqliteWriterTest, TransactionsHaveEachAccessAndTheWaitsBeforeIt) {
   const test::MadeTrace trace = test::make_trace(board_, 2);
   write(trace);

@@ -54,6 +54,8 @@ std::string longest(const std::vector<Wait>& waits, std::uint64_t left_out = 0) 
 TEST(LongestWait, HasSixtyCyclesAroundIt) {
   EXPECT_EQ(longest({{0, 1050, 1052}, {1, 1100, 1104}, {2, 1200, 1204}}), "1100+5: 1070..1134")
       << "the first of equal ones";
+  EXPECT_EQ(longest({{0, 1029, 1031}, {1, 1030, 1032}, {2, 1200, 1202}}), "1030+3: 1000..1062")
+      << "that has 30 cycles before it";
   EXPECT_EQ(longest({{0, 1100, 1109}, {1, 1104, 1114}}), "1104+11: 1074..1144");
   EXPECT_EQ(longest({{0, 1100, 1250}}), "1100+151: 1070..1280") << "all of it is shown";
   EXPECT_EQ(longest({}), "none");
