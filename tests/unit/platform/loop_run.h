@@ -336,7 +336,7 @@ inline RandomBuses random_buses(test::SplitMix64& random) {
       fmt::format("fpga.clock_mhz={}", buses.local_mhz),
       fmt::format("bridge.dma_burst_words={}", buses.burst_words),
       fmt::format("fpga.arbitration={}", random.chance(50) ? "age" : "round_robin"),
-      fmt::format("ssram.default={{words: 524288, kind: {}}}", random.chance(50) ? "zbt_pipelined" : "qdr"),
+      fmt::format("ssram.default={{words: 131072, kind: {}}}", random.chance(50) ? "zbt_pipelined" : "qdr"),
   };
   return buses;
 }

@@ -115,6 +115,13 @@ TEST(RowComparison, KeepsBandsOfWhichOnlyTheStallsDiffer) {
   EXPECT_EQ(text_of(rows.ranges(2), 0), "0..1: 0, 0..0, 7; 2..3: 3, 1..2, 0; ");
 }
 
+TEST(RowComparison, KeepsRangesWhoseDifferencesCancel) {
+  RowComparison rows;
+  rows.add(profile({10, 12, 10, 10, 10, 10}), profile({12, 10, 10, 10, 13, 10}));
+  EXPECT_EQ(text_of(rows.ranges(3)), "0..0: 2, 2..2, 0; 1..1: -2, -2..-2, 0; 4..4: 3, 3..3, 0; ");
+  EXPECT_EQ(text_of(rows.ranges(2)), "0..2: 0, -2..2, 0; 3..5: 3, 0..3, 0; ");
+}
+
 TEST(RowComparison, HasRangesThatSumUpToAllRows) {
   std::mt19937 random(1);
   std::uniform_int_distribution<std::uint64_t> few(0, 2);
