@@ -1,6 +1,7 @@
 """The option --json: documents that keep their schemas, with the numbers of the text."""
 
 import json
+import os
 import pathlib
 import re
 
@@ -26,6 +27,13 @@ class Json(ProgramTest):
         document = json.loads(text)
         jsonschema.Draft202012Validator(schema).validate(document)
         return document
+
+    def test_names_that_are_not_utf_8_are_shown_with_a_replacement(self):
+        self.file(os.fsdecode(b"b\xff.yaml"), "extends: fpl2003\nname: other\n")
+        for name, status in ((b"./b\xff.yaml", 0), (b"./none\xff.yaml", 2)):
+            process = run("check", os.fsdecode(name), "--json", cwd=self.folder)
+            self.assertEqual((process.returncode, process.stderr), (status, ""))
+            self.assertEqual(self.valid("check", process.stdout)["board"], name.decode(errors="replace"))
 
     def test_bounds_has_the_numbers_of_its_text(self):
         for board, *options in (("fpl2003", *SHARED), ("fpl2003-no-calibration",), ("megapixel-pci64",)):
