@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
-#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -26,7 +25,7 @@
 #include "sw/explore/store/store.h"
 #include "sw/explore/store/store_lock.h"
 #include "sw/explore/sweep/sweep.h"
-#include "sw/files/replaced_file.h"
+#include "sw/files/output_file.h"
 #include "sw/files/whole_file.h"
 #include "sw/media/synthetic_scene.h"
 #include "sw/process/installation.h"
@@ -189,9 +188,9 @@ std::string fewest_text(const BoardConfig& board, int banks, const explore::Poin
 }
 
 // Whether the file is the board as --write writes it, with any allocation.
-bool is_written_board(const std::string& path, const BoardConfig& board) {
+bool is_written_board(const std::filesystem::path& path, const BoardConfig& board) {
   try {
-    BoardConfig earlier = platform::load_board(path);
+    BoardConfig earlier = platform::load_board(std::filesystem::absolute(path).string());
     if (platform::to_yaml(earlier) != files::read_whole_file(path)) return false;
     earlier.allocation = board.allocation;
     return platform::to_yaml(earlier) == platform::to_yaml(board);
@@ -200,29 +199,19 @@ bool is_written_board(const std::string& path, const BoardConfig& board) {
   }
 }
 
-// The file of --write, open to be written; null without --write, or if there are problems, which it reports.
-// Replaces an earlier file only if --write has made it for the same board.
-std::unique_ptr<files::ReplacedFile> open_written(const AllocateOptions& options, const BoardConfig& board,
-                                                  process::Problems& problems) {
+// The file of --write; null without --write, or if there are problems, which it reports. Replaces an earlier
+// file only if --write has made it for the same board.
+std::unique_ptr<files::OutputFile> open_written(const AllocateOptions& options, const BoardConfig& board,
+                                                process::Problems& problems) {
   if (!options.write.is_given()) return nullptr;
-  const std::string& path = options.write.text;
-  std::error_code error;
-  const std::filesystem::path whole = std::filesystem::weakly_canonical(path, error);
-  for (const auto& [name, other] : {std::pair("BOARD", options.board.name()), {"--out", options.out.text}}) {
-    if (whole != std::filesystem::weakly_canonical(other, error)) continue;
-    problems.add(fmt::format("--write '{}': must be another file than {}", path, name));
-    return nullptr;
-  }
-  if (std::filesystem::is_regular_file(path, error) && !is_written_board(path, board)) {
-    problems.add(fmt::format(
-        "--write '{}': exists and is not this board with another allocation: must be moved away", path));
-    return nullptr;
-  }
+  const files::FileKind kind = {
+      "file of this board with another allocation",
+      [&board](const std::filesystem::path& path) { return is_written_board(path, board); }};
+  const std::vector<files::NamedFile> others = {{"BOARD", options.board.name()}, {"--out", options.out.text}};
   try {
-    files::remove_left_aside(path);
-    return std::make_unique<files::ReplacedFile>(path);
-  } catch (const std::system_error& failure) {
-    problems.add(fmt::format("--write '{}': {}", path, failure.code().message()));
+    return std::make_unique<files::OutputFile>(options.write.text, kind, others);
+  } catch (const std::runtime_error& error) {
+    problems.add(fmt::format("--write {}", error.what()));
     return nullptr;
   }
 }
@@ -245,7 +234,7 @@ bool show_progress(runs::ProgressLine& line, const explore::SearchProgress& prog
 
 // Writes the best allocation, if any, and prints the report.
 int finish(AllocationReport& report, const AllocateOptions& options,
-           std::unique_ptr<files::ReplacedFile> written) {
+           std::unique_ptr<files::OutputFile> written) {
   if (written && report.best) {
     written->write(platform::to_yaml(explore::placed(report.board, report.best->witness)));
     written->commit();

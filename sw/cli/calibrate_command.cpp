@@ -21,7 +21,7 @@
 #include "sw/cli/commands.h"
 #include "sw/cli/exit_status.h"
 #include "sw/cli/grid_pictures.h"
-#include "sw/files/replaced_file.h"
+#include "sw/files/output_file.h"
 #include "sw/files/sha256.h"
 #include "sw/files/whole_file.h"
 #include "sw/process/interrupt.h"
@@ -42,21 +42,25 @@ constexpr int kSyntheticPairs = 9;
   process::refuse(option + (option.empty() ? "" : " ") + error.what());
 }
 
+int leave_unwritten() {
+  process::say("note", "interrupted: nothing was written");
+  return kInterrupted;
+}
+
 int print_grid(const CalibrateOptions& options) {
+  process::catch_interrupts();
   try {
     const bool is_pdf = fs::path(options.out).extension() == ".pdf";
     const runs::CalibrationFunctions& functions = runs::calibration_functions();
     const std::string sheet =
         is_pdf ? functions.grid_sheet_pdf(options.grid) : functions.grid_sheet_svg(options.grid);
-    files::remove_left_aside(options.out);
-    if (!fs::exists(fs::symlink_status(options.out))) {
-      files::replace_file(options.out, sheet);
-    } else if (files::read_whole_file(options.out) != sheet) {
-      throw std::runtime_error(
-          fmt::format("'{}': exists and is another file: must be moved away", options.out));
-    }
-  } catch (const std::system_error& error) {
-    process::refuse(fmt::format("--out '{}': cannot be written: {}", options.out, error.code().message()));
+    files::OutputFile file(options.out, {"sheet of the same grid", [&sheet](const fs::path& earlier) {
+                                           return files::read_whole_file(earlier) == sheet;
+                                         }});
+    file.write(sheet);
+    file.complete();
+    if (process::interrupted()) return leave_unwritten();
+    file.commit();
   } catch (const std::invalid_argument& error) {
     refuse_step("--print-grid:", error);
   } catch (const std::exception& error) {
@@ -93,20 +97,27 @@ class Calibrator {
   int run() {
     process::catch_interrupts();
     process::Problems problems;
+    load_pictures(problems);
+    const bool is_synthetic = options_.synthetic.has_value();
+    std::vector<files::NamedFile> inputs;
+    for (const calib::PicturePair& pair : request_.pictures) {
+      if (is_synthetic) break;  // the pictures are outputs
+      inputs.push_back({"--left", pair.left_name});
+      inputs.push_back({"--right", pair.right_name});
+    }
     try {
-      output_ = std::make_unique<CalibrationOutput>(options_.out, options_.synthetic.has_value());
+      output_ = std::make_unique<CalibrationOutput>(options_.out, is_synthetic, inputs);
     } catch (const std::exception& error) {
       problems.add(fmt::format("--out {}", error.what()));
     }
-    load_pictures(problems);
-    if (process::interrupted()) return leave();
+    if (process::interrupted()) return leave_unwritten();
     problems.check();
     calibrate();
     for (const std::string& picture : result_.skipped)
       process::say("note", picture + ": the pair is skipped");
     try {
       write();
-      if (process::interrupted()) return leave();
+      if (process::interrupted()) return leave_unwritten();
       output_->commit();
     } catch (const std::runtime_error& error) {
       refuse_step("--out", error);
@@ -116,11 +127,6 @@ class Calibrator {
   }
 
  private:
-  static int leave() {
-    process::say("note", "interrupted: nothing was written");
-    return kInterrupted;
-  }
-
   // Calibrates on a separate thread, because OpenCV cannot be stopped: an interrupt ends the process.
   void calibrate() {
     constexpr std::chrono::milliseconds kPollInterval{50};
@@ -129,7 +135,7 @@ class Calibrator {
     while (result.wait_for(kPollInterval) != std::future_status::ready) {
       if (!process::interrupted()) continue;
       output_.reset();
-      std::_Exit(leave());
+      std::_Exit(leave_unwritten());
     }
     try {
       result_ = result.get();
@@ -141,28 +147,13 @@ class Calibrator {
   void load_pictures(process::Problems& problems) {
     if (!options_.synthetic) {
       request_.pictures = load_grid_pictures(options_.left, options_.right, problems);
-      if (output_) check_pictures_survive(problems);
       return;
     }
-    if (!problems.empty()) return;
     try {
       rig_ = std::make_unique<calib::SyntheticRig>(*options_.synthetic, kSyntheticWidth, kSyntheticHeight);
-      request_.pictures = synthetic_pictures(*rig_, options_.grid, output_->files().pictures);
+      request_.pictures = synthetic_pictures(*rig_, options_.grid, runs::rig_files(options_.out).pictures);
     } catch (const std::exception& error) {
       problems.add(fmt::format("--synthetic: {}", error.what()));
-    }
-  }
-
-  // Reports pictures that lie in the folder of drawings, which is replaced as a whole.
-  void check_pictures_survive(process::Problems& problems) const {
-    std::error_code none;  // a missing folder holds no picture
-    const fs::path drawings = fs::weakly_canonical(output_->files().drawings, none);
-    for (const calib::PicturePair& pair : request_.pictures) {
-      for (const std::string& name : {pair.left_name, pair.right_name}) {
-        if (fs::weakly_canonical(name, none).parent_path() != drawings) continue;
-        problems.add(fmt::format("'{}': in '{}', which is replaced whole: a picture must lie elsewhere", name,
-                                 output_->files().drawings.string()));
-      }
     }
   }
 

@@ -106,8 +106,10 @@ void check_earlier(const runs::RigFiles& files, bool makes_pictures, bool in_com
   }
 }
 
-files::OutputContent content_of(const runs::RigFiles& files, bool makes_pictures) {
+files::OutputContent content_of(const runs::RigFiles& files, bool makes_pictures,
+                                const std::vector<files::NamedFile>& inputs) {
   files::OutputContent content;
+  content.inputs = inputs;
   content.called = "folder";
   content.mark = files.calibration.filename();
   content.aside = files.calibration.stem().string() + ".partial";
@@ -126,9 +128,10 @@ files::OutputContent content_of(const runs::RigFiles& files, bool makes_pictures
 
 }  // namespace
 
-CalibrationOutput::CalibrationOutput(const std::string& calibration, bool makes_pictures)
+CalibrationOutput::CalibrationOutput(const std::string& calibration, bool makes_pictures,
+                                     const std::vector<files::NamedFile>& inputs)
     : files_(in_a_folder(runs::rig_files(calibration))),
-      folder_(folder_of(files_), content_of(files_, makes_pictures)) {}
+      folder_(folder_of(files_), content_of(files_, makes_pictures, inputs)) {}
 
 void CalibrationOutput::add(const fs::path& file, std::string_view bytes) {
   folder_.add(file.lexically_relative(files_.calibration.parent_path()), bytes);

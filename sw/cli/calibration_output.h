@@ -19,10 +19,12 @@ class CalibrationOutput {
  public:
   // Checks that the folder of F.yaml is writable. Throws std::runtime_error, and changes nothing, if
   // - the folder does not exist or is not writable,
-  // - F.yaml exists and is no calibration, or
-  // - a file beside F.yaml has a name that `calibrate` uses but was not written by `calibrate`.
+  // - F.yaml exists and is no calibration,
+  // - a file beside F.yaml has a name that `calibrate` uses but was not written by `calibrate`, or
+  // - one of the `inputs` would be replaced.
   // `makes_pictures`: also writes F_pictures/; otherwise an existing F_pictures/ stays.
-  CalibrationOutput(const std::string& calibration, bool makes_pictures);
+  CalibrationOutput(const std::string& calibration, bool makes_pictures,
+                    const std::vector<files::NamedFile>& inputs = {});
 
   const runs::RigFiles& files() const { return files_; }
 

@@ -8,6 +8,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "sw/cli/add_command.h"
@@ -17,6 +18,7 @@
 #include "sw/cli/load_run_input.h"
 #include "sw/cli/run_options.h"
 #include "sw/files/folder_entries.h"
+#include "sw/files/output_file.h"
 #include "sw/files/output_folder.h"
 #include "sw/files/temporary_folder.h"
 #include "sw/files/whole_file.h"
@@ -68,7 +70,10 @@ struct ConflictsOptions {
     json.add_to(command);
   }
 
-  bool is_of_run() const { return fs::is_regular_file(fs::path(run.board.name()) / "run.json"); }
+  bool is_of_run() const {
+    std::error_code none;
+    return fs::is_regular_file(fs::path(run.board.name()) / files::kResultMark, none);
+  }
 
   // Set by check_usage().
   std::optional<std::string> out;
@@ -113,11 +118,15 @@ std::optional<std::string> foreign_part(const fs::path& entry) {
   return is_file_name(name) && files::is_file(entry) ? std::nullopt : std::optional(name);
 }
 
-std::optional<std::string> problem_of(const fs::path& dir, bool /*was_left*/) {
+std::optional<std::string> problem_of(const fs::path& dir, bool was_left) {
+  const auto is_own_mark = files::marked_kind("", {{0, report::conflicts_csv_head()}}).is_own;
+  const bool is_ours = was_left || (files::is_file(dir / kMark) && is_own_mark(dir / kMark));
   for (const fs::path& name : files::entries(dir)) {
-    if (name == files::kAsideFolder) continue;
-    if (const auto foreign = foreign_part(dir / name))
-      return fmt::format("holds '{}': must be empty or hold only files that conflicts writes", *foreign);
+    if (name == files::kAsideFolder || (is_ours && !foreign_part(dir / name))) continue;
+    return fmt::format(
+        "holds '{}': must be empty or hold only files that conflicts has written, with {}: "
+        "move it away, or give another folder",
+        name.string(), kMark);
   }
   return std::nullopt;
 }
@@ -238,8 +247,8 @@ int conflicts(const ConflictsOptions& options) {
   if (options.out) {
     try {
       folder.emplace(*options.out,
-                     files::OutputContent{"folder of conflicts", kMark, foreign_part, problem_of});
-      if (const auto problem = folder->problem()) folder->refuse(*problem);
+                     files::OutputContent{"folder of conflicts", kMark, foreign_part, problem_of, nullptr,
+                                          files::kAsideFolder, input.inputs});
     } catch (const std::runtime_error& error) {
       process::refuse(error.what());
     }

@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <stdexcept>
 #include <string>
-#include <system_error>
 #include <vector>
 
 #include "platform/config/board_yaml.h"
@@ -13,7 +12,8 @@
 #include "sw/cli/commands.h"
 #include "sw/cli/exit_status.h"
 #include "sw/cli/typed_option.h"
-#include "sw/files/whole_file.h"
+#include "sw/files/output_file.h"
+#include "sw/process/interrupt.h"
 #include "sw/process/streams.h"
 #include "sw/report/chart/memory_chart.h"
 #include "sw/runs/recorded_run.h"
@@ -87,14 +87,23 @@ std::string chart_of_board(const DiagramOptions& options, process::Problems& pro
 }
 
 int diagram(const DiagramOptions& options) {
+  process::catch_interrupts();
   process::Problems problems;
   const std::string chart =
       options.is_run ? chart_of_run(options.board.name(), problems) : chart_of_board(options, problems);
   problems.check();
   try {
-    files::replace_file(options.out, chart);
-  } catch (const std::system_error& error) {
-    process::refuse(fmt::format("--out '{}': {}", options.out.string(), error.code().message()));
+    files::OutputFile file(options.out,
+                           files::marked_kind("chart of stereotlm diagram", {{0, report::kChartMark}}));
+    file.write(chart);
+    file.complete();
+    if (process::interrupted()) {
+      process::say("note", "interrupted: no chart is written");
+      return kInterrupted;
+    }
+    file.commit();
+  } catch (const std::runtime_error& error) {
+    process::refuse(fmt::format("--out {}", error.what()));
   }
   process::print(fmt::format("{}: the memory chart of {}\n", options.out.string(), options.board.name()));
   return kDone;

@@ -62,6 +62,7 @@ struct DiffOptions {
 };
 
 int diff(const DiffOptions& options) {
+  process::catch_interrupts();
   process::Problems problems;
   const auto a = runs::load_recorded_run("A", options.a.text, problems);
   const auto b = runs::load_recorded_run("B", options.b.text, problems);
@@ -78,7 +79,6 @@ int diff(const DiffOptions& options) {
     }
   }
   problems.check();
-  process::catch_interrupts();
   runs::FrameAlignment aligned(*a, *b, limits, csv.get());
   if (!aligned.run()) {
     process::say("note", "interrupted: nothing is compared");

@@ -10,6 +10,8 @@ void JsonOption::add_to(CLI::App& command) {
   add_flag(command, "--json", is_given, "Print one JSON document instead of text");
 }
 
-void print_json(const nlohmann::ordered_json& document) { process::print(files::json_text(document)); }
+void print_json(const nlohmann::ordered_json& document) {
+  process::print(files::json_text(document, nlohmann::ordered_json::error_handler_t::replace));
+}
 
 }  // namespace stereotlm::cli

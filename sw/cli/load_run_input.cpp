@@ -2,10 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <functional>
-#include <set>
 #include <system_error>
 #include <utility>
 
@@ -24,15 +22,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Whether the file lies in the folder or below it, after resolving links and dots. False if either does not
+// Whether `inner` is the folder or lies below it, after resolving links and dots. False if either does not
 // exist.
-bool lies_in(const std::string& file, const std::string& folder) {
-  std::error_code no_file;
+bool lies_in(const fs::path& inner, const fs::path& folder) {
+  std::error_code no_inner;
   std::error_code no_folder;
-  const fs::path inner = fs::canonical(file, no_file);
-  const fs::path outer = fs::canonical(folder, no_folder);
-  if (no_file || no_folder || inner == outer) return false;
-  return std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end()).first == outer.end();
+  const fs::path inside = fs::canonical(inner, no_inner).lexically_relative(fs::canonical(folder, no_folder));
+  return !no_inner && !no_folder && *inside.begin() != "..";
 }
 
 class InputLoader {
@@ -47,8 +43,11 @@ class InputLoader {
       source_.files.insert(source_.files.end(), calibration->files.begin(), calibration->files.end());
     check_truth();
     process::catch_interrupts();
-    if (options_.out && pictures_survive()) {
-      attempt("", [&] { input_.folder = std::make_unique<runs::ResultFolder>(*options_.out); });
+    input_.inputs = source_.files;
+    input_.inputs.push_back({"BOARD", options_.board.name()});
+    if (options_.out) {
+      attempt("",
+              [&] { input_.folder = std::make_unique<runs::ResultFolder>(*options_.out, input_.inputs); });
     }
     problems_.check();
     input_.board = *board;
@@ -103,46 +102,21 @@ class InputLoader {
         source_.pairs->length()));
   }
 
-  // Reports inputs inside the result folder, which is replaced as a whole. Returns whether there are none.
-  bool pictures_survive() {
-    std::set<std::string> reported;
-    for (const runs::NamedFile& file : source_.files) {
-      if (!lies_in(file.path, *options_.out)) continue;
-      // Reports one picture of a sequence only.
-      if (file.option == "--sequence" && reported.count(file.option) > 0) continue;
-      reported.insert(file.option);
-      problems_.add(
-          fmt::format("{}: inside the result folder '{}', which is replaced whole: "
-                      "an input must lie outside the folder of --out",
-                      file.text(), *options_.out));
-    }
-    return reported.empty();
-  }
-
   void open_traces() {
     const TraceOptions& trace = options_.trace;
     if (trace.files.empty()) return;
-    for (const trace::TraceFile& file : trace.files) check_trace_file(file.path);
-    if (!problems_.empty()) return;
     if (trace.window) input_.trace_window = trace.window->cycles;
-    attempt("--trace", [&] { input_.trace = trace::make_writer(trace.files, input_.board, trace.window); });
-  }
-
-  // Reports a file that would be lost: an input, or a trace in the result folder.
-  void check_trace_file(const std::string& path) {
-    std::error_code none;
-    const fs::path folder = fs::absolute(path).parent_path();
-    if (options_.out && (fs::equivalent(folder, *options_.out, none) || lies_in(folder, *options_.out))) {
-      problems_.add(
-          fmt::format("--trace '{}': inside the result folder '{}', which is replaced whole: must lie "
-                      "outside the folder of --out",
-                      path, *options_.out));
-    }
-    for (const runs::NamedFile& input : source_.files) {
-      if (fs::equivalent(path, input.path, none))
-        problems_.add(
-            fmt::format("--trace '{}': is the file of {}: must not replace an input", path, input.option));
-    }
+    attempt("--trace", [&] {
+      for (const trace::TraceFile& file : trace.files) {
+        const fs::path folder = trace::outputs_of(file).front().parent_path();
+        if (!options_.out || !lies_in(folder, *options_.out)) continue;
+        throw std::runtime_error(
+            fmt::format("'{}': inside the result folder '{}', which is replaced whole: must lie "
+                        "outside the folder of --out",
+                        file.path, *options_.out));
+      }
+      input_.trace = trace::make_writer(trace.files, input_.board, trace.window);
+    });
   }
 
   // Prints how well the rows of the rectified pictures match. A poor match gives a warning: the calibration

@@ -10,6 +10,7 @@
 #include "sw/explore/store/merge_stores.h"
 #include "sw/explore/store/store.h"
 #include "sw/explore/store/store_lock.h"
+#include "sw/process/interrupt.h"
 #include "sw/process/streams.h"
 
 namespace stereotlm::cli {
@@ -35,8 +36,13 @@ struct MergeOptions {
 int merge(const MergeOptions& options) {
   try {
     const explore::StoreLock lock(options.out.text);
-    explore::merge_stores(options.inputs.text, options.out.text);
+    process::catch_interrupts();
+    explore::merge_stores(options.inputs.text, options.out.text, process::interrupted);
   } catch (const explore::DatabaseError& error) {
+    if (process::interrupted()) {
+      process::say("note", "interrupted: nothing is written");
+      return kInterrupted;
+    }
     process::refuse(error.what());
   }
   explore::Database merged(options.out.text, explore::Database::Access::kRead);

@@ -185,12 +185,19 @@ bool draw(const std::filesystem::path& folder, std::map<std::string, std::string
 }
 
 int compare_with_paper(const PaperOptions& options) {
+  process::catch_interrupts();
   process::Problems problems;
   const auto drawings = temporary_folder(problems);
   const auto given = load_pair(options, problems);
   std::unique_ptr<files::DocumentFolder> folder;
   try {
-    folder = std::make_unique<files::DocumentFolder>(options.out.text, paper::kDocument, paper::file_names());
+    const std::vector<files::NamedFile> inputs = {{"--left", options.left.text},
+                                                  {"--right", options.right.text},
+                                                  {"--truth", options.truth.file.value_or("")}};
+    folder = std::make_unique<files::DocumentFolder>(
+        options.out.text, paper::kDocument,
+        files::marked_kind("document of stereotlm paper", {{0, paper::kDocumentMark}}), paper::file_names(),
+        inputs);
   } catch (const std::runtime_error& error) {
     problems.add(fmt::format("--out {}: {}", options.out.text, error.what()));
   }
@@ -198,7 +205,6 @@ int compare_with_paper(const PaperOptions& options) {
   if (given) {
     for (const std::string& note : given->notes) process::say("note", note);
   }
-  process::catch_interrupts();
   const auto findings = study(given);
   auto files = findings ? paper::tables(*findings) : std::map<std::string, std::string>();
   if (!findings || !draw(drawings->path(), files)) {

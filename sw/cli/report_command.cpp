@@ -6,7 +6,6 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
-#include <system_error>
 
 #include "sw/cli/add_command.h"
 #include "sw/cli/commands.h"
@@ -14,7 +13,7 @@
 #include "sw/cli/temporary_files.h"
 #include "sw/cli/typed_option.h"
 #include "sw/explore/store/bank_names.h"
-#include "sw/files/replaced_file.h"
+#include "sw/files/output_file.h"
 #include "sw/process/installation.h"
 #include "sw/process/interrupt.h"
 #include "sw/process/streams.h"
@@ -86,7 +85,6 @@ std::optional<Json> data_of_run(const ReportOptions& options, process::Problems&
     }
   }
   problems.check();
-  process::catch_interrupts();
   Json data = report::run_data(*run, input.tables);
   if (options.quick) {
     report::add_recorded_files(*run, data);
@@ -108,7 +106,6 @@ std::optional<Json> data_of_two_runs(const ReportOptions& options, process::Prob
   const runs::RunInput input_a = runs::open_again(*a, problems);
   const runs::RunInput input_b = runs::open_again(*b, problems);
   problems.check();
-  process::catch_interrupts();
   const runs::DiffLimits limits(*a, *b);
   report::ComparedRun of_a(*a, input_a.tables);
   report::ComparedRun of_b(*b, input_b.tables);
@@ -144,19 +141,21 @@ void say_lost_pixels(const Json& run) {
 }
 
 int report(const ReportOptions& options) {
+  process::catch_interrupts();
   process::Problems problems;
-  std::optional<files::ReplacedFile> file;
+  std::optional<files::OutputFile> file;
   try {
-    file.emplace(options.out.text);
-  } catch (const std::system_error& error) {
-    problems.add(fmt::format("--out '{}': {}", options.out.text, error.code().message()));
+    file.emplace(options.out.text,
+                 files::marked_kind("page of stereotlm report", {{0, report::page_mark()}}));
+  } catch (const std::runtime_error& error) {
+    problems.add(fmt::format("--out {}", error.what()));
   }
   std::optional<Json> data = data_of(options, problems);
-  problems.check();
-  if (!data) {
+  if (process::interrupted()) {
     process::say("note", "interrupted: no page is written");
     return kInterrupted;
   }
+  problems.check();
   Json whole = {{"format", 1}, {"version", process::kVersion}};
   whole.update(*data);
   const std::string page = report::html_page(whole);

@@ -6,7 +6,6 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
-#include <system_error>
 
 #include "calib/calibration.h"
 #include "sw/cli/add_command.h"
@@ -20,9 +19,8 @@
 #include "sw/explore/store/store_lock.h"
 #include "sw/explore/store/store_reader.h"
 #include "sw/explore/sweep/sweep.h"
-#include "sw/files/replaced_file.h"
+#include "sw/files/output_file.h"
 #include "sw/files/shell_word.h"
-#include "sw/files/whole_file.h"
 #include "sw/process/interrupt.h"
 #include "sw/process/streams.h"
 #include "sw/runs/progress.h"
@@ -162,24 +160,24 @@ std::string kept_text(const std::string& store, const std::string& advice) {
 }
 
 // Writes the counts of the sweep to the file of --progress: show() at most once in kBetweenCounts, write()
-// always. Does nothing if `path` is empty.
+// always. Does nothing without --progress.
 class ProgressFile {
  public:
-  explicit ProgressFile(const std::string& path) : path_(path) {
-    if (!path.empty()) files::remove_left_aside(path);
-  }
+  explicit ProgressFile(const SweepCommandOptions& options) : options_(options) {}
   void show(const explore::SweepCounts& counts) {
     const auto now = std::chrono::steady_clock::now();
     if (now >= next_) write(counts);
   }
   void write(const explore::SweepCounts& counts) {
-    if (path_.empty()) return;
-    files::replace_file(path_, explore::counts_text(counts));
+    if (options_.progress.text.empty()) return;
+    files::OutputFile file = options_.progress_file();
+    file.write(explore::counts_text(counts));
+    file.commit();
     next_ = std::chrono::steady_clock::now() + kBetweenCounts;
   }
 
  private:
-  std::string path_;
+  const SweepCommandOptions& options_;
   std::chrono::steady_clock::time_point next_;
 };
 
@@ -196,7 +194,7 @@ void check_open_files(std::uint64_t jobs, std::uint64_t points) {
 explore::SweepCounts sweep_here(const SweepCommandOptions& options, const explore::Plan& plan,
                                 const std::optional<runs::CalibrationInput>& calibration) {
   check_open_files(options.sweep.jobs, plan.size());
-  ProgressFile file(options.progress.text);
+  ProgressFile file(options);
   try {
     if (!options.sweep.known.empty()) {
       const explore::FinishedStore known(options.sweep.known, options.sweep.version);
@@ -210,14 +208,14 @@ explore::SweepCounts sweep_here(const SweepCommandOptions& options, const explor
       explore::Store(options.sweep.store, options.sweep.version).check_banks(plan.banks());
     };
     if (std::filesystem::file_size(options.sweep.store) > 0) open_store();
+    process::catch_interrupts();
     file.write({});
     open_store();  // creates a new store only after all other checks
   } catch (const explore::DatabaseError& error) {
     process::refuse(fmt::format("--out {}", error.what()));
-  } catch (const std::system_error& error) {
-    process::refuse(fmt::format("--progress {}: {}", options.progress.text, error.code().message()));
+  } catch (const std::runtime_error& error) {
+    process::refuse(fmt::format("--progress {}", error.what()));
   }
-  process::catch_interrupts();
   runs::PointSimulator simulator =
       calibration ? runs::PointSimulator(calibration->tables) : runs::PointSimulator();
   runs::ProgressLine progress;

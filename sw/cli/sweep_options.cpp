@@ -4,10 +4,8 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <optional>
 #include <stdexcept>
 #include <string_view>
-#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -20,26 +18,6 @@ namespace {
 constexpr unsigned kMostJobs = 1024;
 constexpr std::uint64_t kMostShards = 1000;  // the merge opens the files of all shards
 constexpr std::uint64_t kDefaultShards = 16;
-
-// Whether two paths lead to the same file, which need not exist.
-bool is_same_file(const std::string& a, const std::string& b) {
-  std::error_code none;
-  if (std::filesystem::equivalent(a, b, none)) return true;
-  const auto whole = [&none](const std::string& path) {
-    return std::filesystem::weakly_canonical(std::filesystem::absolute(path), none);
-  };
-  return whole(a) == whole(b);
-}
-
-// Whether the file was written by --progress, or is empty.
-bool is_counts_file(const std::string& path) {
-  try {
-    const std::string text = files::read_whole_file(path);
-    return text.empty() || text == explore::counts_text(explore::read_counts(text));
-  } catch (const std::runtime_error&) {
-    return false;
-  }
-}
 
 // Checks the value of one --sbatch. Reports options that the launcher itself passes to sbatch.
 void check_sbatch(const std::string& option, process::Problems& problems) {
@@ -150,20 +128,21 @@ void SweepCommandOptions::check_launcher(process::Problems& problems) {
   }
 }
 
+files::OutputFile SweepCommandOptions::progress_file() const {
+  const files::FileKind kind = {"file of --progress", [](const std::filesystem::path& path) {
+                                  const std::string text = files::read_whole_file(path);
+                                  return text == explore::counts_text(explore::read_counts(text));
+                                }};
+  return files::OutputFile(progress.text, kind,
+                           {{"--out", out_.text}, {"PLAN", plan.text}, {"--known", known_.text}});
+}
+
 // --progress replaces its file, which must therefore not be another file of the user.
 void SweepCommandOptions::check_progress(process::Problems& problems) const {
-  for (const auto& [file, name] : {std::pair{&out_, "--out"}, {&plan, "PLAN"}, {&known_, "--known"}}) {
-    if (file->text.empty() || !is_same_file(progress.text, file->text)) continue;
-    problems.add(fmt::format("--progress = {}: is the file of {}", progress.text, name));
-    return;
-  }
-  std::error_code none;
-  const bool is_there = std::filesystem::exists(std::filesystem::symlink_status(progress.text, none));
-  if (is_there && !is_counts_file(progress.text)) {
-    problems.add(
-        fmt::format("--progress = {}: exists, and was not written by --progress: remove it, or give "
-                    "another file",
-                    progress.text));
+  try {
+    progress_file();
+  } catch (const std::runtime_error& error) {
+    problems.add(fmt::format("--progress {}", error.what()));
   }
 }
 

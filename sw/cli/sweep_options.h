@@ -6,6 +6,7 @@
 
 #include "sw/cli/typed_option.h"
 #include "sw/explore/sweep/sweep.h"
+#include "sw/files/output_file.h"
 #include "sw/process/problems.h"
 
 namespace CLI {
@@ -22,6 +23,9 @@ class SweepCommandOptions {
 
   // To be called in the command's callback: throws Refused if options are wrong.
   void check_usage();
+
+  // The file of --progress, for one write.
+  files::OutputFile progress_file() const;
 
   // The values of these options, as typed.
   Typed plan;

@@ -18,6 +18,7 @@
 #include "calib/lut_file.h"
 #include "models/kernels/stereo.h"
 #include "sw/demo/demo_pair.h"
+#include "sw/files/output_file.h"
 #include "sw/files/whole_file.h"
 #include "sw/media/encode.h"
 #include "sw/media/load.h"
@@ -43,7 +44,9 @@ constexpr const char* kUsage =
     "side\n";
 
 void write_file(const fs::path& path, const std::vector<std::uint8_t>& bytes) {
-  files::replace_file(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  files::OutputFile file(path, {"picture", [](const fs::path& /*file*/) { return true; }});
+  file.write({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  file.commit();
 }
 
 void prepare(const fs::path& source, const fs::path& out) {

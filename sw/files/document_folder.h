@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "sw/files/output_file.h"
 #include "sw/files/output_folder.h"
 
 namespace stereotlm::files {
@@ -14,10 +15,10 @@ namespace stereotlm::files {
 class DocumentFolder {
  public:
   // Throws as OutputFolder does. Also throws std::runtime_error if an entry with one of these names is no
-  // file, or if one of the files exists without the document, because such a file was written by somebody
-  // else.
-  DocumentFolder(const std::filesystem::path& dir, const std::string& document,
-                 const std::vector<std::string>& files);
+  // file, or if one of them exists without a document of this kind, because such a file was written by
+  // somebody else. `inputs`: see OutputContent.
+  DocumentFolder(const std::filesystem::path& dir, const std::string& document, const FileKind& kind,
+                 const std::vector<std::string>& files, const std::vector<NamedFile>& inputs = {});
 
   // `contents`: bytes by name. Throws std::invalid_argument if these are not exactly the document and all
   // files, and std::runtime_error if they cannot be stored.

@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string scalar_text(const Json& value) {
+std::string scalar_text(const Json& value, Json::error_handler_t handler) {
   if (value.is_number_float()) {
     const double number = value.get<double>();
     if (!std::isfinite(number))
@@ -19,15 +19,15 @@ std::string scalar_text(const Json& value) {
     return fmt::format("{}", number);
   }
   try {
-    return value.dump();
+    return value.dump(-1, ' ', false, handler);
   } catch (const Json::type_error&) {
     throw std::invalid_argument(fmt::format("'{}': JSON strings are UTF-8", value.get<std::string>()));
   }
 }
 
-void append(std::string& text, const Json& value, std::size_t depth) {
+void append(std::string& text, const Json& value, std::size_t depth, Json::error_handler_t handler) {
   if (!value.is_structured()) {
-    text += scalar_text(value);
+    text += scalar_text(value, handler);
     return;
   }
   const bool one_line =
@@ -38,8 +38,8 @@ void append(std::string& text, const Json& value, std::size_t depth) {
   text += value.is_object() ? '{' : '[';
   for (const auto& [key, member] : value.items()) {
     text += separator + indent;
-    if (value.is_object()) text += scalar_text(key) + ": ";
-    append(text, member, depth + 1);
+    if (value.is_object()) text += scalar_text(key, handler) + ": ";
+    append(text, member, depth + 1, handler);
     separator = one_line ? ", " : ",";
   }
   if (!one_line) text += "\n" + std::string(2 * depth, ' ');
@@ -48,9 +48,9 @@ void append(std::string& text, const Json& value, std::size_t depth) {
 
 }  // namespace
 
-std::string json_text(const Json& document) {
+std::string json_text(const Json& document, Json::error_handler_t handler) {
   std::string text;
-  append(text, document, 0);
+  append(text, document, 0, handler);
   return text + "\n";
 }
 

@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <sstream>
 #include <stdexcept>
@@ -13,6 +14,7 @@
 #include <utility>
 
 #include "sw/files/folder_entries.h"
+#include "sw/files/output_file.h"
 #include "sw/files/whole_file.h"
 
 namespace stereotlm::files {
@@ -44,7 +46,11 @@ OutputFolder::OutputFolder(const fs::path& dir, OutputContent content)
     lock();
     check_aside();
     if (const auto found = problem()) refuse(*found);
+    check_inputs();
     put_back();
+    for (const fs::path& name : entries(dir_)) {
+      if (is_replaced(dir_ / name)) replaced_.push_back(name);
+    }
     start_aside();
   } catch (const std::system_error& error) {
     discard();
@@ -94,6 +100,18 @@ void OutputFolder::check_aside() {
     for (const fs::path& entry : entries(aside() / name)) {
       if (const auto foreign = content_.foreign(aside() / name / entry)) refuse_foreign(name / *foreign);
     }
+  }
+}
+
+void OutputFolder::check_inputs() const {
+  const fs::path dir = fs::canonical(dir_);
+  for (const NamedFile& input : content_.inputs) {
+    std::error_code missing;
+    const fs::path inside = fs::canonical(input.path, missing).lexically_relative(dir);
+    if (missing || inside.empty() || *inside.begin() == "..") continue;
+    const fs::path entry = *inside.begin();
+    if (entry == content_.aside || is_replaced(dir_ / entry))
+      refuse(fmt::format("{} lies in it and would be replaced: an input must lie elsewhere", input.text()));
   }
 }
 
@@ -149,7 +167,10 @@ void OutputFolder::commit() {
     } catch (const std::exception& /*again*/) {
       owns_aside_ = false;  // the next run restores the files that are left there
     }
-    refuse("the new files cannot be moved into place: " + error.code().message());
+    const auto* const of_move = dynamic_cast<const fs::filesystem_error*>(&error);
+    refuse(fmt::format("the new files cannot be moved into place: {}{}",
+                       of_move == nullptr ? "" : of_move->path2().filename().string() + ": ",
+                       error.code().message()));
   }
   committed_ = true;
   discard();
@@ -159,16 +180,15 @@ void OutputFolder::commit() {
 // other files in place are earlier ones. The new mark is moved in last: once it is in place, all files are
 // new.
 void OutputFolder::move_into_place() const {
-  std::vector<fs::path> replaced;
-  for (const fs::path& name : entries(dir_)) {
-    if (is_replaced(dir_ / name)) replaced.push_back(name);
-  }
   const std::vector<fs::path> names = entries(made());
   const auto move_all = [this](const std::vector<fs::path>& all, const fs::path& from, const fs::path& to) {
+    const auto move = [&](const fs::path& name) {
+      if (is_there(from / name)) rename_to_new(from / name, to / name);
+    };
     for (const fs::path& name : all) {
-      if (name != content_.mark) fs::rename(from / name, to / name);
+      if (name != content_.mark) move(name);
     }
-    if (is_file(from / content_.mark)) fs::rename(from / content_.mark, to / content_.mark);
+    if (std::find(all.begin(), all.end(), content_.mark) != all.end()) move(content_.mark);
   };
   std::string text;
   for (const fs::path& name : names) {
@@ -177,7 +197,7 @@ void OutputFolder::move_into_place() const {
   }
   write_whole_file(aside() / kNames, text);
   fs::create_directory(earlier());
-  move_all(replaced, dir_, earlier());
+  move_all(replaced_, dir_, earlier());
   move_all(names, made(), dir_);
   sync_folder(dir_);
 }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "sw/files/created_folders.h"
+#include "sw/files/named_file.h"
 #include "sw/files/new_file.h"
 
 namespace stereotlm::files {
@@ -32,9 +33,12 @@ struct OutputContent {
   // Whether a commit removes an entry of DIR. Not set: it removes all entries that are not foreign.
   std::function<bool(const std::filesystem::path& entry)> replaced = nullptr;
   std::string aside = kAsideFolder;  // name of the folder of unfinished files
+  // The files that the command reads. None may lie where a commit removes it.
+  std::vector<NamedFile> inputs = {};
 };
 
 // The output folder of a command. commit() replaces its files all together; until then they are unchanged.
+// Only files that were there when the object was made are replaced.
 //
 // New files are written to DIR/.partial (inside DIR, so that DIR may be a mount point). commit() moves them
 // into place. If an earlier run was killed, the constructor undoes its unfinished commit and removes its new
@@ -42,8 +46,8 @@ struct OutputContent {
 class OutputFolder {
  public:
   // Creates DIR and its missing parents and checks that DIR is writable. Throws std::runtime_error, and
-  // changes nothing, if DIR is not writable, another run uses it, DIR/.partial holds foreign files, or
-  // OutputContent reports a problem with DIR.
+  // changes nothing, if DIR is not writable, another run uses it, DIR/.partial holds foreign files, an input
+  // would be replaced, or OutputContent reports a problem with DIR.
   OutputFolder(const std::filesystem::path& dir, OutputContent content);
   // Without commit(): removes everything that this object has created. An earlier result is unchanged.
   ~OutputFolder();
@@ -76,6 +80,7 @@ class OutputFolder {
   void lock();
   bool try_lock();
   void check_aside();
+  void check_inputs() const;
   void start_aside();
   void move_into_place() const;
   std::vector<std::filesystem::path> moved_names() const;
@@ -85,11 +90,12 @@ class OutputFolder {
 
   std::filesystem::path dir_;
   OutputContent content_;
-  std::map<std::string, NewFile> growing_;  // files of append()
-  CreatedFolders created_;                  // DIR and parents that were missing
-  int lock_ = -1;                           // descriptor of DIR/.partial
-  bool was_left_ = false;                   // a killed run has left files in DIR/.partial
-  bool owns_aside_ = false;                 // this object removes DIR/.partial
+  std::map<std::string, NewFile> growing_;       // files of append()
+  CreatedFolders created_;                       // DIR and parents that were missing
+  std::vector<std::filesystem::path> replaced_;  // names of the entries of DIR that commit() removes
+  int lock_ = -1;                                // descriptor of DIR/.partial
+  bool was_left_ = false;                        // a killed run has left files in DIR/.partial
+  bool owns_aside_ = false;                      // this object removes DIR/.partial
   bool committed_ = false;
 };
 

@@ -12,7 +12,6 @@
 #include <system_error>
 
 #include "sw/files/new_file.h"
-#include "sw/files/replaced_file.h"
 
 namespace stereotlm::files {
 
@@ -39,12 +38,6 @@ std::string read_whole_file(const std::filesystem::path& path, std::uintmax_t mo
   std::string content((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
   if (!file.is_open() || file.bad()) refuse(std::strerror(errno));
   return content;
-}
-
-void replace_file(const std::filesystem::path& path, std::string_view bytes) {
-  ReplacedFile file(path);
-  file.write(bytes);
-  file.commit();
 }
 
 void sync_folder(const std::filesystem::path& folder) {

@@ -17,9 +17,6 @@ void write_whole_file(const std::filesystem::path& path, std::string_view bytes)
 std::string read_whole_file(const std::filesystem::path& path,
                             std::uintmax_t most_bytes = std::numeric_limits<std::uintmax_t>::max());
 
-// Replaces a file as a whole with ReplacedFile. Throws std::system_error.
-void replace_file(const std::filesystem::path& path, std::string_view bytes);
-
 // Makes the entries of a folder durable. Throws std::system_error.
 void sync_folder(const std::filesystem::path& folder);
 

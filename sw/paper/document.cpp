@@ -15,8 +15,7 @@ namespace stereotlm::paper {
 namespace {
 
 constexpr const char* kHead =
-    "# The paper's figures beside the model's\n\n"
-    "Written by `stereotlm paper`. The paper: Y. Miyajima and T. Maruyama, \"A Real-Time Stereo Vision\n"
+    "The paper: Y. Miyajima and T. Maruyama, \"A Real-Time Stereo Vision\n"
     "System with FPGA\", FPL 2003, LNCS 2778, pp. 448-457. `claims.csv` has every row below, `table1.csv`,\n"
     "`table2.csv` and `banks.csv` what the figures show, `costs.csv` the table of costs, all with every\n"
     "digit.\n\n"
@@ -417,7 +416,7 @@ std::string others_text(const ClaimFinding& found) {
 }  // namespace
 
 std::string document(const Findings& findings) {
-  std::string text = kHead + overview(findings);
+  std::string text = std::string(kDocumentMark) + kHead + overview(findings);
   for (const ClaimFinding& found : findings.claims) {
     text += fmt::format("\n## {} ({})\n\n**{}** (cases: {})", capitalised(found.claim.says),
                         found.claim.place, text_of(found.verdict), confirmed_text(found));

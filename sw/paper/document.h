@@ -20,6 +20,10 @@ std::vector<std::string> file_names();
 // are the shortest decimals that read back equal, as in stats.json.
 std::map<std::string, std::string> tables(const Findings& findings);
 
+// How paper.md begins. No other document begins so.
+inline constexpr const char* kDocumentMark =
+    "# The paper's figures beside the model's\n\nWritten by `stereotlm paper`. ";
+
 // paper.md: each claim with its rule, its values and the commands that reproduce them.
 std::string document(const Findings& findings);
 

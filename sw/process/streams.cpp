@@ -45,6 +45,9 @@ void say_line(const std::string& line) {
     if (notes_left_out && kind == kNote) return;
     shown = kProgram + coloured(STDERR_FILENO, colour, kind) + line.substr(head.size());
   }
+  // The system's text does not name the limit.
+  const bool is_of_limit = shown.find(std::strerror(EMFILE)) != std::string::npos;
+  if (is_of_limit && shown.find("ulimit") == std::string::npos) shown += " (the limit: ulimit -n)";
   std::fprintf(stderr, "%s\n", shown.c_str());
 }
 

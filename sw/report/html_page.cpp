@@ -37,4 +37,10 @@ std::string html_page(const nlohmann::ordered_json& data) {
   return text.append(page.substr(place + kPlace.size()));
 }
 
+std::string page_mark() {
+  constexpr std::string_view kGenerator = "content=\"stereotlm report\">\n";
+  const std::string_view page = page_text();
+  return std::string(page.substr(0, page.find(kGenerator) + kGenerator.size()));
+}
+
 }  // namespace stereotlm::report

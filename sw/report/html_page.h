@@ -10,4 +10,7 @@ namespace stereotlm::report {
 // characters.
 std::string html_page(const nlohmann::ordered_json& data);
 
+// How every page begins, up to the name of its generator. No other page begins so.
+std::string page_mark();
+
 }  // namespace stereotlm::report

@@ -2,8 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <stdexcept>
-#include <system_error>
+#include <string>
 
 #include "models/fpga/core_ports.h"
 #include "sw/report/row_comparison.h"
@@ -22,18 +21,9 @@ std::string head() {
 
 }  // namespace
 
-RowsCsv::RowsCsv(const std::filesystem::path& path) : path_(path) {
-  std::error_code error;
-  const std::filesystem::file_status status = std::filesystem::status(path, error);
-  if (std::filesystem::is_directory(status)) refuse("is a folder");
-  if (!std::filesystem::status_known(status)) refuse("cannot be written: " + error.message());
-  files::remove_left_aside(path);
-  try {
-    file_ = std::make_unique<files::ReplacedFile>(path);
-    file_->write(head());
-  } catch (const std::system_error& failure) {
-    refuse("cannot be written: " + failure.code().message());
-  }
+RowsCsv::RowsCsv(const std::filesystem::path& path)
+    : file_(path, files::marked_kind("table of stereotlm diff", {{0, head()}})) {
+  file_.write(head());
 }
 
 void RowsCsv::add(const fpga::RowProfile& a, const fpga::RowProfile& b) {
@@ -45,23 +35,7 @@ void RowsCsv::add(const fpga::RowProfile& a, const fpga::RowProfile& b) {
                          fmt::join(alone_a[row].stalls, ","), fmt::join(alone_b[row].stalls, ","));
   }
   ++frame_;
-  try {
-    file_->write(lines);
-  } catch (const std::system_error& error) {
-    refuse("cannot be written: " + error.code().message());
-  }
-}
-
-void RowsCsv::commit() {
-  try {
-    file_->commit();
-  } catch (const std::system_error& error) {
-    refuse("cannot be written: " + error.code().message());
-  }
-}
-
-void RowsCsv::refuse(const std::string& cause) const {
-  throw std::runtime_error(fmt::format("'{}': {}", path_.string(), cause));
+  file_.write(lines);
 }
 
 }  // namespace stereotlm::report

@@ -184,6 +184,8 @@ RunInput open_again(const RecordedRun& run, process::Problems& problems) {
   input.fast = run.options.fidelity == "fast";
   input.timing_only = run.options.timing_only;
   input.frames = run.options.frames;
+  for (const RecordedFile& each : inputs_of(run.options))
+    input.inputs.push_back({each.option, each.file.path});
   RecordedOptions described;
   input.pairs = open_source(pictures_of(run.options), &run.board, described, found).pairs;
   if (described.sequence)

@@ -6,8 +6,10 @@
 #include <array>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include "sw/files/folder_entries.h"
+#include "sw/files/output_file.h"
 
 namespace stereotlm::runs {
 namespace {
@@ -15,7 +17,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kFrames = "frames";
-constexpr const char* kRunJson = "run.json";
 
 constexpr std::array kFileNames = {"config.yaml",     "conflicts.csv", "depth.ply",     "depth.png",
                                    "depth_color.png", "disparity.pfm", "disparity.png", "disparity_color.png",
@@ -55,7 +56,7 @@ std::optional<std::string> problem_of(const fs::path& dir, bool was_left) {
   for (const fs::path& name : names) {
     if (const auto foreign = foreign_part(dir / name)) return fmt::format("holds '{}': {}", *foreign, kRule);
   }
-  if (was_left || names.empty() || files::is_file(dir / kRunJson)) return std::nullopt;
+  if (was_left || names.empty() || files::is_file(dir / files::kResultMark)) return std::nullopt;
   return fmt::format("holds '{}' but no run.json: {}", names.front().string(), kRule);
 }
 
@@ -63,8 +64,9 @@ std::optional<std::string> problem_of(const fs::path& dir, bool was_left) {
 
 std::string frame_file_name(std::uint64_t frame) { return fmt::format("{}/{:06}.png", kFrames, frame); }
 
-ResultFolder::ResultFolder(const fs::path& dir)
-    : folder_(dir, files::OutputContent{"result folder", kRunJson, foreign_part, problem_of}) {}
+ResultFolder::ResultFolder(const fs::path& dir, std::vector<files::NamedFile> inputs)
+    : folder_(dir, files::OutputContent{"result folder", files::kResultMark, foreign_part, problem_of,
+                                        nullptr, files::kAsideFolder, std::move(inputs)}) {}
 
 void ResultFolder::check_new(const std::string& name) {
   if (!is_result_name(name))

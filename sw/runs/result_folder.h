@@ -19,8 +19,8 @@ std::string frame_file_name(std::uint64_t frame);
 class ResultFolder {
  public:
   // Throws as OutputFolder does, and if DIR is neither empty nor a folder that holds run.json and only files
-  // that `run` writes.
-  explicit ResultFolder(const std::filesystem::path& dir);
+  // that `run` writes. `inputs`: see OutputContent.
+  explicit ResultFolder(const std::filesystem::path& dir, std::vector<files::NamedFile> inputs = {});
 
   // Adds a file that `run` writes ("stats.json", "frames/000000.png"), each name once. Throws
   // std::invalid_argument for another name, and std::runtime_error if the file cannot be stored (disk full).

@@ -4,10 +4,12 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "models/fpga/core_cycle.h"
 #include "platform/config/board_config.h"
 #include "platform/config/tables.h"
+#include "sw/files/named_file.h"
 #include "sw/media/truth.h"
 #include "sw/runs/result_folder.h"
 #include "sw/runs/run_json.h"
@@ -35,6 +37,7 @@ struct RunInput {
   std::optional<fpga::CycleWindow> trace_window;  // --trace-window
   std::uint64_t frames = 1;                       // frames to deliver
   std::optional<media::Truth> truth;              // ground truth of the pair that the last frame shows
+  std::vector<files::NamedFile> inputs;           // the files that it is read from
   std::string config_yaml;                        // text of the result file config.yaml
   RecordedOptions described;                      // content of run.json; `frames` as requested
   std::unique_ptr<ResultFolder> folder;           // null: no result files

@@ -17,6 +17,8 @@ constexpr std::uint32_t kSequenceFlags = 13;
 constexpr std::uint32_t kDefaultClock = 58;  // in TracePacketDefaults
 constexpr std::uint32_t kDefaults = 59;
 constexpr std::uint32_t kTrackDescriptor = 60;
+constexpr std::uint32_t kForTesting = 900;
+constexpr std::uint32_t kText = 1;  // in TestEvent
 constexpr std::uint64_t kStateCleared = 1;
 constexpr std::uint64_t kNeedsState = 2;
 }  // namespace trace_packet
@@ -108,7 +110,17 @@ ProtoMessage descriptor(const PerfettoTrack::Description& track) {
 
 }  // namespace
 
-PerfettoTrack::PerfettoTrack(OutputFile& file, const Description& description)
+std::string perfetto_mark() {
+  ProtoMessage event;
+  event.text(trace_packet::kText, "trace of stereotlm");
+  ProtoMessage packet;
+  packet.message(trace_packet::kForTesting, event);
+  ProtoMessage file;
+  file.message(trace_file::kPacket, packet);
+  return file.bytes();
+}
+
+PerfettoTrack::PerfettoTrack(files::OutputFile& file, const Description& description)
     : file_(file), uuid_(description.uuid) {
   packet_.message(trace_packet::kTrackDescriptor, descriptor(description));
   write_packet();

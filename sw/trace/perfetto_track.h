@@ -8,10 +8,16 @@
 #include <unordered_map>
 #include <vector>
 
-#include "sw/trace/output_file.h"
+#include "sw/files/output_file.h"
 #include "sw/trace/proto_message.h"
 
 namespace stereotlm::trace {
+
+// The first packet of every file, by which the file is known: a text that viewers ignore.
+std::string perfetto_mark();
+
+// The first packet of every file: a text that viewers ignore, by which the file is known.
+std::string perfetto_mark();
 
 // A track of a Perfetto trace. Each track is a packet sequence of its own, with its own table of names, and
 // with times that are differences to the packet before. The times of a track therefore never decrease; those of
@@ -37,7 +43,7 @@ class PerfettoTrack {
   using Arguments = std::initializer_list<Argument>;
 
   // Describes the track in the file, which must outlive it.
-  PerfettoTrack(OutputFile& file, const Description& description);
+  PerfettoTrack(files::OutputFile& file, const Description& description);
 
   // Times are in ns. An arrow leads from each slice to the next one with the same flow.
   void begin(std::uint64_t time_ns, std::string_view name, Arguments arguments,
@@ -65,7 +71,7 @@ class PerfettoTrack {
   void write_event(std::uint64_t time_ns, std::uint64_t type);
   void write_packet();
 
-  OutputFile& file_;
+  files::OutputFile& file_;
   std::uint64_t uuid_;
   std::uint64_t last_ns_ = 0;
   double last_value_ = -1;  // of a counter, whose values are not negative

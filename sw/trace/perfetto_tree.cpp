@@ -6,7 +6,8 @@ namespace stereotlm::trace {
 
 using Kind = PerfettoTrack::Kind;
 
-PerfettoTree::PerfettoTree(OutputFile& file, const std::string& process) : file_(file) {
+PerfettoTree::PerfettoTree(files::OutputFile& file, const std::string& process) : file_(file) {
+  file_.write(perfetto_mark());
   tracks_.emplace_back(file_, PerfettoTrack::Description{Kind::kProcess, kProcess, 0, 0, process});
 }
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "sw/trace/output_file.h"
+#include "sw/files/output_file.h"
 #include "sw/trace/perfetto_track.h"
 
 namespace stereotlm::trace {
@@ -20,7 +20,7 @@ inline constexpr std::array<const char*, 7> kTrackGroupNames = {"core",  "ports"
 // All tracks of a file. A group is written with its first track.
 class PerfettoTree {
  public:
-  PerfettoTree(OutputFile& file, const std::string& process);
+  PerfettoTree(files::OutputFile& file, const std::string& process);
 
   // A new track. `rank` orders the tracks of a group.
   PerfettoTrack& add_slices(TrackGroup group, std::size_t rank, const std::string& name);
@@ -32,7 +32,7 @@ class PerfettoTree {
 
   PerfettoTrack& add(PerfettoTrack::Description description, TrackGroup group);
 
-  OutputFile& file_;
+  files::OutputFile& file_;
   std::uint64_t last_uuid_ = kProcess;
   std::array<std::uint64_t, kTrackGroupNames.size()> groups_{};  // uuid; 0: not written
   std::deque<PerfettoTrack> tracks_;

@@ -4,8 +4,8 @@ namespace stereotlm::trace {
 
 PerfettoWriter::PerfettoWriter(const std::filesystem::path& path, const platform::BoardConfig& board)
     : board_(board),
-      file_(path),
-      tree_(file_, kProcessName + board.name),
+      file_(path, files::marked_kind("Perfetto trace of stereotlm", {{0, perfetto_mark()}})),
+      tree_(file_, "stereotlm " + board.name),
       rows_(board_, tree_),
       cycles_(board_, tree_),
       computer_(tree_) {}

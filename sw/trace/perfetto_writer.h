@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "sw/trace/output_file.h"
+#include "sw/files/output_file.h"
 #include "sw/trace/perfetto_computer.h"
 #include "sw/trace/perfetto_cycles.h"
 #include "sw/trace/perfetto_rows.h"
@@ -15,8 +15,6 @@ namespace stereotlm::trace {
 // Writes a trace for ui.perfetto.dev. README.md describes its tracks.
 class PerfettoWriter : public TraceWriter {
  public:
-  static constexpr const char* kProcessName = "stereotlm ";  // followed by the name of the board
-
   PerfettoWriter(const std::filesystem::path& path, const platform::BoardConfig& board);
 
   void cycle(const fpga::CoreCycle& cycle) override { cycles_.cycle(cycle); }
@@ -29,7 +27,7 @@ class PerfettoWriter : public TraceWriter {
 
  private:
   TraceBoard board_;
-  OutputFile file_;
+  files::OutputFile file_;
   PerfettoTree tree_;
   PerfettoRows rows_;
   PerfettoCycles cycles_;

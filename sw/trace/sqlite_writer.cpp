@@ -13,6 +13,16 @@
 namespace stereotlm::trace {
 namespace {
 
+constexpr int kApplicationId = 0x53544C54;  // "STLT"; that of a database of sweep is another
+
+// The database is known by its header, which has the application id at byte 68.
+files::FileKind kind() {
+  using namespace std::string_literals;
+  files::FileKind kind = files::marked_kind("trace of stereotlm", {{0, "SQLite format 3\0"s}, {68, "STLT"}});
+  kind.journals = {"-journal", "-wal"};
+  return kind;
+}
+
 // SQLite keeps the text of these statements in the file, with its comments.
 constexpr const char* kSchema = R"(
 CREATE TABLE meta (
@@ -108,39 +118,26 @@ class Row {
 }  // namespace
 
 SqliteWriter::SqliteWriter(const std::filesystem::path& path, const platform::BoardConfig& board)
-    : path_(path), board_(board), places_(board_.geometry), file_(path) {
-  guard([&] {
-    database_.emplace(file_.aside().string(), explore::Database::Access::kWrite);
-    // Nobody reads the file before it is complete, and then it replaces the earlier one.
-    database_->execute("PRAGMA journal_mode=OFF");
-    database_->execute("PRAGMA synchronous=OFF");
-    database_->execute("PRAGMA locking_mode=EXCLUSIVE");
-    database_->execute("PRAGMA application_id=0x53544C4D");  // kId
-    database_->execute("BEGIN");
-    database_->execute(kSchema);
-    explore::Statement meta(*database_, insert("meta", 2));
-    for (const auto& [key, value] : {std::pair<const char*, std::string>("board", board.name),
-                                     {"clock_mhz", fmt::format("{}", board.fpga.clock_mhz)},
-                                     {"config_yaml", platform::to_yaml(board)}})
-      Row(meta).text(key).text(value.c_str()).run();
-    run_.emplace(*database_, insert("runs", 10));
-    transaction_.emplace(*database_, insert("transactions", 11));
-    burst_.emplace(*database_, insert("bursts", 10));
-    level_.emplace(*database_, insert("levels", 3));
-    event_.emplace(*database_, insert("events", 9));
-  });
-}
-
-template <typename Action>
-void SqliteWriter::guard(const Action& action) {
-  try {
-    action();
-  } catch (const explore::DatabaseError& error) {
-    std::string text = error.what();
-    const std::string aside = file_.aside().string();
-    if (text.compare(0, aside.size(), aside) == 0) text.replace(0, aside.size(), path_.string());
-    throw std::runtime_error(text);
-  }
+    : board_(board), places_(board_.geometry), file_(path, kind()) {
+  database_.emplace(file_.aside().path().string(), explore::Database::Access::kWrite,
+                    explore::Database::kBusyTimeout, path.string());
+  // Nobody reads the file before it is complete, and then it replaces the earlier one.
+  database_->execute("PRAGMA journal_mode=OFF");
+  database_->execute("PRAGMA synchronous=OFF");
+  database_->execute("PRAGMA locking_mode=EXCLUSIVE");
+  database_->execute(fmt::format("PRAGMA application_id={}", kApplicationId));
+  database_->execute("BEGIN");
+  database_->execute(kSchema);
+  explore::Statement meta(*database_, insert("meta", 2));
+  for (const auto& [key, value] : {std::pair<const char*, std::string>("board", board.name),
+                                   {"clock_mhz", fmt::format("{}", board.fpga.clock_mhz)},
+                                   {"config_yaml", platform::to_yaml(board)}})
+    Row(meta).text(key).text(value.c_str()).run();
+  run_.emplace(*database_, insert("runs", 10));
+  transaction_.emplace(*database_, insert("transactions", 11));
+  burst_.emplace(*database_, insert("bursts", 10));
+  level_.emplace(*database_, insert("levels", 3));
+  event_.emplace(*database_, insert("events", 9));
 }
 
 // Strips that follow each other and count the same become one run.
@@ -159,21 +156,19 @@ void SqliteWriter::frame(const platform::FrameRuns& frame) {
   const std::size_t strips = frame.strip_ends.size();
   const bool last_has_fewer_rows = board_.geometry.last_rows != board_.geometry.rows;
   std::vector<Open> open;
-  guard([&] {
-    for (const platform::TraceRun& run : frame.runs) {
-      const auto found =
-          std::find_if(open.begin(), open.end(), [&run](const Open& each) { return each.has_place_of(run); });
-      if (found == open.end()) {
-        open.push_back({&run, run.strip});
-      } else if (found->is_continued_by(run) && !(last_has_fewer_rows && run.strip + 1 == strips)) {
-        found->last_strip = run.strip;
-      } else {
-        add_run(frame, *found->first, found->last_strip);
-        *found = {&run, run.strip};
-      }
+  for (const platform::TraceRun& run : frame.runs) {
+    const auto found =
+        std::find_if(open.begin(), open.end(), [&run](const Open& each) { return each.has_place_of(run); });
+    if (found == open.end()) {
+      open.push_back({&run, run.strip});
+    } else if (found->is_continued_by(run) && !(last_has_fewer_rows && run.strip + 1 == strips)) {
+      found->last_strip = run.strip;
+    } else {
+      add_run(frame, *found->first, found->last_strip);
+      *found = {&run, run.strip};
     }
-    for (const Open& each : open) add_run(frame, *each.first, each.last_strip);
-  });
+  }
+  for (const Open& each : open) add_run(frame, *each.first, each.last_strip);
 }
 
 void SqliteWriter::add_run(const platform::FrameRuns& frame, const platform::TraceRun& run,
@@ -207,7 +202,7 @@ void SqliteWriter::cycle(const fpga::CoreCycle& cycle) {
       waited_[port] = {waited_[port].cycles + 1, of_port.by};
       continue;
     }
-    if (requests) guard([&] { add_transaction(cycle, port); });
+    if (requests) add_transaction(cycle, port);
     waited_[port] = {};
   }
 }
@@ -237,45 +232,41 @@ void SqliteWriter::add_transaction(const fpga::CoreCycle& cycle, std::size_t por
 }
 
 void SqliteWriter::burst(const platform::BusBurst& burst) {
-  guard([&] {
-    Row(*burst_)
-        .text(burst.bus == platform::BusBurst::Bus::kPci ? "pci" : "local")
-        .text(burst.master)
-        .text(burst.target)
-        .number(burst.write)
-        .number(burst.address)
-        .number(burst.words)
-        .number(burst.request_ps)
-        .number(burst.address_ps)
-        .number(burst.data_ps)
-        .number(burst.end_ps)
-        .run();
-  });
+  Row(*burst_)
+      .text(burst.bus == platform::BusBurst::Bus::kPci ? "pci" : "local")
+      .text(burst.master)
+      .text(burst.target)
+      .number(burst.write)
+      .number(burst.address)
+      .number(burst.words)
+      .number(burst.request_ps)
+      .number(burst.address_ps)
+      .number(burst.data_ps)
+      .number(burst.end_ps)
+      .run();
 }
 
 void SqliteWriter::level(const platform::QueueLevel& level) {
-  guard([&] { Row(*level_).text(level.queue).number(level.time_ps).number(level.words).run(); });
+  Row(*level_).text(level.queue).number(level.time_ps).number(level.words).run();
 }
 
 void SqliteWriter::events(const platform::TimelineRecords& records) {
-  guard([&] {
-    for (const platform::TimelineEvent& event : records.events) {
-      Row row(*event_);
-      row.text(platform::kEventKindNames[static_cast<std::size_t>(event.kind)])
-          .text(event.what)
-          .number(event.frame)
-          .number(event.camera_frame)
-          .number(event.begin_ps)
-          .number(event.end_ps)
-          .number(event.words)
-          .number(event.dropped_pixels);
-      *event.why != '\0' ? row.text(event.why).run() : row.null().run();
-    }
-  });
+  for (const platform::TimelineEvent& event : records.events) {
+    Row row(*event_);
+    row.text(platform::kEventKindNames[static_cast<std::size_t>(event.kind)])
+        .text(event.what)
+        .number(event.frame)
+        .number(event.camera_frame)
+        .number(event.begin_ps)
+        .number(event.end_ps)
+        .number(event.words)
+        .number(event.dropped_pixels);
+    *event.why != '\0' ? row.text(event.why).run() : row.null().run();
+  }
 }
 
 void SqliteWriter::complete(const TimeSpan& /*window*/) {
-  guard([&] { database_->execute("COMMIT"); });
+  database_->execute("COMMIT");
   for (auto* statement : {&run_, &transaction_, &burst_, &level_, &event_}) statement->reset();
   database_.reset();
   file_.complete();

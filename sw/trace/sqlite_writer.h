@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "sw/explore/store/database.h"
-#include "sw/trace/output_file.h"
+#include "sw/files/output_file.h"
 #include "sw/trace/slot_places.h"
 #include "sw/trace/trace_board.h"
 #include "sw/trace/trace_writer.h"
@@ -18,10 +18,6 @@ namespace stereotlm::trace {
 // queries.
 class SqliteWriter : public TraceWriter {
  public:
-  // The application_id of the database, at this place in the file.
-  static constexpr std::string_view kId = "STLM";
-  static constexpr std::size_t kPlaceOfId = 68;
-
   SqliteWriter(const std::filesystem::path& path, const platform::BoardConfig& board);
 
   void cycle(const fpga::CoreCycle& cycle) override;
@@ -39,16 +35,12 @@ class SqliteWriter : public TraceWriter {
     std::size_t by = 0;  // in the last of them
   };
 
-  // Calls `action`. Errors of SQLite get the name of the file that the user knows.
-  template <typename Action>
-  void guard(const Action& action);
   void add_run(const platform::FrameRuns& frame, const platform::TraceRun& run, std::size_t last_strip);
   void add_transaction(const fpga::CoreCycle& cycle, std::size_t port);
 
-  std::filesystem::path path_;
   TraceBoard board_;
   SlotPlaces places_;
-  OutputFile file_;
+  files::OutputFile file_;
   std::optional<explore::Database> database_;
   std::optional<explore::Statement> run_, transaction_, burst_, level_, event_;
   std::array<Waited, fpga::kPortCount> waited_{};  // [port]

@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "models/clock.h"
-#include "sw/files/replaced_file.h"
+#include "sw/files/output_file.h"
 #include "sw/process/streams.h"
 #include "sw/trace/longest_wait.h"
 #include "sw/trace/perfetto_writer.h"
@@ -124,46 +124,6 @@ class AllWriters : public TraceWriter {
   std::vector<platform::QueueLevel> levels_;
 };
 
-// Whether a file that begins so is a trace of this format, as the writers write it.
-bool is_trace(const TraceFile& file, const std::string& beginning) {
-  using namespace std::string_view_literals;
-  const auto has = [&beginning](std::size_t place, std::string_view bytes) {
-    return beginning.compare(place, bytes.size(), bytes) == 0;
-  };
-  switch (file.format) {
-    case Format::kPerfetto:  // a packet that names the process
-      return has(0, "\n"sv) && beginning.find(PerfettoWriter::kProcessName) != std::string::npos;
-    case Format::kVcd:
-      return VcdWriter::is_fst(file.path) ? has(0, "\0\0\0\0\0\0\0\1\x49"sv)  // the header's kind and length
-                                          : has(0, "$version stereotlm"sv);
-    case Format::kSqlite:
-      break;
-  }
-  return has(0, "SQLite format 3"sv) && has(SqliteWriter::kPlaceOfId, SqliteWriter::kId);
-}
-
-// Throws std::runtime_error if the file must not be written or replaced.
-void check(const TraceFile& file) {
-  namespace fs = std::filesystem;
-  const auto refuse = [&file](const char* why) {
-    throw std::runtime_error(fmt::format("'{}': {}", file.path, why));
-  };
-  const fs::path path = fs::absolute(file.path);
-  if (!fs::is_directory(path.parent_path())) refuse("there is no such folder");
-  if (file.format == Format::kVcd && path.extension() == ".gtkw")
-    refuse("must not end in .gtkw: that is the file with the layout of the waveform");
-  if (!fs::exists(path)) return;
-  if (!fs::is_regular_file(path)) refuse("is no file");
-  if (fs::file_size(path) == 0) return;
-  constexpr std::size_t kBytes = 100;
-  std::string beginning(kBytes, '\0');
-  std::ifstream stream(path, std::ios::binary);
-  stream.read(beginning.data(), kBytes);
-  beginning.resize(static_cast<std::size_t>(stream.gcount()));
-  if (!is_trace(file, beginning))
-    refuse("must be a new file or an earlier trace of this format, which is replaced");
-}
-
 std::unique_ptr<TraceWriter> make_writer(const TraceFile& file, const platform::BoardConfig& board) {
   switch (file.format) {
     case Format::kPerfetto:
@@ -191,7 +151,6 @@ std::unique_ptr<TraceWriter> make_writer(const std::vector<TraceFile>& files,
                                          const std::optional<TraceWindow>& window) {
   std::vector<std::unique_ptr<TraceWriter>> writers;
   for (const TraceFile& file : files) {
-    check(file);
     writers.push_back(make_writer(file, board));
   }
   return std::make_unique<AllWriters>(std::move(writers), Clock(board.fpga.clock_mhz), window);

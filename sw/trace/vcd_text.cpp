@@ -37,7 +37,7 @@ const std::array<std::array<char, 8>, 256>& bits_of_bytes() {
 // Writes the text of one file.
 class VcdText {
  public:
-  VcdText(OutputFile& file, const VcdSignals& signals) : file_(file), signals_(signals) {
+  VcdText(files::AsideFile& file, const VcdSignals& signals) : file_(file), signals_(signals) {
     for (const VcdSignal& signal : signals.all()) {
       codes_.push_back(make_code(codes_.size()));
       values_.push_back(signal.idle);
@@ -48,7 +48,7 @@ class VcdText {
   }
 
   void header() {
-    std::string text = "$version stereotlm $end\n$timescale 1 ps $end\n";
+    std::string text = kVcdMark;
     const std::string* scope = nullptr;
     for (std::size_t signal = 0; signal < codes_.size(); ++signal) {
       const VcdSignal& its = signals_.all()[signal];
@@ -182,7 +182,7 @@ class VcdText {
     put_short<33>(text.data() + zeros, 33 - zeros);
   }
 
-  OutputFile& file_;
+  files::AsideFile& file_;
   const VcdSignals& signals_;
   const std::array<std::array<char, 8>, 256>& bits_of_bytes_ = bits_of_bytes();
   std::vector<Code> codes_;  // [signal]
@@ -198,8 +198,8 @@ class VcdText {
 
 }  // namespace
 
-VcdSpan write_vcd(OutputFile& file, const VcdSignals& signals, const std::vector<ChangeStream*>& streams,
-                  const TimeSpan& window) {
+VcdSpan write_vcd(files::AsideFile& file, const VcdSignals& signals,
+                  const std::vector<ChangeStream*>& streams, const TimeSpan& window) {
   VcdText text(file, signals);
   text.header();
   for (ChangeStream* const stream : streams) stream->rewind();

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
 #include <stdexcept>
 #include <string>
 
@@ -24,6 +23,9 @@ constexpr std::size_t kQueueStreams = 3;
 
 // Returns the path, for which vcd2fst is needed if it ends in ".fst".
 const fs::path& checked_path(const fs::path& path) {
+  if (path.extension() == ".gtkw")
+    throw std::runtime_error(fmt::format(
+        "'{}': must not end in .gtkw: that is the file with the layout of the waveform", path.string()));
   if (!VcdWriter::is_fst(path)) return path;
   try {
     process::run_command({"vcd2fst", "--help"});
@@ -36,11 +38,27 @@ const fs::path& checked_path(const fs::path& path) {
   return path;
 }
 
+files::FileKind kind_of(const fs::path& path) {
+  using namespace std::string_literals;
+  if (!VcdWriter::is_fst(path)) return files::marked_kind("waveform of stereotlm", {{0, kVcdMark}});
+  // The kind and the length of the header, and in it the name of the writer, which fills its field.
+  constexpr std::size_t kPlaceOfWriter = 74;
+  constexpr std::size_t kBytesOfWriter = 128;
+  std::string writer = "stereotlm";
+  writer.resize(kBytesOfWriter);
+  return files::marked_kind("waveform of stereotlm",
+                            {{0, "\0\0\0\0\0\0\0\1\x49"s}, {kPlaceOfWriter, writer}});
+}
+
+files::FileKind layout_kind() {
+  return files::marked_kind("layout of stereotlm", {{0, std::string(kLayoutMark) + "\n"}});
+}
+
 // Whether a file is there that GTKWave has saved, or somebody else.
 bool is_of_user(const fs::path& layout) {
-  std::ifstream file(layout);
-  std::string first_line;
-  return file && std::getline(file, first_line) && first_line != kLayoutMark;
+  std::error_code none;
+  return fs::is_regular_file(layout, none) && fs::file_size(layout, none) > 0 &&
+         !layout_kind().is_own(layout);
 }
 
 }  // namespace
@@ -50,9 +68,9 @@ VcdWriter::VcdWriter(const fs::path& path, const platform::BoardConfig& board)
       board_(board),
       signals_(board_),
       words_(make_words()),
-      file_(path),
+      file_(path, kind_of(path)),
       core_(files::linked_file(path)) {
-  if (!is_of_user(layout_of(path))) layout_.emplace(layout_of(path));
+  if (!is_of_user(layout_of(path))) layout_.emplace(layout_of(path), layout_kind());
   for (std::size_t bus = 0; bus < kBusStreams; ++bus) buses_.emplace_back(files::linked_file(path));
   for (std::size_t queue = 0; queue < kQueueStreams; ++queue) queues_.emplace_back(files::linked_file(path));
   for (std::size_t signal = 0; signal < signals_.core_size(); ++signal)
@@ -180,13 +198,13 @@ void VcdWriter::commit() {
 }
 
 VcdSpan VcdWriter::write_waveform(const std::vector<ChangeStream*>& streams, const TimeSpan& window) {
-  if (!is_fst(path_)) return write_vcd(file_, signals_, streams, window);
-  OutputFile text(path_.string() + ".vcd");  // never committed
+  if (!is_fst(path_)) return write_vcd(file_.aside(), signals_, streams, window);
+  files::AsideFile text(files::linked_file(path_), path_.string());
   const VcdSpan span = write_vcd(text, signals_, streams, window);
   text.complete();
   const process::CommandEnd end =
-      process::run_command({"vcd2fst", text.aside().string(), file_.aside().string()});
-  if (end.status != 0 || fs::file_size(file_.aside()) == 0)
+      process::run_command({"vcd2fst", text.path().string(), file_.aside().path().string()});
+  if (end.status != 0 || fs::file_size(file_.aside().path()) == 0)
     throw std::runtime_error(
         fmt::format("{}: vcd2fst ends with status {}: {}", path_.string(), end.status, end.errors));
   return span;

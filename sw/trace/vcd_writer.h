@@ -7,8 +7,8 @@
 #include <optional>
 #include <vector>
 
+#include "sw/files/output_file.h"
 #include "sw/trace/change_stream.h"
-#include "sw/trace/output_file.h"
 #include "sw/trace/trace_board.h"
 #include "sw/trace/trace_writer.h"
 #include "sw/trace/vcd_signals.h"
@@ -21,7 +21,7 @@ namespace stereotlm::trace {
 class VcdWriter : public TraceWriter {
  public:
   // A path that ends in ".fst" gives the format of GTKWave, through its program vcd2fst; another one gives VCD.
-  // Throws std::runtime_error also if vcd2fst is needed and not installed.
+  // Throws std::runtime_error also if vcd2fst is needed and not installed, and if the path ends in ".gtkw".
   VcdWriter(const std::filesystem::path& path, const platform::BoardConfig& board);
   // The save file of GTKWave beside the waveform.
   static std::filesystem::path layout_of(std::filesystem::path path) {
@@ -60,9 +60,9 @@ class VcdWriter : public TraceWriter {
   TraceBoard board_;
   VcdSignals signals_;
   Words words_;
-  OutputFile file_;
-  std::optional<OutputFile> layout_;  // nothing: the user has a layout of this name
-  std::vector<std::uint32_t> idle_;   // [signal of the core]
+  files::OutputFile file_;
+  std::optional<files::OutputFile> layout_;  // nothing: the user has a layout of this name
+  std::vector<std::uint32_t> idle_;          // [signal of the core]
   std::vector<std::uint32_t> now_;
   std::vector<std::uint32_t> shown_;
   std::optional<std::uint64_t> next_cycle_;  // the one behind the last cycle

@@ -120,6 +120,7 @@ struct PerfettoFile {
   void packet(std::string_view bytes) {
     std::map<std::uint32_t, ProtoField> packet;
     for (const ProtoField& field : proto_fields(bytes)) packet[field.number] = field;
+    if (packet.count(900) != 0) return;  // a text that viewers ignore
     if (packet.count(60) != 0) return descriptor(packet[60].bytes);
     Sequence& sequence = sequences_[packet.at(10).value];
     if (packet.at(13).value == 1) return start(sequence, packet);

@@ -65,7 +65,8 @@ bool simulate(AllocationSearch& search, const Evaluate& evaluate, const SweepOpt
         explore::sweep(AllocationPoints(search, numbers), evaluate, sweep,
                        [&](const SweepCounts& running) { return keep_going(progress_of(running)); });
     const bool is_whole = counts.done() == counts.total;
-    record_outcomes(numbers, sweep.store, is_whole, search);
+    // Without a point the database has no columns of figures.
+    if (counts.done() > 0) record_outcomes(numbers, sweep.store, is_whole, search);
     if (!is_whole) return false;
     before = progress_of(counts);
     before.is_narrowed = true;

@@ -63,14 +63,15 @@ std::string absolute(const std::string& path) {
 
 }  // namespace
 
-Database::Database(const std::string& path, Access access, std::chrono::milliseconds busy_timeout)
-    : path_(path) {
+Database::Database(const std::string& path, Access access, std::chrono::milliseconds busy_timeout,
+                   const std::string& name)
+    : path_(name.empty() ? path : name) {
   const std::string file = access == Access::kMemory ? ":memory:" : absolute(path);
   // One thread uses the connection, so that SQLite needs no mutex.
   const int code = sqlite3_open_v2(file.c_str(), &handle_, flags_of(access) | SQLITE_OPEN_NOMUTEX, nullptr);
   if (code != SQLITE_OK) {
     const std::string text = fmt::format(
-        "{}: {}", path, meaning_of(path, code, sqlite3_system_errno(handle_), sqlite3_errmsg(handle_)));
+        "{}: {}", path_, meaning_of(path_, code, sqlite3_system_errno(handle_), sqlite3_errmsg(handle_)));
     sqlite3_close(handle_);
     throw DatabaseError(text);
   }
@@ -86,6 +87,14 @@ Database::~Database() { sqlite3_close(handle_); }
 void Database::fail(int code) const {
   throw DatabaseError(fmt::format(
       "{}: {}", path_, meaning_of(path_, code, sqlite3_system_errno(handle_), sqlite3_errmsg(handle_))));
+}
+
+void Database::interrupt_if(bool (*is_interrupted)()) {
+  constexpr int kInstructions = 1000;  // of SQLite's virtual machine, between two calls
+  is_interrupted_ = is_interrupted;
+  sqlite3_progress_handler(
+      handle_, kInstructions,
+      [](void* database) { return static_cast<Database*>(database)->is_interrupted_() ? 1 : 0; }, this);
 }
 
 void Database::execute(const std::string& sql) {

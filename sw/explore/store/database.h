@@ -28,18 +28,22 @@ class Database {
   static constexpr std::chrono::milliseconds kBusyTimeout = std::chrono::minutes(1);
 
   // With kMemory the database is a new one in memory, and `path` is its name in messages. Otherwise `path` is
-  // the path of a file, even if it is ":memory:" or begins with "file:".
-  Database(const std::string& path, Access access, std::chrono::milliseconds busy_timeout = kBusyTimeout);
+  // the path of a file, even if it is ":memory:" or begins with "file:". `name`: the file in messages, if
+  // that is not its path.
+  Database(const std::string& path, Access access, std::chrono::milliseconds busy_timeout = kBusyTimeout,
+           const std::string& name = "");
   ~Database();
   Database(const Database&) = delete;
   Database& operator=(const Database&) = delete;
 
+  // From now on every call fails as soon as this function returns true.
+  void interrupt_if(bool (*is_interrupted)());
   void execute(const std::string& sql);
   // Opens another file as well; the names of its tables are NAME.TABLE.
   void attach(const std::string& path, const std::string& name);
   // The first column of the first row of a query; 0 if there is no row.
   std::int64_t number(const std::string& sql);
-  const std::string& path() const { return path_; }
+  const std::string& path() const { return path_; }  // its name in messages
   sqlite3* handle() const { return handle_; }
   // Throws the DatabaseError for a result code of SQLite.
   [[noreturn]] void fail(int code) const;
@@ -47,6 +51,7 @@ class Database {
  private:
   std::string path_;
   sqlite3* handle_ = nullptr;
+  bool (*is_interrupted_)() = nullptr;
 };
 
 // A prepared statement. The database must outlive it.

@@ -8,12 +8,13 @@
 #include <map>
 #include <memory>
 #include <set>
+#include <stdexcept>
 #include <system_error>
 
-#include "sw/explore/store/merged_file.h"
 #include "sw/explore/store/store_layout.h"
 #include "sw/explore/store/store_lock.h"
 #include "sw/explore/store/store_reader.h"
+#include "sw/files/output_file.h"
 
 namespace stereotlm::explore {
 namespace {
@@ -177,7 +178,8 @@ void empty_journal(const std::string& path) {
 
 }  // namespace
 
-void merge_stores(const std::vector<std::string>& inputs, const std::string& store) {
+void merge_stores(const std::vector<std::string>& inputs, const std::string& store,
+                  bool (*is_interrupted)()) try {
   const std::string out = behind_links(store);
   std::error_code none;
   if (fs::file_size(out, none) > 0 && !none) empty_journal(out);
@@ -185,9 +187,10 @@ void merge_stores(const std::vector<std::string>& inputs, const std::string& sto
   readers.reserve(inputs.size());
   for (const std::string& input : inputs) readers.push_back(std::make_unique<StoreReader>(input));
   if (readers.size() > 1) check_versions(readers);  // Store refuses a second version
-  MergedFile file(out);
+  files::OutputFile file(out, store_kind());
   {
-    Database database(file.path(), Database::Access::kWrite);
+    Database database(file.aside().path().string(), Database::Access::kWrite, Database::kBusyTimeout, out);
+    if (is_interrupted != nullptr) database.interrupt_if(is_interrupted);
     database.execute(
         "PRAGMA journal_mode = OFF; PRAGMA synchronous = NORMAL; PRAGMA main.locking_mode = EXCLUSIVE");
     if (inputs.size() == 1) {
@@ -208,8 +211,13 @@ void merge_stores(const std::vector<std::string>& inputs, const std::string& sto
     database.execute("COMMIT");
   }
   readers.clear();
+  file.complete();
   for (const char* ending : {"-wal", "-shm"}) fs::remove(out + ending, none);
-  file.replace(out);
+  file.commit();
+} catch (const DatabaseError&) {
+  throw;
+} catch (const std::runtime_error& error) {  // of the file
+  throw DatabaseError(error.what());
 }
 
 }  // namespace stereotlm::explore

@@ -11,7 +11,8 @@ namespace stereotlm::explore {
 // file is replaced only when the new one is complete and on the disk; its mode and owner are kept. No other
 // process may write to `store` meanwhile (see StoreLock). Throws DatabaseError (database.h), also if two
 // inputs hold different results of one point, if the points have different versions, or if `store` exists and
-// is neither empty nor a file of a Store.
-void merge_stores(const std::vector<std::string>& inputs, const std::string& store);
+// is neither empty nor a file of a Store, or as soon as `is_interrupted`, unless null, returns true.
+void merge_stores(const std::vector<std::string>& inputs, const std::string& store,
+                  bool (*is_interrupted)() = nullptr);
 
 }  // namespace stereotlm::explore

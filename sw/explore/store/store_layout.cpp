@@ -37,6 +37,11 @@ void create_points(Database& database, const std::vector<std::string>& further_c
   database.execute(fmt::format("CREATE TABLE points({})", columns));
 }
 
+files::FileKind store_kind() {
+  using namespace std::string_literals;
+  return files::marked_kind("database of stereotlm sweep", {{0, "SQLite format 3\0"s}, {68, "STLM"}});
+}
+
 void check_layout(Database& database) {
   if (database.number("PRAGMA application_id") != kApplicationId) {
     throw DatabaseError(database.path() + ": not a database of stereotlm sweep");

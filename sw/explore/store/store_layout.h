@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "sw/explore/store/database.h"
+#include "sw/files/output_file.h"
 
 namespace stereotlm::explore {
 
@@ -23,6 +24,8 @@ bool has_point(Statement& find, const std::string& hash);
 void create_tables(Database& database, const std::vector<std::string>& further_columns);
 // Creates table `points` alone.
 void create_points(Database& database, const std::vector<std::string>& further_columns);
+// How a file that is a store begins.
+files::FileKind store_kind();
 // Throws if the file is not a store, or has another layout.
 void check_layout(Database& database);
 // Throws if the store holds points of another version of the program.

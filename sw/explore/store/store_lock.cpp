@@ -10,7 +10,7 @@
 #include <system_error>
 #include <thread>
 
-#include "sw/files/replaced_file.h"
+#include "sw/files/output_file.h"
 
 namespace stereotlm::explore {
 namespace {

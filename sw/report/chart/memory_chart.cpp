@@ -217,11 +217,10 @@ std::string memory_chart_svg(const platform::BoardConfig& board, const ChartTraf
 
 std::string svg_of(const MemoryChart& chart) {
   std::string text = fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"memory-chart\" role=\"img\" width=\"{0}\" "
-      "height=\"{1}\" "
+      "{2} class=\"memory-chart\" role=\"img\" width=\"{0}\" height=\"{1}\" "
       "viewBox=\"0 0 {0} {1}\"\n font-family=\"system-ui, -apple-system, 'Segoe UI', Helvetica, Arial, "
       "sans-serif\">\n",
-      px(chart.width), px(chart.height));
+      px(chart.width), px(chart.height), kChartMark);
   text += title_element(chart.title) + style();
   text += rect({0, 0, chart.width, chart.height}, 0, paint("page", ""));
   text += rect(chart.fpga, 8, paint("none", "frame"));

@@ -7,6 +7,10 @@
 
 namespace stereotlm::report {
 
+// How every memory chart begins. No other drawing begins so.
+inline constexpr const char* kChartMark =
+    "<svg xmlns=\"http://www.w3.org/2000/svg\" data-generator=\"stereotlm diagram\"";
+
 // The memory chart as an SVG document: the board as it is configured, each link with its peak MB/s. `extent`:
 // the board alone, or in its computer. Names are shown as text, whatever characters they have. The chart can
 // be a file, or part of an HTML page. sw/report/README.md lists its ids, classes and colours.

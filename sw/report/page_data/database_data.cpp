@@ -15,6 +15,7 @@
 
 #include "sw/explore/store/database.h"
 #include "sw/explore/store/store_layout.h"
+#include "sw/process/interrupt.h"
 #include "sw/report/page_data/packed_column.h"
 
 namespace stereotlm::report {
@@ -108,7 +109,7 @@ Json database_data(const std::string& path) {
   PackedTexts boards;
   explore::Statement points(database, "SELECT * FROM points ORDER BY hash");
   std::size_t size = 0;
-  for (; points.step(); ++size) {
+  for (; !process::interrupted() && points.step(); ++size) {
     for (std::size_t i = 0; i < names.size(); ++i) {
       const int column = static_cast<int>(i);
       if (is_shown(names[i])) columns[i].add(value_of(points, column));

@@ -5,6 +5,7 @@ Exit status: 0 done; 2 refused before anything was drawn; 1 failed after that; 1
 
 import argparse
 import contextlib
+import errno
 import os
 import re
 import shutil
@@ -19,6 +20,8 @@ NAME = "stereotlm" if os.path.basename(sys.argv[0]) == "plot_all.py" else os.pat
 
 
 def tell(kind, text):
+    if os.strerror(errno.EMFILE) in str(text):
+        text = f"{text} (the limit: ulimit -n)"
     print(f"{NAME}: {kind}: {text}", file=sys.stderr, flush=True)
 
 
@@ -56,7 +59,7 @@ ENDINGS = [*(f".{kind}" for kind in style.FORMATS), ".csv"]
 LEAST_SIZE, MOST_SIZE = 2, 40  # inches
 ASIDE = ".partial"  # holds NEW, and during commit() EARLIER
 NEW, EARLIER = "new", "earlier"
-RULE = "must be empty or hold only files that plot writes"
+RULE = "must be empty or hold only files that plot has written: move it away, or give another folder"
 
 
 class Refused(Exception):
@@ -68,8 +71,10 @@ class Refused(Exception):
 class Folder:
     """The folder of --out. commit() replaces an earlier result by the new one; until then it is unchanged."""
 
-    def __init__(self, path):
+    def __init__(self, path, database):
+        """database: which is read, and must not be replaced."""
         self.path = path
+        self.database = database
         self.aside = os.path.join(path, ASIDE)
         self.new, self.earlier = (os.path.join(self.aside, name) for name in (NEW, EARLIER))
         self.created = []
@@ -81,12 +86,25 @@ class Folder:
         try:
             if not os.path.isdir(self.path):
                 return "not a folder"
-            foreign = foreign_entry(self.path, ignored=ASIDE)
-            if not foreign and os.path.lexists(self.aside):
+            is_left = os.path.lexists(self.aside)  # by a killed process, which may have moved some of the files
+            foreign = foreign_entry(self.path, known_entry if is_left else self._is_own)
+            if not foreign and is_left:
                 foreign = self._foreign_aside()
         except OSError as error:
             return f"cannot be read: {error.strerror}"
         return f"holds '{foreign}': {RULE}" if foreign else ""
+
+    def _is_own(self, path):
+        """Whether plot has written the entry, or it is empty: a figure by its bytes, a table by the figure beside it."""
+        name, ending = os.path.splitext(path)
+        if not known_entry(path) or (os.path.exists(self.database) and os.path.samefile(path, self.database)):
+            return False
+        if os.path.getsize(path) == 0:
+            return True
+        if ending == ".csv":
+            return any(is_file(name + each) and self._is_own(name + each) for each in ENDINGS if each != ".csv")
+        with open(path, "rb") as file:
+            return style.is_made_here(file.read(), ending[1:])
 
     def _foreign_aside(self):
         """The first entry of ASIDE that no killed process can have left there; None if there is none."""
@@ -96,7 +114,7 @@ class Folder:
             path = os.path.join(self.aside, name)
             if name not in (NEW, EARLIER) or not is_folder(path):
                 return f"{ASIDE}/{name}"
-            inside = foreign_entry(path)
+            inside = foreign_entry(path, known_entry)
             if inside:
                 return f"{ASIDE}/{name}/{inside}"
         return None
@@ -113,13 +131,14 @@ class Folder:
             self.created.insert(0, path)
         if os.path.isdir(self.aside):
             shutil.rmtree(self.aside)
+        self.earlier_files = os.listdir(self.path)
         os.mkdir(self.aside)
         os.mkdir(self.new)
 
     def commit(self, files, replaced):
         """Replaces the earlier result. If that fails, restores it and raises OSError.
 
-        files: {name: bytes}; replaced: names of earlier files to remove, if they exist.
+        files: {name: bytes}; replaced: names of files to remove, if they were there at the start.
         """
         for name, data in files.items():
             with open(os.path.join(self.new, name), "wb") as file:
@@ -128,7 +147,7 @@ class Folder:
         try:
             os.mkdir(self.earlier)
             for name in replaced:
-                if is_file(os.path.join(self.path, name)):
+                if name in self.earlier_files and is_file(os.path.join(self.path, name)):
                     move(name, self.path, self.earlier, moved)
             for name in files:
                 move(name, self.new, self.path, moved)
@@ -161,19 +180,27 @@ def is_folder(path):
 
 
 def move(name, source, target, moved):
-    """Moves a file from folder `source` to folder `target`. Adds both paths to `moved`, to undo the move."""
+    """Moves a file from folder `source` to folder `target`, which must not have one of this name.
+
+    Adds both paths to `moved`, to undo the move.
+    """
     paths = [os.path.join(folder, name) for folder in (source, target)]
+    if os.path.lexists(paths[1]):
+        raise OSError(errno.EEXIST, os.strerror(errno.EEXIST), paths[1])
     os.rename(*paths)
     moved.append(paths)
 
 
-def foreign_entry(folder, ignored=None):
-    """The first entry of the folder that plot does not write; None if there is none."""
-    for name in sorted(os.listdir(folder)):
-        figure, ending = os.path.splitext(name)
-        if name != ignored and not (figure in FIGURES and ending in ENDINGS and is_file(os.path.join(folder, name))):
-            return name
-    return None
+def known_entry(path):
+    """Whether plot writes files of this name."""
+    figure, ending = os.path.splitext(os.path.basename(path))
+    return figure in FIGURES and ending in ENDINGS and is_file(path)
+
+
+def foreign_entry(folder, is_own):
+    """The first entry of the folder, except ASIDE, that is not the own; None if there is none."""
+    return next((name for name in sorted(os.listdir(folder))
+                 if name != ASIDE and not is_own(os.path.join(folder, name))), None)
 
 
 class Parser(argparse.ArgumentParser):
@@ -243,7 +270,7 @@ def prepare(options, check):
             problems += error.lines
     problems += check(points, options)
     problems += read_looks(options)
-    folder = Folder(options.out) if options.out else None
+    folder = Folder(options.out, options.database or "") if options.out else None
     if not folder:
         problems.append("--out: missing: the folder of the figures")
     elif folder.problem():

@@ -226,4 +226,8 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    except OSError as error:
+        tell("error", f"'{error.filename or sys.argv[-1]}': {error.strerror}")
+        sys.exit(1)

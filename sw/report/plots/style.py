@@ -5,6 +5,7 @@ the same font and the same colors. Nothing depends on settings of the user: equa
 """
 
 import io
+import re
 import warnings
 
 import matplotlib
@@ -54,8 +55,17 @@ SETTINGS = {
 FORMATS = ["png", "svg", "pdf"]
 USUAL_FORMATS = ["png", "svg"]
 # Nothing of the time or the release is written into the files.
-METADATA = {"png": {"Software": None}, "svg": {"Date": None},
-            "pdf": {"Creator": None, "Producer": None, "CreationDate": None}}
+MAKER = "stereotlm"
+METADATA = {"png": {"Software": MAKER}, "svg": {"Date": None, "Creator": MAKER},
+            "pdf": {"Creator": MAKER, "Producer": None, "CreationDate": None}}
+# Where matplotlib writes the maker: in the chunk behind the header, in the element before the drawing, in the last
+# object.
+MADE = {
+    "png": rb"\x89PNG.{29}\0\0\0\x12tEXtSoftware\0%s" % MAKER.encode(),
+    "svg": rb"<\?xml .{0,500}\n <metadata>\n.{0,500}\n    <dc:creator>\n     <cc:Agent>\n      <dc:title>%s</dc:title>\n"
+           % MAKER.encode(),
+    "pdf": rb"%%PDF-.*\n<< /Creator \(%s\) >>\nendobj\nxref\n[^<>]*<<[^<>]*>>\nstartxref\n\d+\n%%%%EOF\n$" % MAKER.encode(),
+}
 
 
 def use():
@@ -72,6 +82,11 @@ def encoded(figure, kind, dpi=DPI):
             warnings.filterwarnings("ignore", message)
         figure.savefig(out, format=kind, dpi=dpi, metadata=METADATA[kind])
     return out.getvalue()
+
+
+def is_made_here(data, kind):
+    """Whether encoded() has made these bytes of a file of this kind."""
+    return re.match(MADE[kind], data, re.DOTALL) is not None
 
 
 def _font(bold=False):

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "platform/config/board_config.h"
+#include "sw/files/named_file.h"
 #include "sw/media/truth.h"
 #include "sw/process/problems.h"
 #include "sw/runs/run_json.h"
@@ -14,13 +15,7 @@
 
 namespace stereotlm::runs {
 
-// A file that an option names, directly or by its folder.
-struct NamedFile {
-  std::string option;
-  std::string path;
-
-  std::string text() const { return option + " '" + path + "'"; }
-};
+using files::NamedFile;
 
 // The result of open_source().
 struct OpenedSource {

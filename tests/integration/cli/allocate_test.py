@@ -330,19 +330,19 @@ class Allocate(ProgramTest):
 
     def test_another_file_is_not_replaced_by_the_best(self):
         board = self.board()
-        rule = "exists and is not this board with another allocation: must be moved away"
+        rule = "exists, and is not known as a file of this board with another allocation, which alone is replaced"
         mine = self.file("mine.yaml", "extends: fpl2003\n")
-        for path, text in ((board, "must be another file than BOARD"), (mine, rule),
+        for path, text in ((board, "is the file of BOARD: must be another"), (mine, rule),
                            (self.folder / "best.txt", "must end in .yaml"),
-                           (self.folder / "none/best.yaml", "No such file or directory"),
-                           (self.file("folder.yaml/x").parent, "Is a directory")):
+                           (self.folder / "none/best.yaml", "there is no such folder"),
+                           (self.file("folder.yaml/x").parent, "is no file")):
             process = self.allocate(*PRELOADED, "--write", path, board=board)
             self.refused_in_one_line(process, f"--write '{path}': {text}")
             self.assertFalse(self.store.exists())
         self.assertEqual(mine.read_text(), "extends: fpl2003\n")
         database = self.folder / "found.yaml"
         process = run("allocate", board, "--banks", 2, "--out", database, "--write", f"{self.folder}/./found.yaml")
-        self.refused_in_one_line(process, "must be another file than --out")
+        self.refused_in_one_line(process, "is the file of --out: must be another")
         self.assertFalse(database.exists())
         best = self.folder / "best.yaml"
         self.succeeds(self.allocate(*PRELOADED, "--write", best))

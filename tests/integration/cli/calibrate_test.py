@@ -284,7 +284,7 @@ class RefusedCalibrations(CalibrateTest):
             path.rename(self.out / path.name)
         with self.unchanged(self.out):
             process = run(*self.scene("--out", self.out, rig=self.out / "rig.yaml"))
-            self.refused(process, "inside the result folder")
+            self.refused(process, "holds 'rig.yaml'")
 
 
 class RefusedPictures(CalibrateTest):
@@ -322,7 +322,7 @@ class RefusedPictures(CalibrateTest):
         drawings = self.folder / "new_drawings"
         left, right = ([drawings / f"{name}_0[0-2].png"] for name in ("corners", "rectified"))
         process = self.calibrate(left=left, right=right)
-        self.refused(process, "new_drawings', which is replaced whole: a picture must lie elsewhere")
+        self.refused(process, f"--left '{drawings}/corners_00.png' lies in it and would be replaced: an input must")
 
 
 class RefusedPlaces(CalibrateTest):
@@ -404,12 +404,12 @@ class PrintGrid(ProgramTest):
     def test_wrong_sheets_are_refused(self):
         sheet = self.file("grid.pdf", "precious")
         with self.unchanged(self.folder):
-            self.refused(self.print_grid("grid.pdf"), "exists and is another file")
+            self.refused(self.print_grid("grid.pdf"), "is not known as a sheet of the same grid, which alone is replaced")
             self.refused(self.print_grid("grid.png"), "must end in .pdf or .svg")
             process = self.print_grid("new.pdf", "--left", "x", "--disparities", "3")
             rule = "does not go with --print-grid"
             self.refused(process, f"--left: {rule}", f"--disparities: {rule}")
-            self.refused(self.print_grid("none/grid.pdf"), "cannot be written")
+            self.refused(self.print_grid("none/grid.pdf"), "there is no such folder")
             self.refused(self.print_grid("new.pdf", size=()), "--square-mm: missing")
             self.refused(self.print_grid("new.pdf", grid="100x100", size=("--square-mm", "1000")), "5080")
 

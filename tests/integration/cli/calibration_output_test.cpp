@@ -57,6 +57,9 @@ int fsync(int /*file*/) { return fails() ? -1 : 0; }  // syncs nothing, which wo
 int rename(const char* from, const char* to) noexcept {
   return fails(true) ? -1 : static_cast<int>(syscall(SYS_renameat, AT_FDCWD, from, AT_FDCWD, to));
 }
+int renameat2(int /*folder*/, const char* from, int /*folder*/, const char* to, unsigned flags) noexcept {
+  return fails(true) ? -1 : static_cast<int>(syscall(SYS_renameat2, AT_FDCWD, from, AT_FDCWD, to, flags));
+}
 int mkdir(const char* path, mode_t mode) noexcept {
   return call(SYS_mkdirat, AT_FDCWD, address(path), static_cast<long>(mode));
 }

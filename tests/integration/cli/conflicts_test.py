@@ -4,6 +4,7 @@ import csv
 import json
 import math
 import signal
+import resource
 import struct
 
 import program
@@ -153,6 +154,14 @@ class Command(ConflictsTest):
         with self.unchanged(self.out):  # the same bytes again
             self.succeeds(run("conflicts", *self.scene, *CAPTURES, *options))
 
+    def test_a_full_disk_is_named_and_leaves_nothing(self):
+        for blocks in (1, 10, 30):
+            limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (1000 * blocks, 1000 * blocks))
+            process = run("conflicts", *self.scene, *PRELOADED, "--out", self.out, preexec_fn=limit)
+            self.assertEqual(self.ended(process, 1, "File too large")[0][:17], "stereotlm: error:")
+            self.assertNotIn("Traceback", process.stderr)
+            self.assertFalse(self.out.exists())
+
     def test_without_stalls_there_is_no_figure_of_their_causes(self):
         self.succeeds(run("conflicts", *self.scene, *PRELOADED, "--timing-only", "--size", "5x6", "--out", self.out))
         self.assertFalse((self.out / "causes.png").exists())
@@ -189,7 +198,7 @@ class Command(ConflictsTest):
             ([*self.scene, "--size", "5x5"], "--size: goes with --out DIR"),
             ([recorded, "--frames", "2"], "a run is repeated as it was: no option of run goes with it"),
             ([recorded, *SHARED], "a run is repeated as it was"),
-            ([recorded, "--out", recorded], "must be empty or hold only files that conflicts writes"),
+            ([recorded, "--out", recorded], "must be empty or hold only files that conflicts has written"),
             ([recorded, "--format", "gif", "--out", self.out], "--format = gif: must be png, svg, pdf"),
             ([recorded, "--size", "1x5", "--out", self.out], "--size = 1x5: must be WIDTHxHEIGHT in inches"),
         ], lambda *arguments: run("conflicts", *arguments))

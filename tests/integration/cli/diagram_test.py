@@ -201,7 +201,7 @@ class Diagram(ProgramTest):
             (["diagram", "fpl2003"], "--out: missing"),
             (["diagram", *svg], "BOARD: missing"),
             (["diagram", "fpl2003", "--out", "x.png"], "--out 'x.png': must end in .svg"),
-            (["diagram", "fpl2003", "--out", self.folder / "none/x.svg"], "none/x.svg': No such file or directory"),
+            (["diagram", "fpl2003", "--out", self.folder / "none/x.svg"], "none/x.svg': there is no such folder"),
             (["diagram", "fpl2004", *svg], "fpl2004: not a preset"),
             (["diagram", "fpl2003", "--source", "disk", *svg], "--source = disk: must be camera or preloaded"),
             (["diagram", self.out, "--source", "camera", *svg], "a run has its board"),

@@ -447,8 +447,8 @@ class Usage(DiffTest):
             (["diff", a, a, "third"], "third"),
             (["diff", a, a, "--csv", "rows.txt"], "--csv 'rows.txt': must end in .csv"),
             (["diff", a, a, "--csv", ""], "--csv '': must end in .csv"),
-            (["diff", a, a, "--csv", none], f"--csv '{none}': cannot be written: No such file"),
-            (["diff", a, a, "--csv", folder], f"--csv '{folder}': is a folder"),
+            (["diff", a, a, "--csv", none], f"--csv '{none}': there is no such folder"),
+            (["diff", a, a, "--csv", folder], f"--csv '{folder}': is no file"),
         ])
 
     def test_an_interrupt_compares_nothing(self):

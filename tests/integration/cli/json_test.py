@@ -2,6 +2,7 @@
 
 import csv
 import json
+import os
 import pathlib
 import re
 
@@ -33,6 +34,13 @@ class Json(ProgramTest):
         self.succeeds(run("run", "fpl2003", *SMALL, *PRELOADED, *SHARED, "--synthetic", 1, "--frames", 2, *options,
                           "--out", self.out))
         return self.stats()
+
+    def test_names_that_are_not_utf_8_are_shown_with_a_replacement(self):
+        self.file(os.fsdecode(b"b\xff.yaml"), "extends: fpl2003\nname: other\n")
+        for name, status in ((b"./b\xff.yaml", 0), (b"./none\xff.yaml", 2)):
+            process = run("check", os.fsdecode(name), "--json", cwd=self.folder)
+            self.assertEqual((process.returncode, process.stderr), (status, ""))
+            self.assertEqual(self.valid("check", process.stdout)["board"], name.decode(errors="replace"))
 
     def test_bounds_are_those_of_a_run(self):
         document = self.document("bounds", "fpl2003", *SMALL, *SHARED)

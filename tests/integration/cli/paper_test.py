@@ -54,7 +54,7 @@ class PaperTest(ProgramTest):
         super().setUp()
         if PaperTest.files is None:
             # It is written over an earlier one, and leaves other files.
-            self.file("out/paper.md", "old")
+            self.file("out/paper.md", "# The paper's figures beside the model's\n\nWritten by `stereotlm paper`. Old.")
             self.file("out/run", "script")
             PaperTest.said = self.succeeds(run("paper", "--out", self.out, *pair_with_truth()))
             PaperTest.files = self.result()

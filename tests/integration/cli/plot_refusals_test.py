@@ -13,7 +13,9 @@ from plots import PlotTest, change, make_database, reader, script, script_with
 from program import run, wait_until
 
 HEADER = "name run.source matcher.window matcher.fetch frames_per_second.core bound.core pci.clocks".split()
-FOLDER = "must be empty or hold only files that plot writes"
+FOLDER = "must be empty or hold only files that plot has written: move it away, or give another folder"
+# As an earlier run has written it: what is in the picture is not looked at.
+DRAWN = b"\x89PNG" + bytes(29) + b"\0\0\0\x12tEXtSoftware\0stereotlm"
 ALL = "plot_all.py"
 
 
@@ -21,30 +23,38 @@ class Earlier(PlotTest):
     """Files that are in the folder."""
 
     def begin(self, **earlier):
-        """A process that draws all figures, once it has begun."""
+        """A process that draws all figures, once it has begun, over earlier figures with these tables."""
         store = self.sweep(ALLOCATIONS)
         for name, text in earlier.items():
-            self.file(f"out/{name.replace('_', '.')}", text)
+            self.file(f"out/{name}.png", DRAWN)
+            self.file(f"out/{name}.csv", text)
         process = self.start("plot", store, "--out", self.out)
         wait_until((self.out / ".partial" / "new").exists)
         return process
 
     def test_earlier_files_stay_when_new_ones_cannot_be_moved_into_place(self):
-        process = self.begin(banks_csv="a", banks_png="b", states_svg="c", window_csv="d")
-        (self.out / "use.png").mkdir()
-        problem = f"the figures cannot be moved into place: Is a directory: '{self.out}/use.png'"
+        process = self.begin(banks="a", states="b", window="c")
+        self.file("out/use.png", "mine")
+        problem = f"the figures cannot be moved into place: File exists: '{self.out}/use.png'"
         self.ends(process, 1, errors=f"stereotlm: error: --out {self.out}: {problem}\n")
-        texts = {"banks.csv": b"a", "banks.png": b"b", "states.svg": b"c", "window.csv": b"d"}
-        self.assertEqual(self.result(), texts)
-        self.is_in(self.out, *texts, "use.png")
+        texts = {"banks": b"a", "states": b"b", "window": b"c"}
+        files = {name + ending: data for name, text in texts.items() for ending, data in ((".png", DRAWN), (".csv", text))}
+        self.assertEqual(self.result(), {**files, "use.png": b"mine"})
+        self.is_in(self.out, *files, "use.png")
 
     def test_earlier_files_stay_when_it_is_interrupted(self):
         for number in (signal.SIGINT, signal.SIGTERM):
-            process = self.begin(banks_csv="earlier")
+            process = self.begin(banks="earlier")
             process.send_signal(number)
             self.ends(process, 130, errors="stereotlm: note: interrupted: nothing was written\n")
-            self.assertEqual(self.result(), {"banks.csv": b"earlier"})
-            self.is_in(self.out, "banks.csv")
+            self.assertEqual(self.result(), {"banks.png": DRAWN, "banks.csv": b"earlier"})
+            self.is_in(self.out, "banks.png", "banks.csv")
+
+    def test_figures_of_each_format_are_replaced(self):
+        store = self.sweep(WINDOWS)
+        for formats in ("png,svg,pdf", "svg", "pdf,svg", "pdf", "png"):
+            self.plot("window", store, "--format", formats)
+        self.is_in(self.out, "window.png", "window.csv")
 
     def test_files_of_a_killed_process_go(self):
         for name in ("new", "earlier"):
@@ -146,7 +156,8 @@ class Refusals(PlotTest):
             path.symlink_to(self.left)
 
         folder = pathlib.Path.mkdir
-        for make, name in ((file, "notes.txt"), (file, "window.ps"), (file, ".partial"), (folder, "frames"),
+        for make, name in (*((file, name) for name in ("notes.txt", "window.csv", "use.png", "use.svg", "use.pdf")),
+                           (file, "window.ps"), (file, ".partial"), (folder, "frames"),
                            (folder, "window.png"), (link, "window.png"), (link, ".partial")):
             given = self.folder / "given"
             given.mkdir()
@@ -155,6 +166,10 @@ class Refusals(PlotTest):
             self.refused_in_one_line(process, f"--out {given}: holds '{name}': {FOLDER}")
             self.is_in(given, name)
             shutil.rmtree(given)
+        database = shutil.copy(self.store, self.folder / "given.csv")
+        self.file("given/window.png", DRAWN)
+        os.link(database, self.folder / "given" / "window.csv")
+        self.refused_in_one_line(script(ALL, database, "--out", given), f"--out {given}: holds 'window.csv': {FOLDER}")
         self.file("out/.partial/mine")
         for out, problem in ((self.out, "holds '.partial/mine'"), (self.left, "not a folder"),
                              ("/proc/none/out", "cannot be written to")):

@@ -6,6 +6,8 @@ load_test.cpp has every reason against a picture, result_folder_test.cpp every o
 import os
 import resource
 import shutil
+import signal
+import time
 
 import program
 from pictures import noise, pgm, ppm
@@ -205,6 +207,21 @@ class Environment(ProgramTest):
         self.assertEqual((process.stdout, process.stderr), (expected, ""))
 
 
+    def test_too_few_open_files_name_the_limit(self):
+        self.succeeds(self.run_small("--out", self.out))
+        traces = ["--trace", "sqlite:a.db", "--trace", "vcd:a.fst", "--trace-window", "frame=0"]
+        ends = []
+        for command in (self.run_arguments("--out", "b", *traces), ["conflicts", self.out, "--out", "c"],
+                        ["report", self.out, "--out", "a.html"]):
+            for most in range(4, 14):  # with 3 the program cannot be loaded
+                limit = lambda: resource.setrlimit(resource.RLIMIT_NOFILE, (most, most))
+                process = run(*command, cwd=self.folder, preexec_fn=limit)
+                ends.append(process.returncode)
+                self.assertEqual("Too many open files" in process.stderr, "(the limit: ulimit -n)" in process.stderr)
+                self.assertTrue(process.returncode == 0 or "ulimit -n" in process.stderr, process.stderr)
+        self.assertGreater(len(ends) - ends.count(0), 10)
+
+
 class Boards(ProgramTest):
     def test_a_wrong_board_is_refused_together_with_pictures_and_folder(self):
         none = self.folder / "none"
@@ -246,6 +263,10 @@ class Paths(ProgramTest):
             ([*sweep, self.folder / "a.db", "--known"], "--known", ""),
             ([*sweep, self.folder / "a.db", "--progress"], "--progress", ""),
             (["paper", "--out"], "--out", ""),
+            (["conflicts", "--synthetic", "1"], "", ""),
+            (["report", self.out, "--quick", "--out"], "--out", ".html"),
+            (["diagram", "fpl2003", "--out"], "--out", ".svg"),
+            (["allocate", "fpl2003", "--banks", "8", "--out", self.folder / "a.db", "--write"], "--write", ".yaml"),
         ):
             loop = self.folder / f"loop{ending}"
             if not loop.is_symlink():
@@ -269,12 +290,10 @@ class OutputFolders(ProgramTest):
         """The pictures of these options lie in this folder, in which nothing changes."""
         options = [word for name in ("left", "right", "truth") for word in (
             [f"--{name}", path] if name in names else [] if name == "truth" else [f"--{name}", self.left])]
-        rule = "which is replaced whole: an input must lie outside the folder of --out"
         with self.subTest(out=out, path=path), self.unchanged(self.out):
             command = ["run", "fpl2003", *SMALL, *PRELOADED, *options, "--out", out]
-            lines = self.refused(run(*command, cwd=self.folder))
-            refusals = [f"--{name} '{path}': inside the result folder '{out}', {rule}" for name in names]
-            self.assertEqual(lines, [f"stereotlm: error: {refusal}" for refusal in refusals])
+            self.refused_in_one_line(run(*command, cwd=self.folder), "error: result folder",
+                                     f"--{names[0]} '{path}' lies in it and would be replaced: an input must lie elsewhere")
 
     def test_folders_with_pictures_of_the_run_are_refused(self):
         self.succeeds(self.run_small("--out", self.out))
@@ -289,9 +308,11 @@ class OutputFolders(ProgramTest):
             (f"{self.out}/../out/.", "link.png"),
         ):
             self.refused_inside(out, path, "left")
-        for below in ("frames", ".partial/earlier"):
-            picture = self.file(f"out/{below}/000000.png", self.left.read_bytes())
-            self.refused_inside(self.out, picture, "left")
+        self.refused_inside(self.out, self.file("out/frames/000000.png", self.left.read_bytes()), "left")
+        board = self.out / "config.yaml"
+        with self.unchanged(self.out):
+            self.refused_in_one_line(run("run", board, *PRELOADED, *self.pair, "--out", self.out),
+                                     f"BOARD '{board}' lies in it and would be replaced")
 
     def test_a_folder_may_lie_beside_a_picture_of_the_run(self):
         self.out.mkdir()
@@ -310,6 +331,148 @@ class OutputFolders(ProgramTest):
         self.succeeds(self.run_small("--out", self.out))
         with self.unchanged(self.out):
             self.fails(run_on_full_disk("--save-frames", "--frames", "3"), f"'frames/000000.png' {problem}")
+
+
+class Outputs(ProgramTest):
+    """Only files that the program has written are replaced, and none that the same command reads."""
+
+    def setUp(self):
+        super().setUp()
+        run_it = ["run", "fpl2003", *SMALL, *PRELOADED, "--synthetic", "1", "--record", "--out"]
+        self.a, self.b, self.store = self.folder / "a", self.folder / "b", self.folder / "sweep.db"
+        for folder in (self.a, self.b):
+            self.succeeds(run(*run_it, folder))
+        plan = self.file("plan.yaml", "board: fpl2003\nset: {image.width: 32, image.height: 24}\n")
+        self.succeeds(run("sweep", plan, "--out", self.store))
+        traced = ["run", "fpl2003", *SMALL, *PRELOADED, "--timing-only", "--trace-window", "frame=0"]
+        allocate = ["allocate", "fpl2003", *SMALL, *PRELOADED, "--banks", "8", "--out", self.folder / "search.db"]
+        grid = ["calibrate", "--print-grid", "9x6", "--square-mm", "25", "--out"]
+        # By the ending of the file: the command, up to the file.
+        self.writers = {
+            ".perfetto": [*traced, "--trace", "perfetto:"],
+            ".vcd": [*traced, "--trace", "vcd:"],
+            ".fst": [*traced, "--trace", "vcd:"],
+            ".trace.db": [*traced, "--trace", "sqlite:"],
+            ".html": ["report", self.a, "--quick", "--out"],
+            ".svg": ["diagram", self.a, "--out"],
+            ".csv": ["diff", self.a, self.b, "--csv"],
+            ".yaml": [*allocate, "--write"],
+            ".pdf": [*grid],
+            ".grid.svg": [*grid],
+            ".progress": ["sweep", plan, "--out", self.store, "--progress"],
+        }
+
+    def command(self, ending, path):
+        *words, last = self.writers[ending]
+        return [*words, f"{last}{path}"] if str(last).endswith(":") else [*words, last, path]
+
+    @program.slow
+    def test_files_of_its_own_kind_alone_are_replaced(self):
+        files = {ending: self.folder / f"own{ending}" for ending in self.writers}
+        for ending, path in files.items():
+            for _ in range(2):
+                self.succeeds(run(*self.command(ending, path)))
+        notes = {
+            "text": b"\nNotes on stereotlm",
+            "page": b"<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<title>stereotlm report</title>\n",
+            "drawing": b"<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"memory-chart\"></svg>",
+            "waveform": b"$version stereotlm 2 $end\n",
+            "fst": b"\0\0\0\0\0\0\0\1\x49" + bytes(65) + b"another writer" + bytes(300),
+            "table": b"frame,row,a_cycles,b_cycles,mine\n",
+            "board": b"extends: fpl2003\n",
+            "counts": b"ok 3\n",
+            "sweep": self.store.read_bytes(),
+            **{ending: path.read_bytes() for ending, path in files.items()},
+        }
+        for ending in self.writers:
+            target = self.folder / f"target{ending}"
+            link = self.folder / f"link{ending}"
+            link.symlink_to(target)
+            for kind, data in notes.items():
+                if kind == ending:
+                    continue
+                target.write_bytes(data)
+                with self.subTest(ending=ending, kind=kind), self.unchanged(self.folder):
+                    path = link if kind == "sweep" else target
+                    self.refused_in_one_line(run(*self.command(ending, path)), f"'{path}': exists, and is not known as a ",
+                                             "which alone is replaced: move it away, or give another file")
+
+    def test_files_of_a_result_folder_are_refused(self):
+        for ending in self.writers:
+            with self.subTest(ending=ending), self.unchanged(self.folder):
+                self.refused_in_one_line(run(*self.command(ending, self.a / f"new{ending}")), "result folder")
+        with self.unchanged(self.folder):
+            for ending, name in ((".csv", "rows.csv"), (".yaml", "config.yaml")):
+                self.refused_in_one_line(run(*self.command(ending, self.a / name)), f"'{self.a / name}': ")
+
+    def test_a_database_is_no_page_though_it_has_its_name(self):
+        page = self.folder / "g.html"
+        for make in (shutil.copy, os.link, lambda source, target: os.symlink(source, target)):
+            make(self.store, page)
+            with self.unchanged(self.folder):
+                for store in (page, self.store):
+                    self.refused_in_one_line(run("report", store, "--out", page), "is not known as a page of stereotlm")
+            page.unlink()
+
+    def test_a_trace_is_not_written_beside_the_journal_of_another_database(self):
+        path = self.folder / "a.db"
+        journal = self.file("a.db-wal", "changes")
+        with self.unchanged(self.folder):
+            self.refused_in_one_line(run(*self.command(".trace.db", path)), f"'{path}': beside it lies 'a.db-wal'")
+        journal.unlink()
+        self.succeeds(run(*self.command(".trace.db", path)))
+        journal.write_text("changes")
+        with self.unchanged(self.folder):
+            self.refused_in_one_line(run(*self.command(".trace.db", path)), f"'{path}': beside it lies 'a.db-wal'")
+
+    def test_an_fst_needs_no_other_name_in_its_folder(self):
+        (self.folder / "own.fst.vcd").mkdir()
+        self.succeeds(run(*self.command(".fst", self.folder / "own.fst")))
+
+    @program.slow
+    def test_folders_with_files_of_others_under_its_names_are_refused(self):
+        scene = ["fpl2003", *SMALL, *PRELOADED, "--synthetic", "1"]
+        own = {"conflicts": ["conflicts", *scene, "--out"], "plot": ["plot", self.store, "--out"],
+               "paper": ["paper", "--out"]}
+        for name, entry in (("conflicts", "rows.csv"), ("conflicts", "conflicts.csv"), ("conflicts", "picture.png"),
+                            ("plot", "window.csv"), ("plot", "use.png"), ("paper", "paper.md"), ("paper", "claims.csv")):
+            path = self.file(f"{name}/{entry}", "mine")
+            with self.subTest(name=name, entry=entry), self.unchanged(self.folder):
+                self.refused_in_one_line(run(*own[name], path.parent), f"holds '{entry}'")
+            path.unlink()
+        for _ in range(2):
+            self.succeeds(run(*own["conflicts"], self.out))
+        picture = self.out / "picture.png"
+        picture.write_bytes(self.left.read_bytes())
+        pair = ["--left", picture, "--right", self.right]
+        recorded = self.folder / "recorded"
+        self.succeeds(run("run", *scene[:-2], *pair, "--out", recorded))
+        for command in (["conflicts", *scene[:-2], *pair], ["conflicts", recorded]):
+            with self.unchanged(self.folder):
+                self.refused_in_one_line(run(*command, "--out", self.out), f"--left '{picture}' lies in it")
+
+    @program.slow
+    def test_an_interrupted_command_leaves_nothing_hidden(self):
+        own = {**{ending: self.command(ending, f"own{ending}") for ending in self.writers},
+               "merge": ["merge", "merged.db", self.store, self.folder / "search.db"],
+               "page": ["report", self.a, "--out", "page.html"],
+               "page of a database": ["report", self.store, "--out", "page.html"],
+               "page of two": ["report", self.a, self.b, "--out", "page.html"],
+               "traces": ["run", "fpl2003", *SMALL, *PRELOADED, "--timing-only", "--frames", "2000", "--trace",
+                          "sqlite:own.db", "--trace", "perfetto:own.perfetto"]}
+        self.succeeds(run(*own[".yaml"], cwd=self.folder))
+        for name, command in own.items():
+            begin = time.monotonic()
+            run(*command, cwd=self.folder)
+            seconds = time.monotonic() - begin
+            for part in range(1, 7):
+                process = self.start(*command, cwd=self.folder)
+                time.sleep(seconds * part / 6)
+                process.send_signal(signal.SIGINT)
+                process.communicate()
+                with self.subTest(name=name, part=part):
+                    self.assertIn(process.returncode, (0, 130, -signal.SIGINT))  # the last before it begins
+                    self.assertEqual([path.name for path in self.folder.rglob(".*")], [])
 
 
 if __name__ == "__main__":

@@ -180,10 +180,11 @@ class Video(SourceTest):
         video = self.video("out/frames/000000.png", 1, "left", "right")
         inside = self.sequence(2, "out/frames/sequence")
         with self.unchanged(self.out):
-            for source, path in ((["--video", video, "--video-layout", "side_by_side"], video),
-                                 (["--sequence", inside], inside / "left_000.png")):
-                lines = self.refused(self.run_with(*source, "--out", self.out))
-                self.assertIn(f"{source[0]} '{path}': inside the result folder '{self.out}'", lines[0])
+            self.refused(self.run_with("--sequence", inside, "--out", self.out), "holds 'frames/sequence'")
+        shutil.rmtree(inside)
+        with self.unchanged(self.out):
+            self.refused(self.run_with("--video", video, "--video-layout", "side_by_side", "--out", self.out),
+                         f"result folder '{self.out}': --video '{video}' lies in it and would be replaced")
 
 
 class Synthetic(SourceTest):

@@ -285,7 +285,7 @@ class Refusals(SweepTest):
                 (["--launcher", "pbs"], "--launcher = pbs: must be local or slurm"),
                 (["--known", self.left], f"--known {self.left}: not a database"),
                 (["--known", none], "--known ", "No such file or directory"),
-                (["--progress", none], f"--progress {none}: No such file or directory"),
+                (["--progress", none], f"--progress '{none}': there is no such folder"),
             )])
             self.all_refused([
                 (["sweep", self.plan, "--out", self.left], f"--out {self.left}: not a database"),
@@ -317,7 +317,7 @@ class Refusals(SweepTest):
         (self.folder / "sub").mkdir()
         self.succeeds(self.sweep(store=self.folder / "known.db"))
         known, notes = self.folder / "known.db", self.file("notes", "ok 3\nand more\n")
-        other = "exists, and was not written by --progress: "
+        other = "exists, and is not known as a file of --progress, which alone is replaced: "
         with self.unchanged(self.folder):
             for path, rule in (
                 (self.store, "is the file of --out"),
@@ -325,10 +325,11 @@ class Refusals(SweepTest):
                 (self.plan, "is the file of PLAN"),
                 (self.folder / "link", "is the file of PLAN"),
                 (known, "is the file of --known"),
-                *((path, other) for path in (notes, self.left, self.folder, "/dev/null")),
+                *((path, other) for path in (notes, self.left)),
+                *((path, "is no file") for path in (self.folder, "/dev/null")),
             ):
                 process = self.sweep("--known", known, "--progress", path)
-                self.refused_in_one_line(process, f"--progress = {path}: {rule}")
+                self.refused_in_one_line(process, f"--progress '{path}': {rule}")
 
 
 class Meanwhile(SweepTest):

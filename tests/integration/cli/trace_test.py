@@ -224,15 +224,15 @@ class Refusals(TraceTest):
         for form in ("perfetto", "sqlite", "vcd"):
             process = run("run", "fpl2003", *SMALL, *PRELOADED, *TIMING, "--trace", f"{form}:{text}", "--trace-window",
                           "frame=0")
-            self.refused_in_one_line(process, "notes.md': must be a new file or an earlier trace of this format")
+            self.refused_in_one_line(process, "notes.md': exists, and is not known as a ", "of stereotlm, which alone")
         self.assertEqual(text.read_text(), "what I found")
         self.traced(*trace("sqlite"))
         self.refused_in_one_line(run("run", "fpl2003", *SMALL, *PRELOADED, *TIMING, "--trace", "perfetto:run.sqlite",
-                                     cwd=self.folder), "must be a new file or an earlier trace of this format")
+                                     cwd=self.folder), "is not known as a Perfetto trace of stereotlm")
 
     def test_keep_inputs_and_results(self):
         self.refused_in_one_line(self.run_small("--trace", f"perfetto:{self.left}"),
-                                 f"--trace '{self.left}': is the file of --left: must not replace an input")
+                                 f"--trace '{self.left}': exists, and is not known as a Perfetto trace")
         self.refused_in_one_line(self.run_small("--out", self.out, "--trace", f"perfetto:{self.out / 'a'}"),
                                  "must lie outside the folder of --out")
         self.assertFalse(self.out.exists())

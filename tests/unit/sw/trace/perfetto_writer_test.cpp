@@ -363,27 +363,29 @@ TEST_F(PerfettoWriterTest, TheTableOfNamesIsBegunAnewWhenItIsFull) {
 }
 
 TEST_F(PerfettoWriterTest, LeavesTheEarlierFileWithoutACommitOrWhenTheDiskIsFull) {
-  test::write_file(path_, "earlier");
+  const std::string earlier = perfetto_mark() + "earlier";
+  test::write_file(path_, earlier);
   const test::MadeTrace trace = test::make_trace(board_, 1);
   {
     PerfettoWriter writer(path_, board_);
     trace.send(writer);
   }
-  EXPECT_EQ(test::read_file(path_), "earlier");
+  EXPECT_EQ(test::read_file(path_), earlier);
   {
     PerfettoWriter writer(path_, board_);
     trace.send(writer);
     const test::FileSizeLimit limit(1000);
-    EXPECT_EQ(test::message_of([&] { writer.complete({}); }), path_.string() + ": File too large");
+    EXPECT_EQ(test::message_of([&] { writer.complete({}); }),
+              "'" + path_.string() + "': cannot be written: File too large");
   }
-  EXPECT_EQ(test::read_file(path_), "earlier");
+  EXPECT_EQ(test::read_file(path_), earlier);
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(scratch_.path()), {}), 1);
 }
 
 TEST_F(PerfettoWriterTest, RefusesAFolderThatIsNotThere) {
   const std::filesystem::path path = scratch_.path() / "none" / "file.perfetto-trace";
   EXPECT_EQ(test::message_of([&] { PerfettoWriter(path, board_); }),
-            path.string() + ": No such file or directory");
+            "'" + path.string() + "': there is no such folder");
 }
 
 }  // namespace

@@ -140,20 +140,25 @@ TEST_F(SqliteWriterTest, TheFileIsSoundAndItsSchemaHasAComment) {
 }
 
 TEST_F(SqliteWriterTest, LeavesTheEarlierFileWithoutACommitOrWhenTheDiskIsFull) {
-  test::write_file(path_, "earlier");
   const test::MadeTrace trace = test::make_trace(board_, 1);
+  {
+    SqliteWriter writer(path_, board_);
+    writer.complete({});
+    writer.commit();
+  }
+  const std::string earlier = test::read_file(path_);
   {
     SqliteWriter writer(path_, board_);
     trace.send(writer);
   }
-  EXPECT_EQ(test::read_file(path_), "earlier");
+  EXPECT_EQ(test::read_file(path_), earlier);
   {
     SqliteWriter writer(path_, board_);
     trace.send(writer);
     const test::FileSizeLimit limit(1000);
     EXPECT_THAT(test::message_of([&] { writer.complete({}); }), ::testing::StartsWith(path_.string() + ": "));
   }
-  EXPECT_EQ(test::read_file(path_), "earlier");
+  EXPECT_EQ(test::read_file(path_), earlier);
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(scratch_.path()), {}), 1);
 }
 

@@ -275,7 +275,8 @@ TEST_F(VcdWriterTest, TheLayoutHasTheMarkerWhereTheLongestWaitBegins) {
 }
 
 TEST_F(VcdWriterTest, LeavesBothEarlierFilesWithoutACommitOrWhenTheDiskIsFull) {
-  test::write_file(path_, "earlier");
+  const std::string earlier = std::string(kVcdMark) + "earlier";
+  test::write_file(path_, earlier);
   test::write_file(layout_, "[*] stereotlm\nearlier layout");
   const test::MadeTrace trace = test::make_trace(board_, 1);
   { VcdWriter(path_, board_).cycle(trace.cycles[0]); }
@@ -283,9 +284,10 @@ TEST_F(VcdWriterTest, LeavesBothEarlierFilesWithoutACommitOrWhenTheDiskIsFull) {
     VcdWriter writer(path_, board_);
     trace.send(writer);
     const test::FileSizeLimit limit(100);
-    EXPECT_EQ(test::message_of([&] { writer.complete({}); }), path_.string() + ": File too large");
+    EXPECT_EQ(test::message_of([&] { writer.complete({}); }),
+              "'" + path_.string() + "': cannot be written: File too large");
   }
-  EXPECT_EQ(test::read_file(path_), "earlier");
+  EXPECT_EQ(test::read_file(path_), earlier);
   EXPECT_EQ(test::read_file(layout_), "[*] stereotlm\nearlier layout");
   EXPECT_EQ(files(), 2);
 }

@@ -238,14 +238,10 @@ TEST_F(StoreTest, BringsItsJournalIntoTheFileBeforeItIsReplaced) {
 
 TEST_F(StoreTest, RemovesTheFileOfAKilledMergeAndNoOther) {
   add("a.db", {point("h1")});
-  const std::vector<std::string> others = {"a.db.new",
-                                           "a.db.merging-mine",
-                                           "a.db.merging-0123456789abcdeX",
-                                           "a.db.merging-0123456789abcde",
-                                           "a.db.merging-0123456789abcdef0",
-                                           "b.db.merging-0123456789abcdef"};
+  const std::vector<std::string> others = {"a.db.new", ".a.db.writing-mine",
+                                           ".b.db.writing-0123456789abcdef"};
   for (const std::string& other : others) test::write_file(file(other), "mine");
-  test::write_file(file("a.db.merging-0123456789abcdef"), "half");
+  test::write_file(file(".a.db.writing-0123456789abcdef"), "half");
   merge({"a.db"}, "a.db");
   for (const std::string& other : others) EXPECT_EQ(read_file(file(other)), "mine") << other;
   EXPECT_EQ(names().size(), others.size() + 1);

@@ -1,0 +1,249 @@
+#include "sw/files/output_file.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <fstream>
+#include <random>
+#include <stdexcept>
+#include <system_error>
+
+#include "sw/files/folder_entries.h"
+
+namespace stereotlm::files {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void fail(int error, const fs::path& path) {
+  throw std::system_error(error, std::generic_category(), path.string());
+}
+
+// Calls `action`. Its system errors get the name of the file that the user knows.
+template <typename Action>
+auto named(const std::string& name, const Action& action) {
+  try {
+    return action();
+  } catch (const std::system_error& error) {
+    throw std::runtime_error(fmt::format("'{}': cannot be written: {}", name, error.code().message()));
+  }
+}
+
+void take_owner_and_mode(const fs::path& made, const struct stat& earlier) {
+  constexpr mode_t kPermissions = 07777;
+  const bool is_owner_kept = chown(made.c_str(), earlier.st_uid, earlier.st_gid) == 0;
+  const bool is_group_kept =
+      is_owner_kept || chown(made.c_str(), static_cast<uid_t>(-1), earlier.st_gid) == 0;
+  mode_t mode = earlier.st_mode & kPermissions;
+  if (!is_owner_kept) mode &= ~static_cast<mode_t>(S_ISUID | S_ISGID);
+  if (!is_group_kept) mode = (mode & ~static_cast<mode_t>(S_IRWXG)) | (mode & S_IRWXO) << 3U;
+  if (chmod(made.c_str(), mode) != 0) fail(errno, made);
+}
+
+// The hidden file for "rows.csv" is ".rows.csv.writing-" and this number of random hexadecimal digits.
+constexpr std::size_t kDigits = 16;
+
+// The name of the hidden file without its digits.
+std::string beginning(const fs::path& file) {
+  // Limit for the part from the file's name: file systems limit names to 255 bytes.
+  constexpr std::size_t kMostBytes = 200;
+  return fmt::format(".{}.writing-", file.filename().string().substr(0, kMostBytes));
+}
+
+fs::path folder_of(const fs::path& file) { return file.has_parent_path() ? file.parent_path() : "."; }
+
+// Removes a hidden file if no process has locked it, and hence none is writing it. On a file system without
+// locks the file stays.
+void remove_if_left(const fs::path& aside) {
+  const int file = open(aside.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+  if (file < 0) return;
+  if (flock(file, LOCK_EX | LOCK_NB) == 0) unlink(aside.c_str());
+  close(file);
+}
+
+// Removes the hidden files that killed processes have left beside the file.
+void remove_left_beside(const fs::path& file) {
+  const std::string begin = beginning(file);
+  std::error_code ignored;
+  std::vector<fs::path> left;
+  for (fs::directory_iterator entry(folder_of(file), ignored), end; !ignored && entry != end;
+       entry.increment(ignored)) {
+    const std::string name = entry->path().filename();
+    const bool is_ours = name.size() == begin.size() + kDigits && name.rfind(begin, 0) == 0 &&
+                         name.find_first_not_of("0123456789abcdef", begin.size()) == std::string::npos;
+    if (is_ours) left.push_back(entry->path());
+  }
+  for (const fs::path& aside : left) remove_if_left(aside);
+}
+
+// Whether both paths lead to the same file, which need not exist.
+bool is_same(const fs::path& a, const fs::path& b) {
+  std::error_code none;
+  return fs::equivalent(a, b, none) ||
+         fs::weakly_canonical(fs::absolute(a), none) == fs::weakly_canonical(fs::absolute(b), none);
+}
+
+}  // namespace
+
+fs::path linked_file(const fs::path& path) {
+  constexpr int kMostLinks = 40;  // the system's limit
+  fs::path file = path;
+  std::error_code error;
+  for (int links = 0; fs::is_symlink(fs::symlink_status(file, error)); ++links) {
+    if (links == kMostLinks) fail(ELOOP, path);
+    file = file.parent_path() / fs::read_symlink(file);
+  }
+  if (error && error != std::errc::no_such_file_or_directory && error != std::errc::not_a_directory)
+    fail(error.value(), path);
+  return file;
+}
+
+void rename_to_new(const fs::path& from, const fs::path& to) {
+  if (renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return;
+  const bool can_do_both = errno != EINVAL && errno != ENOSYS;  // the file system
+  if (can_do_both || is_there(to))
+    throw fs::filesystem_error("rename", from, to, {can_do_both ? errno : EEXIST, std::generic_category()});
+  fs::rename(from, to);
+}
+
+AsideFile::AsideFile(fs::path file, std::string name) : file_(std::move(file)), name_(std::move(name)) {
+  remove_left_beside(file_);
+  named(name_, [this] {
+    while (!make()) {
+    }
+  });
+}
+
+// Creates and locks the hidden file. Returns false if its name is taken, or if another process has removed
+// the file before it was locked.
+bool AsideFile::make() {
+  std::random_device random;
+  path_ = folder_of(file_) / fmt::format("{}{:08x}{:08x}", beginning(file_), random(), random());
+  try {
+    new_.emplace(path_);
+  } catch (const std::system_error& error) {
+    if (error.code() != std::errc::file_exists) throw;
+    return false;
+  }
+  lock_ = open(path_.c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC);
+  if (lock_ < 0 && errno == ENOENT) return false;
+  if (lock_ < 0) {
+    const int error = errno;
+    unlink(path_.c_str());
+    fail(error, path_);
+  }
+  flock(lock_, LOCK_EX);
+  struct stat status = {};
+  if (fstat(lock_, &status) == 0 && status.st_nlink > 0) return true;
+  close(lock_);
+  return false;
+}
+
+AsideFile::~AsideFile() {
+  std::error_code ignored;
+  if (!path_.empty()) fs::remove(path_, ignored);
+  if (lock_ >= 0) close(lock_);
+}
+
+void AsideFile::write_through(std::string_view bytes) {
+  named(name_, [this, bytes] {
+    new_->write(buffer_);
+    buffer_.clear();
+    new_->write(bytes);
+  });
+}
+
+void AsideFile::complete() {
+  if (!new_) return;
+  flush();
+  named(name_, [this] { new_->close(); });
+  new_.reset();
+}
+
+void AsideFile::take_place(bool replaces) {
+  named(name_, [this, replaces] {
+    struct stat earlier = {};
+    if (replaces && stat(file_.c_str(), &earlier) == 0) {
+      take_owner_and_mode(path_, earlier);
+      fs::rename(path_, file_);
+    } else {
+      rename_to_new(path_, file_);
+    }
+  });
+  path_.clear();
+}
+
+FileKind marked_kind(std::string called, std::vector<std::pair<std::size_t, std::string>> marks) {
+  return {std::move(called), [marks = std::move(marks)](const fs::path& file) {
+            std::ifstream stream(file, std::ios::binary);
+            if (!stream) fail(errno, file);
+            return std::all_of(marks.begin(), marks.end(), [&stream](const auto& mark) {
+              std::string bytes(mark.second.size(), '\0');
+              stream.seekg(static_cast<std::streamoff>(mark.first));
+              return stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size())) &&
+                     bytes == mark.second;
+            });
+          }};
+}
+
+OutputFile::OutputFile(const fs::path& path, FileKind kind, const std::vector<NamedFile>& others)
+    : name_(path.string()), kind_(std::move(kind)) {
+  path_ = named(name_, [&path] { return linked_file(path); });
+  for (const NamedFile& other : others) {
+    if (!other.path.empty() && is_same(path_, other.path))
+      refuse(fmt::format("is the file of {}: must be another", other.option));
+  }
+  was_there_ = check();
+  const fs::path folder = folder_of(path_);
+  std::error_code error;
+  if (fs::is_regular_file(folder / kResultMark, error))
+    refuse("in a result folder of run, which holds nothing else: must lie elsewhere");
+  if (faccessat(AT_FDCWD, folder.c_str(), W_OK | X_OK, AT_EACCESS) != 0)
+    refuse(errno == ENOENT ? "there is no such folder"
+                           : "cannot be written: " + std::generic_category().message(errno));
+}
+
+bool OutputFile::check() const {
+  for (const std::string& ending : kind_.journals) {
+    std::error_code error;
+    if (fs::exists(fs::symlink_status(path_.string() + ending, error)))
+      refuse(fmt::format(
+          "beside it lies '{}' of an earlier database, which would mix with the new one: remove it, "
+          "or give another file",
+          path_.filename().string() + ending));
+  }
+  struct stat status = {};
+  if (stat(path_.c_str(), &status) != 0) {
+    if (errno == ENOENT) return false;
+    refuse("cannot be written: " + std::generic_category().message(errno));
+  }
+  if (!S_ISREG(status.st_mode)) refuse("is no file");
+  if (status.st_size > 0 && !named(name_, [this] { return kind_.is_own(path_); }))
+    refuse(fmt::format(
+        "exists, and is not known as a {}, which alone is replaced: move it away, or give another file",
+        kind_.called));
+  return true;
+}
+
+AsideFile& OutputFile::aside() {
+  if (!aside_) aside_.emplace(path_, name_);
+  return *aside_;
+}
+
+void OutputFile::commit() {
+  complete();
+  check();
+  aside_->take_place(was_there_);
+}
+
+void OutputFile::refuse(const std::string& cause) const {
+  throw std::runtime_error(fmt::format("'{}': {}", name_, cause));
+}
+
+}  // namespace stereotlm::files

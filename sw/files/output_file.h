@@ -1,0 +1,110 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "sw/files/named_file.h"
+#include "sw/files/new_file.h"
+
+namespace stereotlm::files {
+
+// The file by which a result folder of `run` is known.
+inline constexpr const char* kResultMark = "run.json";
+
+// Follows symbolic links from `path` to a file, which need not exist. Returns the path of that file. Throws
+// std::system_error.
+std::filesystem::path linked_file(const std::filesystem::path& path);
+
+// New content for a file, in a hidden file in the same folder. The destructor removes it. The constructor
+// also removes the hidden files that killed processes have left beside the same file. All functions throw
+// std::runtime_error with the name of the file, not of the hidden one, and the cause.
+class AsideFile {
+ public:
+  // `file`: not a symbolic link (see linked_file()). `name`: the file in messages.
+  AsideFile(std::filesystem::path file, std::string name);
+  ~AsideFile();
+  AsideFile(const AsideFile&) = delete;
+  AsideFile& operator=(const AsideFile&) = delete;
+
+  void write(std::string_view bytes) {
+    if (bytes.size() >= kBufferBytes) return write_through(bytes);
+    buffer_.append(bytes);
+    if (buffer_.size() >= kBufferBytes) flush();
+  }
+  // The hidden file, for a library or a program that writes the content instead of write().
+  const std::filesystem::path& path() const { return path_; }
+  // Makes the content durable. No write() may follow. A second call has no effect.
+  void complete();
+  // Renames the hidden file to the file, after complete(). If `replaces`, an existing file is replaced, and
+  // the new one gets its mode, owner and group. Only root may change the owner; for other users, the new file
+  // keeps its own. If the group cannot be changed either, the group gets the permissions of all other users.
+  // Unless `replaces`, an existing file is an error.
+  void take_place(bool replaces);
+
+ private:
+  static constexpr std::size_t kBufferBytes = std::size_t{1} << 18U;
+  bool make();
+  void flush() { write_through({}); }
+  void write_through(std::string_view bytes);
+
+  std::filesystem::path file_;
+  std::string name_;
+  std::filesystem::path path_;  // empty after take_place()
+  std::optional<NewFile> new_;  // nullopt after complete()
+  int lock_ = -1;               // descriptor of the hidden file, which is locked while this process has it
+  std::string buffer_;
+};
+
+// A kind of file that a command writes.
+struct FileKind {
+  std::string called;  // in messages: "page of stereotlm report"
+  // Whether this program has written the file, which exists and is not empty. Must not be true by chance.
+  std::function<bool(const std::filesystem::path& file)> is_own;
+  // Endings of files that would change what a reader sees in a new file: "-wal" of a database.
+  std::vector<std::string> journals = {};
+};
+
+// A kind whose files have these bytes at these places. No other program writes them there.
+FileKind marked_kind(std::string called, std::vector<std::pair<std::size_t, std::string>> marks);
+
+// A single file that a command writes, as a whole: commit() puts the new content in place, and until then an
+// earlier file is unchanged. Where the path is a symbolic link, the file to which it leads is written, and
+// the link stays. A file is replaced only if it was there when the object was made, and is then and at the
+// commit empty or of the kind that the command writes. All functions throw std::runtime_error with the path
+// and the cause.
+class OutputFile {
+ public:
+  // Throws also if a file must not be replaced, is one of `others` (those that the command reads or writes
+  // too), or would lie in a result folder of `run`, or if the folder is not writable. Changes nothing.
+  OutputFile(const std::filesystem::path& path, FileKind kind, const std::vector<NamedFile>& others = {});
+
+  void write(std::string_view bytes) { aside().write(bytes); }
+  // The new content. The first call makes its file.
+  AsideFile& aside();
+  // Makes the new content durable. Several files that belong together are all completed before the first of
+  // them is committed.
+  void complete() { aside().complete(); }
+  void commit();
+
+ private:
+  // Whether there is a file.
+  bool check() const;
+  [[noreturn]] void refuse(const std::string& cause) const;
+
+  std::string name_;
+  std::filesystem::path path_;
+  FileKind kind_;
+  bool was_there_ = false;
+  std::optional<AsideFile> aside_;
+};
+
+// Renames a file or a folder. Throws std::filesystem::filesystem_error if `to` exists.
+void rename_to_new(const std::filesystem::path& from, const std::filesystem::path& to);
+
+}  // namespace stereotlm::files
