@@ -132,6 +132,11 @@ TEST(FramesTable, WeighsALineByTheSumOfItsFrames) {
   EXPECT_THAT(table, EndsWith("\n1 more lines, in all +2\n"));
 }
 
+TEST(FramesTable, KeepsFramesWhoseDifferencesCancel) {
+  EXPECT_EQ(words(frames_table({1000, 1100}, {1100, 1000})),
+            "cycles of a frame A B difference\nframe 0 1000 1100 +100\nframe 1 1100 1000 -100\n");
+}
+
 fpga::RowProfile rows_of(const std::vector<std::uint64_t>& ends, std::uint64_t stalls) {
   fpga::RowProfile rows;
   for (const std::uint64_t end : ends) rows.push_back({end, {0, 0, 0, 0, stalls}});
