@@ -17,39 +17,45 @@ from points import Points  # noqa: E402
 
 style.use()
 
-# A row that `allocate` prints: banks, allocations, simulated, best rate, its percentage of the best of all, bound,
-# steady rate (only for a whole computer), number of allocations that reach the best rate, one of them.
-ROW = re.compile(r" +(\d+) +(\d+) +(\d+) +(\d+\.\d+) +\d+\.\d+ +(\d+\.\d+) +(?:(\d+\.\d+) +)?(\d+)  (.*)")
+# A row that `allocate` prints: banks, allocations, simulated, best rate, its uncertainty (only for a whole computer),
+# its percentage of the best of all, bound, number of allocations that tie, one of them.
+ROW = re.compile(r" +(\d+) +(\d+) +(\d+) +(\d+\.\d+)(?: ± (\d+\.\d+))? +\d+\.\d+ +(\d+\.\d+) +(\d+)  (.*)")
 
 
 def searched(path):
     """What `allocate` has printed into this file. By number of banks: the values of the row, such as the best rate and
-    an allocation that reaches it."""
+    an allocation that has it."""
     found = {}
     for line in path.read_text().splitlines():
         if row := ROW.fullmatch(line):
-            banks, allocations, simulated, best, bound, steady, reached_by, witness = row.groups()
+            banks, allocations, simulated, best, uncertainty, bound, tied, witness = row.groups()
             found[int(banks)] = {"allocations": int(allocations), "simulated": int(simulated), "best": float(best),
-                                 "steady": float(steady) if steady else None, "bound": float(bound),
-                                 "reached_by": int(reached_by), "witness": witness}
+                                 "uncertainty": float(uncertainty or 0), "bound": float(bound),
+                                 "tied": int(tied), "witness": witness}
     return found
 
 
+def fewest_of_best(rates):
+    """The fewest banks whose best rate ties with the best of all."""
+    reached = max(row["best"] - row["uncertainty"] for row in rates.values())
+    return min(number for number, row in rates.items() if row["best"] + row["uncertainty"] >= reached)
+
+
 def best_table(searches, banks):
-    """The best rates of searches, each a text and what `searched` has found; the first that is best of all is bold."""
+    """The best rates of searches, each a text and what `searched` has found; the first that ties with the best is bold."""
     lines = []
     for what, rates in searches:
-        top = max(row["best"] for row in rates.values())
-        fewest = min(number for number, row in rates.items() if row["best"] == top)
+        fewest = fewest_of_best(rates)
         cells = (f"{rates[number]['best']:.3f}" if number in rates else "" for number in banks)
         lines.append([what, *(f"**{cell}**" if number == fewest else cell for number, cell in zip(banks, cells))])
     return markdown(["", *(f"{number}" for number in banks)], lines)
 
 
 def witness_table(rates):
-    return markdown(["banks", "allocations", "simulated", "best", "steady", "reached by", "one of them"],
-                    [[banks, row["allocations"], row["simulated"], f"{row['best']:.3f}",
-                      "" if row["steady"] is None else f"{row['steady']:.3f}", row["reached_by"], row["witness"]]
+    return markdown(["banks", "allocations", "simulated", "best", "tied", "one of them"],
+                    [[banks, row["allocations"], row["simulated"],
+                      f"{row['best']:.3f}" + (f" ± {row['uncertainty']:.3f}" if row["uncertainty"] else ""),
+                      row["tied"], row["witness"]]
                      for banks, row in rates.items()])
 
 
