@@ -8,6 +8,7 @@
 #include "platform/bounds.h"
 #include "platform/computer_parts.h"
 #include "platform/config/buffer_layout.h"
+#include "platform/figures.h"
 
 namespace stereotlm::platform {
 namespace {
@@ -82,11 +83,7 @@ void audit_host_port(const ComputerCounters& counters, Audit& audit) {
               counters.local_bus.words_read + counters.local_bus.words_written);
 }
 
-void audit_cameras(const ComputerStatistics& computer, const ComputerCounters& counters, Audit& audit) {
-  for (const CameraStatistics& camera : computer.cameras) {
-    audit.equal("camera " + camera.name + ": frames", camera.frames, "captured and dropped",
-                camera.captured_frames + camera.dropped_frames);
-  }
+void audit_captures(const ComputerStatistics& computer, const ComputerCounters& counters, Audit& audit) {
   for (std::size_t side = 0; side < computer.cameras.size(); ++side) {
     const std::size_t master = side == 0 ? kLeftCapture : kRightCapture;
     audit.equal("camera " + computer.cameras[side].name + ": words written",
@@ -125,13 +122,21 @@ std::uint64_t words_for_results(const pci::PciBusControl::Stats& bus) {
   return words;
 }
 
+void derive_delivery_figures(const BoardConfig& config, const std::vector<Delivery>& deliveries,
+                             Statistics& statistics) {
+  statistics.frames_per_second.system =
+      static_cast<double>(deliveries.size()) / seconds(deliveries.back().host_ps);
+  statistics.frames_per_second.steady = steady_rate(deliveries, allocation_period_frames(config));
+  std::vector<std::uint64_t> latencies_ps;
+  latencies_ps.reserve(deliveries.size());
+  for (const Delivery& delivery : deliveries) latencies_ps.push_back(latency_ps(delivery));
+  statistics.computer->capture_to_host_ms = percentiles(std::move(latencies_ps));
+}
+
 Statistics collect_statistics(const BoardConfig& config, const Tables& tables, const std::string& fidelity,
                               const std::vector<std::uint64_t>& frame_cycles,
                               const ComputerCounters& counters, const std::vector<Delivery>& deliveries) {
   Statistics statistics = collect_statistics(config, tables, fidelity, frame_cycles, counters.board);
-  statistics.frames_per_second.system =
-      static_cast<double>(deliveries.size()) / seconds(deliveries.back().host_ps);
-  statistics.frames_per_second.steady = steady_rate(deliveries, allocation_period_frames(config));
   const bool whole_pictures =
       counters.cameras[0].capture.dropped_pixels + counters.cameras[1].capture.dropped_pixels == 0;
   add_system_bound(config, whole_pictures, statistics.bound);
@@ -148,16 +153,14 @@ Statistics collect_statistics(const BoardConfig& config, const Tables& tables, c
   around.local_busy_clocks = counters.local_bus.busy_clocks;
   around.cameras = {camera_statistics("left", counters.cameras[0]),
                     camera_statistics("right", counters.cameras[1])};
-  std::vector<std::uint64_t> latencies_ps;
-  latencies_ps.reserve(deliveries.size());
-  for (const Delivery& delivery : deliveries) latencies_ps.push_back(latency_ps(delivery));
-  around.capture_to_host_ms = percentiles(std::move(latencies_ps));
+  derive_delivery_figures(config, deliveries, statistics);
 
   Audit audit;
   audit.equal("frames delivered", deliveries.size(), "frames of the core", statistics.frames);
   audit_words(config, counters.words, audit);
   audit_host_port(counters, audit);
-  audit_cameras(around, counters, audit);
+  audit_computer(around, audit);
+  audit_captures(around, counters, audit);
   audit_rates(config, frame_accesses(config, tables), whole_pictures, statistics, audit);
   for (std::string& failed : std::move(audit).failed()) statistics.failed.push_back(std::move(failed));
   return statistics;

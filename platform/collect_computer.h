@@ -49,6 +49,11 @@ struct ComputerCounters {
 // What the PCI masters have transferred for results. The words of the traffic generator do not count.
 std::uint64_t words_for_results(const pci::PciBusControl::Stats& bus);
 
+// Sets what follows from the deliveries of a computer, at least one: frames_per_second.system and .steady, and
+// capture_to_host_ms.
+void derive_delivery_figures(const BoardConfig& config, const std::vector<Delivery>& deliveries,
+                             Statistics& statistics);
+
 // Returns the figures and the bounds of a run that ended with the last of `deliveries`. Checks the identities
 // of contract section 6; Statistics::failed lists those that do not hold. `counters` were taken at the end of
 // the run. `deliveries` has one entry for each frame that they cover, at least one. `frame_cycles`: the length

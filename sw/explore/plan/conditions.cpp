@@ -16,6 +16,10 @@ namespace {
 using platform::BoardValue;
 
 constexpr const char* kBankCount = "ssram.banks";
+// Limits of one computation of a condition.
+constexpr int kMostBytes = 1'000'000;  // of a text
+constexpr int kMostSteps = 1'000'000;  // of SQLite's virtual machine, counted in portions
+constexpr int kStepsOfPortion = 1000;
 
 // The names that a condition may use, "table.column", in the order of the parameters.
 const std::vector<std::string>& names() {
@@ -82,6 +86,8 @@ bool is_bank_words(const std::string& path) {
 Conditions::Conditions(const std::vector<Condition>& conditions)
     : database_("where", Database::Access::kMemory), functions_(pure_functions(database_)) {
   sqlite3_set_authorizer(database_.handle(), authorize, this);
+  sqlite3_limit(database_.handle(), SQLITE_LIMIT_LENGTH, kMostBytes);
+  sqlite3_progress_handler(database_.handle(), kStepsOfPortion, exceeds_steps, this);
   static const std::string kNoPoint = tables_text(false);
   static const std::string kPoint = tables_text(true);
   for (const Condition& condition : conditions) {
@@ -117,8 +123,20 @@ int Conditions::authorize(void* conditions, int action, const char* /*first*/, c
   return SQLITE_DENY;
 }
 
+int Conditions::exceeds_steps(void* conditions) {
+  return ++static_cast<Conditions*>(conditions)->portions_ > kMostSteps / kStepsOfPortion ? 1 : 0;
+}
+
 // SQLite's message quotes the text from the error to its end, which may be many lines.
 std::string Conditions::reason_of(const DatabaseError& error) const {
+  switch (sqlite3_errcode(database_.handle())) {
+    case SQLITE_TOOBIG:
+      return fmt::format("a text must be at most {} bytes", kMostBytes);
+    case SQLITE_INTERRUPT:
+      return fmt::format("must be computed within {} steps of SQLite", kMostSteps);
+    default:
+      break;
+  }
   platform::YamlNode reason;
   reason.kind = platform::YamlNode::Kind::kScalar;
   reason.text = std::string(error.what()).substr(database_.path().size() + 2);  // without "where: "
@@ -144,6 +162,7 @@ bool Conditions::hold(const std::vector<BoardValue>& values) {
     for (std::size_t i = 0; i < given.size(); ++i) {
       if (given[i] != nullptr) statement.bind(static_cast<int>(i) + 1, *given[i]);
     }
+    portions_ = 0;
     try {
       const bool is_true = statement.step() && statement.is_true(0);
       statement.reset();

@@ -143,14 +143,28 @@ TEST(Conditions, AreRefusedInOneShortLine) {
   EXPECT_LT(reason.size(), 100U);
 }
 
+// Without the limits they would take a GB, or 10^8 rows.
 TEST(Conditions, ReportWhyTheyCannotBeComputedForAPoint) {
+  const std::string rows = "(VALUES (1), (2), (3), (4), (5), (6), (7), (8), (9), (10)) AS ";
+  const std::string join = "EXISTS (SELECT 1 FROM " + rows + "a, " + rows + "b, " + rows + "c, " + rows +
+                           "d, " + rows + "e, " + rows + "f, " + rows + "g, " + rows +
+                           "h WHERE a.column1 + b.column1 + " +
+                           "c.column1 + d.column1 + e.column1 + f.column1 + g.column1 + h.column1 = 0)";
   const std::vector<std::pair<std::string, std::string>> failures = {
       {"abs(-9223372036854775808) > 0", "integer overflow"},
       {"json('{bad') = 1", "malformed JSON"},
+      {"length(printf('%.*c', 1000000000, 'x')) > 0", "a text must be at most 1000000 bytes"},
+      {join, "must be computed within 1000000 steps of SQLite"},
       {"abs(image.width - 9223372036854775807 - 641) > 0", "integer overflow"}};
   for (const auto& [text, reason] : failures)
     EXPECT_EQ(test::message_of([&text = text] { conditions({text}).hold(point()); }),
               "plan.yaml:3:9: where = " + text + ": " + reason);
+}
+
+TEST(Conditions, LimitTheStepsOfEachPointAlone) {
+  Conditions compiled = conditions({"image.width > 0"});
+  const std::vector<platform::BoardValue> values = point();
+  for (int i = 0; i < 20'000; ++i) ASSERT_TRUE(compiled.hold(values));
 }
 
 }  // namespace

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "platform/audit.h"
+#include "platform/config/board_config.h"
+#include "platform/statistics.h"
+
+namespace stereotlm::platform {
+
+// What follows from the figures of a run alone. It holds for a run that has just ended and for one that was
+// recorded.
+
+// Sets the figures that follow from the board, the counters and the lengths of the frames: names, `frames`,
+// `cycles`, shares and rates of the banks, frames_per_second.core, area. `banks` and `ports` have
+// as many entries as the board.
+void derive_figures(const BoardConfig& board, Statistics& statistics);
+
+// Checks the identities among the figures of the core, and of the computer around it.
+void audit_core(const Statistics& statistics, Audit& audit);
+void audit_computer(const ComputerStatistics& computer, Audit& audit);
+
+// The accesses of the core's ports to the banks: [port][bank]. A port makes equally many in each frame, and frame
+// f uses entry f mod length of its list.
+std::vector<std::vector<std::uint64_t>> core_accesses(const BoardConfig& board, const Statistics& statistics);
+// Checks that the accesses of the banks are those of the core's ports and of the host.
+void audit_accesses(const BoardConfig& board, const Statistics& statistics, Audit& audit);
+
+}  // namespace stereotlm::platform
