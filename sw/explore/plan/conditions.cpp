@@ -4,6 +4,7 @@
 #include <sqlite3.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <map>
 
@@ -17,9 +18,11 @@ using platform::BoardValue;
 
 constexpr const char* kBankCount = "ssram.banks";
 // Limits of one computation of a condition.
-constexpr int kMostBytes = 1'000'000;  // of a text
+constexpr int kMostBytes = 20'000;     // of a text
 constexpr int kMostSteps = 1'000'000;  // of SQLite's virtual machine, counted in portions
 constexpr int kStepsOfPortion = 1000;
+// These take as many steps as a number among their arguments says, and cannot be stopped.
+constexpr std::array<const char*, 2> kUnlimitedFunctions = {"printf", "format"};
 
 // The names that a condition may use, "table.column", in the order of the parameters.
 const std::vector<std::string>& names() {
@@ -86,8 +89,6 @@ bool is_bank_words(const std::string& path) {
 Conditions::Conditions(const std::vector<Condition>& conditions)
     : database_("where", Database::Access::kMemory), functions_(pure_functions(database_)) {
   sqlite3_set_authorizer(database_.handle(), authorize, this);
-  sqlite3_limit(database_.handle(), SQLITE_LIMIT_LENGTH, kMostBytes);
-  sqlite3_progress_handler(database_.handle(), kStepsOfPortion, exceeds_steps, this);
   static const std::string kNoPoint = tables_text(false);
   static const std::string kPoint = tables_text(true);
   for (const Condition& condition : conditions) {
@@ -96,6 +97,8 @@ Conditions::Conditions(const std::vector<Condition>& conditions)
       throw std::invalid_argument("parameters such as ? and :x have no value");
     compiled_.push_back({condition, compile(fmt::format("SELECT (({}\n)) FROM {}", condition.text, kPoint))});
   }
+  sqlite3_limit(database_.handle(), SQLITE_LIMIT_LENGTH, kMostBytes);
+  sqlite3_progress_handler(database_.handle(), kStepsOfPortion, exceeds_steps, this);
 }
 
 std::unique_ptr<Statement> Conditions::compile(const std::string& sql) {
@@ -115,8 +118,11 @@ int Conditions::authorize(void* conditions, int action, const char* /*first*/, c
     std::string function = second;
     std::transform(function.begin(), function.end(), function.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    if (self.functions_.count(function) > 0) return SQLITE_OK;
-    self.refusal_ = function + "() depends on more than its arguments";
+    const bool is_unlimited = std::find(kUnlimitedFunctions.begin(), kUnlimitedFunctions.end(), function) !=
+                              kUnlimitedFunctions.end();
+    if (!is_unlimited && self.functions_.count(function) > 0) return SQLITE_OK;
+    self.refusal_ =
+        function + (is_unlimited ? "() may take any time" : "() depends on more than its arguments");
   } else {
     self.refusal_ = "reads more than the point";
   }
