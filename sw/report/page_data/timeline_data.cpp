@@ -61,7 +61,10 @@ platform::TimelineEvent TimelineData::event_of_line() const {
     std::size_t same = 0;
     while (same < names.size() && events_csv_.cell(kColumns[same]) == names[same]) ++same;
     if (same == names.size()) return {known.kind, known.what, {}, {}, 0, 0, 0, 0, known.why};
-    for (std::size_t column = 0; column <= same; ++column) allowed[column].emplace_back(names[column]);
+    for (std::size_t column = 0; column <= same; ++column) {
+      std::vector<std::string>& names_here = allowed[column];
+      if (names_here.empty() || names_here.back() != names[column]) names_here.emplace_back(names[column]);
+    }
   }
   for (std::size_t column = 0; column < kColumns.size(); ++column)
     events_csv_.index(kColumns[column], allowed[column]);

@@ -161,7 +161,7 @@ class RecordedFiles(ReportTest):
         ("rows.csv", r"\n$", "", None, "must end with a newline"),
         ("rows.csv", r"(?s).*", "frame\n", 1, "must be the head 'frame,first_row,"),
         ("timeline.csv", r"(?s)\n.*", "\n" + "".join(f"wait,c{i},,,0,0,0,0,host\n" for i in range(200000)), 2,
-         "class = c0: must be one of ring, "),
+         "class = c0: must be one of ring, pair, core, result\n"),
         ("timeline.csv", r"\ndrop,left,,0,0,", r"\ndrop,left,,0,5,", 2, "end_ps = 0: must be an integer of 5.."),
         ("timeline.csv", r"not_armed", "tired", 2, "why = tired: must be one of not_armed, busy, partner"),
         ("timeline.csv", r"(\nframe,cycles,.*),(\d+),0,", r"\1,1,0,", None, "recorded: words of results"),
