@@ -13,11 +13,6 @@
 namespace stereotlm::platform {
 namespace {
 
-constexpr double kPsPerSecond = 1e12;
-constexpr double kPsPerMs = 1e9;
-
-double seconds(std::uint64_t ps) { return static_cast<double>(ps) / kPsPerSecond; }
-
 // A frame that begins just when the run ends counts as dropped (not armed), because no capture has taken it.
 CameraStatistics camera_statistics(const char* name, const ComputerCounters::Camera& camera) {
   const capture::CaptureControl::Stats& capture = camera.capture;
@@ -32,35 +27,6 @@ CameraStatistics camera_statistics(const char* name, const ComputerCounters::Cam
       statistics.dropped_not_armed + statistics.dropped_busy + statistics.dropped_by_partner;
   statistics.dropped_pixels = capture.dropped_pixels;
   return statistics;
-}
-
-// Percentiles by nearest rank, in milliseconds.
-Percentiles percentiles(std::vector<std::uint64_t> values_ps) {
-  std::sort(values_ps.begin(), values_ps.end());
-  const auto rank = [&values_ps](std::size_t percent) {
-    const std::size_t place = (values_ps.size() * percent + 99) / 100;
-    return static_cast<double>(values_ps[std::max<std::size_t>(place, 1) - 1]) / kPsPerMs;
-  };
-  return {rank(0), rank(50), rank(95), rank(99), rank(100)};
-}
-
-std::uint64_t latency_ps(const Delivery& delivery) { return delivery.host_ps - delivery.capture_ps; }
-
-// `turn`: L of SteadyRate.
-std::optional<SteadyRate> steady_rate(const std::vector<Delivery>& deliveries, std::uint64_t turn) {
-  if (deliveries.size() < 2 * turn) return std::nullopt;
-  SteadyRate steady;
-  steady.frames = (deliveries.size() - turn) / turn * turn;
-  const auto before = deliveries.end() - 1 - static_cast<std::ptrdiff_t>(steady.frames);
-  const auto [least, greatest] =
-      std::minmax_element(before, deliveries.end(),
-                          [](const Delivery& a, const Delivery& b) { return latency_ps(a) < latency_ps(b); });
-  const std::uint64_t window_ps = deliveries.back().host_ps - before->host_ps;
-  steady.frames_per_second = static_cast<double>(steady.frames) / seconds(window_ps);
-  steady.uncertainty = steady.frames_per_second *
-                       static_cast<double>(latency_ps(*greatest) - latency_ps(*least)) /
-                       static_cast<double>(window_ps);
-  return steady;
 }
 
 void audit_words(const BoardConfig& config, const ComputerCounters::Words& words, Audit& audit) {
@@ -122,17 +88,6 @@ std::uint64_t words_for_results(const pci::PciBusControl::Stats& bus) {
   return words;
 }
 
-void derive_delivery_figures(const BoardConfig& config, const std::vector<Delivery>& deliveries,
-                             Statistics& statistics) {
-  statistics.frames_per_second.system =
-      static_cast<double>(deliveries.size()) / seconds(deliveries.back().host_ps);
-  statistics.frames_per_second.steady = steady_rate(deliveries, allocation_period_frames(config));
-  std::vector<std::uint64_t> latencies_ps;
-  latencies_ps.reserve(deliveries.size());
-  for (const Delivery& delivery : deliveries) latencies_ps.push_back(latency_ps(delivery));
-  statistics.computer->capture_to_host_ms = percentiles(std::move(latencies_ps));
-}
-
 Statistics collect_statistics(const BoardConfig& config, const Tables& tables, const std::string& fidelity,
                               const std::vector<std::uint64_t>& frame_cycles,
                               const ComputerCounters& counters, const std::vector<Delivery>& deliveries) {
@@ -153,7 +108,7 @@ Statistics collect_statistics(const BoardConfig& config, const Tables& tables, c
   around.local_busy_clocks = counters.local_bus.busy_clocks;
   around.cameras = {camera_statistics("left", counters.cameras[0]),
                     camera_statistics("right", counters.cameras[1])};
-  derive_delivery_figures(config, deliveries, statistics);
+  derive_delivery_figures(deliveries, allocation_period_frames(config), statistics);
 
   Audit audit;
   audit.equal("frames delivered", deliveries.size(), "frames of the core", statistics.frames);

@@ -1,8 +1,11 @@
 #include "platform/figures.h"
 
+#include <algorithm>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "models/fpga/core_ports.h"
 #include "models/memory/bank_traits.h"
@@ -26,6 +29,40 @@ std::vector<std::size_t> banks_of(const BoardConfig& board, const fpga::CorePort
 
 std::uint64_t sum_of(const std::vector<std::uint64_t>& numbers) {
   return std::accumulate(numbers.begin(), numbers.end(), std::uint64_t{0});
+}
+
+constexpr double kPsPerSecond = 1e12;
+constexpr double kPsPerMs = 1e9;
+
+double seconds(std::uint64_t ps) { return static_cast<double>(ps) / kPsPerSecond; }
+
+// Percentiles by nearest rank, in milliseconds.
+Percentiles percentiles(std::vector<std::uint64_t> values_ps) {
+  std::sort(values_ps.begin(), values_ps.end());
+  const auto rank = [&values_ps](std::size_t percent) {
+    const std::size_t place = (values_ps.size() * percent + 99) / 100;
+    return static_cast<double>(values_ps[std::max<std::size_t>(place, 1) - 1]) / kPsPerMs;
+  };
+  return {rank(0), rank(50), rank(95), rank(99), rank(100)};
+}
+
+std::uint64_t latency_ps(const Delivery& delivery) { return delivery.host_ps - delivery.capture_ps; }
+
+// `turn`: L of SteadyRate.
+std::optional<SteadyRate> steady_rate(const std::vector<Delivery>& deliveries, std::uint64_t turn) {
+  if (deliveries.size() < 2 * turn) return std::nullopt;
+  SteadyRate steady;
+  steady.frames = (deliveries.size() - turn) / turn * turn;
+  const auto before = deliveries.end() - 1 - static_cast<std::ptrdiff_t>(steady.frames);
+  const auto [least, greatest] =
+      std::minmax_element(before, deliveries.end(),
+                          [](const Delivery& a, const Delivery& b) { return latency_ps(a) < latency_ps(b); });
+  const std::uint64_t window_ps = deliveries.back().host_ps - before->host_ps;
+  steady.frames_per_second = static_cast<double>(steady.frames) / seconds(window_ps);
+  steady.uncertainty = steady.frames_per_second *
+                       static_cast<double>(latency_ps(*greatest) - latency_ps(*least)) /
+                       static_cast<double>(window_ps);
+  return steady;
 }
 
 }  // namespace
@@ -53,6 +90,17 @@ void derive_figures(const BoardConfig& board, Statistics& statistics) {
         board.fpga.clock_mhz * 1e6 * static_cast<double>(statistics.frames) / static_cast<double>(all_cycles);
   }
   statistics.area = area_of(board);
+}
+
+void derive_delivery_figures(const std::vector<Delivery>& deliveries, std::uint64_t turn,
+                             Statistics& statistics) {
+  statistics.frames_per_second.system =
+      static_cast<double>(deliveries.size()) / seconds(deliveries.back().host_ps);
+  statistics.frames_per_second.steady = steady_rate(deliveries, turn);
+  std::vector<std::uint64_t> latencies_ps;
+  latencies_ps.reserve(deliveries.size());
+  for (const Delivery& delivery : deliveries) latencies_ps.push_back(latency_ps(delivery));
+  statistics.computer->capture_to_host_ms = percentiles(std::move(latencies_ps));
 }
 
 void audit_core(const Statistics& statistics, Audit& audit) {

@@ -17,12 +17,23 @@ namespace stereotlm::platform {
 // as many entries as the board.
 void derive_figures(const BoardConfig& board, Statistics& statistics);
 
+// Times of a delivered frame.
+struct Delivery {
+  std::uint64_t capture_ps = 0;  // time of the first pixel
+  std::uint64_t host_ps = 0;     // time at which the host has handled the end of its read-back
+};
+
+// Sets what follows from the deliveries of a computer, at least one: frames_per_second.system and .steady,
+// and capture_to_host_ms. `turn`: allocation_period_frames().
+void derive_delivery_figures(const std::vector<Delivery>& deliveries, std::uint64_t turn,
+                             Statistics& statistics);
+
 // Checks the identities among the figures of the core, and of the computer around it.
 void audit_core(const Statistics& statistics, Audit& audit);
 void audit_computer(const ComputerStatistics& computer, Audit& audit);
 
-// The accesses of the core's ports to the banks: [port][bank]. A port makes equally many in each frame, and frame
-// f uses entry f mod length of its list.
+// The accesses of the core's ports to the banks: [port][bank]. A port makes equally many in each frame, and
+// frame f uses entry f mod length of its list.
 std::vector<std::vector<std::uint64_t>> core_accesses(const BoardConfig& board, const Statistics& statistics);
 // Checks that the accesses of the banks are those of the core's ports and of the host.
 void audit_accesses(const BoardConfig& board, const Statistics& statistics, Audit& audit);

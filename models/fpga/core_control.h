@@ -55,8 +55,8 @@ class CoreControl {
   // columns. Groups are counted from column result_delay_columns % 4 on.
   bool commit(const Decision& decision, memory::PortMask granted, const PixelNeeds& needs_pixel);
 
-  // The number of the next cycles that are alike because everything waits for the matcher: no port of the core
-  // requests or passes, and the matcher works on a slot without consuming it.
+  // The number of the next cycles that are alike because everything waits for the matcher: no port of the
+  // core requests or passes, and the matcher works on a slot without consuming it.
   std::uint64_t waiting_cycles() const {
     const std::uint64_t cycles = match_.cycles_to_consume();
     if (cycles == 0 || !lane(Side::kLeft).is_settled() || !lane(Side::kRight).is_settled()) return 0;

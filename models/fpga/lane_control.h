@@ -115,8 +115,8 @@ class LaneControl {
     next_slot_.advance(taken_ - taken_before);
   }
 
-  // Whether everything that was read can be used. Then nothing changes in a cycle in which no port of the lane
-  // moves and the matcher consumes nothing.
+  // Whether everything that was read can be used. Then nothing changes in a cycle in which no port of the
+  // lane moves and the matcher consumes nothing.
   bool is_settled() const { return arrived_entries_ == taken_ && arrived_pixels_ == handled_; }
   // The number of slots in the lane.
   std::uint64_t slots() const { return taken_ - consumed_; }

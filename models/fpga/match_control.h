@@ -70,8 +70,8 @@ class MatchControl {
                static_cast<std::uint64_t>(geometry_.rows) +
            (columns_ - before_last_strip) / 4 * static_cast<std::uint64_t>(geometry_.last_rows);
   }
-  // The number of cycles in which it works on the slot, or the consume-cycle, that it has begun, before the one
-  // in which it consumes it.
+  // The number of cycles in which it still works on the slot, or the consume-cycle, that it has begun, before
+  // it consumes it.
   std::uint64_t cycles_to_consume() const {
     return pass_ == 0 ? 0 : static_cast<std::uint64_t>(geometry_.passes - 1 - pass_);
   }

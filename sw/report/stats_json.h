@@ -19,9 +19,9 @@ nlohmann::ordered_json stats_document(const platform::Statistics& statistics,
                                       const std::optional<Accuracy>& accuracy);
 std::string stats_json(const platform::Statistics& statistics, const std::optional<Accuracy>& accuracy);
 
-// Reads stats.json of a run of this board, with these figures in its run.json; `camera`: of a whole computer. It
-// must be the text of stats_json(), with known names, and with figures that follow from each other and hold the
-// identities of README.md. Throws std::runtime_error: "LINE: path = value: rule".
+// Reads stats.json of a run of this board, with these figures in its run.json; `camera`: of a whole computer.
+// It must be the text of stats_json(), with known names, and with figures that follow from each other and
+// hold the identities of README.md. Throws std::runtime_error: "LINE: path = value: rule".
 platform::Statistics read_stats(const std::string& text, const platform::BoardConfig& board,
                                 const std::string& fidelity, std::uint64_t frames, bool camera);
 

@@ -25,8 +25,8 @@ class ConditionError : public std::runtime_error {
 // over the keys of the board, such as `image.width * image.height <= 307200`. The value of a list or a filter
 // is its text. `ssram.banks` is the number of banks, `board.name` the name of the board; `run.source` and
 // `run.frames` are also defined. An absent value is NULL. A condition depends only on the point: it cannot
-// use other tables, parameters, or functions of time or chance. Its texts and its steps are limited. Must not be
-// used across fork().
+// use other tables, parameters, or functions of time or chance. Its texts and its steps are limited. Must
+// not be used across fork().
 class Conditions {
  public:
   // Throws std::invalid_argument with the reason if a text is not such an expression.

@@ -52,7 +52,7 @@ class TrafficReader {
 
   double core_rate(std::uint64_t words) const { return rate(words, stats_.cycles, board_.fpga.clock_mhz); }
 
-  // The links that there are, and what the banks and the ports do. The host has the accesses of a bank that no
+  // The links of the ports, and what the banks and the ports do. The host has the accesses of a bank that no
   // other port makes.
   void read_ports() {
     for (const platform::PortStatistics& port : stats_.ports)

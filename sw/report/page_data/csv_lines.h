@@ -20,7 +20,7 @@ class CsvLines {
 
   // Reads whole lines, those of the head first, and calls `line` for each behind the head.
   void read(std::string_view text, const std::function<void()>& line);
-  // To be called at the end of the file, with the identities of the file as a whole. The line is then the last.
+  // To be called at the end of the file, with the identities of the whole file. They name its last line.
   void finish(const platform::Audit& audit) const;
 
   // Of the line that `line` has been called for. Columns count from 0.

@@ -10,7 +10,8 @@
 #include <string>
 
 #include "platform/audit.h"
-#include "platform/collect_computer.h"
+#include "platform/bounds.h"
+#include "platform/figures.h"
 #include "platform/timeline_sums.h"
 #include "sw/report/page_data/packed_column.h"
 #include "sw/report/stats_differences.h"
@@ -125,7 +126,7 @@ void TimelineData::check(const platform::Statistics& statistics) const {
   for (const Latency& latency : latencies_)
     deliveries.push_back({latency[kCaptured], latency[kCaptured] + latency.back()});
   platform::Statistics derived = statistics;
-  platform::derive_delivery_figures(board_, deliveries, derived);
+  platform::derive_delivery_figures(deliveries, platform::allocation_period_frames(board_), derived);
   platform::Audit of_figures;
   for (const std::string& difference : stats_differences(stats_json(statistics, {}), stats_json(derived, {}),
                                                          "stats.json", "from the latencies"))
