@@ -15,13 +15,15 @@ class Audit {
  public:
   void equal(const std::string& what, std::uint64_t left, const std::string& as, std::uint64_t right) {
     if (left == right) return;
-    failed_.push_back(fmt::format("{} = {}, but {} = {}", what, left, as, right));
+    fail(fmt::format("{} = {}, but {} = {}", what, left, as, right));
   }
   template <class Number>
   void at_most(const std::string& what, Number value, const std::string& as, Number limit) {
     if (value <= limit) return;
-    failed_.push_back(fmt::format("{} = {}, but {} = {}", what, value, as, limit));
+    fail(fmt::format("{} = {}, but {} = {}", what, value, as, limit));
   }
+  void fail(std::string message) { failed_.push_back(std::move(message)); }
+  const std::vector<std::string>& failed() const& { return failed_; }
   std::vector<std::string> failed() && { return std::move(failed_); }
 
  private:

@@ -1,42 +1,36 @@
 #include "platform/collect.h"
 
-#include <numeric>
 #include <utility>
 
-#include "models/memory/memory_config.h"
 #include "platform/audit.h"
 #include "platform/bounds.h"
-#include "platform/config/board_area.h"
+#include "platform/figures.h"
 
 namespace stereotlm::platform {
 namespace {
 
 using fpga::kPortCount;
 using memory::ArbiterStats;
-using memory::Port;
 
-BankStatistics bank_statistics(const BankConfig& config, const ArbiterStats& arbiter, std::uint64_t cycles,
-                               double clock_mhz) {
+BankStatistics bank_statistics(const ArbiterStats& arbiter) {
   BankStatistics bank;
-  bank.name = config.name;
-  bank.ports = memory::traits_of(config.kind).ports;
   bank.reads = arbiter.reads;
   bank.writes = arbiter.writes;
   bank.busy_cycles = arbiter.busy_cycles;
   bank.turnaround_cycles = arbiter.turnaround_cycles;
   bank.idle_cycles = arbiter.idle_cycles;
   bank.contended_cycles = arbiter.contended_cycles;
-  if (cycles > 0) {
-    bank.utilization = static_cast<double>(bank.busy_cycles) / static_cast<double>(cycles);
-    bank.megabytes_per_second =
-        4.0 * static_cast<double>(bank.reads + bank.writes) * clock_mhz / static_cast<double>(cycles);
-  }
   return bank;
 }
 
-PortStatistics port_statistics(Port port, const fpga::PortCycles& cycles) {
-  return {fpga::kPorts[port].name, cycles.granted(), cycles.stalled(), cycles.passed(),
-          cycles.idle(),           cycles.blocked(), cycles.starved()};
+PortStatistics port_statistics(const fpga::PortCycles& cycles) {
+  return {"",
+          cycles.granted(),
+          cycles.stalled(),
+          cycles.passed(),
+          cycles.idle(),
+          cycles.blocked(),
+          cycles.starved()};
 }
 
 // Returns the stall cycles that are not 0, sorted by port, bank and cause. The last cause is turnaround.
@@ -55,33 +49,17 @@ std::vector<BlameRow> blame_rows(const BoardConfig& config, const BoardCounters&
   return rows;
 }
 
-void audit_ports(const BoardCounters& counters, std::uint64_t cycles, Audit& audit) {
-  for (std::size_t index = 0; index < kPortCount; ++index) {
-    const fpga::PortCycles& port = counters.ports[index];
-    const std::string name = std::string("port ") + fpga::kPorts[index].name;
-    std::uint64_t blamed = 0;
+void audit_arbiters(const BoardConfig& config, const BoardCounters& counters, Audit& audit) {
+  for (std::size_t port = 0; port < kPortCount; ++port) {
     std::uint64_t granted = 0;
-    for (const BoardCounters::Bank& bank : counters.banks) {
-      const auto& row = bank.arbiter.blame[index];
-      blamed = std::accumulate(row.begin(), row.end(), blamed);
-      granted += bank.arbiter.grants[index];
-    }
-    audit.equal(name + ": sum of its states", port.sum(), "cycles", cycles);
-    audit.equal(name + ": stall_cycles", port.stalled(), "blamed by the arbiters", blamed);
-    audit.equal(name + ": grants", port.granted(), "given by the arbiters", granted);
+    for (const BoardCounters::Bank& bank : counters.banks) granted += bank.arbiter.grants[port];
+    audit.equal(std::string("port ") + fpga::kPorts[port].name + ": grants", counters.ports[port].granted(),
+                "given by the arbiters", granted);
   }
-}
-
-void audit_banks(const BoardConfig& config, const BoardCounters& counters, std::uint64_t cycles,
-                 Audit& audit) {
   for (std::size_t index = 0; index < counters.banks.size(); ++index) {
     const BoardCounters::Bank& bank = counters.banks[index];
-    const ArbiterStats& stats = bank.arbiter;
-    const std::string name = "bank " + config.banks[index].name;
-    audit.equal(name + ": busy + turnaround + idle cycles",
-                stats.busy_cycles + stats.turnaround_cycles + stats.idle_cycles, "cycles", cycles);
-    audit.equal(name + ": accesses", bank.accesses, "granted by its arbiter",
-                stats.reads + stats.writes + bank.uncounted_grants);
+    audit.equal("bank " + config.banks[index].name + ": accesses", bank.accesses, "granted by its arbiter",
+                bank.arbiter.reads + bank.arbiter.writes + bank.uncounted_grants);
   }
 }
 
@@ -148,32 +126,20 @@ Statistics collect_statistics(const BoardConfig& config, const Tables& tables, c
 Statistics collect_statistics(const BoardConfig& config, const Tables& tables, const std::string& fidelity,
                               const std::vector<std::uint64_t>& frame_cycles, const BoardCounters& counters) {
   Statistics statistics;
-  statistics.board = config.name;
   statistics.fidelity = fidelity;
-  statistics.frames = counters.frames;
   const auto first = frame_cycles.begin();
   statistics.frame_cycles.assign(first, first + static_cast<std::ptrdiff_t>(counters.frames));
-  const std::uint64_t all_cycles =
-      std::accumulate(statistics.frame_cycles.begin(), statistics.frame_cycles.end(), std::uint64_t{0});
-  const auto pipeline = static_cast<std::uint64_t>(config.fpga.pipeline_latency_cycles);
-  statistics.cycles = all_cycles - statistics.frames * pipeline;
-  for (std::size_t bank = 0; bank < config.banks.size(); ++bank) {
-    statistics.banks.push_back(bank_statistics(config.banks[bank], counters.banks[bank].arbiter,
-                                               statistics.cycles, config.fpga.clock_mhz));
-  }
-  for (std::size_t port = 0; port < kPortCount; ++port) {
-    statistics.ports.push_back(port_statistics(port, counters.ports[port]));
-  }
+  for (const BoardCounters::Bank& bank : counters.banks)
+    statistics.banks.push_back(bank_statistics(bank.arbiter));
+  for (const fpga::PortCycles& port : counters.ports) statistics.ports.push_back(port_statistics(port));
   statistics.blame = blame_rows(config, counters);
-  statistics.area = area_of(config);
+  derive_figures(config, statistics);
 
   Audit audit;
-  audit_ports(counters, statistics.cycles, audit);
-  audit_banks(config, counters, statistics.cycles, audit);
+  audit_core(statistics, audit);
+  audit_arbiters(config, counters, audit);
   audit_flow(fpga::FrameGeometry(core_config(config)), counters, audit);
   if (statistics.frames > 0) {
-    statistics.frames_per_second.core = config.fpga.clock_mhz * 1e6 * static_cast<double>(statistics.frames) /
-                                        static_cast<double>(all_cycles);
     const FrameAccesses accesses = frame_accesses(config, tables);
     statistics.bound = core_bound(config, accesses);
     audit_frames(statistics.frame_cycles, turn_bounds(config, accesses), audit);

@@ -8,14 +8,10 @@
 #include "platform/bounds.h"
 #include "platform/computer_parts.h"
 #include "platform/config/buffer_layout.h"
+#include "platform/figures.h"
 
 namespace stereotlm::platform {
 namespace {
-
-constexpr double kPsPerSecond = 1e12;
-constexpr double kPsPerMs = 1e9;
-
-double seconds(std::uint64_t ps) { return static_cast<double>(ps) / kPsPerSecond; }
 
 // A frame that begins just when the run ends counts as dropped (not armed), because no capture has taken it.
 CameraStatistics camera_statistics(const char* name, const ComputerCounters::Camera& camera) {
@@ -32,18 +28,6 @@ CameraStatistics camera_statistics(const char* name, const ComputerCounters::Cam
   statistics.dropped_pixels = capture.dropped_pixels;
   return statistics;
 }
-
-// Percentiles by nearest rank, in milliseconds.
-Percentiles percentiles(std::vector<std::uint64_t> values_ps) {
-  std::sort(values_ps.begin(), values_ps.end());
-  const auto rank = [&values_ps](std::size_t percent) {
-    const std::size_t place = (values_ps.size() * percent + 99) / 100;
-    return static_cast<double>(values_ps[std::max<std::size_t>(place, 1) - 1]) / kPsPerMs;
-  };
-  return {rank(0), rank(50), rank(95), rank(99), rank(100)};
-}
-
-std::uint64_t latency_ps(const Delivery& delivery) { return delivery.host_ps - delivery.capture_ps; }
 
 void audit_words(const BoardConfig& config, const ComputerCounters::Words& words, Audit& audit) {
   std::vector<std::string> names;
@@ -65,11 +49,7 @@ void audit_host_port(const ComputerCounters& counters, Audit& audit) {
               counters.local_bus.words_read + counters.local_bus.words_written);
 }
 
-void audit_cameras(const ComputerStatistics& computer, const ComputerCounters& counters, Audit& audit) {
-  for (const CameraStatistics& camera : computer.cameras) {
-    audit.equal("camera " + camera.name + ": frames", camera.frames, "captured and dropped",
-                camera.captured_frames + camera.dropped_frames);
-  }
+void audit_captures(const ComputerStatistics& computer, const ComputerCounters& counters, Audit& audit) {
   for (std::size_t side = 0; side < computer.cameras.size(); ++side) {
     const std::size_t master = side == 0 ? kLeftCapture : kRightCapture;
     audit.equal("camera " + computer.cameras[side].name + ": words written",
@@ -102,23 +82,6 @@ void audit_rates(const BoardConfig& config, const FrameAccesses& accesses, bool 
 
 }  // namespace
 
-std::optional<SteadyRate> steady_rate(const BoardConfig& config, const std::vector<Delivery>& deliveries) {
-  const std::uint64_t turn = allocation_period_frames(config);
-  if (deliveries.size() < 2 * turn) return std::nullopt;
-  SteadyRate steady;
-  steady.frames = (deliveries.size() - turn) / turn * turn;
-  const auto before = deliveries.end() - 1 - static_cast<std::ptrdiff_t>(steady.frames);
-  const auto [least, greatest] =
-      std::minmax_element(before, deliveries.end(),
-                          [](const Delivery& a, const Delivery& b) { return latency_ps(a) < latency_ps(b); });
-  const std::uint64_t window_ps = deliveries.back().host_ps - before->host_ps;
-  steady.frames_per_second = static_cast<double>(steady.frames) / seconds(window_ps);
-  steady.uncertainty = steady.frames_per_second *
-                       static_cast<double>(latency_ps(*greatest) - latency_ps(*least)) /
-                       static_cast<double>(window_ps);
-  return steady;
-}
-
 std::uint64_t words_for_results(const pci::PciBusControl::Stats& bus) {
   std::uint64_t words = 0;
   for (std::size_t master = 0; master < kTrafficGenerator; ++master) words += bus.masters[master].words;
@@ -129,9 +92,6 @@ Statistics collect_statistics(const BoardConfig& config, const Tables& tables, c
                               const std::vector<std::uint64_t>& frame_cycles,
                               const ComputerCounters& counters, const std::vector<Delivery>& deliveries) {
   Statistics statistics = collect_statistics(config, tables, fidelity, frame_cycles, counters.board);
-  statistics.frames_per_second.system =
-      static_cast<double>(deliveries.size()) / seconds(deliveries.back().host_ps);
-  statistics.frames_per_second.steady = steady_rate(config, deliveries);
   const bool whole_pictures =
       counters.cameras[0].capture.dropped_pixels + counters.cameras[1].capture.dropped_pixels == 0;
   const FrameAccesses accesses = frame_accesses(config, tables);
@@ -149,16 +109,14 @@ Statistics collect_statistics(const BoardConfig& config, const Tables& tables, c
   around.local_busy_clocks = counters.local_bus.busy_clocks;
   around.cameras = {camera_statistics("left", counters.cameras[0]),
                     camera_statistics("right", counters.cameras[1])};
-  std::vector<std::uint64_t> latencies_ps;
-  latencies_ps.reserve(deliveries.size());
-  for (const Delivery& delivery : deliveries) latencies_ps.push_back(latency_ps(delivery));
-  around.capture_to_host_ms = percentiles(std::move(latencies_ps));
+  derive_delivery_figures(deliveries, allocation_period_frames(config), statistics);
 
   Audit audit;
   audit.equal("frames delivered", deliveries.size(), "frames of the core", statistics.frames);
   audit_words(config, counters.words, audit);
   audit_host_port(counters, audit);
-  audit_cameras(around, counters, audit);
+  audit_computer(around, audit);
+  audit_captures(around, counters, audit);
   audit_rates(config, accesses, whole_pictures, statistics, audit);
   for (std::string& failed : std::move(audit).failed()) statistics.failed.push_back(std::move(failed));
   return statistics;

@@ -13,15 +13,10 @@
 #include "platform/collect.h"
 #include "platform/config/board_config.h"
 #include "platform/config/tables.h"
+#include "platform/figures.h"
 #include "platform/statistics.h"
 
 namespace stereotlm::platform {
-
-// Times of a delivered frame.
-struct Delivery {
-  std::uint64_t capture_ps = 0;  // time of the first pixel
-  std::uint64_t host_ps = 0;     // time at which the host has handled the end of its read-back
-};
 
 // Counters of a computer's modules up to now. They must be taken while the core runs no frame.
 struct ComputerCounters {
@@ -49,9 +44,6 @@ struct ComputerCounters {
 
 // What the PCI masters have transferred for results. The words of the traffic generator do not count.
 std::uint64_t words_for_results(const pci::PciBusControl::Stats& bus);
-
-// The steady rate of a run with these deliveries; nullopt if they are too few.
-std::optional<SteadyRate> steady_rate(const BoardConfig& config, const std::vector<Delivery>& deliveries);
 
 // Returns the figures and the bounds of a run that ended with the last of `deliveries`. Checks the identities
 // of contract section 6; Statistics::failed lists those that do not hold. `counters` were taken at the end of

@@ -3,7 +3,6 @@
 #include <numeric>
 #include <utility>
 
-#include "platform/audit.h"
 #include "platform/config/buffer_layout.h"
 
 namespace stereotlm::platform {
@@ -29,22 +28,59 @@ std::vector<AddressRange> captured(const BoardConfig& board) {
 
 }  // namespace
 
+void ConflictSums::check_rows(const Statistics& statistics, Audit& audit) const {
+  audit.equal("recorded: frames with rows", frames, "frames", statistics.frames);
+  audit.equal("recorded: cycles of the rows", cycles, "cycles", statistics.cycles);
+  std::array<std::uint64_t, fpga::kPortCount> of_ports{};
+  for (std::size_t requester = 0; requester < stalls.size(); ++requester)
+    of_ports[fpga::port_of_requester(requester)] += stalls[requester];
+  for (std::size_t port = 0; port < of_ports.size(); ++port) {
+    audit.equal("recorded: port " + statistics.ports[port].name + ": stalls in the rows", of_ports[port],
+                "stall_cycles", statistics.ports[port].stall_cycles);
+  }
+  for (std::size_t bank = 0; bank < accesses.size(); ++bank) {
+    const BankStatistics& of_bank = statistics.banks[bank];
+    audit.equal("recorded: bank " + of_bank.name + ": accesses in the rows", accesses[bank], "reads + writes",
+                of_bank.reads + of_bank.writes);
+  }
+}
+
+void ConflictSums::check_tiles(const Statistics& statistics, Audit& audit) const {
+  std::uint64_t blamed = 0;
+  std::uint64_t in_tiles = 0;
+  for (const BlameRow& row : statistics.blame) {
+    std::uint64_t cycles_of_row = 0;
+    for (const auto& [cause, stalled] : blame) {
+      if (port_name(cause[0]) == row.port && statistics.banks[cause[1]].name == row.bank &&
+          port_name(cause[2]) == row.by)
+        cycles_of_row += stalled;
+    }
+    audit.equal(
+        "recorded: " + row.port + " on " + row.bank + " because of " + row.by + ": stalls in the tiles",
+        cycles_of_row, "blame", row.cycles);
+    blamed += row.cycles;
+  }
+  for (const auto& [cause, stalled] : blame) in_tiles += stalled;
+  audit.equal("recorded: stalls in the tiles", in_tiles, "sum of blame", blamed);
+}
+
 Conflicts::Conflicts(const BoardConfig& board, std::size_t most_tiles)
-    : recorder_(core_config(board), ssram_configs(board), captured(board), most_tiles),
-      accesses_(board.banks.size()) {}
+    : recorder_(core_config(board), ssram_configs(board), captured(board), most_tiles) {
+  sums_.accesses.resize(board.banks.size());
+}
 
 std::vector<fpga::FrameConflicts> Conflicts::take_frames() {
   std::vector<fpga::FrameConflicts> frames = recorder_.take_frames();
   for (const fpga::FrameConflicts& frame : frames) {
-    ++frames_;
+    ++sums_.frames;
     for (const fpga::StripConflicts& strip : frame.strips) {
-      cycles_ += strip.cycles;
-      for (std::size_t requester = 0; requester < stalls_.size(); ++requester)
-        stalls_[requester] += strip.stalls[requester];
+      sums_.cycles += strip.cycles;
+      for (std::size_t requester = 0; requester < sums_.stalls.size(); ++requester)
+        sums_.stalls[requester] += strip.stalls[requester];
     }
     for (std::size_t place = 0; place < frame.accesses.size(); ++place) {
       const auto& of_bank = frame.accesses[place];
-      std::uint64_t& accesses = accesses_[place % frame.banks];
+      std::uint64_t& accesses = sums_.accesses[place % frame.banks];
       accesses = std::accumulate(of_bank.begin(), of_bank.end(), accesses);
     }
   }
@@ -53,41 +89,17 @@ std::vector<fpga::FrameConflicts> Conflicts::take_frames() {
 
 std::vector<std::string> Conflicts::failed(const Statistics& statistics) const {
   Audit audit;
-  audit.equal("recorded: frames with rows", frames_, "frames", statistics.frames);
   audit.equal("recorded: frames in tiles", recorder_.frames(), "frames", statistics.frames);
-  audit.equal("recorded: cycles of the rows", cycles_, "cycles", statistics.cycles);
   const std::vector<std::uint64_t> tiles = recorder_.tile_cycles();
   audit.equal("recorded: cycles of the tiles", std::accumulate(tiles.begin(), tiles.end(), std::uint64_t{0}),
               "cycles", statistics.cycles);
-  std::array<std::uint64_t, fpga::kPortCount> stalls{};
-  for (std::size_t requester = 0; requester < stalls_.size(); ++requester)
-    stalls[fpga::port_of_requester(requester)] += stalls_[requester];
-  for (std::size_t port = 0; port < stalls.size(); ++port) {
-    audit.equal("recorded: port " + statistics.ports[port].name + ": stalls in the rows", stalls[port],
-                "stall_cycles", statistics.ports[port].stall_cycles);
+  sums_.check_rows(statistics, audit);
+  ConflictSums sums;
+  for (const fpga::ConflictRecorder::Stalls* each : recorder_.stalls()) {
+    sums.blame[{each->requester, each->bank, each->by}] =
+        std::accumulate(each->cycles.begin(), each->cycles.end(), std::uint64_t{0});
   }
-  for (std::size_t bank = 0; bank < accesses_.size(); ++bank) {
-    const BankStatistics& of_bank = statistics.banks[bank];
-    audit.equal("recorded: bank " + of_bank.name + ": accesses in the rows", accesses_[bank],
-                "reads + writes", of_bank.reads + of_bank.writes);
-  }
-  std::uint64_t blamed = 0;
-  std::uint64_t in_tiles = 0;
-  for (const BlameRow& row : statistics.blame) {
-    std::uint64_t cycles = 0;
-    for (const fpga::ConflictRecorder::Stalls* each : recorder_.stalls()) {
-      if (port_name(each->requester) == row.port && statistics.banks[each->bank].name == row.bank &&
-          port_name(each->by) == row.by)
-        cycles = std::accumulate(each->cycles.begin(), each->cycles.end(), cycles);
-    }
-    audit.equal(
-        "recorded: " + row.port + " on " + row.bank + " because of " + row.by + ": stalls in the tiles",
-        cycles, "blame", row.cycles);
-    blamed += row.cycles;
-  }
-  for (const fpga::ConflictRecorder::Stalls* each : recorder_.stalls())
-    in_tiles = std::accumulate(each->cycles.begin(), each->cycles.end(), in_tiles);
-  audit.equal("recorded: stalls in the tiles", in_tiles, "sum of blame", blamed);
+  sums.check_tiles(statistics, audit);
   return std::move(audit).failed();
 }
 

@@ -3,14 +3,31 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
 #include "models/fpga/conflict_recorder.h"
+#include "platform/audit.h"
 #include "platform/config/board_config.h"
 #include "platform/statistics.h"
 
 namespace stereotlm::platform {
+
+// Sums of what was recorded of stalls, over the frames.
+struct ConflictSums {
+  std::uint64_t frames = 0;
+  // Of the strips.
+  std::uint64_t cycles = 0;
+  std::array<std::uint64_t, fpga::kRequesters> stalls{};
+  std::vector<std::uint64_t> accesses;  // [bank]
+  // Of the tiles: stall cycles by requester, bank and requester to blame.
+  std::map<std::array<std::size_t, 3>, std::uint64_t> blame;
+
+  // Check the identities with the figures of the run.
+  void check_rows(const Statistics& statistics, Audit& audit) const;
+  void check_tiles(const Statistics& statistics, Audit& audit) const;
+};
 
 // The ConflictRecorder of a board, with the sums of all that it has handed out.
 class Conflicts {
@@ -30,11 +47,7 @@ class Conflicts {
 
  private:
   fpga::ConflictRecorder recorder_;
-  // Of the strips that were taken.
-  std::uint64_t frames_ = 0;
-  std::uint64_t cycles_ = 0;
-  std::array<std::uint64_t, fpga::kRequesters> stalls_{};
-  std::vector<std::uint64_t> accesses_;  // [bank]
+  ConflictSums sums_;  // of the frames that were taken, without `blame`
 };
 
 }  // namespace stereotlm::platform

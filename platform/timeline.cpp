@@ -1,13 +1,10 @@
 #include "platform/timeline.h"
 
 #include <algorithm>
-#include <numeric>
 #include <utility>
 
-#include "models/fpga/core_ports.h"
 #include "models/pci/bridge_registers.h"
 #include "platform/audit.h"
-#include "platform/computer_parts.h"
 
 namespace stereotlm::platform {
 namespace {
@@ -42,6 +39,7 @@ const char* name_of(capture::DropReason reason) {
 
 Timeline::Timeline(const BoardConfig& board)
     : clock_(board.fpga.clock_mhz),
+      sums_(board),
       copies_(board.capture.destination == CaptureDestination::kHostMemory),
       uploading_(board.allocation.left_lut || board.allocation.right_lut),
       inputs_(board.allocation.left_image.size()),
@@ -259,7 +257,6 @@ void Timeline::frame_ended(const fpga::FrameTimes& times) {
   add("cycles", times.end_cycle, times.words);
   add("pipeline", times.done_cycle, 0);
   pair(number).done_ps = event.end_ps;
-  cycles_ += times.done_cycle - times.first_cycle;
 }
 
 // Adds a wait as one event for each reason, which holds until its time or the time of one before. For the
@@ -355,43 +352,10 @@ TimelineRecords Timeline::finish() {
   return hand_out(std::exchange(last_, {}));
 }
 
-std::size_t Timeline::resource_of(const TimelineEvent& event) {
-  const std::string_view what = event.what;
-  switch (event.kind) {
-    case EventKind::kCapture:
-      return what == kSides[0] ? kLeft : kRight;
-    case EventKind::kUpload:
-      return kUploads;
-    case EventKind::kReadBack:
-      return kReadBacks;
-    case EventKind::kFrame:
-      return kCore;
-    case EventKind::kInterrupt: {
-      const auto name = std::find(kInterruptNames.begin(), kInterruptNames.end(), what);
-      return kFirstInterrupt + static_cast<std::size_t>(name - kInterruptNames.begin());
-    }
-    case EventKind::kWait:
-      if (what == "core") return kCore;
-      break;
-    case EventKind::kDrop:
-      break;
-  }
-  return kFirstInterrupt + kInterrupts;  // may overlap
-}
-
 TimelineRecords Timeline::hand_out(std::vector<TimelineEvent> events) {
   std::sort(events.begin(), events.end(),
             [](const TimelineEvent& a, const TimelineEvent& b) { return order_of(a) < order_of(b); });
-  for (const TimelineEvent& event : events) {
-    Sums& sums = sums_[{event.kind, event.what, event.why}];
-    ++sums.events;
-    sums.words += event.words;
-    sums.dropped_pixels += event.dropped_pixels;
-    const std::size_t resource = resource_of(event);
-    if (resource == kCore) core_ps_ += event.end_ps - event.begin_ps;
-    if (event.begin_ps < busy_until_ps_[resource]) ++overlaps_[resource];
-    busy_until_ps_[resource] = event.end_ps;
-  }
+  for (const TimelineEvent& event : events) sums_.add(event);
   for (const FrameLatency& latency : latencies_) {
     ++latency_count_;
     parts_ps_ += latency.sum_ps();
@@ -399,51 +363,12 @@ TimelineRecords Timeline::hand_out(std::vector<TimelineEvent> events) {
   return {std::move(events), std::exchange(latencies_, {})};
 }
 
-Timeline::Sums Timeline::sums_of(EventKind kind, std::string_view what, std::string_view why) const {
-  const auto found = sums_.find({kind, what, why});
-  return found == sums_.end() ? Sums{} : found->second;
-}
-
 std::vector<std::string> Timeline::failed(const Statistics& statistics) const {
-  const ComputerStatistics& computer = *statistics.computer;
   Audit audit;
-  for (std::size_t side = 0; side < kSides.size(); ++side) {
-    const CameraStatistics& camera = computer.cameras[side];
-    const std::string name = "recorded: camera " + camera.name + ": ";
-    const Sums captures = sums_of(EventKind::kCapture, kSides[side]);
-    audit.equal(name + "captures", captures.events, "captured_frames", camera.captured_frames);
-    audit.equal(name + "dropped pixels", captures.dropped_pixels, "dropped_pixels", camera.dropped_pixels);
-    audit.equal(name + "words", captures.words, "words of its PCI master",
-                computer.pci_masters[side == 0 ? kLeftCapture : kRightCapture].words);
-    for (const auto& [why, frames] :
-         {std::pair("not_armed", camera.dropped_not_armed), std::pair("busy", camera.dropped_busy),
-          std::pair("partner", camera.dropped_by_partner)}) {
-      audit.equal(name + "dropped: " + why, sums_of(EventKind::kDrop, kSides[side], why).events,
-                  std::string("dropped_") + why, frames);
-    }
-  }
-  std::uint64_t dma_words = 0;
-  for (const auto& [key, sums] : sums_) {
-    const EventKind kind = std::get<EventKind>(key);
-    if (kind == EventKind::kUpload || kind == EventKind::kReadBack) dma_words += sums.words;
-  }
-  audit.equal("recorded: words of transfers", dma_words, "dma_words", computer.dma_words);
-  const Sums frames = sums_of(EventKind::kFrame, "cycles");
-  audit.equal("recorded: frames of the core", frames.events, "frames", statistics.frames);
-  audit.equal("recorded: words of results", frames.words, "grants of port result",
-              statistics.ports[fpga::kResultPort].grants);
-  audit.equal(
-      "recorded: cycles of frames", cycles_, "sum of frame_cycles",
-      std::accumulate(statistics.frame_cycles.begin(), statistics.frame_cycles.end(), std::uint64_t{0}));
-  audit.equal("recorded: interrupts of the core", sums_of(EventKind::kInterrupt, "core").events, "frames",
-              statistics.frames);
-  audit.equal("recorded: frames and waits of the core, ps", core_ps_, "end of its last frame",
-              busy_until_ps_[kCore]);
+  sums_.check(statistics, audit);
   audit.equal("recorded: latencies", latency_count_, "frames", statistics.frames);
   audit.equal("recorded: parts of the latencies, ps", parts_ps_, "time from capture to host", latencies_ps_);
   audit.equal("recorded: frames with times out of order", disordered_, "allowed", 0);
-  audit.equal("recorded: events of one resource that overlap",
-              std::accumulate(overlaps_.begin(), overlaps_.end() - 1, std::uint64_t{0}), "allowed", 0);
   return std::move(audit).failed();
 }
 

@@ -5,11 +5,9 @@
 #include <cstdint>
 #include <deque>
 #include <initializer_list>
-#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -21,6 +19,7 @@
 #include "platform/config/board_config.h"
 #include "platform/config/buffer_layout.h"
 #include "platform/timeline_records.h"
+#include "platform/timeline_sums.h"
 
 namespace stereotlm::platform {
 
@@ -60,7 +59,6 @@ class Timeline : private pci::BridgeObserver, private fpga::FrameObserver {
 
  private:
   static constexpr std::size_t kInterrupts = 5;  // left, right, core, upload, read_back
-  enum Resource : std::size_t { kLeft, kRight, kUploads, kReadBacks, kCore, kFirstInterrupt };
 
   // The times of a pair and of its frame, as far as they are known.
   struct Pair {
@@ -77,11 +75,6 @@ class Timeline : private pci::BridgeObserver, private fpga::FrameObserver {
   struct Reason {
     const char* why;
     std::uint64_t until_ps;
-  };
-  struct Sums {
-    std::uint64_t events = 0;
-    std::uint64_t words = 0;
-    std::uint64_t dropped_pixels = 0;
   };
 
   class CaptureSide : public capture::CaptureObserver {
@@ -136,11 +129,10 @@ class Timeline : private pci::BridgeObserver, private fpga::FrameObserver {
   std::uint64_t ready_ps(const Pair& pair) const { return copies_ ? pair.copy_end_ps : pair.captured_ps; }
   std::uint64_t complete_until_ps() const;
   const char* buffer_at(std::uint64_t local_address) const;
-  static std::size_t resource_of(const TimelineEvent& event);
   TimelineRecords hand_out(std::vector<TimelineEvent> events);
-  Sums sums_of(EventKind kind, std::string_view what, std::string_view why = "") const;
 
   Clock clock_;
+  TimelineSums sums_;      // of what has been handed out
   bool copies_;            // captures go to host memory
   bool uploading_;         // tables are still to be uploaded
   std::uint64_t inputs_;   // buffers for pairs
@@ -158,7 +150,6 @@ class Timeline : private pci::BridgeObserver, private fpga::FrameObserver {
   std::uint64_t read_backs_begun_ = 0;
   std::uint64_t delivered_ = 0;
   std::uint64_t upload_end_ps_ = 0;
-  std::uint64_t cycles_ = 0;  // of the frames that have ended
   std::uint64_t delivered_ps_ = 0;
   std::uint64_t latencies_ps_ = 0;  // those of the deliveries, summed
   std::uint64_t disordered_ = 0;    // frames whose times are not in order
@@ -171,12 +162,7 @@ class Timeline : private pci::BridgeObserver, private fpga::FrameObserver {
   std::vector<TimelineEvent> last_;   // the events up to the last mark_end(), some of which are handed out
   std::uint64_t handed_out_until_ps_ = 0;  // all events that ended before are handed out
   std::vector<FrameLatency> latencies_;
-
-  // Of what has been handed out.
-  std::map<std::tuple<EventKind, std::string_view, std::string_view>, Sums> sums_;
-  std::array<std::uint64_t, kFirstInterrupt + kInterrupts + 1> busy_until_ps_{};  // [resource]
-  std::array<std::uint64_t, kFirstInterrupt + kInterrupts + 1> overlaps_{};
-  std::uint64_t core_ps_ = 0;  // the core's frames and waits
+  // Of the latencies that were handed out.
   std::uint64_t parts_ps_ = 0;
   std::uint64_t latency_count_ = 0;
 };

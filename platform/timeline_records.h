@@ -14,6 +14,33 @@ enum class EventKind : std::uint8_t { kCapture, kDrop, kUpload, kReadBack, kFram
 inline constexpr std::array<const char*, 7> kEventKindNames = {"capture", "drop",      "upload", "read_back",
                                                                "frame",   "interrupt", "wait"};
 
+// Every kind, its classes (TimelineEvent::what), and of a drop or a wait the reasons.
+struct EventName {
+  EventKind kind;
+  const char* what;
+  const char* why;
+};
+inline constexpr EventName kEventNames[] = {
+    {EventKind::kCapture, "left", ""},          {EventKind::kCapture, "right", ""},
+    {EventKind::kDrop, "left", "not_armed"},    {EventKind::kDrop, "left", "busy"},
+    {EventKind::kDrop, "left", "partner"},      {EventKind::kDrop, "right", "not_armed"},
+    {EventKind::kDrop, "right", "busy"},        {EventKind::kDrop, "right", "partner"},
+    {EventKind::kUpload, "left_lut", ""},       {EventKind::kUpload, "right_lut", ""},
+    {EventKind::kUpload, "left_image", ""},     {EventKind::kUpload, "right_image", ""},
+    {EventKind::kReadBack, "disparity", ""},    {EventKind::kFrame, "strobe", ""},
+    {EventKind::kFrame, "cycles", ""},          {EventKind::kFrame, "pipeline", ""},
+    {EventKind::kInterrupt, "left", ""},        {EventKind::kInterrupt, "right", ""},
+    {EventKind::kInterrupt, "core", ""},        {EventKind::kInterrupt, "upload", ""},
+    {EventKind::kInterrupt, "read_back", ""},   {EventKind::kWait, "ring", "copy"},
+    {EventKind::kWait, "ring", "input_buffer"}, {EventKind::kWait, "ring", "host"},
+    {EventKind::kWait, "pair", "core"},         {EventKind::kWait, "pair", "output_buffer"},
+    {EventKind::kWait, "pair", "host"},         {EventKind::kWait, "core", "upload"},
+    {EventKind::kWait, "core", "camera"},       {EventKind::kWait, "core", "capture"},
+    {EventKind::kWait, "core", "copy"},         {EventKind::kWait, "core", "output_buffer"},
+    {EventKind::kWait, "core", "host"},         {EventKind::kWait, "result", "read_back"},
+    {EventKind::kWait, "result", "host"},
+};
+
 struct TimelineEvent {
   EventKind kind = EventKind::kCapture;
   const char* what = "";                      // its class: the side, the buffer, or who waits

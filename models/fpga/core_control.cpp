@@ -20,6 +20,14 @@ void CoreControl::start_frame(const FrameLatencies& latencies) {
   result_.start_frame();
 }
 
+void CoreControl::skip_waiting(std::uint64_t cycles) {
+  const Decision decision = decide();
+  for (std::size_t port = 0; port < kCorePortCount; ++port)
+    cycles_[port].add(decision.intents[port], false, cycles);
+  count_host(false, false, cycles);
+  match_.skip_passes(cycles);
+}
+
 void CoreControl::correct_passes(Side side, std::uint64_t cycles) {
   PortCycles& pixel = cycles_[pixel_port(side)];
   pixel.subtract(Intent::kRequest, true, cycles);

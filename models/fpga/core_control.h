@@ -55,6 +55,17 @@ class CoreControl {
   // columns. Groups are counted from column result_delay_columns % 4 on.
   bool commit(const Decision& decision, memory::PortMask granted, const PixelNeeds& needs_pixel);
 
+  // The number of the next cycles that are alike because everything waits for the matcher: no port of the
+  // core requests or passes, and the matcher works on a slot without consuming it.
+  std::uint64_t waiting_cycles() const {
+    const std::uint64_t cycles = match_.cycles_to_consume();
+    if (cycles == 0 || !lane(Side::kLeft).is_settled() || !lane(Side::kRight).is_settled()) return 0;
+    const Decision decision = decide();
+    return decision.requests() == 0 && decision.passes() == 0 ? cycles : 0;
+  }
+  // Skips this number of them, in which the host does not request.
+  void skip_waiting(std::uint64_t cycles);
+
   // Counts cycles of the host port, which commit() does not count.
   void count_host(bool requested, bool granted, std::uint64_t cycles = 1) {
     host_cycles().add(requested ? Intent::kRequest : Intent::kIdle, granted, cycles);

@@ -214,19 +214,32 @@ std::uint64_t FastForward::step_group(std::uint64_t cycle, std::uint64_t end) {
   const auto is_over = [&] { return cycle >= end || stepper_.completed_group() || control().frame_done(); };
   bool burst_ends = false;
   if (host_.words == 0) {
-    do step_core<false>(cycle++, false);
-    while (!is_over());
+    do {
+      step_core<false>(cycle++, false);
+      cycle = skip_waiting(cycle, end);
+    } while (!is_over());
   } else {
     do {
       const bool requests = cycle >= host_.first;
       const memory::PortMask granted = step_core<true>(cycle++, requests);
-      if ((granted & memory::mask_of(kHostPort)) == 0) continue;
-      host_.first = cycle;
-      burst_ends = --host_.words == 0;
+      if ((granted & memory::mask_of(kHostPort)) != 0) {
+        host_.first = cycle;
+        burst_ends = --host_.words == 0;
+      }
+      cycle = skip_waiting(cycle, std::min(end, host_.first));
     } while (!burst_ends && !is_over());
   }
   if (burst_ends || stepper_.completed_group()) begin_walk(cycle);
   return cycle;
+}
+
+// Skips the cycles before `end` in which everything waits for the matcher. Returns the next cycle.
+std::uint64_t FastForward::skip_waiting(std::uint64_t cycle, std::uint64_t end) {
+  if (end <= cycle) return cycle;
+  const std::uint64_t cycles = std::min(end - cycle, control().waiting_cycles());
+  if (cycles != 0) stepper_.control().skip_waiting(cycles);
+  skipped_cycles_ += cycles;
+  return cycle + cycles;
 }
 
 // Begins to follow transitions, if possible.

@@ -107,6 +107,7 @@ class FastForward {
   template <bool kMayRequest>
   memory::PortMask step_core(std::uint64_t cycle, bool host_requests);
   std::uint64_t step_group(std::uint64_t cycle, std::uint64_t end);
+  std::uint64_t skip_waiting(std::uint64_t cycle, std::uint64_t end);
   void begin_walk(std::uint64_t cycle);
   void leave_walk(std::uint64_t cycle);
   void end_walk(std::uint64_t cycle);

@@ -115,6 +115,9 @@ class LaneControl {
     next_slot_.advance(taken_ - taken_before);
   }
 
+  // Whether everything that was read can be used. Then nothing changes in a cycle in which no port of the
+  // lane moves and the matcher consumes nothing.
+  bool is_settled() const { return arrived_entries_ == taken_ && arrived_pixels_ == handled_; }
   // The number of slots in the lane.
   std::uint64_t slots() const { return taken_ - consumed_; }
   // The number of slots of the frame that the lane has taken, and the number that the pixel port has handled.

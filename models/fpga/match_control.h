@@ -70,6 +70,13 @@ class MatchControl {
                static_cast<std::uint64_t>(geometry_.rows) +
            (columns_ - before_last_strip) / 4 * static_cast<std::uint64_t>(geometry_.last_rows);
   }
+  // The number of cycles in which it still works on the slot, or the consume-cycle, that it has begun, before
+  // it consumes it.
+  std::uint64_t cycles_to_consume() const {
+    return pass_ == 0 ? 0 : static_cast<std::uint64_t>(geometry_.passes - 1 - pass_);
+  }
+  // Skips this number of them.
+  void skip_passes(std::uint64_t cycles) { pass_ += static_cast<int>(cycles); }
   // The number of slots, or of consume-cycles of the drain, that have been consumed in this frame.
   std::uint64_t consumed() const { return columns_ * slots_per_column() + static_cast<std::uint64_t>(k_); }
   // The number of slots, or of consume-cycles, up to and including the one after which part() changes.

@@ -70,14 +70,7 @@ struct DiagramOptions {
 std::string chart_of_run(const std::string& folder, process::Problems& problems) {
   const auto run = runs::read_recorded_run(
       "RUN", folder, "BOARD must be a board, or a folder that run --out has written: ", problems);
-  if (!run) return "";
-  try {
-    return report::memory_chart_svg(run->board, report::chart_traffic(run->board, run->stats_json));
-  } catch (const std::runtime_error& error) {
-    problems.add(
-        fmt::format("'{}': {}", (std::filesystem::path(folder) / "stats.json").string(), error.what()));
-    return "";
-  }
+  return run ? report::memory_chart_svg(run->board, report::chart_traffic(run->board, run->statistics)) : "";
 }
 
 std::string chart_of_board(const DiagramOptions& options, process::Problems& problems) {

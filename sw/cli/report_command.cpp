@@ -87,7 +87,11 @@ std::optional<Json> data_of_run(const ReportOptions& options, process::Problems&
   problems.check();
   Json data = report::run_data(*run, input.tables);
   if (options.quick) {
-    report::add_recorded_files(*run, data);
+    try {
+      report::add_recorded_files(*run, data);
+    } catch (const std::runtime_error& error) {
+      process::refuse(error.what());
+    }
   } else {
     if (!report::add_repetition(*run, input, data)) return std::nullopt;
     runs::Explanation explanation(run->board, input.tables, input.camera);

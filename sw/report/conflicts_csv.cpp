@@ -32,16 +32,12 @@ void append(std::string& text, std::uint64_t number, char behind) {
   text.append(bytes.data(), put(bytes.data(), number, behind));
 }
 
-// "first,last," of a part of a whole.
-std::string range(std::size_t index, std::size_t length, int whole) {
-  const std::size_t last = std::min((index + 1) * length, static_cast<std::size_t>(whole)) - 1;
-  std::string text;
-  append(text, index * length, ',');
-  append(text, last, ',');
-  return text;
-}
-
 }  // namespace
+
+std::string csv_range(std::size_t index, std::size_t length, int whole) {
+  const std::size_t last = std::min((index + 1) * length, static_cast<std::size_t>(whole)) - 1;
+  return fmt::format("{},{}", index * length, last);
+}
 
 std::string rows_csv_head(const platform::BoardConfig& board) {
   std::string text = "frame,first_row,last_row,cycles";
@@ -66,7 +62,7 @@ std::string rows_csv(const platform::BoardConfig& board, std::uint64_t frame,
   for (std::size_t strip = 0; strip < conflicts.strips.size(); ++strip) {
     const fpga::StripConflicts& of_strip = conflicts.strips[strip];
     append(text, frame, ',');
-    text += strip == 0 ? ",," : range(strip - 1, rows, board.image.height);
+    text += (strip == 0 ? "," : csv_range(strip - 1, rows, board.image.height)) + ',';
     char* end = put(line.data(), of_strip.cycles, ',');
     for (const std::uint64_t stalls : of_strip.stalls) end = put(end, stalls, ',');
     for (std::size_t bank = 0; bank < conflicts.banks; ++bank) {
@@ -77,6 +73,12 @@ std::string rows_csv(const platform::BoardConfig& board, std::uint64_t frame,
     text.append(line.data(), end);
   }
   return text;
+}
+
+std::string csv_tile(const platform::BoardConfig& board, const fpga::TileGrid& grid, std::size_t tile) {
+  if (tile == 0) return ",,,";
+  return csv_range((tile - 1) / grid.columns, grid.rows_of_tile, board.image.height) + ',' +
+         csv_range((tile - 1) % grid.columns, grid.columns_of_tile, board.image.width);
 }
 
 std::string conflicts_csv_head() {
@@ -107,9 +109,7 @@ void conflicts_csv(const platform::BoardConfig& board, const fpga::ConflictRecor
       const std::uint64_t cycles = stalls[index]->cycles[tile];
       if (cycles == 0) continue;
       if (place.empty()) {
-        place = tile == 0 ? ",,,,"
-                          : range((tile - 1) / grid.columns, grid.rows_of_tile, board.image.height) +
-                                range((tile - 1) % grid.columns, grid.columns_of_tile, board.image.width);
+        place = csv_tile(board, grid, tile) + ',';
         append(place, tile_cycles[tile], ',');
       }
       text += place;

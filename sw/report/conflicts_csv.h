@@ -14,6 +14,11 @@ std::string rows_csv_head(const platform::BoardConfig& board);
 std::string rows_csv(const platform::BoardConfig& board, std::uint64_t frame,
                      const fpga::FrameConflicts& conflicts);
 
+// Cells of both files: "first,last" of a part of a whole, such as the rows of a strip; the place of a tile.
+// Tile 0 is the fill.
+std::string csv_range(std::size_t index, std::size_t length, int whole);
+std::string csv_tile(const platform::BoardConfig& board, const fpga::TileGrid& grid, std::size_t tile);
+
 // The text of conflicts.csv, and its head.
 std::string conflicts_csv_head();
 std::string conflicts_csv(const platform::BoardConfig& board, const fpga::ConflictRecorder& recorder);

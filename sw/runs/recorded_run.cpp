@@ -4,13 +4,14 @@
 
 #include <filesystem>
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <vector>
 
 #include "platform/config/board_yaml.h"
 #include "sw/files/sha256.h"
 #include "sw/files/whole_file.h"
+#include "sw/process/installation.h"
+#include "sw/report/stats_json.h"
 #include "sw/runs/run_json_reader.h"
 #include "sw/runs/sources/calibration_input.h"
 #include "sw/runs/sources/media_library.h"
@@ -54,20 +55,6 @@ void check_input(const RecordedFile& input) {
                                        input.file.path, sha256, input.file.sha256));
 }
 
-// Throws std::runtime_error if the text of stats.json is damaged, or if it lists something as failed.
-void check_figures(const std::string& text) {
-  nlohmann::ordered_json document;
-  try {
-    document = nlohmann::ordered_json::parse(text);
-  } catch (const nlohmann::json::exception& error) {
-    throw std::runtime_error(fmt::format("must be as run writes it: {}", error.what()));
-  }
-  if (!document.is_object()) throw std::runtime_error("must be as run writes it: a JSON object");
-  const auto failed = document.find("failed");
-  if (failed == document.end()) return;
-  throw std::runtime_error(fmt::format("failed = {}: must be a run in which nothing failed", failed->dump()));
-}
-
 // Throws std::runtime_error if the video layout is unknown, or does not fit the number of videos.
 PictureSource pictures_of(const RecordedOptions& options) {
   PictureSource pictures;
@@ -104,6 +91,10 @@ media::Truth truth_of(const RecordedOptions& options, const platform::BoardConfi
 }
 
 }  // namespace
+
+std::string version_note(const RecordedOptions& options) {
+  return fmt::format("it was written by version {}, this is {}", options.program_version, process::kVersion);
+}
 
 std::string name_of(const RecordedRun& run) { return fmt::format("{} '{}'", run.argument, run.folder); }
 
@@ -146,9 +137,15 @@ std::optional<RecordedRun> read_recorded_run(const std::string& argument, const 
   std::string board;
   read("config.yaml", board,
        [&] { run.board = platform::load_board((fs::path(folder) / "config.yaml").string()); });
-  read("stats.json", run.stats_json, [&] { check_figures(run.stats_json); });
+  read("stats.json", run.stats_json, [] {});
   if (!is_right) return std::nullopt;
-  return run;
+  const RecordedOptions& options = run.options;
+  attempt((fs::path(folder) / "stats.json").string() + ":", [&] {
+    run.statistics = report::read_stats(run.stats_json, run.board, options.fidelity, options.frames,
+                                        options.source == "camera");
+  });
+  if (!is_right && options.program_version != process::kVersion) problems.add_note(version_note(options));
+  return is_right ? std::optional(run) : std::nullopt;
 }
 
 std::optional<RecordedRun> load_recorded_run(const std::string& argument, const std::string& folder,

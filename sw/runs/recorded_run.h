@@ -4,6 +4,7 @@
 #include <string>
 
 #include "platform/config/board_config.h"
+#include "platform/statistics.h"
 #include "sw/process/problems.h"
 #include "sw/runs/run_input.h"
 #include "sw/runs/run_json.h"
@@ -18,6 +19,7 @@ struct RecordedRun {
   std::string run_json;
   RecordedOptions options;  // from run.json
   std::string stats_json;
+  platform::Statistics statistics;  // from stats.json, without accuracy
 };
 
 // Reads config.yaml, run.json and stats.json of the folder. Reports all problems and returns nullopt if there
@@ -30,6 +32,9 @@ std::optional<RecordedRun> read_recorded_run(const std::string& argument, const 
 // recorded SHA-256.
 std::optional<RecordedRun> load_recorded_run(const std::string& argument, const std::string& folder,
                                              process::Problems& problems);
+
+// Which version has written a run, if it is not this one: a part of messages.
+std::string version_note(const RecordedOptions& options);
 
 // The name of a run in messages: "A 'results/demo/a'".
 std::string name_of(const RecordedRun& run);

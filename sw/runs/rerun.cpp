@@ -96,13 +96,9 @@ std::string figures_of(platform::Statistics statistics, const Result& last, cons
 void check_repeated(const RecordedRun& run, const std::string& stats_json) {
   if (stats_json == run.stats_json) return;
   const auto differences = report::stats_differences(run.stats_json, stats_json, "recorded", "again");
-  std::string text = differences.empty() ? "its stats.json is not as `run` writes it"
-                                         : "repeated, it has other figures: " + differences.front();
+  std::string text = "repeated, it has other figures: " + differences.front();
   if (differences.size() > 1) text += fmt::format(", and {} more", differences.size() - 1);
-  if (run.options.program_version != process::kVersion) {
-    text += fmt::format("; it was written by version {}, this is {}", run.options.program_version,
-                        process::kVersion);
-  }
+  if (run.options.program_version != process::kVersion) text += "; " + version_note(run.options);
   throw std::runtime_error(text);
 }
 

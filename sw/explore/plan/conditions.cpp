@@ -4,6 +4,7 @@
 #include <sqlite3.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <map>
 
@@ -16,6 +17,12 @@ namespace {
 using platform::BoardValue;
 
 constexpr const char* kBankCount = "ssram.banks";
+// Limits of one computation of a condition.
+constexpr int kMostBytes = 20'000;     // of a text
+constexpr int kMostSteps = 1'000'000;  // of SQLite's virtual machine, counted in portions
+constexpr int kStepsOfPortion = 1000;
+// These take as many steps as a number among their arguments says, and cannot be stopped.
+constexpr std::array<const char*, 2> kUnlimitedFunctions = {"printf", "format"};
 
 // The names that a condition may use, "table.column", in the order of the parameters.
 const std::vector<std::string>& names() {
@@ -90,6 +97,8 @@ Conditions::Conditions(const std::vector<Condition>& conditions)
       throw std::invalid_argument("parameters such as ? and :x have no value");
     compiled_.push_back({condition, compile(fmt::format("SELECT (({}\n)) FROM {}", condition.text, kPoint))});
   }
+  sqlite3_limit(database_.handle(), SQLITE_LIMIT_LENGTH, kMostBytes);
+  sqlite3_progress_handler(database_.handle(), kStepsOfPortion, exceeds_steps, this);
 }
 
 std::unique_ptr<Statement> Conditions::compile(const std::string& sql) {
@@ -109,16 +118,31 @@ int Conditions::authorize(void* conditions, int action, const char* /*first*/, c
     std::string function = second;
     std::transform(function.begin(), function.end(), function.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    if (self.functions_.count(function) > 0) return SQLITE_OK;
-    self.refusal_ = function + "() depends on more than its arguments";
+    const bool is_unlimited = std::find(kUnlimitedFunctions.begin(), kUnlimitedFunctions.end(), function) !=
+                              kUnlimitedFunctions.end();
+    if (!is_unlimited && self.functions_.count(function) > 0) return SQLITE_OK;
+    self.refusal_ =
+        function + (is_unlimited ? "() may take any time" : "() depends on more than its arguments");
   } else {
     self.refusal_ = "reads more than the point";
   }
   return SQLITE_DENY;
 }
 
+int Conditions::exceeds_steps(void* conditions) {
+  return ++static_cast<Conditions*>(conditions)->portions_ > kMostSteps / kStepsOfPortion ? 1 : 0;
+}
+
 // SQLite's message quotes the text from the error to its end, which may be many lines.
 std::string Conditions::reason_of(const DatabaseError& error) const {
+  switch (sqlite3_errcode(database_.handle())) {
+    case SQLITE_TOOBIG:
+      return fmt::format("a text must be at most {} bytes", kMostBytes);
+    case SQLITE_INTERRUPT:
+      return fmt::format("must be computed within {} steps of SQLite", kMostSteps);
+    default:
+      break;
+  }
   platform::YamlNode reason;
   reason.kind = platform::YamlNode::Kind::kScalar;
   reason.text = std::string(error.what()).substr(database_.path().size() + 2);  // without "where: "
@@ -144,6 +168,7 @@ bool Conditions::hold(const std::vector<BoardValue>& values) {
     for (std::size_t i = 0; i < given.size(); ++i) {
       if (given[i] != nullptr) statement.bind(static_cast<int>(i) + 1, *given[i]);
     }
+    portions_ = 0;
     try {
       const bool is_true = statement.step() && statement.is_true(0);
       statement.reset();

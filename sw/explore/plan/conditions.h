@@ -25,7 +25,8 @@ class ConditionError : public std::runtime_error {
 // over the keys of the board, such as `image.width * image.height <= 307200`. The value of a list or a filter
 // is its text. `ssram.banks` is the number of banks, `board.name` the name of the board; `run.source` and
 // `run.frames` are also defined. An absent value is NULL. A condition depends only on the point: it cannot
-// use other tables, parameters, or functions of time or chance. Must not be used across fork().
+// use other tables, parameters, or functions of time or chance. Its texts and its steps are limited. Must
+// not be used across fork().
 class Conditions {
  public:
   // Throws std::invalid_argument with the reason if a text is not such an expression.
@@ -44,6 +45,8 @@ class Conditions {
   // object.
   static int authorize(void* conditions, int action, const char* first, const char* second,
                        const char* database, const char* trigger);
+  // SQLite's progress handler. Returns 1, which ends the computation, if it has too many steps.
+  static int exceeds_steps(void* conditions);
   std::unique_ptr<Statement> compile(const std::string& sql);
   std::string reason_of(const DatabaseError& error) const;
 
@@ -51,6 +54,7 @@ class Conditions {
   std::set<std::string> functions_;  // names of the functions that a text may call
   std::string refusal_;              // the reason for which authorize() refused the text being compiled
   std::vector<Compiled> compiled_;
+  int portions_ = 0;  // of the steps of this computation
 };
 
 }  // namespace stereotlm::explore

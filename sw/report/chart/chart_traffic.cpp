@@ -2,19 +2,16 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstdint>
-#include <nlohmann/json.hpp>
-#include <numeric>
-#include <stdexcept>
 
+#include "platform/figures.h"
 #include "sw/report/chart/chart_text.h"
 #include "sw/report/wait_text.h"
 
 namespace stereotlm::report {
 namespace {
 
-using Json = nlohmann::json;
+using platform::Statistics;
 
 // `words` in the time of `clocks` clocks of `mhz`.
 double rate(std::uint64_t words, std::uint64_t clocks, double mhz) {
@@ -25,28 +22,17 @@ double percent(std::uint64_t part, std::uint64_t whole) {
   return whole == 0 ? 0 : 100 * static_cast<double>(part) / static_cast<double>(whole);
 }
 
-const Json& entry(const Json& list, const std::string& name) {
-  for (const Json& each : list) {
-    if (each.at("name") == name) return each;
-  }
-  throw std::runtime_error(fmt::format("has no entry of '{}'", name));
-}
-
-std::uint64_t number(const Json& object, const char* key) { return object.at(key).get<std::uint64_t>(); }
-
 class TrafficReader {
  public:
-  TrafficReader(const platform::BoardConfig& board, const Json& stats) : board_(board), stats_(stats) {}
+  TrafficReader(const platform::BoardConfig& board, const Statistics& stats) : board_(board), stats_(stats) {}
 
   ChartTraffic read() {
-    if (stats_.contains("pci")) traffic_.extent = ChartExtent::kComputer;
-    if (stats_.at("banks").size() != board_.banks.size())
-      throw std::runtime_error(
-          fmt::format("has {} banks, the board {}", stats_.at("banks").size(), board_.banks.size()));
-    read_core_ports();
-    read_banks();
-    if (traffic_.extent == ChartExtent::kComputer) read_parts_around();
-    read_limits();
+    if (stats_.computer) traffic_.extent = ChartExtent::kComputer;
+    read_ports();
+    if (stats_.computer) read_parts_around(*stats_.computer);
+    const std::string& resource =
+        stats_.computer ? stats_.bound.system_limited_by : stats_.bound.core_limited_by;
+    if (!resource.empty()) add_limit(resource);
     read_summary();
     return std::move(traffic_);
   }
@@ -56,70 +42,45 @@ class TrafficReader {
     traffic_.megabytes_per_second[ChartLink{from, to}.id()] = megabytes_per_second;
   }
 
-  double core_rate(std::uint64_t words) const { return rate(words, cycles_, board_.fpga.clock_mhz); }
+  double core_rate(std::uint64_t words) const { return rate(words, stats_.cycles, board_.fpga.clock_mhz); }
 
-  // The number of frames that use entry `index` of a list of `length` buffers.
-  std::uint64_t uses(std::size_t index, std::size_t length) const {
-    return frames_ / length + (index < frames_ % length ? 1 : 0);
-  }
-
-  void read_core_ports() {
-    for (const fpga::CorePort& port : fpga::kPorts) {
-      const Json& figures = entry(stats_.at("ports"), port.name);
-      const std::uint64_t grants = number(figures, "grants");
-      traffic_.waits_percent[std::string("port-") + port.name] =
-          percent(number(figures, "stall_cycles"), cycles_);
-      const std::vector<std::string> banks = banks_of(board_, port);
-      if (banks.empty()) continue;
-      if (frames_ > 0 && grants % frames_ != 0)
-        throw std::runtime_error(fmt::format("{} grants of port {} in {} frames: not equally many in each",
-                                             grants, port.name, frames_));
-      std::map<std::string, std::uint64_t> accesses;
-      for (std::size_t i = 0; i < banks.size(); ++i)
-        accesses[banks[i]] += frames_ == 0 ? 0 : grants / frames_ * uses(i, banks.size());
-      for (const auto& [bank, words] : accesses) {
-        accesses_of_core_[bank] += words;
-        set(std::string("port-") + port.name, "bank-" + bank, core_rate(words));
+  // The links of the ports, and what the banks and the ports do. The host has the accesses of a bank that no
+  // other port makes.
+  void read_ports() {
+    for (const platform::PortStatistics& port : stats_.ports)
+      traffic_.waits_percent["port-" + port.name] = percent(port.stall_cycles, stats_.cycles);
+    const auto accesses = platform::core_accesses(board_, stats_);
+    std::map<std::string, double> rates;
+    for (std::size_t index = 0; index < stats_.banks.size(); ++index) {
+      const platform::BankStatistics& bank = stats_.banks[index];
+      traffic_.busy_percent["bank-" + bank.name] = 100 * bank.utilization;
+      std::uint64_t of_host = bank.reads + bank.writes;
+      for (std::size_t port = 0; port < accesses.size(); ++port) {
+        of_host -= accesses[port][index];
+        rates[ChartLink{"port-" + stats_.ports[port].name, "bank-" + bank.name}.id()] =
+            core_rate(accesses[port][index]);
       }
+      rates[ChartLink{"port-host", "bank-" + bank.name}.id()] = core_rate(of_host);
     }
-  }
-
-  void read_banks() {
-    const std::uint64_t host_grants =
-        number(entry(stats_.at("ports"), fpga::kPorts[fpga::kHostPort].name), "grants");
-    std::set<std::string> host_banks;
     for (const ChartLink& link : chart_links(board_, traffic_.extent)) {
-      if (link.from == "port-host") host_banks.insert(link.to);
+      if (const auto found = rates.find(link.id()); found != rates.end())
+        traffic_.megabytes_per_second.insert(*found);
     }
-    std::uint64_t of_host = 0;
-    for (const platform::BankConfig& bank : board_.banks) {
-      const Json& figures = entry(stats_.at("banks"), bank.name);
-      const std::uint64_t all = number(figures, "reads") + number(figures, "writes");
-      const std::uint64_t of_core = accesses_of_core_[bank.name];
-      if (all < of_core)
-        throw std::runtime_error(
-            fmt::format("{} accesses of bank {}: its ports made {}", all, bank.name, of_core));
-      of_host += all - of_core;
-      traffic_.busy_percent["bank-" + bank.name] = 100 * figures.at("utilization").get<double>();
-      if (host_banks.count("bank-" + bank.name) > 0)
-        set("port-host", "bank-" + bank.name, core_rate(all - of_core));
-    }
-    if (of_host != host_grants)
-      throw std::runtime_error(
-          fmt::format("{} grants of port host: the banks have {}", host_grants, of_host));
   }
 
-  void read_parts_around() {
-    const Json& pci = stats_.at("pci");
-    const auto words = [&pci](const char* master) {
-      return number(entry(pci.at("masters"), master), "words");
+  void read_parts_around(const platform::ComputerStatistics& computer) {
+    const auto words = [&](const std::string& name) {
+      for (const platform::PciMasterStatistics& master : computer.pci_masters) {
+        if (master.name == name) return master.words;
+      }
+      return std::uint64_t{0};
     };
     const auto on_pci = [&](std::uint64_t moved) {
-      return rate(moved, number(pci, "clocks"), board_.pci.clock_mhz);
+      return rate(moved, computer.pci_clocks, board_.pci.clock_mhz);
     };
     for (const char* side : {"left", "right"}) {
       const std::string board = fmt::format("{}_capture", side);
-      const double captured = on_pci(words(board.c_str()));
+      const double captured = on_pci(words(board));
       set(fmt::format("part-{}_camera", side), "part-" + board, captured);
       set("part-" + board, "part-pci", captured);
     }
@@ -128,17 +89,15 @@ class TrafficReader {
     set("part-cpu", "part-pci", on_pci(words("host")));
     set("part-pci", "part-host_memory", on_pci(words("bridge") + captured));
     if (board_.pci.load) set("part-load", "part-pci", on_pci(words("load")));
-    traffic_.busy_percent["part-pci"] = percent(number(pci, "busy_clocks"), number(pci, "clocks"));
+    traffic_.busy_percent["part-pci"] = percent(computer.pci_busy_clocks, computer.pci_clocks);
 
-    const Json& bridge = stats_.at("bridge");
-    const std::uint64_t posted = number(bridge, "posted_words");
-    set("part-pci", "part-bridge", on_pci(posted));
+    set("part-pci", "part-bridge", on_pci(computer.posted_words));
     set("part-bridge", "part-pci", on_pci(words("bridge")));
-    const std::uint64_t clocks = number(bridge, "local_clocks");
-    const double local = rate(posted + number(bridge, "dma_words"), clocks, board_.bridge.local_clock_mhz);
+    const double local = rate(computer.posted_words + computer.dma_words, computer.local_clocks,
+                              board_.bridge.local_clock_mhz);
     set("part-bridge", "part-local_bus", local);
     set("part-local_bus", "port-host", local);
-    traffic_.busy_percent["part-local_bus"] = percent(number(bridge, "local_busy_clocks"), clocks);
+    traffic_.busy_percent["part-local_bus"] = percent(computer.local_busy_clocks, computer.local_clocks);
   }
 
   void add_limit(const std::string& resource) {
@@ -154,48 +113,30 @@ class TrafficReader {
     }
   }
 
-  // What limits the whole computer, if there is one.
-  void read_limits() {
-    const Json& bound = stats_.at("bound");
-    const bool is_whole = bound.contains("system_limited_by");
-    const std::string resource =
-        bound.at(is_whole ? "system_limited_by" : "core_limited_by").get<std::string>();
-    if (!resource.empty()) add_limit(resource);
-  }
-
   void read_summary() {
-    const bool is_whole = traffic_.extent == ChartExtent::kComputer;
-    const Json& rates = stats_.at("frames_per_second");
-    const auto rate = [&rates](const char* key) { return rate_text(rates.at(key).get<double>()); };
-    std::string text =
-        rate(is_whole ? "system" : "core") + " frames/s" + (is_whole ? ", from power-up" : ", core only");
-    if (is_whole && rates.contains("steady"))
-      text = rate("steady") + " frames/s, steady; " + rate("system") + " from power-up";
-    traffic_.summary = {fmt::format("{}; {} frame{}", text, frames_, frames_ == 1 ? "" : "s")};
-    const Json& bound = stats_.at("bound");
-    const double limit = bound.at(is_whole ? "system" : "core").get<double>();
-    const std::string by = bound.at(is_whole ? "system_limited_by" : "core_limited_by").get<std::string>();
+    const platform::FramesPerSecond& rates = stats_.frames_per_second;
+    const platform::Bound& bound = stats_.bound;
+    std::string text = rate_text(rates.core) + " frames/s, core only";
+    if (rates.system) text = rate_text(*rates.system) + " frames/s, from power-up";
+    if (rates.steady) {
+      text = fmt::format("{} frames/s, steady; {} from power-up", rate_text(rates.steady->frames_per_second),
+                         rate_text(*rates.system));
+    }
+    traffic_.summary = {fmt::format("{}; {} frame{}", text, stats_.frames, stats_.frames == 1 ? "" : "s")};
     traffic_.summary.push_back(
-        fmt::format("bound {} frames/s, set by {}", rate_text(limit), resource_words(by)));
+        fmt::format("bound {} frames/s, set by {}", rate_text(bound.system.value_or(bound.core)),
+                    resource_words(bound.system ? bound.system_limited_by : bound.core_limited_by)));
   }
 
   const platform::BoardConfig& board_;
-  const Json& stats_;
+  const Statistics& stats_;
   ChartTraffic traffic_;
-  std::uint64_t frames_ = number(stats_, "frames");
-  std::uint64_t cycles_ = number(stats_, "cycles");
-  std::map<std::string, std::uint64_t> accesses_of_core_;  // by the bank's name
 };
 
 }  // namespace
 
-ChartTraffic chart_traffic(const platform::BoardConfig& board, const std::string& stats_json) {
-  try {
-    const Json stats = Json::parse(stats_json);
-    return TrafficReader(board, stats).read();
-  } catch (const nlohmann::json::exception& error) {
-    throw std::runtime_error(fmt::format("must be as run writes it: {}", error.what()));
-  }
+ChartTraffic chart_traffic(const platform::BoardConfig& board, const Statistics& statistics) {
+  return TrafficReader(board, statistics).read();
 }
 
 }  // namespace stereotlm::report

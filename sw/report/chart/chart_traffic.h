@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "platform/config/board_config.h"
+#include "platform/statistics.h"
 #include "sw/report/chart/chart_links.h"
 
 namespace stereotlm::report {
@@ -20,15 +21,13 @@ struct ChartTraffic {
   std::vector<std::string> summary;                    // lines about the run
 };
 
-// The traffic of a run from the text of its stats.json.
+// The traffic of a run of this board.
 //
 // Links of banks have the accesses of the counted cycles of all frames, and their time. A port of the core
 // makes equally many accesses in each frame, so its grants divide by the frames. The host has the accesses of a
 // bank that no other port made. Links around the board have the words since power-up, and that time: a camera
 // the pixels that its capture board has written, the CPU its register accesses, the bridge the words written
 // into it (edge-pci-bridge) and those that its DMA moved over PCI (edge-bridge-pci).
-//
-// Throws std::runtime_error if the text is not that of a run of this board.
-ChartTraffic chart_traffic(const platform::BoardConfig& board, const std::string& stats_json);
+ChartTraffic chart_traffic(const platform::BoardConfig& board, const platform::Statistics& statistics);
 
 }  // namespace stereotlm::report

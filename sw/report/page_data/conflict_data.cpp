@@ -1,11 +1,14 @@
 #include "sw/report/page_data/conflict_data.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <numeric>
 
 #include "models/fpga/frame_geometry.h"
+#include "platform/audit.h"
 #include "sw/report/conflicts_csv.h"
 #include "sw/report/page_data/packed_column.h"
 
@@ -19,7 +22,17 @@ constexpr std::array<const char*, fpga::FrameConflicts::kAccessKinds> kAccessKin
 
 // Columns of rows.csv and of conflicts.csv.
 enum RowColumn : std::size_t { kFrameOfRow, kFirstRow, kLastRow, kCycles, kFirstStalls };
-enum TileColumn : std::size_t { kTileRow, kTileLastRow, kTileColumn, kTileLastColumn, kTileCycles, kPort };
+enum TileColumn : std::size_t {
+  kTileRow,
+  kTileLastRow,
+  kTileColumn,
+  kTileLastColumn,
+  kTileCycles,
+  kPort,
+  kBank,
+  kBy,
+  kStalls
+};
 
 template <typename Number>
 Json packed(const std::vector<Number>& values) {
@@ -32,46 +45,118 @@ std::size_t parts_of(std::size_t whole, std::size_t part) { return (whole + part
 
 }  // namespace
 
-ConflictData::ConflictData(const platform::BoardConfig& board)
+ConflictData::ConflictData(const platform::BoardConfig& board, const std::filesystem::path& folder)
     : board_(board),
       grid_(fpga::FrameGeometry(platform::core_config(board)), fpga::ConflictRecorder::kMostTiles),
-      rows_csv_("rows.csv", rows_csv_head(board)),
-      tiles_csv_("conflicts.csv", conflicts_csv_head()),
+      rows_csv_((folder / "rows.csv").string(), rows_csv_head(board)),
+      tiles_csv_((folder / "conflicts.csv").string(), conflicts_csv_head()),
+      strips_(1, ","),
       lines_(1 + grid_.rows) {
+  const auto rows = static_cast<std::size_t>(board.matcher.rows);
+  for (std::size_t strip = 0; strip < parts_of(static_cast<std::size_t>(board.image.height), rows); ++strip)
+    strips_.push_back(csv_range(strip, rows, board.image.height));
   for (Line& line : lines_) line.accesses.resize(board.banks.size());
-}
-
-// The fill has no row.
-std::size_t ConflictData::line_of(std::string_view first_row) const {
-  if (first_row.empty()) return 0;
-  return std::min<std::size_t>(1 + rows_csv_.number(first_row) / grid_.rows_of_tile, grid_.rows);
+  for (const platform::BankConfig& bank : board.banks) banks_.push_back(bank.name);
+  for (std::size_t requester = 0; requester < fpga::kRequesters; ++requester)
+    requesters_.emplace_back(fpga::requester_name(requester));
+  causes_ = requesters_;
+  causes_.emplace_back(fpga::requester_name(fpga::kTurnaroundToBlame));
+  sums_.accesses.resize(board.banks.size());
 }
 
 void ConflictData::add_rows(std::string_view text) {
-  rows_csv_.read(text, [this](const CsvLines::Cells& cells) {
-    frames_ = 1 + rows_csv_.number(cells[kFrameOfRow]);
-    Line& line = lines_[line_of(cells[kFirstRow])];
-    line.cycles += rows_csv_.number(cells[kCycles]);
-    std::size_t column = kFirstStalls + fpga::kRequesters;
-    for (fpga::FrameConflicts::BankAccesses& accesses : line.accesses) {
-      for (std::uint64_t& of_kind : accesses) of_kind += rows_csv_.number(cells[column++]);
+  rows_csv_.read(text, [this] {
+    const std::size_t strip = row_lines_++ % strips_.size();
+    if (strip == 0) frame_cycles_.push_back(0);
+    rows_csv_.number(kFrameOfRow, frame_cycles_.size() - 1, frame_cycles_.size() - 1);
+    if (rows_csv_.cells(kFirstRow, 2) != strips_[strip])
+      rows_csv_.refuse(kFirstRow, fmt::format("must be the rows '{}' of the next line", strips_[strip]));
+    Line& line = lines_[strip == 0 ? 0 : 1 + (strip - 1) / grid_.strips_of_tile];
+    const std::uint64_t cycles = rows_csv_.number(kCycles);
+    frame_cycles_.back() += cycles;
+    line.cycles += cycles;
+    std::size_t column = kFirstStalls;
+    for (std::size_t requester = 0; requester < requesters_.size(); ++requester) {
+      const std::uint64_t stalls = rows_csv_.number(column++, cycles);
+      line.stalls[requester] += stalls;
+      sums_.stalls[requester] += stalls;
+    }
+    for (std::size_t bank = 0; bank < banks_.size(); ++bank) {
+      for (std::uint64_t& of_kind : line.accesses[bank]) {
+        const std::uint64_t accesses = rows_csv_.number(column++, 2 * cycles);
+        of_kind += accesses;
+        sums_.accesses[bank] += accesses;
+      }
     }
   });
 }
 
+// The tile that the line is of.
+std::size_t ConflictData::tile_of_line() const {
+  std::size_t tile = 0;
+  if (!tiles_csv_.cell(kTileRow).empty()) {
+    const auto index = [this](TileColumn column, std::size_t length, std::size_t parts) {
+      return tiles_csv_.number(column, length * parts - 1) / length;
+    };
+    tile = 1 + index(kTileRow, grid_.rows_of_tile, grid_.rows) * grid_.columns +
+           index(kTileColumn, grid_.columns_of_tile, grid_.columns);
+  }
+  const std::string place = csv_tile(board_, grid_, tile);
+  if (tiles_csv_.cells(kTileRow, 4) != place)
+    tiles_csv_.refuse(kTileRow, fmt::format("must be the place of a tile, such as '{}'", place));
+  return tile;
+}
+
 void ConflictData::add_tiles(std::string_view text) {
-  tiles_csv_.read(text, [this](const CsvLines::Cells& cells) {
-    const char* const first = cells[kPort].data();
-    const std::string_view cause(first, static_cast<std::size_t>(cells[kPort + 3].data() - 1 - first));
-    auto found = stalls_.find(cause);
-    if (found == stalls_.end()) found = stalls_.emplace(cause, 1 + grid_.rows * grid_.columns).first;
-    std::size_t tile = 0;
-    if (!cells[kTileRow].empty()) {
-      const std::size_t column = tiles_csv_.number(cells[kTileColumn]) / grid_.columns_of_tile;
-      tile = 1 + (line_of(cells[kTileRow]) - 1) * grid_.columns + std::min(column, grid_.columns - 1);
-    }
-    found->second[tile] += tiles_csv_.number(cells[kPort + 3]);
+  tiles_csv_.read(text, [this] {
+    const std::size_t tile = tile_of_line();
+    const std::array<std::size_t, 3> cause = {tiles_csv_.index(kPort, requesters_),
+                                              tiles_csv_.index(kBank, banks_),
+                                              tiles_csv_.index(kBy, causes_)};
+    const std::pair place(tile, cause);
+    tiles_csv_.require(!last_place_ || place > *last_place_, kTileRow,
+                       "must follow the line before, by tile, port, bank and cause");
+    const std::uint64_t tile_cycles = tiles_csv_.number(kTileCycles);
+    const std::uint64_t cycles = tiles_csv_.number(kStalls, tile_cycles, 1);
+    sums_.blame[cause] += cycles;
+    Line& line = lines_[tile == 0 ? 0 : 1 + (tile - 1) / grid_.columns];
+    line.stalls_of_tiles[cause[0]] += cycles;
+    const bool is_new = !last_place_ || last_place_->first != tile;
+    tiles_csv_.require(is_new || tile_cycles == tile_cycles_, kTileCycles,
+                       "must be those of the line before");
+    if (is_new) line.tile_cycles += tile_cycles;
+    tile_cycles_ = tile_cycles;
+    last_place_ = place;
+    const std::string_view name = tiles_csv_.cells(kPort, 3);
+    auto found = stalls_.find(name);
+    if (found == stalls_.end()) found = stalls_.emplace(name, 1 + grid_.rows * grid_.columns).first;
+    found->second[tile] = cycles;
   });
+}
+
+void ConflictData::check(const platform::Statistics& statistics) {
+  platform::Audit audit;
+  sums_.frames = frame_cycles_.size();
+  const auto pipeline = static_cast<std::uint64_t>(board_.fpga.pipeline_latency_cycles);
+  for (std::size_t frame = 0; frame < std::min(sums_.frames, statistics.frames); ++frame) {
+    audit.equal(fmt::format("recorded: cycles of frame {}", frame), frame_cycles_[frame] + pipeline,
+                "frame_cycles", statistics.frame_cycles[frame]);
+    sums_.cycles += frame_cycles_[frame];
+  }
+  sums_.check_rows(statistics, audit);
+  rows_csv_.finish(audit);
+  platform::Audit of_tiles;
+  sums_.check_tiles(statistics, of_tiles);
+  for (std::size_t row = 0; row < lines_.size(); ++row) {
+    const Line& line = lines_[row];
+    const std::string name = row == 0 ? "recorded: fill" : fmt::format("recorded: row {} of tiles", row - 1);
+    of_tiles.at_most(name + ": tile_cycles", line.tile_cycles, "cycles in rows.csv", line.cycles);
+    for (std::size_t requester = 0; requester < requesters_.size(); ++requester) {
+      of_tiles.equal(fmt::format("{}: stalls of {}", name, requesters_[requester]),
+                     line.stalls_of_tiles[requester], "those in rows.csv", line.stalls[requester]);
+    }
+  }
+  tiles_csv_.finish(of_tiles);
 }
 
 // How many recorded tiles, side by side and one below the other, are one tile of the page.
@@ -130,7 +215,7 @@ Json ConflictData::json() const {
   const auto [across, down] = put_together();
   Json stalls = Json::array();
   for (const auto& [cause, cycles] : stalls_) stalls.push_back(stall_json(cause, cycles));
-  return {{"frames", frames_},
+  return {{"frames", frame_cycles_.size()},
           {"rows", rows_json()},
           {"tiles",
            {{"columns", parts_of(grid_.columns, across)},

@@ -9,31 +9,57 @@
 
 namespace stereotlm::report {
 
-CsvLines::CsvLines(std::string name, const std::string& head)
-    : name_(std::move(name)),
-      head_(head.substr(0, head.find('\n'))),
-      size_(1 + static_cast<std::size_t>(std::count(head_.begin(), head_.end(), ','))) {}
+CsvLines::CsvLines(std::string path, const std::string& head)
+    : path_(std::move(path)), head_(head.substr(0, head.find('\n'))) {
+  split(head_);
+  names_.assign(cells_.begin(), cells_.end());
+}
 
-void CsvLines::read(std::string_view text, const std::function<void(const Cells& cells)>& line) {
+void CsvLines::read(std::string_view text, const std::function<void()>& line) {
   while (!text.empty()) {
-    const std::string_view next = text.substr(0, text.find('\n'));
-    text.remove_prefix(std::min(text.size(), next.size() + 1));
-    if (line_++ == 0) {
-      if (next != head_) fail();
+    const std::size_t size = text.find('\n');
+    ++line_;
+    if (size == std::string_view::npos) fail("must end with a newline");
+    const std::string_view next = text.substr(0, size);
+    text.remove_prefix(size + 1);
+    if (line_ == 1) {
+      if (next != head_) fail(fmt::format("must be the head '{}'", head_));
       continue;
     }
     split(next);
-    if (cells_.size() != size_) fail();
-    line(cells_);
+    if (cells_.size() != names_.size())
+      fail(fmt::format("{} cells: must be {}, as in the head", cells_.size(), names_.size()));
+    line();
   }
 }
 
-std::uint64_t CsvLines::number(std::string_view cell) const {
-  if (cell == "0") return 0;  // most are
+void CsvLines::finish(const platform::Audit& audit) const {
+  if (line_ == 0) throw std::runtime_error(fmt::format("{}:1: missing: the head '{}'", path_, head_));
+  if (!audit.failed().empty()) fail(audit.failed().front());
+}
+
+std::string_view CsvLines::cells(std::size_t first, std::size_t count) const {
+  const std::string_view& last = cells_[first + count - 1];
+  const char* const begin = cells_[first].data();
+  return {begin, static_cast<std::size_t>(last.data() + last.size() - begin)};
+}
+
+std::uint64_t CsvLines::number(std::size_t column, std::uint64_t most, std::uint64_t least) const {
+  const std::string_view cell = cells_[column];
   std::uint64_t number = 0;
-  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), number);
-  if (error != std::errc() || end != cell.data() + cell.size()) fail();
+  if (cell != "0") {  // most are
+    const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), number);
+    if (error != std::errc() || end != cell.data() + cell.size() || cell.front() == '0') number = UINT64_MAX;
+  }
+  if (number < least || number > most)
+    refuse(column, fmt::format("must be an integer of {}..{}", least, most));
   return number;
+}
+
+std::size_t CsvLines::index(std::size_t column, const std::vector<std::string>& names) const {
+  const auto found = std::find(names.begin(), names.end(), cells_[column]);
+  if (found == names.end()) refuse(column, fmt::format("must be one of {}", fmt::join(names, ", ")));
+  return static_cast<std::size_t>(found - names.begin());
 }
 
 void CsvLines::split(std::string_view line) {
@@ -47,8 +73,12 @@ void CsvLines::split(std::string_view line) {
   cells_.push_back(line.substr(begin));
 }
 
-void CsvLines::fail() const {
-  throw std::runtime_error(fmt::format("{}:{}: is not as `run --record` writes it", name_, line_));
+void CsvLines::refuse(std::size_t column, const std::string& rule) const {
+  fail(fmt::format("{} = {}: {}", names_[column], cells_[column], rule));
+}
+
+void CsvLines::fail(const std::string& text) const {
+  throw std::runtime_error(fmt::format("{}:{}: {}", path_, line_, text));
 }
 
 }  // namespace stereotlm::report

@@ -54,11 +54,11 @@ PackedColumn::Value value_of(const explore::Statement& row, int column) {
 class PackedTexts {
  public:
   void add(const std::string& text) {
-    const std::vector<std::string> words = words_of(text);
+    const std::vector<std::string_view> words = words_of(text);
     const auto [shape, is_new] =
         shapes_.emplace(words.size(), std::pair(shapes_.size(), std::vector<PackedColumn>(words.size())));
     shape_of_row_.add(static_cast<std::int64_t>(shape->second.first));
-    for (std::size_t i = 0; i < words.size(); ++i) shape->second.second[i].add(words[i]);
+    for (std::size_t i = 0; i < words.size(); ++i) shape->second.second[i].add_text(words[i]);
   }
 
   Json json() const {
@@ -69,12 +69,13 @@ class PackedTexts {
 
  private:
   // The text in pieces, each of which ends with a space or a newline.
-  static std::vector<std::string> words_of(const std::string& text) {
-    std::vector<std::string> words(1);
-    for (const char letter : text) {
-      words.back() += letter;
-      if (letter == ' ' || letter == '\n') words.emplace_back();
+  static std::vector<std::string_view> words_of(std::string_view text) {
+    std::vector<std::string_view> words;
+    for (std::size_t end = text.find_first_of(" \n"); end != text.npos; end = text.find_first_of(" \n")) {
+      words.push_back(text.substr(0, end + 1));
+      text.remove_prefix(end + 1);
     }
+    words.push_back(text);
     return words;
   }
 
@@ -106,13 +107,15 @@ Json database_data(const std::string& path) {
   explore::check_layout(database);
   const std::vector<std::string> names = explore::columns_of(database);
   std::vector<PackedColumn> columns(names.size());
+  std::vector<bool> shown_columns;
+  for (const std::string& name : names) shown_columns.push_back(is_shown(name));
   PackedTexts boards;
   explore::Statement points(database, "SELECT * FROM points ORDER BY hash");
   std::size_t size = 0;
   for (; !process::interrupted() && points.step(); ++size) {
     for (std::size_t i = 0; i < names.size(); ++i) {
       const int column = static_cast<int>(i);
-      if (is_shown(names[i])) columns[i].add(value_of(points, column));
+      if (shown_columns[i]) columns[i].add(value_of(points, column));
       if (names[i] == "config") boards.add(points.text(column));
     }
   }
@@ -120,7 +123,7 @@ Json database_data(const std::string& path) {
   Json shown = Json::array();
   Json left_out = Json::array();
   for (std::size_t i = 0; i < names.size(); ++i) {
-    if (!is_shown(names[i])) {
+    if (!shown_columns[i]) {
       left_out.push_back(names[i]);
       continue;
     }

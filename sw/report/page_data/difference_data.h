@@ -12,7 +12,7 @@ namespace stereotlm::report {
 // One of two compared runs, and what its repetition has recorded of waits.
 struct ComparedRun {
   ComparedRun(const runs::RecordedRun& recorded, const platform::Tables& its_tables)
-      : run(recorded), tables(its_tables), waits(recorded.board) {}
+      : run(recorded), tables(its_tables), waits(recorded.board, recorded.folder) {}
 
   // Takes the files of waits among those of `run --record`.
   void record(const std::string& name, std::string_view text);

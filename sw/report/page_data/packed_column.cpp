@@ -41,9 +41,19 @@ Json json_of(const PackedColumn::Value& value) {
 }
 
 void PackedColumn::add(const Value& value) {
-  const auto [place, is_new] = known_.emplace(value, static_cast<std::uint32_t>(values_.size()));
+  if (!codes_.empty() && values_[codes_.back()] == value) return codes_.push_back(codes_.back());
+  const auto [place, is_new] = known_.try_emplace(value, static_cast<std::uint32_t>(values_.size()));
   if (is_new) values_.push_back(value);
   codes_.push_back(place->second);
+}
+
+void PackedColumn::add_text(std::string_view text) {
+  const auto* const before = codes_.empty() ? nullptr : std::get_if<std::string>(&values_[codes_.back()]);
+  if (before != nullptr && *before == text) {
+    codes_.push_back(codes_.back());
+  } else {
+    add(std::string(text));
+  }
 }
 
 Json PackedColumn::json() const {

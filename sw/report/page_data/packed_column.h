@@ -2,9 +2,10 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
+#include <unordered_map>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -18,6 +19,8 @@ class PackedColumn {
   using Value = std::variant<std::monostate, std::int64_t, double, std::string>;
 
   void add(const Value& value);
+  // The same for a text, which is quick if it is that of the row before.
+  void add_text(std::string_view text);
 
   std::size_t size() const { return codes_.size(); }
   bool is_constant() const { return values_.size() < 2; }
@@ -28,7 +31,7 @@ class PackedColumn {
 
  private:
   std::vector<Value> values_;  // all different, in the order of their first rows
-  std::map<Value, std::uint32_t> known_;
+  std::unordered_map<Value, std::uint32_t> known_;
   std::vector<std::uint32_t> codes_;  // for each row an index of values_
 };
 

@@ -27,8 +27,10 @@ void read_in_pieces(const std::filesystem::path& path, Take take) {
 
 }  // namespace
 
-RecordingData::RecordingData(const platform::BoardConfig& board, bool camera) : conflicts_(board) {
-  if (camera) timeline_.emplace();
+RecordingData::RecordingData(const platform::BoardConfig& board, bool camera,
+                             const std::filesystem::path& folder)
+    : folder_(folder), conflicts_(board, folder) {
+  if (camera) timeline_.emplace(board, folder);
 }
 
 void RecordingData::add(const std::string& name, std::string_view text) {
@@ -45,16 +47,18 @@ void RecordingData::add(const std::string& name, std::string_view text) {
   }
 }
 
-bool RecordingData::add_folder(const std::filesystem::path& folder) {
+bool RecordingData::add_folder(const platform::Statistics& statistics) {
   std::vector<std::string> names = {"rows.csv", "conflicts.csv"};
   if (timeline_) names.insert(names.end(), {"timeline.csv", "latency.csv"});
-  if (!std::all_of(names.begin(), names.end(), [&folder](const std::string& name) {
+  if (!std::all_of(names.begin(), names.end(), [this](const std::string& name) {
         std::error_code ignored;
-        return std::filesystem::is_regular_file(folder / name, ignored);
+        return std::filesystem::is_regular_file(folder_ / name, ignored);
       }))
     return false;
   for (const std::string& name : names)
-    read_in_pieces(folder / name, [&](std::string_view lines) { add(name, lines); });
+    read_in_pieces(folder_ / name, [&](std::string_view lines) { add(name, lines); });
+  conflicts_.check(statistics);
+  if (timeline_) timeline_->check(statistics);
   return true;
 }
 

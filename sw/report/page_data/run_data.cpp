@@ -191,14 +191,6 @@ std::string png_url(const std::string& bytes) {
   return "data:image/png;base64," + files::base64(bytes.data(), bytes.size());
 }
 
-ChartTraffic traffic_of(const runs::RecordedRun& run) {
-  try {
-    return chart_traffic(run.board, run.stats_json);
-  } catch (const std::runtime_error& error) {
-    throw std::runtime_error(fmt::format("{}: stats.json {}", runs::name_of(run), error.what()));
-  }
-}
-
 std::set<std::string> banks_used(const BoardConfig& board) {
   std::set<std::string> banks;
   for (const platform::PlacedBuffer& buffer : platform::buffers(board)) banks.insert(buffer.bank);
@@ -257,7 +249,7 @@ std::string picture_url(const kernels::GrayImage& picture) {
 
 Json run_data(const runs::RecordedRun& run, const platform::Tables& tables) {
   const BoardConfig& board = run.board;
-  const ChartTraffic traffic = traffic_of(run);
+  const ChartTraffic traffic = chart_traffic(board, run.statistics);
   const auto read = [&run](const char* name) {
     return files::read_whole_file(std::filesystem::path(run.folder) / name);
   };
@@ -305,12 +297,8 @@ bool add_repetition(const runs::RecordedRun& run, runs::RunInput& input, Json& d
 }
 
 void add_recorded_files(const runs::RecordedRun& run, Json& data) {
-  RecordingData recording(run.board, run.options.source == "camera");
-  try {
-    if (recording.add_folder(run.folder)) data["recording"] = recording.json();
-  } catch (const std::runtime_error& error) {
-    throw std::runtime_error(fmt::format("{}: {}", runs::name_of(run), error.what()));
-  }
+  RecordingData recording(run.board, run.options.source == "camera", run.folder);
+  if (recording.add_folder(run.statistics)) data["recording"] = recording.json();
 }
 
 Json knobs_data(const BoardConfig& board, runs::Explanation& explanation) {

@@ -1,12 +1,21 @@
 #include "sw/report/page_data/timeline_data.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <sstream>
+#include <stdexcept>
 #include <string>
 
+#include "platform/audit.h"
+#include "platform/bounds.h"
+#include "platform/figures.h"
+#include "platform/timeline_sums.h"
 #include "sw/report/page_data/packed_column.h"
+#include "sw/report/stats_differences.h"
+#include "sw/report/stats_json.h"
 #include "sw/report/timeline_csv.h"
 
 namespace stereotlm::report {
@@ -24,41 +33,105 @@ Json named(const std::string& name, const PackedColumn& column) {
   return packed;
 }
 
+const char* name_of(platform::EventKind kind) {
+  return platform::kEventKindNames[static_cast<std::size_t>(kind)];
+}
+
+// -1: none.
+std::int64_t number_of(const std::optional<std::uint64_t>& frame) {
+  return frame ? static_cast<std::int64_t>(*frame) : -1;
+}
+
 // Times and words as double: many different integers are shortest as the bytes of real numbers, which are
 // exact up to 2^53.
 double real(std::uint64_t number) { return static_cast<double>(number); }
 
 }  // namespace
 
-TimelineData::TimelineData()
-    : events_csv_("timeline.csv", timeline_csv_head()), latencies_csv_("latency.csv", latency_csv_head()) {}
+TimelineData::TimelineData(const platform::BoardConfig& board, const std::filesystem::path& folder)
+    : events_csv_((folder / "timeline.csv").string(), timeline_csv_head()),
+      latencies_csv_((folder / "latency.csv").string(), latency_csv_head()),
+      board_(board) {}
 
-std::size_t TimelineData::word(std::string_view text) {
-  const auto known = std::find(words_.begin(), words_.end(), text);
-  if (known != words_.end()) return static_cast<std::size_t>(known - words_.begin());
-  words_.emplace_back(text);
-  return words_.size() - 1;
+// An event with the names of the line.
+platform::TimelineEvent TimelineData::event_of_line() const {
+  constexpr std::array kColumns = {kKind, kClass, kWhy};
+  std::array<std::vector<std::string>, kColumns.size()> allowed;  // by the cells before
+  for (const platform::EventName& known : platform::kEventNames) {
+    const std::array<std::string_view, kColumns.size()> names = {name_of(known.kind), known.what, known.why};
+    std::size_t same = 0;
+    while (same < names.size() && events_csv_.cell(kColumns[same]) == names[same]) ++same;
+    if (same == names.size()) return {known.kind, known.what, {}, {}, 0, 0, 0, 0, known.why};
+    for (std::size_t column = 0; column <= same; ++column) {
+      std::vector<std::string>& names_here = allowed[column];
+      if (names_here.empty() || names_here.back() != names[column]) names_here.emplace_back(names[column]);
+    }
+  }
+  for (std::size_t column = 0; column < kColumns.size(); ++column)
+    events_csv_.index(kColumns[column], allowed[column]);
+  throw std::logic_error("the names of an event are not found");
 }
 
 void TimelineData::add_events(std::string_view text) {
-  events_csv_.read(text, [this](const CsvLines::Cells& cells) {
-    const auto number = [&](EventColumn column) { return events_csv_.number(cells[column]); };
-    const auto number_if_any = [&](EventColumn column) {
-      return cells[column].empty() ? std::int64_t{-1} : static_cast<std::int64_t>(number(column));
+  events_csv_.read(text, [this] {
+    const auto number = [this](EventColumn column, std::uint64_t least = 0) {
+      return events_csv_.number(column, INT64_MAX, least);
     };
-    events_.push_back({word(cells[kKind]), word(cells[kClass]), word(cells[kWhy]), number_if_any(kFrame),
-                       number_if_any(kCameraFrame), number(kStart), number(kEnd), number(kWords),
-                       number(kPixels)});
+    const auto number_if_any = [&](EventColumn column) {
+      return events_csv_.cell(column).empty() ? std::nullopt : std::optional(number(column));
+    };
+    platform::TimelineEvent event = event_of_line();
+    event.frame = number_if_any(kFrame);
+    event.camera_frame = number_if_any(kCameraFrame);
+    event.begin_ps = number(kStart);
+    event.end_ps = number(kEnd, std::max(event.begin_ps, end_ps()));
+    const bool is_capture = event.kind == platform::EventKind::kCapture;
+    const bool moves = is_capture || event.kind == platform::EventKind::kUpload ||
+                       event.kind == platform::EventKind::kReadBack || events_csv_.cell(kClass) == "cycles";
+    event.words = events_csv_.number(kWords, moves ? INT64_MAX : 0);
+    event.dropped_pixels = events_csv_.number(kPixels, is_capture ? INT64_MAX : 0);
+    events_.push_back(event);
   });
 }
 
 void TimelineData::add_latencies(std::string_view text) {
-  latencies_csv_.read(text, [this](const CsvLines::Cells& cells) {
+  latencies_csv_.read(text, [this] {
     Latency latency;
     for (std::size_t column = 0; column < latency.size(); ++column)
-      latency[column] = latencies_csv_.number(cells[column]);
+      latency[column] = latencies_csv_.number(column);
+    latencies_csv_.number(kLatencyFrame, latencies_.size(), latencies_.size());
+    const std::uint64_t sum =
+        std::accumulate(latency.begin() + kFirstPart, latency.end() - 1, std::uint64_t{0});
+    latencies_csv_.number(latency.size() - 1, sum, sum);
     latencies_.push_back(latency);
   });
+}
+
+void TimelineData::check(const platform::Statistics& statistics) const {
+  platform::Audit of_latencies;
+  of_latencies.equal("recorded: latencies", latencies_.size(), "frames", statistics.frames);
+  latencies_csv_.finish(of_latencies);
+  platform::Audit of_events;
+  platform::TimelineSums sums(board_);
+  for (const platform::TimelineEvent& event : events_) {
+    sums.add(event);
+    if (!event.frame || *event.frame >= latencies_.size()) continue;
+    of_events.equal(fmt::format("recorded: frame {}: camera_frame", *event.frame),
+                    event.camera_frame.value_or(UINT64_MAX), "that in latency.csv",
+                    latencies_[static_cast<std::size_t>(*event.frame)][kLatencyCameraFrame]);
+  }
+  sums.check(statistics, of_events);
+  events_csv_.finish(of_events);
+  std::vector<platform::Delivery> deliveries;
+  for (const Latency& latency : latencies_)
+    deliveries.push_back({latency[kCaptured], latency[kCaptured] + latency.back()});
+  platform::Statistics derived = statistics;
+  platform::derive_delivery_figures(deliveries, platform::allocation_period_frames(board_), derived);
+  platform::Audit of_figures;
+  for (const std::string& difference : stats_differences(stats_json(statistics, {}), stats_json(derived, {}),
+                                                         "stats.json", "from the latencies"))
+    of_figures.fail("recorded: " + difference);
+  latencies_csv_.finish(of_figures);
 }
 
 // All of a run with few events. Otherwise its beginning, the time around its slowest frame, and its end.
@@ -74,9 +147,9 @@ std::vector<TimelineData::Period> TimelineData::periods() const {
                        [](const Latency& a, const Latency& b) { return a.back() < b.back(); });
   if (slowest != latencies_.end()) {
     const std::uint64_t middle_ps = (*slowest)[kCaptured] + slowest->back() / 2;
-    const auto at =
-        std::lower_bound(events_.begin(), events_.end(), middle_ps,
-                         [](const Event& event, std::uint64_t time_ps) { return event.end_ps < time_ps; });
+    const auto at = std::lower_bound(
+        events_.begin(), events_.end(), middle_ps,
+        [](const platform::TimelineEvent& event, std::uint64_t time_ps) { return event.end_ps < time_ps; });
     const auto middle = static_cast<std::size_t>(at - events_.begin());
     found.emplace_back(end_of(middle - std::min(middle, kPart / 2)), end_of(middle + kPart / 2));
   }
@@ -95,20 +168,20 @@ std::vector<TimelineData::Period> TimelineData::periods() const {
 Json TimelineData::events_json() const {
   const std::vector<Period> shown = periods();
   std::array<PackedColumn, kWhy + 1> columns;
-  for (const Event& event : events_) {
+  for (const platform::TimelineEvent& event : events_) {
     const bool is_shown = std::any_of(shown.begin(), shown.end(), [&event](const Period& period) {
       return event.end_ps >= period.first && event.begin_ps <= period.second;
     });
     if (!is_shown) continue;
-    columns[kKind].add(words_[event.kind]);
-    columns[kClass].add(words_[event.what]);
-    columns[kFrame].add(event.frame);
-    columns[kCameraFrame].add(event.camera_frame);
+    columns[kKind].add(std::string(name_of(event.kind)));
+    columns[kClass].add(std::string(event.what));
+    columns[kFrame].add(number_of(event.frame));
+    columns[kCameraFrame].add(number_of(event.camera_frame));
     columns[kStart].add(real(event.begin_ps));
     columns[kEnd].add(real(event.end_ps));
     columns[kWords].add(static_cast<std::int64_t>(event.words));
     columns[kPixels].add(static_cast<std::int64_t>(event.dropped_pixels));
-    columns[kWhy].add(words_[event.why]);
+    columns[kWhy].add(std::string(event.why));
   }
   constexpr std::array kNames = {"kind",   "class", "frame",          "camera_frame", "start_ps",
                                  "end_ps", "words", "dropped_pixels", "why"};
@@ -124,9 +197,9 @@ Json TimelineData::events_json() const {
 Json TimelineData::overview_json() const {
   const double bin_ps = std::max(1.0, real(end_ps()) / kBins);
   std::map<std::pair<std::string, std::string>, std::vector<double>> lanes;
-  for (const Event& event : events_) {
-    const std::string& kind = words_[event.kind];
-    const std::string& what = words_[event.what];
+  for (const platform::TimelineEvent& event : events_) {
+    const std::string kind = name_of(event.kind);
+    const std::string what = event.what;
     if (kind == "wait" || kind == "interrupt" || (kind == "frame" && what != "cycles")) continue;
     const bool has_side = kind == "capture" || kind == "drop";
     std::vector<double>& bins = lanes[{kind, has_side ? what : std::string()}];
@@ -156,9 +229,9 @@ Json TimelineData::overview_json() const {
 // The sums of all waits, by who waits and why.
 Json TimelineData::waits_json() const {
   std::map<std::pair<std::string, std::string>, std::uint64_t> sums;
-  for (const Event& event : events_) {
-    if (words_[event.kind] == "wait")
-      sums[{words_[event.what], words_[event.why]}] += event.end_ps - event.begin_ps;
+  for (const platform::TimelineEvent& event : events_) {
+    if (event.kind == platform::EventKind::kWait)
+      sums[{event.what, event.why}] += event.end_ps - event.begin_ps;
   }
   Json json = Json::array();
   for (const auto& [name, sum_ps] : sums)

@@ -3,13 +3,15 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "platform/config/board_config.h"
+#include "platform/statistics.h"
 #include "platform/timeline_records.h"
 #include "sw/report/page_data/csv_lines.h"
 
@@ -23,33 +25,23 @@ class TimelineData {
   static constexpr std::size_t kMostLatencies = 1000;
   static constexpr std::size_t kBins = 300;  // of the overview
 
-  TimelineData();
+  // `folder`: that of the files, for messages. `board` outlives this object.
+  TimelineData(const platform::BoardConfig& board, const std::filesystem::path& folder);
 
   // Whole lines of the files, in their order. They throw as CsvLines does.
   void add_events(std::string_view text);
   void add_latencies(std::string_view text);
+  // Checks the identities of the whole files with the figures of their run. Throws as CsvLines does.
+  void check(const platform::Statistics& statistics) const;
   // The parts `events`, `overview`, `waits` and `latency` of a recording.
   nlohmann::ordered_json json() const;
 
  private:
-  struct Event {
-    // Indices of words_.
-    std::size_t kind;
-    std::size_t what;
-    std::size_t why;
-    // -1: none
-    std::int64_t frame;
-    std::int64_t camera_frame;
-    std::uint64_t begin_ps;
-    std::uint64_t end_ps;
-    std::uint64_t words;
-    std::uint64_t dropped_pixels;
-  };
   using Period = std::pair<std::uint64_t, std::uint64_t>;  // ps
   using Latency =
       std::array<std::uint64_t, platform::kLatencyParts.size() + 4>;  // the columns of latency.csv
 
-  std::size_t word(std::string_view text);
+  platform::TimelineEvent event_of_line() const;
   std::uint64_t end_ps() const { return events_.empty() ? 0 : events_.back().end_ps; }
   std::vector<Period> periods() const;
   nlohmann::ordered_json events_json() const;
@@ -59,8 +51,8 @@ class TimelineData {
 
   CsvLines events_csv_;
   CsvLines latencies_csv_;
-  std::vector<std::string> words_;
-  std::vector<Event> events_;  // by their ends
+  const platform::BoardConfig& board_;
+  std::vector<platform::TimelineEvent> events_;  // by their ends
   std::vector<Latency> latencies_;
 };
 

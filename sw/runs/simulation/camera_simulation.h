@@ -41,7 +41,7 @@ class CameraSimulation : public Simulation, private driver::FrameListener {
   const platform::ComputerView& computer() const { return *computer_; }
   // The steady rate of the frames delivered so far; nullopt if they are too few.
   std::optional<platform::SteadyRate> steady_rate() const {
-    return platform::steady_rate(board_, deliveries_);
+    return platform::steady_rate(deliveries_, platform::allocation_period_frames(board_));
   }
 
  private:

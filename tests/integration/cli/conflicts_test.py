@@ -174,9 +174,8 @@ class Command(ConflictsTest):
         text = self.succeeds(run("conflicts", recorded, "--out", self.out))
         self.assertEqual(text, self.succeeds(run("conflicts", *self.scene, *PRELOADED, *SHARED)))
         self.assertIn("left_lut,bank0,left_pixel", (self.out / "conflicts.csv").read_text())
-        stats = json.loads((recorded / "stats.json").read_text())
-        stats["cycles"] += 1
-        (recorded / "stats.json").write_text(json.dumps(stats))
+        stats = (recorded / "stats.json").read_text()
+        (recorded / "stats.json").write_text(stats.replace('"contended_cycles": 0', '"contended_cycles": 1'))
         self.fails(run("conflicts", recorded), "repeated, it has other figures")
 
     def test_names_are_text(self):

@@ -4,6 +4,7 @@ import base64
 import csv
 import json
 import os
+import re
 import shutil
 import sqlite3
 
@@ -129,12 +130,102 @@ class Run(ReportTest):
         folder = self.run_of("b", *CAMERA_RATES, *SHARED, "--frames", "3", "--record")
         self.assertEqual(self.data(folder, "--quick")["run"]["recording"],
                          self.data(folder)["run"]["recording"])
-        stats = self.stats(folder)
-        (folder / "stats.json").write_text(json.dumps({**stats, "banks": stats["banks"][1:]}))
-        self.fails(run("report", folder, "--out", self.page, "--quick"), "stats.json has 7 banks, the board 8")
-        (folder / "stats.json").write_text(json.dumps(stats))
-        (folder / "rows.csv").write_text("frame\n")
-        self.fails(run("report", folder, "--out", self.page, "--quick"), "rows.csv:1: is not as")
+
+
+class RecordedFiles(ReportTest):
+    """Files of a run that are changed by one pattern each: where, and which value and rule are named."""
+
+    STATS = [
+        (r'"utilization": [\d.]+', '"utilization": 7.5', 11, "banks.0.utilization = 7.5: must be 0."),
+        (r'"utilization": [\d.]+', '"utilization": nan', 11, "must be as run writes it: "),
+        (r'"reads": \d+', '"reads": -1', 11, "banks.0.reads = -1: must be an integer of 0..9223372036854775807"),
+        (r'"reads": \d+', '"reads": 18446744073709551615', 11, "banks.0.reads = 18446744073709551615: must be"),
+        (r'"reads": \d+, ', "", 11, "banks.0.reads: missing"),
+        (r'"contended_cycles": \d+', '"contended_cycles": 99999', 11, "bank bank0: contended_cycles = 99999, but cycles"),
+        (r'"idle_cycles": \d+', '"idle_cycles": 1', 11, "bank bank0: busy + turnaround + idle cycles"),
+        (r'"name": "bank3"', '"name": "bank9"', 14, 'banks.3.name = "bank9": must be "bank3"'),
+        (r'    {"name": "bank3".*\n', "", 14, 'banks.3.name = "bank4": must be "bank3"'),
+        (r'"passed_cycles": \d+', '"passed_cycles": 1', 21, "port left_lut: sum of its states"),
+        (r'"grants": (\d+), "stall_cycles": 0', r'"grants": \g<1>0, "stall_cycles": 0', 22, "port right_lut: "),
+        (r'"by": "left_pixel"', '"by": "left_eye"', 29, 'blame.0.by = "left_eye": must be one of left_lut, '),
+        (r'"bank": "bank0"', '"bank": "bank7"', 29, 'blame.0.bank = "bank7": must be a bank that the port accesses'),
+        (r'"frames": 3', '"frames": 4', 5, "frames = 4: must be 3"),
+        (r'"cycles": \d+,\n', '"cycles": 5,\n', 6, "cycles = 5: must be "),
+        (r'"core": [\d.]+', '"core": 1', 8, "frames_per_second.core = 1: must be "),
+        (r'"core_limited_by": "[^"]*"', '"core_limited_by": "luck"', 9, 'bound.core_limited_by = "luck": must be one of'),
+        (r'"schema": 1,', '"schema": 1,\n  "extra": 1,', 3, "extra = 1: must be left out"),
+        (r'"schema": 1,', '"schema":  1,', 2, "must be as run writes it: keys in their order"),
+        (r'"dropped_busy": \d+', '"dropped_busy": 77', 44, "camera left: dropped_frames"),
+    ]
+    TABLES = [
+        ("conflicts.csv", r"\n0,0,0,", r"\n18446744073709551615,0,0,", 3,
+         "first_row = 18446744073709551615: must be an integer of 0..23"),
+        ("conflicts.csv", r"\n0,0,0,3", r"\n0,0,0,7", 3, "first_row = 0: must be the place of a tile, such as '0,0,0,3'"),
+        ("conflicts.csv", r"\n0,0,0,3,", r"\n0,0,32,35,", 3, "first_column = 32: must be an integer of 0..31"),
+        ("conflicts.csv", r"(\n0,0,0,3,.*)", r"\1\1", 4, "first_row = 0: must follow the line before"),
+        ("conflicts.csv", r"(?s)\n.*", "\n" + "".join(f",,,,9,port{i},bank0,host,1\n" for i in range(20000)), 2,
+         "port = port0: must be one of left_lut, right_lut, "),
+        ("conflicts.csv", r",bank0,left_pixel,", ",bank9,left_pixel,", 2, "bank = bank9: must be one of bank0, bank1, "),
+        ("conflicts.csv", r"(left_pixel),\d+\n", r"\1,1\n", None, "left_lut on bank0 because of left_pixel: stalls in the tiles"),
+        ("conflicts.csv", r"(?s)\n.*", "\n", 1, "left_lut on bank0 because of left_pixel: stalls in the tiles = 0"),
+        ("conflicts.csv", r"(?s).*", "", 1, "missing: the head 'first_row,"),
+        ("rows.csv", r"\n0,0,0,\d+", r"\n0,0,0,nan", 3, "cycles = nan: must be an integer"),
+        ("rows.csv", r"\n0,0,0,\d+", r"\n0,0,0,07", 3, "cycles = 07: must be an integer"),
+        ("rows.csv", r"\n0,1,1,", r"\n0,2,2,", 4, "first_row = 2: must be the rows '1,1' of the next line"),
+        ("rows.csv", r"\n0,0,0,(\d+)", r"\n0,0,0,\g<1>0", None, "recorded: cycles of frame 0"),
+        ("rows.csv", r"\n2,.*", "", None, "must be the rows"),
+        ("rows.csv", r"(?s)\n2,.*", "\n", None, "recorded: frames with rows = 2, but frames = 3"),
+        ("rows.csv", r"\n$", "", None, "must end with a newline"),
+        ("rows.csv", r"(?s).*", "frame\n", 1, "must be the head 'frame,first_row,"),
+        ("timeline.csv", r"(?s)\n.*", "\n" + "".join(f"wait,c{i},,,0,0,0,0,host\n" for i in range(200000)), 2,
+         "class = c0: must be one of ring, pair, core, result\n"),
+        ("timeline.csv", r"\ndrop,left,,0,0,", r"\ndrop,left,,0,5,", 2, "end_ps = 0: must be an integer of 5.."),
+        ("timeline.csv", r"not_armed", "tired", 2, "why = tired: must be one of not_armed, busy, partner"),
+        ("timeline.csv", r"(\nframe,cycles,.*),(\d+),0,", r"\1,1,0,", None, "recorded: words of results"),
+        ("latency.csv", r",(\d+)\n1,", r",\g<1>0\n1,", 2, "latency_ps = "),
+        ("latency.csv", r"\n2,.*", "", None, "recorded: latencies = 2, but frames = 3"),
+        ("latency.csv", r"\n1,", "\n2,", 3, "frame = 2: must be an integer of 1..1"),
+    ]
+
+    def setUp(self):
+        super().setUp()
+        self.run = self.run_of("run", *CAMERA_RATES, *SHARED, "--frames", "3", "--record")
+
+    def refuses_all(self, rows, *commands):
+        for name, pattern, text, line, rule in rows:
+            path = self.run / name
+            before = path.read_text()
+            after = re.sub(pattern, text, before, count=1)
+            self.assertNotEqual(after, before, pattern)
+            path.write_text(after)
+            at = f"{path}:" if line is None else f"{path}:{line}: "
+            for command in commands:
+                with self.subTest(name=name, pattern=pattern, command=command[0]):
+                    self.refused_in_one_line(run(*command), at, rule)
+            path.write_text(before)
+
+    def test_wrong_tables_are_refused(self):
+        self.refuses_all(self.TABLES, ["report", self.run, "--quick", "--out", self.page])
+        self.assertFalse(self.page.exists())
+
+    def test_wrong_figures_are_refused_by_every_command(self):
+        right = shutil.copytree(self.run, self.folder / "right")
+        rows = [("stats.json", *row) for row in self.STATS]
+        quick = ["report", self.run, "--quick", "--out", self.page]
+        self.refuses_all(rows, quick)
+        self.refuses_all(rows[:1], ["report", self.run, "--out", self.page], ["diff", right, self.run],
+                         ["conflicts", self.run], ["diagram", self.run, "--out", self.folder / "chart.svg"],
+                         ["report", right, self.run, "--out", self.page])
+
+    def test_the_tables_of_another_run_are_refused(self):
+        other = self.run_of("other", *CAMERA_RATES, *SHARED, "--frames", "2", "--record")
+        for name in ("stats.json", "rows.csv", "conflicts.csv", "timeline.csv", "latency.csv"):
+            mine = (self.run / name).read_bytes()
+            shutil.copy(other / name, self.run)
+            process = run("report", self.run, "--quick", "--out", self.page)
+            self.refused_in_one_line(process, f"{self.run / name}:")
+            (self.run / name).write_bytes(mine)
+
 
 class TwoRuns(ReportTest):
     def test_differences_of_rows_add_up(self):

@@ -66,6 +66,34 @@ TEST_F(PreloadedSimulationTest, AdvancesInSlicesUntilTheLastFrame) {
   EXPECT_EQ(simulation->last().number, 9U);
 }
 
+// Notes how far the simulation is when the first cycle of a window is observed.
+struct TimeOfWindow : fpga::CycleObserver, platform::BusObserver {
+  explicit TimeOfWindow(const runs::PreloadedSimulation& observed) : simulation(observed) {}
+  void cycle(const fpga::CoreCycle& /*cycle*/) override {
+    if (!cycles) cycles = simulation.cycles();
+  }
+  void burst(const platform::BusBurst& /*burst*/) override {}
+  void level(const platform::QueueLevel& /*level*/) override {}
+
+  const runs::PreloadedSimulation& simulation;
+  std::optional<std::uint64_t> cycles;
+};
+
+// So that an interrupt is heard within a frame. A slice has 2,000,000 cycles, the frame 34 million.
+TEST_F(PreloadedSimulationTest, ComputesALongFrameInManySlicesAtFidelityFast) {
+  board = platform::load_board("fpl2003", {"image.width=64", "image.height=64", "matcher.window=31",
+                                           "matcher.disparities=254", "matcher.units=1"});
+  tables = platform::identity_tables(board);
+  simulation.emplace(board, tables, pairs, 1, binder, fpga::Fidelity::kTiming);
+  simulation->record_conflicts();
+  TimeOfWindow observer(*simulation);
+  simulation->trace({{}, fpga::CycleWindow::Unit::kCycles, 20'000'000, 20'000'000}, observer, observer);
+  while (!simulation->finished()) simulation->advance();
+  EXPECT_GT(simulation->statistics().frame_cycles.at(0), 30'000'000U);
+  ASSERT_TRUE(observer.cycles);
+  EXPECT_LE(*observer.cycles, 22'000'000U);
+}
+
 TEST_F(PreloadedSimulationTest, AbandonsTheFrameUnderWayToEndEarly) {
   build();
   simulation->advance();

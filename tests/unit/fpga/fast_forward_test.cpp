@@ -357,6 +357,23 @@ TEST(FastForward, StepsFewCyclesOfAFrameOnceItsTransitionsAreRecorded) {
   }
 }
 
+// A group of four columns has 31,496 cycles, so that no whole one fits between two stops.
+TEST(FastForward, StepsFewCyclesOfASlotThatTheMatcherTakesLongFor) {
+  Setting setting = bank_for_each_port(64, 8);
+  setting.core.window = 31;
+  setting.core.disparities = 254;
+  setting.core.units = 1;
+  Core stepped(setting, Core::Way::kStepped);
+  Core ahead(setting, Core::Way::kAhead);
+  for (Core* core : {&stepped, &ahead}) core->start(0);
+  while (!ahead.done()) {
+    ahead.advance(ahead.cycle() + 10'000);
+    stepped.advance(ahead.cycle());
+    ASSERT_EQ(ahead.figures(), stepped.figures());
+  }
+  EXPECT_LT(20 * (ahead.cycle() - ahead.skipped_cycles()), ahead.cycle());
+}
+
 // The number of cycles that are stepped in each of two frames beside bursts of as many words to a bank. They
 // begin in many phases of a group.
 std::vector<std::uint64_t> stepped_beside_bursts(std::size_t bank, int words) {

@@ -41,18 +41,18 @@ TEST(RecordingData, MapsOfManyCausesHaveLargerTilesWithTheSameSums) {
   for (const int causes : {1, 5, 12}) {
     RecordingData data(board, false);
     data.add("rows.csv", rows_csv_head(board));
-    data.add("conflicts.csv", conflicts_csv_head());
+    data.add("conflicts.csv", conflicts_csv_head() + ",,,,1000,left_lut,bank0,host capture,1000\n");
     std::uint64_t all = 0;
     for (int row = 0; row < 480; ++row) {
       for (int column = 0; column < 640; column += 4) {
         const int cycles = 1 + (7 * row + column) % 50;
         all += static_cast<std::uint64_t>(cycles);
         for (int cause = 0; cause < causes; ++cause)
-          data.add("conflicts.csv", fmt::format("{},{},{},{},99,left_lut,bank{},host capture,{}\n", row, row,
-                                                column, column + 3, cause, cycles));
+          data.add("conflicts.csv",
+                   fmt::format("{},{},{},{},99,left_lut,bank{},{},{}\n", row, row, column, column + 3,
+                               cause / 2, cause % 2 == 0 ? "host capture" : "turnaround", cycles));
       }
     }
-    data.add("conflicts.csv", ",,,,99,left_lut,bank0,host capture,1000\n");
     const Json json = data.json();
     const Json& tiles = json["tiles"];
     const std::size_t size = tiles["columns"].get<std::size_t>() * tiles["rows"].get<std::size_t>();

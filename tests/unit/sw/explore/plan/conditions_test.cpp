@@ -123,6 +123,8 @@ TEST(Conditions, AreRefusedWithTheReason) {
         "(SELECT 1 FROM pragma_table_info('x')) > 0", "(SELECT 1 FROM pragma_database_list) > 0",
         "(SELECT value FROM json_each('[1]')) > 0",
         "(WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n) SELECT i FROM n) > 0"}},
+      {"printf() may take any time", {"printf('%.*c', 1000000000, 'x') = 'x'", "PRINTF('') = 'x'"}},
+      {"format() may take any time", {"format('%.*c', 1000000000, 'x') = 'x'"}},
       {"match() depends on more than its arguments", {"board.name MATCH 'fpl*'"}},
       {"", {"1 -- a comment", "1 /* a comment */", "(1)", "board.name <> ')' AND 1"}}};
   for (const auto& [reason, texts] : refusals) {
@@ -143,14 +145,28 @@ TEST(Conditions, AreRefusedInOneShortLine) {
   EXPECT_LT(reason.size(), 100U);
 }
 
+// Without the limits they would take a GB, or 10^8 rows.
 TEST(Conditions, ReportWhyTheyCannotBeComputedForAPoint) {
+  const std::string rows = "(VALUES (1), (2), (3), (4), (5), (6), (7), (8), (9), (10)) AS ";
+  const std::string join = "EXISTS (SELECT 1 FROM " + rows + "a, " + rows + "b, " + rows + "c, " + rows +
+                           "d, " + rows + "e, " + rows + "f, " + rows + "g, " + rows +
+                           "h WHERE a.column1 + b.column1 + " +
+                           "c.column1 + d.column1 + e.column1 + f.column1 + g.column1 + h.column1 = 0)";
   const std::vector<std::pair<std::string, std::string>> failures = {
       {"abs(-9223372036854775808) > 0", "integer overflow"},
       {"json('{bad') = 1", "malformed JSON"},
+      {"length(hex(zeroblob(100000000))) > 0", "a text must be at most 20000 bytes"},
+      {join, "must be computed within 1000000 steps of SQLite"},
       {"abs(image.width - 9223372036854775807 - 641) > 0", "integer overflow"}};
   for (const auto& [text, reason] : failures)
     EXPECT_EQ(test::message_of([&text = text] { conditions({text}).hold(point()); }),
               "plan.yaml:3:9: where = " + text + ": " + reason);
+}
+
+TEST(Conditions, LimitTheStepsOfEachPointAlone) {
+  Conditions compiled = conditions({"image.width > 0"});
+  const std::vector<platform::BoardValue> values = point();
+  for (int i = 0; i < 20'000; ++i) ASSERT_TRUE(compiled.hold(values));
 }
 
 }  // namespace

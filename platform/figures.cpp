@@ -1,0 +1,174 @@
+#include "platform/figures.h"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "models/fpga/core_ports.h"
+#include "models/memory/bank_traits.h"
+#include "platform/config/board_area.h"
+#include "platform/config/buffer_layout.h"
+
+namespace stereotlm::platform {
+namespace {
+
+// The indices of the banks that a port accesses, in the order in which the frames use them.
+std::vector<std::size_t> banks_of(const BoardConfig& board, const fpga::CorePort& port) {
+  std::vector<std::size_t> banks;
+  for (const PlacedBuffer& buffer : buffers(board)) {
+    if (std::string(name_of(buffer.buffer)) != port.buffer) continue;
+    std::size_t bank = 0;
+    while (board.banks[bank].name != buffer.bank) ++bank;
+    banks.push_back(bank);
+  }
+  return banks;
+}
+
+std::uint64_t sum_of(const std::vector<std::uint64_t>& numbers) {
+  return std::accumulate(numbers.begin(), numbers.end(), std::uint64_t{0});
+}
+
+constexpr double kPsPerSecond = 1e12;
+constexpr double kPsPerMs = 1e9;
+
+double seconds(std::uint64_t ps) { return static_cast<double>(ps) / kPsPerSecond; }
+
+// Percentiles by nearest rank, in milliseconds.
+Percentiles percentiles(std::vector<std::uint64_t> values_ps) {
+  std::sort(values_ps.begin(), values_ps.end());
+  const auto rank = [&values_ps](std::size_t percent) {
+    const std::size_t place = (values_ps.size() * percent + 99) / 100;
+    return static_cast<double>(values_ps[std::max<std::size_t>(place, 1) - 1]) / kPsPerMs;
+  };
+  return {rank(0), rank(50), rank(95), rank(99), rank(100)};
+}
+
+std::uint64_t latency_ps(const Delivery& delivery) { return delivery.host_ps - delivery.capture_ps; }
+
+}  // namespace
+
+std::optional<SteadyRate> steady_rate(const std::vector<Delivery>& deliveries, std::uint64_t turn) {
+  if (deliveries.size() < 2 * turn) return std::nullopt;
+  SteadyRate steady;
+  steady.frames = (deliveries.size() - turn) / turn * turn;
+  const auto before = deliveries.end() - 1 - static_cast<std::ptrdiff_t>(steady.frames);
+  const auto [least, greatest] =
+      std::minmax_element(before, deliveries.end(),
+                          [](const Delivery& a, const Delivery& b) { return latency_ps(a) < latency_ps(b); });
+  const std::uint64_t window_ps = deliveries.back().host_ps - before->host_ps;
+  steady.frames_per_second = static_cast<double>(steady.frames) / seconds(window_ps);
+  steady.uncertainty = steady.frames_per_second *
+                       static_cast<double>(latency_ps(*greatest) - latency_ps(*least)) /
+                       static_cast<double>(window_ps);
+  return steady;
+}
+
+void derive_figures(const BoardConfig& board, Statistics& statistics) {
+  const std::uint64_t all_cycles = sum_of(statistics.frame_cycles);
+  statistics.board = board.name;
+  statistics.frames = statistics.frame_cycles.size();
+  statistics.cycles =
+      all_cycles - statistics.frames * static_cast<std::uint64_t>(board.fpga.pipeline_latency_cycles);
+  const auto cycles = static_cast<double>(statistics.cycles);
+  for (std::size_t index = 0; index < board.banks.size(); ++index) {
+    BankStatistics& bank = statistics.banks[index];
+    bank.name = board.banks[index].name;
+    bank.ports = memory::traits_of(board.banks[index].kind).ports;
+    if (statistics.cycles == 0) continue;
+    bank.utilization = static_cast<double>(bank.busy_cycles) / cycles;
+    bank.megabytes_per_second =
+        4.0 * static_cast<double>(bank.reads + bank.writes) * board.fpga.clock_mhz / cycles;
+  }
+  for (std::size_t port = 0; port < fpga::kPortCount; ++port)
+    statistics.ports[port].name = fpga::kPorts[port].name;
+  if (statistics.frames > 0) {
+    statistics.frames_per_second.core =
+        board.fpga.clock_mhz * 1e6 * static_cast<double>(statistics.frames) / static_cast<double>(all_cycles);
+  }
+  statistics.area = area_of(board);
+}
+
+void derive_delivery_figures(const std::vector<Delivery>& deliveries, std::uint64_t turn,
+                             Statistics& statistics) {
+  statistics.frames_per_second.system =
+      static_cast<double>(deliveries.size()) / seconds(deliveries.back().host_ps);
+  statistics.frames_per_second.steady = steady_rate(deliveries, turn);
+  std::vector<std::uint64_t> latencies_ps;
+  latencies_ps.reserve(deliveries.size());
+  for (const Delivery& delivery : deliveries) latencies_ps.push_back(latency_ps(delivery));
+  statistics.computer->capture_to_host_ms = percentiles(std::move(latencies_ps));
+}
+
+void audit_core(const Statistics& statistics, Audit& audit) {
+  std::map<std::string, std::uint64_t> blamed;  // by the port's name
+  for (const BlameRow& row : statistics.blame) blamed[row.port] += row.cycles;
+  for (const PortStatistics& port : statistics.ports) {
+    const std::string name = "port " + port.name;
+    audit.equal(name + ": sum of its states",
+                port.grants + port.stall_cycles + port.passed_cycles + port.idle_cycles +
+                    port.blocked_cycles + port.starved_cycles,
+                "cycles", statistics.cycles);
+    audit.equal(name + ": stall_cycles", port.stall_cycles, "blamed by the arbiters", blamed[port.name]);
+  }
+  for (const BankStatistics& bank : statistics.banks) {
+    audit.equal("bank " + bank.name + ": busy + turnaround + idle cycles",
+                bank.busy_cycles + bank.turnaround_cycles + bank.idle_cycles, "cycles", statistics.cycles);
+  }
+}
+
+void audit_computer(const ComputerStatistics& computer, Audit& audit) {
+  audit.at_most("pci: busy_clocks", computer.pci_busy_clocks, "clocks", computer.pci_clocks);
+  audit.at_most("bridge: local_busy_clocks", computer.local_busy_clocks, "local_clocks",
+                computer.local_clocks);
+  for (const CameraStatistics& camera : computer.cameras) {
+    audit.equal("camera " + camera.name + ": frames", camera.frames, "captured and dropped",
+                camera.captured_frames + camera.dropped_frames);
+    audit.equal("camera " + camera.name + ": dropped_frames", camera.dropped_frames, "sum of its reasons",
+                camera.dropped_not_armed + camera.dropped_busy + camera.dropped_by_partner);
+  }
+}
+
+std::vector<std::vector<std::uint64_t>> core_accesses(const BoardConfig& board,
+                                                      const Statistics& statistics) {
+  std::vector<std::vector<std::uint64_t>> accesses(fpga::kCorePortCount,
+                                                   std::vector<std::uint64_t>(board.banks.size()));
+  const std::uint64_t frames = statistics.frames;
+  if (frames == 0) return accesses;
+  for (std::size_t port = 0; port < fpga::kCorePortCount; ++port) {
+    const std::vector<std::size_t> banks = banks_of(board, fpga::kPorts[port]);
+    for (std::size_t entry = 0; entry < banks.size(); ++entry) {
+      const std::uint64_t uses = frames / banks.size() + (entry < frames % banks.size() ? 1 : 0);
+      accesses[port][banks[entry]] += statistics.ports[port].grants / frames * uses;
+    }
+  }
+  return accesses;
+}
+
+void audit_accesses(const BoardConfig& board, const Statistics& statistics, Audit& audit) {
+  const std::vector<std::vector<std::uint64_t>> accesses = core_accesses(board, statistics);
+  for (std::size_t port = 0; port < fpga::kCorePortCount; ++port) {
+    audit.equal("port " + statistics.ports[port].name + ": grants, equally many in each frame",
+                sum_of(accesses[port]), "grants", statistics.ports[port].grants);
+  }
+  std::uint64_t of_host = 0;
+  for (std::size_t index = 0; index < board.banks.size(); ++index) {
+    const BankStatistics& bank = statistics.banks[index];
+    std::uint64_t of_core = 0;
+    for (const std::vector<std::uint64_t>& of_port : accesses) of_core += of_port[index];
+    audit.at_most("bank " + bank.name + ": accesses of the core's ports", of_core, "reads + writes",
+                  bank.reads + bank.writes);
+    audit.at_most("bank " + bank.name + ": reads + writes", bank.reads + bank.writes,
+                  "accesses that fit into busy_cycles",
+                  bank.busy_cycles * static_cast<std::uint64_t>(bank.ports));
+    audit.at_most("bank " + bank.name + ": contended_cycles", bank.contended_cycles, "cycles",
+                  statistics.cycles);
+    of_host += bank.reads + bank.writes - of_core;
+  }
+  audit.equal("port host: grants", statistics.ports[fpga::kHostPort].grants,
+              "accesses of the banks that are not of the core", of_host);
+}
+
+}  // namespace stereotlm::platform
