@@ -99,14 +99,7 @@ Json settings_of(const BoardConfig& board) {
   return all;
 }
 
-// The accesses of the host to a bank, as a share of the cycles of the frames.
-double host_share(const std::string& bank, const BoardConfig& board, const ChartTraffic& traffic) {
-  const ChartLink link{std::string("port-") + fpga::kPorts[fpga::kHostPort].name, "bank-" + bank};
-  const auto rate = traffic.megabytes_per_second.find(link.id());
-  return rate == traffic.megabytes_per_second.end() ? 0 : rate->second / (4 * board.fpga.clock_mhz);
-}
-
-Json banks_of(const BoardConfig& board, const ChartTraffic& traffic) {
+Json banks_of(const BoardConfig& board) {
   Json all = Json::array();
   for (const platform::BankConfig& bank : board.banks) {
     const memory::BankTraits& traits = memory::traits_of(bank.kind);
@@ -119,7 +112,6 @@ Json banks_of(const BoardConfig& board, const ChartTraffic& traffic) {
                    {"kind", traits.name},
                    {"words", bank.words},
                    {"accesses_per_cycle", traits.ports},
-                   {"host_share", host_share(bank.name, board, traffic)},
                    {"buffers", std::move(buffers)}});
   }
   return all;
@@ -197,33 +189,19 @@ std::set<std::string> banks_used(const BoardConfig& board) {
   return banks;
 }
 
-std::uint64_t words_in(const std::string& bank, const BoardConfig& board) {
-  std::uint64_t words = 0;
-  for (const platform::PlacedBuffer& buffer : platform::buffers(board)) {
-    if (buffer.bank == bank) words += buffer_words(buffer, board.image);
-  }
-  return words;
-}
-
-// Where a changed board uses banks that the board does not use: the banks of the board that can be taken for
-// them, and how many banks the board lacks.
+// Where a changed board uses banks that the board does not use: those that the board has, and how many it lacks.
 void add_banks_taken(const BoardConfig& board, const BoardConfig& changed, Json& data) {
   const std::set<std::string> used = banks_used(board);
   std::vector<std::string> idle;
   std::size_t lacking = 0;
-  for (const platform::BankConfig& bank : changed.banks) {
-    if (banks_used(changed).count(bank.name) == 0 || used.count(bank.name) > 0) continue;
-    const auto can_replace = [&](const platform::BankConfig& own) {
-      if (own.name == bank.name) return true;
-      return used.count(own.name) == 0 && std::find(idle.begin(), idle.end(), own.name) == idle.end() &&
-             own.kind == bank.kind && own.turnaround_cycles == bank.turnaround_cycles &&
-             static_cast<std::uint64_t>(own.words) >= words_in(bank.name, changed);
-    };
-    const auto own = std::find_if(board.banks.begin(), board.banks.end(), can_replace);
-    if (own == board.banks.end()) {
-      ++lacking;
+  for (const std::string& bank : banks_used(changed)) {
+    if (used.count(bank) > 0) continue;
+    const bool is_there = std::any_of(board.banks.begin(), board.banks.end(),
+                                      [&](const platform::BankConfig& own) { return own.name == bank; });
+    if (is_there) {
+      idle.push_back(bank);
     } else {
-      idle.push_back(own->name);
+      ++lacking;
     }
   }
   data["idle_banks"] = idle;
@@ -259,7 +237,7 @@ Json run_data(const runs::RecordedRun& run, const platform::Tables& tables) {
                {"config_yaml", read("config.yaml")},
                {"options", Json::parse(run.run_json)},
                {"settings", settings_of(board)},
-               {"banks", banks_of(board, traffic)},
+               {"banks", banks_of(board)},
                {"ports", ports_of(board)},
                {"bounds", bounds_of(board, tables, run.options.source == "camera")},
                {"area", area_data(board)},

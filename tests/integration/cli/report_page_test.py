@@ -611,15 +611,18 @@ class Answers(PageTest):
         self.assertIn("block RAMs 10 of 50  20.0 %", uses)
         self.assertIn("multipliers 10 of 200  5.0 %", uses)
 
-    def test_the_bound_says_what_it_leaves_out(self):
-        def change(run):
-            run["stats"]["bound"]["system_limited_by"] = limit
-            run["banks"][2]["host_share"] = share
+    def test_the_limiter_is_that_of_explain(self):
+        self.opened(core())
+        explained = json.loads(self.succeeds(run("explain", core() / "config.yaml", *PRELOADED, "--json")))
+        limiter = explained["limited_by"]
+        self.assertTrue(self.answer("What limits?").startswith(limiter[0].upper() + limiter[1:] + "."))
 
-        host = "The host takes 6.1 % of the cycles of bank2, which the bound leaves out"
-        for limit, share, has_host in (("bank bank2", 0.061, True), ("bank bank2", 0, False), ("matcher", 0.061, False)):
-            self.opened(computer(), change)
-            self.assertEqual(host in self.answer("What limits?"), has_host)
+    def test_the_first_change_can_be_pasted_and_its_conditions_are_stated(self):
+        self.opened(core())
+        answer = self.answer("What to change first?")
+        (step,) = [step for step in data_of(page_of(core()))["run"]["knobs"]["steps"] if step["knob"] == "a bank more"]
+        self.assertIn(f"To try it: --set '{step['sets'][0]}'.", answer)
+        self.assertIn("Only changes that keep the disparities are named, and that gain 1 % or more.", answer)
 
     def test_dropped_frames_are_no_fault(self):
         def change(run):

@@ -11,6 +11,7 @@ function resourcesOf(run) {
   const clock = 1e6 * run.settings.find(setting => setting.key === 'fpga.clock_mhz').value;
   const all = new Map();
   run.bounds.core.forEach((resources, frame) => resources.forEach(({resource, cycles}) => {
+    if (run.bounds.computer && resource.startsWith('bank ')) return;  // there with the accesses of the host
     const known = all.get(resource);
     if (!known || cycles > known.cycles) all.set(resource, {resource, cycles, frame, fps: clock / cycles});
   }));
@@ -61,7 +62,8 @@ export function addBounds(page, run) {
     id: 'bounds',
     title: `${withVerb(by, 'set')} the bound of ${rate(limit)} frames/s`.replace(/^the /, 'The '),
     draw,
-    note: 'The frames a second that each resource alone would allow. Accesses of the host are left out.' +
+    note: 'The frames a second that each resource alone would allow' +
+        (run.bounds.computer ? '. Of banks and buses all masters count.' : '.') +
         (isMean ?
              ` Frames differ: a resource has the frame in which it allows least, and the bound is the mean ${
                  turn > 1 ? `over ${turn} frames` : 'over all frames'} of the slowest resource of each.` :

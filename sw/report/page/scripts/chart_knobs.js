@@ -109,7 +109,7 @@ export function addKnobs(page, run) {
               [
                 stepText(step), `${rate(step.frames_per_second)} frames/s, ${kind} (${gainText(gain)})`,
                 `takes ${priceText(step, board)}`, step.changes_disparities && 'changes the disparities',
-                step.loses_pixels && 'captures lose pixels'
+                step.loses_pixels && 'captures lose pixels', ...step.sets.map(set => `--set '${set}'`)
               ].filter(Boolean)));
       const cells = [price.slices, price.blockRams].map(each => each ? signed(each, whole) : '0');
       cells.push(newPartsOf(step).join(', ') || 'none');
@@ -156,14 +156,14 @@ export function addKnobs(page, run) {
         () => [
             [
               'knob', 'from', 'to', 'frames_per_second', 'gain_percent', 'slices', 'block_rams',
-              'multipliers', 'banks_used', 'new_banks', 'changes_disparities', 'loses_pixels'
+              'multipliers', 'banks_used', 'new_banks', 'changes_disparities', 'loses_pixels', 'sets'
             ],
             steps.map(
                 step =>
                     [step.knob, step.from, step.to, step.frames_per_second,
                      100 * (step.frames_per_second / now - 1), step.area.slices, step.area.block_rams,
                      step.area.multipliers, step.banks_used, step.new_banks, String(step.changes_disparities),
-                     String(step.loses_pixels)])]
+                     String(step.loses_pixels), step.sets.join(' ')])]
   });
 }
 

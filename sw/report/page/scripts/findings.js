@@ -102,14 +102,11 @@ function whatLimits(run) {
     bridge: () => 'The local bus behind the bridge',
   }[kind]?.() ??
       by;
-  const hostShare = kind === 'bank' ? run.banks.find(each => each.name === name).host_share : 0;
+  const limiter = run.knobs?.board.limited_by;
   return [
-    `${because}.`, `${reached}.`,
-    hostShare > 0 &&
-        `The host takes ${percent(hostShare)} of the cycles of ${
-            name}, which the bound leaves out: it counts the accesses of the core only.`,
+    limiter ? `${capital(limiter)}.` : `${because}.`, `${reached}.`,
     computer && droppedText(run),
-    !computer && share < 0.99 && run.stats.blame.length === 0 &&
+    !limiter && !computer && share < 0.99 && run.stats.blame.length === 0 &&
         'No port waits: the matcher waits for the queue of results, which the bound leaves out.',
     lostPixels(run) > 0 &&
         `Captures lose ${whole(lostPixels(run))} pixels: their FIFOs are full before the ` +
@@ -249,8 +246,11 @@ function whatFirst(run) {
         gainText(gain(step))})${limit ? `, where ${withVerb(limit, 'limit')}` : ''}${
         step.loses_pixels ? ', and loses pixels too' : ''}`;
   };
+  const sets = step => step.sets.map(set => `--set '${set}'`).join(' ');
   return [
-    `${text(first)}${cures ? ', and loses no pixels' : ''}.`,
+    `${text(first)}${cures ? ', and loses no pixels' : ''}. To try it: ${sets(first)}.`,
+    'Only changes that keep the disparities are named, and that gain 1 % or more' +
+        `${cures ? ' or end the loss of pixels' : ''}.`,
     !largest || largest === first ?
         null :
         `The largest gain: ${text(largest)}. It needs ${priceText(largest, board)}.`
