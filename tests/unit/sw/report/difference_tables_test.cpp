@@ -38,7 +38,7 @@ std::string words(const std::string& text) {
 TEST(DiffVerdict, TakesNoDifferenceWithinTheUncertaintyForAGain) {
   const auto stats = [](double steady, double uncertainty) {
     nlohmann::ordered_json json = {
-        {"frames", 10}, {"cycles", 1000}, {"blame", nlohmann::ordered_json::array()}};
+        {"frames", 2}, {"frame_cycles", {500, 500}}, {"blame", nlohmann::ordered_json::array()}};
     json["frames_per_second"] = {{"core", 40}, {"steady", steady}, {"steady_uncertainty", uncertainty}};
     return json;
   };
