@@ -213,7 +213,7 @@ std::string text_of(const BoardBounds& all) {
   for (const Group& group : all.groups) text += lines_of(group, all);
   text += fmt::format("the whole computer, with all masters\n  {:<16} {:>14}\n", "resource", "frames/s");
   for (const platform::RateBound& part : all.computer)
-    text += fmt::format("  {:<16} {:>14.3f}\n", part.resource, part.frames_per_second);
+    text += fmt::format("  {:<16} {:>14.3f}\n", report::resource_text(part.resource), part.frames_per_second);
   text += fmt::format("bound of the core: {:.3f} frames/s, limited by {}\n", all.bound.core,
                       report::resource_text(all.bound.core_limited_by));
   text += fmt::format("bound of the computer: {:.3f} frames/s, limited by {}\n", *all.bound.system,

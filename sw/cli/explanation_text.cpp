@@ -92,7 +92,7 @@ class ExplanationText {
         fmt::format("  {:>12} {:>8} {:>14}  {}\n", "headroom %", "busy %", "bound frames/s", "resource");
     for (auto first = all.begin(); first != all.end();) {
       const std::string kind = first->name.substr(0, first->name.find(' ') + 1);
-      std::string label = first->name;
+      std::string label = report::resource_text(first->name);
       auto next = first + 1;
       for (; next != all.end() && next->headroom_percent == first->headroom_percent && !kind.empty() &&
              next->busy_percent == first->busy_percent && next->name.rfind(kind, 0) == 0 &&

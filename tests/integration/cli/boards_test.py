@@ -204,7 +204,7 @@ class Bounds(ProgramTest):
 
     def test_names_the_part_of_the_computer_that_limits(self):
         parts, last = self.around_the_board()
-        banks = [f"bank bank{number}" for number in range(8)]
+        banks = [f"bank{number}" for number in range(8)]
         self.assertEqual((list(parts), parts["camera"]), (["camera", "pci", "bridge", *banks], 29.97))
         self.assertEqual(last, "bound of the computer: 18.596 frames/s, limited by matcher")
         limits = {"name=fast": "camera", "pci.clock_mhz=1": "pci", "bridge.local_clock_mhz=1": "bridge"}
@@ -289,14 +289,17 @@ class Explain(ProgramTest):
         bounds = self.succeeds(run("bounds", "fpl2003", *SMALL, *SHARED))
         found = {}
         headrooms = []
-        resources = re.findall(r"^ +([\d.]+) +([\d.]+) +([\d.]+)  ((?:port|bank|matcher).*)$", text, re.M)
+        resources = re.findall(r"^ +([\d.]+) +([\d.]+) +([\d.]+)  ((?:port |bank\d|matcher).*)$", text, re.M)
         self.rate(*PRELOADED, *SHARED)
         stats = self.stats()
         busy = {f"bank {bank['name']}": 100 * bank["utilization"] for bank in stats["banks"]}
         for port in stats["ports"]:
             busy[f"port {port['name']}"] = 100 * (port["grants"] + port["passed_cycles"]) / stats["cycles"]
         for headroom, percent, rate, names in resources:
-            kind, _, names = re.sub(r", in frame \d of 2", "", names).partition(" ")
+            names = re.sub(r", in frame \d of 2", "", names)
+            if names.startswith("bank"):
+                names = f"bank {names}"
+            kind, _, names = names.partition(" ")
             headrooms.append(float(headroom))
             for name in names.split(", "):
                 if kind != "matcher":
@@ -336,7 +339,8 @@ class Explain(ProgramTest):
                 "bridge": stats["bridge"]["local_busy_clocks"] / stats["bridge"]["local_clocks"],
                 "camera": stats["cameras"][0]["captured_frames"] / stats["cameras"][0]["frames"]}
         for resource in ("matcher", "camera", "pci", "bridge", "bank bank0"):
-            ((headroom, percent),) = re.findall(rf"(?m)^ +([\d.]+) +([\d.]+) +[\d.]+  {resource}(?:,.*)?$", text)
+            name = resource.removeprefix("bank ")
+            ((headroom, percent),) = re.findall(rf"(?m)^ +([\d.]+) +([\d.]+) +[\d.]+  {name}(?:,.*)?$", text)
             self.assertAlmostEqual(float(headroom), 100 * (1 - rate / limits[resource]), delta=0.006, msg=resource)
             if resource in busy:
                 self.assertAlmostEqual(float(percent), 100 * busy[resource], delta=0.0051)

@@ -177,10 +177,10 @@ class Run(CalibrateTest):
         with_tables = self.succeeds(run("bounds", "fpl2003", "--calibration", self.new)).splitlines()
         # Such entries are not read.
         changed = [line.split()[:2] for line, other in zip(with_tables, plain) if line != other]
-        pictures = [["bank0,", "bank1"], ["bank2,", "bank3"], *(["bank", f"bank{number}"] for number in range(4))]
-        self.assertLessEqual({tuple(each) for each in changed}, {tuple(each) for each in pictures})
-        self.assertIn(["bank0,", "bank1"], changed)
-        self.assertIn(["bank", "bank0"], changed)
+        names = [each[0] for each in changed]
+        self.assertLessEqual(set(names), {"bank0,", "bank2,", "bank0", "bank1", "bank2", "bank3"})
+        self.assertIn("bank0,", names)
+        self.assertIn("bank0", names)
 
     def test_says_whether_the_pictures_are_of_the_rig(self):
         _, _, _, rows = read_png(self.pictures / "scene_right.png")
