@@ -181,9 +181,9 @@ PciDemand pci_demand(const BoardConfig& board, bool whole_pictures, std::optiona
   return demand;
 }
 
-// The load makes its transfers on time, or it requests the bus all the time. In the latter case it gets a burst
-// between any two bursts of another master, and the latency timer cuts all bursts. Of the bursts of the load in
-// a frame one is left out, because frames and bursts need not begin together.
+// Either the bus serves every transfer of the load when it is due. Or the load has a backlog and requests all the
+// time: then it gets a burst between any two bursts of another master, and the latency timer cuts all bursts. A
+// frame may see both. At most one transfer that is due and one that is cut lie partly outside of it.
 double pci_rate(const BoardConfig& board, bool whole_pictures) {
   const double hz = board.pci.clock_mhz * 1e6;
   const double alone = static_cast<double>(pci_demand(board, whole_pictures, std::nullopt).clocks);
@@ -192,13 +192,16 @@ double pci_rate(const BoardConfig& board, bool whole_pictures) {
   const int timer = board.pci.latency_timer_clocks;
   const double wait_clocks = std::floor(load.access_us * board.pci.clock_mhz);
   const double data_clocks = std::ceil(load.burst_words / (board.pci.width_bits / 32.0));
-  const double cut_burst = 2 + std::min(wait_clocks + data_clocks, std::max<double>(timer, wait_clocks + 1));
+  constexpr double kAddressAndIdle = 2;
+  const double pieces = std::ceil(data_clocks / std::max(timer - wait_clocks, 1.0));
+  const double cut_transfer = pieces * (kAddressAndIdle + wait_clocks) + data_clocks;
   const PciDemand cut = pci_demand(board, whole_pictures, timer);
-  const double contended = static_cast<double>(cut.clocks) + static_cast<double>(cut.bursts - 1) * cut_burst;
-  const double whole_burst = 2 + wait_clocks + data_clocks;
-  const double share = whole_burst / (load.interval_us * board.pci.clock_mhz);
-  const double on_time = share < 1 ? std::max(alone, (alone - whole_burst) / (1 - share)) : contended;
-  return hz / std::min(on_time, contended);
+  const double backlog =
+      static_cast<double>(cut.clocks) + static_cast<double>(cut.bursts) * cut_transfer / pieces;
+  const double transfer = kAddressAndIdle + wait_clocks + data_clocks;
+  const double share = transfer / (load.interval_us * board.pci.clock_mhz);
+  const double clocks = share < 1 ? std::min(alone / (1 - share), backlog) - transfer / (1 - share) : backlog;
+  return hz / std::max(alone, clocks - cut_transfer);
 }
 
 double bridge_rate(const BoardConfig& board, bool whole_pictures) {

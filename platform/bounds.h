@@ -65,8 +65,9 @@ Bound core_bound(const BoardConfig& board, const Tables& tables);
 // |----------|--------------------------------------------------------------------------------------------|
 // | camera   | Its frame clock. On demand: the time from the first to the last pixel of a frame.          |
 // | pci      | The clocks of the words of a pair and a result, and of the fewest bursts that hold them.   |
-// |          | Of pci.load, if it begins at time 0, the bursts that the bus cannot refuse.                |
-// | bridge   | The same for the local bus, which moves at most one word per cycle of the FPGA.            |
+// |          | Plus the bursts that pci.load gets at least, if its first request is at time 0.            |
+// | bridge   | The clocks of the local bus for the words of a pair and a result. It moves at most one     |
+// |          | word per cycle of the FPGA.                                                                |
 // | bank B   | One cycle per access of the core, of the pictures that are written and of the results that |
 // |          | are read back; with separate ports one cycle per read or per write, whichever are more.    |
 //

@@ -50,10 +50,14 @@ std::uint64_t latency_ps(const Delivery& delivery) { return delivery.host_ps - d
 
 }  // namespace
 
+std::uint64_t steady_frames(std::uint64_t frames, std::uint64_t turn) {
+  return frames < 2 * turn ? 0 : (frames - turn) / turn * turn;
+}
+
 std::optional<SteadyRate> steady_rate(const std::vector<Delivery>& deliveries, std::uint64_t turn) {
-  if (deliveries.size() < 2 * turn) return std::nullopt;
   SteadyRate steady;
-  steady.frames = (deliveries.size() - turn) / turn * turn;
+  steady.frames = steady_frames(deliveries.size(), turn);
+  if (steady.frames == 0) return std::nullopt;
   const auto before = deliveries.end() - 1 - static_cast<std::ptrdiff_t>(steady.frames);
   const auto [least, greatest] =
       std::minmax_element(before, deliveries.end(),

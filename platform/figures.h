@@ -24,6 +24,10 @@ struct Delivery {
   std::uint64_t host_ps = 0;     // time at which the host has handled the end of its read-back
 };
 
+// The frames in the window of the steady rate of `frames` deliveries; 0: too few. `turn`:
+// allocation_period_frames().
+std::uint64_t steady_frames(std::uint64_t frames, std::uint64_t turn);
+
 // The steady rate of a run with these deliveries; nullopt if they are too few. `turn`:
 // allocation_period_frames().
 std::optional<SteadyRate> steady_rate(const std::vector<Delivery>& deliveries, std::uint64_t turn);

@@ -16,7 +16,7 @@ std::size_t words_in_bank(std::uint64_t address) {
   return static_cast<std::size_t>((bridge::kBankBytes - address % bridge::kBankBytes) / 4);
 }
 
-std::size_t checked(std::size_t places) {
+std::size_t checked_places(std::size_t places) {
   const auto value = static_cast<std::int64_t>(places);
   if (!kPostedWordsRule.allows(value)) throw std::invalid_argument(kPostedWordsRule.problem("places", value));
   return places;
@@ -25,7 +25,7 @@ std::size_t checked(std::size_t places) {
 }  // namespace
 
 PostedWrites::PostedWrites(std::size_t places)
-    : places_(checked(places)), words_(2 * places_), runs_(places_) {}
+    : places_(checked_places(places)), words_(2 * places_), runs_(places_) {}
 
 std::vector<PostedWrites::Run> PostedWrites::waiting() const {
   std::vector<Run> runs;

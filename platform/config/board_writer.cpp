@@ -222,11 +222,14 @@ std::vector<std::string> sets_between(const BoardConfig& from, const BoardConfig
   const auto text_of = [](const BoardValue& value) {
     if (const auto* const decimal = std::get_if<double>(&value.value)) return decimal_text(*decimal);
     if (const auto* const integer = std::get_if<std::int64_t>(&value.value)) return std::to_string(*integer);
-    return std::get<std::string>(value.value);
+    const bool is_bank = value.path == key_of(Buffer::kLeftLut) || value.path == key_of(Buffer::kRightLut);
+    const std::string& text = std::get<std::string>(value.value);
+    return is_bank ? scalar_text(text) : text;
   };
   std::map<std::string, std::string> before;
   for (const BoardValue& value : values_of(from)) before[value.path] = text_of(value);
   std::vector<std::string> sets = BoardWriter(to).bank_sets(from.banks);
+  if (from.pci.load && !to.pci.load) sets.emplace_back("pci.load=none");
   for (const BoardValue& value : values_of(to)) {
     if (value.path.rfind("ssram.", 0) != 0 && before[value.path] != text_of(value))
       sets.push_back(value.path + "=" + text_of(value));

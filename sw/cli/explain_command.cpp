@@ -42,12 +42,15 @@ struct ExplainOptions {
       camera = source.text == "camera";
     }
     if (frames.is_given()) {
-      const platform::IntegerRule rule = {
-          camera ? static_cast<std::int64_t>(runs::Explanation::kLeastComputerFrames) : 1, 1'000'000};
+      const platform::IntegerRule rule =
+          camera ? platform::IntegerRule{runs::Explanation::kLeastComputerFrames, 1'000'000}
+                 : platform::IntegerRule{runs::Explanation::kCoreFrames, 999'996,
+                                         runs::Explanation::kCoreFrames};
       const auto number = number_of<std::int64_t>(frames.text);
       if (!number || !rule.allows(*number))
         problems.add(fmt::format("--frames = {}: {}{}", frames.text, rule.text(),
-                                 camera ? ", so that every board has a steady rate" : ""));
+                                 camera ? ", so that every board has a steady rate"
+                                        : ", whole turns of the lists of every board"));
       frame_count = static_cast<std::uint64_t>(number.value_or(0));
     }
     problems.check();

@@ -12,6 +12,7 @@
 
 #include "platform/bounds.h"
 #include "platform/config/board_area.h"
+#include "platform/config/buffer_layout.h"
 #include "sw/cli/text.h"
 #include "sw/files/shell_word.h"
 #include "sw/report/wait_text.h"
@@ -81,7 +82,20 @@ class ExplanationText {
            fmt::format("bound {:.3f} frames/s: {}; {} frames simulated{}\n", row.real(of),
                        report::resource_words(row.text(of + "_limited_by")), explanation_.frames(),
                        now_.loses_pixels ? "; captures lose pixels" : "") +
-           platform::device_text(board_) + '\n';
+           platform::device_text(board_) + '\n' + shared_bank();
+  }
+
+  // A pointer to the search where several buffers share the bank at which ports wait.
+  std::string shared_bank() const {
+    const auto wait = runs::longest_wait(explanation_);
+    if (!wait) return "";
+    const std::vector<platform::PlacedBuffer> all = platform::buffers(board_);
+    const auto in_bank = std::count_if(
+        all.begin(), all.end(), [&](const platform::PlacedBuffer& each) { return each.bank == wait->bank; });
+    return in_bank < 2
+               ? ""
+               : fmt::format("{} holds {} buffers: `stereotlm allocate` searches all their placements\n",
+                             wait->bank, in_bank);
   }
 
   // The table of resources. Resources of one kind with the same values share a line.
@@ -125,6 +139,12 @@ class ExplanationText {
     return 100 * (step.rate.frames_per_second / now_.frames_per_second - 1);
   }
 
+  // Whether the gain lies within the uncertainty of both steady rates.
+  bool is_uncertain(const Explanation::Step& step) const {
+    const double gained = std::abs(step.rate.frames_per_second - now_.frames_per_second);
+    return gained > 0 && gained <= step.rate.uncertainty + now_.uncertainty;
+  }
+
   // Whether a change has a line of its own in the table: it changes the rate, or whether pixels are lost, or
   // it saves a part of the FPGA or a bank.
   bool is_listed(const Explanation::Step& step, const Price& price) const {
@@ -135,9 +155,9 @@ class ExplanationText {
   // The table of the changes, the best first. Fills listed_ and small_.
   std::string changes() {
     std::string text = fmt::format(
-        "one change at a time: {} boards simulated; *: the disparities change too\n"
-        "KEY: FROM -> TO is --set KEY=TO behind the others, in place of an earlier --set of KEY\n",
-        explanation_.knobs().possible.size());
+        "one change at a time: {} boards simulated; *: the disparities change too{}\n"
+        "to try a change, append --set KEY=TO, and drop an earlier --set of the same key\n",
+        explanation_.knobs().possible.size(), explanation_.camera() ? "; ~: within the uncertainty" : "");
     text += fmt::format("  {:>8} {:>8} {:>8} {:>6} {:>4}  change: from -> to\n", "frames/s", "gained", "%",
                         "FPGA %", "RAMs");
     for (const Explanation::Step& found : steps_) {
@@ -165,6 +185,7 @@ class ExplanationText {
     if (!price.fits) text += "  does not fit";
     if (found.rate.loses_pixels && !now_.loses_pixels) text += "  loses pixels";
     if (!found.rate.loses_pixels && now_.loses_pixels) text += "  loses no pixels";
+    if (is_uncertain(found)) text += "  ~";
     text += '\n';
     if (step.sets == std::vector<std::string>{step.knob + "=" + step.to}) return text;
     for (const std::string& set : step.sets)

@@ -85,8 +85,12 @@ void remove_left_beside(const fs::path& file) {
 // Whether both paths lead to the same file, which need not exist.
 bool is_same(const fs::path& a, const fs::path& b) {
   std::error_code none;
-  return fs::equivalent(a, b, none) ||
-         fs::weakly_canonical(fs::absolute(a), none) == fs::weakly_canonical(fs::absolute(b), none);
+  if (fs::equivalent(a, b, none)) return true;
+  std::error_code error;
+  const fs::path whole_a = fs::weakly_canonical(fs::absolute(a), error);
+  if (error) return false;
+  const fs::path whole_b = fs::weakly_canonical(fs::absolute(b), error);
+  return !error && whole_a == whole_b;
 }
 
 }  // namespace
@@ -138,7 +142,8 @@ bool AsideFile::make() {
     unlink(path_.c_str());
     fail(error, path_);
   }
-  flock(lock_, LOCK_EX);
+  while (flock(lock_, LOCK_EX) != 0 && errno == EINTR) {
+  }
   struct stat status = {};
   if (fstat(lock_, &status) == 0 && status.st_nlink > 0) return true;
   close(lock_);

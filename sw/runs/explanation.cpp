@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "models/fpga/frame_geometry.h"
+#include "platform/figures.h"
 #include "sw/process/installation.h"
 #include "sw/process/interrupt.h"
 #include "sw/runs/progress.h"
@@ -67,9 +68,9 @@ std::vector<platform::BoardConfig> Explanation::boards() const {
 Explanation::Rate Explanation::rate_of(std::uint64_t number) {
   try {
     const explore::StoredRow& row = batch_.row_of(points_.point(number));
+    if (!run_.camera) return {row.real("frames_per_second.core"), 0, false, ""};
     const auto lost =
         row.integer("cameras.left.dropped_pixels") + row.integer("cameras.right.dropped_pixels");
-    if (!run_.camera) return {row.real("frames_per_second.core"), 0, false, ""};
     return {row.real("frames_per_second.steady"), row.real("frames_per_second.steady_uncertainty"), lost > 0,
             ""};
   } catch (const explore::PointFailed& failed) {
@@ -117,8 +118,14 @@ std::vector<Explanation::Step> Explanation::steps() {
     return a.rate.frames_per_second > b.rate.frames_per_second;
   });
   std::set<std::string> groups;
-  const auto is_alternative = [&groups](const Step& step) {
-    return !step.step->group.empty() && step.rate.failure.empty() && !groups.insert(step.step->group).second;
+  std::set<std::string> whole;  // groups with an alternative that loses no pixels
+  for (const Step& step : all) {
+    if (step.rate.failure.empty() && !step.rate.loses_pixels) whole.insert(step.step->group);
+  }
+  const auto is_alternative = [&](const Step& step) {
+    const std::string& group = step.step->group;
+    if (group.empty() || !step.rate.failure.empty()) return false;
+    return (step.rate.loses_pixels && whole.count(group) > 0) || !groups.insert(group).second;
   };
   all.erase(std::remove_if(all.begin(), all.end(), is_alternative), all.end());
   return all;
@@ -201,9 +208,12 @@ const Explanation::Budget& Explanation::budget() {
       }
     }
   }
-  std::vector<double> cycles = frame_cycles();
   const std::uint64_t turn = platform::allocation_period_frames(board_);
-  cycles.erase(cycles.begin(), cycles.begin() + static_cast<std::ptrdiff_t>(cycles.size() % turn));
+  std::vector<double> cycles = frame_cycles();
+  if (run_.camera) {
+    const std::uint64_t window = platform::steady_frames(run_.frames, turn);
+    cycles.erase(cycles.begin(), cycles.end() - static_cast<std::ptrdiff_t>(window));
+  }
   const double mean = mean_of(cycles);
   double needed = 0;  // by matcher and ports
   for (std::uint64_t frame = 0; frame < turn; ++frame) {
@@ -213,8 +223,7 @@ const Explanation::Budget& Explanation::budget() {
     }
     needed += most / static_cast<double>(turn);
   }
-  const double waitless =
-      board_.fpga.clock_mhz * 1e6 / waitless_frames_per_second(board_, tables_, run_.frames / turn * turn);
+  const double waitless = board_.fpga.clock_mhz * 1e6 / waitless_frames_per_second(board_, tables_, turn);
   budget_->bound = frames_share * needed / mean;
   budget_->queues = frames_share * (waitless - needed) / mean;
   budget_->waits = frames_share * (mean - waitless) / mean;
@@ -228,10 +237,9 @@ Explanation::Limiter Explanation::limiter() {
   if (rate.frames_per_second >= bound * (1 - kAtBound)) return Limiter::kBound;
   double core_waits = 0;
   for (const auto& [why, share] : budget().core_waits) core_waits += share;
-  const double most = std::max({budget().waits, budget().queues, core_waits});
-  return most == budget().waits ? Limiter::kWaits
-         : most == core_waits   ? Limiter::kCoreWaits
-                                : Limiter::kQueues;
+  const double others = std::max(budget().queues, 0.0);
+  if (budget().waits > std::max(core_waits, others)) return Limiter::kWaits;
+  return core_waits > others ? Limiter::kCoreWaits : Limiter::kQueues;
 }
 
 std::vector<explore::StoredBlame> Explanation::blames() {

@@ -21,11 +21,11 @@ namespace stereotlm::runs {
 // and what each step gains or costs.
 class Explanation {
  public:
-  // The default numbers of frames of each board: of the core alone, whole turns of all lists of 1, 2 or 3
-  // buffers; of the whole computer as many for the warm-up, and 36 for the steady rate.
+  // The default numbers of frames of each board. 6 and 36 are multiples of every possible turn of the lists (1, 2,
+  // 3 or 6); the whole computer has up to 6 more for the warm-up.
   static constexpr std::uint64_t kCoreFrames = 6;
   static constexpr std::uint64_t kComputerFrames = 42;
-  // The fewest frames of the whole computer that give every board a steady rate.
+  // The fewest frames of the whole computer with which every board has a steady rate.
   static constexpr std::uint64_t kLeastComputerFrames = 12;
 
   // `camera`: the whole computer, else the core alone. `frames`: 0 for the default. `board` and `tables`
@@ -71,8 +71,8 @@ class Explanation {
     std::string name;
     double frames_per_second = 0;  // its bound
     double headroom_percent = 0;   // share of the time of a frame that the resource does not need
-    // The measured share of the time in which it is used: a port and the matcher work on a slot, a word or a
-    // column, a bank makes an access, both in the cycles of the frames; a bus is not idle; a camera frame is
+    // The measured use. Ports, matcher and banks: share of the cycles of the frames in which they work on a slot
+    // or make an access. Buses: share of their clocks that are not idle. Cameras: share of their frames that are
     // captured.
     double busy_percent = 0;
     std::uint64_t frame = 0;  // the frame with the least headroom

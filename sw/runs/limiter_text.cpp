@@ -5,7 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <map>
+#include <optional>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -17,9 +18,10 @@ namespace {
 
 using Limiter = Explanation::Limiter;
 
+const std::string kHost = fpga::kPorts[fpga::kHostPort].name;
 constexpr double kVisibleLoss = 0.01;     // of the cycles
 constexpr double kVisiblePercent = 0.05;  // of the time of a frame
-constexpr double kBusyPercent = 90;       // of a bus that is named beside what it slows down
+constexpr double kLeastHeadroom = 10;     // of a bus in percent; with less it is named beside what waits
 
 struct Reason {
   const char* why;      // of the time line
@@ -29,14 +31,16 @@ struct Reason {
 constexpr std::array<Reason, 6> kReasons = {
     Reason{"upload", "the upload of the tables", "the tables"},
     Reason{"camera", "the captures", "a camera frame to begin"},
-    Reason{"capture", "the captures", "the end of a capture"},
+    Reason{"capture", "the captures", "the end of a capture, which begins only with a camera frame"},
     Reason{"copy", "the copies from host memory", "the end of a copy from host memory"},
     Reason{"output_buffer", "the read-back", "a result to be read back"},
     Reason{"host", "the driver", "register accesses"}};
 
 const Reason& reason_of(const std::string& why) {
-  return *std::find_if(kReasons.begin(), kReasons.end(),
-                       [&](const Reason& reason) { return reason.why == why; });
+  for (const Reason& reason : kReasons) {
+    if (reason.why == why) return reason;
+  }
+  throw std::logic_error(why + ": not a reason for which the core waits");
 }
 
 double percent_of_cycles(Explanation& explanation, std::int64_t cycles) {
@@ -49,11 +53,11 @@ std::string wait_of(Explanation& explanation, const explore::StoredBlame& wait) 
                      report::cause_text(wait.by), percent_of_cycles(explanation, wait.cycles));
 }
 
-// The PCI bus or the local bus, where it is busy.
+// The PCI bus or the local bus, where it has little headroom.
 std::string busy_bus_text(Explanation& explanation) {
   std::string text;
   for (const Explanation::Resource& resource : explanation.resources()) {
-    if ((resource.name == "pci" || resource.name == "bridge") && resource.busy_percent >= kBusyPercent)
+    if ((resource.name == "pci" || resource.name == "bridge") && resource.headroom_percent < kLeastHeadroom)
       text += fmt::format("; {} is busy in {:.1f} % of its clocks", report::resource_words(resource.name),
                           resource.busy_percent);
   }
@@ -64,12 +68,10 @@ std::string bound_text(Explanation& explanation) {
   const explore::StoredRow& row = explanation.figures();
   const std::string bound = explanation.camera() ? "bound.system" : "bound.core";
   const std::string owner = row.text(bound + "_limited_by");
-  std::string text = fmt::format("{}, at {} bound of {:.3f} frames/s", report::resource_words(owner),
-                                 owner == "camera" ? "their" : "its", row.real(bound));
-  for (const explore::StoredBlame& wait : explanation.blames()) {
-    if ("bank " + wait.bank == owner) return text + "; " + wait_of(explanation, wait);
-  }
-  return text;
+  const std::string text =
+      fmt::format("{}, at the bound of {:.3f} frames/s", report::resource_words(owner), row.real(bound));
+  const auto wait = longest_wait(explanation, owner);
+  return wait ? text + "; " + wait_of(explanation, *wait) : text;
 }
 
 std::string lost_pixels_text(Explanation& explanation) {
@@ -77,10 +79,10 @@ std::string lost_pixels_text(Explanation& explanation) {
   const std::int64_t lost =
       row.integer("cameras.left.dropped_pixels") + row.integer("cameras.right.dropped_pixels");
   const std::string text =
-      fmt::format(": captures lose {} pixels in {} frames, so pictures are torn", lost, explanation.frames());
+      fmt::format(": captures lose {} pixels while {} frames are delivered, so pictures are torn", lost,
+                  explanation.frames());
   for (const explore::StoredBlame& wait : explanation.blames()) {
-    if (wait.port == fpga::kPorts[fpga::kHostPort].name &&
-        percent_of_cycles(explanation, wait.cycles) > 100 * kVisibleLoss)
+    if (wait.port == kHost && percent_of_cycles(explanation, wait.cycles) > 100 * kVisibleLoss)
       return wait.bank + text + "; " + wait_of(explanation, wait);
   }
   const std::vector<Explanation::Resource> all = explanation.resources();
@@ -89,22 +91,30 @@ std::string lost_pixels_text(Explanation& explanation) {
         ->busy_percent;
   };
   const char* const bus = busy_of("pci") >= busy_of("bridge") ? "pci" : "bridge";
-  return fmt::format("{}{}; it is busy in {:.1f} % of its clocks", report::resource_words(bus), text,
-                     busy_of(bus));
+  const std::int64_t of_load = row.integer("pci.masters.load.transactions");
+  std::int64_t all_transactions = of_load;
+  for (const char* const master : {"host", "left_capture", "right_capture", "bridge"})
+    all_transactions += row.integer(fmt::format("pci.masters.{}.transactions", master));
+  return fmt::format(
+      "{}{}; it is busy in {:.1f} % of its clocks{}", report::resource_words(bus), text, busy_of(bus),
+      of_load == 0
+          ? ""
+          : fmt::format(", and pci.load makes {} of its {} transactions", of_load, all_transactions));
 }
 
 std::string waits_text(Explanation& explanation) {
-  const explore::StoredBlame wait = explanation.blames().front();
-  return fmt::format("waits at {}: {}; all waits cost {:.2f} % of the time", wait.bank,
-                     wait_of(explanation, wait), explanation.budget().waits);
+  const std::string cost = fmt::format("all waits cost {:.2f} % of the time", explanation.budget().waits);
+  const auto wait = longest_wait(explanation);
+  return wait ? fmt::format("waits at {}: {}; {}", wait->bank, wait_of(explanation, *wait), cost)
+              : "waits for banks: " + cost;
 }
 
 std::string queues_text(Explanation& explanation) {
   const double percent = result_queue_percent(explanation);
   if (percent > 0) {
     return fmt::format(
-        "the result queue, which is too short: in {:.2f} % of the cycles the matcher waits for "
-        "fpga.result_fifo_words",
+        "the result queue, which is too short: in {:.2f} % of the cycles the matcher waits for a place in it "
+        "(fpga.result_fifo_words)",
         percent);
   }
   return fmt::format("the queues of the core and the latencies of its banks, which cost {:.2f} % of the time",
@@ -119,9 +129,10 @@ std::string core_waits_text(Explanation& explanation) {
     shares.emplace_back(share, why);
   }
   std::sort(shares.rbegin(), shares.rend());
-  std::string text =
-      fmt::format("{}: the core waits {:.2f} % of the time", reason_of(shares.front().second).limiter, sum);
   const bool is_one = shares.size() == 1 || shares[1].first < kVisiblePercent;
+  std::string text =
+      fmt::format("{}: the core waits {:.2f} % of the time", reason_of(shares.front().second).limiter,
+                  is_one ? shares.front().first : sum);
   if (is_one) text += fmt::format(" for {}", reason_of(shares.front().second).text);
   const char* separator = ", ";
   for (const auto& [share, why] : shares) {
@@ -133,6 +144,13 @@ std::string core_waits_text(Explanation& explanation) {
 }
 
 }  // namespace
+
+std::optional<explore::StoredBlame> longest_wait(Explanation& explanation, const std::string& resource) {
+  for (const explore::StoredBlame& wait : explanation.blames()) {
+    if (wait.port != kHost && (resource.empty() || "bank " + wait.bank == resource)) return wait;
+  }
+  return std::nullopt;
+}
 
 std::string limiter_text(Explanation& explanation) {
   switch (explanation.limiter()) {

@@ -1,10 +1,15 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "sw/runs/explanation.h"
 
 namespace stereotlm::runs {
+
+// The longest wait of a port of the core, at this resource ("bank bank0") or at any bank. Waits of the host do not
+// count: they cost the core nothing.
+std::optional<explore::StoredBlame> longest_wait(Explanation& explanation, const std::string& resource = "");
 
 // Why a board is not faster, after "limited by": "the matcher, at its bound of 18.596 frames/s".
 std::string limiter_text(Explanation& explanation);

@@ -122,15 +122,45 @@ class Steps {
     }
   }
 
+  // Two neighbours exchanged, or a port first or last.
   void add_priorities() {
-    const auto& list = board_.fpga.arbiter.priority;
-    for (std::size_t first = 0; first + 1 < list.size(); ++first) {
-      const std::string a = fpga::kPorts[list[first]].name;
-      const std::string b = fpga::kPorts[list[first + 1]].name;
+    using Order = memory::PriorityList;
+    const Order& list = board_.fpga.arbiter.priority;
+    const auto names = [](const Order& order) {
+      std::vector<std::string> ports;
+      for (const memory::Port port : order) ports.emplace_back(fpga::kPorts[port].name);
+      return fmt::format("{}", fmt::join(ports, ", "));
+    };
+    std::set<Order> known = {list};
+    const auto add_order = [&](const Order& order, const std::string& from, const std::string& to) {
+      if (!known.insert(order).second) return;
       BoardConfig changed = board_;
-      std::swap(changed.fpga.arbiter.priority[first], changed.fpga.arbiter.priority[first + 1]);
-      add({"fpga.priority", a + ", " + b, b + ", " + a, std::move(changed)});
+      changed.fpga.arbiter.priority = order;
+      add({"fpga.priority", from, to, std::move(changed)});
+    };
+    for (std::size_t first = 0; first + 1 < list.size(); ++first) {
+      Order order = list;
+      std::swap(order[first], order[first + 1]);
+      const auto pair = [&](const Order& of) { return names(Order{of[first], of[first + 1]}); };
+      add_order(order, pair(list), pair(order));
     }
+    for (std::size_t place = 0; place < list.size(); ++place) {
+      const std::string name = fpga::kPorts[list[place]].name;
+      const auto at = [place](Order& order) { return order.begin() + static_cast<std::ptrdiff_t>(place); };
+      Order order = list;
+      std::rotate(order.begin(), at(order), at(order) + 1);
+      add_order(order, "this order", name + " first");
+      order = list;
+      std::rotate(at(order), at(order) + 1, order.end());
+      add_order(order, "this order", name + " last");
+    }
+  }
+
+  void add_load() {
+    if (!board_.pci.load) return;
+    BoardConfig changed = board_;
+    changed.pci.load.reset();
+    add({"pci.load", "as it is", "none", std::move(changed)});
   }
 
   void add_kinds() {
@@ -336,16 +366,23 @@ class Steps {
     for (const PlacedBuffer& buffer : platform::buffers(board_)) count += buffer.bank == bank ? 1 : 0;
     return count;
   }
-  bool can_hold(const BankConfig& empty, const PlacedBuffer& buffer) const {
-    return static_cast<std::uint64_t>(empty.words) >= buffer_words(buffer, board_.image);
+  // Whether the bank can hold this buffer beside those that it has.
+  bool can_hold(const BankConfig& bank, const PlacedBuffer& buffer) const {
+    std::uint64_t words = buffer_words(buffer, board_.image);
+    for (const PlacedBuffer& held : platform::buffers(board_)) {
+      if (held.bank == bank.name) words += buffer_words(held, board_.image);
+    }
+    return static_cast<std::uint64_t>(bank.words) >= words;
   }
 
   // The names of kQuietBanks banks for one more buffer of this list. First come those without a buffer of the
   // list, then those with fewer accesses: a picture or table has one for each slot, a result two for each four
   // pixels.
   std::vector<std::string> quiet_banks(Buffer list) const {
-    const int slots =
-        board_.matcher.fetch == fpga::Fetch::kColumn ? board_.matcher.window + board_.matcher.rows - 1 : 1;
+    const int rows = board_.matcher.rows;
+    const bool is_column = board_.matcher.fetch == fpga::Fetch::kColumn;
+    const double slots =
+        is_column ? static_cast<double>(board_.matcher.window + rows - 1) / rows : 1;  // a pixel
     const std::vector<PlacedBuffer> all = platform::buffers(board_);
     std::map<std::string, std::pair<bool, double>> order;
     for (const PlacedBuffer& buffer : all) {
@@ -356,7 +393,9 @@ class Steps {
       accesses += (buffer.buffer == Buffer::kDisparity ? 0.5 : slots) / static_cast<double>(in_list);
     }
     std::vector<std::string> banks;
-    for (const BankConfig& bank : board_.banks) banks.push_back(bank.name);
+    for (const BankConfig& bank : board_.banks) {
+      if (can_hold(bank, {list, 0, bank.name})) banks.push_back(bank.name);
+    }
     std::stable_sort(banks.begin(), banks.end(),
                      [&](const std::string& a, const std::string& b) { return order[a] < order[b]; });
     banks.resize(std::min(banks.size(), kQuietBanks));
@@ -384,6 +423,7 @@ KnobSteps knob_steps(const BoardConfig& board, bool camera, const std::optional<
   steps.add_costs();
   steps.add_filters();
   steps.add_priorities();
+  if (camera) steps.add_load();
   steps.add_kinds();
   steps.add_turnarounds();
   steps.add_buffers();

@@ -43,7 +43,8 @@ struct KnobSteps {
 //   fpga.tables: to joint tables in the bank of the left table, or in the bank of the right table; to
 //   separate tables, with the right table in the first bank without buffers that can hold it, if there is one
 //   matcher.cost: each other one (census with 5 x 5 pixels); census also with the next sizes
-//   fpga.priority: two neighbours exchanged
+//   fpga.priority: two neighbours exchanged; a port moved to the front, or to the end
+//   pci.load: none
 //   ssram.banks.*.kind: all banks get another kind (a bank that gains turnaround has 2 cycles of it)
 //   ssram.banks.*.turnaround_cycles: up and down by one, in all banks that have turnaround
 //   allocation.left_image, right_image, and allocation.disparity: a buffer more, in one of the banks with the

@@ -9,6 +9,7 @@
 
 #include "models/binder.h"
 #include "platform/core_run.h"
+#include "platform/figures.h"
 #include "sw/explore/sweep/sweep.h"
 #include "sw/files/sha256.h"
 #include "sw/process/child.h"
@@ -20,12 +21,6 @@ namespace stereotlm::runs {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-// The number of the first frame in the window of the steady rate.
-std::uint64_t first_steady_frame(const platform::BoardConfig& board, std::uint64_t frames) {
-  const std::uint64_t turn = platform::allocation_period_frames(board);
-  return frames - (frames - turn) / turn * turn;
-}
 
 bool is_table_of(const std::optional<kernels::RectificationTable>& table, const platform::BoardConfig& board,
                  bool is_used) {
@@ -87,20 +82,21 @@ std::map<std::string, double> core_time(const platform::BoardConfig& board, cons
     BlankPairs blank(board);
     CameraSimulation simulation(board, tables, blank, frames, binder, fpga::Fidelity::kTiming);
     simulation.record_timeline();
+    const std::uint64_t first =
+        frames - platform::steady_frames(frames, platform::allocation_period_frames(board));
     std::map<std::string, std::uint64_t> times_ps;
     const auto take = [&] {
       for (const platform::TimelineEvent& event : simulation.take_timeline().events) {
         const bool is_wait = event.kind == platform::EventKind::kWait && event.what == std::string("core");
         if (!is_wait && event.kind != platform::EventKind::kFrame) continue;
-        if (event.frame.value() >= first_steady_frame(board, frames))
-          times_ps[event.why] += event.end_ps - event.begin_ps;
+        if (event.frame.value() >= first) times_ps[event.why] += event.end_ps - event.begin_ps;
       }
     };
     while (!simulation.finished()) {
       simulation.advance();
       take();
     }
-    simulation.statistics();
+    document_of(simulation.statistics());  // its identities hold
     take();
     tell(Json(times_ps).dump());
   });

@@ -238,7 +238,7 @@ class Explain(ProgramTest):
     def rows(self, text):
         """(rate, gained, key, to) of the changes."""
         pattern = (r"^ +([\d.]+) +([+-][\d.]+) +[+-][\d.]+(?: +[+-]?[\d.]+){2}  (.+?)(?: \*)?: .* -> (.*?)"
-                   r"(?:, [+-]\d+ multipliers)?(?:  does not fit)?(?:  loses (?:no )?pixels)?$")
+                   r"(?:, [+-]\d+ multipliers)?(?:  does not fit)?(?:  loses (?:no )?pixels)?(?:  ~)?$")
         return re.findall(pattern, text, re.M)
 
     def rate(self, *options):
@@ -383,8 +383,8 @@ class Explain(ProgramTest):
             ([*full_size, *shared], r"waits at bank0: left_pixel waits there for host in [\d.]+ %"),
             (full_size, r"the captures: the core waits [\d.]+ % of the time"),
             ([*full_size, *sets("pci.load={burst_words: 1, interval_us: 0, access_us: 50}")],
-             r"the PCI bus: captures lose \d+ pixels in 42 frames, so pictures are torn"),
-            ([*full_size, *sets("matcher.fetch=line_buffer")], "the cameras, at their bound of 120.000 frames/s"),
+             r"the PCI bus: captures lose \d+ pixels while 42 frames are delivered, so pictures are torn"),
+            ([*full_size, *sets("matcher.fetch=line_buffer")], "the cameras, at the bound of 120.000 frames/s"),
         ]
         for options, limiter in cases:
             text = unwrapped(self.succeeds(run("explain", "fpl2003", *options)))
@@ -425,7 +425,7 @@ class Explain(ProgramTest):
         rate = self.rate(*short)
         lost = 100 * (1 - rate / self.stats()["bound"]["core"])
         self.assertGreater(lost, 1)
-        self.assertIn(f"{said} {lost:.2f} % of the cycles the matcher waits for fpga.result_fifo_words\n",
+        self.assertIn(f"{said} {lost:.2f} % of the cycles the matcher waits for a place in it (fpga.result_fifo_words)\n",
                       unwrapped(text))
         self.assertLessEqual(max(map(len, text.splitlines())), 100)
         # The step to five rows would need a longer queue. That to the line buffer is one to a single row.

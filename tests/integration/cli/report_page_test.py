@@ -615,7 +615,7 @@ class Answers(PageTest):
         self.opened(core(), lambda _: None)
         explained = json.loads(self.succeeds(run("explain", core() / "config.yaml", *PRELOADED, "--json")))
         limiter = explained["limited_by"]
-        self.assertTrue(self.answer("What limits?").startswith(limiter[0].upper() + limiter[1:] + "."))
+        self.assertTrue(self.answer("What limits?").startswith(f"Limited by {limiter}."))
 
     def test_the_first_change_can_be_pasted_and_its_conditions_are_stated(self):
         self.opened(core(), lambda _: None)

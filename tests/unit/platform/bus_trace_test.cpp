@@ -184,9 +184,8 @@ TEST_F(BusTraceTest, HoldsAFrameOfTheCoreFromItsStrobeToItsEnd) {
   pci(40 * kCycle, 60 * kCycle);
   to.core().frame_begun(70 * kCycle);
   pci(70 * kCycle, 71 * kCycle);
-  EXPECT_EQ(handed_out(),
-            (Lines{pci_line(29 * kCycle, 31 * kCycle), pci_line(40 * kCycle - 1, 50 * kCycle),
-                   "left_capture 3@750001"}));
+  EXPECT_EQ(handed_out(), (Lines{pci_line(29 * kCycle, 31 * kCycle), pci_line(40 * kCycle - 1, 50 * kCycle),
+                                 "left_capture 3@750001"}));
 }
 
 TEST_F(BusTraceTest, HandsOutWhatHasHappenedByATimeAndEachRecordOnce) {

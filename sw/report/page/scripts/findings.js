@@ -98,13 +98,13 @@ function whatLimits(run) {
         'The matcher: it takes one pixel of each picture a cycle at most, and needs each pixel of ' +
         'a window',
     camera: () => 'The cameras: the board could do more',
-    pci: () => 'The PCI bus: the words of pictures and results fill it',
+    pci: () => 'The PCI bus: the transfers of its masters fill it',
     bridge: () => 'The local bus behind the bridge',
   }[kind]?.() ??
       by;
   const limiter = run.knobs?.board.limited_by;
   return [
-    limiter ? `${capital(limiter)}.` : `${because}.`, `${reached}.`,
+    limiter ? `Limited by ${limiter}.` : `Not known with --quick. The lowest bound: ${because}.`, `${reached}.`,
     computer && droppedText(run),
     !limiter && !computer && share < 0.99 && run.stats.blame.length === 0 &&
         'No port waits: the matcher waits for the queue of results, which the bound leaves out.',
