@@ -666,7 +666,7 @@ class Answers(PageTest):
         joint = ("fpga.tables", "separate", "joint in bank3", 4.6, slices(22, 0.1))
         self.opened(core(), self.steps(largest, large, kind, joint, bank))
         self.assertRegex(self.answer("What to change first?"),
-                         r"^right_lut: bank2 → bank4 gives .* frames/s, core only \(\+4\.6 %\)\. To try it: .*\."
+                         r"^right_lut: bank2 → bank4 gives .* frames/s, core only \(\+4\.6 %\)\.To try it: .*\."
                          r"Only changes that keep the disparities are named, and that gain 1 % or more\."
                          r"The largest gain: matcher\.rows: 1 → 2 gives .* \(\+40\.0 %\)\. "
                          r"It needs \+6016 slices \(\+17\.8 % of the FPGA\)\.$")
@@ -692,7 +692,7 @@ class Answers(PageTest):
                                 ("matcher.cost", 49, "(+49.0 %)."),
                                 ("cameras.trigger", 49.85, "(+49.8 %).")):
             self.opened(computer(), change)
-            self.assertIn(f"{text} To try it: ", self.answer("What to change first?"))
+            self.assertIn(f"{text}To try it: ", self.answer("What to change first?"))
 
     def test_small_changes_are_folded(self):
         self.opened(core(), self.steps(*(("matcher.rows", "1", str(i), gain, {}) for i, gain in

@@ -248,7 +248,7 @@ function whatFirst(run) {
   };
   const sets = step => step.sets.map(set => `--set '${set}'`).join(' ');
   return [
-    `${text(first)}${cures ? ', and loses no pixels' : ''}. To try it: ${sets(first)}.`,
+    `${text(first)}${cures ? ', and loses no pixels' : ''}.`, `To try it: ${sets(first)}.`,
     'Only changes that keep the disparities are named, and that gain 1 % or more' +
         `${cures ? ' or end the loss of pixels' : ''}.`,
     !largest || largest === first ?
