@@ -93,8 +93,15 @@ BoardCounters counters_of(const fpga::FrameRun& frames, const std::vector<memory
   for (std::size_t port = 0; port < kPortCount; ++port)
     counters.ports[port] = frames.control().port_cycles(port);
   counters.banks.reserve(arbiters.size());
-  for (const memory::BankArbiter& arbiter : arbiters)
-    counters.banks.push_back({arbiter.stats(), arbiter.uncounted_accesses(), 0});
+  const fpga::DirectCounts& direct = frames.direct_counts();
+  for (const memory::BankArbiter& arbiter : arbiters) {
+    counters.banks.push_back(
+        {arbiter.stats(), arbiter.uncounted_accesses(), direct.accesses[counters.banks.size()]});
+  }
+  counters.left.issued = direct.slots[0];
+  counters.right.issued = direct.slots[1];
+  counters.packed_words = direct.packed_words;
+  counters.written_words = direct.written_words;
   counters.left.consumed = frames.control().lane(fpga::Side::kLeft).consumed();
   counters.right.consumed = frames.control().lane(fpga::Side::kRight).consumed();
   return counters;
@@ -106,13 +113,13 @@ BoardCounters counters_of(const Board& board) {
   BoardCounters counters = counters_of(core.frames(), core.crossbar().arbiters());
   for (std::size_t bank = 0; bank < board.banks.size(); ++bank) {
     const memory::SsramBank::Stats& stats = board.banks[bank].stats();
-    counters.banks[bank].accesses =
+    counters.banks[bank].accesses +=
         stats.reads + stats.writes + stats.errors + core.crossbar().direct_accesses(bank);
   }
-  counters.left.issued = datapath.sequencer().stats(fpga::Side::kLeft).slots;
-  counters.right.issued = datapath.sequencer().stats(fpga::Side::kRight).slots;
-  counters.packed_words = datapath.result_packer().stats().words;
-  counters.written_words = datapath.result_writer().stats().writes;
+  counters.left.issued += datapath.sequencer().stats(fpga::Side::kLeft).slots;
+  counters.right.issued += datapath.sequencer().stats(fpga::Side::kRight).slots;
+  counters.packed_words += datapath.result_packer().stats().words;
+  counters.written_words += datapath.result_writer().stats().writes;
   return counters;
 }
 

@@ -39,8 +39,7 @@ struct BoardCounters {
 };
 
 BoardCounters counters_of(const Board& board);
-// The counters that the control and the arbiters keep. The other counters are 0: accesses, slots issued,
-// words packed and written.
+// The counters of a core without stages and without a host: all its frames work directly on memory.
 BoardCounters counters_of(const fpga::FrameRun& frames, const std::vector<memory::BankArbiter>& arbiters);
 
 // Returns the figures of the frames that `counters` cover, and the bound for these frames. Checks the

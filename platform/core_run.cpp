@@ -13,7 +13,6 @@
 #include "models/memory/arbitration.h"
 #include "platform/collect.h"
 #include "platform/config/buffer_layout.h"
-#include "platform/frame_sums.h"
 
 namespace stereotlm::platform {
 namespace {
@@ -39,17 +38,12 @@ class CoreRun {
       if (frames_.stalled_cycles() != 0) throw_stuck();
     }
     frames_.finish();
-    sums_.add({config_, patterns_, frames_, std::nullopt}, arbitration_);
     frames_.end();
   }
 
   const std::vector<std::uint64_t>& frame_cycles() const { return frames_.frame_cycles(); }
 
-  BoardCounters counters() const {
-    BoardCounters counters = counters_of(frames_, arbitration_.arbiters());
-    sums_.put_into(counters);
-    return counters;
-  }
+  BoardCounters counters() const { return counters_of(frames_, arbitration_.arbiters()); }
 
  private:
   [[noreturn]] void throw_stuck() const {
@@ -66,7 +60,6 @@ class CoreRun {
   fpga::FrameRun frames_;
   fpga::AccessPatterns patterns_{fpga::AccessPattern(frames_.control().geometry(), config_.pixel_cache),
                                  fpga::AccessPattern(frames_.control().geometry(), config_.pixel_cache)};
-  FrameSums sums_{banks_.size()};
 };
 
 }  // namespace

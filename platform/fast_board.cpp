@@ -6,7 +6,6 @@
 #include <stdexcept>
 
 #include "models/fpga/core_ports.h"
-#include "models/fpga/frame_counts.h"
 #include "models/memory/crossbar_address.h"
 #include "models/time_ps.h"
 #include "platform/config/buffer_layout.h"
@@ -32,7 +31,7 @@ FastBoard::FastBoard(const BoardConfig& config, fpga::Fidelity fidelity, Doorbel
       local_bus_({config.bridge.local_clock_mhz, buffer_ranges(config)}, bank_configs_.size(), *this),
       fast_core_(config_, fidelity == fpga::Fidelity::kFast, frames_, host_port_, local_bus_, clock_, *this),
       next_ps_(kNever),
-      sums_(bank_configs_.size()) {
+      host_accesses_(bank_configs_.size()) {
   host_port_.set_only_master(true);
   for (const memory::SsramBankConfig& bank : bank_configs_) banks_.emplace_back(4 * bank.words);
 }
@@ -57,14 +56,14 @@ std::uint32_t* FastBoard::skip_words(bool write, std::uint64_t address, std::uin
   const std::size_t bank = memory::bank_of_address(address);
   local_bus_.count_words(write, address, words);
   host_port_.count_skipped(bank, write, first_cycle, end_cycle, words);
-  sums_.add_accesses(bank, words);
+  count_direct(bank, words);
   if (write) changes(address, 4 * words);
   return reinterpret_cast<std::uint32_t*>(direct(address, 4 * words));
 }
 
 bool FastBoard::access_bank(std::uint64_t /*at_ps*/, bool write, std::uint64_t address, std::uint32_t& word) {
   const std::size_t bank = memory::bank_of_address(address);
-  sums_.add_accesses(bank, 1);
+  count_direct(bank, 1);
   unsigned char* const stored = direct(address, 4);
   if (stored == nullptr) return false;
   if (write) changes(address, 4);
@@ -125,10 +124,6 @@ unsigned char* FastBoard::direct(std::uint64_t address, std::uint64_t bytes) {
   return banks_[bank].holds(first, bytes) ? banks_[bank].data() + first : nullptr;
 }
 
-void FastBoard::frame_finished(const fpga::DirectFrame& frame) {
-  sums_.add({config_, frame.patterns(), frames_, frame.answered()}, arbitration_);
-}
-
 void FastBoard::frame_ended(bool failed) {
   const bool was_done = registers_.done();
   registers_.finish_frame(frames_.frame_cycles().back(), failed);
@@ -143,7 +138,8 @@ void FastBoard::stalled(std::uint64_t cycles) {
 
 BoardCounters FastBoard::counters() const {
   BoardCounters counters = counters_of(frames_, arbitration_.arbiters());
-  sums_.put_into(counters);
+  for (std::size_t bank = 0; bank < host_accesses_.size(); ++bank)
+    counters.banks[bank].accesses += host_accesses_[bank];
   return counters;
 }
 

@@ -19,7 +19,6 @@
 #include "models/memory/ram.h"
 #include "platform/collect.h"
 #include "platform/config/board_config.h"
-#include "platform/frame_sums.h"
 
 namespace stereotlm::platform {
 
@@ -100,14 +99,13 @@ class FastBoard : private fpga::LocalBusControl::Core,
   fpga::DirectFrame::Memory direct_memory(const fpga::DirectFrame::Buffers& buffers,
                                           const kernels::JointOffsets& offsets) override;
   std::uint8_t* direct_disparities() override { return disparities_; }
-  void frame_finished(const fpga::DirectFrame& frame) override;
   void frame_ended(bool failed) override;
   [[noreturn]] void failed(const std::string& why) override;
   void stalled(std::uint64_t cycles) override;
 
   unsigned char* direct(std::uint64_t address, std::uint64_t bytes) override;
   void changes(std::uint64_t first, std::uint64_t bytes) override { watch_.changes(first, bytes); }
-  void count_direct(std::size_t bank, std::uint64_t accesses) override { sums_.add_accesses(bank, accesses); }
+  void count_direct(std::size_t bank, std::uint64_t accesses) override { host_accesses_[bank] += accesses; }
   void allow_access(memory::Port /*port*/) override {}
 
   unsigned char* buffer(const AddressRange& range);
@@ -127,7 +125,7 @@ class FastBoard : private fpga::LocalBusControl::Core,
   std::uint8_t* disparities_ = nullptr;  // of the running frame
   std::uint64_t now_ps_ = 0;             // time of the last step
   std::uint64_t next_ps_;
-  FrameSums sums_;
+  std::vector<std::uint64_t> host_accesses_;  // [bank]
 };
 
 }  // namespace stereotlm::platform

@@ -35,7 +35,6 @@ void AccessPattern::set_all(std::uint64_t* row_bits) const {
 }
 
 void AccessPattern::set_entries(const std::uint32_t* entries) {
-  ++version_;
   const bool needed_all_pixels = needs_all_pixels_;
   needs_all_pixels_ = true;
   for (int row = 0; row < geometry_.height; ++row, entries += geometry_.width) {

@@ -22,8 +22,6 @@ class AccessPattern {
 
   // Takes width * height entries, row-major.
   void set_entries(const std::uint32_t* entries);
-  // How often set_entries() has been called.
-  std::uint64_t version() const { return version_; }
 
   // Whether a slot for this pixel accesses the image. A pixel has the same word before it in each strip.
   bool needs_pixel(int column, int row) const {
@@ -78,7 +76,6 @@ class AccessPattern {
   std::vector<std::uint64_t> pixels_;  // [row][word]: pixels that are accessed
   std::vector<RowCounts> counts_;      // [row]
   bool needs_all_pixels_ = false;
-  std::uint64_t version_ = 0;
   std::vector<std::uint64_t> passes_before_strip_;  // [strip]: slots inside the image that do not access it
   // These are empty until the first query.
   mutable std::vector<std::uint64_t> slots_;  // bit i of the sequence: slot i accesses its pixel

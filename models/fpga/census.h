@@ -30,8 +30,6 @@ class Census : public sc_core::sc_module {
   Census(const sc_core::sc_module_name& name, const CoreConfig& config);
 
   void start_frame();
-  // Adds the counts of a frame whose data did not pass through this stage.
-  void count(const Stats& frame) { stats_.columns += frame.columns; }
   const Stats& stats() const { return stats_; }
 
  private:

@@ -160,25 +160,4 @@ DirectFrame::Memory CoreDatapath::direct_memory(const DirectFrame::Buffers& buff
   return memory;
 }
 
-void CoreDatapath::count(const FrameCounts& frame) {
-  for (const Side side : kSides) {
-    Lane& lane = lanes_[index_of(side)];
-    const FrameCounts::Lane& counts = frame.lanes[index_of(side)];
-    sequencer_.count(side, counts.slots);
-    if (lane.lut_reader) lane.lut_reader->count(counts.table);
-    lane.pixel_reader.count(counts.image);
-    lane.filter.count(frame.filter);
-    if (lane.census) lane.census->count(frame.census);
-    if (lane.row_buffer) lane.row_buffer->count(frame.rows);
-  }
-  cost_array_.count(frame.sums);
-  select_min_chain_.count(frame.chain);
-  select_min_tree_.count(frame.tree);
-  if (frame.check) lr_check_.count(*frame.check);
-  result_packer_.count(frame.packed);
-  result_writer_.count(frame.result);
-  for (memory::Port port = 0; port < kCorePortCount; ++port)
-    crossbar_.count_direct(crossbar_.bank_of(port), frame.accesses[port]);
-}
-
 }  // namespace stereotlm::fpga

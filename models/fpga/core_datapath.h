@@ -13,7 +13,6 @@
 #include "models/fpga/core_ports.h"
 #include "models/fpga/cost_array.h"
 #include "models/fpga/direct_frame.h"
-#include "models/fpga/frame_counts.h"
 #include "models/fpga/log_filter.h"
 #include "models/fpga/lr_check.h"
 #include "models/fpga/lut_reader.h"
@@ -63,8 +62,6 @@ class CoreDatapath {
                                     const kernels::JointOffsets& offsets);
   // The disparity buffer of the frame; null if memory does not grant direct access.
   std::uint8_t* direct_disparities() { return result_writer_.buffer(geometry_.result_words); }
-  // Adds what the stages count in a frame whose data they did not move.
-  void count(const FrameCounts& frame);
 
   // The stages, for their statistics.
   const Sequencer& sequencer() const { return sequencer_; }

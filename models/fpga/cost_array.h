@@ -40,12 +40,6 @@ class CostArray : public sc_core::sc_module {
   CostArray(const sc_core::sc_module_name& name, const CoreConfig& config);
 
   void start_frame();
-  // Adds the counts of a frame whose data did not pass through this stage.
-  void count(const Stats& frame) {
-    stats_.columns += frame.columns;
-    stats_.pixel_costs += frame.pixel_costs;
-    stats_.candidates += frame.candidates;
-  }
   const Stats& stats() const { return stats_; }
 
  private:

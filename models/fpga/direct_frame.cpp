@@ -107,11 +107,4 @@ void DirectFrame::write(std::uint8_t* disparities) const {
   std::copy(disparities_.begin(), disparities_.end(), disparities);
 }
 
-std::optional<std::uint64_t> DirectFrame::answered() const {
-  if (!has_pixels()) return std::nullopt;
-  return static_cast<std::uint64_t>(
-      std::count_if(disparities_.begin(), disparities_.end(),
-                    [](std::uint8_t disparity) { return disparity != kernels::kInvalidDisparity; }));
-}
-
 }  // namespace stereotlm::fpga

@@ -59,8 +59,6 @@ class DirectFrame {
   bool has_pixels() const { return pipeline_ != nullptr; }
   // Writes the disparities of the frame to this buffer.
   void write(std::uint8_t* disparities) const;
-  // The number of pixels of the frame that have a disparity; nothing if no disparities are computed.
-  std::optional<std::uint64_t> answered() const;
 
  private:
   bool read_tables(const Memory& memory);

@@ -103,7 +103,6 @@ void FastCore::finish_frame() {
   frames_.finish();
   host_port_.count_words_outside();
   write_disparities();
-  board_.frame_finished(direct_frame_);
 }
 
 // Called with the last write of the frame. The disparities cannot change a table: disparities_are_apart().

@@ -35,8 +35,6 @@ class FastCore {
                                               const kernels::JointOffsets& offsets) = 0;
     // The disparity buffer of the running frame; null if direct access is not granted any more.
     virtual std::uint8_t* direct_disparities() = 0;
-    // The last write has been granted. The counts of the frame can be taken from `frame`.
-    virtual void frame_finished(const DirectFrame& frame) = 0;
     // The frame has ended, now. `failed`: its result may differ from that at Fidelity::kCycle.
     virtual void frame_ended(bool failed) = 0;
     // The result of the running frame may differ from that at Fidelity::kCycle.

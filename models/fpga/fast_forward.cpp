@@ -49,10 +49,6 @@ void FastForward::start_direct_frame(const AccessPatterns& patterns, std::uint64
   routes_ = routes;
   strips_ = 0;
   for (const Side side : kSides) varying_[index_of(side)] = accesses_.varying(side);
-  const std::array<std::uint64_t, 2> versions = {patterns[0].version(), patterns[1].version()};
-  if (&patterns != patterns_ || versions != versions_) followed_.clear();
-  patterns_ = &patterns;
-  versions_ = versions;
 }
 
 void FastForward::start_stepped_frame() {
@@ -115,12 +111,7 @@ FastForward::Served FastForward::serve_host(std::uint64_t& cycle, const Route& r
   route_host(cycle, route, first);
   if (ConflictRecorder* const conflicts = stepper_.conflicts()) conflicts->set_host_traffic(route.traffic);
   host_ = {first, words, static_cast<std::uint8_t>(route.bank << 1U | std::size_t{route.write})};
-  if (follow_sequence(cycle)) {
-    trust(route.write).note(true);
-    return {words, cycle - 1};
-  }
   Served served;
-  bool is_known = true;
   const std::uint64_t end = std::max(cycle, first) + kMostHostCycles;
   while (host_.words != 0 && cycle < end && !control().frame_done()) {
     if (is_walking_ && cycle < first) cycle = walk(cycle, first);
@@ -132,63 +123,17 @@ FastForward::Served FastForward::serve_host(std::uint64_t& cycle, const Route& r
       host_.first = cycle;
       follow(*found, cycle);
     } else {
-      sequence_.reset();
       const std::size_t words_before = host_.words;
       cycle = step_group(cycle, end);
       if (host_.words != words_before) served.last_cycle = host_.first - 1;
-      if (cycle > first) is_known = false;
     }
   }
-  trust(route.write).note(is_known);
   served.words = words - host_.words;
   if (host_.words != 0) {
     host_.words = 0;
     stepped_.reset();
-    sequence_.reset();
   }
-  end_sequence();
   return served;
-}
-
-// If the whole burst of host_ is known as one transition, follows it and returns true. Else begins to note
-// the transitions that are followed, if they will be the same from this state on.
-bool FastForward::follow_sequence(std::uint64_t& cycle) {
-  sequence_.reset();
-  if (!is_walking_ || varies()) return false;
-  std::optional<HostRequests> requests = requests_of(host_, cycle);
-  if (!requests || requests->words == HostRequests::kEndless) return false;
-  requests->to_last_grant = true;
-  const auto found = known_.find(state_, {}, *requests);
-  if (!found) {
-    sequence_ = {state_, *requests, ahead_, host_ahead_};
-    sequence_parts_.clear();
-    return false;
-  }
-  if (!fits_host(*found) || !ends_in_strip(*found)) return false;
-  cycle += known_.progress(*found).cycles;
-  host_.words = 0;
-  follow(*found, cycle);
-  return true;
-}
-
-// Whether the transition can be recorded at once. The core must be up to date at the end of a strip.
-bool FastForward::ends_in_strip(const TransitionCache::Transition& transition) const {
-  const ConflictRecorder* const conflicts = stepper_.conflicts();
-  return conflicts == nullptr ||
-         known_.progress(transition).consumed < slots_to(conflicts->strip_end_column());
-}
-
-// Records the sequence, if it was not interrupted.
-void FastForward::end_sequence() {
-  if (!sequence_) return;
-  Progress progress = ahead_;
-  progress.subtract(sequence_->begin);
-  const HostGrants& before = sequence_->host_begin;
-  known_.record_sequence(
-      sequence_->state, sequence_->host, state_, progress,
-      {host_ahead_.words - before.words, progress.cycles, host_ahead_.requests - before.requests},
-      sequence_parts_);
-  sequence_.reset();
 }
 
 // Routes the host to the bank. If a port is alone there, and ceases to be, runs up to `first` before.
@@ -248,10 +193,7 @@ void FastForward::begin_walk(std::uint64_t cycle) {
   if (!find_strips()) return;
   room_ = room();
   if (!holds_group(room_)) return;
-  if (known_.is_full()) {
-    known_.clear();
-    followed_.clear();
-  }
+  if (known_.is_full()) known_.clear();
   state_ = state(cycle);
   consumed_ = control().match().consumed();
   left_of_group_ = control().match().slots_of_group_left();
@@ -335,7 +277,7 @@ std::optional<HostRequests> FastForward::requests_of(const HostWords& host, std:
 
 // Follows one transition, which ends before `cycle`.
 void FastForward::follow(const TransitionCache::Transition& transition, std::uint64_t cycle) {
-  known_.follow(transition, 1, noted());
+  known_.follow(transition, 1, log());
   const HostGrants& host = known_.host(transition);
   host_ahead_.words += host.words;
   host_ahead_.requests += host.requests;
@@ -360,42 +302,26 @@ void FastForward::skip(const Progress& progress) {
 // See record_skipped().
 bool FastForward::hand_over(ConflictRecorder& conflicts, std::uint64_t cycle, std::uint64_t left_of_group) {
   if (in_order_.empty()) return false;
-  hand_over(conflicts, in_order_, left_of_group);
-  if (sequence_) sequence_parts_.insert(sequence_parts_.end(), in_order_.begin(), in_order_.end());
+  const memory::Arbitration& arbitration = stepper_.arbitration();
+  for (auto next = in_order_.begin(); next != in_order_.end(); next += next->length) {
+    const std::uint64_t consumed = known_.progress(next->effect).consumed;
+    if (next->length == 1 && consumed < left_of_group) {
+      conflicts.add_part(known_.conflicts(next->effect), arbitration);
+      left_of_group -= consumed;
+      continue;
+    }
+    for (std::uint32_t step = 0; step < next->length; ++step) known_.conflicts((next + step)->effect);
+    repeated_.clear();
+    for (std::uint32_t step = 0; step < next->length; ++step)
+      repeated_.push_back(&known_.conflicts((next + step)->effect));
+    conflicts.repeat(repeated_.data(), repeated_.size(), next->times, arbitration);
+    left_of_group = slots_of_group();
+  }
   in_order_.clear();
   if (!conflicts.is_at_strip_end()) return false;
-  sequence_.reset();
   catch_up(cycle);
   conflicts.end_strip(control());
   return true;
-}
-
-void FastForward::hand_over(ConflictRecorder& conflicts, const std::vector<TransitionCache::Part>& parts,
-                            std::uint64_t left_of_group) {
-  const memory::Arbitration& arbitration = stepper_.arbitration();
-  for (auto next = parts.begin(); next != parts.end(); next += next->length) {
-    if (next->length != 1) {  // whole groups
-      repeated_.clear();
-      for (std::uint32_t step = 0; step < next->length; ++step) known_.conflicts((next + step)->effect);
-      for (std::uint32_t step = 0; step < next->length; ++step)
-        repeated_.push_back(&known_.conflicts((next + step)->effect));
-      conflicts.repeat(repeated_.data(), repeated_.size(), next->times, arbitration);
-      continue;
-    }
-    if (const auto& of_sequence = known_.parts(next->effect); !of_sequence.empty()) {
-      hand_over(conflicts, of_sequence, left_of_group);
-      return;  // a sequence is handed over alone
-    }
-    const GroupConflicts* const group = &known_.conflicts(next->effect);
-    const std::uint64_t consumed = known_.progress(next->effect).consumed;
-    if (consumed < left_of_group) {
-      conflicts.add_part(*group, arbitration);
-      left_of_group -= consumed;
-    } else {
-      conflicts.repeat(&group, 1, next->times, arbitration);
-      left_of_group = slots_of_group();
-    }
-  }
 }
 
 // Takes the core and the arbiters to the state that the walk has reached.
@@ -416,40 +342,31 @@ void FastForward::catch_up(std::uint64_t cycle) {
 
 // Follows recorded transitions as far as there is room, which it reduces. Returns the state that comes next.
 FastForward::StateNumber FastForward::walk_known(StateNumber state, Progress& room) {
-  return varies() ? walk_varying(state, room) : known_.walk(state, {}, room, noted());
+  return varies() ? walk_varying(state, room) : known_.walk(state, {}, room, log());
 }
 
 FastForward::StateNumber FastForward::walk_varying(StateNumber state, Progress& room) {
   const std::uint64_t slots = slots_of_group();
-  if (followed_.empty()) followed_.resize(control().geometry().slots / slots + 1);
   int alike = 0;  // groups with the accesses of the group before
+  TransitionCache::Accesses before{};
   for (std::uint64_t consumed = consumed_;;) {
-    Followed& followed = followed_[consumed / slots];
-    TransitionCache::Transition transition;
-    if (followed.state == state) {
-      transition = followed.transition;
+    const TransitionCache::Accesses accesses = accesses_from(consumed, slots);
+    alike = consumed != consumed_ && accesses == before ? alike + 1 : 0;
+    before = accesses;
+    if (alike == kManyAlike) {
       alike = 0;
-    } else {
-      const TransitionCache::Accesses accesses = accesses_from(consumed, slots);
-      const bool is_alike = consumed >= slots && accesses == accesses_from(consumed - slots, slots);
-      alike = is_alike ? alike + 1 : 0;
-      if (alike == kManyAlike) {
-        alike = 0;
-        const std::uint64_t left = room.consumed;
-        state = walk_uniform(state, consumed, room);
-        consumed += left - room.consumed;
-        if (left != room.consumed) continue;
-      }
-      const auto found = known_.find(state, accesses);
-      if (!found) return state;
-      transition = *found;
-      if (!is_alike) followed = {state, transition};
+      const std::uint64_t left = room.consumed;
+      state = walk_uniform(state, consumed, room);
+      consumed += left - room.consumed;
+      if (left != room.consumed) continue;
     }
-    const Progress& progress = known_.progress(transition);
+    const auto found = known_.find(state, accesses);
+    if (!found) return state;
+    const Progress& progress = known_.progress(*found);
     if (!progress.fits(room)) return state;
-    known_.follow_group(transition, noted());
+    known_.follow_group(*found, log());
     room.subtract(progress);
-    state = transition.next;
+    state = found->next;
     consumed += slots;
   }
 }
@@ -460,7 +377,7 @@ FastForward::StateNumber FastForward::walk_uniform(StateNumber state, std::uint6
   Progress uniform = room;
   uniform.consumed = std::min(uniform.consumed, uniform_slots(consumed));
   Progress left = uniform;
-  const StateNumber last = known_.walk(state, accesses_from(consumed, slots_of_group()), left, noted());
+  const StateNumber last = known_.walk(state, accesses_from(consumed, slots_of_group()), left, log());
   uniform.subtract(left);
   room.subtract(uniform);
   return last;

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "models/fpga/assumed_accesses.h"
-#include "models/fpga/burst_trust.h"
 #include "models/fpga/core_stepper.h"
 #include "models/fpga/transition_cache.h"
 
@@ -58,9 +57,6 @@ class FastForward {
   // burst has ended before `first`. Ends early if the frame is done, or kMostHostCycles after the first
   // request. Sets `cycle` to the next cycle, to which the core is taken only by the next other call.
   Served serve_host(std::uint64_t& cycle, const Route& route, std::uint64_t first, std::size_t words);
-  // Whether a burst in this direction is probably known. If not, step() is faster. To be called once for each
-  // burst.
-  bool expects_known_burst(bool write) { return trust(write).expects_known(); }
   // The number of cycles that were skipped and not stepped, over all frames.
   std::uint64_t skipped_cycles() const { return skipped_cycles_; }
   // The cycles that were skipped, but not by the core: its control is still in the state before them.
@@ -89,21 +85,6 @@ class FastForward {
     std::uint64_t part;  // MatchControl::part()
   };
 
-  // The transitions that are followed for a whole burst, to be recorded as one.
-  struct Sequence {
-    StateNumber state;
-    HostRequests host;
-    Progress begin;         // ahead_ before it
-    HostGrants host_begin;  // host_ahead_ before it
-  };
-
-  // A transition that was followed at some group of the frame. It is followed there again, if the state is
-  // the same: frame after frame the slots make the same accesses.
-  struct Followed {
-    StateNumber state = UINT32_MAX;
-    TransitionCache::Transition transition;
-  };
-
   template <bool kMayRequest>
   memory::PortMask step_core(std::uint64_t cycle, bool host_requests);
   std::uint64_t step_group(std::uint64_t cycle, std::uint64_t end);
@@ -113,18 +94,13 @@ class FastForward {
   void end_walk(std::uint64_t cycle);
   void start_frame();
   std::uint64_t walk(std::uint64_t cycle, std::uint64_t end);
-  bool follow_sequence(std::uint64_t& cycle);
-  void end_sequence();
   void route_host(std::uint64_t& cycle, const Route& route, std::uint64_t first);
   void resolve_accesses(Side side);
   std::optional<TransitionCache::Transition> find_host(std::uint64_t cycle) const;
   bool fits_host(const TransitionCache::Transition& transition) const;
   void follow(const TransitionCache::Transition& transition, std::uint64_t cycle);
-  // To which transitions are added that are followed: null unless a recorder or a sequence needs them.
-  TransitionCache::Sequence* noted() {
-    if (stepper_.conflicts() != nullptr) return &in_order_;
-    return sequence_ ? &sequence_parts_ : nullptr;
-  }
+  // Where the recorder of the frame finds the transitions that were followed; null without recorder.
+  TransitionCache::Log* log() { return stepper_.conflicts() != nullptr ? &in_order_ : nullptr; }
   void skip(const Progress& progress);
   // Hands what has been skipped to the recorder of the frame, if there is one. `left_of_group`: as it was
   // before. Returns true at the end of a strip, where more may be skipped.
@@ -132,9 +108,6 @@ class FastForward {
     return stepper_.conflicts() != nullptr && hand_over(*stepper_.conflicts(), cycle, left_of_group);
   }
   bool hand_over(ConflictRecorder& conflicts, std::uint64_t cycle, std::uint64_t left_of_group);
-  void hand_over(ConflictRecorder& conflicts, const std::vector<TransitionCache::Part>& parts,
-                 std::uint64_t left_of_group);
-  bool ends_in_strip(const TransitionCache::Transition& transition) const;
   void tell_assumed();
   void catch_up(std::uint64_t cycle);
   StateNumber walk_known(StateNumber state, Progress& room);
@@ -161,7 +134,6 @@ class FastForward {
   // The number of slots up to this column, from the state of the walk on.
   std::uint64_t slots_to(std::uint64_t column) const { return column * slots_of_group() / 4 - consumed_; }
   const CoreControl& control() const { return stepper_.control(); }
-  BurstTrust& trust(bool write) { return trusts_[write ? 1 : 0]; }
 
   CoreStepper& stepper_;
   std::uint64_t lane_fifo_slots_;
@@ -180,19 +152,12 @@ class FastForward {
   Progress ahead_;                   // see ahead()
   HostGrants host_ahead_;            // words of the host in these cycles, without HostGrants::cycles
   HostWords host_;                   // words that are granted from the next cycle on
-  std::optional<Sequence> sequence_;
-  TransitionCache::Sequence sequence_parts_;  // of sequence_; kept here, so that it keeps its memory
-  TransitionCache::Sequence in_order_;        // what has been followed and is not yet handed to the recorder
-  bool is_host_routed_ = false;               // by serve_host()
-  std::array<BurstTrust, 2> trusts_;          // in bursts that [0] read, [1] write
+  TransitionCache::Log in_order_;    // what has been followed and is not yet handed to the recorder
+  bool is_host_routed_ = false;      // by serve_host()
   std::uint64_t routes_ = 0;
   std::size_t strips_ = 0;  // index in all_strips_: the run in which the lanes take their next slots
   // [side]: the pattern by which the accesses of the side vary, or null.
   std::array<const AccessPattern*, 2> varying_{};
-  std::vector<Followed> followed_;  // [group of the frame]; empty until it is used
-  // The patterns for which followed_ holds, and their versions.
-  const AccessPatterns* patterns_ = nullptr;
-  std::array<std::uint64_t, 2> versions_{};  // [side]
 };
 
 }  // namespace stereotlm::fpga

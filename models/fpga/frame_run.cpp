@@ -13,14 +13,17 @@ FrameRun::FrameRun(const CoreConfig& config, const std::vector<memory::SsramBank
       watchdog_(stall_timeout_cycles) {
   for (const memory::SsramBankConfig& bank : banks)
     latencies_.push_back(memory::read_latency_cycles(bank.kind));
+  direct_counts_.accesses.resize(banks.size());
 }
 
 void FrameRun::start_stepped(std::uint64_t cycle, const FrameBases& bases) {
+  patterns_ = nullptr;
   begin(cycle, bases);
   fast_forward_.start_stepped_frame();
 }
 
 void FrameRun::start_direct(std::uint64_t cycle, const FrameBases& bases, const AccessPatterns& patterns) {
+  patterns_ = &patterns;
   begin(cycle, bases);
   fast_forward_.start_direct_frame(patterns, index_of_routes(bases));
 }
@@ -87,10 +90,29 @@ void FrameRun::finish() {
   done_cycle_ = cycle_ + static_cast<std::uint64_t>(config_.pipeline_latency_cycles);
   fast_forward_.settle(cycle_);
   stepper_.arbitration().end_counting(cycle_);
+  if (patterns_ != nullptr) count_direct();
   if (stepper_.conflicts() == nullptr) return;
   conflicts_->end_frame(cycle_, control());
   if (cycles_ != nullptr) cycles_->end_frame(cycle_);
   stepper_.record(static_cast<ConflictRecorder*>(nullptr));
+}
+
+// The slots and words are those of the control, so that an audit can compare them with the geometry. The accesses
+// are those of the tables.
+void FrameRun::count_direct() {
+  const FrameGeometry& geometry = control().geometry();
+  const auto count = [this](std::size_t port, std::uint64_t accesses) {
+    direct_counts_.accesses[stepper_.arbitration().bank_of(port)] += accesses;
+  };
+  for (const Side side : kSides) {
+    const AccessPattern& pattern = (*patterns_)[index_of(side)];
+    if (has_port(config_, lut_port(side))) count(lut_port(side), geometry.slots - pattern.empty_slots());
+    count(pixel_port(side), pattern.pixel_accesses());
+    direct_counts_.slots[index_of(side)] += control().lane(side).taken();
+  }
+  count(kResultPort, geometry.result_words);
+  direct_counts_.packed_words += control().match().words();
+  direct_counts_.written_words += writes();
 }
 
 void FrameRun::end() {

@@ -17,6 +17,15 @@
 
 namespace stereotlm::fpga {
 
+// What frames that work directly on memory do there, over all frames. Their data moves through no stage, so no
+// stage counts it.
+struct DirectCounts {
+  std::vector<std::uint64_t> accesses;   // [bank]
+  std::array<std::uint64_t, 2> slots{};  // [side]: issued to the lane
+  std::uint64_t packed_words = 0;
+  std::uint64_t written_words = 0;
+};
+
 // Runs the frames of a core one after another, in cycles of its clock: routes the ports to the banks, runs
 // the cycles of a frame, and watches its progress. Plain C++, used by StereoCore and by platform::run_core().
 //
@@ -70,7 +79,6 @@ class FrameRun {
   FastForward::Served serve_host(const FastForward::Route& route, std::uint64_t first, std::size_t words) {
     return fast_forward_.serve_host(cycle_, route, first, words);
   }
-  bool expects_known_burst(bool write) { return fast_forward_.expects_known_burst(write); }
   // To be called before the route of the host changes.
   void host_route_changes() { fast_forward_.settle(cycle_); }
   // To be called when control().frame_done() becomes true.
@@ -96,6 +104,8 @@ class FrameRun {
   }
   // Words written by the frame that was started last.
   std::uint64_t writes() const { return all_writes() - writes_before_; }
+  // The finished frames among those of start_direct().
+  const DirectCounts& direct_counts() const { return direct_counts_; }
   // See FastForward.
   std::uint64_t skipped_cycles() const { return fast_forward_.skipped_cycles(); }
   // See StallWatchdog.
@@ -132,6 +142,7 @@ class FrameRun {
   std::uint64_t index_of_routes(const FrameBases& bases);
   void begin(std::uint64_t cycle, const FrameBases& bases);
   void run_ahead_recorded(std::uint64_t end);
+  void count_direct();
   std::uint64_t all_writes() const { return control().port_cycles(kResultPort).granted(); }
 
   CoreConfig config_;
@@ -146,6 +157,8 @@ class FrameRun {
   std::uint64_t first_cycle_ = 0;
   std::uint64_t done_cycle_ = 0;
   std::uint64_t strobe_ps_ = 0;
+  const AccessPatterns* patterns_ = nullptr;  // of the running frame; null if its stages read the tables
+  DirectCounts direct_counts_;
   std::vector<FrameObserver*> observers_;
   ConflictRecorder* conflicts_ = nullptr;
   CycleRecorder* cycles_ = nullptr;

@@ -50,8 +50,7 @@ void HostPort::serve_contended() {
   const std::uint64_t first = clock_.edge_at_or_after(bus_.request_ps());
   move_burst();
   if (is_joined_ || !is_moved_ || !is_in_step_ ||
-      frames_.must_step_before(std::max(frames_.cycle(), first) + FastForward::kMostHostCycles) ||
-      !frames_.expects_known_burst(burst_.write)) {
+      frames_.must_step_before(std::max(frames_.cycle(), first) + FastForward::kMostHostCycles)) {
     step_contended(first);
     return;
   }

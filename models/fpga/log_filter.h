@@ -31,11 +31,6 @@ class LogFilter : public sc_core::sc_module {
   LogFilter(const sc_core::sc_module_name& name, const CoreConfig& config);
 
   void start_frame() { filter_.start_frame(first_row_); }
-  // Adds the counts of a frame whose data did not pass through this stage.
-  void count(const Stats& frame) {
-    stats_.pixels += frame.pixels;
-    stats_.columns += frame.columns;
-  }
   const Stats& stats() const { return stats_; }
 
  private:

@@ -35,11 +35,6 @@ class LrCheck : public sc_core::sc_module {
   LrCheck(const sc_core::sc_module_name& name, const CoreConfig& config);
 
   void start_frame();
-  // Adds the counts of a frame whose data did not pass through this stage.
-  void count(const Stats& frame) {
-    stats_.answered += frame.answered;
-    stats_.invalid += frame.invalid;
-  }
   const Stats& stats() const { return stats_; }
 
  private:

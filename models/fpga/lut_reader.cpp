@@ -42,10 +42,4 @@ const std::uint32_t* LutReader::table(int height) {
       port, tlm::TLM_READ_COMMAND, table_address_, width_ * static_cast<std::uint64_t>(height) * 4));
 }
 
-void LutReader::count(const Stats& frame) {
-  stats_.reads += frame.reads;
-  stats_.invalid_entries += frame.invalid_entries;
-  stats_.empty_slots += frame.empty_slots;
-}
-
 }  // namespace stereotlm::fpga

@@ -46,8 +46,6 @@ class LutReader : public sc_core::sc_module {
   }
   // The table of width * height words, for immediate use only; null if memory does not grant direct access.
   const std::uint32_t* table(int height);
-  // Adds the counts of a frame whose table was read directly.
-  void count(const Stats& frame);
   const Stats& stats() const { return stats_; }
 
  private:

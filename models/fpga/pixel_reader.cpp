@@ -91,9 +91,4 @@ const std::uint8_t* PixelReader::image(int height) {
                                width_ * static_cast<std::uint64_t>(height));
 }
 
-void PixelReader::count(const Stats& frame) {
-  stats_.reads += frame.reads;
-  stats_.passed_slots += frame.passed_slots;
-}
-
 }  // namespace stereotlm::fpga

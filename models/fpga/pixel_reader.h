@@ -61,8 +61,6 @@ class PixelReader : public sc_core::sc_module {
   void release_blank() { pixels_out->push(MaskedPixel{}); }
   // The image of width * height pixels, for immediate use only; null if memory does not grant direct access.
   const std::uint8_t* image(int height);
-  // Adds the counts of a frame whose image was read directly.
-  void count(const Stats& frame);
   const Stats& stats() const { return stats_; }
 
  private:

@@ -28,8 +28,6 @@ class ResultPacker : public sc_core::sc_module {
   ResultPacker(const sc_core::sc_module_name& name, const CoreConfig& config);
 
   void start_frame();
-  // Adds the counts of a frame whose data did not pass through this stage.
-  void count(const Stats& frame) { stats_.words += frame.words; }
   const Stats& stats() const { return stats_; }
 
  private:

@@ -41,9 +41,4 @@ std::uint8_t* ResultWriter::buffer(std::uint64_t words) {
   return memory::direct_memory(port, tlm::TLM_WRITE_COMMAND, disparity_address_, words * 4);
 }
 
-void ResultWriter::count(const Stats& frame) {
-  stats_.writes += frame.writes;
-  stats_.most_queued_words = std::max(stats_.most_queued_words, frame.most_queued_words);
-}
-
 }  // namespace stereotlm::fpga

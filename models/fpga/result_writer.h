@@ -41,8 +41,6 @@ class ResultWriter : public sc_core::sc_module {
   // The disparity buffer of `words` words, for immediate use only; null if memory does not grant direct
   // access.
   std::uint8_t* buffer(std::uint64_t words);
-  // Adds the counts of a frame that was written directly.
-  void count(const Stats& frame);
   const Stats& stats() const { return stats_; }
 
  private:

@@ -31,8 +31,6 @@ class RowBuffer : public sc_core::sc_module {
   RowBuffer(const sc_core::sc_module_name& name, int width, int window, int pixel_bytes);
 
   void start_frame() { column_ = 0; }
-  // Adds the counts of a frame whose data did not pass through this stage.
-  void count(const Stats& frame) { stats_.columns += frame.columns; }
   const Stats& stats() const { return stats_; }
 
  private:

@@ -31,11 +31,6 @@ class SelectMinChain : public sc_core::sc_module {
   SelectMinChain(const sc_core::sc_module_name& name, const CoreConfig& config);
 
   void start_frame();
-  // Adds the counts of a frame whose data did not pass through this stage.
-  void count(const Stats& frame) {
-    stats_.columns += frame.columns;
-    stats_.matches += frame.matches;
-  }
   const Stats& stats() const { return stats_; }
 
  private:

@@ -27,11 +27,6 @@ class SelectMinTree : public sc_core::sc_module {
 
   explicit SelectMinTree(const sc_core::sc_module_name& name) : sc_module(name) {}
 
-  // Adds the counts of a frame whose data did not pass through this stage.
-  void count(const Stats& frame) {
-    stats_.columns += frame.columns;
-    stats_.matches += frame.matches;
-  }
   const Stats& stats() const { return stats_; }
 
  private:

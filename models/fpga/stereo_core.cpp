@@ -79,10 +79,6 @@ void StereoCore::finish_frame() {
   host_port_.count_words_outside();
 }
 
-void StereoCore::frame_finished(const DirectFrame& frame) {
-  datapath_.count({config_.core, frame.patterns(), frames_, frame.answered()});
-}
-
 void StereoCore::frame_ended(bool failed) {
   register_file_.finish_frame(frames_.frame_cycles().back(), failed || datapath_.errors() != errors_before_);
 }

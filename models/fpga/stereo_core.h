@@ -107,7 +107,6 @@ class StereoCore : public sc_core::sc_module, private FastCore::Board {
     return datapath_.direct_memory(buffers, offsets);
   }
   std::uint8_t* direct_disparities() override { return datapath_.direct_disparities(); }
-  void frame_finished(const DirectFrame& frame) override;
   void frame_ended(bool failed) override;
   void failed(const std::string& why) override;
   void stalled(std::uint64_t cycles) override;

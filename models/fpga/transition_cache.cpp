@@ -73,14 +73,10 @@ void TransitionCache::clear() {
   unhandled_.clear();
   state_numbers_.clear();
   effects_.clear();
-  parts_.clear();
   effect_numbers_.clear();
-  progress_.clear();
-  host_.clear();
   followed_.clear();
   conflicts_.clear();
   effects_followed_.clear();
-  parts_count_ = 0;
   transitions_ = 0;
   mask_ = kFirstBuckets - 1;
   buckets_.assign(kFirstBuckets * words_of_bucket(), 0);
@@ -105,16 +101,11 @@ TransitionCache::StateNumber TransitionCache::number_of(const State& state) {
 std::uint32_t TransitionCache::number_of_effect(const Effect& effect) {
   const auto [entry, is_new] =
       effect_numbers_.try_emplace(effect, static_cast<std::uint32_t>(effects_.size()));
-  if (is_new) add_effect(&entry->first, effect.progress, effect.host);
+  if (is_new) {
+    effects_.push_back(&entry->first);
+    followed_.push_back(0);
+  }
   return entry->second;
-}
-
-void TransitionCache::add_effect(const Effect* effect, const Progress& progress, const HostGrants& host) {
-  effects_.push_back(effect);
-  parts_.emplace_back();
-  progress_.push_back(progress);
-  host_.push_back(host);
-  followed_.push_back(0);
 }
 
 TransitionCache::Accesses TransitionCache::key_of(StateNumber from, const Accesses& accesses) const {
@@ -150,21 +141,6 @@ std::optional<TransitionCache::Transition> TransitionCache::find(StateNumber fro
 
 void TransitionCache::record(StateNumber from, const Accesses& accesses, HostRequests host, StateNumber next,
                              const Effect& effect) {
-  record(from, accesses, host, {next, number_of_effect(effect)});
-}
-
-void TransitionCache::record_sequence(StateNumber from, HostRequests host, StateNumber next,
-                                      const Progress& progress, const HostGrants& grants,
-                                      const Sequence& sequence) {
-  const auto effect = static_cast<std::uint32_t>(effects_.size());
-  add_effect(nullptr, progress, grants);
-  parts_count_ += sequence.size();
-  parts_.back() = sequence;
-  record(from, {}, host, {next, effect});
-}
-
-void TransitionCache::record(StateNumber from, const Accesses& accesses, HostRequests host,
-                             Transition transition) {
   if (2 * (transitions_ + 1) > mask_) double_buckets();
   const Accesses key = key_of(from, accesses);
   const std::uint64_t first_word = first_word_of(from, host);
@@ -172,7 +148,7 @@ void TransitionCache::record(StateNumber from, const Accesses& accesses, HostReq
   if (words[0] == 0) ++transitions_;
   words[0] = first_word;
   std::copy_n(key.begin(), words_, words + 1);
-  words[1 + words_] = std::uint64_t{transition.effect} << 32U | transition.next;
+  words[1 + words_] = std::uint64_t{number_of_effect(effect)} << 32U | next;
 }
 
 void TransitionCache::double_buckets() {
@@ -193,7 +169,7 @@ void TransitionCache::double_buckets() {
 // loop of any length is found. When the walk returns to the marked state, it repeats the loop as often as
 // there is room.
 TransitionCache::StateNumber TransitionCache::walk(StateNumber first, const Accesses& accesses,
-                                                   Progress& room, Sequence* sequence) {
+                                                   Progress& room, Log* log) {
   StateNumber state = first;
   StateNumber mark = state;
   Progress since_mark;
@@ -203,11 +179,11 @@ TransitionCache::StateNumber TransitionCache::walk(StateNumber first, const Acce
        transition = find(state, accesses)) {
     if (transition->next == state) {
       const std::uint64_t times = progress(*transition).times_in(room);
-      follow(*transition, times, sequence);
+      follow(*transition, times, log);
       room.subtract(progress(*transition), times);
       return state;
     }
-    follow(*transition, 1, sequence);
+    follow(*transition, 1, log);
     room.subtract(progress(*transition));
     since_mark.add(progress(*transition));
     state = transition->next;
@@ -217,13 +193,12 @@ TransitionCache::StateNumber TransitionCache::walk(StateNumber first, const Acce
       if (times == 0) continue;
       for (std::uint64_t step = 0; step < steps; ++step) {
         transition = find(state, accesses);
-        follow(*transition, times, sequence);
+        follow(*transition, times, log);
         state = transition->next;
       }
-      if (sequence != nullptr) {
-        for (auto part = sequence->end() - static_cast<std::ptrdiff_t>(steps); part != sequence->end();
-             ++part)
-          part->length = static_cast<std::uint32_t>(steps);
+      if (log != nullptr) {
+        for (auto entry = log->end() - static_cast<std::ptrdiff_t>(steps); entry != log->end(); ++entry)
+          entry->length = static_cast<std::uint32_t>(steps);
       }
       room.subtract(since_mark, times);
     } else if (steps == mark_after) {
@@ -238,20 +213,15 @@ TransitionCache::StateNumber TransitionCache::walk(StateNumber first, const Acce
 
 const GroupConflicts& TransitionCache::find_conflicts(std::uint32_t effect) {
   if (effect >= conflicts_.size()) conflicts_.resize(effects_.size());
-  return conflicts_[effect] = {progress_[effect].cycles, host_[effect].words,
-                               memory::Arbitration::stalls_of(effects_[effect]->decided)};
+  const Effect& found = *effects_[effect];
+  return conflicts_[effect] = {found.progress.cycles, found.host.words,
+                               memory::Arbitration::stalls_of(found.decided)};
 }
 
 void TransitionCache::count_followed(CoreControl& control, memory::Arbitration& arbitration) {
-  for (std::size_t i = 0; i < effects_followed_.size(); ++i) {  // parts are added behind
-    const std::uint32_t number = effects_followed_[i];
-    for (const Part& part : parts_[number]) count(part.effect, part.times * followed_[number]);
-  }
   for (const std::uint32_t number : effects_followed_) {
-    if (effects_[number] != nullptr) {
-      control.add(effects_[number]->counts, followed_[number]);
-      arbitration.count_skipped(effects_[number]->decided, followed_[number]);
-    }
+    control.add(effects_[number]->counts, followed_[number]);
+    arbitration.count_skipped(effects_[number]->decided, followed_[number]);
     followed_[number] = 0;
   }
   effects_followed_.clear();

@@ -57,8 +57,6 @@ struct HostRequests {
   std::uint16_t first = 0;
   std::uint16_t words = 0;  // 0: no request
   std::uint8_t route = 0;   // a number for the bank and the direction, at most kMostRoute
-  // Whether the transition is a sequence that leads to the last grant, over ends of groups too.
-  bool to_last_grant = false;
 
   static constexpr std::size_t kMostRoute = 127;
 };
@@ -84,8 +82,6 @@ class TransitionCache {
  public:
   // Cap: a frame that never repeats would otherwise fill memory.
   static constexpr std::size_t kMost = std::size_t{1} << 17U;
-  // Cap of the parts of all sequences: this number for each transition of the other cap.
-  static constexpr std::size_t kMostPartsEach = 8;
 
   struct State {
     CoreControl::State control;
@@ -122,14 +118,14 @@ class TransitionCache {
     StateNumber next = 0;
     std::uint32_t effect = 0;
   };
-  // Part of a sequence of transitions: an effect. `length` consecutive parts are followed one after the other,
-  // and this `times` times.
-  struct Part {
+  // Transitions in the order in which they were followed, for a recorder. `length` consecutive entries were
+  // followed one after the other, and this `times` times.
+  struct Followed {
     std::uint32_t effect;
     std::uint32_t length;
     std::uint64_t times;
   };
-  using Sequence = std::vector<Part>;
+  using Log = std::vector<Followed>;
 
   // `slots`: the most slots that are in a lane during a group.
   TransitionCache(std::size_t slots, std::size_t most);
@@ -143,40 +139,33 @@ class TransitionCache {
   void record(StateNumber from, const Accesses& accesses, HostRequests host, StateNumber next,
               const Effect& effect);
   void clear();
-  bool is_full() const {
-    return transitions_ >= most_ || parts_count_ >= kMostPartsEach * most_ || states_.size() >= kMostStates;
-  }
+  bool is_full() const { return transitions_ >= most_ || states_.size() >= kMostStates; }
 
-  const Progress& progress(std::uint32_t effect) const { return progress_[effect]; }
+  const Progress& progress(std::uint32_t effect) const { return effects_[effect]->progress; }
   const Progress& progress(const Transition& transition) const { return progress(transition.effect); }
-  const HostGrants& host(const Transition& transition) const { return host_[transition.effect]; }
-  // The transitions of a sequence; none if this is no sequence.
-  const Sequence& parts(std::uint32_t effect) const { return parts_[effect]; }
-  // Valid until the next call for an effect that has not been asked for. Not for a sequence.
+  const HostGrants& host(const Transition& transition) const { return effects_[transition.effect]->host; }
+  // Valid until the next call for an effect that has not been asked for.
   const GroupConflicts& conflicts(std::uint32_t effect) {
     const bool is_known = effect < conflicts_.size() && conflicts_[effect].cycles != 0;
     return is_known ? conflicts_[effect] : find_conflicts(effect);
   }
-  // Notes that a transition has been followed. Adds it to `sequence`, unless that is null.
-  void follow(const Transition& transition, std::uint64_t times = 1, Sequence* sequence = nullptr) {
-    if (sequence != nullptr) sequence->push_back({transition.effect, 1, times});
-    count(transition.effect, times);
+  // Counts a transition as followed. Adds it to `log`, unless that is null.
+  void follow(const Transition& transition, std::uint64_t times = 1, Log* log = nullptr) {
+    if (log != nullptr) log->push_back({transition.effect, 1, times});
+    std::uint64_t& followed = followed_[transition.effect];
+    if (followed == 0) effects_followed_.push_back(transition.effect);
+    followed += times;
   }
-  // The same for a transition of a whole group: it is put together with the last one of `sequence` if both are
-  // equal.
-  void follow_group(const Transition& transition, Sequence* sequence) {
-    const bool comes_again = sequence != nullptr && !sequence->empty() &&
-                             sequence->back().effect == transition.effect && sequence->back().length == 1;
-    if (comes_again) ++sequence->back().times;
-    follow(transition, 1, comes_again ? nullptr : sequence);
+  // The same for a transition of a whole group. If it equals the last one of `log`, both become one entry.
+  void follow_group(const Transition& transition, Log* log) {
+    const bool comes_again =
+        log != nullptr && !log->empty() && log->back().effect == transition.effect && log->back().length == 1;
+    if (comes_again) ++log->back().times;
+    follow(transition, 1, comes_again ? nullptr : log);
   }
-  // Records a sequence as one transition, which needs no accesses.
-  void record_sequence(StateNumber from, HostRequests host, StateNumber next, const Progress& progress,
-                       const HostGrants& grants, const Sequence& sequence);
   // Follows recorded transitions with the same accesses, as far as there is room, which it reduces. A loop of
-  // transitions is repeated in one step. Adds them to `sequence`, unless that is null. Returns the state that
-  // comes next.
-  StateNumber walk(StateNumber first, const Accesses& accesses, Progress& room, Sequence* sequence = nullptr);
+  // transitions is repeated in one step. Adds them to `log`, unless that is null. Returns the next state.
+  StateNumber walk(StateNumber first, const Accesses& accesses, Progress& room, Log* log = nullptr);
   // Adds the counts of the transitions that were followed since the last call.
   void count_followed(CoreControl& control, memory::Arbitration& arbitration);
 
@@ -196,18 +185,11 @@ class TransitionCache {
   Accesses key_of(StateNumber from, const Accesses& accesses) const;
   static std::uint64_t first_word_of(StateNumber from, HostRequests host) {
     return std::uint64_t{host.first} << 48U | std::uint64_t{host.words} << 32U |
-           std::uint64_t{host.to_last_grant} << 31U | std::uint64_t{host.route} << 24U | (from + 1);
+           std::uint64_t{host.route} << 24U | (from + 1);
   }
   std::size_t bucket_of(std::uint64_t first_word, const Accesses& key) const;
   std::uint32_t number_of_effect(const Effect& effect);
   const GroupConflicts& find_conflicts(std::uint32_t effect);
-  void add_effect(const Effect* effect, const Progress& progress, const HostGrants& host);
-  void record(StateNumber from, const Accesses& accesses, HostRequests host, Transition transition);
-  void count(std::uint32_t effect, std::uint64_t times) {
-    std::uint64_t& followed = followed_[effect];
-    if (followed == 0) effects_followed_.push_back(effect);
-    followed += times;
-  }
   void double_buckets();
 
   std::size_t words_;  // of the accesses
@@ -216,14 +198,10 @@ class TransitionCache {
   std::vector<const State*> states_;  // [number]
   std::vector<Accesses> unhandled_;   // [number of the state]: bits of the slots that are not handled before
   std::unordered_map<Effect, std::uint32_t, EffectHash> effect_numbers_;
-  std::vector<const Effect*> effects_;   // [number]; null for a sequence
-  std::vector<Sequence> parts_;          // [number]; empty unless it is a sequence
-  std::vector<Progress> progress_;       // [number of the effect]
-  std::vector<HostGrants> host_;         // [number of the effect]
+  std::vector<const Effect*> effects_;   // [number]
   std::vector<std::uint64_t> followed_;  // [number of the effect]: times not counted yet
   std::vector<std::uint32_t> effects_followed_;
   std::vector<GroupConflicts> conflicts_;  // [number of the effect]; without cycles: not asked for yet
-  std::size_t parts_count_ = 0;            // of all sequences
   std::vector<std::uint64_t> buckets_;
   std::size_t mask_ = 0;  // number of buckets - 1; they are a power of two
   std::size_t transitions_ = 0;
