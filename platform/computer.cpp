@@ -37,43 +37,13 @@ Computer::Computer(const sc_core::sc_module_name& name, const BoardConfig& confi
   cpu.interrupts[kRightInterrupt].bind(right_capture.interrupt);
 }
 
-ComputerCounters Computer::counters() const {
-  const auto camera_counters = [](const capture::Camera& camera, const capture::CaptureBoard& grabber) {
-    return ComputerCounters::Camera{camera.stats().frames, grabber.undecided(), grabber.stats()};
-  };
-  const fpga::LocalBus& local_bus = board.core.local_bus_port();
-  return {counters_of(board),
-          pci_bus.stats(),
-          bridge.stats(),
-          local_bus.stats(),
-          {bridge.words_taken().words(), bridge.words_held().words(), local_bus.words_to_grant().words(),
-           local_bus.words_granted().words()},
-          {camera_counters(left_camera, left_capture), camera_counters(right_camera, right_capture)}};
-}
-
-void Computer::record(Timeline& timeline) {
-  left_capture.observe(timeline.capture_board(0));
-  right_capture.observe(timeline.capture_board(1));
-  bridge.observe(timeline.bridge());
-  board.core.observe(timeline.core());
-}
-
-void Computer::trace_buses(BusTrace& trace) {
-  pci_bus.observe(trace.pci_bus());
-  bridge.observe(trace.bridge());
-  board.core.observe(trace.local_bus());
-  board.core.observe(trace.core());
-  left_capture.observe(trace.capture_fifo(0));
-  right_capture.observe(trace.capture_fifo(1));
-  trace.set_show_words([this](std::uint64_t now_ps) {
-    left_capture.show_words(now_ps);
-    right_capture.show_words(now_ps);
-  });
-}
-
-std::uint64_t Computer::work_done() {
-  board.core.catch_up();
-  return board.core.control().work() + words_for_results(pci_bus.stats());
+ComputerControls Computer::controls() {
+  return {pci_bus.control(),
+          bridge.control(),
+          board.core.local_bus_port().control(),
+          board.core.frames(),
+          {&left_capture.control(), &right_capture.control()},
+          {&left_camera.control(), &right_camera.control()}};
 }
 
 void Computer::bind_pci(Binder& binder) {

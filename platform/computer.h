@@ -12,6 +12,7 @@
 #include "models/host/host_bridge.h"
 #include "models/host/host_memory.h"
 #include "models/host/program.h"
+#include "models/kernel_time.h"
 #include "models/pci/pci_bridge.h"
 #include "models/pci/pci_bus.h"
 #include "models/pci/traffic_generator.h"
@@ -33,17 +34,6 @@ class Computer : public sc_core::sc_module, public ComputerView {
   Computer(const sc_core::sc_module_name& name, const BoardConfig& config, std::uint64_t host_memory_bytes,
            host::Program& program, capture::CameraSource& left, capture::CameraSource& right, Binder& binder);
 
-  ComputerCounters counters() const override;
-  const fpga::FrameRun& core_frames() const override { return board.core.frames(); }
-  std::uint64_t work_done() override;
-  std::string waits() override { return board.core.waits(); }
-  void record(Timeline& timeline) override;
-  void trace_buses(BusTrace& trace) override;
-  void record(fpga::ConflictRecorder& conflicts) override { board.core.record(conflicts); }
-  void record(fpga::CycleRecorder& cycles) override { board.core.record(cycles); }
-  void record_rows() override { board.core.record_rows(); }
-  std::vector<fpga::RowProfile> take_rows() override { return board.core.take_rows(); }
-
   Board board;
   pci::PciBus pci_bus;
   pci::PciBridge bridge;
@@ -58,6 +48,10 @@ class Computer : public sc_core::sc_module, public ComputerView {
   std::unique_ptr<pci::TrafficGenerator> traffic_generator;
 
  private:
+  ComputerControls controls() override;
+  std::uint64_t now_ps() const override { return kernel_time::now_ps(); }
+  BoardCounters board_counters() const override { return counters_of(board); }
+  void catch_up() override { board.core.catch_up(); }
   void bind_pci(Binder& binder);
   void bind_capture();
 

@@ -158,44 +158,13 @@ void ComputerLoop::step(Kind kind) {
   }
 }
 
-void ComputerLoop::record(Timeline& timeline) {
-  for (std::size_t side = 0; side < captures_.size(); ++side)
-    captures_[side].observe(timeline.capture_board(side));
-  bridge_.observe(timeline.bridge());
-  board_.observe(timeline.core());
-}
-
-void ComputerLoop::trace_buses(BusTrace& trace) {
-  pci_bus_.observe(trace.pci_bus());
-  bridge_.observe(trace.bridge());
-  board_.local_bus().observe(trace.local_bus());
-  board_.observe(trace.core());
-  for (std::size_t side = 0; side < captures_.size(); ++side)
-    captures_[side].observe(trace.capture_fifo(side));
-  trace.set_show_words([this](std::uint64_t now_ps) {
-    for (const capture::CaptureControl& capture : captures_) capture.show_words(now_ps);
-  });
-  trace_ = &trace;
-}
-
-std::uint64_t ComputerLoop::work_done() {
-  board_.catch_up(now_ps_);
-  return board_.frames().control().work() + words_for_results(pci_bus_.stats(now_ps_));
-}
-
-ComputerCounters ComputerLoop::counters() const {
-  const fpga::LocalBusControl& local_bus = board_.local_bus();
-  const auto camera = [this](std::size_t side) {
-    return ComputerCounters::Camera{cameras_[side].stats().frames, captures_[side].undecided(),
-                                    captures_[side].stats(now_ps_)};
-  };
-  return {board_.counters(),
-          pci_bus_.stats(now_ps_),
-          bridge_.stats(),
-          local_bus.stats(now_ps_),
-          {bridge_.words_taken().words(), bridge_.words_held().words(), local_bus.words_to_grant().words(),
-           local_bus.words_granted().words()},
-          {camera(0), camera(1)}};
+ComputerControls ComputerLoop::controls() {
+  return {pci_bus_,
+          bridge_,
+          board_.local_bus(),
+          board_.frames(),
+          {&captures_[0], &captures_[1]},
+          {&cameras_[0], &cameras_[1]}};
 }
 
 pci::PciAnswer ComputerLoop::HostMemoryTarget::access(std::uint64_t /*now_ps*/, const pci::PciAccess& access,

@@ -14,11 +14,10 @@
 #include "models/time_ps.h"
 #include "platform/bus_trace.h"
 #include "platform/camera_lines.h"
-#include "platform/collect_computer.h"
+#include "platform/computer_view.h"
 #include "platform/config/board_config.h"
 #include "platform/dma_bursts.h"
 #include "platform/fast_board.h"
-#include "platform/timeline.h"
 
 namespace stereotlm::platform {
 
@@ -53,12 +52,9 @@ class ComputerLoop : private FastBoard::Doorbell, private pci::BridgeControl::Ho
   const pci::PciSlot& host_slot() const;
   FastBoard& board() { return board_; }
   const FastBoard& board() const { return board_; }
-  // To be called while the core runs no frame.
-  ComputerCounters counters() const;
-  // See ComputerView.
-  std::uint64_t work_done();
-  void record(Timeline& timeline);
-  void trace_buses(BusTrace& trace);
+  ComputerControls controls();
+  // The buses are traced: the loop skips nothing that `trace` shows.
+  void trace_buses(const BusTrace& trace) { trace_ = &trace; }
   const pci::PciBusControl& pci_bus() const { return pci_bus_; }
   // Lines of the cameras that were skipped.
   std::uint64_t skipped_lines() const { return lines_.skipped(); }

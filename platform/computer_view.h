@@ -1,37 +1,52 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
-#include <string>
-#include <vector>
 
+#include "models/capture/camera_control.h"
+#include "models/capture/capture_control.h"
 #include "models/fpga/frame_run.h"
-#include "models/fpga/row_profile.h"
+#include "models/fpga/local_bus_control.h"
+#include "models/pci/bridge_control.h"
+#include "models/pci/pci_bus_control.h"
 #include "platform/bus_trace.h"
 #include "platform/collect_computer.h"
 #include "platform/timeline.h"
 
 namespace stereotlm::platform {
 
+// The controls of a computer's blocks: Computer has them in its modules, FastComputer in its loop.
+struct ComputerControls {
+  pci::PciBusControl& pci_bus;
+  pci::BridgeControl& bridge;
+  fpga::LocalBusControl& local_bus;
+  fpga::FrameRun& core;
+  std::array<capture::CaptureControl*, 2> captures;      // left, right
+  std::array<const capture::CameraControl*, 2> cameras;  // left, right
+};
+
 // What Computer and FastComputer show of a run.
 class ComputerView {
  public:
   virtual ~ComputerView() = default;
+
+  fpga::FrameRun& core() { return controls().core; }
   // To be called while the core runs no frame.
-  virtual ComputerCounters counters() const = 0;
-  virtual const fpga::FrameRun& core_frames() const = 0;
+  ComputerCounters counters();
   // A measure of progress towards a result. It advances a running frame to the present.
-  virtual std::uint64_t work_done() = 0;
-  // Text for messages: what the ports of the core wait for.
-  virtual std::string waits() = 0;
+  std::uint64_t work_done();
   // Hands everything that happens to `timeline`, which outlives the computer. To be called at time 0.
-  virtual void record(Timeline& timeline) = 0;
+  void record(Timeline& timeline);
   // Hands what the buses and the queues do to `trace`, which outlives the computer. To be called at time 0.
-  virtual void trace_buses(BusTrace& trace) = 0;
-  // See FrameRun.
-  virtual void record(fpga::ConflictRecorder& conflicts) = 0;
-  virtual void record(fpga::CycleRecorder& cycles) = 0;
-  virtual void record_rows() = 0;
-  virtual std::vector<fpga::RowProfile> take_rows() = 0;
+  virtual void trace_buses(BusTrace& trace);
+
+ private:
+  virtual ComputerControls controls() = 0;
+  // The time up to which the controls have been stepped.
+  virtual std::uint64_t now_ps() const = 0;
+  virtual BoardCounters board_counters() const = 0;
+  // Advances a running frame to the present.
+  virtual void catch_up() = 0;
 };
 
 }  // namespace stereotlm::platform

@@ -133,7 +133,7 @@ void FastBoard::frame_ended(bool failed) {
 void FastBoard::failed(const std::string& why) { throw std::runtime_error("core: " + why); }
 
 void FastBoard::stalled(std::uint64_t cycles) {
-  failed(fmt::format("no slot consumed and no result written for {} cycles; {}", cycles, waits()));
+  failed(fmt::format("no slot consumed and no result written for {} cycles; {}", cycles, frames_.waits()));
 }
 
 BoardCounters FastBoard::counters() const {

@@ -47,6 +47,8 @@ class FastBoard : private fpga::LocalBusControl::Core,
 
   fpga::LocalBusControl& local_bus() { return local_bus_; }
   const fpga::LocalBusControl& local_bus() const { return local_bus_; }
+  // The frames, to observe and to record them.
+  fpga::FrameRun& frames() { return frames_; }
   const fpga::FrameRun& frames() const { return frames_; }
 
   // The time of the next step(), which may be the present.
@@ -74,13 +76,6 @@ class FastBoard : private fpga::LocalBusControl::Core,
     host_port_.record_skipped(write, address, cycle, bursts);
   }
 
-  // See FrameRun.
-  void observe(fpga::FrameObserver& observer) { frames_.observe(observer); }
-  void record(fpga::ConflictRecorder& conflicts) { frames_.record(conflicts); }
-  void record(fpga::CycleRecorder& cycles) { host_port_.record(cycles); }
-  void record_rows() { frames_.record_rows(); }
-  std::vector<fpga::RowProfile> take_rows() { return frames_.take_rows(); }
-  std::string waits() { return frames_.waits(local_bus_.word_waits()); }
   // Advances the running frame to `now_ps`, for observers. See StereoCore::catch_up().
   void catch_up(std::uint64_t now_ps);
 

@@ -47,6 +47,11 @@ void FastComputer::end_burst(const pci::BurstResult& result) {
   loop_.notice();
 }
 
+void FastComputer::trace_buses(BusTrace& trace) {
+  ComputerView::trace_buses(trace);
+  loop_.trace_buses(trace);
+}
+
 // Steps the loop whenever the program has done everything that it does at a time.
 void FastComputer::run() {
   for (;;) {

@@ -37,22 +37,17 @@ class FastComputer : public sc_core::sc_module,
                std::uint64_t host_memory_bytes, host::Program& program, capture::CameraSource& left,
                capture::CameraSource& right, Binder& binder, fpga::Fidelity fidelity);
 
-  ComputerCounters counters() const override { return loop_.counters(); }
-  const fpga::FrameRun& core_frames() const override { return loop_.board().frames(); }
-  std::uint64_t work_done() override { return loop_.work_done(); }
-  std::string waits() override { return loop_.board().waits(); }
-  void record(Timeline& timeline) override { loop_.record(timeline); }
-  void trace_buses(BusTrace& trace) override { loop_.trace_buses(trace); }
-  void record(fpga::ConflictRecorder& conflicts) override { loop_.board().record(conflicts); }
-  void record(fpga::CycleRecorder& cycles) override { loop_.board().record(cycles); }
-  void record_rows() override { loop_.board().record_rows(); }
-  std::vector<fpga::RowProfile> take_rows() override { return loop_.board().take_rows(); }
+  void trace_buses(BusTrace& trace) override;
 
   host::HostMemory host_memory;
   host::HostBridge host_bridge;
   host::Cpu cpu;
 
  private:
+  ComputerControls controls() override { return loop_.controls(); }
+  std::uint64_t now_ps() const override { return loop_.now_ps(); }
+  BoardCounters board_counters() const override { return loop_.board().counters(); }
+  void catch_up() override { loop_.board().catch_up(loop_.now_ps()); }
   void run();
   bool is_asserted() const override { return loop_.interrupt(); }
   const sc_core::sc_event& changed_event() const override { return interrupt_changed_; }

@@ -39,6 +39,7 @@ class Camera : public sc_core::sc_module, private FrameReceiver {
   // kernel's time resolution is not 1 ps.
   Camera(const sc_core::sc_module_name& name, const CameraConfig& config, CameraSource& source);
 
+  const CameraControl& control() const { return control_; }
   const CameraTiming& timing() const { return control_.timing(); }
   const Stats& stats() const { return control_.stats(); }
 

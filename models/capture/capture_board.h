@@ -64,15 +64,9 @@ class CaptureBoard : public sc_core::sc_module,
   // Throws std::invalid_argument if the configuration has problems.
   CaptureBoard(const sc_core::sc_module_name& name, const CaptureBoardConfig& config);
 
-  // See CaptureControl.
-  void observe(CaptureObserver& observer) { control_.observe(observer); }
-  void observe(FifoObserver& observer) { control_.observe(observer); }
-  void show_words(std::uint64_t now_ps) const { control_.show_words(now_ps); }
-
+  CaptureControl& control() { return control_; }
   // Counts up to the current time.
   Stats stats() const;
-  // Whether a frame has begun in this very ps, and is neither started nor dropped yet.
-  bool undecided() const { return control_.undecided(); }
   // The last capture that has ended; none before the first one ends.
   const std::optional<Capture>& last_capture() const { return control_.last_capture(); }
 

@@ -141,7 +141,7 @@ std::uint64_t CycleRecorder::pixel_of_slot(memory::Port port, std::uint64_t slot
          static_cast<std::uint64_t>(place.cursor.column());
 }
 
-void CycleRecorder::set_host(CoreCycle& cycle, const HostWord& word, bool granted, std::size_t by) {
+void CycleRecorder::set_host(CoreCycle& cycle, const HostWords::Word& word, bool granted, std::size_t by) {
   cycle.ports[kHostPort] = {Intent::kRequest, granted, word.bank, word.address, by, 0};
   cycle.host_traffic = word.traffic;
 }

@@ -14,30 +14,32 @@
 
 namespace stereotlm::fpga {
 
+// The words that the host port has to serve.
+class HostWords {
+ public:
+  struct Word {
+    std::size_t bank = 0;
+    std::uint64_t address = 0;  // byte address in the bank
+    HostTraffic traffic = HostTraffic::kCapture;
+  };
+  virtual ~HostWords() = default;
+  // Whether a word requests, or will do so.
+  virtual bool word_waits() const = 0;
+  // The word that requests next. To be called if word_waits().
+  virtual Word next_word() const = 0;
+};
+
 // Reports to an observer what every port does in each cycle of a window. FastForward must not skip these cycles.
 // Addresses follow from the slots and from the look-up tables, so that memory need not hold them. Plain C++;
 // used at every fidelity, with the same cycles.
 class CycleRecorder {
  public:
-  // A word of the host's port.
-  struct HostWord {
-    std::size_t bank = 0;
-    std::uint64_t address = 0;  // byte address in the bank
-    HostTraffic traffic = HostTraffic::kCapture;
-  };
-  // Source of the word of the host that will request next.
-  class Host {
-   public:
-    virtual ~Host() = default;
-    virtual HostWord next_word() const = 0;
-  };
-
   // `conflicts` records all frames, and is given to FrameRun too. All references outlive this object.
   CycleRecorder(const CoreConfig& config, const ConflictRecorder& conflicts, const CycleWindow& window,
                 CycleObserver& observer);
   // The entries of the table of a side, row by row. To be called for each side with table.
   void set_entries(Side side, const std::uint32_t* entries) { entries_[index_of(side)] = entries; }
-  void set_host(const Host& host) { host_ = &host; }
+  void set_host(const HostWords& host) { host_ = &host; }
 
   // For FrameRun.
   void start_frame(std::uint64_t number, std::uint64_t first_cycle, const FrameBases& bases);
@@ -56,7 +58,7 @@ class CycleRecorder {
   // `granted`, consecutive words are granted in `cycles` cycles from `cycle` on. Otherwise the first word waits in
   // these cycles because of the turnaround. To be called in the order of the cycles, and before the frame is
   // stepped there.
-  void host_accesses(const HostWord& first, std::uint64_t cycle, std::uint64_t cycles, bool granted) {
+  void host_accesses(const HostWords::Word& first, std::uint64_t cycle, std::uint64_t cycles, bool granted) {
     accesses_.push_back({first, cycle, cycles, granted});
   }
 
@@ -68,7 +70,7 @@ class CycleRecorder {
 
  private:
   struct Accesses {
-    HostWord word;
+    HostWords::Word word;
     std::uint64_t cycle;
     std::uint64_t cycles;
     bool granted;
@@ -80,7 +82,7 @@ class CycleRecorder {
   void set_item(PortCycle& port, memory::Port number, const CoreControl& control) const;
   std::uint64_t address_of(memory::Port port, std::uint64_t item);
   std::uint64_t pixel_of_slot(memory::Port port, std::uint64_t slot);
-  static void set_host(CoreCycle& cycle, const HostWord& word, bool granted, std::size_t by);
+  static void set_host(CoreCycle& cycle, const HostWords::Word& word, bool granted, std::size_t by);
   void set_access(CoreCycle& cycle) const;
   void drop_accesses(std::uint64_t end_cycle);
   void report_accesses(std::uint64_t end_cycle);
@@ -91,7 +93,7 @@ class CycleRecorder {
   CycleWindow window_;
   CycleObserver& observer_;
   std::array<const std::uint32_t*, 2> entries_{};  // [side]
-  const Host* host_ = nullptr;
+  const HostWords* host_ = nullptr;
 
   std::optional<std::uint64_t> frame_;  // that runs
   std::uint64_t first_cycle_ = 0;       // of the frame

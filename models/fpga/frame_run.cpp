@@ -124,12 +124,12 @@ void FrameRun::end() {
   if (stepper_.rows().is_on()) row_profiles_.push_back(stepper_.rows().profile(first_cycle_));
 }
 
-std::string FrameRun::waits(bool host_requests) {
+std::string FrameRun::waits() {
   if (!is_running()) return "the core runs no frame";
   run_ahead(cycle_);  // after serve_host() the core has an older state
   return "frame " + std::to_string(frame_cycles_.size()) + " of the core, cycle " +
          std::to_string(cycle_ - first_cycle_) + "; " +
-         waits_of_ports(control(), stepper_.arbitration(), host_requests);
+         waits_of_ports(control(), stepper_.arbitration(), host_ != nullptr && host_->word_waits());
 }
 
 }  // namespace stereotlm::fpga

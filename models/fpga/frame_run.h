@@ -111,7 +111,7 @@ class FrameRun {
   // See StallWatchdog.
   std::uint64_t stalled_cycles();
   // Text for messages: the frame that runs, and what its ports wait for.
-  std::string waits(bool host_requests);
+  std::string waits();
 
   // The number of cycles of every frame that has ended, from its first cycle to its end (`frame_cycles` in
   // results).
@@ -121,12 +121,17 @@ class FrameRun {
   void record_rows() { stepper_.rows().turn_on(); }
   std::vector<RowProfile> take_rows() { return std::exchange(row_profiles_, {}); }
 
+  // What serves the host port beside the frames; to be called once. `host` outlives this object.
+  void set_host(const HostWords& host) { host_ = &host; }
   // Records all frames from the next one on. `conflicts` outlives this object.
   void record(ConflictRecorder& conflicts) { conflicts_ = &conflicts; }
   ConflictRecorder* conflicts() { return conflicts_; }
   // Records the cycles of a window, of all frames from the next one on. record(ConflictRecorder&) must have
   // been called. `cycles` outlives this object.
-  void record(CycleRecorder& cycles) { cycles_ = &cycles; }
+  void record(CycleRecorder& cycles) {
+    cycles_ = &cycles;
+    cycles.set_host(*host_);
+  }
   CycleRecorder* cycles() { return cycles_; }
   // Whether a cycle of the running frame before `end` must be stepped.
   bool must_step_before(std::uint64_t end) const {
@@ -160,6 +165,7 @@ class FrameRun {
   const AccessPatterns* patterns_ = nullptr;  // of the running frame; null if its stages read the tables
   DirectCounts direct_counts_;
   std::vector<FrameObserver*> observers_;
+  const HostWords* host_ = nullptr;  // null: nothing uses the host port
   ConflictRecorder* conflicts_ = nullptr;
   CycleRecorder* cycles_ = nullptr;
   bool is_settled_ = false;          // run_ahead_recorded() has settled fast_forward_

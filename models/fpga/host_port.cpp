@@ -36,7 +36,7 @@ bool HostPort::access(std::uint64_t cycle, std::uint64_t edge_ps) {
   return !bus_.word_waits();
 }
 
-CycleRecorder::HostWord HostPort::next_word() const {
+HostWords::Word HostPort::next_word() const {
   return {*burst_.bank, words_left().first - memory::crossbar_address(*burst_.bank, 0), traffic()};
 }
 

@@ -19,7 +19,7 @@ namespace stereotlm::fpga {
 // A burst is contended if it goes to a bank of the running frame: then each word is arbitrated in its cycle.
 // An uncontended burst is served independently of the frame. Its words are counted later, when it is known
 // whether their cycles belong to the frame. Plain C++.
-class HostPort : private CycleRecorder::Host {
+class HostPort : private HostWords {
  public:
   // All of these outlive this object.
   HostPort(LocalBusControl& bus, memory::DirectBanks& banks, memory::Arbitration& arbitration,
@@ -29,7 +29,11 @@ class HostPort : private CycleRecorder::Host {
         arbitration_(arbitration),
         frames_(frames),
         clock_(clock),
-        is_in_step_(bus.is_in_step_with(clock)) {}
+        is_in_step_(bus.is_in_step_with(clock)) {
+    frames.set_host(*this);
+  }
+  HostPort(const HostPort&) = delete;
+  HostPort& operator=(const HostPort&) = delete;
 
   // Sets whether only the local bus can start frames. If so, no frame starts within a burst. Default: false.
   void set_only_master(bool is_only_master) { is_only_master_ = is_only_master; }
@@ -57,11 +61,6 @@ class HostPort : private CycleRecorder::Host {
   // later time, or the end of the finishing frame, which must be ended first. Returns nothing if no word waits
   // any more.
   std::optional<std::uint64_t> serve_uncontended(std::uint64_t horizon_ps);
-  // Names the words of the bursts to `cycles`, and tells it what is decided on words beside the frame.
-  void record(CycleRecorder& cycles) {
-    frames_.record(cycles);
-    cycles.set_host(*this);
-  }
   // To be called for each cycle in which the host requests while no frame runs, if serve_uncontended() is not
   // called.
   void record_cycle(std::uint64_t cycle, bool granted) { record_served(cycle, 1, granted); }
@@ -100,7 +99,8 @@ class HostPort : private CycleRecorder::Host {
     memory::BankArbiter::Outcome outcome;
   };
 
-  CycleRecorder::HostWord next_word() const override;
+  bool word_waits() const override { return bus_.word_waits(); }
+  Word next_word() const override;
   void record_served(std::uint64_t cycle, std::uint64_t cycles, bool granted) {
     if (frames_.cycles() != nullptr) frames_.cycles()->host_accesses(next_word(), cycle, cycles, granted);
   }

@@ -51,9 +51,8 @@ class LocalBus : public sc_core::sc_module,
   // Throws std::invalid_argument if the clock or the number of banks is out of range.
   LocalBus(const sc_core::sc_module_name& name, const LocalBusConfig& config, std::size_t banks);
 
-  // See LocalBusControl.
-  void observe(LocalBusObserver& observer) { control_.observe(observer); }
   LocalBusControl& control() { return control_; }
+  const LocalBusControl& control() const { return control_; }
   bool word_waits() const { return control_.word_waits(); }
   std::uint64_t request_ps() const { return control_.request_ps(); }
   bool requests(std::uint64_t edge_ps) const { return control_.requests(edge_ps); }
@@ -61,8 +60,6 @@ class LocalBus : public sc_core::sc_module,
   const sc_core::sc_event& request_event() const { return request_event_; }
   // Counts up to the current time.
   Stats stats() const { return control_.stats(kernel_time::now_ps()); }
-  const WordsByRange& words_granted() const { return control_.words_granted(); }
-  WordsByRange words_to_grant() const { return control_.words_to_grant(); }
 
  private:
   void b_transport(tlm::tlm_generic_payload& access, sc_core::sc_time& delay) override;

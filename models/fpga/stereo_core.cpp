@@ -115,7 +115,8 @@ void StereoCore::run() {
 }
 
 void StereoCore::stalled(std::uint64_t cycles) {
-  failed("no slot consumed and no result written for " + std::to_string(cycles) + " cycles; " + waits());
+  failed("no slot consumed and no result written for " + std::to_string(cycles) + " cycles; " +
+         frames_.waits());
 }
 
 bool StereoCore::fast_forwards() const {

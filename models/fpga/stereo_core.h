@@ -71,26 +71,19 @@ class StereoCore : public sc_core::sc_module, private FastCore::Board {
   const memory::Crossbar& crossbar() const { return crossbar_; }
   const CoreDatapath& datapath() const { return datapath_; }
   const RegisterFile& register_file() const { return register_file_; }
+  LocalBus& local_bus_port() { return local_bus_; }
   const LocalBus& local_bus_port() const { return local_bus_; }
+  // The frames, to observe and to record them.
+  FrameRun& frames() { return frames_; }
   const FrameRun& frames() const { return frames_; }
   const CoreControl& control() const { return frames_.control(); }
   // Frames that were stepped cycle by cycle, at any fidelity.
   std::uint64_t stepped_frames() const { return stepped_frames_; }
 
-  // See LocalBusControl.
-  void observe(LocalBusObserver& observer) { local_bus_.observe(observer); }
-  // See FrameRun.
-  void observe(FrameObserver& observer) { frames_.observe(observer); }
-  void record(ConflictRecorder& conflicts) { frames_.record(conflicts); }
-  void record(CycleRecorder& cycles) { host_port_.record(cycles); }
-  void record_rows() { frames_.record_rows(); }
-  std::vector<RowProfile> take_rows() { return frames_.take_rows(); }
-  // Text for messages: what the ports wait for.
-  std::string waits() { return frames_.waits(local_bus_.word_waits()); }
   // Advances control() to the present, for observers of a running frame. Two counts are provisional until a
   // burst contends for a bank of the frame, or the frame ends:
-  // - A pass on an uncontended pixel port counts as a grant, in the arbiters' reads too, and waits() shows it
-  //   as a request.
+  // - A pass on an uncontended pixel port counts as a grant, in the arbiters' reads too, and FrameRun::waits()
+  //   shows it as a request.
   // - Words of a burst for an uncontended bank count as idle cycles of the host port.
   void catch_up();
 

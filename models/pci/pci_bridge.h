@@ -47,9 +47,7 @@ class PciBridge : public sc_core::sc_module,
   // Throws std::invalid_argument if the configuration has problems.
   PciBridge(const sc_core::sc_module_name& name, const PciBridgeConfig& config);
 
-  // See BridgeControl.
-  void observe(BridgeObserver& observer) { control_.observe(observer); }
-  void observe(LocalBusMasterObserver& observer) { control_.observe(observer); }
+  BridgeControl& control() { return control_; }
   const Stats& stats() const { return control_.stats(); }
   const WordsByRange& words_taken() const { return control_.words_taken(); }
   WordsByRange words_held() const { return control_.words_held(); }

@@ -67,8 +67,7 @@ class PciBus : public sc_core::sc_module {
   // Throws std::invalid_argument if the configuration has problems.
   PciBus(const sc_core::sc_module_name& name, const PciBusConfig& config);
 
-  // See PciBusControl.
-  void observe(PciBusObserver& observer) { control_.observe(observer); }
+  PciBusControl& control() { return control_; }
   const Clock& clock() const { return control_.clock(); }
   // Counts up to the current time.
   Stats stats() const { return control_.stats(kernel_time::now_ps()); }

@@ -71,7 +71,7 @@ platform::Statistics CameraSimulation::statistics() const {
   }
   platform::Statistics statistics =
       platform::collect_statistics(board_, tables_, fidelity_ == fpga::Fidelity::kCycle ? "cycle" : "fast",
-                                   computer_->core_frames().frame_cycles(), counters_, deliveries_);
+                                   computer_->core().frame_cycles(), counters_, deliveries_);
   if (timeline_) {
     for (std::string& failed : timeline_->failed(statistics)) statistics.failed.push_back(std::move(failed));
   }
@@ -109,7 +109,7 @@ void CameraSimulation::check_progress() {
   throw std::runtime_error(
       fmt::format("no progress for {:.3f} s of simulated time; delivered: {} of {} frames; the driver waits "
                   "for: {}; {}",
-                  idle, frames_done(), frames(), driver_.under_way(), computer_->waits()));
+                  idle, frames_done(), frames(), driver_.under_way(), computer_->core().waits()));
 }
 
 }  // namespace stereotlm::runs

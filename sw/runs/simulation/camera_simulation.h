@@ -34,11 +34,11 @@ class CameraSimulation : public Simulation, private driver::FrameListener {
   void trace_buses(platform::BusTrace& buses) override { computer_->trace_buses(buses); }
 
   void end_early() override;
-  void record_rows() override { computer_->record_rows(); }
-  std::vector<fpga::RowProfile> take_rows() override { return computer_->take_rows(); }
+  void record_rows() override { computer_->core().record_rows(); }
+  std::vector<fpga::RowProfile> take_rows() override { return computer_->core().take_rows(); }
   platform::TimelineRecords take_timeline() override;
   platform::Statistics statistics() const override;
-  const platform::ComputerView& computer() const { return *computer_; }
+  platform::ComputerView& computer() { return *computer_; }
   // The steady rate of the frames delivered so far; nullopt if they are too few.
   std::optional<platform::SteadyRate> steady_rate() const {
     return platform::steady_rate(deliveries_, platform::allocation_period_frames(board_));
@@ -60,8 +60,8 @@ class CameraSimulation : public Simulation, private driver::FrameListener {
   const host::StereoPair& captured_pair(std::uint64_t number, std::uint64_t begin_ps);
   void frame_delivered(const driver::DeliveredFrame& frame) override;
   void check_progress() override;
-  void record(fpga::ConflictRecorder& conflicts) override { computer_->record(conflicts); }
-  void record(fpga::CycleRecorder& cycles) override { computer_->record(cycles); }
+  void record(fpga::ConflictRecorder& conflicts) override { computer_->core().record(conflicts); }
+  void record(fpga::CycleRecorder& cycles) override { computer_->core().record(cycles); }
 
   const platform::BoardConfig& board_;
   fpga::Fidelity fidelity_;

@@ -21,14 +21,14 @@ class PreloadedSimulation : public Simulation, private host::FrameSource, privat
                       fpga::Fidelity fidelity = fpga::Fidelity::kCycle);
 
   void end_early() override;
-  void record_rows() override { system_.board.core.record_rows(); }
-  std::vector<fpga::RowProfile> take_rows() override { return system_.board.core.take_rows(); }
+  void record_rows() override { system_.board.core.frames().record_rows(); }
+  std::vector<fpga::RowProfile> take_rows() override { return system_.board.core.frames().take_rows(); }
   platform::Statistics statistics() const override;
 
  private:
   const host::StereoPair& pair(std::uint64_t frame) override { return load_pair(frame); }
-  void record(fpga::ConflictRecorder& conflicts) override { system_.board.core.record(conflicts); }
-  void record(fpga::CycleRecorder& cycles) override { system_.board.core.record(cycles); }
+  void record(fpga::ConflictRecorder& conflicts) override { system_.board.core.frames().record(conflicts); }
+  void record(fpga::CycleRecorder& cycles) override { system_.board.core.frames().record(cycles); }
   void take(std::uint64_t frame, const kernels::GrayImage& disparity) override;
   // Lets a frame that is fast-forwarded pass with the time, so that advance() returns within it.
   void check_progress() override { system_.board.core.catch_up(); }

@@ -44,8 +44,8 @@ PreloadedRun run_preloaded(const platform::BoardConfig& board, const platform::T
   KeptFrames sink;
   MonitoringBinder binder;
   platform::PreloadedSystem system("system", board, tables, frames, source, sink, binder, fidelity);
-  if (with_rows) system.board.core.record_rows();
-  if (conflicts != nullptr) system.board.core.record(conflicts->recorder());
+  if (with_rows) system.board.core.frames().record_rows();
+  if (conflicts != nullptr) system.board.core.frames().record(conflicts->recorder());
   sc_core::sc_start();
   EXPECT_TRUE(system.host.finished());
   // Two of the host, three to five from the ports of the core, one to each bank.
@@ -53,7 +53,7 @@ PreloadedRun run_preloaded(const platform::BoardConfig& board, const platform::T
       (tables.left ? 1U : 0U) + (tables.right && !board.fpga.joint_tables ? 1U : 0U);
   EXPECT_EQ(binder.monitors().size(), 7 + tables_bound + board.banks.size());
   return {platform::collect_statistics(board, tables, system.board), std::move(sink.disparities),
-          system.board.core.take_rows()};
+          system.board.core.frames().take_rows()};
 }
 
 Figures figures(const platform::Statistics& statistics) {

@@ -32,7 +32,7 @@ class CollectComputer : public testing::Test {
   }
   platform::Statistics statistics() const {
     return platform::collect_statistics(
-        board, tables, "cycle", simulation.computer().core_frames().frame_cycles(), counters, deliveries);
+        board, tables, "cycle", simulation.computer().core().frame_cycles(), counters, deliveries);
   }
 
   platform::BoardConfig board = platform::load_board(

@@ -110,8 +110,8 @@ TEST_F(LocalBusTest, CountsClocksUpToNow) {
 TEST_F(LocalBusTest, CountsTheWordsWrittenToEachBuffer) {
   using Counts = std::vector<std::uint64_t>;
   const auto expect_words = [this](const Counts& granted, const Counts& to_grant) {
-    EXPECT_EQ(bus.words_granted().words(), granted);
-    EXPECT_EQ(bus.words_to_grant().words(), to_grant);
+    EXPECT_EQ(bus.control().words_granted().words(), granted);
+    EXPECT_EQ(bus.control().words_to_grant().words(), to_grant);
   };
   host.request(TLM_WRITE_COMMAND, 4, Words{5, 6, 7});
   expect_words({0, 0}, {1, 2});

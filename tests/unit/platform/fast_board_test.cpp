@@ -237,17 +237,17 @@ TEST_F(FastBoardTest, NeedsFidelityCycleForABurstThatWouldObserveAFrame) {
 }
 
 TEST_F(FastBoardTest, ShowsARunningFrameToObservers) {
-  EXPECT_EQ(board.waits(), "the core runs no frame");
+  EXPECT_EQ(board.frames().waits(), "the core runs no frame");
   board.catch_up(now_ps);
   set_bases(0);
-  board.record_rows();
+  board.frames().record_rows();
   const std::uint64_t first_ps = start();
   board.catch_up(first_ps + 30 * kClockPs);
-  EXPECT_EQ(board.waits().substr(0, 33), "frame 0 of the core, cycle 30; le");
+  EXPECT_EQ(board.frames().waits().substr(0, 33), "frame 0 of the core, cycle 30; le");
   run_to(now_ps + 10'000 * kClockPs);
   EXPECT_EQ(board.frames().frame_cycles(), run_core(config, tables, 1).frame_cycles);
-  EXPECT_EQ(board.take_rows().size(), 1U);
-  EXPECT_TRUE(board.take_rows().empty());
+  EXPECT_EQ(board.frames().take_rows().size(), 1U);
+  EXPECT_TRUE(board.frames().take_rows().empty());
 }
 
 // A burst to a bank of the frame takes cycles from it. The host comes first.
