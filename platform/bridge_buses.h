@@ -21,7 +21,7 @@ struct BusCounts {
   }
 };
 
-// The two buses of the bridge, on which CameraLines and DmaBursts skip bursts.
+// The two buses of the bridge, on which CameraLines skips bursts.
 struct BridgeBuses {
   pci::PciBusControl& pci;
   fpga::LocalBusControl& local;

@@ -37,8 +37,7 @@ ComputerLoop::ComputerLoop(const BoardConfig& config, unsigned char* host_memory
       host_memory_(host_memory),
       capture_registers_{CaptureRegisterTarget(captures_[0]), CaptureRegisterTarget(captures_[1])},
       traffic_device_(config.pci.load ? traffic_config(config)->access_ps : 0),
-      lines_(pci_bus_, bridge_, board_, captures_, fidelity == fpga::Fidelity::kFast),
-      dma_(pci_bus_, bridge_, board_, host_memory, host_memory_bytes, fidelity == fpga::Fidelity::kFast) {
+      lines_(pci_bus_, bridge_, board_, captures_, fidelity == fpga::Fidelity::kFast) {
   bind();
   if (const auto traffic = traffic_config(config)) {
     pci_bus_.bind(kTrafficDevice, traffic_device_);
@@ -94,7 +93,7 @@ void ComputerLoop::run(std::uint64_t end_ps) {
     }
     now_ps_ = next >> kKindBits;
     const auto kind = static_cast<Kind>(next & ((1U << kKindBits) - 1));
-    if (skip(kind, end_ps + 1)) continue;
+    if (kind == kPciDecides && skip_lines(end_ps + 1)) continue;
     step(kind);
     if (lines_.is_recording()) note_step(kind);
     const bool level = interrupt();
@@ -103,13 +102,10 @@ void ComputerLoop::run(std::uint64_t end_ps) {
   }
 }
 
-// Skips what follows from the event, instead of stepping it, if that is known and ends before `end_ps`.
-// Nothing is skipped that comes after what the processor is to see.
-bool ComputerLoop::skip(Kind kind, std::uint64_t end_ps) {
-  if (kind == kPciDecides) {
-    return lines_.begins() && lines_.skip(now_ps_, skips_end_ps(end_ps));
-  }
-  return kind == kLocalBusChooses && !noticed_ && dma_.skip(now_ps_, skips_end_ps(end_ps));
+// Skips the lines of the cameras that begin now, instead of stepping them, if what they do is known and ends
+// before `end_ps`.
+bool ComputerLoop::skip_lines(std::uint64_t end_ps) {
+  return lines_.begins() && lines_.skip(now_ps_, skips_end_ps(end_ps));
 }
 
 // The end of what can be skipped: `end_ps`, or the next time at which something but the PCI bus and the bridge

@@ -16,7 +16,6 @@
 #include "platform/camera_lines.h"
 #include "platform/computer_view.h"
 #include "platform/config/board_config.h"
-#include "platform/dma_bursts.h"
 #include "platform/fast_board.h"
 
 namespace stereotlm::platform {
@@ -58,8 +57,6 @@ class ComputerLoop : private FastBoard::Doorbell, private pci::BridgeControl::Ho
   const pci::PciBusControl& pci_bus() const { return pci_bus_; }
   // Lines of the cameras that were skipped.
   std::uint64_t skipped_lines() const { return lines_.skipped(); }
-  // Bursts written by DMA that were skipped.
-  std::uint64_t skipped_dma_bursts() const { return dma_.skipped(); }
 
  private:
   // The targets of the PCI bus.
@@ -138,8 +135,8 @@ class ComputerLoop : private FastBoard::Doorbell, private pci::BridgeControl::Ho
     return time_ps << kKindBits | kind;
   }
   std::uint64_t next_event() const;
-  bool skip(Kind kind, std::uint64_t end_ps);
   void step(Kind kind);
+  bool skip_lines(std::uint64_t end_ps);
   std::uint64_t skips_end_ps(std::uint64_t end_ps) const;
   void note_step(Kind kind);
   void ring(std::uint64_t now_ps) override { bridge_.ring(now_ps); }
@@ -158,7 +155,6 @@ class ComputerLoop : private FastBoard::Doorbell, private pci::BridgeControl::Ho
   std::array<CaptureRegisterTarget, 2> capture_registers_;
   TrafficTarget traffic_device_;
   CameraLines lines_;
-  DmaBursts dma_;
   const BusTrace* trace_ = nullptr;
   std::uint64_t now_ps_ = 0;
   bool interrupt_ = false;  // level after the last step

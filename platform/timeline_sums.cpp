@@ -8,7 +8,7 @@
 namespace stereotlm::platform {
 namespace {
 
-constexpr std::array<const char*, 2> kSides = {"left", "right"};
+constexpr std::array<const char*, 2> kSideNames = {"left", "right"};
 
 }  // namespace
 
@@ -53,10 +53,10 @@ TimelineSums::Sums TimelineSums::sums_of(EventKind kind, std::string_view what, 
 
 void TimelineSums::check(const Statistics& statistics, Audit& audit) const {
   const ComputerStatistics& computer = *statistics.computer;
-  for (std::size_t side = 0; side < kSides.size(); ++side) {
+  for (std::size_t side = 0; side < kSideNames.size(); ++side) {
     const CameraStatistics& camera = computer.cameras[side];
     const std::string name = "recorded: camera " + camera.name + ": ";
-    const Sums captures = sums_of(EventKind::kCapture, kSides[side]);
+    const Sums captures = sums_of(EventKind::kCapture, kSideNames[side]);
     audit.equal(name + "captures", captures.events, "captured_frames", camera.captured_frames);
     audit.equal(name + "dropped pixels", captures.dropped_pixels, "dropped_pixels", camera.dropped_pixels);
     audit.equal(name + "words", captures.words, "words of its PCI master",
@@ -64,7 +64,7 @@ void TimelineSums::check(const Statistics& statistics, Audit& audit) const {
     for (const auto& [why, frames] :
          {std::pair("not_armed", camera.dropped_not_armed), std::pair("busy", camera.dropped_busy),
           std::pair("partner", camera.dropped_by_partner)}) {
-      audit.equal(name + "dropped: " + why, sums_of(EventKind::kDrop, kSides[side], why).events,
+      audit.equal(name + "dropped: " + why, sums_of(EventKind::kDrop, kSideNames[side], why).events,
                   std::string("dropped_") + why, frames);
     }
   }

@@ -111,50 +111,22 @@ void product_windows(const std::uint8_t* const* histories, const std::uint8_t* l
 
 namespace {
 
-constexpr std::int32_t kNoKey = 0x7FFFFFFF;
-
-// Returns the vector 0, 1, 2, ..
-Int32s first_lanes() {
-  Int32s lanes{};
-  for (int lane = 0; lane < kInt32s; ++lane) lanes[lane] = lane;
-  return lanes;
-}
-
-// Returns the keys of these lanes: kNoKey from lane `candidates` on.
-Int32s keys_at(const std::int32_t* sums, Int32s lanes, Int32s candidates) {
-  const Int32s keys = load<Int32s>(sums) << 8 | lanes;
-  return lanes < candidates ? keys : int32s(kNoKey);
-}
-
-std::int32_t smallest_lane(Int32s lanes) {
-  using Block = std::int32_t __attribute__((vector_size(16)));
-  auto block = load<Block>(&lanes);
-  for (int more = 4; more < kInt32s; more += 4)
-    block = smaller(block, load<Block>(reinterpret_cast<const std::int32_t*>(&lanes) + more));
-  block = smaller(block, __builtin_shufflevector(block, block, 2, 3, 0, 1));
-  block = smaller(block, __builtin_shufflevector(block, block, 1, 0, 3, 2));
-  return block[0];
+// The key of a disparity. The compiler makes vectors of the loops over keys.
+std::int32_t key_of(std::int32_t sum, int d, int candidates) {
+  return d < candidates ? sum * 256 + d : INT32_MAX;
 }
 
 }  // namespace
 
 void step_chain(const std::int32_t* sums, int candidates, int lanes, const std::int32_t* held,
-                std::int32_t* next) {
-  Int32s numbers = first_lanes();
-  for (int d = 0; d < lanes; d += kInt32s) {
-    store(smaller(load<Int32s>(held + d - 1), keys_at(sums + d, numbers, int32s(candidates))), next + d);
-    numbers += kInt32s;
-  }
+                std::int32_t* __restrict next) {
+  for (int d = 0; d < lanes; ++d) next[d] = smaller(held[d - 1], key_of(sums[d], d, candidates));
 }
 
 std::int32_t smallest_key(const std::int32_t* sums, int candidates, int lanes) {
-  Int32s numbers = first_lanes();
-  Int32s best = int32s(kNoKey);
-  for (int d = 0; d < lanes; d += kInt32s) {
-    best = smaller(best, keys_at(sums + d, numbers, int32s(candidates)));
-    numbers += kInt32s;
-  }
-  return smallest_lane(best);
+  std::int32_t best = INT32_MAX;
+  for (int d = 0; d < lanes; ++d) best = smaller(best, key_of(sums[d], d, candidates));
+  return best;
 }
 
 namespace {

@@ -111,25 +111,6 @@ void BridgeControl::count_skipped(std::uint64_t address, std::uint64_t words) {
   count_for_banks(words_taken_, address, words);
 }
 
-DmaChannel* BridgeControl::lone_channel() {
-  if (pci_queue_.front() == nullptr || pci_queue_.back() != nullptr || pci_done_ != 0) return nullptr;
-  DmaChannel& channel = *pci_queue_.front()->channel;
-  return channel.moves_full_bursts() && local_bus_.is_to_begin_only(channel.on_local_bus()) ? &channel
-                                                                                            : nullptr;
-}
-
-void BridgeControl::skip_dma(std::uint64_t now_ps, DmaChannel& channel, std::size_t bursts) {
-  const std::size_t words = bursts * channel.on_pci().words.size();
-  stats_.dma_words += words;
-  if (channel.on_local_bus().write) {
-    const BridgeTransfer& to = channel.on_local_bus();
-    words_taken_.add(to.address + 4 * to.words.size(), words);  // those of the first burst are counted
-  }
-  channel.skip_bursts(bursts);
-  local_bus_.start_at(now_ps, channel.on_local_bus());
-  slot_.request(*this, now_ps);
-}
-
 bool BridgeControl::write_register(std::uint64_t now_ps, std::uint64_t offset, std::uint32_t value) {
   if (!BridgeRegisterFile::allows(true, offset)) {
     count_error();

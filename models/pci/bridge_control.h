@@ -105,15 +105,6 @@ class BridgeControl final : public PciMasterIf, private LocalBusMaster::Listener
   void skip_posted(std::size_t turn, std::uint64_t most_posted);
   void count_skipped(std::uint64_t address, std::uint64_t words);
 
-  // To skip bursts of DMA that repeat:
-  //
-  // The channel that is about to write a burst on one bus and to read the next one on the other, if both are
-  // of full length and have not begun yet, and nothing else is under way or waits in the bridge; else null.
-  DmaChannel* lone_channel();
-  // That channel has written this number of bursts, and read as many. The next two are to begin at `now_ps`.
-  // To be called when the bus may take requests again.
-  void skip_dma(std::uint64_t now_ps, DmaChannel& channel, std::size_t bursts);
-
   const Stats& stats() const { return stats_; }
   // The words for the banks that the bridge has received, posted or by DMA, counted by buffer.
   const WordsByRange& words_taken() const { return words_taken_; }

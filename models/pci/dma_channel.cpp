@@ -66,13 +66,6 @@ bool DmaChannel::decode_descriptor() {
   return moving_.words != 0 && moving_.pci_address % 4 == 0;
 }
 
-void DmaChannel::skip_bursts(std::size_t bursts) {
-  const std::size_t words = bursts * burst_words_;
-  written_ += words;
-  pci_.address += 4 * words;
-  local_.address += 4 * words;
-}
-
 BridgeTransfer& DmaChannel::read_burst() {
   source().words.resize(std::min(burst_words_, moving_.words - written_));
   return prepare(source(), false);

@@ -55,6 +55,14 @@ class DmaChannel {
   // under way.
   Step next_step(std::uint64_t now_ps);
 
+  unsigned number() const { return number_; }
+  BridgeTransfer& on_pci() { return pci_; }
+  BridgeTransfer& on_local_bus() { return local_; }
+  const BridgeTransfer& on_local_bus() const { return local_; }
+  // Whether only its transfer on the local bus keeps the channel from its next step.
+  bool waits_for_local_bus() const { return local_.under_way && !pci_.under_way; }
+
+ private:
   // The words that a descriptor names.
   struct Descriptor {
     bool to_pci = false;
@@ -63,27 +71,7 @@ class DmaChannel {
     std::size_t words = 0;
     std::uint32_t next = 0;  // PCI address of the next descriptor; 0: none
   };
-  // To skip bursts that repeat:
-  //
-  // Whether it writes a burst on one bus while it reads the next one on the other, both of full length.
-  bool moves_full_bursts() const {
-    return pci_.under_way && local_.under_way && pci_.words.size() == burst_words_ &&
-           local_.words.size() == burst_words_;
-  }
-  unsigned number() const { return number_; }
-  // The descriptor whose words are moved, and how many of them are written with the burst under way.
-  const Descriptor& moving() const { return moving_; }
-  std::size_t written() const { return written_; }
-  // This number of bursts has been written, and as many have been read.
-  void skip_bursts(std::size_t bursts);
 
-  BridgeTransfer& on_pci() { return pci_; }
-  BridgeTransfer& on_local_bus() { return local_; }
-  const BridgeTransfer& on_local_bus() const { return local_; }
-  // Whether only its transfer on the local bus keeps the channel from its next step.
-  bool waits_for_local_bus() const { return local_.under_way && !pci_.under_way; }
-
- private:
   Step finish(std::uint32_t interrupt);
   Step fetch(std::uint64_t now_ps, std::uint32_t address);
   bool decode_descriptor();

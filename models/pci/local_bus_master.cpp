@@ -49,11 +49,6 @@ void LocalBusMaster::start(std::uint64_t now_ps, BridgeTransfer& transfer) {
   }
 }
 
-void LocalBusMaster::start_at(std::uint64_t now_ps, const BridgeTransfer& transfer) {
-  if (observer_ != nullptr) report_start(now_ps, transfer);
-  next_ps_ = now_ps;
-}
-
 void LocalBusMaster::step(std::uint64_t now_ps) {
   next_ps_ = kNever;
   if (busy_) {
@@ -61,13 +56,6 @@ void LocalBusMaster::step(std::uint64_t now_ps) {
   } else {
     serve(now_ps);
   }
-}
-
-bool LocalBusMaster::is_to_begin_only(const BridgeTransfer& transfer) const {
-  return !busy_ && !posted_.waits() && !read_.under_way &&
-         std::all_of(channels_.begin(), channels_.end(), [&](const DmaChannel& channel) {
-           return channel.on_local_bus().under_way == (&channel == transfer.channel);
-         });
 }
 
 // Begins the next burst. Returns false if nothing waits. A transfer that starts later at the current time is

@@ -62,10 +62,6 @@ class LocalBusMaster final : public LocalBusMasterIf {
   // The channel whose turn is next, while it is idle.
   std::size_t turn() const { return turn_; }
   void set_turn(std::size_t turn) { turn_ = turn; }
-  // Whether no burst runs, and this transfer alone waits.
-  bool is_to_begin_only(const BridgeTransfer& transfer) const;
-  // Moves the time at which this transfer starts, which alone waits.
-  void start_at(std::uint64_t now_ps, const BridgeTransfer& transfer);
 
   // If the end of the running burst has come, ends the burst and begins the next one.
   void settle(std::uint64_t now_ps) {

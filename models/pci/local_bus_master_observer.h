@@ -14,8 +14,7 @@ class LocalBusMasterObserver {
   virtual ~LocalBusMasterObserver() = default;
   // The words of a write are posted, and wait for the local bus from now on.
   virtual void words_posted(std::uint64_t now_ps, std::size_t words) = 0;
-  // A read, or a transfer of a DMA channel, waits for the local bus from now on. A second call before its
-  // burst begins replaces the first one.
+  // A read, or a transfer of a DMA channel, waits for the local bus from now on.
   virtual void transfer_waits(std::uint64_t now_ps, LocalBusSource source) = 0;
   // A burst of this number of words begins. A posted burst takes the words that have waited longest.
   virtual void burst_begins(std::uint64_t now_ps, LocalBusSource source, std::size_t words) = 0;

@@ -192,65 +192,6 @@ TEST_F(BridgeControlTest, CountsPostedWritesThatAreSkipped) {
   EXPECT_EQ(bridge.stats().posted_words, 40U);
 }
 
-// A descriptor of 5 bursts of 32 words, to bank 1. `bursts` of them are read, and one less is written.
-TEST_F(BridgeControlTest, SkipsTheBurstsOfALoneChannel) {
-  constexpr std::uint32_t kBurst = 32;
-  const std::vector<std::uint32_t> words(kBurst, 7);
-  const auto start = [&](std::uint64_t channel) {
-    bridge.write_register(0, bridge::kDmaDescriptor + bridge::kChannelStride * channel, 0x100);
-    bridge.write_register(0, bridge::kDmaControl + bridge::kChannelStride * channel, 1);
-  };
-  start(0);
-  EXPECT_EQ(bridge.lone_channel(), nullptr);
-  transfer(kPs, 4, {0x1000, 1U << 26U, 5 * kBurst, 0});
-  EXPECT_EQ(bridge.lone_channel(), nullptr);  // the first burst is read, and none is written
-  transfer(2 * kPs, kBurst, words);
-  DmaChannel* const channel = bridge.lone_channel();
-  ASSERT_NE(channel, nullptr);
-  EXPECT_EQ(channel->written(), kBurst);
-  bridge.skip_dma(10 * kPs, *channel, 2);
-  EXPECT_EQ(requests_ps.back(), 10 * kPs);
-  EXPECT_EQ(bridge.next_ps(), 10 * kPs);
-  EXPECT_EQ(bridge.stats().dma_words, 3 * kBurst);
-  EXPECT_EQ(channel->written(), 3 * kBurst);
-  EXPECT_EQ(bridge.lone_channel(), channel);
-  run_to(10 * kPs);
-  EXPECT_EQ(bridge.lone_channel(), nullptr);  // its burst runs on the local bus
-  EXPECT_EQ(transfer(12 * kPs, kBurst, words).address, 0x1000U + 4 * 3 * kBurst);
-  run_to(45 * kPs);
-  EXPECT_EQ(memory.count(bridge::kBankBytes + 4 * (2 * kBurst - 1)), 0U);  // skipped
-  EXPECT_EQ(memory.count(bridge::kBankBytes + 4 * 2 * kBurst), 1U);
-  transfer(46 * kPs, kBurst, words);
-  run_to(200 * kPs);
-  EXPECT_EQ(status(), bridge::kDmaDone);
-  EXPECT_EQ(bridge.stats().dma_words, 5 * kBurst);
-}
-
-TEST_F(BridgeControlTest, HasNoLoneChannelBesideOtherTransfersOrWithAShortBurst) {
-  constexpr std::uint32_t kBurst = 32;
-  const std::vector<std::uint32_t> words(kBurst, 7);
-  enum What { kAlone, kPosted, kOtherChannel, kShort };
-  for (const What what : {kAlone, kPosted, kOtherChannel, kShort}) {
-    BridgeControl other{{32, 64}, *this, bus, *this};
-    bus.bind(other.local_bus_master());
-    const auto read = [&](const std::vector<std::uint32_t>& data) {
-      const PciBurst burst = other.begin_burst(kPs);
-      std::copy_n(data.begin(), burst.words->size(), burst.words->begin());
-      other.end_burst({BurstEnd::kComplete, burst.words->size(), 0, kPs});
-    };
-    other.write_register(0, bridge::kDmaControl, 1);
-    if (what == kOtherChannel) other.write_register(0, bridge::kDmaControl + bridge::kChannelStride, 1);
-    read({0x1000, 1U << 26U, what == kShort ? 2 * kBurst - 1 : 2 * kBurst, 0});
-    if (what == kOtherChannel) read({0x1000, 1U << 26U, 2 * kBurst, 0});
-    read(words);
-    if (what == kPosted) {
-      const std::uint32_t word = 1;
-      other.write(kPs, 0, reinterpret_cast<const unsigned char*>(&word), 1);
-    }
-    EXPECT_EQ(other.lone_channel() != nullptr, what == kAlone) << what;
-  }
-}
-
 // The channel reads its descriptor and four words, one of them after a cut, and writes them to bank 1.
 TEST_F(BridgeControlTest, MovesTheWordsOfADmaChannel) {
   bridge.write_register(0, bridge::kDmaDescriptor, 0x100);
@@ -308,20 +249,6 @@ TEST_F(BridgeControlOnLocalBus, ShowsThatTheWordsOfARefusedBurstLeaveAtOnce) {
   post(kPs, 0, 2);
   EXPECT_EQ(reports, (std::vector<std::string>{"posted 2 in clock 1", "write begins 2 in clock 1",
                                                "leave 2 in clock 1"}));
-}
-
-// Channel 1 moves five bursts of 32 words to bank 1, of which two are skipped.
-TEST_F(BridgeControlOnLocalBus, ShowsATransferAgainBehindThoseThatAreSkipped) {
-  bridge.write_register(0, bridge::kDmaDescriptor + bridge::kChannelStride, 0x100);
-  bridge.write_register(0, bridge::kDmaControl + bridge::kChannelStride, 1);
-  transfer(kPs, 4, {0x1000, 1U << 26U, 5 * 32, 0});
-  transfer(2 * kPs, 32, std::vector<std::uint32_t>(32, 7));
-  DmaChannel* const channel = bridge.lone_channel();
-  ASSERT_NE(channel, nullptr);
-  bridge.skip_dma(10 * kPs, *channel, 2);
-  run_to(10 * kPs);
-  EXPECT_EQ(reports, (std::vector<std::string>{"dma1 waits 0 in clock 2", "dma1 waits 0 in clock 10",
-                                               "dma1 begins 32 in clock 10"}));
 }
 
 }  // namespace
