@@ -17,16 +17,13 @@ PciBus::PciBus(const sc_core::sc_module_name& name, const PciBusConfig& config)
       slots("slot", config.masters.size()),
       targets("target", config.windows.size()),
       stops("stop", config.windows.size()),
-      control_(checked(this->name(), config)),
-      memories_(config.windows.size()) {
+      control_(checked(this->name(), config)) {
   kernel_time::check_resolution();
   SC_HAS_PROCESS(PciBus);
   for (std::size_t master = 0; master < slots.size(); ++master)
     slots[master].bind(slots_.emplace_back(*this, master));
-  for (std::size_t window = 0; window < targets.size(); ++window) {
+  for (std::size_t window = 0; window < targets.size(); ++window)
     control_.bind(window, targets_.emplace_back(*this, window));
-    targets[window].register_invalidate_direct_mem_ptr(this, &PciBus::forget_memories);
-  }
   SC_METHOD(step);
   sensitive << step_;
   dont_initialize();
@@ -62,8 +59,7 @@ std::size_t PciBus::Target::writable_words(std::uint64_t /*now_ps*/, std::uint64
 
 void PciBus::await_step() {
   if (decides_) return;
-  const auto window = control_.writes_next();
-  const bool in_thread = window && !memories_.has(*window);
+  const bool in_thread = control_.writes_next();
   step_.set(in_thread ? kNever : control_.next_ps());
   transport_.set(in_thread ? control_.next_ps() : kNever);
 }
@@ -108,7 +104,6 @@ PciAnswer PciBus::access(std::size_t window, const PciAccess& access, std::uint6
   access_.set_address(access.address);
   access_.set_data_ptr(reinterpret_cast<unsigned char*>(access.words));
   access_.set_data_length(static_cast<unsigned>(access.count * sizeof(std::uint32_t)));
-  if (memories_.access(window, access_)) return {at_ps, true};
   window_ = window;
   access_ps_ = at_ps;
   if (in_thread_) return transport();
@@ -125,7 +120,6 @@ PciAnswer PciBus::transport() {
   access_.set_response_status(tlm::TLM_INCOMPLETE_RESPONSE);
   sc_core::sc_time delay = kernel_time::to_time(access_ps_ - kernel_time::now_ps());
   targets[window_]->b_transport(access_, delay);
-  if (access_.is_dmi_allowed()) memories_.request(window_, *targets[window_].operator->(), access_);
   return {kernel_time::now_ps() + kernel_time::to_ps(delay), access_.is_response_ok()};
 }
 

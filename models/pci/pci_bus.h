@@ -13,7 +13,6 @@
 
 #include "models/clock.h"
 #include "models/pci/decision_point.h"
-#include "models/pci/direct_memories.h"
 #include "models/pci/pci_bus_control.h"
 #include "models/pci/pci_config.h"
 #include "models/pci/pci_slot_if.h"
@@ -47,8 +46,6 @@ using PciStopPort = sc_core::sc_port<PciStopIf, 1, sc_core::SC_ZERO_OR_MORE_BOUN
 // as its delay. The first word is transferred after the window's wait clocks, and not before the first clock
 // that begins at or after the time at which b_transport returns, its delay included. The master receives the
 // words that have been transferred.
-//
-// A memory that grants DMI without latency is accessed directly, at the same times.
 //
 // Errors: a response other than OK ends the burst with kTargetError: a write after its words, a read (target
 // abort) with the clock of its first word. A burst that is not inside one window ends with kMasterAbort after
@@ -110,7 +107,6 @@ class PciBus : public sc_core::sc_module {
   void run_transports();
   PciAnswer access(std::size_t window, const PciAccess& access, std::uint64_t at_ps);
   PciAnswer transport();
-  void forget_memories(sc_dt::uint64 /*first*/, sc_dt::uint64 /*last*/) { memories_.forget(); }
 
   PciBusControl control_;
   std::deque<Slot> slots_;
@@ -124,7 +120,6 @@ class PciBus : public sc_core::sc_module {
   std::uint64_t access_ps_ = 0;
   tlm::tlm_generic_payload access_;
   bool access_is_due_ = false;
-  DirectMemories memories_;
 };
 
 }  // namespace stereotlm::pci

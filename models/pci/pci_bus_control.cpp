@@ -171,10 +171,7 @@ void PciBusControl::end_words_at(std::uint64_t clock) {
   next_ps_ = clock_.edge_ps(clock);
 }
 
-std::optional<std::size_t> PciBusControl::writes_next() const {
-  if (state_ != State::kWords || !running_.burst.write) return std::nullopt;
-  return static_cast<std::size_t>(running_.window - windows_.data());
-}
+bool PciBusControl::writes_next() const { return state_ == State::kWords && running_.burst.write; }
 
 void PciBusControl::end_words(std::uint64_t now_ps) {
   state_ = State::kOccupied;

@@ -84,8 +84,8 @@ class PciBusControl {
   bool decides_next() const { return state_ == State::kFree; }
   void step(std::uint64_t now_ps);
   void decide(std::uint64_t now_ps);
-  // The window whose target the next step() calls with a write; none: it calls no target.
-  std::optional<std::size_t> writes_next() const;
+  // Whether the next step() calls a target with a write. If not, it calls none.
+  bool writes_next() const;
   // The target answers the access that it has not answered yet.
   void answer(std::uint64_t now_ps, const PciAnswer& answer);
 

@@ -101,9 +101,6 @@ class TestTarget : public sc_core::sc_module, public tlm::tlm_fw_transport_if<>,
   tlm::tlm_response_status response = tlm::TLM_OK_RESPONSE;
   std::function<std::size_t(std::uint64_t, std::size_t)> writable = [](auto, auto words) { return words; };
   std::vector<Access> accesses;
-  std::vector<std::uint32_t> memory;  // granted for DMI, unless empty
-  std::uint64_t granted_bytes = UINT64_MAX;
-  sc_core::sc_time memory_latency;
 
   explicit TestTarget(const sc_core::sc_module_name& name) : sc_module(name) { socket.bind(*this); }
 
@@ -126,7 +123,6 @@ class TestTarget : public sc_core::sc_module, public tlm::tlm_fw_transport_if<>,
       delay += read_delays;
     }
     payload.set_response_status(response);
-    payload.set_dmi_allowed(!memory.empty());
   }
   std::size_t writable_words(std::uint64_t address, std::size_t words) const override {
     return writable(address, words);
@@ -135,17 +131,7 @@ class TestTarget : public sc_core::sc_module, public tlm::tlm_fw_transport_if<>,
     ADD_FAILURE() << "the bus uses b_transport";
     return tlm::TLM_COMPLETED;
   }
-  bool get_direct_mem_ptr(tlm::tlm_generic_payload& payload, tlm::tlm_dmi& dmi) override {
-    const std::uint64_t granted = std::min<std::uint64_t>(granted_bytes, memory.size() * 4);
-    const bool inside = payload.get_address() < granted;
-    dmi.allow_read_write();
-    dmi.set_dmi_ptr(reinterpret_cast<unsigned char*>(memory.data()));
-    dmi.set_start_address(inside ? 0 : granted);
-    dmi.set_end_address(inside ? granted - 1 : UINT64_MAX);
-    dmi.set_read_latency(memory_latency);
-    dmi.set_write_latency(memory_latency);
-    return inside;
-  }
+  bool get_direct_mem_ptr(tlm::tlm_generic_payload&, tlm::tlm_dmi&) override { return false; }
   unsigned transport_dbg(tlm::tlm_generic_payload&) override { return 0; }
 };
 

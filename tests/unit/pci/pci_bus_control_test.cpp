@@ -125,7 +125,7 @@ TEST_F(PciBusControlTest, NeedsADecisionAndAStepForABurstWhoseTargetAnswersAtOnc
     bus.decide(first * kClockPs);
     EXPECT_EQ(bus.next_ps(), (first + 1 + kWaitClocks + 5) * kClockPs);
     EXPECT_FALSE(bus.decides_next());
-    EXPECT_EQ(bus.writes_next().has_value(), write);
+    EXPECT_EQ(bus.writes_next(), write);
     EXPECT_EQ(target.accesses.size(), write ? 0U : 2U);
     bus.step(bus.next_ps());
     EXPECT_EQ(bus.next_ps(), kNever);
