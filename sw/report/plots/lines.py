@@ -44,8 +44,13 @@ def rate_panels(points):
     return panels
 
 
-def area_panel():
-    return Panel("area.slices_percent", MORE_HEIGHT, limit=(100, "the FPGA is full"), listed=["area.slices"])
+def of_key(points, options, key, heading, x=None, with_area=False):
+    """A figure over a key of the board. x: the column of the x axis, if it is not that of the key."""
+    points.need_variation(key)
+    panels = rate_panels(points)
+    if with_area:
+        panels.append(Panel("area.slices_percent", MORE_HEIGHT, limit=(100, "the FPGA is full"), listed=["area.slices"]))
+    return draw(points, options, heading, x or key, [key], panels)
 
 
 def draw(points, options, heading, x, x_keys, panels, best=False):

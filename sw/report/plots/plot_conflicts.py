@@ -7,8 +7,6 @@ import json
 import os
 import sys
 
-sys.path.insert(0, __file__.rpartition("/")[0] or ".")  # PYTHONSAFEPATH leaves it out
-
 import command
 import style
 from command import tell
@@ -220,9 +218,8 @@ def main():
         except Unusable as error:
             tell("error", error)
             sys.exit(2)
-        for ending, data in (drawing.files if drawing else {}).items():
-            with open(os.path.join(options.folder, name + ending), "wb") as file:
-                file.write(data)
+        if drawing:
+            command.write(options.folder, {name + ending: data for ending, data in drawing.files.items()})
 
 
 if __name__ == "__main__":

@@ -4,12 +4,9 @@
 import argparse
 import csv
 import os
-import sys
-
-sys.path.insert(0, __file__.rpartition("/")[0] or ".")  # PYTHONSAFEPATH leaves it out
 
 import style
-from command import tell
+from command import tell, write
 from drawing import Sheet, ticks_at
 from style import QUIET, bound, bound_handle, line_handle
 
@@ -159,10 +156,7 @@ def main():
     parser.add_argument("--out", metavar="DIR", required=True, help="an existing folder, into which the pictures go")
     options = parser.parse_args()
     for name, draw in FIGURES.items():
-        sheet = draw(options.tables)
-        for ending, data in sheet.files().items():
-            with open(os.path.join(options.out, name + ending), "wb") as file:
-                file.write(data)
+        write(options.out, {name + ending: data for ending, data in draw(options.tables).files().items()})
 
 
 if __name__ == "__main__":
