@@ -53,7 +53,7 @@ constexpr const char* kPlotFooter =
     "are drawn as envelopes. Of more than 16 points, states, stalls and use show some; the figure says\n"
     "which. DIR must be empty or hold only such files, which are replaced.\n"
     "The scripts that draw, one for each figure, lie in share/stereotlm/plots where the program is\n"
-    "installed, in sw/report/plots of its source: python3 plot_window.py DB --out DIR.";
+    "installed, in sw/report/plots of its source: python3 plot_window.py DB --out NEW_DIR.";
 
 // The options of `plot`. They are passed to the script, which checks them.
 struct PlotOptions {

@@ -8,7 +8,7 @@ import signal
 import subprocess
 
 import program
-from plots import ALLOCATIONS, ENDINGS, LAYOUT, WINDOWS
+from plots import ALLOCATIONS, LAYOUT, WINDOWS
 from plots import PlotTest, change, make_database, reader, script, script_with
 from program import run, wait_until
 
@@ -50,12 +50,6 @@ class Earlier(PlotTest):
             self.ends(process, 130, errors="stereotlm: note: interrupted: nothing was written\n")
             self.assertEqual(self.result(), {"banks.png": DRAWN, "banks.csv": b"earlier"})
             self.is_in(self.out, "banks.png", "banks.csv")
-
-    def test_figures_of_each_format_are_replaced(self):
-        store = self.sweep(WINDOWS)
-        for formats in ("png,svg,pdf", "svg", "pdf", "png"):
-            self.succeeds(run("plot", store, "--out", self.out, "--format", formats))
-        self.assertEqual({path.suffix for path in self.out.iterdir()}, {".png", ".csv"})
 
     def test_what_a_killed_process_has_moved_away_is_put_back_and_replaced(self):
         self.file("out/.partial/new/window.png", DRAWN)
