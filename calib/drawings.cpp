@@ -105,7 +105,7 @@ Moves moves_of(const kernels::RectificationTable& table) {
   return moves;
 }
 
-// The factor by which arrows are lengthened so that none reaches the next position: 1, 2 or 5 times a power of ten.
+// The factor by which arrows are lengthened so that none reaches the next: 1, 2 or 5 times a power of ten.
 // `most`: the length of the longest one, in pixels.
 double arrow_factor(double most) {
   constexpr double kShareOfSpacing = 0.9;

@@ -37,7 +37,7 @@ class SyntheticRig {
   // The chessboard fills a good part of both pictures. It is tilted from the line of sight by 10 to 35
   // degrees, and rolled. Every square lies wholly inside both pictures. A dozen poses suffice to calibrate
   // the rig.
-  // `shape` has no problems(). Throws std::domain_error if the pictures have no room for the chessboard, such as
+  // `shape` has no problems(). Throws std::domain_error if the pictures have no room for the board, such as
   // pictures of a few rows.
   Pair grid_view(const GridShape& shape, int number) const;
   // The exact positions of the inner corners in the pictures of grid_view(). Throws as grid_view() does.
@@ -58,7 +58,7 @@ class SyntheticRig {
   // picture; the true disparity is this value + disparity_offset.
   //
   // Matches are found with rig(), in the pictures of the cameras. `calibrated` and its `rectification` map
-  // them to the rectified pictures. So `calibrated` may be a rig that was fitted to pictures, of the same size.
+  // them to the rectified pictures. So `calibrated` may be a rig that was fitted to pictures of that size.
   // Throws as rectified_pixel() does.
   std::vector<float> disparity(const Rig& calibrated, const Rectification& rectification,
                                int disparity_offset) const;

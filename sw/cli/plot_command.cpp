@@ -33,7 +33,7 @@ constexpr std::array kFigures = {"window", "disparities", "rows", "units", "bank
                                  "states", "stalls",      "use",  "pareto"};
 // The endings of pictures, and what the scripts write into each picture (METADATA in style.py).
 const std::array<std::pair<const char*, std::string>, 3> kMade = {
-    {{".png", std::string("\0\0\0\x12tEXtSoftware\0stereotlm", 25)},
+    {{".png", std::string("\0\0\0\x12tEXtSoftware\0stereotlm", 26)},
      {".svg", "\n    <dc:creator>\n     <cc:Agent>\n      <dc:title>stereotlm</dc:title>\n"},
      {".pdf", "\n<< /Creator (stereotlm) >>\nendobj\nxref\n"}}};
 constexpr const char* kPlotFooter =

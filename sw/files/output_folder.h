@@ -23,7 +23,7 @@ inline constexpr const char* kEarlierFolder = "earlier";
 // Describes the files that a command writes into a folder, DIR.
 struct OutputContent {
   std::string called;  // name of DIR in messages: "result folder"
-  // The file that is moved into place last: if it exists, all files are complete. Empty: there is no such file.
+  // The file that is moved into place last: if it exists, all files are complete. Empty: no such file.
   std::string mark;
   // Returns the path below DIR of a file in `entry` that the command did not write ("thesis.tex",
   // "frames/note"); nullopt if there is none. `entry` is in DIR, or in the folder of unfinished files.

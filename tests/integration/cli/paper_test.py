@@ -194,7 +194,7 @@ class Report(PaperTest):
 
     def drawn_with(self, **changed):
         """The drawings of tables whose columns have other values in all rows: {table: {column: value}}."""
-        self.out.mkdir(exist_ok=True)
+        shutil.rmtree(self.out, ignore_errors=True)
         for name in TABLES:
             self.file(f"out/{name}", self.files[name])
         for name, columns in changed.items():
