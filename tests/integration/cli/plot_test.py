@@ -256,7 +256,7 @@ class Figures(FigureTest):
         rates = {"column": 1, "line_buffer": 10}
         rows = [("made", "preloaded", window, clock, fetch, clock * rate / window, 1.5 * clock * rate / window)
                 for window in (3, 5, 7) for clock in range(20, 80) for fetch, rate in rates.items()]
-        store = make_database(self.folder / "many.db", header, rows)
+        store = make_database(self.folder / "many.db", header, rows[::-1])
         self.assertIn("360 points, 2 envelopes", self.plot("window", store))
         self.assertEqual(len(self.table("window")), 360)
         many = "120 combinations of fpga.clock_mhz, matcher.fetch are more than can be told apart"
