@@ -52,15 +52,9 @@ import style  # noqa: E402: it needs matplotlib
 LEAST_SIZE, MOST_SIZE = 2, 40  # inches
 
 
-class Refused(Exception):
-    def __init__(self, lines):
-        super().__init__("; ".join(lines))
-        self.lines = lines
-
-
 class Parser(argparse.ArgumentParser):
     def error(self, message):
-        raise Refused([f"{message} (see {self.prog} --help)"])
+        raise Unusable(f"{message} (see {self.prog} --help)")
 
 
 def parse(arguments, description, has_pareto):
@@ -125,7 +119,7 @@ def folder_problem(folder):
 
 
 def prepare(options, check):
-    """Returns the points. Raises Refused with all problems."""
+    """Returns the points. Raises Unusable with all problems."""
     problems = []
     points = None  # stays None if the database cannot be read
     if options.database is None:
@@ -145,7 +139,7 @@ def prepare(options, check):
     elif not options.into and folder_problem(options.out):
         problems.append(f"--out {options.out}: {folder_problem(options.out)}")
     if problems:
-        raise Refused(problems)
+        raise Unusable(*problems)
     return points
 
 
@@ -164,7 +158,7 @@ def draw_all(points, options, figures):
         said.append(f"{name:<12} {drawing.said}")
         boxed |= drawing.boxed
     if not files:
-        raise Refused([" ".join(line.split()) for line in said])
+        raise Unusable(*(" ".join(line.split()) for line in said))
     return files, said, boxed
 
 
@@ -221,10 +215,39 @@ def main(description, figures, check=None):
     """
     try:
         run(description, figures, sys.argv[1:], check)
-    except (Refused, Unusable) as refused:
+    except Unusable as refused:
         for line in refused.lines:
             tell("error", line)
         sys.exit(2)
     except OSError as error:
+        tell("error", error)
+        sys.exit(1)
+
+
+def main_of_tables(description, read, figures):
+    """Runs a script that draws the tables in a folder, into the same folder. Without a folder it checks the options.
+
+    read(folder) returns what the figures show. figures: {name: draw}; draw(shown, options) returns a Drawing or a
+    Sheet, or None if the figure does not apply.
+    """
+    parser = argparse.ArgumentParser(prog=NAME, description=description, allow_abbrev=False)
+    parser.add_argument("folder", nargs="?", help="folder with the tables, which gets the figures")
+    parser.add_argument("--format")
+    parser.add_argument("--size")
+    options = parser.parse_args()
+    problems = read_looks(options)
+    if problems:
+        print("; ".join(problems), file=sys.stderr)
+        sys.exit(2)
+    try:
+        shown = read(options.folder) if options.folder else None
+        for name, draw in figures.items() if options.folder else ():
+            drawing = draw(shown, options)
+            if drawing:
+                write(options.folder, {name + ending: data for ending, data in drawing.files.items()})
+    except Unusable as error:
+        tell("error", error)
+        sys.exit(2)
+    except (OSError, KeyError, ValueError) as error:
         tell("error", error)
         sys.exit(1)

@@ -203,7 +203,7 @@ class Report(PaperTest):
                 writer = csv.DictWriter(file, list(rows[0]))
                 writer.writeheader()
                 writer.writerows(rows)
-        command = [PYTHON, "-B", SCRIPT, self.out, "--out", self.out]
+        command = [PYTHON, "-B", SCRIPT, self.out]
         self.succeeds(subprocess.run(command, capture_output=True, text=True, timeout=300, check=False))
         return {name: (self.out / f"{name}.svg").read_text() for name in FIGURES}
 

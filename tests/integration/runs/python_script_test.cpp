@@ -33,7 +33,7 @@ TEST_F(PythonScript, ReportsThatPythonOrTheScriptIsMissing) {
 }
 
 TEST_F(PythonScript, ReturnsTheStatusAndTheErrorsOfAScript) {
-  const auto end = process::run_script("plot_paper.py", {"--out=" + path("out"), "--", path("in")});
+  const auto end = process::run_script("plot_paper.py", {"--", path("in")});
   EXPECT_EQ(end.status, 1);
   EXPECT_THAT(end.errors, HasSubstr(path("in/table1.csv")));
 }
