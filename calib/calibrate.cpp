@@ -78,29 +78,21 @@ RigFit fit_with_lens(const CalibrationRequest& request, const std::vector<GridPa
   return fit;
 }
 
-RowError row_error(const Rig& rig, const Rectification& rectification,
-                   const std::vector<CalibratedPair>& pairs) {
+// Measures the used corners in the rectified pictures.
+void measure(const std::vector<CalibratedPair>& pairs, Calibration& made) {
   RowErrors errors;
+  std::vector<double> disparities;
   for (const CalibratedPair& pair : pairs) {
-    const GridPair corners = rectified(rig, rectification, pair.corners);
+    const GridPair corners = rectified(made.rig, made.rectification, pair.corners);
     for (std::size_t i = 0; i < pair.used.size(); ++i) {
-      if (pair.used[i]) errors.add(corners.left[i], corners.right[i]);
+      if (!pair.used[i]) continue;
+      errors.add(corners.left[i], corners.right[i]);
+      disparities.push_back(corners.left[i].x() - corners.right[i].x());
     }
   }
-  return errors.result();
-}
-
-DisparityRange disparities(const Rig& rig, const Rectification& rectification,
-                           const std::vector<CalibratedPair>& pairs) {
-  std::vector<double> all;
-  for (const CalibratedPair& pair : pairs) {
-    const GridPair corners = rectified(rig, rectification, pair.corners);
-    for (std::size_t i = 0; i < pair.used.size(); ++i) {
-      if (pair.used[i]) all.push_back(corners.left[i].x() - corners.right[i].x());
-    }
-  }
-  const auto [min, max] = std::minmax_element(all.begin(), all.end());
-  return {*min, *max};
+  const auto [min, max] = std::minmax_element(disparities.begin(), disparities.end());
+  made.quality.row_error = errors.result();
+  made.quality.disparities = {*min, *max};
 }
 
 bool all_inside(const kernels::GrayImage& picture, const Corners& corners) {
@@ -214,8 +206,7 @@ CalibrationResult calibrate(const CalibrationRequest& request) {
   quality.left_rms_px = fit.left_rms_px;
   quality.right_rms_px = fit.right_rms_px;
   quality.stereo_rms_px = fit.stereo_rms_px;
-  quality.row_error = row_error(made.rig, made.rectification, result.pairs);
-  quality.disparities = disparities(made.rig, made.rectification, result.pairs);
+  measure(result.pairs, made);
   made.disparity_offset = request.disparity_offset
                               ? *request.disparity_offset
                               : disparity_offset_for(quality.disparities, request.disparities);

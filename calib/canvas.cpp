@@ -103,41 +103,10 @@ std::string cut_off(const std::string& text, double scale, int width) {
 
 }  // namespace
 
-void check_sizes(cv::Size left, cv::Size right) {
-  if (left != right) {
-    throw std::invalid_argument(fmt::format("right = {}x{}: must be as large as left, {}x{}", right.width,
-                                            right.height, left.width, left.height));
-  }
-}
-
-void check_tables(const kernels::RectificationTable& left, const kernels::RectificationTable& right) {
-  check_sizes({left.width, left.height}, {right.width, right.height});
-  for (const kernels::RectificationTable* table : {&left, &right}) {
-    if (const auto found = problems(*table); !found.empty()) throw std::invalid_argument(found.front());
-  }
-}
-
-int enlargement(cv::Size size) {
-  constexpr int kLargeEnough = 320;  // pixels
-  return std::max(1, kLargeEnough / std::max({size.width, size.height, 1}));
-}
-
-cv::Mat enlarged(const kernels::GrayImage& image) {
-  const auto pixels = static_cast<long long>(image.width) * image.height;
-  if (image.width < 1 || image.height < 1 || pixels != static_cast<long long>(image.pixels.size())) {
-    throw std::invalid_argument(fmt::format("image = {}x{} with {} pixels: must be whole and not empty",
-                                            image.width, image.height, image.pixels.size()));
-  }
-  const double factor = enlargement({image.width, image.height});
+cv::Mat in_grey(const kernels::GrayImage& image) {
   cv::Mat result;
   cv::cvtColor(view(image), result, cv::COLOR_GRAY2BGR);
-  cv::resize(result, result, {}, factor, factor, cv::INTER_NEAREST);
   return result;
-}
-
-cv::Point2d enlarged(const cv::Point2d& pixel, int enlargement) {
-  const cv::Point2d half(0.5, 0.5);
-  return (pixel + half) * enlargement - half;
 }
 
 cv::Mat in_colors(const cv::Mat1f& values, double first, double last) {

@@ -7,10 +7,9 @@
 #include <vector>
 
 #include "models/kernels/gray_image.h"
-#include "models/kernels/rectification_table.h"
 
 // Drawing functions that the drawings of this folder and of sw/media share. Font and colours are those of the
-// figures (sw/report/plots/style.py). Components of colours are in the order blue, green, red.
+// figures (sw/report/plots/style.mplstyle). Components of colours are in the order blue, green, red.
 namespace stereotlm::calib {
 
 inline const cv::Scalar kBlack(0, 0, 0);
@@ -20,20 +19,8 @@ inline const cv::Scalar kBlue(178, 114, 0);
 inline const cv::Scalar kVermilion(0, 94, 213);
 inline const cv::Scalar kMissing(217, 217, 217);  // where there is no value
 
-// Throws std::invalid_argument if the sizes differ.
-void check_sizes(cv::Size left, cv::Size right);
-// Throws std::invalid_argument if the sizes differ, or if a table has problems.
-void check_tables(const kernels::RectificationTable& left, const kernels::RectificationTable& right);
-
-// The factor by which the width and height of pictures of this size are enlarged.
-int enlargement(cv::Size size);
-
-// The image in colour, enlarged. Throws std::invalid_argument if the image is empty, or the number of its
-// pixels is wrong.
-cv::Mat enlarged(const kernels::GrayImage& image);
-
-// The position of a pixel in the enlarged picture.
-cv::Point2d enlarged(const cv::Point2d& pixel, int enlargement);
+// The image, which is not empty, as a picture in colour.
+cv::Mat in_grey(const kernels::GrayImage& image);
 
 // Colours (Viridis) for values from `first`, dark, to `last`, bright. `last` may be less than `first`. Values
 // beyond them have the colour of the nearer one, and NaN has kMissing.

@@ -4,39 +4,20 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
+#include <numeric>
 #include <opencv2/imgproc.hpp>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "calib/canvas.h"
 #include "calib/depth.h"
+#include "calib/tables.h"
 
 namespace stereotlm::calib {
 namespace {
-
-cv::Size size_of(const kernels::GrayImage& image) { return {image.width, image.height}; }
-
-void check_corners(const GridShape& shape, const kernels::GrayImage& image, const MarkedCorners& marked) {
-  const std::size_t count = marked.corners.size();
-  if (count != 0 && count != static_cast<std::size_t>(shape.corners())) {
-    throw std::invalid_argument(
-        fmt::format("corners = {}: must be {}x{}, or 0", count, shape.columns, shape.rows));
-  }
-  if (!marked.left_out.empty() && marked.left_out.size() != count) {
-    throw std::invalid_argument(
-        fmt::format("left_out = {}: must be one for each corner, {}, or 0", marked.left_out.size(), count));
-  }
-  for (const Eigen::Vector2d& corner : marked.corners) {
-    if (!(corner.x() >= -0.5 && corner.x() <= image.width - 0.5 && corner.y() >= -0.5 &&
-          corner.y() <= image.height - 0.5)) {
-      throw std::invalid_argument(fmt::format("corner = ({}, {}): must lie inside the picture of {}x{}",
-                                              corner.x(), corner.y(), image.width, image.height));
-    }
-  }
-}
 
 cv::Scalar row_color(int row) {
   static const std::array<cv::Scalar, 6> colors = {{{0, 150, 255},     // orange
@@ -64,12 +45,9 @@ void draw_square(cv::Mat& picture, const cv::Point2d& middle, const cv::Scalar& 
 
 cv::Mat with_corners(const GridShape& shape, const kernels::GrayImage& image, const MarkedCorners& marked) {
   constexpr double kRadius = 4;
-  check_corners(shape, image, marked);
-  cv::Mat picture = enlarged(image);
+  cv::Mat picture = in_grey(image);
   std::vector<cv::Point2d> middles;
-  for (const Eigen::Vector2d& corner : marked.corners) {
-    middles.push_back(enlarged({corner.x(), corner.y()}, enlargement(size_of(image))));
-  }
+  for (const Eigen::Vector2d& corner : marked.corners) middles.emplace_back(corner.x(), corner.y());
   const auto color = [&shape](std::size_t i) { return row_color(static_cast<int>(i) / shape.columns); };
   for (std::size_t i = 1; i < middles.size(); ++i) {
     draw_line(picture, middles[i - 1], middles[i], color(i));
@@ -85,27 +63,230 @@ cv::Mat with_corners(const GridShape& shape, const kernels::GrayImage& image, co
   return picture;
 }
 
+constexpr int kSpacing = 40;  // of the arrows, in pixels
+
+// From the position of an entry to its source; nullopt if the entry is not valid.
+std::optional<cv::Point2d> displacement(const kernels::RectificationTable& table, int column, int row) {
+  const std::uint32_t entry =
+      table.entries[static_cast<std::size_t>(row) * static_cast<std::size_t>(table.width) +
+                    static_cast<std::size_t>(column)];
+  if (!kernels::entry_is_valid(entry)) return std::nullopt;
+  return cv::Point2d(kernels::entry_column(entry) - column, kernels::entry_row(entry) - row);
+}
+
+// What a table moves besides its offset.
+struct Moves {
+  cv::Point2d offset;  // the mean of all displacements: what the table moves the whole picture by
+  cv::Mat1f lengths;   // of the displacements less the offset, in pixels; NaN where the entry is not valid
+  double largest = 0;  // of the lengths
+};
+
+Moves moves_of(const kernels::RectificationTable& table) {
+  Moves moves;
+  int count = 0;
+  const auto for_each = [&table](const auto& visit) {
+    for (int row = 0; row < table.height; ++row) {
+      for (int column = 0; column < table.width; ++column) {
+        if (const auto moved = displacement(table, column, row)) visit(column, row, *moved);
+      }
+    }
+  };
+  for_each([&](int /*column*/, int /*row*/, const cv::Point2d& moved) {
+    moves.offset += moved;
+    ++count;
+  });
+  moves.offset /= std::max(count, 1);
+  moves.lengths = cv::Mat1f(table.height, table.width, std::numeric_limits<float>::quiet_NaN());
+  for_each([&](int column, int row, const cv::Point2d& moved) {
+    const auto length = static_cast<float>(cv::norm(moved - moves.offset));
+    moves.lengths(row, column) = length;
+    moves.largest = std::max(moves.largest, static_cast<double>(length));
+  });
+  return moves;
+}
+
+// The factor by which arrows are lengthened so that none reaches the next: 1, 2 or 5 times a power of ten.
+// `most`: the length of the longest one, in pixels.
+double arrow_factor(double most) {
+  constexpr double kShareOfSpacing = 0.9;
+  constexpr double kLargest = 100;
+  const double fits = std::min(kLargest, kShareOfSpacing * kSpacing / std::max(most, 1e-9));
+  const double power = std::pow(10, std::floor(std::log10(fits) + 1e-9));
+  for (const double digit : {5.0, 2.0}) {
+    if (digit * power <= fits) return digit * power;
+  }
+  return power;
+}
+
+// Draws an arrow in white with a black edge, so that it is visible on every colour. If the arrow is shorter
+// than its head, only the head is drawn, or a dot for the shortest.
+void draw_arrow(cv::Mat& panel, const cv::Point2d& from, const cv::Point2d& to) {
+  constexpr double kLongestPoint = 1.5;  // pixels
+  constexpr double kHeadLength = 6;      // pixels
+  const double length = cv::norm(to - from);
+  if (length <= kLongestPoint) {
+    draw_circle(panel, to, 2.5, kBlack, cv::FILLED);
+    draw_circle(panel, to, 1.5, kWhite, cv::FILLED);
+    return;
+  }
+  const cv::Point2d back = (from - to) * (std::min(kHeadLength, length) / length);
+  const cv::Point2d aside = cv::Point2d(-back.y, back.x) * 0.45;
+  const std::vector<cv::Point2d> head = {to, to + back + aside, to + back - aside};
+  draw_line(panel, from, to + back, kBlack, 3);
+  draw_polygon(panel, head, kBlack, 3);
+  draw_line(panel, from, to + back, kWhite);
+  draw_polygon(panel, head, kWhite, cv::FILLED);
+}
+
+cv::Mat drawn(const kernels::RectificationTable& table, const Moves& moves, double most, double arrows) {
+  cv::Mat panel = in_colors(moves.lengths, 0, most);
+  for (int row = kSpacing / 2; row < table.height; row += kSpacing) {
+    for (int column = kSpacing / 2; column < table.width; column += kSpacing) {
+      const cv::Point2d from(column, row);
+      if (const auto moved = displacement(table, column, row))
+        draw_arrow(panel, from, from + (*moved - moves.offset) * arrows);
+    }
+  }
+  return panel;
+}
+
+std::string caption(const std::string& name, const Moves& moves, double arrows) {
+  return fmt::format("{} without its offset ({:+.1f}, {:+.1f}) px; arrows {:g} times as long", name,
+                     moves.offset.x, moves.offset.y, arrows);
+}
+
+constexpr int kMostLines = 31;
+constexpr int kTickLength = 5;  // pixels
+const cv::Size kChartSize(800, 500);
+const cv::Rect kPlot(52, 68, 724, 372);  // inside the axes
+const cv::Scalar kGridColor(221, 221, 221);
+
+enum class Mark { kNone, kRing, kDisc };
+
+struct Curve {
+  std::string name;
+  cv::Scalar color;
+  int thickness = 1;  // pixels
+  Mark mark = Mark::kNone;
+  std::vector<double> values;  // [i]: for lines_of(i)
+};
+
+int lines_of(std::size_t index) { return 1 + 2 * static_cast<int>(index); }
+
+// Two curves of source_lines(): the largest number in the picture, and the mean.
+std::vector<Curve> curves_of(const kernels::RectificationTable& table, const std::string& side,
+                             const cv::Scalar& color, Mark mark) {
+  Curve largest{side + ", maximum", color, 2, mark, {}};
+  Curve mean{side + ", mean", color, 1, mark, {}};
+  const int most = std::min(kMostLines, table.height);
+  for (std::size_t i = 0; lines_of(i) <= most; ++i) {
+    const std::vector<int> counts = source_lines(table, lines_of(i));
+    largest.values.push_back(*std::max_element(counts.begin(), counts.end()));
+    mean.values.push_back(std::accumulate(counts.begin(), counts.end(), 0.0) /
+                          static_cast<double>(counts.size()));
+  }
+  return {largest, mean};
+}
+
+// The vertical axis: from 0 to a multiple of the step, which is 1, 2 or 5 times a power of ten.
+struct Axis {
+  int step = 1;
+  int end = 1;
+};
+
+Axis axis_to(double most) {
+  constexpr int kMostSteps = 10;
+  for (int power = 1;; power *= 10) {
+    for (const int digit : {1, 2, 5}) {
+      const int step = digit * power;
+      const int steps = std::max(1, cvCeil(most / step));
+      if (steps <= kMostSteps) return {step, steps * step};
+    }
+  }
+}
+
+cv::Point2d place(const Axis& axis, double lines, double y) {
+  return {kPlot.x + lines / (kMostLines + 1) * kPlot.width, kPlot.br().y - y / axis.end * kPlot.height};
+}
+
+void draw_axes(cv::Mat& chart, const Axis& axis) {
+  for (int y = 0; y <= axis.end; y += axis.step) {
+    const cv::Point2d tick = place(axis, 0, y);
+    draw_line(chart, tick, place(axis, kMostLines + 1, y), kGridColor);
+    draw_line(chart, tick - cv::Point2d(kTickLength, 0), tick, kBlack);
+    const std::string label = std::to_string(y);
+    draw_text(chart, label,
+              {kPlot.x - kTickLength - 4 - text_width(label), cvRound(tick.y) + kTextHeight / 2});
+  }
+  for (int lines = 1; lines <= kMostLines; lines += 2) {
+    const cv::Point2d tick = place(axis, lines, 0);
+    draw_line(chart, tick, tick + cv::Point2d(0, kTickLength), kBlack);
+    const std::string label = std::to_string(lines);
+    draw_text(chart, label,
+              {cvRound(tick.x) - text_width(label) / 2, kPlot.br().y + kTickLength + 6 + kTextHeight});
+  }
+  const cv::Point origin(kPlot.x, kPlot.br().y);
+  cv::line(chart, {kPlot.x, kPlot.y}, origin, kBlack);
+  cv::line(chart, origin, {kPlot.br().x, origin.y}, kBlack);
+}
+
+void draw_titles(cv::Mat& chart) {
+  draw_text(chart,
+            "Lines of the camera's picture, from first to last, that n rows of the rectified picture take "
+            "pixels from",
+            {12, 24});
+  const std::string below = "n, rows of the rectified picture";
+  draw_text(chart, below, {kPlot.x + (kPlot.width - text_width(below)) / 2, kChartSize.height - 14});
+}
+
+void draw_mark(cv::Mat& chart, const cv::Point2d& middle, const Curve& curve) {
+  if (curve.mark == Mark::kRing) draw_circle(chart, middle, 5, curve.color);
+  if (curve.mark == Mark::kDisc) draw_circle(chart, middle, 2.5, curve.color, cv::FILLED);
+}
+
+void draw_curve(cv::Mat& chart, const Axis& axis, const Curve& curve) {
+  for (std::size_t i = 0; i < curve.values.size(); ++i) {
+    const cv::Point2d point = place(axis, lines_of(i), curve.values[i]);
+    if (i > 0) {
+      draw_line(chart, place(axis, lines_of(i - 1), curve.values[i - 1]), point, curve.color,
+                curve.thickness);
+    }
+    draw_mark(chart, point, curve);
+  }
+}
+
+// Draws the legend as one line above the plot.
+void draw_legend(cv::Mat& chart, const std::vector<Curve>& curves) {
+  constexpr int kSample = 28;
+  const int bottom = kPlot.y - 16;
+  int left = kPlot.x;
+  for (const Curve& curve : curves) {
+    const cv::Point2d middle(left + kSample / 2.0, bottom - kTextHeight / 2.0);
+    const cv::Point2d half(kSample / 2.0, 0);
+    draw_line(chart, middle - half, middle + half, curve.color, curve.thickness);
+    draw_mark(chart, middle, curve);
+    draw_text(chart, curve.name, {left + kSample + 6, bottom});
+    left += kSample + 6 + text_width(curve.name) + 20;
+  }
+}
+
 }  // namespace
 
 std::vector<std::uint8_t> encode_corners_png(const GridShape& shape, const CaptionedImage& left,
                                              const MarkedCorners& left_corners, const CaptionedImage& right,
                                              const MarkedCorners& right_corners) {
-  check_sizes(size_of(left.image), size_of(right.image));
   return encode_png(side_by_side(left.caption, with_corners(shape, left.image, left_corners), right.caption,
                                  with_corners(shape, right.image, right_corners))
                         .canvas);
 }
 
 std::vector<std::uint8_t> encode_rectified_pair_png(const CaptionedImage& left, const CaptionedImage& right) {
-  constexpr int kSpacing = 32;  // pixels of the drawing, at most
+  constexpr int kRows = 32;                                                   // from line to line
   const std::array<cv::Scalar, 2> colors = {{{0, 150, 255}, {220, 200, 0}}};  // orange, cyan
-  check_sizes(size_of(left.image), size_of(right.image));
-  Pair pair = side_by_side(left.caption, enlarged(left.image), right.caption, enlarged(right.image));
-  const int factor = enlargement(size_of(left.image));
-  const int spacing = kSpacing / factor;
+  Pair pair = side_by_side(left.caption, in_grey(left.image), right.caption, in_grey(right.image));
   std::size_t count = 0;
-  for (int row = spacing / 2; row < left.image.height; row += spacing) {
-    const int y = pair.left.y + row * factor + factor / 2;
+  for (int row = kRows / 2; row < left.image.height; row += kRows) {
+    const int y = pair.left.y + row;
     cv::line(pair.canvas, {pair.left.x, y}, {pair.right.br().x - 1, y}, colors[count++ % colors.size()]);
   }
   return encode_png(pair.canvas);
@@ -113,11 +294,6 @@ std::vector<std::uint8_t> encode_rectified_pair_png(const CaptionedImage& left, 
 
 std::vector<std::uint8_t> encode_depth_color_png(int width, int height,
                                                  const std::vector<std::uint16_t>& millimetres) {
-  if (width < 1 || height < 1 ||
-      static_cast<long long>(width) * height != static_cast<long long>(millimetres.size())) {
-    throw std::invalid_argument(fmt::format("depths = {}x{} with {} values: must be whole and not empty",
-                                            width, height, millimetres.size()));
-  }
   const std::optional<DepthRange> range = depth_range(millimetres);
   cv::Mat1f depths(height, width, std::numeric_limits<float>::quiet_NaN());
   std::transform(millimetres.begin(), millimetres.end(), depths.begin(), depths.begin(),
@@ -128,6 +304,40 @@ std::vector<std::uint8_t> encode_depth_color_png(int width, int height,
   draw_color_scale(canvas, {kMargin, height + kScaleHeight - kMargin}, canvas.cols - 2 * kMargin,
                    fmt::format("{} mm", shown.far_mm), fmt::format("{} mm", shown.near_mm), "unknown");
   return encode_png(canvas);
+}
+
+std::vector<std::uint8_t> encode_displacement_png(const kernels::RectificationTable& left,
+                                                  const kernels::RectificationTable& right) {
+  const Moves of_left = moves_of(left);
+  const Moves of_right = moves_of(right);
+  const double most = std::max(of_left.largest, of_right.largest);
+  const double arrows = arrow_factor(most);
+  Pair pair = side_by_side(caption("left table", of_left, arrows), drawn(left, of_left, most, arrows),
+                           caption("right table", of_right, arrows), drawn(right, of_right, most, arrows),
+                           kScaleHeight);
+  draw_color_scale(pair.canvas, {pair.left.x, pair.left.br().y + kScaleHeight - 4}, pair.left.width, "0",
+                   fmt::format("{:.1f} px", most), "no source");
+  return encode_png(pair.canvas);
+}
+
+std::vector<std::uint8_t> encode_source_lines_png(const kernels::RectificationTable& left,
+                                                  const kernels::RectificationTable& right) {
+  std::vector<Curve> curves = {{"n", kGray, 1, Mark::kNone, {}}};
+  for (const Curve& curve : curves_of(left, "left", kBlue, Mark::kRing)) curves.push_back(curve);
+  for (const Curve& curve : curves_of(right, "right", kVermilion, Mark::kDisc)) curves.push_back(curve);
+  for (std::size_t i = 0; i < curves.back().values.size(); ++i) curves.front().values.push_back(lines_of(i));
+  double most = 0;
+  for (const Curve& curve : curves) {
+    most = std::max(most, *std::max_element(curve.values.begin(), curve.values.end()));
+  }
+
+  const Axis axis = axis_to(most);
+  cv::Mat chart(kChartSize, CV_8UC3, kWhite);
+  draw_axes(chart, axis);
+  draw_titles(chart);
+  draw_legend(chart, curves);
+  for (const Curve& curve : curves) draw_curve(chart, axis, curve);
+  return encode_png(chart);
 }
 
 }  // namespace stereotlm::calib

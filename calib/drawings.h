@@ -9,9 +9,7 @@
 #include "models/kernels/rectification_table.h"
 
 // Drawings for a person who calibrates a rig, as PNG bytes. The left half of each drawing belongs to the left
-// camera. Pictures of up to 160 pixels each way are enlarged by a whole number, so that marks can be
-// distinguished. The same input gives the same bytes. The functions throw std::invalid_argument for an empty
-// image, a table with problems, or sides of different sizes.
+// camera. The same input gives the same bytes. Both sides have the same size, and are not empty.
 namespace stereotlm::calib {
 
 struct CaptionedImage {
@@ -20,7 +18,7 @@ struct CaptionedImage {
 };
 
 struct MarkedCorners {
-  Corners corners;             // all corners of the chessboard, inside the picture; empty if it was not found
+  Corners corners;             // all corners of the chessboard; empty if it was not found
   std::vector<bool> left_out;  // one per corner; empty if all are used
 };
 
@@ -30,7 +28,7 @@ std::vector<std::uint8_t> encode_corners_png(const GridShape& shape, const Capti
                                              const MarkedCorners& left_corners, const CaptionedImage& right,
                                              const MarkedCorners& right_corners);
 
-// Draws lines through both pictures along about every 32nd row. Objects lie in the same row on both sides.
+// Draws lines through both pictures along every 32nd row. Objects lie in the same row on both sides.
 std::vector<std::uint8_t> encode_rectified_pair_png(const CaptionedImage& left, const CaptionedImage& right);
 
 // Draws where each entry's source lies from the entry, without the mean of the table, which the captions give:
@@ -42,8 +40,7 @@ std::vector<std::uint8_t> encode_displacement_png(const kernels::RectificationTa
 
 // Draws depths in colours (Viridis), near ones bright, with the scale below the picture, which
 // is widened by white to the room of the scale. Depths beyond
-// depth_range() have the colours of its ends; 0 (unknown) is light grey. Throws std::invalid_argument unless
-// there are width * height depths, at least one.
+// depth_range() have the colours of its ends; 0 (unknown) is light grey.
 std::vector<std::uint8_t> encode_depth_color_png(int width, int height,
                                                  const std::vector<std::uint16_t>& millimetres);
 

@@ -24,4 +24,10 @@ std::vector<Eigen::Vector3d> corner_points(const GridShape& shape);
 // The corners in one picture, in the order of corner_points(), in pixels.
 using Corners = std::vector<Eigen::Vector2d>;
 
+// The corners that both cameras see in one position of the grid.
+struct GridPair {
+  Corners left;
+  Corners right;
+};
+
 }  // namespace stereotlm::calib

@@ -136,10 +136,10 @@ void draw(cairo_t* context, const Drawing& drawing) {
   }
 }
 
-// Draws on the surface, whose unit is 1 / units_per_mm, and finishes it.
-void draw(cairo_surface_t* surface, const Drawing& drawing, double units_per_mm) {
+// Draws on the surface of a PDF, and finishes it.
+void draw(cairo_surface_t* surface, const Drawing& drawing) {
   const Context context(cairo_create(surface));
-  cairo_scale(context.get(), units_per_mm, units_per_mm);
+  cairo_scale(context.get(), kPointsPerMm, kPointsPerMm);
   draw(context.get(), drawing);
   cairo_surface_finish(surface);
   for (const cairo_status_t status : {cairo_status(context.get()), cairo_surface_status(surface)}) {
@@ -194,7 +194,7 @@ std::string grid_sheet_pdf(const GridShape& shape) {
       append, &bytes, drawing.sheet.width_mm * kPointsPerMm, drawing.sheet.height_mm * kPointsPerMm));
   cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_TITLE, small_print(shape).c_str());
   cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_CREATE_DATE, "");
-  draw(surface.get(), drawing, kPointsPerMm);
+  draw(surface.get(), drawing);
   return bytes;
 }
 
@@ -226,28 +226,6 @@ std::string grid_sheet_svg(const GridShape& shape) {
         rounded(text.x), rounded(text.bottom), kFontSizeMm, text.ends_at_x ? "end" : "start", text.words);
   }
   return svg + "</svg>\n";
-}
-
-kernels::GrayImage grid_sheet_image(const GridShape& shape, double pixels_per_mm) {
-  constexpr double kMostPixels = 32767;  // limit of Cairo's image surfaces
-  const Drawing drawing = drawing_of(shape);
-  const GridSheet& sheet = drawing.sheet;
-  const double width = std::ceil(sheet.width_mm * pixels_per_mm);
-  const double height = std::ceil(sheet.height_mm * pixels_per_mm);
-  if (!(pixels_per_mm > 0 && std::max(width, height) <= kMostPixels)) {
-    throw std::invalid_argument(
-        fmt::format("pixels_per_mm = {}: must give a picture of {} x {} mm 1..{} pixels each way",
-                    pixels_per_mm, sheet.width_mm, sheet.height_mm, kMostPixels));
-  }
-  kernels::GrayImage image(static_cast<int>(width), static_cast<int>(height));
-  std::vector<std::uint32_t> pixels(image.pixels.size());  // red, green and blue are equal
-  const Surface surface(cairo_image_surface_create_for_data(
-      reinterpret_cast<unsigned char*>(pixels.data()), CAIRO_FORMAT_RGB24, image.width, image.height,
-      image.width * static_cast<int>(sizeof pixels[0])));
-  draw(surface.get(), drawing, pixels_per_mm);
-  std::transform(pixels.begin(), pixels.end(), image.pixels.begin(),
-                 [](std::uint32_t pixel) { return static_cast<std::uint8_t>(pixel & 0xFFU); });
-  return image;
 }
 
 }  // namespace stereotlm::calib

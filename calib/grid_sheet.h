@@ -3,7 +3,6 @@
 #include <string>
 
 #include "calib/grid_shape.h"
-#include "models/kernels/gray_image.h"
 
 namespace stereotlm::calib {
 
@@ -28,9 +27,5 @@ GridSheet grid_sheet(const GridShape& shape);
 // the same bytes. Both throw as grid_sheet() does.
 std::string grid_sheet_pdf(const GridShape& shape);
 std::string grid_sheet_svg(const GridShape& shape);
-
-// The page as pixels. A point at x mm from the left edge is at column x * pixels_per_mm - 0.5. Throws as
-// grid_sheet() does, and if the picture would have no pixel, or more than 32767 in a row or column.
-kernels::GrayImage grid_sheet_image(const GridShape& shape, double pixels_per_mm);
 
 }  // namespace stereotlm::calib

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "calib/grid_in_view.h"
+#include "calib/calibration.h"
 #include "models/kernels/gray_image.h"
 
 namespace stereotlm::calib {

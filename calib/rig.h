@@ -1,10 +1,30 @@
 #pragma once
 
 #include <Eigen/Core>
-
-#include "calib/camera_model.h"
+#include <array>
+#include <optional>
 
 namespace stereotlm::calib {
+
+// A pinhole camera behind a lens with OpenCV's five coefficients (Brown, 1966). Camera coordinates: x right,
+// y down, z forward, in mm. A direction is (x/z, y/z). Pixel coordinates: (0, 0) is the middle of the top
+// left pixel.
+struct CameraModel {
+  Eigen::Matrix3d matrix = Eigen::Matrix3d::Identity();  // fx 0 cx; 0 fy cy; 0 0 1, pixels
+  std::array<double, 5> distortion{};                    // k1, k2 (radial), p1, p2 (tangential), k3 (radial)
+
+  // The largest distance from the axis (length of a direction) up to which the lens maps directions one to
+  // one; at most 10. Beyond it the polynomial bends the picture back into itself, which no lens does.
+  double widest() const;
+
+  // The pixel at which a direction is seen. Beyond widest() the result follows the polynomial, although no
+  // lens does.
+  Eigen::Vector2d pixel(const Eigen::Vector2d& direction) const;
+
+  // The direction that is seen at a pixel. Throws std::domain_error if the lens model does not map a
+  // direction one to one to this pixel.
+  Eigen::Vector2d direction(const Eigen::Vector2d& pixel) const;
+};
 
 // Two cameras on one bar, with pictures of one size.
 struct Rig {
@@ -24,5 +44,44 @@ struct SeenPoint {
 };
 
 SeenPoint seen_by(const Rig& rig, const Eigen::Vector3d& point);
+
+using Projection = Eigen::Matrix<double, 3, 4>;
+
+// Two ideal cameras that replace the cameras of a rig. They have parallel axes, the same focal length and the
+// same principal point, and see a point in the same row. The names are those of OpenCV's stereoRectify.
+struct Rectification {
+  // r1 (r2) maps camera coordinates of the left (right) camera to camera coordinates of its ideal camera.
+  Eigen::Matrix3d r1 = Eigen::Matrix3d::Identity();
+  Eigen::Matrix3d r2 = Eigen::Matrix3d::Identity();
+  // p1 (p2) maps camera coordinates of the ideal left camera to pixels of the left (right) rectified picture.
+  Projection p1 = Projection::Zero();
+  Projection p2 = Projection::Zero();
+  // q maps (column, row, true disparity, 1) of the rectified left picture to homogeneous camera coordinates
+  // of the ideal left camera, in mm.
+  Eigen::Matrix4d q = Eigen::Matrix4d::Zero();
+};
+
+// Rectifies a rig. The rectified pictures have the size of the rig's pictures, and contain only pixels that
+// the cameras saw.
+Rectification rectify(const Rig& rig);
+
+// Maps a pixel of a camera's picture to its position in the rectified picture. `rotation` and `projection`
+// are r1 and p1, or r2 and p2. Throws as CameraModel::direction() does.
+Eigen::Vector2d rectified_pixel(const CameraModel& camera, const Eigen::Matrix3d& rotation,
+                                const Projection& projection, const Eigen::Vector2d& pixel);
+
+// The inverse of rectified_pixel(): maps a position of the rectified picture to the pixel of the camera's
+// picture that is seen there. at() returns nullopt if the position is behind the camera, or beyond the view
+// of its lens (CameraModel::widest()).
+class SourcePixels {
+ public:
+  SourcePixels(const CameraModel& camera, const Eigen::Matrix3d& rotation, const Projection& projection);
+  std::optional<Eigen::Vector2d> at(const Eigen::Vector2d& rectified) const;
+
+ private:
+  CameraModel camera_;
+  Eigen::Matrix3d from_rectified_;
+  double widest_;
+};
 
 }  // namespace stereotlm::calib

@@ -1,5 +1,6 @@
 #include "calib/rig_fit.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
@@ -8,8 +9,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "calib/grid_pose.h"
 #include "calib/opencv_conversions.h"
+#include "calib/rig.h"
 
 namespace stereotlm::calib {
 namespace {
@@ -67,10 +68,10 @@ struct SingleFit {
 };
 
 // Runs a step of the fit, and turns an exception of OpenCV into std::runtime_error.
-template <typename Step>
-auto with_refusal(const Step& step) {
+template <typename Fitted>
+auto with_refusal(const Fitted& fit) {
   try {
-    return step();
+    return fit();
   } catch (const cv::Exception& error) {
     throw std::runtime_error("the cameras cannot be calibrated from these pictures: " + error.err);
   }
@@ -85,29 +86,6 @@ SingleFit fit_camera(const Observations& seen, const std::vector<std::vector<cv:
     cv::calibrateCamera(seen.points, corners, size, fit.matrix, fit.distortion, fit.rotations,
                         fit.translations, flags_of(lens));
     return fit;
-  });
-}
-
-// Fits both cameras and their relative pose together. Starts at the parameters of `left` and `right`.
-Rig solve(const Observations& seen, const CameraModel& left, const CameraModel& right, cv::Size size,
-          Lens lens) {
-  return with_refusal([&] {
-    cv::Mat m1 = to_mat(left.matrix);
-    cv::Mat d1 = to_mat(left.distortion);
-    cv::Mat m2 = to_mat(right.matrix);
-    cv::Mat d2 = to_mat(right.distortion);
-    cv::Mat rotation, translation, essential, fundamental;
-    constexpr int kMostSteps = 200;
-    constexpr double kCloseEnough = 1e-9;
-    cv::stereoCalibrate(seen.points, seen.left, seen.right, m1, d1, m2, d2, size, rotation, translation,
-                        essential, fundamental, cv::CALIB_USE_INTRINSIC_GUESS | flags_of(lens),
-                        {cv::TermCriteria::COUNT | cv::TermCriteria::EPS, kMostSteps, kCloseEnough});
-    return Rig{size.width,
-               size.height,
-               to_camera(m1, d1),
-               to_camera(m2, d2),
-               to_eigen<Eigen::Matrix3d>(rotation),
-               to_eigen<Eigen::Vector3d>(translation)};
   });
 }
 
@@ -182,14 +160,12 @@ Used corners_that_fit(const RigFit& fit) {
   return result;
 }
 
-std::size_t pairs_in(const Used& used) {
-  return static_cast<std::size_t>(std::count_if(used.begin(), used.end(), [](const std::vector<bool>& pair) {
-    return std::find(pair.begin(), pair.end(), true) != pair.end();
-  }));
+bool is_used(const std::vector<bool>& pair) {
+  return std::find(pair.begin(), pair.end(), true) != pair.end();
 }
 
 void check_pairs(const Used& used) {
-  const std::size_t count = pairs_in(used);
+  const auto count = static_cast<std::size_t>(std::count_if(used.begin(), used.end(), is_used));
   if (count >= kFewestPairs) return;
   throw std::invalid_argument("pairs of pictures whose grid fits = " + std::to_string(count) + ": must be " +
                               std::to_string(kFewestPairs) + " or more");
@@ -202,8 +178,7 @@ RigFit fit_once(const GridShape& shape, const std::vector<GridPair>& pairs, cons
   fit.rig = solve_rig(shape, pairs, used, guess, lens);
   const std::vector<bool> all(static_cast<std::size_t>(shape.corners()), true);
   for (std::size_t pair = 0; pair < pairs.size(); ++pair) {
-    const bool is_out = std::find(used[pair].begin(), used[pair].end(), true) == used[pair].end();
-    fit.misfits.push_back(misfit(fit.rig, shape, pairs[pair], is_out ? all : used[pair]));
+    fit.misfits.push_back(misfit(fit.rig, shape, pairs[pair], is_used(used[pair]) ? used[pair] : all));
   }
   return fit;
 }
@@ -228,15 +203,118 @@ void add_figures(RigFit& fit) {
   fit.stereo_rms_px = std::sqrt((left + right) / (2 * corners));
 }
 
+using Step = Eigen::Matrix<double, 6, 1>;  // rotation vector (rad), translation (mm)
+
+// The pose from the left picture alone: the starting point of the fit.
+Eigen::Isometry3d pose_from_left(const Rig& rig, const std::vector<Eigen::Vector3d>& points,
+                                 const Corners& corners) {
+  std::vector<cv::Point3d> object;
+  std::vector<cv::Point2d> image;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    object.emplace_back(points[i].x(), points[i].y(), points[i].z());
+    image.emplace_back(corners[i].x(), corners[i].y());
+  }
+  cv::Vec3d rotation;
+  cv::Vec3d translation;
+  cv::solvePnP(object, image, to_mat(rig.left.matrix), to_mat(rig.left.distortion), rotation, translation);
+  const Eigen::Vector3d axis(rotation[0], rotation[1], rotation[2]);
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.linear() = Eigen::AngleAxisd(axis.norm(), axis.stableNormalized()).toRotationMatrix();
+  pose.translation() << translation[0], translation[1], translation[2];
+  return pose;
+}
+
+Eigen::Isometry3d moved(const Eigen::Isometry3d& pose, const Step& step) {
+  const Eigen::Vector3d axis = step.head<3>();
+  Eigen::Isometry3d result = pose;
+  result.linear() = Eigen::AngleAxisd(axis.norm(), axis.stableNormalized()) * pose.linear();
+  result.translation() += step.tail<3>();
+  return result;
+}
+
+// The pose of the grid, which maps grid coordinates to camera coordinates of the left camera. It minimises the
+// squared distances, in the pictures of both cameras, between the used corners as found and their positions
+// under this pose (Gauss-Newton).
+class PoseFit {
+ public:
+  PoseFit(const Rig& rig, const GridShape& shape, const GridPair& pair, const std::vector<bool>& used)
+      : rig_(rig) {
+    const std::vector<Eigen::Vector3d> points = corner_points(shape);
+    for (std::size_t corner = 0; corner < points.size(); ++corner) {
+      if (!used[corner]) continue;
+      points_.push_back(points[corner]);
+      left_.push_back(pair.left[corner]);
+      right_.push_back(pair.right[corner]);
+    }
+  }
+
+  Eigen::Isometry3d solve() const {
+    constexpr int kMostSteps = 30;
+    constexpr double kCloseEnough = 1e-10;  // radians and millimetres
+    Eigen::Isometry3d pose = pose_from_left(rig_, points_, left_);
+    for (int i = 0; i < kMostSteps; ++i) {
+      const Eigen::MatrixXd slope = derivative(pose);
+      const Step step = (slope.transpose() * slope).ldlt().solve(-slope.transpose() * errors(pose));
+      pose = moved(pose, step);
+      if (step.norm() < kCloseEnough) break;
+    }
+    return pose;
+  }
+
+ private:
+  Eigen::VectorXd errors(const Eigen::Isometry3d& pose) const {
+    Eigen::VectorXd result(static_cast<Eigen::Index>(4 * points_.size()));
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      const SeenPoint seen = seen_by(rig_, pose * points_[i]);
+      result.segment<4>(static_cast<Eigen::Index>(4 * i)) << seen.left - left_[i], seen.right - right_[i];
+    }
+    return result;
+  }
+
+  Eigen::MatrixXd derivative(const Eigen::Isometry3d& pose) const {
+    constexpr double kDifference = 1e-6;
+    Eigen::MatrixXd result(static_cast<Eigen::Index>(4 * points_.size()), 6);
+    for (int i = 0; i < 6; ++i) {
+      const Step step = Step::Unit(i) * kDifference;
+      result.col(i) = (errors(moved(pose, step)) - errors(moved(pose, -step))) / (2 * kDifference);
+    }
+    return result;
+  }
+
+  const Rig& rig_;
+  std::vector<Eigen::Vector3d> points_;
+  Corners left_;
+  Corners right_;
+};
+
 }  // namespace
 
 Rig solve_rig(const GridShape& shape, const std::vector<GridPair>& pairs, const Used& used, const Rig& guess,
               Lens lens) {
-  return solve(observations(shape, pairs, used), guess.left, guess.right, {guess.width, guess.height}, lens);
+  const Observations seen = observations(shape, pairs, used);
+  return with_refusal([&] {
+    cv::Mat m1 = to_mat(guess.left.matrix);
+    cv::Mat d1 = to_mat(guess.left.distortion);
+    cv::Mat m2 = to_mat(guess.right.matrix);
+    cv::Mat d2 = to_mat(guess.right.distortion);
+    cv::Mat rotation, translation, essential, fundamental;
+    constexpr int kMostSteps = 200;
+    constexpr double kCloseEnough = 1e-9;
+    cv::stereoCalibrate(seen.points, seen.left, seen.right, m1, d1, m2, d2, {guess.width, guess.height},
+                        rotation, translation, essential, fundamental,
+                        cv::CALIB_USE_INTRINSIC_GUESS | flags_of(lens),
+                        {cv::TermCriteria::COUNT | cv::TermCriteria::EPS, kMostSteps, kCloseEnough});
+    return Rig{guess.width,
+               guess.height,
+               to_camera(m1, d1),
+               to_camera(m2, d2),
+               to_eigen<Eigen::Matrix3d>(rotation),
+               to_eigen<Eigen::Vector3d>(translation)};
+  });
 }
 
 Misfit misfit(const Rig& rig, const GridShape& shape, const GridPair& pair, const std::vector<bool>& used) {
-  const Eigen::Isometry3d pose = grid_pose(rig, shape, pair, used);
+  const Eigen::Isometry3d pose = PoseFit(rig, shape, pair, used).solve();
   const std::vector<Eigen::Vector3d> points = corner_points(shape);
   Misfit result;
   for (std::size_t corner = 0; corner < points.size(); ++corner) {
@@ -270,6 +348,16 @@ RigFit fit_rig(const GridShape& shape, int width, int height, const std::vector<
   }
   add_figures(fit);
   return fit;
+}
+
+Rectification rectify(const Rig& rig) {
+  constexpr double kOnlySeenPixels = 0;
+  cv::Mat r1, r2, p1, p2, q;
+  cv::stereoRectify(to_mat(rig.left.matrix), to_mat(rig.left.distortion), to_mat(rig.right.matrix),
+                    to_mat(rig.right.distortion), {rig.width, rig.height}, to_mat(rig.rotation),
+                    to_mat(rig.translation), r1, r2, p1, p2, q, cv::CALIB_ZERO_DISPARITY, kOnlySeenPixels);
+  return {to_eigen<Eigen::Matrix3d>(r1), to_eigen<Eigen::Matrix3d>(r2), to_eigen<Projection>(p1),
+          to_eigen<Projection>(p2), to_eigen<Eigen::Matrix4d>(q)};
 }
 
 }  // namespace stereotlm::calib

@@ -10,12 +10,6 @@
 
 namespace stereotlm::calib {
 
-// The corners that both cameras see in one position of the grid.
-struct GridPair {
-  Corners left;
-  Corners right;
-};
-
 // Distances in pixels from the corners found in a pair to the positions at which a rig would see them:
 // [corner].
 struct Misfit {

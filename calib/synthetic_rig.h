@@ -7,10 +7,8 @@
 #include <vector>
 
 #include "calib/grid_shape.h"
-#include "calib/rectification.h"
 #include "calib/rig.h"
-#include "calib/scene_camera.h"
-#include "calib/scene_surfaces.h"
+#include "calib/scene.h"
 #include "models/kernels/gray_image.h"
 
 namespace stereotlm::calib {
@@ -25,7 +23,7 @@ namespace stereotlm::calib {
 // x 480.
 class SyntheticRig {
  public:
-  // Throws std::invalid_argument unless width is 4..2048, a multiple of 4, and height 1..2048.
+  // `width` and `height`: of the pictures, at least one pixel.
   SyntheticRig(std::uint64_t seed, int width, int height);
 
   const Rig& rig() const { return rig_; }
@@ -34,21 +32,16 @@ class SyntheticRig {
     kernels::GrayImage left;
     kernels::GrayImage right;
   };
-  struct CornerPair {
-    Corners left;
-    Corners right;
-  };
 
   // The pictures of the chessboard, with a white border before a grey background, in pose `number`: 0, 1, ..
   // The chessboard fills a good part of both pictures. It is tilted from the line of sight by 10 to 35
   // degrees, and rolled. Every square lies wholly inside both pictures. A dozen poses suffice to calibrate
   // the rig.
-  // Throws std::invalid_argument for columns or rows outside 1..1000, squares that are not larger than 0 mm,
-  // or a negative `number`. Throws std::domain_error if the pictures have no room for the chessboard, such as
+  // `shape` has no problems(). Throws std::domain_error if the pictures have no room for the board, such as
   // pictures of a few rows.
   Pair grid_view(const GridShape& shape, int number) const;
   // The exact positions of the inner corners in the pictures of grid_view(). Throws as grid_view() does.
-  CornerPair grid_corners(const GridShape& shape, int number) const;
+  GridPair grid_corners(const GridShape& shape, int number) const;
 
   // The pictures of the scene.
   Pair scene() const;
@@ -65,15 +58,15 @@ class SyntheticRig {
   // picture; the true disparity is this value + disparity_offset.
   //
   // Matches are found with rig(), in the pictures of the cameras. `calibrated` and its `rectification` map
-  // them to the rectified pictures. So `calibrated` may be a rig that was fitted to pictures. Throws
-  // std::invalid_argument if the pictures of `calibrated` have another size, else as rectified_pixel() does.
+  // them to the rectified pictures. So `calibrated` may be a rig that was fitted to pictures of that size.
+  // Throws as rectified_pixel() does.
   std::vector<float> disparity(const Rig& calibrated, const Rectification& rectification,
                                int disparity_offset) const;
 
  private:
   // From chessboard coordinates to coordinates of the left camera.
   Eigen::Isometry3d grid_pose(const GridShape& shape, int number) const;
-  std::optional<CornerPair> seen(const std::vector<Eigen::Vector3d>& points) const;
+  std::optional<GridPair> seen(const std::vector<Eigen::Vector3d>& points) const;
 
   std::uint64_t seed_;
   Rig rig_;

@@ -1,8 +1,12 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
 
-#include "calib/rectification.h"
+#include "calib/rig.h"
 #include "models/kernels/rectification_table.h"
 
 namespace stereotlm::calib {
@@ -24,5 +28,22 @@ TablePair tables(const Rig& rig, const Rectification& rectification, int dispari
 // one entry in a hundred.
 bool are_tables_of(const TablePair& tables, const Rig& rig, const Rectification& rectification,
                    int disparity_offset);
+
+// The file of a table: its entries row by row, 32 bits each, little endian.
+std::string lut_bytes(const kernels::RectificationTable& table);
+
+// The size in bytes of the table file for images of this size.
+std::size_t lut_byte_count(int width, int height);
+
+// Throws std::runtime_error if the bytes are not a table for images of this size, or if the table has
+// problems.
+kernels::RectificationTable parse_lut(std::string_view bytes, int width, int height);
+
+// The number of source lines that a front end would have to buffer if it kept lines of the source picture
+// instead of reading single pixels. For every `lines` consecutive rows of the rectified picture, from the
+// top, it is the number of source rows from the first to the last that a valid entry names, or 0 without
+// valid entries. Returns height - lines + 1 values. Throws std::invalid_argument if the table has problems or
+// `lines` is not 1..height.
+std::vector<int> source_lines(const kernels::RectificationTable& table, int lines);
 
 }  // namespace stereotlm::calib

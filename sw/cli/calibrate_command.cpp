@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "calib/lut_file.h"
 #include "calib/synthetic_rig.h"
+#include "calib/tables.h"
 #include "sw/cli/add_command.h"
 #include "sw/cli/calibrate_options.h"
 #include "sw/cli/calibration_output.h"

@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "calib/depth.h"
-#include "calib/source_lines.h"
+#include "calib/tables.h"
 
 namespace stereotlm::cli {
 namespace {

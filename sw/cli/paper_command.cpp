@@ -169,7 +169,7 @@ std::optional<paper::Findings> study(const std::optional<LoadedPair>& given) {
 // false if interrupted. `folder`: for temporary files.
 bool draw(const std::filesystem::path& folder, std::map<std::string, std::string>& files) {
   for (const auto& [name, bytes] : files) files::write_whole_file(folder / name, bytes);
-  const auto end = process::run_script(kScript, {"--out=" + folder.string(), "--", folder.string()});
+  const auto end = process::run_script(kScript, {"--", folder.string()});
   if (process::interrupted()) return false;
   if (end.status != 0) {
     throw std::runtime_error(fmt::format("the figures cannot be drawn: {} has ended with {}: {}", kScript,

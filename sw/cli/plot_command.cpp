@@ -1,16 +1,41 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <sstream>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "sw/cli/add_command.h"
 #include "sw/cli/commands.h"
+#include "sw/cli/exit_status.h"
+#include "sw/cli/temporary_files.h"
 #include "sw/cli/typed_option.h"
+#include "sw/files/folder_entries.h"
+#include "sw/files/output_folder.h"
+#include "sw/files/whole_file.h"
+#include "sw/process/interrupt.h"
 #include "sw/process/problems.h"
 #include "sw/process/python_script.h"
+#include "sw/process/streams.h"
 
 namespace stereotlm::cli {
 namespace {
 
+namespace fs = std::filesystem;
+
+constexpr std::array kFigures = {"window", "disparities", "rows", "units", "banks",
+                                 "states", "stalls",      "use",  "pareto"};
+// The endings of pictures, and what the scripts write into each picture (METADATA in style.py).
+const std::array<std::pair<const char*, std::string>, 3> kMade = {
+    {{".png", std::string("\0\0\0\x12tEXtSoftware\0stereotlm", 26)},
+     {".svg", "\n    <dc:creator>\n     <cc:Agent>\n      <dc:title>stereotlm</dc:title>\n"},
+     {".pdf", "\n<< /Creator (stereotlm) >>\nendobj\nxref\n"}}};
 constexpr const char* kPlotFooter =
     "Each figure that applies to the database is drawn, as NAME.png and NAME.svg or in the formats of\n"
     "--format, with its data in NAME.csv:\n"
@@ -28,7 +53,7 @@ constexpr const char* kPlotFooter =
     "are drawn as envelopes. Of more than 16 points, states, stalls and use show some; the figure says\n"
     "which. DIR must be empty or hold only such files, which are replaced.\n"
     "The scripts that draw, one for each figure, lie in share/stereotlm/plots where the program is\n"
-    "installed, in sw/report/plots of its source: python3 plot_window.py DB --out DIR.";
+    "installed, in sw/report/plots of its source: python3 plot_window.py DB --out NEW_DIR.";
 
 // The options of `plot`. They are passed to the script, which checks them.
 struct PlotOptions {
@@ -56,10 +81,10 @@ struct PlotOptions {
 
   void check_usage() const {}  // the script does that
 
-  // The arguments of the script, in a form in which it does not take a value such as "--x" for an option.
-  std::vector<std::string> arguments() const {
-    std::vector<std::string> words;
-    if (out.is_given()) words.push_back("--out=" + out.text);
+  // The arguments of the script, in a form in which it does not take a value such as "--x" for an option. The
+  // script writes the figures into the folder `into`. `problem`: why --out cannot be used; empty if it can.
+  std::vector<std::string> arguments(const fs::path& into, const std::string& problem) const {
+    std::vector<std::string> words = {"--out=" + out.text, "--into=" + into.string(), "--problem=" + problem};
     for (const std::string& each : only.text) words.push_back("--only=" + each);
     if (pareto.is_given()) words.push_back("--pareto=" + pareto.text);
     if (format.is_given()) words.push_back("--format=" + format.text);
@@ -69,12 +94,82 @@ struct PlotOptions {
   }
 };
 
+// Whether the name is one that the scripts give to a file.
+bool is_named(const fs::path& entry) {
+  const bool has_ending = entry.extension() == ".csv" ||
+                          std::any_of(kMade.begin(), kMade.end(),
+                                      [&](const auto& kind) { return entry.extension() == kind.first; });
+  return has_ending && std::find(kFigures.begin(), kFigures.end(), entry.stem()) != kFigures.end() &&
+         files::is_file(entry);
+}
+
+// Whether a script has written the file, or it is empty. A table is known by a picture beside it.
+bool is_made(const fs::path& file) {
+  if (!is_named(file)) return false;
+  if (fs::file_size(file) == 0) return true;
+  return std::any_of(kMade.begin(), kMade.end(), [&file](const auto& kind) {
+    const auto& [ending, made] = kind;
+    if (file.extension() == ".csv") return is_made(fs::path(file).replace_extension(ending));
+    return file.extension() == ending && files::read_whole_file(file).find(made) != std::string::npos;
+  });
+}
+
+std::optional<std::string> foreign_part(const fs::path& entry) {
+  return is_named(entry) ? std::nullopt : std::optional<std::string>(entry.filename());
+}
+
+// `was_left`: a killed run may have moved pictures away from their tables.
+std::optional<std::string> problem_of(const fs::path& dir, bool was_left) {
+  for (const fs::path& name : files::entries(dir)) {
+    if (name == files::kAsideFolder || (was_left ? is_named(dir / name) : is_made(dir / name))) continue;
+    return fmt::format(
+        "holds '{}': must be empty or hold only files that plot has written: move it away, or give another "
+        "folder",
+        name.string());
+  }
+  return std::nullopt;
+}
+
 int plot(const PlotOptions& options) {
+  process::catch_interrupts();
+  process::Problems problems;
+  const auto drawings = temporary_folder(problems);
+  problems.check();
+  std::unique_ptr<files::OutputFolder> folder;
+  std::string problem = "--out: missing: the folder of the figures";
+  if (options.out.is_given() && !options.out.text.empty()) {
+    try {
+      folder = std::make_unique<files::OutputFolder>(options.out.text,
+                                                     files::OutputContent{"--out",
+                                                                          "",
+                                                                          foreign_part,
+                                                                          problem_of,
+                                                                          nullptr,
+                                                                          files::kAsideFolder,
+                                                                          {{"DB", options.database.text}}});
+      problem.clear();
+    } catch (const std::runtime_error& error) {
+      problem = error.what();
+    }
+  }
+  process::CommandEnd end;
   try {
-    process::become_script("plot_all.py", options.arguments());
+    end = process::run_script("plot_all.py", options.arguments(drawings->path(), problem));
   } catch (const std::runtime_error& error) {
     process::refuse(error.what());
   }
+  if (process::interrupted()) {
+    process::say("note", "interrupted: nothing was written");
+    return kInterrupted;
+  }
+  std::istringstream lines(end.errors);
+  for (std::string line; std::getline(lines, line);) process::say_line(line);
+  if (end.status != 0) return end.status;
+  for (const fs::path& name : files::entries(drawings->path()))
+    folder->add(name, files::read_whole_file(drawings->path() / name));
+  folder->commit();
+  process::print(end.out);
+  return kDone;
 }
 
 }  // namespace

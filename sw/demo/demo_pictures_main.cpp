@@ -13,9 +13,9 @@
 #include <string_view>
 #include <vector>
 
-#include "calib/calibration_reader.h"
+#include "calib/calibration.h"
 #include "calib/depth.h"
-#include "calib/lut_file.h"
+#include "calib/tables.h"
 #include "models/kernels/stereo.h"
 #include "sw/demo/demo_pair.h"
 #include "sw/files/output_file.h"

@@ -47,7 +47,7 @@ OutputFolder::OutputFolder(const fs::path& dir, OutputContent content)
     check_aside();
     if (const auto found = problem()) refuse(*found);
     check_inputs();
-    put_back();
+    if (is_unfinished()) put_back();
     for (const fs::path& name : entries(dir_)) {
       if (is_replaced(dir_ / name)) replaced_.push_back(name);
     }
@@ -148,7 +148,7 @@ void OutputFolder::refuse_file(const std::string& name, const std::error_code& c
 }
 
 void OutputFolder::commit() {
-  if (committed_ || !is_file(made() / content_.mark))
+  if (committed_ || (!content_.mark.empty() && !is_file(made() / content_.mark)))
     throw std::logic_error(fmt::format("commit() may be called once, after {} is added", content_.mark));
   for (auto& [name, file] : growing_) {
     try {
@@ -162,7 +162,8 @@ void OutputFolder::commit() {
   } catch (const std::system_error& error) {
     try {
       // If the new mark stayed in place, the next run would take the commit for complete.
-      if (!is_there(made() / content_.mark)) fs::rename(dir_ / content_.mark, made() / content_.mark);
+      if (!content_.mark.empty() && !is_there(made() / content_.mark))
+        fs::rename(dir_ / content_.mark, made() / content_.mark);
       put_back();
     } catch (const std::exception& /*again*/) {
       owns_aside_ = false;  // the next run restores the files that are left there
@@ -214,9 +215,15 @@ std::vector<fs::path> OutputFolder::moved_names() const {
   return names;
 }
 
+// Whether a run was killed, or has failed, while it moved files into place.
+bool OutputFolder::is_unfinished() const {
+  if (!is_folder(made())) return false;
+  return content_.mark.empty() ? !entries(made()).empty() : is_file(made() / content_.mark);
+}
+
 // Undoes an unfinished commit, wherever it stopped. May itself be interrupted and repeated.
 void OutputFolder::put_back() const {
-  if (!is_folder(earlier()) || !is_file(made() / content_.mark)) return;
+  if (!is_folder(earlier())) return;
   if (!is_file(dir_ / content_.mark)) {
     for (const fs::path& name : moved_names()) {
       if (is_there(dir_ / name) && !is_there(made() / name)) fs::rename(dir_ / name, made() / name);

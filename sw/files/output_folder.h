@@ -23,7 +23,8 @@ inline constexpr const char* kEarlierFolder = "earlier";
 // Describes the files that a command writes into a folder, DIR.
 struct OutputContent {
   std::string called;  // name of DIR in messages: "result folder"
-  std::string mark;    // the file that is moved into place last: if it exists, all files are complete
+  // The file that is moved into place last: if it exists, all files are complete. Empty: no such file.
+  std::string mark;
   // Returns the path below DIR of a file in `entry` that the command did not write ("thesis.tex",
   // "frames/note"); nullopt if there is none. `entry` is in DIR, or in the folder of unfinished files.
   std::function<std::optional<std::string>(const std::filesystem::path& entry)> foreign;
@@ -84,6 +85,7 @@ class OutputFolder {
   void start_aside();
   void move_into_place() const;
   std::vector<std::filesystem::path> moved_names() const;
+  bool is_unfinished() const;
   void put_back() const;
   void discard() noexcept;
   [[noreturn]] void refuse_file(const std::string& name, const std::error_code& cause) const;

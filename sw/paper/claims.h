@@ -5,8 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "sw/paper/verdict.h"
-
 namespace stereotlm::paper {
 
 // The paper's board.
@@ -36,6 +34,31 @@ struct BoardRun {
   bool camera = false;            // true: the whole computer; false: the core alone
   std::optional<Scene> scene = std::nullopt;
 };
+
+enum class Verdict {
+  kConfirmed,
+  kNotConfirmed,
+  kInPart,  // a claim of which only some cases are confirmed
+  kOpen,    // the simulated boards do not decide it
+};
+// "confirmed", "not confirmed", "in part", "open"
+std::string text_of(Verdict verdict);
+
+// The rule by which a modelled value confirms a printed one.
+enum class Relation {
+  kWithinPercent,  // the values differ by at most `tolerance` percent of the printed one
+  kWithin,         // the values differ by at most `tolerance`
+  kAtLeast,        // the modelled value is at most `tolerance` below the printed one
+  kMore,           // the modelled value is above the printed one
+};
+struct Rule {
+  Relation relation = Relation::kWithin;
+  double tolerance = 0;
+  std::string unit;  // unit of the tolerance, except for percent
+};
+// "within 0.35 %", "within 1 point", "at least the printed value less 0.5 frames/s", "more than the printed
+// value"
+std::string text_of(const Rule& rule);
 
 // The quantity that is compared.
 enum class Quantity {
@@ -78,9 +101,17 @@ struct Claim {
   std::vector<Case> cases;
 };
 
-// All numbers of the paper that are compared, each with its place, its boards and its rule. The sizes of
-// Table 2 come from table_2(), because the area model is fitted to them. Costs are compared on synthetic
-// scenes, and on the given pair if there is one.
+// All numbers of the paper that are compared, each with its place, its boards and its rule. Costs are compared
+// on synthetic scenes, and on the given pair if there is one.
 std::vector<Claim> claims(const std::optional<GivenPair>& given = std::nullopt);
+
+// Whether the modelled value of a case confirms the printed one: kConfirmed or kNotConfirmed; kOpen instead of
+// kConfirmed for kBanksFound, which is no proof.
+Verdict verdict_of(const Claim& claim, double printed, double modelled);
+
+// The verdict on a claim, from the verdicts on its cases. If all cases have the same verdict, the claim has
+// it too. Otherwise the verdict is kInPart if some case is confirmed, at least in part, else kNotConfirmed.
+// Without cases it is kOpen.
+Verdict verdict_of_all(const std::vector<Verdict>& cases);
 
 }  // namespace stereotlm::paper

@@ -8,7 +8,6 @@
 #include <optional>
 
 #include "models/area/area.h"
-#include "platform/config/board_yaml.h"
 #include "sw/report/accuracy.h"
 
 namespace stereotlm::paper {
@@ -45,10 +44,10 @@ std::string modelled_text(const Claim& claim, double modelled) {
 }
 
 // The deviation, if there is one; in points if the printed value is a percentage.
-std::string deviation_text(const Claim& claim, const Case& one, const CaseFinding& finding) {
+std::string deviation_text(const Claim& claim, const CaseFinding& finding) {
   if (claim.quantity == Quantity::kSlices)
-    return fmt::format("{:+.2f} points", finding.modelled - one.printed);
-  const auto percent = deviation_percent(claim, one, finding);
+    return fmt::format("{:+.2f} points", finding.modelled - finding.of.printed);
+  const auto percent = deviation_percent(claim, finding);
   return percent ? fmt::format("{:+.2f} %", *percent) : "";
 }
 
@@ -109,17 +108,15 @@ std::string cases_text(const ClaimFinding& found) {
   text += std::string(has_bound ? " bound, limited by |" : "") + " deviation |" +
           (has_bound ? " MHz |" : "") + " verdict |\n|---|---|---|---|---|" + (has_bound ? "---|---|" : "") +
           '\n';
-  for (std::size_t i = 0; i < found.cases.size(); ++i) {
-    const Case& one = claim.cases[i];
-    const CaseFinding& finding = found.cases[i];
-    text += fmt::format("| {} | {} | {} |", one.name, printed_text(claim, one.printed),
+  for (const CaseFinding& finding : found.cases) {
+    text += fmt::format("| {} | {} | {} |", finding.of.name, printed_text(claim, finding.of.printed),
                         modelled_text(claim, finding.modelled));
     if (has_bound) {
       text += fmt::format(" {}, {} |", three(finding.runs.front().bound), finding.runs.front().limited_by);
     }
-    text += fmt::format(" {} |", deviation_text(claim, one, finding));
+    text += fmt::format(" {} |", deviation_text(claim, finding));
     if (has_bound) {
-      const auto clock = clock_for(claim, one, finding);
+      const auto clock = clock_for(claim, finding);
       text += clock ? fmt::format(" {:.2f} .. {:.2f} |", clock->least_mhz, clock->most_mhz) : " |";
     }
     text += fmt::format(" {} |\n", text_of(finding.verdict));
@@ -142,9 +139,9 @@ std::string cases_text(const ClaimFinding& found) {
 
 std::string table1_remarks(const ClaimFinding& found) {
   ClockRange others = {0, std::numeric_limits<double>::infinity()};
-  for (std::size_t i = 0; i < found.cases.size(); ++i) {
-    if (found.cases[i].verdict != Verdict::kConfirmed) continue;
-    const ClockRange clock = *clock_for(found.claim, found.claim.cases[i], found.cases[i]);
+  for (const CaseFinding& finding : found.cases) {
+    if (finding.verdict != Verdict::kConfirmed) continue;
+    const ClockRange clock = *clock_for(found.claim, finding);
     others.least_mhz = std::max(others.least_mhz, clock.least_mhz);
     others.most_mhz = std::min(others.most_mhz, clock.most_mhz);
   }
@@ -154,13 +151,12 @@ std::string table1_remarks(const ClaimFinding& found) {
   if (others.least_mhz > others.most_mhz) return text;
   text += fmt::format("The rows that agree are those of one clock, {:.2f} .. {:.2f} MHz.\n", others.least_mhz,
                       others.most_mhz);
-  for (std::size_t i = 0; i < found.cases.size(); ++i) {
-    const Case& one = found.claim.cases[i];
-    const CaseFinding& finding = found.cases[i];
+  for (const CaseFinding& finding : found.cases) {
     if (finding.verdict == Verdict::kConfirmed) continue;
-    const ClockRange clock = *clock_for(found.claim, one, finding);
+    const Case& one = finding.of;
+    const ClockRange clock = *clock_for(found.claim, finding);
     text += fmt::format("\nThe row of {} deviates by {:.1f} %. Reasons to doubt the printed {:.1f}:\n\n",
-                        one.name, std::abs(*deviation_percent(found.claim, one, finding)), one.printed);
+                        one.name, std::abs(*deviation_percent(found.claim, finding)), one.printed);
     if (clock.least_mhz > others.most_mhz || clock.most_mhz < others.least_mhz) {
       text += fmt::format(
           "- It needs {:.2f} .. {:.2f} MHz, which the rows that agree exclude. The table is of one circuit, "
@@ -182,8 +178,8 @@ std::string table1_remarks(const ClaimFinding& found) {
 
 std::string table2_remarks(const ClaimFinding& found) {
   double worst = 0;
-  for (std::size_t i = 0; i < found.cases.size(); ++i)
-    worst = std::max(worst, std::abs(found.cases[i].modelled - found.claim.cases[i].printed));
+  for (const CaseFinding& finding : found.cases)
+    worst = std::max(worst, std::abs(finding.modelled - finding.of.printed));
   return fmt::format(
       "\nMethod: adders, registers and memories are counted from the structure (`stereotlm bounds` lists\n"
       "them); one constant, {:g} slices for each place of a LUT and its flip-flop, is fitted to these rows.\n"
@@ -201,21 +197,19 @@ std::string table2_remarks(const ClaimFinding& found) {
 
 // The camera rate of a claim's boards.
 double camera_hz(const Claim& claim) {
-  const BoardRun& run = claim.cases.back().runs.front();
-  return platform::load_board(run.preset, run.sets).cameras.frame_rate_hz;
+  return board_of(claim.cases.back().runs.front()).cameras.frame_rate_hz;
 }
 
 std::string practice_remarks(const ClaimFinding& found) {
   std::string text =
       "\nThe paper calls the rates of Table 1 calculated, from the clock that CAD reports, and says this of\n"
       "practice; it gives no other clock. What the core alone would need:\n\n";
-  for (std::size_t i = 0; i < found.cases.size(); ++i) {
-    const Case& one = found.claim.cases[i];
-    const BoardRun& run = one.runs.front();
-    if (run.camera) continue;
-    const double mhz = platform::load_board(run.preset, run.sets).fpga.clock_mhz;
-    text += fmt::format("- {}: {:.2f} MHz for {:.0f} frames a second\n", one.name,
-                        one.printed * mhz / found.cases[i].modelled, one.printed);
+  for (const CaseFinding& finding : found.cases) {
+    const Case& one = finding.of;
+    if (one.runs.front().camera) continue;
+    text +=
+        fmt::format("- {}: {:.2f} MHz for {:.0f} frames a second\n", one.name,
+                    one.printed * board_of(one.runs.front()).fpga.clock_mhz / finding.modelled, one.printed);
   }
   const double hz = camera_hz(found.claim);
   return text + fmt::format(
@@ -247,9 +241,9 @@ std::string small_remarks(const ClaimFinding& found) {
 
 std::string small_speed_up_remarks(const ClaimFinding& found) {
   std::string text = "\nRates, 320x240 and 640x480:\n\n";
-  for (std::size_t i = 0; i < found.cases.size(); ++i) {
-    text += fmt::format("- {}: {} and {} frames/s\n", found.claim.cases[i].name,
-                        three(found.cases[i].runs.at(0).rate), three(found.cases[i].runs.at(1).rate));
+  for (const CaseFinding& finding : found.cases) {
+    text += fmt::format("- {}: {} and {} frames/s\n", finding.of.name, three(finding.runs.at(0).rate),
+                        three(finding.runs.at(1).rate));
   }
   return text;
 }
@@ -398,11 +392,10 @@ std::string others_text(const ClaimFinding& found) {
           row.verdict == Verdict::kOpen ? ", open" : "");
     }
   } else {
-    for (std::size_t i = 0; i < found.cases.size(); ++i) {
-      const Case& one = claim.cases[i];
-      const CaseFinding& finding = found.cases[i];
+    for (const CaseFinding& finding : found.cases) {
       if (finding.verdict == Verdict::kConfirmed) continue;
-      const std::string deviation = deviation_text(claim, one, finding);
+      const Case& one = finding.of;
+      const std::string deviation = deviation_text(claim, finding);
       lines += fmt::format("  {}: {} {} in the paper, {} in the model{}{}\n", one.name,
                            printed_text(claim, one.printed), unit_of(claim.quantity),
                            modelled_text(claim, finding.modelled),

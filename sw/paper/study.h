@@ -46,6 +46,7 @@ struct BankRow {
 
 // The result for a case of a claim.
 struct CaseFinding {
+  Case of;
   double modelled = 0;
   std::vector<Measured> runs;  // runs of the case, in order; empty for kBanksProved
   Verdict verdict = Verdict::kOpen;
@@ -107,6 +108,8 @@ struct SceneFinding {
 };
 std::vector<SceneFinding> scenes_of(const ClaimFinding& found);
 
+platform::BoardConfig board_of(const BoardRun& run);
+
 // The shell command that reproduces the number of a run: "stereotlm run fpl2003 --timing-only ..".
 std::string command_of(const BoardRun& run);
 // The commands that reproduce the numbers of a case.
@@ -119,10 +122,10 @@ struct ClockRange {
   double most_mhz = 0;
 };
 // The clocks for the printed rate of a case; nullopt unless the case is a rate of the core alone.
-std::optional<ClockRange> clock_for(const Claim& claim, const Case& one, const CaseFinding& finding);
+std::optional<ClockRange> clock_for(const Claim& claim, const CaseFinding& finding);
 
 // The deviation of the modelled value from the printed one, in percent of the printed one. nullopt if the
 // values are numbers of banks, or if the printed value is 0.
-std::optional<double> deviation_percent(const Claim& claim, const Case& one, const CaseFinding& finding);
+std::optional<double> deviation_percent(const Claim& claim, const CaseFinding& finding);
 
 }  // namespace stereotlm::paper

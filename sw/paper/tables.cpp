@@ -49,7 +49,7 @@ std::string board_header() {
 // Appends to a row the values of kBoardKeys for the board of a run.
 std::string with_board(std::string row, const BoardRun& run) {
   row.pop_back();  // the newline
-  const auto values = platform::values_of(platform::load_board(run.preset, run.sets));
+  const auto values = platform::values_of(board_of(run));
   for (const char* const key : kBoardKeys) {
     const auto is_it = [key](const platform::BoardValue& value) { return value.path == key; };
     const auto found = std::find_if(values.begin(), values.end(), is_it);
@@ -70,14 +70,13 @@ std::string table1(const Findings& findings) {
       "limited_by,deviation_percent,rule,tolerance_percent,verdict,clock_mhz_least,clock_mhz_most,"
       "model_log7_frames_per_second,command" +
       board_header();
-  for (std::size_t i = 0; i < found.cases.size(); ++i) {
-    const Case& one = found.claim.cases[i];
-    const CaseFinding& finding = found.cases[i];
+  for (const CaseFinding& finding : found.cases) {
+    const Case& one = finding.of;
     const Measured& run = finding.runs.front();
-    const auto clock = clock_for(found.claim, one, finding);
+    const auto clock = clock_for(found.claim, finding);
     text += with_board(
         row(leading_number(one.name), one.printed, found.claim.half_digit, finding.modelled, run.bound,
-            run.limited_by, deviation_percent(found.claim, one, finding), text_of(found.claim.rule),
+            run.limited_by, deviation_percent(found.claim, finding), text_of(found.claim.rule),
             found.claim.rule.tolerance, text_of(finding.verdict), clock->least_mhz, clock->most_mhz,
             finding.runs.at(1).rate, command_text(found.claim, one)),
         one.runs.front());
@@ -95,15 +94,15 @@ std::string table2(const Findings& findings) {
       "deviation_percent,rate_rule,rate_verdict,size_command,rate_command" +
       board_header();
   for (std::size_t i = 0; i < size.cases.size(); ++i) {
-    const Case& area = size.claim.cases[i];
-    const Case& speed = rate.claim.cases[i];
+    const Case& area = size.cases[i].of;
+    const Case& speed = rate.cases[i].of;
     const Measured& run = rate.cases[i].runs.front();
     text += with_board(
         row(leading_number(area.name), area.printed, area.printed - size.claim.half_digit,
             area.printed + size.claim.half_digit, size.cases[i].modelled,
             size.cases[i].modelled - area.printed, text_of(size.claim.rule), size.claim.rule.tolerance,
             text_of(size.cases[i].verdict), speed.printed, rate.cases[i].modelled, run.bound, run.limited_by,
-            deviation_percent(rate.claim, speed, rate.cases[i]), text_of(rate.claim.rule),
+            deviation_percent(rate.claim, rate.cases[i]), text_of(rate.claim.rule),
             text_of(rate.cases[i].verdict), command_text(size.claim, area), command_text(rate.claim, speed)),
         area.runs.front());
   }
@@ -141,11 +140,10 @@ std::string all_claims(const Findings& findings) {
       "claim,place,says,case,unit,paper,half_digit,model,bound,limited_by,deviation_percent,rule,tolerance,"
       "verdict,clock_mhz_least,clock_mhz_most,claim_verdict,command\n";
   for (const ClaimFinding& found : findings.claims) {
-    for (std::size_t i = 0; i < found.cases.size(); ++i) {
-      const Case& one = found.claim.cases[i];
-      const CaseFinding& finding = found.cases[i];
+    for (const CaseFinding& finding : found.cases) {
+      const Case& one = finding.of;
       const bool is_rate = found.claim.quantity == Quantity::kRate;
-      const auto clock = clock_for(found.claim, one, finding);
+      const auto clock = clock_for(found.claim, finding);
       const auto of_clock = [&](double ClockRange::*mhz) {
         return clock ? std::optional<double>((*clock).*mhz) : std::nullopt;
       };
@@ -158,9 +156,9 @@ std::string all_claims(const Findings& findings) {
               of_paper(one.printed), of_paper(found.claim.half_digit), finding.modelled,
               is_rate ? std::optional<double>(finding.runs.front().bound) : std::nullopt,
               is_rate ? finding.runs.front().limited_by : std::string(),
-              deviation_percent(found.claim, one, finding), text_of(found.claim.rule),
-              found.claim.rule.tolerance, text_of(finding.verdict), of_clock(&ClockRange::least_mhz),
-              of_clock(&ClockRange::most_mhz), text_of(found.verdict), command_text(found.claim, one));
+              deviation_percent(found.claim, finding), text_of(found.claim.rule), found.claim.rule.tolerance,
+              text_of(finding.verdict), of_clock(&ClockRange::least_mhz), of_clock(&ClockRange::most_mhz),
+              text_of(found.verdict), command_text(found.claim, one));
     }
   }
   return text;

@@ -11,6 +11,8 @@
 #include <cerrno>
 #include <system_error>
 
+#include "sw/process/interrupt.h"
+
 namespace stereotlm::process {
 namespace {
 
@@ -85,7 +87,8 @@ std::vector<char*> shown_variables(const std::vector<std::string>& hidden) {
 
 }  // namespace
 
-CommandEnd run_command(const std::vector<std::string>& words, const std::vector<std::string>& hidden) {
+CommandEnd run_command(const std::vector<std::string>& words, const std::vector<std::string>& hidden,
+                       bool ends_if_interrupted) {
   const OutputFile out;
   const OutputFile errors;
   const SpawnSetup setup(out.descriptor(), errors.descriptor());
@@ -98,8 +101,12 @@ CommandEnd run_command(const std::vector<std::string>& words, const std::vector<
   if (error == ENOENT) throw CommandMissing(words[0] + ": not found in PATH");
   if (error != 0) fail(error, words[0].c_str());
   int status = 0;
-  while (waitpid(pid, &status, 0) < 0) {
-    if (errno != EINTR) fail(errno, "waitpid");
+  for (pid_t ended = 0; ended != pid;) {
+    ended = waitpid(pid, &status, ends_if_interrupted ? WNOHANG : 0);
+    if (ended < 0 && errno != EINTR) fail(errno, "waitpid");
+    if (ended != 0) continue;
+    if (interrupted()) kill(pid, SIGTERM);
+    usleep(10'000);
   }
   constexpr int kSignalled = 128;
   return {WIFSIGNALED(status) ? kSignalled + WTERMSIG(status) : WEXITSTATUS(status), out.text(),

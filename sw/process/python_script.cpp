@@ -1,7 +1,6 @@
 #include "sw/process/python_script.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
@@ -28,34 +27,23 @@ std::vector<std::string> words_of(const std::string& script, const std::vector<s
   return words;
 }
 
-[[noreturn]] void fail_to_start(const std::string& python, const std::string& cause) {
-  throw std::runtime_error(
-      fmt::format("'{}', which draws the figures: cannot be started: {}", python, cause));
-}
-
 }  // namespace
-
-void become_script(const std::string& script, const std::vector<std::string>& arguments,
-                   const std::string& python) {
-  std::vector<std::string> words = words_of(script, arguments, python);
-  std::vector<char*> pointers;
-  pointers.reserve(words.size() + 1);
-  for (std::string& word : words) pointers.push_back(word.data());
-  pointers.push_back(nullptr);
-  execv(python.c_str(), pointers.data());
-  fail_to_start(python, std::strerror(errno));
-}
 
 CommandEnd run_script(const std::string& script, const std::vector<std::string>& arguments,
                       const std::string& python) {
   const std::vector<std::string> words = words_of(script, arguments, python);
+  const auto fail = [&python](const std::string& cause) {
+    throw std::runtime_error(
+        fmt::format("'{}', which draws the figures: cannot be started: {}", python, cause));
+  };
   try {
-    return run_command(words);
+    return run_command(words, {}, true);
   } catch (const CommandMissing& /*error*/) {
-    fail_to_start(python, std::strerror(ENOENT));
+    fail(std::strerror(ENOENT));
   } catch (const std::system_error& error) {
-    fail_to_start(python, error.code().message());
+    fail(error.code().message());
   }
+  return {};
 }
 
 }  // namespace stereotlm::process

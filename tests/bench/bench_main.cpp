@@ -16,8 +16,8 @@
 #include <systemc>
 #include <vector>
 
-#include "calib/lut_file.h"
 #include "calib/opencv_conversions.h"
+#include "calib/tables.h"
 #include "models/kernels/image_filter.h"
 #include "models/kernels/image_matcher.h"
 #include "models/kernels/simd.h"

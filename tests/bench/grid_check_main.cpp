@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "calib/calibration_reader.h"
+#include "calib/calibration.h"
 #include "calib/grid.h"
 #include "sw/files/whole_file.h"
 #include "sw/media/load.h"

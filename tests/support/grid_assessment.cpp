@@ -8,8 +8,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "calib/calibration.h"
 #include "calib/depth.h"
-#include "calib/grid_in_view.h"
 #include "models/kernels/lr_check.h"
 
 namespace stereotlm::test {

@@ -1,8 +1,9 @@
-"""Selects and names the points of figures that have a row for each point."""
+"""Figures that have a row for each point: selects and names the points, and draws stacked bars."""
 
 import style
-from drawing import WIDTH
-from points import PORTS, natural, short_names, text_of
+from drawing import WIDTH, Sheet, in_words, ticks_of_columns
+from matplotlib.patches import Patch
+from points import natural, short_names, text_of
 from style import SMALL_SIZE
 
 MOST = 16
@@ -66,6 +67,12 @@ class Rows:
         """The width of the names in inches."""
         return 0.2 + max(style.text_width(line, SMALL_SIZE) for name in self.names for line in name.split("\n"))
 
+    def note_below(self, sheet, text=""):
+        """Writes which points are shown, and `text`, below the figure."""
+        for each in (self.note, text, self.points.pixels_note(self.places),
+                     self.points.note(len(self.places), self.left_out)):
+            sheet.note(each)
+
     def label(self, axes):
         axes.set_ylim(self.height, 0)
         axes.set_yticks(self.centers, self.names, fontsize=SMALL_SIZE)
@@ -73,9 +80,31 @@ class Rows:
         axes.grid(False, axis="y")
 
 
-def used_ports(points, places):
-    """The ports that are granted or stall in one of these points."""
-    points.need_numbers([f"ports.{port}.{count}" for port in PORTS for count in ("grants", "stall_cycles")])
-    return [port for port in PORTS
-            if any(points.column(f"ports.{port}.{count}")[place]
-                   for place in places for count in ("grants", "stall_cycles"))]
+def stacked(points, options, rows, heading, ports, parts, cycles, unit):
+    """A sheet with a panel for each port, and in it a bar for each point, stacked from its parts.
+
+    parts: {part: (name, color)}; those without cycles are not shown. cycles(place, port, part): of all frames.
+    unit: what an axis of cycles a frame says.
+    """
+    frames = points.frames()
+    shares = {(place, port, part): cycles(place, port, part) / frames[place]
+              for place in rows.places for port in ports for part in parts}
+    shown = [part for part in parts if any(shares[place, port, part] for place in rows.places for port in ports)]
+    most = max(sum(shares[place, port, part] for part in shown) for place in rows.places for port in ports)
+    factor, word = in_words(most)
+    sheet = Sheet(heading, options.size, options.format)
+    sheet.legend([(Patch(color=parts[part][1]), parts[part][0]) for part in shown])
+    rows.note_below(sheet)
+    panels = sheet.columns(len(ports), rows.height, rows.left(), rows.least)
+    for axes, port in zip(panels, ports):
+        for place, center in zip(rows.places, rows.centers):
+            at = 0
+            for part in shown:
+                width = shares[place, port, part] / factor
+                axes.barh(center, width, 0.14, at, color=parts[part][1], linewidth=0)
+                at += width
+        sheet.head(axes, port)
+        rows.label(axes)
+    ticks_of_columns(panels, most / factor)
+    sheet.below(f"{word}{unit}")
+    return sheet

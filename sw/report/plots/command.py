@@ -1,16 +1,14 @@
-"""What the plot scripts share: their command line, its checks, and the folder that gets the figures.
+"""What the plot scripts share: their command line, its checks, and how the figures are written.
 
-Exit status: 0 done; 2 refused before anything was drawn; 1 failed after that; 130 interrupted.
+`stereotlm plot` runs plot_all.py with a folder of its own, --into. It checks --out, and replaces the files there.
+Exit status: 0 done; 2 refused before anything was written; 1 failed after that; 130 interrupted.
 """
 
 import argparse
-import contextlib
 import errno
 import os
 import re
-import shutil
 import signal
-import stat
 import sys
 
 from points import MOST_NAMED, Points, Unusable
@@ -25,23 +23,20 @@ def tell(kind, text):
     print(f"{NAME}: {kind}: {text}", file=sys.stderr, flush=True)
 
 
-def on_interrupt(clean_up):
-    """From now on SIGINT and SIGTERM end the process immediately, after clean_up(); None: they are ignored.
+def leave(*_):
+    """Ends the process immediately: an exception could be lost in a callback of matplotlib."""
+    tell("note", "interrupted: nothing was written")
+    os._exit(130)
 
-    An exception instead could be lost in a callback of matplotlib. Signals that are ignored already stay so.
-    """
 
-    def leave(*_):
-        clean_up()
-        tell("note", "interrupted: nothing was written")
-        os._exit(130)
-
+def on_interrupt(action):
+    """What SIGINT and SIGTERM do from now on. Signals that are ignored already stay so."""
     for number in (signal.SIGINT, signal.SIGTERM):
         if signal.getsignal(number) != signal.SIG_IGN:
-            signal.signal(number, leave if clean_up else signal.SIG_IGN)
+            signal.signal(number, action)
 
 
-on_interrupt(lambda: None)
+on_interrupt(leave)
 os.environ.pop("MPLBACKEND", None)  # selects a display; matplotlib fails if it does not know the name
 try:
     import matplotlib  # noqa: F401
@@ -54,158 +49,12 @@ except Exception as error:  # of any kind, such as one that a user's matplotlibr
 
 import style  # noqa: E402: it needs matplotlib
 
-FIGURES = ["window", "disparities", "rows", "units", "banks", "states", "stalls", "use", "pareto"]
-ENDINGS = [*(f".{kind}" for kind in style.FORMATS), ".csv"]
 LEAST_SIZE, MOST_SIZE = 2, 40  # inches
-ASIDE = ".partial"  # holds NEW, and during commit() EARLIER
-NEW, EARLIER = "new", "earlier"
-RULE = "must be empty or hold only files that plot has written: move it away, or give another folder"
-
-
-class Refused(Exception):
-    def __init__(self, lines):
-        super().__init__("; ".join(lines))
-        self.lines = lines
-
-
-class Folder:
-    """The folder of --out. commit() replaces an earlier result by the new one; until then it is unchanged."""
-
-    def __init__(self, path, database):
-        """database: which is read, and must not be replaced."""
-        self.path = path
-        self.database = database
-        self.aside = os.path.join(path, ASIDE)
-        self.new, self.earlier = (os.path.join(self.aside, name) for name in (NEW, EARLIER))
-        self.created = []
-
-    def problem(self):
-        """Why the folder cannot be used. Empty if no problem is found without writing to the folder."""
-        if not os.path.lexists(self.path):
-            return ""
-        try:
-            if not os.path.isdir(self.path):
-                return "not a folder"
-            is_left = os.path.lexists(self.aside)  # by a killed process, which may have moved some of the files
-            foreign = foreign_entry(self.path, known_entry if is_left else self._is_own)
-            if not foreign and is_left:
-                foreign = self._foreign_aside()
-        except OSError as error:
-            return f"cannot be read: {error.strerror}"
-        return f"holds '{foreign}': {RULE}" if foreign else ""
-
-    def _is_own(self, path):
-        """Whether plot has written the entry, or it is empty: a figure by its bytes, a table by the figure beside it."""
-        name, ending = os.path.splitext(path)
-        if not known_entry(path) or (os.path.exists(self.database) and os.path.samefile(path, self.database)):
-            return False
-        if os.path.getsize(path) == 0:
-            return True
-        if ending == ".csv":
-            return any(is_file(name + each) and self._is_own(name + each) for each in ENDINGS if each != ".csv")
-        with open(path, "rb") as file:
-            return style.is_made_here(file.read(), ending[1:])
-
-    def _foreign_aside(self):
-        """The first entry of ASIDE that no killed process can have left there; None if there is none."""
-        if not is_folder(self.aside):
-            return ASIDE
-        for name in sorted(os.listdir(self.aside)):
-            path = os.path.join(self.aside, name)
-            if name not in (NEW, EARLIER) or not is_folder(path):
-                return f"{ASIDE}/{name}"
-            inside = foreign_entry(path, known_entry)
-            if inside:
-                return f"{ASIDE}/{name}/{inside}"
-        return None
-
-    def start(self):
-        """Creates the folder and its missing parents. Raises OSError if it cannot be written to."""
-        missing = os.path.abspath(self.path)
-        absent = []
-        while not os.path.lexists(missing):
-            absent.append(missing)
-            missing = os.path.dirname(missing)
-        for path in reversed(absent):
-            os.mkdir(path)
-            self.created.insert(0, path)
-        if os.path.isdir(self.aside):
-            shutil.rmtree(self.aside)
-        self.earlier_files = os.listdir(self.path)
-        os.mkdir(self.aside)
-        os.mkdir(self.new)
-
-    def commit(self, files, replaced):
-        """Replaces the earlier result. If that fails, restores it and raises OSError.
-
-        files: {name: bytes}; replaced: names of files to remove, if they were there at the start.
-        """
-        for name, data in files.items():
-            with open(os.path.join(self.new, name), "wb") as file:
-                file.write(data)
-        moved = []
-        try:
-            os.mkdir(self.earlier)
-            for name in replaced:
-                if name in self.earlier_files and is_file(os.path.join(self.path, name)):
-                    move(name, self.path, self.earlier, moved)
-            for name in files:
-                move(name, self.new, self.path, moved)
-        except OSError as error:
-            for source, target in reversed(moved):
-                with contextlib.suppress(OSError):
-                    os.rename(target, source)
-            raise OSError(f"--out {self.path}: the figures cannot be moved into place: {error.strerror}: "
-                          f"'{error.filename2 or error.filename}'") from None
-        shutil.rmtree(self.aside, ignore_errors=True)
-        self.created = []
-
-    def discard(self):
-        """Removes what start() has created, unless commit() was called."""
-        shutil.rmtree(self.aside, ignore_errors=True)
-        for path in self.created:
-            try:
-                os.rmdir(path)
-            except OSError:
-                pass
-
-
-def is_file(path):
-    """A symbolic link is neither a file nor a folder."""
-    return os.path.lexists(path) and stat.S_ISREG(os.lstat(path).st_mode)
-
-
-def is_folder(path):
-    return os.path.isdir(path) and not os.path.islink(path)
-
-
-def move(name, source, target, moved):
-    """Moves a file from folder `source` to folder `target`, which must not have one of this name.
-
-    Adds both paths to `moved`, to undo the move.
-    """
-    paths = [os.path.join(folder, name) for folder in (source, target)]
-    if os.path.lexists(paths[1]):
-        raise OSError(errno.EEXIST, os.strerror(errno.EEXIST), paths[1])
-    os.rename(*paths)
-    moved.append(paths)
-
-
-def known_entry(path):
-    """Whether plot writes files of this name."""
-    figure, ending = os.path.splitext(os.path.basename(path))
-    return figure in FIGURES and ending in ENDINGS and is_file(path)
-
-
-def foreign_entry(folder, is_own):
-    """The first entry of the folder, except ASIDE, that is not the own; None if there is none."""
-    return next((name for name in sorted(os.listdir(folder))
-                 if name != ASIDE and not is_own(os.path.join(folder, name))), None)
 
 
 class Parser(argparse.ArgumentParser):
     def error(self, message):
-        raise Refused([f"{message} (see {self.prog} --help)"])
+        raise Unusable(f"{message} (see {self.prog} --help)")
 
 
 def parse(arguments, description, has_pareto):
@@ -213,7 +62,7 @@ def parse(arguments, description, has_pareto):
              " [--format F,..] [--size WxH]")
     parser = Parser(prog=NAME, description=description, allow_abbrev=False, usage=usage)
     parser.add_argument("database", metavar="DB", nargs="?", help="a database of stereotlm sweep")
-    parser.add_argument("--out", metavar="DIR", help="folder of the figures, created if missing")
+    parser.add_argument("--out", metavar="DIR", help="folder of the figures, created if missing: new or empty")
     parser.add_argument("--only", metavar="KEY=VALUE", action="append", default=[],
                         help="only points whose key has that value; may be given for several keys")
     parser.add_argument("--format", metavar="F,..",
@@ -226,6 +75,9 @@ def parse(arguments, description, has_pareto):
         parser.add_argument("--pareto", metavar="X:SENSE,Y:SENSE",
                             help="columns of the Pareto front, and whether the most or the least of each is best: "
                                  "max or min; default area.slices:min,frames_per_second.core:max")
+    # Of `stereotlm plot`: the folder that gets the figures instead of --out, and what is wrong with --out.
+    parser.add_argument("--into", help=argparse.SUPPRESS)
+    parser.add_argument("--problem", help=argparse.SUPPRESS)
     return parser.parse_args(arguments)
 
 
@@ -256,8 +108,18 @@ def read_looks(options):
     return problems
 
 
+def folder_problem(folder):
+    """Why the folder of a script that runs on its own cannot be used; empty if it can."""
+    try:
+        if os.path.lexists(folder) and os.listdir(folder):
+            return "must be empty: move away what it holds, or give another folder"
+    except OSError as error:
+        return f"cannot be written to: {error.strerror}"
+    return ""
+
+
 def prepare(options, check):
-    """Returns the points and the folder. Raises Refused with all problems."""
+    """Returns the points. Raises Unusable with all problems."""
     problems = []
     points = None  # stays None if the database cannot be read
     if options.database is None:
@@ -270,21 +132,15 @@ def prepare(options, check):
             problems += error.lines
     problems += check(points, options)
     problems += read_looks(options)
-    folder = Folder(options.out, options.database or "") if options.out else None
-    if not folder:
+    if options.problem:
+        problems.append(options.problem)
+    elif not options.out:
         problems.append("--out: missing: the folder of the figures")
-    elif folder.problem():
-        problems.append(f"--out {options.out}: {folder.problem()}")
+    elif not options.into and folder_problem(options.out):
+        problems.append(f"--out {options.out}: {folder_problem(options.out)}")
     if problems:
-        raise Refused(problems)
-    return points, folder
-
-
-def start(folder):
-    try:
-        folder.start()
-    except OSError as error:
-        raise Refused([f"--out {folder.path}: cannot be written to: {error.strerror}"]) from None
+        raise Unusable(*problems)
+    return points
 
 
 def draw_all(points, options, figures):
@@ -301,31 +157,34 @@ def draw_all(points, options, figures):
         files.update({name + ending: data for ending, data in drawing.files.items()})
         said.append(f"{name:<12} {drawing.said}")
         boxed |= drawing.boxed
+    if not files:
+        raise Unusable(*(" ".join(line.split()) for line in said))
     return files, said, boxed
+
+
+def write(folder, files):
+    """Writes new files into a folder, which is created if it is missing. files: {name: bytes}."""
+    os.makedirs(folder, exist_ok=True)
+    for name, data in files.items():
+        with open(os.path.join(folder, name), "xb") as file:
+            file.write(data)
 
 
 def run(description, figures, arguments, check):
     options = parse(arguments, description, check is not None)
-    points, folder = prepare(options, check or (lambda points, options: []))
-    lines = about_points(points)
-    on_interrupt(folder.discard)
+    points = prepare(options, check or (lambda points, options: []))
+    files, said, boxed = draw_all(points, options, figures)
+    on_interrupt(signal.SIG_IGN)
     try:
-        start(folder)
-        files, said, boxed = draw_all(points, options, figures)
-        if not files:
-            raise Refused([" ".join(line.split()) for line in said])
-        on_interrupt(None)  # the commit is not interrupted
-        folder.commit(files, [name + ending for name in figures for ending in ENDINGS])
-    except BaseException:
-        folder.discard()
-        raise
+        write(options.into or options.out, files)
+    except OSError as error:
+        raise OSError(f"--out {options.out}: cannot be written to: {error.strerror}") from None
     if boxed:
         texts = ", ".join(f"'{each}'" if each.isprintable() else ascii(each) for each in sorted(boxed)[:MOST_NAMED])
         tell("note", f"the font of the figures lacks {texts}: boxes in PNG and PDF; SVG and CSV have the text")
-    lines += said
     kinds = ", ".join(options.format or style.USUAL_FORMATS)
-    lines.append(f"{options.out}: {len(files)} files: {kinds} and csv of each figure that is drawn")
-    say(lines)
+    say([*about_points(points), *said,
+         f"{options.out}: {len(files)} files: {kinds} and csv of each figure that is drawn"])
 
 
 def about_points(points):
@@ -356,11 +215,39 @@ def main(description, figures, check=None):
     """
     try:
         run(description, figures, sys.argv[1:], check)
-        return
-    except (Refused, Unusable) as refused:
+    except Unusable as refused:
         for line in refused.lines:
             tell("error", line)
         sys.exit(2)
     except OSError as error:
+        tell("error", error)
+        sys.exit(1)
+
+
+def main_of_tables(description, read, figures):
+    """Runs a script that draws the tables in a folder, into the same folder. Without a folder it checks the options.
+
+    read(folder) returns what the figures show. figures: {name: draw}; draw(shown, options) returns a Drawing or a
+    Sheet, or None if the figure does not apply.
+    """
+    parser = argparse.ArgumentParser(prog=NAME, description=description, allow_abbrev=False)
+    parser.add_argument("folder", nargs="?", help="folder with the tables, which gets the figures")
+    parser.add_argument("--format")
+    parser.add_argument("--size")
+    options = parser.parse_args()
+    problems = read_looks(options)
+    if problems:
+        print("; ".join(problems), file=sys.stderr)
+        sys.exit(2)
+    try:
+        shown = read(options.folder) if options.folder else None
+        for name, draw in figures.items() if options.folder else ():
+            drawing = draw(shown, options)
+            if drawing:
+                write(options.folder, {name + ending: data for ending, data in drawing.files.items()})
+    except Unusable as error:
+        tell("error", error)
+        sys.exit(2)
+    except (OSError, KeyError, ValueError) as error:
         tell("error", error)
         sys.exit(1)

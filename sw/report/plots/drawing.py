@@ -74,7 +74,7 @@ class Drawing:
 
     def __init__(self, sheet, header, rows, said):
         """header, rows: the table; said: text about the figure, such as the number of its points."""
-        self.files = {**sheet.files(), ".csv": table(header, rows)}
+        self.files = {**sheet.files, ".csv": table(header, rows)}
         self.said = said
         self.boxed = sheet.boxed()  # see there
 
@@ -218,6 +218,7 @@ class Sheet:
             size = f"{self.width:g}x{self.height:g}"
             raise Unusable(f"--size {size}: this figure needs a width of {rounded_up(around + least)} inches")
 
+    @property
     def files(self):
         """{ending: bytes}."""
         return {f".{kind}": style.encoded(self.figure, kind) for kind in self._formats}

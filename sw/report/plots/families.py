@@ -1,6 +1,6 @@
 """Groups points to lines, and chooses color, marker and dashes of each line, by which it is distinguished."""
 
-import itertools
+import dataclasses
 import math
 
 from points import natural, text_of
@@ -15,16 +15,20 @@ MOST_ENVELOPES = 4
 MOST_TEXT = 48
 
 
+@dataclasses.dataclass
 class Look:
-    def __init__(self, color=COLORS[0], marker=MARKERS[0], dashes=DASHES[0]):
-        self.color, self.marker, self.dashes = color, marker, dashes
+    color: str = COLORS[0]
+    marker: str = MARKERS[0]
+    dashes: object = DASHES[0]
 
 
+@dataclasses.dataclass
 class Family:
-    """The points with one combination of values of Families.keys. places: indices of the points in Points."""
+    """The points with one combination of values of Families.keys."""
 
-    def __init__(self, values, places):
-        self.values, self.places, self.look = values, places, Look()
+    values: tuple
+    places: list  # indices of the points in Points
+    look: Look = None
 
 
 class Families:
@@ -194,7 +198,7 @@ def left_range(places, xs, values):
 
 
 def without(values, at):
-    return tuple(itertools.chain(values[:at], values[at + 1 :]))
+    return (*values[:at], *values[at + 1 :])
 
 
 def named(keys, combinations):

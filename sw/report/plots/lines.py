@@ -1,5 +1,7 @@
 """Figures of frame rates as lines over one column."""
 
+import dataclasses
+
 import style
 from drawing import LOSES_PIXELS, Drawing, Sheet, bound_of, mark_handle, scale, ticks_at, title
 from families import MOST_DOTS, Families
@@ -13,19 +15,19 @@ MORE_HEIGHT = 2.1
 ALL, MIDDLE = 0.16, 0.3  # opacity of an envelope: of all its points, and of their middle half
 
 
+@dataclasses.dataclass
 class Panel:
-    """One column over x, with its bound above each point.
+    """One column over x, with its bound above each point."""
 
-    beside: another column, drawn thin and dotted; None: no other.
-    limit: (value, text in the legend) of a line that is drawn if the column comes near to the value; None: no line.
-    listed: further columns for the table.
-    partial: some points have no value in this column.
-    """
+    column: str
+    height: float  # inches
+    beside: str = None  # another column, drawn thin and dotted
+    limit: tuple = None  # (value, text in the legend) of a line that is drawn if the column comes near to the value
+    listed: list = ()  # further columns for the table
+    partial: bool = False  # some points have no value in this column
 
-    def __init__(self, column, height, beside=None, limit=None, listed=(), partial=False):
-        self.column, self.height, self.beside, self.limit, self.listed = column, height, beside, limit, listed
-        self.partial = partial
-        self.bound = bound_of(column)
+    def __post_init__(self):
+        self.bound = bound_of(self.column)
 
     def drawn(self):
         return [each for each in (self.column, self.bound, self.beside) if each]
@@ -44,8 +46,13 @@ def rate_panels(points):
     return panels
 
 
-def area_panel():
-    return Panel("area.slices_percent", MORE_HEIGHT, limit=(100, "the FPGA is full"), listed=["area.slices"])
+def of_key(points, options, key, heading, x=None, with_area=False):
+    """A figure over a key of the board. x: the column of the x axis, if it is not that of the key."""
+    points.need_variation(key)
+    panels = rate_panels(points)
+    if with_area:
+        panels.append(Panel("area.slices_percent", MORE_HEIGHT, limit=(100, "the FPGA is full"), listed=["area.slices"]))
+    return draw(points, options, heading, x or key, [key], panels)
 
 
 def draw(points, options, heading, x, x_keys, panels, best=False):
@@ -76,10 +83,10 @@ def draw(points, options, heading, x, x_keys, panels, best=False):
         sheet.note(text)
     for axes, panel in zip(sheet.rows([panel.height for panel in panels]), panels):
         for group, look in families.envelopes:
-            EnvelopeDrawing(points, group, xs, panel).draw(axes, look)
+            draw_envelope(axes, points, group, xs, panel, look)
         for family in [] if families.envelopes else families.all:
             not_best = set(losing) if best else None
-            FamilyDrawing(points, family, xs, panel, families.as_points, not_best, with_dots).draw(axes)
+            draw_family(axes, points, family, xs, panel, families.as_points, not_best, with_dots)
         if panel.bound:
             mark(axes, [(xs[place], points.column(panel.column)[place]) for place in losing])
         values = [points.column(each)[place] for each in panel.drawn() for place in places]
@@ -164,83 +171,57 @@ def draw_range(axes, xs, lows, highs, color, opacity):
         axes.bar(xs, [high - low for low, high in zip(lows, highs)], 0.3, lows, **look)
 
 
-class EnvelopeDrawing:
-    """Draws in one panel the range of many points at each x, their middle half, the median and the greatest bound."""
-
-    def __init__(self, points, places, xs, panel):
-        values = points.column(panel.column)
-        by_x = {}
-        for place in places:
-            if values[place] is not None:
-                by_x.setdefault(xs[place], []).append(values[place])
-        self.xs = sorted(by_x)
-        self.sorted = [sorted(by_x[x]) for x in self.xs]
-        self.bounds = None
-        if panel.bound:
-            bounds = points.column(panel.bound)
-            there = [place for place in places if values[place] is not None]
-            self.bounds = [bounds[place] for place in greatest_places(xs, bounds, there)]
-
-    def draw(self, axes, look):
-        lows, highs = ([each[end] for each in self.sorted] for end in (0, -1))
-        draw_range(axes, self.xs, lows, highs, look.color, ALL)
-        quarters = [[each[round(share * (len(each) - 1))] for each in self.sorted] for share in (0.25, 0.5, 0.75)]
-        draw_range(axes, self.xs, quarters[0], quarters[2], look.color, MIDDLE)
-        for edge in (lows, highs):
-            axes.plot(self.xs, edge, color=look.color, linewidth=0.8, zorder=2)
-        axes.plot(self.xs, quarters[1], color=look.color, **{**style.POINT, "marker": look.marker}, zorder=3)
-        if self.bounds:
-            axes.plot(self.xs, self.bounds, **bound(look.color))
+def by_x(places, xs, values):
+    """{x: its values, from the least}, from the least x."""
+    found = {}
+    for place in places:
+        found.setdefault(xs[place], []).append(values[place])
+    return {x: sorted(found[x]) for x in sorted(found)}
 
 
-class FamilyDrawing:
-    """Draws one family in one panel.
+def draw_envelope(axes, points, places, xs, panel, look):
+    """The range of many points at each x, their middle half, the median and the greatest bound."""
+    values = points.column(panel.column)
+    there = [place for place in places if values[place] is not None]
+    at = by_x(there, xs, values)
+    lows, highs = ([each[end] for each in at.values()] for end in (0, -1))
+    draw_range(axes, list(at), lows, highs, look.color, ALL)
+    quarters = [[each[round(share * (len(each) - 1))] for each in at.values()] for share in (0.25, 0.5, 0.75)]
+    draw_range(axes, list(at), quarters[0], quarters[2], look.color, MIDDLE)
+    for edge in (lows, highs):
+        axes.plot(list(at), edge, color=look.color, linewidth=0.8, zorder=2)
+    axes.plot(list(at), quarters[1], color=look.color, **{**style.POINT, "marker": look.marker}, zorder=3)
+    if panel.bound:
+        bounds = points.column(panel.bound)
+        axes.plot(list(at), [bounds[place] for place in greatest_places(xs, bounds, there)], **bound(look.color))
+
+
+def draw_family(axes, points, family, xs, panel, as_points, not_best, with_dots):
+    """The line of a family.
 
     not_best: the line goes through the best point at each x, except these places; None: through all points.
     with_dots: the other points at each x are drawn as dots, else as their range.
     """
+    values, look = points.column(panel.column), family.look
+    there = sorted((place for place in family.places if values[place] is not None), key=lambda place: xs[place])
 
-    def __init__(self, points, family, xs, panel, as_points, not_best, with_dots):
-        self.values = points.column(panel.column)
-        self.bounds = points.column(panel.bound) if panel.bound else None
-        self.beside = points.column(panel.beside) if panel.beside else None
-        self.xs, self.look, self.as_points, self.not_best = xs, family.look, as_points, not_best
-        self.with_dots = with_dots
-        self.places = sorted((place for place in family.places if self.values[place] is not None),
-                             key=lambda place: xs[place])
+    def plot(places, column, **more):
+        axes.plot([xs[place] for place in places], [column[place] for place in places],
+                  **{"color": look.color, **more})
 
-    def draw(self, axes):
-        if self.as_points:
-            self._dots(axes, 4)
-            if self.bounds:
-                self._plot(axes, self.places, self.bounds, **bound(self.look.color))
-            return
-        if self.not_best is not None and self.with_dots:
-            self._dots(axes, 3)
-        elif self.not_best is not None:
-            self._range(axes)
-        if self.bounds:
-            places = greatest_places(self.xs, self.bounds, self.places)
-            self._plot(axes, places, self.bounds, **bound(self.look.color))
-        best = [each for each in self.places if each not in (self.not_best or ())]
-        places = greatest_places(self.xs, self.values, best)
-        if self.beside:
-            self._plot(axes, places, self.beside, color=self.look.color, linewidth=0.8, linestyle=":",
-                       marker=self.look.marker, markersize=3.5, markerfacecolor="white", zorder=2)
-        self._plot(axes, places, self.values, color=self.look.color, linestyle=self.look.dashes,
-                   **{**style.POINT, "marker": self.look.marker}, zorder=3)
-
-    def _plot(self, axes, places, values, **look):
-        axes.plot([self.xs[place] for place in places], [values[place] for place in places], **look)
-
-    def _dots(self, axes, size):
-        self._plot(axes, self.places, self.values, color=self.look.color, marker="o", linestyle="", markersize=size,
-                   markeredgewidth=0, alpha=0.5, zorder=2)
-
-    def _range(self, axes):
-        by_x = {}
-        for place in self.places:
-            by_x.setdefault(self.xs[place], []).append(self.values[place])
-        if by_x:
-            lows, highs = (list(map(end, by_x.values())) for end in (min, max))
-            draw_range(axes, list(by_x), lows, highs, self.look.color, ALL)
+    if as_points or (not_best is not None and with_dots):
+        plot(there, values, marker="o", linestyle="", markersize=4 if as_points else 3, markeredgewidth=0, alpha=0.5,
+             zorder=2)
+    elif not_best is not None and there:
+        at = by_x(there, xs, values)
+        draw_range(axes, list(at), *([each[end] for each in at.values()] for end in (0, -1)), look.color, ALL)
+    if panel.bound:
+        bounds = points.column(panel.bound)
+        plot(there if as_points else greatest_places(xs, bounds, there), bounds, **bound(look.color))
+    if as_points:
+        return
+    best = greatest_places(xs, values, [each for each in there if each not in (not_best or ())])
+    if panel.beside:
+        plot(best, points.column(panel.beside), linewidth=0.8, linestyle=":", marker=look.marker, markersize=3.5,
+             markerfacecolor="white", zorder=2)
+    plot(best, values, linestyle=look.dashes, **{**style.POINT, "marker": look.marker}, zorder=3)

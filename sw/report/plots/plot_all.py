@@ -1,10 +1,6 @@
 #!/usr/bin/python3
 """All figures of a sweep that apply to it."""
 
-import sys
-
-sys.path.insert(0, __file__.rpartition("/")[0] or ".")  # PYTHONSAFEPATH leaves it out
-
 import command
 import plot_banks
 import plot_disparities

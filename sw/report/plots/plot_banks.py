@@ -5,10 +5,6 @@ Every allocation is a dot, or many of them a range. A line goes through the best
 banks. There is a line for each combination of the other keys that vary.
 """
 
-import sys
-
-sys.path.insert(0, __file__.rpartition("/")[0] or ".")  # PYTHONSAFEPATH leaves it out
-
 import command
 import lines
 from points import BANKS_USED, Unusable

@@ -1,18 +1,13 @@
 #!/usr/bin/python3
 """The figures of stereotlm conflicts, from its tables: where in the picture and when in a frame ports wait for banks."""
 
-import argparse
 import csv
 import json
 import os
-import sys
-
-sys.path.insert(0, __file__.rpartition("/")[0] or ".")  # PYTHONSAFEPATH leaves it out
 
 import command
 import style
-from command import tell
-from drawing import Drawing, Sheet, Unusable, in_words, ticks_of_columns
+from drawing import Drawing, Sheet, in_words, ticks_of_columns
 from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.patches import Patch
 
@@ -200,34 +195,5 @@ def causes(recorded, options):
 FIGURES = {"bank_rows": bank_rows, "picture": picture, "time_line": time_line, "causes": causes}
 
 
-def main():
-    parser = argparse.ArgumentParser(prog="plot_conflicts.py", description=__doc__)
-    parser.add_argument("folder", nargs="?", help="folder with the tables, which gets the figures; without it only "
-                                                  "the options are checked")
-    parser.add_argument("--format")
-    parser.add_argument("--size")
-    options = parser.parse_args()
-    problems = command.read_looks(options)
-    if problems:
-        print("; ".join(problems), file=sys.stderr)
-        sys.exit(2)
-    if options.folder is None:
-        return
-    recorded = Recorded(options.folder)
-    for name, draw in FIGURES.items():
-        try:
-            drawing = draw(recorded, options)
-        except Unusable as error:
-            tell("error", error)
-            sys.exit(2)
-        for ending, data in (drawing.files if drawing else {}).items():
-            with open(os.path.join(options.folder, name + ending), "wb") as file:
-                file.write(data)
-
-
 if __name__ == "__main__":
-    try:
-        main()
-    except OSError as error:
-        tell("error", f"'{error.filename or sys.argv[-1]}': {error.strerror}")
-        sys.exit(1)
+    command.main_of_tables(__doc__, Recorded, FIGURES)

@@ -1,15 +1,11 @@
 #!/usr/bin/python3
 """The figures of stereotlm paper, from its tables: the paper's Tables 1 and 2 and its number of banks."""
 
-import argparse
 import csv
 import os
-import sys
 
-sys.path.insert(0, __file__.rpartition("/")[0] or ".")  # PYTHONSAFEPATH leaves it out
-
+import command
 import style
-from command import tell
 from drawing import Sheet, ticks_at
 from style import QUIET, bound, bound_handle, line_handle
 
@@ -51,12 +47,12 @@ def model_line(axes, xs, ys, color=MODEL, **look):
     axes.plot(xs, ys, color=color, zorder=3, **style.POINT, **look)
 
 
-def table1(folder):
+def table1(folder, options):
     """Draws frames per second over the window and, below, the deviation from the paper."""
     rows = sorted(read(folder, "table1"), key=lambda row: int(row["window"]))
     xs = [int(row["window"]) for row in rows]
     board, tolerance = rows[0], float(rows[0]["tolerance_percent"])
-    sheet = Sheet("The paper's Table 1: frame rate against the window")
+    sheet = Sheet("The paper's Table 1: frame rate against the window", options.size, options.format)
     sheet.legend([paper_handle(), (line_handle(MODEL, "o"), "model, the core alone"), (bound_handle(MODEL), "bound")])
     sheet.note(f"Table 1: {image_of(board)}, {board['matcher.disparities']} disparities, {filter_of(board)}, "
                f"{board['fpga.clock_mhz']} MHz. Below: model less paper, with the rule ({board['rule']}) shaded; the bar is "
@@ -87,7 +83,7 @@ def table1(folder):
     return sheet
 
 
-def table2(folder):
+def table2(folder, options):
     """Draws slices over the disparities and, below, the error. Bars: what rounding in the paper leaves open."""
     rows = sorted(read(folder, "table2"), key=lambda row: int(row["disparities"]))
     xs = [int(row["disparities"]) for row in rows]
@@ -96,7 +92,7 @@ def table2(folder):
     least, most = numbers(rows, "paper_slices_percent_least"), numbers(rows, "paper_slices_percent_most")
     below = [value - low for value, low in zip(printed, least)]
     above = [high - value for value, high in zip(printed, most)]
-    sheet = Sheet("The paper's Table 2: area against the disparities")
+    sheet = Sheet("The paper's Table 2: area against the disparities", options.size, options.format)
     sheet.legend([paper_handle(), (line_handle(MODEL, "o"), "model, counted; one constant is fitted to these rows")])
     sheet.note(f"Table 2: window {window_of(board)}, {board['fpga.device'].upper()}. Below: model less paper, with the rule "
                f"({board['size_rule']}) shaded; the bars are what rounding to whole percents leaves open.")
@@ -117,13 +113,13 @@ def table2(folder):
     return sheet
 
 
-def banks(folder):
+def banks(folder, options):
     """Draws frame rates over the number of banks: the best of the core, and those of runs of the computer."""
     rows = read(folder, "banks")
     printed = {row["claim"]: row["paper"] for row in read(folder, "claims")}
     computer = [row for row in rows if row["claim"] == "banks_of_computer"]
     board = rows[0]
-    sheet = Sheet("Frame rate against the number of memory banks")
+    sheet = Sheet("Frame rate against the number of memory banks", options.size, options.format)
     sheet.legend([(line_handle(MODEL, "o"), "the core alone, the best of every allocation"),
                   (bound_handle(MODEL), "bound"),
                   (line_handle(SECOND, "^", ""), "the whole computer, one allocation each"),
@@ -153,21 +149,5 @@ def banks(folder):
 FIGURES = {"table1": table1, "table2": table2, "banks": banks}
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, allow_abbrev=False)
-    parser.add_argument("tables", metavar="DIR", help="a folder that stereotlm paper has written")
-    parser.add_argument("--out", metavar="DIR", required=True, help="an existing folder, into which the pictures go")
-    options = parser.parse_args()
-    for name, draw in FIGURES.items():
-        sheet = draw(options.tables)
-        for ending, data in sheet.files().items():
-            with open(os.path.join(options.out, name + ending), "wb") as file:
-                file.write(data)
-
-
 if __name__ == "__main__":
-    try:
-        main()
-    except (OSError, KeyError, ValueError) as error:
-        tell("error", str(error))
-        raise SystemExit(1) from None
+    command.main_of_tables(__doc__, str, FIGURES)

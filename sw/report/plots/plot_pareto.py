@@ -3,9 +3,6 @@
 
 import math
 import re
-import sys
-
-sys.path.insert(0, __file__.rpartition("/")[0] or ".")  # PYTHONSAFEPATH leaves it out
 
 import command
 import style

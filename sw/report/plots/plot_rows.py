@@ -4,20 +4,13 @@
 There is a line for each combination of the other keys that vary.
 """
 
-import sys
-
-sys.path.insert(0, __file__.rpartition("/")[0] or ".")  # PYTHONSAFEPATH leaves it out
-
 import command
 import lines
 
-KEY = "matcher.rows"
-
 
 def draw(points, options):
-    points.need_variation(KEY)
-    panels = [*lines.rate_panels(points), lines.area_panel()]
-    return lines.draw(points, options, "Frame rate and area against the rows of results at once", KEY, [KEY], panels)
+    return lines.of_key(points, options, "matcher.rows", "Frame rate and area against the rows of results at once",
+                        with_area=True)
 
 
 if __name__ == "__main__":

@@ -1,10 +1,6 @@
 #!/usr/bin/python3
 """How busy each bank is while the core works on a frame, point by point."""
 
-import sys
-
-sys.path.insert(0, __file__.rpartition("/")[0] or ".")  # PYTHONSAFEPATH leaves it out
-
 import bars
 import command
 import style
@@ -28,10 +24,7 @@ def draw(points, options):
                for place in rows.places]
     if any(None in row for row in percent):
         sheet.legend([(Patch(color=style.MISSING), "the board has no such bank")])
-    sheet.note(rows.note)
-    sheet.note("Of the cycles in which the core works on a frame, those in which the bank serves an access.")
-    sheet.note(points.pixels_note(rows.places))
-    sheet.note(points.note(len(rows.places), rows.left_out))
+    rows.note_below(sheet, "Of the cycles in which the core works on a frame, those in which the bank serves an access.")
     height, least = (max(each, LEAST_HEIGHT) for each in (rows.height, rows.least))
     (axes,) = sheet.columns(1, height, rows.left(), least, headed=False, bottom=0.95, right=0.3)
     numbers = [[float("nan") if use is None else use for use in row] for row in percent]

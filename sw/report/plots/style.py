@@ -1,11 +1,10 @@
-"""How all figures look: font, sizes, colors, marks, and the bytes of their files.
+"""What the house style (style.mplstyle) has besides settings: colors, marks, widths of texts, bytes of files.
 
-The scripts of plot, of paper and of the studies in results share this. The drawings of calib (calib/canvas.h) have
-the same font and the same colors. Nothing depends on settings of the user: equal figures give equal bytes.
+Nothing depends on settings of the user: equal figures give equal bytes.
 """
 
 import io
-import re
+import os
 import warnings
 
 import matplotlib
@@ -14,20 +13,18 @@ from matplotlib.ft2font import LOAD_NO_HINTING
 from matplotlib.lines import Line2D
 from matplotlib.path import Path
 
-FONT = "DejaVu Sans"
+SHEET = matplotlib.rc_params_from_file(os.path.join(os.path.dirname(os.path.abspath(__file__)), "style.mplstyle"),
+                                       use_default_template=False)
+FONT, SCALE = SHEET["font.sans-serif"][0], SHEET["image.cmap"]
 SIZE, LABEL_SIZE, TITLE_SIZE, LEGEND_SIZE, SMALL_SIZE = 9, 9.5, 11, 8.5, 7  # points
 DPI = 200
 
 INK, QUIET, GRAY, GRID = "#222222", "#666666", "#808080", "#DDDDDD"
 MISSING = "#D9D9D9"  # where there is no value: a gray that no map of colors has
-
-# The palette of Okabe and Ito, which the color-blind can distinguish, without yellow, which is hardly visible
-# on white.
-BLUE, VERMILION, GREEN, PINK, ORANGE, SKY, BLACK = COLORS = [
-    "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000"]
+COLORS = SHEET["axes.prop_cycle"].by_key()["color"]
+BLUE, VERMILION, GREEN, PINK, ORANGE, SKY, BLACK = COLORS
 MARKERS = ["o", "s", "^", "D", "v", "P", "X"]
 DASHES = ["-", (0, (4, 2)), (0, (1, 1.5)), (0, (5, 1.5, 1, 1.5))]
-SCALE = "viridis"  # for numbers: from dark to light also in gray print, and for the color-blind
 SHARES = "Blues"  # for shares with their number written into them
 
 # A mark that a point of the line has, with a white edge where it crosses others.
@@ -38,40 +35,19 @@ LID = Path([(-1, -0.55), (-1, 0), (1, 0), (1, -0.55)])
 LID_OF_X = Path([(-0.55, -1), (0, -1), (0, 1), (-0.55, 1)])
 FAINT_LINE = {"color": QUIET, "linewidth": 0.9, "linestyle": (0, (6, 3)), "zorder": 1.4}
 
-SETTINGS = {
-    "font.family": "sans-serif", "font.sans-serif": [FONT], "font.size": SIZE, "axes.labelsize": LABEL_SIZE,
-    "axes.titlesize": LABEL_SIZE, "figure.titlesize": TITLE_SIZE, "xtick.labelsize": SIZE, "ytick.labelsize": SIZE,
-    "legend.fontsize": LEGEND_SIZE, "legend.title_fontsize": LEGEND_SIZE, "legend.frameon": False,
-    "figure.facecolor": "white", "axes.facecolor": "white", "savefig.facecolor": "white",
-    "axes.edgecolor": QUIET, "axes.labelcolor": INK, "text.color": INK, "xtick.color": INK, "ytick.color": INK,
-    "axes.linewidth": 0.8, "axes.spines.top": False, "axes.spines.right": False,
-    "axes.grid": True, "axes.axisbelow": True, "grid.color": GRID, "grid.linewidth": 0.6,
-    "axes.prop_cycle": matplotlib.cycler(color=COLORS), "image.cmap": SCALE,
-    "lines.linewidth": 1.4, "lines.markersize": 5,
-    "text.parse_math": False,  # names of boards and files are shown as they are
-    "svg.fonttype": "none", "svg.hashsalt": "stereotlm", "pdf.fonttype": 42,
-}
-
 FORMATS = ["png", "svg", "pdf"]
 USUAL_FORMATS = ["png", "svg"]
-# Nothing of the time or the release is written into the files.
+# Nothing of the time or the release is written into the files. `stereotlm plot` (plot_command.cpp) knows its own
+# files by the maker.
 MAKER = "stereotlm"
 METADATA = {"png": {"Software": MAKER}, "svg": {"Date": None, "Creator": MAKER},
             "pdf": {"Creator": MAKER, "Producer": None, "CreationDate": None}}
-# Where matplotlib writes the maker: in the chunk behind the header, in the element before the drawing, in the last
-# object.
-MADE = {
-    "png": rb"\x89PNG.{29}\0\0\0\x12tEXtSoftware\0%s" % MAKER.encode(),
-    "svg": rb"<\?xml .{0,500}\n <metadata>\n.{0,500}\n    <dc:creator>\n     <cc:Agent>\n      <dc:title>%s</dc:title>\n"
-           % MAKER.encode(),
-    "pdf": rb"%%PDF-.*\n<< /Creator \(%s\) >>\nendobj\nxref\n[^<>]*<<[^<>]*>>\nstartxref\n\d+\n%%%%EOF\n$" % MAKER.encode(),
-}
 
 
 def use():
     """Sets this style for all figures that are made from now on."""
     matplotlib.rcdefaults()  # so that settings of the user have no effect
-    matplotlib.rcParams.update(SETTINGS)
+    matplotlib.rcParams.update(SHEET)
 
 
 def encoded(figure, kind, dpi=DPI):
@@ -82,11 +58,6 @@ def encoded(figure, kind, dpi=DPI):
             warnings.filterwarnings("ignore", message)
         figure.savefig(out, format=kind, dpi=dpi, metadata=METADATA[kind])
     return out.getvalue()
-
-
-def is_made_here(data, kind):
-    """Whether encoded() has made these bytes of a file of this kind."""
-    return re.match(MADE[kind], data, re.DOTALL) is not None
 
 
 def _font(bold=False):

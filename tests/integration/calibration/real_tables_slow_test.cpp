@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "calib/calibration.h"
 #include "calib/grid.h"
-#include "calib/grid_in_view.h"
-#include "calib/rectification.h"
+#include "calib/rig.h"
 #include "calib/rig_fit.h"
 #include "calib/tables.h"
 #include "models/kernels/stereo.h"
@@ -105,13 +105,6 @@ TEST_F(RealTables, HoldInThePapersAllocation) {
   EXPECT_LT(left_reads_, all);
 }
 
-TEST_F(RealTables, HoldWithATableInABankOfItsImage) {
-  PlainCycleInput input = fpl2003(tables_);
-  input.left_lut = 0;
-  expect_as_the_plain_loop(input);
-  EXPECT_GT(blame_, 0U);
-}
-
 void put_into_two_banks(PlainCycleInput& input) {
   input.banks.resize(2);
   input.left_lut = input.right_lut = 0;
@@ -162,24 +155,6 @@ TEST_F(RealTables, GiveTheSameDisparitiesJointAndSeparate) {
   }
   EXPECT_GE(disparities[0].size(), pairs.size() * kWidth * kHeight);
   EXPECT_EQ(disparities[0], disparities[1]);
-}
-
-TEST_F(RealTables, HoldInSyncBurstBanksInTurn) {
-  PlainCycleInput input = fpl2003(tables_);
-  for (PlainBank& bank : input.banks) bank = {PlainBankKind::kSyncBurst, 2};
-  input.arbitration = PlainArbitration::kRoundRobin;
-  input.disparity = {0};
-  expect_as_the_plain_loop(input);
-  EXPECT_GT(blame_, 1U);
-}
-
-TEST_F(RealTables, HoldWithLinesInBlockRam) {
-  PlainCycleInput input = fpl2003(tables_);
-  input.fetch = PlainFetch::kLineBuffer;
-  input.filter_half = 3;
-  input.right_lut = 2;
-  expect_as_the_plain_loop(input);
-  EXPECT_GT(blame_, 0U);
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "calib/rectification.h"
+#include "calib/rig.h"
 #include "calib/synthetic_rig.h"
 #include "calib/tables.h"
 #include "models/kernels/joint_table.h"

@@ -7,6 +7,7 @@ import shutil
 import signal
 import struct
 import time
+import zlib
 
 import program
 from pictures import pgm, read_pfm, read_png, read_png_16
@@ -315,10 +316,6 @@ class RefusedPictures(CalibrateTest):
             with self.subTest(texts[0]), self.unchanged(self.folder):
                 self.refused(self.calibrate(left=left, right=right), *texts)
 
-    def test_too_few_disparities_for_the_grid_are_refused(self):
-        lines = self.refused(self.calibrate("--disparities", "3"))
-        self.assertRegex(lines[0], r"--disparities = 3: must be \d+ or more for the grid's own.*; or --disparity-offset N")
-
     def test_those_among_its_own_drawings_are_refused(self):
         self.succeeds(self.calibrate())
         drawings = self.folder / "new_drawings"
@@ -402,6 +399,20 @@ class PrintGrid(ProgramTest):
             self.assertTrue(sheet.read_bytes().startswith(beginning))
             with self.unchanged(self.folder):
                 self.succeeds(self.print_grid(name))
+
+    def test_the_pdf_has_every_second_square_at_its_place(self):
+        self.succeeds(self.print_grid("grid.pdf"))
+        stream = re.search(rb"stream\n(.*?)\nendstream", (self.folder / "grid.pdf").read_bytes(), re.S)[1]
+        point = rb"(\S+)\s(\S+)\s"
+        square = point + rb"m\s\S+\s\S+\sl\s" + point + rb"l\s\S+\s\S+\sl\s+h"
+        squares = [[25.4 / 72 * float(each) for each in found] for found in re.findall(square, zlib.decompress(stream))]
+        places = set()
+        for left, top, right, bottom in squares:
+            place = [(left - 23.5) / 25, (top - 12.5) / 25, (right - 48.5) / 25, (bottom - 37.5) / 25]
+            places.add(tuple(map(round, place)))
+            self.assertTrue(all(abs(each - round(each)) < 1e-4 for each in place), place)
+        expected = {(x, y, x, y) for x in range(10) for y in range(7) if (x + y) % 2 == 0}
+        self.assertEqual(places, expected)
 
     def test_wrong_sheets_are_refused(self):
         sheet = self.file("grid.pdf", "precious")

@@ -12,13 +12,15 @@
 #include <csignal>
 #include <cstdarg>
 #include <map>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "calib/calibration_yaml.h"
+#include "calib/calibration.h"
 #include "calib/synthetic_rig.h"
 #include "sw/files/folder_entries.h"
+#include "sw/files/output_folder.h"
 #include "tests/support/fork.h"
 #include "tests/support/scratch_folder.h"
 
@@ -232,6 +234,48 @@ TEST_F(CalibrationOutputTest, IsAsItWasOrNewAfterAFailureAnywhere) {
     at_every_step({}, calibration("new", true), attempt);
     at_every_step(calibration("old", true), calibration("new", false), attempt);
   }
+}
+
+// Such as the figures of `plot`.
+TEST_F(CalibrationOutputTest, FilesWithoutAMarkAreAsTheyWereOrNewAfterAKillOrAFailureInAnyMove) {
+  files::OutputContent content;
+  content.called = "folder";
+  content.foreign = [](const fs::path& entry) {
+    const bool is_ours = entry.stem() == "a" || entry.stem() == "b";
+    return is_ours ? std::nullopt : std::optional<std::string>(entry.filename());
+  };
+  content.problem = [](const fs::path&, bool) { return std::nullopt; };
+  const Files earlier = {{"a.csv", "old"}, {"a.png", "old"}, {"a.svg", "old"}};
+  const Files fresh = {{"a.csv", "new"}, {"a.pdf", "new"}, {"b.png", "new"}};
+  const auto write_all = [&] {
+    files::OutputFolder folder(folder_, content);
+    for (const auto& [name, bytes] : fresh) folder.add(name, bytes);
+    folder.commit();
+  };
+  for (int steps = 0; steps <= 6; ++steps) {  // three files are moved away, and three into place
+    begin_with(earlier);
+    EXPECT_EQ(is_killed(Fault::kKillInRename, steps, write_all), steps < 6);
+    files::OutputFolder(folder_, content);
+    EXPECT_EQ(files(), steps < 6 ? earlier : fresh) << steps;
+  }
+  int steps = 0;
+  for (failures = 1; failures > 0; ++steps) {
+    begin_with(earlier);
+    fault = Fault::kFailOnce;
+    failures = 0;
+    steps_left = steps;
+    try {
+      write_all();
+    } catch (const std::runtime_error&) {
+      EXPECT_GT(failures, 0);
+      steps_left = -1;
+      files::OutputFolder(folder_, content);
+      EXPECT_EQ(files(), earlier) << steps;
+    }
+    steps_left = -1;
+  }
+  EXPECT_EQ(files(), fresh);
+  EXPECT_GT(steps, 10);
 }
 
 TEST_F(CalibrationOutputTest, TakesTurnsWithAnotherRunOfTheSameNameAlone) {

@@ -12,7 +12,7 @@ import subprocess
 import time
 
 import program
-from pictures import PYTHON, drawn, noise, pgm
+from pictures import PYTHON, noise, pgm
 from program import HEIGHT as HEIGHT_OF_SMALL
 from program import WIDTH as WIDTH_OF_SMALL
 from program import ProgramTest, Terminal, run, shared_folder, wait_until
@@ -125,22 +125,6 @@ class Numbers(PaperTest):
             self.assertIn("--set matcher.disparities=3 ", row["command"])
             self.assertGreater(float(row["answered_percent"]), 90)
 
-    def test_changes_of_the_accuracy_are_from_sad(self):
-        rows = self.table("costs")
-        claims = {row["case"]: row for row in self.claim("costs")}
-        for row in rows:
-            sad = next(one for one in rows if one["scene"] == row["scene"])
-            shares = [("wrong_percent", "wrong_change_points"), ("answered_percent", "answered_change_points")]
-            for share, change in shares:
-                self.assertEqual(float(row[change]), float(row[share]) - float(sad[share]))
-            claim = claims.pop(f"{row['cost']}, {row['scene']}", None)
-            self.assertEqual(claim is not None, row["cost"] in ("ssd", "zncc"))
-            if claim is not None:
-                self.assertEqual(float(claim["model"]), max(abs(float(row[change])) for _, change in shares))
-                self.assertEqual(row["verdict"], "confirmed" if float(claim["model"]) <= 1 else "not confirmed")
-                self.assertEqual(row["verdict"], claim["verdict"])
-        self.assertEqual(claims, {})
-
     @program.slow
     def test_banks_are_those_of_allocate(self):
         for claim in ("banks", "banks_of_matching"):
@@ -208,18 +192,9 @@ class Report(PaperTest):
         for verdict, code in (("not confirmed", 31), ("in part", 33), ("confirmed", 32)):
             self.assertRegex(terminal.text, rf"\d of \d\x1b\[{code}m  {verdict}\x1b\[0m\r\n")
 
-    def test_has_figures_that_are_not_blank(self):
-        pictures = [self.file(name + ".png", self.files[name + ".png"]) for name in FIGURES]
-        for width, height, _, colors in drawn(*pictures):
-            self.assertGreater(width, 1000)
-            self.assertGreater(colors, 20)
-            self.assertGreater(height, 500)
-        for name in FIGURES:
-            self.assertIn("</svg>", self.files[name + ".svg"].decode())
-
     def drawn_with(self, **changed):
         """The drawings of tables whose columns have other values in all rows: {table: {column: value}}."""
-        self.out.mkdir(exist_ok=True)
+        shutil.rmtree(self.out, ignore_errors=True)
         for name in TABLES:
             self.file(f"out/{name}", self.files[name])
         for name, columns in changed.items():
@@ -228,7 +203,7 @@ class Report(PaperTest):
                 writer = csv.DictWriter(file, list(rows[0]))
                 writer.writeheader()
                 writer.writerows(rows)
-        command = [PYTHON, "-B", SCRIPT, self.out, "--out", self.out]
+        command = [PYTHON, "-B", SCRIPT, self.out]
         self.succeeds(subprocess.run(command, capture_output=True, text=True, timeout=300, check=False))
         return {name: (self.out / f"{name}.svg").read_text() for name in FIGURES}
 

@@ -8,7 +8,7 @@ import signal
 import subprocess
 
 import program
-from plots import ALLOCATIONS, ENDINGS, LAYOUT, WINDOWS
+from plots import ALLOCATIONS, LAYOUT, WINDOWS
 from plots import PlotTest, change, make_database, reader, script, script_with
 from program import run, wait_until
 
@@ -16,6 +16,7 @@ HEADER = "name run.source matcher.window matcher.fetch frames_per_second.core bo
 FOLDER = "must be empty or hold only files that plot has written: move it away, or give another folder"
 # As an earlier run has written it: what is in the picture is not looked at.
 DRAWN = b"\x89PNG" + bytes(29) + b"\0\0\0\x12tEXtSoftware\0stereotlm"
+DRAWN_SVG = "\n    <dc:creator>\n     <cc:Agent>\n      <dc:title>stereotlm</dc:title>\n"
 ALL = "plot_all.py"
 
 
@@ -35,8 +36,8 @@ class Earlier(PlotTest):
     def test_earlier_files_stay_when_new_ones_cannot_be_moved_into_place(self):
         process = self.begin(banks="a", states="b", window="c")
         self.file("out/use.png", "mine")
-        problem = f"the figures cannot be moved into place: File exists: '{self.out}/use.png'"
-        self.ends(process, 1, errors=f"stereotlm: error: --out {self.out}: {problem}\n")
+        problem = "the new files cannot be moved into place: use.png: File exists"
+        self.ends(process, 1, errors=f"stereotlm: error: --out '{self.out}': {problem}\n")
         texts = {"banks": b"a", "states": b"b", "window": b"c"}
         files = {name + ending: data for name, text in texts.items() for ending, data in ((".png", DRAWN), (".csv", text))}
         self.assertEqual(self.result(), {**files, "use.png": b"mine"})
@@ -50,17 +51,15 @@ class Earlier(PlotTest):
             self.assertEqual(self.result(), {"banks.png": DRAWN, "banks.csv": b"earlier"})
             self.is_in(self.out, "banks.png", "banks.csv")
 
-    def test_figures_of_each_format_are_replaced(self):
-        store = self.sweep(WINDOWS)
-        for formats in ("png,svg,pdf", "svg", "pdf,svg", "pdf", "png"):
-            self.plot("window", store, "--format", formats)
-        self.is_in(self.out, "window.png", "window.csv")
-
-    def test_files_of_a_killed_process_go(self):
-        for name in ("new", "earlier"):
-            self.file(f"out/.partial/{name}/window.png")
-        self.plot("window", self.sweep(WINDOWS))
-        self.is_in(self.out, *("window" + ending for ending in ENDINGS))
+    def test_what_a_killed_process_has_moved_away_is_put_back_and_replaced(self):
+        self.file("out/.partial/new/window.png", DRAWN)
+        self.file("out/.partial/earlier/window.png", DRAWN)
+        self.file("out/window.csv")
+        with self.unchanged(self.folder):
+            self.refused(run("plot", self.folder / "none.db", "--out", self.out / "window.csv"))
+        self.succeeds(run("plot", self.sweep(WINDOWS), "--out", self.out))
+        self.assertFalse((self.out / ".partial").exists())
+        self.assertGreater((self.out / "window.csv").stat().st_size, 0)
 
 
 class Refusals(PlotTest):
@@ -157,23 +156,30 @@ class Refusals(PlotTest):
 
         folder = pathlib.Path.mkdir
         for make, name in (*((file, name) for name in ("notes.txt", "window.csv", "use.png", "use.svg", "use.pdf")),
-                           (file, "window.ps"), (file, ".partial"), (folder, "frames"),
-                           (folder, "window.png"), (link, "window.png"), (link, ".partial")):
+                           (file, "window.ps"), (folder, "frames"), (folder, "window.png"), (link, "window.png")):
             given = self.folder / "given"
             given.mkdir()
             make(given / name)
-            process = script(ALL, self.store, "--out", given)
-            self.refused_in_one_line(process, f"--out {given}: holds '{name}': {FOLDER}")
+            self.refused_in_one_line(run("plot", self.store, "--out", given), f"--out '{given}': holds '{name}': {FOLDER}")
+            self.refused_in_one_line(script("plot_window.py", self.store, "--out", given), "must be empty")
             self.is_in(given, name)
             shutil.rmtree(given)
         database = shutil.copy(self.store, self.folder / "given.csv")
         self.file("given/window.png", DRAWN)
         os.link(database, self.folder / "given" / "window.csv")
-        self.refused_in_one_line(script(ALL, database, "--out", given), f"--out {given}: holds 'window.csv': {FOLDER}")
-        self.file("out/.partial/mine")
-        for out, problem in ((self.out, "holds '.partial/mine'"), (self.left, "not a folder"),
-                             ("/proc/none/out", "cannot be written to")):
-            self.refused_in_one_line(script(ALL, self.store, "--out", out), f"--out {out}: {problem}")
+        process = run("plot", self.folder / "given" / "window.csv", "--out", self.folder / "given")
+        self.refused_in_one_line(process, "lies in it and would be replaced")
+        for out, problem in ((self.left, "not a folder"), ("/proc/none/out", "cannot be written to")):
+            self.refused_in_one_line(run("plot", self.store, "--out", out), f"--out '{out}': {problem}")
+
+    def test_pictures_of_each_format_are_known_by_what_plot_writes_into_them(self):
+        store = self.sweep(WINDOWS)
+        self.succeeds(run("plot", store, "--out", self.out, "--format", "pdf"))
+        for name in ("window.svg", "use.svg"):
+            self.file(f"out/{name}", DRAWN_SVG)
+        self.succeeds(run("plot", store, "--out", self.out, "--format", "svg"))
+        self.succeeds(run("plot", store, "--out", self.out, "--format", "png"))
+        self.assertFalse(list(self.out.glob("*.svg")))
 
     def test_figures_that_do_not_apply_are_refused(self):
         process = script("plot_disparities.py", self.store, "--out", self.out)
@@ -203,14 +209,13 @@ class Environment(PlotTest):
         store = self.sweep(WINDOWS)
         self.file("matplotlib.py", "raise ImportError('another one')\n")
         self.succeeds(run("plot", store, "--out", self.out))
-        harmless = {"MPLBACKEND": "nonsense", "PYTHONSAFEPATH": "1"}
         with self.unchanged(self.out):
-            for variables in ({"PYTHONPATH": str(self.folder), **harmless},
+            for variables in ({"PYTHONPATH": str(self.folder), "MPLBACKEND": "nonsense", "PYTHONSAFEPATH": "1"},
                               {"PYTHONHOME": str(self.folder), "PYTHONOPTIMIZE": "2"}):
                 process = run("plot", store, "--out", self.out, env={**os.environ, **variables})
                 self.assertEqual((process.returncode, process.stderr), (0, ""), variables)
-            for name in ("plot_window.py", ALL):
-                self.succeeds(script_with(name, store, "--out", self.out, **harmless))
+        self.out = self.folder / "alone"
+        self.succeeds(script_with("plot_window.py", store, "--out", self.out, MPLBACKEND="nonsense"))
 
 
 if __name__ == "__main__":

@@ -142,7 +142,7 @@ class Figures(FigureTest):
     def check_lines(self):
         """One for each combination of the other keys, through the points of that combination alone."""
         fetches = ("matcher.fetch = column", "matcher.fetch = line_buffer")
-        self.shows("window", "window n, pixels (of n x n)", "bound", *fetches, *map(str, SIZES))
+        self.shows("window", "Frame rate against the size of the window", "window n, pixels (of n x n)", "bound", *fetches, *map(str, SIZES))
         self.assertIn("core, frames/s", " ".join(self.texts("window")))
         for curves in (self.curves("window"), self.bounds("window")):
             self.assertEqual(len(curves), FAMILIES)
@@ -185,22 +185,6 @@ class Figures(FigureTest):
         fastest = [row["front"] for row in table if float(row["frames_per_second.core"]) == best]
         self.assertIn("1", fastest)
         self.shows("pareto", "bound of a point of the front")
-
-    def test_lines_of_banks_go_through_the_best_allocation(self):
-        header = [*ALLOCATED, "fpga.clock_mhz", *RATES]
-        allocations = (("bank0", "[bank0, bank0]", 8), ("none", "[bank1]", 12), ("bank2", "[bank1]", 10))
-        rows = [("made", "preloaded", lut, image, clock, rate * clock, 13 * clock)
-                for clock in (1, 2) for lut, image, rate in allocations]
-        self.plot("banks", make_database(self.folder / "best.db", header, rows))
-        self.assertEqual(sorted(int(row["banks_used"]) for row in self.table("banks")), [1, 1, 1, 1, 2, 2])
-        slow, fast = self.curves("banks")
-        zero = 2 * slow[0][1] - fast[0][1]  # y of no frame at all: from zero, and one board twice as fast
-        for curve in (slow, fast):
-            self.assertEqual(len(curve), 2)
-            self.assertLess(curve[0][0], curve[1][0])
-            self.assertAlmostEqual((zero - curve[0][1]) / (zero - curve[1][1]), 12 / 10, places=4)
-        self.shows("banks", "banks used by the allocation", "best allocation", "simulated", "bound",
-                   "fpga.clock_mhz = 1")
 
     def test_boards_of_one_frame_are_called_so(self):
         store = self.folder / "found.db"
@@ -272,7 +256,7 @@ class Figures(FigureTest):
         rates = {"column": 1, "line_buffer": 10}
         rows = [("made", "preloaded", window, clock, fetch, clock * rate / window, 1.5 * clock * rate / window)
                 for window in (3, 5, 7) for clock in range(20, 80) for fetch, rate in rates.items()]
-        store = make_database(self.folder / "many.db", header, rows)
+        store = make_database(self.folder / "many.db", header, rows[::-1])
         self.assertIn("360 points, 2 envelopes", self.plot("window", store))
         self.assertEqual(len(self.table("window")), 360)
         many = "120 combinations of fpga.clock_mhz, matcher.fetch are more than can be told apart"
@@ -574,10 +558,6 @@ class Formats(FigureTest):
             box = rf"/MediaBox \[ 0 0 {72 * width:g} {72 * height:g} \]"
             self.assertRegex((self.out / "window.pdf").read_bytes().decode("latin-1"), box)
             self.assertEqual(self.table("window"), usual)
-
-    def test_each_figure_has_a_title(self):
-        self.plot("window", self.store())
-        self.shows("window", "Frame rate against the size of the window")
 
 
 class Layout(FigureTest):

@@ -5,6 +5,7 @@ import functools
 import json
 import os
 import pathlib
+import shutil
 import sqlite3
 import subprocess
 import sys
@@ -51,6 +52,7 @@ for line in sys.stdin:
         for number, file in enumerate(outputs, 1):
             os.dup2(file.fileno(), number)
         sys.argv = json.loads(line)
+        sys.path.insert(0, os.path.dirname(sys.argv[0]))
         runpy.run_path(sys.argv[0], run_name="__main__")
         sys.exit()
     status = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
@@ -116,7 +118,8 @@ class PlotTest(ProgramTest):
         return store
 
     def plot(self, name, store, *more):
-        """What the script of a figure prints that draws into self.out."""
+        """What the script of a figure prints that draws into self.out, which it replaces."""
+        shutil.rmtree(self.out, ignore_errors=True)
         return self.succeeds(script(f"plot_{name}.py", store, "--out", self.out, *more))
 
     def table(self, name):

@@ -6,15 +6,12 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <opencv2/calib3d.hpp>
-#include <opencv2/imgproc.hpp>
 #include <regex>
 #include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "calib/opencv_conversions.h"
 #include "tests/support/scratch_folder.h"
 
 namespace stereotlm::calib {
@@ -124,7 +121,6 @@ TEST(GridSheet, IsRefusedWithAllProblemsOfItsShape) {
   EXPECT_EQ(refusal_of(wrong), all);
   EXPECT_EQ(test::message_of([&wrong] { grid_sheet_pdf(wrong); }), all);
   EXPECT_EQ(test::message_of([&wrong] { grid_sheet_svg(wrong); }), all);
-  EXPECT_EQ(test::message_of([&wrong] { grid_sheet_image(wrong, 1); }), all);
 }
 
 TEST(GridSheetSvg, HasTheSizeOfThePageAndTheSmallPrint) {
@@ -181,52 +177,6 @@ TEST(GridSheetPdf, HasTheSizeOfThePageAndATitleButNoDate) {
   EXPECT_EQ(box[1], 0);
   EXPECT_NEAR(box[2], 550 / 25.4 * 72, 0.01);
   EXPECT_NEAR(box[3], 410 / 25.4 * 72, 0.01);
-}
-
-TEST(GridSheetImage, ShowsEveryCornerAtItsPlace) {
-  constexpr double kPixelsPerMm = 1.7;
-  const GridShape shape{7, 4, 25};
-  const GridSheet sheet = grid_sheet(shape);
-  const kernels::GrayImage image = grid_sheet_image(shape, kPixelsPerMm);
-  EXPECT_EQ(image.width, static_cast<int>(std::ceil(297 * kPixelsPerMm)));
-  EXPECT_EQ(image.height, static_cast<int>(std::ceil(210 * kPixelsPerMm)));
-
-  std::vector<cv::Point2f> found;
-  ASSERT_TRUE(cv::findChessboardCorners(view(image), {shape.columns, shape.rows}, found));
-  cv::cornerSubPix(view(image), found, {5, 5}, {-1, -1},
-                   {cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 30, 0.001});
-  std::set<std::pair<int, int>> places;  // OpenCV may begin at either end
-  for (const cv::Point2f& corner : found) {
-    const double column = ((corner.x + 0.5) / kPixelsPerMm - sheet.board_left_mm) / shape.square_mm;
-    const double row = ((corner.y + 0.5) / kPixelsPerMm - sheet.board_top_mm) / shape.square_mm;
-    EXPECT_NEAR(column, std::round(column), 0.002);
-    EXPECT_NEAR(row, std::round(row), 0.002);
-    places.insert({static_cast<int>(std::lround(column)), static_cast<int>(std::lround(row))});
-  }
-  EXPECT_EQ(places.size(), 28U);
-  EXPECT_EQ(*places.begin(), std::make_pair(1, 1));
-  EXPECT_EQ(*places.rbegin(), std::make_pair(7, 4));
-}
-
-TEST(GridSheetImage, IsBlackAtTheTopLeftAndWhiteAroundTheBoard) {
-  const GridShape shape{9, 6, 20};
-  const kernels::GrayImage image = grid_sheet_image(shape, 1);
-  const GridSheet sheet = grid_sheet(shape);
-  const int left = static_cast<int>(sheet.board_left_mm);
-  const int top = static_cast<int>(sheet.board_top_mm);
-  EXPECT_EQ(image.at(left + 10, top + 10), 0);
-  EXPECT_EQ(image.at(left + 30, top + 10), 255);
-  EXPECT_EQ(image.at(left + 10, top + 30), 255);
-  EXPECT_EQ(image.at(0, 0), 255);
-  EXPECT_EQ(image.at(left - 2, top + 10), 255);
-  EXPECT_EQ(image.at(left + 10, top - 2), 255);
-}
-
-TEST(GridSheetImage, IsRefusedWithoutPixelsOrWithTooMany) {
-  for (const double pixels_per_mm : {0.0, -1.0, kNan, kInfinity, 110.4}) {
-    const auto call = [pixels_per_mm] { grid_sheet_image({9, 6, 25}, pixels_per_mm); };
-    EXPECT_THAT(test::message_of(call), StartsWith("pixels_per_mm = ")) << pixels_per_mm;
-  }
 }
 
 }  // namespace

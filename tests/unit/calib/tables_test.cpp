@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <opencv2/calib3d.hpp>
+#include <random>
 #include <stdexcept>
 
 #include "calib/opencv_conversions.h"
@@ -12,6 +14,9 @@
 
 namespace stereotlm::calib {
 namespace {
+
+using kernels::make_entry;
+using kernels::RectificationTable;
 
 // The map of one side as OpenCV computes it, in single precision.
 struct Map {
@@ -115,9 +120,62 @@ TEST_F(TablesTest, AreRecognisedByTheirRig) {
   EXPECT_FALSE(are_tables_of(both, other, rectification_, 12));
 }
 
-TEST_F(TablesTest, RefusePicturesOfMoreThan2048Rows) {
-  rig_.height = 2049;
-  EXPECT_THROW(tables(rig_, rectification_, 0), std::invalid_argument);
+TEST(LutFile, IsLittleEndianRowByRow) {
+  kernels::RectificationTable table = {
+      2, 3, {0, kernels::make_entry(1, 2), 0, 0, 0, kernels::make_entry(0, 1)}};
+  const std::string bytes = lut_bytes(table);
+  ASSERT_EQ(bytes.size(), 24U);
+  EXPECT_EQ(bytes.substr(4, 4), std::string("\x01\x00\x02\x80", 4));
+  const kernels::RectificationTable again = parse_lut(bytes, 2, 3);
+  EXPECT_EQ(again.entries, table.entries);
+  EXPECT_EQ(again.width, 2);
+  EXPECT_EQ(again.height, 3);
+}
+
+TEST(LutFile, IsRefusedWithAnotherSizeOrABrokenEntry) {
+  EXPECT_THROW(parse_lut(std::string(23, '\0'), 2, 3), std::runtime_error);
+  EXPECT_THROW(parse_lut(std::string(28, '\0'), 2, 3), std::runtime_error);
+  std::string bytes(24, '\0');
+  bytes[3] = '\x40';  // a bit that is not used
+  EXPECT_THROW(parse_lut(bytes, 2, 3), std::runtime_error);
+  bytes[3] = '\x80';
+  bytes[0] = '\x02';  // column 2 of 2
+  EXPECT_THROW(parse_lut(bytes, 2, 3), std::runtime_error);
+}
+
+// The definition of the header, entry by entry.
+std::vector<int> expected_lines(const RectificationTable& table, int lines) {
+  std::vector<int> expected;
+  for (int top = 0; top + lines <= table.height; ++top) {
+    std::vector<int> named;
+    for (int i = top * table.width; i < (top + lines) * table.width; ++i) {
+      const std::uint32_t entry = table.entries[static_cast<std::size_t>(i)];
+      if (kernels::entry_is_valid(entry)) named.push_back(kernels::entry_row(entry));
+    }
+    const auto [first, last] = std::minmax_element(named.begin(), named.end());
+    expected.push_back(named.empty() ? 0 : *last - *first + 1);
+  }
+  return expected;
+}
+
+TEST(SourceLines, FollowTheirDefinitionForAnyTable) {
+  std::mt19937 random(1);
+  std::uniform_int_distribution<int> place(0, 11);
+  RectificationTable table{12, 12, {}};
+  for (int i = 0; i < 144; ++i) {
+    table.entries.push_back(place(random) < 10 ? 0 : make_entry(place(random), place(random)));
+  }
+  for (int lines = 1; lines <= 12; ++lines)
+    EXPECT_EQ(source_lines(table, lines), expected_lines(table, lines));
+}
+
+TEST(SourceLines, RefuseAWindowOutsideThePictureOrABrokenTable) {
+  RectificationTable table = kernels::identity_table(8, 6);
+  EXPECT_THROW(source_lines(table, 0), std::invalid_argument);
+  EXPECT_EQ(source_lines(table, 6), std::vector<int>(1, 6));
+  EXPECT_THROW(source_lines(table, 7), std::invalid_argument);
+  table.entries.pop_back();
+  EXPECT_THROW(source_lines(table, 1), std::invalid_argument);
 }
 
 }  // namespace

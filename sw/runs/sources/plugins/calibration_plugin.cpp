@@ -1,6 +1,6 @@
 #include <opencv2/core/utility.hpp>
 
-#include "calib/calibration_yaml.h"
+#include "calib/calibration.h"
 #include "sw/runs/sources/calibration_library.h"
 
 namespace {

@@ -6,8 +6,10 @@
 #include <set>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "models/area/area.h"
 #include "platform/config/board_yaml.h"
 
 namespace stereotlm::paper {
@@ -78,6 +80,88 @@ TEST(Claims, OfCostsIncludeAGivenPairWithItsDisparities) {
       EXPECT_EQ(run.sets.front(), "matcher.disparities=107");
     }
   }
+}
+
+// The one constant of the area model (area.h), for the least squared error over the rows of Table 2: images of
+// 640x480, windows of 7x7, tables and filters for both sides.
+TEST(Claims, OfSizesAreWhatTheConstantOfTheAreaModelIsFittedTo) {
+  const area::Device& device = *area::find_device("xc2v6000");
+  const double documented_errors[] = {0.96, 0.02, -0.41};  // percentage points
+  const std::pair<int, double> rows[] = {{80, 21}, {160, 43}, {200, 54}};
+  const std::vector<Case> cases = claims()[1].cases;
+  ASSERT_EQ(cases.size(), 3U);
+  double product = 0;
+  double square = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(cases[i].printed, rows[i].second);
+    EXPECT_EQ(cases[i].runs.front().sets.front(), "matcher.disparities=" + std::to_string(rows[i].first));
+    fpga::CoreConfig core;
+    core.disparities = rows[i].first;
+    const area::Area area = area::total(area::items(core), device);
+    EXPECT_NEAR(area.slices_percent - rows[i].second, documented_errors[i], 0.005);
+    const auto places = static_cast<double>(area.lut_equivalents);
+    product += places * rows[i].second * static_cast<double>(device.slices) / 100;
+    square += places * places;
+  }
+  // As printed, with four decimals.
+  EXPECT_NEAR(product / square, area::kSlicesPerLutEquivalent, 0.00005);
+}
+
+constexpr auto kYes = Verdict::kConfirmed;
+constexpr auto kNo = Verdict::kNotConfirmed;
+constexpr auto kOpen = Verdict::kOpen;
+
+TEST(Verdict, ConfirmsUpToBothEndsOfATolerance) {
+  struct RuleCase {
+    Rule rule;
+    double printed;
+    double modelled;
+    Verdict expected;
+  };
+  const Rule percent = {Relation::kWithinPercent, 0.5, ""};
+  const Rule difference = {Relation::kWithin, 1, "percentage point"};
+  const Rule least = {Relation::kAtLeast, 0.5, "frames/s"};
+  const Rule more = {Relation::kMore, 0, ""};
+  const std::vector<RuleCase> cases = {
+      {percent, 200, 201, kYes},    {percent, 200, 201.001, kNo},  {percent, 200, 199, kYes},
+      {percent, 200, 198.999, kNo}, {difference, 21, 22, kYes},    {difference, 21, 22.001, kNo},
+      {difference, 21, 20, kYes},   {difference, 21, 19.999, kNo}, {least, 20, 19.5, kYes},
+      {least, 20, 19.499, kNo},     {least, 20, 2000, kYes},       {more, 20, 20.001, kYes},
+      {more, 20, 20, kNo},          {more, 20, 19.98, kNo}};
+  for (const RuleCase& one : cases) {
+    Claim claim;
+    claim.rule = one.rule;
+    EXPECT_EQ(verdict_of(claim, one.printed, one.modelled), one.expected)
+        << text_of(one.rule) << ": " << one.modelled;
+  }
+}
+
+TEST(Verdict, ConfirmsANeedOfBanksByAProofOnly) {
+  Claim claim = {"", "", "", Quantity::kBanksProved, {Relation::kAtLeast, 0, ""}, 0, {}};
+  EXPECT_EQ(verdict_of(claim, 8, 7), kNo);
+  EXPECT_EQ(verdict_of(claim, 8, 8), kYes);
+  claim.quantity = Quantity::kBanksFound;
+  EXPECT_EQ(verdict_of(claim, 8, 7), kNo);
+  EXPECT_EQ(verdict_of(claim, 8, 8), kOpen);
+}
+
+TEST(Verdict, OfAClaimJoinsThoseOfItsCases) {
+  EXPECT_EQ(verdict_of_all({kYes, kYes}), kYes);
+  EXPECT_EQ(verdict_of_all({kNo, kNo}), kNo);
+  EXPECT_EQ(verdict_of_all({kOpen}), kOpen);
+  EXPECT_EQ(verdict_of_all({}), kOpen);
+  EXPECT_EQ(verdict_of_all({kYes, kNo}), Verdict::kInPart);
+  EXPECT_EQ(verdict_of_all({kOpen, kYes}), Verdict::kInPart);
+  EXPECT_EQ(verdict_of_all({kOpen, kNo}), kNo);
+}
+
+TEST(Verdict, TextOfARuleNamesItsTolerance) {
+  EXPECT_EQ(text_of(Rule{Relation::kMore, 0, ""}), "more than the printed value");
+  EXPECT_EQ(text_of(Rule{Relation::kWithinPercent, 0.35, ""}), "within 0.35 %");
+  EXPECT_EQ(text_of(Rule{Relation::kWithin, 1, "percentage point"}), "within 1 percentage point");
+  EXPECT_EQ(text_of(Rule{Relation::kAtLeast, 0.5, "frames/s"}),
+            "at least the printed value less 0.5 frames/s");
+  EXPECT_EQ(text_of(Rule{Relation::kAtLeast, 0, ""}), "at least the printed value");
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <system_error>
 
+#include "sw/process/interrupt.h"
 #include "tests/support/scratch_folder.h"
 
 namespace stereotlm::process {
@@ -33,6 +34,16 @@ TEST(Command, EndsAtAClosedPipeAlthoughThisProcessIgnoresTheSignal) {
   const auto before = signal(SIGPIPE, SIG_IGN);
   EXPECT_EQ(run_command({"sh", "-c", "kill -PIPE $$"}).status, 128 + SIGPIPE);
   signal(SIGPIPE, before);
+}
+
+TEST(Command, IsEndedByAnInterruptIfThatIsAskedFor) {
+  const auto run_interrupted = [](bool ends) {
+    catch_interrupts();
+    raise(SIGINT);
+    std::exit(run_command({"sleep", ends ? "60" : "0.1"}, {}, ends).status);
+  };
+  EXPECT_EXIT(run_interrupted(true), testing::ExitedWithCode(128 + SIGTERM), "");
+  EXPECT_EXIT(run_interrupted(false), testing::ExitedWithCode(0), "");
 }
 
 TEST(Command, HasAGroupOfItsOwnAndNoInput) {

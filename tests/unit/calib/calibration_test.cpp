@@ -1,4 +1,4 @@
-#include "calib/calibration_yaml.h"
+#include "calib/calibration.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,9 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "calib/calibration_reader.h"
 #include "calib/opencv_conversions.h"
-#include "calib/storage_yaml.h"
 #include "calib/synthetic_rig.h"
 #include "tests/support/scratch_folder.h"
 
@@ -93,16 +91,14 @@ TEST(CalibrationYaml, IsRefusedIfItIsNoStorage) {
   for (const auto& [text, problem] : std::vector<std::pair<std::string, std::string>>{
            {"", "line 1: no OpenCV FileStorage: must begin with %YAML:1.0"},
            {"P5\n2 2\n255\n0000", "line 1: no OpenCV FileStorage: must begin with %YAML:1.0"},
-           {begin, "line 3: no map of keys and values" + no_storage},
-           {begin + "- 1\n", "line 3: no map of keys and values" + no_storage},
+           {begin, "line 3: no map: must be a map of keys and values"},
+           {begin + "- 1\n", "line 3: no map: must be a map of keys and values"},
            {begin + "other: 1\n", "image_width: missing: a calibration has this key"},
            {begin + "a: 1\nM1: [1, 2\n", "line 5: end of sequence flow not found" + no_storage},
            {begin + "M1:\n   a: 1\n   : : x\n", "image_width: missing: a calibration has this key"},
            {begin + "a: 1\nb: 2\na: 3\n", "line 5: a: must be there once"},
-           {begin + "a: &x 1\n", "line 3: an anchor or alias" + no_storage},
-           {begin + "[a, b]: 1\n", "line 3: a key that is a map or list" + no_storage},
-           {begin + "a: 1\n---\nb: 2\n", "line 4: a second document: must be the only one"},
-           {begin + "a: 1\nb: \x04\n", "line 4: control character 0x04" + no_storage},
+           {begin + "[a, b]: 1\n", "line 3: a key: must be a text"},
+           {begin + "a: 1\n---\nb: 2\n", "line 1: 2 documents: must be one"},
        }) {
     EXPECT_EQ(refusal(text), problem) << text;
   }
@@ -113,12 +109,11 @@ TEST(CalibrationYaml, IsRefusedInBoundedTimeIfItIsHugeOrDeep) {
   for (const std::string part : {"[", "{a: ", "- ", "\n- ", "? ", "a: ", "[a, ", "\"", "!", "!!a ", "&a ",
                                  "*a ", "#", "\n ", "|\n ", ",", ": ", "[1,"}) {
     std::string text = begin;
-    while (text.size() + part.size() <= kMostStorageBytes) text += part;
+    while (text.size() + part.size() <= kMostCalibrationBytes) text += part;
     EXPECT_THROW(parse_calibration(text), std::runtime_error) << part;
   }
-  const std::string deep = "line 3: nested too deeply: 8 maps and lists in each other at most";
-  EXPECT_EQ(refusal(begin + std::string(50'000, '[')), deep);
-  EXPECT_EQ(refusal(begin + "1 " + std::string(kMostStorageBytes, '#')),
+  EXPECT_THAT(refusal(begin + std::string(50'000, '[')), HasSubstr("must be OpenCV FileStorage YAML"));
+  EXPECT_EQ(refusal(begin + "1 " + std::string(kMostCalibrationBytes, '#')),
             "1000019 bytes: must be 1000000 at most");
 }
 
@@ -145,7 +140,7 @@ TEST(CalibrationYaml, IsRefusedWithTheKeyThatIsDamaged) {
            Damage{"rows: 3\n   cols: 1\n   dt: d", "rows: 3\n   cols: 1\n   dt: f",
                   "T: 3x1 of f: must be 3x1 of d, doubles"},
            Damage{"0., 0., 1. ]", "0., 1. ]", "M1.data: 8 numbers: must be 9"},
-           Damage{"0., 0., 1. ]", "0., 0., one ]", "line 14: M1.data: no number: must hold numbers"},
+           Damage{"0., 0., 1. ]", "0., 0., one ]", "line 13: M1.data: no numbers: must hold numbers"},
            Damage{"square_mm: ", "square_mm: mm", "grid.square_mm: no number"},
        })
     EXPECT_THAT(refusal(replaced(text, damage.from, damage.to)), HasSubstr(damage.problem));
@@ -166,6 +161,38 @@ TEST(CalibrationYaml, IsRefusedWithImpossibleMatrices) {
   expect_refused("T.data: not finite", [](Calibration& made) {
     made.rig.translation.x() = std::numeric_limits<double>::infinity();
   });
+}
+
+TEST(DisparityOffset, CentresTheGridsDisparities) {
+  const DisparityRange range = {100.14, 203.4};
+  EXPECT_EQ(range.needed(), 105);
+  EXPECT_EQ(disparity_offset_for(range, 105), 100);
+  EXPECT_EQ(disparity_offset_for(range, 106), 100);
+  EXPECT_EQ(disparity_offset_for(range, 107), 99);
+  EXPECT_EQ(disparity_offset_for(range, 112), 97);
+}
+
+TEST(DisparityOffset, IsNotBelowZeroUnlessItMustBe) {
+  EXPECT_EQ(disparity_offset_for({3.5, 20}, 80), 0);
+  EXPECT_EQ(disparity_offset_for({-3.5, 20}, 80), -4);
+}
+
+TEST(DisparityOffset, NamesTheDisparitiesNeededIfTheyDoNotFit) {
+  EXPECT_EQ(test::message_of([] {
+              disparity_offset_for({100.14, 203.4}, 104);
+            }),
+            "--disparities = 104: must be 105 or more for the grid's own, 100..204; or --disparity-offset N, "
+            "for a part of them");
+}
+
+TEST(RowErrors, AverageAbsoluteValues) {
+  RowErrors errors;
+  EXPECT_EQ(errors.result().corners, 0U);
+  errors.add({3, 10}, {9, 10.5});
+  errors.add({3, 10}, {9, 8.5});
+  EXPECT_DOUBLE_EQ(errors.result().mean_px, 1);
+  EXPECT_DOUBLE_EQ(errors.result().max_px, 1.5);
+  EXPECT_EQ(errors.result().corners, 2U);
 }
 
 }  // namespace

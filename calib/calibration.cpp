@@ -1,92 +1,74 @@
-#include "calib/calibration_reader.h"
+#include "calib/calibration.h"
 
 #include <fmt/format.h>
+#include <yaml-cpp/yaml.h>
 
 #include <Eigen/LU>
-#include <charconv>
+#include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
+#include <set>
 #include <stdexcept>
-#include <system_error>
+#include <string>
 #include <utility>
-
-#include "calib/storage_yaml.h"
 
 namespace stereotlm::calib {
 namespace {
 
-using Kind = StorageValue::Kind;
+constexpr const char* kBegin = "%YAML:1.0";
 
-// The value as a number. Nullopt if its text is in quotes, or if a part of the text does not belong to a
-// number.
-template <typename Number>
-std::optional<Number> number_of(const StorageValue& value) {
-  Number number = 0;
-  const char* const end = value.text.data() + value.text.size();
-  const auto [stop, error] = std::from_chars(value.text.data(), end, number);
-  if (value.kind != Kind::kScalar || value.quoted || error != std::errc() || stop != end) return std::nullopt;
-  return number;
-}
+int line_of(const YAML::Mark& mark) { return mark.is_null() ? 1 : mark.line + 1; }
 
-// Accepts the words that OpenCV writes for numbers that are not finite.
-std::optional<double> double_of(const StorageValue& value) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  if (value.text == ".Inf") return kInfinity;
-  if (value.text == "-.Inf") return -kInfinity;
-  if (value.text == ".Nan") return std::numeric_limits<double>::quiet_NaN();
-  return number_of<double>(value);
+[[noreturn]] void refuse_line(int line, const std::string& found, const std::string& rule) {
+  throw std::runtime_error(fmt::format("line {}: {}: {}", line, found, rule));
 }
 
 // Reads a map of the file. `path` precedes the keys in messages.
 class Reader {
  public:
-  explicit Reader(const StorageValue& map, std::string path = "") : map_(map), path_(std::move(path)) {}
-
-  const StorageValue& at(const std::string& key) const {
-    const StorageValue* const found = map_.find(key);
-    if (found == nullptr) {
-      throw std::runtime_error(fmt::format("{}{}: missing: a calibration has this key", path_, key));
+  explicit Reader(YAML::Node map, std::string path = "") : map_(std::move(map)), path_(std::move(path)) {
+    if (!map_.IsMap())
+      refuse_line(line_of(map_.Mark()), path_ + "no map", "must be a map of keys and values");
+    std::set<std::string> keys;
+    for (const auto& entry : map_) {
+      const YAML::Node& key = entry.first;
+      if (!key.IsScalar()) refuse_line(line_of(key.Mark()), path_ + "a key", "must be a text");
+      if (!keys.insert(key.Scalar()).second)
+        refuse_line(line_of(key.Mark()), path_ + key.Scalar(), "must be there once");
     }
-    return *found;
   }
 
-  bool has(const std::string& key) const { return map_.find(key) != nullptr; }
-
-  Reader map(const std::string& key) const {
-    const StorageValue& found = at(key);
-    if (found.kind != Kind::kMap) refuse(key, "no map", "must be a map");
-    return Reader(found, path_ + key + ".");
+  YAML::Node at(const std::string& key) const {
+    const YAML::Node found = map_[key];
+    if (!found)
+      throw std::runtime_error(fmt::format("{}{}: missing: a calibration has this key", path_, key));
+    return found;
   }
 
-  const std::vector<StorageValue>& list(const std::string& key) const {
-    const StorageValue& found = at(key);
-    if (found.kind != Kind::kList) refuse(key, "no list", "must be a list");
-    return found.items;
-  }
+  bool has(const std::string& key) const { return map_[key].IsDefined(); }
+
+  Reader map(const std::string& key) const { return Reader(at(key), path_ + key + "."); }
 
   int integer(const std::string& key, int least, int most) const {
-    const auto value = number_of<int>(at(key));
     const std::string rule = fmt::format("must be an integer, {}..{}", least, most);
-    if (!value) refuse(key, "no integer", rule);
-    if (*value < least || *value > most) refuse(key, std::to_string(*value), rule);
-    return *value;
+    const int value = as<int>(key, "no integer", rule);
+    if (value < least || value > most) refuse(key, std::to_string(value), rule);
+    return value;
   }
   std::size_t count(const std::string& key) const {
     return static_cast<std::size_t>(integer(key, 0, std::numeric_limits<int>::max()));
   }
 
   double number(const std::string& key) const {
-    const auto value = double_of(at(key));
-    if (!value) refuse(key, "no number", "must be a number");
-    if (!std::isfinite(*value)) refuse(key, fmt::format("{}", *value), "must be finite");
-    return *value;
+    const auto value = as<double>(key, "no number", "must be a number");
+    if (!std::isfinite(value)) refuse(key, fmt::format("{}", value), "must be finite");
+    return value;
   }
 
   std::string text(const std::string& key) const {
-    const StorageValue& found = at(key);
-    if (found.kind != Kind::kScalar) refuse(key, "no text", "must be a text");
-    return found.text;
+    const YAML::Node found = at(key);
+    if (!found.IsScalar()) refuse(key, "no text", "must be a text");
+    return found.Scalar();
   }
 
   template <typename Matrix>
@@ -101,15 +83,13 @@ class Reader {
       refuse(key, fmt::format("{}x{} of {}", found_rows, found_columns, its.text("dt")),
              fmt::format("must be {}x{} of d, doubles", rows, columns));
     }
-    const std::vector<StorageValue>& data = its.list("data");
+    const auto data = its.as<std::vector<double>>("data", "no numbers", "must hold numbers");
     if (data.size() != static_cast<std::size_t>(rows * columns))
       its.refuse("data", fmt::format("{} numbers", data.size()), fmt::format("must be {}", rows * columns));
     for (int i = 0; i < rows * columns; ++i) {
-      const StorageValue& item = data[static_cast<std::size_t>(i)];
-      const auto value = double_of(item);
-      if (!value) its.refuse_at(item.line, "data", "no number", "must hold numbers");
-      if (!std::isfinite(*value)) its.refuse_at(item.line, "data", "not finite", "must hold finite numbers");
-      result(i / columns, i % columns) = *value;
+      const double value = data[static_cast<std::size_t>(i)];
+      if (!std::isfinite(value)) its.refuse("data", "not finite", "must hold finite numbers");
+      result(i / columns, i % columns) = value;
     }
     return result;
   }
@@ -144,16 +124,20 @@ class Reader {
   }
 
   [[noreturn]] void refuse(const std::string& key, const std::string& found, const std::string& rule) const {
-    refuse_at(at(key).line, key, found, rule);
+    refuse_line(line_of(at(key).Mark()), fmt::format("{}{}: {}", path_, key, found), rule);
   }
 
  private:
-  [[noreturn]] void refuse_at(int line, const std::string& key, const std::string& found,
-                              const std::string& rule) const {
-    throw std::runtime_error(fmt::format("line {}: {}{}: {}: {}", line, path_, key, found, rule));
+  template <typename Value>
+  Value as(const std::string& key, const std::string& found, const std::string& rule) const {
+    try {
+      return at(key).as<Value>();
+    } catch (const YAML::BadConversion& /*error*/) {
+      refuse(key, found, rule);
+    }
   }
 
-  const StorageValue& map_;
+  YAML::Node map_;
   std::string path_;
 };
 
@@ -196,7 +180,9 @@ Quality quality_of(const Reader& file) {
 
 std::vector<Source> sources_of(const Reader& file) {
   std::vector<Source> sources;
-  for (const StorageValue& item : file.list("sources")) {
+  const YAML::Node list = file.at("sources");
+  if (!list.IsSequence()) file.refuse("sources", "no list", "must be a list");
+  for (const YAML::Node& item : list) {
     const Reader source(item, "sources.");
     sources.push_back({source.text("left"), source.text("right"), source.count("corners_used")});
   }
@@ -227,9 +213,57 @@ Calibration calibration_of(const Reader& file) {
 
 }  // namespace
 
+GridPair rectified(const Rig& rig, const Rectification& rectification, const GridPair& pair) {
+  GridPair result;
+  for (const Eigen::Vector2d& corner : pair.left) {
+    result.left.push_back(rectified_pixel(rig.left, rectification.r1, rectification.p1, corner));
+  }
+  for (const Eigen::Vector2d& corner : pair.right) {
+    result.right.push_back(rectified_pixel(rig.right, rectification.r2, rectification.p2, corner));
+  }
+  return result;
+}
+
+void RowErrors::add(const Eigen::Vector2d& left, const Eigen::Vector2d& right) {
+  const double error = std::abs(left.y() - right.y());
+  sum_ += error;
+  max_ = std::max(max_, error);
+  ++count_;
+}
+
+RowError RowErrors::result() const {
+  return {count_ > 0 ? sum_ / static_cast<double>(count_) : 0, max_, count_};
+}
+
+int DisparityRange::needed() const {
+  return static_cast<int>(std::ceil(max)) - static_cast<int>(std::floor(min)) + 1;
+}
+
+int disparity_offset_for(const DisparityRange& range, int disparities) {
+  const int least = static_cast<int>(std::floor(range.min));
+  const int room = disparities - range.needed();
+  if (room < 0) {
+    throw std::invalid_argument("--disparities = " + std::to_string(disparities) + ": must be " +
+                                std::to_string(range.needed()) + " or more for the grid's own, " +
+                                std::to_string(least) + ".." + std::to_string(least + range.needed() - 1) +
+                                "; or --disparity-offset N, for a part of them");
+  }
+  return std::min(least, std::max(0, least - room / 2));
+}
+
 Calibration parse_calibration(const std::string& text) {
-  const StorageValue root = parse_storage(text);
-  return calibration_of(Reader(root));
+  if (text.rfind(kBegin, 0) != 0)
+    refuse_line(1, "no OpenCV FileStorage", fmt::format("must begin with {}", kBegin));
+  if (text.size() > kMostCalibrationBytes)
+    throw std::runtime_error(fmt::format("{} bytes: must be {} at most", text.size(), kMostCalibrationBytes));
+  try {
+    // The first line is no directive of YAML.
+    const std::vector<YAML::Node> documents = YAML::LoadAll('#' + text);
+    if (documents.size() != 1) refuse_line(1, fmt::format("{} documents", documents.size()), "must be one");
+    return calibration_of(Reader(documents.front()));
+  } catch (const YAML::Exception& error) {
+    refuse_line(line_of(error.mark), error.msg, "must be OpenCV FileStorage YAML");
+  }
 }
 
 }  // namespace stereotlm::calib
