@@ -68,8 +68,9 @@ export function priceText(step, board) {
   if (parts.length === 0) parts.push('nothing new');
   const idle = step.idle_banks ?? [];
   return parts.join(', ') +
-      (idle.length ? `: it uses ${idle.join(' and ')}, which ${idle.length === 1 ? 'holds' : 'hold'} nothing` :
-                     '');
+      (idle.length ?
+           `: it uses ${idle.join(' and ')}, which ${idle.length === 1 ? 'holds' : 'hold'} nothing` :
+           '');
 }
 
 // The keys that move the bound of a resource around the board.

@@ -1,7 +1,7 @@
 // What a run shows, in plain words: what limits, who waits for whom, where, what to change first, its price.
 import {adviceOf, limitReached, priceText, stepText} from './advice.js';
+import {linesOf, rowsText, tilesOf} from './data.js';
 import {capital, count, fixed, gainText, kRates, percent, rate, rateWith, sum, whole} from './format.js';
-import {linesOf, rowsText, tilesOf} from './recording.js';
 
 const kLeastShare = 0.0005;  // of all cycles that a port waits, to be named
 const kFewTiles = 0.35;      // a share of the tiles that is named if it holds half of the waits
@@ -104,8 +104,8 @@ function whatLimits(run) {
       by;
   const limiter = run.knobs?.board.limited_by;
   return [
-    limiter ? `Limited by ${limiter}.` : `Not known with --quick. The lowest bound: ${because}.`, `${reached}.`,
-    computer && droppedText(run),
+    limiter ? `Limited by ${limiter}.` : `Not known with --quick. The lowest bound: ${because}.`,
+    `${reached}.`, computer && droppedText(run),
     !limiter && !computer && share < 0.99 && run.stats.blame.length === 0 &&
         'No port waits: the matcher waits for the queue of results, which the bound leaves out.',
     lostPixels(run) > 0 &&

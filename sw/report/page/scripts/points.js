@@ -1,6 +1,6 @@
 // The points of a database: their columns, which of them are selected, and the front of Pareto.
+import {Table} from './data.js';
 import {kRates, value} from './format.js';
-import {Table} from './table.js';
 
 export const kRateColumns = kRates.map(([name]) => `frames_per_second.${name}`);
 
@@ -74,6 +74,9 @@ export class Points {
   get count() {
     return this.selected.reduce((sum, is) => sum + is, 0);
   }
+  selectedRows() {
+    return [...this.selected.keys()].filter(row => this.selected[row]);
+  }
 
   hasUncertainty(name) {
     return this.table.has(`${name}_uncertainty`);
@@ -133,8 +136,7 @@ export class Points {
     const isOpen = this.hasUncertainty(x.name);
     const [along, across] = isOpen ? [ys, xs] : [xs, ys];
     const open = this.uncertainty((isOpen ? x : y).name);
-    const rows =
-        [...this.selected.keys()].filter(row => this.selected[row] && !Number.isNaN(xs[row] + ys[row]));
+    const rows = this.selectedRows().filter(row => !Number.isNaN(xs[row] + ys[row]));
     rows.sort((a, b) => along[a] - along[b] || across[a] - across[b]);
     const front = [];
     let last = rows[0];  // the next one has to beat it

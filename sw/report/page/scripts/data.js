@@ -1,0 +1,123 @@
+// The data, unpacked when it is asked for: the packed columns of README.md, and what a recording holds.
+import {sum} from './format.js';
+
+const kLetters = 'ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/';
+const kDigits = new Uint8Array(128);
+[...kLetters].forEach((letter, digit) => {
+  kDigits[letter.charCodeAt(0)] = digit;
+});
+
+// The values of a column, one for each row.
+export function unpack(column, rows) {
+  if (column.list) return column.list;
+  if ('constant' in column) return new Array(rows).fill(column.constant);
+  if (column.float64) {
+    const bytes = Uint8Array.from(atob(column.float64), letter => letter.charCodeAt(0));
+    const view = new DataView(bytes.buffer);
+    return Array.from({length: rows}, (_, row) => view.getFloat64(8 * row, true));
+  }
+  const letters = column.codes.length / rows;
+  const values = new Array(rows);
+  for (let row = 0, place = 0; row < rows; ++row) {
+    let code = 0;
+    for (let letter = 0; letter < letters; ++letter)
+      code = 64 * code + kDigits[column.codes.charCodeAt(place++)];
+    values[row] = column.values[code];
+  }
+  return values;
+}
+
+export class Table {
+  constructor(columns, rows) {
+    this.rows = rows;
+    this.packed = new Map(columns.map(column => [column.name, column]));
+    this.unpacked = new Map();
+  }
+  get names() {
+    return [...this.packed.keys()];
+  }
+  has(name) {
+    return this.packed.has(name);
+  }
+  isConstant(name) {
+    return 'constant' in (this.packed.get(name) ?? {constant: null});
+  }
+  // A column that follows from others.
+  add(name, values) {
+    this.packed.set(name, {name});
+    this.unpacked.set(name, values);
+  }
+  column(name) {
+    if (!this.unpacked.has(name)) this.unpacked.set(name, unpack(this.packed.get(name), this.rows));
+    return this.unpacked.get(name);
+  }
+  // These columns of these rows, as addChart() takes its numbers.
+  numbers(names = this.names, rows = [...Array(this.rows).keys()]) {
+    const columns = names.map(name => this.column(name));
+    return [names, rows.map(row => columns.map(values => values[row]))];
+  }
+}
+
+// The texts of the part `boards`: text(row).
+export class Boards {
+  constructor({shape, shapes}, rows) {
+    this.shape = unpack(shape, rows);
+    const sizes = shapes.map(() => 0);
+    this.place = this.shape.map(each => sizes[each]++);
+    this.words = shapes.map(
+        (words, each) => words.map(word => typeof word === 'string' ? word : unpack(word, sizes[each])));
+  }
+  text(row) {
+    const words = this.words[this.shape[row]];
+    return words.map(word => typeof word === 'string' ? word : word[this.place[row]]).join('');
+  }
+}
+
+const known = new WeakMap();
+
+// The lines of the picture in a recording, from top to bottom, each of `height` rows, as sums over all frames:
+// {frames, lines, height, cycles, fill, accesses: [{bank, by, values, fill}], stalls: [{port, bank, by, values,
+// fill, total}]}. `fill` is before the first line. null without a recording.
+export function linesOf({recording}) {
+  if (!recording) return null;
+  if (known.has(recording)) return known.get(recording);
+  const {frames, rows: {lines, height, cycles, accesses}, stalls} = recording;
+  const split = column => {
+    const [fill, ...values] = unpack(column, lines + 1);
+    return {fill, values, total: fill + sum(values)};
+  };
+  const all = split(cycles);
+  known.set(recording, {
+    frames,
+    lines,
+    height,
+    cycles: all.values,
+    fill: all.fill,
+    accesses: accesses.map(({bank, by, accesses: column}) => ({bank, by, ...split(column)})),
+    stalls: stalls.map(({port, bank, by, rows}) => ({port, bank, by, ...split(rows)}))
+                .sort((a, b) => b.total - a.total)
+  });
+  return known.get(recording);
+}
+
+// The last row of a line, and the rows of lines `from` to `to` - 1, as text.
+export const lastRow = ({height}, line, imageHeight) => Math.min((line + 1) * height, imageHeight) - 1;
+export function rowsText(recorded, from, to, imageHeight) {
+  const [first, last] = [from * recorded.height, lastRow(recorded, to - 1, imageHeight)];
+  return last === first ? `row ${last}` : `rows ${first} to ${last}`;
+}
+
+// Maps of the waits over the picture, the most first: {name, values, columns, rows, width, height}. The
+// latter two are the size of a tile in pixels.
+export function tilesOf({recording}) {
+  if (!recording) return [];
+  const {tiles} = recording;
+  const maps = recording.stalls.map(({port, bank, by, tiles: column}) => {
+    const values = unpack(column, tiles.columns * tiles.rows);
+    return {...tiles, name: `${port} on ${bank} for ${by}`, values, total: sum(values)};
+  });
+  const some = maps.filter(({total}) => total > 0).sort((a, b) => b.total - a.total);
+  if (some.length < 2) return some;
+  const all = some[0].values.map((_, tile) => sum(some.map(({values}) => values[tile])));
+  return [{...tiles, name: 'all waits', values: all, total: sum(all)}, ...some];
+}
