@@ -56,6 +56,11 @@ export class Table {
     const columns = names.map(name => this.column(name));
     return [names, rows.map(row => columns.map(values => values[row]))];
   }
+  // Each row as an object.
+  objects() {
+    const [names, rows] = this.numbers();
+    return rows.map(row => Object.fromEntries(names.map((name, i) => [name, row[i]])));
+  }
 }
 
 // The texts of the part `boards`: text(row).

@@ -7,14 +7,8 @@ import {kRateColumns} from './points.js';
 import {css, heat, nthColour, styleColour} from './theme.js';
 import {linkMarks, mark} from './tooltip.js';
 
-export const kMostColours = 8;  // names with a colour of their own
-const kMargins = {
-  left: 64,
-  right: 14,
-  top: 26,
-  bottom: 44
-};
-const kReach = 14;  // pixels from the pointer to the point that it means
+const kMostColours = 8;  // names with a colour of their own
+const kReach = 14;       // pixels from the pointer to the point that it means
 
 // The scale of a column, and the place of each point on it, NaN without a value. A column of words, or of at most
 // `mostWords` numbers, has its different values at equal distances. `room`: of the range, on either side.
@@ -86,7 +80,7 @@ export function addScatter(page, points, choose) {
   const draw = (host, width) => {
     const total = Math.min(640, Math.max(320, width * 0.62));
     const {plot, width: inner, height, context, clear} =
-        layeredDrawing(host, width, total, kMargins, 'Points');
+        layeredDrawing(host, width, total, {left: 64, right: 14, top: 26, bottom: 44}, 'Points');
     const [across, up] = [[x, [0, inner]], [y, [height, 0]]].map(
         ([axis, range]) => placesOf(points, axis.name, range, {isLog: axis.log, room: 0.03}));
     const spot = row => [across.at[row], up.at[row]];
@@ -206,11 +200,9 @@ export function addScatter(page, points, choose) {
 const kMostAxes = 9;
 const kParallelHeight = 330;
 const kMostWords = 12;  // an axis of a column with at most so many values has each of them
-// Lines of the points that are not selected and of those that are, also while a brush moves.
-const kMostLines = {
-  moving: [100, 400],
-  final: [800, 4000]
-};
+// Lines of the points that are not selected and of those that are.
+const kMostLines = [800, 4000];
+const kMostLinesWhileBrushing = [100, 400];
 
 // Rows in an order in which each first part is a fair sample.
 function shuffledRows(size) {
@@ -251,7 +243,7 @@ export function addParallel(page, points) {
     };
     repaint = final => {
       clear();
-      const [others, selected] = final ? kMostLines.final : kMostLines.moving;
+      const [others, selected] = final ? kMostLines : kMostLinesWhileBrushing;
       lines(styleColour('--faint'), 0.25, others, 0);
       lines(
           styleColour('--blue'), Math.max(0.06, Math.min(0.7, 60 / Math.max(1, points.count))), selected, 1);

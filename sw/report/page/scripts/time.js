@@ -87,25 +87,8 @@ function coreWaits(run, span, early) {
   };
 }
 
-// The events of a recording: for each one {kind, what, frame, cameraFrame, start, end, lost, why, lane}.
-function eventsOf(table) {
-  const [kind, what, frame, cameraFrame, start, end, lost, why] = [
-    'kind', 'class', 'frame', 'camera_frame', 'start_ps', 'end_ps', 'dropped_pixels', 'why'
-  ].map(name => table.column(name));
-  return kind.map((each, i) => ({
-                    kind: each,
-                    what: what[i],
-                    frame: frame[i],
-                    cameraFrame: cameraFrame[i],
-                    start: start[i],
-                    end: end[i],
-                    lost: lost[i],
-                    why: why[i],
-                    lane: laneOf(each, what[i])
-                  }));
-}
-
-function titleOf({kind, what, frame, cameraFrame}) {
+// event: {kind, class, frame, camera_frame, start_ps, end_ps, dropped_pixels, why, lane}.
+function titleOf({kind, class: what, frame, camera_frame: cameraFrame}) {
   if (kind === 'wait') return `${kWaits[what]}${frame >= 0 ? ` (frame ${frame})` : ''}`;
   if (kind === 'drop') return `Camera frame ${cameraFrame} of the ${what} camera is dropped`;
   const part = {strobe: ': start', pipeline: ': last registers'}[what] ?? '';
@@ -114,7 +97,7 @@ function titleOf({kind, what, frame, cameraFrame}) {
 }
 
 function linesOfEvent(event) {
-  const {kind, what, start, end, lost, why} = event;
+  const {kind, class: what, start_ps: start, end_ps: end, dropped_pixels: lost, why} = event;
   return [
     titleOf(event),
     end > start ? `${fixed(start / kPsOfMs, 3)} to ${inMs(end, 3)}: ${inMs(end - start, 3)}` :
@@ -126,7 +109,7 @@ function linesOfEvent(event) {
 
 // The mark of an event between two places of its lane, which begins at y, and the number of its frame.
 function shapesOf(event, x0, x1, y) {
-  const {kind, frame, lost} = event;
+  const {kind, frame, dropped_pixels: lost} = event;
   const bar = (above, height, least, attributes) =>
       s('rect', {x: x0, y: y + above, width: Math.max(least, x1 - x0), height, ...attributes});
   const shape = kind === 'wait' ? bar(13, 8, 1, {class: 'waiting'}) :
@@ -156,12 +139,12 @@ export function addTimeLine(page, run) {
   }
   const {events: packed, overview} = run.recording;
   const table = new Table(packed.columns, packed.rows);
-  const events = eventsOf(table);
+  const events = table.objects().map(event => ({...event, lane: laneOf(event.kind, event.class)}));
   const lanes = kLanes.filter(lane => events.some(event => event.lane === lane));
   const last = overview.end_ps;
-  const begin = Math.min(...events.filter(({kind}) => kind === 'capture').map(({start}) => start), last);
-  const early =
-      Math.max(...events.filter(({frame}) => frame >= 0 && frame < kFirstFrames).map(({end}) => end), 1);
+  const begin = Math.min(...events.filter(({kind}) => kind === 'capture').map(event => event.start_ps), last);
+  const early = Math.max(
+      ...events.filter(({frame}) => frame >= 0 && frame < kFirstFrames).map(event => event.end_ps), 1);
 
   const drawOverview = (above, inner) => {
     const x = numeric([0, last], [0, inner]);
@@ -234,16 +217,16 @@ export function addTimeLine(page, run) {
       }
       known = to;
     }
-    const inWindow = events.filter(({start, end}) => end >= zoom.from && start <= zoom.to);
+    const inWindow = events.filter(({start_ps: start, end_ps: end}) => end >= zoom.from && start <= zoom.to);
     // Of many events those are left out that would lie on others.
     const gap = inWindow.length > kMostMarks ? 1 : -Infinity;
     const drawnTo = new Map();  // of a lane and kind, in pixels
     for (const event of inWindow) {
       const {kind, lane} = event;
-      const [x0, x1] = [atPs(event.start), atPs(event.end)];
+      const [x0, x1] = [atPs(event.start_ps), atPs(event.end_ps)];
       if (x1 < (drawnTo.get(lane + kind) ?? -Infinity) + (kind === 'drop' ? 8 * gap : gap)) continue;
       drawnTo.set(lane + kind, x1);
-      if (kind === 'wait' && event.end === event.start) continue;
+      if (kind === 'wait' && event.end_ps === event.start_ps) continue;
       plot.append(...shapesOf(event, x0, x1, lanes.indexOf(lane) * kLine));
     }
   };
@@ -252,10 +235,10 @@ export function addTimeLine(page, run) {
       [['◀', 'Earlier'], ['▶', 'Later'], 'All'], () => chart.redraw());
   const works = run.stats.cycles / settingOf(run, 'fpga.clock_mhz') * 1e6 / last;
   const drops = run.stats.cameras[0].dropped_frames;
-  const firstFrame = Math.min(...events.filter(({kind}) => kind === 'frame').map(({start}) => start));
-  const before =
-      events.filter(({kind, what, end}) => kind === 'wait' && what === 'core' && end <= firstFrame);
-  const waits = coreWaits(run, last, sum(before.map(({start, end}) => end - start)));
+  const firstFrame = Math.min(...events.filter(({kind}) => kind === 'frame').map(event => event.start_ps));
+  const before = events.filter(
+      ({kind, class: what, end_ps: end}) => kind === 'wait' && what === 'core' && end <= firstFrame);
+  const waits = coreWaits(run, last, sum(before.map(event => event.end_ps - event.start_ps)));
   const chart = addChart(page, {
     id: 'time',
     wide: true,
@@ -278,7 +261,7 @@ export function addTimeLine(page, run) {
             .filter(([name]) => events.some(({kind}) => kind === name))
             .map(([, [colour, name]]) => [name, `var(${colour})`]),
         ['waits', 'var(--faint)'],
-        ...events.some(({lost}) => lost > 0) ? [['loses pixels', 'var(--bad)']] : []
+        ...events.some(event => event.dropped_pixels > 0) ? [['loses pixels', 'var(--bad)']] : []
       ])
     ],
     numbers: () => table.numbers()

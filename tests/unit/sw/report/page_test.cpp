@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <nlohmann/json.hpp>
 #include <random>
 #include <string>
@@ -11,6 +10,7 @@
 #include "sw/files/base64.h"
 #include "sw/report/html_page.h"
 #include "sw/report/page_data/packed_column.h"
+#include "tests/unit/sw/report/unpacked.h"
 
 namespace stereotlm::report {
 namespace {
@@ -63,39 +63,6 @@ TEST(Base64, IsThatOfRfc4648) {
   EXPECT_EQ(of("f"), "Zg==");
   EXPECT_EQ(of("fo"), "Zm8=");
   EXPECT_EQ(of("foobar"), "Zm9vYmFy");
-}
-
-// The values of a packed column, read as sw/report/page/README.md describes it.
-std::vector<Json> unpacked(const Json& column, std::size_t rows) {
-  if (column.contains("constant")) return std::vector<Json>(rows, column["constant"]);
-  const std::string letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::vector<Json> values;
-  if (column.contains("float64")) {
-    const std::string text = column["float64"];
-    std::string bytes;
-    for (std::size_t place = 0; place < text.size(); place += 4) {
-      std::uint32_t bits = 0;
-      for (std::size_t i = 0; i < 4; ++i) {
-        const std::size_t digit = letters.find(text[place + i]);
-        bits = bits << 6 | static_cast<std::uint32_t>(digit == std::string::npos ? 0 : digit);
-      }
-      for (const int shift : {16, 8, 0}) bytes += static_cast<char>(bits >> shift & 0xff);
-    }
-    for (std::size_t row = 0; row < rows; ++row) {
-      double value = 0;
-      std::memcpy(&value, bytes.data() + row * sizeof value, sizeof value);
-      values.emplace_back(value);
-    }
-    return values;
-  }
-  const std::string codes = column["codes"];
-  const std::size_t digits = codes.size() / rows;
-  for (std::size_t row = 0; row < rows; ++row) {
-    std::size_t code = 0;
-    for (std::size_t i = 0; i < digits; ++i) code = 64 * code + letters.find(codes[row * digits + i]);
-    values.push_back(column["values"][code]);
-  }
-  return values;
 }
 
 void expect_round_trip(const std::vector<PackedColumn::Value>& values, const char* form) {
