@@ -1,9 +1,14 @@
 #include "sw/report/html_page.h"
 
 #include <fmt/format.h>
+#include <zlib.h>
 
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 #include <string_view>
+#include <vector>
+
+#include "sw/files/base64.h"
 
 extern "C" {
 // Of page/page_text.S.
@@ -20,18 +25,13 @@ std::string_view between(const char* begin, const char* end) {
   return {begin, static_cast<std::size_t>(end - begin)};
 }
 
-// In JSON `<` occurs in strings only, where it may be escaped. Without it no text ends the script element.
-std::string without_tags(const std::string& json) {
-  std::string text;
-  text.reserve(json.size());
-  for (const char letter : json) {
-    if (letter == '<') {
-      text += "\\u003c";
-    } else {
-      text += letter;
-    }
-  }
-  return text;
+// The bytes compressed by zlib, in base64.
+std::string compressed(const std::string& text) {
+  uLongf size = compressBound(text.size());
+  std::vector<Bytef> bytes(size);
+  if (compress(bytes.data(), &size, reinterpret_cast<const Bytef*>(text.data()), text.size()) != Z_OK)
+    throw std::runtime_error("the data of the page cannot be compressed");
+  return files::base64(bytes.data(), size);
 }
 
 }  // namespace
@@ -50,14 +50,14 @@ std::string html_page(const nlohmann::ordered_json& data) {
 </head>
 <body>
 <main id="page"><noscript>This page needs JavaScript.</noscript></main>
-<script type="application/json" id="data">{}</script>
+<script type="text/plain" id="data">{}</script>
 <script type="module">
 {}</script>
 </body>
 </html>
 )";
   return fmt::format(kPage, page_mark(), between(stereotlm_page_style, stereotlm_page_style_end),
-                     without_tags(data.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)),
+                     compressed(data.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)),
                      between(stereotlm_page_script, stereotlm_page_script_end));
 }
 

@@ -594,7 +594,7 @@ class Answers(PageTest):
             recording = run["recording"]
             recording["tiles"] = {"columns": 10, "rows": 10, "width": 4, "height": 3}
             recording["stalls"] = recording["stalls"][:1]
-            recording["stalls"][0]["tiles"] = {"list": few * [100 - few] + (100 - few) * [few]}
+            recording["stalls"][0]["tiles"] = few * [100 - few] + (100 - few) * [few]
 
         for few, text in ((34, "Over all columns; half of all waits are in 34 % of the picture."),
                           (35, "Over all columns.")):

@@ -1,31 +1,8 @@
-// The data, unpacked when it is asked for: the packed columns of README.md, and what a recording holds.
+// The data of the page (README.md), as the charts ask for it: tables of points, and what a recording holds.
 import {sum} from './format.js';
 
-const kLetters = 'ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/';
-const kDigits = new Uint8Array(128);
-[...kLetters].forEach((letter, digit) => {
-  kDigits[letter.charCodeAt(0)] = digit;
-});
-
-// The values of a column, one for each row.
-export function unpack(column, rows) {
-  if (column.list) return column.list;
-  if ('constant' in column) return new Array(rows).fill(column.constant);
-  if (column.float64) {
-    const bytes = Uint8Array.from(atob(column.float64), letter => letter.charCodeAt(0));
-    const view = new DataView(bytes.buffer);
-    return Array.from({length: rows}, (_, row) => view.getFloat64(8 * row, true));
-  }
-  const letters = column.codes.length / rows;
-  const values = new Array(rows);
-  for (let row = 0, place = 0; row < rows; ++row) {
-    let code = 0;
-    for (let letter = 0; letter < letters; ++letter)
-      code = 64 * code + kDigits[column.codes.charCodeAt(place++)];
-    values[row] = column.values[code];
-  }
-  return values;
-}
+// The values of a column of a database, one for each row.
+const unpack = (column, rows) => column.list ?? new Array(rows).fill(column.constant);
 
 export class Table {
   constructor(columns, rows) {
@@ -56,12 +33,11 @@ export class Table {
     const columns = names.map(name => this.column(name));
     return [names, rows.map(row => columns.map(values => values[row]))];
   }
-  // Each row as an object.
-  objects() {
-    const [names, rows] = this.numbers();
-    return rows.map(row => Object.fromEntries(names.map((name, i) => [name, row[i]])));
-  }
 }
+
+// The rows of a table {names, rows} as objects.
+export const objectsOf = ({names, rows}) =>
+    rows.map(row => Object.fromEntries(names.map((name, i) => [name, row[i]])));
 
 // The texts of the part `boards`: text(row).
 export class Boards {
@@ -87,10 +63,7 @@ export function linesOf({recording}) {
   if (!recording) return null;
   if (known.has(recording)) return known.get(recording);
   const {frames, rows: {lines, height, cycles, accesses}, stalls} = recording;
-  const split = column => {
-    const [fill, ...values] = unpack(column, lines + 1);
-    return {fill, values, total: fill + sum(values)};
-  };
+  const split = ([fill, ...values]) => ({fill, values, total: fill + sum(values)});
   const all = split(cycles);
   known.set(recording, {
     frames,
@@ -117,10 +90,9 @@ export function rowsText(recorded, from, to, imageHeight) {
 export function tilesOf({recording}) {
   if (!recording) return [];
   const {tiles} = recording;
-  const maps = recording.stalls.map(({port, bank, by, tiles: column}) => {
-    const values = unpack(column, tiles.columns * tiles.rows);
-    return {...tiles, name: `${port} on ${bank} for ${by}`, values, total: sum(values)};
-  });
+  const maps = recording.stalls.map(
+      ({port, bank, by, tiles: values}) =>
+          ({...tiles, name: `${port} on ${bank} for ${by}`, values, total: sum(values)}));
   const some = maps.filter(({total}) => total > 0).sort((a, b) => b.total - a.total);
   if (some.length < 2) return some;
   const all = some[0].values.map((_, tile) => sum(some.map(({values}) => values[tile])));

@@ -2,7 +2,7 @@
 // and how long a frame takes from its first pixel to its results on the host.
 import {drawBars, drawColumns} from './bars.js';
 import {addChart, legend} from './card.js';
-import {Table, unpack} from './data.js';
+import {objectsOf} from './data.js';
 import {s} from './dom.js';
 import {droppedText, settingOf} from './findings.js';
 import {count, fixed, inMs, kPsOfMs, percent, sum, whole} from './format.js';
@@ -137,9 +137,8 @@ export function addTimeLine(page, run) {
     });
     return;
   }
-  const {events: packed, overview} = run.recording;
-  const table = new Table(packed.columns, packed.rows);
-  const events = table.objects().map(event => ({...event, lane: laneOf(event.kind, event.class)}));
+  const {events: recorded, overview} = run.recording;
+  const events = objectsOf(recorded).map(event => ({...event, lane: laneOf(event.kind, event.class)}));
   const lanes = kLanes.filter(lane => events.some(event => event.lane === lane));
   const last = overview.end_ps;
   const begin = Math.min(...events.filter(({kind}) => kind === 'capture').map(event => event.start_ps), last);
@@ -153,7 +152,7 @@ export function addTimeLine(page, run) {
       const line = lanes.indexOf(laneOf(kind, side));
       if (line < 0) continue;
       const [y, tall, colour] = kind === 'drop' ? [5, 2, '--ink'] : [1, 7, kKinds[kind][0]];
-      unpack(amounts, overview.bins).forEach((amount, bin) => {
+      amounts.forEach((amount, bin) => {
         if (amount === 0) return;
         const opacity = kind === 'drop' ? 1 : 0.15 + 0.85 * Math.min(1, amount / 100);
         above.append(s('rect', {
@@ -208,7 +207,7 @@ export function addTimeLine(page, run) {
             plot.append(s('text', {x: -8, y: line * kLine + 21, 'text-anchor': 'end'}, cut(name, left - 8))));
     // Where the page has no events.
     let known = 0;
-    for (const [from, to] of [...packed.periods_ps, [last, last]]) {
+    for (const [from, to] of [...recorded.periods_ps, [last, last]]) {
       if (from > known && atPs(from) > atPs(known)) {
         const place = {x: atPs(known), y: 0, width: atPs(from) - atPs(known), height};
         plot.append(mark(
@@ -250,8 +249,9 @@ export function addTimeLine(page, run) {
       drops > 0 && 'Crosses: dropped frames.',
       'The number in a bar is the frame; thin grey bars are waits. Drag in the overview, or in the window ' +
           'below it, to choose the time that is shown.',
-      packed.all > packed.rows &&
-          `The page has ${whole(packed.rows)} of ${whole(packed.all)} events: those of the beginning, of ` +
+      recorded.all > recorded.rows.length &&
+          `The page has ${whole(recorded.rows.length)} of ${
+              whole(recorded.all)} events: those of the beginning, of ` +
               'the slowest frame and of the end.'
     ].filter(Boolean)
               .join(' '),
@@ -264,7 +264,7 @@ export function addTimeLine(page, run) {
         ...events.some(event => event.dropped_pixels > 0) ? [['loses pixels', 'var(--bad)']] : []
       ])
     ],
-    numbers: () => table.numbers()
+    numbers: () => [recorded.names, recorded.rows]
   });
 }
 
@@ -305,15 +305,14 @@ export function addLatency(page, run) {
   const percentiles = run.stats.latency_ms?.capture_to_host;
   if (!percentiles) return;
   if (!run.recording) return addPercentiles(page, percentiles);
-  const {rows, all, means_ps: means, columns} = run.recording.latency;
-  const table = new Table(columns, rows);
-  const msOf = (names, row) => sum(names.map(name => table.column(name)[row])) / kPsOfMs;
-  const parts = kParts.filter(([names]) => names.some(name => means[name] > 0));
-  const barOf = row => ({
-    parts: parts.map(([names, , colour]) => [msOf(names, row), colour]),
+  const {names, rows, all, means_ps: means} = run.recording.latency;
+  const msOf = (parts, frame) => sum(parts.map(name => frame[name])) / kPsOfMs;
+  const parts = kParts.filter(([columns]) => columns.some(name => means[name] > 0));
+  const barOf = frame => ({
+    parts: parts.map(([columns, , colour]) => [msOf(columns, frame), colour]),
     lines: [
-      `frame ${table.column('frame')[row]}: ${fixed(msOf(['latency_ps'], row), 3)} ms`,
-      ...parts.map(([names, text]) => `${text}: ${fixed(msOf(names, row), 3)} ms`)
+      `frame ${frame.frame}: ${fixed(msOf(['latency_ps'], frame), 3)} ms`,
+      ...parts.map(([columns, text]) => `${text}: ${fixed(msOf(columns, frame), 3)} ms`)
     ]
   });
   const waiting = sum(kWaitParts.map(name => means[name])) / means.latency_ps;
@@ -321,10 +320,10 @@ export function addLatency(page, run) {
     id: 'latency',
     wide: true,
     draw: (host, width) => drawColumns(host, width, {
-      groups: Array.from({length: rows}, (_, row) => [barOf(row)]),
+      groups: objectsOf({names, rows}).map(frame => [barOf(frame)]),
       label: 'Latency of each frame',
       unit: 'ms',
-      below: `${rows < all ? `${count(rows, 'frame')} of ${all}` : count(rows, 'frame')}, the quickest first`
+      below: `${count(rows.length, 'frame')}${rows.length < all ? ` of ${all}` : ''}, the quickest first`
     }),
     title: `Of the mean ${inMs(means.latency_ps, 1)} from capture to host, ${percent(waiting, 0)} is waiting`,
     note:
@@ -332,6 +331,6 @@ export function addLatency(page, run) {
         `Half of the frames take at most ${fixed(percentiles.p50, 1)} ms, 95 % at most ${
             fixed(percentiles.p95, 1)}, the slowest ${fixed(percentiles.max, 1)}.`,
     body: legend(parts.map(([, text, colour]) => [text, `var(${colour})`])),
-    numbers: () => table.numbers()
+    numbers: () => [names, rows]
   });
 }
