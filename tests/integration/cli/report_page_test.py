@@ -98,6 +98,12 @@ class PageTest(ProgramTest):
         self.assertEqual(self.browser.errors(), [])
         super().tearDown()
 
+    def opened(self, page, change):
+        """Opens the page with data that `change(data)` has changed; the milliseconds until it is drawn."""
+        data = data_of(page)
+        change(data)
+        return self.browser.open(with_data(page, data, self.folder / "page.html"))
+
     def charts(self):
         return [card.get_attribute("id") for card in self.browser.all("section.card")]
 
@@ -488,11 +494,12 @@ class Tools(PageTest):
         self.assertEqual(len(self.browser.all("#time .mark")), len(events) - instant)
 
     def test_the_time_line_shows_where_the_page_has_no_events(self):
-        data = data_of(page_of(computer()))
-        recording = data["run"]["recording"]
-        end = recording["overview"]["end_ps"]
-        recording["events"].update(periods_ps=[[0, end // 4], [end // 2, end]], all=9999)
-        self.browser.open(with_data(page_of(computer()), data, self.folder / "page.html"))
+        def change(data):
+            recording = data["run"]["recording"]
+            end = recording["overview"]["end_ps"]
+            recording["events"].update(periods_ps=[[0, end // 4], [end // 2, end]], all=9999)
+
+        self.opened(page_of(computer()), change)
         self.browser.button("time", "All")
         self.assertIn("of 9999 events", self.browser.text("#time"))
         box = "return document.querySelector(arguments[0]).getBoundingClientRect().width"
@@ -512,9 +519,7 @@ class Tools(PageTest):
         self.assertIn("row 13", self.browser.text("#tooltip"))
 
     def test_waits_are_shown_without_pixels_too(self):
-        data = data_of(page_of(computer()))
-        del data["run"]["pictures"]
-        self.browser.open(with_data(page_of(computer()), data, self.folder / "page.html"))
+        self.opened(page_of(computer()), lambda data: data["run"].pop("pictures"))
         self.browser.drawn()
         states = [self.picture()]
         self.browser.choose("picture-overlay", 100)
@@ -553,9 +558,7 @@ class Tools(PageTest):
         self.assertLess(len(keys), 8)
 
     def test_charts_that_quick_leaves_out_say_so(self):
-        data = data_of(page_of(computer()))
-        del data["run"]["recording"], data["run"]["knobs"]
-        self.browser.open(with_data(page_of(computer()), data, self.folder / "page.html"))
+        self.opened(page_of(computer()), lambda data: [data["run"].pop(key) for key in ("recording", "knobs")])
         for chart in ("rows", "time", "knobs"):
             self.assertIn("--quick", self.browser.text(f"#{chart}"))
             self.assertEqual(self.browser.all(f"#{chart} svg"), [])
@@ -565,9 +568,7 @@ class Answers(PageTest):
     """What the head of the page says; the data are changed to what is asked."""
 
     def opened(self, folder, change):
-        data = data_of(page_of(folder))
-        change(data["run"])
-        self.browser.open(with_data(page_of(folder), data, self.folder / "page.html"))
+        super().opened(page_of(folder), lambda data: change(data["run"]))
 
     def test_the_port_that_waits_most_in_all_is_the_first(self):
         def change(run):
@@ -742,11 +743,11 @@ class TwoRuns(PageTest):
         self.assertIn(f"Camera frame {frame} in both.", self.browser.text("#picture .note"))
 
     def test_within_the_uncertainty_have_no_gain(self):
-        a, b = two_computers()
-        data = data_of(page_of(a, b))
-        for run_data, rate in zip(data["runs"], (20, 20.5)):
-            run_data["stats"]["frames_per_second"].update(steady=rate, steady_uncertainty=0.25)
-        self.browser.open(with_data(page_of(a, b), data, self.folder / "page.html"))
+        def change(data):
+            for run_data, rate in zip(data["runs"], (20, 20.5)):
+                run_data["stats"]["frames_per_second"].update(steady=rate, steady_uncertainty=0.25)
+
+        self.opened(page_of(*two_computers()), change)
         self.assertEqual(self.browser.text("h1"), "allocation.left_lut: bank6 → bank0: ≈ 0, "
                          "from 20.00 ± 0.25 to 20.50 ± 0.25 frames/s, steady")
 
@@ -786,13 +787,13 @@ class Names(PageTest):
         self.is_harmless(NASTY, NASTY_FOLDER)
 
     def test_of_the_memory_chart_are_text_without_handlers(self):
-        data = data_of(page_of(core()))
-        hostile = '<svg onload="hacked=1" width="9"><script>hacked=1</script><a href="javascript:hacked=1"></a>'
-        data["run"]["memory_chart"] = (
-            data["run"]["memory_chart"].replace("<svg", hostile.split(" width")[0], 1)
-            .replace("</svg>", hostile.split(">", 1)[1] + "</svg>").replace("fpl2003", html.escape(NASTY))
-        )
-        self.browser.open(with_data(page_of(core()), data, self.folder / "page.html"))
+        def change(data):
+            hostile = '<script>hacked=1</script><a href="javascript:hacked=1"></a></svg>'
+            data["run"]["memory_chart"] = (
+                data["run"]["memory_chart"].replace("<svg", '<svg onload="hacked=1"', 1)
+                .replace("</svg>", hostile).replace("fpl2003", html.escape(NASTY)))
+
+        self.opened(page_of(core()), change)
         self.is_harmless(NASTY)
         self.assertEqual(len(self.browser.all("#memory svg script, #memory svg [href]")), 0)
         self.assertGreater(len(self.browser.all("#memory svg .mark")), 20)
@@ -802,14 +803,15 @@ class Large(PageTest):
     """12,000 points. The limits are wide, because the machine may have other work."""
 
     def test_open_and_brush_quickly(self):
-        data = data_of(page_of(database()))
-        drawn = random.Random(1)
-        points = 12000
-        columns = [{"name": f"figure_{i}", "list": [drawn.random() for _ in range(points)]} for i in range(8)]
-        columns.append({"name": "matcher.window", "list": [drawn.choice([3, 5, 7]) for _ in range(points)]})
-        data["database"].update(points=points, columns=columns, keys=["matcher.window"],
-                                boards={"shape": {"constant": 0}, "shapes": [["name: a\n"]]})
-        took = self.browser.open(with_data(page_of(database()), data, self.folder / "large.html"))
+        def change(data):
+            drawn = random.Random(1)
+            points = 12000
+            columns = [{"name": f"figure_{i}", "list": [drawn.random() for _ in range(points)]} for i in range(8)]
+            columns.append({"name": "matcher.window", "list": [drawn.choice([3, 5, 7]) for _ in range(points)]})
+            data["database"].update(points=points, columns=columns, keys=["matcher.window"],
+                                    boards={"shape": {"constant": 0}, "shapes": [["name: a\n"]]})
+
+        took = self.opened(page_of(database()), change)
         self.browser.run("document.getElementById('scatter').scrollIntoView()")
         rate = self.browser.driver.execute_async_script("""
             const done = arguments[0];

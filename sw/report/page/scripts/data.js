@@ -7,26 +7,25 @@ const unpack = (column, rows) => column.list ?? new Array(rows).fill(column.cons
 export class Table {
   constructor(columns, rows) {
     this.rows = rows;
-    this.packed = new Map(columns.map(column => [column.name, column]));
-    this.unpacked = new Map();
+    this.columns = new Map(columns.map(column => [column.name, column]));
   }
   get names() {
-    return [...this.packed.keys()];
+    return [...this.columns.keys()];
   }
   has(name) {
-    return this.packed.has(name);
+    return this.columns.has(name);
   }
   isConstant(name) {
-    return 'constant' in (this.packed.get(name) ?? {constant: null});
+    return 'constant' in (this.columns.get(name) ?? {constant: null});
   }
   // A column that follows from others.
-  add(name, values) {
-    this.packed.set(name, {name});
-    this.unpacked.set(name, values);
+  add(name, list) {
+    this.columns.set(name, {name, list});
   }
   column(name) {
-    if (!this.unpacked.has(name)) this.unpacked.set(name, unpack(this.packed.get(name), this.rows));
-    return this.unpacked.get(name);
+    const column = this.columns.get(name);
+    column.list = unpack(column, this.rows);
+    return column.list;
   }
   // These columns of these rows, as addChart() takes its numbers.
   numbers(names = this.names, rows = [...Array(this.rows).keys()]) {
