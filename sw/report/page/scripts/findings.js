@@ -90,7 +90,7 @@ function whatLimits(run) {
       const bank = run.banks.find(each => each.name === name);
       const busy = run.stats.banks.find(each => each.name === name);
       const title = /^bank/i.test(name) ? name : `Bank ${name}`;
-      const held = bank.buffers.map(each => each.name).join(', ') || 'no buffer';
+      const held = bank.buffers.join(', ') || 'no buffer';
       return `${title} holds ${held}, and is busy in ${percent(busy.utilization)} of the cycles`;
     },
     port: () => `Port ${name}: it moves one word a cycle at most`,

@@ -227,8 +227,7 @@ export function addBankUse(page, {stats, banks}) {
     more: bank =>
         [`${whole(bank.reads)} reads, ${whole(bank.writes)} writes, ` +
              `in ${whole(bank.contended_cycles)} cycles a port waits`,
-         banks.find(each => each.name === bank.name).buffers.map(buffer => buffer.name).join(', ') ||
-             'holds nothing']
+         banks.find(each => each.name === bank.name).buffers.join(', ') || 'holds nothing']
   });
 }
 
