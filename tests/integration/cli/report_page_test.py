@@ -4,6 +4,7 @@ import csv
 import functools
 import io
 import json
+import math
 import random
 import re
 import shlex
@@ -283,6 +284,75 @@ class Numbers(PageTest):
         self.assertEqual(found, expected)
         name = "banks.bank0.utilization"  # not in the data: follows from busy_cycles
         self.assertEqual(sorted(float(row[name]) for row in rows), sorted(point[name] for point in points))
+
+
+class Drawing(PageTest):
+    """Bars, dots and cells are as long, high and far as their numbers say."""
+
+    def boxes(self, selector):
+        return self.browser.run("return [...document.querySelectorAll(arguments[0])]"
+                                ".map(each => each.getBoundingClientRect().toJSON())", selector)
+
+    def test_bars_of_a_port_are_its_states_one_behind_the_other(self):
+        self.browser.open(page_of(core()))
+        stats = self.stats(core())
+        names = ["grants", "stall_cycles", "passed_cycles", "blocked_cycles", "starved_cycles", "idle_cycles"]
+        lane = self.boxes("#ports .lane")[0]
+        bars = iter(self.boxes("#ports .bar-part"))
+        for port in stats["ports"]:
+            begin = lane["left"]
+            for name in names:
+                if port[name]:
+                    bar = next(bars)
+                    self.assertAlmostEqual(bar["left"], begin, delta=1.5)
+                    begin += lane["width"] * port[name] / stats["cycles"]
+                    self.assertAlmostEqual(bar["right"], begin, delta=1.5)
+            self.assertAlmostEqual(begin, lane["right"], delta=0.1)
+
+    def test_dots_ticks_and_the_present_rate_share_a_logarithmic_scale(self):
+        self.browser.open(page_of(core()))
+        rates = [number(row["frames_per_second"]) for row in self.browser.table("bounds")]
+        dots = [(box["left"] + box["right"]) / 2 for box in self.boxes("#bounds .dot")]
+        place = lambda rate: dots[0] + (dots[-1] - dots[0]) * math.log(rate / rates[0], rates[-1] / rates[0])
+        self.assertGreater(dots[-1] - dots[0], 200)
+        for dot, rate in zip(dots, rates, strict=True):
+            self.assertAlmostEqual(dot, place(rate), delta=1.5)
+        now = place(self.stats(core())["frames_per_second"]["core"])
+        self.assertAlmostEqual(self.boxes("#bounds .now-line")[0]["left"], now, delta=1.5)
+        labels = self.boxes("#bounds .bars-axis span")
+        texts = self.browser.run("return [...document.querySelectorAll('#bounds .bars-axis span')].map(each => each.textContent)")
+        self.assertGreater(len(labels), 2)
+        for text, label, line in zip(texts, labels, self.boxes("#bounds .tick-line"), strict=True):
+            tick = place(float(text.replace("k", "e3")))
+            self.assertAlmostEqual((label["left"] + label["right"]) / 2, tick, delta=1.5)
+            self.assertAlmostEqual(line["left"], tick, delta=1.5)
+
+    def test_columns_are_as_high_as_cycles_and_latencies(self):
+        self.browser.open(page_of(computer()))
+        for chart, column in (("frames", "cycles"), ("latency", "latency_ps")):
+            numbers = [number(row[column]) for row in self.browser.table(chart)]
+            columns = self.boxes(f"#{chart} .mark")
+            for box, amount in zip(columns, numbers, strict=True):
+                self.assertAlmostEqual(box["height"] / columns[-1]["height"], amount / numbers[-1], delta=0.01)
+            self.assertEqual(len({round(box["bottom"]) for box in columns}), 1)
+
+    def test_cells_of_blame_are_shares_of_all_cycles_and_close(self):
+        self.browser.open(page_of(core()))
+        stats = self.stats(core())
+        (blame,) = stats["blame"]
+        share = f"{100 * blame['cycles'] / stats['cycles']:.1f}"
+        rows = self.browser.run("return [...document.querySelectorAll('#blame .plot tr')]"
+                                ".map(row => [...row.cells].map(cell => cell.textContent))")
+        of_port = lambda waits, rest: [waits if port["name"] == blame["port"] else rest for port in stats["ports"]]
+        self.assertEqual(rows[1:], [[f"{blame['bank']} · {blame['by']}", *of_port(share, "")],
+                                    ["sum", *of_port(share, "0.0")], ["counter", *of_port("✓", "✓")]])
+
+    def test_pointed_at_tells_the_numbers_of_a_row(self):
+        self.browser.open(page_of(core()))
+        row = self.browser.table("rows")[1 + 12]
+        self.browser.drag("#rows .brush-y", (0.05, 0.52), (0.05, 0.521))
+        self.assertRegex(self.browser.text("#tooltip"), r"^row 12: bank0 makes accesses in .* of the cycles"
+                         f".* in {row['cycles']} cycles")
 
 
 class Database(PageTest):
