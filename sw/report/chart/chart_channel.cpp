@@ -14,11 +14,9 @@ namespace {
 constexpr double kBetweenTracks = 10;
 constexpr double kBetweenEdges = 1;  // that run side by side
 constexpr double kClearance = 6;     // between edges of different ports, where there is room
-constexpr double kLeastClearance = 1;
 constexpr double kPlayStep = 1.5;
 constexpr long kBendCost = 2;  // in crossings: of an edge that does not run straight
 constexpr long kNearCost = 5;
-constexpr long kOverlapCost = 1000;
 
 bool is_between(double y, const ChannelEdge& edge) {
   return y > std::min(edge.bank_y, edge.port_y) && y < std::max(edge.bank_y, edge.port_y);
@@ -26,9 +24,9 @@ bool is_between(double y, const ChannelEdge& edge) {
 
 bool is_straight(const ChannelEdge& edge) { return edge.bank_y == edge.port_y; }
 
-// Whether the horizontal pieces of the edges, at these heights, would be nearer to each other than that.
-bool touch(double y, double width, double other_y, double other_width, double clearance = kClearance) {
-  return std::abs(y - other_y) < (width + other_width) / 2 + clearance;
+// Whether the horizontal pieces of the edges, at these heights, would be too near to each other.
+bool touch(double y, double width, double other_y, double other_width) {
+  return std::abs(y - other_y) < (width + other_width) / 2 + kClearance;
 }
 
 // Crossings of two nets if `left` has its tracks to the left of those of `right`. The pieces of `left` to its
@@ -39,7 +37,6 @@ long cost(const ChannelNet& left, const ChannelNet& right) {
     for (const ChannelEdge& b : right.edges) {
       sum += (is_between(b.bank_y, a) ? 1 : 0) + (is_between(a.port_y, b) ? 1 : 0);
       if (touch(a.port_y, a.width, b.bank_y, b.width)) sum += kNearCost;
-      if (touch(a.port_y, a.width, b.bank_y, b.width, kLeastClearance)) sum += kOverlapCost;
     }
   }
   return sum;
@@ -72,8 +69,8 @@ TrackOrder best_order(const std::vector<ChannelNet>& nets) {
   return best;
 }
 
-// Moves the ends of one port after the other to where the best order of the tracks costs least: by steps of its
-// play, or so that an edge runs straight.
+// Moves the ends of one port after the other to where the best order of the tracks costs least: by steps of
+// its play, or so that an edge runs straight.
 TrackOrder move_ends(std::vector<ChannelNet>& nets) {
   TrackOrder order = best_order(nets);
   for (ChannelNet& net : nets) {

@@ -155,8 +155,8 @@ class Layout {
     return edge.width + kAboveLabel + (edge.label.text.empty() ? 0 : kLabelHeight);
   }
 
-  // A link leaves a bank at the buffers that it carries, that of the host, which carries all, at its name. The
-  // lines of the buffers are as far apart as the links need.
+  // A link leaves a bank at the buffers that it carries, that of the host, which carries all, at its name.
+  // The lines of the buffers are as far apart as the links need.
   void measure_banks() {
     for (const platform::BankConfig& config : board_.banks) {
       Bank bank;
@@ -221,13 +221,8 @@ class Layout {
            height_of("part-local_bus") + 5 * kShortEdge;
   }
 
-  double parts_height() const {
-    double height = 0;
-    for (const char* part : {"part-left_capture", "part-cpu", "part-host_memory", "part-load"}) {
-      if (lines_.count(part) > 0) height = std::max(height, height_of(part));
-    }
-    return height;
-  }
+  // No part at the PCI bus has more lines than the capture boards.
+  double parts_height() const { return height_of("part-left_capture"); }
 
   // Chooses all y of banks, ports and the FPGA.
   void place_down(double top) {

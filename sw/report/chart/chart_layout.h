@@ -6,8 +6,8 @@
 
 #include "sw/report/chart/chart_traffic.h"
 
-// What is drawn in a memory chart, with its place. Lengths are in pixels, y grows downwards. Colours are names:
-// memory_chart.cpp has their values.
+// What is drawn in a memory chart, with its place. Lengths are in pixels, y grows downwards. Colours are
+// names: memory_chart.cpp has their values.
 namespace stereotlm::report {
 
 struct ChartPoint {

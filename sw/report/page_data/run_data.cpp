@@ -168,7 +168,8 @@ std::set<std::string> banks_used(const BoardConfig& board) {
   return banks;
 }
 
-// Where a changed board uses banks that the board does not use: those that the board has, and how many it lacks.
+// Where a changed board uses banks that the board does not use: those that the board has, and how many it
+// lacks.
 void add_banks_taken(const BoardConfig& board, const BoardConfig& changed, Json& data) {
   const std::set<std::string> used = banks_used(board);
   std::vector<std::string> idle;

@@ -320,7 +320,8 @@ class Drawing(PageTest):
         now = place(self.stats(core())["frames_per_second"]["core"])
         self.assertAlmostEqual(self.boxes("#bounds .now-line")[0]["left"], now, delta=1.5)
         labels = self.boxes("#bounds .bars-axis span")
-        texts = self.browser.run("return [...document.querySelectorAll('#bounds .bars-axis span')].map(each => each.textContent)")
+        texts = self.browser.run("return [...document.querySelectorAll('#bounds .bars-axis span')]"
+                                 ".map(each => each.textContent)")
         self.assertGreater(len(labels), 2)
         for text, label, line in zip(texts, labels, self.boxes("#bounds .tick-line"), strict=True):
             tick = place(float(text.replace("k", "e3")))
@@ -333,7 +334,8 @@ class Drawing(PageTest):
             numbers = [number(row[column]) for row in self.browser.table(chart)]
             columns = self.boxes(f"#{chart} .mark")
             for box, amount in zip(columns, numbers, strict=True):
-                self.assertAlmostEqual(box["height"] / columns[-1]["height"], amount / numbers[-1], delta=0.01)
+                share = box["height"] / columns[-1]["height"]
+                self.assertAlmostEqual(share, amount / numbers[-1], delta=0.01)
             self.assertEqual(len({round(box["bottom"]) for box in columns}), 1)
 
     def test_cells_of_blame_are_shares_of_all_cycles_and_close(self):
@@ -343,7 +345,8 @@ class Drawing(PageTest):
         share = f"{100 * blame['cycles'] / stats['cycles']:.1f}"
         rows = self.browser.run("return [...document.querySelectorAll('#blame .plot tr')]"
                                 ".map(row => [...row.cells].map(cell => cell.textContent))")
-        of_port = lambda waits, rest: [waits if port["name"] == blame["port"] else rest for port in stats["ports"]]
+        of_port = lambda waits, rest: [
+            waits if port["name"] == blame["port"] else rest for port in stats["ports"]]
         self.assertEqual(rows[1:], [[f"{blame['bank']} · {blame['by']}", *of_port(share, "")],
                                     ["sum", *of_port(share, "0.0")], ["counter", *of_port("✓", "✓")]])
 
@@ -376,6 +379,7 @@ class Database(PageTest):
         self.assertLess(part, self.size)
         self.browser.drag("#parallel .brush-y", (0.5, 0.02), (0.5, 0.45))
         self.assertLess(self.selected(), part)
+        self.assertEqual({row["allocation.left_lut"] for row in self.rows("points")}, {"bank6"})
         self.browser.button("filters", "Select all points")
         self.assertEqual(self.selected(), self.size)
 
@@ -530,6 +534,10 @@ class Tools(PageTest):
         self.assertEqual(shown(), "rows 9 to 14")
         self.browser.button("rows", "All rows")
         self.assertEqual(shown(), "rows 0 to 23")
+        self.browser.button("rows", "Zoom in")
+        for rows in ("rows 3 to 14", "rows 0 to 11", "rows 0 to 11"):
+            self.browser.button("rows", "Up")
+            self.assertEqual(shown(), rows)
 
     def test_the_longest_wait_in_the_rows_shown_is_traced_by_the_command(self):
         self.browser.open(page_of(core()))
@@ -627,7 +635,8 @@ class Tools(PageTest):
         self.assertLess(len(keys), 8)
 
     def test_charts_that_quick_leaves_out_say_so(self):
-        self.opened(page_of(computer()), lambda data: [data["run"].pop(key) for key in ("recording", "knobs")])
+        without = lambda data: [data["run"].pop(key) for key in ("recording", "knobs")]
+        self.opened(page_of(computer()), without)
         for chart in ("rows", "time", "knobs"):
             self.assertIn("--quick", self.browser.text(f"#{chart}"))
             self.assertEqual(self.browser.all(f"#{chart} svg"), [])
@@ -863,8 +872,9 @@ class Large(PageTest):
         def change(data):
             drawn = random.Random(1)
             points = 12000
-            columns = [{"name": f"figure_{i}", "list": [drawn.random() for _ in range(points)]} for i in range(8)]
-            columns.append({"name": "matcher.window", "list": [drawn.choice([3, 5, 7]) for _ in range(points)]})
+            column = lambda name, draw: {"name": name, "list": [draw() for _ in range(points)]}
+            columns = [column(f"figure_{i}", drawn.random) for i in range(8)]
+            columns.append(column("matcher.window", lambda: drawn.choice([3, 5, 7])))
             data["database"].update(points=points, columns=columns, keys=["matcher.window"],
                                     boards={"shape": {"constant": 0}, "shapes": [["name: a\n"]]})
 

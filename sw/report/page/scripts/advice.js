@@ -91,8 +91,8 @@ export function limitReached(run, step) {
       ?.resource;
 }
 
-// The changes worth naming: the largest gain of those that need nothing new, and the largest of all. Changes of
-// the disparities, boards that lose pixels and boards that do not fit are left out.
+// The changes worth naming: the largest gain of those that need nothing new, and the largest of all. Changes
+// of the disparities, boards that lose pixels and boards that do not fit are left out.
 export function adviceOf(run) {
   if (!run.knobs) return null;
   const {board, steps} = run.knobs;

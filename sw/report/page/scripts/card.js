@@ -1,5 +1,5 @@
-// What all pages are made of: the head line, the answers, and groups of cards. A card is a chart with its title,
-// its note, its numbers as a table and as CSV.
+// What all pages are made of: the head line, the answers, and groups of cards. A card is a chart with its
+// title, its note, its numbers as a table and as CSV.
 import {button, download, fileName, h, note as noteLine} from './dom.js';
 import {csvText, value, whole} from './format.js';
 import {themeSwitch, whenThemeChanges} from './theme.js';

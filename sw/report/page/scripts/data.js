@@ -55,9 +55,9 @@ export class Boards {
 
 const known = new WeakMap();
 
-// The lines of the picture in a recording, from top to bottom, each of `height` rows, as sums over all frames:
-// {frames, lines, height, cycles, fill, accesses: [{bank, by, values, fill}], stalls: [{port, bank, by, values,
-// fill, total}]}. `fill` is before the first line. null without a recording.
+// The lines of the picture in a recording, from top to bottom, each of `height` rows, as sums over all
+// frames: {frames, lines, height, cycles, fill, accesses: [{bank, by, values, fill}], stalls: [{port, bank,
+// by, values, fill, total}]}. `fill` is before the first line. null without a recording.
 export function linesOf({recording}) {
   if (!recording) return null;
   if (known.has(recording)) return known.get(recording);

@@ -1,5 +1,5 @@
-// What limits a run: the bounds of its resources, the roofline of its busiest bank, what ports and banks do in
-// all cycles, and how long its frames take.
+// What limits a run: the bounds of its resources, the roofline of its busiest bank, what ports and banks do
+// in all cycles, and how long its frames take.
 import {adviceOf, shortStepText} from './advice.js';
 import {drawBars, drawColumns} from './bars.js';
 import {addChart, legend} from './card.js';

@@ -23,8 +23,8 @@ const linksOf = svg => [...svg.querySelectorAll('.edge')].map(element => {
   return {name: `${from} – ${to}`, from, to, rate: Number(mbps), peak: Number(peak), element};
 });
 
-// Gives a drawing marks, its size and the theme of the page. `moreLines(link)`: for the tooltip of a link. The
-// titles of the drawing go, because a browser would show them beside the tooltips.
+// Gives a drawing marks, its size and the theme of the page. `moreLines(link)`: for the tooltip of a link.
+// The titles of the drawing go, because a browser would show them beside the tooltips.
 function useInPage(svg, links, moreLines = () => []) {
   for (const title of svg.querySelectorAll('title')) {
     const element = title.parentElement;

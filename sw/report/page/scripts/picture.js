@@ -11,8 +11,8 @@ const kInvalid = 255;
 const kMostHeight = 900;
 const kOverlay = [255, 60, 0];
 
-// {canvas, grey}. A picture without URL is grey. A picture of disparities gets colours, black where there is no
-// answer, and has its values in `grey`.
+// {canvas, grey}. A picture without URL is grey. A picture of disparities gets colours, black where there is
+// no answer, and has its values in `grey`.
 async function pixelsOf({url, width, height, disparities}) {
   const image = new Image();
   if (url) {

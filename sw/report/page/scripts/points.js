@@ -96,8 +96,8 @@ export class Points {
     };
   }
 
-  // The points with a number in this column whose board fits its FPGA and loses no pixels; all of them if there
-  // is none.
+  // The points with a number in this column whose board fits its FPGA and loses no pixels; all of them if
+  // there is none.
   sound(name) {
     const numbers = this.column(name);
     const limits = this.table.names.filter(each => /^area\..*_percent$/.test(each))
@@ -110,8 +110,8 @@ export class Points {
     return sound.length > 0 ? sound : all;
   }
 
-  // The fastest points that tie within the uncertainty of their rates, the cheapest first: that with the fewest
-  // banks, then with the fewest slices.
+  // The fastest points that tie within the uncertainty of their rates, the cheapest first: that with the
+  // fewest banks, then with the fewest slices.
   fastest(name) {
     const [rates, open] = [this.column(name), this.uncertainty(name)];
     const rows = this.sound(name);
@@ -124,9 +124,9 @@ export class Points {
     return {best, ties};
   }
 
-  // The selected points that no other beats, from the best x on. From one point to the next the column without
-  // uncertainty becomes worse, and the other one better by more than the uncertainty of both. Points that are the
-  // same in the former, and tie in the latter, are all on the front.
+  // The selected points that no other beats, from the best x on. From one point to the next the column
+  // without uncertainty becomes worse, and the other one better by more than the uncertainty of both. Points
+  // that are the same in the former, and tie in the latter, are all on the front.
   front(x, y) {
     const worse = axis => this.column(axis.name).map(
         v => typeof v !== 'number' ? NaN :

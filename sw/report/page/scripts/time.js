@@ -1,5 +1,5 @@
-// When things happen in the computer: the time line of captures, transfers, frames of the core, waits and drops,
-// and how long a frame takes from its first pixel to its results on the host.
+// When things happen in the computer: the time line of captures, transfers, frames of the core, waits and
+// drops, and how long a frame takes from its first pixel to its results on the host.
 import {drawBars, drawColumns} from './bars.js';
 import {addChart, legend} from './card.js';
 import {objectsOf} from './data.js';
@@ -62,7 +62,8 @@ const whyText = (who, why) => kWhy[`${who} ${why}`] ?? 'the driver works: regist
 const kHardly = 0.001;  // of the time of a run that the core waits: not worth its reasons
 const kFewLater = 0.1;  // of its waits that are after the beginning of its first frame
 
-// How long the core waits and why, in words: {title, note}. `early`: what of it is before its first frame, in ps.
+// How long the core waits and why, in words: {title, note}. `early`: what of it is before its first frame, in
+// ps.
 function coreWaits(run, span, early) {
   const waits = run.recording.waits.filter(wait => wait.class === 'core').sort((a, b) => b.ps - a.ps);
   const all = sum(waits.map(wait => wait.ps));

@@ -2,10 +2,12 @@
 import {drawBars} from './bars.js';
 import {addChart, legend} from './card.js';
 import {commandLine, h, note, s} from './dom.js';
-import {blamesOf, blameText, detailedBlamesOf, settingOf, waitingRows, waitsOf, waitText} from './findings.js';
+import {blamesInDetail, blamesOf, blameText, settingOf, waitingRows, waitsOf, waitText} from './findings.js';
+
 import {count, least, most, percent, signed, sum, whole} from './format.js';
 import {lastRow, linesOf, rowsText} from './data.js';
-import {addBrush, axisBelow, axisLeft, cut, drawing, layeredDrawing, numeric, textWidth, Zoom} from './plot.js';
+import {addBrush, axisBelow, axisLeft, drawing, layeredDrawing, numeric, Zoom} from './plot.js';
+import {cut, textWidth} from './plot.js';
 import {css, heat, inkOn, namedColour} from './theme.js';
 import {mark} from './tooltip.js';
 
@@ -16,8 +18,8 @@ const kMostBands = 240;
 
 const bare = share => percent(share).replace(' %', '');
 
-// A row for each bank and cause, a column for each port that waits. It closes: the sum of a column is the stalls
-// that the port itself has counted.
+// A row for each bank and cause, a column for each port that waits. It closes: the sum of a column is the
+// stalls that the port itself has counted.
 export function addBlame(page, run) {
   const blames = blamesOf(run);
   const {cycles, ports} = run.stats;
@@ -68,7 +70,7 @@ export function addBlame(page, run) {
 export function addBlameDifference(page, a, b) {
   const all = new Map();
   for (const [run, side] of [[a, 'a'], [b, 'b']]) {
-    for (const {port, bank, by, cycles} of detailedBlamesOf(run)) {
+    for (const {port, bank, by, cycles} of blamesInDetail(run)) {
       const text = `${port} on ${bank} for ${by}`;
       if (!all.has(text)) all.set(text, {text, port, bank, by, a: 0, b: 0});
       all.get(text)[side] += cycles;
@@ -105,8 +107,8 @@ export function addBlameDifference(page, a, b) {
   });
 }
 
-// The columns of the map of rows: {name, what, values, fill, most, parts, waits}: amounts of each line, of which a
-// cycle has at most `most`; whether they are waits.
+// The columns of the map of rows: {name, what, values, fill, most, parts, waits}: amounts of each line, of
+// which a cycle has at most `most`; whether they are waits.
 function columnsOf(run, {accesses, stalls}) {
   const used = [...new Set(accesses.map(({bank}) => bank))].map(name => {
     const parts = accesses.filter(({bank}) => bank === name);
@@ -140,8 +142,8 @@ function traceCommand(run, recorded, {from, to}) {
       cycles.indexOf(most(cycles))},rows=${from * recorded.height}..${last},longest-wait`;
 }
 
-// What happens from top to bottom of the picture: use of the banks and waits. A range of rows can be brushed to
-// look closer.
+// What happens from top to bottom of the picture: use of the banks and waits. A range of rows can be brushed
+// to look closer.
 export function addRows(page, run) {
   const recorded = linesOf(run);
   if (!recorded) {
@@ -224,7 +226,8 @@ export function addRows(page, run) {
         ...command ?
             [
               note(
-                  'The cycles around the longest wait in these rows of the longest frame, for a waveform viewer:'),
+                  'The cycles around the longest wait in these rows of the longest frame, ' +
+                  'for a waveform viewer:'),
               commandLine(command)
             ] :
             []);
