@@ -30,7 +30,9 @@ export function drawBars(host, {rows, domain, isLog = false, axis, now, heads = 
   const cells = (name, lane, texts, strong) =>
       [(name || !above) && h('span', {class: strong ? 'name strong' : 'name'}, name),
        h('div', {class: 'lane'}, lane), texts.map(text => h('span', {class: 'value'}, text))];
-  const behind = h('div', {class: 'behind'}, now && h('i', {class: 'now-line', style: `left:${nowPlace}%`}));
+  const behind =
+      h('div', {class: 'behind'}, now && h('i', {class: 'now-line', style: `left:${nowPlace}%`}),
+        domain[0] < 0 && h('i', {class: 'zero-line', style: `left:${scale(0)}%`}));
   const texts = rows[0]?.texts ?? [];
   const columns =
       `${above ? '' : 'fit-content(44%) '}minmax(60px, 1fr)${' max-content'.repeat(texts.length)}`;
