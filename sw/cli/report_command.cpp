@@ -160,7 +160,7 @@ int report(const ReportOptions& options) {
     return kInterrupted;
   }
   problems.check();
-  Json whole = {{"format", 1}, {"version", process::kVersion}};
+  Json whole = {{"format", 2}, {"version", process::kVersion}};
   whole.update(*data);
   const std::string page = report::html_page(whole);
   file->write(page);

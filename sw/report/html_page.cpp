@@ -1,46 +1,64 @@
 #include "sw/report/html_page.h"
 
+#include <fmt/format.h>
+#include <zlib.h>
+
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string_view>
+#include <vector>
 
-#include "sw/report/page/page_text.h"
+#include "sw/files/base64.h"
+
+extern "C" {
+// Of page/page_text.S.
+extern const char stereotlm_page_style[];
+extern const char stereotlm_page_style_end[];
+extern const char stereotlm_page_script[];
+extern const char stereotlm_page_script_end[];
+}
 
 namespace stereotlm::report {
 namespace {
 
-// Where the page takes its data.
-constexpr std::string_view kPlace = "DATA_OF_THE_REPORT";
+std::string_view between(const char* begin, const char* end) {
+  return {begin, static_cast<std::size_t>(end - begin)};
+}
 
-// In JSON `<` occurs in strings only, where it may be escaped. Without it no text ends the script element.
-std::string without_tags(const std::string& json) {
-  std::string text;
-  text.reserve(json.size());
-  for (const char letter : json) {
-    if (letter == '<') {
-      text += "\\u003c";
-    } else {
-      text += letter;
-    }
-  }
-  return text;
+// The bytes compressed by zlib, in base64.
+std::string compressed(const std::string& text) {
+  uLongf size = compressBound(text.size());
+  std::vector<Bytef> bytes(size);
+  if (compress(bytes.data(), &size, reinterpret_cast<const Bytef*>(text.data()), text.size()) != Z_OK)
+    throw std::runtime_error("the data of the page cannot be compressed");
+  return files::base64(bytes.data(), size);
 }
 
 }  // namespace
 
-std::string html_page(const nlohmann::ordered_json& data) {
-  const std::string_view page = page_text();
-  const std::size_t place = page.find(kPlace);
-  if (place == std::string_view::npos) throw std::logic_error("the page has no place for its data");
-  std::string text(page.substr(0, place));
-  text += without_tags(data.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
-  return text.append(page.substr(place + kPlace.size()));
+std::string page_mark() {
+  return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+         "<meta name=\"generator\" content=\"stereotlm report\">\n";
 }
 
-std::string page_mark() {
-  constexpr std::string_view kGenerator = "content=\"stereotlm report\">\n";
-  const std::string_view page = page_text();
-  return std::string(page.substr(0, page.find(kGenerator) + kGenerator.size()));
+std::string html_page(const nlohmann::ordered_json& data) {
+  constexpr std::string_view kPage = R"({}<meta name="viewport" content="width=device-width, initial-scale=1">
+<title>stereotlm report</title>
+<link rel="icon" href="data:,">
+<style>
+{}</style>
+</head>
+<body>
+<main id="page"><noscript>This page needs JavaScript.</noscript></main>
+<script type="text/plain" id="data">{}</script>
+<script type="module">
+{}</script>
+</body>
+</html>
+)";
+  return fmt::format(kPage, page_mark(), between(stereotlm_page_style, stereotlm_page_style_end),
+                     compressed(data.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)),
+                     between(stereotlm_page_script, stereotlm_page_script_end));
 }
 
 }  // namespace stereotlm::report

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -13,10 +14,9 @@ namespace {
 constexpr double kBetweenTracks = 10;
 constexpr double kBetweenEdges = 1;  // that run side by side
 constexpr double kClearance = 6;     // between edges of different ports, where there is room
-constexpr double kLeastClearance = 1;
 constexpr double kPlayStep = 1.5;
-constexpr long kNearCost = 5;  // in crossings
-constexpr long kOverlapCost = 1000;
+constexpr long kBendCost = 2;  // in crossings: of an edge that does not run straight
+constexpr long kNearCost = 5;
 
 bool is_between(double y, const ChannelEdge& edge) {
   return y > std::min(edge.bank_y, edge.port_y) && y < std::max(edge.bank_y, edge.port_y);
@@ -24,9 +24,9 @@ bool is_between(double y, const ChannelEdge& edge) {
 
 bool is_straight(const ChannelEdge& edge) { return edge.bank_y == edge.port_y; }
 
-// Whether the horizontal pieces of the edges, at these heights, would be nearer to each other than that.
-bool touch(double y, double width, double other_y, double other_width, double clearance = kClearance) {
-  return std::abs(y - other_y) < (width + other_width) / 2 + clearance;
+// Whether the horizontal pieces of the edges, at these heights, would be too near to each other.
+bool touch(double y, double width, double other_y, double other_width) {
+  return std::abs(y - other_y) < (width + other_width) / 2 + kClearance;
 }
 
 // Crossings of two nets if `left` has its tracks to the left of those of `right`. The pieces of `left` to its
@@ -37,46 +37,9 @@ long cost(const ChannelNet& left, const ChannelNet& right) {
     for (const ChannelEdge& b : right.edges) {
       sum += (is_between(b.bank_y, a) ? 1 : 0) + (is_between(a.port_y, b) ? 1 : 0);
       if (touch(a.port_y, a.width, b.bank_y, b.width)) sum += kNearCost;
-      if (touch(a.port_y, a.width, b.bank_y, b.width, kLeastClearance)) sum += kOverlapCost;
     }
   }
   return sum;
-}
-
-// Edges of other ports that end at a bank at the height of an end at this net's port, when it is moved by
-// `shift`.
-int touched(const std::vector<ChannelNet>& nets, const ChannelNet& net, double shift) {
-  int count = 0;
-  for (const ChannelNet& other : nets) {
-    if (&other == &net) continue;
-    for (const ChannelEdge& edge : net.edges) {
-      for (const ChannelEdge& foreign : other.edges)
-        count += touch(edge.port_y + shift, edge.width, foreign.bank_y, foreign.width) ? 1 : 0;
-    }
-  }
-  return count;
-}
-
-void move_ends(const std::vector<ChannelNet>& nets, ChannelNet& net) {
-  if (net.edges.size() == 1) {
-    ChannelEdge& only = net.edges.front();
-    const double shift = only.bank_y - only.port_y;
-    if (std::abs(shift) <= net.play && touched(nets, net, shift) == 0) {
-      only.port_y = only.bank_y;
-      return;
-    }
-  }
-  double best = 0;
-  int least = touched(nets, net, 0);
-  for (double shift = kPlayStep; shift <= net.play && least > 0; shift += kPlayStep) {
-    for (const double signed_shift : {shift, -shift}) {
-      const int count = touched(nets, net, signed_shift);
-      if (count >= least) continue;
-      least = count;
-      best = signed_shift;
-    }
-  }
-  for (ChannelEdge& edge : net.edges) edge.port_y += best;
 }
 
 // The order of the tracks from left to right, and its cost.
@@ -92,9 +55,12 @@ TrackOrder best_order(const std::vector<ChannelNet>& nets) {
   for (std::size_t a = 0; a < nets.size(); ++a) {
     for (std::size_t b = 0; b < nets.size(); ++b) costs[a][b] = cost(nets[a], nets[b]);
   }
+  long bends = 0;
+  for (const ChannelNet& net : nets)
+    bends += kBendCost * std::count_if(net.edges.begin(), net.edges.end(), std::not_fn(is_straight));
   TrackOrder best;
   do {
-    long sum = 0;
+    long sum = bends;
     for (std::size_t a = 0; a < order.size(); ++a) {
       for (std::size_t b = a + 1; b < order.size(); ++b) sum += costs[order[a]][order[b]];
     }
@@ -103,21 +69,28 @@ TrackOrder best_order(const std::vector<ChannelNet>& nets) {
   return best;
 }
 
-// Edges of two ports that each end at the height of the other's bank overlap in every order: moves the ends of
-// one port after the other to where the best order costs least. `centred`: the nets before they were moved.
-TrackOrder without_overlap(std::vector<ChannelNet>& nets, const std::vector<ChannelNet>& centred,
-                           TrackOrder order) {
-  for (std::size_t n = 0; n < nets.size(); ++n) {
-    ChannelNet best = nets[n];
-    for (double shift = -centred[n].play; shift <= centred[n].play; shift += kPlayStep) {
-      nets[n] = centred[n];
-      for (ChannelEdge& edge : nets[n].edges) edge.port_y += shift;
+// Moves the ends of one port after the other to where the best order of the tracks costs least: by steps of
+// its play, or so that an edge runs straight.
+TrackOrder move_ends(std::vector<ChannelNet>& nets) {
+  TrackOrder order = best_order(nets);
+  for (ChannelNet& net : nets) {
+    const ChannelNet centred = net;
+    std::vector<double> shifts;
+    for (double shift = kPlayStep; shift <= net.play; shift += kPlayStep)
+      shifts.insert(shifts.end(), {shift, -shift});
+    for (const ChannelEdge& edge : net.edges) {
+      if (std::abs(edge.bank_y - edge.port_y) <= net.play) shifts.push_back(edge.bank_y - edge.port_y);
+    }
+    ChannelNet best = net;
+    for (const double shift : shifts) {
+      for (std::size_t i = 0; i < net.edges.size(); ++i)
+        net.edges[i].port_y = centred.edges[i].port_y + shift;
       TrackOrder found = best_order(nets);
       if (found.cost >= order.cost) continue;
       order = std::move(found);
-      best = nets[n];
+      best = net;
     }
-    nets[n] = best;
+    net = best;
   }
   return order;
 }
@@ -140,11 +113,7 @@ double place(std::vector<ChannelEdge*> edges, const ChannelNet& net, double left
 }  // namespace
 
 double route_channel(std::vector<ChannelNet>& nets, double left_x) {
-  const std::vector<ChannelNet> centred = nets;
-  for (ChannelNet& net : nets) move_ends(nets, net);
-  TrackOrder order = best_order(nets);
-  if (order.cost >= kOverlapCost) order = without_overlap(nets, centred, std::move(order));
-  for (const std::size_t number : order.nets) {
+  for (const std::size_t number : move_ends(nets).nets) {
     ChannelNet& net = nets[number];
     std::vector<ChannelEdge*> up;
     std::vector<ChannelEdge*> down;

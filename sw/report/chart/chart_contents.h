@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -31,25 +32,13 @@ BankLines bank_lines(const platform::BoardConfig& board, const platform::BankCon
 // The ports of the core that exist, and the host's unless the board is alone, from top to bottom: the tables
 // beside the pixel ports that they serve.
 std::vector<std::string> ports_from_top(const platform::BoardConfig& board, ChartExtent extent);
-ChartLines port_lines(const platform::BoardConfig& board, const std::string& port,
-                      const ChartTraffic* traffic);
 
-ChartLines lane_lines(const platform::BoardConfig& board, const std::string& side);
-ChartLines matcher_lines(const platform::BoardConfig& board);
-ChartLines lr_check_lines(const platform::BoardConfig& board);
-ChartLines result_queue_lines(const platform::BoardConfig& board);
+// The lines of every block but the banks, by the id of the block.
+std::map<std::string, ChartLines> block_lines(const platform::BoardConfig& board, ChartExtent extent,
+                                              const ChartTraffic* traffic);
+
 std::string fpga_line(const platform::BoardConfig& board);
 ChartLines arbitration_lines(const platform::BoardConfig& board);
-
-ChartLines camera_lines(const platform::BoardConfig& board, const std::string& side);
-ChartLines capture_lines(const platform::BoardConfig& board, const std::string& side);
-ChartLines cpu_lines();
-ChartLines host_memory_lines(const platform::BoardConfig& board);
-ChartLines load_lines(const platform::BoardConfig& board);  // with `pci.load`
-ChartLines bridge_lines(const platform::BoardConfig& board);
-std::string pci_line(const platform::BoardConfig& board, const ChartTraffic* traffic);
-ChartLines local_bus_lines(const platform::BoardConfig& board, const ChartTraffic* traffic);
-
 // Below the name of the board.
 ChartLines subtitle_lines(const platform::BoardConfig& board, ChartExtent extent,
                           const ChartTraffic* traffic);

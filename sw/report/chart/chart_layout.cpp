@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
-#include <stdexcept>
 #include <utility>
 
 #include "sw/report/chart/chart_channel.h"
@@ -49,17 +49,14 @@ constexpr double kBetweenParts = 14;
 constexpr double kBusHeight = 26;
 constexpr double kBridgeWidth = 232;
 
+constexpr std::array<double, 4> kLoadSteps = {1, 25, 50, 90};  // % of the peak, where load1 to load4 begin
+constexpr double kBarOutline = 0.75;
+
 double block_height(const ChartLines& lines) {
   return 2 * kPadding + kNameStep + kNoteStep * static_cast<double>(lines.size() - 1);
 }
 
 bool is_around_board(const ChartLink& link) { return link.from.compare(0, 5, "part-") == 0; }
-
-double tallest(const std::vector<ChartLines>& blocks) {
-  double height = 0;
-  for (const ChartLines& lines : blocks) height = std::max(height, block_height(lines));
-  return height;
-}
 
 ChartText text_at(const std::string& text, double x, double y, ChartAnchor anchor, double width,
                   double size = kNoteSize, bool bold = false) {
@@ -77,27 +74,14 @@ ChartText text_at(const std::string& text, double x, double y, ChartAnchor ancho
   return line;
 }
 
-// A block with its lines in its middle.
-ChartBlock block_of(const std::string& id, BlockKind kind, const ChartBox& box, const ChartLines& lines) {
-  ChartBlock block;
-  block.id = id;
-  block.kind = kind;
-  block.box = box;
-  block.title = fmt::format("{}", fmt::join(lines, "\n"));
-  double y = box.middle_y() - (kNameStep + kNoteStep * static_cast<double>(lines.size() - 1)) / 2;
-  for (const std::string& line : lines) {
-    const bool is_name = block.texts.empty();
-    block.texts.push_back(text_at(line, box.middle_x(), y, ChartAnchor::kMiddle, box.width - 8,
-                                  is_name ? kNameSize : kNoteSize, is_name));
-    y += is_name ? kNameStep : kNoteStep;
-  }
-  return block;
-}
-
 class Layout {
  public:
   Layout(const platform::BoardConfig& board, ChartExtent extent, const ChartTraffic* traffic)
-      : board_(board), extent_(extent), traffic_(traffic), ports_(ports_from_top(board, extent)) {}
+      : board_(board),
+        extent_(extent),
+        traffic_(traffic),
+        ports_(ports_from_top(board, extent)),
+        lines_(block_lines(board, extent, traffic)) {}
 
   MemoryChart make() {
     chart_.title = "Memory chart of " + board_.name;
@@ -113,8 +97,6 @@ class Layout {
     add_labels();
     add_heading();
     add_legend();
-    for (ChartBlock& block : chart_.blocks)
-      block.limits = traffic_ != nullptr && traffic_->limiting.count(block.id) > 0;
     chart_.width = chart_.fpga.right() + kMargin;
     return std::move(chart_);
   }
@@ -156,6 +138,7 @@ class Layout {
         const double value = traffic_->megabytes_per_second.at(link.id());
         edge.megabytes_per_second = value;
         edge.width = std::max(1.0, kWidestEdge * value / most);
+        edge.colour = load_colour(value, link.peak);
         edge.title = fmt::format(
             "{}: {} of {} MB/s ({} %)\n{}", ends, measured(value), number, measured(100 * value / link.peak),
             is_around_board(link) ? "mean since power-up" : "mean while the core works on a frame");
@@ -172,8 +155,8 @@ class Layout {
     return edge.width + kAboveLabel + (edge.label.text.empty() ? 0 : kLabelHeight);
   }
 
-  // A link leaves a bank at the buffers that it carries, that of the host, which carries all, at its name. The
-  // lines of the buffers are as far apart as the links need.
+  // A link leaves a bank at the buffers that it carries, that of the host, which carries all, at its name.
+  // The lines of the buffers are as far apart as the links need.
   void measure_banks() {
     for (const platform::BankConfig& config : board_.banks) {
       Bank bank;
@@ -219,7 +202,7 @@ class Layout {
           port.bundle = traffic_ == nullptr ? kThinEdge : port.bundle + chart_.edges[i].width + 1;
         }
       }
-      port.height = std::max(block_height(port_lines(board_, name, traffic_)), port.bundle + 2 * kLeastPlay);
+      port.height = std::max(height_of("port-" + name), port.bundle + 2 * kLeastPlay);
       port_by_name_[name] = std::move(port);
     }
   }
@@ -230,22 +213,20 @@ class Layout {
            12;
   }
 
+  double height_of(const std::string& block) const { return block_height(lines_.at(block)); }
+
   double above_fpga() const {
     if (!is_computer()) return 0;
-    return tallest({camera_lines(board_, "left")}) + kShortEdge + parts_height() + kShortEdge + kBusHeight +
-           kShortEdge + block_height(bridge_lines(board_)) + kShortEdge +
-           block_height(local_bus_lines(board_, traffic_)) + kShortEdge;
+    return height_of("part-left_camera") + parts_height() + kBusHeight + height_of("part-bridge") +
+           height_of("part-local_bus") + 5 * kShortEdge;
   }
 
-  double parts_height() const {
-    std::vector<ChartLines> parts = {capture_lines(board_, "left"), cpu_lines(), host_memory_lines(board_)};
-    if (board_.pci.load) parts.push_back(load_lines(board_));
-    return tallest(parts);
-  }
+  // No part at the PCI bus has more lines than the capture boards.
+  double parts_height() const { return height_of("part-left_capture"); }
 
   // Chooses all y of banks, ports and the FPGA.
   void place_down(double top) {
-    const double lane = block_height(lane_lines(board_, "left"));
+    const double lane = height_of("stage-left_lane");
     chart_.fpga.y = top + above_fpga();
     double y = chart_.fpga.y + kFpgaTitle + 6;
     for (const std::string& name : ports_) {
@@ -325,12 +306,24 @@ class Layout {
       chart_.blocks.push_back(bank_block(board_.banks[i].name, banks_[i]));
   }
 
+  // A block without texts; its name and colour are those of its kind.
+  ChartBlock block_at(const std::string& id, const std::string& title, const ChartBox& box,
+                      const std::string& fill) const {
+    const bool limits = traffic_ != nullptr && traffic_->limiting.count(id) > 0;
+    return {id, title, box, limits, {{box, 4, fill, limits ? "ink" : "line", limits ? 3.0 : 1.0}}, {}};
+  }
+
+  // A bar of parts with their widths and their colour.
+  static void add_bar(ChartBlock& block, const ChartBox& bar, const std::vector<ChartRect>& parts) {
+    block.rects.push_back({bar, 2, "free"});
+    block.rects.insert(block.rects.end(), parts.begin(), parts.end());
+    block.rects.push_back({bar, 2, "none", "line", kBarOutline});
+  }
+
   ChartBlock bank_block(const std::string& name, const Bank& bank) const {
-    ChartBlock block;
-    block.id = "bank-" + name;
-    block.kind = BlockKind::kMemory;
-    block.box = bank.box;
-    block.title = fmt::format("{}: {}\n{}, {}", name, bank.lines.bandwidth, bank.lines.size, bank.lines.kind);
+    const std::string title =
+        fmt::format("{}: {}\n{}, {}", name, bank.lines.bandwidth, bank.lines.size, bank.lines.kind);
+    ChartBlock block = block_at("bank-" + name, title, bank.box, bank.lines.busy_percent ? "free" : "memory");
     const double left = bank.box.x + 9;
     const double right = bank.box.right() - 9;
     double y = bank.box.y + kPadding;
@@ -341,10 +334,13 @@ class Layout {
     y += kNameStep;
     if (bank.lines.busy_percent) {
       const double percent = *bank.lines.busy_percent;
+      const std::string colour = load_colour(percent, 100);
       const ChartText busy =
           text_at(fmt::format("busy {} %", measured(percent)), left, y, ChartAnchor::kStart, 90);
       block.texts.push_back(busy);
-      block.busy = {{left + 90, busy.box.middle_y() - kBusyBar / 2, right - left - 90, kBusyBar}, percent};
+      ChartBox bar = {left + 90, busy.box.middle_y() - kBusyBar / 2, right - left - 90, kBusyBar};
+      block.rects.push_back({bank.box, 4, colour, "", 0, 0.2});
+      add_bar(block, bar, {{{bar.x, bar.y, bar.width * percent / 100, bar.height}, 2, colour}});
       block.title += "\n" + busy.text + " of the cycles";
       y += kNoteStep;
     }
@@ -353,16 +349,16 @@ class Layout {
     block.texts.push_back(
         text_at(bank.lines.kind, right, y, ChartAnchor::kEnd, right - size.box.right() - 8));
     y += kNoteStep + 2;
-    WordsBar bar;
-    bar.all = {left, y, right - left, kWordsBar};
+    const ChartBox bar = {left, y, right - left, kWordsBar};
+    std::vector<ChartRect> parts;
     double x = left;
     y += kWordsBar + 2;
     for (std::size_t i = 0; i < bank.rows.size(); ++i) {
       const BankLines::Held& held = bank.lines.buffers[i];
       y = bank.box.y + bank.rows[i];
       const double width =
-          bar.all.width * static_cast<double>(held.words) / static_cast<double>(bank.lines.words);
-      bar.buffers.push_back({x, bar.all.y, width, kWordsBar});
+          bar.width * static_cast<double>(held.words) / static_cast<double>(bank.lines.words);
+      parts.push_back({{x, bar.y, width, kWordsBar}, 0, "used", "memory"});
       x += width;
       const std::string words = grouped(held.words);
       block.title += fmt::format("\n{}: {} words", held.label, words);
@@ -373,7 +369,7 @@ class Layout {
     }
     if (bank.lines.buffers.empty())
       block.texts.push_back(text_at("no buffer", left, y, ChartAnchor::kStart, 100));
-    block.words = bar;
+    add_bar(block, bar, parts);
     return block;
   }
 
@@ -381,23 +377,36 @@ class Layout {
     chart_.flows.push_back({"flow-" + name, std::move(way)});
   }
 
-  void add_block(const std::string& id, BlockKind kind, const ChartBox& box, const ChartLines& lines) {
-    chart_.blocks.push_back(block_of(id, kind, box, lines));
+  // A block with its lines in its middle.
+  void add_block(const std::string& id, const ChartBox& box, const std::string& fill = "logic") {
+    const ChartLines& lines = lines_.at(id);
+    ChartBlock block = block_at(id, fmt::format("{}", fmt::join(lines, "\n")), box, fill);
+    double y = box.middle_y() - block_height(lines) / 2 + kPadding;
+    for (const std::string& line : lines) {
+      const bool is_name = block.texts.empty();
+      block.texts.push_back(text_at(line, box.middle_x(), y, ChartAnchor::kMiddle, box.width - 8,
+                                    is_name ? kNameSize : kNoteSize, is_name));
+      y += is_name ? kNameStep : kNoteStep;
+    }
+    chart_.blocks.push_back(std::move(block));
+  }
+
+  // A block of the height of its lines.
+  ChartBox add_block_at(const std::string& id, double x, double middle_y, double width) {
+    const ChartBox box{x, middle_y - height_of(id) / 2, width, height_of(id)};
+    add_block(id, box);
+    return box;
   }
 
   void add_core() {
-    for (const std::string& name : ports_)
-      add_block("port-" + name, BlockKind::kLogic, port_box(name), port_lines(board_, name, traffic_));
+    for (const std::string& name : ports_) add_block("port-" + name, port_box(name));
     const double lane_x = port_x() + kPortWidth + kBetweenStages;
     const double matcher_x = lane_x + kLaneWidth + kBetweenStages;
     const double check_x = matcher_x + kMatcherWidth + kBetweenStages;
     ChartBox matcher{matcher_x, 0, kMatcherWidth, 0};
     for (const std::string side : {"left", "right"}) {
       const ChartBox pixels = port_box(side + "_pixel");
-      const ChartLines lines = lane_lines(board_, side);
-      const double height = block_height(lines);
-      const ChartBox lane{lane_x, pixels.middle_y() - height / 2, kLaneWidth, height};
-      add_block("stage-" + side + "_lane", BlockKind::kLogic, lane, lines);
+      const ChartBox lane = add_block_at("stage-" + side + "_lane", lane_x, pixels.middle_y(), kLaneWidth);
       add_flow(side + "_pixel-" + side + "_lane",
                {{pixels.right(), lane.middle_y()}, {lane.x, lane.middle_y()}});
       add_flow(side + "_lane-matcher", {{lane.right(), lane.middle_y()}, {matcher_x, lane.middle_y()}});
@@ -405,21 +414,14 @@ class Layout {
       matcher.height = lane.bottom() - matcher.y;
       add_table_flow(side, pixels);
     }
-    const ChartLines lines = matcher_lines(board_);
-    const double missing = std::max(0.0, block_height(lines) - matcher.height);
+    const double missing = std::max(0.0, height_of("stage-matcher") - matcher.height);
     matcher.y -= missing / 2;
     matcher.height += missing;
-    add_block("stage-matcher", BlockKind::kLogic, matcher, lines);
-    const ChartLines check_lines = lr_check_lines(board_);
-    const ChartBox check{check_x, matcher.middle_y() - block_height(check_lines) / 2, kCheckWidth,
-                         block_height(check_lines)};
-    add_block("stage-lr_check", BlockKind::kLogic, check, check_lines);
+    add_block("stage-matcher", matcher);
+    const ChartBox check = add_block_at("stage-lr_check", check_x, matcher.middle_y(), kCheckWidth);
     add_flow("matcher-lr_check", {{matcher.right(), check.middle_y()}, {check.x, check.middle_y()}});
     const ChartBox result = port_box("result");
-    const ChartLines queue_lines = result_queue_lines(board_);
-    const ChartBox queue{check_x, result.middle_y() - block_height(queue_lines) / 2, kCheckWidth,
-                         block_height(queue_lines)};
-    add_block("stage-result_queue", BlockKind::kLogic, queue, queue_lines);
+    const ChartBox queue = add_block_at("stage-result_queue", check_x, result.middle_y(), kCheckWidth);
     add_flow("lr_check-result_queue", {{check.middle_x(), check.bottom()}, {check.middle_x(), queue.y}});
     add_flow("result_queue-result", {{queue.x, queue.middle_y()}, {result.right(), queue.middle_y()}});
 
@@ -451,46 +453,41 @@ class Layout {
   }
 
   void add_computer(double top) {
-    struct Part {
-      std::string name;
-      ChartLines lines;
-      std::string edge;
-    };
-    std::vector<Part> parts = {{"left_capture", capture_lines(board_, "left"), "edge-left_capture-pci"},
-                               {"right_capture", capture_lines(board_, "right"), "edge-right_capture-pci"},
-                               {"cpu", cpu_lines(), "edge-cpu-pci"},
-                               {"host_memory", host_memory_lines(board_), "edge-pci-host_memory"}};
-    if (board_.pci.load) parts.push_back({"load", load_lines(board_), "edge-load-pci"});
+    // The parts at the PCI bus, with their links.
+    std::vector<std::pair<std::string, std::string>> parts = {
+        {"part-left_capture", "edge-left_capture-pci"},
+        {"part-right_capture", "edge-right_capture-pci"},
+        {"part-cpu", "edge-cpu-pci"},
+        {"part-host_memory", "edge-pci-host_memory"}};
+    if (board_.pci.load) parts.emplace_back("part-load", "edge-load-pci");
     const double left = chart_.fpga.x;
     const auto count = static_cast<double>(parts.size());
     const double width = (kFpgaWidth - (count - 1) * kBetweenParts) / count;
-    const double camera_height = block_height(camera_lines(board_, "left"));
+    const double camera_height = height_of("part-left_camera");
     const double parts_y = top + camera_height + kShortEdge;
     const ChartBox pci{left, parts_y + parts_height() + kShortEdge, kFpgaWidth, kBusHeight};
     double x = left;
-    for (const Part& part : parts) {
+    for (const auto& [part, link] : parts) {
       const ChartBox box{x, parts_y, width, parts_height()};
-      add_block("part-" + part.name, part.name == "host_memory" ? BlockKind::kMemory : BlockKind::kComputer,
-                box, part.lines);
-      const bool from_bus = part.name == "host_memory";
-      connect(part.edge, box.middle_x(), from_bus ? pci.y : box.bottom(), from_bus ? box.bottom() : pci.y);
+      const bool from_bus = part == "part-host_memory";
+      add_block(part, box, from_bus ? "memory" : "computer");
+      connect(link, box.middle_x(), from_bus ? pci.y : box.bottom(), from_bus ? box.bottom() : pci.y);
       x = box.right() + kBetweenParts;
     }
     x = left;
     for (const std::string side : {"left", "right"}) {
       const ChartBox box{x, top, width, camera_height};
-      add_block("part-" + side + "_camera", BlockKind::kComputer, box, camera_lines(board_, side));
+      add_block("part-" + side + "_camera", box, "computer");
       connect("edge-" + side + "_camera-" + side + "_capture", box.middle_x(), box.bottom(), parts_y);
       x = box.right() + kBetweenParts;
     }
-    add_block("part-pci", BlockKind::kBus, pci, {pci_line(board_, traffic_)});
-    const ChartBox bridge{left, pci.bottom() + kShortEdge, kBridgeWidth, block_height(bridge_lines(board_))};
-    add_block("part-bridge", BlockKind::kComputer, bridge, bridge_lines(board_));
+    add_block("part-pci", pci, "bus");
+    const ChartBox bridge{left, pci.bottom() + kShortEdge, kBridgeWidth, height_of("part-bridge")};
+    add_block("part-bridge", bridge, "computer");
     connect("edge-pci-bridge", left + 56, pci.bottom(), bridge.y);
     connect("edge-bridge-pci", left + 150, bridge.y, pci.bottom());
-    const ChartBox local{left, bridge.bottom() + kShortEdge, kBridgeWidth,
-                         block_height(local_bus_lines(board_, traffic_))};
-    add_block("part-local_bus", BlockKind::kBus, local, local_bus_lines(board_, traffic_));
+    const ChartBox local{left, bridge.bottom() + kShortEdge, kBridgeWidth, height_of("part-local_bus")};
+    add_block("part-local_bus", local, "bus");
     const ChartBox host = port_box("host");
     connect("edge-bridge-local_bus", host.middle_x(), bridge.bottom(), local.y);
     connect("edge-local_bus-host", host.middle_x(), local.bottom(), host.y);
@@ -533,11 +530,14 @@ class Layout {
       if (line.find("Colour") == std::string::npos) continue;
       y += 2;
       constexpr double kSwatch = 56;
-      for (int step = 0; step < kLoadSteps; ++step) {
-        const double x = legend_.x + kSwatch * step;
-        chart_.swatches.push_back({{x, y, kSwatch - 4, 8}, step});
-        chart_.texts.push_back(text_at(load_text(step), x, y + 10, ChartAnchor::kStart, kSwatch - 4));
-      }
+      double x = legend_.x;
+      const auto add_swatch = [&](double percent, const std::string& text) {
+        chart_.swatches.push_back({{x, y, kSwatch - 4, 8}, 1, load_colour(percent, 100)});
+        chart_.texts.push_back(text_at(text, x, y + 10, ChartAnchor::kStart, kSwatch - 4));
+        x += kSwatch;
+      };
+      add_swatch(0, "below " + short_number(kLoadSteps.front()));
+      for (const double percent : kLoadSteps) add_swatch(percent, "from " + short_number(percent));
       y += 10 + kNoteStep + 3;
     }
     chart_.height = std::max(chart_.height, y + kMargin);
@@ -546,7 +546,8 @@ class Layout {
   const platform::BoardConfig& board_;
   ChartExtent extent_;
   const ChartTraffic* traffic_;
-  std::vector<std::string> ports_;  // from top to bottom
+  std::vector<std::string> ports_;           // from top to bottom
+  std::map<std::string, ChartLines> lines_;  // of each block but the banks, by its id
   std::map<std::string, Port> port_by_name_;
   std::vector<Bank> banks_;  // in the order of the board
   double banks_top_ = 0;
@@ -556,11 +557,18 @@ class Layout {
 
 }  // namespace
 
-MemoryChart layout_memory_chart(const platform::BoardConfig& board, ChartExtent extent,
-                                const ChartTraffic* traffic) {
-  if (traffic != nullptr && traffic->extent != extent)
-    throw std::invalid_argument("the traffic is that of a run of another extent");
-  return Layout(board, extent, traffic).make();
+std::string load_colour(double load, double peak) {
+  const auto steps = std::count_if(kLoadSteps.begin(), kLoadSteps.end(),
+                                   [&](double percent) { return 100 * load >= percent * peak; });
+  return fmt::format("load{}", steps);
+}
+
+MemoryChart layout_memory_chart(const platform::BoardConfig& board, ChartExtent extent) {
+  return Layout(board, extent, nullptr).make();
+}
+
+MemoryChart layout_memory_chart(const platform::BoardConfig& board, const ChartTraffic& traffic) {
+  return Layout(board, traffic.extent, &traffic).make();
 }
 
 }  // namespace stereotlm::report

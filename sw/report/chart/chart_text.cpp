@@ -11,7 +11,6 @@
 namespace stereotlm::report {
 namespace {
 
-constexpr char32_t kReplacement = 0xFFFD;
 constexpr std::string_view kEllipsis = "\u2026";
 
 // Advance widths of the characters from space to '~', in thousandths of the font size.
@@ -30,70 +29,47 @@ constexpr Widths kBold = {348,  456, 521, 838, 696, 1002, 872, 306,  457, 457, 5
                           716,  716, 493, 595, 478, 712,  652, 924,  645, 652, 582, 712, 365, 712,  838};
 constexpr double kOtherWidth = 1.25;  // of all other characters, in font sizes: that of an emoji
 
-struct Character {
-  char32_t code;
-  std::string_view bytes;
-};
-
-// The character at the beginning of the text, which is not empty. A byte that begins none is kReplacement.
-Character first_character(std::string_view text) {
-  const auto byte = [text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  const std::size_t length = byte(0) < 0x80    ? 1
-                             : byte(0) >= 0xF0 ? 4
-                             : byte(0) >= 0xE0 ? 3
-                             : byte(0) >= 0xC2 ? 2
-                                               : 0;
-  if (length == 0 || length > text.size() || byte(0) > 0xF4) return {kReplacement, text.substr(0, 1)};
-  constexpr std::array<unsigned char, 5> kFirstBits = {0, 0x7F, 0x1F, 0x0F, 0x07};
-  char32_t code = byte(0) & kFirstBits[length];
-  for (std::size_t i = 1; i < length; ++i) {
-    if ((byte(i) & 0xC0U) != 0x80) return {kReplacement, text.substr(0, 1)};
-    code = code << 6U | (byte(i) & 0x3FU);
+// The characters of a UTF-8 text, each with its bytes.
+std::vector<std::string_view> characters(std::string_view text) {
+  std::vector<std::string_view> all;
+  while (!text.empty()) {
+    std::size_t length = 1;
+    while (length < text.size() && (static_cast<unsigned char>(text[length]) & 0xC0U) == 0x80) ++length;
+    all.push_back(text.substr(0, length));
+    text.remove_prefix(length);
   }
-  constexpr std::array<char32_t, 5> kLeast = {0, 0, 0x80, 0x800, 0x10000};
-  const bool is_surrogate = code >= 0xD800 && code <= 0xDFFF;
-  if (code < kLeast[length] || code > 0x10FFFF || is_surrogate) return {kReplacement, text.substr(0, 1)};
-  return {code, text.substr(0, length)};
-}
-
-std::vector<Character> characters(std::string_view text) {
-  std::vector<Character> all;
-  for (; !text.empty(); text.remove_prefix(all.back().bytes.size())) all.push_back(first_character(text));
   return all;
 }
 
-double width_of(const Character& character, bool bold) {
-  if (character.code < ' ' || character.code > '~') return kOtherWidth;
-  return (bold ? kBold : kRegular)[character.code - ' '] / 1000.0;
-}
-
-bool is_xml(char32_t code) {
-  return code == '\t' || code == '\n' || (code >= ' ' && code != 0xFFFE && code != 0xFFFF);
+double width_of(std::string_view character, bool bold) {
+  const char letter = character.front();
+  if (letter < ' ' || letter > '~') return kOtherWidth;
+  return (bold ? kBold : kRegular)[static_cast<std::size_t>(letter - ' ')] / 1000.0;
 }
 
 }  // namespace
 
 double text_width(std::string_view text, double size, bool bold) {
   double width = 0;
-  for (const Character& character : characters(text)) width += width_of(character, bold);
+  for (const std::string_view character : characters(text)) width += width_of(character, bold);
   return width * size;
 }
 
 std::string fitted(const std::string& text, double size, bool bold, double width) {
   if (text_width(text, size, bold) <= width) return text;
-  const std::vector<Character> all = characters(text);
+  const std::vector<std::string_view> all = characters(text);
   std::string begin;
   std::string end;
   double free = width - kOtherWidth * size;
   for (std::size_t taken = 0; taken < all.size(); ++taken) {
     const bool at_begin = taken % 2 == 0;
-    const Character& next = at_begin ? all[taken / 2] : all[all.size() - 1 - taken / 2];
+    const std::string_view next = at_begin ? all[taken / 2] : all[all.size() - 1 - taken / 2];
     free -= width_of(next, bold) * size;
     if (free < 0) break;
     if (at_begin) {
-      begin += next.bytes;
+      begin += next;
     } else {
-      end = std::string(next.bytes) + end;
+      end = std::string(next) + end;
     }
   }
   return begin + std::string(kEllipsis) + end;
@@ -101,26 +77,15 @@ std::string fitted(const std::string& text, double size, bool bold, double width
 
 std::string xml_text(std::string_view text) {
   std::string result;
-  for (const Character& character : characters(text)) {
-    switch (character.code) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      case '\'':
-        result += "&#39;";
-        break;
-      default:
-        result += character.code != kReplacement && is_xml(character.code) ? character.bytes : "\uFFFD";
-    }
+  for (const std::string_view character : characters(text)) {
+    const bool is_noncharacter = character == "\uFFFE" || character == "\uFFFF";
+    const std::string_view escaped = character == "&"    ? "&amp;"
+                                     : character == "<"  ? "&lt;"
+                                     : character == ">"  ? "&gt;"
+                                     : character == "\"" ? "&quot;"
+                                     : character == "'"  ? "&#39;"
+                                                         : character;
+    result += is_noncharacter ? "\uFFFD" : escaped;
   }
   return result;
 }

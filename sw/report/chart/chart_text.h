@@ -15,12 +15,12 @@ double text_width(std::string_view text, double size, bool bold);
 // The text if it fits, else its beginning and its end around an ellipsis. Names often differ in their ends.
 std::string fitted(const std::string& text, double size, bool bold, double width);
 
-// The text for XML, in an element or an attribute. Characters that XML cannot have, and bytes that are not
-// UTF-8, become U+FFFD.
+// The UTF-8 text without control characters, as all names of a board are, for XML: in an element or an
+// attribute. U+FFFE and U+FFFF, which XML cannot have, become U+FFFD.
 std::string xml_text(std::string_view text);
 
-// A figure of the configuration. At most two decimals, without trailing zeros: "160", "133.33", "5.7"; "<0.01"
-// for less.
+// A figure of the configuration. At most two decimals, without trailing zeros: "160", "133.33", "5.7";
+// "<0.01" for less.
 std::string short_number(double value);
 
 // A measured figure. One decimal: "144.4", "5.0"; "<0.1" for less, and "0" for nothing.

@@ -81,9 +81,14 @@ std::string style() {
   return text + "}\n</style>\n";
 }
 
-std::string rect(const ChartBox& box, double radius, const std::string& attributes) {
-  return fmt::format("<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" rx=\"{}\"{}/>\n", px(box.x),
-                     px(box.y), px(box.width), px(box.height), px(radius), attributes);
+std::string rect_element(const ChartRect& rect) {
+  const auto attribute = [](const char* name, double value, double usual) {
+    return value == usual ? "" : fmt::format(" {}=\"{}\"", name, value);
+  };
+  return fmt::format("<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" rx=\"{}\"{}{}{}/>\n", px(rect.box.x),
+                     px(rect.box.y), px(rect.box.width), px(rect.box.height), px(rect.radius),
+                     paint(rect.fill, rect.stroke), attribute("stroke-width", rect.stroke_width, 0),
+                     attribute("fill-opacity", rect.opacity, 1));
 }
 
 std::string text_element(const ChartText& text) {
@@ -151,17 +156,13 @@ std::string arrow_elements(std::vector<ChartPoint> way, bool there, bool back, d
 }
 
 std::string edge_element(const ChartEdge& edge) {
-  std::string color_name = "line";
-  std::string data;
-  if (edge.megabytes_per_second) {
-    color_name = fmt::format("load{}", load_step(*edge.megabytes_per_second, edge.link.peak));
-    data = fmt::format(" data-mbps=\"{}\"", *edge.megabytes_per_second);
-  }
+  const std::string data =
+      edge.megabytes_per_second ? fmt::format(" data-mbps=\"{}\"", *edge.megabytes_per_second) : "";
   return fmt::format("<g id=\"{}\" class=\"edge\" data-from=\"{}\" data-to=\"{}\" data-peak=\"{}\"{}>\n",
                      xml_text(edge.link.id()), xml_text(edge.link.from), xml_text(edge.link.to),
                      edge.link.peak, data) +
          title_element(edge.title) +
-         arrow_elements(edge.way, edge.link.there, edge.link.back, edge.width, color_name) +
+         arrow_elements(edge.way, edge.link.there, edge.link.back, edge.width, edge.colour) +
          (edge.label.text.empty() ? "" : text_element(edge.label)) + "</g>\n";
 }
 
@@ -178,41 +179,12 @@ std::string edge_elements(const std::vector<ChartEdge>& edges) {
 }
 
 std::string block_element(const ChartBlock& block) {
-  constexpr std::array<const char*, 4> kFills = {"memory", "logic", "bus", "computer"};
-  const std::string outline = fmt::format(" stroke-width=\"{}\"", block.limits ? "3" : "1");
   std::string text =
       fmt::format("<g id=\"{}\" class=\"block{}\">\n", xml_text(block.id), block.limits ? " limits" : "");
   text += title_element(block.title);
-  text += rect(block.box, 4,
-               paint(block.busy ? "free" : kFills[static_cast<std::size_t>(block.kind)],
-                     block.limits ? "ink" : "line") +
-                   outline);
-  if (block.busy) {
-    const BusyBar& busy = *block.busy;
-    const std::string load = fmt::format("load{}", load_step(busy.percent, 100));
-    text += rect(block.box, 4, paint(load, "") + " fill-opacity=\"0.2\"");
-    text += rect(busy.all, 2, paint("free", ""));
-    text += rect({busy.all.x, busy.all.y, busy.all.width * busy.percent / 100, busy.all.height}, 2,
-                 paint(load, ""));
-    text += rect(busy.all, 2, paint("none", "line") + " stroke-width=\"0.75\"");
-  }
-  if (block.words) {
-    text += rect(block.words->all, 2, paint("free", ""));
-    for (const ChartBox& buffer : block.words->buffers) text += rect(buffer, 0, paint("used", "memory"));
-    text += rect(block.words->all, 2, paint("none", "line") + " stroke-width=\"0.75\"");
-  }
+  for (const ChartRect& rect : block.rects) text += rect_element(rect);
   for (const ChartText& line : block.texts) text += text_element(line);
   return text + "</g>\n";
-}
-
-}  // namespace
-
-std::string memory_chart_svg(const platform::BoardConfig& board, ChartExtent extent) {
-  return svg_of(layout_memory_chart(board, extent, nullptr));
-}
-
-std::string memory_chart_svg(const platform::BoardConfig& board, const ChartTraffic& traffic) {
-  return svg_of(layout_memory_chart(board, traffic.extent, &traffic));
 }
 
 std::string svg_of(const MemoryChart& chart) {
@@ -222,18 +194,27 @@ std::string svg_of(const MemoryChart& chart) {
       "sans-serif\">\n",
       px(chart.width), px(chart.height), kChartMark);
   text += title_element(chart.title) + style();
-  text += rect({0, 0, chart.width, chart.height}, 0, paint("page", ""));
-  text += rect(chart.fpga, 8, paint("none", "frame"));
+  text += rect_element({{0, 0, chart.width, chart.height}, 0, "page"});
+  text += rect_element({chart.fpga, 8, "none", "frame"});
   for (const ChartFlow& flow : chart.flows) {
     text += fmt::format("<g id=\"{}\" class=\"flow\">\n{}</g>\n", xml_text(flow.id),
                         arrow_elements(flow.way, true, false, 1, "line"));
   }
   text += edge_elements(chart.edges);
   for (const ChartBlock& block : chart.blocks) text += block_element(block);
-  for (const LoadSwatch& swatch : chart.swatches)
-    text += rect(swatch.box, 1, paint(fmt::format("load{}", swatch.step), ""));
+  for (const ChartRect& swatch : chart.swatches) text += rect_element(swatch);
   for (const ChartText& line : chart.texts) text += text_element(line);
   return text + "</svg>\n";
+}
+
+}  // namespace
+
+std::string memory_chart_svg(const platform::BoardConfig& board, ChartExtent extent) {
+  return svg_of(layout_memory_chart(board, extent));
+}
+
+std::string memory_chart_svg(const platform::BoardConfig& board, const ChartTraffic& traffic) {
+  return svg_of(layout_memory_chart(board, traffic));
 }
 
 }  // namespace stereotlm::report

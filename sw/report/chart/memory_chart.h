@@ -2,7 +2,6 @@
 
 #include <string>
 
-#include "sw/report/chart/chart_drawing.h"
 #include "sw/report/chart/chart_traffic.h"
 
 namespace stereotlm::report {
@@ -18,8 +17,5 @@ std::string memory_chart_svg(const platform::BoardConfig& board, ChartExtent ext
 
 // The memory chart of a run: each link with its MB/s.
 std::string memory_chart_svg(const platform::BoardConfig& board, const ChartTraffic& traffic);
-
-// The SVG document of a chart that has its places.
-std::string svg_of(const MemoryChart& chart);
 
 }  // namespace stereotlm::report

@@ -10,7 +10,6 @@
 #include "models/fpga/frame_geometry.h"
 #include "platform/audit.h"
 #include "sw/report/conflicts_csv.h"
-#include "sw/report/page_data/packed_column.h"
 
 namespace stereotlm::report {
 namespace {
@@ -33,13 +32,6 @@ enum TileColumn : std::size_t {
   kBy,
   kStalls
 };
-
-template <typename Number>
-Json packed(const std::vector<Number>& values) {
-  PackedColumn column;
-  for (const Number value : values) column.add(static_cast<std::int64_t>(value));
-  return column.json();
-}
 
 std::size_t parts_of(std::size_t whole, std::size_t part) { return (whole + part - 1) / part; }
 
@@ -189,12 +181,12 @@ Json ConflictData::rows_json() const {
       if (std::all_of(amounts.begin(), amounts.end(), [](std::uint64_t amount) { return amount == 0; }))
         continue;
       accesses.push_back(
-          {{"bank", board_.banks[bank].name}, {"by", kAccessKindNames[kind]}, {"accesses", packed(amounts)}});
+          {{"bank", board_.banks[bank].name}, {"by", kAccessKindNames[kind]}, {"accesses", amounts}});
     }
   }
   return {{"lines", grid_.rows},
           {"height", grid_.rows_of_tile},
-          {"cycles", packed(cycles)},
+          {"cycles", cycles},
           {"accesses", std::move(accesses)}};
 }
 
@@ -207,8 +199,8 @@ Json ConflictData::stall_json(const std::string& cause, const std::vector<std::u
   return {{"port", cause.substr(0, port_end)},
           {"bank", cause.substr(port_end + 1, bank_end - port_end - 1)},
           {"by", cause.substr(bank_end + 1)},
-          {"rows", packed(rows)},
-          {"tiles", packed(larger_tiles(cycles))}};
+          {"rows", rows},
+          {"tiles", larger_tiles(cycles)}};
 }
 
 Json ConflictData::json() const {

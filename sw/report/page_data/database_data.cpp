@@ -10,13 +10,11 @@
 #include <stdexcept>
 #include <string_view>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "sw/explore/store/database.h"
 #include "sw/explore/store/store_layout.h"
 #include "sw/process/interrupt.h"
-#include "sw/report/page_data/packed_column.h"
 
 namespace stereotlm::report {
 namespace {
@@ -37,10 +35,10 @@ bool is_shown(const std::string& column) {
   return true;
 }
 
-PackedColumn::Value value_of(const explore::Statement& row, int column) {
+Json value_of(const explore::Statement& row, int column) {
   switch (sqlite3_column_type(row.handle(), column)) {
     case SQLITE_NULL:
-      return std::monostate();
+      return nullptr;
     case SQLITE_INTEGER:
       return row.integer(column);
     case SQLITE_FLOAT:
@@ -50,21 +48,47 @@ PackedColumn::Value value_of(const explore::Statement& row, int column) {
   }
 }
 
-// Packs texts of which most parts are the same: files of boards.
-class PackedTexts {
+// The values of a column. As long as all are the same, only one is kept.
+template <typename Value>
+class Column {
  public:
-  void add(const std::string& text) {
+  template <typename Text>
+  void add(const Text& value) {
+    if (size_ == 0) first_ = value;
+    if (all_.empty() && !(first_ == value)) all_.assign(size_, first_);
+    if (!all_.empty()) all_.emplace_back(value);
+    ++size_;
+  }
+  bool is_constant() const { return all_.empty(); }
+  const Value& first() const { return first_; }
+  Json json() const { return is_constant() ? Json{{"constant", first_}} : Json{{"list", all_}}; }
+
+ private:
+  std::size_t size_ = 0;
+  Value first_;
+  std::vector<Value> all_;
+};
+
+// Texts of which most words are the same: files of boards. Texts with as many words have one shape.
+class BoardTexts {
+ public:
+  void add(std::string_view text) {
     const std::vector<std::string_view> words = words_of(text);
-    const auto [shape, is_new] =
-        shapes_.emplace(words.size(), std::pair(shapes_.size(), std::vector<PackedColumn>(words.size())));
-    shape_of_row_.add(static_cast<std::int64_t>(shape->second.first));
-    for (std::size_t i = 0; i < words.size(); ++i) shape->second.second[i].add_text(words[i]);
+    const auto [shape, is_new] = shapes_.emplace(
+        words.size(), std::pair(shapes_.size(), std::vector<Column<std::string>>(words.size())));
+    shape_of_row_.add(shape->second.first);
+    for (std::size_t i = 0; i < words.size(); ++i) shape->second.second[i].add(words[i]);
   }
 
   Json json() const {
     std::vector<Json> shapes(shapes_.size());
-    for (const auto& [length, shape] : shapes_) shapes[shape.first] = shape_json(shape.second);
-    return {{"shape", shape_of_row_.json()}, {"shapes", shapes}};
+    for (const auto& [length, shape] : shapes_) {
+      Json words = Json::array();
+      for (const Column<std::string>& word : shape.second)
+        words.push_back(word.is_constant() ? Json(word.first()) : word.json());
+      shapes[shape.first] = std::move(words);
+    }
+    return {{"shape", shape_of_row_.json()}, {"shapes", std::move(shapes)}};
   }
 
  private:
@@ -79,25 +103,9 @@ class PackedTexts {
     return words;
   }
 
-  static Json shape_json(const std::vector<PackedColumn>& words) {
-    Json all = Json::array();
-    std::string same;
-    for (const PackedColumn& word : words) {
-      if (word.is_constant()) {
-        same += std::get<std::string>(word.constant());
-        continue;
-      }
-      all.push_back(same);
-      all.push_back(word.json());
-      same.clear();
-    }
-    all.push_back(same);
-    return all;
-  }
-
   // By the number of words: the number of the shape, and its words.
-  std::map<std::size_t, std::pair<std::size_t, std::vector<PackedColumn>>> shapes_;
-  PackedColumn shape_of_row_;
+  std::map<std::size_t, std::pair<std::size_t, std::vector<Column<std::string>>>> shapes_;
+  Column<std::size_t> shape_of_row_;
 };
 
 }  // namespace
@@ -106,10 +114,10 @@ Json database_data(const std::string& path) {
   explore::Database database(path, explore::Database::Access::kRead);
   explore::check_layout(database);
   const std::vector<std::string> names = explore::columns_of(database);
-  std::vector<PackedColumn> columns(names.size());
+  std::vector<Column<Json>> columns(names.size());
   std::vector<bool> shown_columns;
   for (const std::string& name : names) shown_columns.push_back(is_shown(name));
-  PackedTexts boards;
+  BoardTexts boards;
   explore::Statement points(database, "SELECT * FROM points ORDER BY hash");
   std::size_t size = 0;
   for (; !process::interrupted() && points.step(); ++size) {

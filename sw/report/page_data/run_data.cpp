@@ -15,7 +15,6 @@
 #include <variant>
 #include <vector>
 
-#include "models/fpga/core_ports.h"
 #include "models/kernels/rectification_table.h"
 #include "models/memory/bank_traits.h"
 #include "platform/bounds.h"
@@ -102,33 +101,13 @@ Json settings_of(const BoardConfig& board) {
 Json banks_of(const BoardConfig& board) {
   Json all = Json::array();
   for (const platform::BankConfig& bank : board.banks) {
-    const memory::BankTraits& traits = memory::traits_of(bank.kind);
     Json buffers = Json::array();
     for (const platform::PlacedBuffer& buffer : platform::buffers(board)) {
-      if (buffer.bank != bank.name) continue;
-      buffers.push_back({{"name", buffer.label()}, {"words", buffer_words(buffer, board.image)}});
+      if (buffer.bank == bank.name) buffers.push_back(buffer.label());
     }
     all.push_back({{"name", bank.name},
-                   {"kind", traits.name},
-                   {"words", bank.words},
-                   {"accesses_per_cycle", traits.ports},
+                   {"accesses_per_cycle", memory::traits_of(bank.kind).ports},
                    {"buffers", std::move(buffers)}});
-  }
-  return all;
-}
-
-// For each port of the core: the banks that hold its buffers.
-Json ports_of(const BoardConfig& board) {
-  Json all = Json::array();
-  for (std::size_t port = 0; port < fpga::kCorePortCount; ++port) {
-    Json banks = Json::array();
-    for (const platform::PlacedBuffer& buffer : platform::buffers(board)) {
-      if (std::string(platform::name_of(buffer.buffer)) == fpga::kPorts[port].buffer)
-        banks.push_back(buffer.bank);
-    }
-    all.push_back({{"name", fpga::kPorts[port].name},
-                   {"writes", fpga::kPorts[port].write},
-                   {"banks", std::move(banks)}});
   }
   return all;
 }
@@ -189,7 +168,8 @@ std::set<std::string> banks_used(const BoardConfig& board) {
   return banks;
 }
 
-// Where a changed board uses banks that the board does not use: those that the board has, and how many it lacks.
+// Where a changed board uses banks that the board does not use: those that the board has, and how many it
+// lacks.
 void add_banks_taken(const BoardConfig& board, const BoardConfig& changed, Json& data) {
   const std::set<std::string> used = banks_used(board);
   std::vector<std::string> idle;
@@ -235,10 +215,8 @@ Json run_data(const runs::RecordedRun& run, const platform::Tables& tables) {
                {"command", command_of(run)},
                {"stats", Json::parse(run.stats_json)},
                {"config_yaml", read("config.yaml")},
-               {"options", Json::parse(run.run_json)},
                {"settings", settings_of(board)},
                {"banks", banks_of(board)},
-               {"ports", ports_of(board)},
                {"bounds", bounds_of(board, tables, run.options.source == "camera")},
                {"area", area_data(board)},
                {"memory_chart", memory_chart_svg(board, traffic)}};

@@ -13,7 +13,6 @@
 #include "platform/bounds.h"
 #include "platform/figures.h"
 #include "platform/timeline_sums.h"
-#include "sw/report/page_data/packed_column.h"
 #include "sw/report/stats_differences.h"
 #include "sw/report/stats_json.h"
 #include "sw/report/timeline_csv.h"
@@ -27,12 +26,6 @@ using Json = nlohmann::ordered_json;
 enum EventColumn : std::size_t { kKind, kClass, kFrame, kCameraFrame, kStart, kEnd, kWords, kPixels, kWhy };
 enum LatencyColumn : std::size_t { kLatencyFrame, kLatencyCameraFrame, kCaptured, kFirstPart };
 
-Json named(const std::string& name, const PackedColumn& column) {
-  Json packed = {{"name", name}};
-  packed.update(column.json());
-  return packed;
-}
-
 const char* name_of(platform::EventKind kind) {
   return platform::kEventKindNames[static_cast<std::size_t>(kind)];
 }
@@ -42,9 +35,15 @@ std::int64_t number_of(const std::optional<std::uint64_t>& frame) {
   return frame ? static_cast<std::int64_t>(*frame) : -1;
 }
 
-// Times and words as double: many different integers are shortest as the bytes of real numbers, which are
-// exact up to 2^53.
 double real(std::uint64_t number) { return static_cast<double>(number); }
+
+// The names of the columns in the head of a file.
+std::vector<std::string> names_of(const std::string& head) {
+  std::istringstream line(head.substr(0, head.find('\n')));
+  std::vector<std::string> names;
+  for (std::string name; std::getline(line, name, ',');) names.push_back(name);
+  return names;
+}
 
 }  // namespace
 
@@ -167,27 +166,17 @@ std::vector<TimelineData::Period> TimelineData::periods() const {
 
 Json TimelineData::events_json() const {
   const std::vector<Period> shown = periods();
-  std::array<PackedColumn, kWhy + 1> columns;
+  Json rows = Json::array();
   for (const platform::TimelineEvent& event : events_) {
     const bool is_shown = std::any_of(shown.begin(), shown.end(), [&event](const Period& period) {
       return event.end_ps >= period.first && event.begin_ps <= period.second;
     });
-    if (!is_shown) continue;
-    columns[kKind].add(std::string(name_of(event.kind)));
-    columns[kClass].add(std::string(event.what));
-    columns[kFrame].add(number_of(event.frame));
-    columns[kCameraFrame].add(number_of(event.camera_frame));
-    columns[kStart].add(real(event.begin_ps));
-    columns[kEnd].add(real(event.end_ps));
-    columns[kWords].add(static_cast<std::int64_t>(event.words));
-    columns[kPixels].add(static_cast<std::int64_t>(event.dropped_pixels));
-    columns[kWhy].add(std::string(event.why));
+    if (is_shown) {
+      rows.push_back({name_of(event.kind), event.what, number_of(event.frame), number_of(event.camera_frame),
+                      event.begin_ps, event.end_ps, event.words, event.dropped_pixels, event.why});
+    }
   }
-  constexpr std::array kNames = {"kind",   "class", "frame",          "camera_frame", "start_ps",
-                                 "end_ps", "words", "dropped_pixels", "why"};
-  Json json = {{"rows", columns[kKind].size()}, {"all", events_.size()}, {"columns", Json::array()}};
-  for (std::size_t column = 0; column < columns.size(); ++column)
-    json["columns"].push_back(named(kNames[column], columns[column]));
+  Json json = {{"names", names_of(timeline_csv_head())}, {"rows", std::move(rows)}, {"all", events_.size()}};
   json["periods_ps"] = Json::array();
   for (const auto& [begin, end] : shown) json["periods_ps"].push_back({begin, end});
   return json;
@@ -219,9 +208,9 @@ Json TimelineData::overview_json() const {
   }
   Json json = {{"bins", kBins}, {"end_ps", end_ps()}, {"lanes", Json::array()}};
   for (const auto& [name, bins] : lanes) {
-    PackedColumn column;
-    for (const double amount : bins) column.add(static_cast<std::int64_t>(std::lround(amount)));
-    json["lanes"].push_back({{"kind", name.first}, {"class", name.second}, {"amounts", column.json()}});
+    Json amounts = Json::array();
+    for (const double amount : bins) amounts.push_back(std::lround(amount));
+    json["lanes"].push_back({{"kind", name.first}, {"class", name.second}, {"amounts", std::move(amounts)}});
   }
   return json;
 }
@@ -247,25 +236,17 @@ Json TimelineData::latency_json() const {
   std::stable_sort(order.begin(), order.end(),
                    [](const Latency* a, const Latency* b) { return a->back() < b->back(); });
   const std::size_t rows = std::min(order.size(), kMostLatencies);
-  std::array<PackedColumn, std::tuple_size_v<Latency>> columns;
-  for (std::size_t row = 0; row < rows; ++row) {
-    const Latency& latency = *order[rows < 2 ? row : row * (order.size() - 1) / (rows - 1)];
-    for (std::size_t column = 0; column < latency.size(); ++column)
-      columns[column].add(real(latency[column]));
-  }
-  std::istringstream head(latency_csv_head());
-  Json packed = Json::array();
+  const std::vector<std::string> names = names_of(latency_csv_head());
+  Json shown = Json::array();
+  for (std::size_t row = 0; row < rows; ++row)
+    shown.push_back(*order[rows < 2 ? row : row * (order.size() - 1) / (rows - 1)]);
   Json means = Json::object();
-  for (std::size_t column = 0; column < columns.size(); ++column) {
-    std::string name;
-    std::getline(head, name, column + 1 < columns.size() ? ',' : '\n');
-    packed.push_back(named(name, columns[column]));
-    if (column < kFirstPart) continue;
+  for (std::size_t column = kFirstPart; column < names.size(); ++column) {
     double sum = 0;
     for (const Latency& latency : latencies_) sum += real(latency[column]);
-    means[name] = sum / real(std::max<std::size_t>(1, latencies_.size()));
+    means[names[column]] = sum / real(std::max<std::size_t>(1, latencies_.size()));
   }
-  return {{"rows", rows}, {"all", latencies_.size()}, {"means_ps", means}, {"columns", std::move(packed)}};
+  return {{"names", names}, {"rows", std::move(shown)}, {"all", latencies_.size()}, {"means_ps", means}};
 }
 
 Json TimelineData::json() const {

@@ -36,6 +36,8 @@ class Browser:
         self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", metrics)
         begin = time.monotonic()
         self.driver.get(pathlib.Path(path).resolve().as_uri())
+        while not self.all("footer") and time.monotonic() < begin + 10:
+            pass  # the page waits until its data is unpacked
         self.drawn()
         took = 1000 * (time.monotonic() - begin)
         self.choose("theme", theme)

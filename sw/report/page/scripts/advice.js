@@ -68,8 +68,9 @@ export function priceText(step, board) {
   if (parts.length === 0) parts.push('nothing new');
   const idle = step.idle_banks ?? [];
   return parts.join(', ') +
-      (idle.length ? `: it uses ${idle.join(' and ')}, which ${idle.length === 1 ? 'holds' : 'hold'} nothing` :
-                     '');
+      (idle.length ?
+           `: it uses ${idle.join(' and ')}, which ${idle.length === 1 ? 'holds' : 'hold'} nothing` :
+           '');
 }
 
 // The keys that move the bound of a resource around the board.
@@ -90,8 +91,8 @@ export function limitReached(run, step) {
       ?.resource;
 }
 
-// The changes worth naming: the largest gain of those that need nothing new, and the largest of all. Changes of
-// the disparities, boards that lose pixels and boards that do not fit are left out.
+// The changes worth naming: the largest gain of those that need nothing new, and the largest of all. Changes
+// of the disparities, boards that lose pixels and boards that do not fit are left out.
 export function adviceOf(run) {
   if (!run.knobs) return null;
   const {board, steps} = run.knobs;

@@ -1,7 +1,7 @@
 // What a run shows, in plain words: what limits, who waits for whom, where, what to change first, its price.
 import {adviceOf, limitReached, priceText, stepText} from './advice.js';
+import {linesOf, rowsText, tilesOf} from './data.js';
 import {capital, count, fixed, gainText, kRates, percent, rate, rateWith, sum, whole} from './format.js';
-import {linesOf, rowsText, tilesOf} from './recording.js';
 
 const kLeastShare = 0.0005;  // of all cycles that a port waits, to be named
 const kFewTiles = 0.35;      // a share of the tiles that is named if it holds half of the waits
@@ -43,7 +43,7 @@ export const blamesOf = run => run.stats.blame.map(row => ({...row, share: row.c
                                    .sort((a, b) => b.cycles - a.cycles);
 
 // The same, with what the host moved as its name, if all frames were recorded.
-export function detailedBlamesOf(run) {
+export function blamesInDetail(run) {
   const recorded = linesOf(run);
   if (!recorded || recorded.frames !== run.stats.frame_cycles.length) return blamesOf(run);
   return recorded.stalls.map(
@@ -58,7 +58,7 @@ export const blameText = ({port, bank, by, share}) =>
 // The ports that wait, the most first: {port, cycles, share, causes: its waits, the most first}.
 export function waitsOf(run) {
   const ports = new Map();
-  for (const row of detailedBlamesOf(run)) {
+  for (const row of blamesInDetail(run)) {
     if (!ports.has(row.port)) ports.set(row.port, {port: row.port, cycles: 0, share: 0, causes: []});
     const port = ports.get(row.port);
     port.cycles += row.cycles;
@@ -90,7 +90,7 @@ function whatLimits(run) {
       const bank = run.banks.find(each => each.name === name);
       const busy = run.stats.banks.find(each => each.name === name);
       const title = /^bank/i.test(name) ? name : `Bank ${name}`;
-      const held = bank.buffers.map(each => each.name).join(', ') || 'no buffer';
+      const held = bank.buffers.join(', ') || 'no buffer';
       return `${title} holds ${held}, and is busy in ${percent(busy.utilization)} of the cycles`;
     },
     port: () => `Port ${name}: it moves one word a cycle at most`,
@@ -104,8 +104,8 @@ function whatLimits(run) {
       by;
   const limiter = run.knobs?.board.limited_by;
   return [
-    limiter ? `Limited by ${limiter}.` : `Not known with --quick. The lowest bound: ${because}.`, `${reached}.`,
-    computer && droppedText(run),
+    limiter ? `Limited by ${limiter}.` : `Not known with --quick. The lowest bound: ${because}.`,
+    `${reached}.`, computer && droppedText(run),
     !limiter && !computer && share < 0.99 && run.stats.blame.length === 0 &&
         'No port waits: the matcher waits for the queue of results, which the bound leaves out.',
     lostPixels(run) > 0 &&

@@ -15,6 +15,7 @@ export function percent(share, digits = 1) {
   return `${isLess ? `<${fixed(least, digits)}` : fixed(100 * share, digits)} %`;
 }
 export const rate = number => fixed(number, number < 100 ? 2 : 1);
+export const inMs = (ps, digits) => `${fixed(ps / kPsOfMs, digits)} ms`;
 // The kinds of rates by their names in stats.json, the one to speak of first.
 export const kRates = [['steady', 'steady'], ['system', 'from power-up'], ['core', 'core only']];
 // With what a finite run leaves open, if that can be seen.
@@ -45,15 +46,17 @@ export const value = any => any === null || any === undefined ? '' : String(any)
 export const capital = text => text.charAt(0).toUpperCase() + text.slice(1);
 
 export const sum = numbers => numbers.reduce((total, number) => total + number, 0);
+// Of lists that may be too long for the arguments of Math.min().
+export const least = numbers => numbers.reduce((a, b) => Math.min(a, b), Infinity);
+export const most = numbers => numbers.reduce((a, b) => Math.max(a, b), -Infinity);
+// The different values of a column in their order: numbers by size, other values by their texts.
+export const inOrder = (a, b) =>
+    typeof a === 'number' && typeof b === 'number' ? a - b : value(a).localeCompare(value(b));
+export const different = values => [...new Set(values)].sort(inOrder);
 
-export const csvText = (names, rows) => [names, ...rows]
-                                            .map(
-                                                row => row.map(cell => {
-                                                            const text = value(cell);
-                                                            return /[",\n\r]/.test(text) ?
-                                                                `"${text.replaceAll('"', '""')}"` :
-                                                                text;
-                                                          })
-                                                           .join(','))
-                                            .join('\n') +
-    '\n';
+function csvCell(any) {
+  const text = value(any);
+  return /[",\n\r]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
+}
+export const csvText =
+    (names, rows) => [names, ...rows].map(row => `${row.map(csvCell).join(',')}\n`).join('');

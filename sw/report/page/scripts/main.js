@@ -5,7 +5,11 @@ import {showRun} from './page_run.js';
 import {showTwoRuns} from './page_two.js';
 import {startTooltips} from './tooltip.js';
 
-const data = JSON.parse(document.getElementById('data').textContent);
+// JSON, compressed by zlib, in base64.
+const text = document.getElementById('data').textContent;
+const bytes = Uint8Array.from(atob(text), letter => letter.charCodeAt(0));
+const data =
+    await new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream('deflate'))).json();
 const page = document.getElementById('page');
 startTooltips();
 ({run: showRun, two_runs: showTwoRuns, database: showDatabase})[data.kind](page, data);

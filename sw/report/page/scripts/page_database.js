@@ -1,16 +1,93 @@
-// The page of a database: scatter, filters, parallel coordinates, table, and the board of a point.
-import {addChart, htmlTable} from './chart.js';
-import {textBox} from './chart_config.js';
-import {addParallel} from './chart_parallel.js';
-import {addScatter} from './chart_scatter.js';
-import {addFilters, addTable} from './database_table.js';
-import {h} from './dom.js';
+// The page of a database: its charts, filters, table, and the board of a point.
+import {addAnswers, addChart, addGroup, addHead, htmlTable} from './card.js';
+import {Boards} from './data.js';
+import {addParallel, addScatter} from './database_charts.js';
+import {button, folded, h, note, textBox} from './dom.js';
 import {resourceText} from './findings.js';
-import {capital, count, fixed, kRates, rateWith, value, whole} from './format.js';
-import {addAnswers, addGroup, addHead} from './page_parts.js';
+import {capital, count, different, fixed, inOrder, kRates, rateWith, shortened, value, whole} from './format.js';
 import {kRateColumns, Points} from './points.js';
-import {Boards} from './table.js';
 
+const kMostChips = 16;
+const kRowsShown = 100;
+
+// Filters: the values of each key that varies, to be switched off and on.
+function addFilters(page, points) {
+  const shown = points.keys.filter(key => new Set(points.column(key)).size <= kMostChips);
+  if (points.table.has('status') && !points.table.isConstant('status')) shown.unshift('status');
+  const groups = shown.map(key => {
+    const values = points.column(key);
+    const boxes = new Map();
+    const change = () => {
+      const off = new Set([...boxes].filter(([, box]) => !box.checked).map(([word]) => word));
+      points.filter(`chips ${key}`, off.size > 0 ? row => !off.has(values[row]) : null);
+    };
+    const chips = different(values).map(word => {
+      const attributes =
+          {type: 'checkbox', checked: true, 'data-key': key, 'data-value': value(word), change};
+      boxes.set(word, h('input', attributes));
+      return h('label', {class: 'chip'}, boxes.get(word), ` ${value(word)}`);
+    });
+    return h('fieldset', null, h('legend', null, key), chips);
+  });
+  const reset = button('Select all points', () => {
+    for (const box of groups.flatMap(group => [...group.querySelectorAll('input')])) box.checked = true;
+    points.filters.clear();
+    points.filter('', null);
+  }, {id: 'reset-filters'});
+  addChart(
+      page,
+      {id: 'filters', wide: true, title: 'Filters', body: [h('div', {class: 'filters'}, groups), reset]});
+}
+
+// The table of the selected points, sorted by one column.
+function addTable(page, points, first, choose) {
+  const others = points.figures.filter(name => !first.includes(name)).slice(0, 4);
+  const names = [...first, ...points.keys, ...others];
+  const state = {by: first[0], down: true};
+  const host = h('div');
+  const rowsInOrder = () => {
+    const values = points.column(state.by);
+    const sign = state.down ? -1 : 1;
+    return points.selectedRows().sort((a, b) => {
+      const [x, y] = [values[a], values[b]];
+      return x === null || y === null ? (x === null) - (y === null) : sign * inOrder(x, y);
+    });
+  };
+  const show = () => {
+    const rows = rowsInOrder();
+    const opener = row => button('Board', () => choose(row), {'data-row': row});
+    const [, shown] = points.table.numbers(names, rows.slice(0, kRowsShown));
+    const table = htmlTable(['', ...names], shown.map((row, i) => [opener(rows[i]), ...row.map(shortened)]));
+    [...table.querySelectorAll('th')].slice(1).forEach((cell, i) => {
+      const name = names[i];
+      const sorts = state.by === name;
+      const sort = () => {
+        Object.assign(state, {by: name, down: sorts ? !state.down : true});
+        show();
+      };
+      cell.setAttribute('aria-sort', sorts ? (state.down ? 'descending' : 'ascending') : 'none');
+      cell.replaceChildren(
+          button(`${name}${sorts ? (state.down ? ' ↓' : ' ↑') : ''}`, sort, {class: 'sort'}));
+    });
+    host.replaceChildren(
+        table,
+        note(
+            rows.length > kRowsShown ?
+                `The first ${kRowsShown} of ${whole(rows.length)} points; the CSV has all.` :
+                `${count(rows.length, 'point')}.`));
+  };
+  points.whenSelected(final => final && show());
+  show();
+  addChart(page, {
+    id: 'points',
+    wide: true,
+    title: 'The selected points',
+    body: host,
+    note: 'Click a column to sort by it.',
+    numbers: () =>
+        points.table.numbers(points.table.names.filter(name => !points.table.isConstant(name)), rowsInOrder())
+  });
+}
 
 export function showDatabase(page, {database}) {
   const points = new Points(database);
@@ -91,32 +168,29 @@ export function showDatabase(page, {database}) {
   ].filter(([, texts]) => texts.length));
 
   const cards = addGroup(page, 'Points');
-  const board = h('div', {id: 'board'}, h('p', {class: 'note'}, 'Click a point, or a line of the table.'));
+  const board = h('div', {id: 'board'}, note('Click a point, or a line of the table.'));
   const choose = row => {
     points.chosen = row;
     scatter.redraw();
-    const text = boards.text(row);
+    const figures = points.table.names.map(name => [name, points.column(name)[row]]);
     board.replaceChildren(
-        textBox(text, `point_${row}.yaml`),
-        h('details', null, h('summary', null, 'All figures'),
-          htmlTable(
-              ['column', 'value'], points.table.names.map(name => [name, points.column(name)[row]]), 500)));
+        textBox(boards.text(row), `point_${row}.yaml`),
+        folded('All figures', htmlTable(['column', 'value'], figures, 500)));
     boardChart.element.querySelector('h2').textContent = `Board of the point: ${keysOf(row)}`;
     boardChart.element.scrollIntoView({block: 'nearest'});
   };
-  const scatter = addScatter(cards, points, {choose});
+  const scatter = addScatter(cards, points, choose);
   const boardChart = addChart(cards, {id: 'chosen', wide: true, title: 'The board of a point', body: board});
   addFilters(cards, points);
   addParallel(cards, points);
   addTable(
       cards, points, [rateName, ...(points.figures.includes('area.slices') ? ['area.slices'] : [])], choose);
+  const constants = [['key', 'value'], points.constantKeys.map(key => [key, points.column(key)[0]])];
   addChart(cards, {
     id: 'constants',
     wide: true,
     title: `${points.constantKeys.length} keys are the same in all points`,
-    body:
-        h('details', null, h('summary', null, 'Show'),
-          htmlTable(['key', 'value'], points.constantKeys.map(key => [key, points.column(key)[0]]), 300)),
-    numbers: () => [['key', 'value'], points.constantKeys.map(key => [key, points.column(key)[0]])]
+    body: folded('Show', htmlTable(...constants, 300)),
+    numbers: () => constants
   });
 }

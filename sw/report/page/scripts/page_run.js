@@ -1,28 +1,20 @@
 // The page of one run.
-import {addArea} from './chart_area.js';
-import {addAudit} from './chart_audit.js';
-import {addBlame} from './chart_blame.js';
-import {addBounds} from './chart_bounds.js';
-import {addConfiguration, commandLine} from './chart_config.js';
-import {addFrames} from './chart_frames.js';
-import {addKnobs, addRoofline} from './chart_knobs.js';
-import {addLatency} from './chart_latency.js';
-import {addMemory} from './chart_memory.js';
-import {addPicture} from './chart_picture.js';
-import {addRows} from './chart_rows.js';
-import {addBankUse, addPortStates} from './chart_states.js';
-import {addTimeLine} from './chart_time.js';
-import {h} from './dom.js';
+import {addAnswers, addChart, addGroup, addHead, htmlTable} from './card.js';
+import {addArea, addKnobs} from './changes.js';
+import {linesOf, tilesOf} from './data.js';
+import {commandLine, fileName, folded, h, note, textBox} from './dom.js';
 import {answersOf, headlineOf, settingOf, waitingRows} from './findings.js';
-import {count} from './format.js';
-import {addAnswers, addGroup, addHead} from './page_parts.js';
-import {linesOf, tilesOf} from './recording.js';
+import {count, sum, value} from './format.js';
+import {addBankUse, addBounds, addFrames, addPortStates, addRoofline, kBankStates, kPortStates} from './limits.js';
+import {addMemory} from './memory.js';
+import {addPicture} from './picture.js';
+import {addLatency, addTimeLine} from './time.js';
+import {addBlame, addRows} from './waits.js';
 
 // The waits over the picture and its disparities, or over grey where the run has computed no pixels.
 function addPictureOf(page, run) {
   const layers = tilesOf(run);
   if (!run.pictures && layers.length === 0) return;
-  const {stats} = run;
   const {left, disparity, disparities} = run.pictures ?? {};
   const [width, height] = ['image.width', 'image.height'].map(key => settingOf(run, key));
   addPicture(page, {
@@ -38,8 +30,100 @@ function addPictureOf(page, run) {
     ].join(' '),
     pictures:
         [left && {url: left}, disparity ? {url: disparity, disparities} : {width, height}].filter(Boolean),
-    frames: linesOf(run)?.frames ?? stats.frames,
+    frames: linesOf(run)?.frames ?? run.stats.frames,
     names: left ? ['picture', 'disparities'] : ['disparities']
+  });
+}
+
+// The identities between the figures: [what, left side, right side].
+function identitiesOf(run) {
+  const {stats} = run;
+  const lines = linesOf(run);
+  const totalOf = (rows, amount) => sum(rows.map(row => row[amount]));
+  const of = (item, states) => sum(states.map(([key]) => item[key]));
+  const all = stats.ports.flatMap(
+      port => [[`${port.name}: its six states = cycles`, of(port, kPortStates), stats.cycles], [
+        `${port.name}: waits by cause = waits counted`,
+        totalOf(stats.blame.filter(row => row.port === port.name), 'cycles'), port.stall_cycles
+      ]]);
+  for (const bank of stats.banks)
+    all.push([`${bank.name}: busy, turnaround, idle = cycles`, of(bank, kBankStates), stats.cycles]);
+  all.push([
+    'accesses of the banks = grants of the ports',
+    totalOf(stats.banks, 'reads') + totalOf(stats.banks, 'writes'), totalOf(stats.ports, 'grants')
+  ]);
+  for (const camera of stats.cameras ?? []) {
+    all.push([
+      `${camera.name} camera: captured and dropped = frames`, camera.captured_frames + camera.dropped_frames,
+      camera.frames
+    ]);
+    all.push([
+      `${camera.name} camera: drops by reason = dropped`,
+      camera.dropped_not_armed + camera.dropped_busy + camera.dropped_by_partner, camera.dropped_frames
+    ]);
+  }
+  if (!lines) return all;
+  all.push(['cycles of the rows = cycles', lines.fill + sum(lines.cycles), stats.cycles]);
+  const portOf = name => name.startsWith('host ') ? 'host' : name;
+  for (const {name, stall_cycles: stalls} of stats.ports)
+    all.push([
+      `${name}: waits of the rows = waits counted`,
+      totalOf(lines.stalls.filter(({port}) => portOf(port) === name), 'total'), stalls
+    ]);
+  for (const {name, reads, writes} of stats.banks)
+    all.push([
+      `${name}: accesses of the rows = reads and writes`,
+      totalOf(lines.accesses.filter(({bank}) => bank === name), 'total'), reads + writes
+    ]);
+  return all;
+}
+
+// The identities, computed here once more, with both sides.
+function addAudit(page, run) {
+  const identities = identitiesOf(run);
+  const failed = run.stats.failed ?? [];
+  const broken = identities.filter(([, left, right]) => left !== right).length + failed.length;
+  const both = folded(
+      'Both sides of each',
+      htmlTable(
+          ['identity', 'left', 'right', ''],
+          identities.map(([what, left, right]) => [what, left, right, left === right ? '✓' : '✗'])));
+  both.open = broken > 0;
+  addChart(page, {
+    id: 'audit',
+    wide: true,
+    title: broken === 0 ? `All ${identities.length} identities hold` :
+                          `${broken} of ${identities.length} identities do not hold`,
+    note: `Computed again by this page from the figures that it shows${
+        run.knobs ? '; the run was repeated for this report, and gave its stats.json byte for byte' : ''}.`,
+    body: [failed.length > 0 && h('ul', {class: 'bad'}, failed.map(text => h('li', null, text))), both],
+    numbers: () => [['identity', 'left', 'right'], identities]
+  });
+}
+
+// The board, every key, and the files of the run.
+function addConfiguration(page, run) {
+  const names = ['key', 'value', 'unit', 'meaning'];
+  const rows = run.settings.map(({key, value: its, unit, meaning}) => [key, its, unit ?? '', meaning ?? '']);
+  const host = h('div');
+  const show = wanted => host.replaceChildren(htmlTable(
+      names,
+      rows.filter(([key, its, ,
+                    meaning]) => `${key} ${its} ${meaning}`.toLowerCase().includes(wanted.toLowerCase()))
+          .map(([key, its, ...others]) => [key, value(its), ...others])));
+  show('');
+  addChart(page, {
+    id: 'configuration',
+    wide: true,
+    title: `The board ${run.stats.board}`,
+    note: 'Every key with its value, and the board file as it was run.',
+    body: [
+      h('label', {class: 'search'}, 'Search ',
+        h('input', {type: 'search', id: 'search-keys', input: event => show(event.target.value)})),
+      host, folded('config.yaml', textBox(run.config_yaml, `${fileName(run.stats.board)}.yaml`)),
+      folded('stats.json', textBox(JSON.stringify(run.stats, null, 2), 'stats.json'))
+    ],
+    numbers: () => [names, rows]
   });
 }
 
@@ -50,9 +134,9 @@ export function showRun(page, {run}) {
     name: stats.board,
     headline: headlineOf(run),
     sub: [
-      h('p', {class: 'note'},
-        `${run.folder} · ${count(stats.frames, 'frame')} · ` +
-            (stats.cameras ? 'the whole computer, with cameras' : 'the core alone, fed by an ideal host')),
+      note(
+          `${run.folder} · ${count(stats.frames, 'frame')} · ` +
+          (stats.cameras ? 'the whole computer, with cameras' : 'the core alone, fed by an ideal host')),
       commandLine(run.command)
     ]
   });

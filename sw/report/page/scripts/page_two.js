@@ -1,103 +1,19 @@
 // The page of two runs: what differs in B.
-import {h, s} from './dom.js';
-import {count, gainText, grouped, rate, rateWith, shortened, signed, whole} from './format.js';
-import {addBlameDifference} from './chart_blame.js';
-import {addChart, drawing, htmlTable, legend} from './chart.js';
-import {commandLine} from './chart_config.js';
-import {addFrames} from './chart_frames.js';
-import {addMemoryOfTwo} from './chart_memory.js';
-import {addPicture} from './chart_picture.js';
-import {addPortStates} from './chart_states.js';
+import {addAnswers, addChart, addGroup, addHead, htmlTable} from './card.js';
+import {commandLine} from './dom.js';
 import {kindOfRate, rateOf, resourceText, settingOf, waitsOf, waitText} from './findings.js';
-import {addAnswers, addGroup, addHead} from './page_parts.js';
-import {axisBelow, axisLeft, linear} from './scale.js';
-import {namedColour} from './theme.js';
-import {mark} from './tooltip.js';
-
-const kMostBands = 240;
+import {count, gainText, grouped, rate, rateWith, shortened, whole} from './format.js';
+import {addFrames, addPortStates} from './limits.js';
+import {addMemoryOfTwo} from './memory.js';
+import {addPicture} from './picture.js';
+import {addBlameDifference, addRowDifference} from './waits.js';
 
 // Settings that differ: [key, value in A, value in B]. The name of the board is the last.
 function settingsThatDiffer(a, b) {
-  const keys = [...new Set([...a.settings, ...b.settings].map(setting => setting.key))].sort(
-      (x, y) => (x === 'name') - (y === 'name'));
-  return keys.map(key => [key, settingOf(a, key) ?? '–', settingOf(b, key) ?? '–']).filter(([, x,
-                                                                                             y]) => x !== y);
-}
-
-// Cycles that each row takes more in B, beside the waits.
-function addRowDifference(page, {rows, no_rows: reason}) {
-  if (!rows) return addChart(page, {id: 'rows', title: 'Rows cannot be compared', note: reason});
-  const ports = Object.entries(rows.stalls).filter(([, values]) => values.some(value => value !== 0));
-  const {cycles, parting} = rows;
-  const total = cycles.reduce((a, b) => a + b, 0);
-  const band = Math.ceil(cycles.length / kMostBands);
-  const bands = Array.from(
-      {length: Math.ceil(cycles.length / band)},
-      (_, i) => [i * band, Math.min(cycles.length, (i + 1) * band)]);
-  const over = (values, [from, to]) =>
-      values.slice(from, to).reduce((a, b) => a + b, 0) / (to - from) / rows.frames;
-  const draw = (host, width) => {
-    const {plot, width: inner, height} =
-        drawing(host, width, 420, {left: 44, right: 12, top: 22, bottom: 40}, 'Difference by row');
-    const series = [['cycles', cycles], ...ports];
-    const means = series.flatMap(([, values]) => bands.map(rowsOf => over(values, rowsOf)));
-    const x = linear([Math.min(0, ...means), Math.max(0, ...means) || 1], [0, inner]);
-    const y = linear([0, cycles.length], [0, height]);
-    plot.append(
-        axisBelow(x, inner, height, 'cycles a row and frame, B − A'),
-        axisLeft(y, inner, height, 'row', {grid: false}));
-    for (const rowsOf of bands) {
-      const value = over(cycles, rowsOf);
-      plot.append(mark(
-          s('rect', {
-            x: Math.min(x(0), x(value)),
-            y: y(rowsOf[0]),
-            width: Math.max(0.5, Math.abs(x(value) - x(0))),
-            height: y(rowsOf[1]) - y(rowsOf[0]) + 0.4,
-            class: 'row-bar'
-          }),
-          [
-            rowsOf[1] - rowsOf[0] > 1 ? `rows ${rowsOf[0]} to ${rowsOf[1] - 1}` : `row ${rowsOf[0]}`,
-            `${signed(value, whole)} cycles a frame`,
-            ...ports.map(([port, values]) => `${port}: ${signed(over(values, rowsOf), whole)} of waiting`)
-          ]));
-    }
-    for (const [port, values] of ports) {
-      plot.append(s('polyline', {
-        class: 'line',
-        style: `stroke:var(${namedColour(port)})`,
-        points: bands.map(rowsOf => `${x(over(values, rowsOf))},${y((rowsOf[0] + rowsOf[1]) / 2)}`).join(' ')
-      }));
-    }
-    plot.append(s('line', {x1: x(0), x2: x(0), y1: 0, y2: height, class: 'base'}));
-    if (parting) {
-      plot.append(
-          s('line', {x1: 0, x2: inner, y1: y(parting.row), y2: y(parting.row), class: 'now'}),
-          s('text', {
-            x: inner,
-            y: y(parting.row) + (parting.row < 20 ? 14 : -5),
-            'text-anchor': 'end',
-            class: 'now-label halo'
-          },
-            `they part: row ${parting.row}`));
-    }
-  };
-  addChart(page, {
-    id: 'rows',
-    draw,
-    title: parting ? `They part in frame ${parting.frame}, row ${parting.row}: whole after ${
-                         whole(parting.cycles_a)} cycles in A, ${whole(parting.cycles_b)} in B` :
-                     'All rows are whole in the same cycles',
-    note: `How much longer each row takes in B, and how much longer each port waits; ${
-        signed(total, whole)} cycles in ${count(rows.frames, 'frame')}.`,
-    body: legend([
-      ['cycles of the row', 'var(--row-bar)'],
-      ...ports.map(([port]) => [`waits of ${port}`, `var(${namedColour(port)})`])
-    ]),
-    numbers: () => [
-        ['row', 'cycles', ...ports.map(([port]) => `${port} stalls`)],
-        cycles.map((all, row) => [row, all, ...ports.map(([, values]) => values[row])])]
-  });
+  const keys = [...new Set([...a.settings, ...b.settings].map(setting => setting.key))];
+  return keys.sort((x, y) => (x === 'name') - (y === 'name'))
+      .map(key => [key, settingOf(a, key) ?? '–', settingOf(b, key) ?? '–'])
+      .filter(([, x, y]) => x !== y);
 }
 
 function addTotals(page, a, b) {
@@ -149,6 +65,10 @@ function headlineOfTwo(a, b, settings) {
 }
 
 const changeText = ([key, x, y]) => `${key}: ${x} → ${y}`;
+
+// Amounts of rows as a map over the picture.
+const layerOf = (cycles, width) =>
+    ({name: 'B, by row', values: cycles, columns: 1, rows: cycles.length, width, height: 1});
 
 export function showTwoRuns(page, {runs: [a, b], difference}) {
   const [rateA, rateB] = [rateOf(a), rateOf(b)];
@@ -202,15 +122,7 @@ export function showTwoRuns(page, {runs: [a, b], difference}) {
       pictures: [a, b].map(({pictures: {disparity, disparities}}) => ({url: disparity, disparities})),
       names: ['A', 'B'],
       frames: rows?.frames,
-      layers: rows?.cycles.some(value => value > 0) ? [{
-        name: 'B, by row',
-        values: rows.cycles,
-        columns: 1,
-        rows: rows.cycles.length,
-        width: settingOf(b, 'image.width'),
-        height: 1
-      }] :
-                                                      []
+      layers: rows?.cycles.some(value => value > 0) ? [layerOf(rows.cycles, settingOf(b, 'image.width'))] : []
     });
   }
   addFrames(
@@ -228,7 +140,7 @@ export function showTwoRuns(page, {runs: [a, b], difference}) {
     title: settings.length ?
         `${count(settings.length, 'key')} of the board differ${settings.length === 1 ? 's' : ''}` :
         'The boards are the same',
-    body: h('div', null, settings.length > 0 && htmlTable(['key', 'A', 'B'], settings)),
+    body: settings.length > 0 && htmlTable(['key', 'A', 'B'], settings),
     numbers: () => [['key', 'a', 'b'], settings]
   });
   addTotals(figures, a, b);

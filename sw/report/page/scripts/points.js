@@ -1,6 +1,6 @@
 // The points of a database: their columns, which of them are selected, and the front of Pareto.
+import {Table} from './data.js';
 import {kRates, value} from './format.js';
-import {Table} from './table.js';
 
 export const kRateColumns = kRates.map(([name]) => `frames_per_second.${name}`);
 
@@ -74,6 +74,9 @@ export class Points {
   get count() {
     return this.selected.reduce((sum, is) => sum + is, 0);
   }
+  selectedRows() {
+    return [...this.selected.keys()].filter(row => this.selected[row]);
+  }
 
   hasUncertainty(name) {
     return this.table.has(`${name}_uncertainty`);
@@ -93,8 +96,8 @@ export class Points {
     };
   }
 
-  // The points with a number in this column whose board fits its FPGA and loses no pixels; all of them if there
-  // is none.
+  // The points with a number in this column whose board fits its FPGA and loses no pixels; all of them if
+  // there is none.
   sound(name) {
     const numbers = this.column(name);
     const limits = this.table.names.filter(each => /^area\..*_percent$/.test(each))
@@ -107,8 +110,8 @@ export class Points {
     return sound.length > 0 ? sound : all;
   }
 
-  // The fastest points that tie within the uncertainty of their rates, the cheapest first: that with the fewest
-  // banks, then with the fewest slices.
+  // The fastest points that tie within the uncertainty of their rates, the cheapest first: that with the
+  // fewest banks, then with the fewest slices.
   fastest(name) {
     const [rates, open] = [this.column(name), this.uncertainty(name)];
     const rows = this.sound(name);
@@ -121,9 +124,9 @@ export class Points {
     return {best, ties};
   }
 
-  // The selected points that no other beats, from the best x on. From one point to the next the column without
-  // uncertainty becomes worse, and the other one better by more than the uncertainty of both. Points that are the
-  // same in the former, and tie in the latter, are all on the front.
+  // The selected points that no other beats, from the best x on. From one point to the next the column
+  // without uncertainty becomes worse, and the other one better by more than the uncertainty of both. Points
+  // that are the same in the former, and tie in the latter, are all on the front.
   front(x, y) {
     const worse = axis => this.column(axis.name).map(
         v => typeof v !== 'number' ? NaN :
@@ -133,8 +136,7 @@ export class Points {
     const isOpen = this.hasUncertainty(x.name);
     const [along, across] = isOpen ? [ys, xs] : [xs, ys];
     const open = this.uncertainty((isOpen ? x : y).name);
-    const rows =
-        [...this.selected.keys()].filter(row => this.selected[row] && !Number.isNaN(xs[row] + ys[row]));
+    const rows = this.selectedRows().filter(row => !Number.isNaN(xs[row] + ys[row]));
     rows.sort((a, b) => along[a] - along[b] || across[a] - across[b]);
     const front = [];
     let last = rows[0];  // the next one has to beat it

