@@ -25,7 +25,7 @@ ROOMS = {
     "platform": ["platform/config"],
     "sw/files": [],
     "sw/driver": [],
-    "sw/media": [],
+    "sw/media": ["sw/files", "sw/process"],
     "sw/process": [],
     "sw/report": ["sw/files", "sw/media"],
     "sw/report/page_data": ["sw/explore", "sw/files", "sw/process", "sw/report", "sw/runs"],

@@ -164,7 +164,7 @@ class Pictures(ProgramTest):
         for path, reason in (
             (self.folder / "none.png", "no such file"),
             ("", "no such file"),
-            (self.folder, "a directory"),
+            (self.folder, "must be a regular file"),
             (self.file("empty.png"), "an empty file"),
             (self.file("cut.pgm", self.left.read_bytes()[:-1]), "truncated"),
             (self.file("text.png", "This is a text.\n" * 10), "not a picture"),
