@@ -109,8 +109,12 @@ class Calibrator {
       files_ = runs::rig_files(options_.out);
       fs::path folder = files_.calibration.parent_path();
       if (folder.empty()) folder = ".";
-      if (!fs::is_directory(folder))
-        throw std::runtime_error(fmt::format("'{}': no such folder", folder.string()));
+      std::error_code error;
+      const fs::file_status status = fs::status(folder, error);
+      if (!fs::is_directory(status)) {
+        throw std::runtime_error(fmt::format("'{}': {}", folder.string(),
+                                             fs::status_known(status) ? "no such folder" : error.message()));
+      }
       output_ =
           std::make_unique<files::OutputFolder>(folder, calibration_content(files_, is_synthetic, inputs));
     } catch (const std::exception& error) {

@@ -15,14 +15,15 @@ constexpr int kMostScans = 100;
 
 [[noreturn]] void fail_jpeg(j_common_ptr /*info*/) { refuse_damaged(); }
 
-// libjpeg fills damaged parts with grey, and continues with a warning.
+// libjpeg fills damaged parts with grey, and continues with a warning. The first warning counts: a scan that
+// repeats an earlier one is unusual, but not damaged, and leads to more warnings.
 void check_jpeg_warning(j_common_ptr info, int level) {
   if (level >= 0) return;
   char text[JMSG_LENGTH_MAX];
   info->err->format_message(info, text);
   const std::string_view message = text;
   if (message.rfind("Premature end", 0) == 0) refuse_damaged();
-  if (message.rfind("Corrupt JPEG data", 0) == 0)
+  if (info->err->num_warnings++ == 0 && message.rfind("Corrupt JPEG data", 0) == 0)
     refuse_picture("a damaged JPEG", "a picture must be complete");
 }
 

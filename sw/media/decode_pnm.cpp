@@ -19,8 +19,8 @@ class Words {
   // The next word, without comments before it. Takes the one byte of white space behind it.
   std::string_view next() {
     while (!rest_.empty() && (is_space(rest_[0]) || rest_[0] == '#')) {
-      const std::size_t line = std::min(rest_.find_first_of("\r\n"), rest_.size());
-      rest_.remove_prefix(rest_[0] == '#' ? line : 1);
+      const bool is_comment = rest_[0] == '#';
+      rest_.remove_prefix(is_comment ? std::min(rest_.find_first_of("\r\n"), rest_.size()) : 1);
     }
     const auto end = std::find_if(rest_.begin(), rest_.end(), is_space);
     if (end == rest_.end()) refuse_damaged();

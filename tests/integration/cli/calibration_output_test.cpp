@@ -107,7 +107,7 @@ Files calibration(const std::string& what, bool has_pictures) {
   Files files = {{"rig.yaml", text + "# " + what + '\n'},
                  {"rig_left.lut", what},
                  {"rig_right.lut", what},
-                 {"rig_drawings/corners_0" + what + ".png", what},
+                 {what == "new" ? "rig_drawings/corners_01.png" : "rig_drawings/corners_00.png", what},
                  {"rig_drawings/displacement.png", what}};
   if (has_pictures) files["rig_pictures/left_00.png"] = what;
   return files;
