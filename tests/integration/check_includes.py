@@ -28,7 +28,7 @@ ROOMS = {
     "sw/media": ["sw/files", "sw/process"],
     "sw/process": [],
     "sw/report": ["sw/files", "sw/media"],
-    "sw/report/page_data": ["sw/explore", "sw/files", "sw/process", "sw/report", "sw/runs"],
+    "sw/report/page_data": ["sw/explore", "sw/files", "sw/media", "sw/process", "sw/report", "sw/runs"],
     "sw/explore/store": ["sw/files"],
     "sw/explore/plan": ["sw/explore/store", "sw/files"],
     "sw/explore/sweep": ["sw/explore/plan", "sw/explore/store", "sw/files", "sw/process"],
