@@ -7,12 +7,12 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <optional>
 #include <stdexcept>
 
 #include "calib/opencv_conversions.h"
+#include "calib/png.h"
 
 namespace stereotlm::calib {
 namespace {
@@ -228,9 +228,8 @@ Pair side_by_side(const std::string& left_caption, const cv::Mat& left, const st
 }
 
 std::vector<std::uint8_t> encode_png(const cv::Mat& canvas) {
-  std::vector<std::uint8_t> bytes;
-  if (!cv::imencode(".png", canvas, bytes)) throw std::runtime_error("a drawing could not be encoded as PNG");
-  return bytes;
+  const cv::Mat whole = canvas.isContinuous() ? canvas : canvas.clone();
+  return encode_png(whole.cols, whole.rows, PngPixel::kColour, whole.data);
 }
 
 }  // namespace stereotlm::calib

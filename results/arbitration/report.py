@@ -126,7 +126,7 @@ TEXT = """# Arbitration
 **Question.** Where several ports share a bank, does it matter who goes first, and would a fair arbiter be better than
 the default, a fixed priority of `host, result, left_pixel, right_pixel, left_lut, right_lut`?
 
-Made by `results/arbitration/run` (after `./setup` and the release build) from [core.yaml](core.yaml) and
+Made by `results/arbitration/run` (after `./setup tests` and the release build) from [core.yaml](core.yaml) and
 [computer.yaml](computer.yaml): `fpl2003`, 640x480, 7x7, D = 80, ZBT pipelined memories, large enough for all buffers.
 All rows are in [core.csv](core.csv) and [computer.csv](computer.csv).
 

@@ -65,7 +65,7 @@ TEXT = """# Kinds of memory
 synchronous burst memories cost, which lose 1 to 4 clocks at each change of direction, and does it matter that
 flow-through memories answer a clock earlier than pipelined ones?
 
-Made by `results/bank_kinds/run` (after `./setup` and the release build) from [core.yaml](core.yaml) and
+Made by `results/bank_kinds/run` (after `./setup tests` and the release build) from [core.yaml](core.yaml) and
 [computer.yaml](computer.yaml): `fpl2003`, 640x480, 7x7, D = 80, all banks of one kind, fixed priority. All rows are
 in [core.csv](core.csv) and [computer.csv](computer.csv).
 

@@ -55,7 +55,7 @@ TEXT = """# How many banks?
 **Question.** The paper says that its system needs "at least eight" memory banks. How many does it need, with and
 without the traffic of the cameras, and what are the others for?
 
-Made by `results/banks/run` (after `./setup` and the release build): `stereotlm allocate fpl2003 --banks 8` tries every way to
+Made by `results/banks/run` (after `./setup tests` and the release build): `stereotlm allocate fpl2003 --banks 8` tries every way to
 place the eight buffers (two for each picture, two for results, two tables) in at most eight banks: 4,140 different ones, of
 which 2,507 fit into banks of 524,288 words. 640x480, 7x7, D = 80. What it says is beside this page:
 {files}.

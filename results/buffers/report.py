@@ -60,7 +60,7 @@ TEXT = """# One, two and three buffers
 **Question.** The paper keeps two buffers of each picture and of the results. What do one and three give, at the rate
 of its cameras and at others?
 
-Made by `results/buffers/run` (after `./setup` and the release build) from [plan.yaml](plan.yaml): `fpl2003` with
+Made by `results/buffers/run` (after `./setup tests` and the release build) from [plan.yaml](plan.yaml): `fpl2003` with
 eleven banks, a bank a buffer, 640x480, 7x7, D = 80; the whole computer, 61 frames a point. A frame of the core takes
 53.8 ms, which is {core:.2f} frames a second. All rows are in [buffers.csv](buffers.csv); the dotted line is the
 paper's {paper} Hz.

@@ -46,7 +46,7 @@ TEXT = """# Column fetch against line buffers
 **Question.** The paper reads each column of the window anew for each pixel: n reads a pixel and side. Keeping the
 rows in block RAM needs one. What does that give, and what does it take?
 
-Made by `results/fetch/run` (after `./setup` and the release build) from [core.yaml](core.yaml) and
+Made by `results/fetch/run` (after `./setup tests` and the release build) from [core.yaml](core.yaml) and
 [computer.yaml](computer.yaml): 640x480, `log7`, a bank a buffer. The figures are those of `stereotlm plot`; their
 data are beside them.
 

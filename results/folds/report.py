@@ -135,7 +135,7 @@ TEXT = """# Fewer modules than disparities
 **Question.** The paper builds a module for each disparity. With fewer, a pixel takes several passes. What does that
 cost and save, and which way of fetching suits it?
 
-Made by `results/folds/run` (after `./setup` and the release build) from [folds.yaml](folds.yaml),
+Made by `results/folds/run` (after `./setup tests` and the release build) from [folds.yaml](folds.yaml),
 [together.yaml](together.yaml), [banks.yaml](banks.yaml) and [cameras.yaml](cameras.yaml): 640x480, `log7`. All rows are
 in [folds.csv](folds.csv), [together.csv](together.csv), [banks.csv](banks.csv) and [cameras.csv](cameras.csv).
 

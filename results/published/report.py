@@ -75,7 +75,7 @@ TEXT = """# Published designs
 **Question.** Other people have published stereo matchers for FPGAs, with their sizes, clocks and rates. What does
 this model say for the same sizes?
 
-Made by `results/published/run` (after `./setup` and the release build) from [rows.yaml](rows.yaml), the designs as
+Made by `results/published/run` (after `./setup tests` and the release build) from [rows.yaml](rows.yaml), the designs as
 boards, and [published.csv](published.csv), the printed figures with their sources. The boards have line buffers, no
 tables, no filter and a bank for each buffer, so memory never limits them. `units` are the modules of the design: it
 takes S = ceil(disparities / units) passes for each pixel. All figures are in [rows.csv](rows.csv).

@@ -128,7 +128,7 @@ TEXT = """# Several rows at once
 **Question.** Column fetch reads n pixels for each result. R rows of results at once share what is read: n+R-1
 pixels for R results. What does that give, what does it take, and when are line buffers the better choice?
 
-Made by `results/rows/run` (after `./setup` and the release build) from [core.yaml](core.yaml),
+Made by `results/rows/run` (after `./setup tests` and the release build) from [core.yaml](core.yaml),
 [two_banks.yaml](two_banks.yaml) and [cameras.yaml](cameras.yaml): 640x480, D = 80, `log7`, a result queue of 32 words. All
 rows are in [core.csv](core.csv), [two_banks.csv](two_banks.csv) and [cameras.csv](cameras.csv). The tables of the real
 rig are those of [results/calibration](../calibration/README.md).

@@ -183,7 +183,7 @@ TEXT = """# How few banks, with joint tables and a word cache?
 of each row saves three quarters of two others. How few banks are then enough: with the identity as tables, with those
 of a real rig, and with cameras?
 
-Made by `results/two_banks/run` (after `./setup` and the release build). 640x480, 7x7, D = 80, `log7`, banks of 524,288
+Made by `results/two_banks/run` (after `./setup tests` and the release build). 640x480, 7x7, D = 80, `log7`, banks of 524,288
 words. The tables of the real rig are those of [results/calibration](../calibration/README.md), from 13 pairs of
 chessboards. `stereotlm allocate` tries every placement of the buffers; what it says is beside this page:
 {files}.

@@ -24,10 +24,10 @@
 #include "sw/files/output_file.h"
 #include "sw/files/sha256.h"
 #include "sw/files/whole_file.h"
+#include "sw/media/encode.h"
 #include "sw/process/interrupt.h"
 #include "sw/process/streams.h"
 #include "sw/runs/sources/calibration_library.h"
-#include "sw/runs/sources/media_library.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -106,7 +106,17 @@ class Calibrator {
       inputs.push_back({"--right", pair.right_name});
     }
     try {
-      output_ = std::make_unique<CalibrationOutput>(options_.out, is_synthetic, inputs);
+      files_ = runs::rig_files(options_.out);
+      fs::path folder = files_.calibration.parent_path();
+      if (folder.empty()) folder = ".";
+      std::error_code error;
+      const fs::file_status status = fs::status(folder, error);
+      if (!fs::is_directory(status)) {
+        throw std::runtime_error(fmt::format("'{}': {}", folder.string(),
+                                             fs::status_known(status) ? "no such folder" : error.message()));
+      }
+      output_ =
+          std::make_unique<files::OutputFolder>(folder, calibration_content(files_, is_synthetic, inputs));
     } catch (const std::exception& error) {
       problems.add(fmt::format("--out {}", error.what()));
     }
@@ -157,17 +167,22 @@ class Calibrator {
     }
   }
 
+  // Adds a file of the calibration, which has this path.
+  template <typename Bytes>
+  void add(const fs::path& file, const Bytes& bytes) {
+    output_->add(file.lexically_relative(files_.calibration.parent_path()), bytes);
+  }
+
   void write() {
-    const runs::RigFiles& files = output_->files();
     const std::string left = calib::lut_bytes(result_.tables.left);
     const std::string right = calib::lut_bytes(result_.tables.right);
     result_.calibration.left_lut_sha256 = files::sha256_hex(left.data(), left.size());
     result_.calibration.right_lut_sha256 = files::sha256_hex(right.data(), right.size());
-    output_->add(files.left_lut, left);
-    output_->add(files.right_lut, right);
-    output_->add(files.calibration, runs::calibration_functions().calibration_yaml(result_.calibration));
-    draw(files.drawings);
-    if (rig_) write_synthetic(files.pictures);
+    add(files_.left_lut, left);
+    add(files_.right_lut, right);
+    add(files_.calibration, runs::calibration_functions().calibration_yaml(result_.calibration));
+    draw(files_.drawings);
+    if (rig_) write_synthetic(files_.pictures);
   }
 
   void draw(const fs::path& folder) {
@@ -180,33 +195,32 @@ class Calibrator {
       };
       std::vector<bool> left_out = pair.used;
       left_out.flip();
-      output_->add(folder / fmt::format("corners_{:02}.png", pair.picture),
-                   functions.encode_corners_png(
-                       request_.grid, named(pictures.left_name, pictures.left), {pair.corners.left, left_out},
-                       named(pictures.right_name, pictures.right), {pair.corners.right, left_out}));
-      output_->add(folder / fmt::format("rectified_{:02}.png", pair.picture),
-                   functions.encode_rectified_pair_png(
-                       named(pictures.left_name, kernels::rectify(pictures.left, result_.tables.left)),
-                       named(pictures.right_name, kernels::rectify(pictures.right, result_.tables.right))));
+      add(folder / fmt::format("corners_{:02}.png", pair.picture),
+          functions.encode_corners_png(
+              request_.grid, named(pictures.left_name, pictures.left), {pair.corners.left, left_out},
+              named(pictures.right_name, pictures.right), {pair.corners.right, left_out}));
+      add(folder / fmt::format("rectified_{:02}.png", pair.picture),
+          functions.encode_rectified_pair_png(
+              named(pictures.left_name, kernels::rectify(pictures.left, result_.tables.left)),
+              named(pictures.right_name, kernels::rectify(pictures.right, result_.tables.right))));
     }
-    output_->add(folder / "displacement.png",
-                 functions.encode_displacement_png(result_.tables.left, result_.tables.right));
-    output_->add(folder / "source_lines.png",
-                 functions.encode_source_lines_png(result_.tables.left, result_.tables.right));
+    add(folder / "displacement.png",
+        functions.encode_displacement_png(result_.tables.left, result_.tables.right));
+    add(folder / "source_lines.png",
+        functions.encode_source_lines_png(result_.tables.left, result_.tables.right));
   }
 
   // Writes the pictures that the calibration used, and a stereo pair of a scene with the disparities that the
   // board should find.
   void write_synthetic(const fs::path& folder) {
-    const runs::MediaFunctions& media = runs::media_functions();
     for (const calib::PicturePair& pictures : request_.pictures) {
       if (process::interrupted()) return;
-      output_->add(pictures.left_name, media.encode_png_gray(pictures.left));
-      output_->add(pictures.right_name, media.encode_png_gray(pictures.right));
+      add(pictures.left_name, media::encode_png_gray(pictures.left));
+      add(pictures.right_name, media::encode_png_gray(pictures.right));
     }
     const auto scene = rig_->scene();
-    output_->add(folder / "scene_left.png", media.encode_png_gray(scene.left));
-    output_->add(folder / "scene_right.png", media.encode_png_gray(scene.right));
+    add(folder / "scene_left.png", media::encode_png_gray(scene.left));
+    add(folder / "scene_right.png", media::encode_png_gray(scene.right));
     const calib::Calibration& made = result_.calibration;
     const std::vector<float> truth = rig_->disparity(made.rig, made.rectification, made.disparity_offset);
     kernels::GrayImage grey(made.rig.width, made.rig.height);
@@ -214,34 +228,34 @@ class Calibrator {
       const double level = std::floor(double{truth[i]} * truth_scale() + 0.5);
       if (level > 0 && level <= 255) grey.pixels[i] = static_cast<std::uint8_t>(level);
     }
-    output_->add(folder / "scene_truth.png", media.encode_png_gray(grey));
+    add(folder / "scene_truth.png", media::encode_png_gray(grey));
   }
 
   // Grey levels per disparity in the truth of the scene.
   int truth_scale() const { return 255 / options_.disparities; }
 
   std::string written_text() const {
-    const runs::RigFiles& files = output_->files();
     std::string text =
-        fmt::format("{:<16} {}, {}, {}, {}/\n", "written", files.calibration.string(),
-                    files.left_lut.string(), files.right_lut.string(), files.drawings.string());
+        fmt::format("{:<16} {}, {}, {}, {}/\n", "written", files_.calibration.string(),
+                    files_.left_lut.string(), files_.right_lut.string(), files_.drawings.string());
     if (!rig_) return text;
     const auto& known = rig_->rig();
     text += fmt::format("{:<16} left focal length {:.1f} px, baseline {:.2f} mm\n", "known to be",
                         known.left.matrix(0, 0), known.translation.norm());
-    const std::string folder = files.pictures.string();
+    const std::string folder = files_.pictures.string();
     text += fmt::format(
         "{:<16} stereotlm run fpl2003 --source preloaded --set matcher.disparities={} \\\n"
         "{:<16}   --left {}/scene_left.png --right {}/scene_right.png --calibration {} \\\n"
         "{:<16}   --truth {}/scene_truth.png --truth-scale {}\n",
-        "to go on", options_.disparities, "", folder, folder, files.calibration.string(), "", folder,
+        "to go on", options_.disparities, "", folder, folder, files_.calibration.string(), "", folder,
         truth_scale());
     return text;
   }
 
   const CalibrateOptions& options_;
   calib::CalibrationRequest request_;
-  std::unique_ptr<CalibrationOutput> output_;
+  runs::RigFiles files_;
+  std::unique_ptr<files::OutputFolder> output_;
   std::unique_ptr<calib::SyntheticRig> rig_;
   calib::CalibrationResult result_;
 };

@@ -17,7 +17,6 @@
 #include "sw/cli/json_option.h"
 #include "sw/cli/load_run_input.h"
 #include "sw/cli/run_options.h"
-#include "sw/files/folder_entries.h"
 #include "sw/files/output_file.h"
 #include "sw/files/output_folder.h"
 #include "sw/files/temporary_folder.h"
@@ -113,22 +112,18 @@ bool is_file_name(const std::string& name) {
   });
 }
 
-std::optional<std::string> foreign_part(const fs::path& entry) {
-  const std::string name = entry.filename();
-  return is_file_name(name) && files::is_file(entry) ? std::nullopt : std::optional(name);
-}
-
-std::optional<std::string> problem_of(const fs::path& dir, bool was_left) {
-  const auto is_own_mark = files::marked_kind("", {{0, report::conflicts_csv_head()}}).is_own;
-  const bool is_ours = was_left || (files::is_file(dir / kMark) && is_own_mark(dir / kMark));
-  for (const fs::path& name : files::entries(dir)) {
-    if (name == files::kAsideFolder || (is_ours && !foreign_part(dir / name))) continue;
-    return fmt::format(
-        "holds '{}': must be empty or hold only files that conflicts has written, with {}: "
-        "move it away, or give another folder",
-        name.string(), kMark);
-  }
-  return std::nullopt;
+files::OutputContent content_of(const runs::RunInput& input) {
+  files::OutputContent content;
+  content.called = "folder of conflicts";
+  content.mark = kMark;
+  content.kind = files::marked_kind("table of stereotlm conflicts", {{0, report::conflicts_csv_head()}});
+  content.rule =
+      "must be empty or hold only files that conflicts has written, with conflicts.csv: move it away, or "
+      "give "
+      "another folder";
+  content.is_ours = is_file_name;
+  content.inputs = input.inputs;
+  return content;
 }
 
 // What is simulated.
@@ -246,9 +241,7 @@ int conflicts(const ConflictsOptions& options) {
   std::optional<files::OutputFolder> folder;
   if (options.out) {
     try {
-      folder.emplace(*options.out,
-                     files::OutputContent{"folder of conflicts", kMark, foreign_part, problem_of, nullptr,
-                                          files::kAsideFolder, input.inputs});
+      folder.emplace(*options.out, content_of(input));
     } catch (const std::runtime_error& error) {
       process::refuse(error.what());
     }

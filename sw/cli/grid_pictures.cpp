@@ -14,7 +14,7 @@
 #include "sw/files/sha256.h"
 #include "sw/process/interrupt.h"
 #include "sw/process/streams.h"
-#include "sw/runs/sources/media_library.h"
+#include "sw/media/load.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -91,7 +91,7 @@ class Loader {
 
   kernels::GrayImage load(const std::string& option, const std::string& path) {
     try {
-      media::LoadedGray loaded = runs::media_functions().load_gray(path);
+      media::LoadedGray loaded = media::load_gray(path);
       if (loaded.converted_from_colour) ++converted_;
       ++count_;
       check_size(option, path, loaded.image);

@@ -46,8 +46,10 @@ class InputLoader {
     input_.inputs = source_.files;
     input_.inputs.push_back({"BOARD", options_.board.name()});
     if (options_.out) {
-      attempt("",
-              [&] { input_.folder = std::make_unique<runs::ResultFolder>(*options_.out, input_.inputs); });
+      attempt("", [&] {
+        input_.folder =
+            std::make_unique<files::OutputFolder>(*options_.out, runs::result_content(input_.inputs));
+      });
     }
     problems_.check();
     input_.board = *board;

@@ -21,7 +21,7 @@
 #include "sw/cli/truth_options.h"
 #include "sw/cli/typed_option.h"
 #include "sw/cli/verdict_colours.h"
-#include "sw/files/document_folder.h"
+#include "sw/files/output_folder.h"
 #include "sw/files/whole_file.h"
 #include "sw/media/truth.h"
 #include "sw/paper/document.h"
@@ -184,20 +184,30 @@ bool draw(const std::filesystem::path& folder, std::map<std::string, std::string
   return true;
 }
 
+files::OutputContent content_of(const PaperOptions& options) {
+  files::OutputContent content;
+  content.called = "folder";
+  content.mark = paper::kDocument;
+  content.kind = files::marked_kind("document of stereotlm paper", {{0, paper::kDocumentMark}});
+  content.rule = "only files of an earlier result are replaced";
+  content.is_ours = [names = paper::file_names()](const std::string& name) {
+    return name == paper::kDocument || std::find(names.begin(), names.end(), name) != names.end();
+  };
+  content.others_stay = true;
+  content.inputs = {{"--left", options.left.text},
+                    {"--right", options.right.text},
+                    {"--truth", options.truth.file.value_or("")}};
+  return content;
+}
+
 int compare_with_paper(const PaperOptions& options) {
   process::catch_interrupts();
   process::Problems problems;
   const auto drawings = temporary_folder(problems);
   const auto given = load_pair(options, problems);
-  std::unique_ptr<files::DocumentFolder> folder;
+  std::unique_ptr<files::OutputFolder> folder;
   try {
-    const std::vector<files::NamedFile> inputs = {{"--left", options.left.text},
-                                                  {"--right", options.right.text},
-                                                  {"--truth", options.truth.file.value_or("")}};
-    folder = std::make_unique<files::DocumentFolder>(
-        options.out.text, paper::kDocument,
-        files::marked_kind("document of stereotlm paper", {{0, paper::kDocumentMark}}), paper::file_names(),
-        inputs);
+    folder = std::make_unique<files::OutputFolder>(options.out.text, content_of(options));
   } catch (const std::runtime_error& error) {
     problems.add(fmt::format("--out {}: {}", options.out.text, error.what()));
   }
@@ -212,7 +222,8 @@ int compare_with_paper(const PaperOptions& options) {
     return kInterrupted;
   }
   files[paper::kDocument] = paper::document(*findings);
-  folder->commit(files);
+  for (const auto& [name, bytes] : files) folder->add(name, bytes);
+  folder->commit();
   process::print(with_coloured_verdicts(paper::summary(*findings)) +
                  fmt::format("{}: {} files\n", options.out.text, files.size()));
   return kDone;

@@ -64,8 +64,8 @@ void PictureOptions::check_video(process::Problems& problems) {
   const std::string& name = video_layout_.text;
   if (!video_layout_.is_given()) {
     problems.add(fmt::format("{}: missing: goes with --video, one of {}", option,
-                             platform::listed(runs::video_layout_names())));
-  } else if (is_one_of(runs::video_layout_names(), option, name, problems)) {
+                             platform::listed(runs::kVideoLayoutNames)));
+  } else if (is_one_of(runs::kVideoLayoutNames, option, name, problems)) {
     source.video = {video_.text, *runs::video_layout_of(name), name};
     const std::size_t needed = source.video->layout == runs::VideoLayout::kTwo ? 2 : 1;
     if (video_.text.size() != needed) {

@@ -16,7 +16,6 @@
 #include "sw/cli/exit_status.h"
 #include "sw/cli/temporary_files.h"
 #include "sw/cli/typed_option.h"
-#include "sw/files/folder_entries.h"
 #include "sw/files/output_folder.h"
 #include "sw/files/whole_file.h"
 #include "sw/process/interrupt.h"
@@ -36,6 +35,8 @@ const std::array<std::pair<const char*, std::string>, 3> kMade = {
     {{".png", std::string("\0\0\0\x12tEXtSoftware\0stereotlm", 26)},
      {".svg", "\n    <dc:creator>\n     <cc:Agent>\n      <dc:title>stereotlm</dc:title>\n"},
      {".pdf", "\n<< /Creator (stereotlm) >>\nendobj\nxref\n"}}};
+constexpr const char* kRule =
+    "must be empty or hold only files that plot has written: move it away, or give another folder";
 constexpr const char* kPlotFooter =
     "Each figure that applies to the database is drawn, as NAME.png and NAME.svg or in the formats of\n"
     "--format, with its data in NAME.csv:\n"
@@ -95,39 +96,22 @@ struct PlotOptions {
 };
 
 // Whether the name is one that the scripts give to a file.
-bool is_named(const fs::path& entry) {
-  const bool has_ending = entry.extension() == ".csv" ||
+bool is_named(const fs::path& name) {
+  const bool has_ending = name.extension() == ".csv" ||
                           std::any_of(kMade.begin(), kMade.end(),
-                                      [&](const auto& kind) { return entry.extension() == kind.first; });
-  return has_ending && std::find(kFigures.begin(), kFigures.end(), entry.stem()) != kFigures.end() &&
-         files::is_file(entry);
+                                      [&](const auto& kind) { return name.extension() == kind.first; });
+  return has_ending && std::find(kFigures.begin(), kFigures.end(), name.stem()) != kFigures.end();
 }
 
 // Whether a script has written the file, or it is empty. A table is known by a picture beside it.
 bool is_made(const fs::path& file) {
-  if (!is_named(file)) return false;
+  if (!is_named(file.filename()) || !files::is_file(file)) return false;
   if (fs::file_size(file) == 0) return true;
   return std::any_of(kMade.begin(), kMade.end(), [&file](const auto& kind) {
     const auto& [ending, made] = kind;
     if (file.extension() == ".csv") return is_made(fs::path(file).replace_extension(ending));
     return file.extension() == ending && files::read_whole_file(file).find(made) != std::string::npos;
   });
-}
-
-std::optional<std::string> foreign_part(const fs::path& entry) {
-  return is_named(entry) ? std::nullopt : std::optional<std::string>(entry.filename());
-}
-
-// `was_left`: a killed run may have moved pictures away from their tables.
-std::optional<std::string> problem_of(const fs::path& dir, bool was_left) {
-  for (const fs::path& name : files::entries(dir)) {
-    if (name == files::kAsideFolder || (was_left ? is_named(dir / name) : is_made(dir / name))) continue;
-    return fmt::format(
-        "holds '{}': must be empty or hold only files that plot has written: move it away, or give another "
-        "folder",
-        name.string());
-  }
-  return std::nullopt;
 }
 
 int plot(const PlotOptions& options) {
@@ -139,14 +123,9 @@ int plot(const PlotOptions& options) {
   std::string problem = "--out: missing: the folder of the figures";
   if (options.out.is_given() && !options.out.text.empty()) {
     try {
-      folder = std::make_unique<files::OutputFolder>(options.out.text,
-                                                     files::OutputContent{"--out",
-                                                                          "",
-                                                                          foreign_part,
-                                                                          problem_of,
-                                                                          nullptr,
-                                                                          files::kAsideFolder,
-                                                                          {{"DB", options.database.text}}});
+      files::OutputContent content{"--out", "", {"figure of plot", is_made}, kRule, is_named};
+      content.inputs = {{"DB", options.database.text}};
+      folder = std::make_unique<files::OutputFolder>(options.out.text, std::move(content));
       problem.clear();
     } catch (const std::runtime_error& error) {
       problem = error.what();

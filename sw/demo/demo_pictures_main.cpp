@@ -7,7 +7,6 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
-#include <iterator>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -18,11 +17,11 @@
 #include "calib/tables.h"
 #include "models/kernels/stereo.h"
 #include "sw/demo/demo_pair.h"
+#include "sw/demo/panels.h"
 #include "sw/files/output_file.h"
 #include "sw/files/whole_file.h"
 #include "sw/media/encode.h"
 #include "sw/media/load.h"
-#include "sw/media/panels.h"
 #include "sw/media/truth.h"
 
 namespace stereotlm::demo {
@@ -35,8 +34,6 @@ constexpr const char* kUsage =
     "         from aloeL.jpg, aloeR.jpg, aloeGT.png make left.png, right.png, truth.png (640x480, truth "
     "scale 2);\n"
     "         print the number of disparities that the truth needs\n"
-    "       stereotlm-demo-pictures sequence SRC_DIR OUT_DIR\n"
-    "         from left01.jpg, right01.jpg, .. make left_01.png, right_01.png, .. for run --sequence\n"
     "       stereotlm-demo-pictures depth-montage OUT.png LEFT RIG.yaml RESULT\n"
     "         show a picture, its rectified one, and the disparities and depths of RESULT side by side\n"
     "       stereotlm-demo-pictures montage OUT.png LEFT DISPARITY DISPARITIES [TRUTH]\n"
@@ -61,34 +58,6 @@ void prepare(const fs::path& source, const fs::path& out) {
   std::printf("%.0f\n", media::disparities_needed({pair.truth, kTruthScale}));
 }
 
-// The numbers NN of all leftNN.jpg in a folder, sorted.
-std::vector<std::string> numbers_of_pairs(const fs::path& folder) {
-  const std::string beginning = "left";
-  std::vector<std::string> result;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-    const std::string stem = entry.path().stem();
-    if (entry.path().extension() != ".jpg" || stem.rfind(beginning, 0) != 0) continue;
-    const std::string number = stem.substr(beginning.size());
-    const bool is_number = number.find_first_not_of("0123456789") == std::string::npos;
-    if (is_number && !number.empty()) result.push_back(number);
-  }
-  std::sort(result.begin(), result.end());
-  return result;
-}
-
-void make_sequence(const fs::path& source, const fs::path& out) {
-  const std::vector<std::string> numbers = numbers_of_pairs(source);
-  if (numbers.empty()) throw std::runtime_error(source.string() + ": no left01.jpg, left02.jpg, ..");
-  fs::create_directories(out);
-  for (const std::string& number : numbers) {
-    for (const char* side : {"left", "right"}) {
-      const fs::path photograph = source / fmt::format("{}{}.jpg", side, number);
-      const auto picture = media::load_gray(photograph.string()).image;
-      write_file(out / fmt::format("{}_{}.png", side, number), media::encode_png_gray(picture));
-    }
-  }
-}
-
 int parse_disparities(std::string_view text) {
   int value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -100,14 +69,14 @@ int parse_disparities(std::string_view text) {
   return value;
 }
 
-media::Panel disparity_panel(const std::string& caption, const kernels::GrayImage& image, int disparities,
-                             const std::string& missing) {
+Panel disparity_panel(const std::string& caption, const kernels::GrayImage& image, int disparities,
+                      const std::string& missing) {
   return {caption, image, disparities, "0", std::to_string(disparities - 1), missing};
 }
 
 void montage(const std::vector<std::string>& arguments) {
   const int disparities = parse_disparities(arguments[3]);
-  std::vector<media::Panel> panels = {
+  std::vector<Panel> panels = {
       {"left picture", media::load_gray(arguments[1]).image, 0, "", "", ""},
       disparity_panel("disparity, pixels", media::load_gray(arguments[2]).image, disparities, "no answer")};
   if (arguments.size() == 5) {
@@ -115,12 +84,12 @@ void montage(const std::vector<std::string>& arguments) {
     panels.push_back(disparity_panel("ground truth, pixels", media::nearest_disparity(truth, disparities),
                                      disparities, "unknown"));
   }
-  write_file(arguments[0], media::encode_side_by_side_png(panels));
+  write_file(arguments[0], encode_side_by_side_png(panels));
 }
 
-media::Panel depth_panel(const std::vector<std::uint16_t>& millimetres, int width, int height) {
+Panel depth_panel(const std::vector<std::uint16_t>& millimetres, int width, int height) {
   constexpr int kLevels = 254;
-  media::Panel panel = {"depth", kernels::GrayImage(width, height, 255), kLevels, "far", "near", "no answer"};
+  Panel panel = {"depth", kernels::GrayImage(width, height, 255), kLevels, "far", "near", "no answer"};
   const auto range = calib::depth_range(millimetres);
   if (!range) return panel;
   const auto [near, far] = *range;
@@ -144,7 +113,7 @@ void depth_montage(const std::vector<std::string>& arguments) {
   const calib::DepthGeometry geometry = {calibration.rectification.q, calibration.disparity_offset};
   const auto depths = calib::depth_millimetres(geometry, disparity);
   write_file(arguments[0],
-             media::encode_side_by_side_png(
+             encode_side_by_side_png(
                  {{"left picture", picture, 0, "", "", ""},
                   {"rectified by the left table", kernels::rectify(picture, table), 0, "", "", ""},
                   disparity_panel("disparity, pixels", disparity, calibration.disparities, "no answer"),
@@ -156,8 +125,6 @@ int run(const std::vector<std::string>& arguments) {
   const std::vector<std::string> rest(arguments.begin() + (arguments.empty() ? 0 : 1), arguments.end());
   if (command == "prepare" && rest.size() == 2) {
     prepare(rest[0], rest[1]);
-  } else if (command == "sequence" && rest.size() == 2) {
-    make_sequence(rest[0], rest[1]);
   } else if (command == "depth-montage" && rest.size() == 4) {
     depth_montage(rest);
   } else if (command == "montage" && (rest.size() == 4 || rest.size() == 5)) {

@@ -14,7 +14,7 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "sw/files/folder_entries.h"
+#include "sw/files/whole_file.h"
 
 namespace stereotlm::files {
 namespace {

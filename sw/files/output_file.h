@@ -9,13 +9,20 @@
 #include <utility>
 #include <vector>
 
-#include "sw/files/named_file.h"
-#include "sw/files/new_file.h"
+#include "sw/files/whole_file.h"
 
 namespace stereotlm::files {
 
 // The file by which a result folder of `run` is known.
 inline constexpr const char* kResultMark = "run.json";
+
+// A file that an option or an argument of a command names, directly or by its folder.
+struct NamedFile {
+  std::string option;
+  std::string path;
+
+  std::string text() const { return option + " '" + path + "'"; }
+};
 
 // Follows symbolic links from `path` to a file, which need not exist. Returns the path of that file. Throws
 // std::system_error.

@@ -8,13 +8,9 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <sstream>
 #include <stdexcept>
-#include <system_error>
 #include <utility>
 
-#include "sw/files/folder_entries.h"
-#include "sw/files/output_file.h"
 #include "sw/files/whole_file.h"
 
 namespace stereotlm::files {
@@ -22,8 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kNew = "new";
-constexpr const char* kNames = "names";  // lists the new files during a commit
 constexpr const char* kProbe = "probe";
 
 // Whether the open file is the one at `path`.
@@ -34,6 +28,20 @@ bool is_same(int file, const fs::path& path) {
   return is_known && opened.st_dev == there.st_dev && opened.st_ino == there.st_ino;
 }
 
+// Moves the entries that are there. An entry that `to` already has is an error.
+void move_all(const std::vector<fs::path>& names, const fs::path& from, const fs::path& to) {
+  for (const fs::path& name : names) {
+    if (is_there(from / name)) rename_to_new(from / name, to / name);
+  }
+}
+
+// The cause, after the name of the file that could not be moved.
+std::string cause_of(const std::system_error& error) {
+  const auto* const of_move = dynamic_cast<const fs::filesystem_error*>(&error);
+  const bool has_name = of_move != nullptr && !of_move->path2().empty();
+  return (has_name ? of_move->path2().filename().string() + ": " : "") + error.code().message();
+}
+
 }  // namespace
 
 OutputFolder::OutputFolder(const fs::path& dir, OutputContent content)
@@ -41,20 +49,17 @@ OutputFolder::OutputFolder(const fs::path& dir, OutputContent content)
   if (dir_.empty()) refuse("must be named");
   if (!dir_.has_filename()) dir_ = dir_.parent_path();
   try {
-    created_.create(dir_);
-    if (!fs::is_directory(dir_)) refuse("not a folder");
-    lock();
-    check_aside();
-    if (const auto found = problem()) refuse(*found);
-    check_inputs();
-    if (is_unfinished()) put_back();
-    for (const fs::path& name : entries(dir_)) {
-      if (is_replaced(dir_ / name)) replaced_.push_back(name);
+    create_folders();
+    while (!try_lock()) {
     }
+    check_aside();
+    repair();
+    check_earlier();
+    check_inputs();
     start_aside();
   } catch (const std::system_error& error) {
     discard();
-    refuse("cannot be written to: " + error.code().message());
+    refuse("cannot be written to: " + cause_of(error));
   } catch (...) {
     discard();
     throw;
@@ -63,44 +68,84 @@ OutputFolder::OutputFolder(const fs::path& dir, OutputContent content)
 
 OutputFolder::~OutputFolder() { discard(); }
 
-fs::path OutputFolder::made() const { return aside() / kNew; }
-fs::path OutputFolder::earlier() const { return aside() / kEarlierFolder; }
-
-void OutputFolder::lock() {
-  while (!try_lock()) {
+void OutputFolder::create_folders() {
+  std::vector<fs::path> missing;
+  for (fs::path path = dir_; !is_there(path); path = path.parent_path()) missing.push_back(path);
+  for (auto path = missing.rbegin(); path != missing.rend(); ++path) {
+    if (fs::create_directory(*path)) created_.push_back(*path);
   }
+  if (!fs::is_directory(dir_)) refuse("not a folder");
 }
 
 // Returns false if another run has removed the folder of unfinished files before it was locked: try again.
 bool OutputFolder::try_lock() {
   if (is_there(aside()) && !is_folder(aside()))
     refuse(fmt::format("holds '{}', which is no folder", content_.aside));
-  fs::create_directory(aside());
+  owns_aside_ = fs::create_directory(aside());
   lock_ = open(aside().c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
   if (lock_ < 0 && errno == ENOENT) return false;
   if (lock_ < 0) throw std::system_error(errno, std::generic_category());
   // On a file system without locks a second run is not refused.
-  if (flock(lock_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) refuse("in use by another run");
+  if (flock(lock_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+    owns_aside_ = false;
+    refuse("in use by another run");
+  }
   if (is_same(lock_, aside())) return true;
   close(lock_);
   lock_ = -1;
   return false;
 }
 
-void OutputFolder::check_aside() {
-  const std::vector<fs::path> left = entries(aside());
-  was_left_ = !left.empty();
-  owns_aside_ = !was_left_;
-  const auto refuse_foreign = [this](const fs::path& found) {
-    refuse(fmt::format("holds '{}', which no killed run has left there", (content_.aside / found).string()));
-  };
-  for (const fs::path& name : left) {
-    if ((name == kProbe || name == kNames) && is_file(aside() / name)) continue;
-    if ((name != kNew && name != kEarlierFolder) || !is_folder(aside() / name)) refuse_foreign(name);
-    for (const fs::path& entry : entries(aside() / name)) {
-      if (const auto foreign = content_.foreign(aside() / name / entry)) refuse_foreign(name / *foreign);
+// Returns the name of a file in `entry` that the command has not written; nullopt if there is none. The entry
+// is in DIR or in the folder of unfinished files.
+std::optional<std::string> OutputFolder::foreign_part(const fs::path& entry) const {
+  const std::string name = entry.filename();
+  if (!is_folder(entry)) return is_file(entry) && content_.is_ours(name) ? std::nullopt : std::optional(name);
+  if (!content_.is_ours(name + '/')) return name;
+  for (const fs::path& inside : entries(entry)) {
+    const std::string whole = name / inside;
+    if (!is_file(entry / inside) || !content_.is_ours(whole)) return whole;
+  }
+  return std::nullopt;
+}
+
+void OutputFolder::check_aside() const {
+  for (const fs::path& name : entries(aside())) {
+    if (name == kProbe && is_file(aside() / name)) continue;
+    std::optional<std::string> foreign;
+    const fs::path path = aside() / name;
+    if ((path != made() && path != complete() && path != earlier()) || !is_folder(path)) foreign = name;
+    for (const fs::path& entry : foreign ? std::vector<fs::path>() : entries(path)) {
+      if (const auto part = foreign_part(path / entry)) foreign = name / *part;
+    }
+    if (foreign) {
+      refuse(fmt::format("holds '{}', which no killed run has left there",
+                         (content_.aside / fs::path(*foreign)).string()));
     }
   }
+}
+
+// Finds the entries that commit() removes.
+void OutputFolder::check_earlier() {
+  const bool needs_mark = !content_.mark.empty();
+  const bool has_mark =
+      needs_mark && is_file(dir_ / content_.mark) && content_.kind.is_own(dir_ / content_.mark);
+  for (const fs::path& name : entries(dir_)) {
+    if (name == content_.aside || name == content_.kept) continue;
+    const bool is_known = content_.is_ours(name) || content_.is_ours(name.string() + '/');
+    if (!is_known && content_.others_stay) continue;
+    if (const auto foreign = foreign_part(dir_ / name))
+      refuse(fmt::format("holds '{}': {}", *foreign, content_.rule));
+    if (!needs_mark && !content_.kind.is_own(dir_ / name))
+      refuse(fmt::format("holds '{}': {}", name.string(), content_.rule));
+    if (needs_mark && !has_mark) {
+      refuse(fmt::format("holds '{}' but no {} that is a {}: {}", name.string(), content_.mark,
+                         content_.kind.called, content_.rule));
+    }
+    replaced_.push_back(name);
+  }
+  std::stable_partition(replaced_.begin(), replaced_.end(),
+                        [this](const fs::path& name) { return name == content_.mark; });
 }
 
 void OutputFolder::check_inputs() const {
@@ -110,32 +155,46 @@ void OutputFolder::check_inputs() const {
     const fs::path inside = fs::canonical(input.path, missing).lexically_relative(dir);
     if (missing || inside.empty() || *inside.begin() == "..") continue;
     const fs::path entry = *inside.begin();
-    if (entry == content_.aside || is_replaced(dir_ / entry))
+    if (entry == content_.aside || std::count(replaced_.begin(), replaced_.end(), entry) > 0)
       refuse(fmt::format("{} lies in it and would be replaced: an input must lie elsewhere", input.text()));
   }
 }
 
 void OutputFolder::start_aside() {
-  for (const fs::path& name : entries(aside())) fs::remove_all(aside() / name);
   owns_aside_ = true;
+  for (const fs::path& name : entries(aside())) fs::remove_all(aside() / name);
   fs::create_directory(made());
   write_whole_file(aside() / kProbe, "can this folder be written to?");
   fs::remove(aside() / kProbe);
 }
 
-void OutputFolder::add(const std::string& name, std::string_view bytes) {
+NewFile& OutputFolder::new_file(const std::string& name) {
   const fs::path path = made() / name;
+  if (name.empty() || name.back() == '/' || !content_.is_ours(name) || is_there(path))
+    throw std::invalid_argument(fmt::format("file = '{}': not one of the command's, or added twice", name));
+  fs::create_directory(path.parent_path());
+  return growing_.try_emplace(name, path).first->second;
+}
+
+void OutputFolder::add(const std::string& name, std::string_view bytes) {
   try {
-    fs::create_directory(path.parent_path());
-    write_whole_file(path, bytes);
+    NewFile& file = new_file(name);
+    file.write(bytes);
+    file.close();
+    growing_.erase(name);
   } catch (const std::system_error& error) {
     refuse_file(name, error.code());
   }
 }
 
+void OutputFolder::add(const std::string& name, const std::vector<std::uint8_t>& bytes) {
+  add(name, std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+}
+
 void OutputFolder::append(const std::string& name, std::string_view bytes) {
   try {
-    growing_.try_emplace(name, made() / name).first->second.write(bytes);
+    const auto found = growing_.find(name);
+    (found == growing_.end() ? new_file(name) : found->second).write(bytes);
   } catch (const std::system_error& error) {
     refuse_file(name, error.code());
   }
@@ -157,88 +216,77 @@ void OutputFolder::commit() {
       refuse_file(name, error.code());
     }
   }
+  for (const fs::path& name : replaced_) {
+    const auto foreign = is_there(dir_ / name) ? foreign_part(dir_ / name) : std::nullopt;
+    if (foreign)
+      refuse(fmt::format("has been given '{}' during the run: the result is not written", *foreign));
+  }
+  const std::vector<fs::path> names = with_mark_last(made());
   try {
-    move_into_place();
+    move_into_place(names);
   } catch (const std::system_error& error) {
     try {
-      // If the new mark stayed in place, the next run would take the commit for complete.
-      if (!content_.mark.empty() && !is_there(made() / content_.mark))
-        fs::rename(dir_ / content_.mark, made() / content_.mark);
-      put_back();
+      undo_commit(names);
     } catch (const std::exception& /*again*/) {
-      owns_aside_ = false;  // the next run restores the files that are left there
+      owns_aside_ = false;  // the next run completes or undoes the commit
     }
-    const auto* const of_move = dynamic_cast<const fs::filesystem_error*>(&error);
-    refuse(fmt::format("the new files cannot be moved into place: {}{}",
-                       of_move == nullptr ? "" : of_move->path2().filename().string() + ": ",
-                       error.code().message()));
+    refuse("the new files cannot be moved into place: " + cause_of(error));
   }
   committed_ = true;
   discard();
 }
 
-// put_back() relies on the order of the moves. The earlier mark is moved away last: while it is in place, all
-// other files in place are earlier ones. The new mark is moved in last: once it is in place, all files are
-// new.
-void OutputFolder::move_into_place() const {
-  const std::vector<fs::path> names = entries(made());
-  const auto move_all = [this](const std::vector<fs::path>& all, const fs::path& from, const fs::path& to) {
-    const auto move = [&](const fs::path& name) {
-      if (is_there(from / name)) rename_to_new(from / name, to / name);
-    };
-    for (const fs::path& name : all) {
-      if (name != content_.mark) move(name);
-    }
-    if (std::find(all.begin(), all.end(), content_.mark) != all.end()) move(content_.mark);
-  };
-  std::string text;
-  for (const fs::path& name : names) {
-    if (is_folder(made() / name)) sync_folder(made() / name);
-    text += name.string() + '\0';
-  }
-  write_whole_file(aside() / kNames, text);
-  fs::create_directory(earlier());
-  move_all(replaced_, dir_, earlier());
-  move_all(names, made(), dir_);
-  sync_folder(dir_);
-}
-
-// The names of the files that an unfinished commit, possibly of another run, was moving into place. Empty if
-// the commit was already undone and the run was killed while it removed its files.
-std::vector<fs::path> OutputFolder::moved_names() const {
-  std::vector<fs::path> names;
-  if (!is_file(aside() / kNames)) return names;
-  std::istringstream text(read_whole_file(aside() / kNames));
-  for (std::string name; std::getline(text, name, '\0');) {
-    if (fs::path(name).filename() == name && !content_.foreign(dir_ / name)) names.emplace_back(name);
-  }
+std::vector<fs::path> OutputFolder::with_mark_last(const fs::path& folder) const {
+  std::vector<fs::path> names = entries(folder);
+  std::stable_partition(names.begin(), names.end(),
+                        [this](const fs::path& name) { return name != content_.mark; });
   return names;
 }
 
-// Whether a run was killed, or has failed, while it moved files into place.
-bool OutputFolder::is_unfinished() const {
-  if (!is_folder(made())) return false;
-  return content_.mark.empty() ? !entries(made()).empty() : is_file(made() / content_.mark);
+// The names of the folders in the folder of unfinished files say how far a commit has come, because repair()
+// relies on them. Until `new` is renamed to `complete`, earlier files may be missing in DIR, and all are there
+// or in `earlier`. From then on, new files may be missing in DIR, and all are there or in `complete`.
+void OutputFolder::move_into_place(const std::vector<fs::path>& names) const {
+  for (const fs::path& name : names) {
+    if (is_folder(made() / name)) sync_folder(made() / name);
+  }
+  sync_folder(made());
+  fs::create_directory(earlier());
+  move_all(replaced_, dir_, earlier());
+  fs::rename(made(), complete());
+  move_all(names, complete(), dir_);
+  sync_folder(dir_);
 }
 
-// Undoes an unfinished commit, wherever it stopped. May itself be interrupted and repeated.
-void OutputFolder::put_back() const {
-  if (!is_folder(earlier())) return;
-  if (!is_file(dir_ / content_.mark)) {
-    for (const fs::path& name : moved_names()) {
-      if (is_there(dir_ / name) && !is_there(made() / name)) fs::rename(dir_ / name, made() / name);
+// Completes or undoes the commit of a killed run. May itself be interrupted and repeated.
+void OutputFolder::repair() const {
+  const fs::path from = is_folder(complete()) ? complete() : earlier();
+  if (is_folder(from)) move_all(with_mark_last(from), from, dir_);
+  // Without the folder `complete`, what is left of the earlier files would be moved back.
+  fs::remove_all(earlier());
+}
+
+// Undoes a commit of these new files that has failed.
+void OutputFolder::undo_commit(const std::vector<fs::path>& names) const {
+  if (is_folder(complete())) {
+    for (auto name = names.rbegin(); name != names.rend(); ++name) {
+      if (!is_there(complete() / *name)) rename_to_new(dir_ / *name, complete() / *name);
     }
-    if (is_file(earlier() / content_.mark)) fs::rename(earlier() / content_.mark, dir_ / content_.mark);
+    fs::rename(complete(), made());
   }
-  for (const fs::path& name : entries(earlier())) fs::rename(earlier() / name, dir_ / name);
+  repair();
 }
 
 void OutputFolder::discard() noexcept {
   std::error_code ignored;
-  if (owns_aside_) fs::remove_all(aside(), ignored);
+  if (owns_aside_) {
+    fs::remove_all(earlier(), ignored);  // see repair()
+    fs::remove_all(aside(), ignored);
+  }
   owns_aside_ = false;
-  if (committed_) created_.keep();
-  created_.remove();
+  for (auto path = created_.rbegin(); path != created_.rend() && !committed_; ++path)
+    fs::remove(*path, ignored);  // a folder into which the user has put something stays
+  created_.clear();
   if (lock_ >= 0) close(lock_);
   lock_ = -1;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -9,31 +10,25 @@
 #include <system_error>
 #include <vector>
 
-#include "sw/files/created_folders.h"
-#include "sw/files/named_file.h"
-#include "sw/files/new_file.h"
+#include "sw/files/output_file.h"
+#include "sw/files/whole_file.h"
 
 namespace stereotlm::files {
-
-// The folder in DIR that holds unfinished files.
-inline constexpr const char* kAsideFolder = ".partial";
-// The subfolder of kAsideFolder that holds the replaced files during a commit.
-inline constexpr const char* kEarlierFolder = "earlier";
 
 // Describes the files that a command writes into a folder, DIR.
 struct OutputContent {
   std::string called;  // name of DIR in messages: "result folder"
-  // The file that is moved into place last: if it exists, all files are complete. Empty: no such file.
+  // The file that is removed first and moved into place last: if it exists, all files are complete. Empty: no
+  // file is the mark.
   std::string mark;
-  // Returns the path below DIR of a file in `entry` that the command did not write ("thesis.tex",
-  // "frames/note"); nullopt if there is none. `entry` is in DIR, or in the folder of unfinished files.
-  std::function<std::optional<std::string>(const std::filesystem::path& entry)> foreign;
-  // Returns the reason why DIR must not be written to; nullopt if there is none. `was_left`: a killed run has
-  // left unfinished files in DIR.
-  std::function<std::optional<std::string>(const std::filesystem::path& dir, bool was_left)> problem;
-  // Whether a commit removes an entry of DIR. Not set: it removes all entries that are not foreign.
-  std::function<bool(const std::filesystem::path& entry)> replaced = nullptr;
-  std::string aside = kAsideFolder;  // name of the folder of unfinished files
+  FileKind kind;     // of the mark; without mark, of each file that is replaced
+  std::string rule;  // completes messages about files that must not be replaced: "must be empty or .."
+  // Whether the command writes files of this name in DIR: "stats.json", "frames/000000.png". The name of a
+  // folder ends in a slash.
+  std::function<bool(const std::string& name)> is_ours;
+  bool others_stay = false;        // DIR may hold other files too, which stay
+  std::string kept = {};           // an entry of DIR that stays, although the command may write it
+  std::string aside = ".partial";  // name of the folder of unfinished files, in DIR
   // The files that the command reads. None may lie where a commit removes it.
   std::vector<NamedFile> inputs = {};
 };
@@ -42,61 +37,58 @@ struct OutputContent {
 // Only files that were there when the object was made are replaced.
 //
 // New files are written to DIR/.partial (inside DIR, so that DIR may be a mount point). commit() moves them
-// into place. If an earlier run was killed, the constructor undoes its unfinished commit and removes its new
-// files. While the object exists, DIR/.partial is locked, so that a second run is refused.
+// into place. If a run was killed in its commit, the next constructor completes that commit, or undoes it if
+// not all earlier files had been moved away. While the object exists, DIR/.partial is locked, so that a second
+// run is refused.
 class OutputFolder {
  public:
   // Creates DIR and its missing parents and checks that DIR is writable. Throws std::runtime_error, and
-  // changes nothing, if DIR is not writable, another run uses it, DIR/.partial holds foreign files, an input
-  // would be replaced, or OutputContent reports a problem with DIR.
+  // changes nothing but an unfinished commit, if DIR is not writable or another run uses it; if DIR holds
+  // files of the command without a mark of its kind, other files (unless they stay), or other files in a
+  // folder that is replaced; if DIR/.partial holds other files; or if an input would be replaced.
   OutputFolder(const std::filesystem::path& dir, OutputContent content);
-  // Without commit(): removes everything that this object has created. An earlier result is unchanged.
+  // Without commit(): removes everything that this object has created. Earlier files are unchanged.
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
 
-  const std::filesystem::path& path() const { return dir_; }
-  // The problem that OutputContent reports for DIR now.
-  std::optional<std::string> problem() const { return content_.problem(dir_, was_left_); }
-
-  // Adds a file. `name`: "stats.json", "frames/000000.png"; each name once. Throws std::runtime_error if it
-  // cannot be stored (disk full). The object can then only be destroyed.
+  // Adds a file of the command, each name once. Throws std::invalid_argument for another name, and
+  // std::runtime_error if the file cannot be stored (disk full). The object can then only be destroyed.
   void add(const std::string& name, std::string_view bytes);
-  // Adds bytes to the end of a file that is written piece by piece. Throws as add() does.
+  void add(const std::string& name, const std::vector<std::uint8_t>& bytes);
+  // Adds bytes to the end of a file that only append() writes. Throws as add() does.
   void append(const std::string& name, std::string_view bytes);
   // Moves all files into place. Throws std::logic_error if the mark was not added or commit() was called
   // before. If it fails, restores all files and throws std::runtime_error.
   void commit();
 
-  // Throws std::runtime_error: the name of the folder and `found`.
-  [[noreturn]] void refuse(const std::string& found) const;
-
  private:
-  bool is_replaced(const std::filesystem::path& entry) const {
-    return content_.replaced ? content_.replaced(entry) : !content_.foreign(entry);
-  }
   std::filesystem::path aside() const { return dir_ / content_.aside; }
-  std::filesystem::path made() const;
-  std::filesystem::path earlier() const;
-  void lock();
+  std::filesystem::path made() const { return aside() / "new"; }
+  std::filesystem::path complete() const { return aside() / "complete"; }
+  std::filesystem::path earlier() const { return aside() / "earlier"; }
+  void create_folders();
   bool try_lock();
-  void check_aside();
+  std::optional<std::string> foreign_part(const std::filesystem::path& entry) const;
+  void check_aside() const;
+  void check_earlier();
   void check_inputs() const;
   void start_aside();
-  void move_into_place() const;
-  std::vector<std::filesystem::path> moved_names() const;
-  bool is_unfinished() const;
-  void put_back() const;
+  NewFile& new_file(const std::string& name);
+  std::vector<std::filesystem::path> with_mark_last(const std::filesystem::path& folder) const;
+  void move_into_place(const std::vector<std::filesystem::path>& names) const;
+  void repair() const;
+  void undo_commit(const std::vector<std::filesystem::path>& names) const;
   void discard() noexcept;
+  [[noreturn]] void refuse(const std::string& found) const;
   [[noreturn]] void refuse_file(const std::string& name, const std::error_code& cause) const;
 
   std::filesystem::path dir_;
   OutputContent content_;
   std::map<std::string, NewFile> growing_;       // files of append()
-  CreatedFolders created_;                       // DIR and parents that were missing
+  std::vector<std::filesystem::path> created_;   // DIR and parents that were missing, outermost first
   std::vector<std::filesystem::path> replaced_;  // names of the entries of DIR that commit() removes
   int lock_ = -1;                                // descriptor of DIR/.partial
-  bool was_left_ = false;                        // a killed run has left files in DIR/.partial
   bool owns_aside_ = false;                      // this object removes DIR/.partial
   bool committed_ = false;
 };

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -11,9 +12,38 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "sw/files/new_file.h"
-
 namespace stereotlm::files {
+
+NewFile::NewFile(const std::filesystem::path& path)
+    : path_(path), descriptor_(open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666)) {
+  if (descriptor_ < 0) fail(errno);
+}
+
+NewFile::~NewFile() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+void NewFile::write(std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t count = ::write(descriptor_, bytes.data(), bytes.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) fail(errno);
+    if (count == 0) fail(ENOSPC);
+    bytes.remove_prefix(static_cast<std::size_t>(count));
+  }
+}
+
+void NewFile::close() {
+  // File systems without sync return EINVAL or ENOTSUP.
+  if (fsync(descriptor_) != 0 && errno != EINVAL && errno != ENOTSUP) fail(errno);
+  const int closed = ::close(descriptor_);
+  descriptor_ = -1;
+  if (closed != 0 && errno != EINTR) fail(errno);
+}
+
+void NewFile::fail(int error) const {
+  throw std::system_error(error, std::generic_category(), path_.string());
+}
 
 void write_whole_file(const std::filesystem::path& path, std::string_view bytes) {
   NewFile file(path);
@@ -21,22 +51,32 @@ void write_whole_file(const std::filesystem::path& path, std::string_view bytes)
   file.close();
 }
 
-std::string read_whole_file(const std::filesystem::path& path, std::uintmax_t most_bytes) {
+namespace {
+
+[[noreturn]] void refuse(const std::filesystem::path& path, const std::string& cause) {
+  throw std::runtime_error("'" + path.string() + "': " + cause);
+}
+
+}  // namespace
+
+void check_regular_file(const std::filesystem::path& path) {
   namespace fs = std::filesystem;
-  const auto refuse = [&path](const std::string& cause) {
-    throw std::runtime_error("'" + path.string() + "': " + cause);
-  };
   std::error_code error;
   const auto status = fs::status(path, error);
-  if (status.type() == fs::file_type::not_found) refuse("no such file");
-  if (error) refuse(error.message());
-  if (!fs::is_regular_file(status)) refuse("must be a regular file");
-  const std::uintmax_t bytes = fs::file_size(path, error);
-  if (error) refuse(error.message());
-  if (bytes > most_bytes) refuse(fmt::format("{} bytes: must be {} at most", bytes, most_bytes));
+  if (status.type() == fs::file_type::not_found) refuse(path, "no such file");
+  if (error) refuse(path, error.message());
+  if (!fs::is_regular_file(status)) refuse(path, "must be a regular file");
+}
+
+std::string read_whole_file(const std::filesystem::path& path, std::uintmax_t most_bytes) {
+  check_regular_file(path);
+  std::error_code error;
+  const std::uintmax_t bytes = std::filesystem::file_size(path, error);
+  if (error) refuse(path, error.message());
+  if (bytes > most_bytes) refuse(path, fmt::format("{} bytes: must be {} at most", bytes, most_bytes));
   std::ifstream file(path, std::ios::binary);
   std::string content((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-  if (!file.is_open() || file.bad()) refuse(std::strerror(errno));
+  if (!file.is_open() || file.bad()) refuse(path, std::strerror(errno));
   return content;
 }
 
@@ -50,6 +90,24 @@ void sync_folder(const std::filesystem::path& folder) {
   close(descriptor);
   // File systems without sync return EINVAL or ENOTSUP.
   if (error != 0 && error != EINVAL && error != ENOTSUP) fail(error);
+}
+
+std::vector<std::filesystem::path> entries(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> names(std::filesystem::directory_iterator(folder),
+                                           std::filesystem::directory_iterator{});
+  for (std::filesystem::path& name : names) name = name.filename();
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+bool is_there(const std::filesystem::path& path) {
+  return std::filesystem::exists(std::filesystem::symlink_status(path));
+}
+bool is_file(const std::filesystem::path& path) {
+  return std::filesystem::is_regular_file(std::filesystem::symlink_status(path));
+}
+bool is_folder(const std::filesystem::path& path) {
+  return std::filesystem::is_directory(std::filesystem::symlink_status(path));
 }
 
 }  // namespace stereotlm::files

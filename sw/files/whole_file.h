@@ -5,12 +5,37 @@
 #include <limits>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace stereotlm::files {
+
+// A new file that is written piece by piece. All functions throw std::system_error with the cause as code if
+// a byte cannot be stored. The caller then removes the file.
+class NewFile {
+ public:
+  // Throws also if the file exists.
+  explicit NewFile(const std::filesystem::path& path);
+  ~NewFile();
+  NewFile(const NewFile&) = delete;
+  NewFile& operator=(const NewFile&) = delete;
+
+  void write(std::string_view bytes);
+  // Makes the file durable, and closes it. No write() may follow.
+  void close();
+
+ private:
+  [[noreturn]] void fail(int error) const;
+
+  std::filesystem::path path_;
+  int descriptor_;
+};
 
 // Writes a new file and makes it durable. Throws std::system_error with the cause as code if the file exists
 // or a byte cannot be stored. The caller then removes the file.
 void write_whole_file(const std::filesystem::path& path, std::string_view bytes);
+
+// Throws std::runtime_error "'PATH': cause" if there is no regular file.
+void check_regular_file(const std::filesystem::path& path);
 
 // Reads the whole content. Throws std::runtime_error with path and cause if it is no readable regular file. A
 // file longer than `most_bytes` is refused before it is read.
@@ -19,5 +44,14 @@ std::string read_whole_file(const std::filesystem::path& path,
 
 // Makes the entries of a folder durable. Throws std::system_error.
 void sync_folder(const std::filesystem::path& folder);
+
+// Names of the entries of a folder, sorted. Throws std::filesystem::filesystem_error.
+std::vector<std::filesystem::path> entries(const std::filesystem::path& folder);
+
+// Whether an entry exists, is a regular file, is a folder. A symbolic link exists, but is neither file nor
+// folder.
+bool is_there(const std::filesystem::path& path);
+bool is_file(const std::filesystem::path& path);
+bool is_folder(const std::filesystem::path& path);
 
 }  // namespace stereotlm::files

@@ -1,38 +1,87 @@
 #include "sw/media/load.h"
 
-#include <cmath>
-#include <opencv2/imgproc.hpp>
-#include <stdexcept>
-#include <utility>
+#include <fmt/format.h>
 
-#include "sw/media/media_errors.h"
-#include "sw/media/picture_file.h"
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstddef>
+#include <stdexcept>
+
+#include "sw/files/whole_file.h"
+#include "sw/media/decode.h"
 
 namespace stereotlm::media {
 namespace {
 
-kernels::GrayImage to_gray_image(const cv::Mat& picture) {
-  kernels::GrayImage image(picture.cols, picture.rows);
-  picture.copyTo(cv::Mat(picture.rows, picture.cols, CV_8UC1, image.pixels.data()));
+using std::literals::string_view_literals::operator""sv;
+
+// The largest file that is read: enough for the largest picture of a board with its pixels as text, or in
+// colour with much metadata.
+constexpr std::uintmax_t kMostBytes = 16 * fpga::kWidthRule.max * fpga::kHeightRule.max;
+
+bool begins(std::string_view bytes, std::string_view text) { return bytes.substr(0, text.size()) == text; }
+
+bool is_pnm(std::string_view bytes) {
+  return bytes.size() > 2 && bytes[0] == 'P' && "1234567fF"sv.find(bytes[1]) != std::string_view::npos &&
+         std::isspace(static_cast<unsigned char>(bytes[2])) != 0;
+}
+
+// Formats that OpenCV decodes: BMP, Sun raster, TIFF, WebP, and JPEG 2000 with and without a container.
+bool is_for_opencv(std::string_view bytes) {
+  constexpr std::string_view kBegins[] = {"BM"sv,    "\x59\xA6\x6A\x95"sv,         "II*\0"sv,
+                                          "MM\0*"sv, "\0\0\0\x0CjP  \r\n\x87\n"sv, "\xFF\x4F\xFF\x51"sv};
+  return std::any_of(std::begin(kBegins), std::end(kBegins),
+                     [bytes](std::string_view text) { return begins(bytes, text); }) ||
+         (begins(bytes, "RIFF") && bytes.substr(0, 15).substr(8) == "WEBPVP8");
+}
+
+Picture decoded(std::string_view bytes) {
+  if (bytes.empty()) refuse_picture("an empty file", kPixelRule);
+  if (begins(bytes, "\x89PNG\r\n\x1A\n")) return decode_png(bytes);
+  if (begins(bytes, "\xFF\xD8\xFF")) return decode_jpeg(bytes);
+  if (is_pnm(bytes)) return decode_pnm(bytes);
+  if (is_for_opencv(bytes)) return decoders().decode_picture(bytes);
+  refuse_picture("not a picture in a format that is read",
+                 "a picture must be PNG, JPEG, BMP, PGM, PPM, PAM, TIFF, WebP, JPEG 2000 or Sun raster");
+}
+
+Picture read_picture(const std::string& path) {
+  const std::string bytes = files::read_whole_file(path, kMostBytes);
+  try {
+    return decoded(bytes);
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(fmt::format("'{}': {}", path, error.what()));
+  }
+}
+
+// As OpenCV's BGR2GRAY: weights in 1/32768, halves up.
+std::uint8_t grey_of(const std::uint8_t* bgr) {
+  return static_cast<std::uint8_t>((bgr[0] * 3735 + bgr[1] * 19235 + bgr[2] * 9798 + (1 << 14)) >> 15);
+}
+
+kernels::GrayImage to_gray_image(const Picture& picture) {
+  kernels::GrayImage image(picture.width, picture.height);
+  const auto channels = static_cast<std::size_t>(picture.channels);
+  for (std::size_t i = 0; i < image.pixels.size(); ++i)
+    image.pixels[i] = channels == 1 ? picture.samples[i] : grey_of(&picture.samples[channels * i]);
   return image;
 }
 
 }  // namespace
 
 LoadedGray load_gray(const std::string& path) {
-  const cv::Mat picture = read_picture(path);
-  if (picture.channels() == 1) return {to_gray_image(picture), false};
-  cv::Mat gray;
-  cv::cvtColor(picture, gray, cv::COLOR_BGR2GRAY);
-  return {to_gray_image(gray), true};
+  const Picture picture = read_picture(path);
+  return {to_gray_image(picture), picture.channels != 1};
 }
 
 Truth load_truth(const std::string& path, double scale) {
   if (!std::isfinite(scale) || scale <= 0) {
     throw std::invalid_argument("truth scale = " + std::to_string(scale) + ": must be positive and finite");
   }
-  const cv::Mat picture = read_picture(path);
-  if (picture.channels() != 1) throw_media_error(path, "8-bit colour", "ground truth must be 8-bit grey");
+  const Picture picture = read_picture(path);
+  if (picture.channels != 1)
+    throw std::runtime_error(fmt::format("'{}': 8-bit colour: ground truth must be 8-bit grey", path));
   return {to_gray_image(picture), scale};
 }
 

@@ -21,14 +21,14 @@ namespace {
 }
 
 // A file in memory that takes the output of a program.
-class OutputFile {
+class MemoryFile {
  public:
-  OutputFile() : descriptor_(memfd_create("output", MFD_CLOEXEC)) {
+  MemoryFile() : descriptor_(memfd_create("output", MFD_CLOEXEC)) {
     if (descriptor_ < 0) fail(errno, "memfd_create");
   }
-  ~OutputFile() { close(descriptor_); }
-  OutputFile(const OutputFile&) = delete;
-  OutputFile& operator=(const OutputFile&) = delete;
+  ~MemoryFile() { close(descriptor_); }
+  MemoryFile(const MemoryFile&) = delete;
+  MemoryFile& operator=(const MemoryFile&) = delete;
 
   int descriptor() const { return descriptor_; }
   std::string text() const {
@@ -89,8 +89,8 @@ std::vector<char*> shown_variables(const std::vector<std::string>& hidden) {
 
 CommandEnd run_command(const std::vector<std::string>& words, const std::vector<std::string>& hidden,
                        bool ends_if_interrupted) {
-  const OutputFile out;
-  const OutputFile errors;
+  const MemoryFile out;
+  const MemoryFile errors;
   const SpawnSetup setup(out.descriptor(), errors.descriptor());
   std::vector<char*> arguments;
   for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));

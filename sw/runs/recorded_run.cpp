@@ -14,9 +14,8 @@
 #include "sw/report/stats_json.h"
 #include "sw/runs/run_json_reader.h"
 #include "sw/runs/sources/calibration_input.h"
-#include "sw/runs/sources/media_library.h"
+#include "sw/media/load.h"
 #include "sw/runs/sources/open_source.h"
-#include "sw/runs/sources/picture_size.h"
 
 namespace stereotlm::runs {
 namespace {
@@ -84,8 +83,8 @@ void check_sequence(const InputFolder& found, const InputFolder& recorded) {
 }
 
 media::Truth truth_of(const RecordedOptions& options, const platform::BoardConfig& board) {
-  media::Truth truth = media_functions().load_truth(options.truth->path, options.truth_scale);
-  if (const auto problem = size_problem(truth.grey.width, truth.grey.height, board))
+  media::Truth truth = media::load_truth(options.truth->path, options.truth_scale);
+  if (const auto problem = size_problem(truth.grey.width, truth.grey.height, &board))
     throw std::runtime_error(fmt::format("'{}'{}", options.truth->path, *problem));
   return truth;
 }

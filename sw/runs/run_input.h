@@ -9,7 +9,7 @@
 #include "models/fpga/core_cycle.h"
 #include "platform/config/board_config.h"
 #include "platform/config/tables.h"
-#include "sw/files/named_file.h"
+#include "sw/files/output_file.h"
 #include "sw/media/truth.h"
 #include "sw/runs/result_folder.h"
 #include "sw/runs/run_json.h"
@@ -40,7 +40,7 @@ struct RunInput {
   std::vector<files::NamedFile> inputs;           // the files that it is read from
   std::string config_yaml;                        // text of the result file config.yaml
   RecordedOptions described;                      // content of run.json; `frames` as requested
-  std::unique_ptr<ResultFolder> folder;           // null: no result files
+  std::unique_ptr<files::OutputFolder> folder;    // null: no result files
 };
 
 }  // namespace stereotlm::runs

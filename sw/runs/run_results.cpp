@@ -9,6 +9,7 @@
 #include "calib/depth.h"
 #include "platform/trace_runs.h"
 #include "sw/files/json_text.h"
+#include "sw/media/encode.h"
 #include "sw/process/streams.h"
 #include "sw/report/accuracy.h"
 #include "sw/report/conflicts_csv.h"
@@ -16,25 +17,23 @@
 #include "sw/report/stats_json.h"
 #include "sw/report/timeline_csv.h"
 #include "sw/runs/sources/calibration_library.h"
-#include "sw/runs/sources/media_library.h"
 #include "sw/runs/waitless_core.h"
 
 namespace stereotlm::runs {
 namespace {
 
-void add_pictures(const RunInput& input, const Result& last, ResultFolder& folder) {
+void add_pictures(const RunInput& input, const Result& last, files::OutputFolder& folder) {
   const kernels::GrayImage& disparity = last.disparity;
-  const MediaFunctions& media = media_functions();
-  folder.add("disparity.png", media.encode_png_gray(disparity));
-  folder.add("disparity.pfm", media.encode_pfm(disparity));
+  folder.add("disparity.png", media::encode_png_gray(disparity));
+  folder.add("disparity.pfm", media::encode_pfm(disparity));
   folder.add("disparity_color.png",
-             media.encode_disparity_color_png(disparity, input.board.matcher.disparities));
+             media::encode_disparity_color_png(disparity, input.board.matcher.disparities));
   if (!input.calibration) return;
   const calib::DepthGeometry geometry = {input.calibration->rectification.q,
                                          input.calibration->disparity_offset};
   const kernels::GrayImage left = kernels::rectify(input.pairs->pair(last.number).left, *input.tables.left);
   const std::vector<std::uint16_t> depths = calib::depth_millimetres(geometry, disparity);
-  folder.add("depth.png", media.encode_png_16(disparity.width, disparity.height, depths));
+  folder.add("depth.png", media::encode_png_16(disparity.width, disparity.height, depths));
   folder.add("depth_color.png",
              calibration_functions().encode_depth_color_png(disparity.width, disparity.height, depths));
   folder.add("depth.ply", calib::point_cloud_ply(geometry, disparity, left));
@@ -44,7 +43,7 @@ void write_files(RunInput& input, platform::Statistics statistics, const Result&
                  const std::optional<report::Accuracy>& accuracy,
                  const std::vector<std::string>& differences) {
   statistics.failed.insert(statistics.failed.end(), differences.begin(), differences.end());
-  ResultFolder& folder = *input.folder;
+  files::OutputFolder& folder = *input.folder;
   if (!input.timing_only) add_pictures(input, last, folder);
   folder.add("stats.json", report::stats_json(statistics, accuracy));
   folder.add("config.yaml", input.config_yaml);
@@ -96,7 +95,7 @@ void say_if_doubtful(const RunInput& input, const report::Accuracy& accuracy) {
 
 void save_frame(const RunInput& input, const Result& result) {
   if (!input.described.save_frames) return;
-  input.folder->add(frame_file_name(result.number), media_functions().encode_png_gray(result.disparity));
+  input.folder->add(frame_file_name(result.number), media::encode_png_gray(result.disparity));
 }
 
 Records::Records(const RunInput& input, Append append) : input_(input), append_(std::move(append)) {

@@ -30,7 +30,7 @@
 #include "sw/report/stats_json.h"
 #include "sw/runs/limiter_text.h"
 #include "sw/runs/progress.h"
-#include "sw/runs/sources/media_library.h"
+#include "sw/media/encode.h"
 
 namespace stereotlm::report {
 namespace {
@@ -201,7 +201,7 @@ void add_prices(const BoardConfig& board, const runs::Explanation::BusiestBank& 
 }  // namespace
 
 std::string picture_url(const kernels::GrayImage& picture) {
-  const std::vector<std::uint8_t> png = runs::media_functions().encode_png_gray(picture);
+  const std::vector<std::uint8_t> png = media::encode_png_gray(picture);
   return png_url(std::string(png.begin(), png.end()));
 }
 

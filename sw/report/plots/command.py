@@ -41,7 +41,7 @@ os.environ.pop("MPLBACKEND", None)  # selects a display; matplotlib fails if it 
 try:
     import matplotlib  # noqa: F401
 except ImportError as error:
-    tell("error", f"needs matplotlib, which ./setup installs: {error}")
+    tell("error", f"needs matplotlib, which ./setup tests installs: {error}")
     sys.exit(2)
 except Exception as error:  # of any kind, such as one that a user's matplotlibrc causes
     tell("error", f"matplotlib cannot be loaded: {error}")

@@ -1,6 +1,6 @@
 #include "sw/runs/sources/calibration_library.h"
 
-#include "sw/process/plugin.h"
+#include "sw/process/installation.h"
 
 namespace stereotlm::runs {
 

@@ -6,9 +6,8 @@
 #include <utility>
 
 #include "sw/files/sha256.h"
+#include "sw/media/load.h"
 #include "sw/media/synthetic_scene.h"
-#include "sw/runs/sources/media_library.h"
-#include "sw/runs/sources/picture_size.h"
 #include "sw/runs/sources/sequence_pairs.h"
 #include "sw/runs/sources/video_pairs.h"
 
@@ -113,10 +112,9 @@ class SourceOpener {
     opened_.files.push_back(file);
     std::optional<InputFile> result;
     attempt(file.option, [&] {
-      media::LoadedGray loaded = media_functions().load_gray(file.path);
+      media::LoadedGray loaded = media::load_gray(file.path);
       if (loaded.converted_from_colour) opened_.notes.push_back(file.text() + ": colour, converted to grey");
-      const auto problem =
-          board_ != nullptr ? size_problem(loaded.image.width, loaded.image.height, *board_) : std::nullopt;
+      const auto problem = size_problem(loaded.image.width, loaded.image.height, board_);
       if (problem) problems_.add(file.text() + *problem);
       image = std::move(loaded.image);
       result = described(file.path);
@@ -145,9 +143,8 @@ OpenedSource open_source(const PictureSource& options, const platform::BoardConf
 std::optional<media::Truth> open_truth(const NamedFile& file, double scale,
                                        const platform::BoardConfig* board, process::Problems& problems) {
   try {
-    media::Truth truth = media_functions().load_truth(file.path, scale);
-    const auto problem =
-        board != nullptr ? size_problem(truth.grey.width, truth.grey.height, *board) : std::nullopt;
+    media::Truth truth = media::load_truth(file.path, scale);
+    const auto problem = size_problem(truth.grey.width, truth.grey.height, board);
     if (!problem) return truth;
     problems.add(file.text() + *problem);
   } catch (const std::exception& error) {

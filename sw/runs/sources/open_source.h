@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "platform/config/board_config.h"
-#include "sw/files/named_file.h"
+#include "sw/files/output_file.h"
 #include "sw/media/truth.h"
 #include "sw/process/problems.h"
 #include "sw/runs/run_json.h"

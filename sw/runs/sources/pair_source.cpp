@@ -1,10 +1,18 @@
 #include "sw/runs/sources/pair_source.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <future>
 #include <stdexcept>
 
 namespace stereotlm::runs {
+
+std::optional<std::string> size_problem(int width, int height, const platform::BoardConfig* board) {
+  if (board == nullptr || (width == board->image.width && height == board->image.height)) return std::nullopt;
+  return fmt::format(": {}x{} pixels: must be as large as the board's images, {}x{}", width, height,
+                     board->image.width, board->image.height);
+}
 
 const host::StereoPair& PairSource::pair(std::uint64_t frame) {
   const std::uint64_t index = frame % length_;

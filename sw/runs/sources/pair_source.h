@@ -8,9 +8,14 @@
 #include <utility>
 
 #include "models/host/frame_source.h"
+#include "platform/config/board_config.h"
 #include "sw/media/truth.h"
 
 namespace stereotlm::runs {
+
+// The problem of a picture with this size, as the text that follows its name in a message. nullopt if the
+// size fits the board, or if the board is unknown: null.
+std::optional<std::string> size_problem(int width, int height, const platform::BoardConfig* board);
 
 // Supplies the pairs of a run: frame f shows pair f mod length(). A pair is loaded when it is requested. Only
 // the kHeld pairs that were requested last are kept, so that memory does not grow with the length.
@@ -31,8 +36,9 @@ class PairSource : public host::FrameSource {
   virtual std::optional<media::Truth> truth(std::uint64_t /*frame*/) const { return std::nullopt; }
 
  protected:
-  // `option`: its name in error messages.
+  // `option`: its name in error messages. `length`: 0 if set_length() follows.
   PairSource(std::string option, std::uint64_t length) : option_(std::move(option)), length_(length) {}
+  void set_length(std::uint64_t length) { length_ = length; }
 
  private:
   // Loads pair `index`, 0 .. length()-1.

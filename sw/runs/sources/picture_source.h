@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -11,9 +12,14 @@ namespace stereotlm::runs {
 enum class VideoLayout : std::uint8_t { kTwo, kSideBySide, kTopBottom };
 
 // Names of the layouts on the command line, in the order of VideoLayout.
-const std::vector<std::string>& video_layout_names();
+inline const std::vector<std::string> kVideoLayoutNames = {"two", "side_by_side", "top_bottom"};
+
 // nullopt for an unknown name.
-std::optional<VideoLayout> video_layout_of(const std::string& name);
+inline std::optional<VideoLayout> video_layout_of(const std::string& name) {
+  const auto found = std::find(kVideoLayoutNames.begin(), kVideoLayoutNames.end(), name);
+  if (found == kVideoLayoutNames.end()) return std::nullopt;
+  return static_cast<VideoLayout>(found - kVideoLayoutNames.begin());
+}
 
 // The source of a run's pictures as the user names it. At most one member is set.
 struct PictureSource {

@@ -10,8 +10,7 @@
 #include <utility>
 
 #include "sw/files/sha256.h"
-#include "sw/runs/sources/media_library.h"
-#include "sw/runs/sources/picture_size.h"
+#include "sw/media/load.h"
 
 namespace stereotlm::runs {
 namespace {
@@ -62,12 +61,7 @@ void check_partners(const fs::path& folder, const char* beginning, const std::ve
 }  // namespace
 
 SequencePairs::SequencePairs(const std::string& folder, const platform::BoardConfig* board)
-    : SequencePairs(read(folder, board)) {}
-
-SequencePairs::SequencePairs(Contents contents)
-    : PairSource("--sequence", contents.input.files.size() / 2), contents_(std::move(contents)) {}
-
-SequencePairs::Contents SequencePairs::read(const std::string& folder, const platform::BoardConfig* board) {
+    : PairSource("--sequence", 0) {
   const std::vector<std::string> names = names_in(folder);
   const std::vector<std::string> left = stems(names, kLeft);
   const std::vector<std::string> right = stems(names, kRight);
@@ -77,24 +71,22 @@ SequencePairs::Contents SequencePairs::read(const std::string& folder, const pla
     throw std::runtime_error(
         fmt::format("'{}': no pictures: a sequence must have pairs left_*.png and right_*.png", folder));
   }
-  Contents contents;
   std::size_t kept_bytes = 0;
-  contents.input.path = fs::absolute(folder).string();
+  input_.path = fs::absolute(folder).string();
   for (const std::string& stem : left) {
     for (const char* beginning : {kLeft, kRight}) {
       const std::string name = beginning + stem + kSuffix;
       const std::string path = (fs::path(folder) / name).string();
-      media::LoadedGray picture = media_functions().load_gray(path);
-      const auto problem =
-          board != nullptr ? size_problem(picture.image.width, picture.image.height, *board) : std::nullopt;
-      if (problem) throw std::runtime_error(fmt::format("'{}'{}", path, *problem));
-      contents.converted += picture.converted_from_colour ? 1U : 0U;
-      contents.input.files.push_back({name, files::sha256_file(path)});
+      media::LoadedGray picture = media::load_gray(path);
+      if (const auto problem = size_problem(picture.image.width, picture.image.height, board))
+        throw std::runtime_error(fmt::format("'{}'{}", path, *problem));
+      converted_ += picture.converted_from_colour ? 1U : 0U;
+      input_.files.push_back({name, files::sha256_file(path)});
       kept_bytes += picture.image.pixels.size();
-      if (kept_bytes <= kMostKeptBytes) contents.kept.push_back(std::move(picture.image));
+      if (kept_bytes <= kMostKeptBytes) kept_.push_back(std::move(picture.image));
     }
   }
-  return contents;
+  set_length(left.size());
 }
 
 host::StereoPair SequencePairs::load(std::uint64_t index) {
@@ -103,12 +95,12 @@ host::StereoPair SequencePairs::load(std::uint64_t index) {
 }
 
 kernels::GrayImage SequencePairs::load_picture(std::size_t number) const {
-  const InputFile& file = contents_.input.files[number];
-  const std::string path = (fs::path(contents_.input.path) / file.path).string();
+  const InputFile& file = input_.files[number];
+  const std::string path = (fs::path(input_.path) / file.path).string();
   if (files::sha256_file(path) != file.sha256) {
     throw std::runtime_error(fmt::format("'{}': changed: a picture must not change during a run", path));
   }
-  return number < contents_.kept.size() ? contents_.kept[number] : media_functions().load_gray(path).image;
+  return number < kept_.size() ? kept_[number] : media::load_gray(path).image;
 }
 
 }  // namespace stereotlm::runs

@@ -19,23 +19,17 @@ class SequencePairs : public PairSource {
   // images; the message does not name the option. `board`: null if unknown; sizes are then not checked.
   SequencePairs(const std::string& folder, const platform::BoardConfig* board);
 
-  const InputFolder& input() const { return contents_.input; }  // for run.json
+  const InputFolder& input() const { return input_; }  // for run.json
   // The number of pictures that were converted from colour to grey.
-  std::uint64_t pictures_converted() const { return contents_.converted; }
+  std::uint64_t pictures_converted() const { return converted_; }
 
  private:
-  struct Contents {
-    InputFolder input;  // its files are left and right in turn
-    std::uint64_t converted = 0;
-    std::vector<kernels::GrayImage> kept;  // pictures of the first files
-  };
-  static Contents read(const std::string& folder, const platform::BoardConfig* board);
-
-  explicit SequencePairs(Contents contents);
   host::StereoPair load(std::uint64_t index) override;
   kernels::GrayImage load_picture(std::size_t number) const;
 
-  Contents contents_;
+  InputFolder input_;  // its files are left and right in turn
+  std::uint64_t converted_ = 0;
+  std::vector<kernels::GrayImage> kept_;  // pictures of the first files
 };
 
 }  // namespace stereotlm::runs

@@ -6,9 +6,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "sw/runs/sources/media_library.h"
-#include "sw/runs/sources/picture_size.h"
-
 namespace stereotlm::runs {
 namespace {
 
@@ -17,7 +14,7 @@ using kernels::GrayImage;
 void check_size(const std::string& file, int video_width, int video_height,
                 const PictureSource::Video& options, const platform::BoardConfig& board) {
   if (options.layout == VideoLayout::kTwo) {
-    if (const auto problem = size_problem(video_width, video_height, board))
+    if (const auto problem = size_problem(video_width, video_height, &board))
       throw std::runtime_error(fmt::format("'{}'{}", file, *problem));
     return;
   }
@@ -45,39 +42,30 @@ GrayImage part_of(const GrayImage& image, int column, int row, int width, int he
 }  // namespace
 
 VideoPairs::VideoPairs(const PictureSource::Video& options, const platform::BoardConfig* board)
-    : VideoPairs(open(options, board), options.layout) {}
-
-VideoPairs::VideoPairs(Contents contents, VideoLayout layout)
-    : PairSource("--video", contents.videos.front()->frames()),
-      contents_(std::move(contents)),
-      layout_(layout) {}
-
-VideoPairs::Contents VideoPairs::open(const PictureSource::Video& options,
-                                      const platform::BoardConfig* board) {
-  Contents contents;
+    : PairSource("--video", 0), layout_(options.layout) {
   for (const std::string& file : options.files) {
     const auto check = [&](int width, int height) {
       if (board != nullptr) check_size(file, width, height, options, *board);
     };
-    contents.videos.push_back(video_functions().open_video(file, check));
-    const media::Video& video = *contents.videos.back();
+    videos_.push_back(media::open_video(file, check));
+    const media::Video& video = *videos_.back();
     if (video.frames() < video.stated_frames()) {
-      contents.notes.push_back(fmt::format("--video '{}': {} frames can be decoded; its header says {}", file,
-                                           video.frames(), video.stated_frames()));
+      notes_.push_back(fmt::format("--video '{}': {} frames can be decoded; its header says {}", file,
+                                   video.frames(), video.stated_frames()));
     }
   }
-  const media::Video& first = *contents.videos.front();
-  const media::Video& last = *contents.videos.back();
+  const media::Video& first = *videos_.front();
+  const media::Video& last = *videos_.back();
   if (first.frames() != last.frames()) {
     throw std::runtime_error(fmt::format("'{}': {} frames: must have as many as '{}', {}",
                                          options.files.back(), last.frames(), options.files.front(),
                                          first.frames()));
   }
-  return contents;
+  set_length(first.frames());
 }
 
 host::StereoPair VideoPairs::load(std::uint64_t index) {
-  const GrayImage& first = contents_.videos.front()->frame(index);
+  const GrayImage& first = videos_.front()->frame(index);
   switch (layout_) {
     case VideoLayout::kSideBySide: {
       const int width = first.width / 2;
@@ -90,7 +78,7 @@ host::StereoPair VideoPairs::load(std::uint64_t index) {
     case VideoLayout::kTwo:
       break;
   }
-  return {first, contents_.videos.back()->frame(index)};
+  return {first, videos_.back()->frame(index)};
 }
 
 }  // namespace stereotlm::runs

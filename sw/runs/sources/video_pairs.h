@@ -20,19 +20,13 @@ class VideoPairs : public PairSource {
   VideoPairs(const PictureSource::Video& options, const platform::BoardConfig* board);
 
   // Notes for standard error: videos with fewer frames than their headers state.
-  const std::vector<std::string>& notes() const { return contents_.notes; }
+  const std::vector<std::string>& notes() const { return notes_; }
 
  private:
-  struct Contents {
-    std::vector<std::unique_ptr<media::Video>> videos;
-    std::vector<std::string> notes;
-  };
-  static Contents open(const PictureSource::Video& options, const platform::BoardConfig* board);
-
-  VideoPairs(Contents contents, VideoLayout layout);
   host::StereoPair load(std::uint64_t index) override;
 
-  Contents contents_;
+  std::vector<std::unique_ptr<media::Video>> videos_;
+  std::vector<std::string> notes_;
   VideoLayout layout_;
 };
 

@@ -329,16 +329,16 @@ class RefusedPlaces(CalibrateTest):
         """A file of the user's is there, and stays."""
         path = self.file(name, data)
         with self.subTest(name), self.unchanged(self.folder):
-            self.refused(self.calibrate(), f"'{path}'", text)
+            self.refused(self.calibrate(), f"holds '{name}'", text, "must be moved away")
         path.unlink()
 
     def test_files_that_calibrate_has_not_made_stay(self):
-        self.refused_beside("new.yaml", "exists and is no calibration", "precious: 1\n")
-        self.refused_beside("new_left.lut", "exists, without its calibration")
+        self.refused_beside("new.yaml", "no new.yaml that is a calibration", "precious: 1\n")
+        self.refused_beside("new_left.lut", "no new.yaml that is a calibration")
         self.copy_of_rig().rename(self.new)
-        self.refused_beside("new_drawings/notes.txt", "must be moved away")
+        self.refused_beside("new_drawings/notes.txt", "with their calibration")
         (self.folder / "new_left.lut").mkdir()
-        self.refused(self.calibrate(), "new_left.lut': must be a file that calibrate has made")
+        self.refused(self.calibrate(), "holds 'new_left.lut'")
         self.new.unlink()
         aside = self.file("new.partial", "precious")
         with self.unchanged(self.folder):
@@ -353,7 +353,7 @@ class RefusedPlaces(CalibrateTest):
         self.file("new_pictures/left_00.png", "mine")
         command = ["calibrate", "--synthetic", 1, *GRID, "--out", self.new]
         with self.unchanged(self.folder):
-            self.refused(run(*command), "new_pictures': exists, without its calibration")
+            self.refused(run(*command), "holds 'new_pictures' but no new.yaml")
 
     def test_missing_folders_are_refused(self):
         for folder in (self.folder / "none", self.left):

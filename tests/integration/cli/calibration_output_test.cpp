@@ -19,8 +19,8 @@
 
 #include "calib/calibration.h"
 #include "calib/synthetic_rig.h"
-#include "sw/files/folder_entries.h"
 #include "sw/files/output_folder.h"
+#include "sw/files/whole_file.h"
 #include "tests/support/fork.h"
 #include "tests/support/scratch_folder.h"
 
@@ -109,23 +109,26 @@ Files calibration(const std::string& what, bool has_pictures) {
   Files files = {{"rig.yaml", text + "# " + what + '\n'},
                  {"rig_left.lut", what},
                  {"rig_right.lut", what},
-                 {"rig_drawings/corners_0" + what + ".png", what},
+                 {what == "new" ? "rig_drawings/corners_01.png" : "rig_drawings/corners_00.png", what},
                  {"rig_drawings/displacement.png", what}};
   if (has_pictures) files["rig_pictures/left_00.png"] = what;
   return files;
 }
 
+struct CalibrationOutput : files::OutputFolder {
+  CalibrationOutput(const fs::path& folder, bool makes_pictures, const std::string& name = "rig.yaml")
+      : OutputFolder(folder, calibration_content(runs::rig_files(folder / name), makes_pictures)) {}
+};
+
 class CalibrationOutputTest : public ::testing::Test {
  protected:
   void write(const Files& files) const {
-    CalibrationOutput output(folder_ / "rig.yaml", files.count("rig_pictures/left_00.png") > 0);
-    for (const auto& [name, bytes] : files) output.add(folder_ / name, bytes);
+    CalibrationOutput output(folder_, files.count("rig_pictures/left_00.png") > 0);
+    for (const auto& [name, bytes] : files) output.add(name, bytes);
     output.commit();
   }
   // As a run that is given up before it has calibrated.
-  void begin(bool makes_pictures) const {
-    const CalibrationOutput output(folder_ / "rig.yaml", makes_pictures);
-  }
+  void begin(bool makes_pictures) const { const CalibrationOutput output(folder_, makes_pictures); }
 
   void begin_with(const Files& files) const {
     fs::remove_all(folder_);
@@ -199,9 +202,11 @@ TEST_F(CalibrationOutputTest, IsAsItWasOrNewAfterAKillAnywhere) {
   at_every_step(calibration("old", true), calibration("new", false), attempt);
 }
 
-TEST_F(CalibrationOutputTest, IsAsItWasAfterItsRepairIsKilledAnywhere) {
+// Once all earlier files are moved away, the next run completes the commit; before, it undoes it.
+TEST_F(CalibrationOutputTest, IsAsItWasOrNewAfterItsRepairIsKilledAnywhere) {
   const Files fresh = calibration("new", true);
   for (const Files& earlier : {Files(), calibration("old", true)}) {
+    const int moved_away = earlier.empty() ? 0 : 5;
     int steps = 0;
     for (bool has_begun = true; has_begun; ++steps) {
       for (int repaired = 0, is_repaired = false; !is_repaired; ++repaired) {
@@ -210,10 +215,10 @@ TEST_F(CalibrationOutputTest, IsAsItWasAfterItsRepairIsKilledAnywhere) {
         is_repaired = !is_killed(Fault::kKillInRename, repaired, [&] { begin(true); });
         is_killed(Fault::kKillInRename, repaired / 2, [&] { begin(true); });
         begin(true);
-        EXPECT_EQ(files(), has_begun ? earlier : fresh) << steps << ", " << repaired;
+        EXPECT_EQ(files(), steps <= moved_away ? earlier : fresh) << steps << ", " << repaired;
       }
     }
-    EXPECT_EQ(steps, 1 + (earlier.empty() ? 5 : 10));  // all go well in the last one
+    EXPECT_EQ(steps, moved_away + 1 + 5 + 1);  // all go well in the last one
   }
 }
 
@@ -240,11 +245,8 @@ TEST_F(CalibrationOutputTest, IsAsItWasOrNewAfterAFailureAnywhere) {
 TEST_F(CalibrationOutputTest, FilesWithoutAMarkAreAsTheyWereOrNewAfterAKillOrAFailureInAnyMove) {
   files::OutputContent content;
   content.called = "folder";
-  content.foreign = [](const fs::path& entry) {
-    const bool is_ours = entry.stem() == "a" || entry.stem() == "b";
-    return is_ours ? std::nullopt : std::optional<std::string>(entry.filename());
-  };
-  content.problem = [](const fs::path&, bool) { return std::nullopt; };
+  content.kind = {"figure", [](const fs::path&) { return true; }};
+  content.is_ours = [](const fs::path& name) { return name.stem() == "a" || name.stem() == "b"; };
   const Files earlier = {{"a.csv", "old"}, {"a.png", "old"}, {"a.svg", "old"}};
   const Files fresh = {{"a.csv", "new"}, {"a.pdf", "new"}, {"b.png", "new"}};
   const auto write_all = [&] {
@@ -252,11 +254,12 @@ TEST_F(CalibrationOutputTest, FilesWithoutAMarkAreAsTheyWereOrNewAfterAKillOrAFa
     for (const auto& [name, bytes] : fresh) folder.add(name, bytes);
     folder.commit();
   };
-  for (int steps = 0; steps <= 6; ++steps) {  // three files are moved away, and three into place
+  // Three files are moved away, a rename completes the new ones, and three are moved into place.
+  for (int steps = 0; steps <= 7; ++steps) {
     begin_with(earlier);
-    EXPECT_EQ(is_killed(Fault::kKillInRename, steps, write_all), steps < 6);
+    EXPECT_EQ(is_killed(Fault::kKillInRename, steps, write_all), steps < 7);
     files::OutputFolder(folder_, content);
-    EXPECT_EQ(files(), steps < 6 ? earlier : fresh) << steps;
+    EXPECT_EQ(files(), steps < 4 ? earlier : fresh) << steps;
   }
   int steps = 0;
   for (failures = 1; failures > 0; ++steps) {
@@ -281,10 +284,10 @@ TEST_F(CalibrationOutputTest, FilesWithoutAMarkAreAsTheyWereOrNewAfterAKillOrAFa
 TEST_F(CalibrationOutputTest, TakesTurnsWithAnotherRunOfTheSameNameAlone) {
   begin_with(calibration("old", false));
   {
-    const CalibrationOutput first(folder_ / "rig.yaml", false);
-    EXPECT_THAT(test::message_of([&] { CalibrationOutput(folder_ / "rig.yaml", false); }),
+    const CalibrationOutput first(folder_, false);
+    EXPECT_THAT(test::message_of([&] { CalibrationOutput(folder_, false); }),
                 testing::HasSubstr("in use by another run"));
-    const CalibrationOutput other(folder_ / "rig2.yaml", false);
+    const CalibrationOutput other(folder_, false, "rig2.yaml");
   }
   EXPECT_EQ(files(), calibration("old", false));
 }

@@ -245,15 +245,6 @@ class Meanwhile(PaperTest):
         self.ends(process, 130, errors="stereotlm: note: interrupted: nothing was written\n")
         self.assertFalse(self.out.exists())
 
-    @program.slow
-    def test_a_second_one_is_refused_until_the_first_is_killed_and_then_writes_the_same_bytes(self):
-        process = self.begin()
-        self.refused_in_one_line(run("paper", "--out", self.out), f"'{self.out}': in use by another run")
-        self.close(process)
-        self.assertTrue((self.out / ".partial").exists())
-        self.succeeds(run("paper", "--out", self.out, *pair_with_truth()))
-        self.assertTrue(self.result() == self.files)
-
 
 class Refusals(ProgramTest):
     def test_wrong_arguments_and_folders_are_refused(self):

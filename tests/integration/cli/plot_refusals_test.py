@@ -191,7 +191,7 @@ class Refusals(PlotTest):
         self.assertFalse(self.out.exists())
 
     def test_missing_matplotlib_and_scripts_are_named(self):
-        for error, text in (("ImportError", "needs matplotlib, which ./setup installs"),
+        for error, text in (("ImportError", "needs matplotlib, which ./setup tests installs"),
                             ("ValueError", "matplotlib cannot be loaded")):
             self.file("matplotlib.py", f"raise {error}('no such thing')\n")
             process = script_with(ALL, self.store, "--out", self.out, PYTHONPATH=str(self.folder))

@@ -7,6 +7,7 @@ import os
 import resource
 import shutil
 import signal
+import struct
 import time
 
 import program
@@ -159,16 +160,19 @@ class Pictures(ProgramTest):
 
     def test_wrong_pictures_are_refused_with_option_path_and_reason(self):
         comment = b"P5\n# \r30000 30000 255\n1 1 255\nx"  # which a decoder may take for the size
+        # A header that OpenCV reads, without pixels.
+        wide = b"BM" + struct.pack("<IHHIIiiHHIIiiII", 54, 0, 0, 54, 40, 8193, 1, 1, 24, 0, 0, 0, 0, 0, 0)
         size = f"pixels: must be as large as the board's images, {WIDTH}x{HEIGHT}"
         sizes = ((WIDTH + 1, HEIGHT), (WIDTH - 1, HEIGHT), (WIDTH, HEIGHT + 1), (WIDTH, HEIGHT - 1))
         for path, reason in (
             (self.folder / "none.png", "no such file"),
             ("", "no such file"),
-            (self.folder, "a directory"),
+            (self.folder, "must be a regular file"),
             (self.file("empty.png"), "an empty file"),
             (self.file("cut.pgm", self.left.read_bytes()[:-1]), "truncated"),
             (self.file("text.png", "This is a text.\n" * 10), "not a picture"),
             (self.file("comment.pgm", comment), "30000x30000 pixels: a board's images are 8192x8192 at most"),
+            (self.file("wide.bmp", wide), "more than 8192x8192 pixels: a board's images are 8192x8192 at most"),
             *((self.picture(*wrong), f"{wrong[0]}x{wrong[1]} {size}") for wrong in sizes),
         ):
             with self.subTest(reason=reason):

@@ -160,11 +160,6 @@ class Video(SourceTest):
         more = self.video("r.avi", 2, "right")
         self.refused_video("two", one, more, f"--video '{more}': 2 frames: must have as many as '{one}', 1")
 
-    def test_what_cannot_be_decoded_is_refused(self):
-        self.refused_video("side_by_side", self.folder / "none.avi", "none.avi': no such file: ")
-        text = self.file("text.avi", "text\n" * 1000)
-        self.refused_video("side_by_side", text, "text.avi': no video: a video must be an AVI")
-
     def test_a_header_that_promises_more_frames_is_noted(self):
         video = self.video("s.avi", 4, "left", "right")
         video.write_bytes(video.read_bytes()[: -7 * WIDTH * HEIGHT])

@@ -62,7 +62,10 @@ class RigTest(unittest.TestCase):
         left, right = PICTURES / "left[01][0-9].jpg", PICTURES / "right[01][0-9].jpg"
         grid = ["--grid", "9x6", "--square-mm", "25", "--disparities", "112"]
         said("stereotlm", "calibrate", "--left", left, "--right", right, *grid, "--out", cls.rig)
-        said("stereotlm-demo-pictures", "sequence", PICTURES, cls.pairs)
+        cls.pairs.mkdir()
+        for side in ("left", "right"):
+            for path in PICTURES.glob(f"{side}[01][0-9].jpg"):
+                (cls.pairs / f"{side}_{path.stem[-2:]}.png").symlink_to(path)
 
 
 class Fidelities(RigTest):

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstring>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -21,25 +20,36 @@ kernels::GrayImage ramp(int width, int height) {
   return image;
 }
 
-TEST(EncodePngGray, ReadsBackAsEightBitGrey) {
-  const kernels::GrayImage image = ramp(33, 20);
-  const cv::Mat read = cv::imdecode(encode_png_gray(image), cv::IMREAD_UNCHANGED);
-  ASSERT_EQ(read.type(), CV_8UC1);
-  ASSERT_EQ(read.size(), cv::Size(33, 20));
-  EXPECT_EQ(std::memcmp(read.data, image.pixels.data(), image.pixels.size()), 0);
-  EXPECT_EQ(encode_png_gray(image), encode_png_gray(image));
+std::vector<std::uint8_t> png_of_opencv(const cv::Mat& picture) {
+  std::vector<std::uint8_t> bytes;
+  cv::imencode(".png", picture, bytes);
+  return bytes;
+}
+
+TEST(EncodePng, GivesTheBytesOfOpenCV) {
+  kernels::GrayImage image = ramp(33, 20);
+  EXPECT_EQ(encode_png_gray(image), png_of_opencv(cv::Mat(20, 33, CV_8UC1, image.pixels.data())));
+  std::vector<std::uint16_t> values(33 * 20);
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<std::uint16_t>(i * 101);
+  EXPECT_EQ(encode_png_16(33, 20, values), png_of_opencv(cv::Mat(20, 33, CV_16UC1, values.data())));
+  const auto colours = encode_disparity_color_png(kernels::GrayImage(33, 20, 7), 80);
+  EXPECT_EQ(colours, png_of_opencv(cv::imdecode(colours, cv::IMREAD_UNCHANGED)));
 }
 
 TEST(EncodeDisparityColorPng, SpreadsTurboOverTheDisparities) {
-  kernels::GrayImage disparity(4, 1);
-  disparity.pixels = {0, 40, 80, kernels::kInvalidDisparity};
-  const cv::Mat read = cv::imdecode(encode_disparity_color_png(disparity, 81), cv::IMREAD_UNCHANGED);
+  kernels::GrayImage levels(254, 1);
+  cv::Mat turbo(1, 254, CV_8UC1);
+  for (int d = 0; d < 254; ++d) {
+    levels.at(d, 0) = static_cast<std::uint8_t>(d);
+    turbo.at<std::uint8_t>(d) = static_cast<std::uint8_t>(std::lround(255.0 * d / 253));
+  }
+  cv::applyColorMap(turbo, turbo, cv::COLORMAP_TURBO);
+  const cv::Mat read = cv::imdecode(encode_disparity_color_png(levels, 254), cv::IMREAD_UNCHANGED);
   ASSERT_EQ(read.type(), CV_8UC3);
-  const cv::Mat levels = (cv::Mat_<std::uint8_t>(1, 3) << 0, 128, 255);
-  cv::Mat turbo;
-  cv::applyColorMap(levels, turbo, cv::COLORMAP_TURBO);
-  for (int x = 0; x < 3; ++x) EXPECT_EQ(read.at<cv::Vec3b>(x), turbo.at<cv::Vec3b>(x)) << x;
-  EXPECT_EQ(read.at<cv::Vec3b>(3), cv::Vec3b(0, 0, 0));
+  for (int x = 0; x < 254; ++x) EXPECT_EQ(read.at<cv::Vec3b>(x), turbo.at<cv::Vec3b>(x)) << x;
+  const kernels::GrayImage invalid(1, 1, kernels::kInvalidDisparity);
+  EXPECT_EQ(cv::imdecode(encode_disparity_color_png(invalid, 80), cv::IMREAD_UNCHANGED).at<cv::Vec3b>(0),
+            cv::Vec3b(0, 0, 0));
 }
 
 TEST(EncodeDisparityColorPng, TakesDisparitiesBelowTheirNumberOnly) {

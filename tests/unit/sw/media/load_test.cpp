@@ -2,10 +2,12 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/stat.h>
+#include <jpeglib.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>  // before jpeglib.h, which needs it
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <opencv2/core.hpp>
@@ -97,12 +99,46 @@ TEST_F(LoadTest, TakesGreyAsStoredInEveryLosslessFormat) {
   }
 }
 
-TEST_F(LoadTest, TakesGreyJpegAsOpenCVDecodesIt) {
-  for (const int progressive : {0, 1}) {
-    const std::string bytes = encoded(".jpg", noise(CV_8UC1), {cv::IMWRITE_JPEG_PROGRESSIVE, progressive});
+// A JPEG of cyan, magenta, yellow and black.
+std::string cmyk_jpeg() {
+  jpeg_compress_struct info = {};
+  jpeg_error_mgr errors = {};
+  info.err = jpeg_std_error(&errors);
+  jpeg_create_compress(&info);
+  unsigned char* bytes = nullptr;
+  unsigned long size = 0;
+  jpeg_mem_dest(&info, &bytes, &size);
+  info.image_width = kWidth;
+  info.image_height = kHeight;
+  info.input_components = 4;
+  info.in_color_space = JCS_CMYK;
+  jpeg_set_defaults(&info);
+  jpeg_start_compress(&info, TRUE);
+  cv::Mat picture = noise(CV_8UC4);
+  for (int y = 0; y < kHeight; ++y) {
+    JSAMPROW row = picture.ptr(y);
+    jpeg_write_scanlines(&info, &row, 1);
+  }
+  jpeg_finish_compress(&info);
+  const std::string file(bytes, bytes + size);
+  jpeg_destroy_compress(&info);
+  free(bytes);
+  return file;
+}
+
+TEST_F(LoadTest, TakesAJpegAsOpenCVDecodesIt) {
+  std::vector<std::string> jpegs = {cmyk_jpeg()};
+  for (const int type : {CV_8UC1, CV_8UC3}) {
+    for (const int progressive : {0, 1})
+      jpegs.push_back(encoded(".jpg", noise(type), {cv::IMWRITE_JPEG_PROGRESSIVE, progressive}));
+  }
+  for (const std::string& bytes : jpegs) {
     const cv::Mat expected = cv::imread(file(bytes), cv::IMREAD_UNCHANGED);
-    EXPECT_EQ(load_gray(file(bytes)).image.pixels, pixels_of(expected));
-    EXPECT_EQ(load_gray(file(bytes + "appended")).image.pixels, pixels_of(expected));
+    const bool is_grey = expected.channels() == 1;
+    for (const char* end : {"", "appended"}) {
+      EXPECT_EQ(load_gray(file(bytes + end)).image.pixels,
+                is_grey ? pixels_of(expected) : grey_pixels_of(expected));
+    }
   }
 }
 
@@ -163,7 +199,7 @@ TEST_F(LoadTest, RefusesPixelsThatAreNotEightBitGreyOrColour) {
       {png_with(png, palette + png_chunk("tRNS", "tr"), 3), "alpha"},
       {encoded(".png", noise(CV_16UC1)), "16-bit grey: "},
       {encoded(".tiff", noise(CV_16UC1)), "16-bit grey: "},
-      {encoded(".pgm", noise(CV_16UC1)), "16-bit grey: "},
+      {encoded(".pgm", noise(CV_16UC1)), "a maximum level of 65535: "},
       {encoded(".png", noise(CV_16UC3)), "16-bit colour: "},
       {encoded(".tiff", noise(CV_32FC1)), "float grey: "},
       {encoded(".pfm", noise(CV_32FC1)), "float grey: "},
@@ -186,12 +222,8 @@ TEST_F(LoadTest, RefusesPixelsThatAreNotEightBitGreyOrColour) {
 
 TEST_F(LoadTest, RefusesAPathThatIsNotAReadableFile) {
   const std::string missing = scratch_.path() / "missing.png";
-  EXPECT_EQ(refusal(missing), "'" + missing + "': no such file: a picture must be a readable regular file");
-  EXPECT_THAT(refusal(scratch_.path()), HasSubstr("': a directory: "));
-  EXPECT_THAT(refusal(file("x") + "/below"), HasSubstr("': no such file: "));
-  const std::string pipe = scratch_.path() / "pipe";
-  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
-  EXPECT_THAT(refusal(pipe), HasSubstr("': not a regular file: "));
+  EXPECT_EQ(refusal(missing), "'" + missing + "': no such file");
+  EXPECT_THAT(refusal(scratch_.path()), HasSubstr("': must be a regular file"));
 }
 
 // Every prefix of a file either lacks pixels, and is refused, or holds them all, and gives the same picture.
@@ -273,14 +305,12 @@ TEST_F(LoadTest, RefusesAPictureWhoseHeaderExceedsABoardsImages) {
   for (const Format& format : {Format{".png", {}},
                                {".jpg", {}},
                                {".jpg", {cv::IMWRITE_JPEG_PROGRESSIVE, 1}},
-                               {".bmp", {}},
                                {".pgm", {}},
                                {".ppm", {cv::IMWRITE_PXM_BINARY, 0}, CV_8UC3},
                                {".pam", {}},
+                               {".bmp", {}},
                                {".tiff", {}},
                                {".webp", {}, CV_8UC3},
-                               {".webp", {cv::IMWRITE_WEBP_QUALITY, 101}, CV_8UC3},  // lossless
-                               {".webp", {}, CV_8UC4},
                                {".jp2", {}},
                                {".ras", {}, CV_8UC3}}) {
     const auto bytes = [&format](int width, int height) {
@@ -289,7 +319,6 @@ TEST_F(LoadTest, RefusesAPictureWhoseHeaderExceedsABoardsImages) {
     };
     EXPECT_EQ(refusal_of_bytes(bytes(8193, 32)), "8193x32" + rule) << format.extension;
     EXPECT_EQ(refusal_of_bytes(bytes(32, 8193)), "32x8193" + rule) << format.extension;
-    if (format.type == CV_8UC4) continue;  // has alpha
     EXPECT_EQ(load_gray(file(bytes(8192, 32))).image.width, 8192) << format.extension;
     EXPECT_EQ(load_gray(file(bytes(32, 8192))).image.height, 8192) << format.extension;
   }
@@ -305,12 +334,6 @@ TEST_F(LoadTest, DecodesNothingOfAPictureThatIsTooLarge) {
   std::string jpeg = encoded(".jpg", noise(CV_8UC1));
   jpeg.replace(jpeg.find("\xFF\xC0") + 5, 4, "\xFF\x10\xFF\x20");
   EXPECT_THAT(refusal_of_bytes(jpeg), HasSubstr("65312x65296 pixels: "));
-  // One tile, or one strip, that is larger than the picture.
-  std::string tiff = encoded(".tiff", noise(CV_8UC1), {cv::IMWRITE_TIFF_COMPRESSION, 1});
-  const std::size_t rows_per_strip = tiff.find(std::string("\x16\x01\x03\0\x01\0\0\0", 8));
-  ASSERT_NE(rows_per_strip, std::string::npos);
-  EXPECT_THAT(refusal_of_bytes(std::string(tiff).replace(rows_per_strip + 8, 2, "\xFF\xFF")),
-              HasSubstr("48x65535 pixels: "));
   EXPECT_THAT(refusal_of_bytes(std::string("P5\n# 1 1\n99999999999 1\n255\n") + "x"),
               HasSubstr("1000000000x1 pixels: "));
 }
@@ -335,7 +358,7 @@ TEST_F(LoadTest, ReadsNothingOfAFileThatIsTooLong) {
   fs::resize_file(path, 16 * 2048 * 2048);
   EXPECT_NO_THROW(load_gray(path));
   fs::resize_file(path, 16 * 8192 * 8192 + 1);
-  EXPECT_EQ(refusal(path), "'" + path + "': 1073741825 bytes: a picture must have 1073741824 at most");
+  EXPECT_EQ(refusal(path), "'" + path + "': 1073741825 bytes: must be 1073741824 at most");
 }
 
 TEST_F(LoadTest, LoadsTruthAsGreyWithAPositiveScale) {

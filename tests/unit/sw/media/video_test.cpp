@@ -148,8 +148,8 @@ TEST_F(VideoTest, TakesAPathWithAColonForAPath) {
 }
 
 TEST_F(VideoTest, RefusesAFileThatIsNoVideo) {
-  EXPECT_THAT(refusal(path("none.avi")), StartsWith("no such file: a video must be a readable regular file"));
-  EXPECT_THAT(refusal(scratch_.path()), StartsWith("a directory: "));
+  EXPECT_THAT(refusal(path("none.avi")), StartsWith("no such file"));
+  EXPECT_THAT(refusal(scratch_.path()), StartsWith("must be a regular file"));
   EXPECT_THAT(test::message_of([] { open_video("http://localhost/x.avi"); }), HasSubstr("no such file"));
   const std::string rule =
       ": a video must be an AVI, Matroska, WebM, MP4, MPEG, Ogg, ASF, FLV or Y4M file that FFmpeg decodes";

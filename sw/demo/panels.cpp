@@ -1,4 +1,4 @@
-#include "sw/media/panels.h"
+#include "sw/demo/panels.h"
 
 #include <algorithm>
 #include <limits>
@@ -7,10 +7,13 @@
 
 #include "calib/canvas.h"
 #include "models/kernels/lr_check.h"
-#include "sw/media/color_map.h"
 
-namespace stereotlm::media {
+namespace stereotlm::demo {
 namespace {
+
+cv::Mat view(const kernels::GrayImage& image) {
+  return {image.height, image.width, CV_8UC1, const_cast<std::uint8_t*>(image.pixels.data())};
+}
 
 cv::Mat shown(const Panel& panel) {
   cv::Mat picture;
@@ -18,7 +21,6 @@ cv::Mat shown(const Panel& panel) {
     cv::cvtColor(view(panel.image), picture, cv::COLOR_GRAY2BGR);
     return picture;
   }
-  check_levels(panel.image, panel.levels);
   cv::Mat1f values;
   view(panel.image).convertTo(values, CV_32F);
   values.setTo(std::numeric_limits<float>::quiet_NaN(), view(panel.image) == kernels::kInvalidDisparity);
@@ -51,7 +53,7 @@ std::vector<std::uint8_t> encode_side_by_side_png(const std::vector<Panel>& pane
     }
     left += place.width + kMargin;
   }
-  return encode_png(canvas);
+  return calib::encode_png(canvas);
 }
 
-}  // namespace stereotlm::media
+}  // namespace stereotlm::demo

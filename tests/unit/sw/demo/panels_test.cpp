@@ -1,12 +1,11 @@
-#include "sw/media/panels.h"
+#include "sw/demo/panels.h"
 
 #include <gtest/gtest.h>
 
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
-#include <stdexcept>
 
-namespace stereotlm::media {
+namespace stereotlm::demo {
 namespace {
 
 // Where the parts of the picture lie: margins of 8 pixels, 24 pixels of caption.
@@ -61,12 +60,5 @@ TEST(SideBySide, CaptionsEachPictureAboveItInItsWidth) {
   }
 }
 
-TEST(SideBySide, RefusesWhatCannotBeShown) {
-  EXPECT_THROW(encode_side_by_side_png({}), std::invalid_argument);
-  EXPECT_THROW(encode_side_by_side_png({grey("empty", kernels::GrayImage())}), std::invalid_argument);
-  EXPECT_THROW(encode_side_by_side_png({colored(kernels::GrayImage(4, 4, 80), 80)}), std::invalid_argument);
-  EXPECT_THROW(encode_side_by_side_png({colored(kernels::GrayImage(4, 4), -1)}), std::invalid_argument);
-}
-
 }  // namespace
-}  // namespace stereotlm::media
+}  // namespace stereotlm::demo

@@ -6,7 +6,7 @@
 
 #include "models/kernels/gray_image.h"
 
-namespace stereotlm::media {
+namespace stereotlm::demo {
 
 // One picture of a row of pictures.
 struct Panel {
@@ -20,8 +20,7 @@ struct Panel {
 };
 
 // A PNG with the pictures side by side on white, aligned at the top, each below its caption. Those in colours
-// (Viridis, from dark to bright) have the scale below them. Throws
-// std::invalid_argument if there is no panel or an image cannot be shown (encode.h).
+// (Viridis, from dark to bright) have the scale below them.
 std::vector<std::uint8_t> encode_side_by_side_png(const std::vector<Panel>& panels);
 
-}  // namespace stereotlm::media
+}  // namespace stereotlm::demo

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "models/fpga/core_config.h"
+#include "sw/media/video.h"
+
+namespace stereotlm::media {
+
+// Internal to this folder: the decoders of pictures. Each takes the bytes of a file, and decodes a picture as
+// stored. Each throws std::runtime_error "what was found: rule" for a picture that is truncated, damaged,
+// larger than a board's images, or of other pixels than 8-bit grey and colour.
+
+inline constexpr const char* kPixelRule = "a picture must be 8-bit grey or 8-bit colour, without alpha";
+
+struct Picture {
+  int width = 0;     // pixels
+  int height = 0;    // pixels
+  int channels = 0;  // 1: grey; 3: blue, green, red
+  std::vector<std::uint8_t> samples;
+};
+
+[[noreturn]] inline void refuse_picture(const std::string& found, const std::string& rule) {
+  throw std::runtime_error(found + ": " + rule);
+}
+[[noreturn]] inline void refuse_damaged() {
+  refuse_picture("truncated or damaged", "a picture must be complete");
+}
+
+// `size`: as in "8193x32".
+[[noreturn]] inline void refuse_large(const std::string& size) {
+  refuse_picture(size + " pixels", fmt::format("a board's images are {}x{} at most", fpga::kWidthRule.max,
+                                               fpga::kHeightRule.max));
+}
+
+// A picture with room for its samples. Throws if it is larger than a board's images: a header may state any
+// size.
+inline Picture new_picture(std::uint64_t width, std::uint64_t height, int channels) {
+  if (width == 0 || height == 0) refuse_damaged();
+  if (width > fpga::kWidthRule.max || height > fpga::kHeightRule.max)
+    refuse_large(fmt::format("{}x{}", width, height));
+  return {static_cast<int>(width), static_cast<int>(height), channels,
+          std::vector<std::uint8_t>(width * height * static_cast<std::uint64_t>(channels))};
+}
+
+Picture decode_png(std::string_view bytes);
+Picture decode_jpeg(std::string_view bytes);
+// PGM, PPM and PAM.
+Picture decode_pnm(std::string_view bytes);
+
+// The functions that need the decoders of OpenCV. They are in a library that the first call of decoders()
+// loads, because loading these decoders takes 100 ms.
+struct Decoders {
+  // Decodes BMP, TIFF, WebP, JPEG 2000 and Sun raster.
+  Picture (*decode_picture)(std::string_view bytes);
+  // See video.h.
+  std::unique_ptr<Video> (*open_video)(const std::string& path, const VideoSizeCheck& check);
+};
+
+// Throws std::runtime_error if the library, which is installed with the program, cannot be loaded.
+const Decoders& decoders();
+
+}  // namespace stereotlm::media
