@@ -17,7 +17,7 @@
 #include "sw/explore/search/allocation_search.h"
 #include "sw/files/shell_word.h"
 #include "sw/files/temporary_folder.h"
-#include "sw/report/accuracy.h"
+#include "sw/stats/accuracy.h"
 
 namespace stereotlm::paper {
 namespace {
@@ -279,7 +279,7 @@ double modelled_value(const Claim& claim, const std::vector<Measured>& runs,
   return fewest_banks(runs);
 }
 
-bool judges(const Quality& first) { return first.wrong_percent <= report::kDoubtfulBad1Percent; }
+bool judges(const Quality& first) { return first.wrong_percent <= stats::kDoubtfulBad1Percent; }
 
 Verdict verdict_of_case(const Claim& claim, const Case& one, const CaseFinding& finding) {
   const double modelled = finding.modelled;

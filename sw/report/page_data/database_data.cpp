@@ -13,10 +13,10 @@
 #include <variant>
 #include <vector>
 
-#include "sw/explore/store/database.h"
 #include "sw/explore/store/store_layout.h"
 #include "sw/process/interrupt.h"
 #include "sw/report/page_data/packed_column.h"
+#include "sw/sqlite/database.h"
 
 namespace stereotlm::report {
 namespace {
@@ -37,7 +37,7 @@ bool is_shown(const std::string& column) {
   return true;
 }
 
-PackedColumn::Value value_of(const explore::Statement& row, int column) {
+PackedColumn::Value value_of(const sqlite::Statement& row, int column) {
   switch (sqlite3_column_type(row.handle(), column)) {
     case SQLITE_NULL:
       return std::monostate();
@@ -103,14 +103,14 @@ class PackedTexts {
 }  // namespace
 
 Json database_data(const std::string& path) {
-  explore::Database database(path, explore::Database::Access::kRead);
+  sqlite::Database database(path, sqlite::Database::Access::kRead);
   explore::check_layout(database);
   const std::vector<std::string> names = explore::columns_of(database);
   std::vector<PackedColumn> columns(names.size());
   std::vector<bool> shown_columns;
   for (const std::string& name : names) shown_columns.push_back(is_shown(name));
   PackedTexts boards;
-  explore::Statement points(database, "SELECT * FROM points ORDER BY hash");
+  sqlite::Statement points(database, "SELECT * FROM points ORDER BY hash");
   std::size_t size = 0;
   for (; !process::interrupted() && points.step(); ++size) {
     for (std::size_t i = 0; i < names.size(); ++i) {

@@ -14,9 +14,9 @@
 #include "platform/figures.h"
 #include "platform/timeline_sums.h"
 #include "sw/report/page_data/packed_column.h"
-#include "sw/report/stats_differences.h"
-#include "sw/report/stats_json.h"
-#include "sw/report/timeline_csv.h"
+#include "sw/stats/stats_differences.h"
+#include "sw/stats/stats_json.h"
+#include "sw/stats/timeline_csv.h"
 
 namespace stereotlm::report {
 namespace {
@@ -49,8 +49,8 @@ double real(std::uint64_t number) { return static_cast<double>(number); }
 }  // namespace
 
 TimelineData::TimelineData(const platform::BoardConfig& board, const std::filesystem::path& folder)
-    : events_csv_((folder / "timeline.csv").string(), timeline_csv_head()),
-      latencies_csv_((folder / "latency.csv").string(), latency_csv_head()),
+    : events_csv_((folder / "timeline.csv").string(), stats::timeline_csv_head()),
+      latencies_csv_((folder / "latency.csv").string(), stats::latency_csv_head()),
       board_(board) {}
 
 // An event with the names of the line.
@@ -128,8 +128,9 @@ void TimelineData::check(const platform::Statistics& statistics) const {
   platform::Statistics derived = statistics;
   platform::derive_delivery_figures(deliveries, platform::allocation_period_frames(board_), derived);
   platform::Audit of_figures;
-  for (const std::string& difference : stats_differences(stats_json(statistics, {}), stats_json(derived, {}),
-                                                         "stats.json", "from the latencies"))
+  for (const std::string& difference :
+       stats::stats_differences(stats::stats_json(statistics, {}), stats::stats_json(derived, {}),
+                                "stats.json", "from the latencies"))
     of_figures.fail("recorded: " + difference);
   latencies_csv_.finish(of_figures);
 }
@@ -253,7 +254,7 @@ Json TimelineData::latency_json() const {
     for (std::size_t column = 0; column < latency.size(); ++column)
       columns[column].add(real(latency[column]));
   }
-  std::istringstream head(latency_csv_head());
+  std::istringstream head(stats::latency_csv_head());
   Json packed = Json::array();
   Json means = Json::object();
   for (std::size_t column = 0; column < columns.size(); ++column) {

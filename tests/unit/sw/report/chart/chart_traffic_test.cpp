@@ -7,8 +7,8 @@
 
 #include "platform/config/board_yaml.h"
 #include "platform/core_run.h"
-#include "sw/report/stats_json.h"
 #include "sw/runs/simulation/camera_simulation.h"
+#include "sw/stats/stats_json.h"
 #include "tests/support/board_of_random.h"
 #include "tests/support/fork.h"
 #include "tests/support/noise_pairs.h"
