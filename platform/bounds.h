@@ -55,8 +55,8 @@ inline std::optional<std::string> bank_of_resource(const std::string& resource) 
   return resource.substr(prefix.size());
 }
 
-// The bounds of frame number `frame` with these accesses: first the ports, then the banks that the frame uses,
-// last the matcher. Throws std::invalid_argument if the board has problems.
+// The bounds of frame number `frame` with these accesses: first the ports, then the banks that the frame
+// uses, last the matcher. Throws std::invalid_argument if the board has problems.
 std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const FrameAccesses& accesses,
                                         std::uint64_t frame);
 

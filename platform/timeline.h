@@ -24,8 +24,8 @@
 namespace stereotlm::platform {
 
 // Records what happens in a computer: captures and dropped frames, DMA transfers, frames of the core,
-// interrupts, and who waits for whom. The blocks say what they do, at every fidelity in the same words. The driver
-// says what each of its starts has waited for. Plain C++.
+// interrupts, and who waits for whom. The blocks say what they do, at every fidelity in the same words. The
+// driver says what each of its starts has waited for. Plain C++.
 //
 // Events are handed out in the order of their ends. It keeps only the events since the last delivery or, if
 // earlier, since the beginning of the oldest wait that still runs.
@@ -131,7 +131,7 @@ class Timeline : private pci::BridgeObserver, private fpga::FrameObserver, priva
   std::uint64_t core_free_ps(std::uint64_t number) const {
     return number == 0 ? 0 : pair(number - 1).done_ps;
   }
-  // The awaited pairs and frames of an activity are the times from which on it could start; these are the rest.
+  // What the last start of an activity has waited for, and until when.
   Reasons reasons_of(Activity activity) const;
   std::uint64_t complete_until_ps() const;
   const char* buffer_at(std::uint64_t local_address) const;

@@ -39,8 +39,8 @@ std::pair<std::size_t, std::size_t> shortest_run(const std::vector<std::uint64_t
   return best;
 }
 
-// The place of shortest_run(); nullopt if that is most of it. `length`: rows or columns of a value; `whole`: those
-// of the picture.
+// The place of shortest_run(); nullopt if that is most of it. `length`: rows or columns of a value; `whole`:
+// those of the picture.
 std::optional<Range> place_of(const std::vector<std::uint64_t>& values, std::size_t length, int whole) {
   const auto [first, end] = shortest_run(values);
   if (static_cast<double>(end - first) >= 0.75 * static_cast<double>(values.size())) return std::nullopt;

@@ -72,8 +72,8 @@ constexpr auto fields_of(const platform::Percentiles* /*type*/) {
                     Field{"p99", &Values::p99}, Field{"max", &Values::max});
 }
 
-// The fields of stats.json that hold figures, in their order. `document`: a StatsWriter or a StatsReader, which takes
-// each field by its path. Those of a computer are there if `statistics` has it.
+// The fields of stats.json that hold figures, in their order. `document`: a StatsWriter or a StatsReader,
+// which takes each field by its path. Those of a computer are there if `statistics` has it.
 template <typename Document, typename Statistics>
 void each_field(Document& document, Statistics& statistics) {
   document.field("/board", statistics.board);

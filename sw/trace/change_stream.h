@@ -7,8 +7,9 @@
 
 namespace stereotlm::trace {
 
-// Changes of the values of signals in the order of their times. They wait in a temporary file without a name, which
-// vanishes with the object or with the process. All functions throw std::runtime_error if a byte cannot be stored.
+// Changes of the values of signals in the order of their times. They wait in a temporary file without a name,
+// which vanishes with the object or with the process. All functions throw std::runtime_error if a byte cannot
+// be stored.
 class ChangeStream {
  public:
   struct Change {

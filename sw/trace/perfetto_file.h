@@ -59,9 +59,9 @@ class PerfettoFile {
   std::array<std::uint64_t, kTrackGroupNames.size()> groups_{};  // uuid; 0: not written
 };
 
-// A track, which is written when its first event comes. Each track is a packet sequence of its own, with its own
-// table of names, and with times that are differences to the packet before. The times of a track therefore never
-// decrease; those of different tracks are independent.
+// A track, which is written when its first event comes. Each track is a packet sequence of its own, with its
+// own table of names, and with times that are differences to the packet before. The times of a track
+// therefore never decrease; those of different tracks are independent.
 class PerfettoTrack {
  public:
   // An argument of a slice, which is left out if it has no value.

@@ -37,8 +37,8 @@ std::size_t bank_track(const TraceBoard& board, std::size_t bank, std::size_t re
   return 2 * bank + (writes(requester) && board.has_separate_ports(bank) ? 1 : 0);
 }
 
-// The frames of the core: a slice for each frame, each strip, and each run of a strip. The slices of a port in
-// a strip stand one behind the other, first the accesses, then the waits, each as long as its cycles.
+// The frames of the core: a slice for each frame, each strip, and each run of a strip. The slices of a port
+// in a strip stand one behind the other, first the accesses, then the waits, each as long as its cycles.
 class Rows {
  public:
   Rows(const TraceBoard& board, PerfettoFile& file)
@@ -178,8 +178,9 @@ class Rows {
   std::uint64_t next_flow_ = 1;
 };
 
-// The cycles of a window: a slice for each access, and one for consecutive cycles in which a port waits for the
-// same port, or is in the same other state, in which a bank has the same owner, or in which the matcher works.
+// The cycles of a window: a slice for each access, and one for consecutive cycles in which a port waits for
+// the same port, or is in the same other state, in which a bank has the same owner, or in which the matcher
+// works.
 class Cycles {
  public:
   Cycles(const TraceBoard& board, PerfettoFile& file)

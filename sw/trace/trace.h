@@ -21,7 +21,8 @@ struct TraceFile {
   std::string path;
 };
 
-// The files that the trace is written to, without links. Throws std::system_error if links cannot be followed.
+// The files that the trace is written to, without links. Throws std::system_error if links cannot be
+// followed.
 std::vector<std::filesystem::path> outputs_of(const TraceFile& file);
 
 // What the window of a trace shows: these cycles, or those of them around the longest wait of a port.
@@ -32,12 +33,14 @@ struct TraceWindow {
 
 // The traces of a run. Its files appear whole with commit(), or not at all.
 //
-// The sinks get the cycles, bursts and levels of the window. For the window of a frame BusTrace reports the whole
-// frame, because the cycles of its rows are not known before. Where the longest wait is, is known at the end of
-// the run. In both cases this class keeps the bursts and levels, and leaves out those beside the window at the end.
+// The sinks get the cycles, bursts and levels of the window. For the window of a frame BusTrace reports the
+// whole frame, because the cycles of its rows are not known before. Where the longest wait is, is known at
+// the end of the run. In both cases this class keeps the bursts and levels, and leaves out those beside the
+// window at the end.
 class Trace : public fpga::CycleObserver, public platform::BusObserver {
  public:
-  // Throws std::runtime_error, with the name of the file, if one cannot be written. So do all other functions.
+  // Throws std::runtime_error, with the name of the file, if one cannot be written. So do all other
+  // functions.
   Trace(const std::vector<TraceFile>& files, const platform::BoardConfig& board,
         const std::optional<TraceWindow>& window);
 

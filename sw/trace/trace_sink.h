@@ -24,8 +24,8 @@ struct TimeSpan {
 // Writes the events of a run in one format. Memory does not grow with the run. Every function throws
 // std::runtime_error, with the name of the file, if a byte cannot be stored.
 //
-// Cycles, bursts and levels come from the window of the trace only. The names in bursts and levels must be valid
-// until end() returns.
+// Cycles, bursts and levels come from the window of the trace only. The names in bursts and levels must be
+// valid until end() returns.
 class TraceSink : public fpga::CycleObserver, public platform::BusObserver {
  public:
   // A frame of the core has ended.
@@ -41,8 +41,8 @@ class TraceSink : public fpga::CycleObserver, public platform::BusObserver {
   std::deque<files::OutputFile> files_;
 };
 
-// A format. Its sink is made for the file at `path`; that throws std::runtime_error, with the name of the file, if
-// the file cannot be written.
+// A format. Its sink is made for the file at `path`; that throws std::runtime_error, with the name of the
+// file, if the file cannot be written.
 struct TraceFormat {
   const char* name;  // on the command line
   std::unique_ptr<TraceSink> (*make_sink)(const std::filesystem::path& path,
@@ -54,9 +54,9 @@ struct TraceFormat {
 // ui.perfetto.dev. README.md describes the tracks.
 std::unique_ptr<TraceSink> perfetto_sink(const std::filesystem::path& path,
                                          const platform::BoardConfig& board);
-// A waveform, and a save file of GTKWave beside it. README.md describes the signals. A path that ends in ".fst"
-// gives the format of GTKWave, through its program vcd2fst; another one gives VCD. Throws std::runtime_error also
-// if vcd2fst is needed and not installed, and if the path ends in ".gtkw".
+// A waveform, and a save file of GTKWave beside it. README.md describes the signals. A path that ends in
+// ".fst" gives the format of GTKWave, through its program vcd2fst; another one gives VCD. Throws
+// std::runtime_error also if vcd2fst is needed and not installed, and if the path ends in ".gtkw".
 std::unique_ptr<TraceSink> vcd_sink(const std::filesystem::path& path, const platform::BoardConfig& board);
 // An SQLite database. Its schema says what each table and each column holds; README.md has queries.
 std::unique_ptr<TraceSink> sqlite_sink(const std::filesystem::path& path, const platform::BoardConfig& board);

@@ -49,8 +49,8 @@ constexpr std::array<const char*, 2> kBusNames = {"pci", "local_bus"};  // [BusB
 constexpr std::array<std::array<const char*, 2>, 3> kQueues = {
     {{"left_capture", "fifo"}, {"right_capture", "fifo"}, {"posted", "words"}}};
 
-// Indices of the signals of a port, a bank, the queues of the core and a bus, from the first one on. A bank with
-// separate ports has two owners.
+// Indices of the signals of a port, a bank, the queues of the core and a bus, from the first one on. A bank
+// with separate ports has two owners.
 enum PortSignal : std::uint8_t { kState, kBank, kAddress, kWaitsFor };
 enum BankSignal : std::uint8_t { kRequests, kOwner, kWriteOwner };
 enum QueueSignal : std::uint8_t { kLeftLane, kRightLane, kResults, kWorks };
@@ -165,11 +165,11 @@ struct Span {
   std::set<std::string> active_scopes;   // scopes with a signal that has had another value than its idle one
 };
 
-// Writes the changes of all streams in the order of their times, as a value change dump of IEEE 1364. A signal
-// has at most one change at a time: the last one of its stream.
+// Writes the changes of all streams in the order of their times, as a value change dump of IEEE 1364. A
+// signal has at most one change at a time: the last one of its stream.
 //
-// The file begins and ends with the window, or with the last change if the window has no end. A change before the
-// window gives the value with which the window begins. Changes after it are left out.
+// The file begins and ends with the window, or with the last change if the window has no end. A change before
+// the window gives the value with which the window begins. Changes after it are left out.
 class Waveform {
  public:
   Waveform(files::AsideFile& file, const Signals& signals)
@@ -330,9 +330,9 @@ double zoom_of(const Span& span) {
   return -std::log2(static_cast<double>(std::max<std::uint64_t>(span.last_ps - span.first_ps, 1)) / kParts);
 }
 
-// A save file of GTKWave for the waveform file of this name in the same folder: the signals of all banks, ports,
-// queues and buses that do something in the window, in groups, words as text, the span fitted to the window, and
-// the marker where the longest wait begins.
+// A save file of GTKWave for the waveform file of this name in the same folder: the signals of all banks,
+// ports, queues and buses that do something in the window, in groups, words as text, the span fitted to the
+// window, and the marker where the longest wait begins.
 std::string layout_of(const std::string& file_name, const Signals& signals, const Span& span) {
   std::string text = fmt::format(
       "{}\n[dumpfile] \"{}\"\n[timestart] {}\n[size] 1400 900\n[pos] -1 -1\n*{:.6f} {}", kLayoutMark,
