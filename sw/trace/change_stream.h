@@ -1,9 +1,10 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
-#include <optional>
+#include <vector>
 
 namespace stereotlm::trace {
 
@@ -25,19 +26,32 @@ class ChangeStream {
   ChangeStream& operator=(const ChangeStream&) = delete;
 
   // Times must not decrease.
-  void add(std::uint64_t time_ps, std::uint32_t signal, std::uint32_t value);
+  void add(std::uint64_t time_ps, std::uint32_t signal, std::uint32_t value) {
+    buffer_.push_back({time_ps, signal, value});
+    if (buffer_.size() == kBuffered) store();
+  }
   // Goes to the first change. Nothing may be added after it.
   void rewind();
-  // The current change; nullopt behind the last one.
-  const std::optional<Change>& change() const { return change_; }
-  void advance();
+  // The current change; null behind the last one.
+  const Change* change() const { return change_; }
+  void advance() {
+    if (next_ == buffer_.size()) load();
+    change_ = next_ == buffer_.size() ? nullptr : &buffer_[next_++];
+  }
 
  private:
+  static constexpr std::size_t kBuffered = std::size_t{1} << 16U;  // changes
+
+  void store();
+  void load();
   [[noreturn]] void fail() const;
 
   std::filesystem::path beside_;
   std::FILE* file_;
-  std::optional<Change> change_;
+  std::vector<Change> buffer_;
+  // While the changes are read.
+  std::size_t next_ = 0;  // in the buffer
+  const Change* change_ = nullptr;
 };
 
 }  // namespace stereotlm::trace

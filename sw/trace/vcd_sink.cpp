@@ -174,8 +174,12 @@ class Waveform {
  public:
   Waveform(files::AsideFile& file, const Signals& signals)
       : file_(file), signals_(signals), is_touched_(signals.all.size()), is_active_(signals.all.size()) {
-    for (const Signal& signal : signals.all) next_values_.push_back(signal.idle);
+    for (const Signal& signal : signals.all) {
+      next_values_.push_back(signal.idle);
+      line_ends_.push_back((signal.bits == 1 ? "" : " ") + signal.code + '\n');
+    }
     values_ = next_values_;
+    for (const std::string& word : signals.words) words_.push_back('s' + word);
   }
 
   Span write(const std::deque<ChangeStream*>& streams, const TimeSpan& window) {
@@ -263,19 +267,15 @@ class Waveform {
     if (its.bits == 1) {
       text_ += value != 0 ? '1' : '0';
     } else if (its.bits == 0) {
-      text_ += 's';
-      text_ += signals_.words[value];
-      text_ += ' ';
+      text_ += words_[value];
     } else if (value >= kUnknown) {
-      text_ += value == kNoNumber ? "bz " : "bx ";
+      text_ += value == kNoNumber ? "bz" : "bx";
     } else {
-      std::array<char, 32> digits;
-      text_ += 'b';
-      text_.append(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value, 2).ptr);
-      text_ += ' ';
+      std::array<char, 33> digits = {'b'};
+      char* const end = digits.data() + digits.size();
+      text_.append(digits.data(), std::to_chars(digits.data() + 1, end, value, 2).ptr);
     }
-    text_ += its.code;
-    text_ += '\n';
+    text_ += line_ends_[signal];
     if (text_.size() < kTextBytes) return;
     file_.write(text_);
     text_.clear();
@@ -283,7 +283,9 @@ class Waveform {
 
   files::AsideFile& file_;
   const Signals& signals_;
-  std::vector<std::uint32_t> values_;  // [signal]
+  std::vector<std::string> line_ends_;  // [signal]: what stands behind a value
+  std::vector<std::string> words_;      // as values
+  std::vector<std::uint32_t> values_;   // [signal]
   std::vector<std::uint32_t> next_values_;
   std::vector<char> is_touched_;
   std::vector<char> is_active_;  // [signal]: has had another value than its idle one

@@ -68,6 +68,43 @@ TEST_F(BusTraceTest, NamesMastersAndTargetsOfThePciBus) {
                    "load>load r2 at e2000000: 9 10 11 12"}));
 }
 
+// Two writes of 4 words wait. A burst takes 6 of these words, and the next one the rest.
+TEST_F(BusTraceTest, GivesAPostedBurstTheRequestOfItsOldestWord) {
+  BusTrace& to = trace();
+  to.bridge().words_posted(kCycle + 1, 4);
+  to.bridge().words_posted(3 * kCycle, 4);
+  to.bridge().burst_begins(4 * kCycle, LocalBusSource::kPosted, 6);
+  to.bridge().posted_words_leave(13 * kCycle, 6);
+  to.local_bus().local_burst_ended(
+      {true, std::uint64_t{3} << 28U, 6, 4 * kCycle, 5 * kCycle, 12 * kCycle, 13 * kCycle});
+  to.bridge().burst_begins(13 * kCycle, LocalBusSource::kPosted, 2);
+  to.bridge().posted_words_leave(18 * kCycle, 2);
+  to.local_bus().local_burst_ended(
+      {true, fpga::kLocalRegisters, 2, 13 * kCycle, 14 * kCycle, 17 * kCycle, 18 * kCycle});
+  EXPECT_EQ(handed_out(), (Lines{"posted>bank3 w6 at 30000000: 50000 100000 125000 300000",
+                                 "posted>registers w2 at 400000000: 75000 325000 350000 425000",
+                                 "posted 4@25001", "posted 8@75000", "posted 2@325000", "posted 0@450000"}));
+}
+
+TEST_F(BusTraceTest, GivesAReadAndATransferOfDmaTheTimeSinceWhichTheyWait) {
+  BusTrace& to = trace();
+  const auto burst = [&](LocalBusSource source, std::uint64_t clock) {
+    to.bridge().burst_begins(clock * kCycle, source, 1);
+    to.local_bus().local_burst_ended(
+        {false, 0, 1, clock * kCycle, (clock + 1) * kCycle, (clock + 3) * kCycle, (clock + 4) * kCycle});
+  };
+  to.bridge().transfer_waits(kCycle - 1, LocalBusSource::kDma1);
+  to.bridge().transfer_waits(2 * kCycle, LocalBusSource::kRead);
+  to.bridge().transfer_waits(3 * kCycle, LocalBusSource::kDma0);
+  burst(LocalBusSource::kRead, 5);
+  burst(LocalBusSource::kDma1, 9);
+  to.bridge().transfer_waits(7 * kCycle, LocalBusSource::kDma0);  // instead
+  burst(LocalBusSource::kDma0, 13);
+  EXPECT_EQ(handed_out(), (Lines{"read>bank0 r1 at 0: 50000 125000 150000 200000",
+                                 "dma1>bank0 r1 at 0: 25000 225000 250000 300000",
+                                 "dma0>bank0 r1 at 0: 175000 325000 350000 400000"}));
+}
+
 // The local bus has refused the first burst, whose words leave at once.
 TEST_F(BusTraceTest, KeepsTheLevelOfPostedWordsOfARefusedBurst) {
   BusTrace& to = trace();
@@ -97,6 +134,24 @@ TEST_F(BusTraceTest, HoldsBurstsThatEndAfterItsBeginningAndRequestBeforeItsEnd) 
   EXPECT_EQ(to.skips_end_ps(0), kBegin);
   EXPECT_EQ(to.skips_end_ps(kEnd), kBegin);  // nothing is skipped
   EXPECT_EQ(to.skips_end_ps(kEnd + 1), kNever);
+}
+
+// Words that leave are reported later, and what was asked for early is reported again.
+TEST_F(BusTraceTest, HasOneLevelOfAFifoForEachTimeAtWhichWordsComeOrLeave) {
+  BusTrace& to = trace();
+  capture::FifoObserver& fifo = to.capture_fifo(0);
+  to.set_show_words([&fifo](std::uint64_t now_ps) {
+    for (std::uint64_t time_ps = 10; time_ps <= now_ps && time_ps <= 50; time_ps += 10)
+      fifo.word_came(time_ps);
+  });
+  EXPECT_EQ(handed_out(25), (Lines{"left_capture 1@10", "left_capture 2@20"}));
+  fifo.word_came(10);
+  fifo.words_left(30, 1);
+  fifo.words_left(35, 2);
+  fifo.words_left(60, 1);
+  EXPECT_EQ(handed_out(50),
+            (Lines{"left_capture 2@30", "left_capture 0@35", "left_capture 1@40", "left_capture 2@50"}));
+  EXPECT_EQ(handed_out(), (Lines{"left_capture 1@60"}));
 }
 
 TEST_F(BusTraceTest, HoldsAFrameOfTheCoreFromItsStrobeToItsEnd) {
@@ -131,6 +186,20 @@ TEST_F(BusTraceTest, HoldsAFrameOfTheCoreFromItsStrobeToItsEnd) {
   pci(70 * kCycle, 71 * kCycle);
   EXPECT_EQ(handed_out(), (Lines{pci_line(29 * kCycle, 31 * kCycle), pci_line(40 * kCycle - 1, 50 * kCycle),
                                  "left_capture 3@750001"}));
+}
+
+TEST_F(BusTraceTest, HandsOutWhatHasHappenedByATimeAndEachRecordOnce) {
+  BusTrace& to = trace();
+  pci(1, 90);
+  to.bridge().words_posted(80, 1);
+  to.bridge().burst_begins(80, LocalBusSource::kPosted, 1);
+  to.bridge().posted_words_leave(5 * kCycle, 1);
+  to.local_bus().local_burst_ended({true, 0, 1, kCycle, 2 * kCycle, 4 * kCycle, 5 * kCycle});
+  EXPECT_EQ(handed_out(89), Lines{"posted 1@80"});
+  EXPECT_EQ(handed_out(5 * kCycle - 1), Lines{pci_line(1, 90)});
+  EXPECT_EQ(handed_out(5 * kCycle),
+            (Lines{"posted>bank0 w1 at 0: 25000 25000 50000 100000", "posted 0@125000"}));
+  EXPECT_EQ(handed_out(), Lines());
 }
 
 TEST_F(BusTraceTest, RefusesRowsOfNoFrame) {
