@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -551,7 +552,7 @@ std::string problems_of(std::uint64_t seed, bool with_knobs, bool camera) {
   };
   std::vector<std::string> texts;
   for (const Fidelity fidelity : kEachFidelity) {
-    const test::ChildResult result = test::run_in_child(run(fidelity));
+    const test::ChildResult result = test::run_in_child(run(fidelity), std::chrono::seconds(120));
     if (result.exit_status != 1 || result.text.rfind("WRONG", 0) == 0)
       problems += fmt::format("fidelity {}: {}\n", static_cast<int>(fidelity), result.text);
     texts.push_back(result.text);
@@ -585,7 +586,7 @@ TEST_P(RandomTraces, EqualTheCountersAndTheTransactionsAtEachFidelity) {
   }
   const int parallel = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   const std::vector<test::ChildResult> results =
-      test::run_in_children(jobs, parallel, std::chrono::seconds(180));
+      test::run_in_children(jobs, parallel, std::chrono::seconds(400));
   for (std::size_t seed = 0; seed < results.size(); ++seed)
     EXPECT_TRUE(results[seed].ok()) << "seed " << seed << ":\n" << results[seed].text;
 }
