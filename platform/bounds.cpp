@@ -53,82 +53,6 @@ int bank_in_turn(const std::vector<BufferPlace>& list, std::uint64_t frame) {
   return list[frame % list.size()].bank;
 }
 
-std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const FrameAccesses& accesses,
-                                        std::uint64_t frame) {
-  const fpga::FrameGeometry geometry(core_config(board));
-  const BufferLayout layout = layout_buffers(board);
-  const auto latency = [&board](int bank) {
-    return static_cast<std::uint64_t>(
-        memory::read_latency_cycles(board.banks[static_cast<std::size_t>(bank)].kind));
-  };
-  struct SideOfFrame {
-    const char* name;
-    int image;
-    std::optional<int> lut;  // bank of its table
-    PortAccesses accesses;
-  };
-  const auto lut_bank = [](const std::optional<BufferPlace>& place) {
-    return place ? std::optional<int>(place->bank) : std::nullopt;
-  };
-  const std::array<SideOfFrame, 2> sides = {
-      SideOfFrame{"left", bank_in_turn(layout.left_image, frame), lut_bank(layout.left_lut), accesses.left},
-      SideOfFrame{"right", bank_in_turn(layout.right_image, frame),
-                  lut_bank(board.fpga.joint_tables ? layout.left_lut : layout.right_lut), accesses.right}};
-  const int disparity = bank_in_turn(layout.disparity, frame);
-  const auto pipeline = static_cast<std::uint64_t>(board.fpga.pipeline_latency_cycles);
-  const auto passes = static_cast<std::uint64_t>(geometry.passes);
-  const std::uint64_t after_last_slot =
-      geometry.drain_cycles * passes + static_cast<std::uint64_t>(geometry.last_rows) + pipeline;
-
-  struct BankDemand {
-    std::uint64_t reads = 0;
-    std::uint64_t writes = 0;
-    std::uint64_t after_last_read = 0;  // least number of cycles from a read to the matcher
-  };
-  std::map<int, BankDemand> demands;
-  const auto read = [&demands](int bank, std::uint64_t count, std::uint64_t cycles_to_matcher) {
-    BankDemand& demand = demands[bank];
-    demand.after_last_read =
-        demand.reads == 0 ? cycles_to_matcher : std::min(demand.after_last_read, cycles_to_matcher);
-    demand.reads += count;
-  };
-  std::uint64_t first_slot = 0;
-  std::vector<ResourceBound> luts;
-  std::vector<ResourceBound> pixels;
-  for (const SideOfFrame& side : sides) {
-    const std::uint64_t image_latency = latency(side.image);
-    const std::uint64_t lane_latency = image_latency + (side.lut ? latency(*side.lut) : 0);
-    first_slot = std::max(first_slot, lane_latency);
-    if (side.lut && side.accesses.lut > 0) read(*side.lut, side.accesses.lut, lane_latency);
-    if (side.accesses.pixel > 0) read(side.image, side.accesses.pixel, image_latency);
-    const auto places = static_cast<std::uint64_t>(board.fpga.lane_fifo_slots);
-    const std::uint64_t slot_a_cycle = geometry.slots + pipeline;
-    const std::uint64_t in_lane = lane_latency + passes;
-    const std::uint64_t taking =
-        std::max(slot_a_cycle, (geometry.slots - 1) / places * in_lane + in_lane + after_last_slot);
-    if (side.lut && side.accesses.lut > 0)
-      luts.push_back({std::string("port ") + side.name + "_lut", taking});
-    pixels.push_back({std::string("port ") + side.name + "_pixel", side.lut ? slot_a_cycle : taking});
-  }
-  demands[disparity].writes += geometry.result_words;
-
-  std::vector<ResourceBound> bounds = std::move(luts);
-  bounds.insert(bounds.end(), pixels.begin(), pixels.end());
-  bounds.push_back({"port result", geometry.result_words + pipeline});
-  for (const auto& [bank, demand] : demands) {
-    // With separate ports the writes are made beside the reads.
-    const bool is_beside = has_separate_ports(board, bank);
-    std::uint64_t cycles = (is_beside ? 0 : demand.reads) + demand.writes + pipeline;
-    // The last read is granted after `reads` - 1 other cycles at the earliest. The matcher begins to work on
-    // its slot at least `after_last_read` cycles later.
-    if (demand.reads > 0)
-      cycles = std::max(cycles, demand.reads - 1 + demand.after_last_read + passes + after_last_slot);
-    bounds.push_back({"bank " + board.banks[static_cast<std::size_t>(bank)].name, cycles});
-  }
-  bounds.push_back({"matcher", first_slot + geometry.slots * passes + after_last_slot});
-  return bounds;
-}
-
 // Equal transfers over the PCI bus that a frame needs.
 struct Transfers {
   std::uint64_t words = 0;
@@ -264,8 +188,80 @@ FrameAccesses frame_accesses(const BoardConfig& board, const Tables& tables) {
   return accesses;
 }
 
-std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const Tables& tables, std::uint64_t frame) {
-  return frame_bounds(board, frame_accesses(board, tables), frame);
+std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const FrameAccesses& accesses,
+                                        std::uint64_t frame) {
+  const fpga::FrameGeometry geometry(core_config(board));
+  const BufferLayout layout = layout_buffers(board);
+  const auto latency = [&board](int bank) {
+    return static_cast<std::uint64_t>(
+        memory::read_latency_cycles(board.banks[static_cast<std::size_t>(bank)].kind));
+  };
+  struct SideOfFrame {
+    const char* name;
+    int image;
+    std::optional<int> lut;  // bank of its table
+    PortAccesses accesses;
+  };
+  const auto lut_bank = [](const std::optional<BufferPlace>& place) {
+    return place ? std::optional<int>(place->bank) : std::nullopt;
+  };
+  const std::array<SideOfFrame, 2> sides = {
+      SideOfFrame{"left", bank_in_turn(layout.left_image, frame), lut_bank(layout.left_lut), accesses.left},
+      SideOfFrame{"right", bank_in_turn(layout.right_image, frame),
+                  lut_bank(board.fpga.joint_tables ? layout.left_lut : layout.right_lut), accesses.right}};
+  const int disparity = bank_in_turn(layout.disparity, frame);
+  const auto pipeline = static_cast<std::uint64_t>(board.fpga.pipeline_latency_cycles);
+  const auto passes = static_cast<std::uint64_t>(geometry.passes);
+  const std::uint64_t after_last_slot =
+      geometry.drain_cycles * passes + static_cast<std::uint64_t>(geometry.last_rows) + pipeline;
+
+  struct BankDemand {
+    std::uint64_t reads = 0;
+    std::uint64_t writes = 0;
+    std::uint64_t after_last_read = 0;  // least number of cycles from a read to the matcher
+  };
+  std::map<int, BankDemand> demands;
+  const auto read = [&demands](int bank, std::uint64_t count, std::uint64_t cycles_to_matcher) {
+    BankDemand& demand = demands[bank];
+    demand.after_last_read =
+        demand.reads == 0 ? cycles_to_matcher : std::min(demand.after_last_read, cycles_to_matcher);
+    demand.reads += count;
+  };
+  std::uint64_t first_slot = 0;
+  std::vector<ResourceBound> luts;
+  std::vector<ResourceBound> pixels;
+  for (const SideOfFrame& side : sides) {
+    const std::uint64_t image_latency = latency(side.image);
+    const std::uint64_t lane_latency = image_latency + (side.lut ? latency(*side.lut) : 0);
+    first_slot = std::max(first_slot, lane_latency);
+    if (side.lut && side.accesses.lut > 0) read(*side.lut, side.accesses.lut, lane_latency);
+    if (side.accesses.pixel > 0) read(side.image, side.accesses.pixel, image_latency);
+    const auto places = static_cast<std::uint64_t>(board.fpga.lane_fifo_slots);
+    const std::uint64_t slot_a_cycle = geometry.slots + pipeline;
+    const std::uint64_t in_lane = lane_latency + passes;
+    const std::uint64_t taking =
+        std::max(slot_a_cycle, (geometry.slots - 1) / places * in_lane + in_lane + after_last_slot);
+    if (side.lut && side.accesses.lut > 0)
+      luts.push_back({std::string("port ") + side.name + "_lut", taking});
+    pixels.push_back({std::string("port ") + side.name + "_pixel", side.lut ? slot_a_cycle : taking});
+  }
+  demands[disparity].writes += geometry.result_words;
+
+  std::vector<ResourceBound> bounds = std::move(luts);
+  bounds.insert(bounds.end(), pixels.begin(), pixels.end());
+  bounds.push_back({"port result", geometry.result_words + pipeline});
+  for (const auto& [bank, demand] : demands) {
+    // With separate ports the writes are made beside the reads.
+    const bool is_beside = has_separate_ports(board, bank);
+    std::uint64_t cycles = (is_beside ? 0 : demand.reads) + demand.writes + pipeline;
+    // The last read is granted after `reads` - 1 other cycles at the earliest. The matcher begins to work on
+    // its slot at least `after_last_read` cycles later.
+    if (demand.reads > 0)
+      cycles = std::max(cycles, demand.reads - 1 + demand.after_last_read + passes + after_last_slot);
+    bounds.push_back({resource_of_bank(board.banks[static_cast<std::size_t>(bank)].name), cycles});
+  }
+  bounds.push_back({"matcher", first_slot + geometry.slots * passes + after_last_slot});
+  return bounds;
 }
 
 std::vector<RateBound> computer_bounds(const BoardConfig& board, const FrameAccesses& accesses,
@@ -283,7 +279,7 @@ std::vector<RateBound> computer_bounds(const BoardConfig& board, const FrameAcce
   for (std::size_t bank = 0; bank < of_banks.size(); ++bank) {
     if (of_banks[bank] == 0) continue;
     bounds.push_back(
-        {"bank " + board.banks[bank].name,
+        {resource_of_bank(board.banks[bank].name),
          board.fpga.clock_mhz * 1e6 * static_cast<double>(frames) / static_cast<double>(of_banks[bank])});
   }
   return bounds;

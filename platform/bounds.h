@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -45,9 +46,19 @@ struct ResourceBound {
   std::uint64_t cycles = 0;
 };
 
-// The bounds of frame number `frame` with these tables: first the ports, then the banks that the frame uses,
-// last the matcher. Throws std::invalid_argument if the board has problems.
-std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const Tables& tables, std::uint64_t frame);
+// The resource of a bank, and the bank of a resource; nullopt if the resource is no bank.
+inline constexpr const char* kBankResource = "bank ";
+inline std::string resource_of_bank(const std::string& bank) { return kBankResource + bank; }
+inline std::optional<std::string> bank_of_resource(const std::string& resource) {
+  const std::string prefix = kBankResource;
+  if (resource.compare(0, prefix.size(), prefix) != 0) return std::nullopt;
+  return resource.substr(prefix.size());
+}
+
+// The bounds of frame number `frame` with these accesses: first the ports, then the banks that the frame
+// uses, last the matcher. Throws std::invalid_argument if the board has problems.
+std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const FrameAccesses& accesses,
+                                        std::uint64_t frame);
 
 // For each frame of one turn of the allocation's lists, the resource of frame_bounds() that needs the most
 // cycles. If several need as many, it is the last of them in the order of frame_bounds(). Throws as

@@ -126,12 +126,13 @@ BoardCounters counters_of(const Board& board) {
 Statistics collect_statistics(const BoardConfig& config, const Tables& tables, const Board& board,
                               const BoardCounters& counters) {
   const bool is_cycle = board.core.fidelity() == fpga::Fidelity::kCycle;
-  return collect_statistics(config, tables, is_cycle ? "cycle" : "fast", board.core.frames().frame_cycles(),
-                            counters);
+  return collect_statistics(config, frame_accesses(config, tables), is_cycle ? "cycle" : "fast",
+                            board.core.frames().frame_cycles(), counters);
 }
 
-Statistics collect_statistics(const BoardConfig& config, const Tables& tables, const std::string& fidelity,
-                              const std::vector<std::uint64_t>& frame_cycles, const BoardCounters& counters) {
+Statistics collect_statistics(const BoardConfig& config, const FrameAccesses& accesses,
+                              const std::string& fidelity, const std::vector<std::uint64_t>& frame_cycles,
+                              const BoardCounters& counters) {
   Statistics statistics;
   statistics.fidelity = fidelity;
   const auto first = frame_cycles.begin();
@@ -147,7 +148,6 @@ Statistics collect_statistics(const BoardConfig& config, const Tables& tables, c
   audit_arbiters(config, counters, audit);
   audit_flow(fpga::FrameGeometry(core_config(config)), counters, audit);
   if (statistics.frames > 0) {
-    const FrameAccesses accesses = frame_accesses(config, tables);
     statistics.bound = core_bound(config, accesses);
     audit_frames(statistics.frame_cycles, turn_bounds(config, accesses), audit);
   }

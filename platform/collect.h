@@ -10,6 +10,7 @@
 #include "models/memory/bank_arbiter.h"
 #include "models/memory/memory_config.h"
 #include "platform/board.h"
+#include "platform/bounds.h"
 #include "platform/config/board_config.h"
 #include "platform/config/tables.h"
 #include "platform/statistics.h"
@@ -49,8 +50,9 @@ Statistics collect_statistics(const BoardConfig& config, const Tables& tables, c
                               const BoardCounters& counters);
 
 // The same for a core that ran without a board. `frame_cycles`: the length of each frame.
-Statistics collect_statistics(const BoardConfig& config, const Tables& tables, const std::string& fidelity,
-                              const std::vector<std::uint64_t>& frame_cycles, const BoardCounters& counters);
+Statistics collect_statistics(const BoardConfig& config, const FrameAccesses& accesses,
+                              const std::string& fidelity, const std::vector<std::uint64_t>& frame_cycles,
+                              const BoardCounters& counters);
 
 // The figures of all finished frames. To be called between two frames.
 inline Statistics collect_statistics(const BoardConfig& config, const Tables& tables, const Board& board) {

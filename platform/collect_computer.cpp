@@ -91,10 +91,10 @@ std::uint64_t words_for_results(const pci::PciBusControl::Stats& bus) {
 Statistics collect_statistics(const BoardConfig& config, const Tables& tables, const std::string& fidelity,
                               const std::vector<std::uint64_t>& frame_cycles,
                               const ComputerCounters& counters, const std::vector<Delivery>& deliveries) {
-  Statistics statistics = collect_statistics(config, tables, fidelity, frame_cycles, counters.board);
+  const FrameAccesses accesses = frame_accesses(config, tables);
+  Statistics statistics = collect_statistics(config, accesses, fidelity, frame_cycles, counters.board);
   const bool whole_pictures =
       counters.cameras[0].capture.dropped_pixels + counters.cameras[1].capture.dropped_pixels == 0;
-  const FrameAccesses accesses = frame_accesses(config, tables);
   add_system_bound(config, accesses, whole_pictures, statistics.bound);
 
   ComputerStatistics& around = statistics.computer.emplace();

@@ -70,7 +70,7 @@ Statistics run_core(const BoardConfig& board, const Tables& tables, std::uint64_
   check_tables(board, tables);
   CoreRun run(board, tables, stall_timeout_cycles);
   for (std::uint64_t frame = 0; frame < frames; ++frame) run.run_frame();
-  return collect_statistics(board, tables, "fast", run.frame_cycles(), run.counters());
+  return collect_statistics(board, frame_accesses(board, tables), "fast", run.frame_cycles(), run.counters());
 }
 
 }  // namespace stereotlm::platform

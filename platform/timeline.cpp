@@ -11,7 +11,6 @@ namespace {
 
 namespace bridge_map = pci::bridge;
 
-constexpr std::array<const char*, 2> kSides = {"left", "right"};
 constexpr std::array<const char*, 5> kInterruptNames = {"left", "right", "core", "upload", "read_back"};
 constexpr std::size_t kCoreInterrupt = 2;
 constexpr std::size_t kDmaInterrupt = 3;  // of channel 0
@@ -23,27 +22,12 @@ auto order_of(const TimelineEvent& event) {
                     event.camera_frame, std::string_view(event.why));
 }
 
-const char* name_of(capture::DropReason reason) {
-  switch (reason) {
-    case capture::DropReason::kNotArmed:
-      return "not_armed";
-    case capture::DropReason::kBusy:
-      return "busy";
-    case capture::DropReason::kPartner:
-      break;
-  }
-  return "partner";
-}
-
 }  // namespace
 
 Timeline::Timeline(const BoardConfig& board)
     : clock_(board.fpga.clock_mhz),
       sums_(board),
-      copies_(board.capture.destination == CaptureDestination::kHostMemory),
-      uploading_(board.allocation.left_lut || board.allocation.right_lut),
-      inputs_(board.allocation.left_image.size()),
-      outputs_(board.allocation.disparity.size()),
+      kept_pairs_(std::max(board.allocation.left_image.size(), board.allocation.disparity.size())),
       buffers_(buffers(board)),
       ranges_(buffer_ranges(board)) {}
 
@@ -72,7 +56,7 @@ TimelineEvent Timeline::CaptureSide::capture_of(std::uint64_t number) const {
   const Pair& pair = timeline_.pair(number);
   TimelineEvent event;
   event.kind = EventKind::kCapture;
-  event.what = kSides[side_];
+  event.what = kSideNames[side_];
   event.frame = number;
   event.camera_frame = pair.camera_frame;
   event.begin_ps = pair.begin_ps;
@@ -94,13 +78,13 @@ void Timeline::CaptureSide::capture_ended(const capture::Capture& capture) {
 }
 
 TimelineEvent Timeline::CaptureSide::drop(std::uint64_t frame, std::uint64_t begin_ps,
-                                          const char* why) const {
+                                          capture::DropReason reason) const {
   TimelineEvent event;
   event.kind = EventKind::kDrop;
-  event.what = kSides[side_];
+  event.what = kSideNames[side_];
   event.camera_frame = frame;
   event.begin_ps = event.end_ps = begin_ps;
-  event.why = why;
+  event.why = kDropReasons[static_cast<std::size_t>(reason)];
   return event;
 }
 
@@ -111,12 +95,13 @@ void Timeline::CaptureSide::frame_begun(std::uint64_t frame, std::uint64_t begin
 void Timeline::CaptureSide::frame_dropped(std::uint64_t frame, std::uint64_t begin_ps,
                                           capture::DropReason reason) {
   undecided_.reset();
-  timeline_.ended_.push_back(drop(frame, begin_ps, name_of(reason)));
+  timeline_.ended_.push_back(drop(frame, begin_ps, reason));
 }
 
 void Timeline::CaptureSide::end_now(const capture::CaptureControl::Stats& stats, std::uint64_t now_ps,
                                     std::vector<TimelineEvent>& events) const {
-  if (undecided_) events.push_back(drop(undecided_->first, undecided_->second, "not_armed"));
+  if (undecided_)
+    events.push_back(drop(undecided_->first, undecided_->second, capture::DropReason::kNotArmed));
   if (begun_ == ended_) return;
   TimelineEvent event = capture_of(ended_);
   event.end_ps = now_ps;
@@ -158,18 +143,40 @@ void Timeline::interrupts_cleared(std::uint64_t now_ps, std::uint32_t interrupts
   }
 }
 
+void Timeline::starts(Activity activity, const std::vector<Awaited>& awaited) {
+  awaited_[static_cast<std::size_t>(activity)] = awaited;
+}
+
+Timeline::Reasons Timeline::reasons_of(Activity activity) const {
+  const auto end_of = [](const Pair& pair, Activity awaited) {
+    switch (awaited) {
+      case Activity::kCapture:
+        return pair.captured_ps;
+      case Activity::kCopy:
+        return pair.copy_end_ps;
+      case Activity::kFrame:
+        return pair.done_ps;
+      case Activity::kReadBack:
+        break;
+    }
+    return pair.read_back_end_ps;
+  };
+  Reasons reasons;
+  for (const Awaited& awaited : awaited_[static_cast<std::size_t>(activity)])
+    reasons.push_back({awaited.reason, end_of(pair(awaited.number), awaited.activity)});
+  return reasons;
+}
+
+// The first DMA to the board uploads the tables, if the driver has started no copy.
 void Timeline::dma_started(unsigned channel, std::uint64_t now_ps) {
   if (channel != kToBoard) {
     const std::uint64_t number = read_backs_begun_++;
     pair(number).read_back_begin_ps = now_ps;
-    wait("result", number, pair(number).done_ps, now_ps,
-         {{"read_back", earlier(number, 1, &Pair::read_back_end_ps)}});
-  } else if (!uploading_) {
+    wait("result", number, pair(number).done_ps, now_ps, reasons_of(Activity::kReadBack));
+  } else if (!awaited_[static_cast<std::size_t>(Activity::kCopy)].empty()) {
     const std::uint64_t number = copies_begun_++;
     pair(number).copy_begin_ps = now_ps;
-    wait("ring", number, pair(number).captured_ps, now_ps,
-         {{"copy", earlier(number, 1, &Pair::copy_end_ps)},
-          {"input_buffer", earlier(number, inputs_, &Pair::done_ps)}});
+    wait("ring", number, pair(number).captured_ps, now_ps, reasons_of(Activity::kCopy));
     fetch(Buffer::kLeftImage, now_ps);
   }
 }
@@ -190,8 +197,7 @@ void Timeline::dma_done(unsigned channel, std::uint64_t now_ps) {
   if (channel != kToBoard) {
     number = read_backs_begun_ - 1;
     pair(*number).read_back_end_ps = now_ps;
-  } else if (uploading_) {
-    uploading_ = false;
+  } else if (copies_begun_ == 0) {
     upload_end_ps_ = now_ps;
   } else {
     number = copies_begun_ - 1;
@@ -206,7 +212,7 @@ void Timeline::transfer_begun(const pci::DmaTransfer& transfer) {
   event.what = buffer_at(transfer.local_address);
   if (transfer.to_pci) {
     event.frame = read_backs_begun_ - 1;
-  } else if (!uploading_) {
+  } else if (copies_begun_ != 0) {
     event.frame = copies_begun_ - 1;
   }
   if (event.frame) event.camera_frame = pair(*event.frame).camera_frame;
@@ -228,15 +234,14 @@ void Timeline::frame_begun(std::uint64_t strobe_ps) {
   const std::uint64_t number = frames_begun_++;
   Pair& times = pair(number);
   times.strobe_ps = strobe_ps;
-  const std::uint64_t core_free_ps = earlier(number, 1, &Pair::done_ps);
-  const Reason output = {"output_buffer", earlier(number, outputs_, &Pair::read_back_end_ps)};
-  wait("pair", number, ready_ps(times), strobe_ps, {{"core", core_free_ps}, output});
-  wait("core", number, core_free_ps, strobe_ps,
-       {{"upload", number == 0 ? upload_end_ps_ : 0},
-        {"camera", times.begin_ps},
-        {"capture", times.captured_ps},
-        {"copy", ready_ps(times)},
-        output});
+  const Reasons reasons = reasons_of(Activity::kFrame);
+  wait("pair", number, times.ready_ps(), strobe_ps, reasons);
+  Reasons of_core = {{"upload", number == 0 ? upload_end_ps_ : 0},
+                     {"camera", times.begin_ps},
+                     {"capture", times.captured_ps},
+                     {"copy", times.ready_ps()}};
+  of_core.insert(of_core.end(), reasons.begin(), reasons.end());
+  wait("core", number, core_free_ps(number), strobe_ps, of_core);
 }
 
 void Timeline::frame_ended(const fpga::FrameTimes& times) {
@@ -262,7 +267,7 @@ void Timeline::frame_ended(const fpga::FrameTimes& times) {
 // Adds a wait as one event for each reason, which holds until its time or the time of one before. For the
 // rest nothing is busy: the driver's accesses take the time.
 void Timeline::wait(const char* who, std::uint64_t frame, std::uint64_t from_ps, std::uint64_t to_ps,
-                    std::initializer_list<Reason> reasons) {
+                    const Reasons& reasons) {
   TimelineEvent event;
   event.kind = EventKind::kWait;
   event.what = who;
@@ -283,9 +288,9 @@ void Timeline::wait(const char* who, std::uint64_t frame, std::uint64_t from_ps,
 void Timeline::deliver(const Delivery& delivery) {
   const std::uint64_t number = delivered_++;
   const Pair& times = pair(number);
-  const std::uint64_t copy_begin_ps = copies_ ? times.copy_begin_ps : times.captured_ps;
+  const std::uint64_t copy_begin_ps = times.copy_begin_ps != 0 ? times.copy_begin_ps : times.captured_ps;
   const std::array<std::uint64_t, kLatencyParts.size() + 1> moments = {
-      times.begin_ps, times.captured_ps,        copy_begin_ps,          ready_ps(times), times.strobe_ps,
+      times.begin_ps, times.captured_ps,        copy_begin_ps,          times.ready_ps(), times.strobe_ps,
       times.done_ps,  times.read_back_begin_ps, times.read_back_end_ps, delivery.host_ps};
   FrameLatency latency = {number, times.camera_frame, times.begin_ps, {}};
   for (std::size_t part = 0; part < kLatencyParts.size(); ++part)
@@ -294,8 +299,7 @@ void Timeline::deliver(const Delivery& delivery) {
   if (!std::is_sorted(moments.begin(), moments.end())) ++disordered_;
   latencies_ps_ += delivery.host_ps - delivery.capture_ps;
   delivered_ps_ = delivery.host_ps;
-  const std::uint64_t needed = std::max(inputs_, outputs_);
-  for (; first_pair_ + needed < delivered_; ++first_pair_) pairs_.pop_front();
+  for (; first_pair_ + kept_pairs_ < delivered_; ++first_pair_) pairs_.pop_front();
 }
 
 // What begins at this very time is left out: it takes no time, and may come before or after the delivery.
@@ -325,7 +329,7 @@ std::uint64_t Timeline::complete_until_ps() const {
   std::uint64_t until_ps = std::max<std::uint64_t>(delivered_ps_, 1) - 1;
   const auto hold_back = [&until_ps](std::uint64_t begin_ps) { until_ps = std::min(until_ps, begin_ps); };
   const bool runs = frames_begun_ != frames_ended_;
-  hold_back(runs ? pair(frames_ended_).strobe_ps : earlier(frames_ended_, 1, &Pair::done_ps));
+  hold_back(runs ? pair(frames_ended_).strobe_ps : core_free_ps(frames_ended_));
   const bool is_captured =
       frames_begun_ < first_pair_ + pairs_.size() && pair(frames_begun_).captured_ps != 0;
   if (is_captured) hold_back(pair(frames_begun_).captured_ps);

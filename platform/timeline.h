@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
-#include <initializer_list>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -18,6 +17,7 @@
 #include "platform/collect_computer.h"
 #include "platform/config/board_config.h"
 #include "platform/config/buffer_layout.h"
+#include "platform/driver_observer.h"
 #include "platform/timeline_records.h"
 #include "platform/timeline_sums.h"
 
@@ -25,19 +25,19 @@ namespace stereotlm::platform {
 
 // Records what happens in a computer: captures and dropped frames, DMA transfers, frames of the core,
 // interrupts, and who waits for whom. The blocks say what they do, at every fidelity in the same words. The
-// waits and the parts of each latency follow from that and from the driver's rules (sw/driver/README.md).
-// Therefore only the driver's program can be recorded. Plain C++.
+// driver says what each of its starts has waited for. Plain C++.
 //
 // Events are handed out in the order of their ends. It keeps only the events since the last delivery or, if
 // earlier, since the beginning of the oldest wait that still runs.
-class Timeline : private pci::BridgeObserver, private fpga::FrameObserver {
+class Timeline : private pci::BridgeObserver, private fpga::FrameObserver, private DriverObserver {
  public:
   // Throws std::invalid_argument if the board has problems.
   explicit Timeline(const BoardConfig& board);
   Timeline(const Timeline&) = delete;
   Timeline& operator=(const Timeline&) = delete;
 
-  // The observers of the blocks. `side`: 0 left, 1 right.
+  // The observers of the blocks and of the driver. `side`: 0 left, 1 right.
+  DriverObserver& driver() { return *this; }
   capture::CaptureObserver& capture_board(std::size_t side) { return boards_[side]; }
   pci::BridgeObserver& bridge() { return *this; }
   fpga::FrameObserver& core() { return *this; }
@@ -64,18 +64,23 @@ class Timeline : private pci::BridgeObserver, private fpga::FrameObserver {
   struct Pair {
     std::uint64_t camera_frame = 0;
     std::uint64_t begin_ps = 0;
-    std::uint64_t captured_ps = 0;  // end of the later of its captures
-    std::uint64_t copy_begin_ps = 0;
+    std::uint64_t captured_ps = 0;    // end of the later of its captures
+    std::uint64_t copy_begin_ps = 0;  // 0: it is not copied
     std::uint64_t copy_end_ps = 0;
     std::uint64_t strobe_ps = 0;
     std::uint64_t done_ps = 0;
     std::uint64_t read_back_begin_ps = 0;
     std::uint64_t read_back_end_ps = 0;
+
+    // The time at which the pictures are in their input buffers.
+    std::uint64_t ready_ps() const { return copy_begin_ps != 0 ? copy_end_ps : captured_ps; }
   };
+  // What holds a start back, and until when.
   struct Reason {
     const char* why;
     std::uint64_t until_ps;
   };
+  using Reasons = std::vector<Reason>;
 
   class CaptureSide : public capture::CaptureObserver {
    public:
@@ -90,7 +95,7 @@ class Timeline : private pci::BridgeObserver, private fpga::FrameObserver {
                  std::vector<TimelineEvent>& events) const;
 
    private:
-    TimelineEvent drop(std::uint64_t frame, std::uint64_t begin_ps, const char* why) const;
+    TimelineEvent drop(std::uint64_t frame, std::uint64_t begin_ps, capture::DropReason reason) const;
     TimelineEvent capture_of(std::uint64_t number) const;
 
     Timeline& timeline_;
@@ -102,6 +107,7 @@ class Timeline : private pci::BridgeObserver, private fpga::FrameObserver {
     std::uint64_t dropped_pixels_ = 0;
   };
 
+  void starts(Activity activity, const std::vector<Awaited>& awaited) override;
   void dma_started(unsigned channel, std::uint64_t now_ps) override;
   void transfer_begun(const pci::DmaTransfer& transfer) override;
   void transfer_ended(unsigned channel, std::uint64_t now_ps) override;
@@ -115,28 +121,25 @@ class Timeline : private pci::BridgeObserver, private fpga::FrameObserver {
   void fetch(Buffer picture, std::uint64_t now_ps);
   void dma_done(unsigned channel, std::uint64_t now_ps);
   void wait(const char* who, std::uint64_t frame, std::uint64_t from_ps, std::uint64_t to_ps,
-            std::initializer_list<Reason> reasons);
+            const Reasons& reasons);
 
   Pair& pair(std::uint64_t number) { return pairs_[static_cast<std::size_t>(number - first_pair_)]; }
   const Pair& pair(std::uint64_t number) const {
     return pairs_[static_cast<std::size_t>(number - first_pair_)];
   }
-  // A time of the pair `back` places before a pair; 0 if there is none.
-  std::uint64_t earlier(std::uint64_t number, std::uint64_t back, std::uint64_t Pair::*time) const {
-    return number < back ? 0 : pair(number - back).*time;
+  // The end of the last frame of the core before this one; 0 if there is none.
+  std::uint64_t core_free_ps(std::uint64_t number) const {
+    return number == 0 ? 0 : pair(number - 1).done_ps;
   }
-  // The time at which the pictures of a pair are in their input buffers.
-  std::uint64_t ready_ps(const Pair& pair) const { return copies_ ? pair.copy_end_ps : pair.captured_ps; }
+  // What the last start of an activity has waited for, and until when.
+  Reasons reasons_of(Activity activity) const;
   std::uint64_t complete_until_ps() const;
   const char* buffer_at(std::uint64_t local_address) const;
   TimelineRecords hand_out(std::vector<TimelineEvent> events);
 
   Clock clock_;
-  TimelineSums sums_;      // of what has been handed out
-  bool copies_;            // captures go to host memory
-  bool uploading_;         // tables are still to be uploaded
-  std::uint64_t inputs_;   // buffers for pairs
-  std::uint64_t outputs_;  // buffers for results
+  TimelineSums sums_;       // of what has been handed out
+  std::size_t kept_pairs_;  // delivered pairs for whose buffers a start may still have waited
   std::vector<PlacedBuffer> buffers_;
   std::vector<AddressRange> ranges_;
   std::array<CaptureSide, 2> boards_{CaptureSide(*this, 0), CaptureSide(*this, 1)};
@@ -144,6 +147,7 @@ class Timeline : private pci::BridgeObserver, private fpga::FrameObserver {
   // Pairs that are under way, and those before whose times are still needed.
   std::deque<Pair> pairs_;
   std::uint64_t first_pair_ = 0;
+  std::array<std::vector<Awaited>, kActivities> awaited_;  // [Activity]: of its last start
   std::uint64_t copies_begun_ = 0;
   std::uint64_t frames_begun_ = 0;
   std::uint64_t frames_ended_ = 0;

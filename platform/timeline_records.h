@@ -14,6 +14,10 @@ enum class EventKind : std::uint8_t { kCapture, kDrop, kUpload, kReadBack, kFram
 inline constexpr std::array<const char*, 7> kEventKindNames = {"capture", "drop",      "upload", "read_back",
                                                                "frame",   "interrupt", "wait"};
 
+inline constexpr std::array<const char*, 2> kSideNames = {"left", "right"};
+inline constexpr std::array<const char*, 3> kDropReasons = {"not_armed", "busy",
+                                                            "partner"};  // [capture::DropReason]
+
 // Every kind, its classes (TimelineEvent::what), and of a drop or a wait the reasons.
 struct EventName {
   EventKind kind;

@@ -6,12 +6,6 @@
 #include "platform/computer_parts.h"
 
 namespace stereotlm::platform {
-namespace {
-
-constexpr std::array<const char*, 2> kSideNames = {"left", "right"};
-
-}  // namespace
-
 void TimelineSums::add(const TimelineEvent& event) {
   const std::string_view what = event.what;
   Sums& sums = sums_[{event.kind, what, event.why}];
@@ -61,11 +55,12 @@ void TimelineSums::check(const Statistics& statistics, Audit& audit) const {
     audit.equal(name + "dropped pixels", captures.dropped_pixels, "dropped_pixels", camera.dropped_pixels);
     audit.equal(name + "words", captures.words, "words of its PCI master",
                 computer.pci_masters[side == 0 ? kLeftCapture : kRightCapture].words);
-    for (const auto& [why, frames] :
-         {std::pair("not_armed", camera.dropped_not_armed), std::pair("busy", camera.dropped_busy),
-          std::pair("partner", camera.dropped_by_partner)}) {
+    const std::array<std::uint64_t, 3> dropped = {camera.dropped_not_armed, camera.dropped_busy,
+                                                  camera.dropped_by_partner};
+    for (std::size_t reason = 0; reason < dropped.size(); ++reason) {
+      const std::string why = kDropReasons[reason];
       audit.equal(name + "dropped: " + why, sums_of(EventKind::kDrop, kSideNames[side], why).events,
-                  std::string("dropped_") + why, frames);
+                  "dropped_" + why, dropped[reason]);
     }
   }
   std::uint64_t dma_words = 0;

@@ -222,7 +222,7 @@ void check_store(const explore::SweepOptions& sweep, const BoardConfig& board) {
   try {
     const explore::StoreLock lock(sweep.store);
     explore::Store(sweep.store, sweep.version).check_banks(names);
-  } catch (const explore::DatabaseError& error) {
+  } catch (const sqlite::DatabaseError& error) {
     process::refuse(fmt::format("--out {}", error.what()));
   }
 }

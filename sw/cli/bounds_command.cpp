@@ -17,8 +17,8 @@
 #include "sw/cli/exit_status.h"
 #include "sw/cli/json_option.h"
 #include "sw/process/streams.h"
-#include "sw/report/stats_json.h"
-#include "sw/report/wait_text.h"
+#include "sw/stats/stats_json.h"
+#include "sw/stats/wait_text.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -79,19 +79,18 @@ std::vector<PlacedBuffer> buffers_of(const BoardConfig& board, std::uint64_t fra
   return all;
 }
 
-Group group_of(const BoardConfig& board, const platform::Tables& tables, std::uint64_t frame) {
-  const std::string bank = "bank ";
+Group group_of(const BoardConfig& board, const platform::FrameAccesses& accesses, std::uint64_t frame) {
   Group group;
   group.frames = {frame};
   const std::vector<PlacedBuffer> buffers = buffers_of(board, frame);
   for (const PlacedBuffer& buffer : buffers) {
     if (buffer.index >= 0) group.lists.push_back({platform::name_of(buffer.buffer), {buffer.bank}});
   }
-  for (const ResourceBound& bound : platform::frame_bounds(board, tables, frame)) {
+  for (const ResourceBound& bound : platform::frame_bounds(board, accesses, frame)) {
     Row row{bound.resource, bound.cycles, {}};
-    if (bound.resource.compare(0, bank.size(), bank) == 0) {
-      row.banks = {bound.resource.substr(bank.size())};
-      row.role = bank + "of";
+    if (const auto bank = platform::bank_of_resource(bound.resource)) {
+      row.banks = {*bank};
+      row.role = "bank of";
       for (const PlacedBuffer& buffer : buffers) {
         if (buffer.bank == row.banks.front()) row.role += std::string(" ") + platform::name_of(buffer.buffer);
       }
@@ -162,7 +161,7 @@ BoardBounds bounds_of(const BoardConfig& board, const platform::Tables& tables) 
       board, {}, platform::computer_bounds(board, accesses, true), platform::core_bound(board, accesses)};
   platform::add_system_bound(board, accesses, true, all.bound);
   for (std::uint64_t frame = 0; frame < frames; ++frame) {
-    const Group group = group_of(board, tables, frame);
+    const Group group = group_of(board, accesses, frame);
     if (std::none_of(all.groups.begin(), all.groups.end(),
                      [&](Group& known) { return take_in(known, group); })) {
       all.groups.push_back(group);
@@ -213,11 +212,11 @@ std::string text_of(const BoardBounds& all) {
   for (const Group& group : all.groups) text += lines_of(group, all);
   text += fmt::format("the whole computer, with all masters\n  {:<16} {:>14}\n", "resource", "frames/s");
   for (const platform::RateBound& part : all.computer)
-    text += fmt::format("  {:<16} {:>14.3f}\n", report::resource_text(part.resource), part.frames_per_second);
+    text += fmt::format("  {:<16} {:>14.3f}\n", stats::resource_text(part.resource), part.frames_per_second);
   text += fmt::format("bound of the core: {:.3f} frames/s, limited by {}\n", all.bound.core,
-                      report::resource_text(all.bound.core_limited_by));
+                      stats::resource_text(all.bound.core_limited_by));
   text += fmt::format("bound of the computer: {:.3f} frames/s, limited by {}\n", *all.bound.system,
-                      report::resource_text(all.bound.system_limited_by));
+                      stats::resource_text(all.bound.system_limited_by));
   return text + area_lines(all.board);
 }
 
@@ -238,7 +237,7 @@ Json json_of(const Group& group, const BoardBounds& all) {
 
 Json area_document(const BoardConfig& board) {
   const area::Area area = platform::area_of(board);
-  Json json = report::area_json(area);
+  Json json = stats::area_json(area);
   json["fits"] = area.fits();
   json["device"] = platform::device_of(board).name;
   if (const area::Device* const smallest = area::smallest_device(area))

@@ -24,13 +24,13 @@
 #include "sw/process/interrupt.h"
 #include "sw/process/python_script.h"
 #include "sw/process/streams.h"
-#include "sw/report/conflicts_csv.h"
 #include "sw/report/conflicts_text.h"
 #include "sw/runs/progress.h"
 #include "sw/runs/recorded_run.h"
 #include "sw/runs/rerun.h"
 #include "sw/runs/run_mode.h"
 #include "sw/runs/run_results.h"
+#include "sw/stats/conflicts_csv.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -116,7 +116,7 @@ files::OutputContent content_of(const runs::RunInput& input) {
   files::OutputContent content;
   content.called = "folder of conflicts";
   content.mark = kMark;
-  content.kind = files::marked_kind("table of stereotlm conflicts", {{0, report::conflicts_csv_head()}});
+  content.kind = files::marked_kind("table of stereotlm conflicts", {{0, stats::conflicts_csv_head()}});
   content.rule =
       "must be empty or hold only files that conflicts has written, with conflicts.csv: move it away, or "
       "give "
@@ -173,7 +173,7 @@ struct Shown {
 // Returns false if interrupted.
 bool simulate(runs::Simulation& simulation, const runs::RunInput& input, files::OutputFolder* folder,
               Shown& shown) {
-  if (folder != nullptr) folder->append("rows.csv", report::rows_csv_head(input.board));
+  if (folder != nullptr) folder->append("rows.csv", stats::rows_csv_head(input.board));
   runs::ProgressLine progress;
   while (!simulation.finished()) {
     if (process::interrupted()) return false;
@@ -183,7 +183,7 @@ bool simulate(runs::Simulation& simulation, const runs::RunInput& input, files::
     });
     simulation.take_timeline();
     for (const fpga::FrameConflicts& frame : simulation.take_conflicts()) {
-      if (folder != nullptr) folder->append("rows.csv", report::rows_csv(input.board, shown.frames, frame));
+      if (folder != nullptr) folder->append("rows.csv", stats::rows_csv(input.board, shown.frames, frame));
       shown.add(frame);
     }
   }
@@ -196,11 +196,11 @@ bool draw(const ConflictsOptions& options, const runs::RunInput& input, const ru
   const files::TemporaryFolder drawings;
   const fs::path& path = drawings.path();
   const platform::BoardConfig& board = input.board;
-  const std::string head = report::rows_csv_head(board);
+  const std::string head = stats::rows_csv_head(board);
   files::write_whole_file(path / kMark, conflicts_csv);
-  files::write_whole_file(path / "sums.csv", head + report::rows_csv(board, 0, shown.sums.sums()));
+  files::write_whole_file(path / "sums.csv", head + stats::rows_csv(board, 0, shown.sums.sums()));
   files::write_whole_file(path / "frame.csv",
-                          head + report::rows_csv(board, shown.longest, shown.longest_frame));
+                          head + stats::rows_csv(board, shown.longest, shown.longest_frame));
   const nlohmann::ordered_json about = {{"board", board.name},          {"width", board.image.width},
                                         {"height", board.image.height}, {"clock_mhz", board.fpga.clock_mhz},
                                         {"frames", shown.frames},       {"frame", shown.longest}};
@@ -263,7 +263,7 @@ int conflicts(const ConflictsOptions& options) {
   if (subject.recorded)
     runs::check_repeated(*subject.recorded, runs::figures_of(statistics, simulation->last(), input));
   if (folder) {
-    const std::string csv = report::conflicts_csv(input.board, *simulation->conflicts());
+    const std::string csv = stats::conflicts_csv(input.board, *simulation->conflicts());
     if (!draw(options, input, *simulation, shown, csv, *folder)) {
       process::say("note", "interrupted: nothing is written");
       return kInterrupted;

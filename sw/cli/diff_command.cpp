@@ -17,9 +17,9 @@
 #include "sw/cli/verdict_colours.h"
 #include "sw/process/interrupt.h"
 #include "sw/process/streams.h"
-#include "sw/report/rows_csv.h"
 #include "sw/runs/frame_alignment.h"
 #include "sw/runs/recorded_run.h"
+#include "sw/stats/run_comparison.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -69,11 +69,11 @@ int diff(const DiffOptions& options) {
   problems.check();
   for (const runs::RecordedRun& run : {std::cref(*a), std::cref(*b)}) runs::open_again(run, problems);
   const runs::DiffLimits limits(*a, *b);
-  std::unique_ptr<report::RowsCsv> csv;
+  std::unique_ptr<stats::RowsCsv> csv;
   if (options.csv) {
     if (!limits.rows.empty()) problems.add(fmt::format("--csv: rows cannot be compared: {}", limits.rows));
     try {
-      csv = std::make_unique<report::RowsCsv>(*options.csv);
+      csv = std::make_unique<stats::RowsCsv>(*options.csv);
     } catch (const std::runtime_error& error) {
       problems.add(fmt::format("--csv {}", error.what()));
     }

@@ -150,9 +150,9 @@ Json waits_json(const std::vector<platform::BlameRow>& a, const std::vector<plat
   return list;
 }
 
-Json json_of(const report::RowComparison& rows) {
+Json json_of(const stats::RowComparison& rows) {
   Json ranges = Json::array();
-  for (const report::RowComparison::Range& range : rows.ranges(report::kMostLines)) {
+  for (const stats::RowComparison::Range& range : rows.ranges(report::kMostLines)) {
     Json waits = Json::object();
     for (std::size_t port = 0; port < fpga::kCorePortCount; ++port)
       waits[fpga::kPorts[port].name] = range.stalls[port];
@@ -164,7 +164,7 @@ Json json_of(const report::RowComparison& rows) {
   return {{"frames", rows.frames()}, {"ranges", std::move(ranges)}};
 }
 
-Json json_of(const report::PixelComparison& pixels) {
+Json json_of(const stats::PixelComparison& pixels) {
   return {{"frames", pixels.frames()},
           {"frames_that_differ", pixels.frames_that_differ()},
           {"pixels_that_differ", pixels.pixels()}};

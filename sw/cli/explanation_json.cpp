@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "platform/config/board_area.h"
-#include "sw/report/stats_json.h"
 #include "sw/runs/limiter_text.h"
+#include "sw/stats/stats_json.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -43,7 +43,7 @@ Json blame_json(Explanation& explanation) {
 
 Json area_json(const BoardConfig& board) {
   const area::Area area = platform::area_of(board);
-  Json json = report::area_json(area);
+  Json json = stats::area_json(area);
   json["fits"] = area.fits();
   return json;
 }

@@ -15,8 +15,8 @@
 #include "platform/config/buffer_layout.h"
 #include "sw/cli/text.h"
 #include "sw/files/shell_word.h"
-#include "sw/report/wait_text.h"
 #include "sw/runs/limiter_text.h"
+#include "sw/stats/wait_text.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -80,7 +80,7 @@ class ExplanationText {
                      2, fmt::format("{} frames/s, limited by {}", rate, runs::limiter_text(explanation_))) +
            paragraph("the time of a frame: ", 2, runs::budget_text(explanation_)) +
            fmt::format("bound {:.3f} frames/s: {}; {} frames simulated{}\n", row.real(of),
-                       report::resource_words(row.text(of + "_limited_by")), explanation_.frames(),
+                       stats::resource_words(row.text(of + "_limited_by")), explanation_.frames(),
                        now_.loses_pixels ? "; captures lose pixels" : "") +
            platform::device_text(board_) + '\n' + shared_bank();
   }
@@ -106,7 +106,7 @@ class ExplanationText {
         fmt::format("  {:>12} {:>8} {:>14}  {}\n", "headroom %", "busy %", "bound frames/s", "resource");
     for (auto first = all.begin(); first != all.end();) {
       const std::string kind = first->name.substr(0, first->name.find(' ') + 1);
-      std::string label = report::resource_text(first->name);
+      std::string label = stats::resource_text(first->name);
       auto next = first + 1;
       for (; next != all.end() && next->headroom_percent == first->headroom_percent && !kind.empty() &&
              next->busy_percent == first->busy_percent && next->name.rfind(kind, 0) == 0 &&
@@ -129,7 +129,7 @@ class ExplanationText {
     for (const explore::StoredBlame& blame : explanation_.blames()) {
       if (rows == kMostBlames) return text + "  and others, less\n";
       text += fmt::format("  {:<12} on {:<12} for {:<14} {:>8.3f}\n", blame.port, blame.bank,
-                          report::cause_text(blame.by), 100 * static_cast<double>(blame.cycles) / cycles);
+                          stats::cause_text(blame.by), 100 * static_cast<double>(blame.cycles) / cycles);
       ++rows;
     }
     return rows > 0 ? text : "no port waits for another\n";

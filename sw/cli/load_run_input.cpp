@@ -117,7 +117,7 @@ class InputLoader {
                         "outside the folder of --out",
                         file.path, *options_.out));
       }
-      input_.trace = trace::make_writer(trace.files, input_.board, trace.window);
+      input_.trace = std::make_unique<trace::Trace>(trace.files, input_.board, trace.window);
     });
   }
 

@@ -38,14 +38,14 @@ int merge(const MergeOptions& options) {
     const explore::StoreLock lock(options.out.text);
     process::catch_interrupts();
     explore::merge_stores(options.inputs.text, options.out.text, process::interrupted);
-  } catch (const explore::DatabaseError& error) {
+  } catch (const sqlite::DatabaseError& error) {
     if (process::interrupted()) {
       process::say("note", "interrupted: nothing is written");
       return kInterrupted;
     }
     process::refuse(error.what());
   }
-  explore::Database merged(options.out.text, explore::Database::Access::kRead);
+  sqlite::Database merged(options.out.text, sqlite::Database::Access::kRead);
   const std::size_t inputs = options.inputs.text.size();
   process::print(fmt::format("{}: {} points of {} database{}\n", options.out.text,
                              merged.number("SELECT count(*) FROM points"), inputs, inputs == 1 ? "" : "s"));

@@ -31,11 +31,11 @@
 #include "sw/process/problems.h"
 #include "sw/process/python_script.h"
 #include "sw/process/streams.h"
-#include "sw/report/accuracy.h"
 #include "sw/runs/progress.h"
 #include "sw/runs/simulation/simulate_point.h"
 #include "sw/runs/sources/calibration_input.h"
 #include "sw/runs/sources/open_source.h"
+#include "sw/stats/accuracy.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -108,7 +108,7 @@ std::optional<LoadedPair> load_pair(const PaperOptions& options, process::Proble
   auto truth = runs::open_truth(file, options.truth.scale, &board, problems);
   if (!opened.pairs || !truth) return std::nullopt;
   const kernels::GrayImage blank(board.image.width, board.image.height);
-  if (!report::accuracy(blank, *truth).answered_percent)
+  if (!stats::accuracy(blank, *truth).answered_percent)
     problems.add(file.text() + ": no pixel that both cameras see has a known disparity");
   const double disparities = media::disparities_needed(*truth);
   const kernels::IntegerRule& rule = kernels::kDisparitiesRule;
@@ -136,7 +136,7 @@ Pictures synthetic_pictures(const platform::BoardConfig& board, std::uint64_t se
 // The accuracy of a board's disparities for the first pair of the pictures.
 paper::Quality quality(const platform::BoardConfig& board, const Pictures& pictures) {
   const auto run = runs::simulate_pixels(board, runs::tables_of(board, std::nullopt), *pictures.pairs, 1);
-  const report::Accuracy found = report::accuracy(run.last, pictures.truth);
+  const stats::Accuracy found = stats::accuracy(run.last, pictures.truth);
   if (!found.bad_1_percent) throw std::runtime_error("the board answers no pixel whose disparity is known");
   return {*found.bad_1_percent, found.answered_percent.value()};
 }

@@ -17,7 +17,6 @@
 #include "sw/process/installation.h"
 #include "sw/process/interrupt.h"
 #include "sw/process/streams.h"
-#include "sw/report/console_table.h"
 #include "sw/report/html_page.h"
 #include "sw/report/page_data/database_data.h"
 #include "sw/report/page_data/difference_data.h"
@@ -25,6 +24,7 @@
 #include "sw/runs/explanation.h"
 #include "sw/runs/frame_alignment.h"
 #include "sw/runs/recorded_run.h"
+#include "sw/stats/console_table.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -139,7 +139,7 @@ void say_lost_pixels(const Json& run) {
   std::uint64_t pixels = 0;
   for (const Json& camera : run.at("stats").value("cameras", Json::array()))
     pixels += camera.at("dropped_pixels").get<std::uint64_t>();
-  const std::string text = report::lost_pixels_text(pixels);
+  const std::string text = stats::lost_pixels_text(pixels);
   if (!text.empty())
     process::say("warning", fmt::format("'{}': {}", run.at("folder").get<std::string>(), text));
 }

@@ -34,7 +34,8 @@ std::unique_ptr<Simulation> build(const runs::RunInput& input, host::FrameSource
 
 std::uint64_t least_frame_cycles(const runs::RunInput& input) {
   std::uint64_t cycles = 1;
-  for (const auto& bound : platform::frame_bounds(input.board, input.tables, 0)) {
+  for (const auto& bound :
+       platform::frame_bounds(input.board, platform::frame_accesses(input.board, input.tables), 0)) {
     cycles = std::max(cycles, bound.cycles);
   }
   return cycles;
@@ -102,7 +103,7 @@ int run(const RunOptions& options) {
   const bool compares = verification && done == input.frames;
   if (compares) compared = verification->compare(statistics);
   if (compared.interrupted) runs::leave_out_verify(input);
-  if (input.trace) input.trace->complete({});  // before the earlier result is replaced: this may fail
+  if (input.trace) input.trace->complete();  // before the earlier result is replaced: this may fail
   const bool is_right = runs::deliver(input, statistics, simulation->last(), compared.failed);
   if (input.trace) input.trace->commit();
   if (!is_right) return kFailed;

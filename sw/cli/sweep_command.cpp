@@ -109,8 +109,8 @@ std::string summary(const explore::SweepCounts& counts, const SweepCommandOption
 // The lines with the reasons of points that failed, then of impossible ones, and the number of points for each
 // reason, the most frequent first. Of more than four reasons, a line counts those after the third, and the last
 // line says how to list all. One scan of the table; by name 'failed' comes before 'impossible'.
-std::string reasons(explore::Database& store) {
-  explore::Statement statement(
+std::string reasons(sqlite::Database& store) {
+  sqlite::Statement statement(
       store,
       "SELECT status, reason, sum(points), count(*) FROM ("
       "  SELECT status, reason, count(*) AS points,"
@@ -137,7 +137,7 @@ std::string reasons(explore::Database& store) {
 int report(const explore::SweepCounts& counts, const SweepCommandOptions& options) {
   std::string text = summary(counts, options);
   if (std::filesystem::exists(options.sweep.store)) {
-    explore::Database store(options.sweep.store, explore::Database::Access::kRead);
+    sqlite::Database store(options.sweep.store, sqlite::Database::Access::kRead);
     text += fmt::format("{}: {} points\n", options.sweep.store, store.number("SELECT count(*) FROM points"));
     text += reasons(store);
   }
@@ -151,10 +151,10 @@ int report(const explore::SweepCounts& counts, const SweepCommandOptions& option
 // read.
 std::string kept_text(const std::string& store, const std::string& advice) {
   try {
-    explore::Database(store, explore::Database::Access::kRead, kBriefTimeout)
+    sqlite::Database(store, sqlite::Database::Access::kRead, kBriefTimeout)
         .number("SELECT count(*) FROM points");
     return "; finished points are kept: " + advice;
-  } catch (const explore::DatabaseError&) {
+  } catch (const sqlite::DatabaseError&) {
     return "";
   }
 }
@@ -199,7 +199,7 @@ explore::SweepCounts sweep_here(const SweepCommandOptions& options, const explor
     if (!options.sweep.known.empty()) {
       const explore::FinishedStore known(options.sweep.known, options.sweep.version);
     }
-  } catch (const explore::DatabaseError& error) {
+  } catch (const sqlite::DatabaseError& error) {
     process::refuse(fmt::format("--known {}", error.what()));
   }
   try {
@@ -211,7 +211,7 @@ explore::SweepCounts sweep_here(const SweepCommandOptions& options, const explor
     process::catch_interrupts();
     file.write({});
     open_store();  // creates a new store only after all other checks
-  } catch (const explore::DatabaseError& error) {
+  } catch (const sqlite::DatabaseError& error) {
     process::refuse(fmt::format("--out {}", error.what()));
   } catch (const std::runtime_error& error) {
     process::refuse(fmt::format("--progress {}", error.what()));

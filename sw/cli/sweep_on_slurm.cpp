@@ -10,11 +10,11 @@
 #include "platform/config/board_draft.h"
 #include "sw/explore/slurm/shard_folder.h"
 #include "sw/explore/slurm/slurm_sweep.h"
-#include "sw/explore/store/database.h"
 #include "sw/files/whole_file.h"
 #include "sw/process/interrupt.h"
 #include "sw/process/streams.h"
 #include "sw/runs/progress.h"
+#include "sw/sqlite/database.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -58,7 +58,7 @@ explore::SweepCounts sweep_on_slurm(const SweepCommandOptions& options, const ex
     try {
       return explore::SlurmSweep(sharded(options, plan, calibration), options.sweep.store,
                                  options.sbatch_options, say_note);
-    } catch (const explore::DatabaseError& error) {
+    } catch (const sqlite::DatabaseError& error) {
       process::refuse(fmt::format("--out {}", error.what()));
     } catch (const std::system_error& error) {
       process::refuse(fmt::format("--out {}: {}", options.sweep.store, error.code().message()));
@@ -68,7 +68,7 @@ explore::SweepCounts sweep_on_slurm(const SweepCommandOptions& options, const ex
   process::catch_interrupts();
   try {
     sweep.begin();
-  } catch (const explore::DatabaseError& error) {
+  } catch (const sqlite::DatabaseError& error) {
     process::refuse(fmt::format("--out {}", error.what()));
   } catch (const std::exception& error) {
     process::refuse(fmt::format("--launcher slurm: {}", error.what()));

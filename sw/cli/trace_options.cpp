@@ -68,6 +68,12 @@ std::optional<trace::TraceWindow> window_of(std::string_view text) {
   return found;
 }
 
+std::vector<std::string> format_names() {
+  std::vector<std::string> names;
+  for (const trace::TraceFormat& format : trace::kTraceFormats) names.emplace_back(format.name);
+  return names;
+}
+
 }  // namespace
 
 void TraceOptions::add_to(CLI::App& command) {
@@ -75,7 +81,7 @@ void TraceOptions::add_to(CLI::App& command) {
       command, "--trace", "FORMAT:FILE",
       fmt::format("Write a trace of the run; FORMAT is {}; repeat it for more traces; a vcd whose FILE "
                   "ends in .fst becomes FST",
-                  fmt::join(trace::kFormatNames, ", ")));
+                  fmt::join(format_names(), ", ")));
   files_.takes_one_at_a_time();
   window_.add_to(
       command, "--trace-window", "WINDOW",
@@ -101,7 +107,7 @@ std::optional<std::filesystem::path> TraceOptions::shared_output(const trace::Tr
         if (std::find(others.begin(), others.end(), output) != others.end()) return output;
       }
     }
-  } catch (const std::system_error&) {  // make_writer() says why
+  } catch (const std::system_error&) {  // trace::Trace says why
   }
   return std::nullopt;
 }
@@ -109,22 +115,22 @@ std::optional<std::filesystem::path> TraceOptions::shared_output(const trace::Tr
 void TraceOptions::check_files(process::Problems& problems) {
   for (const std::string& text : files_.text) {
     const std::size_t colon = text.find(':');
-    const auto format =
-        std::find(trace::kFormatNames.begin(), trace::kFormatNames.end(), text.substr(0, colon));
-    if (colon == std::string::npos || format == trace::kFormatNames.end() || colon + 1 == text.size()) {
+    const auto* const format =
+        std::find_if(std::begin(trace::kTraceFormats), std::end(trace::kTraceFormats),
+                     [&](const trace::TraceFormat& each) { return each.name == text.substr(0, colon); });
+    if (colon == std::string::npos || format == std::end(trace::kTraceFormats) || colon + 1 == text.size()) {
       problems.add(fmt::format("--trace '{}': must be FORMAT:FILE, where FORMAT is {}", text,
-                               platform::listed({trace::kFormatNames.begin(), trace::kFormatNames.end()})));
+                               platform::listed(format_names())));
       continue;
     }
-    trace::TraceFile file{static_cast<trace::Format>(format - trace::kFormatNames.begin()),
-                          text.substr(colon + 1)};
+    trace::TraceFile file{format, text.substr(colon + 1)};
     if (const auto shared = shared_output(file)) {
       problems.add(fmt::format("--trace '{}': '{}' is the file of two traces: each needs its own", text,
                                shared->string()));
     }
-    if (file.format == trace::Format::kVcd && !window_.is_given())
-      problems.add(
-          fmt::format("--trace '{}': needs --trace-window: a vcd has only the cycles of a window", text));
+    if (format->needs_window && !window_.is_given())
+      problems.add(fmt::format("--trace '{}': needs --trace-window: a {} has only the cycles of a window",
+                               text, format->name));
     files.push_back(std::move(file));
   }
 }

@@ -8,7 +8,7 @@
 #include "platform/config/board_config.h"
 #include "sw/cli/typed_option.h"
 #include "sw/process/problems.h"
-#include "sw/trace/trace_file.h"
+#include "sw/trace/trace.h"
 
 namespace CLI {
 class App;

@@ -96,24 +96,25 @@ void StereoDriver::run(host::HostBus& bus) {
   upload_tables();
   bridge(bridge_map::kInterruptEnable, bridge_map::kAllInterrupts);
   start_what_can_be();
-  while (read_backs_.ended < config_.frames) {
+  const Progress& read_backs = of(Activity::kReadBack);
+  while (read_backs.ended < config_.frames) {
     bus.wait_for_interrupt();
     handle_interrupts();
-    if (read_backs_.ended < config_.frames) start_what_can_be();
+    if (read_backs.ended < config_.frames) start_what_can_be();
   }
 }
 
 std::string StereoDriver::under_way() const {
   std::string text;
   const auto add = [&text](const std::string& what) { text += (text.empty() ? "" : ", ") + what; };
-  const auto add_activity = [&add](const std::string& what, const Activity& activity) {
-    if (!activity.idle()) add(what + ' ' + std::to_string(activity.ended));
+  const auto add_activity = [&](const std::string& what, Activity activity) {
+    if (!of(activity).idle()) add(what + ' ' + std::to_string(of(activity).ended));
   };
   if (uploading_) add("the upload of the tables");
-  add_activity("capture", captures_);
-  add_activity("copy of pair", copies_);
-  add_activity("core with frame", frames_);
-  add_activity("read-back of frame", read_backs_);
+  add_activity("capture", Activity::kCapture);
+  add_activity("copy of pair", Activity::kCopy);
+  add_activity("core with frame", Activity::kFrame);
+  add_activity("read-back of frame", Activity::kReadBack);
   return text.empty() ? "nothing" : text;
 }
 
@@ -157,14 +158,14 @@ void StereoDriver::handle_interrupts() {
   }
   if ((status & bridge_map::kPostedError) != 0) fail("the board has refused a write");
   if ((status & bridge_map::kDoorbell) != 0) handle_core();
-  if ((status & bridge_map::kDmaDone << unsigned{kToBoard}) != 0) ++copies_.ended;
+  if ((status & bridge_map::kDmaDone << unsigned{kToBoard}) != 0) ++of(Activity::kCopy).ended;
   if ((status & bridge_map::kDmaDone << unsigned{kToHost}) != 0) deliver();
-  if (!captures_.idle()) handle_captures();
+  if (!of(Activity::kCapture).idle()) handle_captures();
 }
 
 void StereoDriver::handle_core() {
   if ((core(core_map::kStatus) & core_map::kStatusError) != 0) fail("the core has met an error");
-  ++frames_.ended;
+  ++of(Activity::kFrame).ended;
   core_to_acknowledge_ = true;
 }
 
@@ -180,7 +181,7 @@ void StereoDriver::handle_captures() {
   }
   if (!side_done_[0] || !side_done_[1]) return;
   side_done_ = {};
-  ++captures_.ended;
+  ++of(Activity::kCapture).ended;
   const auto frame = [this](std::uint64_t board) {
     const std::uint64_t high = bus_->read(board + capture_map::kFrameNumberHigh);
     return high << 32U | bus_->read(board + capture_map::kFrameNumberLow);
@@ -196,13 +197,27 @@ void StereoDriver::start_what_can_be() {
   read_back();
 }
 
+bool StereoDriver::begin(Activity activity, std::initializer_list<Condition> conditions) {
+  const std::uint64_t number = of(activity).begun;
+  std::vector<platform::Awaited> awaited;
+  for (const Condition& condition : conditions) {
+    if (number < condition.back) continue;
+    awaited.push_back({condition.activity, number - condition.back, condition.reason});
+    if (of(condition.activity).ended <= awaited.back().number) return false;
+  }
+  ++of(activity).begun;  // before the first access, in which start_no_more() may be called
+  if (observer_ != nullptr) observer_->starts(activity, awaited);
+  return true;
+}
+
 void StereoDriver::start_core() {
-  const std::uint64_t frame = frames_.begun;
-  const std::uint64_t pairs = config_.capture_to_host ? copies_.ended : captures_.ended;
-  const bool starts = frames_.idle() && frame < config_.frames && frame < pairs &&
-                      frame < read_backs_.ended + config_.buffers.disparities.size();
+  const std::uint64_t frame = frames_started();
+  const bool starts =
+      frame < config_.frames &&
+      begin(Activity::kFrame, {{Activity::kFrame, 1, "core"},
+                               {config_.capture_to_host ? Activity::kCopy : Activity::kCapture, 0, "pair"},
+                               {Activity::kReadBack, config_.buffers.disparities.size(), "output_buffer"}});
   if (starts) {
-    ++frames_.begun;  // before the first access, in which start_no_more() may be called
     const auto input = static_cast<std::size_t>(frame % config_.buffers.left_images.size());
     core(core_map::kLeftImageBase, config_.buffers.left_images[input]);
     core(core_map::kRightImageBase, config_.buffers.right_images[input]);
@@ -218,23 +233,25 @@ void StereoDriver::start_core() {
 }
 
 void StereoDriver::arm_capture() {
-  if (!captures_.idle()) return;
-  const std::uint64_t capture = captures_.begun;
+  const std::uint64_t capture = of(Activity::kCapture).begun;
+  const std::size_t inputs = config_.buffers.left_images.size();
+  const Condition buffer =
+      config_.capture_to_host
+          ? Condition{Activity::kCopy, static_cast<std::uint64_t>(config_.host_frames), "ring"}
+          : Condition{Activity::kFrame, inputs, "input_buffer"};
+  if (!begin(Activity::kCapture, {{Activity::kCapture, 1, "capture"}, buffer})) return;
   std::uint64_t left = 0;
   std::uint64_t right = 0;
   if (config_.capture_to_host) {
-    if (capture >= copies_.ended + static_cast<std::uint64_t>(config_.host_frames)) return;
     left = config_.devices.host_memory + pair_in_host(capture);
     right = left + image_bytes();
   } else {
-    if (capture >= frames_.ended + config_.buffers.left_images.size()) return;
-    const auto input = static_cast<std::size_t>(capture % config_.buffers.left_images.size());
+    const auto input = static_cast<std::size_t>(capture % inputs);
     bridge(bridge_map::kPage + 0, config_.buffers.left_images[input]);
     bridge(bridge_map::kPage + 4, config_.buffers.right_images[input]);
     left = config_.devices.bridge_slave;
     right = left + bridge_map::kApertureBytes;
   }
-  ++captures_.begun;
   bus_->write(config_.devices.left_capture + capture_map::kBufferAddress, static_cast<std::uint32_t>(left));
   bus_->write(config_.devices.right_capture + capture_map::kBufferAddress, static_cast<std::uint32_t>(right));
   bus_->write(config_.devices.right_capture + capture_map::kControl, capture_map::kControlArm);
@@ -243,13 +260,14 @@ void StereoDriver::arm_capture() {
 }
 
 void StereoDriver::copy_pair() {
-  const std::uint64_t pair = copies_.begun;
-  if (!config_.capture_to_host || !copies_.idle() || pair >= captures_.ended ||
-      pair >= frames_.ended + config_.buffers.left_images.size()) {
+  const std::uint64_t pair = of(Activity::kCopy).begun;
+  const std::size_t inputs = config_.buffers.left_images.size();
+  if (!config_.capture_to_host || !begin(Activity::kCopy, {{Activity::kCopy, 1, "copy"},
+                                                           {Activity::kCapture, 0, "pair"},
+                                                           {Activity::kFrame, inputs, "input_buffer"}})) {
     return;
   }
-  ++copies_.begun;
-  const auto input = static_cast<std::size_t>(pair % config_.buffers.left_images.size());
+  const auto input = static_cast<std::size_t>(pair % inputs);
   const std::uint64_t host = pair_in_host(pair);
   start_dma(kToBoard,
             {{host, config_.buffers.left_images[input], image_bytes() / 4, false},
@@ -257,15 +275,15 @@ void StereoDriver::copy_pair() {
 }
 
 void StereoDriver::read_back() {
-  const std::uint64_t frame = read_backs_.begun;
-  if (!read_backs_.idle() || frame >= frames_.ended) return;
-  ++read_backs_.begun;
+  const std::uint64_t frame = of(Activity::kReadBack).begun;
+  if (!begin(Activity::kReadBack, {{Activity::kReadBack, 1, "read_back"}, {Activity::kFrame, 0, "frame"}}))
+    return;
   const auto output = static_cast<std::size_t>(frame % config_.buffers.disparities.size());
   start_dma(kToHost, {{result_in_host(frame), config_.buffers.disparities[output], image_bytes() / 4, true}});
 }
 
 void StereoDriver::deliver() {
-  const std::uint64_t frame = read_backs_.ended++;
+  const std::uint64_t frame = of(Activity::kReadBack).ended++;
   listener_.frame_delivered(
       {frame, camera_frames_[static_cast<std::size_t>(frame)],
        bus_->memory(config_.devices.host_memory + result_in_host(frame), image_bytes())});

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <initializer_list>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "models/host/program.h"
 #include "models/kernels/joint_table.h"
 #include "platform/device_map.h"
+#include "platform/driver_observer.h"
 
 // The program on the host (contract section 3). It uses only host::HostBus, so that it runs on the CPU of the
 // model and could run on a real machine.
@@ -64,22 +66,31 @@ class StereoDriver : public host::Program {
                const std::vector<std::uint32_t>* right_table, FrameListener& listener);
 
   void run(host::HostBus& bus) override;
+  // `observer` outlives the driver. To be called before run().
+  void set_observer(platform::DriverObserver& observer) { observer_ = &observer; }
 
   // frames_started(), start_no_more() and under_way() may be called while run() waits.
   //
   // The number of times that the core was started.
-  std::uint64_t frames_started() const { return frames_.begun; }
+  std::uint64_t frames_started() const { return of(Activity::kFrame).begun; }
   // The driver starts no more frames. run() returns when the frames that the core has begun are delivered.
-  void start_no_more() { config_.frames = frames_.begun; }
+  void start_no_more() { config_.frames = frames_started(); }
   // The operations for which run() waits, as text: "capture 4, core with frame 2".
   std::string under_way() const;
 
  private:
-  // Captures, copies, frames of the core or read-backs: how many have begun and ended.
-  struct Activity {
+  using Activity = platform::Activity;
+  // How many of an activity have begun and ended.
+  struct Progress {
     std::uint64_t begun = 0;
     std::uint64_t ended = 0;
     bool idle() const { return begun == ended; }
+  };
+  // An activity may begin when the one that is `back` before it in `activity` has ended.
+  struct Condition {
+    Activity activity;
+    std::uint64_t back;
+    const char* reason;  // as in platform::Awaited
   };
   // One contiguous piece of a DMA transfer.
   struct Piece {
@@ -89,6 +100,10 @@ class StereoDriver : public host::Program {
     bool to_host = false;
   };
 
+  Progress& of(Activity activity) { return progress_[static_cast<std::size_t>(activity)]; }
+  const Progress& of(Activity activity) const { return progress_[static_cast<std::size_t>(activity)]; }
+  // Begins the next one of an activity if all conditions hold.
+  bool begin(Activity activity, std::initializer_list<Condition> conditions);
   void join_tables();
   void upload_tables();
   void handle_interrupts();
@@ -118,10 +133,8 @@ class StereoDriver : public host::Program {
   FrameListener& listener_;
   host::HostBus* bus_ = nullptr;
 
-  Activity captures_;
-  Activity copies_;  // only with capture_to_host
-  Activity frames_;  // frames of the core
-  Activity read_backs_;
+  platform::DriverObserver* observer_ = nullptr;
+  std::array<Progress, platform::kActivities> progress_{};  // [Activity]; copies only with capture_to_host
   bool uploading_ = false;
   std::array<bool, 2> side_done_{};           // [left, right]: the side of the running capture is complete
   std::vector<std::uint64_t> camera_frames_;  // camera frame of each finished capture

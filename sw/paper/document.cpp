@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "models/area/area.h"
-#include "sw/report/accuracy.h"
+#include "sw/stats/accuracy.h"
 
 namespace stereotlm::paper {
 namespace {
@@ -71,7 +71,7 @@ std::vector<std::string> scene_clauses(const ClaimFinding& found) {
           fmt::format("not on {}, whose cases are open: sad itself is wrong in {:.2f} % of its answers",
                       scene.scene.name, scene.wrong_percent));
       clauses.push_back(fmt::format("a pair with more than {:g} % does not judge: check --truth-scale",
-                                    report::kDoubtfulBad1Percent));
+                                    stats::kDoubtfulBad1Percent));
     } else if (is_pair) {
       clauses.front() = "on synthetic scenes and " + scene.scene.name;
     }
@@ -332,7 +332,7 @@ std::string costs_remarks(const ClaimFinding& found) {
       "in more than {:g} % of its answers does not judge: its cases are open.\n\n"
       "| scene | cost | wrong, % | answered, % | change of wrong | of answered | slices, % | verdict |\n"
       "|---|---|---|---|---|---|---|---|\n",
-      report::kDoubtfulBad1Percent);
+      stats::kDoubtfulBad1Percent);
   for (const CostRow& row : cost_rows(found)) {
     const bool is_first = row.cost == "sad";
     const auto change = [&](double Quality::*share) {

@@ -18,7 +18,7 @@
 #include "sw/explore/search/allocation_search.h"
 #include "sw/files/shell_word.h"
 #include "sw/files/temporary_folder.h"
-#include "sw/report/accuracy.h"
+#include "sw/stats/accuracy.h"
 
 namespace stereotlm::paper {
 namespace {
@@ -201,7 +201,7 @@ double modelled_value(const Claim& claim, const std::vector<Measured>& runs,
   return fewest_banks(runs);
 }
 
-bool judges(const Quality& first) { return first.wrong_percent <= report::kDoubtfulBad1Percent; }
+bool judges(const Quality& first) { return first.wrong_percent <= stats::kDoubtfulBad1Percent; }
 
 // Appends a row for each chosen allocation of a case.
 void add_chosen(const Claim& claim, const Case& one, const std::vector<Measured>& runs,

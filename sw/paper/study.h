@@ -99,7 +99,7 @@ struct CostRow {
 // The rows of such a claim, each run once.
 std::vector<CostRow> cost_rows(const ClaimFinding& found);
 
-// A scene of such a claim. A scene on which the first run is wrong in more than report::kDoubtfulBad1Percent
+// A scene of such a claim. A scene on which the first run is wrong in more than stats::kDoubtfulBad1Percent
 // of its answers does not judge: its cases are open.
 struct SceneFinding {
   Scene scene;

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "sw/report/wait_text.h"
+#include "sw/stats/wait_text.h"
 
 namespace stereotlm::report {
 namespace {
@@ -37,6 +37,15 @@ std::pair<std::size_t, std::size_t> shortest_run(const std::vector<std::uint64_t
     if (end - first < best.second - best.first) best = {first, end};
   }
   return best;
+}
+
+// The place of shortest_run(); nullopt if that is most of it. `length`: rows or columns of a value; `whole`:
+// those of the picture.
+std::optional<Range> place_of(const std::vector<std::uint64_t>& values, std::size_t length, int whole) {
+  const auto [first, end] = shortest_run(values);
+  if (static_cast<double>(end - first) >= 0.75 * static_cast<double>(values.size())) return std::nullopt;
+  return Range{static_cast<int>(first * length),
+               static_cast<int>(std::min(end * length, static_cast<std::size_t>(whole))) - 1};
 }
 
 ConflictSummary::Wait wait_of(const platform::BoardConfig& board, const fpga::TileGrid& grid,
@@ -153,13 +162,6 @@ nlohmann::ordered_json json_of(const ConflictSummary::Band& band, const std::vec
 
 }  // namespace
 
-std::optional<Range> place_of(const std::vector<std::uint64_t>& values, std::size_t length, int whole) {
-  const auto [first, end] = shortest_run(values);
-  if (static_cast<double>(end - first) >= 0.75 * static_cast<double>(values.size())) return std::nullopt;
-  return Range{static_cast<int>(first * length),
-               static_cast<int>(std::min(end * length, static_cast<std::size_t>(whole))) - 1};
-}
-
 void StripSums::add(const fpga::FrameConflicts& frame) {
   if (sums_.strips.empty()) {
     sums_ = frame;
@@ -196,9 +198,9 @@ std::string conflicts_text(const ConflictSummary& summary) {
                                  summary.frames == 1 ? "" : "s");
   if (summary.waits.empty()) text += "waits        none\n";
   for (const ConflictSummary::Wait& wait : summary.waits) {
-    text +=
-        fmt::format("waits        {}: {} cycles ({:.2f} %), {}\n", wait_text(wait.port, wait.bank, wait.by),
-                    wait.cycles, wait.cycles_percent, where(wait));
+    text += fmt::format("waits        {}: {} cycles ({:.2f} %), {}\n",
+                        stats::wait_text(wait.port, wait.bank, wait.by), wait.cycles, wait.cycles_percent,
+                        where(wait));
   }
   text += "rows              waits %";
   for (const std::string& bank : summary.banks) text += fmt::format(" {:>9}", bank + " %");

@@ -28,14 +28,11 @@ struct Range {
   int last = 0;
 };
 
-// The first of the shortest ranges of rows or columns that have 80 % of the values; nullopt if that is most of
-// them. `length`: rows or columns of a value; `whole`: those of the picture.
-std::optional<Range> place_of(const std::vector<std::uint64_t>& values, std::size_t length, int whole);
-
 // What `conflicts` says of a run: who waits where for whom, and where in the picture; how busy the banks are
 // from top to bottom.
 struct ConflictSummary {
-  // A port that waits at a bank. The ranges are those of place_of() its cycles.
+  // A port that waits at a bank. The ranges are the first of the shortest ones of rows and
+  // columns that have 80 % of its cycles; nullopt if that is most of the picture.
   struct Wait {
     std::string port;
     std::string bank;

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "sw/report/wait_text.h"
+#include "sw/stats/wait_text.h"
 
 namespace stereotlm::report {
 namespace {
@@ -70,15 +70,15 @@ std::string cause(const JudgedRun& a, const JudgedRun& b, bool b_is_faster) {
   if (largest.second >= more / 2) {
     const auto& [port, bank, by] = largest.first;
     return fmt::format("in {} {} waits {:.0f} cycles a frame more on {} for {}", b_is_faster ? "A" : "B",
-                       port, largest.second, bank, cause_text(by));
+                       port, largest.second, bank, stats::cause_text(by));
   }
-  return fmt::format(
-      "a frame takes {:.0f} cycles in A, limited by {}, and {:.0f} in B, limited by {}",
-      cycles_a_frame(a.stats), report::resource_text(a.stats.at("bound").at("core_limited_by")),
-      cycles_a_frame(b.stats), report::resource_text(b.stats.at("bound").at("core_limited_by")));
+  return fmt::format("a frame takes {:.0f} cycles in A, limited by {}, and {:.0f} in B, limited by {}",
+                     cycles_a_frame(a.stats), stats::resource_text(a.stats.at("bound").at("core_limited_by")),
+                     cycles_a_frame(b.stats),
+                     stats::resource_text(b.stats.at("bound").at("core_limited_by")));
 }
 
-std::string pixels_text(const PixelComparison* pixels) {
+std::string pixels_text(const stats::PixelComparison* pixels) {
   if (pixels == nullptr || pixels->frames() == 0) return "the disparities are not compared";
   return pixels->first() ? "the disparities differ" : "the disparities are the same";
 }
@@ -90,7 +90,7 @@ std::uint64_t cycles_of_frames(const Json& stats) {
   return std::accumulate(frames.begin(), frames.end(), std::uint64_t{0});
 }
 
-std::string diff_verdict(const JudgedRun& a, const JudgedRun& b, const PixelComparison* pixels) {
+std::string diff_verdict(const JudgedRun& a, const JudgedRun& b, const stats::PixelComparison* pixels) {
   const Rates rates = rates_of(a.stats.at("frames_per_second"), b.stats.at("frames_per_second"));
   if (rates.a == rates.b) {
     return fmt::format("A and B are equally fast, {:.3f} frames/s, {}; {}.", rates.a, rates.kind,

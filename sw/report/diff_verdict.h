@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "sw/report/pixel_comparison.h"
+#include "sw/stats/run_comparison.h"
 
 namespace stereotlm::report {
 
@@ -18,7 +18,7 @@ struct JudgedRun {
 // whether the disparities are the same. The rates are the steady ones if both runs have them, else those
 // from power-up, else those of the core. What lies within the uncertainty of both is no difference. `pixels`:
 // null if the disparities are not compared.
-std::string diff_verdict(const JudgedRun& a, const JudgedRun& b, const PixelComparison* pixels);
+std::string diff_verdict(const JudgedRun& a, const JudgedRun& b, const stats::PixelComparison* pixels);
 
 // The sum of `frame_cycles`.
 std::uint64_t cycles_of_frames(const nlohmann::ordered_json& stats);

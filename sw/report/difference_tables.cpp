@@ -9,7 +9,7 @@
 #include <variant>
 
 #include "models/fpga/core_ports.h"
-#include "sw/report/wait_text.h"
+#include "sw/stats/wait_text.h"
 
 namespace stereotlm::report {
 namespace {
@@ -62,12 +62,12 @@ struct FrameLine {
   std::int64_t in_all() const { return difference() * static_cast<std::int64_t>(frames); }
 };
 
-std::string rows_text(const RowComparison::Range& range) {
+std::string rows_text(const stats::RowComparison::Range& range) {
   return range.first_row == range.last_row ? fmt::format("{}", range.first_row)
                                            : fmt::format("{}..{}", range.first_row, range.last_row);
 }
 
-std::string each_text(const RowComparison::Range& range) {
+std::string each_text(const stats::RowComparison::Range& range) {
   return range.least == range.most ? signed_text(range.least)
                                    : fmt::format("{}..{}", signed_text(range.least), signed_text(range.most));
 }
@@ -148,7 +148,7 @@ std::string frames_table(const std::vector<std::uint64_t>& cycles_a,
   return text + line(fmt::format("  {} more lines, in all", lines.size() - shown), "", "", signed_text(rest));
 }
 
-std::string rows_table(const RowComparison& rows) {
+std::string rows_table(const stats::RowComparison& rows) {
   std::string text;
   if (const auto& parting = rows.parting()) {
     text = fmt::format("they part in frame {}, row {}: whole after {} cycles in A, {} in B\n", parting->frame,
@@ -158,13 +158,13 @@ std::string rows_table(const RowComparison& rows) {
         "every row is whole after as many cycles in both; the waits differ from frame {}, row {} on\n",
         first->frame, first->row);
   }
-  const std::vector<RowComparison::Range> ranges = rows.ranges(kMostLines);
+  const std::vector<stats::RowComparison::Range> ranges = rows.ranges(kMostLines);
   if (ranges.empty()) return text;  // no difference, or differences of frames cancel out
   text += fmt::format("{:>43}waiting cycles of\n{:<11} {:>11} {:>15}", "", "rows", "difference", "each row");
   for (std::size_t port = 0; port < fpga::kCorePortCount; ++port)
     text += fmt::format(" {:>11}", fpga::kPorts[port].name);
   text += '\n';
-  for (const RowComparison::Range& range : ranges) {
+  for (const stats::RowComparison::Range& range : ranges) {
     text +=
         fmt::format("  {:<9} {:>11} {:>15}", rows_text(range), signed_text(range.cycles), each_text(range));
     for (const std::int64_t stalls : range.stalls) text += fmt::format(" {:>11}", signed_text(stalls));
@@ -192,16 +192,16 @@ std::vector<DifferingWait> differing_waits(const std::vector<platform::BlameRow>
 std::string blame_table(const std::vector<platform::BlameRow>& a, const std::vector<platform::BlameRow>& b) {
   std::string text;
   for (const DifferingWait& wait : differing_waits(a, b))
-    text += line("  " + wait_text(wait.row.port, wait.row.bank, wait.row.by), fmt::format("{}", wait.a),
-                 fmt::format("{}", wait.b), signed_text(wait.difference()));
+    text += line("  " + stats::wait_text(wait.row.port, wait.row.bank, wait.row.by),
+                 fmt::format("{}", wait.a), fmt::format("{}", wait.b), signed_text(wait.difference()));
   return text.empty() ? text : head_line("waits, cycles") + text;
 }
 
-std::string pixels_line(const PixelComparison& pixels) {
+std::string pixels_line(const stats::PixelComparison& pixels) {
   if (pixels.frames() == 0) return "disparities: not compared: no camera frame is in both\n";
   const std::string frames = fmt::format("{} frame{}", pixels.frames(), pixels.frames() == 1 ? "" : "s");
   if (!pixels.first()) return fmt::format("disparities: the same, pixel for pixel, in {}\n", frames);
-  const PixelComparison::First& first = *pixels.first();
+  const stats::PixelComparison::First& first = *pixels.first();
   return fmt::format(
       "disparities: {} pixel{} differ{}, in {} of {}; the first in frame {} at ({}, {}): {} in A, {} in B\n",
       pixels.pixels(), pixels.pixels() == 1 ? "" : "s", pixels.pixels() == 1 ? "s" : "",

@@ -6,8 +6,7 @@
 
 #include "platform/config/board_yaml.h"
 #include "platform/statistics.h"
-#include "sw/report/pixel_comparison.h"
-#include "sw/report/row_comparison.h"
+#include "sw/stats/run_comparison.h"
 
 namespace stereotlm::report {
 
@@ -52,12 +51,12 @@ std::string frames_table(const std::vector<std::uint64_t>& cycles_a,
 
 // The first row that differs in cycles, or else in stalls, and the differences by ranges of rows
 // (RowComparison::ranges(), at most kMostLines).
-std::string rows_table(const RowComparison& rows);
+std::string rows_table(const stats::RowComparison& rows);
 
 // The table of differing_waits().
 std::string blame_table(const std::vector<platform::BlameRow>& a, const std::vector<platform::BlameRow>& b);
 
 // The pixels that differ, in one line, which is not empty even if no frame was compared.
-std::string pixels_line(const PixelComparison& pixels);
+std::string pixels_line(const stats::PixelComparison& pixels);
 
 }  // namespace stereotlm::report

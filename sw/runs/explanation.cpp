@@ -28,8 +28,6 @@ std::optional<std::string> joint_problem(const platform::Tables& tables) {
   return tables.left && tables.right ? platform::joint_tables_problem(tables) : std::nullopt;
 }
 
-bool is_bank(const std::string& resource) { return resource.rfind("bank ", 0) == 0; }
-
 double mean_of(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
@@ -46,7 +44,12 @@ Explanation::Explanation(const platform::BoardConfig& board, const platform::Tab
                       : kCoreFrames,
            ""},
       knobs_(explore::knob_steps(board, camera, joint_problem(tables))),
-      points_(boards(), run_) {}
+      points_(boards(), run_),
+      accesses_(platform::frame_accesses(board, tables)) {
+  const std::uint64_t turn = platform::allocation_period_frames(board);
+  for (std::uint64_t frame = 0; frame < turn; ++frame)
+    bounds_.push_back(platform::frame_bounds(board, accesses_, frame));
+}
 
 bool Explanation::simulate(PointSimulator simulator) {
   ProgressLine progress;
@@ -150,8 +153,8 @@ double Explanation::busy_percent(const std::string& resource) {
                                               static_cast<unsigned>(geometry.passes));
     return 100 * number("frames") * of_frame / number("cycles");
   }
-  if (resource.rfind("bank ", 0) == 0)
-    return 100 * number("banks." + name + ".busy_cycles") / number("cycles");
+  if (const auto bank = platform::bank_of_resource(resource))
+    return 100 * number("banks." + *bank + ".busy_cycles") / number("cycles");
   const std::string port = "ports." + name;
   return 100 * (number(port + ".grants") + number(port + ".passed_cycles")) / number("cycles");
 }
@@ -173,18 +176,17 @@ std::vector<Explanation::Resource> Explanation::resources() {
       known->varies = true;
     }
   };
-  const std::uint64_t turn = platform::allocation_period_frames(board_);
-  for (std::uint64_t frame = 0; frame < std::min<std::uint64_t>(turn, cycles.size()); ++frame) {
-    for (const platform::ResourceBound& bound : platform::frame_bounds(board_, tables_, frame)) {
-      if (run_.camera && is_bank(bound.resource)) continue;  // below, with the accesses of the host
+  for (std::size_t frame = 0; frame < std::min(bounds_.size(), cycles.size()); ++frame) {
+    for (const platform::ResourceBound& bound : bounds_[frame]) {
+      if (run_.camera && platform::bank_of_resource(bound.resource))
+        continue;  // below, with the accesses of the host
       const auto needed = static_cast<double>(bound.cycles);
       add({bound.resource, clock_hz / needed, 100 * (1 - needed / (stretch * cycles[frame])),
            busy_percent(bound.resource), frame});
     }
   }
   if (run_.camera) {
-    const platform::FrameAccesses accesses = platform::frame_accesses(board_, tables_);
-    for (const platform::RateBound& part : platform::computer_bounds(board_, accesses, !base.loses_pixels)) {
+    for (const platform::RateBound& part : platform::computer_bounds(board_, accesses_, !base.loses_pixels)) {
       add({part.resource, part.frames_per_second, 100 * (1 - base.frames_per_second / part.frames_per_second),
            busy_percent(part.resource), 0});
     }
@@ -208,7 +210,7 @@ const Explanation::Budget& Explanation::budget() {
       }
     }
   }
-  const std::uint64_t turn = platform::allocation_period_frames(board_);
+  const std::uint64_t turn = bounds_.size();
   std::vector<double> cycles = frame_cycles();
   if (run_.camera) {
     const std::uint64_t window = platform::steady_frames(run_.frames, turn);
@@ -216,10 +218,11 @@ const Explanation::Budget& Explanation::budget() {
   }
   const double mean = mean_of(cycles);
   double needed = 0;  // by matcher and ports
-  for (std::uint64_t frame = 0; frame < turn; ++frame) {
+  for (const std::vector<platform::ResourceBound>& of_frame : bounds_) {
     double most = 0;
-    for (const platform::ResourceBound& bound : platform::frame_bounds(board_, tables_, frame)) {
-      if (!is_bank(bound.resource)) most = std::max(most, static_cast<double>(bound.cycles));
+    for (const platform::ResourceBound& bound : of_frame) {
+      if (!platform::bank_of_resource(bound.resource))
+        most = std::max(most, static_cast<double>(bound.cycles));
     }
     needed += most / static_cast<double>(turn);
   }
@@ -243,8 +246,8 @@ Explanation::Limiter Explanation::limiter() {
 }
 
 std::vector<explore::StoredBlame> Explanation::blames() {
-  explore::Database store(batch_.path(), explore::Database::Access::kRead);
-  explore::Statement find(
+  sqlite::Database store(batch_.path(), sqlite::Database::Access::kRead);
+  sqlite::Statement find(
       store, "SELECT port, bank, by, cycles FROM blame WHERE hash = ? ORDER BY cycles DESC, port, bank, by");
   find.bind(1, points_.point(0).hash);
   std::vector<explore::StoredBlame> all;

@@ -120,6 +120,8 @@ class Explanation {
   explore::KnobSteps knobs_;
   explore::BoardPoints points_;
   explore::Batch batch_;
+  platform::FrameAccesses accesses_;
+  std::vector<std::vector<platform::ResourceBound>> bounds_;  // [frame of one turn of the lists]
   std::optional<Budget> budget_;
 };
 

@@ -28,7 +28,7 @@ DiffLimits::DiffLimits(const RecordedRun& a, const RecordedRun& b) {
 }
 
 FrameAlignment::FrameAlignment(const RecordedRun& a, const RecordedRun& b, const DiffLimits& limits,
-                               report::RowsCsv* csv, Rerun::Record record_a, Rerun::Record record_b)
+                               stats::RowsCsv* csv, Rerun::Record record_a, Rerun::Record record_b)
     : limits_(limits),
       csv_(csv),
       frames_(std::max(a.options.frames, b.options.frames)),

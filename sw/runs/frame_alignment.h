@@ -7,12 +7,10 @@
 #include <utility>
 
 #include "models/fpga/row_profile.h"
-#include "sw/report/pixel_comparison.h"
-#include "sw/report/row_comparison.h"
-#include "sw/report/rows_csv.h"
 #include "sw/runs/progress.h"
 #include "sw/runs/recorded_run.h"
 #include "sw/runs/rerun.h"
+#include "sw/stats/run_comparison.h"
 
 namespace stereotlm::runs {
 
@@ -31,15 +29,15 @@ class FrameAlignment {
  public:
   // Starts both runs. All arguments outlive the object. `csv`: gets the compared rows; may be null. `record_a`
   // and `record_b`: what Rerun hands to a record; may be null.
-  FrameAlignment(const RecordedRun& a, const RecordedRun& b, const DiffLimits& limits, report::RowsCsv* csv,
+  FrameAlignment(const RecordedRun& a, const RecordedRun& b, const DiffLimits& limits, stats::RowsCsv* csv,
                  Rerun::Record record_a = nullptr, Rerun::Record record_b = nullptr);
 
   // Returns true when both runs have ended, and false at the first interrupt. Throws what Rerun::next()
   // throws.
   bool run();
 
-  const report::RowComparison& rows() const { return rows_; }
-  const report::PixelComparison& pixels() const { return pixels_; }
+  const stats::RowComparison& rows() const { return rows_; }
+  const stats::PixelComparison& pixels() const { return pixels_; }
 
   // The last camera frame that both runs computed, and its disparities.
   struct CommonFrame {
@@ -64,10 +62,10 @@ class FrameAlignment {
   void compare_rows();
 
   const DiffLimits& limits_;
-  report::RowsCsv* csv_;
+  stats::RowsCsv* csv_;
   std::uint64_t frames_;  // frames of the longer run
-  report::RowComparison rows_;
-  report::PixelComparison pixels_;
+  stats::RowComparison rows_;
+  stats::PixelComparison pixels_;
   std::optional<CommonFrame> last_common_;
   Side a_;
   Side b_;

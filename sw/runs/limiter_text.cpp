@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "models/fpga/core_ports.h"
-#include "sw/report/wait_text.h"
+#include "sw/stats/wait_text.h"
 
 namespace stereotlm::runs {
 namespace {
@@ -49,8 +49,8 @@ double percent_of_cycles(Explanation& explanation, std::int64_t cycles) {
 
 // "left_lut waits there for left_pixel in 33.14 % of the cycles"
 std::string wait_of(Explanation& explanation, const explore::StoredBlame& wait) {
-  return fmt::format("{} waits there for {} in {:.2f} % of the cycles", wait.port,
-                     report::cause_text(wait.by), percent_of_cycles(explanation, wait.cycles));
+  return fmt::format("{} waits there for {} in {:.2f} % of the cycles", wait.port, stats::cause_text(wait.by),
+                     percent_of_cycles(explanation, wait.cycles));
 }
 
 // The PCI bus or the local bus, where it has little headroom.
@@ -58,7 +58,7 @@ std::string busy_bus_text(Explanation& explanation) {
   std::string text;
   for (const Explanation::Resource& resource : explanation.resources()) {
     if ((resource.name == "pci" || resource.name == "bridge") && resource.headroom_percent < kLeastHeadroom)
-      text += fmt::format("; {} is busy in {:.1f} % of its clocks", report::resource_words(resource.name),
+      text += fmt::format("; {} is busy in {:.1f} % of its clocks", stats::resource_words(resource.name),
                           resource.busy_percent);
   }
   return text;
@@ -69,7 +69,7 @@ std::string bound_text(Explanation& explanation) {
   const std::string bound = explanation.camera() ? "bound.system" : "bound.core";
   const std::string owner = row.text(bound + "_limited_by");
   const std::string text =
-      fmt::format("{}, at the bound of {:.3f} frames/s", report::resource_words(owner), row.real(bound));
+      fmt::format("{}, at the bound of {:.3f} frames/s", stats::resource_words(owner), row.real(bound));
   const auto wait = longest_wait(explanation, owner);
   return wait ? text + "; " + wait_of(explanation, *wait) : text;
 }
@@ -96,7 +96,7 @@ std::string lost_pixels_text(Explanation& explanation) {
   for (const char* const master : {"host", "left_capture", "right_capture", "bridge"})
     all_transactions += row.integer(fmt::format("pci.masters.{}.transactions", master));
   return fmt::format(
-      "{}{}; it is busy in {:.1f} % of its clocks{}", report::resource_words(bus), text, busy_of(bus),
+      "{}{}; it is busy in {:.1f} % of its clocks{}", stats::resource_words(bus), text, busy_of(bus),
       of_load == 0
           ? ""
           : fmt::format(", and pci.load makes {} of its {} transactions", of_load, all_transactions));
@@ -147,7 +147,8 @@ std::string core_waits_text(Explanation& explanation) {
 
 std::optional<explore::StoredBlame> longest_wait(Explanation& explanation, const std::string& resource) {
   for (const explore::StoredBlame& wait : explanation.blames()) {
-    if (wait.port != kHost && (resource.empty() || "bank " + wait.bank == resource)) return wait;
+    if (wait.port != kHost && (resource.empty() || platform::resource_of_bank(wait.bank) == resource))
+      return wait;
   }
   return std::nullopt;
 }

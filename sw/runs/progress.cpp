@@ -61,10 +61,6 @@ std::string progress_text(const explore::SearchProgress& progress, double second
   return text + fmt::format(" ({} at this rate)", time_text(static_cast<double>(progress.most_left) / rate));
 }
 
-std::string verification_text(std::uint64_t frames_compared, std::uint64_t frames) {
-  return fmt::format("verifying: {}/{} frames", frames_compared, frames);
-}
-
 ProgressLine::ProgressLine()
     : is_shown_(isatty(STDERR_FILENO) != 0 && !process::leaves_out_notes()),
       start_(std::chrono::steady_clock::now()),

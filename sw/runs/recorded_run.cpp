@@ -10,12 +10,11 @@
 #include "platform/config/board_yaml.h"
 #include "sw/files/sha256.h"
 #include "sw/files/whole_file.h"
-#include "sw/process/installation.h"
-#include "sw/report/stats_json.h"
-#include "sw/runs/run_json_reader.h"
-#include "sw/runs/sources/calibration_input.h"
 #include "sw/media/load.h"
+#include "sw/process/installation.h"
+#include "sw/runs/sources/calibration_input.h"
 #include "sw/runs/sources/open_source.h"
+#include "sw/stats/stats_json.h"
 
 namespace stereotlm::runs {
 namespace {
@@ -140,8 +139,8 @@ std::optional<RecordedRun> read_recorded_run(const std::string& argument, const 
   if (!is_right) return std::nullopt;
   const RecordedOptions& options = run.options;
   attempt((fs::path(folder) / "stats.json").string() + ":", [&] {
-    run.statistics = report::read_stats(run.stats_json, run.board, options.fidelity, options.frames,
-                                        options.source == "camera");
+    run.statistics = stats::read_stats(run.stats_json, run.board, options.fidelity, options.frames,
+                                       options.source == "camera");
   });
   if (!is_right && options.program_version != process::kVersion) problems.add_note(version_note(options));
   return is_right ? std::optional(run) : std::nullopt;

@@ -10,11 +10,11 @@
 
 #include "models/binder.h"
 #include "sw/process/installation.h"
-#include "sw/report/accuracy.h"
-#include "sw/report/stats_differences.h"
-#include "sw/report/stats_json.h"
 #include "sw/runs/run_mode.h"
 #include "sw/runs/run_results.h"
+#include "sw/stats/accuracy.h"
+#include "sw/stats/stats_differences.h"
+#include "sw/stats/stats_json.h"
 
 namespace stereotlm::runs {
 namespace {
@@ -88,14 +88,14 @@ void run_again(const RecordedRun& run, bool record, const process::Child::Tell& 
 
 std::string figures_of(platform::Statistics statistics, const Result& last, const RunInput& input) {
   statistics.fidelity = input.described.fidelity;
-  std::optional<report::Accuracy> accuracy;
-  if (input.truth) accuracy = report::accuracy(last.disparity, *input.truth);
-  return report::stats_json(statistics, accuracy);
+  std::optional<stats::Accuracy> accuracy;
+  if (input.truth) accuracy = stats::accuracy(last.disparity, *input.truth);
+  return stats::stats_json(statistics, accuracy);
 }
 
 void check_repeated(const RecordedRun& run, const std::string& stats_json) {
   if (stats_json == run.stats_json) return;
-  const auto differences = report::stats_differences(run.stats_json, stats_json, "recorded", "again");
+  const auto differences = stats::stats_differences(run.stats_json, stats_json, "recorded", "again");
   std::string text = "repeated, it has other figures: " + differences.front();
   if (differences.size() > 1) text += fmt::format(", and {} more", differences.size() - 1);
   if (run.options.program_version != process::kVersion) text += "; " + version_note(run.options);

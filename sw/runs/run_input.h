@@ -14,7 +14,7 @@
 #include "sw/runs/result_folder.h"
 #include "sw/runs/run_json.h"
 #include "sw/runs/sources/pair_source.h"
-#include "sw/trace/trace_writer.h"
+#include "sw/trace/trace.h"
 
 namespace stereotlm::calib {
 struct Calibration;
@@ -33,7 +33,7 @@ struct RunInput {
   bool timing_only = false;
   bool record = false;                            // --record
   bool json = false;                              // --json
-  std::unique_ptr<trace::TraceWriter> trace;      // null: no --trace
+  std::unique_ptr<trace::Trace> trace;            // null: no --trace
   std::optional<fpga::CycleWindow> trace_window;  // --trace-window
   std::uint64_t frames = 1;                       // frames to deliver
   std::optional<media::Truth> truth;              // ground truth of the pair that the last frame shows

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <stdexcept>
 
@@ -13,7 +14,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // Returns the name. Throws std::runtime_error if run.json cannot hold it, because it is not UTF-8.
-std::string named(const char* option, const std::string& name) {
+std::string named(const std::string& option, const std::string& name) {
   try {
     static_cast<void>(files::json_text(name));
   } catch (const std::invalid_argument&) {
@@ -23,66 +24,164 @@ std::string named(const char* option, const std::string& name) {
   return name;
 }
 
-std::string found_again(const char* option, const std::string& path) {
+std::string found_again(const std::string& option, const std::string& path) {
   if (!std::filesystem::path(path).is_absolute()) {
     throw std::runtime_error(fmt::format("{} '{}': not an absolute path: run.json needs one", option, path));
   }
   return named(option, path);
 }
 
-Json to_json(const char* option, const InputFile& file) {
+// The value of an option as JSON, and back.
+template <typename Value>
+Json json_of(const std::string& /*option*/, const Value& value) {
+  return value;
+}
+template <typename Value>
+void read(const Json& json, Value& value) {
+  json.get_to(value);
+}
+
+Json json_of(const std::string& option, const InputFile& file) {
   return {{"path", found_again(option, file.path)}, {"sha256", file.sha256}};
 }
+void read(const Json& json, InputFile& file) { file = {json.at("path"), json.at("sha256")}; }
 
-Json to_json(const char* option, const std::vector<InputFile>& files) {
-  Json result = Json::array();
-  for (const InputFile& file : files) result.push_back(to_json(option, file));
-  return result;
+Json json_of(const std::string& option, const std::vector<InputFile>& files) {
+  Json json = Json::array();
+  for (const InputFile& file : files) json.push_back(json_of(option, file));
+  return json;
+}
+void read(const Json& json, std::vector<InputFile>& files) {
+  for (const Json& file : json) read(file, files.emplace_back());
 }
 
-Json to_json(const char* option, const InputFolder& folder) {
+Json json_of(const std::string& option, const InputFolder& folder) {
   Json files = Json::array();
-  for (const InputFile& file : folder.files) {
+  for (const InputFile& file : folder.files)
     files.push_back({{"name", named(option, file.path)}, {"sha256", file.sha256}});
-  }
   return {{"path", found_again(option, folder.path)}, {"files", files}};
 }
+void read(const Json& json, InputFolder& folder) {
+  folder.path = json.at("path");
+  for (const Json& file : json.at("files")) folder.files.push_back({file.at("name"), file.at("sha256")});
+}
 
-Json to_json(const InputCalibration& calibration) {
-  const char* option = "--calibration";
-  Json result = to_json(option, calibration.file);
-  result["left_lut"] = to_json(option, calibration.left_lut);
-  result["right_lut"] = to_json(option, calibration.right_lut);
-  return result;
+Json json_of(const std::string& option, const InputCalibration& calibration) {
+  Json json = json_of(option, calibration.file);
+  json["left_lut"] = json_of(option, calibration.left_lut);
+  json["right_lut"] = json_of(option, calibration.right_lut);
+  return json;
+}
+void read(const Json& json, InputCalibration& calibration) {
+  read(json, calibration.file);
+  read(json.at("left_lut"), calibration.left_lut);
+  read(json.at("right_lut"), calibration.right_lut);
+}
+
+struct Writer {
+  template <typename Value>
+  void required(const char* key, const Value& value) {
+    document[key] = value;
+  }
+  template <typename Value>
+  void given(const char* key, const Value& value, bool is_given) {
+    if (is_given) document[key] = json_of(std::string("--") + key, value);
+  }
+  template <typename Value>
+  void given(const char* key, const std::optional<Value>& value) {
+    if (value) given(key, *value, true);
+  }
+  void given(const char* key, bool value) { given(key, value, value); }
+
+  Json document = {{"schema", 1}, {"command", "run"}};
+};
+
+struct Reader {
+  template <typename Value>
+  void required(const char* key, Value& value) {
+    read(document.at(key), value);
+  }
+  template <typename Value>
+  void given(const char* key, Value& value, bool /*is_given*/ = true) {
+    if (document.contains(key)) read(document[key], value);
+  }
+  template <typename Value>
+  void given(const char* key, std::optional<Value>& value) {
+    if (document.contains(key)) read(document[key], value.emplace());
+  }
+
+  const Json document;
+};
+
+// The keys, in their order. `document`: a Writer or a Reader.
+template <typename Document, typename Options>
+void each_key(Document& document, Options& options) {
+  document.required("version", options.program_version);
+  document.required("source", options.source);
+  document.required("fidelity", options.fidelity);
+  document.required("frames", options.frames);
+  document.given("timing_only", options.timing_only);
+  document.given("verify", options.verify);
+  document.given("left", options.left);
+  document.given("right", options.right);
+  document.given("sequence", options.sequence);
+  document.given("video", options.video, !options.video.empty());
+  document.given("video_layout", options.video_layout, !options.video.empty());
+  document.given("synthetic", options.synthetic);
+  document.given("calibration", options.calibration);
+  document.given("truth", options.truth);
+  document.given("truth_scale", options.truth_scale, options.truth.has_value());
+  document.given("save_frames", options.save_frames);
+  document.given("record", options.record);
+}
+
+// The number, from 1, of the first line in which the texts differ.
+std::ptrdiff_t first_other_line(const std::string& text, const std::string& other) {
+  const auto end = std::mismatch(text.begin(), text.end(), other.begin(), other.end()).first;
+  return std::count(text.begin(), end, '\n') + 1;
+}
+
+// Throws std::runtime_error for options that run_json() would write but no run can have.
+void check(const RecordedOptions& options) {
+  const auto require = [](bool holds, const std::string& rule) {
+    if (!holds) throw std::runtime_error(rule);
+  };
+  require(options.source == "camera" || options.source == "preloaded",
+          fmt::format("source = {}: must be camera or preloaded", options.source));
+  require(options.fidelity == "fast" || options.fidelity == "cycle",
+          fmt::format("fidelity = {}: must be fast or cycle", options.fidelity));
+  require(options.frames > 0, "frames = 0: must be 1 or more");
+  require(options.left.has_value() == options.right.has_value(), "left and right: one is without the other");
+  const int sources = int{options.left.has_value()} + int{options.sequence.has_value()} +
+                      int{!options.video.empty()} + int{options.synthetic.has_value()};
+  require(sources == 1 || (sources == 0 && options.timing_only),
+          fmt::format("{} sources of pictures: must be one", sources));
 }
 
 }  // namespace
 
 std::string run_json(const RecordedOptions& options) {
-  Json document = {{"schema", 1},
-                   {"command", "run"},
-                   {"version", options.program_version},
-                   {"source", options.source},
-                   {"fidelity", options.fidelity},
-                   {"frames", options.frames}};
-  if (options.timing_only) document["timing_only"] = true;
-  if (options.verify) document["verify"] = true;
-  if (options.left) document["left"] = to_json("--left", *options.left);
-  if (options.right) document["right"] = to_json("--right", *options.right);
-  if (options.sequence) document["sequence"] = to_json("--sequence", *options.sequence);
-  if (!options.video.empty()) {
-    document["video"] = to_json("--video", options.video);
-    document["video_layout"] = options.video_layout;
+  Writer writer;
+  each_key(writer, options);
+  return files::json_text(writer.document);
+}
+
+RecordedOptions parse_run_json(const std::string& text) {
+  RecordedOptions options;
+  std::string written;
+  try {
+    Reader reader{Json::parse(text)};
+    each_key(reader, options);
+    written = run_json(options);
+  } catch (const Json::exception& error) {
+    throw std::runtime_error(fmt::format("must be as run writes it: {}", error.what()));
   }
-  if (options.synthetic) document["synthetic"] = *options.synthetic;
-  if (options.calibration) document["calibration"] = to_json(*options.calibration);
-  if (options.truth) {
-    document["truth"] = to_json("--truth", *options.truth);
-    document["truth_scale"] = options.truth_scale;
+  if (written != text) {
+    throw std::runtime_error(
+        fmt::format("line {}: must be as run writes it", first_other_line(text, written)));
   }
-  if (options.save_frames) document["save_frames"] = true;
-  if (options.record) document["record"] = true;
-  return files::json_text(document);
+  check(options);
+  return options;
 }
 
 }  // namespace stereotlm::runs

@@ -51,4 +51,8 @@ struct RecordedOptions {
 // std::runtime_error with the option's name if a path is not absolute or not UTF-8.
 std::string run_json(const RecordedOptions& options);
 
+// Reads the options of a run from the text of its run.json. Throws std::runtime_error if run_json() would not
+// write exactly this text for the options; the message does not name the file.
+RecordedOptions parse_run_json(const std::string& text);
+
 }  // namespace stereotlm::runs

@@ -11,13 +11,13 @@
 #include "sw/files/json_text.h"
 #include "sw/media/encode.h"
 #include "sw/process/streams.h"
-#include "sw/report/accuracy.h"
-#include "sw/report/conflicts_csv.h"
-#include "sw/report/console_table.h"
-#include "sw/report/stats_json.h"
-#include "sw/report/timeline_csv.h"
 #include "sw/runs/sources/calibration_library.h"
 #include "sw/runs/waitless_core.h"
+#include "sw/stats/accuracy.h"
+#include "sw/stats/conflicts_csv.h"
+#include "sw/stats/console_table.h"
+#include "sw/stats/stats_json.h"
+#include "sw/stats/timeline_csv.h"
 
 namespace stereotlm::runs {
 namespace {
@@ -40,12 +40,12 @@ void add_pictures(const RunInput& input, const Result& last, files::OutputFolder
 }
 
 void write_files(RunInput& input, platform::Statistics statistics, const Result& last,
-                 const std::optional<report::Accuracy>& accuracy,
+                 const std::optional<stats::Accuracy>& accuracy,
                  const std::vector<std::string>& differences) {
   statistics.failed.insert(statistics.failed.end(), differences.begin(), differences.end());
   files::OutputFolder& folder = *input.folder;
   if (!input.timing_only) add_pictures(input, last, folder);
-  folder.add("stats.json", report::stats_json(statistics, accuracy));
+  folder.add("stats.json", stats::stats_json(statistics, accuracy));
   folder.add("config.yaml", input.config_yaml);
   // An interrupted run is recorded as a complete run of the frames that it has finished.
   input.described.frames = statistics.frames;
@@ -55,12 +55,12 @@ void write_files(RunInput& input, platform::Statistics statistics, const Result&
 
 // The accuracy to print. Without --truth, it is that against the truth of a synthetic scene, which holds only
 // without calibration. stats.json has only the accuracy against --truth.
-std::optional<report::Accuracy> accuracy_to_show(const RunInput& input, const Result& last,
-                                                 const std::optional<report::Accuracy>& accuracy) {
+std::optional<stats::Accuracy> accuracy_to_show(const RunInput& input, const Result& last,
+                                                const std::optional<stats::Accuracy>& accuracy) {
   if (accuracy || !input.pairs || input.calibration || input.timing_only) return accuracy;
   const std::optional<media::Truth> truth = input.pairs->truth(last.number);
   if (!truth) return std::nullopt;
-  return report::accuracy(last.disparity, *truth);
+  return stats::accuracy(last.disparity, *truth);
 }
 
 double answered_percent(const kernels::GrayImage& disparity) {
@@ -70,9 +70,9 @@ double answered_percent(const kernels::GrayImage& disparity) {
 }
 
 // `accuracy`: against --truth.
-report::TableExtras extras_of(const RunInput& input, const platform::Statistics& statistics,
-                              const Result& last, const std::optional<report::Accuracy>& accuracy) {
-  report::TableExtras extras;
+stats::TableExtras extras_of(const RunInput& input, const platform::Statistics& statistics,
+                             const Result& last, const std::optional<stats::Accuracy>& accuracy) {
+  stats::TableExtras extras;
   if (!statistics.blame.empty()) {
     extras.waitless_frames_per_second =
         waitless_frames_per_second(input.board, input.tables, statistics.frames);
@@ -83,9 +83,9 @@ report::TableExtras extras_of(const RunInput& input, const platform::Statistics&
 }
 
 // `accuracy`: the accuracy of the last frame against --truth.
-void say_if_doubtful(const RunInput& input, const report::Accuracy& accuracy) {
+void say_if_doubtful(const RunInput& input, const stats::Accuracy& accuracy) {
   const double bad = accuracy.bad_1_percent.value_or(0);
-  if (bad <= report::kDoubtfulBad1Percent) return;
+  if (bad <= stats::kDoubtfulBad1Percent) return;
   process::say("note", fmt::format("--truth: {:.2f} % of the answers are off by more than 1: is it of this "
                                    "picture, and is --truth-scale {:g} right?",
                                    bad, input.described.truth_scale));
@@ -100,10 +100,10 @@ void save_frame(const RunInput& input, const Result& result) {
 
 Records::Records(const RunInput& input, Append append) : input_(input), append_(std::move(append)) {
   if (!input_.record) return;
-  append_("rows.csv", report::rows_csv_head(input.board));
+  append_("rows.csv", stats::rows_csv_head(input.board));
   if (!input.camera) return;
-  append_("timeline.csv", report::timeline_csv_head());
-  append_("latency.csv", report::latency_csv_head());
+  append_("timeline.csv", stats::timeline_csv_head());
+  append_("latency.csv", stats::latency_csv_head());
 }
 
 void Records::add(Simulation& simulation) {
@@ -112,20 +112,20 @@ void Records::add(Simulation& simulation) {
   const platform::TimelineRecords records = simulation.take_timeline();
   if (input_.trace) input_.trace->events(records);
   if (!input_.record) return;
-  append_("timeline.csv", report::timeline_csv(records.events));
-  append_("latency.csv", report::latency_csv(records.latencies));
+  append_("timeline.csv", stats::timeline_csv(records.events));
+  append_("latency.csv", stats::latency_csv(records.latencies));
 }
 
 void Records::add(const fpga::FrameConflicts& frame) {
   if (input_.trace) input_.trace->frame(platform::frame_runs(frame));
-  if (input_.record) append_("rows.csv", report::rows_csv(input_.board, frame.number, frame));
+  if (input_.record) append_("rows.csv", stats::rows_csv(input_.board, frame.number, frame));
 }
 
 void Records::finish(Simulation& simulation) {
   add(simulation);
   if (!input_.record) return;
-  report::conflicts_csv(input_.board, *simulation.conflicts(),
-                        [this](const std::string& piece) { append_("conflicts.csv", piece); });
+  stats::conflicts_csv(input_.board, *simulation.conflicts(),
+                       [this](const std::string& piece) { append_("conflicts.csv", piece); });
 }
 
 void leave_out_truth_of_another_pair(RunInput& input, std::uint64_t frames_done) {
@@ -148,23 +148,23 @@ void say_lost_pixels(const platform::Statistics& statistics) {
   std::uint64_t pixels = 0;
   for (const platform::CameraStatistics& camera : statistics.computer->cameras)
     pixels += camera.dropped_pixels;
-  const std::string text = report::lost_pixels_text(pixels);
+  const std::string text = stats::lost_pixels_text(pixels);
   if (!text.empty()) process::say("warning", text);
 }
 
 bool deliver(RunInput& input, const platform::Statistics& statistics, const Result& last,
              const std::vector<std::string>& differences) {
-  std::optional<report::Accuracy> accuracy;
-  if (input.truth) accuracy = report::accuracy(last.disparity, *input.truth);
+  std::optional<stats::Accuracy> accuracy;
+  if (input.truth) accuracy = stats::accuracy(last.disparity, *input.truth);
   if (input.folder) write_files(input, statistics, last, accuracy, differences);
   for (const std::string& identity : statistics.failed)
     process::say("error", "identity does not hold: " + identity);
   const platform::BoardConfig& board = input.board;
-  const report::BoardClocks clocks = {board.fpga.clock_mhz, board.pci.clock_mhz, board.bridge.local_clock_mhz,
-                                      board.pci.width_bits};
-  const report::TableExtras extras = extras_of(input, statistics, last, accuracy);
-  process::print(input.json ? files::json_text(report::run_document(statistics, extras))
-                            : report::console_table(statistics, clocks, extras));
+  const stats::BoardClocks clocks = {board.fpga.clock_mhz, board.pci.clock_mhz, board.bridge.local_clock_mhz,
+                                     board.pci.width_bits};
+  const stats::TableExtras extras = extras_of(input, statistics, last, accuracy);
+  process::print(input.json ? files::json_text(stats::run_document(statistics, extras))
+                            : stats::console_table(statistics, clocks, extras));
   say_lost_pixels(statistics);
   if (accuracy) say_if_doubtful(input, *accuracy);
   for (const std::string& difference : differences) process::say("error", difference);

@@ -9,10 +9,10 @@
 
 #include "models/binder.h"
 #include "sw/process/interrupt.h"
-#include "sw/report/stats_differences.h"
-#include "sw/report/stats_json.h"
 #include "sw/runs/run_mode.h"
 #include "sw/runs/sources/open_source.h"
+#include "sw/stats/stats_differences.h"
+#include "sw/stats/stats_json.h"
 
 namespace stereotlm::runs {
 namespace {
@@ -36,7 +36,7 @@ std::string line_of(const Result& result, bool with_pixels) {
 // The text of stats.json, with the same name of the fidelity for both runs.
 std::string stats_text(platform::Statistics statistics) {
   statistics.fidelity = "both";
-  return report::stats_json(statistics, std::nullopt);
+  return stats::stats_json(statistics, std::nullopt);
 }
 
 std::string name_of_other(const RunInput& input) { return input.fast ? "cycle" : "fast"; }
@@ -80,7 +80,8 @@ void Verification::add(const Result& result) { results_.push_back(line_of(result
 std::optional<std::string> Verification::next_of_other(ProgressLine& progress, std::size_t frames_compared) {
   do {
     if (process::interrupted()) throw Interrupted();
-    progress.show([&](double) { return verification_text(frames_compared, results_.size()); });
+    progress.show(
+        [&](double) { return fmt::format("verifying: {}/{} frames", frames_compared, results_.size()); });
   } while (!other_->has_news(kPollInterval));
   return other_->next();
 }
@@ -98,7 +99,7 @@ Verification::Outcome Verification::compare(const platform::Statistics& statisti
     }
     const std::string theirs = next_of_other(progress, results_.size()).value_or("{}");
     for (const std::string& difference :
-         report::stats_differences(stats_text(statistics), theirs, ours, other))
+         stats::stats_differences(stats_text(statistics), theirs, ours, other))
       lines.push_back("stats.json: " + difference);
   } catch (const Interrupted&) {
     return {true, {}};

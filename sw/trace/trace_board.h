@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,7 +17,14 @@
 
 namespace stereotlm::trace {
 
-// What the writers need of a board.
+// The place of a slot in the picture.
+struct SlotPlace {
+  std::uint64_t strip = 0;
+  int row = 0;  // may lie outside the image
+  int column = 0;
+};
+
+// What the sinks need of a board.
 struct TraceBoard {
   explicit TraceBoard(const platform::BoardConfig& board)
       : name(board.name),
@@ -33,6 +42,44 @@ struct TraceBoard {
   }
   // Whether two ports can be granted in one cycle: one that reads and one that writes.
   bool has_separate_ports(std::size_t bank) const { return memory::has_separate_ports(banks[bank].kind); }
+
+  SlotPlace place_of_slot(std::uint64_t slot) const {
+    const auto slots = static_cast<std::uint64_t>(geometry.slots_per_column);
+    const std::uint64_t column = slot / slots;
+    const std::uint64_t strip = column / geometry.columns_per_strip();
+    return {strip, geometry.first_row_of(static_cast<int>(strip)) + static_cast<int>(slot % slots),
+            static_cast<int>(column % geometry.columns_per_strip())};
+  }
+  // The row and the first column of the four disparities in a word of the result.
+  SlotPlace place_of_word(std::uint64_t word) const {
+    const std::uint64_t row_words = geometry.columns_per_strip() / 4;
+    const std::uint64_t place = geometry.place_of_result_word(word);
+    const std::uint64_t row = place / row_words;
+    return {
+        row / static_cast<std::uint64_t>(geometry.rows) + static_cast<std::uint64_t>(geometry.lead_strips),
+        static_cast<int>(row), static_cast<int>(4 * (place % row_words))};
+  }
+  // The place of what an access of a port of the core is for.
+  SlotPlace place_of(std::size_t port, std::uint64_t item) const {
+    return port == fpga::kResultPort ? place_of_word(item) : place_of_slot(item);
+  }
+  // The slots of the pixels whose disparities the word holds. With the fetch `column` a pixel has several
+  // slots: this is the one in the strip of the result. There is none if the filter takes the pixel from an
+  // earlier strip.
+  std::optional<std::array<std::uint64_t, 4>> slots_of_word(std::uint64_t word) const {
+    const SlotPlace result = place_of_word(word);
+    const auto strip = geometry.slots_per_column > 1 ? static_cast<int>(result.strip) : result.row;
+    const int k = result.row - geometry.first_row_of(strip);
+    if (k < 0 || k >= geometry.slots_per_column) return std::nullopt;
+    std::array<std::uint64_t, 4> slots{};
+    for (std::uint64_t i = 0; i < slots.size(); ++i) {
+      const std::uint64_t column = static_cast<std::uint64_t>(strip) * geometry.columns_per_strip() +
+                                   static_cast<std::uint64_t>(result.column) + i;
+      slots[i] =
+          column * static_cast<std::uint64_t>(geometry.slots_per_column) + static_cast<std::uint64_t>(k);
+    }
+    return slots;
+  }
 
   std::string name;
   fpga::CoreConfig core;

@@ -26,8 +26,8 @@
 #include "platform/config/board_yaml.h"
 #include "sw/files/whole_file.h"
 #include "sw/process/child.h"
-#include "sw/report/stats_json.h"
 #include "sw/runs/simulation/make_simulation.h"
+#include "sw/stats/stats_json.h"
 #include "tests/bench/bench_pair.h"
 #include "tests/bench/board_process.h"
 
@@ -179,7 +179,7 @@ void run_point(benchmark::State& state, const std::vector<std::string>& sets, bo
       Binder binder;
       const auto run = runs::make_simulation(board, tables, pairs, {camera, Fidelity::kTiming, 1}, binder);
       while (!run->finished()) run->advance();
-      tell(report::stats_json(run->statistics(), std::nullopt));
+      tell(stats::stats_json(run->statistics(), std::nullopt));
     });
     while (child.next()) {
     }

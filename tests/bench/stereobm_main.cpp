@@ -13,7 +13,7 @@
 
 #include "calib/opencv_conversions.h"
 #include "sw/media/load.h"
-#include "sw/report/accuracy.h"
+#include "sw/stats/accuracy.h"
 
 namespace stereotlm::bench {
 namespace {
@@ -83,7 +83,7 @@ void run(char** argument) {
   if (disparities < 16 || disparities > 240)
     throw std::invalid_argument("DISPARITIES = " + std::to_string(disparities) + ": must be 16..240");
   for (const Setting& setting : kSettings) {
-    const auto found = report::accuracy(match(left, right, disparities, window, setting), truth);
+    const auto found = stats::accuracy(match(left, right, disparities, window, setting), truth);
     const nlohmann::ordered_json row = {{"setting", setting.name},
                                         {"bad_1_percent", number(found.bad_1_percent)},
                                         {"bad_2_percent", number(found.bad_2_percent)},

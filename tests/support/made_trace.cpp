@@ -187,12 +187,18 @@ class PlainRun {
 
 }  // namespace
 
-void MadeTrace::send(trace::TraceWriter& writer) const {
-  for (const platform::BusBurst& burst : bursts) writer.burst(burst);
-  for (const platform::QueueLevel& level : levels) writer.level(level);
-  for (const CoreCycle& cycle : cycles) writer.cycle(cycle);
-  for (const platform::FrameRuns& frame : frames) writer.frame(frame);
-  writer.events(records);
+void MadeTrace::send(trace::TraceSink& sink) const {
+  for (const platform::BusBurst& burst : bursts) sink.burst(burst);
+  for (const platform::QueueLevel& level : levels) sink.level(level);
+  for (const CoreCycle& cycle : cycles) sink.cycle(cycle);
+  for (const platform::FrameRuns& frame : frames) sink.frame(frame);
+  for (const platform::TimelineEvent& event : events) sink.event(event);
+}
+
+void finish(trace::TraceSink& sink, const trace::TimeSpan& window) {
+  sink.end(window);
+  for (files::OutputFile& file : sink.files()) file.complete();
+  for (files::OutputFile& file : sink.files()) file.commit();
 }
 
 platform::BoardConfig made_board() {
@@ -225,32 +231,12 @@ MadeTrace make_trace(const platform::BoardConfig& board, std::uint64_t frames) {
                   {"left_capture", first_ps + 900'000, 0},
                   {"posted", first_ps + 900'000, 32},
                   {"posted", first_ps + 1'600'000, 16}};
-  trace.records.events = {{EventKind::kDrop, "right", std::nullopt, 0, 0, 0, 0, 0, "not_armed"},
-                          {EventKind::kCapture, "left", 0, 1, 1'000'000, 1'500'500, 24, 3, ""},
-                          {EventKind::kWait, "pair", 0, 1, 1'100'000, 1'600'000, 0, 0, "core"},
-                          {EventKind::kWait, "pair", 1, 2, 1'400'000, 1'700'000, 0, 0, "core"},
-                          {EventKind::kReadBack, "disparity", 0, 1, 1'000'000, 20'000'000, 24, 0, ""}};
+  trace.events = {{EventKind::kDrop, "right", std::nullopt, 0, 0, 0, 0, 0, "not_armed"},
+                  {EventKind::kCapture, "left", 0, 1, 1'000'000, 1'500'500, 24, 3, ""},
+                  {EventKind::kWait, "pair", 0, 1, 1'100'000, 1'600'000, 0, 0, "core"},
+                  {EventKind::kWait, "pair", 1, 2, 1'400'000, 1'700'000, 0, 0, "core"},
+                  {EventKind::kReadBack, "disparity", 0, 1, 1'000'000, 20'000'000, 24, 0, ""}};
   return trace;
-}
-
-platform::FrameRuns crowded_frame(const platform::BoardConfig& board) {
-  const fpga::FrameGeometry geometry(platform::core_config(board));
-  std::mt19937 random(7);
-  platform::FrameRuns frame;
-  std::uint64_t cycle = 0;
-  for (std::size_t strip = 0; strip <= static_cast<std::size_t>(geometry.height); ++strip) {
-    const std::uint64_t first = cycle;
-    cycle += 40'000;
-    frame.strip_ends.push_back(cycle);
-    for (std::size_t port = 0; port < fpga::kCorePortCount; ++port) {
-      frame.runs.push_back({strip, first, cycle, port, 0, std::nullopt, 4480 - random() % 20});
-      for (std::size_t by = 0; by < fpga::kCorePortCount; ++by) {
-        if (by != port) frame.runs.push_back({strip, first, cycle, port, 0, by, 4000 + random() % 200});
-      }
-    }
-  }
-  frame.end_cycle = cycle;
-  return frame;
 }
 
 }  // namespace stereotlm::test

@@ -7,7 +7,7 @@
 #include "platform/config/board_config.h"
 #include "platform/timeline_records.h"
 #include "platform/trace_records.h"
-#include "sw/trace/trace_writer.h"
+#include "sw/trace/trace_sink.h"
 
 namespace stereotlm::test {
 
@@ -19,17 +19,16 @@ struct MadeTrace {
   std::vector<platform::FrameRuns> frames;
   std::vector<platform::BusBurst> bursts;
   std::vector<platform::QueueLevel> levels;
-  platform::TimelineRecords records;
+  std::vector<platform::TimelineEvent> events;
 
-  void send(trace::TraceWriter& writer) const;
+  void send(trace::TraceSink& sink) const;
 };
+
+// Ends a trace and puts its files in place.
+void finish(trace::TraceSink& sink, const trace::TimeSpan& window = {});
 
 // A board of 16x6 pixels, all of whose buffers share two banks.
 platform::BoardConfig made_board();
 MadeTrace make_trace(const platform::BoardConfig& board, std::uint64_t frames);
-
-// A frame of `board` in whose rows all ports access bank 0, and each waits for each other. The counts differ
-// from row to row.
-platform::FrameRuns crowded_frame(const platform::BoardConfig& board);
 
 }  // namespace stereotlm::test

@@ -63,9 +63,9 @@ std::string tables_text(bool has_point) {
 
 // The names of the functions whose result depends only on their arguments. The date functions are removed
 // from SQLite's list, because their argument may be 'now'.
-std::set<std::string> pure_functions(const Database& database) {
-  Statement list(database,
-                 fmt::format("SELECT name FROM pragma_function_list WHERE flags & {}", SQLITE_DETERMINISTIC));
+std::set<std::string> pure_functions(const sqlite::Database& database) {
+  sqlite::Statement list(
+      database, fmt::format("SELECT name FROM pragma_function_list WHERE flags & {}", SQLITE_DETERMINISTIC));
   std::set<std::string> names;
   while (list.step()) names.insert(list.text(0));
   for (const char* const of_dates :
@@ -87,7 +87,7 @@ bool is_bank_words(const std::string& path) {
 // errors, and SQLite's message quotes only the text. The second time it stands in brackets: then a clause
 // behind the expression, such as LIMIT, and a comment that does not end are errors.
 Conditions::Conditions(const std::vector<Condition>& conditions)
-    : database_("where", Database::Access::kMemory), functions_(pure_functions(database_)) {
+    : database_("where", sqlite::Database::Access::kMemory), functions_(pure_functions(database_)) {
   sqlite3_set_authorizer(database_.handle(), authorize, this);
   static const std::string kNoPoint = tables_text(false);
   static const std::string kPoint = tables_text(true);
@@ -101,11 +101,11 @@ Conditions::Conditions(const std::vector<Condition>& conditions)
   sqlite3_progress_handler(database_.handle(), kStepsOfPortion, exceeds_steps, this);
 }
 
-std::unique_ptr<Statement> Conditions::compile(const std::string& sql) {
+std::unique_ptr<sqlite::Statement> Conditions::compile(const std::string& sql) {
   refusal_.clear();
   try {
-    return std::make_unique<Statement>(database_, sql);
-  } catch (const DatabaseError& error) {
+    return std::make_unique<sqlite::Statement>(database_, sql);
+  } catch (const sqlite::DatabaseError& error) {
     throw std::invalid_argument(refusal_.empty() ? reason_of(error) : refusal_);
   }
 }
@@ -134,7 +134,7 @@ int Conditions::exceeds_steps(void* conditions) {
 }
 
 // SQLite's message quotes the text from the error to its end, which may be many lines.
-std::string Conditions::reason_of(const DatabaseError& error) const {
+std::string Conditions::reason_of(const sqlite::DatabaseError& error) const {
   switch (sqlite3_errcode(database_.handle())) {
     case SQLITE_TOOBIG:
       return fmt::format("a text must be at most {} bytes", kMostBytes);
@@ -163,17 +163,17 @@ bool Conditions::hold(const std::vector<BoardValue>& values) {
   }
   given[place_of(kBankCount)] = &banks;
   for (const Compiled& compiled : compiled_) {
-    Statement& statement = *compiled.statement;
+    sqlite::Statement& statement = *compiled.statement;
     statement.clear_bindings();
     for (std::size_t i = 0; i < given.size(); ++i) {
-      if (given[i] != nullptr) statement.bind(static_cast<int>(i) + 1, *given[i]);
+      if (given[i] != nullptr) statement.bind(static_cast<int>(i) + 1, given[i]->value);
     }
     portions_ = 0;
     try {
       const bool is_true = statement.step() && statement.is_true(0);
       statement.reset();
       if (!is_true) return false;
-    } catch (const DatabaseError& error) {
+    } catch (const sqlite::DatabaseError& error) {
       const std::string reason = reason_of(error);
       throw ConditionError(
           fmt::format("{}: {}: {}", compiled.condition.place, compiled.condition.name, reason), reason);

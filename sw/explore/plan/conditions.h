@@ -8,7 +8,7 @@
 
 #include "platform/config/board_yaml.h"
 #include "sw/explore/plan/points.h"
-#include "sw/explore/store/database.h"
+#include "sw/sqlite/database.h"
 
 namespace stereotlm::explore {
 
@@ -38,7 +38,7 @@ class Conditions {
  private:
   struct Compiled {
     Condition condition;
-    std::unique_ptr<Statement> statement;
+    std::unique_ptr<sqlite::Statement> statement;
   };
 
   // SQLite's authorizer: SQLite calls it for each function and table that a text names. `conditions` is this
@@ -47,10 +47,10 @@ class Conditions {
                        const char* database, const char* trigger);
   // SQLite's progress handler. Returns 1, which ends the computation, if it has too many steps.
   static int exceeds_steps(void* conditions);
-  std::unique_ptr<Statement> compile(const std::string& sql);
-  std::string reason_of(const DatabaseError& error) const;
+  std::unique_ptr<sqlite::Statement> compile(const std::string& sql);
+  std::string reason_of(const sqlite::DatabaseError& error) const;
 
-  Database database_;
+  sqlite::Database database_;
   std::set<std::string> functions_;  // names of the functions that a text may call
   std::string refusal_;              // the reason for which authorize() refused the text being compiled
   std::vector<Compiled> compiled_;

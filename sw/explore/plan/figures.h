@@ -16,7 +16,7 @@ struct Figures {
   std::vector<StoredBlame> blame;
 };
 
-// `document`: as report::stats_document() returns it.
+// `document`: as stats::stats_document() returns it.
 Figures figures_of(const nlohmann::ordered_json& document);
 
 }  // namespace stereotlm::explore

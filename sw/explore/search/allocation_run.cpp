@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "sw/explore/plan/points.h"
-#include "sw/explore/store/database.h"
+#include "sw/sqlite/database.h"
 
 namespace stereotlm::explore {
 namespace {
@@ -15,8 +15,8 @@ namespace {
 // is whole, it has given up a board that is not in the database.
 void record_outcomes(const std::vector<std::size_t>& numbers, const std::string& path, bool is_whole,
                      AllocationSearch& search) {
-  Database store(path, Database::Access::kRead);
-  Statement find(
+  sqlite::Database store(path, sqlite::Database::Access::kRead);
+  sqlite::Statement find(
       store, search.run().camera
                  ? "SELECT status, reason, cycles, \"frames_per_second.steady\", "
                    "\"frames_per_second.steady_uncertainty\", \"cameras.left.dropped_pixels\" + "

@@ -59,8 +59,9 @@ void check_versions(const Readers& readers) {
         of_first = version;
       }
       if (version == of_first) continue;
-      throw DatabaseError(fmt::format("{}: holds points of version {}, and {} of version {}: they do not mix",
-                                      reader->path(), version, first->path(), of_first));
+      throw sqlite::DatabaseError(
+          fmt::format("{}: holds points of version {}, and {} of version {}: they do not mix", reader->path(),
+                      version, first->path(), of_first));
     }
   }
 }
@@ -75,8 +76,9 @@ void check_columns(const Readers& readers) {
     for (const std::string& column : reader->columns()) {
       const auto& [name, first] = *all.emplace(column, reader.get()).first;
       if (name == column) continue;
-      throw DatabaseError(fmt::format("{}: its column {} differs from {} of {} only in case: they do not mix",
-                                      reader->path(), column, name, first->path()));
+      throw sqlite::DatabaseError(
+          fmt::format("{}: its column {} differs from {} of {} only in case: they do not mix", reader->path(),
+                      column, name, first->path()));
     }
   }
 }
@@ -92,7 +94,7 @@ std::vector<std::string> further_columns(const Readers& readers) {
   return columns;
 }
 
-void copy_keys(const Readers& readers, Database& out) {
+void copy_keys(const Readers& readers, sqlite::Database& out) {
   std::set<std::string> keys;
   for (const auto& reader : readers) keys.insert(reader->keys().begin(), reader->keys().end());
   for (const std::string& key : keys) insert_board_key(out, key);
@@ -107,8 +109,8 @@ std::vector<int> places_of(const StoreReader& reader, const std::vector<std::str
 }
 
 // Copies each point once. Throws if two readers hold different results of the same point.
-void copy_points(Readers& readers, Database& out, const std::vector<std::string>& columns) {
-  Statement insert(out, insert_point_sql(columns));
+void copy_points(Readers& readers, sqlite::Database& out, const std::vector<std::string>& columns) {
+  sqlite::Statement insert(out, insert_point_sql(columns));
   std::map<const StoreReader*, std::vector<int>> places;
   for (const auto& reader : readers) places.emplace(reader.get(), places_of(*reader, columns));
   for (;;) {
@@ -121,7 +123,7 @@ void copy_points(Readers& readers, Database& out, const std::vector<std::string>
     for (const auto& reader : readers) {
       if (reader.get() == first || reader->at_end() || reader->hash() != hash) continue;
       if (reader->whole_text(columns) != first->whole_text(columns)) {
-        throw DatabaseError(
+        throw sqlite::DatabaseError(
             fmt::format("{}: holds another result of point {} than {}", reader->path(), hash, first->path()));
       }
       reader->next();
@@ -135,8 +137,8 @@ void copy_points(Readers& readers, Database& out, const std::vector<std::string>
 }
 
 // Copies the blame of each point once. Readers that hold the same point hold the same blame.
-void copy_blame(Readers& readers, Database& out) {
-  Statement insert(out, insert_blame_sql());
+void copy_blame(Readers& readers, sqlite::Database& out) {
+  sqlite::Statement insert(out, insert_blame_sql());
   for (const auto& reader : readers) reader->next_blame();
   for (;;) {
     StoreReader* first = nullptr;
@@ -158,9 +160,10 @@ void copy_blame(Readers& readers, Database& out) {
 
 // Copies the points and the blame of a single store, which is attached as `input`, to the same bytes as the
 // functions above do.
-void copy_attached(Database& out, const std::vector<std::string>& columns) {
+void copy_attached(sqlite::Database& out, const std::vector<std::string>& columns) {
   std::string names;
-  for (const std::string& column : columns) names += (names.empty() ? "" : ", ") + quoted_name(column);
+  for (const std::string& column : columns)
+    names += (names.empty() ? "" : ", ") + sqlite::quoted_name(column);
   out.execute(
       fmt::format("INSERT INTO main.points({}) SELECT {} FROM input.points ORDER BY hash", names, names));
   out.execute(
@@ -170,9 +173,9 @@ void copy_attached(Database& out, const std::vector<std::string>& columns) {
 
 // Moves the contents of the journal of a store into its file, so that the journal can be removed.
 void empty_journal(const std::string& path) {
-  Database database(path, Database::Access::kWrite);
+  sqlite::Database database(path, sqlite::Database::Access::kWrite);
   check_layout(database);
-  Statement checkpoint(database, "PRAGMA wal_checkpoint(TRUNCATE)");
+  sqlite::Statement checkpoint(database, "PRAGMA wal_checkpoint(TRUNCATE)");
   if (checkpoint.step() && checkpoint.integer(0) != 0) database.fail(SQLITE_BUSY);
 }
 
@@ -189,7 +192,8 @@ void merge_stores(const std::vector<std::string>& inputs, const std::string& sto
   if (readers.size() > 1) check_versions(readers);  // Store refuses a second version
   files::OutputFile file(out, store_kind());
   {
-    Database database(file.aside().path().string(), Database::Access::kWrite, Database::kBusyTimeout, out);
+    sqlite::Database database(file.aside().path().string(), sqlite::Database::Access::kWrite,
+                              sqlite::Database::kBusyTimeout, out);
     if (is_interrupted != nullptr) database.interrupt_if(is_interrupted);
     database.execute(
         "PRAGMA journal_mode = OFF; PRAGMA synchronous = NORMAL; PRAGMA main.locking_mode = EXCLUSIVE");
@@ -214,10 +218,10 @@ void merge_stores(const std::vector<std::string>& inputs, const std::string& sto
   file.complete();
   for (const char* ending : {"-wal", "-shm"}) fs::remove(out + ending, none);
   file.commit();
-} catch (const DatabaseError&) {
+} catch (const sqlite::DatabaseError&) {
   throw;
 } catch (const std::runtime_error& error) {  // of the file
-  throw DatabaseError(error.what());
+  throw sqlite::DatabaseError(error.what());
 }
 
 }  // namespace stereotlm::explore

@@ -13,10 +13,10 @@ namespace stereotlm::explore {
 namespace {
 
 // Waits until no other process writes. SQLite itself does not wait before it changes the kind of its journal.
-void wait_for_writers(Database& database) { database.execute("BEGIN IMMEDIATE; COMMIT"); }
+void wait_for_writers(sqlite::Database& database) { database.execute("BEGIN IMMEDIATE; COMMIT"); }
 
-std::string journal_of(const Database& database) {
-  Statement statement(database, "PRAGMA journal_mode");
+std::string journal_of(const sqlite::Database& database) {
+  sqlite::Statement statement(database, "PRAGMA journal_mode");
   return statement.step() ? statement.text(0) : "";
 }
 
@@ -32,12 +32,12 @@ std::vector<const platform::BoardValue*> further_values(const StoredPoint& point
 }  // namespace
 
 Store::Store(const std::string& path, const std::string& version, std::chrono::milliseconds busy_timeout)
-    : database_(path, Database::Access::kCreate, busy_timeout), version_(version) {
+    : database_(path, sqlite::Database::Access::kCreate, busy_timeout), version_(version) {
   create();
   check_version(database_, version);
   read_columns();
-  find_ = std::make_unique<Statement>(database_, kFindPoint);
-  insert_blame_ = std::make_unique<Statement>(database_, insert_blame_sql());
+  find_ = std::make_unique<sqlite::Statement>(database_, kFindPoint);
+  insert_blame_ = std::make_unique<sqlite::Statement>(database_, insert_blame_sql());
 }
 
 // The first process to open the file creates the tables.
@@ -71,8 +71,9 @@ void Store::check_banks(const std::vector<std::string>& banks) const {
     const std::string words = fmt::format("ssram.banks.{}.words", bank);
     for (const std::string& column : columns_) {
       if (!differ_in_case(column, words)) continue;
-      throw DatabaseError(fmt::format("{}: its column {} differs from {} only in case: give another file",
-                                      database_.path(), column, words));
+      throw sqlite::DatabaseError(
+          fmt::format("{}: its column {} differs from {} only in case: give another file", database_.path(),
+                      column, words));
     }
   }
 }
@@ -83,11 +84,11 @@ bool Store::add(const StoredPoint& point) {
   const std::vector<const platform::BoardValue*> values = further_values(point);
   database_.execute("BEGIN IMMEDIATE");
   try {
-    Statement& insert = insertion(point, values);
+    sqlite::Statement& insert = insertion(point, values);
     int place = 0;
     for (const std::string& text : {point.hash, point.status, point.reason, version_, point.config})
       insert.bind(++place, text);
-    for (const platform::BoardValue* value : values) insert.bind(++place, *value);
+    for (const platform::BoardValue* value : values) insert.bind(++place, value->value);
     insert.run();
     const bool is_new = sqlite3_changes(database_.handle()) > 0;
     for (const StoredBlame& row : point.blame) {
@@ -100,7 +101,7 @@ bool Store::add(const StoredPoint& point) {
     }
     database_.execute("COMMIT");
     return is_new;
-  } catch (const DatabaseError&) {
+  } catch (const sqlite::DatabaseError&) {
     // Fails, without consequence, if SQLite has rolled the change back already.
     sqlite3_exec(database_.handle(), "ROLLBACK", nullptr, nullptr, nullptr);
     insertions_.clear();  // the columns that they need may have been rolled back
@@ -108,8 +109,8 @@ bool Store::add(const StoredPoint& point) {
   }
 }
 
-Statement& Store::insertion(const StoredPoint& point,
-                            const std::vector<const platform::BoardValue*>& values) {
+sqlite::Statement& Store::insertion(const StoredPoint& point,
+                                    const std::vector<const platform::BoardValue*>& values) {
   const auto known =
       std::find_if(insertions_.begin(), insertions_.end(), [&values](const Insertion& insertion) {
         return std::equal(
@@ -122,7 +123,7 @@ Statement& Store::insertion(const StoredPoint& point,
   for (const platform::BoardValue* value : values) made.paths.push_back(value->path);
   std::vector<std::string> columns(kFirstColumns.begin(), kFirstColumns.end());
   columns.insert(columns.end(), made.paths.begin(), made.paths.end());
-  made.statement = std::make_unique<Statement>(database_, insert_point_sql(columns));
+  made.statement = std::make_unique<sqlite::Statement>(database_, insert_point_sql(columns));
   insertions_.push_back(std::move(made));
   return *insertions_.back().statement;
 }
@@ -151,7 +152,7 @@ void Store::add_columns(const StoredPoint& point) {
     return;
   }
   for (const std::string& column : missing)
-    database_.execute("ALTER TABLE points ADD COLUMN " + quoted_name(column));
+    database_.execute("ALTER TABLE points ADD COLUMN " + sqlite::quoted_name(column));
 }
 
 }  // namespace stereotlm::explore

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "platform/config/board_yaml.h"
-#include "sw/explore/store/database.h"
+#include "sw/sqlite/database.h"
 
 namespace stereotlm::explore {
 
@@ -39,7 +39,7 @@ class Store {
  public:
   // Opens the file, or makes it. Throws if it holds points of another version of the program.
   Store(const std::string& path, const std::string& version,
-        std::chrono::milliseconds busy_timeout = Database::kBusyTimeout);
+        std::chrono::milliseconds busy_timeout = sqlite::Database::kBusyTimeout);
 
   // Throws if the file has columns of a bank whose name differs from one of these only in case.
   void check_banks(const std::vector<std::string>& banks) const;
@@ -55,17 +55,18 @@ class Store {
   // A prepared INSERT for points that have these columns behind kFirstColumns.
   struct Insertion {
     std::vector<std::string> paths;
-    std::unique_ptr<Statement> statement;
+    std::unique_ptr<sqlite::Statement> statement;
   };
   // The insertion for a point with these values. Adds the columns that the table lacks.
-  Statement& insertion(const StoredPoint& point, const std::vector<const platform::BoardValue*>& values);
+  sqlite::Statement& insertion(const StoredPoint& point,
+                               const std::vector<const platform::BoardValue*>& values);
   void add_columns(const StoredPoint& point);
 
-  Database database_;
+  sqlite::Database database_;
   std::string version_;
   std::set<std::string> columns_;
-  std::unique_ptr<Statement> find_;
-  std::unique_ptr<Statement> insert_blame_;
+  std::unique_ptr<sqlite::Statement> find_;
+  std::unique_ptr<sqlite::Statement> insert_blame_;
   std::vector<Insertion> insertions_;
 };
 

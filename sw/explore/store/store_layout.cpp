@@ -12,14 +12,14 @@ constexpr int kLayout = 2;
 
 }  // namespace
 
-bool has_point(Statement& find, const std::string& hash) {
+bool has_point(sqlite::Statement& find, const std::string& hash) {
   find.bind(1, hash);
   const bool found = find.step();
   find.reset();
   return found;
 }
 
-void create_tables(Database& database, const std::vector<std::string>& further_columns) {
+void create_tables(sqlite::Database& database, const std::vector<std::string>& further_columns) {
   database.execute(
       fmt::format("PRAGMA application_id = {}; PRAGMA user_version = {}", kApplicationId, kLayout));
   create_points(database, further_columns);
@@ -29,11 +29,11 @@ void create_tables(Database& database, const std::vector<std::string>& further_c
   database.execute("CREATE TABLE keys(name TEXT PRIMARY KEY NOT NULL) WITHOUT ROWID");
 }
 
-void create_points(Database& database, const std::vector<std::string>& further_columns) {
+void create_points(sqlite::Database& database, const std::vector<std::string>& further_columns) {
   std::string columns =
       "hash TEXT PRIMARY KEY NOT NULL, status TEXT NOT NULL, reason TEXT NOT NULL, "
       "version TEXT NOT NULL, config TEXT NOT NULL";
-  for (const std::string& name : further_columns) columns += ", " + quoted_name(name);
+  for (const std::string& name : further_columns) columns += ", " + sqlite::quoted_name(name);
   database.execute(fmt::format("CREATE TABLE points({})", columns));
 }
 
@@ -42,38 +42,40 @@ files::FileKind store_kind() {
   return files::marked_kind("database of stereotlm sweep", {{0, "SQLite format 3\0"s}, {68, "STLM"}});
 }
 
-void check_layout(Database& database) {
+void check_layout(sqlite::Database& database) {
   if (database.number("PRAGMA application_id") != kApplicationId) {
-    throw DatabaseError(database.path() + ": not a database of stereotlm sweep");
+    throw sqlite::DatabaseError(database.path() + ": not a database of stereotlm sweep");
   }
   const std::int64_t layout = database.number("PRAGMA user_version");
   if (layout != kLayout) {
-    throw DatabaseError(fmt::format("{}: its layout is {}, of another version; this version writes {}",
-                                    database.path(), layout, kLayout));
+    throw sqlite::DatabaseError(
+        fmt::format("{}: its layout is {}, of another version; this version writes {}", database.path(),
+                    layout, kLayout));
   }
 }
 
-void check_version(Database& database, const std::string& version) {
-  Statement other(database, "SELECT version FROM points WHERE version <> ? LIMIT 1");
+void check_version(sqlite::Database& database, const std::string& version) {
+  sqlite::Statement other(database, "SELECT version FROM points WHERE version <> ? LIMIT 1");
   other.bind(1, version);
   if (!other.step()) return;
-  throw DatabaseError(fmt::format("{}: holds points of version {}; this is version {}: give another file",
-                                  database.path(), other.text(0), version));
+  throw sqlite::DatabaseError(
+      fmt::format("{}: holds points of version {}; this is version {}: give another file", database.path(),
+                  other.text(0), version));
 }
 
-std::vector<std::string> first_column_of(const Database& database, const std::string& sql) {
+std::vector<std::string> first_column_of(const sqlite::Database& database, const std::string& sql) {
   std::vector<std::string> names;
-  Statement statement(database, sql);
+  sqlite::Statement statement(database, sql);
   while (statement.step()) names.push_back(statement.text(0));
   return names;
 }
 
-std::vector<std::string> columns_of(const Database& database) {
+std::vector<std::string> columns_of(const sqlite::Database& database) {
   return first_column_of(database, "SELECT name FROM pragma_table_info('points') ORDER BY cid");
 }
 
-void insert_board_key(const Database& database, const std::string& name) {
-  Statement insert(database, "INSERT INTO keys(name) VALUES(?)");
+void insert_board_key(const sqlite::Database& database, const std::string& name) {
+  sqlite::Statement insert(database, "INSERT INTO keys(name) VALUES(?)");
   insert.bind(1, name);
   insert.run();
 }
@@ -82,7 +84,7 @@ std::string insert_point_sql(const std::vector<std::string>& columns) {
   std::string names;
   std::string places;
   for (const std::string& name : columns) {
-    names += (names.empty() ? "" : ", ") + quoted_name(name);
+    names += (names.empty() ? "" : ", ") + sqlite::quoted_name(name);
     places += places.empty() ? "?" : ", ?";
   }
   return fmt::format("INSERT OR IGNORE INTO points({}) VALUES({})", names, places);

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "sw/explore/store/database.h"
 #include "sw/files/output_file.h"
+#include "sw/sqlite/database.h"
 
 namespace stereotlm::explore {
 
@@ -18,26 +18,26 @@ inline constexpr const char* kBlameColumns = "hash, port, bank, by, cycles";
 
 // The query that has_point() needs as `find`.
 inline constexpr const char* kFindPoint = "SELECT 1 FROM points WHERE hash = ?";
-bool has_point(Statement& find, const std::string& hash);
+bool has_point(sqlite::Statement& find, const std::string& hash);
 
 // Creates the tables in an empty database.
-void create_tables(Database& database, const std::vector<std::string>& further_columns);
+void create_tables(sqlite::Database& database, const std::vector<std::string>& further_columns);
 // Creates table `points` alone.
-void create_points(Database& database, const std::vector<std::string>& further_columns);
+void create_points(sqlite::Database& database, const std::vector<std::string>& further_columns);
 // How a file that is a store begins.
 files::FileKind store_kind();
 // Throws if the file is not a store, or has another layout.
-void check_layout(Database& database);
+void check_layout(sqlite::Database& database);
 // Throws if the store holds points of another version of the program.
-void check_version(Database& database, const std::string& version);
+void check_version(sqlite::Database& database, const std::string& version);
 
 // The first column of each row of a query.
-std::vector<std::string> first_column_of(const Database& database, const std::string& sql);
+std::vector<std::string> first_column_of(const sqlite::Database& database, const std::string& sql);
 // The columns of `points`, in their order.
-std::vector<std::string> columns_of(const Database& database);
+std::vector<std::string> columns_of(const sqlite::Database& database);
 
 // Notes in table `keys` that this column of `points` is a key of the board, not a figure.
-void insert_board_key(const Database& database, const std::string& name);
+void insert_board_key(const sqlite::Database& database, const std::string& name);
 // SQL that inserts a point with these columns, unless the table has the point.
 std::string insert_point_sql(const std::vector<std::string>& columns);
 // SQL that inserts a row of blame, with the columns kBlameColumns.

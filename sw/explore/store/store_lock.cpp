@@ -54,7 +54,7 @@ std::string behind_links(const std::string& store) {
   try {
     return files::linked_file(store).string();
   } catch (const std::system_error& error) {
-    throw DatabaseError(fmt::format("{}: cannot be opened: {}", store, error.code().message()));
+    throw sqlite::DatabaseError(fmt::format("{}: cannot be opened: {}", store, error.code().message()));
   }
 }
 
@@ -68,10 +68,10 @@ StoreLock::StoreLock(const std::string& store, std::chrono::milliseconds busy_ti
     const int error = errno;
     close(file_);
     if (outcome == Outcome::kFailed)
-      throw DatabaseError(fmt::format("{}: cannot be locked: {}", store, std::strerror(error)));
+      throw sqlite::DatabaseError(fmt::format("{}: cannot be locked: {}", store, std::strerror(error)));
     if (std::chrono::steady_clock::now() >= end)
-      throw DatabaseError(store +
-                          ": another process is at work on it: wait for its end, or give another file");
+      throw sqlite::DatabaseError(
+          store + ": another process is at work on it: wait for its end, or give another file");
     std::this_thread::sleep_for(kBetweenTries);
   }
 }
@@ -82,7 +82,8 @@ void StoreLock::open_store() {
   is_made_ = file_ >= 0;
   if (file_ < 0 && errno == EEXIST) file_ = open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, kMode);
   if (file_ < 0)
-    throw DatabaseError(fmt::format("{}: cannot be opened to write: {}", store_, std::strerror(errno)));
+    throw sqlite::DatabaseError(
+        fmt::format("{}: cannot be opened to write: {}", store_, std::strerror(errno)));
 }
 
 void StoreLock::check() const {

@@ -3,7 +3,7 @@
 #include <chrono>
 #include <string>
 
-#include "sw/explore/store/database.h"
+#include "sw/sqlite/database.h"
 
 namespace stereotlm::explore {
 
@@ -11,10 +11,10 @@ namespace stereotlm::explore {
 std::string behind_links(const std::string& store);
 
 // The file of a store was removed or replaced while it was in use. The points that were added to it are lost.
-class StoreGone : public DatabaseError {
+class StoreGone : public sqlite::DatabaseError {
  public:
   explicit StoreGone(const std::string& store)
-      : DatabaseError(store + ": was removed or replaced while in use: its points are lost") {}
+      : sqlite::DatabaseError(store + ": was removed or replaced while in use: its points are lost") {}
 };
 
 // Reserves a store for one writer. The merge at the end of a sweep replaces the file, and would lose points

@@ -9,7 +9,7 @@
 namespace stereotlm::explore {
 
 FinishedStore::FinishedStore(const std::string& path, const std::string& version)
-    : database_(path, Database::Access::kRead) {
+    : database_(path, sqlite::Database::Access::kRead) {
   check_layout(database_);
   check_version(database_, version);
   find_.emplace(database_, kFindPoint);
@@ -18,7 +18,8 @@ FinishedStore::FinishedStore(const std::string& path, const std::string& version
 bool FinishedStore::has(const std::string& hash) { return has_point(*find_, hash); }
 
 StoredRow::StoredRow(const std::string& path)
-    : database_(path, Database::Access::kRead), find_(database_, "SELECT * FROM points WHERE hash = ?") {
+    : database_(path, sqlite::Database::Access::kRead),
+      find_(database_, "SELECT * FROM points WHERE hash = ?") {
   for (int column = 0; column < find_.columns(); ++column) columns_[find_.name(column)] = column;
 }
 
@@ -43,7 +44,7 @@ double StoredRow::real(const std::string& column) const {
   return found == columns_.end() ? 0 : find_.real(found->second);
 }
 
-StoreReader::StoreReader(const std::string& path) : database_(path, Database::Access::kRead) {
+StoreReader::StoreReader(const std::string& path) : database_(path, sqlite::Database::Access::kRead) {
   check_layout(database_);
   columns_ = columns_of(database_);
   keys_ = first_column_of(database_, "SELECT name FROM keys");

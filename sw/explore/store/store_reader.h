@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "sw/explore/store/database.h"
+#include "sw/sqlite/database.h"
 
 namespace stereotlm::explore {
 
@@ -22,8 +22,8 @@ class FinishedStore {
   bool has(const std::string& hash);
 
  private:
-  Database database_;
-  std::optional<Statement> find_;
+  sqlite::Database database_;
+  std::optional<sqlite::Statement> find_;
 };
 
 // Reads one point at a time, which it finds by its hash.
@@ -40,8 +40,8 @@ class StoredRow {
   double real(const std::string& column) const;
 
  private:
-  Database database_;
-  Statement find_;
+  sqlite::Database database_;
+  sqlite::Statement find_;
   std::map<std::string, int> columns_;
 };
 
@@ -58,7 +58,7 @@ class StoreReader {
 
   bool at_end() const { return !has_point_; }
   const std::string& hash() const { return hash_; }  // of the selected point
-  const Statement& point() const { return *points_; }
+  const sqlite::Statement& point() const { return *points_; }
   void next();  // selects the next point
   // Everything that the file holds about the selected point, as one text to compare: the values of these
   // columns, and the blame.
@@ -68,16 +68,16 @@ class StoreReader {
   // first row.
   void next_blame() { has_blame_ = blame_->step(); }
   bool has_blame() const { return has_blame_; }
-  const Statement& blame() const { return *blame_; }
+  const sqlite::Statement& blame() const { return *blame_; }
   std::string blame_hash() const { return blame_->text(0); }
 
  private:
-  Database database_;
+  sqlite::Database database_;
   std::vector<std::string> columns_;
   std::vector<std::string> keys_;
-  std::optional<Statement> points_;
-  std::optional<Statement> blame_of_point_;
-  std::optional<Statement> blame_;
+  std::optional<sqlite::Statement> points_;
+  std::optional<sqlite::Statement> blame_of_point_;
+  std::optional<sqlite::Statement> blame_;
   bool has_point_ = false;
   bool has_blame_ = false;
   std::string hash_;

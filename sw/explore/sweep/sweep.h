@@ -7,7 +7,7 @@
 
 #include "sw/explore/plan/figures.h"
 #include "sw/explore/plan/points.h"
-#include "sw/explore/store/database.h"
+#include "sw/sqlite/database.h"
 
 namespace stereotlm::explore {
 
@@ -47,7 +47,8 @@ struct SweepOptions {
   unsigned jobs = 1;        // worker processes
   std::uint64_t shard = 0;  // 0..shards-1: only the points whose number modulo `shards` is this
   std::uint64_t shards = 1;
-  std::chrono::milliseconds busy_timeout = Database::kBusyTimeout;  // wait for processes that lock the store
+  std::chrono::milliseconds busy_timeout =
+      sqlite::Database::kBusyTimeout;  // wait for processes that lock the store
 };
 
 // The number of deaths of its worker after which a point counts as failed.

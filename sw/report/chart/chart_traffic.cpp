@@ -6,7 +6,7 @@
 
 #include "platform/figures.h"
 #include "sw/report/chart/chart_text.h"
-#include "sw/report/wait_text.h"
+#include "sw/stats/wait_text.h"
 
 namespace stereotlm::report {
 namespace {
@@ -125,7 +125,7 @@ class TrafficReader {
     traffic_.summary = {fmt::format("{}; {} frame{}", text, stats_.frames, stats_.frames == 1 ? "" : "s")};
     traffic_.summary.push_back(
         fmt::format("bound {} frames/s, set by {}", rate_text(bound.system.value_or(bound.core)),
-                    resource_words(bound.system ? bound.system_limited_by : bound.core_limited_by)));
+                    stats::resource_words(bound.system ? bound.system_limited_by : bound.core_limited_by)));
   }
 
   const platform::BoardConfig& board_;

@@ -9,7 +9,7 @@
 
 #include "models/fpga/frame_geometry.h"
 #include "platform/audit.h"
-#include "sw/report/conflicts_csv.h"
+#include "sw/stats/conflicts_csv.h"
 
 namespace stereotlm::report {
 namespace {
@@ -40,13 +40,13 @@ std::size_t parts_of(std::size_t whole, std::size_t part) { return (whole + part
 ConflictData::ConflictData(const platform::BoardConfig& board, const std::filesystem::path& folder)
     : board_(board),
       grid_(fpga::FrameGeometry(platform::core_config(board)), fpga::ConflictRecorder::kMostTiles),
-      rows_csv_((folder / "rows.csv").string(), rows_csv_head(board)),
-      tiles_csv_((folder / "conflicts.csv").string(), conflicts_csv_head()),
+      rows_csv_((folder / "rows.csv").string(), stats::rows_csv_head(board)),
+      tiles_csv_((folder / "conflicts.csv").string(), stats::conflicts_csv_head()),
       strips_(1, ","),
       lines_(1 + grid_.rows) {
   const auto rows = static_cast<std::size_t>(board.matcher.rows);
   for (std::size_t strip = 0; strip < parts_of(static_cast<std::size_t>(board.image.height), rows); ++strip)
-    strips_.push_back(csv_range(strip, rows, board.image.height));
+    strips_.push_back(stats::csv_range(strip, rows, board.image.height));
   for (Line& line : lines_) line.accesses.resize(board.banks.size());
   for (const platform::BankConfig& bank : board.banks) banks_.push_back(bank.name);
   for (std::size_t requester = 0; requester < fpga::kRequesters; ++requester)
@@ -93,7 +93,7 @@ std::size_t ConflictData::tile_of_line() const {
     tile = 1 + index(kTileRow, grid_.rows_of_tile, grid_.rows) * grid_.columns +
            index(kTileColumn, grid_.columns_of_tile, grid_.columns);
   }
-  const std::string place = csv_tile(board_, grid_, tile);
+  const std::string place = stats::csv_tile(board_, grid_, tile);
   if (tiles_csv_.cells(kTileRow, 4) != place)
     tiles_csv_.refuse(kTileRow, fmt::format("must be the place of a tile, such as '{}'", place));
   return tile;

@@ -12,9 +12,9 @@
 #include <utility>
 #include <vector>
 
-#include "sw/explore/store/database.h"
 #include "sw/explore/store/store_layout.h"
 #include "sw/process/interrupt.h"
+#include "sw/sqlite/database.h"
 
 namespace stereotlm::report {
 namespace {
@@ -35,7 +35,7 @@ bool is_shown(const std::string& column) {
   return true;
 }
 
-Json value_of(const explore::Statement& row, int column) {
+Json value_of(const sqlite::Statement& row, int column) {
   switch (sqlite3_column_type(row.handle(), column)) {
     case SQLITE_NULL:
       return nullptr;
@@ -111,14 +111,14 @@ class BoardTexts {
 }  // namespace
 
 Json database_data(const std::string& path) {
-  explore::Database database(path, explore::Database::Access::kRead);
+  sqlite::Database database(path, sqlite::Database::Access::kRead);
   explore::check_layout(database);
   const std::vector<std::string> names = explore::columns_of(database);
   std::vector<Column<Json>> columns(names.size());
   std::vector<bool> shown_columns;
   for (const std::string& name : names) shown_columns.push_back(is_shown(name));
   BoardTexts boards;
-  explore::Statement points(database, "SELECT * FROM points ORDER BY hash");
+  sqlite::Statement points(database, "SELECT * FROM points ORDER BY hash");
   std::size_t size = 0;
   for (; !process::interrupted() && points.step(); ++size) {
     for (std::size_t i = 0; i < names.size(); ++i) {

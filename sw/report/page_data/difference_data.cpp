@@ -15,12 +15,12 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // B - A for each row, summed over the frames.
-Json rows_data(const RowComparison& rows, std::size_t height) {
+Json rows_data(const stats::RowComparison& rows, std::size_t height) {
   std::vector<std::int64_t> cycles(height);
   std::array<std::vector<std::int64_t>, fpga::kCorePortCount> stalls;
   stalls.fill(cycles);
   // With as many ranges as rows, all rows of a range have the same differences.
-  for (const RowComparison::Range& range : rows.ranges(height)) {
+  for (const stats::RowComparison::Range& range : rows.ranges(height)) {
     const auto count = static_cast<std::int64_t>(range.last_row - range.first_row + 1);
     for (std::size_t row = range.first_row; row <= range.last_row; ++row) {
       cycles[row] = range.cycles / count;
@@ -39,7 +39,7 @@ Json rows_data(const RowComparison& rows, std::size_t height) {
   return data;
 }
 
-Json pixels_data(const PixelComparison& pixels) {
+Json pixels_data(const stats::PixelComparison& pixels) {
   Json data = {{"frames", pixels.frames()},
                {"frames_that_differ", pixels.frames_that_differ()},
                {"pixels", pixels.pixels()}};

@@ -24,13 +24,13 @@
 #include "sw/files/base64.h"
 #include "sw/files/shell_word.h"
 #include "sw/files/whole_file.h"
+#include "sw/media/encode.h"
 #include "sw/process/interrupt.h"
 #include "sw/report/chart/memory_chart.h"
 #include "sw/report/page_data/recording_data.h"
-#include "sw/report/stats_json.h"
 #include "sw/runs/limiter_text.h"
 #include "sw/runs/progress.h"
-#include "sw/media/encode.h"
+#include "sw/stats/stats_json.h"
 
 namespace stereotlm::report {
 namespace {
@@ -113,18 +113,18 @@ Json banks_of(const BoardConfig& board) {
 }
 
 Json bounds_of(const BoardConfig& board, const platform::Tables& tables, bool camera) {
+  const platform::FrameAccesses accesses = platform::frame_accesses(board, tables);
   Json core = Json::array();
   for (std::uint64_t frame = 0; frame < platform::allocation_period_frames(board); ++frame) {
     Json resources = Json::array();
-    for (const platform::ResourceBound& bound : platform::frame_bounds(board, tables, frame))
+    for (const platform::ResourceBound& bound : platform::frame_bounds(board, accesses, frame))
       resources.push_back({{"resource", bound.resource}, {"cycles", bound.cycles}});
     core.push_back(std::move(resources));
   }
   Json bounds = {{"core", std::move(core)}};
   if (!camera) return bounds;
   bounds["computer"] = Json::array();
-  for (const platform::RateBound& bound :
-       platform::computer_bounds(board, platform::frame_accesses(board, tables), true)) {
+  for (const platform::RateBound& bound : platform::computer_bounds(board, accesses, true)) {
     bounds["computer"].push_back(
         {{"resource", bound.resource}, {"frames_per_second", bound.frames_per_second}});
   }
@@ -132,7 +132,7 @@ Json bounds_of(const BoardConfig& board, const platform::Tables& tables, bool ca
 }
 
 Json json_of(const area::Area& area) {
-  Json json = area_json(area);
+  Json json = stats::area_json(area);
   json["fits"] = area.fits();
   return json;
 }

@@ -13,9 +13,9 @@
 #include "platform/bounds.h"
 #include "platform/figures.h"
 #include "platform/timeline_sums.h"
-#include "sw/report/stats_differences.h"
-#include "sw/report/stats_json.h"
-#include "sw/report/timeline_csv.h"
+#include "sw/stats/stats_differences.h"
+#include "sw/stats/stats_json.h"
+#include "sw/stats/timeline_csv.h"
 
 namespace stereotlm::report {
 namespace {
@@ -48,8 +48,8 @@ std::vector<std::string> names_of(const std::string& head) {
 }  // namespace
 
 TimelineData::TimelineData(const platform::BoardConfig& board, const std::filesystem::path& folder)
-    : events_csv_((folder / "timeline.csv").string(), timeline_csv_head()),
-      latencies_csv_((folder / "latency.csv").string(), latency_csv_head()),
+    : events_csv_((folder / "timeline.csv").string(), stats::timeline_csv_head()),
+      latencies_csv_((folder / "latency.csv").string(), stats::latency_csv_head()),
       board_(board) {}
 
 // An event with the names of the line.
@@ -127,8 +127,9 @@ void TimelineData::check(const platform::Statistics& statistics) const {
   platform::Statistics derived = statistics;
   platform::derive_delivery_figures(deliveries, platform::allocation_period_frames(board_), derived);
   platform::Audit of_figures;
-  for (const std::string& difference : stats_differences(stats_json(statistics, {}), stats_json(derived, {}),
-                                                         "stats.json", "from the latencies"))
+  for (const std::string& difference :
+       stats::stats_differences(stats::stats_json(statistics, {}), stats::stats_json(derived, {}),
+                                "stats.json", "from the latencies"))
     of_figures.fail("recorded: " + difference);
   latencies_csv_.finish(of_figures);
 }
@@ -176,7 +177,8 @@ Json TimelineData::events_json() const {
                       event.begin_ps, event.end_ps, event.words, event.dropped_pixels, event.why});
     }
   }
-  Json json = {{"names", names_of(timeline_csv_head())}, {"rows", std::move(rows)}, {"all", events_.size()}};
+  Json json = {
+      {"names", names_of(stats::timeline_csv_head())}, {"rows", std::move(rows)}, {"all", events_.size()}};
   json["periods_ps"] = Json::array();
   for (const auto& [begin, end] : shown) json["periods_ps"].push_back({begin, end});
   return json;
@@ -236,7 +238,7 @@ Json TimelineData::latency_json() const {
   std::stable_sort(order.begin(), order.end(),
                    [](const Latency* a, const Latency* b) { return a->back() < b->back(); });
   const std::size_t rows = std::min(order.size(), kMostLatencies);
-  const std::vector<std::string> names = names_of(latency_csv_head());
+  const std::vector<std::string> names = names_of(stats::latency_csv_head());
   Json shown = Json::array();
   for (std::size_t row = 0; row < rows; ++row)
     shown.push_back(*order[rows < 2 ? row : row * (order.size() - 1) / (rows - 1)]);

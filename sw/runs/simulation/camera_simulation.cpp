@@ -52,7 +52,10 @@ const host::StereoPair& CameraSimulation::captured_pair(std::uint64_t number, st
   return *pair_;
 }
 
-void CameraSimulation::record_timeline() { computer_->record(timeline_.emplace(board_)); }
+void CameraSimulation::record_timeline() {
+  computer_->record(timeline_.emplace(board_));
+  driver_.set_observer(timeline_->driver());
+}
 
 platform::TimelineRecords CameraSimulation::take_timeline() {
   if (!timeline_) return {};

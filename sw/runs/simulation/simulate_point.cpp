@@ -13,9 +13,9 @@
 #include "sw/explore/sweep/sweep.h"
 #include "sw/files/sha256.h"
 #include "sw/process/child.h"
-#include "sw/report/stats_json.h"
 #include "sw/runs/simulation/camera_simulation.h"
 #include "sw/runs/simulation/make_simulation.h"
+#include "sw/stats/stats_json.h"
 
 namespace stereotlm::runs {
 namespace {
@@ -30,7 +30,7 @@ bool is_table_of(const std::optional<kernels::RectificationTable>& table, const 
 
 Json document_of(const platform::Statistics& statistics) {
   if (!statistics.failed.empty()) throw std::runtime_error(statistics.failed.front());
-  return report::stats_document(statistics, std::nullopt);
+  return stats::stats_document(statistics, std::nullopt);
 }
 
 // Simulates the whole computer. To be called in a child process that ends afterwards: the simulation is never

@@ -10,7 +10,7 @@
 #include "platform/config/board_yaml.h"
 #include "platform/conflicts.h"
 #include "platform/core_run.h"
-#include "sw/report/conflicts_csv.h"
+#include "sw/stats/conflicts_csv.h"
 #include "tests/integration/core/preloaded_run.h"
 #include "tests/support/board_of_random.h"
 #include "tests/support/fork.h"
@@ -109,16 +109,16 @@ std::string compare_conflicts_with_references(const RandomBoard& board, Fidelity
       board.seed % 4 == 0 ? 1 + board.seed % 50 : fpga::ConflictRecorder::kMostTiles;
   platform::Conflicts conflicts(config, most_tiles);
   const PreloadedRun run = run_board(board, config, fidelity, false, &conflicts);
-  std::string rows = report::rows_csv_head(config);
+  std::string rows = stats::rows_csv_head(config);
   std::uint64_t frames = 0;
   for (const fpga::FrameConflicts& frame : conflicts.take_frames())
-    rows += report::rows_csv(config, frames++, frame);
+    rows += stats::rows_csv(config, frames++, frame);
   const fpga::TileGrid& grid = conflicts.recorder().grid();
   EXPECT_LE(grid.columns * grid.rows, most_tiles);
   std::string text = differing_lines(plain_rows_csv(input, expected.strips), rows);
   text +=
       differing_lines(plain_conflicts_csv(input, expected.tiles, grid.strips_of_tile, grid.groups_of_tile),
-                      report::conflicts_csv(config, conflicts.recorder()));
+                      stats::conflicts_csv(config, conflicts.recorder()));
   for (const std::string& failed : conflicts.failed(run.statistics)) text += failed + "\n";
   return text;
 }

@@ -72,14 +72,6 @@ TEST_F(CameraSimulationTest, DeliversTheDisparitiesOfThreePairsInFiveCameraFrame
   EXPECT_NEAR(statistics.frames_per_second.steady->frames_per_second, 600, 6);
 }
 
-TEST_F(CameraSimulationTest, HasNoSteadyRateOfOneFrame) {
-  build(1);
-  run();
-  const platform::Statistics statistics = simulation->statistics();
-  EXPECT_TRUE(statistics.frames_per_second.system.has_value());
-  EXPECT_FALSE(statistics.frames_per_second.steady.has_value());
-}
-
 TEST_F(CameraSimulationTest, FinishesTheFramesOfTheCoreToEndEarly) {
   build(100);
   while (simulation->frames_done() < 3) simulation->advance();
@@ -93,13 +85,6 @@ TEST_F(CameraSimulationTest, FinishesTheFramesOfTheCoreToEndEarly) {
   const platform::Statistics statistics = simulation->statistics();
   EXPECT_EQ(statistics.frames, frames);
   EXPECT_THAT(statistics.failed, IsEmpty());
-}
-
-TEST_F(CameraSimulationTest, EndsAtOnceBeforeTheFirstCapture) {
-  build(100);
-  simulation->end_early();
-  EXPECT_TRUE(simulation->finished());
-  EXPECT_EQ(simulation->frames(), 0U);
 }
 
 // The camera sends 24 lines, as fast as on the paper's board: 640 pixels in 52.15 us. A third party keeps the
@@ -160,12 +145,6 @@ TEST_F(CameraSimulationTest, ReportsWhoWaitsForWhatWhenNothingProceeds) {
       AllOf(HasSubstr("no progress for 0.10"),
             HasSubstr("s of simulated time; delivered: 0 of 100 frames; the driver waits for: capture 0; the "
                       "core runs no frame")));
-}
-
-TEST_F(CameraSimulationTest, RefusesABoardWithProblems) {
-  platform::BoardConfig wrong = small_board();
-  wrong.matcher.window = 4;
-  EXPECT_THROW(build(1, wrong), std::invalid_argument);
 }
 
 }  // namespace

@@ -130,10 +130,5 @@ TEST_F(PreloadedSimulationTest, ReportsARunThatStopsBeforeTheLastFrame) {
             "the simulation has ended after 7 frames: no event is left that could finish the next");
 }
 
-TEST_F(PreloadedSimulationTest, RefusesABoardWithProblems) {
-  board.matcher.window = 4;
-  EXPECT_THROW(build(1), std::invalid_argument);
-}
-
 }  // namespace
 }  // namespace stereotlm::simulation

@@ -27,11 +27,6 @@ TEST(ProgressText, OfASearchHasATimeOnceFirstResultsHaveLeftOutBoards) {
             "48 boards simulated, 120 left at most (0:30 at this rate)");
 }
 
-TEST(VerificationText, CountsTheFramesCompared) {
-  EXPECT_EQ(verification_text(0, 5), "verifying: 0/5 frames");
-  EXPECT_EQ(verification_text(1, 5), "verifying: 1/5 frames");
-}
-
 TEST(ProgressText, WritesLongTimes) {
   const auto left = [](std::uint64_t frames) {
     const std::string text = progress_text({frames, 1, 1'000'000, 1'000'000, 1}, 1);

@@ -15,13 +15,13 @@
 #include <utility>
 #include <vector>
 
+#include "models/host/frame_source.h"
 #include "platform/config/board_yaml.h"
 #include "sw/explore/plan/points.h"
 #include "sw/process/child.h"
-#include "sw/report/conflicts_csv.h"
-#include "sw/report/timeline_csv.h"
 #include "sw/runs/simulation/camera_simulation.h"
-#include "tests/integration/runs/random_pictures.h"
+#include "sw/stats/conflicts_csv.h"
+#include "sw/stats/timeline_csv.h"
 #include "tests/support/board_of_random.h"
 #include "tests/support/fork.h"
 #include "tests/support/monitoring_binder.h"
@@ -34,7 +34,20 @@ namespace {
 
 using fpga::Fidelity;
 
-using Pictures = test::RandomPictures;
+// What the cameras see.
+class Pictures : public host::FrameSource {
+ public:
+  // `board` outlives this object.
+  explicit Pictures(const test::RandomBoard& board) : board_(board) {}
+  const host::StereoPair& pair(std::uint64_t number) override {
+    pair_ = test::stereo_pair(board_, test::camera_pictures(board_, number));
+    return pair_;
+  }
+
+ private:
+  const test::RandomBoard& board_;
+  host::StereoPair pair_;
+};
 
 struct Outcome {
   std::vector<runs::Result> results;
@@ -54,8 +67,8 @@ Outcome simulate(const platform::BoardConfig& board, const platform::Tables& tab
   while (!simulation.finished()) {
     for (runs::Result& result : simulation.advance()) outcome.results.push_back(std::move(result));
     const platform::TimelineRecords records = simulation.take_timeline();
-    outcome.timeline += report::timeline_csv(records.events);
-    outcome.latencies += report::latency_csv(records.latencies);
+    outcome.timeline += stats::timeline_csv(records.events);
+    outcome.latencies += stats::latency_csv(records.latencies);
   }
   outcome.rows = simulation.take_rows();
   outcome.statistics = simulation.statistics();
@@ -217,25 +230,6 @@ std::string figures_of(const test::PlainComputerResult& plain, const test::Plain
   return figures.text();
 }
 
-// The lines that differ.
-std::string differences(const std::string& expected, const std::string& found) {
-  std::string text;
-  std::size_t expected_begin = 0;
-  std::size_t found_begin = 0;
-  const auto next_line = [](const std::string& from, std::size_t& begin) {
-    const std::size_t end = std::min(from.find('\n', begin), from.size());
-    const std::string line = from.substr(begin, end - begin);
-    begin = std::min(end + 1, from.size());
-    return line;
-  };
-  while (expected_begin < expected.size() || found_begin < found.size()) {
-    const std::string expected_line = next_line(expected, expected_begin);
-    const std::string found_line = next_line(found, found_begin);
-    if (expected_line != found_line) text += "plain: " + expected_line + "\nmodel: " + found_line + '\n';
-  }
-  return text;
-}
-
 // Where a run of the models is not what it should be.
 std::string problems_of(std::uint64_t seed, const test::RandomKnobs& knobs, Fidelity fidelity) {
   const test::RandomComputer computer = test::make_random_computer(seed, knobs);
@@ -248,8 +242,8 @@ std::string problems_of(std::uint64_t seed, const test::RandomKnobs& knobs, Fide
   std::string problems;
   for (const std::string& failed : outcome.statistics.failed) problems += failed + '\n';
   const bool with_pixels = fidelity != Fidelity::kTiming;
-  problems += differences(figures_of(test::run_plain_computer(input), input, with_pixels),
-                          figures_of(outcome, with_pixels));
+  problems += test::differing_lines(figures_of(test::run_plain_computer(input), input, with_pixels),
+                                    figures_of(outcome, with_pixels));
   return problems.empty() ? problems : problems + platform::to_yaml(board);
 }
 
@@ -310,7 +304,7 @@ TEST_P(RandomTimelines, AreTheSameAtEachFidelity) {
     const std::string& cycle = results[job - job % kFidelities.size()].text;
     ASSERT_EQ(results[job].exit_status, 1) << seed << results[job].text;  // its text is the result
     EXPECT_NE(cycle.find("\nwait,core,0,"), std::string::npos) << seed;
-    EXPECT_EQ(differences(cycle, results[job].text), "") << seed;
+    EXPECT_EQ(test::differing_lines(cycle, results[job].text), "") << seed;
   }
 }
 
@@ -328,17 +322,17 @@ std::string conflicts_that_differ(std::uint64_t seed, const test::RandomKnobs& k
   runs::CameraSimulation simulation(board, tables, pictures, static_cast<std::uint64_t>(input.frames), binder,
                                     fidelity);
   simulation.record_conflicts();
-  std::string rows = report::rows_csv_head(board);
+  std::string rows = stats::rows_csv_head(board);
   std::uint64_t frames = 0;
   while (!simulation.finished()) {
     simulation.advance();
     for (const fpga::FrameConflicts& frame : simulation.take_conflicts())
-      rows += report::rows_csv(board, frames++, frame);
+      rows += stats::rows_csv(board, frames++, frame);
   }
   const test::PlainCycleResult core = test::run_plain_computer(input).core;
   std::string text = test::differing_lines(test::plain_rows_csv(input.board.core, core.strips), rows);
   text += test::differing_lines(test::plain_conflicts_csv(input.board.core, core.tiles),
-                                report::conflicts_csv(board, *simulation.conflicts()));
+                                stats::conflicts_csv(board, *simulation.conflicts()));
   for (const std::string& failed : simulation.statistics().failed) text += failed + '\n';
   return text.empty() ? text : text + platform::to_yaml(board);
 }

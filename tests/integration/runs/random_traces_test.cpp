@@ -1,11 +1,13 @@
-// What traces are made of, on random boards and random computers, each in a process of its own: the same at each
-// fidelity, equal to the figures of the run, and, cycle by cycle, equal to the transactions on the links.
+// What traces are made of, on random boards and random computers, each in a process of its own: the same at
+// each fidelity, equal to the figures of the run, cycle by cycle equal to the transactions on the links, and,
+// on the buses and in the queues, equal to the plain loop over events.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -19,12 +21,14 @@
 #include "models/clock.h"
 #include "platform/config/board_yaml.h"
 #include "platform/trace_runs.h"
-#include "sw/explore/store/database.h"
 #include "sw/runs/simulation/make_simulation.h"
-#include "sw/trace/trace_file.h"
+#include "sw/sqlite/database.h"
+#include "sw/trace/trace.h"
 #include "tests/support/board_of_random.h"
 #include "tests/support/fork.h"
 #include "tests/support/perfetto_file.h"
+#include "tests/support/plain_computer.h"
+#include "tests/support/plain_conflicts.h"
 #include "tests/support/random_computer.h"
 #include "tests/support/scratch_folder.h"
 #include "tests/support/transaction_log.h"
@@ -35,6 +39,8 @@ namespace {
 
 using fpga::CycleWindow;
 using fpga::Fidelity;
+using platform::BusBurst;
+using platform::QueueLevel;
 
 constexpr std::array kEachFidelity = {Fidelity::kCycle, Fidelity::kFast, Fidelity::kTiming};
 
@@ -43,15 +49,15 @@ struct Case {
   platform::BoardConfig board;
   platform::Tables tables;
   test::RandomBoard pictures;
-  bool camera = false;
   std::uint64_t frames = 1;
+  std::optional<test::PlainComputerInput> computer = std::nullopt;
 };
 
 class PicturesOfCase : public host::FrameSource {
  public:
   explicit PicturesOfCase(const Case& of) : of_(of) {}
   const host::StereoPair& pair(std::uint64_t number) override {
-    pair_ = of_.camera
+    pair_ = of_.computer
                 ? test::stereo_pair(of_.pictures, test::camera_pictures(of_.pictures, number))
                 : test::stereo_pair(of_.pictures, static_cast<int>(number % of_.pictures.pictures.size()));
     return pair_;
@@ -67,17 +73,17 @@ Case case_of(std::uint64_t seed, bool with_knobs, bool camera) {
   knobs.large_images = false;
   if (camera) {
     const test::RandomComputer computer = test::make_random_computer(seed, knobs);
-    return {test::board_config(computer), test::board_tables(computer.board), computer.board, true,
-            static_cast<std::uint64_t>(computer.input.frames)};
+    return {test::board_config(computer), test::board_tables(computer.board), computer.board,
+            static_cast<std::uint64_t>(computer.input.frames), computer.input};
   }
   const test::RandomBoard board = test::make_random_board(seed, knobs);
-  return {test::board_config(board), test::board_tables(board), board, false,
+  return {test::board_config(board), test::board_tables(board), board,
           static_cast<std::uint64_t>(board.frames)};
 }
 
 class KeptCycles : public fpga::CycleObserver {
  public:
-  KeptCycles(bool keeps, trace::TraceWriter& writer) : keeps_(keeps), writer_(writer) {}
+  KeptCycles(bool keeps, trace::Trace& writer) : keeps_(keeps), writer_(writer) {}
   void cycle(const fpga::CoreCycle& cycle) override {
     EXPECT_TRUE(last_ == UINT64_MAX || cycle.cycle > last_) << cycle.cycle << " after " << last_;
     last_ = cycle.cycle;
@@ -93,9 +99,121 @@ class KeptCycles : public fpga::CycleObserver {
 
  private:
   bool keeps_;
-  trace::TraceWriter& writer_;
+  trace::Trace& writer_;
   std::uint64_t last_ = UINT64_MAX;
 };
+
+// What the buses and queues around the core do.
+class KeptBuses : public platform::BusObserver {
+ public:
+  explicit KeptBuses(trace::Trace& writer) : writer_(writer) {}
+  void burst(const BusBurst& burst) override {
+    writer_.burst(burst);
+    (burst.bus == BusBurst::Bus::kPci ? pci : local).push_back(burst);
+  }
+  void level(const QueueLevel& level) override {
+    writer_.level(level);
+    levels[level.queue].push_back(level);
+  }
+
+  // With what the plain computer does not have: targets, and addresses of the PCI bus.
+  std::string text() const {
+    std::string text = plain_part();
+    for (const auto* const bursts : {&pci, &local}) {
+      for (const BusBurst& burst : *bursts) text += fmt::format("{} {:x}\n", burst.target, burst.address);
+    }
+    return text;
+  }
+  std::string plain_part() const {
+    std::string text;
+    for (const auto* const bursts : {&pci, &local}) {
+      for (const BusBurst& burst : *bursts) {
+        text += fmt::format("{} {} {:x} {} {} {} {} {}\n", burst.master, burst.write,
+                            bursts == &pci ? 0 : burst.address, burst.words, burst.request_ps,
+                            burst.address_ps, burst.data_ps, burst.end_ps);
+      }
+    }
+    for (const auto& [queue, of_queue] : levels) {
+      for (const QueueLevel& level : of_queue)
+        text += fmt::format("{} {} {}\n", queue, level.time_ps, level.words);
+    }
+    return text;
+  }
+
+  std::vector<BusBurst> pci;
+  std::vector<BusBurst> local;
+  std::map<std::string, std::vector<QueueLevel>> levels;
+
+ private:
+  trace::Trace& writer_;
+};
+
+// The times of a window.
+struct TimeRange {
+  std::uint64_t begin_ps = 0;
+  std::uint64_t end_ps = UINT64_MAX;
+};
+
+// What the plain computer does in a window, as KeptBuses::plain_part().
+std::string plain_part_of(const test::PlainComputerResult& plain, const TimeRange& range) {
+  constexpr std::array<const char*, 5> kMasters = {"host", "left_capture", "right_capture", "bridge", "load"};
+  constexpr std::array<const char*, 4> kSources = {"posted", "read", "dma0", "dma1"};
+  std::string text;
+  const auto add = [&](const char* name, const test::PlainBusBurst& burst) {
+    if (burst.end_ps <= range.begin_ps || burst.request_ps >= range.end_ps) return;
+    text += fmt::format("{} {} {:x} {} {} {} {} {}\n", name, burst.write, 4 * burst.word, burst.words,
+                        burst.request_ps, burst.address_ps, burst.data_ps, burst.end_ps);
+  };
+  for (const test::PlainBusBurst& burst : plain.pci_bursts) add(kMasters[burst.source], burst);
+  for (const test::PlainBusBurst& burst : plain.local_bursts) add(kSources[burst.source], burst);
+  const std::vector<std::pair<const char*, const std::vector<test::PlainLevel>&>> queues = {
+      {"left_capture", plain.fifo_levels[0]},
+      {"posted", plain.posted_levels},
+      {"right_capture", plain.fifo_levels[1]}};
+  for (const auto& [queue, levels] : queues) {
+    for (const test::PlainLevel& level : levels) {
+      if (level.time_ps > range.begin_ps && level.time_ps <= range.end_ps)
+        text += fmt::format("{} {} {}\n", queue, level.time_ps, level.words);
+    }
+  }
+  return text;
+}
+
+// Where the sums of a whole trace differ from the figures of its run.
+std::string differing_sums(const KeptBuses& buses, const platform::BoardConfig& board,
+                           const platform::ComputerStatistics& figures) {
+  const Clock pci(board.pci.clock_mhz);
+  const auto clocks = [&pci](std::uint64_t from_ps, std::uint64_t to_ps) {
+    return pci.edge_at_or_after(to_ps) - pci.edge_at_or_after(from_ps);
+  };
+  std::map<std::string, platform::PciMasterStatistics> masters;
+  std::uint64_t busy_clocks = 0;
+  for (const BusBurst& burst : buses.pci) {
+    platform::PciMasterStatistics& master = masters[burst.master];
+    ++master.transactions;
+    master.words += burst.words;
+    master.wait_clocks += clocks(burst.request_ps, burst.address_ps);
+    busy_clocks += clocks(burst.address_ps, burst.end_ps);
+  }
+  std::string text;
+  for (const platform::PciMasterStatistics& master : figures.pci_masters) {
+    const platform::PciMasterStatistics& sum = masters[master.name];
+    if (std::tie(sum.transactions, sum.words, sum.wait_clocks) !=
+        std::tie(master.transactions, master.words, master.wait_clocks))
+      text += "sums of " + master.name + " differ\n";
+  }
+  if (busy_clocks != figures.pci_busy_clocks) text += "busy clocks of the PCI bus differ\n";
+  std::uint64_t posted = 0;
+  std::uint64_t before = 0;
+  if (const auto found = buses.levels.find("posted"); found != buses.levels.end()) {
+    for (const QueueLevel& level : found->second) {
+      posted += level.words > before ? level.words - before : 0;
+      before = level.words;
+    }
+  }
+  if (posted != figures.posted_words) text += "posted words differ\n";
+  return text;
+}
 
 // What a trace adds up to: cycles by port, "grants" or "waits", and, of waits, bank and culprit.
 using Sums = std::map<std::string, std::uint64_t>;
@@ -138,10 +256,10 @@ Sums sums_of_perfetto(const std::filesystem::path& path) {
 }
 
 Sums sums_of_sqlite(const std::filesystem::path& path) {
-  explore::Database database(path.string(), explore::Database::Access::kRead);
+  sqlite::Database database(path.string(), sqlite::Database::Access::kRead);
   EXPECT_EQ(database.number("SELECT count(*) FROM pragma_integrity_check WHERE integrity_check = 'ok'"), 1);
   Sums sums;
-  explore::Statement runs(database, "SELECT port, bank, by, count FROM runs");
+  sqlite::Statement runs(database, "SELECT port, bank, by, count FROM runs");
   while (runs.step()) {
     const std::string by = runs.text(2);
     const std::string key =
@@ -207,6 +325,7 @@ struct Traced {
   std::array<fpga::PortCycles, fpga::kPortCount> sums{};
   std::vector<test::LoggedTransaction> log;
   platform::Statistics statistics;
+  std::string buses;
   std::string waveform;  // the text of the vcd
   std::string wrong_files;
 };
@@ -215,43 +334,63 @@ Traced trace(const Case& of, Fidelity fidelity, const CycleWindow& window, bool 
              bool writes_files) {
   test::LoggingBinder binder;
   PicturesOfCase pictures(of);
-  const std::unique_ptr<runs::Simulation> simulation =
-      runs::make_simulation(of.board, of.tables, pictures, {of.camera, fidelity, of.frames, true}, binder);
+  const std::unique_ptr<runs::Simulation> simulation = runs::make_simulation(
+      of.board, of.tables, pictures, {of.computer.has_value(), fidelity, of.frames, true}, binder);
   const test::ScratchFolder scratch;
-  std::vector<trace::TraceFile> files = {{trace::Format::kVcd, scratch.path() / "vcd"}};
-  if (writes_files) {
-    files.push_back({trace::Format::kPerfetto, scratch.path() / "perfetto"});
-    files.push_back({trace::Format::kSqlite, scratch.path() / "sqlite"});
+  std::vector<trace::TraceFile> files;
+  std::map<std::string, std::string> paths;  // by format
+  for (const trace::TraceFormat& format : trace::kTraceFormats) {
+    if (!writes_files && !format.needs_window) continue;
+    paths[format.name] = scratch.path() / format.name;
+    files.push_back({&format, paths[format.name]});
   }
-  const std::unique_ptr<trace::TraceWriter> writer =
-      trace::make_writer(files, of.board, trace::TraceWindow{window});
-  KeptCycles cycles(keeps_cycles, *writer);
-  simulation->trace(window, cycles, *writer);
+  trace::Trace writer(files, of.board, trace::TraceWindow{window});
+  KeptCycles cycles(keeps_cycles, writer);
+  KeptBuses buses(writer);
+  simulation->trace(window, cycles, buses);
+  TimeRange range;
+  const Clock clock(of.board.fpga.clock_mhz);
+  if (!keeps_cycles)
+    range = {};  // of the whole run
+  else if (!window.frame)
+    range = {clock.edge_ps(window.first), clock.edge_ps(window.last + 1)};
   Traced traced;
   while (!simulation->finished()) {
     simulation->advance();
     for (const fpga::FrameConflicts& frame : simulation->take_conflicts()) {
       traced.runs.push_back(platform::frame_runs(frame));
-      writer->frame(traced.runs.back());
+      writer.frame(traced.runs.back());
     }
-    writer->events(simulation->take_timeline());
+    const platform::TimelineRecords records = simulation->take_timeline();
+    writer.events(records);
+    for (const platform::TimelineEvent& event : records.events) {
+      if (event.kind != platform::EventKind::kFrame || !window.frame || event.frame != window.frame) continue;
+      if (event.what == std::string("strobe")) range.begin_ps = event.begin_ps;
+      range.end_ps = event.end_ps;
+    }
   }
-  writer->complete({});
-  writer->commit();
+  writer.complete();
+  writer.commit();
   traced.cycles = std::move(cycles.cycles);
   traced.sums = cycles.sums;
   traced.log = binder.log();
   traced.statistics = simulation->statistics();
+  traced.buses = buses.text();
+  if (of.computer && fidelity == Fidelity::kCycle) {
+    traced.wrong_files += test::differing_lines(plain_part_of(test::run_plain_computer(*of.computer), range),
+                                                buses.plain_part());
+    if (!keeps_cycles) traced.wrong_files += differing_sums(buses, of.board, *traced.statistics.computer);
+  }
   if (keeps_cycles) {
-    traced.waveform = test::read_file(files[0].path);
+    traced.waveform = test::read_file(paths["vcd"]);
   } else {  // all cycles are in the window
-    traced.wrong_files =
-        differences("vcd", states_of_vcd(files[0].path, of.board), states_of(traced.statistics));
+    traced.wrong_files +=
+        differences("vcd", states_of_vcd(paths["vcd"], of.board), states_of(traced.statistics));
   }
   if (!writes_files) return traced;
   const Sums expected = sums_of(traced.statistics);
-  traced.wrong_files += differences("perfetto", sums_of_perfetto(files[1].path), expected) +
-                        differences("sqlite", sums_of_sqlite(files[2].path), expected);
+  traced.wrong_files += differences("perfetto", sums_of_perfetto(paths["perfetto"]), expected) +
+                        differences("sqlite", sums_of_sqlite(paths["sqlite"]), expected);
   return traced;
 }
 
@@ -279,7 +418,7 @@ std::string text_of(const Traced& traced) {
   std::string text;
   for (const platform::FrameRuns& frame : traced.runs) text += text_of(frame);
   for (const fpga::CoreCycle& cycle : traced.cycles) text += text_of(cycle);
-  return text + traced.waveform;
+  return text + traced.buses + traced.waveform;
 }
 
 // What a window, the whole run or a part of it, adds up to.
@@ -382,7 +521,11 @@ CycleWindow random_window(std::uint64_t seed, const Case& of, std::uint64_t cycl
     window.first = draw(static_cast<std::uint64_t>(of.board.image.height));
     window.last = window.first + draw(4);
   } else {
-    window.first = draw(kind == 0 && !of.camera ? cycles_of_frame * of.frames : cycles_of_frame);
+    const double cycles_of_run = of.computer
+                                     ? static_cast<double>(of.frames + 1) / of.board.cameras.frame_rate_hz *
+                                           1e6 * of.board.fpga.clock_mhz
+                                     : static_cast<double>(cycles_of_frame * of.frames);
+    window.first = draw(kind == 0 ? static_cast<std::uint64_t>(cycles_of_run) : cycles_of_frame);
     window.last = window.first + draw(3000);
   }
   return window;
@@ -409,7 +552,7 @@ std::string problems_of(std::uint64_t seed, bool with_knobs, bool camera) {
   };
   std::vector<std::string> texts;
   for (const Fidelity fidelity : kEachFidelity) {
-    const test::ChildResult result = test::run_in_child(run(fidelity));
+    const test::ChildResult result = test::run_in_child(run(fidelity), std::chrono::seconds(120));
     if (result.exit_status != 1 || result.text.rfind("WRONG", 0) == 0)
       problems += fmt::format("fidelity {}: {}\n", static_cast<int>(fidelity), result.text);
     texts.push_back(result.text);
@@ -436,14 +579,14 @@ class RandomTraces : public testing::TestWithParam<std::tuple<bool, bool>> {};
 TEST_P(RandomTraces, EqualTheCountersAndTheTransactionsAtEachFidelity) {
   const auto [with_knobs, camera] = GetParam();
   std::vector<test::ChildWork> jobs;
-  const std::uint64_t count = (camera ? test::random_computers(40) : test::random_boards(60)) / 2;
+  const std::uint64_t count = camera ? test::random_computers(40) : test::random_boards(60) / 2;
   for (std::uint64_t seed = 0; seed < count; ++seed) {
     jobs.push_back(
         [seed, with_knobs = with_knobs, camera = camera] { return problems_of(seed, with_knobs, camera); });
   }
   const int parallel = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   const std::vector<test::ChildResult> results =
-      test::run_in_children(jobs, parallel, std::chrono::seconds(180));
+      test::run_in_children(jobs, parallel, std::chrono::seconds(400));
   for (std::size_t seed = 0; seed < results.size(); ++seed)
     EXPECT_TRUE(results[seed].ok()) << "seed " << seed << ":\n" << results[seed].text;
 }

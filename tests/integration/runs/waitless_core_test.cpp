@@ -7,8 +7,6 @@
 
 #include "platform/config/board_yaml.h"
 #include "platform/core_run.h"
-#include "tests/support/board_of_random.h"
-#include "tests/support/random_board.h"
 
 namespace stereotlm::runs {
 namespace {
@@ -45,33 +43,6 @@ TEST(WaitlessCore, CountsFramesOfAnUnfinishedTurnOfTheLists) {
   ASSERT_NE(rate_of(board, 1), rate_of(board, 2)) << "the frames differ";
   for (const std::uint64_t frames : {1, 2, 3, 4, 5})
     EXPECT_DOUBLE_EQ(waitless_rate_of(board, frames), rate_of(board, frames)) << frames;
-}
-
-TEST(WaitlessCore, IsAtLeastAsFastAsARandomBoardAndEquallyFastIfNoPortWaits) {
-  int waiting = 0;
-  int free_of_waits = 0;
-  for (std::uint64_t seed = 0; seed < 200; ++seed) {
-    const test::RandomBoard random = test::make_random_board(seed, test::RandomKnobs::all());
-    const platform::BoardConfig board = test::board_config(random);
-    const platform::Tables tables = test::board_tables(random);
-    const auto frames = static_cast<std::uint64_t>(random.frames);
-    platform::Statistics now;
-    try {
-      now = platform::run_core(board, tables, frames, 100'000);
-    } catch (const std::runtime_error&) {
-      continue;  // a frame that never ends
-    }
-    const double waitless = waitless_frames_per_second(board, tables, frames);
-    if (now.blame.empty()) {
-      ++free_of_waits;
-      EXPECT_DOUBLE_EQ(waitless, now.frames_per_second.core) << describe(random);
-    } else {
-      ++waiting;
-      EXPECT_GE(waitless, now.frames_per_second.core) << describe(random);
-    }
-  }
-  EXPECT_GT(waiting, 50);
-  EXPECT_GT(free_of_waits, 5);
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ using testing::small_board;
 
 uint64_t largest(const BoardConfig& board, const Tables& tables, uint64_t frame) {
   uint64_t cycles = 0;
-  for (const ResourceBound& bound : frame_bounds(board, tables, frame))
+  for (const ResourceBound& bound : frame_bounds(board, frame_accesses(board, tables), frame))
     cycles = std::max(cycles, bound.cycles);
   return cycles;
 }
@@ -38,7 +38,7 @@ constexpr uint64_t kAfter = kDrain + 1 + kPipeline;
 class FrameBounds : public ::testing::Test {
  protected:
   std::optional<uint64_t> bound_of(const Tables& tables, const std::string& resource, uint64_t frame = 0) {
-    for (const ResourceBound& bound : frame_bounds(board, tables, frame)) {
+    for (const ResourceBound& bound : frame_bounds(board, frame_accesses(board, tables), frame)) {
       if (bound.resource == resource) return bound.cycles;
     }
     return std::nullopt;
@@ -52,7 +52,7 @@ class FrameBounds : public ::testing::Test {
 
 TEST_F(FrameBounds, ListPortsThenBanksThenTheMatcher) {
   std::vector<std::string> names;
-  for (const ResourceBound& bound : frame_bounds(board, identity_tables(board), 1))
+  for (const ResourceBound& bound : frame_bounds(board, frame_accesses(board, identity_tables(board)), 1))
     names.push_back(bound.resource);
   EXPECT_EQ(names, (std::vector<std::string>{"port left_lut", "port right_lut", "port left_pixel",
                                              "port right_pixel", "port result", "bank bank1", "bank bank3",
@@ -213,7 +213,7 @@ TEST_F(CoreBound, RepeatsWithTheLeastCommonMultipleOfTheLists) {
 TEST_F(CoreBound, RefusesABoardWithProblems) {
   board.matcher.window = 4;
   EXPECT_THROW(core_bound(board, Tables{}), std::invalid_argument);
-  EXPECT_THROW(frame_bounds(board, Tables{}, 0), std::invalid_argument);
+  EXPECT_THROW(frame_bounds(board, {}, 0), std::invalid_argument);
   board = small_board();
   board.allocation.disparity.clear();
   EXPECT_THROW(core_bound(board, identity_tables(board)), std::invalid_argument);

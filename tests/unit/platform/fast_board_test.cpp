@@ -138,8 +138,8 @@ TEST_F(FastBoardTest, RunsFramesWithTheFiguresOfTheCoreAlone) {
   for (const std::uint32_t frame : {0U, 1U, 2U}) EXPECT_EQ(run_frame(frame), disparities_of(frame)) << frame;
   const Statistics alone = run_core(config, tables, 3);
   EXPECT_EQ(board.frames().frame_cycles(), alone.frame_cycles);
-  const Statistics found =
-      collect_statistics(config, tables, "fast", board.frames().frame_cycles(), board.counters());
+  const Statistics found = collect_statistics(config, frame_accesses(config, tables), "fast",
+                                              board.frames().frame_cycles(), board.counters());
   EXPECT_EQ(found.failed, std::vector<std::string>());
   for (std::size_t bank = 0; bank < found.banks.size(); ++bank) {
     EXPECT_EQ(found.banks[bank].reads, alone.banks[bank].reads);
@@ -261,8 +261,8 @@ TEST_F(FastBoardTest, ArbitratesABurstInABankOfTheRunningFrame) {
   run_to(now_ps + 10'000 * kClockPs);
   EXPECT_EQ(board.frames().frame_cycles()[0], run_core(config, tables, 1).frame_cycles[0] + 20);
   EXPECT_EQ(read(crossbar_address(0, kSpareWord), 20), Words(20, 5));
-  const Statistics found =
-      collect_statistics(config, tables, "fast", board.frames().frame_cycles(), board.counters());
+  const Statistics found = collect_statistics(config, frame_accesses(config, tables), "fast",
+                                              board.frames().frame_cycles(), board.counters());
   EXPECT_EQ(found.failed, std::vector<std::string>());
 }
 

@@ -25,8 +25,10 @@ TEST(TwoBoards, TakeTheSameCyclesSideBySideAsAlone) {
   ASSERT_TRUE(one.host.finished());
   ASSERT_TRUE(two.host.finished());
   // Nothing contends, so each frame takes what the matcher needs.
-  const std::vector<std::uint64_t> first_frames(3, frame_bounds(first, first_tables, 0).back().cycles);
-  const std::vector<std::uint64_t> second_frames(2, frame_bounds(second, second_tables, 0).back().cycles);
+  const std::vector<std::uint64_t> first_frames(
+      3, frame_bounds(first, frame_accesses(first, first_tables), 0).back().cycles);
+  const std::vector<std::uint64_t> second_frames(
+      2, frame_bounds(second, frame_accesses(second, second_tables), 0).back().cycles);
   EXPECT_EQ(one.board.core.frames().frame_cycles(), first_frames);
   EXPECT_EQ(two.board.core.frames().frame_cycles(), second_frames);
   EXPECT_TRUE(collect_statistics(first, first_tables, one.board).failed.empty());

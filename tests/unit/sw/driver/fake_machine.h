@@ -36,15 +36,12 @@ class FakeMachine : public host::HostBus {
 
   std::map<std::uint32_t, std::uint32_t> board;  // by board word
   std::uint64_t core_starts = 0;
-  std::uint64_t captures = 0;  // pairs armed
-  std::uint64_t triggers = 0;
+  std::uint64_t captures = 0;                      // pairs armed
   std::optional<std::uint64_t> failing_capture;    // loses words
   std::optional<std::uint64_t> diverging_capture;  // its sides take different frames
   bool failing_write = false;                      // the board refuses one that was posted
   bool failing_core = false;
   std::optional<std::uint32_t> failing_channel;
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> writes;   // address, value
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> uploads;  // board word, words; of DMA to the board
 
   std::uint32_t read(std::uint64_t address) override {
     if (address == map_.bridge_registers + pci::bridge::kInterruptStatus) return interrupts_;
@@ -66,7 +63,6 @@ class FakeMachine : public host::HostBus {
   }
 
   void write(std::uint64_t address, std::uint32_t value) override {
-    writes.emplace_back(address, value);
     if (address >= map_.left_capture) return write_capture(address, value);
     if (address >= map_.bridge_registers) return write_bridge(address - map_.bridge_registers, value);
     if (address >= core_register(0)) return write_core(address - core_register(0), value);
@@ -136,12 +132,10 @@ class FakeMachine : public host::HostBus {
     } else if (offset == capture::registers::kControl) {
       EXPECT_FALSE(grabber.under_way) << "armed while it captures";
       EXPECT_NE(value & capture::registers::kControlArm, 0U);
-      if ((value & capture::registers::kControlTrigger) != 0) ++triggers;
       grabber.board_word = board_word(grabber.address);
       if (grabber.board_word) expect_free(*grabber.board_word);
       grabber.under_way = true;
-      grabber.frame = armed_ / 2;
-      captures = ++armed_ / 2;
+      grabber.frame = armed_++ / 2;
     } else {
       throw host::BusError("write of a capture board");
     }
@@ -228,7 +222,6 @@ class FakeMachine : public host::HostBus {
     for (const Descriptor& piece : pieces) {
       const bool to_pci = (piece[2] & pci::bridge::kToPci) != 0;
       const std::uint32_t words = piece[2] & ~pci::bridge::kToPci;
-      if (!to_pci) uploads.emplace_back(piece[1], words);
       for (std::uint32_t word = 0; word < words; ++word) {
         if (to_pci) {
           std::memcpy(memory(piece[0] + word * 4, 4), &board.at(piece[1] + word), 4);

@@ -1,8 +1,10 @@
 #include "sw/driver/stereo_driver.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <functional>
 #include <optional>
 #include <ostream>
@@ -92,61 +94,6 @@ INSTANTIATE_TEST_SUITE_P(StereoDriver, StereoDriverBuffers,
                                          Buffers{3, 1, false, 3}, Buffers{2, 2, true, 3},
                                          Buffers{1, 1, true, 1}, Buffers{3, 2, true, 2}));
 
-TEST(StereoDriver, UploadsItsTablesFirst) {
-  DriverConfig config = small(2, 2, 3);
-  Listener listener;
-  FakeMachine machine(1);
-  StereoDriver(config, &kLeftTable, &kRightTable, listener).run(machine);
-  EXPECT_EQ(machine.uploads, (std::vector<std::pair<std::uint32_t, std::uint32_t>>{
-                                 {word_of_bank(30), 4}, {word_of_bank(31) + 5, 4}}));
-  for (std::uint32_t word = 0; word < 4; ++word) {
-    EXPECT_EQ(machine.board.at(word_of_bank(30) + word), kLeftTable[word]);
-    EXPECT_EQ(machine.board.at(word_of_bank(31) + 5 + word), kRightTable[word]);
-  }
-  config.buffers.left_lut = config.buffers.right_lut = std::nullopt;
-  Listener other;
-  FakeMachine without_tables(1);
-  StereoDriver(config, nullptr, nullptr, other).run(without_tables);
-  EXPECT_TRUE(without_tables.uploads.empty());
-  EXPECT_EQ(other.words.size(), 3U);
-}
-
-TEST(StereoDriver, UploadsJointTablesAsOneAndWritesTheirOffsetsFirst) {
-  DriverConfig config = small(2, 2, 3);
-  config.buffers.right_lut = std::nullopt;
-  config.buffers.has_joint_tables = true;
-  const auto entry = [](int column) { return kernels::make_entry(column, 0); };
-  const std::vector<std::uint32_t> left = {entry(3), entry(3), 0, 0};
-  const std::vector<std::uint32_t> right = {entry(0), entry(0), entry(0), entry(0)};
-  const kernels::JointTable joint = kernels::join_tables({4, 1, left}, {4, 1, right});
-  Listener listener;
-  FakeMachine machine(1);
-  StereoDriver(config, &left, &right, listener).run(machine);
-  EXPECT_EQ(listener.words.size(), 3U);
-  EXPECT_EQ(machine.uploads, (std::vector<std::pair<std::uint32_t, std::uint32_t>>{{word_of_bank(30), 4}}));
-  for (std::uint32_t word = 0; word < 4; ++word)
-    EXPECT_EQ(machine.board.at(word_of_bank(30) + word), joint.words[word]);
-  const std::uint64_t core = platform::DeviceMap().bridge_slave + pci::bridge::kCoreRegisters;
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> expected;
-  for (const auto& [address, value] : fpga::registers::joint_offsets({{{3, 0}, {-1, 0}}}))
-    expected.emplace_back(core + address, value);
-  ASSERT_GT(machine.writes.size(), 4U);
-  EXPECT_EQ(std::vector(machine.writes.begin(), machine.writes.begin() + 4), expected);
-  for (const auto& [address, value] : machine.writes)
-    EXPECT_NE(address, core + fpga::registers::kRightLutBase) << value;
-}
-
-TEST(StereoDriver, TriggersCamerasOnDemandWithEachCapture) {
-  for (const bool on_demand : {false, true}) {
-    DriverConfig config = small(2, 2, 5);
-    config.trigger_cameras = on_demand;
-    Listener listener;
-    FakeMachine machine(1);
-    StereoDriver(config, &kLeftTable, &kRightTable, listener).run(machine);
-    EXPECT_EQ(machine.triggers, on_demand ? machine.captures : 0U);
-  }
-}
-
 struct Failure {
   const char* name;
   std::function<void(FakeMachine&)> happens;
@@ -223,6 +170,50 @@ TEST(StereoDriver, NamesTheWorkThatItWaitsFor) {
   EXPECT_THAT(texts, testing::Contains("capture 1, copy of pair 0"));
   EXPECT_THAT(texts, testing::Contains(testing::HasSubstr("core with frame 2")));
   EXPECT_THAT(texts, testing::Contains(testing::HasSubstr("read-back of frame 0")));
+}
+
+// Lines such as "copy 1: copy 0 (copy), capture 1 (pair)".
+class Starts : public platform::DriverObserver {
+ public:
+  void starts(platform::Activity activity, const std::vector<platform::Awaited>& awaited) override {
+    constexpr std::array<const char*, platform::kActivities> kNames = {"capture", "copy", "frame",
+                                                                       "read-back"};
+    const auto index = static_cast<std::size_t>(activity);
+    std::string line = fmt::format("{} {}:", kNames[index], begun_[index]++);
+    for (const platform::Awaited& each : awaited)
+      line += fmt::format(" {} {} ({})", kNames[static_cast<std::size_t>(each.activity)], each.number,
+                          each.reason);
+    lines.push_back(line);
+  }
+  std::vector<std::string> lines;
+
+ private:
+  std::array<std::uint64_t, platform::kActivities> begun_{};
+};
+
+TEST(StereoDriver, SaysWhatEachOfItsStartsHasWaitedFor) {
+  const auto lines_of = [](const DriverConfig& config) {
+    Listener listener;
+    FakeMachine machine(1);
+    Starts starts;
+    StereoDriver driver(config, &kLeftTable, &kRightTable, listener);
+    driver.set_observer(starts);
+    driver.run(machine);
+    return starts.lines;
+  };
+  EXPECT_THAT(lines_of(small(2, 1, 4)),
+              testing::IsSupersetOf({"capture 0:", "capture 1: capture 0 (capture)",
+                                     "capture 3: capture 2 (capture) frame 1 (input_buffer)",
+                                     "frame 0: capture 0 (pair)",
+                                     "frame 2: frame 1 (core) capture 2 (pair) read-back 1 (output_buffer)",
+                                     "read-back 2: read-back 1 (read_back) frame 2 (frame)"}));
+  DriverConfig ring = small(2, 3, 4);
+  ring.capture_to_host = true;
+  ring.host_frames = 3;
+  EXPECT_THAT(lines_of(ring),
+              testing::IsSupersetOf({"capture 3: capture 2 (capture) copy 0 (ring)",
+                                     "copy 2: copy 1 (copy) capture 2 (pair) frame 0 (input_buffer)",
+                                     "frame 3: frame 2 (core) copy 3 (pair) read-back 0 (output_buffer)"}));
 }
 
 // Stops the driver at one moment of a run, and checks that it delivers the frames that the core has begun.

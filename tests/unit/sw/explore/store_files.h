@@ -46,8 +46,8 @@ class StoreFiles : public ::testing::Test {
 
   // The rows of a query, the columns joined by "|".
   std::vector<std::string> rows(const std::string& name, const std::string& sql) const {
-    Database database(file(name), Database::Access::kRead);
-    Statement statement(database, sql);
+    sqlite::Database database(file(name), sqlite::Database::Access::kRead);
+    sqlite::Statement statement(database, sql);
     std::vector<std::string> rows;
     while (statement.step()) {
       rows.push_back(statement.text(0));

@@ -5,16 +5,13 @@
 
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "models/fpga/core_control.h"
 #include "models/memory/arbitration.h"
 #include "platform/config/board_yaml.h"
 #include "platform/conflicts.h"
-#include "sw/report/conflicts_csv.h"
 
 namespace stereotlm::report {
 namespace {
@@ -37,31 +34,6 @@ platform::BoardConfig board(int width = 8, int height = 3) {
       "fpl2003", {fmt::format("image={{width: {}, height: {}}}", width, height), "matcher.rows=2",
                   "ssram.banks={a: {}, b: {}}", "allocation.left_image=a", "allocation.right_image=a",
                   "allocation.disparity=a", "allocation.left_lut=b", "allocation.right_lut=b"});
-}
-
-TEST(RowsCsv, HasALineForEachStripOfAFrame) {
-  EXPECT_EQ(
-      rows_csv_head(board()),
-      "frame,first_row,last_row,cycles,left_lut_stall_cycles,right_lut_stall_cycles,left_pixel_stall_cycles,"
-      "right_pixel_stall_cycles,result_stall_cycles,host_capture_stall_cycles,host_upload_stall_cycles,"
-      "host_read_back_stall_cycles,a_core_accesses,a_capture_accesses,a_upload_accesses,"
-      "a_read_back_accesses,b_core_accesses,b_capture_accesses,b_upload_accesses,b_read_back_accesses\n");
-  EXPECT_EQ(rows_csv(board(), 12, frame()),
-            "12,,,10,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0\n"
-            "12,0,1,200,50,0,0,0,0,0,0,7,150,0,0,0,0,1,2,3\n"
-            "12,2,2,100,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0\n");
-}
-
-TEST(ConflictsText, NamesTheFirstOfTheShortestPlacesWithMostOfTheWaits) {
-  const auto place = [](const std::vector<std::uint64_t>& values, std::size_t length = 1, int whole = 8) {
-    const std::optional<Range> found = place_of(values, length, whole);
-    return found ? std::pair(found->first, found->last) : std::pair(-1, -1);
-  };
-  EXPECT_EQ(place({20, 60, 20, 0, 0, 0, 0, 0}), std::pair(0, 1)) << "not rows 1..2";
-  EXPECT_EQ(place({10, 10, 0, 80, 0, 0, 0, 0}), std::pair(3, 3)) << "not rows 0..3";
-  EXPECT_EQ(place({0, 0, 0, 0, 0, 0, 20, 80}, 2, 15), std::pair(14, 14)) << "the last rows are fewer";
-  EXPECT_EQ(place({16, 16, 16, 16, 16, 7, 7, 6}), std::pair(0, 4));
-  EXPECT_EQ(place({14, 14, 14, 14, 14, 10, 10, 10}), std::pair(-1, -1)) << "six of eight are most of them";
 }
 
 TEST(ConflictsText, SumsFramesAndShowsTheBanksThatAreUsed) {
@@ -109,7 +81,6 @@ class MadeConflicts {
     sums_.add(conflicts_.take_frames().front());
   }
 
-  std::string csv() const { return conflicts_csv(board_, conflicts_.recorder()); }
   // What is said of the only wait behind its cycles and percent.
   std::string place() const {
     const std::string text = conflicts_text(conflict_summary(board_, conflicts_.recorder(), sums_.sums()));
@@ -159,20 +130,6 @@ TEST(ConflictsText, NamesThePlaceInWholeTiles) {
   // Of 8x4 pixels.
   const MadeConflicts conflicts(0, {0, 0, 0, 0, 0, 0, 0, 1}, {0, 0, 0, 0, 0, 0, 0, 1}, 16);
   EXPECT_EQ(conflicts.place(), "80 % in rows 12..14, 80 % in columns 24..31");
-}
-
-TEST(ConflictsCsv, HasALineForEachTileWithAWait) {
-  const std::string head = "first_row,last_row,first_column,last_column,tile_cycles,port,bank,by,cycles\n";
-  EXPECT_EQ(MadeConflicts(0, {0, 0, 2, 0, 0, 0, 0, 3}, {0, 1, 0, 0, 0, 0, 0, 2}).csv(),
-            head +
-                "4,5,4,7,10,left_lut,b,left_pixel,2\n"
-                "4,5,28,31,10,left_lut,b,left_pixel,4\n"
-                "14,14,4,7,10,left_lut,b,left_pixel,3\n"
-                "14,14,28,31,10,left_lut,b,left_pixel,6\n");
-  // The fill, then the only tile of 8x4 pixels with a wait.
-  const std::string large = MadeConflicts(9, {0, 0, 0, 0, 0, 0, 0, 1}, {0, 0, 0, 0, 0, 0, 0, 1}, 16).csv();
-  EXPECT_EQ(large.substr(0, head.size() + 4), head + ",,,,");
-  EXPECT_EQ(large.substr(large.find('\n', head.size()) + 1), "12,14,24,31,40,left_lut,b,left_pixel,1\n");
 }
 
 }  // namespace

@@ -144,7 +144,7 @@ fpga::RowProfile rows_of(const std::vector<std::uint64_t>& ends, std::uint64_t s
 }
 
 TEST(RowsTable, ShowsTheFirstRowThatDiffersAndTheCostOfEachRange) {
-  RowComparison rows;
+  stats::RowComparison rows;
   EXPECT_EQ(rows_table(rows), "");
   rows.add(rows_of({10, 20, 30, 40}, 0), rows_of({10, 25, 40, 48}, 3));
   EXPECT_EQ(words(rows_table(rows)),
@@ -156,32 +156,11 @@ TEST(RowsTable, ShowsTheFirstRowThatDiffersAndTheCostOfEachRange) {
             "3 -2 -2 0 0 0 0 0\n");
 }
 
-TEST(RowsTable, JoinsManyRangesToBands) {
-  RowComparison rows;
-  std::vector<std::uint64_t> ends;
-  std::vector<std::uint64_t> others;
-  for (std::uint64_t row = 0; row < 4 * kMostLines; ++row) {
-    ends.push_back(10 * (row + 1));
-    others.push_back(ends.back() + row * (row + 1) / 2);
-  }
-  rows.add(rows_of(ends, 0), rows_of(others, 0));
-  const std::string table = words(rows_table(rows));
-  EXPECT_EQ(lines_of(table), kMostLines + 3);
-  EXPECT_THAT(table, HasSubstr("result\n0..3 +6 0..+3 0 0 0 0 0\n4..7 +22 +4..+7 0 0 0 0 0\n"));
-}
-
-TEST(RowsTable, NamesOnlyTheRowWhereTheFramesCancelOut) {
-  RowComparison rows;
-  rows.add(rows_of({10}, 0), rows_of({20}, 0));
-  rows.add(rows_of({20}, 0), rows_of({10}, 0));
-  EXPECT_EQ(rows_table(rows), "they part in frame 0, row 0: whole after 10 cycles in A, 20 in B\n");
-}
-
 TEST(RowsTable, ShowsRowsOfWhichOnlyTheStallsDiffer) {
   const std::string head =
       "every row is whole after as many cycles in both; the waits differ from frame 1, row 1 on\n";
   const fpga::RowProfile stalled = {{10, {0, 0, 0, 0, 0}}, {20, {0, 0, 0, 0, 4}}};
-  RowComparison rows;
+  stats::RowComparison rows;
   rows.add(rows_of({10, 20}, 0), rows_of({10, 20}, 0));
   rows.add(rows_of({10, 20}, 0), stalled);
   const std::string table = rows_table(rows);
@@ -207,7 +186,7 @@ TEST(BlameTable, IsSortedByTheDifference) {
 }
 
 TEST(PixelsLine, CountsThePixelsThatDifferAndNamesTheFirst) {
-  PixelComparison pixels;
+  stats::PixelComparison pixels;
   EXPECT_EQ(pixels_line(pixels), "disparities: not compared: no camera frame is in both\n");
   const kernels::GrayImage image(4, 2, 7);
   kernels::GrayImage other = image;

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "platform/config/board_yaml.h"
-#include "sw/report/conflicts_csv.h"
-#include "sw/report/timeline_csv.h"
+#include "sw/stats/conflicts_csv.h"
+#include "sw/stats/timeline_csv.h"
 
 namespace stereotlm::report {
 namespace {
@@ -25,8 +25,8 @@ TEST(RecordingData, MapsOfManyCausesHaveLargerTilesWithTheSameSums) {
   const platform::BoardConfig board = platform::load_board("fpl2003");
   for (const int causes : {1, 5, 12}) {
     RecordingData data(board, false);
-    data.add("rows.csv", rows_csv_head(board));
-    data.add("conflicts.csv", conflicts_csv_head() + ",,,,1000,left_lut,bank0,host capture,1000\n");
+    data.add("rows.csv", stats::rows_csv_head(board));
+    data.add("conflicts.csv", stats::conflicts_csv_head() + ",,,,1000,left_lut,bank0,host capture,1000\n");
     std::uint64_t all = 0;
     for (int row = 0; row < 480; ++row) {
       for (int column = 0; column < 640; column += 4) {
@@ -59,8 +59,8 @@ class LongRun {
  public:
   LongRun(std::uint64_t frames, std::uint64_t slowest)
       : board_(platform::load_board("fpl2003")), data_(board_, true) {
-    data_.add("timeline.csv", timeline_csv_head());
-    data_.add("latency.csv", latency_csv_head());
+    data_.add("timeline.csv", stats::timeline_csv_head());
+    data_.add("latency.csv", stats::latency_csv_head());
     for (std::uint64_t frame = 0; frame < frames; ++frame) {
       const std::uint64_t begin = frame * kFrame;
       std::string lines;

@@ -6,7 +6,6 @@
 #include <limits>
 #include <string>
 
-#include "sw/runs/run_json_reader.h"
 #include "tests/support/scratch_folder.h"
 
 namespace stereotlm::runs {

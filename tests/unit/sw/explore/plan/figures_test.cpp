@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "sw/report/stats_json.h"
+#include "sw/stats/stats_json.h"
 
 namespace stereotlm::explore {
 namespace {
@@ -33,7 +33,7 @@ platform::Statistics statistics() {
 }
 
 TEST(Figures, HaveTheDottedPathsOfStatsJsonAndRowsOfBlame) {
-  const Figures figures = figures_of(report::stats_document(statistics(), std::nullopt));
+  const Figures figures = figures_of(stats::stats_document(statistics(), std::nullopt));
   std::map<std::string, Value> values;
   for (const platform::BoardValue& value : figures.values)
     EXPECT_TRUE(values.emplace(value.path, value.value).second) << value.path << " twice";

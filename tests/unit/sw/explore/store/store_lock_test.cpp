@@ -36,7 +36,7 @@ TEST_F(StoreLockTest, KeepsOtherLocksOutUntilItEnds) {
   {
     const StoreLock first(store);
     for (int i = 0; i < 2; ++i) {
-      Database database(store, Database::Access::kCreate);
+      sqlite::Database database(store, sqlite::Database::Access::kCreate);
       database.execute("CREATE TABLE IF NOT EXISTS t(x); INSERT INTO t VALUES(1)");
     }
     expect_locked(store);  // although SQLite has closed the file

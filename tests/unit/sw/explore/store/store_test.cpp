@@ -147,7 +147,7 @@ TEST_F(StoreTest, ReportsAFileThatMustNotGrow) {
 
 TEST_F(StoreTest, RefusesFilesThatAreNotItsOwn) {
   const auto make = [this](const std::string& name, const std::string& sql) {
-    Database(file(name), Database::Access::kCreate).execute(sql);
+    sqlite::Database(file(name), sqlite::Database::Access::kCreate).execute(sql);
   };
   add("a.db", {point("h1")});
   test::write_file(file("text"), std::string(5000, 'x'));

@@ -70,7 +70,7 @@ class SweepTest : public StoreFiles {
   std::uint64_t count(const std::string& store, const std::string& where = "1") const {
     try {
       return std::stoull(rows(store, "SELECT count(*) FROM points WHERE " + where).at(0));
-    } catch (const DatabaseError&) {
+    } catch (const sqlite::DatabaseError&) {
       return 0;
     }
   }
@@ -246,7 +246,8 @@ TEST_F(SweepTest, BeginsAPointAgainWhoseWorkerHasDiedUntilItHasDiedThreeTimes) {
                                death.text +
                                ", 3 times: to try again, delete this row and give the same command'";
     EXPECT_EQ(count("a.db", failed), kOkOfAWindow) << death.text;
-    Database(file("a.db"), Database::Access::kWrite).execute("DELETE FROM points WHERE " + failed);
+    sqlite::Database(file("a.db"), sqlite::Database::Access::kWrite)
+        .execute("DELETE FROM points WHERE " + failed);
     expect_whole("a.db");
   }
 }
@@ -265,10 +266,10 @@ TEST_F(SweepTest, ReportsAStoreThatIsLockedBeforeOrWhileItRuns) {
   SweepOptions impatient = options("a.db", 2);
   impatient.busy_timeout = 50ms;
   const std::string locked = file("a.db") + ": another process keeps it locked";
-  std::unique_ptr<Database> other;
+  std::unique_ptr<sqlite::Database> other;
   const auto lock = [&](const SweepCounts& counts) {
     if (counts.done() >= 20 && !other) {
-      other = std::make_unique<Database>(file("a.db"), Database::Access::kWrite);
+      other = std::make_unique<sqlite::Database>(file("a.db"), sqlite::Database::Access::kWrite);
       other->execute("BEGIN IMMEDIATE");
       write_file(file("locked"), "");
     }
@@ -283,7 +284,7 @@ TEST_F(SweepTest, ReportsAStoreThatIsLockedBeforeOrWhileItRuns) {
   const std::uint64_t before = count("a.db");
   EXPECT_GE(before, 5U) << "finished points are kept";
   for (const char* const begin : {"BEGIN IMMEDIATE", "BEGIN EXCLUSIVE"}) {
-    Database database(file("a.db"), Database::Access::kWrite);
+    sqlite::Database database(file("a.db"), sqlite::Database::Access::kWrite);
     database.execute(begin);
     EXPECT_EQ(sweep_error(impatient), locked);
   }

@@ -7,8 +7,8 @@
 
 #include "platform/config/board_yaml.h"
 #include "platform/core_run.h"
-#include "sw/report/stats_json.h"
 #include "sw/runs/simulation/camera_simulation.h"
+#include "sw/stats/stats_json.h"
 #include "tests/support/board_of_random.h"
 #include "tests/support/fork.h"
 #include "tests/support/noise_pairs.h"
@@ -36,9 +36,10 @@ void expect_close(double found, double expected, const std::string& what) {
 
 // What is written is read again.
 void expect_to_read(const Statistics& statistics, const BoardConfig& board) {
-  const std::string text = stats_json(statistics, {});
+  const std::string text = stats::stats_json(statistics, {});
   const bool camera = statistics.computer.has_value();
-  EXPECT_EQ(stats_json(read_stats(text, board, statistics.fidelity, statistics.frames, camera), {}), text);
+  EXPECT_EQ(stats::stats_json(read_stats(text, board, statistics.fidelity, statistics.frames, camera), {}),
+            text);
 }
 
 // Every link has its MB/s, and those of each bank, port and PCI master have the sums of the statistics.

@@ -1,0 +1,199 @@
+#include "sw/sqlite/database.h"
+
+#include <fmt/format.h>
+#include <sqlite3.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+
+namespace stereotlm::sqlite {
+namespace {
+
+// The text for a result code of SQLite. `error` is the errno value, which is used if input or output failed,
+// or a file could not be opened.
+std::string meaning_of(const std::string& path, int code, int error, const char* message) {
+  const int kind = code & 0xFF;
+  if (code == SQLITE_READONLY_ROLLBACK) {
+    return fmt::format(
+        "{0}-journal was left by an unfinished change, and this command only reads: "
+        "`stereotlm merge {0} {0}` rolls the change back",
+        path);
+  }
+  const bool is_of_system = kind == SQLITE_IOERR || kind == SQLITE_CANTOPEN;
+  if (is_of_system && (error == ENOSPC || error == EDQUOT)) return "the disk is full";
+  switch (kind) {
+    case SQLITE_FULL:
+      return "the disk is full";
+    case SQLITE_BUSY:
+    case SQLITE_LOCKED:
+      return "another process keeps it locked";
+    case SQLITE_READONLY:
+    case SQLITE_PERM:
+      return "not writable";
+    case SQLITE_CANTOPEN:
+      return error != 0 ? fmt::format("cannot be opened: {}", std::strerror(error)) : "cannot be opened";
+    case SQLITE_NOTADB:
+      return "not a database";
+    default:
+      return message;
+  }
+}
+
+int flags_of(Database::Access access) {
+  switch (access) {
+    case Database::Access::kRead:
+      return SQLITE_OPEN_READONLY;
+    case Database::Access::kWrite:
+      return SQLITE_OPEN_READWRITE;
+    case Database::Access::kCreate:
+    case Database::Access::kMemory:
+      return SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;
+  }
+  return 0;
+}
+
+// Makes the path absolute, so that SQLite takes it for a file. It would take ":memory:" for a database in
+// memory, and "file:.." for a URI.
+std::string absolute(const std::string& path) {
+  const std::filesystem::path file(path);
+  return file.is_absolute() ? path : (std::filesystem::current_path() / file).string();
+}
+
+}  // namespace
+
+Database::Database(const std::string& path, Access access, std::chrono::milliseconds busy_timeout,
+                   const std::string& name)
+    : path_(name.empty() ? path : name) {
+  const std::string file = access == Access::kMemory ? ":memory:" : absolute(path);
+  // One thread uses the connection, so that SQLite needs no mutex.
+  const int code = sqlite3_open_v2(file.c_str(), &handle_, flags_of(access) | SQLITE_OPEN_NOMUTEX, nullptr);
+  if (code != SQLITE_OK) {
+    const std::string text = fmt::format(
+        "{}: {}", path_, meaning_of(path_, code, sqlite3_system_errno(handle_), sqlite3_errmsg(handle_)));
+    sqlite3_close(handle_);
+    throw DatabaseError(text);
+  }
+  sqlite3_extended_result_codes(handle_, 1);
+  sqlite3_busy_timeout(handle_, static_cast<int>(busy_timeout.count()));
+  // A word in double quotes is a name or an error, never a string.
+  sqlite3_db_config(handle_, SQLITE_DBCONFIG_DQS_DML, 0, nullptr);
+  sqlite3_db_config(handle_, SQLITE_DBCONFIG_DQS_DDL, 0, nullptr);
+}
+
+Database::~Database() { sqlite3_close(handle_); }
+
+void Database::fail(int code) const {
+  throw DatabaseError(fmt::format(
+      "{}: {}", path_, meaning_of(path_, code, sqlite3_system_errno(handle_), sqlite3_errmsg(handle_))));
+}
+
+void Database::interrupt_if(bool (*is_interrupted)()) {
+  constexpr int kInstructions = 1000;  // of SQLite's virtual machine, between two calls
+  is_interrupted_ = is_interrupted;
+  sqlite3_progress_handler(
+      handle_, kInstructions,
+      [](void* database) { return static_cast<Database*>(database)->is_interrupted_() ? 1 : 0; }, this);
+}
+
+void Database::execute(const std::string& sql) {
+  const int code = sqlite3_exec(handle_, sql.c_str(), nullptr, nullptr, nullptr);
+  if (code != SQLITE_OK) fail(code);
+}
+
+void Database::attach(const std::string& path, const std::string& name) {
+  Statement statement(*this, "ATTACH ? AS " + quoted_name(name));
+  statement.bind(1, absolute(path));
+  statement.run();
+}
+
+std::int64_t Database::number(const std::string& sql) {
+  Statement statement(*this, sql);
+  return statement.step() ? statement.integer(0) : 0;
+}
+
+Statement::Statement(const Database& database, const std::string& sql) : database_(database) {
+  const char* rest = nullptr;
+  const int code = sqlite3_prepare_v2(database.handle(), sql.c_str(), -1, &handle_, &rest);
+  if (code != SQLITE_OK) database.fail(code);
+  if (*rest != '\0') {
+    sqlite3_finalize(handle_);
+    throw DatabaseError(database.path() + ": more than one statement");
+  }
+}
+
+Statement::~Statement() { sqlite3_finalize(handle_); }
+
+void Statement::bind(int place, const std::string& text) {
+  const int code =
+      sqlite3_bind_text(handle_, place, text.data(), static_cast<int>(text.size()), SQLITE_TRANSIENT);
+  if (code != SQLITE_OK) database_.fail(code);
+}
+
+void Statement::bind(int place, std::int64_t number) {
+  const int code = sqlite3_bind_int64(handle_, place, number);
+  if (code != SQLITE_OK) database_.fail(code);
+}
+
+void Statement::bind(int place, const std::variant<std::int64_t, double, std::string>& value) {
+  if (const auto* integer = std::get_if<std::int64_t>(&value)) {
+    bind(place, *integer);
+  } else if (const auto* number = std::get_if<double>(&value)) {
+    const int code = sqlite3_bind_double(handle_, place, *number);
+    if (code != SQLITE_OK) database_.fail(code);
+  } else {
+    bind(place, std::get<std::string>(value));
+  }
+}
+
+void Statement::bind_column(int place, const Statement& from, int column) {
+  const int code = sqlite3_bind_value(handle_, place, sqlite3_column_value(from.handle_, column));
+  if (code != SQLITE_OK) database_.fail(code);
+}
+
+void Statement::clear_bindings() { sqlite3_clear_bindings(handle_); }
+
+bool Statement::step() {
+  const int code = sqlite3_step(handle_);
+  if (code == SQLITE_ROW) return true;
+  if (code == SQLITE_DONE) return false;
+  sqlite3_reset(handle_);
+  database_.fail(code);
+}
+
+void Statement::run() {
+  while (step()) {
+  }
+  reset();
+}
+
+void Statement::reset() { sqlite3_reset(handle_); }
+
+int Statement::columns() const { return sqlite3_column_count(handle_); }
+
+std::string Statement::name(int column) const { return sqlite3_column_name(handle_, column); }
+
+std::string Statement::text(int column) const {
+  const auto* const text = reinterpret_cast<const char*>(sqlite3_column_text(handle_, column));
+  return text == nullptr ? ""
+                         : std::string(text, static_cast<std::size_t>(sqlite3_column_bytes(handle_, column)));
+}
+
+double Statement::real(int column) const { return sqlite3_column_double(handle_, column); }
+
+std::int64_t Statement::integer(int column) const { return sqlite3_column_int64(handle_, column); }
+
+bool Statement::is_true(int column) const {
+  return sqlite3_column_type(handle_, column) != SQLITE_NULL && sqlite3_column_double(handle_, column) != 0;
+}
+
+std::string quoted_name(const std::string& name) {
+  std::string text = "\"";
+  for (const char c : name) {
+    if (c == '"') text += c;
+    text += c;
+  }
+  return text + '"';
+}
+
+}  // namespace stereotlm::sqlite

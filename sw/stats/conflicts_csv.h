@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "models/fpga/conflict_recorder.h"
+#include "platform/config/board_config.h"
+
+namespace stereotlm::stats {
+
+// The text of rows.csv: its head, and the lines of one frame. README.md describes the columns.
+std::string rows_csv_head(const platform::BoardConfig& board);
+std::string rows_csv(const platform::BoardConfig& board, std::uint64_t frame,
+                     const fpga::FrameConflicts& conflicts);
+
+// Cells of both files: "first,last" of a part of a whole, such as the rows of a strip; the place of a tile.
+// Tile 0 is the fill.
+std::string csv_range(std::size_t index, std::size_t length, int whole);
+std::string csv_tile(const platform::BoardConfig& board, const fpga::TileGrid& grid, std::size_t tile);
+
+// The text of conflicts.csv, and its head.
+std::string conflicts_csv_head();
+std::string conflicts_csv(const platform::BoardConfig& board, const fpga::ConflictRecorder& recorder);
+// The same text in pieces of some 64 kB, because the whole can have tens of MB.
+void conflicts_csv(const platform::BoardConfig& board, const fpga::ConflictRecorder& recorder,
+                   const std::function<void(const std::string& piece)>& take);
+
+}  // namespace stereotlm::stats

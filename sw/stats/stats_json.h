@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+
+#include "models/area/area.h"
+#include "platform/config/board_config.h"
+#include "platform/statistics.h"
+#include "sw/stats/accuracy.h"
+
+namespace stereotlm::stats {
+
+// The content of stats.json (contract section 6) and its text. Keys have the order of the contract; a
+// camera's counts of dropped frames by reason follow its other keys. A key is absent if it does not apply:
+// `failed` if all identities hold, `accuracy` if it is not given, a percentage if its denominator is 0.
+nlohmann::ordered_json stats_document(const platform::Statistics& statistics,
+                                      const std::optional<Accuracy>& accuracy);
+std::string stats_json(const platform::Statistics& statistics, const std::optional<Accuracy>& accuracy);
+
+// What `run --json` prints: stats.json, and what only the table shows: `waitless_frames_per_second` and
+// `disparities_percent` where they are given, and an accuracy against a made scene.
+struct TableExtras;
+nlohmann::ordered_json run_document(const platform::Statistics& statistics, const TableExtras& extras);
+
+// Reads stats.json of a run of this board, with these figures in its run.json; `camera`: of a whole computer.
+// It must be the text of stats_json(), with known names, and with figures that follow from each other and
+// hold the identities of README.md. Throws std::runtime_error: "LINE: path = value: rule".
+platform::Statistics read_stats(const std::string& text, const platform::BoardConfig& board,
+                                const std::string& fidelity, std::uint64_t frames, bool camera);
+
+// The part `area` of stats.json.
+nlohmann::ordered_json area_json(const area::Area& area);
+
+}  // namespace stereotlm::stats

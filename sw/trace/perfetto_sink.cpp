@@ -1,0 +1,515 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "sw/trace/perfetto_file.h"
+#include "sw/trace/trace_board.h"
+#include "sw/trace/trace_sink.h"
+
+namespace stereotlm::trace {
+namespace {
+
+using fpga::CoreCycle;
+using fpga::Intent;
+using fpga::PortCycle;
+using platform::BusBurst;
+using platform::EventKind;
+using platform::TimelineEvent;
+using platform::TraceRun;
+using Flows = PerfettoTrack::Flows;
+
+constexpr std::uint64_t kPsPerNs = 1000;
+// Arrows of waits inside a window, and of data, have numbers of their own. Those of rows are small.
+constexpr std::uint64_t kFirstWaitFlow = std::uint64_t{1} << 62U;
+constexpr std::uint64_t kDataFlow = std::uint64_t{1} << 63U;
+constexpr std::size_t kFirstQueueRank = 3;  // behind those of the core
+
+// The tracks of a bank: its only one, or that of its reads; and that of its writes. [2 * bank + is_second]
+std::size_t bank_track(const TraceBoard& board, std::size_t bank, std::size_t requester) {
+  return 2 * bank + (writes(requester) && board.has_separate_ports(bank) ? 1 : 0);
+}
+
+// The frames of the core: a slice for each frame, each strip, and each run of a strip. The slices of a port
+// in a strip stand one behind the other, first the accesses, then the waits, each as long as its cycles.
+class Rows {
+ public:
+  Rows(const TraceBoard& board, PerfettoFile& file)
+      : board_(board),
+        frames_(file, TrackGroup::kCore, 0, "frames"),
+        strips_(file, TrackGroup::kCore, 1, "rows") {
+    for (std::size_t requester = 0; requester < fpga::kRequesters; ++requester) {
+      const std::string name = fpga::requester_name(requester);
+      ports_.push_back({{file, TrackGroup::kPorts, 3 * requester, name}});
+      port_waits_.emplace_back(file, TrackGroup::kPorts, 3 * requester + 2, name + " waits in each row",
+                               "cycles");
+    }
+    for (std::size_t bank = 0; bank < board.banks.size(); ++bank) {
+      const std::string& name = board.bank_name(bank);
+      const bool is_separate = board.has_separate_ports(bank);
+      banks_.push_back({{file, TrackGroup::kBanks, 5 * bank, is_separate ? name + " reads" : name}});
+      banks_.push_back({{file, TrackGroup::kBanks, 5 * bank + 1, name + " writes"}});
+      bank_use_.emplace_back(file, TrackGroup::kBanks, 5 * bank + 4, name + " use", "%");
+    }
+  }
+
+  void frame(const platform::FrameRuns& frame) {
+    frames_.slice(ns(frame.first_cycle), ns(frame.end_cycle), fmt::format("frame {}", frame.frame), {});
+    const TraceRun* run = frame.runs.data();
+    const TraceRun* const end = run + frame.runs.size();
+    std::uint64_t first_cycle = frame.first_cycle;
+    for (std::size_t number = 0; number < frame.strip_ends.size(); ++number) {
+      const TraceRun* const next =
+          std::find_if(run, end, [number](const TraceRun& later) { return later.strip != number; });
+      write_strip({number, first_cycle, frame.strip_ends[number], run, next, next_flow_});
+      next_flow_ += static_cast<std::uint64_t>(next - run);
+      run = next;
+      first_cycle = frame.strip_ends[number];
+    }
+    for (auto* const tracks : {&port_waits_, &bank_use_}) {
+      for (PerfettoTrack& track : *tracks) {
+        if (track.is_written()) track.count(ns(frame.end_cycle), 0);
+      }
+    }
+  }
+
+ private:
+  // The runs of one strip.
+  struct Strip {
+    std::size_t number;
+    std::uint64_t first_cycle;
+    std::uint64_t end_cycle;
+    const TraceRun* first;
+    const TraceRun* last;
+    std::uint64_t first_flow;  // of the first run; the next ones follow
+
+    const TraceRun* begin() const { return first; }
+    const TraceRun* end() const { return last; }
+    std::uint64_t flow_of(const TraceRun& run) const {
+      return first_flow + static_cast<std::uint64_t>(&run - first);
+    }
+  };
+  // A track with the first cycle that is free on it.
+  struct Row {
+    PerfettoTrack track;
+    std::uint64_t free_cycle = 0;
+  };
+
+  std::uint64_t ns(std::uint64_t cycle) const { return board_.ps(cycle) / kPsPerNs; }
+
+  std::string name_of(std::size_t strip) const {
+    if (strip == 0) return "fill";
+    const int first = (static_cast<int>(strip) - 1) * board_.geometry.rows;
+    const int last = std::min(first + board_.geometry.rows, board_.geometry.height) - 1;
+    return first == last ? fmt::format("row {}", first) : fmt::format("rows {}..{}", first, last);
+  }
+
+  // The accesses of all ports come before the waits. A wait may then have an arrow from the accesses of the
+  // winner: of two slices that begin at one time, the arrow leads from the first in the file.
+  void write_strip(const Strip& strip) {
+    strips_.slice(ns(strip.first_cycle), ns(strip.end_cycle), name_of(strip.number),
+                  {{"cycles", strip.end_cycle - strip.first_cycle}});
+    for (std::vector<Row>* const rows : {&ports_, &banks_}) {
+      for (Row& row : *rows) row.free_cycle = std::max(row.free_cycle, strip.first_cycle);
+    }
+    for (const TraceRun& run : strip) {
+      if (!run.by) write_grant(strip, run);
+    }
+    for (const TraceRun& run : strip) {
+      if (run.by) write_wait(strip, run);
+    }
+    write_counters(strip);
+  }
+
+  void write_grant(const Strip& strip, const TraceRun& run) {
+    Flows flows;
+    for (const TraceRun& wait : strip) {
+      if (wait.by == run.requester && wait.bank == run.bank) flows.push_back(strip.flow_of(wait));
+    }
+    write_run(ports_[run.requester], run,
+              fmt::format("{} {} x{}", writes(run.requester) ? "writes" : "reads", board_.bank_name(run.bank),
+                          run.count),
+              flows);
+    write_run(banks_[bank_track(board_, run.bank, run.requester)], run,
+              fmt::format("{} x{}", fpga::requester_name(run.requester), run.count), {});
+  }
+
+  void write_wait(const Strip& strip, const TraceRun& run) {
+    Flows flows;
+    if (*run.by != fpga::kTurnaroundToBlame) flows.push_back(strip.flow_of(run));
+    write_run(ports_[run.requester], run, board_.wait_text(run.requester, run.count, *run.by, run.bank),
+              flows);
+  }
+
+  void write_run(Row& row, const TraceRun& run, std::string_view name, const Flows& flows) {
+    const std::uint64_t end_cycle = row.free_cycle + run.count;
+    row.track.slice(ns(row.free_cycle), ns(end_cycle), name, {}, flows);
+    row.free_cycle = end_cycle;
+  }
+
+  void write_counters(const Strip& strip) {
+    std::array<std::uint64_t, fpga::kRequesters> waits{};
+    std::vector<std::uint64_t> uses(board_.banks.size());
+    for (const TraceRun& run : strip) (run.by ? waits[run.requester] : uses[run.bank]) += run.count;
+    const auto count = [begin = ns(strip.first_cycle)](PerfettoTrack& track, double value) {
+      if (value != 0 || track.is_written()) track.count(begin, value);
+    };
+    for (std::size_t requester = 0; requester < waits.size(); ++requester)
+      count(port_waits_[requester], static_cast<double>(waits[requester]));
+    const auto cycles = static_cast<double>(std::max<std::uint64_t>(strip.end_cycle - strip.first_cycle, 1));
+    for (std::size_t bank = 0; bank < uses.size(); ++bank)
+      count(bank_use_[bank], 100 * static_cast<double>(uses[bank]) / cycles);
+  }
+
+  const TraceBoard& board_;
+  PerfettoTrack frames_;
+  PerfettoTrack strips_;
+  std::vector<Row> ports_;                 // [requester]
+  std::vector<PerfettoTrack> port_waits_;  // [requester]
+  std::vector<Row> banks_;                 // [bank_track()]
+  std::vector<PerfettoTrack> bank_use_;    // [bank]
+  std::uint64_t next_flow_ = 1;
+};
+
+// The cycles of a window: a slice for each access, and one for consecutive cycles in which a port waits for
+// the same port, or is in the same other state, in which a bank has the same owner, or in which the matcher
+// works.
+class Cycles {
+ public:
+  Cycles(const TraceBoard& board, PerfettoFile& file)
+      : board_(board),
+        matcher_(file, TrackGroup::kCore, 2, "matcher"),
+        queues_{PerfettoTrack(file, TrackGroup::kQueues, 0, "left lane", "slots"),
+                PerfettoTrack(file, TrackGroup::kQueues, 1, "right lane", "slots"),
+                PerfettoTrack(file, TrackGroup::kQueues, 2, "results", "words")},
+        bank_runs_(2 * board.banks.size()) {
+    for (std::size_t requester = 0; requester < fpga::kRequesters; ++requester)
+      ports_.emplace_back(file, TrackGroup::kPorts, 3 * requester + 1,
+                          std::string(fpga::requester_name(requester)) + " cycles");
+    for (std::size_t bank = 0; bank < board.banks.size(); ++bank) {
+      const std::string& name = board.bank_name(bank);
+      const std::string first = board.has_separate_ports(bank) ? " read cycles" : " cycles";
+      banks_.emplace_back(file, TrackGroup::kBanks, 5 * bank + 2, name + first);
+      banks_.emplace_back(file, TrackGroup::kBanks, 5 * bank + 3, name + " write cycles");
+      access_.push_back({"reads " + name, "writes " + name});
+    }
+  }
+
+  void cycle(const CoreCycle& cycle) {
+    if (next_cycle_ && *next_cycle_ != cycle.cycle) end();
+    next_cycle_ = cycle.cycle + 1;
+    std::vector<Run> owners(bank_runs_.size());
+    for (std::size_t port = 0; port < fpga::kPortCount; ++port) {
+      show(port_runs_[port], run_of(cycle, port), cycle.cycle);
+      set_owner(cycle, port, owners);
+    }
+    for (std::size_t port = 0; port < fpga::kPortCount; ++port) {
+      if (cycle.ports[port].granted) write_access(cycle, port);
+    }
+    show_rest(cycle, owners);
+  }
+
+  // The window has ended.
+  void end() {
+    if (!next_cycle_) return;
+    CoreCycle idle;
+    idle.cycle = *next_cycle_;
+    for (Run& run : port_runs_) show(run, {}, idle.cycle);
+    show_rest(idle, std::vector<Run>(bank_runs_.size()));
+    next_cycle_.reset();
+  }
+
+ private:
+  enum class State : std::uint8_t { kNone, kWaits, kPasses, kBlocked, kStarved, kIsOwned, kWorks };
+  enum class Arrow : std::uint8_t { kToPixel, kToResult };
+  // Consecutive cycles in one state.
+  struct Run {
+    State state = State::kNone;
+    PerfettoTrack* track = nullptr;
+    std::size_t requester = 0;  // of a port; or the owner of a bank, which may be kTurnaroundToBlame
+    std::size_t bank = 0;       // of a wait, like `by`
+    std::size_t by = 0;
+    std::uint64_t first_cycle = 0;
+    std::uint64_t flow = 0;  // of a wait: the arrow from the access of the winner
+
+    auto key() const { return std::tie(state, track, requester, bank, by); }
+  };
+
+  std::uint64_t ns(std::uint64_t cycle) const { return board_.ps(cycle) / kPsPerNs; }
+
+  Run run_of(const CoreCycle& cycle, std::size_t port) {
+    const PortCycle& now = cycle.ports[port];
+    Run run;
+    run.requester = requester_of_port(port, cycle.host_traffic);
+    run.track = &ports_[run.requester];
+    switch (now.intent) {
+      case Intent::kRequest:
+        if (now.granted) break;
+        run.state = State::kWaits;
+        run.bank = now.bank;
+        run.by = now.by;
+        break;
+      case Intent::kPass:
+        run.state = State::kPasses;
+        break;
+      case Intent::kBlocked:
+        run.state = State::kBlocked;
+        break;
+      case Intent::kStarved:
+        run.state = State::kStarved;
+        break;
+      case Intent::kIdle:
+        break;
+    }
+    return run;
+  }
+
+  // Ends the run if `now` is another one, which then begins in this cycle.
+  void show(Run& run, const Run& now, std::uint64_t cycle) {
+    if (run.key() == now.key()) return;
+    if (run.state != State::kNone) {
+      const std::uint64_t cycles = cycle - run.first_cycle;
+      Flows flows;
+      if (run.flow != 0) flows.push_back(run.flow);
+      run.track->slice(ns(run.first_cycle), ns(cycle), name_of(run, cycles), {{"cycles", cycles}}, flows);
+    }
+    run = now;
+    run.first_cycle = cycle;
+    if (run.state != State::kWaits || run.by == fpga::kTurnaroundToBlame) return;
+    run.flow = kFirstWaitFlow + waits_++;
+    flows_[run.by].push_back(run.flow);
+  }
+
+  std::string name_of(const Run& run, std::uint64_t cycles) const {
+    switch (run.state) {
+      case State::kNone:
+        break;
+      case State::kWaits:
+        return board_.wait_text(run.requester, cycles, run.by, run.bank);
+      case State::kPasses:
+        return "passes";
+      case State::kBlocked:
+        return "blocked";
+      case State::kStarved:
+        return "starved";
+      case State::kIsOwned:
+        return fpga::requester_name(run.requester);
+      case State::kWorks:
+        return "works";
+    }
+    return "";
+  }
+
+  void set_owner(const CoreCycle& cycle, std::size_t port, std::vector<Run>& owners) {
+    const PortCycle& now = cycle.ports[port];
+    if (now.intent != Intent::kRequest) return;
+    const std::size_t requester = requester_of_port(port, cycle.host_traffic);
+    const std::size_t track = bank_track(board_, now.bank, requester);
+    if (!now.granted && now.by != fpga::kTurnaroundToBlame) return;
+    owners[track].state = State::kIsOwned;
+    owners[track].track = &banks_[track];
+    owners[track].requester = now.granted ? requester : now.by;
+  }
+
+  // Banks, matcher and queues.
+  void show_rest(const CoreCycle& cycle, const std::vector<Run>& owners) {
+    for (std::size_t track = 0; track < owners.size(); ++track)
+      show(bank_runs_[track], owners[track], cycle.cycle);
+    Run matcher;
+    if (cycle.works) {
+      matcher.state = State::kWorks;
+      matcher.track = &matcher_;
+    }
+    show(matcher_run_, matcher, cycle.cycle);
+    const std::array<std::uint32_t, 3> levels = {cycle.lane_slots[0], cycle.lane_slots[1],
+                                                 cycle.result_words};
+    for (std::size_t queue = 0; queue < levels.size(); ++queue)
+      queues_[queue].count(ns(cycle.cycle), levels[queue]);
+  }
+
+  void write_access(const CoreCycle& cycle, std::size_t port) {
+    const PortCycle& now = cycle.ports[port];
+    const std::size_t requester = requester_of_port(port, cycle.host_traffic);
+    add_data_flows(cycle, port);
+    const std::string& name = access_[now.bank][writes(requester) ? 1 : 0];
+    std::optional<std::uint64_t> item;
+    std::optional<std::uint64_t> row;
+    std::optional<std::uint64_t> column;
+    if (port != fpga::kHostPort) {
+      const SlotPlace place = board_.place_of(port, now.item);
+      item = now.item;
+      row = static_cast<std::uint64_t>(place.row);
+      column = static_cast<std::uint64_t>(place.column);
+    }
+    ports_[requester].slice(ns(cycle.cycle), ns(cycle.cycle + 1), name,
+                            {{"address", now.address},
+                             {port == fpga::kResultPort ? "word" : "slot", item},
+                             {"row", row},
+                             {"column", column}},
+                            flows_[requester]);
+    flows_[requester].clear();
+  }
+
+  // The arrows of a pixel: from its table entry to itself, and from the left pixel to the word that holds its
+  // disparity. Each has a number of its own, because a pixel that is passed ends the first and begins none.
+  void add_data_flows(const CoreCycle& cycle, std::size_t port) {
+    if (port == fpga::kHostPort || !cycle.frame) return;
+    const auto add = [&](Arrow arrow, fpga::Side side, std::uint64_t slot) {
+      const std::uint64_t pixel = (*cycle.frame * board_.geometry.slots + slot) * 2 + fpga::index_of(side);
+      flows_[port].push_back(kDataFlow | (pixel * 2 + static_cast<std::uint64_t>(arrow)));
+    };
+    const std::uint64_t item = cycle.ports[port].item;
+    if (port == fpga::kResultPort) {
+      const auto slots = board_.slots_of_word(item);
+      if (!slots) return;
+      for (const std::uint64_t slot : *slots) add(Arrow::kToResult, fpga::Side::kLeft, slot);
+      return;
+    }
+    const fpga::Side side = fpga::kPorts[port].side;
+    add(Arrow::kToPixel, side, item);
+    if (port == fpga::pixel_port(fpga::Side::kLeft)) add(Arrow::kToResult, side, item);
+    if (board_.core.joint_tables && port == fpga::lut_port(fpga::Side::kLeft))
+      add(Arrow::kToPixel, fpga::Side::kRight, item);
+  }
+
+  const TraceBoard& board_;
+  std::vector<PerfettoTrack> ports_;  // [requester]
+  std::vector<PerfettoTrack> banks_;  // [bank_track()]
+  PerfettoTrack matcher_;
+  std::array<PerfettoTrack, 3> queues_;             // left lane, right lane, results
+  std::vector<std::array<std::string, 2>> access_;  // [bank][write]: name of a slice
+  std::array<Run, fpga::kPortCount> port_runs_{};
+  std::vector<Run> bank_runs_;  // [bank_track()]
+  Run matcher_run_;
+  std::optional<std::uint64_t> next_cycle_;  // the one behind the last cycle
+  std::uint64_t waits_ = 0;
+  std::array<Flows, fpga::kRequesters> flows_;  // [requester]: of its access
+};
+
+// The computer around the core: bursts of both buses, levels of queues, and the events of the time line.
+class Computer {
+ public:
+  explicit Computer(PerfettoFile& file)
+      : file_(file),
+        buses_{Bus{{file, TrackGroup::kBuses, 0, "pci"}, {file, TrackGroup::kBuses, 1, "pci waits"}},
+               Bus{{file, TrackGroup::kBuses, 2, "local bus"},
+                   {file, TrackGroup::kBuses, 3, "local bus waits"}}} {}
+
+  void burst(const BusBurst& burst) {
+    Bus& bus = buses_[static_cast<std::size_t>(burst.bus)];
+    const std::uint64_t request = burst.request_ps / kPsPerNs;
+    const std::uint64_t address = burst.address_ps / kPsPerNs;
+    const std::uint64_t data = burst.data_ps / kPsPerNs;
+    const std::uint64_t end = burst.end_ps / kPsPerNs;
+    if (request < address)
+      bus.waits.free_at(request).slice(request, address, fmt::format("{} waits", burst.master), {});
+    PerfettoTrack& track = bus.bursts.free_at(address);
+    track.begin(address,
+                fmt::format("{} {} {}", burst.master, burst.write ? "writes" : "reads", burst.target),
+                {{"address", burst.address}, {"words", burst.words}});
+    track.slice(address, data, "address", {});
+    if (data < end) track.slice(data, end, "data", {});
+    track.end(end);
+  }
+
+  void level(const platform::QueueLevel& level) {
+    const std::size_t rank = kFirstQueueRank + queues_.size();
+    queues_.try_emplace(level.queue, file_, TrackGroup::kQueues, rank, level.queue, "words")
+        .first->second.count(level.time_ps / kPsPerNs, static_cast<double>(level.words));
+  }
+
+  void event(const TimelineEvent& event) {
+    const Names names = names_of(event);
+    const std::size_t rank = 3 + static_cast<std::size_t>(event.kind);
+    const std::uint64_t begin = event.begin_ps / kPsPerNs;
+    PerfettoTrack& track =
+        events_.try_emplace(names.track, file_, names.group, rank, names.track).first->second.free_at(begin);
+    if (event.kind == EventKind::kDrop)
+      return track.instant(begin, names.slice, {{"camera frame", event.camera_frame}});
+    const auto given = [](std::uint64_t number) {
+      return number != 0 ? std::optional(number) : std::nullopt;
+    };
+    track.slice(begin, event.end_ps / kPsPerNs, names.slice,
+                {{"frame", event.frame},
+                 {"camera frame", event.camera_frame},
+                 {"words", given(event.words)},
+                 {"dropped pixels", given(event.dropped_pixels)}});
+  }
+
+ private:
+  struct Bus {
+    OverlappingTracks bursts;
+    OverlappingTracks waits;
+  };
+  struct Names {
+    TrackGroup group = TrackGroup::kSoftware;
+    std::string track;
+    std::string slice;
+  };
+
+  static Names names_of(const TimelineEvent& event) {
+    switch (event.kind) {
+      case EventKind::kCapture:
+        return {TrackGroup::kCapture, event.what, "capture"};
+      case EventKind::kDrop:
+        return {TrackGroup::kCapture, event.what, fmt::format("drop: {}", event.why)};
+      case EventKind::kUpload:
+        return {TrackGroup::kSoftware, "uploads", event.what};
+      case EventKind::kReadBack:
+        return {TrackGroup::kSoftware, "read-backs", event.what};
+      case EventKind::kFrame:
+        return {TrackGroup::kCore, "core", event.what};
+      case EventKind::kInterrupt:
+        return {TrackGroup::kSoftware, fmt::format("interrupt {}", event.what),
+                fmt::format("interrupt {}", event.what)};
+      case EventKind::kWait:
+        return {TrackGroup::kSoftware, fmt::format("wait {}", event.what),
+                fmt::format("{} waits: {}", event.what, event.why)};
+    }
+    return {};
+  }
+
+  PerfettoFile& file_;
+  std::array<Bus, 2> buses_;
+  std::map<std::string, PerfettoTrack> queues_;
+  std::map<std::string, OverlappingTracks> events_;
+};
+
+class PerfettoSink : public TraceSink {
+ public:
+  PerfettoSink(const std::filesystem::path& path, const platform::BoardConfig& board)
+      : board_(board),
+        file_(files_.emplace_back(path,
+                                  files::marked_kind("Perfetto trace of stereotlm", {{0, perfetto_mark()}})),
+              "stereotlm " + board.name) {}
+
+  void cycle(const CoreCycle& cycle) override { cycles_.cycle(cycle); }
+  void burst(const BusBurst& burst) override { computer_.burst(burst); }
+  void level(const platform::QueueLevel& level) override { computer_.level(level); }
+  void frame(const platform::FrameRuns& frame) override { rows_.frame(frame); }
+  void event(const TimelineEvent& event) override { computer_.event(event); }
+  void end(const TimeSpan& /*window*/) override { cycles_.end(); }
+
+ private:
+  TraceBoard board_;
+  PerfettoFile file_;
+  Rows rows_{board_, file_};
+  Cycles cycles_{board_, file_};
+  Computer computer_{file_};
+};
+
+}  // namespace
+
+std::unique_ptr<TraceSink> perfetto_sink(const std::filesystem::path& path,
+                                         const platform::BoardConfig& board) {
+  return std::make_unique<PerfettoSink>(path, board);
+}
+
+}  // namespace stereotlm::trace

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "models/clock.h"
+#include "models/fpga/core_cycle.h"
+#include "platform/config/board_config.h"
+#include "sw/trace/longest_wait.h"
+#include "sw/trace/trace_sink.h"
+
+namespace stereotlm::trace {
+
+// A file that a run is to write.
+struct TraceFile {
+  const TraceFormat* format;
+  std::string path;
+};
+
+// The files that the trace is written to, without links. Throws std::system_error if links cannot be
+// followed.
+std::vector<std::filesystem::path> outputs_of(const TraceFile& file);
+
+// What the window of a trace shows: these cycles, or those of them around the longest wait of a port.
+struct TraceWindow {
+  fpga::CycleWindow cycles;
+  bool around_longest_wait = false;
+};
+
+// The traces of a run. Its files appear whole with commit(), or not at all.
+//
+// The sinks get the cycles, bursts and levels of the window. For the window of a frame BusTrace reports the
+// whole frame, because the cycles of its rows are not known before. Where the longest wait is, is known at
+// the end of the run. In both cases this class keeps the bursts and levels, and leaves out those beside the
+// window at the end.
+class Trace : public fpga::CycleObserver, public platform::BusObserver {
+ public:
+  // Throws std::runtime_error, with the name of the file, if one cannot be written. So do all other
+  // functions.
+  Trace(const std::vector<TraceFile>& files, const platform::BoardConfig& board,
+        const std::optional<TraceWindow>& window);
+
+  void cycle(const fpga::CoreCycle& cycle) override;
+  void burst(const platform::BusBurst& burst) override;
+  void level(const platform::QueueLevel& level) override;
+  void frame(const platform::FrameRuns& frame);
+  void events(const platform::TimelineRecords& records);
+  // Ends the traces and makes the files durable, under other names. To be called after everything above.
+  void complete();
+  // Replaces earlier files. To be called after complete().
+  void commit();
+
+ private:
+  // `event`: the function of the sinks that takes the record.
+  template <typename Event, typename Record>
+  void write(Event event, const Record& record) {
+    for (const auto& sink : sinks_) (*sink.*event)(record);
+  }
+  void set_span();
+
+  std::vector<std::unique_ptr<TraceSink>> sinks_;
+  Clock clock_;
+  bool has_window_;
+  bool is_of_frame_;
+  bool is_of_wait_;
+  bool is_empty_ = true;  // no cycle has come
+  TimeSpan span_;         // of the window; in that of a frame: of its cycles so far
+  LongestWait wait_;
+  // In the window of a frame or of a wait: what the buses do in the cycles from which it is taken.
+  std::vector<platform::BusBurst> bursts_;
+  std::vector<platform::QueueLevel> levels_;
+};
+
+}  // namespace stereotlm::trace

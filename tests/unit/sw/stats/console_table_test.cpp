@@ -1,0 +1,175 @@
+#include "sw/stats/console_table.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+namespace stereotlm::stats {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+platform::Statistics two_banks() {
+  platform::Statistics statistics;
+  statistics.board = "small";
+  statistics.fidelity = "cycle";
+  statistics.frames = 2;
+  statistics.cycles = 2000;
+  statistics.frame_cycles = {1016, 1018};
+  statistics.frames_per_second.core = 39331.5;
+  statistics.bound.core = 40000;
+  statistics.bound.core_limited_by = "left_pixel";
+  statistics.banks = {{"image", 1500, 0, 1500, 0, 500, 3, 0.75, 120},
+                      {"out", 0, 20, 20, 0, 1980, 0, 0.01, 1.6}};
+  statistics.blame = {{"left_lut", "image", "left_pixel", 40},
+                      {"left_pixel", "out", "turnaround", 250},
+                      {"right_lut", "out", "result", 250}};
+  return statistics;
+}
+
+platform::Statistics in_a_computer() {
+  platform::Statistics statistics = two_banks();
+  statistics.frames_per_second.system = 17.5;
+  statistics.frames_per_second.steady = {17.98, 0.25, 12};
+  statistics.bound.system = 29.97;
+  statistics.bound.system_limited_by = "camera";
+  platform::ComputerStatistics& computer = statistics.computer.emplace();
+  computer.pci_clocks = 10'000;
+  computer.pci_busy_clocks = 2'500;
+  computer.pci_masters = {{"host", 10, 20, 0}, {"left_capture", 100, 3000, 3333}};
+  computer.posted_words = 3000;
+  computer.dma_words = 1000;
+  computer.local_clocks = 20'000;
+  computer.local_busy_clocks = 5'000;
+  computer.cameras = {{"left", 10, 6, 4, 80, 3, 1, 0}, {"right", 10, 6, 4, 0, 2, 1, 1}};
+  computer.capture_to_host_ms = {77.5, 80, 90.25, 99, 100};
+  return statistics;
+}
+
+TEST(ConsoleTable, ShowsTheCoreAndTheComputerAroundIt) {
+  const std::string core =
+      "core          39331.500 frames/s   1017 cycles a frame, 2 frames\n"
+      "core bound     40000.000 frames/s   limited by left_pixel\n";
+  const std::string banks =
+      "bank                  reads         writes  busy %      MB/s peak MB/s\n"
+      "image                  1500              0   75.00    120.00    160.00\n"
+      "out                       0             20    1.00      1.60    160.00\n"
+      "waits        mostly left_pixel on out for the turnaround: 250 cycles (12.50 %)\n";
+  EXPECT_EQ(console_table(two_banks(), {}), core + banks);
+  EXPECT_EQ(
+      console_table(in_a_computer(), {40, 30, 40}),
+      core +
+          "computer         17.980 ± 0.250 frames/s   steady over 12 frames; 17.500 from power-up\n"
+          "computer bound   29.970 frames/s   limited by camera\n" +
+          banks +
+          "pci master     transactions          words  data %      MB/s peak MB/s mean wait us\n"
+          "host                     10             20    0.20      0.24    120.00        0.000\n"
+          "left_capture            100           3000   30.00     36.00    120.00        1.111\n"
+          "pci bus      busy 25.00 % of its clocks\n"
+          "local bus    busy 25.00 % of its clocks, 32.00 of 160.00 MB/s: 3000 words posted, 1000 by DMA\n"
+          "camera          frames  captured  dropped:   not armed      busy   partner  dropped pixels\n"
+          "left                10         6         4           3         1         0              80\n"
+          "right               10         6         4           2         1         1               0\n"
+          "latency      capture to host, ms: min 77.500, p50 80.000, p95 90.250, p99 99.000, max 100.000\n");
+}
+
+TEST(ConsoleTable, ShowsTheRatesOfAPciBusOf64Bits) {
+  const std::string text = console_table(in_a_computer(), {40, 30, 40, 64});
+  EXPECT_THAT(
+      text, HasSubstr("left_capture            100           3000   15.00     36.00    240.00        1.111\n"
+                      "pci bus      busy 25.00 % of its clocks\n"));
+}
+
+TEST(ConsoleTable, KeepsTheColumnsUnderALongName) {
+  platform::Statistics statistics = in_a_computer();
+  statistics.computer->pci_masters.push_back({"right_capture", 100, 3000, 3333});
+  const std::string text = console_table(statistics, {40, 30, 40});
+  EXPECT_THAT(text, HasSubstr("\npci master      transactions          words  data %"));
+  EXPECT_THAT(text, HasSubstr("\nright_capture            100           3000   30.00"));
+}
+
+TEST(ConsoleTable, ShowsTheAccuracyIfThereIsGroundTruth) {
+  EXPECT_THAT(
+      console_table(two_banks(), {}, {std::nullopt, std::nullopt, Accuracy{4.256, 2, 81.5}}),
+      HasSubstr("\naccuracy     off by more than 1: 4.26 %, by more than 2: 2.00 %, answered: 81.50 %\n"));
+  EXPECT_THAT(
+      console_table(two_banks(), {}, {std::nullopt, std::nullopt, Accuracy{std::nullopt, std::nullopt, 0}}),
+      HasSubstr("\naccuracy     off by more than 1: n/a, by more than 2: n/a, answered: 0.00 %\n"));
+  EXPECT_THAT(console_table(two_banks(), {}), Not(HasSubstr("accuracy")));
+}
+
+TEST(ConsoleTable, ShowsNoSteadyRateOfFewFramesAndNoWaitWhereNoPortWaits) {
+  platform::Statistics statistics = in_a_computer();
+  statistics.frames_per_second.steady.reset();
+  statistics.blame.clear();
+  const std::string text = console_table(statistics, {62.5, 33, 40});
+  EXPECT_THAT(
+      text,
+      HasSubstr("\ncomputer         17.500 frames/s   from power-up; too few frames for a steady rate\n"));
+  EXPECT_THAT(text, HasSubstr("\nwaits        none\n"));
+  EXPECT_THAT(text, HasSubstr("    120.00    250.00\n")) << "the peak follows from the clock";
+}
+
+TEST(ConsoleTable, ShowsWhatAllWaitsCostOfTheRateWithoutWaits) {
+  EXPECT_THAT(
+      console_table(two_banks(), {}, {39500, std::nullopt, std::nullopt}),
+      HasSubstr("\nwaits cost      168.500 frames/s   of 39500.000, which the core reaches without waits\n"));
+  platform::Statistics one_wait = two_banks();
+  one_wait.blame = {{"left_lut", "image", "left_pixel", 40}};
+  EXPECT_THAT(console_table(one_wait, {}),
+              HasSubstr("\nwaits        left_lut on image for left_pixel: 40 cycles (2.00 %)\n"));
+}
+
+TEST(ConsoleTable, ShowsHowManyPixelsHaveADisparity) {
+  EXPECT_THAT(console_table(two_banks(), {}, {std::nullopt, 81.504, std::nullopt}),
+              HasSubstr("\ndisparities  in 81.50 % of the pixels of the last frame\n"));
+  EXPECT_THAT(console_table(two_banks(), {}), Not(HasSubstr("disparities")));
+}
+
+TEST(ConsoleTable, NamesABankThatLimitsByItsNameAlone) {
+  platform::Statistics statistics = two_banks();
+  statistics.bound.core_limited_by = "bank image";
+  EXPECT_THAT(console_table(statistics, {}), HasSubstr("frames/s   limited by image\n"));
+}
+
+TEST(LostPixels, AreNamedIfThereAreAny) {
+  EXPECT_EQ(lost_pixels_text(0), "");
+  EXPECT_EQ(lost_pixels_text(1), "captures lose 1 pixel: pictures are torn, and disparities are wrong there");
+  EXPECT_EQ(lost_pixels_text(7).substr(0, 23), "captures lose 7 pixels:");
+}
+
+TEST(ConsoleTable, ShowsThePeakOfAllPortsOfABank) {
+  platform::Statistics statistics = two_banks();
+  statistics.banks[0].ports = 2;
+  EXPECT_THAT(console_table(statistics, {}), HasSubstr("    120.00    320.00\n"));
+}
+
+TEST(ConsoleTable, StaysWithinAHundredColumns) {
+  platform::Statistics statistics = in_a_computer();
+  statistics.bound.system_limited_by = std::string(300, 'l');
+  statistics.computer->pci_masters[0] = {"right_capture", 9'999'999'999'999, 9'999'999'999'999, 99'999};
+  statistics.computer->pci_clocks = 99'999'999'999'999;
+  statistics.computer->posted_words = 9'999'999'999;
+  statistics.computer->local_clocks = 99'999'999'999;
+  statistics.computer->cameras[0] = {"right", 9'999'999, 9'999'999, 9'999'999, 999'999'999'999, 1, 2, 3};
+  statistics.banks[0].name = std::string(300, 'b');
+  statistics.banks[0].reads = 9'999'999'999'999;
+  statistics.blame = {{"right_pixel", std::string(300, 'b'), "right_pixel", 9'999'999'999'999},
+                      {"left_pixel", "b", "turnaround", 1}};
+  statistics.cycles = 9'999'999'999'999;
+  statistics.bound.core_limited_by = std::string(300, 'l');
+  std::istringstream lines(
+      console_table(statistics, {1000, 1000, 1000}, {999999, 100, Accuracy{100, 100, 100}}));
+  std::string line;
+  int count = 0;
+  while (std::getline(lines, line)) {
+    EXPECT_LE(line.size(), 100U) << line;
+    ++count;
+  }
+  EXPECT_EQ(count, 20);
+}
+
+}  // namespace
+}  // namespace stereotlm::stats

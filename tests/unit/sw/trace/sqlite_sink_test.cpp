@@ -1,0 +1,138 @@
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "sw/sqlite/database.h"
+#include "tests/support/made_trace.h"
+#include "tests/support/scratch_folder.h"
+
+namespace stereotlm::trace {
+namespace {
+
+using sqlite::Database;
+
+class SqliteSinkTest : public ::testing::Test {
+ protected:
+  void write(const test::MadeTrace& trace) {
+    const auto sink = sqlite_sink(path_, board_);
+    trace.send(*sink);
+    test::finish(*sink);
+  }
+  std::int64_t number(const std::string& sql) const {
+    return Database(path_, Database::Access::kRead).number(sql);
+  }
+
+  test::ScratchFolder scratch_;
+  std::filesystem::path path_ = scratch_.path() / "file.db";
+  platform::BoardConfig board_ = test::made_board();
+};
+
+// The queries of the guide: its blocks of SQL.
+std::vector<std::string> queries_of_guide() {
+  const std::string guide = test::read_file(STEREOTLM_TRACE_GUIDE);
+  const std::string begin = "\n```sql\n";
+  std::vector<std::string> queries;
+  for (std::size_t place = guide.find(begin); place != std::string::npos; place = guide.find(begin, place)) {
+    place += begin.size();
+    queries.push_back(guide.substr(place, guide.find("\n```\n", place) - place));
+  }
+  return queries;
+}
+
+TEST_F(SqliteSinkTest, EachQueryOfTheGuideGivesRows) {
+  write(test::make_trace(board_, 2));
+  const Database database(path_, Database::Access::kRead);
+  const std::vector<std::string> queries = queries_of_guide();
+  EXPECT_EQ(queries.size(), 10);
+  for (const std::string& query : queries) {
+    sqlite::Statement statement(database, query);
+    EXPECT_TRUE(statement.step()) << query;
+  }
+}
+
+TEST_F(SqliteSinkTest, RunsHaveTheCyclesOfTheFrames) {
+  const test::MadeTrace trace = test::make_trace(board_, 2);
+  write(trace);
+  std::size_t waits = 0;
+  for (const platform::FrameRuns& frame : trace.frames) {
+    for (const platform::TraceRun& run : frame.runs) {
+      waits += run.by ? 1 : 0;
+      const std::string row =
+          run.strip == 0 ? "row IS NULL" : fmt::format("row <= {0} AND {0} < row + rows", run.strip - 1);
+      EXPECT_EQ(
+          number(fmt::format(
+              "SELECT count / max(rows, 1) FROM runs WHERE frame = {} AND {} AND port = '{}' AND bank = '{}' "
+              "AND by IS {} AND kind = '{}' AND start <= {} AND \"end\" >= {}",
+              frame.frame, row, fpga::requester_name(run.requester), board_.banks[run.bank].name,
+              run.by ? fmt::format("'{}'", fpga::requester_name(*run.by)) : "NULL", run.by ? "wait" : "grant",
+              run.first_cycle, run.end_cycle)),
+          run.count);
+    }
+  }
+  EXPECT_GT(waits, 20);
+}
+
+// With 5 rows in strips of 2 the last strip has one row: a count of its own, because `count / rows` is the mean of a row.
+TEST_F(SqliteSinkTest, ALastStripWithFewerRowsIsARunOfItsOwn) {
+  board_.matcher.rows = 2;
+  platform::FrameRuns frame;
+  for (std::size_t strip = 0; strip <= 3; ++strip) {
+    frame.strip_ends.push_back(100 * (strip + 1));
+    frame.runs.push_back({strip, 100 * strip, 100 * (strip + 1), 0, 0, std::nullopt, 10});
+  }
+  test::MadeTrace trace;
+  trace.frames = {frame};
+  for (const auto& [height, runs] : {std::pair(5, "0+4: 20, 4+1: 10"), std::pair(6, "0+6: 30")}) {
+    board_.image.height = height;
+    write(trace);
+    const Database database(path_, Database::Access::kRead);
+    sqlite::Statement found(database,
+                            "SELECT group_concat(row || '+' || rows || ': ' || count, ', ') FROM runs "
+                            "WHERE row IS NOT NULL");
+    ASSERT_TRUE(found.step());
+    EXPECT_EQ(found.text(0), runs);
+  }
+}
+
+TEST_F(SqliteSinkTest, TransactionsHaveEachAccessAndTheWaitsBeforeIt) {
+  const test::MadeTrace trace = test::make_trace(board_, 2);
+  write(trace);
+  for (std::size_t port = 0; port < fpga::kPortCount; ++port) {
+    std::int64_t grants = 0;
+    std::int64_t waits = 0;
+    for (const fpga::CoreCycle& cycle : trace.cycles) {
+      if (cycle.ports[port].intent == fpga::Intent::kRequest) ++(cycle.ports[port].granted ? grants : waits);
+    }
+    const std::string name = port == fpga::kHostPort ? "host capture" : fpga::kPorts[port].name;
+    const std::string of_port = fmt::format("FROM transactions WHERE port = '{}'", name);
+    EXPECT_EQ(number("SELECT count(*) " + of_port), grants) << name;
+    EXPECT_EQ(number("SELECT sum(waited) " + of_port), waits) << name;
+    EXPECT_EQ(number("SELECT count(*) " + of_port + " AND (waited = 0) != (by IS NULL)"), 0) << name;
+  }
+}
+
+TEST_F(SqliteSinkTest, BurstsLevelsAndEventsAreThere) {
+  const test::MadeTrace trace = test::make_trace(board_, 1);
+  write(trace);
+  EXPECT_EQ(number("SELECT count(*) FROM bursts WHERE bus = 'pci'"), 2);
+  EXPECT_EQ(number("SELECT words FROM bursts WHERE bus = 'local' AND master = 'posted'"), 16);
+  EXPECT_EQ(number("SELECT sum(words) FROM levels WHERE queue = 'posted'"), 48);
+  EXPECT_EQ(number("SELECT count(*) FROM events"), 5);
+  EXPECT_EQ(number("SELECT count(*) FROM events WHERE frame IS NULL AND why = 'not_armed'"), 1);
+  EXPECT_EQ(number("SELECT end_ps FROM events WHERE kind = 'capture'"), 1'500'500);
+}
+
+TEST_F(SqliteSinkTest, TheFileIsSoundAndItsSchemaHasAComment) {
+  write(test::make_trace(board_, 1));
+  const Database database(path_, Database::Access::kRead);
+  sqlite::Statement check(database, "PRAGMA integrity_check");
+  ASSERT_TRUE(check.step());
+  EXPECT_EQ(check.text(0), "ok");
+  EXPECT_EQ(number("SELECT count(*) FROM sqlite_schema WHERE sql LIKE '%-- %'"), 6);
+}
+
+}  // namespace
+}  // namespace stereotlm::trace
