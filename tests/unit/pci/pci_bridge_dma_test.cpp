@@ -24,32 +24,6 @@ class PciBridgeDma : public PciBridgeBench {
   }
 };
 
-TEST_F(PciBridgeDma, MovesWordsToTheBoardInBursts) {
-  build({32, 64, kCore});
-  host.debug_write(kData, numbers(70));
-  start(0, kChain, {{kData, 3U << 26U | 50U, 70}});
-  run(20);
-  EXPECT_EQ(on_board(3ULL << 28U | 200U, 70), numbers(70));
-  ASSERT_EQ(local.bursts.size(), 3U);
-  EXPECT_EQ(local.bursts[0].words.size(), 32U);
-  EXPECT_EQ(local.bursts[2].words.size(), 6U);
-  EXPECT_EQ(status(), bridge::kDmaDone);
-  EXPECT_EQ(dut->stats().dma_words, 70U);
-  EXPECT_EQ(dut->words_taken().total(), 70U);
-  EXPECT_EQ(dut->words_held().total(), 0U);
-}
-
-TEST_F(PciBridgeDma, MovesWordsFromTheBoard) {
-  build({32, 64, kCore});
-  start(1, kChain, {{kData, 7, 45 | bridge::kToPci}});
-  run(20);
-  EXPECT_EQ(host.debug_read(kData, 45), on_board(28, 45));
-  EXPECT_EQ(host.debug_read(kData + 45 * 4, 1), numbers(1, 0));
-  EXPECT_EQ(status(), bridge::kDmaDone << 1U);
-  EXPECT_EQ(dut->stats().dma_words, 45U);
-  EXPECT_EQ(dut->words_taken().total(), 0U);
-}
-
 TEST_F(PciBridgeDma, FollowsAChain) {
   build();
   host.debug_write(kData, numbers(10));
@@ -94,58 +68,6 @@ TEST_F(PciBridgeDma, IsBusyUntilTheLastWordHasArrivedAndRefusesAStartMeanwhile) 
     EXPECT_EQ(status(), (bridge::kDmaError | bridge::kDmaDone) << channel);
     EXPECT_EQ(local.bursts.size(), channel + 1U);
     write_register(bridge::kInterruptStatus, bridge::kAllInterrupts);
-  }
-}
-
-// The test lets the bursts of the local bus through one by one. Posted writes go to bank 0, channels 0 and 1
-// write to banks 1 and 2.
-class PciBridgeTurns : public PciBridgeDma {
- protected:
-  void build_held() {
-    build({4, 64, kCore});
-    local.held = true;
-  }
-  void start_both(std::uint32_t words) {
-    for (const std::uint32_t channel : {0U, 1U})
-      start(channel, kChain + 0x40 * channel, {{kData, (1 + channel) << 26U, words}});
-    run(20);
-  }
-  void post() { burst(true, kSlave, 1); }
-  // The running burst ends. The next one begins and is held.
-  void let_one_through() {
-    local.release();
-    run(0.001);
-    local.held = true;
-    run(20);
-  }
-  // The bursts so far: 'p' for posted writes, or the number of the channel.
-  std::string order() const {
-    std::string order;
-    for (const auto& burst : local.bursts) order += "p01"[burst.address >> 28U];
-    return order;
-  }
-};
-
-TEST_F(PciBridgeTurns, ServePostedWritesFirstAndThenTheChannelThatWasNotServedLast) {
-  build_held();
-  post();
-  start_both(8);
-  let_one_through();
-  EXPECT_EQ(order(), "p1");
-  post();
-  let_one_through();
-  EXPECT_EQ(order(), "p1p");  // now both channels wait
-  for (int bursts = 0; bursts < 3; ++bursts) let_one_through();
-  EXPECT_EQ(order(), "p1p010");
-}
-
-TEST_F(PciBridgeTurns, PassToTheOtherChannelWhenNothingWaits) {
-  build_held();
-  for (const char* const expected : {"p10", "p10p01", "p10p01p10"}) {
-    post();
-    start_both(4);
-    for (int bursts = 0; bursts < 3; ++bursts) let_one_through();
-    EXPECT_EQ(order(), expected);
   }
 }
 
