@@ -71,6 +71,58 @@ TEST_F(PciBridgeDma, IsBusyUntilTheLastWordHasArrivedAndRefusesAStartMeanwhile) 
   }
 }
 
+// The test lets the bursts of the local bus through one by one. Posted writes go to bank 0, channels 0 and 1
+// write to banks 1 and 2.
+class PciBridgeTurns : public PciBridgeDma {
+ protected:
+  void build_held() {
+    build({4, 64, kCore});
+    local.held = true;
+  }
+  void start_both(std::uint32_t words) {
+    for (const std::uint32_t channel : {0U, 1U})
+      start(channel, kChain + 0x40 * channel, {{kData, (1 + channel) << 26U, words}});
+    run(20);
+  }
+  void post() { burst(true, kSlave, 1); }
+  // The running burst ends. The next one begins and is held.
+  void let_one_through() {
+    local.release();
+    run(0.001);
+    local.held = true;
+    run(20);
+  }
+  // The bursts so far: 'p' for posted writes, or the number of the channel.
+  std::string order() const {
+    std::string order;
+    for (const auto& burst : local.bursts) order += "p01"[burst.address >> 28U];
+    return order;
+  }
+};
+
+TEST_F(PciBridgeTurns, ServePostedWritesFirstAndThenTheChannelThatWasNotServedLast) {
+  build_held();
+  post();
+  start_both(8);
+  let_one_through();
+  EXPECT_EQ(order(), "p1");
+  post();
+  let_one_through();
+  EXPECT_EQ(order(), "p1p");  // now both channels wait
+  for (int bursts = 0; bursts < 3; ++bursts) let_one_through();
+  EXPECT_EQ(order(), "p1p010");
+}
+
+TEST_F(PciBridgeTurns, PassToTheOtherChannelWhenNothingWaits) {
+  build_held();
+  for (const char* const expected : {"p10", "p10p01", "p10p01p10"}) {
+    post();
+    start_both(4);
+    for (int bursts = 0; bursts < 3; ++bursts) let_one_through();
+    EXPECT_EQ(order(), expected);
+  }
+}
+
 // A descriptor for channel 1, and a word on the board whose accesses are refused.
 struct Broken {
   const char* name;

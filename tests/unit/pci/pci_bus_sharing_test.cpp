@@ -100,6 +100,30 @@ TEST(PciBus, GrantsTheNextClockToAMasterThatRequestsAgainAsItReturnsItsGrant) {
   EXPECT_EQ(bench.bus->stats().busy_clocks, 2U);
 }
 
+TEST(PciBus, DoesNotCutABurstWhoseOwnMasterAloneRequestsAgain) {
+  PciBusBench bench(PciBusBench::with_window(3, 20));
+  TestMaster& master = *bench.masters[0];
+  master.bursts = {write_of(100), write_of(1)};
+  master.at_once = false;
+  bench.request_at(0);
+  bench.request_at(bench.edge(5));
+  sc_core::sc_start();
+  ASSERT_EQ(master.ended.size(), 2U);
+  EXPECT_EQ(master.ended[0].result.words, 100U);
+}
+
+TEST(PciBus, KeepsTheFirstOfTwoRequestsOfAMaster) {
+  PciBusBench bench(PciBusBench::with_window(0));
+  TestMaster& master = *bench.masters[0];
+  master.bursts = {write_of(1)};
+  bench.at(0, [&] {
+    master.pci->request(master, bench.edge(5));
+    master.pci->request(master, bench.edge(9));
+  });
+  sc_core::sc_start();
+  EXPECT_EQ(master.ended.at(0).address_ps, bench.edge(5));
+}
+
 // Each bus decides when nothing else is pending.
 TEST(PciBus, DecidesBesideAnotherBusWithTheSameEdges) {
   struct Machine : sc_core::sc_module {
