@@ -11,6 +11,19 @@
 namespace stereotlm::memory {
 namespace {
 
+// A read of a bank with separate ports waits for the read that is granted, not for the write beside it.
+TEST(Arbitration, BlamesAPortOfTheSameDirectionOfABankWithSeparatePorts) {
+  for (const bool write : {false, true}) {
+    Arbitration arbitration({"fixed_priority", {0, 1, 2}}, {{16, BankKind::kQdr}});
+    arbitration.route(0, 0, !write);
+    arbitration.route(1, 0, write);
+    arbitration.route(2, 0, write);
+    const PortMask granted = arbitration.arbitrate(0, mask_of(0) | mask_of(1) | mask_of(2));
+    EXPECT_EQ(granted, mask_of(0) | mask_of(1));
+    EXPECT_EQ(arbitration.cause_of(2, granted), 1U);
+  }
+}
+
 TEST(Arbitration, RoutesNoPortThatIsNotInThePriorityListAndNoneToABankThatDoesNotExist) {
   Arbitration arbitration({"fixed_priority", {1, 0}}, {{16}, {16}, {16}});
   const auto refusal = [](const auto& call) -> std::string {
