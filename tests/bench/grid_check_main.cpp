@@ -12,7 +12,7 @@
 #include "sw/files/whole_file.h"
 #include "sw/media/load.h"
 #include "sw/runs/result_folder.h"
-#include "tests/support/grid_assessment.h"
+#include "tests/bench/grid_assessment.h"
 
 namespace stereotlm::bench {
 namespace {

@@ -1,6 +1,6 @@
 #include "tests/support/monitoring_binder.h"
 
-#include <stdexcept>
+#include <utility>
 
 namespace stereotlm::test {
 
@@ -10,27 +10,13 @@ void MonitoringBinder::bind(InitiatorSocket& from, TargetSocket& to, const std::
   from.bind(monitor->from_initiator);
   monitor->to_target.bind(to);
   monitors_.push_back(std::move(monitor));
-  links_.push_back(link);
-}
-
-ProtocolMonitor& MonitoringBinder::monitor(const std::string& link) const {
-  for (std::size_t i = 0; i < links_.size(); ++i) {
-    if (links_[i] == link) return *monitors_[i];
-  }
-  throw std::out_of_range("MonitoringBinder: no link is named " + link);
-}
-
-std::vector<std::string> MonitoringBinder::violations() const {
-  std::vector<std::string> all;
-  for (const auto& monitor : monitors_) {
-    for (auto& violation : monitor->violations()) all.push_back(violation);
-  }
-  return all;
 }
 
 std::vector<std::string> MonitoringBinder::take_violations() {
-  auto all = violations();
-  for (const auto& monitor : monitors_) monitor->take_violations();
+  std::vector<std::string> all;
+  for (const auto& monitor : monitors_) {
+    for (std::string& violation : monitor->take_violations()) all.push_back(std::move(violation));
+  }
   return all;
 }
 

@@ -19,15 +19,12 @@ class MonitoringBinder : public Binder {
 
   // In the order of bind().
   const std::vector<std::unique_ptr<ProtocolMonitor>>& monitors() const { return monitors_; }
-  // Throws std::out_of_range if no link has that name.
-  ProtocolMonitor& monitor(const std::string& link) const;
-  std::vector<std::string> violations() const;
+  // Returns and removes the violations.
   std::vector<std::string> take_violations();
 
  private:
   ProtocolOptions options_;
   std::vector<std::unique_ptr<ProtocolMonitor>> monitors_;
-  std::vector<std::string> links_;
 };
 
 }  // namespace stereotlm::test

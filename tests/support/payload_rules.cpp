@@ -86,7 +86,7 @@ Problems request_problems(const tlm::tlm_generic_payload& payload, const Protoco
   }
   if (payload.get_streaming_width() == 0) {
     problems.emplace_back("streaming width = 0: must be positive (14.15 f)");
-  } else if (!options.streaming_bursts && payload.get_streaming_width() < payload.get_data_length()) {
+  } else if (options.whole_words && payload.get_streaming_width() < payload.get_data_length()) {
     problems.push_back("streaming width = " + std::to_string(payload.get_streaming_width()) +
                        ": must be at least the data length, " + std::to_string(payload.get_data_length()) +
                        ", as no streaming burst is meant on this link (14.15)");
@@ -182,14 +182,13 @@ PayloadSnapshot::PayloadSnapshot(const tlm::tlm_generic_payload& payload)
   if (byte_enables_ != nullptr) enables_.assign(byte_enables_, byte_enables_ + byte_enable_length_);
 }
 
-Problems PayloadSnapshot::changes(const tlm::tlm_generic_payload& payload,
-                                  const ProtocolOptions& options) const {
+Problems PayloadSnapshot::changes(const tlm::tlm_generic_payload& payload) const {
   Problems problems;
   const auto check = [&problems](bool same, const char* what) {
     if (!same) problems.push_back(std::string(what) + " changed: only the initiator may set it (14.7)");
   };
   check(payload.get_command() == command_, "command");
-  if (!options.address_may_change && payload.get_address() != address_) {
+  if (payload.get_address() != address_) {
     problems.push_back("address changed from " + hex(address_) + " to " + hex(payload.get_address()) +
                        ": a target may not modify it (14.7)");
   }

@@ -8,13 +8,9 @@ namespace stereotlm::test {
 
 // Rules of a link in addition to the rules of the base protocol.
 struct ProtocolOptions {
-  // Data length, streaming width and address are whole 32-bit words, as on every memory-mapped socket here.
+  // Data length, streaming width and address are whole 32-bit words, as on every memory-mapped socket here, and
+  // the streaming width is at least the data length. Without it streaming bursts are allowed too (14.15).
   bool whole_words = true;
-  // A streaming width below the data length is allowed: a streaming burst (14.15).
-  bool streaming_bursts = false;
-  // The target is an interconnect that translates addresses. Otherwise the address must come back as sent
-  // (14.7).
-  bool address_may_change = false;
 };
 
 // One sentence per broken rule: the value found, the rule, and its clause of IEEE Std 1666-2011.
@@ -40,7 +36,7 @@ class PayloadSnapshot {
  public:
   explicit PayloadSnapshot(const tlm::tlm_generic_payload& payload);
   sc_dt::uint64 address() const { return address_; }
-  Problems changes(const tlm::tlm_generic_payload& payload, const ProtocolOptions& options) const;
+  Problems changes(const tlm::tlm_generic_payload& payload) const;
 
  private:
   tlm::tlm_command command_;

@@ -188,7 +188,7 @@ void PhaseTracker::finish(const Payload& payload) {
 
 void PhaseTracker::check_unchanged(const Payload& payload, const Transaction& transaction,
                                    Problems& problems) const {
-  append(problems, transaction.sent.changes(payload, options_));
+  append(problems, transaction.sent.changes(payload));
 }
 
 }  // namespace stereotlm::test

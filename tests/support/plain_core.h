@@ -92,12 +92,6 @@ struct PlainCycleResult {
   std::array<PlainPortStates, kPlainPortCount> ports;  // in the order of PlainPort
   std::vector<PlainBankStates> banks;                  // in the order of PlainCycleInput::banks
   std::map<PlainBlame, std::uint64_t> blame;           // without zero rows
-
-  const PlainPortStates& port(PlainPort which) const { return ports[static_cast<std::size_t>(which)]; }
-  std::uint64_t blamed(PlainPort victim, int bank, std::optional<PlainPort> by) const {
-    const auto row = blame.find(PlainBlame{victim, bank, by});
-    return row == blame.end() ? 0 : row->second;
-  }
 };
 
 // A word that the local bus requests in a cycle.

@@ -68,28 +68,13 @@ ProtocolMonitor::ProtocolMonitor(const sc_core::sc_module_name& name, const Prot
 }
 
 ProtocolMonitor::~ProtocolMonitor() {
-  for (const auto& violation : violations()) ADD_FAILURE() << violation;
+  for (const auto& violation : violations_) ADD_FAILURE() << violation;
 }
 
-std::vector<std::string> ProtocolMonitor::violations() const {
-  auto all = violations_;
-  if (violations_not_kept_ > 0) {
-    all.push_back(std::string(name()) + ": " + std::to_string(violations_not_kept_) + " more violations");
-  }
-  return all;
-}
-
-std::vector<std::string> ProtocolMonitor::take_violations() {
-  auto all = violations();
-  violations_.clear();
-  violations_not_kept_ = 0;
-  return all;
-}
+std::vector<std::string> ProtocolMonitor::take_violations() { return std::exchange(violations_, {}); }
 
 void ProtocolMonitor::b_transport(Payload& payload, sc_core::sc_time& delay) {
   constexpr const char* kCall = "b_transport";
-  ++counts_.b_transport_calls;
-  count(payload);
   if (in_method_process()) report(kCall, "called from a method process: the callee may wait (11.1.1.4 b)");
   if (payload.has_mm() && payload.get_ref_count() == 0) {
     report(kCall, "reference count = 0: the initiator must acquire a managed transaction (14.5 t)");
@@ -115,19 +100,15 @@ void ProtocolMonitor::b_transport(Payload& payload, sc_core::sc_time& delay) {
                       (sc_core::sc_time_stamp() + delay).to_string() +
                       ": a callee must not take back time (11.1.1.4)");
   }
-  report(kCall, sent.changes(payload, options_));
+  report(kCall, sent.changes(payload));
   report(kCall, response_problems(payload));
 }
 
 tlm::tlm_sync_enum ProtocolMonitor::nb_transport_fw(Payload& payload, tlm::tlm_phase& phase,
                                                     sc_core::sc_time& delay) {
   constexpr const char* kCall = "nb_transport_fw";
-  if (phase == tlm::BEGIN_REQ) {
-    ++counts_.nb_transactions;
-    count(payload);
-    if (std::find(blocking_.begin(), blocking_.end(), &payload) != blocking_.end()) {
-      report(kCall, "the transaction is already in progress on this link (15.2.10 c)");
-    }
+  if (phase == tlm::BEGIN_REQ && std::find(blocking_.begin(), blocking_.end(), &payload) != blocking_.end()) {
+    report(kCall, "the transaction is already in progress on this link (15.2.10 c)");
   }
   check_non_blocking(kCall, payload);
   const Moment moment;
@@ -156,40 +137,31 @@ tlm::tlm_sync_enum ProtocolMonitor::nb_transport_bw(Payload& payload, tlm::tlm_p
 
 bool ProtocolMonitor::get_direct_mem_ptr(Payload& payload, tlm::tlm_dmi& dmi) {
   constexpr const char* kCall = "get_direct_mem_ptr";
-  ++counts_.dmi_requests;
   report(kCall, dmi_request_problems(payload, dmi));
   const PayloadSnapshot sent(payload);
   const Moment moment;
   const bool granted = to_target->get_direct_mem_ptr(payload, dmi);
-  if (granted) ++counts_.dmi_grants;
   if (moment.passed()) report(kCall, "time passed: the callee must not wait (11.2.4)");
-  report(kCall, sent.changes(payload, options_));
+  report(kCall, sent.changes(payload));
   report(kCall, dmi_answer_problems(payload, sent.address(), granted, dmi));
   return granted;
 }
 
 unsigned int ProtocolMonitor::transport_dbg(Payload& payload) {
   constexpr const char* kCall = "transport_dbg";
-  ++counts_.debug_calls;
   report(kCall, debug_request_problems(payload));
   const PayloadSnapshot sent(payload);
   const Moment moment;
   const unsigned int bytes = to_target->transport_dbg(payload);
   if (moment.passed()) report(kCall, "time passed: the callee must not wait (11.3.4)");
-  report(kCall, sent.changes(payload, options_));
+  report(kCall, sent.changes(payload));
   report(kCall, debug_answer_problems(payload, bytes));
   return bytes;
 }
 
 void ProtocolMonitor::invalidate_direct_mem_ptr(sc_dt::uint64 start, sc_dt::uint64 end) {
-  ++counts_.dmi_invalidations;
   if (start > end) report("invalidate_direct_mem_ptr", "the range ends before it starts (11.2.7)");
   from_initiator->invalidate_direct_mem_ptr(start, end);
-}
-
-void ProtocolMonitor::count(const Payload& payload) {
-  if (payload.is_read()) ++counts_.reads;
-  if (payload.is_write()) ++counts_.writes;
 }
 
 void ProtocolMonitor::check_non_blocking(const char* call, const Payload& payload) {
@@ -205,10 +177,7 @@ void ProtocolMonitor::report(const char* call, const Problems& problems) {
 }
 
 void ProtocolMonitor::report(const char* call, const std::string& problem) {
-  if (violations_.size() == kViolationsKept) {
-    ++violations_not_kept_;
-    return;
-  }
+  if (violations_.size() == kViolationsKept) return;
   violations_.push_back(std::string(name()) + " at " + sc_core::sc_time_stamp().to_string() + ": " + call +
                         ": " + problem);
 }

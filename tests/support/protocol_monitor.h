@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <systemc>
 #include <tlm>
@@ -19,28 +18,13 @@ class ProtocolMonitor : public sc_core::sc_module,
                         public tlm::tlm_fw_transport_if<>,
                         public tlm::tlm_bw_transport_if<> {
  public:
-  // `reads` and `writes` count blocking and non-blocking transactions.
-  struct Counts {
-    std::uint64_t b_transport_calls = 0;
-    std::uint64_t nb_transactions = 0;
-    std::uint64_t reads = 0;
-    std::uint64_t writes = 0;
-    std::uint64_t dmi_requests = 0;
-    std::uint64_t dmi_grants = 0;
-    std::uint64_t dmi_invalidations = 0;
-    std::uint64_t debug_calls = 0;
-  };
-
   tlm::tlm_target_socket<32> from_initiator{"from_initiator"};
   tlm::tlm_initiator_socket<32> to_target{"to_target"};
 
   explicit ProtocolMonitor(const sc_core::sc_module_name& name, const ProtocolOptions& options = {});
   ~ProtocolMonitor() override;
 
-  const Counts& counts() const { return counts_; }
-  // The first hundred violations, and the number of the others.
-  std::vector<std::string> violations() const;
-  // Returns and removes the violations.
+  // Returns and removes the violations, of which the first hundred are kept.
   std::vector<std::string> take_violations();
 
   void b_transport(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay) override;
@@ -53,7 +37,6 @@ class ProtocolMonitor : public sc_core::sc_module,
   void invalidate_direct_mem_ptr(sc_dt::uint64 start, sc_dt::uint64 end) override;
 
  private:
-  void count(const tlm::tlm_generic_payload& payload);
   void check_non_blocking(const char* call, const tlm::tlm_generic_payload& payload);
   void report(const char* call, const Problems& problems);
   void report(const char* call, const std::string& problem);
@@ -61,9 +44,7 @@ class ProtocolMonitor : public sc_core::sc_module,
   ProtocolOptions options_;
   PhaseTracker phases_;
   std::vector<const tlm::tlm_generic_payload*> blocking_;  // in b_transport now
-  Counts counts_;
   std::vector<std::string> violations_;
-  std::uint64_t violations_not_kept_ = 0;
 };
 
 }  // namespace stereotlm::test

@@ -18,24 +18,6 @@ class CaptureOverflow : public CaptureBench {
   std::uint64_t clock_ending_by(std::uint64_t time_ps) const { return edge_at_or_after(time_ps + 1) - 2; }
 };
 
-TEST_F(CaptureOverflow, EndsTheCaptureWithTheLastPixelIfItIsDropped) {
-  camera = {16, 2, 29.97, CameraTrigger::kFreeRunning};
-  board = {1, 1};
-  build_and_arm();
-  grant_in(4, edge_at_or_after(pixel_ps(5, 1)));  // the first word of the last line
-  run_to(pixel_ps(15, 1) - 1);
-  EXPECT_EQ(side->board.stats().words, 5U);
-  EXPECT_EQ(side->board.stats().dropped_pixels, 11U);
-  EXPECT_EQ(side->status(), registers::kStatusCapturing);
-  run_to(pixel_ps(15, 1));
-  EXPECT_EQ(side->status(), registers::kStatusDone);
-  EXPECT_TRUE(side->board.interrupt->is_asserted());
-  EXPECT_EQ(side->board.last_capture()->end_ps, pixel_ps(15, 1));
-  side->arm(kAddress);
-  run_to(side->camera.timing().frame_ps(1) + pixel_ps(1, 0));
-  EXPECT_EQ(side->board.stats().dropped_pixels, 12U);  // as before, in the next capture
-}
-
 TEST_F(CaptureOverflow, CountsEachPixelAsItIsDroppedAlsoWhileABurstRuns) {
   build_and_arm();
   test::BusTurn turn;  // the burst begins at once, but its first word leaves when pixel 600 arrives

@@ -13,30 +13,30 @@ namespace stereotlm::fpga {
 namespace {
 
 // The accesses of a slot.
-enum class Access : std::uint8_t { kNone, kTable, kTableAndCache, kTableAndImage };
+enum class SlotAccess : std::uint8_t { kNone, kTable, kTableAndCache, kTableAndImage };
 
 // Every column of slots of a frame, by a literal walk over all of them.
-std::vector<std::vector<Access>> columns_of(const CoreConfig& config,
-                                            const std::vector<std::uint32_t>& entries) {
+std::vector<std::vector<SlotAccess>> columns_of(const CoreConfig& config,
+                                                const std::vector<std::uint32_t>& entries) {
   const FrameGeometry geometry(config);
-  std::vector<std::vector<Access>> columns;
+  std::vector<std::vector<SlotAccess>> columns;
   std::map<int, int> cached;  // slot of a column -> word
   for (SlotCursor slot(geometry); !slot.done();) {
     columns.emplace_back();
     for (int k = 0; k < geometry.slots_per_column; ++k, slot.advance()) {
       if (slot.empty()) {
-        columns.back().push_back(Access::kNone);
+        columns.back().push_back(SlotAccess::kNone);
         continue;
       }
       const std::uint32_t entry = entries[place_of(config, slot.column(), slot.row())];
       if (slot.column() == 0) cached.erase(k);
       const int word = (kernels::entry_row(entry) * config.width + kernels::entry_column(entry)) / 4;
       if (!kernels::entry_is_valid(entry)) {
-        columns.back().push_back(Access::kTable);
+        columns.back().push_back(SlotAccess::kTable);
       } else if (config.pixel_cache == PixelCache::kWord && cached.count(k) != 0 && cached[k] == word) {
-        columns.back().push_back(Access::kTableAndCache);
+        columns.back().push_back(SlotAccess::kTableAndCache);
       } else {
-        columns.back().push_back(Access::kTableAndImage);
+        columns.back().push_back(SlotAccess::kTableAndImage);
         cached[k] = word;
       }
     }
@@ -45,18 +45,18 @@ std::vector<std::vector<Access>> columns_of(const CoreConfig& config,
 }
 
 // Entries without pixel access are alike, whatever the reason.
-bool make_equal_accesses(const std::vector<Access>& a, const std::vector<Access>& b) {
-  const auto without_reason = [](Access access) {
-    return access == Access::kTableAndCache ? Access::kTable : access;
+bool make_equal_accesses(const std::vector<SlotAccess>& a, const std::vector<SlotAccess>& b) {
+  const auto without_reason = [](SlotAccess access) {
+    return access == SlotAccess::kTableAndCache ? SlotAccess::kTable : access;
   };
   return std::equal(a.begin(), a.end(), b.begin(),
-                    [&](Access x, Access y) { return without_reason(x) == without_reason(y); });
+                    [&](SlotAccess x, SlotAccess y) { return without_reason(x) == without_reason(y); });
 }
 
-std::uint64_t count(const std::vector<std::vector<Access>>& columns, Access what) {
+std::uint64_t count(const std::vector<std::vector<SlotAccess>>& columns, SlotAccess what) {
   std::uint64_t slots = 0;
   for (const auto& column : columns) {
-    for (const Access access : column) slots += std::uint64_t{access == what};
+    for (const SlotAccess access : column) slots += std::uint64_t{access == what};
   }
   return slots;
 }
@@ -74,9 +74,9 @@ TEST(AccessPattern, EqualsAWalkOverTheSlots) {
       pattern.set_entries(entries.data());
     }
     const auto columns = columns_of(config, entries);
-    ASSERT_EQ(pattern.empty_slots(), count(columns, Access::kNone));
-    ASSERT_EQ(pattern.invalid_slots(), count(columns, Access::kTable));
-    ASSERT_EQ(pattern.pixel_accesses(), count(columns, Access::kTableAndImage));
+    ASSERT_EQ(pattern.empty_slots(), count(columns, SlotAccess::kNone));
+    ASSERT_EQ(pattern.invalid_slots(), count(columns, SlotAccess::kTable));
+    ASSERT_EQ(pattern.pixel_accesses(), count(columns, SlotAccess::kTableAndImage));
     std::size_t next = columns.size();
     for (std::size_t column = columns.size(); column-- > 0;) {
       const std::size_t last = column + 4;
@@ -88,15 +88,15 @@ TEST(AccessPattern, EqualsAWalkOverTheSlots) {
     std::uint64_t slot = 0;
     std::vector<bool> pixels(geometry.slots + 256 + 1);  // beyond the end of the frame there are none
     for (SlotCursor place(geometry); !place.done(); place.advance(), ++slot) {
-      const Access access = columns[place.frame_column()][slot % columns.front().size()];
-      if (access != Access::kNone) {
-        ASSERT_EQ(pattern.needs_pixel(place.column(), place.row()), access == Access::kTableAndImage);
+      const SlotAccess access = columns[place.frame_column()][slot % columns.front().size()];
+      if (access != SlotAccess::kNone) {
+        ASSERT_EQ(pattern.needs_pixel(place.column(), place.row()), access == SlotAccess::kTableAndImage);
       }
-      pixels[slot] = access == Access::kTableAndImage;
+      pixels[slot] = access == SlotAccess::kTableAndImage;
       if (slot % 7 == 0) {
         ASSERT_EQ(pattern.passes_before(slot), passes) << slot;
       }
-      if (access == Access::kTable || access == Access::kTableAndCache) ++passes;
+      if (access == SlotAccess::kTable || access == SlotAccess::kTableAndCache) ++passes;
     }
     ASSERT_EQ(pattern.passes_before(geometry.slots), passes);
     std::uint64_t expected = 0;

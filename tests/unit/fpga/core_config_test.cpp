@@ -3,10 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "models/fpga/core_ports.h"
+#include "models/fpga/lane_control.h"
 
 namespace stereotlm::fpga {
 namespace {
@@ -88,6 +90,21 @@ TEST(CoreConfig, RefusesAKernelWithProblems) {
   const auto found = problems_after([](CoreConfig& c) { c.filter->weights.front() = 1; });
   ASSERT_EQ(found.size(), 1U);
   EXPECT_EQ(found.front().rfind("filter: ", 0), 0U) << found.front();
+}
+
+TEST(LaneControl, RefusesADepthOrAReadLatencyOutsideItsRange) {
+  const FrameGeometry geometry{CoreConfig()};
+  for (const int slots : {1, 64}) EXPECT_NO_THROW(LaneControl(geometry, true, PixelCache::kNone, slots));
+  for (const int slots : {0, 65})
+    EXPECT_THROW(LaneControl(geometry, true, PixelCache::kNone, slots), std::invalid_argument);
+  LaneControl lane(geometry, true, PixelCache::kNone, 1);
+  LaneControl lane_without_table(geometry, false, PixelCache::kNone, 1);
+  for (const int latency : {1, 2}) EXPECT_NO_THROW(lane.start_frame(latency, latency));
+  for (const int latency : {0, 3}) {
+    EXPECT_THROW(lane.start_frame(latency, 2), std::invalid_argument);
+    EXPECT_THROW(lane.start_frame(2, latency), std::invalid_argument);
+    EXPECT_NO_THROW(lane_without_table.start_frame(latency, 2));  // the first has no effect
+  }
 }
 
 TEST(CorePorts, AreThoseOfTheContract) {

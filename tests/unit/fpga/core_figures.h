@@ -8,7 +8,8 @@
 
 namespace stereotlm::fpga {
 
-// All that a core counts but the accesses of its banks, one line for each block: to be compared as a whole.
+// All that a core counts at every fidelity, one line for each block: to be compared as a whole. (Stages count only
+// the data that moves through them.)
 class CoreFigures {
  public:
   CoreFigures(const FrameRun& frames, const std::vector<memory::BankArbiter>& arbiters) {
@@ -26,7 +27,6 @@ class CoreFigures {
     const LocalBus::Stats bus = core.local_bus_port().stats();
     line("local bus", {bus.bursts, bus.words_read, bus.words_written, bus.register_accesses, bus.errors,
                        bus.clocks, bus.busy_clocks});
-    add(core.datapath());
   }
   void add(const RowProfile& rows) {
     for (const RowEnd& row : rows) {
@@ -49,30 +49,6 @@ class CoreFigures {
     line("  grants", {stats.grants.begin(), stats.grants.end()});
     for (const auto& row : stats.blame) line("  blame", {row.begin(), row.end()});
   }
-  void add(const CoreDatapath& datapath) {
-    for (const Side side : kSides) {
-      const CoreDatapath::Lane& lane = datapath.lane(side);
-      line("slots", {datapath.sequencer().stats(side).slots, datapath.sequencer().stats(side).empty_slots});
-      if (lane.lut_reader) {
-        const LutReader::Stats stats = lane.lut_reader->stats();
-        line("table", {stats.reads, stats.invalid_entries, stats.empty_slots, stats.errors});
-      }
-      const PixelReader::Stats stats = lane.pixel_reader.stats();
-      line("image", {stats.reads, stats.passed_slots, stats.errors});
-      line("filter", {lane.filter.stats().pixels, lane.filter.stats().columns});
-      if (lane.census) line("census", {lane.census->stats().columns});
-      if (lane.row_buffer) line("rows", {lane.row_buffer->stats().columns});
-    }
-    const CostArray::Stats sums = datapath.cost_array().stats();
-    line("sums", {sums.columns, sums.pixel_costs, sums.candidates});
-    line("chain", {datapath.select_min_chain().stats().columns, datapath.select_min_chain().stats().matches});
-    line("tree", {datapath.select_min_tree().stats().columns, datapath.select_min_tree().stats().matches});
-    line("check", {datapath.lr_check().stats().answered, datapath.lr_check().stats().invalid});
-    line("packer", {datapath.result_packer().stats().words});
-    const ResultWriter::Stats writer = datapath.result_writer().stats();
-    line("writer", {writer.writes, writer.most_queued_words, writer.errors});
-  }
-
   std::string text_;
 };
 

@@ -5,7 +5,10 @@
 #include <vector>
 
 #include "models/fpga/core_config.h"
+#include "models/fpga/core_ports.h"
 #include "models/kernels/rectification_table.h"
+#include "models/memory/arbitration_policies.h"
+#include "models/memory/memory_config.h"
 #include "tests/support/random_board.h"
 
 namespace stereotlm::fpga {
@@ -60,6 +63,27 @@ inline void draw_cost(test::SplitMix64& random, CoreConfig& config) {
   constexpr CostKind kKinds[] = {CostKind::kSad, CostKind::kSsd, CostKind::kZncc, CostKind::kCensus};
   config.cost.kind = kKinds[random.between(0, 3)];
   if (config.cost.kind == CostKind::kCensus) config.cost.census_size = 2 * random.between(1, 3) + 1;
+}
+
+// Any policy and any order of the ports.
+inline memory::ArbiterConfig random_arbiter(test::SplitMix64& random) {
+  const auto& policies = memory::arbitration_policies();
+  memory::ArbiterConfig config = core_arbiter();
+  config.policy =
+      policies[static_cast<std::size_t>(random.between(0, static_cast<int>(policies.size()) - 1))].name;
+  auto& list = config.priority;
+  for (auto place = list.begin(); place != list.end(); ++place)
+    std::iter_swap(place, place + random.between(0, static_cast<int>(list.end() - place) - 1));
+  return config;
+}
+
+// The default bank, but of any kind.
+inline memory::SsramBankConfig random_bank(test::SplitMix64& random) {
+  const int kinds = static_cast<int>(memory::kBankTraits.size());
+  memory::SsramBankConfig config;
+  config.kind = static_cast<memory::BankKind>(random.between(0, kinds - 1));
+  if (memory::traits_of(config.kind).has_turnaround) config.turnaround_cycles = random.mostly_small(1, 3, 16);
+  return config;
 }
 
 // Index of a pixel's entry in a table.

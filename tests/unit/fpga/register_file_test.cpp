@@ -73,21 +73,6 @@ TEST_F(RegisterFileTest, DrivesTheInterruptAtTheEndOfAFrameAndAtItsAcknowledgeme
   EXPECT_FALSE(done.read());
 }
 
-TEST_F(RegisterFileTest, PassesOnARefusalOfTheCore) {
-  control(kControlStart);
-  file.refuse_start();
-  EXPECT_EQ(host.read(kStatus).word, registers::kStatusError);
-}
-
-TEST_F(RegisterFileTest, RefusesTheDirectionThatARegisterDoesNotHave) {
-  EXPECT_EQ(host.read(kControl).status, tlm::TLM_COMMAND_ERROR_RESPONSE);
-  for (const std::uint64_t address : {kStatus, registers::kFrameCyclesLow, registers::kFrameCyclesHigh}) {
-    EXPECT_EQ(host.write(address, 1).status, tlm::TLM_COMMAND_ERROR_RESPONSE) << address;
-    EXPECT_EQ(host.read(address).status, tlm::TLM_OK_RESPONSE) << address;
-  }
-  EXPECT_EQ(file.stats().errors, 4U);
-}
-
 TEST_F(RegisterFileTest, RefusesAccessesThatAreNotOneWordOfARegister) {
   struct Access {
     std::uint64_t address = registers::kLeftImageBase;

@@ -153,24 +153,57 @@ TEST_F(StereoCoreFast, ReadsATableAgainThatAFrameHasOverwritten) {
   EXPECT_EQ(core->stepped_frames(), 1U);
 }
 
-// fast_core_test.cpp has which bursts are a hazard.
+// A burst in cycle 10 of a frame, and what it is to the frame.
+struct BurstInFrame {
+  tlm::tlm_command command;
+  std::uint32_t bank;
+  std::uint32_t word;
+  std::size_t words;
+  const char* hazard;  // empty: none
+};
+
 TEST_F(StereoCoreFast, ReportsABurstThatIsAHazardAndRaisesError) {
+  const BurstInFrame bursts[] = {
+      {TLM_WRITE_COMMAND, kLeft, 11, 1,
+       "writes words 11..11 of bank number 0, where the running frame has its left_image"},
+      {TLM_WRITE_COMMAND, kRight, 3, 8,
+       "writes words 3..10 of bank number 1, where the running frame has its right_image"},
+      {TLM_WRITE_COMMAND, kLeftTable, 0, 1,
+       "writes words 0..0 of bank number 3, where the running frame has its left_lut"},
+      {TLM_WRITE_COMMAND, kRightTable, 40, 20,
+       "writes words 40..59 of bank number 4, where the running frame has its right_lut"},
+      {TLM_WRITE_COMMAND, kResult, 0, 1,
+       "writes words 0..0 of bank number 2, where the running frame has its disparity"},
+      {TLM_READ_COMMAND, kResult, 11, 2,
+       "reads words 11..12 of bank number 2, where the running frame has its disparity"},
+      {TLM_READ_COMMAND, kLeft, 0, 12, ""},
+      {TLM_READ_COMMAND, kLeftTable, 0, 48, ""},
+      {TLM_WRITE_COMMAND, kLeft, kImageWords, 4, ""},
+      {TLM_WRITE_COMMAND, kLeftTable, kTableWords, 2, ""},
+      {TLM_READ_COMMAND, kResult, kImageWords, 1, ""},
+      {TLM_WRITE_COMMAND, kSpare, 0, 20, ""},
+  };
   build(small_board());
   do_not_throw_reports();
-  at(edge(10'000), [this] { start(); });
-  at(edge(10'010),
-     [this] { memory.access(TLM_WRITE_COMMAND, crossbar_address(kLeft, kImageWords - 1), Words(1)); });
-  {
-    const test::ExpectedReport expected("/stereotlm/core");
-    run_until(edge(15'000));
+  std::uint64_t cycle = 10'000;
+  for (const BurstInFrame& burst : bursts) {
+    const std::string hazard = burst.hazard;
+    SCOPED_TRACE(hazard.empty() ? "bank number " + std::to_string(burst.bank) : hazard);
+    at(edge(cycle), [this] { start(); });
+    at(edge(cycle + 10), [this, &burst] {
+      memory.access(burst.command, crossbar_address(burst.bank, burst.word), Words(burst.words));
+    });
+    cycle += 10'000;
+    const test::ExpectedReport expected("/stereotlm/core", hazard.empty() ? 0 : 1);
+    run_until(edge(cycle - 1));
     EXPECT_EQ(expected.text(),
-              "core: a burst of the local bus writes words 11..11 of bank number 0, where the running frame "
-              "has its left_image: needs fidelity cycle");
+              hazard.empty() ? "" : "core: a burst of the local bus " + hazard + ": needs fidelity cycle");
+    EXPECT_EQ(status(),
+              hazard.empty() ? registers::kStatusDone : registers::kStatusDone | registers::kStatusError);
+    EXPECT_EQ(memory.answers.back().status, tlm::TLM_OK_RESPONSE);
   }
-  EXPECT_EQ(status(), registers::kStatusDone | registers::kStatusError);
-  EXPECT_EQ(memory.answers.at(0).status, tlm::TLM_OK_RESPONSE);
-  run_frame();  // the next frame is not affected
-  EXPECT_EQ(status(), registers::kStatusDone);
+  EXPECT_EQ(frame_cycles().size(), std::size(bursts));
+  EXPECT_EQ(core->stepped_frames(), 0U);
 }
 
 // Direct access to the disparities that ends while a frame runs.

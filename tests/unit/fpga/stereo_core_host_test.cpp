@@ -70,36 +70,6 @@ TEST_P(StereoCoreHost, StartsAFrameAtTheEndOfTheClockThatCarriesTheStrobe) {
   EXPECT_EQ(done_at, std::vector<sc_time>{edge(2 + kFirst + frame_cycles_alone(4))});
 }
 
-TEST_P(StereoCoreHost, DelaysAFrameByEachCycleThatItTakesFromAPixelPort) {
-  build(small_board());
-  // Slot 1 of the sequence is read in cycle 3 (tables 2 cycles); the host is first in the list.
-  run_frame_with(3, TLM_READ_COMMAND, crossbar_address(kLeft, 4));
-  EXPECT_EQ(memory.answers[0].word, words_of(left)[4]);
-  EXPECT_EQ(memory.answers[0].at, edge(3 + kReadEnd));
-  EXPECT_EQ(frame_cycles(), std::vector<std::uint64_t>{frame_cycles_alone(4) + 1});
-  EXPECT_EQ(port(kHostPort).granted(), 1U);
-  EXPECT_EQ(port(kHostPort).stalled(), 0U);
-  EXPECT_EQ(port(kHostPort).idle(), frame_cycles_alone(4) + 1 - pipeline() - 1);
-  EXPECT_EQ(port(pixel_port(Side::kLeft)).stalled(), 1U);
-  EXPECT_EQ(blamed(kLeft, pixel_port(Side::kLeft), kHostPort), 1U);
-  EXPECT_EQ(uncounted(), 0U);
-}
-
-TEST_P(StereoCoreHost, WaitsForAPreferredPortAndBlamesIt) {
-  StereoCoreConfig board = small_board();
-  auto& priority = board.memory.arbiter.priority;
-  std::rotate(priority.begin(), priority.begin() + 1, priority.end());  // the host last
-  build(board);
-  // Slots 1 and 2 are read in cycles 3 and 4; slot 3, the next column's first, is empty in cycle 5.
-  run_frame_with(3, TLM_READ_COMMAND, crossbar_address(kLeft, 4));
-  EXPECT_EQ(memory.answers[0].at, edge(5 + kReadEnd));
-  EXPECT_EQ(frame_cycles(), std::vector<std::uint64_t>{frame_cycles_alone(4)});
-  EXPECT_EQ(port(kHostPort).stalled(), 2U);
-  EXPECT_EQ(port(kHostPort).granted(), 1U);
-  EXPECT_EQ(blamed(kLeft, kHostPort, pixel_port(Side::kLeft)), 2U);
-  EXPECT_EQ(core->crossbar().arbiters()[kLeft].stats().contended_cycles, 2U);
-}
-
 TEST_P(StereoCoreHost, TakesPartFromTheFirstCycleAtOrAfterItsRequest) {
   build(small_board());
   at(edge(0), [this] { start(); });

@@ -16,7 +16,6 @@
 #include "tests/support/test_host.h"
 #include "tests/unit/fpga/core_figures.h"
 #include "tests/unit/fpga/random_core.h"
-#include "tests/unit/support/random_memory.h"
 
 namespace stereotlm::fpga {
 namespace {
@@ -47,9 +46,9 @@ StereoCoreConfig random_board(SplitMix64& random, Fidelity fidelity) {
   board.core.clock_mhz = clocks[static_cast<std::size_t>(random.between(0, 2))];
   board.local_bus.clock_mhz =
       random.chance(50) ? board.core.clock_mhz : clocks[static_cast<std::size_t>(random.between(0, 2))];
-  board.memory.arbiter = test::random_arbiter(random);
+  board.memory.arbiter = random_arbiter(random);
   for (int banks = random.between(1, 8); banks > 0; --banks) {
-    memory::SsramBankConfig bank = test::random_bank(random);
+    memory::SsramBankConfig bank = random_bank(random);
     bank.words = kBankWords;
     bank.clock_mhz = board.core.clock_mhz;
     board.memory.banks.push_back(bank);

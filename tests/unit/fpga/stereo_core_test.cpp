@@ -76,19 +76,6 @@ TEST_P(StereoCoreTest, IsBusyUntilTheLastPicosecondOfTheFrame) {
   EXPECT_EQ(registers.read(registers::kFrameCyclesHigh).word, 0U);
 }
 
-TEST_P(StereoCoreTest, ComputesThemWithFilterAndLineBuffers) {
-  StereoCoreConfig board = small_board();
-  board.core.filter = kernels::log7();
-  board.core.fetch = Fetch::kLineBuffer;
-  board.core.lr_tolerance = 1;
-  run(board);
-  EXPECT_EQ(result_words(), expected_words());
-  EXPECT_EQ(frame_cycles(), std::vector<std::uint64_t>{frame_cycles_alone(4)});
-  const CoreDatapath::Lane& lane = core->datapath().lane(Side::kLeft);
-  ASSERT_NE(lane.row_buffer, nullptr);
-  EXPECT_EQ(lane.row_buffer->stats().columns, lane.filter.stats().columns);
-}
-
 TEST_P(StereoCoreTest, ComputesThemWithoutTables) {
   StereoCoreConfig board = small_board();
   board.core.left_table = false;
@@ -104,29 +91,6 @@ TEST_P(StereoCoreTest, ComputesThemWithoutTables) {
   EXPECT_EQ(core->datapath().lane(Side::kLeft).lut_reader, nullptr);
   EXPECT_EQ(core->datapath().lane(Side::kRight).row_buffer, nullptr);
   EXPECT_EQ(port(lut_port(Side::kLeft)).idle(), frame_cycles_alone(2) - pipeline());
-}
-
-TEST_P(StereoCoreTest, CountsTheSameAtAllItsStages) {
-  run(small_board());
-  const FrameGeometry& geometry = core->control().geometry();
-  const std::uint64_t columns = (geometry.slots + geometry.drain_cycles) / 3;
-  const CoreDatapath& datapath = core->datapath();
-  for (const Side side : kSides) {
-    const CoreDatapath::Lane& lane = datapath.lane(side);
-    EXPECT_EQ(datapath.sequencer().stats(side).slots, geometry.slots);
-    EXPECT_EQ(core->control().lane(side).consumed(), geometry.slots);
-    EXPECT_EQ(lane.lut_reader->stats().reads, port(lut_port(side)).granted());
-    EXPECT_EQ(lane.pixel_reader.stats().reads, port(pixel_port(side)).granted());
-    EXPECT_EQ(lane.pixel_reader.stats().passed_slots, port(pixel_port(side)).passed());
-    EXPECT_EQ(lane.filter.stats().columns, columns);
-  }
-  EXPECT_EQ(datapath.cost_array().stats().columns, columns);
-  EXPECT_EQ(datapath.select_min_chain().stats().columns, datapath.select_min_tree().stats().columns);
-  EXPECT_EQ(datapath.lr_check().stats().answered + datapath.lr_check().stats().invalid, 48U);
-  EXPECT_EQ(datapath.result_packer().stats().words, 12U);
-  EXPECT_EQ(datapath.result_writer().stats().writes, 12U);
-  EXPECT_EQ(accesses(kLeft), port(pixel_port(Side::kLeft)).granted());
-  EXPECT_EQ(accesses(kResult), 12U);
 }
 
 TEST_P(StereoCoreTest, RunsTheNextFrameDirectlyAfterTheLast) {
@@ -171,28 +135,6 @@ TEST_P(StereoCoreTest, IsBusyForAStrobeAPicosecondBeforeTheEndOfAFrameAndFreeAtT
   finish();
   EXPECT_EQ(status(), kStatusDone);
   EXPECT_EQ(done_at, (std::vector<sc_time>{edge(cycles), edge(4 * cycles), edge(5 * cycles)}));
-}
-
-TEST_P(StereoCoreTest, KeepsItsTimesInAFrameOfManyThousandCycles) {
-  StereoCoreConfig board = small_board();
-  board.core.width = 64;
-  board.core.height = 96;
-  for (auto& bank : board.memory.banks) bank.words = 64 * 96;
-  build(board);
-  const std::uint64_t cycles = frame_cycles_alone(4);
-  ASSERT_GT(cycles, 17'000U);
-  at(edge(1), [this] { start(); });
-  // Nothing comes from outside for 17000 cycles, then two words.
-  at(edge(17'000), [this] {
-    memory.access(tlm::TLM_READ_COMMAND, memory::crossbar_address(kSpare, 0));
-    memory.access(tlm::TLM_READ_COMMAND, memory::crossbar_address(kSpare, 0));
-  });
-  run_until(edge(20'000));
-  EXPECT_EQ(done_at, std::vector<sc_time>{edge(1 + cycles)});
-  EXPECT_EQ(memory.answers.at(0).at, edge(17'006));
-  EXPECT_EQ(memory.answers.at(1).at, edge(17'012));
-  EXPECT_EQ(port(kHostPort).granted(), 2U);
-  EXPECT_EQ(result_words(), expected_words());
 }
 
 class StereoCoreBases : public StereoCoreBench, public testing::WithParamInterface<memory::Port> {

@@ -11,7 +11,7 @@
 #include "models/host/host_memory.h"
 #include "tests/support/expected_report.h"
 #include "tests/support/monitoring_binder.h"
-#include "tests/unit/support/scripted_link.h"
+#include "tests/support/scripted_ends.h"
 
 namespace stereotlm::host {
 namespace {

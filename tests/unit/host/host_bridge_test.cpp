@@ -144,7 +144,6 @@ TEST_F(HostBridgeTest, ServesANonBlockingProcessor) {
 TEST_F(HostBridgeTest, RefusesAccessesThatABurstCannotCarry) {
   test::ProtocolOptions options;
   options.whole_words = false;
-  options.streaming_bursts = true;
   build(options);
   const test::RefusedAccess refused[] = {
       {tlm::TLM_COMMAND_ERROR_RESPONSE, tlm::TLM_IGNORE_COMMAND, kBase},

@@ -90,7 +90,6 @@ TEST_F(HostMemoryTest, MovesTheEnabledBytesOnly) {
 TEST_F(HostMemoryTest, RefusesIncorrectAccesses) {
   test::ProtocolOptions options;
   options.whole_words = false;
-  options.streaming_bursts = true;
   build(options);
   using Refused = test::RefusedAccess;
   std::vector<Refused> refused;

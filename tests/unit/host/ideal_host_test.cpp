@@ -15,7 +15,7 @@
 #include "models/fpga/register_map.h"
 #include "tests/support/expected_report.h"
 #include "tests/support/monitoring_binder.h"
-#include "tests/unit/support/scripted_link.h"
+#include "tests/support/scripted_ends.h"
 
 namespace stereotlm::host {
 namespace {
@@ -187,14 +187,6 @@ TEST_F(IdealHostTest, RunsEachFrameWithItsOwnPairInNoTimeOfItsOwn) {
   EXPECT_EQ(written.count(registers_of::kRightLutBase), 0U);
 }
 
-TEST_F(IdealHostTest, DoesNothingForNoFrames) {
-  build(config(0));
-  sc_core::sc_start();
-  EXPECT_TRUE(host->finished());
-  EXPECT_TRUE(controls.empty());
-  EXPECT_TRUE(source.asked.empty());
-}
-
 struct Fault {
   const char* name;
   std::function<void(IdealHostTest&)> set;
@@ -236,30 +228,6 @@ INSTANTIATE_TEST_SUITE_P(
             [](auto& test) { test.status_of_done = registers_of::kStatusDone | registers_of::kStatusError; },
             "frame 0: the core reports an error", false}),
     [](const auto& tested) { return tested.param.name; });
-
-TEST_F(IdealHostTest, LoadsJointTablesAsOneWithItsOffsets) {
-  IdealHostConfig joint = config(2);
-  joint.buffers.left_lut = registers_of::base(3, 0);
-  joint.buffers.has_joint_tables = true;
-  kernels::RectificationTable left = kernels::identity_table(kWidth, kHeight);
-  kernels::RectificationTable right = left;
-  for (std::uint32_t& entry : left.entries) entry = kernels::make_entry(3, 0);
-  right.entries.front() = 0;
-  build(joint, &left, &right);
-  sc_core::sc_start();
-  EXPECT_TRUE(host->finished());
-  const kernels::JointTable expected = kernels::join_tables(left, right);
-  std::vector<std::uint32_t> words(kPixels);
-  std::memcpy(words.data(), banks.at(3).data(), kPixels * 4);
-  EXPECT_EQ(words, expected.words);
-  EXPECT_EQ(expected.offsets, (kernels::JointOffsets{{{2, 0}, {0, 0}}}));
-  EXPECT_EQ(written[registers_of::kLeftColumns], std::vector<std::uint32_t>{2});
-  EXPECT_EQ(written[registers_of::kLeftRows], std::vector<std::uint32_t>{0});
-  EXPECT_EQ(written[registers_of::kRightColumns], std::vector<std::uint32_t>{0});
-  EXPECT_EQ(written[registers_of::kRightRows], std::vector<std::uint32_t>{0});
-  EXPECT_EQ(written[registers_of::kLeftLutBase], std::vector<std::uint32_t>{registers_of::base(3, 0)});
-  EXPECT_EQ(written.count(registers_of::kRightLutBase), 0U);
-}
 
 TEST_F(IdealHostTest, RefusesJointTablesThatDoNotFitOrOfOneSideOnly) {
   IdealHostConfig joint = config(1);

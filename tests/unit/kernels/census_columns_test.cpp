@@ -68,69 +68,6 @@ TEST(CensusTransform, EqualsTheLiteralBitsWithEachInstructionSet) {
   }
 }
 
-// Sends an image through the stage in columns of n + R - 1 rows, or of one row, from a first row that may lie
-// far above the image. Rows outside the image hold noise.
-void expect_columns(int size, int rows_per_column, int rows_per_strip, int first_row, SplitMix64& random) {
-  constexpr int kWidth = 20;
-  constexpr int kHeight = 11;
-  const MatchingCost cost{CostKind::kCensus, size};
-  const int half = cost.half();
-  const int bytes = cost.pixel_bytes();
-  CensusColumns census(kWidth, kHeight, rows_per_column, rows_per_strip, cost);
-  for (int frame = 0; frame < 2; ++frame) {
-    const auto image = test::noise_board(kWidth, kHeight, 3, random, 5).pictures[0].left;
-    const auto expected = test::reference_census(kWidth, kHeight, image, size);
-    std::vector<std::uint8_t> found(expected.size() * static_cast<std::size_t>(bytes), 0xFF);
-    std::vector<int> seen(expected.size());
-    const auto inside = [](int row) { return row >= 0 && row < kHeight; };
-    census.start_frame(first_row);
-    const int strips = (kHeight + half - first_row + rows_per_strip - 1) / rows_per_strip;
-    for (int count = 0; count < strips * kWidth + half; ++count) {
-      std::vector<std::uint8_t> pixels;
-      std::uint64_t valid = 0;
-      for (int k = 0; k < rows_per_column; ++k) {
-        const int row = first_row + count / kWidth * rows_per_strip + k;
-        const int column = count % kWidth;
-        pixels.push_back(inside(row) ? image[static_cast<std::size_t>(row * kWidth + column)]
-                                     : static_cast<std::uint8_t>(random.between(0, 255)));
-        valid |= std::uint64_t{(row + column) % 3 == 0} << k;
-      }
-      const PixelColumn out = census.push({pixels.data(), valid});
-      if (count < half) continue;
-      const int column = (count - half) % kWidth;
-      for (int k = 0; k < rows_per_column; ++k) {
-        const int row = first_row + (count - half) / kWidth * rows_per_strip - half + k;
-        if (!inside(row)) continue;
-        const auto place = static_cast<std::size_t>(row * kWidth + column);
-        std::copy_n(out.values + k * bytes, bytes,
-                    found.begin() + static_cast<std::ptrdiff_t>(place) * bytes);
-        ++seen[place];
-        ASSERT_EQ((out.valid >> k & 1U) != 0, (row + column) % 3 == 0) << row << ", " << column;
-      }
-    }
-    ASSERT_EQ(std::count(seen.begin(), seen.end(), 0), 0);
-    ASSERT_NO_FATAL_FAILURE(expect_census(kWidth, found, expected, bytes));
-  }
-}
-
-TEST(CensusColumns, EqualTheLiteralBitsInEveryOrderOfFetching) {
-  SplitMix64 random(22);
-  for (const int size : {3, 5, 7}) {
-    for (const int window : {3, 7, 31}) {
-      for (const int rows : {1, 4, 16}) {
-        // Row 0 of the first strip, or a strip that holds no row of the image.
-        for (const int first_row : {0, -(window + rows - 1), -40}) {
-          SCOPED_TRACE("size " + std::to_string(size) + ", window " + std::to_string(window) + ", rows " +
-                       std::to_string(rows) + ", first row " + std::to_string(first_row));
-          ASSERT_NO_FATAL_FAILURE(expect_columns(size, window + rows - 1, rows, first_row, random));
-        }
-      }
-    }
-    for (const int first_row : {0, -15})
-      ASSERT_NO_FATAL_FAILURE(expect_columns(size, 1, 1, first_row, random));
-  }
-}
-
 TEST(Census, RefusesSizesOutsideTheirRange) {
   EXPECT_NO_THROW(CensusColumns(4, 1, 3, 1, {CostKind::kCensus, 7}));
   EXPECT_NO_THROW(CensusTransform(4, 1, {CostKind::kCensus, 3}));

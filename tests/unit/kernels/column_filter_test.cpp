@@ -89,17 +89,6 @@ void expect_filtered_by_rows(const RandomBoard& board, SplitMix64& random) {
   expect_two_frames(board, {1, 1, 0, board.height + half + (board.window - 1) / 2}, random);
 }
 
-TEST(ColumnFilter, EqualsTheLiteralFilterOnRandomBoards) {
-  SplitMix64 random(5);
-  for (std::uint64_t seed = 0; seed < 200; ++seed) {
-    const RandomBoard board = test::make_random_board(seed);
-    SCOPED_TRACE(describe(board));
-    ASSERT_NO_FATAL_FAILURE(expect_filtered_by_columns(board, 1, random));
-    ASSERT_NO_FATAL_FAILURE(expect_filtered_by_columns(board, random.between(2, 16), random));
-    ASSERT_NO_FATAL_FAILURE(expect_filtered_by_rows(board, random));
-  }
-}
-
 test::ReferenceKernel differences_kernel(int size) {
   test::ReferenceKernel kernel{size, {}, 3};
   for (int place = 0; place < size * size; ++place) kernel.weights.push_back(place * 7 % 23);
@@ -124,31 +113,6 @@ TEST(ColumnFilter, EqualsTheLiteralFilterForEachPairOfSizes) {
           ASSERT_NO_FATAL_FAILURE(expect_filtered_by_columns(board, rows, random));
         ASSERT_NO_FATAL_FAILURE(expect_filtered_by_rows(board, random));
       }
-    }
-  }
-}
-
-// Pixels that enter below the image may have any value.
-TEST(ColumnFilter, RepeatsTheLastRowHoweverFarBelowTheImage) {
-  constexpr int kWidth = 12;
-  constexpr int kHeight = 4;
-  constexpr int kBelow = 20;
-  SplitMix64 random(8);
-  for (const int size : {3, 7}) {
-    const int half = (size - 1) / 2;
-    const test::ReferenceKernel kernel = differences_kernel(size);
-    std::vector<std::uint8_t> pixels = test::noise_board(kWidth, kHeight, 3, random).pictures[0].left;
-    for (int pixel = 0; pixel < kBelow * kWidth; ++pixel) pixels.push_back(pixels[pixels.size() - kWidth]);
-    const auto expected = test::reference_filter(kWidth, kHeight + kBelow, pixels, kernel);
-    ColumnFilter filter(kWidth, kHeight, 1, 1, test::filter_kernel(kernel));
-    const int first_seen = half * kWidth + half;
-    for (int count = 0; count < (kHeight + kBelow) * kWidth; ++count) {
-      const auto at = static_cast<std::size_t>(count);
-      const auto anything = static_cast<std::uint8_t>(random.between(0, 255));
-      ASSERT_TRUE(filter.push({count < kHeight * kWidth ? pixels[at] : anything, true}));
-      if (count < first_seen) continue;
-      ASSERT_EQ(int{filter.output().values[0]}, expected[at - static_cast<std::size_t>(first_seen)])
-          << size << ' ' << count;
     }
   }
 }

@@ -118,49 +118,6 @@ TEST_P(CostColumnsOf, HoldTheLargestSum) {
   for (int d = 0; d < 254; ++d) ASSERT_EQ(sums.window_sums()[d], 31 * 31 * largest);
 }
 
-// Scores of one column against literal ones, in all columns of a frame.
-TEST(ColumnScorer, HoldsTheCovariancesAndVariancesOfTheWindows) {
-  test::SplitMix64 random(2);
-  constexpr int kDisparities = 9;
-  for (const int window : {3, 31}) {
-    const MatchingCost cost{CostKind::kZncc, 0};
-    CostColumns products(window, kDisparities, cost);
-    ColumnScorer scorer(window, kDisparities, cost);
-    for (int frame = 0; frame < 2; ++frame) {
-      const PixelColumns left = random_columns(100, window, frame == 0, random);
-      const PixelColumns right = random_columns(100, window, frame == 0, random);
-      products.start_frame();
-      scorer.start_frame();
-      for (int column = 0; column < 100; ++column) {
-        const auto at = static_cast<std::size_t>(column);
-        products.push_column(left[at].data(), right[at].data());
-        scorer.push_column(left[at].data(), right[at].data(), products.window_sums());
-        for (int d = 0; d < kDisparities && d <= column - window + 1; ++d) {
-          const std::int64_t pixels = std::int64_t{window} * window;
-          PixelSums l;
-          PixelSums r;
-          for (int c = column - window + 1; c <= column; ++c) {
-            for (int row = 0; row < window; ++row) {
-              const int lp = left[static_cast<std::size_t>(c)][static_cast<std::size_t>(row)];
-              const int rp = right[static_cast<std::size_t>(c - d)][static_cast<std::size_t>(row)];
-              l.pixels += lp;
-              l.squares += lp * lp;
-              r.pixels += rp;
-              r.squares += rp * rp;
-            }
-          }
-          const std::int64_t cov =
-              pixels * window_sum(cost.kind, left, right, column, d, window) - l.pixels * r.pixels;
-          ASSERT_EQ(scorer.scores().of_left_pixel(d).covariance, cov);
-          ASSERT_EQ(scorer.scores().of_left_pixel(d).variance, pixels * r.squares - r.pixels * r.pixels);
-          ASSERT_EQ(scorer.scores().of_right_pixel(d).covariance, cov);
-          ASSERT_EQ(scorer.scores().of_right_pixel(d).variance, pixels * l.squares - l.pixels * l.pixels);
-        }
-      }
-    }
-  }
-}
-
 // A key has 23 bits for the sum.
 TEST(ColumnScorer, IsNeededForCorrelationsAndForSquaresOfLargeWindows) {
   for (int window = 3; window <= 31; window += 2) {

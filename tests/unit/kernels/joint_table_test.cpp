@@ -33,15 +33,6 @@ RectificationTable table_of(int least_columns, int most_columns, int least_rows,
   return table;
 }
 
-TEST(JointTable, HasItsOffsetsInTheMiddleOfWhatEachSideNeeds) {
-  const auto offsets = [](const RectificationTable& left) { return join_tables(left, no_entries()).offsets; };
-  EXPECT_EQ(offsets(no_entries()), JointOffsets());
-  EXPECT_EQ(offsets(table_of(3, 3, -5, -5)), (JointOffsets{{{3, -5}, {0, 0}}}));
-  EXPECT_EQ(offsets(table_of(3, 6, -6, -3)), (JointOffsets{{{5, -4}, {0, 0}}}));
-  EXPECT_EQ(offsets(table_of(3, 5, -5, -2)), (JointOffsets{{{4, -3}, {0, 0}}}));
-  EXPECT_EQ(join_tables(no_entries(), table_of(1, 2, 7, 7)).offsets, (JointOffsets{{{0, 0}, {2, 7}}}));
-}
-
 TEST(JointTable, FitsAnyRangeOf256ColumnsAnd128Rows) {
   for (const int shift : {-30, 0, 30}) {
     const RectificationTable fits = table_of(shift - 128, shift + 127, shift - 64, shift + 63);

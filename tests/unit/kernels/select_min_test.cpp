@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "models/kernels/lr_check.h"
 #include "models/kernels/words.h"
 #include "tests/support/random_board.h"
 
@@ -71,77 +72,22 @@ TEST(SelectMinChain, EqualsALoopOverTheDiagonalWithEachInstructionSet) {
   }
 }
 
-// Scores of one column; few values, so that many are equal.
-struct RandomScores {
-  std::vector<std::int64_t> covariances;
-  std::vector<std::int64_t> right_variances;
-  std::int64_t left_variance = 1;
-  int candidates = 0;
-
-  RandomScores(int disparities, test::SplitMix64& random) : candidates(random.between(0, disparities)) {
-    left_variance = random.between(1, 4);
-    for (int d = 0; d < disparities; ++d) {
-      covariances.push_back(random.between(-2, 2));
-      right_variances.push_back(random.between(1, 4));
-    }
-  }
-  ColumnScores scores() const { return {covariances.data(), right_variances.data(), left_variance}; }
-};
-
-// covariance * |covariance| / variance as a double, which is exact enough for these.
-double score(std::int64_t covariance, std::int64_t variance) {
-  return static_cast<double>(covariance * std::abs(covariance)) / static_cast<double>(variance);
-}
-
-TEST(SelectMinTree, FindsTheFirstOfTheGreatestScores) {
-  test::SplitMix64 random(13);
-  for (int round = 0; round < 2000; ++round) {
-    const RandomScores column(random.between(1, 30), random);
-    int expected = kInvalidDisparity;
-    double greatest = 0;
-    for (int d = 0; d < column.candidates; ++d) {
-      const auto at = static_cast<std::size_t>(d);
-      const double own = score(column.covariances[at], column.right_variances[at]);
-      if (expected != kInvalidDisparity && own <= greatest) continue;
-      expected = d;
-      greatest = own;
-    }
-    ASSERT_EQ(int{select_min_tree(column.scores(), column.candidates)}, expected);
-  }
-}
-
-TEST(ScoreChain, FindsTheFirstOfTheGreatestScoresOfTheDiagonal) {
-  test::SplitMix64 random(14);
-  for (const int disparities : {1, 2, 17, 254}) {
-    ScoreChain chain(disparities);
-    std::vector<RandomScores> columns;
-    for (int column = 0; column < disparities + 200; ++column) {
-      columns.emplace_back(disparities, random);
-      int expected = kInvalidDisparity;
-      double greatest = 0;
-      for (int d = 0; d < disparities; ++d) {
-        const int from = column - (disparities - 1) + d;
-        if (from < 0 || d >= columns[static_cast<std::size_t>(from)].candidates) continue;
-        const RandomScores& other = columns[static_cast<std::size_t>(from)];
-        const double own = score(other.covariances[static_cast<std::size_t>(d)], other.left_variance);
-        if (expected != kInvalidDisparity && own <= greatest) continue;
-        expected = d;
-        greatest = own;
-      }
-      ASSERT_EQ(int{chain.step(columns.back().scores(), columns.back().candidates)}, expected) << column;
-    }
-    chain.start_frame();
-    EXPECT_EQ(chain.step(columns.back().scores(), 0), kInvalidDisparity);
-  }
-  EXPECT_THROW(ScoreChain(0), std::invalid_argument);
-  EXPECT_THROW(ScoreChain(255), std::invalid_argument);
-}
-
 TEST(SelectMinChain, RefusesDisparitiesOutsideTheirRange) {
   EXPECT_NO_THROW(SelectMinChain(1));
   EXPECT_NO_THROW(SelectMinChain(254));
   EXPECT_THROW(SelectMinChain(0), std::invalid_argument);
   EXPECT_THROW(SelectMinChain(255), std::invalid_argument);
+}
+
+TEST(ScoreChain, RefusesDisparitiesOutsideTheirRange) {
+  for (const int disparities : {0, 255}) EXPECT_THROW(ScoreChain{disparities}, std::invalid_argument);
+}
+
+TEST(LrCheck, RefusesDisparitiesOrToleranceOutsideTheirRange) {
+  EXPECT_NO_THROW(LrCheck(1, 0));
+  EXPECT_NO_THROW(LrCheck(254, 253));
+  for (const int disparities : {0, 255}) EXPECT_THROW(LrCheck(disparities, 0), std::invalid_argument);
+  for (const int tolerance : {-1, 254}) EXPECT_THROW(LrCheck(8, tolerance), std::invalid_argument);
 }
 
 }  // namespace

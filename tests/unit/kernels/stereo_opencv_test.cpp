@@ -110,42 +110,5 @@ TEST(StereoAndOpenCv, HaveTheSameLeftBasedSearch) {
   expect_same_search(640, 60, 7, 80, random);
 }
 
-// Compares each right window with the left windows of its row by matchTemplate. It has rounding errors far
-// below one half in windows of this size.
-GrayImage ssd_matched_by_opencv(const GrayImage& left, const GrayImage& right, int window, int disparities) {
-  const int r = (window - 1) / 2;
-  const cv::Mat left_mat = mat_of(left);
-  const cv::Mat right_mat = mat_of(right);
-  GrayImage matched(left.width, left.height, kInvalidDisparity);
-  for (int row = r; row < left.height - r; ++row) {
-    for (int column = r; column < left.width - r; ++column) {
-      const int candidates = std::min(disparities, left.width - r - column);
-      const cv::Rect own(column - r, row - r, window, window);
-      const cv::Rect others(column - r, row - r, window + candidates - 1, window);
-      cv::Mat sums;
-      cv::matchTemplate(left_mat(others), right_mat(own), sums, cv::TM_SQDIFF);
-      int best = 0;
-      for (int d = 1; d < candidates; ++d) {
-        if (std::round(sums.at<float>(0, d)) < std::round(sums.at<float>(0, best))) best = d;
-      }
-      matched.at(column, row) = static_cast<std::uint8_t>(best);
-    }
-  }
-  return matched;
-}
-
-TEST(StereoAndOpenCv, HaveTheSameSumsOfSquaredDifferences) {
-  test::SplitMix64 random(4);
-  for (int round = 0; round < 40; ++round) {
-    const int window = 2 * random.between(1, 3) + 1;
-    const GrayImage left = noise(4 * random.between(3, 12), window + random.between(0, 3), random);
-    const GrayImage right = noise(left.width, left.height, random);
-    const int disparities = random.between(1, 20);
-    EXPECT_TRUE(match(left, right, window, disparities, {CostKind::kSsd, 0}).right_based ==
-                ssd_matched_by_opencv(left, right, window, disparities))
-        << left.width << " x " << left.height << ", window " << window << ", disparities " << disparities;
-  }
-}
-
 }  // namespace
 }  // namespace stereotlm::kernels

@@ -39,16 +39,6 @@ void expect_reference(const RandomBoard& board) {
   EXPECT_EQ(test::disparity_image(board).pixels, expected.disparity);
 }
 
-TEST(Stereo, EqualsTheReferenceOnRandomBoards) {
-  for (std::uint64_t seed = 0; seed < 400; ++seed) {
-    RandomBoard board = test::make_random_board(seed);
-    board.cost = test::any_cost(static_cast<int>(seed));
-    SCOPED_TRACE(describe(board));
-    ASSERT_NO_FATAL_FAILURE(expect_reference(board));
-    if (HasFailure()) return;
-  }
-}
-
 // The pixels of a pair in four contents: constant; the largest sums; extreme noise; a period of three
 // columns.
 std::uint8_t pixel_of(int content, bool left, int column, int row, test::SplitMix64& random) {

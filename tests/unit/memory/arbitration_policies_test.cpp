@@ -2,16 +2,13 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <ostream>
 #include <set>
 #include <string>
 #include <vector>
 
-#include "tests/support/random_board.h"
 #include "tests/unit/memory/ports.h"
 
 namespace stereotlm::memory {
@@ -114,58 +111,6 @@ TEST(RoundRobinPolicy, SearchesFromTheHeadOfTheListAtFirstAndThenFromAfterTheLas
       EXPECT_EQ(policy->next(state, mask, 0), state);
     }
   }
-}
-
-// The ages themselves.
-class PlainAges {
- public:
-  Port winner(PortMask requests) {
-    std::optional<Port> winner;
-    for (const Port port : kList) {
-      std::uint64_t& age = ages_[port];
-      age = (requests & mask_of(port)) != 0 ? age + 1 : 0;
-      if (age > 0 && (!winner || age > ages_[*winner])) winner = port;
-    }
-    return *winner;
-  }
-  void grant(Port port) { ages_[port] = 0; }
-
- private:
-  std::array<std::uint64_t, kPortCount> ages_{};
-};
-
-TEST(AgePolicy, LetsTheOldestRequestWinAsTheAgesThemselves) {
-  const auto policy = policy_of("age");
-  test::SplitMix64 random(1);
-  PlainAges ages;
-  State state = 0;
-  for (int cycle = 0; cycle < 100'000; ++cycle) {
-    const int share = cycle / 1000 % 4;  // of the ports that request
-    unsigned requests = 0;
-    for (std::size_t port = 0; port < kPortCount; ++port)
-      requests |= unsigned{random.chance(25 * share + 20)} << port;
-    if (requests == 0) {
-      state = policy->next(state, 0, 0);
-      ages = {};
-      continue;
-    }
-    const auto mask = static_cast<PortMask>(requests);
-    const Port winner = ages.winner(mask);
-    ASSERT_EQ(policy->winner(state, mask), winner) << cycle;
-    const bool is_granted = random.chance(70);
-    if (is_granted) ages.grant(winner);
-    state = policy->next(state, mask, is_granted ? mask_of(winner) : PortMask{0});
-  }
-}
-
-TEST(AgePolicy, HasOneStateForEachOrderOfWaitingPorts) {
-  const auto policy = policy_of("age");
-  const PortMask three = mask_of(kList[0]) | mask_of(kList[1]) | mask_of(kList[2]);
-  const State after_one = policy->next(0, three, 0);
-  EXPECT_EQ(policy->next(after_one, three, 0), after_one);  // all grow older
-  EXPECT_EQ(policy->next(after_one, three, mask_of(kList[2])),
-            policy->next(0, mask_of(kList[0]) | mask_of(kList[1]), 0));
-  EXPECT_EQ(policy->next(after_one, 0, 0), 0U);
 }
 
 }  // namespace

@@ -3,17 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <stdexcept>
-#include <string>
 
-#include "tests/support/random_board.h"
-#include "tests/unit/memory/plain_arbiter.h"
-#include "tests/unit/support/random_memory.h"
+#include "tests/unit/memory/ports.h"
 
 namespace stereotlm::memory {
 namespace {
 
 using std::uint64_t;
-using test::SplitMix64;
 
 // A bank with that turnaround, or with none.
 SsramBankConfig bank_with(int turnaround) {
@@ -26,32 +22,6 @@ PortMask arbitrate(BankArbiter& arbiter, uint64_t cycle, PortMask requests, Port
   const BankArbiter::Outcome outcome = arbiter.decide(cycle, requests, writes);
   arbiter.count(cycle, outcome);
   return BankArbiter::granted_in(outcome);
-}
-
-TEST(BankArbiter, DecidesAndCountsAsItsPolicySteppedCycleByCycle) {
-  for (uint64_t seed = 0; seed < 300; ++seed) {
-    SCOPED_TRACE("seed " + std::to_string(seed));
-    SplitMix64 random(seed);
-    const ArbiterConfig config = test::random_arbiter(random);
-    const SsramBankConfig bank = test::random_bank(random);
-    BankArbiter arbiter(config, bank);
-    PlainArbiter plain(config, bank);
-    uint64_t cycle = 0;
-    for (int part = 0; part < 5; ++part) {
-      plain.counts = part % 2 == 1;
-      if (plain.counts) arbiter.begin_counting(cycle);
-      const int busy_percent = random.between(30, 100);
-      for (const uint64_t end = cycle + 100; cycle < end; ++cycle) {
-        const auto requests = static_cast<PortMask>(random.chance(busy_percent) ? random.next() & kAll : 0);
-        const auto writes = static_cast<PortMask>(random.next() & kAll);
-        const PortMask granted = plain.step(requests, writes);
-        if (requests == 0) continue;
-        ASSERT_EQ(arbitrate(arbiter, cycle, requests, writes), granted) << cycle;
-      }
-      if (plain.counts) arbiter.end_counting(cycle);
-    }
-    ASSERT_EQ(text_of(arbiter), text_of(plain));
-  }
 }
 
 class Turnaround : public testing::TestWithParam<int> {};
@@ -147,22 +117,6 @@ TEST(BankArbiter, WithSeparatePortsGrantsAReadAndAWriteAndBlamesWithinADirection
   EXPECT_EQ(stats.blame[port::kRightPixel][port::kLeftPixel], 1U);
   EXPECT_EQ(stats.blame[port::kLeftPixel][port::kHost], 1U);
   EXPECT_EQ(stats.blame[port::kRightPixel][port::kHost], 0U);
-}
-
-TEST(BankArbiter, WithSeparatePortsHasARoundRobinPlaceForEachDirection) {
-  BankArbiter arbiter(kRoundRobin, kQdrBank);
-  EXPECT_EQ(arbitrate(arbiter, 0, kLeft | kResult, kResult), kLeft | kResult);
-  // Reads are searched from right_pixel on, writes from left_pixel on.
-  EXPECT_EQ(arbitrate(arbiter, 1, kLeft | kRight, kNone), kRight);
-  EXPECT_EQ(arbitrate(arbiter, 2, kHost | kResult, kHost | kResult), kHost);
-  EXPECT_EQ(arbitrate(arbiter, 3, kHost | kRight, kNone), kHost);
-  EXPECT_EQ(arbitrate(arbiter, 4, kHost | kResult, kHost | kResult), kResult);
-  const uint64_t before = arbiter.state(5);
-  arbitrate(arbiter, 5, kHost, kHost);
-  EXPECT_EQ(arbiter.state(6) & 0xffff'ffffU, before & 0xffff'ffffU);
-  EXPECT_NE(arbiter.state(6), before);
-  arbiter.skip_to(before, 10, 3);
-  EXPECT_EQ(arbiter.state(10), before);
 }
 
 TEST(BankArbiter, RefusesARequestOfAPortThatIsNotInThePriorityList) {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "tests/unit/memory/crossbar_bench.h"
-#include "tests/unit/support/scripted_link.h"
+#include "tests/support/scripted_ends.h"
 
 namespace stereotlm::memory {
 namespace {
@@ -47,12 +47,6 @@ TEST_F(CrossbarWatch, ReportsAWriteToOneOfTheWordsOnce) {
       EXPECT_FALSE(has_changed());
     }
   }
-}
-
-TEST_F(CrossbarWatch, RemembersAWriteThatOthersFollow) {
-  write(port::kHost, kFirst, 0);
-  write(port::kHost, kEnd, 1);
-  EXPECT_TRUE(has_changed());
 }
 
 TEST_F(CrossbarWatch, IgnoresAWriteToAnotherBankAndReads) {

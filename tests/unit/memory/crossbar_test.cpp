@@ -7,7 +7,7 @@
 
 #include "tests/support/expected_report.h"
 #include "tests/unit/memory/crossbar_bench.h"
-#include "tests/unit/support/scripted_link.h"
+#include "tests/support/scripted_ends.h"
 
 namespace stereotlm::memory {
 namespace {

@@ -134,7 +134,6 @@ TEST_F(SsramBankTest, RefusesAnAddressThatIsNotAlignedAndALengthOtherThanFour) {
 
 TEST_F(SsramBankTest, RefusesAStreamingWidthBelowTheWord) {
   test::ProtocolOptions streaming;
-  streaming.streaming_bursts = true;
   streaming.whole_words = false;
   build({kWords}, streaming);
   payload.set_streaming_width(3);

@@ -24,32 +24,6 @@ class PciBridgeDma : public PciBridgeBench {
   }
 };
 
-TEST_F(PciBridgeDma, MovesWordsToTheBoardInBursts) {
-  build({32, 64, kCore});
-  host.debug_write(kData, numbers(70));
-  start(0, kChain, {{kData, 3U << 26U | 50U, 70}});
-  run(20);
-  EXPECT_EQ(on_board(3ULL << 28U | 200U, 70), numbers(70));
-  ASSERT_EQ(local.bursts.size(), 3U);
-  EXPECT_EQ(local.bursts[0].words.size(), 32U);
-  EXPECT_EQ(local.bursts[2].words.size(), 6U);
-  EXPECT_EQ(status(), bridge::kDmaDone);
-  EXPECT_EQ(dut->stats().dma_words, 70U);
-  EXPECT_EQ(dut->words_taken().total(), 70U);
-  EXPECT_EQ(dut->words_held().total(), 0U);
-}
-
-TEST_F(PciBridgeDma, MovesWordsFromTheBoard) {
-  build({32, 64, kCore});
-  start(1, kChain, {{kData, 7, 45 | bridge::kToPci}});
-  run(20);
-  EXPECT_EQ(host.debug_read(kData, 45), on_board(28, 45));
-  EXPECT_EQ(host.debug_read(kData + 45 * 4, 1), numbers(1, 0));
-  EXPECT_EQ(status(), bridge::kDmaDone << 1U);
-  EXPECT_EQ(dut->stats().dma_words, 45U);
-  EXPECT_EQ(dut->words_taken().total(), 0U);
-}
-
 TEST_F(PciBridgeDma, FollowsAChain) {
   build();
   host.debug_write(kData, numbers(10));

@@ -55,12 +55,16 @@ class TestMaster : public sc_core::sc_module, public PciMasterIf {
   bool at_once = true;
   std::vector<Ended> ended;
   std::function<void()> on_end = [] {};
+  std::function<void()> on_unused = [] {};  // a grant finds no burst
 
   explicit TestMaster(const sc_core::sc_module_name& name) : sc_module(name) {}
   void request() { pci->request(*this); }
 
   PciBurst begin_burst(std::uint64_t address_clock_ps) override {
-    if (bursts.empty()) return {};
+    if (bursts.empty()) {
+      on_unused();
+      return {};
+    }
     now_.address_ps = address_clock_ps;
     now_.granted_ps = kernel_time::now_ps();
     const Script script = bursts.front();

@@ -33,56 +33,6 @@ TEST_P(PciBusBurst, TransfersAWordAClockAfterAddressAndWaitClocks) {
   EXPECT_EQ(access.at_ps, bench.edge(write ? kFirst + 5 : 11));
 }
 
-TEST_P(PciBusBurst, TransfersTwoWordsAClockOn64Bits) {
-  const bool write = GetParam();
-  constexpr std::uint64_t kDataClocks[] = {1, 1, 2, 2, 3, 3};  // of 1, 2, .. words
-  PciBusConfig config = PciBusBench::with_window(kWait);
-  config.width_bits = 64;
-  PciBusBench bench(config);
-  TestMaster& master = *bench.masters[0];
-  for (std::size_t words = 1; words <= std::size(kDataClocks); ++words)
-    master.bursts.push_back({write, PciBusBench::kBase + 0x44, words});
-  bench.request_at(0);
-  sc_core::sc_start();
-  ASSERT_EQ(master.ended.size(), std::size(kDataClocks));
-  std::uint64_t address_clock = 0;
-  for (std::size_t i = 0; i < std::size(kDataClocks); ++i) {
-    const auto& burst = master.ended[i];
-    EXPECT_EQ(burst.address_ps, bench.edge(address_clock));
-    EXPECT_EQ(burst.result.end, BurstEnd::kComplete);
-    EXPECT_EQ(burst.result.words, i + 1);
-    EXPECT_EQ(burst.result.first_data_clock, address_clock + 1 + kWait);
-    const std::uint64_t idle_clock = address_clock + 1 + kWait + kDataClocks[i];
-    EXPECT_EQ(burst.end_ps, bench.edge(idle_clock));
-    EXPECT_EQ(bench.targets[0]->accesses[i].words.size(), i + 1);
-    address_clock = idle_clock + 1;
-  }
-  EXPECT_EQ(bench.bus->stats().masters[0].words, 21U);
-  EXPECT_EQ(bench.bus->stats().busy_clocks, 6 * (1 + kWait) + 12);
-}
-
-// What a master sees of its burst of 5 words while it runs, at each clock from the first data clock on.
-TEST_P(PciBusBurst, ShowsTheWordsThatHaveGoneOn64Bits) {
-  PciBusConfig config = PciBusBench::with_window(kWait);
-  config.width_bits = 64;
-  PciBusBench bench(config);
-  TestMaster& master = *bench.masters[0];
-  master.bursts = {{GetParam(), PciBusBench::kBase, 5}};
-  bench.request_at(0);
-  std::vector<std::size_t> words;
-  for (std::uint64_t clock = 1 + kWait; clock < 1 + kWait + 3; ++clock)
-    bench.at(bench.edge(clock) + 1,
-             [&] { words.push_back(master.pci->transferred(kernel_time::now_ps()).words); });
-  sc_core::sc_start();
-  EXPECT_EQ(words, (std::vector<std::size_t>{0, 2, 4}));
-  const BurstResult& result = master.ended[0].result;
-  EXPECT_EQ(result.words_before(kWait), 0U);
-  EXPECT_EQ(result.words_before(1 + kWait), 0U);
-  EXPECT_EQ(result.words_before(2 + kWait), 2U);
-  EXPECT_EQ(result.words_before(4 + kWait), 5U);
-  EXPECT_EQ(result.words_before(9 + kWait), 5U);
-}
-
 INSTANTIATE_TEST_SUITE_P(PciBus, PciBusBurst, testing::Bool(),
                          [](const auto& write) { return write.param ? "write" : "read"; });
 

@@ -63,6 +63,67 @@ TEST(PciBus, DecidesFromTheStateAtTheEdgeOfTheClock) {
   EXPECT_EQ(bench.masters[0]->ended.at(0).result.words, 2U);
 }
 
+TEST(PciBus, PassesAnUnusedGrantToTheNextMasterInTheSameClock) {
+  PciBusBench bench(PciBusBench::with_window(0), 3);
+  bench.masters[2]->bursts = {write_of(1)};
+  for (const std::size_t master : {0U, 1U, 2U}) bench.request_at(bench.edge(5), master);
+  sc_core::sc_start();
+  EXPECT_EQ(bench.masters[2]->ended.at(0).address_ps, bench.edge(5));
+  EXPECT_EQ(bench.bus->stats().masters[0].transactions, 0U);
+}
+
+TEST(PciBus, CountsAnUnusedGrantAsTheTurnOfItsMaster) {
+  PciBusBench bench(PciBusBench::with_window(0), 2);
+  bench.request_at(0, 0);  // without a burst
+  bench.at(bench.edge(5), [&bench] {
+    for (auto& master : bench.masters) {
+      master->bursts = {write_of(4)};
+      master->request();
+    }
+  });
+  sc_core::sc_start();
+  EXPECT_EQ(order_of(bench), (Slots{1, 0}));
+}
+
+TEST(PciBus, GrantsTheNextClockToAMasterThatRequestsAgainAsItReturnsItsGrant) {
+  PciBusBench bench(PciBusBench::with_window(0));
+  TestMaster& master = *bench.masters[0];
+  int unused = 0;
+  master.on_unused = [&] {
+    if (++unused == 3) master.bursts = {write_of(1)};
+    master.request();
+  };
+  bench.request_at(bench.edge(5));
+  sc_core::sc_start();
+  EXPECT_EQ(unused, 3);
+  EXPECT_EQ(master.ended.at(0).address_ps, bench.edge(8));
+  EXPECT_EQ(bench.bus->stats().busy_clocks, 2U);
+}
+
+TEST(PciBus, DoesNotCutABurstWhoseOwnMasterAloneRequestsAgain) {
+  PciBusBench bench(PciBusBench::with_window(3, 20));
+  TestMaster& master = *bench.masters[0];
+  master.bursts = {write_of(100), write_of(1)};
+  master.at_once = false;
+  bench.request_at(0);
+  bench.request_at(bench.edge(5));
+  sc_core::sc_start();
+  ASSERT_EQ(master.ended.size(), 2U);
+  EXPECT_EQ(master.ended[0].result.words, 100U);
+}
+
+TEST(PciBus, KeepsTheFirstOfTwoRequestsOfAMaster) {
+  PciBusBench bench(PciBusBench::with_window(0));
+  TestMaster& master = *bench.masters[0];
+  master.bursts = {write_of(1)};
+  bench.at(0, [&] {
+    master.pci->request(master, bench.edge(5));
+    master.pci->request(master, bench.edge(9));
+  });
+  sc_core::sc_start();
+  EXPECT_EQ(master.ended.at(0).address_ps, bench.edge(5));
+}
+
 // Each bus decides when nothing else is pending.
 TEST(PciBus, DecidesBesideAnotherBusWithTheSameEdges) {
   struct Machine : sc_core::sc_module {

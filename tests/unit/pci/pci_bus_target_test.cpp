@@ -182,22 +182,5 @@ TEST_F(PciBusTarget, IsNotReachedAtAnAddressThatIsNotAMultipleOfFour) {
   expect_report(write_of(1, 2), "address = 65538: must be a multiple of 4");
 }
 
-// The latency timer observes requests made while a read blocks.
-TEST(PciBus, RecordsRequestsWhileAReadBlocks) {
-  PciBusBench bench(PciBusBench::with_window(0, 8), 2);
-  bench.masters[0]->bursts = {read_of(50)};
-  bench.masters[1]->bursts = {write_of(1)};
-  bench.targets[0]->read_waits = kernel_time::to_time(bench.edge(21) - bench.edge(1));
-  bench.at(bench.edge(30), [&bench] { bench.targets[0]->read_waits = sc_core::SC_ZERO_TIME; });
-  bench.request_at(0, 0);
-  bench.request_at(bench.edge(3), 1);
-  sc_core::sc_start();
-  const auto& read = bench.masters[0]->ended[0];
-  EXPECT_EQ(read.result.first_data_clock, 21U);
-  EXPECT_EQ(read.result.words, 1U);
-  EXPECT_EQ(read.result.end, BurstEnd::kLatencyTimer);
-  EXPECT_EQ(bench.masters[1]->ended[0].address_ps, bench.edge(23));
-}
-
 }  // namespace
 }  // namespace stereotlm::pci

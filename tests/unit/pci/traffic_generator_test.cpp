@@ -48,7 +48,6 @@ TEST_F(TrafficGeneratorTest, ReportsATargetThatAnswersWithAnError) {
 TEST(TrafficGeneratorDevice, ReadsAsZerosAfterItsAccessTimeAndRefusesOtherAccesses) {
   test::ProtocolOptions options;
   options.whole_words = false;
-  options.streaming_bursts = true;
   test::MonitoringBinder binder(options);
   test::TestHost host("host");
   PciBusConfig bus_config;

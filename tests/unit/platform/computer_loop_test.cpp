@@ -52,52 +52,6 @@ class LoopWithProcessor : public testing::LoopProcessor {
 
 class ComputerLoopTest : public ::testing::Test, public LoopWithProcessor {};
 
-TEST_F(ComputerLoopTest, StopsAtItsEndTimeBehindTheDecisionsOfThatTime) {
-  bursts.push_back({true, kDevices.host_memory, {1}});
-  request(10 * kEdgePs - 3);
-  loop().run(10 * kEdgePs - 1);
-  EXPECT_EQ(loop().now_ps(), 10 * kEdgePs - 1);
-  EXPECT_TRUE(granted_ps.empty());
-  loop().run(10 * kEdgePs);
-  EXPECT_EQ(loop().now_ps(), 10 * kEdgePs);
-  EXPECT_EQ(granted_ps, std::vector<std::uint64_t>{10 * kEdgePs});
-}
-
-// Address clock 10, 8 wait clocks and one word.
-TEST_F(ComputerLoopTest, StopsAtWhatItIsToNoticeOnce) {
-  bursts.push_back({true, kDevices.host_memory + 8, {0x1234}});
-  request(10 * kEdgePs);
-  loop().run(kFar);
-  EXPECT_EQ(loop().now_ps(), (10 + 1 + 8 + 1) * kEdgePs);
-  EXPECT_EQ(results.at(0).end_ps, loop().now_ps());
-  EXPECT_EQ(memory[8] | memory[9] << 8U, 0x1234);
-  loop().run(100 * kEdgePs);
-  EXPECT_EQ(loop().now_ps(), 100 * kEdgePs);
-}
-
-TEST_F(ComputerLoopTest, StopsWhenTheInterruptRisesAndNotWhileItStaysHigh) {
-  arm();
-  EXPECT_FALSE(loop().interrupt());
-  loop().run(kFar);
-  EXPECT_TRUE(loop().interrupt());
-  const std::uint64_t left_ps = loop().now_ps();
-  EXPECT_LT(left_ps, kFar);
-  EXPECT_EQ(loop().counters().cameras[0].capture.captured_frames, 1U);
-  EXPECT_EQ(loop().counters().cameras[1].capture.captured_frames, 0U);
-  loop().run(left_ps + 1000 * kEdgePs);  // the right capture ends in this time
-  EXPECT_EQ(loop().now_ps(), left_ps + 1000 * kEdgePs);
-  EXPECT_EQ(loop().counters().cameras[1].capture.captured_frames, 1U);
-  for (const std::uint64_t board : {kDevices.left_capture, kDevices.right_capture}) {
-    EXPECT_TRUE(loop().interrupt());
-    write(board + capture_map::kStatus, capture_map::kStatusDone);
-  }
-  EXPECT_FALSE(loop().interrupt());
-  arm();
-  loop().run(kFar);
-  EXPECT_TRUE(loop().interrupt());
-  EXPECT_LT(loop().now_ps(), left_ps + 3'000'000'000);
-}
-
 // The load requests the bus for the clock that begins with the interrupt, and was the last to have it. What
 // the processor requests at that time comes before the decision.
 TEST_F(ComputerLoopTest, LetsTheProcessorTakePartInTheDecisionsOfTheTimeOfAnInterrupt) {
@@ -206,26 +160,6 @@ TEST_F(ComputerLoopTest, RefusesBurstsOfSeveralWordsToRegisters) {
   EXPECT_EQ(loop().counters().bridge.errors, 2U);
   EXPECT_EQ(loop().counters().cameras[0].capture.refused_accesses, 2U);
   EXPECT_EQ(access(true, kDevices.host_memory, Words(2)), pci::BurstEnd::kComplete);
-}
-
-TEST_F(ComputerLoopTest, HasACountOfWorkThatGrowsWithTheFrameAndTheWordsForResults) {
-  const std::uint64_t idle = loop().work_done();
-  write(kDevices.host_memory, 1);
-  EXPECT_EQ(loop().work_done(), idle + 1);
-  start_core();
-  const std::uint64_t started = loop().work_done();
-  loop().run(loop().now_ps() + 50 * kEdgePs);
-  EXPECT_GT(loop().work_done(), started + 20);
-  EXPECT_EQ(loop().board().waits().substr(0, 26), "frame 0 of the core, cycle");
-}
-
-TEST_F(ComputerLoopTest, RefusesAnEndThatItsEventsCannotHold) {
-  bursts.push_back({true, kDevices.host_memory, {1}});
-  request(0);
-  EXPECT_THROW(loop().run(ComputerLoop::kEndOfTime), std::invalid_argument);
-  EXPECT_TRUE(results.empty());
-  loop().run(ComputerLoop::kEndOfTime - 1);
-  EXPECT_EQ(results.size(), 1U);
 }
 
 TEST_F(ComputerLoopTest, RefusesABoardWithProblems) {

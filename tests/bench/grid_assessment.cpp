@@ -1,4 +1,4 @@
-#include "tests/support/grid_assessment.h"
+#include "tests/bench/grid_assessment.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>

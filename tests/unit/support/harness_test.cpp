@@ -1,0 +1,77 @@
+// What makes a test fail: a SystemC report that it did not announce, and a child process that fails. No test of the
+// models would notice that these fail no more.
+#include <gtest/gtest-spi.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <systemc>
+#include <thread>
+
+#include "tests/support/expected_report.h"
+#include "tests/support/fork.h"
+
+namespace stereotlm::test {
+namespace {
+
+constexpr const char* kType = "/stereotlm/test";
+
+void warn(const char* type = kType) { SC_REPORT_WARNING(type, "too hot"); }
+
+TEST(SystemcTestMain, FailsATestWithAReportThatItDidNotAnnounce) {
+  EXPECT_NONFATAL_FAILURE(warn(), "did not announce");
+  EXPECT_NONFATAL_FAILURE(EXPECT_THROW(SC_REPORT_ERROR(kType, "broken"), sc_core::sc_report), "broken");
+  SC_REPORT_INFO(kType, "nothing to see");
+}
+
+TEST(ExpectedReport, CoversAsManyReportsOfItsTypeAsItAnnouncesAndFailsWithFewer) {
+  auto expected = std::make_unique<ExpectedReport>(kType, 2);
+  EXPECT_NONFATAL_FAILURE(warn("/stereotlm/other"), "did not announce");
+  warn();
+  EXPECT_EQ(expected->text(), "too hot");
+  EXPECT_NONFATAL_FAILURE(expected.reset(), "did not come: 1 missing");
+  EXPECT_NONFATAL_FAILURE(warn(), "did not announce");
+}
+
+TEST(RunInChild, GivesTheStatusAndTheTextOfEachEnding) {
+  struct Ending {
+    ChildWork work;
+    int exit_status;
+    std::string text;
+  };
+  const std::string more_than_a_pipe_holds(1'000'000, 'x');
+  const Ending endings[] = {
+      {[] { return std::string(); }, 0, ""},
+      {[&] { return more_than_a_pipe_holds; }, 1, more_than_a_pipe_holds},
+      {[]() -> std::string { throw std::runtime_error("no such bank"); }, 2, "exception: no such bank"},
+      {[]() -> std::string { return std::to_string(std::raise(SIGKILL)); }, 128 + SIGKILL,
+       "killed by signal 9 (Killed)"},
+      {[]() -> std::string { _exit(0); }, 1, "exited with status 0 before its work returned"},
+      {[] {
+         std::this_thread::sleep_for(std::chrono::seconds(50));
+         return std::string();
+       },
+       124, "still running after 500 ms"},
+  };
+  for (const Ending& ending : endings) {
+    const ChildResult result = run_in_child(ending.work, std::chrono::milliseconds(500));
+    EXPECT_EQ(result.exit_status, ending.exit_status);
+    EXPECT_EQ(result.text, ending.text);
+  }
+}
+
+TEST(RunInChild, FailsWithAnExpectationThatFailsInTheWork) {
+  const ChildResult result = run_in_child([] {
+    EXPECT_EQ(1 + 1, 3);
+    return std::string();
+  });
+  EXPECT_EQ(result.exit_status, 1);
+  EXPECT_NE(result.text.find("1 + 1"), std::string::npos) << result.text;
+}
+
+}  // namespace
+}  // namespace stereotlm::test
