@@ -2,9 +2,7 @@
 #include <string>
 #include <vector>
 
-#include "sw/cli/add_command.h"
-#include "sw/cli/commands.h"
-#include "sw/cli/typed_option.h"
+#include "sw/cli/command.h"
 #include "sw/process/problems.h"
 #include "sw/process/python_script.h"
 
@@ -31,40 +29,30 @@ constexpr const char* kPlotFooter =
     "installed, in sw/report/plots of its source: python3 plot_window.py DB --out DIR.";
 
 // The options of `plot`. They are passed to the script, which checks them.
-struct PlotOptions {
-  Typed database;
-  Typed out;
-  TypedList only;
-  Typed pareto;
-  Typed format;
-  Typed size;
+struct PlotOptions : Options {
+  using Options::Options;
 
-  void add_to(CLI::App& command) {
-    database.add_to(command, "DB", " ", "A database of sweep");
-    out.add_to(command, "--out", "DIR", "The folder to write, created if missing");
-    only.add_to(command, "--only", "KEY=VALUE", "Only points with that value; once for each key");
-    only.takes_one_at_a_time();
-    pareto.add_to(command, "--pareto", "X:SENSE,Y:SENSE",
-                  "Two columns, each with min or max: what is better; default "
-                  "area.slices:min,frames_per_second.core:max");
-    format.add_to(command, "--format", "F,..", "png, svg, pdf, or several with commas; default png,svg");
-    size.add_to(
-        command, "--size", "WxH",
-        "Width and height of each figure in inches, such as 7.2x4.5; default: 7.2 wide, and as high as "
-        "its content");
-  }
-
-  void check_usage() const {}  // the script does that
+  Option database = Option(this, "DB", " ", "A database of sweep");
+  Option out = Option(this, "--out", "DIR", "The folder to write, created if missing");
+  Option only = Option(this, "--only", "KEY=VALUE", "Only points with that value; once for each key", {},
+                       Takes::kRepeated);
+  Option pareto = Option(this, "--pareto", "X:SENSE,Y:SENSE",
+                         "Two columns, each with min or max: what is better; default "
+                         "area.slices:min,frames_per_second.core:max");
+  Option format = Option(this, "--format", "F,..", "png, svg, pdf, or several with commas; default png,svg");
+  Option size =
+      Option(this, "--size", "WxH",
+             "Width and height of each figure in inches, such as 7.2x4.5; default: 7.2 wide, and as high as "
+             "its content");
 
   // The arguments of the script, in a form in which it does not take a value such as "--x" for an option.
   std::vector<std::string> arguments() const {
     std::vector<std::string> words;
-    if (out.is_given()) words.push_back("--out=" + out.text);
-    for (const std::string& each : only.text) words.push_back("--only=" + each);
-    if (pareto.is_given()) words.push_back("--pareto=" + pareto.text);
-    if (format.is_given()) words.push_back("--format=" + format.text);
-    if (size.is_given()) words.push_back("--size=" + size.text);
-    if (database.is_given()) words.insert(words.end(), {"--", database.text});
+    for (const std::string& each : only.texts()) words.push_back("--only=" + each);
+    for (const Option* option : {&out, &pareto, &format, &size}) {
+      if (option->is_given()) words.push_back(option->name() + "=" + option->text());
+    }
+    if (database.is_given()) words.insert(words.end(), {"--", database.text()});
     return words;
   }
 };

@@ -3,7 +3,6 @@
 import contextlib
 import itertools
 import json
-import math
 import pathlib
 import re
 import shlex
@@ -256,30 +255,6 @@ class Allocate(ProgramTest):
         self.assertEqual(words[:3], [str(board), "--calibration", str(rig)])
         self.assertEqual(self.rates_of(*words)["core"], document["best"]["frames_per_second"]["core"])
 
-    def test_the_document_has_the_figures_of_the_text(self):
-        for source in ("preloaded", "camera"):
-            text = self.succeeds(self.allocate("--source", source, banks=3))
-            document = self.found(self.allocate("--source", source, "--json", banks=3))
-            self.assertEqual((document["state"], document["source"]), ("complete", source))
-            rows = self.rows(text)
-            self.assertEqual([row["banks"] for row in document["banks"]], sorted(rows))
-            for row in document["banks"]:
-                shown = rows[row["banks"]]
-                for key in ("allocations", "simulated", "tied"):
-                    self.assertEqual(shown[key], str(row[key]))
-                self.assertEqual(shown["rate"], rate_text(row["frames_per_second"]))
-                self.assertEqual(shown["bound"], f"{row['bound_frames_per_second']:.3f}")
-                named = ", ".join(word.split(".")[1] for word in row["sets"])
-                self.assertEqual(shown["named"], re.sub(r"[][,](?!.)|[][]", "", named).replace("=", " "))
-            best = document["best"]
-            highest = next(iter(best["highest_frames_per_second"].values()))
-            possible = best["possible_frames_per_second"]
-            self.assertAlmostEqual(possible, highest * (1 + best["possible_gain_percent"] / 100))
-            most = "" if possible == highest else f" than {math.ceil(possible * 1000) / 1000:.3f} frames/s"
-            self.assertIn(f"\nNo allocation that uses at most 3 banks gives more{most}.\n", text)
-            self.assertIn(f"99 % of it is kept with {document['keeping']['banks']} banks", text)
-            self.store.unlink()
-
     def test_an_interrupt_gives_the_best_so_far_and_what_is_possible(self):
         count = "SELECT count(*) FROM points WHERE status = 'ok'"
         written = self.folder / "best.yaml"
@@ -353,18 +328,6 @@ class Allocate(ProgramTest):
             self.file("best.yaml", change(first))
             with self.unchanged(best):
                 self.refused_in_one_line(self.allocate(*PRELOADED, "--write", best), rule)
-
-    def test_a_failed_allocation_may_be_better_by_its_bound(self):
-        best = self.found(self.allocate(*PRELOADED, "--json"))["best"]["frames_per_second"]["core"]
-        rate = '"frames_per_second.core"'
-        self.query(self.store, "DELETE FROM blame",
-                   f"UPDATE points SET status = 'failed', reason = 'out of luck' WHERE {rate} > {best} * 0.999")
-        document = self.found(self.allocate(*PRELOADED, "--json"))
-        self.assertIn("out of luck", document["first_failure"])
-        self.assertLess(document["best"]["frames_per_second"]["core"], best)
-        self.assertGreaterEqual(document["best"]["possible_frames_per_second"], best)
-        said = self.succeeds(self.allocate(*PRELOADED))
-        self.assertRegex(said, r"\nAt most \d+\.\d\d % better can exist: no allocation whose rate is unknown has")
 
     def test_leaves_out_what_does_not_fit_or_needs_more_banks(self):
         said = self.succeeds(self.allocate(*PRELOADED, banks=2))

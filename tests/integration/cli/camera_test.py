@@ -7,7 +7,7 @@ import signal
 
 import program
 from pictures import read_png
-from program import CAMERA_RATES, HEIGHT, PROGRESS, RESULT_FILES, SMALL, WIDTH
+from program import CAMERA_RATES, PROGRESS, RESULT_FILES, SMALL
 from program import ProgramTest, Terminal, run, sets
 
 
@@ -116,18 +116,6 @@ class Recording(CameraTest):
 
 
 class Figures(CameraTest):
-    def test_a_computer_has_figures_of_its_own(self):
-        table = self.camera("--frames", "20")
-        stats = self.stats()
-        self.assertNotIn("failed", stats)
-        self.assertLess(stats["frames_per_second"]["system"], stats["bound"]["system"])
-        masters = [master["name"] for master in stats["pci"]["masters"]]
-        self.assertEqual(masters, ["host", "left_capture", "right_capture", "bridge"])
-        words = WIDTH * HEIGHT // 4
-        tables = 2 * WIDTH * HEIGHT
-        self.assertEqual(stats["bridge"]["dma_words"], 20 * words + tables)
-        self.assertGreaterEqual(stats["bridge"]["posted_words"], 2 * 20 * words)
-        self.assertIn("\nlatency      capture to host, ms: min ", table)
 
     def test_torn_pictures_are_warned_of_wherever_a_computer_runs(self):
         torn = sets("capture.fifo_words=4", "capture.fifo_trigger_words=2",

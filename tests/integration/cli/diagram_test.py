@@ -1,8 +1,6 @@
 """diagram: the memory chart of boards and of runs."""
 
-import json
 import pathlib
-import random
 import re
 import xml.etree.ElementTree as ElementTree
 
@@ -12,13 +10,6 @@ from program import PRELOADED, SMALL, ProgramTest, run, sets
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 SVG = "{http://www.w3.org/2000/svg}"
-BUFFERS_OF_PORTS = {
-    "left_lut": "left_lut",
-    "right_lut": "right_lut",
-    "left_pixel": "left_image",
-    "right_pixel": "right_image",
-    "result": "disparity",
-}
 
 
 def groups(svg, kind):
@@ -31,38 +22,6 @@ def groups(svg, kind):
 
 def texts(element):
     return [text.text for text in element.iter(SVG + "text")]
-
-
-def banks_of(allocation, port):
-    """The banks of a port's buffers, in the order in which the frames use them."""
-    banks = allocation.get(BUFFERS_OF_PORTS[port])
-    return [] if banks is None else banks if isinstance(banks, list) else [banks]
-
-
-def random_board(seed):
-    """(board file, allocation with lists, names of the banks)."""
-    draw = random.Random(seed)
-    banks = [f"{draw.choice(['b', 'pci', 'host', 'a-long-name_of_a_bank-'])}{i}" for i in range(draw.randint(1, 16))]
-    pairs = draw.randint(1, 3)
-    allocation = {name: draw.choices(banks, k=pairs) for name in ("left_image", "right_image")}
-    allocation["disparity"] = draw.choices(banks, k=draw.randint(1, 3))
-    is_joint = draw.random() < 0.3
-    table = draw.choice(banks)
-    allocation["left_lut"] = table if is_joint else draw.choice([table, None])
-    allocation["right_lut"] = table if is_joint else draw.choice([table, None])
-    fetch = draw.choice(["column", "line_buffer"])
-    keys = {
-        "name": draw.choice(["plain", "<script>alert('1')</script> & \"quoted\" $x$", "\u6f22\u5b57 \u2028"]),
-        "ssram": {"default": {"words": 2**21, "kind": draw.choice(["zbt_pipelined", "qdr"])},
-                  "banks": {bank: {} for bank in banks}},
-        "allocation": {key: value or "none" for key, value in allocation.items()},
-        "fpga": {"tables": "joint" if is_joint else "separate", "pixel_cache": draw.choice(["none", "word"])},
-        "matcher": {"fetch": fetch, "rows": draw.randint(1, 4) if fetch == "column" else 1,
-                    "cost": draw.choice(["sad", {"census": 5}])},
-        "capture": {"destination": draw.choice(["board", "host_memory"])},
-        "pci": {"load": draw.choice(["none", {"burst_words": 8, "interval_us": 1}])},
-    }
-    return "extends: fpl2003\n" + "".join(f"{key}: {json.dumps(value)}\n" for key, value in keys.items()), keys, allocation
 
 
 class Diagram(ProgramTest):
@@ -81,48 +40,6 @@ class Diagram(ProgramTest):
                     svg = self.chart(name, "--source", source)
                     self.assertEqual(svg.find(SVG + "title").text, f"Memory chart of {name}")
                     self.assertEqual("part-pci" in groups(svg, "block"), source == "camera")
-
-    def test_names_all_of_random_boards(self):
-        for seed in range(40):
-            text, keys, allocation = random_board(seed)
-            board = self.file("board.yaml", text)
-            source = ("camera", "preloaded")[seed % 2]
-            with self.subTest(board=text, source=source):
-                svg = self.chart(board, "--source", source)
-                self.assertEqual(svg.find(SVG + "title").text, "Memory chart of " + keys["name"])
-                self.assertEqual([*svg.iter(SVG + "script")], [])
-                blocks = groups(svg, "block")
-                held = {bank: [] for bank in keys["ssram"]["banks"]}
-                for buffer, banks in allocation.items():
-                    if isinstance(banks, list):
-                        for index, bank in enumerate(banks):
-                            held[bank].append(f"{buffer}[{index}]")
-                    elif banks and keys["fpga"]["tables"] == "separate":
-                        held[banks].append(buffer)
-                if keys["fpga"]["tables"] == "joint":
-                    held[allocation["left_lut"]].append("left_lut, right_lut")
-                for bank, buffers in held.items():
-                    block = blocks["bank-" + bank]
-                    self.assertTrue(block.find(SVG + "title").text.startswith(bank + ": "))
-                    self.assertEqual([text for text in texts(block) if re.match("left_|right_|disp", text)], buffers)
-                self.assertEqual(set(groups(svg, "edge")), self.links(keys, allocation, source))
-
-    @staticmethod
-    def links(keys, allocation, source):
-        ends = set()
-        used = set()
-        for port in BUFFERS_OF_PORTS:
-            if port == "right_lut" and keys["fpga"]["tables"] == "joint":
-                continue
-            for bank in banks_of(allocation, port):
-                ends.add(f"{port}-{bank}")
-                used.add(bank)
-        if source == "camera":
-            ends |= {f"host-{bank}" for bank in used}
-            ends |= {"left_camera-left_capture", "right_camera-right_capture", "left_capture-pci", "right_capture-pci"}
-            ends |= {"cpu-pci", "pci-host_memory", "pci-bridge", "bridge-pci", "bridge-local_bus", "local_bus-host"}
-            ends |= {"load-pci"} if keys["pci"]["load"] != "none" else set()
-        return {"edge-" + end for end in ends}
 
     def test_has_the_traffic_of_a_run(self):
         load = "pci.load={burst_words: 16, interval_us: 5}"

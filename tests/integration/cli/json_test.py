@@ -173,15 +173,6 @@ class Json(ProgramTest):
         for part in ("settings", "options", "figures", "frames", "waits"):
             self.assertEqual(alone[part], [])
 
-    def test_diff_says_why_rows_and_disparities_are_not_compared(self):
-        a, b = self.folder / "a", self.folder / "b"
-        for folder, height in ((a, 24), (b, 28)):
-            size = sets("image.width=32", f"image.height={height}")
-            self.succeeds(run("run", "fpl2003", *size, *PRELOADED, "--synthetic", 1, "--out", folder))
-        document = self.document("diff", a, b)
-        for part in ("rows", "disparities"):
-            self.assertEqual(list(document[part]), ["not_compared"])
-
     def test_boards_are_files_that_can_be_run(self):
         boards = self.document("boards")["boards"]
         self.assertEqual([board["name"] for board in boards][0], "fpl2003")

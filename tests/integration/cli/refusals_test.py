@@ -272,7 +272,7 @@ class Paths(ProgramTest):
             if not loop.is_symlink():
                 loop.symlink_to(loop.name)
             too_long = self.folder / f"{'long' * 64}{ending}"
-            for path in (loop, loop / f"x{ending}", too_long, self.left / f"x{ending}"):
+            for path in (loop, too_long):
                 process = run(*arguments, path)
                 self.assertNotIn("filesystem error", process.stderr)
                 self.refused(process, option)

@@ -160,11 +160,6 @@ class Video(SourceTest):
         more = self.video("r.avi", 2, "right")
         self.refused_video("two", one, more, f"--video '{more}': 2 frames: must have as many as '{one}', 1")
 
-    def test_what_cannot_be_decoded_is_refused(self):
-        self.refused_video("side_by_side", self.folder / "none.avi", "none.avi': no such file: ")
-        text = self.file("text.avi", "text\n" * 1000)
-        self.refused_video("side_by_side", text, "text.avi': no video: a video must be an AVI")
-
     def test_a_header_that_promises_more_frames_is_noted(self):
         video = self.video("s.avi", 4, "left", "right")
         video.write_bytes(video.read_bytes()[: -7 * WIDTH * HEIGHT])
@@ -174,17 +169,6 @@ class Video(SourceTest):
         note = f"--video '{video}': 2 frames can be decoded; its header says 4"
         self.assertEqual(process.stderr, f"stereotlm: note: {note}\n")
         self.assertEqual(self.stats()["frames"], 2)
-
-    def test_sources_inside_the_result_folder_are_refused(self):
-        self.succeeds(self.run_small("--out", self.out))
-        video = self.video("out/frames/000000.png", 1, "left", "right")
-        inside = self.sequence(2, "out/frames/sequence")
-        with self.unchanged(self.out):
-            self.refused(self.run_with("--sequence", inside, "--out", self.out), "holds 'frames/sequence'")
-        shutil.rmtree(inside)
-        with self.unchanged(self.out):
-            self.refused(self.run_with("--video", video, "--video-layout", "side_by_side", "--out", self.out),
-                         f"result folder '{self.out}': --video '{video}' lies in it and would be replaced")
 
 
 class Synthetic(SourceTest):
