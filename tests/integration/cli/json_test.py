@@ -90,6 +90,7 @@ class Json(ProgramTest):
             self.assertAlmostEqual(change["frames_per_second"], changed["frames_per_second"]["core"])
             gained = changed["frames_per_second"]["core"] - stats["frames_per_second"]["core"]
             self.assertAlmostEqual(change["gained_frames_per_second"], gained)
+            self.assertAlmostEqual(change["gained_percent"], 100 * gained / stats["frames_per_second"]["core"])
             self.assertEqual(change["area"]["slices"], changed["area"]["slices"])
         self.assertEqual((document["impossible"], document["failed"]), ([], []))
 

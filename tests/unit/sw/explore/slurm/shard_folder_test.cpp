@@ -2,25 +2,19 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
-#include "sw/explore/store/store_reader.h"
 #include "tests/unit/sw/explore/store_files.h"
 
 namespace stereotlm::explore {
 namespace {
 
-namespace fs = std::filesystem;
 using test::message_of;
 using test::read_file;
 using test::write_file;
-using ::testing::ElementsAre;
 using ::testing::EndsWith;
-using ::testing::UnorderedElementsAre;
 
 ShardedSweep three_shards() {
   ShardedSweep sweep;

@@ -2,11 +2,8 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <chrono>
-#include <csignal>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -42,6 +39,18 @@ TEST_F(StoreLockTest, KeepsOtherLocksOutUntilItEnds) {
     expect_locked(store);  // although SQLite has closed the file
   }
   const StoreLock second(store, 0ms);
+}
+
+// The end of the first lock removes the file, which the second has opened.
+TEST_F(StoreLockTest, WaitsForAnotherLockToEndAndLocksTheFileThatHasTheNameThen) {
+  auto first = std::make_unique<StoreLock>(store);
+  std::thread other([&first] {
+    std::this_thread::sleep_for(100ms);
+    first.reset();
+  });
+  const StoreLock second(store, 60s);
+  other.join();
+  second.check();
 }
 
 TEST_F(StoreLockTest, LocksTheFileThatHasTheNameNow) {

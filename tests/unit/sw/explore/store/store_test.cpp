@@ -190,13 +190,16 @@ TEST_F(StoreTest, MergesToTheSameBytesInAnyOrder) {
 
 TEST_F(StoreTest, DoesNotMergeDifferentResultsOfAPoint) {
   StoredPoint blamed = point("h1");
-  blamed.blame.front().cycles = 4;
+  blamed.blame.push_back({"result", "bank0", "host", 4});
   add("a.db", {point("h1")});
   add("b.db", {point("h1", 8)});
   add("blamed.db", {blamed});
-  for (const std::string other : {"b.db", "blamed.db"})
+  for (const std::string other : {"b.db", "blamed.db"}) {
     EXPECT_EQ(merge_error({"a.db", other}, "c.db"),
               file(other) + ": holds another result of point h1 than " + file("a.db"));
+    EXPECT_EQ(merge_error({other, "a.db"}, "c.db"),
+              file("a.db") + ": holds another result of point h1 than " + file(other));
+  }
   EXPECT_THAT(names(), Not(Contains(HasSubstr("c.db"))));
 }
 
