@@ -31,8 +31,8 @@ std::string summary(const std::string& name, const platform::BoardConfig& board)
                      platform::device_text(board));
 }
 
-// The parts of the text of a platform::Diagnostic. `key = value: rule` has all three, `key: missing: rule` has
-// no value, and a rule alone has neither. A part that is absent is empty.
+// The parts of the text of a platform::Diagnostic. `key = value: rule` has all three, `key: missing: rule`
+// has no value, and a rule alone has neither. A part that is absent is empty.
 struct ProblemParts {
   std::string key;
   std::string value;

@@ -23,8 +23,8 @@ using Action = std::function<int()>;
 // the text. Throws Refused if the arguments are wrong.
 Action parse_command_line(int argc, const char* const* argv);
 
-// Adds a command to the program. `footer`: the end of its help. when_parsed() sets what the parser calls if the
-// command line has the command.
+// Adds a command to the program. `footer`: the end of its help. when_parsed() sets what the parser calls if
+// the command line has the command.
 CLI::App& add_command(CLI::App& program, const std::string& name, const std::string& description,
                       const std::string& footer);
 void when_parsed(CLI::App& command, const std::function<void()>& parsed);

@@ -12,7 +12,8 @@
 #include "sw/files/temporary_folder.h"
 #include "sw/process/streams.h"
 
-// Implements options.h and command.h. The commands include these instead of CLI11, which takes long to compile.
+// Implements options.h and command.h. The commands include these instead of CLI11, which takes long to
+// compile.
 namespace stereotlm::cli {
 
 Rule required(const std::string& what) {

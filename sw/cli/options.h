@@ -46,12 +46,12 @@ Rule number(
     return value && is_valid(*value);
   });
 }
-// The option goes only with `other`, which has the value `value` in the message. `other` must be a member of the
-// same class as the option.
+// The option goes only with `other`, which has the value `value` in the message. `other` must be a member of
+// the same class as the option.
 Rule goes_with(const Option& other, const std::string& value);
 
-// The options of a command. A command derives a class from this one. Its members of type Option are the options,
-// in the order of the help. It exists from before parsing to the end of the command.
+// The options of a command. A command derives a class from this one. Its members of type Option are the
+// options, in the order of the help. It exists from before parsing to the end of the command.
 class Options {
  public:
   explicit Options(CLI::App& command) : command_(&command) {}
@@ -73,8 +73,8 @@ class Options {
   std::vector<std::pair<const Option*, std::vector<Rule>>> rules_;
 };
 
-// The number of values of an option: a list takes all the following words; one of `kRepeated` takes one word, and
-// is given once for each value.
+// The number of values of an option. kList takes all the words that follow it. kRepeated takes one word,
+// and the option is given again for each further one.
 enum class Takes { kOne, kOneOrTwo, kList, kRepeated };
 
 // An option of the command line. Its values are kept as typed, so that messages can quote them.

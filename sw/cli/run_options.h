@@ -56,14 +56,14 @@ class PictureOptions {
 // The options of `run`. Those that say what is simulated are options of `conflicts` too.
 class RunOptions {
  public:
-  // `more`: where the options that do not say what is simulated are added; null: nowhere. `beside_board`: what
-  // BOARD may be beside a board.
+  // `more`: where the options that do not say what is simulated are added; null: nowhere. `beside_board`:
+  // what BOARD may be beside a board.
   RunOptions(Options* of, Options* more, const std::string& beside_board = "");
 
   // Whether no option that says what is simulated is given but BOARD.
   bool has_board_only() const;
-  // Reports problems of several options together, and then also those of the files of the board. `command`: the
-  // name of the command.
+  // Reports problems of several options together, and then also those of the files of the board. `command`:
+  // the name of the command.
   void check_together(const std::string& command, process::Problems& problems) const;
 
   // Loads and checks the inputs of the run. Throws Refused with all problems. Prints on standard error which

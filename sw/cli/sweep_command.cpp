@@ -109,9 +109,9 @@ std::string summary(const explore::SweepCounts& counts, const SweepCommandOption
   return text + '\n';
 }
 
-// The lines with the reasons of points that failed, then of impossible ones, and the number of points for each
-// reason, the most frequent first. Of more than four reasons, a line counts those after the third, and the last
-// line says how to list all. One scan of the table; by name 'failed' comes before 'impossible'.
+// The lines with the reasons of points that failed, then of impossible ones, and the number of points for
+// each reason, the most frequent first. Of more than four reasons, a line counts those after the third, and
+// the last line says how to list all. One scan of the table; by name 'failed' comes before 'impossible'.
 std::string reasons(explore::Database& store) {
   explore::Statement statement(
       store,

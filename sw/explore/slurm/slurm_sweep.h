@@ -22,10 +22,10 @@ struct SlurmProgress {
   std::string reason;         // why the first waiting shard waits, in Slurm's words; empty: not known
 };
 
-// A sweep on a cluster, in rounds. A round is a job array of Slurm, one task for each shard that is not whole,
-// and behind it a job that merges all shards into the store. Once all jobs of a round have ended, and shards were
-// lost, the next round begins. This process reports the progress. If it ends, the jobs of its round continue, and
-// a new process finds them by their name.
+// A sweep on a cluster, in rounds. A round is a job array of Slurm, one task for each shard that is not
+// whole, and behind it a job that merges all shards into the store. Once all jobs of a round have ended, and
+// shards were lost, the next round begins. This process reports the progress. If it ends, the jobs of its
+// round continue, and a new process finds them by their name.
 class SlurmSweep {
  public:
   using Say = std::function<void(const std::string& note)>;

@@ -29,7 +29,8 @@ struct IsLessWithoutCase {
 // The columns and keys of all inputs.
 class Inputs {
  public:
-  // Throws if a file is no store, if the points have different versions, or if two columns differ only in case.
+  // Throws if a file is no store, if the points have different versions, or if two columns differ only in
+  // case.
   explicit Inputs(const std::vector<std::string>& paths) : paths_(paths) {
     for (const std::string& path : paths) {
       Database input(path, Database::Access::kRead);

@@ -30,7 +30,6 @@ class ShardFolderTest : public StoreFiles {
   ShardFolderTest() { folder.lock(); }
 
   static std::string shard_file(const std::string& name) { return "a.db.shards/" + name; }
-  std::string text_of(const std::string& name) const { return read_file(file(shard_file(name))); }
   void write(const std::string& name, const std::string& text) const {
     write_file(file(shard_file(name)), text);
   }

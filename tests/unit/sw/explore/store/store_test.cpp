@@ -12,7 +12,6 @@
 
 #include "sw/explore/store/merge_stores.h"
 #include "sw/explore/store/store_reader.h"
-#include "tests/support/file_size_limit.h"
 #include "tests/unit/sw/explore/store_files.h"
 
 namespace stereotlm::explore {
