@@ -265,37 +265,23 @@ class Allocate(ProgramTest):
                 return self.query(self.store, count)[0][0] if self.store.exists() else 0
             return 0
 
-        for more in ([], ["--json"]):
-            enough = known() + 10
-            process = self.start(*command, *more)
-            wait_until(lambda: known() >= enough)
-            process.send_signal(signal.SIGINT)
-            out, errors = process.communicate(timeout=60)
-            self.assertEqual(process.returncode, 130)
-            self.assertEqual(errors, "stereotlm: note: interrupted: run the same command to resume\n")
-            rates = self.query(self.store, """SELECT "frames_per_second.steady", "frames_per_second.steady_uncertainty"
-                FROM points WHERE status = 'ok'
-                AND "cameras.left.dropped_pixels" + "cameras.right.dropped_pixels" = 0""")
-            found = self.rates_of(written, "--timing-only", "--frames", 122)
-            best = {name: found[name] for name in ("steady", "steady_uncertainty")}
-            self.assertIn(tuple(best.values()), rates)
-            self.assertGreaterEqual(sum(best.values()), max(rate - uncertainty for rate, uncertainty in rates))
-            if not more:
-                self.assertIn(f"Interrupted. The best so far is {rate_text(best)} frames/s, with ", out)
-                self.assertRegex(out, r"\nAt most \d+\.\d\d % better can exist: ")
-                self.assertNotIn("are the same, pixel by pixel", out)
-                self.assertEqual(self.rates_of(*self.pasted(out)[1]), found)
-                continue
-            document = json.loads(out)
-            jsonschema.Draft202012Validator(SCHEMA).validate(document)
-            self.assertEqual(document["state"], "interrupted")
-            named = document["best"]
-            self.assertEqual(named["frames_per_second"], best)
-            highest = named["highest_frames_per_second"]["steady"]
-            self.assertAlmostEqual(named["possible_frames_per_second"],
-                                   highest * (1 + named["possible_gain_percent"] / 100))
-            # The bound is true: what the whole search finds is 9.274 ± 0.024.
-            self.assertGreater(named["possible_frames_per_second"], 9.25)
+        process = self.start(*command)
+        wait_until(lambda: known() >= 10)
+        process.send_signal(signal.SIGINT)
+        out, errors = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 130)
+        self.assertEqual(errors, "stereotlm: note: interrupted: run the same command to resume\n")
+        rates = self.query(self.store, """SELECT "frames_per_second.steady", "frames_per_second.steady_uncertainty"
+            FROM points WHERE status = 'ok'
+            AND "cameras.left.dropped_pixels" + "cameras.right.dropped_pixels" = 0""")
+        found = self.rates_of(written, "--timing-only", "--frames", 122)
+        best = {name: found[name] for name in ("steady", "steady_uncertainty")}
+        self.assertIn(tuple(best.values()), rates)
+        self.assertGreaterEqual(sum(best.values()), max(rate - uncertainty for rate, uncertainty in rates))
+        self.assertIn(f"Interrupted. The best so far is {rate_text(best)} frames/s, with ", out)
+        self.assertRegex(out, r"\nAt most \d+\.\d\d % better can exist: ")
+        self.assertNotIn("are the same, pixel by pixel", out)
+        self.assertEqual(self.rates_of(*self.pasted(out)[1]), found)
 
     def test_an_interrupted_search_is_resumed_to_the_same_result(self):
         whole = self.succeeds(self.allocate(banks=3))
@@ -306,15 +292,9 @@ class Allocate(ProgramTest):
     def test_another_file_is_not_replaced_by_the_best(self):
         board = self.board()
         rule = "exists, and is not known as a file of this board with another allocation, which alone is replaced"
-        mine = self.file("mine.yaml", "extends: fpl2003\n")
-        for path, text in ((board, "is the file of BOARD: must be another"), (mine, rule),
-                           (self.folder / "best.txt", "must end in .yaml"),
-                           (self.folder / "none/best.yaml", "there is no such folder"),
-                           (self.file("folder.yaml/x").parent, "is no file")):
-            process = self.allocate(*PRELOADED, "--write", path, board=board)
-            self.refused_in_one_line(process, f"--write '{path}': {text}")
-            self.assertFalse(self.store.exists())
-        self.assertEqual(mine.read_text(), "extends: fpl2003\n")
+        process = self.allocate(*PRELOADED, "--write", board, board=board)
+        self.refused_in_one_line(process, f"--write '{board}': is the file of BOARD: must be another")
+        self.assertFalse(self.store.exists())
         database = self.folder / "found.yaml"
         process = run("allocate", board, "--banks", 2, "--out", database, "--write", f"{self.folder}/./found.yaml")
         self.refused_in_one_line(process, "is the file of --out: must be another")
