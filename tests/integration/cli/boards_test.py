@@ -233,10 +233,11 @@ class Explain(ProgramTest):
         return self.succeeds(explained(*options))
 
     def rows(self, text):
-        """(rate, gained, key, to) of the changes."""
-        pattern = (r"^ +([\d.]+) +([+-][\d.]+) +[+-][\d.]+(?: +[+-]?[\d.]+){2}  (.+?)(?: \*)?: .* -> (.*?)"
+        """(rate, gained, key, to, FPGA %) of the changes."""
+        pattern = (r"^ +([\d.]+) +([+-][\d.]+) +[+-][\d.]+ +([+-]?[\d.]+) +[+-]?\d+  (.+?)(?: \*)?: .* -> (.*?)"
                    r"(?:, [+-]\d+ multipliers)?(?:  does not fit)?(?:  loses (?:no )?pixels)?(?:  ~)?$")
-        return re.findall(pattern, text, re.M)
+        found = re.findall(pattern, text, re.M)
+        return [(rate, gained, key, to, price) for rate, gained, price, key, to in found]
 
     def rate(self, *options):
         """That of a run with these options."""
@@ -304,10 +305,12 @@ class Explain(ProgramTest):
             self.assertGreater(len(rows), 5)
             rates = [float(row[0]) for row in rows]
             self.assertEqual(rates, sorted(rates, reverse=True))
-            for rate, gained, key, to in rows:
+            for rate, gained, key, to, price in rows:
                 (change,) = (one for one in changes if (one["key"], one["to"]) == (key, to))
                 found = change["frames_per_second"]
                 self.assertEqual((rate, gained), (f"{found:.3f}", f"{found - now:+.3f}"), key)
+                percent = change["area"]["slices_percent"] - document["area"]["slices_percent"]
+                self.assertAlmostEqual(float(price), percent, delta=0.0051, msg=key)
             for change in changes[::4] + [one for one in changes if one["key"].startswith(("allocation", "a bank"))]:
                 keys = [pasted.partition("=")[0] for pasted in change["sets"]]
                 earlier = [*SMALL, *options]
