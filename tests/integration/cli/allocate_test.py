@@ -377,7 +377,7 @@ class Allocate(ProgramTest):
     def test_wrong_values_are_refused(self):
         board = self.board()
         lines = self.refused(run("allocate", board, "--source", "camra", "--keep-fps", "0"))
-        wrong = ("--source = camra", "--banks: missing", "--keep-fps = 0: must be", "--out: missing")
+        wrong = ("--banks: missing", "--source = camra", "--keep-fps = 0: must be", "--out: missing")
         for line, text in zip(lines, wrong, strict=True):
             self.assertIn(text, line)
         for frames, rule in (("0", "1..1000000"), ("x", "1..1000000")):
