@@ -12,13 +12,9 @@
 
 #include "platform/bounds.h"
 #include "platform/config/board_yaml.h"
-#include "sw/cli/add_command.h"
 #include "sw/cli/allocation_report.h"
 #include "sw/cli/board_options.h"
-#include "sw/cli/commands.h"
-#include "sw/cli/exit_status.h"
-#include "sw/cli/json_option.h"
-#include "sw/cli/typed_option.h"
+#include "sw/cli/command.h"
 #include "sw/explore/search/allocation_run.h"
 #include "sw/explore/search/allocation_search.h"
 #include "sw/explore/store/bank_names.h"
@@ -44,70 +40,35 @@ using platform::BoardConfig;
 
 constexpr double kDefaultKeepPercent = 99;
 
-struct AllocateOptions {
-  BoardOptions board;
-  Typed banks_option;
-  Typed source;
-  Typed frames_option;
-  Typed keep_option;
-  Typed out;
-  Typed write;
-  JsonOption json;
+struct AllocateOptions : Options {
+  using Options::Options;
 
-  // Set by check_usage().
-  bool camera = true;
-  std::uint64_t frames = 0;  // 0: the default
-  std::optional<int> banks;
-  double keep_percent = kDefaultKeepPercent;
-
-  void add_to(CLI::App& command) {
-    board.add_to(command);
-    banks_option.add_to(command, "--banks", "N", "Banks to use at most: 1 to those of the board");
-    source.add_to(command, "--source", "camera|preloaded",
-                  "The whole computer, the default, or the core alone, fed by an ideal host");
-    frames_option.add_to(command, "--frames", "N",
+  BoardOptions board{this};
+  Option banks{
+      this,
+      "--banks",
+      "N",
+      "Banks to use at most: 1 to those of the board",
+      {required("the most banks to use"), number<int>("1 or more", [](int most) { return most > 0; })}};
+  SourceOption source{this};
+  Option frames = Option(this, "--frames", "N",
                          "Frames of a run, whole turns of the lists of buffers: more frames make the steady "
-                         "rate more certain (default one turn; with cameras 120 more)");
-    keep_option.add_to(command, "--keep-fps", "PERCENT",
-                       "Say how few banks keep so much of the best frame rate (default 99)");
-    out.add_to(command, "--out", "DB", "The database of the boards that are simulated, written or continued");
-    write.add_to(command, "--write", "F.yaml", "Write the board with the best allocation as a board file");
-    json.add_to(command);
-  }
+                         "rate more certain (default one turn; with cameras 120 more)",
+                         {number<std::int64_t>(explore::kFramesRule.text(), [](std::int64_t count) {
+                           return explore::kFramesRule.allows(count);
+                         })});
+  Option keep = Option(this, "--keep-fps", "PERCENT",
+                       "Say how few banks keep so much of the best frame rate (default 99)",
+                       {number<double>("a percentage above 0 and at most 100",
+                                       [](double percent) { return percent > 0 && percent <= 100; })});
+  Option out =
+      Option(this, "--out", "DB", "The database of the boards that are simulated, written or continued",
+             {required("the database to write, or to continue")});
+  Option write = Option(this, "--write", "F.yaml", "Write the board with the best allocation as a board file",
+                        {ends_in(".yaml")});
+  JsonOption json{this};
 
-  void check_usage() {
-    process::Problems problems;
-    if (source.is_given() && is_one_of({"camera", "preloaded"}, "--source", source.text, problems)) {
-      camera = source.text == "camera";
-    }
-    board.check_given(problems);
-    if (!banks_option.is_given()) problems.add("--banks: missing: the most banks to use");
-    if (banks_option.is_given()) {
-      banks = number_of<int>(banks_option.text);
-      if (!banks || *banks < 1) {
-        problems.add(fmt::format("--banks = {}: must be 1 or more", banks_option.text));
-      }
-    }
-    if (frames_option.is_given()) {
-      frames = number_of<std::uint64_t>(frames_option.text).value_or(0);
-      if (!explore::kFramesRule.allows(static_cast<std::int64_t>(frames)))
-        problems.add(
-            fmt::format("--frames = {}: must be {}", frames_option.text, explore::kFramesRule.text()));
-    }
-    if (keep_option.is_given()) {
-      const auto percent = number_of<double>(keep_option.text);
-      if (!percent || !(*percent > 0 && *percent <= 100)) {
-        problems.add(
-            fmt::format("--keep-fps = {}: must be a percentage above 0 and at most 100", keep_option.text));
-      } else {
-        keep_percent = *percent;
-      }
-    }
-    if (!out.is_given()) problems.add("--out: missing: the database to write, or to continue");
-    if (write.is_given() && std::filesystem::path(write.text).extension() != ".yaml")
-      problems.add(fmt::format("--write '{}': must end in .yaml", write.text));
-    problems.check();
-  }
+  int most_banks() const { return banks.number<int>().value_or(0); }
 };
 
 // A different synthetic pair for each frame.
@@ -207,9 +168,10 @@ std::unique_ptr<files::OutputFile> open_written(const AllocateOptions& options, 
   const files::FileKind kind = {
       "file of this board with another allocation",
       [&board](const std::filesystem::path& path) { return is_written_board(path, board); }};
-  const std::vector<files::NamedFile> others = {{"BOARD", options.board.name()}, {"--out", options.out.text}};
+  const std::vector<files::NamedFile> others = {{"BOARD", options.board.name()},
+                                                {"--out", options.out.text()}};
   try {
-    return std::make_unique<files::OutputFile>(options.write.text, kind, others);
+    return std::make_unique<files::OutputFile>(options.write.text(), kind, others);
   } catch (const std::runtime_error& error) {
     problems.add(fmt::format("--write {}", error.what()));
     return nullptr;
@@ -238,71 +200,71 @@ int finish(AllocationReport& report, const AllocateOptions& options,
   if (written && report.best) {
     written->write(platform::to_yaml(explore::placed(report.board, report.best->witness)));
     written->commit();
-    report.written = options.write.text;
+    report.written = options.write.text();
   }
-  if (options.json.is_given) {
+  if (options.json.is_given()) {
     print_json(allocation_report_document(report));
   } else {
     process::print(allocation_report_text(report));
   }
-  if (!process::interrupted()) return kDone;
-  process::say("note", "interrupted: run the same command to resume");
-  return kInterrupted;
+  return process::interrupted() ? interrupted("run the same command to resume") : kDone;
 }
 
 std::uint64_t frames_of(const AllocateOptions& options, const BoardConfig& board) {
-  if (options.frames > 0) return options.frames;
-  return platform::allocation_period_frames(board) + (options.camera ? explore::kSearchSteadyFrames : 0);
+  return options.frames.number<std::uint64_t>().value_or(
+      platform::allocation_period_frames(board) +
+      (options.source.is_camera() ? explore::kSearchSteadyFrames : 0));
 }
 
 void check_frames(const AllocateOptions& options, const BoardConfig& board, process::Problems& problems) {
   const std::uint64_t turn = platform::allocation_period_frames(board);
-  const std::uint64_t least = options.camera ? 2 * turn : turn;
+  const std::uint64_t least = options.source.is_camera() ? 2 * turn : turn;
   const std::uint64_t frames = frames_of(options, board);
   if (frames % turn == 0 && frames >= least) return;
   problems.add(fmt::format("--frames = {}: must be a multiple of {}, one turn of the lists of buffers{}",
-                           frames, turn, options.camera ? ", and at least two turns" : ""));
+                           frames, turn, options.source.is_camera() ? ", and at least two turns" : ""));
 }
 
 void check_banks(const AllocateOptions& options, const BoardConfig& board, process::Problems& problems) {
   if (const auto problem = explore::bank_names_problem(board))
     problems.add(fmt::format("{}: {}", options.board.name(), *problem));
-  if (*options.banks > static_cast<int>(board.banks.size())) {
+  if (options.most_banks() > static_cast<int>(board.banks.size())) {
     problems.add(
         fmt::format("--banks = {}: must be 1..{}, the banks of the board; --set 'ssram.banks.NEW={{}}' "
                     "gives it one more",
-                    *options.banks, board.banks.size()));
+                    options.most_banks(), board.banks.size()));
   }
 }
 
 int allocate(const AllocateOptions& options) {
   process::Problems problems;
-  const auto board = options.board.load(problems);
-  const auto calibration = options.board.load_calibration(board ? &*board : nullptr, problems);
+  const LoadedBoard loaded = options.board.load(problems);
+  const auto& board = loaded.board;
   if (board) check_banks(options, *board, problems);
   if (board) check_frames(options, *board, problems);
   auto written = board ? open_written(options, *board, problems) : nullptr;
   problems.check();
   explore::SweepOptions sweep;
-  sweep.store = options.out.text;
+  sweep.store = options.out.text();
   sweep.version = process::kVersion;
   sweep.jobs = std::max(1U, std::thread::hardware_concurrency());
-  const platform::Tables tables = runs::tables_of(*board, calibration);
-  const explore::PointRun run = {options.camera, frames_of(options, *board),
-                                 calibration ? runs::sha256_of(calibration->tables) : ""};
+  const platform::Tables tables = loaded.tables();
+  const bool camera = options.source.is_camera();
+  const int banks = options.most_banks();
+  const explore::PointRun run = {camera, frames_of(options, *board),
+                                 loaded.calibration ? runs::sha256_of(loaded.calibration->tables) : ""};
   const platform::FrameAccesses accesses = platform::frame_accesses(*board, tables);
   const AllocationSearch::BoundOf bound = [&](const BoardConfig& one) {
-    return options.camera ? platform::steady_bound(one, accesses) : platform::core_bound(one, accesses).core;
+    return camera ? platform::steady_bound(one, accesses) : platform::core_bound(one, accesses).core;
   };
-  AllocationSearch search = search_of(*board, *options.banks, run, bound);
+  AllocationSearch search = search_of(*board, banks, run, bound);
   if (search.fitting() == 0) {
-    process::refuse(fmt::format("--banks = {}: none of {} allocations fits into so few banks{}",
-                                *options.banks, search.placements(),
-                                fewest_text(*board, *options.banks, run)));
+    process::refuse(fmt::format("--banks = {}: none of {} allocations fits into so few banks{}", banks,
+                                search.placements(), fewest_text(*board, banks, run)));
   }
   process::catch_interrupts();
   check_store(sweep, *board);
-  runs::PointSimulator simulator = calibration ? runs::PointSimulator(tables) : runs::PointSimulator();
+  runs::PointSimulator simulator = loaded.simulator();
   const auto evaluate = [&](const explore::Point& point) {
     const double rate = search.rate_to_reach(point.number);
     return simulator(point, [rate](const platform::SteadyRate& so_far) {
@@ -314,8 +276,8 @@ int allocate(const AllocateOptions& options) {
                              *board,
                              bound,
                              sweep.store,
-                             *options.banks,
-                             options.keep_percent,
+                             banks,
+                             options.keep.number<double>().value_or(kDefaultKeepPercent),
                              options.board.words_without_allocation()};
   report.is_whole = explore::simulate(search, evaluate, sweep, [&line](const explore::SearchProgress& done) {
     return show_progress(line, done);

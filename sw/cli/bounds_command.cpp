@@ -11,11 +11,8 @@
 #include "platform/config/board_area.h"
 #include "platform/config/buffer_layout.h"
 #include "platform/config/tables.h"
-#include "sw/cli/add_command.h"
 #include "sw/cli/board_options.h"
-#include "sw/cli/commands.h"
-#include "sw/cli/exit_status.h"
-#include "sw/cli/json_option.h"
+#include "sw/cli/command.h"
 #include "sw/process/streams.h"
 #include "sw/stats/stats_json.h"
 #include "sw/stats/wait_text.h"
@@ -30,15 +27,11 @@ using platform::ResourceBound;
 using Json = nlohmann::ordered_json;
 using Names = std::vector<std::string>;
 
-struct BoundsOptions {
-  BoardOptions board;
-  JsonOption json;
+struct BoundsOptions : Options {
+  using Options::Options;
 
-  void add_to(CLI::App& command) {
-    board.add_to(command);
-    json.add_to(command);
-  }
-  void check_usage() { board.check_usage(); }
+  BoardOptions board{this};
+  JsonOption json{this};
 };
 
 void add_new(Names& names, const std::string& name) {
@@ -271,12 +264,11 @@ Json document_of(const BoardBounds& all) {
 
 int bounds(const BoundsOptions& options) {
   process::Problems problems;
-  const auto board = options.board.load(problems);
-  const auto calibration = options.board.load_calibration(board ? &*board : nullptr, problems);
+  const LoadedBoard loaded = options.board.load(problems);
   problems.check();
-  say_clock_remark(*board);
-  const BoardBounds all = bounds_of(*board, runs::tables_of(*board, calibration));
-  if (options.json.is_given) {
+  loaded.say_clock_remark();
+  const BoardBounds all = bounds_of(*loaded.board, loaded.tables());
+  if (options.json.is_given()) {
     print_json(document_of(all));
   } else {
     process::print(text_of(all));

@@ -7,6 +7,7 @@
 #include <functional>
 #include <future>
 #include <memory>
+#include <optional>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -14,12 +15,10 @@
 
 #include "calib/synthetic_rig.h"
 #include "calib/tables.h"
-#include "sw/cli/add_command.h"
-#include "sw/cli/calibrate_options.h"
+#include "models/kernels/limits.h"
 #include "sw/cli/calibration_output.h"
 #include "sw/cli/calibration_summary.h"
-#include "sw/cli/commands.h"
-#include "sw/cli/exit_status.h"
+#include "sw/cli/command.h"
 #include "sw/cli/grid_pictures.h"
 #include "sw/files/output_file.h"
 #include "sw/files/sha256.h"
@@ -37,26 +36,142 @@ namespace fs = std::filesystem;
 constexpr int kSyntheticWidth = 640;  // image width of fpl2003, pixels
 constexpr int kSyntheticHeight = 480;
 constexpr int kSyntheticPairs = 9;
+constexpr int kDefaultDisparities = 80;
+
+constexpr const char* kCalibrateExample =
+    "stereotlm calibrate --left 'left*.jpg' --right 'right*.jpg' --grid 9x6 --square-mm 25 --out rig.yaml";
+constexpr const char* kPrintExample = "stereotlm calibrate --print-grid 9x6 --square-mm 25 --out grid.pdf";
+constexpr const char* kGridRule = "columns x rows of inner corners, such as 9x6";
+
+// Sets columns and rows; returns false if the text is not CxR.
+bool read_grid(const std::string& text, calib::GridShape& grid) {
+  const std::size_t cross = text.find('x');
+  if (cross == std::string::npos) return false;
+  const auto columns = number_of<int>(text.substr(0, cross));
+  const auto rows = number_of<int>(text.substr(cross + 1));
+  grid.columns = columns.value_or(0);
+  grid.rows = rows.value_or(0);
+  return columns && rows;
+}
+
+Rule is_grid() {
+  return valid(kGridRule, [](const std::string& text) {
+    calib::GridShape grid;
+    return read_grid(text, grid);
+  });
+}
+
+Rule is_offset() {
+  constexpr int kMost = 2048;  // columns
+  return valid(fmt::format("auto or an integer, -{}..{}", kMost, kMost), [](const std::string& text) {
+    return text == "auto" || std::abs(number_of<int>(text).value_or(kMost + 1)) <= kMost;
+  });
+}
+
+struct CalibrateOptions : Options {
+  using Options::Options;
+
+  void check_together(process::Problems& problems) override;
+
+  // Of --grid, or of --print-grid.
+  calib::GridShape grid_shape() const;
+  // Columns; nullopt: auto.
+  std::optional<int> disparity_offset() const;
+
+  Option left =
+      Option(this, "--left", "'GLOB'",
+             "The left camera's pictures of the grid: a pattern of file names, in the order of their names",
+             {}, Takes::kList);
+  Option right = Option(this, "--right", "'GLOB'", "The right camera's pictures, as many, in the same order",
+                        {}, Takes::kList);
+  Option synthetic =
+      Option(this, "--synthetic", "SEED",
+             "Instead of pictures: a synthetic rig with known parameters, another one for each "
+             "SEED, 0 or more; also writes its pictures, and those of a scene to run",
+             {number<std::uint64_t>(kSeedRule)});
+  Option grid = Option(
+      this, "--grid", "CxR",
+      "The grid: columns x rows of inner corners, where four squares meet (a board of 10x7 squares has 9x6)",
+      {is_grid()});
+  Option square =
+      Option(this, "--square-mm", "S", "A side of its squares, in millimetres",
+             {required("a side of the grid's squares in millimetres"), number<double>("a number")});
+  Option disparities = Option(this, "--disparities", "D",
+                              "Disparities of the board for which the tables are made, 1..254 (default 80)",
+                              {number<int>("an integer, " + kernels::kDisparitiesRule.text(), [](int count) {
+                                return kernels::kDisparitiesRule.allows(count);
+                              })});
+  Option offset = Option(
+      this, "--disparity-offset", "auto|N",
+      "Columns that the left table subtracts from every disparity (default auto: so that the grid fits; "
+      "with --synthetic: 0, which suits its scene)",
+      {is_offset()});
+  Option print_grid =
+      Option(this, "--print-grid", "CxR",
+             "Draw such a grid to print, true to scale, with --square-mm and --out alone", {is_grid()});
+  Option out =
+      Option(this, "--out", "F.yaml",
+             "The calibration; the tables F_left.lut and F_right.lut and the drawings F_drawings/ go beside "
+             "it. With "
+             "--print-grid the sheet, F.pdf or F.svg",
+             {required("the calibration, F.yaml, or the sheet of --print-grid, F.pdf or F.svg")});
+};
+
+void CalibrateOptions::check_together(process::Problems& problems) {
+  const std::string extension = std::filesystem::path(out.text()).extension();
+  if (print_grid.is_given()) {
+    for (const Option* option : {&grid, &left, &right, &synthetic, &disparities, &offset}) {
+      if (option->is_given()) problems.add(fmt::format("{}: does not go with --print-grid", option->name()));
+    }
+    if (out.is_given() && extension != ".pdf" && extension != ".svg")
+      problems.add(fmt::format("--out '{}': must end in .pdf or .svg", out.text()));
+  } else {
+    if (!grid.is_given()) problems.add(fmt::format("--grid: missing: {}", kGridRule));
+    if (synthetic.is_given() && (left.is_given() || right.is_given()))
+      problems.add("--synthetic: makes its own pictures: does not go with --left and --right");
+    for (const auto& [side, option] : {std::pair("left", &left), std::pair("right", &right)}) {
+      if (!synthetic.is_given() && !option->is_given())
+        problems.add(fmt::format("--{0}: missing: the {0} camera's pictures (or --synthetic SEED)", side));
+    }
+    ends_in(".yaml")(out, problems);
+  }
+  if (!problems.empty()) {
+    problems.add_note(std::string("a complete command: ") +
+                      (print_grid.is_given() ? kPrintExample : kCalibrateExample));
+  } else {
+    for (const std::string& problem : calib::problems(grid_shape()))
+      problems.add(fmt::format("grid: {}", problem));
+  }
+}
+
+calib::GridShape CalibrateOptions::grid_shape() const {
+  calib::GridShape shape;
+  read_grid(print_grid.is_given() ? print_grid.text() : grid.text(), shape);
+  shape.square_mm = square.number<double>().value_or(0);
+  return shape;
+}
+
+std::optional<int> CalibrateOptions::disparity_offset() const {
+  if (!offset.is_given() && synthetic.is_given()) return 0;
+  return offset.number<int>();
+}
 
 [[noreturn]] void refuse_step(const std::string& option, const std::exception& error) {
   process::refuse(option + (option.empty() ? "" : " ") + error.what());
 }
 
-int leave_unwritten() {
-  process::say("note", "interrupted: nothing was written");
-  return kInterrupted;
-}
+int leave_unwritten() { return interrupted("nothing was written"); }
 
 int print_grid(const CalibrateOptions& options) {
+  const calib::GridShape grid = options.grid_shape();
   process::catch_interrupts();
   try {
-    const bool is_pdf = fs::path(options.out).extension() == ".pdf";
+    const bool is_pdf = fs::path(options.out.text()).extension() == ".pdf";
     const runs::CalibrationFunctions& functions = runs::calibration_functions();
-    const std::string sheet =
-        is_pdf ? functions.grid_sheet_pdf(options.grid) : functions.grid_sheet_svg(options.grid);
-    files::OutputFile file(options.out, {"sheet of the same grid", [&sheet](const fs::path& earlier) {
-                                           return files::read_whole_file(earlier) == sheet;
-                                         }});
+    const std::string sheet = is_pdf ? functions.grid_sheet_pdf(grid) : functions.grid_sheet_svg(grid);
+    files::OutputFile file(options.out.text(), {"sheet of the same grid", [&sheet](const fs::path& earlier) {
+                                                  return files::read_whole_file(earlier) == sheet;
+                                                }});
     file.write(sheet);
     file.complete();
     if (process::interrupted()) return leave_unwritten();
@@ -67,8 +182,8 @@ int print_grid(const CalibrateOptions& options) {
     refuse_step("--out", error);
   }
   process::print(fmt::format("{}: {}x{} squares of {} mm, {}x{} inner corners; print it at 100 %\n",
-                             options.out, options.grid.columns + 1, options.grid.rows + 1,
-                             options.grid.square_mm, options.grid.columns, options.grid.rows));
+                             options.out.text(), grid.columns + 1, grid.rows + 1, grid.square_mm,
+                             grid.columns, grid.rows));
   return kDone;
 }
 
@@ -89,16 +204,16 @@ std::vector<calib::PicturePair> synthetic_pictures(const calib::SyntheticRig& ri
 class Calibrator {
  public:
   explicit Calibrator(const CalibrateOptions& options)
-      : options_(options), request_{options.grid, {}, 0, {}} {
-    request_.disparities = options.disparities;
-    request_.disparity_offset = options.disparity_offset;
+      : options_(options), request_{options.grid_shape(), {}, 0, {}} {
+    request_.disparities = options.disparities.number<int>().value_or(kDefaultDisparities);
+    request_.disparity_offset = options.disparity_offset();
   }
 
   int run() {
     process::catch_interrupts();
     process::Problems problems;
     load_pictures(problems);
-    const bool is_synthetic = options_.synthetic.has_value();
+    const bool is_synthetic = options_.synthetic.is_given();
     std::vector<files::NamedFile> inputs;
     for (const calib::PicturePair& pair : request_.pictures) {
       if (is_synthetic) break;  // the pictures are outputs
@@ -106,7 +221,7 @@ class Calibrator {
       inputs.push_back({"--right", pair.right_name});
     }
     try {
-      files_ = runs::rig_files(options_.out);
+      files_ = runs::rig_files(options_.out.text());
       fs::path folder = files_.calibration.parent_path();
       if (folder.empty()) folder = ".";
       std::error_code error;
@@ -155,13 +270,15 @@ class Calibrator {
   }
 
   void load_pictures(process::Problems& problems) {
-    if (!options_.synthetic) {
-      request_.pictures = load_grid_pictures(options_.left, options_.right, problems);
+    if (!options_.synthetic.is_given()) {
+      request_.pictures = load_grid_pictures(options_.left.texts(), options_.right.texts(), problems);
       return;
     }
     try {
-      rig_ = std::make_unique<calib::SyntheticRig>(*options_.synthetic, kSyntheticWidth, kSyntheticHeight);
-      request_.pictures = synthetic_pictures(*rig_, options_.grid, runs::rig_files(options_.out).pictures);
+      rig_ = std::make_unique<calib::SyntheticRig>(*options_.synthetic.number<std::uint64_t>(),
+                                                   kSyntheticWidth, kSyntheticHeight);
+      request_.pictures =
+          synthetic_pictures(*rig_, request_.grid, runs::rig_files(options_.out.text()).pictures);
     } catch (const std::exception& error) {
       problems.add(fmt::format("--synthetic: {}", error.what()));
     }
@@ -232,7 +349,7 @@ class Calibrator {
   }
 
   // Grey levels per disparity in the truth of the scene.
-  int truth_scale() const { return 255 / options_.disparities; }
+  int truth_scale() const { return 255 / request_.disparities; }
 
   std::string written_text() const {
     std::string text =
@@ -247,7 +364,7 @@ class Calibrator {
         "{:<16} stereotlm run fpl2003 --source preloaded --set matcher.disparities={} \\\n"
         "{:<16}   --left {}/scene_left.png --right {}/scene_right.png --calibration {} \\\n"
         "{:<16}   --truth {}/scene_truth.png --truth-scale {}\n",
-        "to go on", options_.disparities, "", folder, folder, files_.calibration.string(), "", folder,
+        "to go on", request_.disparities, "", folder, folder, files_.calibration.string(), "", folder,
         truth_scale());
     return text;
   }
@@ -261,14 +378,20 @@ class Calibrator {
 };
 
 int calibrate(const CalibrateOptions& options) {
-  return options.print_grid ? print_grid(options) : Calibrator(options).run();
+  return options.print_grid.is_given() ? print_grid(options) : Calibrator(options).run();
 }
 
 }  // namespace
 
 void add_calibrate(CLI::App& program, Action& action) {
-  add_command(program, action, "calibrate", "Make a board's tables from pictures of a grid, or draw the grid",
-              calibrate);
+  add_command(
+      program, action, "calibrate", "Make a board's tables from pictures of a grid, or draw the grid",
+      calibrate,
+      "Pictures in which the grid is not found whole are named and skipped, with their partners; corners "
+      "that\n"
+      "do not fit are left out and listed. The grid should be seen in a dozen places, near and far, tilted, "
+      "and\n"
+      "also at the border of the pictures. An earlier calibration of the same name is replaced.");
 }
 
 }  // namespace stereotlm::cli

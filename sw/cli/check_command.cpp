@@ -1,15 +1,15 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
 #include <utility>
 
 #include "platform/config/board_area.h"
-#include "sw/cli/add_command.h"
 #include "sw/cli/board_options.h"
-#include "sw/cli/commands.h"
-#include "sw/cli/exit_status.h"
-#include "sw/cli/json_option.h"
-#include "sw/cli/problem_parts.h"
+#include "sw/cli/command.h"
 #include "sw/process/streams.h"
 
 namespace stereotlm::cli {
@@ -17,15 +17,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct CheckOptions {
-  BoardOptions board;
-  JsonOption json;
+struct CheckOptions : Options {
+  using Options::Options;
 
-  void add_to(CLI::App& command) {
-    board.add_to(command);
-    json.add_to(command);
-  }
-  void check_usage() { board.check_usage(); }
+  BoardOptions board{this};
+  JsonOption json{this};
 };
 
 std::string summary(const std::string& name, const platform::BoardConfig& board) {
@@ -33,6 +29,58 @@ std::string summary(const std::string& name, const platform::BoardConfig& board)
                      board.image.width, board.image.height, board.matcher.window, board.matcher.window,
                      board.matcher.disparities, board.banks.size(), board.fpga.clock_mhz,
                      platform::device_text(board));
+}
+
+// The parts of the text of a platform::Diagnostic. `key = value: rule` has all three, `key: missing: rule`
+// has no value, and a rule alone has neither. A part that is absent is empty.
+struct ProblemParts {
+  std::string key;
+  std::string value;
+  std::string rule;
+};
+
+// The first colon with a blank behind it that is outside of brackets and quotes; npos if there is none.
+std::size_t end_of_value(std::string_view text) {
+  int depth = 0;
+  char quote = 0;
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    const char letter = text[at];
+    if (quote != 0) {
+      if (letter == quote) quote = 0;
+    } else if (letter == '"' || letter == '\'') {
+      quote = letter;
+    } else if (letter == '[' || letter == '{') {
+      ++depth;
+    } else if (letter == ']' || letter == '}') {
+      --depth;
+    } else if (depth == 0 && text.substr(at, 2) == ": ") {
+      return at;
+    }
+  }
+  return std::string_view::npos;
+}
+
+bool is_key(std::string_view text) {
+  return !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char letter) {
+    return std::isalnum(letter) != 0 || letter == '_' || letter == '-' || letter == '.';
+  });
+}
+
+ProblemParts parts_of(std::string_view text) {
+  constexpr std::string_view kMissing = ": missing: ";
+  const std::size_t missing = text.find(kMissing);
+  if (missing != std::string_view::npos && is_key(text.substr(0, missing)))
+    return {std::string(text.substr(0, missing)), "",
+            "missing: " + std::string(text.substr(missing + kMissing.size()))};
+  const std::size_t equals = text.find(" = ");
+  if (equals != std::string_view::npos && is_key(text.substr(0, equals))) {
+    const std::string_view rest = text.substr(equals + 3);
+    const std::size_t end = end_of_value(rest);
+    if (end != std::string_view::npos)
+      return {std::string(text.substr(0, equals)), std::string(rest.substr(0, end)),
+              std::string(rest.substr(end + 2))};
+  }
+  return {"", "", std::string(text)};
 }
 
 Json json_of(const platform::Diagnostic& problem) {
@@ -67,15 +115,14 @@ Json document_of(const std::string& name, const platform::BoardConfig* board,
 
 int check(const CheckOptions& options) {
   process::Problems problems;
-  const auto board = options.board.load(problems);
-  options.board.load_calibration(board ? &*board : nullptr, problems);
-  if (problems.empty()) say_clock_remark(*board);
-  if (options.json.is_given) {
-    print_json(document_of(options.board.name(), board ? &*board : nullptr, problems));
+  const LoadedBoard loaded = options.board.load(problems);
+  if (problems.empty()) loaded.say_clock_remark();
+  if (options.json.is_given()) {
+    print_json(document_of(options.board.name(), loaded.board ? &*loaded.board : nullptr, problems));
     return problems.empty() ? kDone : kRefused;
   }
   problems.check();
-  process::print(summary(options.board.name(), *board));
+  process::print(summary(options.board.name(), *loaded.board));
   return kDone;
 }
 

@@ -1,5 +1,3 @@
-#include "sw/cli/command_line.h"
-
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -9,7 +7,7 @@
 #include <vector>
 
 #include "platform/config/board_keys.h"
-#include "sw/cli/exit_status.h"
+#include "sw/cli/command.h"
 #include "sw/cli/text.h"
 #include "sw/process/installation.h"
 #include "sw/process/problems.h"

@@ -11,11 +11,7 @@
 #include <system_error>
 #include <vector>
 
-#include "sw/cli/add_command.h"
-#include "sw/cli/commands.h"
-#include "sw/cli/exit_status.h"
-#include "sw/cli/json_option.h"
-#include "sw/cli/load_run_input.h"
+#include "sw/cli/command.h"
 #include "sw/cli/run_options.h"
 #include "sw/files/output_file.h"
 #include "sw/files/output_folder.h"
@@ -53,55 +49,40 @@ constexpr const char* kConflictsFooter =
     "must give the figures of its stats.json. The sums of what is written equal the figures of the run.";
 
 // The options of `conflicts`: those of `run` that say what is simulated, or a folder of a run.
-struct ConflictsOptions {
-  RunOptions run;
-  Typed out_option;
-  Typed format;
-  Typed size;
-  JsonOption json;
-
-  void add_to(CLI::App& command) {
-    run.command_name = "conflicts";
-    run.add_simulation_to(command, "; or RUN, a folder that run --out has written");
-    out_option.add_to(command, "--out", "DIR", "The folder to write, created if missing (default: no files)");
-    format.add_to(command, "--format", "F,..", "Kinds of figures, out of png, svg, pdf; default png,svg");
-    size.add_to(command, "--size", "WxH", "Width and height of each figure in inches");
-    json.add_to(command);
-  }
+struct ConflictsOptions : Options {
+  using Options::Options;
 
   bool is_of_run() const {
     std::error_code none;
     return fs::is_regular_file(fs::path(run.board.name()) / files::kResultMark, none);
   }
 
-  // Set by check_usage().
-  std::optional<std::string> out;
-
-  void check_usage() {
-    process::Problems problems;
-    if (out_option.is_given()) out = out_option.text;
-    for (const auto& [name, option] : {std::pair("--format", &format), std::pair("--size", &size)}) {
-      if (option->is_given() && !out) problems.add(fmt::format("{}: goes with --out DIR", name));
-    }
+  void check_together(process::Problems& problems) override {
     if (!is_of_run()) {
-      problems.check();
-      run.check_usage();
-      return;
-    }
-    if (!run.has_board_only())
+      run.check_together("conflicts", problems);
+    } else if (!run.has_board_only()) {
       problems.add(
           fmt::format("'{}': a run is repeated as it was: no option of run goes with it", run.board.name()));
-    problems.check();
+    }
   }
 
   // The arguments of the script. Without a folder it only checks them.
   std::vector<std::string> arguments(const fs::path& folder = {}) const {
     std::vector<std::string> words;
-    if (format.is_given()) words.push_back("--format=" + format.text);
-    if (size.is_given()) words.push_back("--size=" + size.text);
+    for (const Option* option : {&format, &size}) {
+      if (option->is_given()) words.push_back(option->name() + "=" + option->text());
+    }
     if (!folder.empty()) words.insert(words.end(), {"--", folder.string()});
     return words;
   }
+
+  RunOptions run{this, nullptr, "; or RUN, a folder that run --out has written"};
+  Option out = Option(this, "--out", "DIR", "The folder to write, created if missing (default: no files)");
+  Option format = Option(this, "--format", "F,..", "Kinds of figures, out of png, svg, pdf; default png,svg",
+                         {goes_with(out, "DIR")});
+  Option size =
+      Option(this, "--size", "WxH", "Width and height of each figure in inches", {goes_with(out, "DIR")});
+  JsonOption json{this};
 };
 
 bool is_file_name(const std::string& name) {
@@ -135,7 +116,7 @@ struct Subject {
 Subject load(const ConflictsOptions& options) {
   Subject subject;
   if (!options.is_of_run()) {
-    subject.input = load_run_input(options.run);
+    subject.input = options.run.load();
   } else {
     process::Problems problems;
     subject.recorded = runs::load_recorded_run("RUN", options.run.board.name(), problems);
@@ -239,9 +220,9 @@ int conflicts(const ConflictsOptions& options) {
   Subject subject = load(options);
   runs::RunInput& input = subject.input;
   std::optional<files::OutputFolder> folder;
-  if (options.out) {
+  if (options.out.is_given()) {
     try {
-      folder.emplace(*options.out, content_of(input));
+      folder.emplace(options.out.text(), content_of(input));
     } catch (const std::runtime_error& error) {
       process::refuse(error.what());
     }
@@ -252,10 +233,8 @@ int conflicts(const ConflictsOptions& options) {
   const auto simulation =
       runs::make_simulation(input.board, input.tables, pairs, runs::run_mode(input), binder);
   Shown shown;
-  if (!simulate(*simulation, input, folder ? &*folder : nullptr, shown)) {
-    process::say("note", "interrupted: nothing is written");
-    return kInterrupted;
-  }
+  if (!simulate(*simulation, input, folder ? &*folder : nullptr, shown))
+    return interrupted("nothing is written");
   const platform::Statistics statistics = simulation->statistics();
   for (const std::string& identity : statistics.failed)
     process::say("error", "identity does not hold: " + identity);
@@ -264,17 +243,14 @@ int conflicts(const ConflictsOptions& options) {
     runs::check_repeated(*subject.recorded, runs::figures_of(statistics, simulation->last(), input));
   if (folder) {
     const std::string csv = stats::conflicts_csv(input.board, *simulation->conflicts());
-    if (!draw(options, input, *simulation, shown, csv, *folder)) {
-      process::say("note", "interrupted: nothing is written");
-      return kInterrupted;
-    }
+    if (!draw(options, input, *simulation, shown, csv, *folder)) return interrupted("nothing is written");
     folder->add(kMark, csv);
     folder->commit();
   }
   const report::ConflictSummary summary =
       report::conflict_summary(input.board, *simulation->conflicts(), shown.sums.sums());
   runs::say_lost_pixels(statistics);
-  if (options.json.is_given) {
+  if (options.json.is_given()) {
     print_json(report::conflicts_document(summary));
   } else {
     process::print(report::conflicts_text(summary));

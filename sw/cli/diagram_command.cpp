@@ -7,11 +7,8 @@
 #include <vector>
 
 #include "platform/config/board_yaml.h"
-#include "sw/cli/add_command.h"
 #include "sw/cli/board_options.h"
-#include "sw/cli/commands.h"
-#include "sw/cli/exit_status.h"
-#include "sw/cli/typed_option.h"
+#include "sw/cli/command.h"
 #include "sw/files/output_file.h"
 #include "sw/process/interrupt.h"
 #include "sw/process/streams.h"
@@ -27,44 +24,28 @@ constexpr const char* kDiagramFooter =
     "BOARD may be a folder that run --out has written: then the links have the MB/s of that run, as\n"
     "their width, and as their colour in % of the peak.";
 
-const std::vector<std::string> kExtents = {"camera", "preloaded"};  // the first is the default
+struct DiagramOptions : Options {
+  using Options::Options;
 
-struct DiagramOptions {
-  BoardOptions board;
-  Typed source;
-  Typed out_option;
-
-  void add_to(CLI::App& command) {
-    board.add_to(command);
-    source.add_to(command, "--source", fmt::format("{}", fmt::join(kExtents, "|")),
-                  "camera (the default): the whole computer; preloaded: the board alone. A run has its own");
-    out_option.add_to(command, "--out", "F.svg", "The file to write");
-  }
-
-  // Set by check_usage().
-  bool is_run = false;
-  report::ChartExtent extent = report::ChartExtent::kComputer;
-  std::filesystem::path out;
-
-  void check_usage() {
-    process::Problems problems;
-    board.check_given(problems);
-    const std::vector<std::string> presets = platform::preset_names();
-    std::error_code error;
-    is_run = std::find(presets.begin(), presets.end(), board.name()) == presets.end() &&
-             std::filesystem::is_directory(board.name(), error);
-    if (is_run && (source.is_given() || board.changes_board()))
+  void check_together(process::Problems& problems) override {
+    if (is_run() && (source.is_given() || board.changes_board()))
       problems.add(fmt::format(
           "'{}': a run has its board: --source, --set and --calibration do not go with it", board.name()));
-    if (source.is_given() && is_one_of(kExtents, "--source", source.text, problems) &&
-        source.text != kExtents.front())
-      extent = report::ChartExtent::kBoard;
-    if (!out_option.is_given()) problems.add("--out: missing: the file to write, F.svg");
-    out = out_option.text;
-    if (out_option.is_given() && out.extension() != ".svg")
-      problems.add(fmt::format("--out '{}': must end in .svg", out_option.text));
-    problems.check();
   }
+
+  // A preset comes before a folder of its name.
+  bool is_run() const {
+    const std::vector<std::string> presets = platform::preset_names();
+    std::error_code error;
+    return std::find(presets.begin(), presets.end(), board.name()) == presets.end() &&
+           std::filesystem::is_directory(board.name(), error);
+  }
+
+  BoardOptions board{this};
+  SourceOption source{
+      this, "camera (the default): the whole computer; preloaded: the board alone. A run has its own"};
+  Option out{
+      this, "--out", "F.svg", "The file to write", {required("the file to write, F.svg"), ends_in(".svg")}};
 };
 
 std::string chart_of_run(const std::string& folder, process::Problems& problems) {
@@ -74,31 +55,29 @@ std::string chart_of_run(const std::string& folder, process::Problems& problems)
 }
 
 std::string chart_of_board(const DiagramOptions& options, process::Problems& problems) {
-  const auto board = options.board.load(problems);
-  options.board.load_calibration(board ? &*board : nullptr, problems);
-  return board ? report::memory_chart_svg(*board, options.extent) : "";
+  const LoadedBoard loaded = options.board.load(problems);
+  const auto extent =
+      options.source.is_camera() ? report::ChartExtent::kComputer : report::ChartExtent::kBoard;
+  return loaded.board ? report::memory_chart_svg(*loaded.board, extent) : "";
 }
 
 int diagram(const DiagramOptions& options) {
   process::catch_interrupts();
   process::Problems problems;
   const std::string chart =
-      options.is_run ? chart_of_run(options.board.name(), problems) : chart_of_board(options, problems);
+      options.is_run() ? chart_of_run(options.board.name(), problems) : chart_of_board(options, problems);
   problems.check();
   try {
-    files::OutputFile file(options.out,
+    files::OutputFile file(options.out.text(),
                            files::marked_kind("chart of stereotlm diagram", {{0, report::kChartMark}}));
     file.write(chart);
     file.complete();
-    if (process::interrupted()) {
-      process::say("note", "interrupted: no chart is written");
-      return kInterrupted;
-    }
+    if (process::interrupted()) return interrupted("no chart is written");
     file.commit();
   } catch (const std::runtime_error& error) {
     process::refuse(fmt::format("--out {}", error.what()));
   }
-  process::print(fmt::format("{}: the memory chart of {}\n", options.out.string(), options.board.name()));
+  process::print(fmt::format("{}: the memory chart of {}\n", options.out.text(), options.board.name()));
   return kDone;
 }
 

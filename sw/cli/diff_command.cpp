@@ -8,13 +8,9 @@
 #include <string>
 #include <utility>
 
-#include "sw/cli/add_command.h"
-#include "sw/cli/commands.h"
+#include "sw/cli/command.h"
 #include "sw/cli/diff_text.h"
-#include "sw/cli/exit_status.h"
-#include "sw/cli/json_option.h"
-#include "sw/cli/typed_option.h"
-#include "sw/cli/verdict_colours.h"
+#include "sw/cli/text.h"
 #include "sw/process/interrupt.h"
 #include "sw/process/streams.h"
 #include "sw/runs/frame_alignment.h"
@@ -24,6 +20,7 @@
 namespace stereotlm::cli {
 namespace {
 
+constexpr const char* kRunFolder = "a folder that run --out has written";
 constexpr const char* kDiffFooter =
     "Both are run again from their config.yaml and run.json, after a check of every input by its\n"
     "SHA-256, and must give the figures of their stats.json. What is not the same is printed;\n"
@@ -32,63 +29,46 @@ constexpr const char* kDiffFooter =
     "rows they are sums over the frames. The last line says which run is faster, and where the difference\n"
     "arises.";
 
-struct DiffOptions {
-  Typed a;
-  Typed b;
-  Typed csv_option;
-  JsonOption json;
+struct DiffOptions : Options {
+  using Options::Options;
 
-  void add_to(CLI::App& command) {
-    a.add_to(command, "A", " ", "A folder that run --out has written");
-    b.add_to(command, "B", " ", "Another one");
-    csv_option.add_to(command, "--csv", "F.csv", "Write the cycles and waits of every frame and row of both");
-    json.add_to(command);
-  }
-
-  // Set by check_usage().
-  std::optional<std::string> csv;
-
-  void check_usage() {
-    process::Problems problems;
-    for (const auto& [name, run] : {std::pair("A", &a), std::pair("B", &b)}) {
-      if (run->text.empty())
-        problems.add(fmt::format("{}: missing: a folder that run --out has written", name));
-    }
-    if (csv_option.is_given()) csv = csv_option.text;
-    if (csv && std::filesystem::path(*csv).extension() != ".csv")
-      problems.add(fmt::format("--csv '{}': must end in .csv", *csv));
-    problems.check();
-  }
+  Option a = Option(this, "A", " ", "A folder that run --out has written", {required(kRunFolder)});
+  Option b = Option(this, "B", " ", "Another one", {required(kRunFolder)});
+  Option csv{
+      this, "--csv", "F.csv", "Write the cycles and waits of every frame and row of both", {ends_in(".csv")}};
+  JsonOption json{this};
 };
 
 int diff(const DiffOptions& options) {
   process::catch_interrupts();
   process::Problems problems;
-  const auto a = runs::load_recorded_run("A", options.a.text, problems);
-  const auto b = runs::load_recorded_run("B", options.b.text, problems);
+  const auto a = runs::load_recorded_run("A", options.a.text(), problems);
+  const auto b = runs::load_recorded_run("B", options.b.text(), problems);
   problems.check();
   for (const runs::RecordedRun& run : {std::cref(*a), std::cref(*b)}) runs::open_again(run, problems);
   const runs::DiffLimits limits(*a, *b);
   std::unique_ptr<stats::RowsCsv> csv;
-  if (options.csv) {
+  if (options.csv.is_given()) {
     if (!limits.rows.empty()) problems.add(fmt::format("--csv: rows cannot be compared: {}", limits.rows));
     try {
-      csv = std::make_unique<stats::RowsCsv>(*options.csv);
+      csv = std::make_unique<stats::RowsCsv>(options.csv.text());
     } catch (const std::runtime_error& error) {
       problems.add(fmt::format("--csv {}", error.what()));
     }
   }
   problems.check();
   runs::FrameAlignment aligned(*a, *b, limits, csv.get());
-  if (!aligned.run()) {
-    process::say("note", "interrupted: nothing is compared");
-    return kInterrupted;
-  }
+  if (!aligned.run()) return interrupted("nothing is compared");
   if (csv) csv->commit();
-  if (options.json.is_given) {
+  if (options.json.is_given()) {
     print_json(diff_document(*a, *b, aligned, limits));
   } else {
-    process::print(with_coloured_sentence(diff_text(*a, *b, aligned, limits)));
+    const std::string text = diff_text(*a, *b, aligned, limits);
+    process::print(with_coloured_words(text, text.rfind("\n\n"),
+                                       {{"is faster", process::Colour::kGreen},
+                                        {"equally fast", process::Colour::kGreen},
+                                        {"are the same", process::Colour::kGreen},
+                                        {"differ.", process::Colour::kYellow}}));
   }
   return kDone;
 }

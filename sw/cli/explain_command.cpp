@@ -1,14 +1,10 @@
 #include <fmt/format.h>
 
-#include "sw/cli/add_command.h"
+#include <nlohmann/json.hpp>
+
 #include "sw/cli/board_options.h"
-#include "sw/cli/commands.h"
-#include "sw/cli/exit_status.h"
-#include "sw/cli/explanation_json.h"
-#include "sw/cli/explanation_text.h"
-#include "sw/cli/json_option.h"
-#include "sw/cli/temporary_files.h"
-#include "sw/cli/typed_option.h"
+#include "sw/cli/command.h"
+#include "sw/cli/explanation_report.h"
 #include "sw/explore/store/bank_names.h"
 #include "sw/process/interrupt.h"
 #include "sw/process/streams.h"
@@ -17,62 +13,45 @@
 namespace stereotlm::cli {
 namespace {
 
-struct ExplainOptions {
-  BoardOptions board;
-  Typed source;
-  Typed frames;
-  JsonOption json;
-  bool camera = true;             // set by check_usage()
-  std::uint64_t frame_count = 0;  // the same; 0: the default
+struct ExplainOptions : Options {
+  using Options::Options;
 
-  void add_to(CLI::App& command) {
-    board.add_to(command);
-    source.add_to(command, "--source", "camera|preloaded",
-                  "The whole computer, the default, or the core alone, fed by an ideal host");
-    frames.add_to(command, "--frames", "N",
-                  fmt::format("Frames of each board; by default {}, of the whole computer {}",
-                              runs::Explanation::kCoreFrames, runs::Explanation::kComputerFrames));
-    json.add_to(command);
+  void check_together(process::Problems& problems) override {
+    if (!frames.is_given()) return;
+    const bool camera = source.is_camera();
+    const platform::IntegerRule rule =
+        camera
+            ? platform::IntegerRule{runs::Explanation::kLeastComputerFrames, 1'000'000}
+            : platform::IntegerRule{runs::Explanation::kCoreFrames, 999'996, runs::Explanation::kCoreFrames};
+    if (!rule.allows(frames.number<std::int64_t>().value_or(0)))
+      problems.add(fmt::format(
+          "--frames = {}: {}{}", frames.text(), rule.text(),
+          camera ? ", so that every board has a steady rate" : ", whole turns of the lists of every board"));
   }
 
-  void check_usage() {
-    process::Problems problems;
-    board.check_given(problems);
-    if (source.is_given() && is_one_of({"camera", "preloaded"}, "--source", source.text, problems)) {
-      camera = source.text == "camera";
-    }
-    if (frames.is_given()) {
-      const platform::IntegerRule rule =
-          camera ? platform::IntegerRule{runs::Explanation::kLeastComputerFrames, 1'000'000}
-                 : platform::IntegerRule{runs::Explanation::kCoreFrames, 999'996,
-                                         runs::Explanation::kCoreFrames};
-      const auto number = number_of<std::int64_t>(frames.text);
-      if (!number || !rule.allows(*number))
-        problems.add(fmt::format("--frames = {}: {}{}", frames.text, rule.text(),
-                                 camera ? ", so that every board has a steady rate"
-                                        : ", whole turns of the lists of every board"));
-      frame_count = static_cast<std::uint64_t>(number.value_or(0));
-    }
-    problems.check();
-  }
+  BoardOptions board{this};
+  SourceOption source{this};
+  Option frames = Option(this, "--frames", "N",
+                         fmt::format("Frames of each board; by default {}, of the whole computer {}",
+                                     runs::Explanation::kCoreFrames, runs::Explanation::kComputerFrames));
+  JsonOption json{this};
 };
 
 int explain(const ExplainOptions& options) {
   process::Problems problems;
-  const auto board = options.board.load(problems);
-  const auto calibration = options.board.load_calibration(board ? &*board : nullptr, problems);
-  temporary_folder(problems);  // the simulations need one: reports now if it cannot be created
+  const LoadedBoard loaded = options.board.load(problems);
+  const auto& board = loaded.board;
+  check_temporary_folder(problems);
   if (const auto problem = board ? explore::bank_names_problem(*board) : std::nullopt)
     problems.add(fmt::format("{}: {}", options.board.name(), *problem));
   problems.check();
-  say_clock_remark(*board);
-  const platform::Tables tables = runs::tables_of(*board, calibration);
+  loaded.say_clock_remark();
+  const platform::Tables tables = loaded.tables();
   process::catch_interrupts();
-  runs::Explanation explanation(*board, tables, options.camera, options.frame_count);
-  if (!explanation.simulate(calibration ? runs::PointSimulator(tables) : runs::PointSimulator())) {
-    return kInterrupted;
-  }
-  if (options.json.is_given) {
+  runs::Explanation explanation(*board, tables, options.source.is_camera(),
+                                options.frames.number<std::uint64_t>().value_or(0));
+  if (!explanation.simulate(loaded.simulator())) return kInterrupted;
+  if (options.json.is_given()) {
     print_json(explanation_document(*board, explanation));
   } else {
     process::print(explanation_text(*board, explanation));

@@ -8,12 +8,8 @@
 
 #include "platform/config/board_keys.h"
 #include "platform/config/board_yaml.h"
-#include "sw/cli/add_command.h"
-#include "sw/cli/commands.h"
-#include "sw/cli/exit_status.h"
-#include "sw/cli/json_option.h"
+#include "sw/cli/command.h"
 #include "sw/cli/text.h"
-#include "sw/cli/typed_option.h"
 #include "sw/process/problems.h"
 #include "sw/process/streams.h"
 
@@ -49,20 +45,16 @@ int print_boards_json(const Names& names) {
   return kDone;
 }
 
-struct BoardsOptions {
-  Typed show;
-  JsonOption json;
+struct BoardsOptions : Options {
+  using Options::Options;
 
-  void add_to(CLI::App& command) {
-    show.add_to(command, "--show", "NAME", "Print the file of this preset");
-    json.add_to(command);
-  }
-  void check_usage() const {}
+  Option show = Option(this, "--show", "NAME", "Print the file of this preset");
+  JsonOption json{this};
 };
 
 int print_boards(const BoardsOptions& options) {
   Names names = platform::preset_names();
-  const std::string& shown = options.show.text;
+  const std::string& shown = options.show.text();
   if (options.show.is_given()) {
     if (std::find(names.begin(), names.end(), shown) == names.end()) {
       process::refuse(fmt::format("--show = {}: not a preset{}; presets: {}", shown,
@@ -70,17 +62,16 @@ int print_boards(const BoardsOptions& options) {
     }
     names = {shown};
   }
-  if (options.json.is_given) return print_boards_json(names);
+  if (options.json.is_given()) return print_boards_json(names);
   if (!options.show.is_given()) return list_boards(names);
   process::print(platform::preset_text(shown));
   return kDone;
 }
 
-struct KeysOptions {
-  JsonOption json;
+struct KeysOptions : Options {
+  using Options::Options;
 
-  void add_to(CLI::App& command) { json.add_to(command); }
-  void check_usage() const {}
+  JsonOption json{this};
 };
 
 int print_keys_json() {
@@ -96,7 +87,7 @@ int print_keys_json() {
 }
 
 int print_keys(const KeysOptions& options) {
-  if (options.json.is_given) return print_keys_json();
+  if (options.json.is_given()) return print_keys_json();
   const auto keys = platform::keys();
   std::size_t path_width = 0;
   std::size_t unit_width = 0;

@@ -1,5 +1,3 @@
-#include "sw/cli/load_run_input.h"
-
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -9,6 +7,7 @@
 
 #include "calib/calibration.h"
 #include "platform/config/board_yaml.h"
+#include "sw/cli/run_options.h"
 #include "sw/files/sha256.h"
 #include "sw/process/installation.h"
 #include "sw/process/interrupt.h"
@@ -36,24 +35,23 @@ class InputLoader {
   explicit InputLoader(const RunOptions& options) : options_(options) {}
 
   runs::RunInput load() {
-    const auto board = options_.board.load(problems_);
-    attempt("", [&] { load_pictures(board ? &*board : nullptr); });
-    auto calibration = options_.board.load_calibration(board ? &*board : nullptr, problems_);
+    auto [board, calibration] = options_.board.load(problems_);
+    attempt("", [&, &board = board] { load_pictures(board ? &*board : nullptr); });
     if (calibration)
       source_.files.insert(source_.files.end(), calibration->files.begin(), calibration->files.end());
     check_truth();
     process::catch_interrupts();
     input_.inputs = source_.files;
     input_.inputs.push_back({"BOARD", options_.board.name()});
-    if (options_.out) {
+    if (options_.out.is_given()) {
       attempt("", [&] {
         input_.folder =
-            std::make_unique<files::OutputFolder>(*options_.out, runs::result_content(input_.inputs));
+            std::make_unique<files::OutputFolder>(options_.out.text(), runs::result_content(input_.inputs));
       });
     }
     problems_.check();
     input_.board = *board;
-    attempt("", [&] {
+    attempt("", [&, &calibration = calibration] {
       input_.tables = runs::tables_of(input_.board, calibration);
       if (calibration) {
         input_.calibration = calibration->calibration;
@@ -68,7 +66,7 @@ class InputLoader {
     problems_.check();
     for (const std::string& note : source_.notes) process::say("note", note);
     if (input_.calibration) say_what_is_not_seen();
-    if (input_.calibration && !options_.timing_only) attempt("", [&] { say_how_rows_agree(); });
+    if (input_.calibration && !options_.timing_only.is_given()) attempt("", [&] { say_how_rows_agree(); });
     problems_.check();
     input_.pairs = std::move(source_.pairs);
     return std::move(input_);
@@ -85,11 +83,11 @@ class InputLoader {
   }
 
   void load_pictures(const platform::BoardConfig* board) {
-    source_ = runs::open_source(options_.pictures.source, board, input_.described, problems_);
-    if (!options_.truth.file) return;
-    const runs::NamedFile file = {"--truth", *options_.truth.file};
+    source_ = runs::open_source(options_.pictures.source(), board, input_.described, problems_);
+    if (!options_.truth.file()) return;
+    const runs::NamedFile file = {"--truth", *options_.truth.file()};
     source_.files.push_back(file);
-    input_.truth = runs::open_truth(file, options_.truth.scale, board, problems_);
+    input_.truth = runs::open_truth(file, options_.truth.scale(), board, problems_);
     if (!input_.truth) return;
     attempt(file.option, [&] {
       input_.described.truth = {fs::absolute(file.path).string(), files::sha256_file(file.path)};
@@ -97,7 +95,9 @@ class InputLoader {
   }
 
   void check_truth() {
-    if (!options_.truth.file || !options_.camera || !source_.pairs || source_.pairs->length() == 1) return;
+    if (!options_.truth.file() || !options_.source.is_camera() || !source_.pairs ||
+        source_.pairs->length() == 1)
+      return;
     problems_.add(fmt::format(
         "--truth: cameras drop frames: which of {} pairs the last frame shows is not known before the run: "
         "must be a run with one pair, or with --source preloaded",
@@ -105,19 +105,20 @@ class InputLoader {
   }
 
   void open_traces() {
-    const TraceOptions& trace = options_.trace;
-    if (trace.files.empty()) return;
-    if (trace.window) input_.trace_window = trace.window->cycles;
+    const std::vector<trace::TraceFile> files = options_.trace.files();
+    const auto window = options_.trace.window();
+    if (files.empty()) return;
+    if (window) input_.trace_window = window->cycles;
     attempt("--trace", [&] {
-      for (const trace::TraceFile& file : trace.files) {
+      for (const trace::TraceFile& file : files) {
         const fs::path folder = trace::outputs_of(file).front().parent_path();
-        if (!options_.out || !lies_in(folder, *options_.out)) continue;
+        if (!options_.out.is_given() || !lies_in(folder, options_.out.text())) continue;
         throw std::runtime_error(
             fmt::format("'{}': inside the result folder '{}', which is replaced whole: must lie "
                         "outside the folder of --out",
-                        file.path, *options_.out));
+                        file.path, options_.out.text()));
       }
-      input_.trace = std::make_unique<trace::Trace>(trace.files, input_.board, trace.window);
+      input_.trace = std::make_unique<trace::Trace>(files, input_.board, window);
     });
   }
 
@@ -160,23 +161,24 @@ class InputLoader {
   }
 
   void describe() {
-    const bool has_end = options_.pictures.source.sequence || options_.pictures.source.video;
-    input_.camera = options_.camera;
-    input_.fast = options_.fast;
-    input_.timing_only = options_.timing_only;
-    input_.record = options_.record;
-    input_.json = options_.json.is_given;
-    input_.frames = options_.frames.value_or(has_end ? source_.pairs->length() : 1);
+    const runs::PictureSource source = options_.pictures.source();
+    const bool has_end = source.sequence || source.video;
+    input_.camera = options_.source.is_camera();
+    input_.fast = options_.is_fast();
+    input_.timing_only = options_.timing_only.is_given();
+    input_.record = options_.record.is_given();
+    input_.json = options_.json.is_given();
+    input_.frames = options_.frames.number<std::uint64_t>().value_or(has_end ? source_.pairs->length() : 1);
     runs::RecordedOptions& run = input_.described;
     run.program_version = process::kVersion;
-    run.source = options_.camera ? "camera" : "preloaded";
-    run.fidelity = options_.fast ? "fast" : "cycle";
-    run.timing_only = options_.timing_only;
-    run.verify = options_.verify;
+    run.source = input_.camera ? "camera" : "preloaded";
+    run.fidelity = input_.fast ? "fast" : "cycle";
+    run.timing_only = input_.timing_only;
+    run.verify = options_.verify.is_given();
     run.frames = input_.frames;
-    run.truth_scale = options_.truth.scale;
-    run.save_frames = options_.save_frames;
-    run.record = options_.record;
+    run.truth_scale = options_.truth.scale();
+    run.save_frames = options_.save_frames.is_given();
+    run.record = input_.record;
     run_json(run);  // throws now, instead of after the run, if a path cannot be recorded
   }
 
@@ -188,6 +190,6 @@ class InputLoader {
 
 }  // namespace
 
-runs::RunInput load_run_input(const RunOptions& options) { return InputLoader(options).load(); }
+runs::RunInput RunOptions::load() const { return InputLoader(*this).load(); }
 
 }  // namespace stereotlm::cli

@@ -2,8 +2,7 @@
 #include <exception>
 #include <systemc>
 
-#include "sw/cli/command_line.h"
-#include "sw/cli/exit_status.h"
+#include "sw/cli/command.h"
 #include "sw/process/problems.h"
 #include "sw/process/streams.h"
 

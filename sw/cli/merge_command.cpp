@@ -3,10 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "sw/cli/add_command.h"
-#include "sw/cli/commands.h"
-#include "sw/cli/exit_status.h"
-#include "sw/cli/typed_option.h"
+#include "sw/cli/command.h"
 #include "sw/explore/store/merge_stores.h"
 #include "sw/explore/store/store.h"
 #include "sw/explore/store/store_lock.h"
@@ -16,38 +13,26 @@
 namespace stereotlm::cli {
 namespace {
 
-struct MergeOptions {
-  Typed out;
-  TypedList inputs;
+struct MergeOptions : Options {
+  using Options::Options;
 
-  void add_to(CLI::App& command) {
-    out.add_to(command, "OUT", " ", "The database to write");
-    inputs.add_to(command, "DB", "...", "Databases of sweep, such as those of its shards");
-  }
-
-  void check_usage() const {
-    process::Problems problems;
-    if (!out.is_given()) problems.add("OUT: missing: the database to write");
-    if (!inputs.is_given()) problems.add("DB: missing: the databases to merge");
-    problems.check();
-  }
+  Option out = Option(this, "OUT", " ", "The database to write", {required("the database to write")});
+  Option inputs = Option(this, "DB", "...", "Databases of sweep, such as those of its shards",
+                         {required("the databases to merge")}, Takes::kList);
 };
 
 int merge(const MergeOptions& options) {
   try {
-    const explore::StoreLock lock(options.out.text);
+    const explore::StoreLock lock(options.out.text());
     process::catch_interrupts();
-    explore::merge_stores(options.inputs.text, options.out.text, process::interrupted);
+    explore::merge_stores(options.inputs.texts(), options.out.text(), process::interrupted);
   } catch (const sqlite::DatabaseError& error) {
-    if (process::interrupted()) {
-      process::say("note", "interrupted: nothing is written");
-      return kInterrupted;
-    }
+    if (process::interrupted()) return interrupted("nothing is written");
     process::refuse(error.what());
   }
-  sqlite::Database merged(options.out.text, sqlite::Database::Access::kRead);
-  const std::size_t inputs = options.inputs.text.size();
-  process::print(fmt::format("{}: {} points of {} database{}\n", options.out.text,
+  sqlite::Database merged(options.out.text(), sqlite::Database::Access::kRead);
+  const std::size_t inputs = options.inputs.texts().size();
+  process::print(fmt::format("{}: {} points of {} database{}\n", options.out.text(),
                              merged.number("SELECT count(*) FROM points"), inputs, inputs == 1 ? "" : "s"));
   return kDone;
 }

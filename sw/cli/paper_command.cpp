@@ -14,14 +14,11 @@
 #include "models/kernels/limits.h"
 #include "platform/bounds.h"
 #include "platform/config/board_yaml.h"
-#include "sw/cli/add_command.h"
-#include "sw/cli/commands.h"
-#include "sw/cli/exit_status.h"
-#include "sw/cli/temporary_files.h"
-#include "sw/cli/truth_options.h"
-#include "sw/cli/typed_option.h"
-#include "sw/cli/verdict_colours.h"
+#include "sw/cli/command.h"
+#include "sw/cli/run_options.h"
+#include "sw/cli/text.h"
 #include "sw/files/output_folder.h"
+#include "sw/files/temporary_folder.h"
 #include "sw/files/whole_file.h"
 #include "sw/media/truth.h"
 #include "sw/paper/document.h"
@@ -51,36 +48,28 @@ constexpr const char* kPaperFooter =
     "them. \"Almost the same results\" of other costs is judged on synthetic scenes, and on the pair of\n"
     "--left, --right and --truth too, with as many disparities as its truth needs.";
 
-struct PaperOptions {
-  Typed out;
-  Typed left;
-  Typed right;
-  TruthOptions truth;
+struct PaperOptions : Options {
+  using Options::Options;
 
-  void add_to(CLI::App& command) {
-    out.add_to(command, "--out", "DIR", "The folder to write, created if missing");
-    left.add_to(command, "--left", "F",
-                fmt::format("The left picture of a rectified pair with ground truth, 8-bit, as large as the "
-                            "images of {}",
-                            paper::kBoard));
-    right.add_to(command, "--right", "F", "The right picture");
-    truth.add_to(command, "the left picture");
-  }
-
-  bool has_pair() const { return left.is_given() || right.is_given() || truth.file; }
-
-  void check_usage() {
-    process::Problems problems;
-    if (!out.is_given()) problems.add("--out: missing: the folder to write");
-    truth.check_usage(problems);
-    const std::pair<const char*, bool> given[] = {
-        {"--left", left.is_given()}, {"--right", right.is_given()}, {"--truth", truth.file.has_value()}};
-    for (const auto& [name, is_given] : given) {
+  void check_together(process::Problems& problems) override {
+    for (const auto& [name, is_given] : {std::pair("--left", left.is_given()),
+                                         {"--right", right.is_given()},
+                                         {"--truth", truth.file().has_value()}}) {
       if (has_pair() && !is_given)
         problems.add(fmt::format("{}: missing: a pair has --left F, --right F and --truth F", name));
     }
-    problems.check();
   }
+  bool has_pair() const { return left.is_given() || right.is_given() || truth.file(); }
+
+  Option out{
+      this, "--out", "DIR", "The folder to write, created if missing", {required("the folder to write")}};
+  Option left =
+      Option(this, "--left", "F",
+             fmt::format("The left picture of a rectified pair with ground truth, 8-bit, as large as the "
+                         "images of {}",
+                         paper::kBoard));
+  Option right = Option(this, "--right", "F", "The right picture");
+  TruthOptions truth{this, "the left picture"};
 };
 
 // The pictures of a scene.
@@ -101,11 +90,11 @@ std::optional<LoadedPair> load_pair(const PaperOptions& options, process::Proble
   if (!options.has_pair()) return std::nullopt;
   const platform::BoardConfig board = platform::load_board(paper::kBoard);
   runs::PictureSource source;
-  source.pair = {options.left.text, options.right.text};
+  source.pair = {options.left.text(), options.right.text()};
   runs::RecordedOptions described;
   runs::OpenedSource opened = runs::open_source(source, &board, described, problems);
-  const runs::NamedFile file = {"--truth", *options.truth.file};
-  auto truth = runs::open_truth(file, options.truth.scale, &board, problems);
+  const runs::NamedFile file = {"--truth", *options.truth.file()};
+  auto truth = runs::open_truth(file, options.truth.scale(), &board, problems);
   if (!opened.pairs || !truth) return std::nullopt;
   const kernels::GrayImage blank(board.image.width, board.image.height);
   if (!stats::accuracy(blank, *truth).answered_percent)
@@ -114,10 +103,10 @@ std::optional<LoadedPair> load_pair(const PaperOptions& options, process::Proble
   const kernels::IntegerRule& rule = kernels::kDisparitiesRule;
   if (disparities > static_cast<double>(rule.max)) {
     problems.add(fmt::format("{}, --truth-scale {}: needs {:.0f} disparities: must be {}", file.text(),
-                             options.truth.scale, disparities, rule.text()));
+                             options.truth.scale(), disparities, rule.text()));
     return std::nullopt;
   }
-  return LoadedPair{{options.left.text, options.right.text, *options.truth.file, options.truth.scale,
+  return LoadedPair{{options.left.text(), options.right.text(), *options.truth.file(), options.truth.scale(),
                      static_cast<int>(disparities)},
                     {std::move(opened.pairs), std::move(*truth)},
                     opened.notes};
@@ -166,8 +155,10 @@ std::optional<paper::Findings> study(const std::optional<LoadedPair>& given) {
 }
 
 // Draws figures from the tables in `files`, which has contents by name, and adds the figures to it. Returns
-// false if interrupted. `folder`: for temporary files.
-bool draw(const std::filesystem::path& folder, std::map<std::string, std::string>& files) {
+// false if interrupted.
+bool draw(std::map<std::string, std::string>& files) {
+  const files::TemporaryFolder temporary;
+  const std::filesystem::path& folder = temporary.path();
   for (const auto& [name, bytes] : files) files::write_whole_file(folder / name, bytes);
   const auto end = process::run_script(kScript, {"--", folder.string()});
   if (process::interrupted()) return false;
@@ -194,22 +185,22 @@ files::OutputContent content_of(const PaperOptions& options) {
     return name == paper::kDocument || std::find(names.begin(), names.end(), name) != names.end();
   };
   content.others_stay = true;
-  content.inputs = {{"--left", options.left.text},
-                    {"--right", options.right.text},
-                    {"--truth", options.truth.file.value_or("")}};
+  content.inputs = {{"--left", options.left.text()},
+                    {"--right", options.right.text()},
+                    {"--truth", options.truth.file().value_or("")}};
   return content;
 }
 
 int compare_with_paper(const PaperOptions& options) {
   process::catch_interrupts();
   process::Problems problems;
-  const auto drawings = temporary_folder(problems);
+  check_temporary_folder(problems);
   const auto given = load_pair(options, problems);
   std::unique_ptr<files::OutputFolder> folder;
   try {
-    folder = std::make_unique<files::OutputFolder>(options.out.text, content_of(options));
+    folder = std::make_unique<files::OutputFolder>(options.out.text(), content_of(options));
   } catch (const std::runtime_error& error) {
-    problems.add(fmt::format("--out {}: {}", options.out.text, error.what()));
+    problems.add(fmt::format("--out {}: {}", options.out.text(), error.what()));
   }
   problems.check();
   if (given) {
@@ -217,15 +208,16 @@ int compare_with_paper(const PaperOptions& options) {
   }
   const auto findings = study(given);
   auto files = findings ? paper::tables(*findings) : std::map<std::string, std::string>();
-  if (!findings || !draw(drawings->path(), files)) {
-    process::say("note", "interrupted: nothing was written");
-    return kInterrupted;
-  }
+  if (!findings || !draw(files)) return interrupted("nothing was written");
   files[paper::kDocument] = paper::document(*findings);
   for (const auto& [name, bytes] : files) folder->add(name, bytes);
   folder->commit();
-  process::print(with_coloured_verdicts(paper::summary(*findings)) +
-                 fmt::format("{}: {} files\n", options.out.text, files.size()));
+  process::print(with_coloured_words(paper::summary(*findings), 0,
+                                     {{"  not confirmed\n", process::Colour::kRed},
+                                      {"  in part\n", process::Colour::kYellow},
+                                      {"  open\n", process::Colour::kYellow},
+                                      {"  confirmed\n", process::Colour::kGreen}}) +
+                 fmt::format("{}: {} files\n", options.out.text(), files.size()));
   return kDone;
 }
 

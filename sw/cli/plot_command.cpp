@@ -11,12 +11,9 @@
 #include <utility>
 #include <vector>
 
-#include "sw/cli/add_command.h"
-#include "sw/cli/commands.h"
-#include "sw/cli/exit_status.h"
-#include "sw/cli/temporary_files.h"
-#include "sw/cli/typed_option.h"
+#include "sw/cli/command.h"
 #include "sw/files/output_folder.h"
+#include "sw/files/temporary_folder.h"
 #include "sw/files/whole_file.h"
 #include "sw/process/interrupt.h"
 #include "sw/process/problems.h"
@@ -57,40 +54,32 @@ constexpr const char* kPlotFooter =
     "installed, in sw/report/plots of its source: python3 plot_window.py DB --out NEW_DIR.";
 
 // The options of `plot`. They are passed to the script, which checks them.
-struct PlotOptions {
-  Typed database;
-  Typed out;
-  TypedList only;
-  Typed pareto;
-  Typed format;
-  Typed size;
+struct PlotOptions : Options {
+  using Options::Options;
 
-  void add_to(CLI::App& command) {
-    database.add_to(command, "DB", " ", "A database of sweep");
-    out.add_to(command, "--out", "DIR", "The folder to write, created if missing");
-    only.add_to(command, "--only", "KEY=VALUE", "Only points with that value; once for each key");
-    only.takes_one_at_a_time();
-    pareto.add_to(command, "--pareto", "X:SENSE,Y:SENSE",
-                  "Two columns, each with min or max: what is better; default "
-                  "area.slices:min,frames_per_second.core:max");
-    format.add_to(command, "--format", "F,..", "png, svg, pdf, or several with commas; default png,svg");
-    size.add_to(
-        command, "--size", "WxH",
-        "Width and height of each figure in inches, such as 7.2x4.5; default: 7.2 wide, and as high as "
-        "its content");
-  }
-
-  void check_usage() const {}  // the script does that
+  Option database = Option(this, "DB", " ", "A database of sweep");
+  Option out = Option(this, "--out", "DIR", "The folder to write, created if missing");
+  Option only = Option(this, "--only", "KEY=VALUE", "Only points with that value; once for each key", {},
+                       Takes::kRepeated);
+  Option pareto = Option(this, "--pareto", "X:SENSE,Y:SENSE",
+                         "Two columns, each with min or max: what is better; default "
+                         "area.slices:min,frames_per_second.core:max");
+  Option format = Option(this, "--format", "F,..", "png, svg, pdf, or several with commas; default png,svg");
+  Option size =
+      Option(this, "--size", "WxH",
+             "Width and height of each figure in inches, such as 7.2x4.5; default: 7.2 wide, and as high as "
+             "its content");
 
   // The arguments of the script, in a form in which it does not take a value such as "--x" for an option. The
   // script writes the figures into the folder `into`. `problem`: why --out cannot be used; empty if it can.
   std::vector<std::string> arguments(const fs::path& into, const std::string& problem) const {
-    std::vector<std::string> words = {"--out=" + out.text, "--into=" + into.string(), "--problem=" + problem};
-    for (const std::string& each : only.text) words.push_back("--only=" + each);
-    if (pareto.is_given()) words.push_back("--pareto=" + pareto.text);
-    if (format.is_given()) words.push_back("--format=" + format.text);
-    if (size.is_given()) words.push_back("--size=" + size.text);
-    if (database.is_given()) words.insert(words.end(), {"--", database.text});
+    std::vector<std::string> words = {"--out=" + out.text(), "--into=" + into.string(),
+                                      "--problem=" + problem};
+    for (const std::string& each : only.texts()) words.push_back("--only=" + each);
+    for (const Option* option : {&pareto, &format, &size}) {
+      if (option->is_given()) words.push_back(option->name() + "=" + option->text());
+    }
+    if (database.is_given()) words.insert(words.end(), {"--", database.text()});
     return words;
   }
 };
@@ -117,15 +106,16 @@ bool is_made(const fs::path& file) {
 int plot(const PlotOptions& options) {
   process::catch_interrupts();
   process::Problems problems;
-  const auto drawings = temporary_folder(problems);
+  check_temporary_folder(problems);
   problems.check();
+  const files::TemporaryFolder drawings;
   std::unique_ptr<files::OutputFolder> folder;
   std::string problem = "--out: missing: the folder of the figures";
-  if (options.out.is_given() && !options.out.text.empty()) {
+  if (options.out.is_given() && !options.out.text().empty()) {
     try {
       files::OutputContent content{"--out", "", {"figure of plot", is_made}, kRule, is_named};
-      content.inputs = {{"DB", options.database.text}};
-      folder = std::make_unique<files::OutputFolder>(options.out.text, std::move(content));
+      content.inputs = {{"DB", options.database.text()}};
+      folder = std::make_unique<files::OutputFolder>(options.out.text(), std::move(content));
       problem.clear();
     } catch (const std::runtime_error& error) {
       problem = error.what();
@@ -133,19 +123,16 @@ int plot(const PlotOptions& options) {
   }
   process::CommandEnd end;
   try {
-    end = process::run_script("plot_all.py", options.arguments(drawings->path(), problem));
+    end = process::run_script("plot_all.py", options.arguments(drawings.path(), problem));
   } catch (const std::runtime_error& error) {
     process::refuse(error.what());
   }
-  if (process::interrupted()) {
-    process::say("note", "interrupted: nothing was written");
-    return kInterrupted;
-  }
+  if (process::interrupted()) return interrupted("nothing was written");
   std::istringstream lines(end.errors);
   for (std::string line; std::getline(lines, line);) process::say_line(line);
   if (end.status != 0) return end.status;
-  for (const fs::path& name : files::entries(drawings->path()))
-    folder->add(name, files::read_whole_file(drawings->path() / name));
+  for (const fs::path& name : files::entries(drawings.path()))
+    folder->add(name, files::read_whole_file(drawings.path() / name));
   folder->commit();
   process::print(end.out);
   return kDone;

@@ -7,11 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "sw/cli/add_command.h"
-#include "sw/cli/commands.h"
-#include "sw/cli/exit_status.h"
-#include "sw/cli/temporary_files.h"
-#include "sw/cli/typed_option.h"
+#include "sw/cli/command.h"
 #include "sw/explore/store/bank_names.h"
 #include "sw/files/output_file.h"
 #include "sw/process/installation.h"
@@ -37,56 +33,46 @@ constexpr const char* kReportFooter =
     "happens where in the picture, and when. For one run each single change of the board is also tried, as\n"
     "explain does.";
 
-struct ReportOptions {
-  TypedList inputs;
-  Typed out;
-  bool quick = false;
-
-  void add_to(CLI::App& command) {
-    inputs.add_to(command, "INPUT", "...", "One run or database, or two runs");
-    out.add_to(command, "--out", "F.html", "The page to write");
-    add_flag(command, "--quick", quick,
-             "Simulate nothing: no gain of the changes; rows and times only of a run with --record");
-  }
+struct ReportOptions : Options {
+  using Options::Options;
 
   bool is_database() const {
     std::error_code ignored;
-    return inputs.text.size() == 1 && std::filesystem::is_regular_file(inputs.text.front(), ignored);
+    return inputs.texts().size() == 1 && std::filesystem::is_regular_file(inputs.texts().front(), ignored);
   }
 
-  void check_usage() {
-    process::Problems problems;
-    if (inputs.text.empty())
-      problems.add("INPUT: missing: a folder of run --out, two of them, or a database");
-    if (inputs.text.size() > 2) {
-      problems.add(fmt::format("INPUT: {} given: one run or database, or two runs", inputs.text.size()));
-    }
-    if (!out.is_given()) {
-      problems.add("--out: missing: the page to write");
-    } else if (std::filesystem::path(out.text).extension() != ".html") {
-      problems.add(fmt::format("--out '{}': must end in .html", out.text));
-    }
-    if (quick && inputs.text.size() == 2)
+  void check_together(process::Problems& problems) override {
+    const std::size_t count = inputs.texts().size();
+    if (count > 2) problems.add(fmt::format("INPUT: {} given: one run or database, or two runs", count));
+    if (quick.is_given() && count == 2)
       problems.add("--quick: not with two runs: they are compared row by row");
-    if (quick && is_database()) problems.add("--quick: not with a database, for which nothing is simulated");
-    problems.check();
+    if (quick.is_given() && is_database())
+      problems.add("--quick: not with a database, for which nothing is simulated");
   }
+
+  Option inputs = Option(this, "INPUT", "...", "One run or database, or two runs",
+                         {required("a folder of run --out, two of them, or a database")}, Takes::kList);
+  Option out =
+      Option(this, "--out", "F.html", "The page to write", {required("the page to write"), ends_in(".html")});
+  Option quick =
+      Option(this, "--quick", "",
+             "Simulate nothing: no gain of the changes; rows and times only of a run with --record");
 };
 
 // nullopt if interrupted.
 std::optional<Json> data_of_run(const ReportOptions& options, process::Problems& problems) {
-  const auto run = runs::load_recorded_run("RUN", options.inputs.text.front(), problems);
+  const auto run = runs::load_recorded_run("RUN", options.inputs.texts().front(), problems);
   if (!run) return std::nullopt;
   runs::RunInput input = runs::open_again(*run, problems);
-  if (!options.quick) {
-    temporary_folder(problems);  // the simulations need one: reports now if it cannot be created
+  if (!options.quick.is_given()) {
+    check_temporary_folder(problems);
     if (const auto problem = explore::bank_names_problem(run->board)) {
       problems.add(fmt::format("'{}': {}; --quick simulates nothing", run->folder, *problem));
     }
   }
   problems.check();
   Json data = report::run_data(*run, input.tables);
-  if (options.quick) {
+  if (options.quick.is_given()) {
     try {
       report::add_recorded_files(*run, data);
     } catch (const std::runtime_error& error) {
@@ -104,8 +90,8 @@ std::optional<Json> data_of_run(const ReportOptions& options, process::Problems&
 }
 
 std::optional<Json> data_of_two_runs(const ReportOptions& options, process::Problems& problems) {
-  const auto a = runs::load_recorded_run("A", options.inputs.text[0], problems);
-  const auto b = runs::load_recorded_run("B", options.inputs.text[1], problems);
+  const auto a = runs::load_recorded_run("A", options.inputs.texts()[0], problems);
+  const auto b = runs::load_recorded_run("B", options.inputs.texts()[1], problems);
   problems.check();
   const runs::RunInput input_a = runs::open_again(*a, problems);
   const runs::RunInput input_b = runs::open_again(*b, problems);
@@ -124,10 +110,10 @@ std::optional<Json> data_of_two_runs(const ReportOptions& options, process::Prob
 }
 
 std::optional<Json> data_of(const ReportOptions& options, process::Problems& problems) {
-  if (options.inputs.text.size() == 2) return data_of_two_runs(options, problems);
+  if (options.inputs.texts().size() == 2) return data_of_two_runs(options, problems);
   if (!options.is_database()) return data_of_run(options, problems);
   try {
-    return Json{{"kind", "database"}, {"database", report::database_data(options.inputs.text.front())}};
+    return Json{{"kind", "database"}, {"database", report::database_data(options.inputs.texts().front())}};
   } catch (const std::runtime_error& error) {  // a DatabaseError, or no points
     problems.add(error.what());
   }
@@ -149,16 +135,13 @@ int report(const ReportOptions& options) {
   process::Problems problems;
   std::optional<files::OutputFile> file;
   try {
-    file.emplace(options.out.text,
+    file.emplace(options.out.text(),
                  files::marked_kind("page of stereotlm report", {{0, report::page_mark()}}));
   } catch (const std::runtime_error& error) {
     problems.add(fmt::format("--out {}", error.what()));
   }
   std::optional<Json> data = data_of(options, problems);
-  if (process::interrupted()) {
-    process::say("note", "interrupted: no page is written");
-    return kInterrupted;
-  }
+  if (process::interrupted()) return interrupted("no page is written");
   problems.check();
   Json whole = {{"format", 2}, {"version", process::kVersion}};
   whole.update(*data);
@@ -167,7 +150,7 @@ int report(const ReportOptions& options) {
   file->commit();
   if (data->contains("run")) say_lost_pixels(data->at("run"));
   for (const Json& run : data->value("runs", Json::array())) say_lost_pixels(run);
-  process::print(fmt::format("{}: {} kB\n", options.out.text, (page.size() + 999) / 1000));
+  process::print(fmt::format("{}: {} kB\n", options.out.text(), (page.size() + 999) / 1000));
   return kDone;
 }
 

@@ -5,10 +5,7 @@
 #include <optional>
 
 #include "platform/bounds.h"
-#include "sw/cli/add_command.h"
-#include "sw/cli/commands.h"
-#include "sw/cli/exit_status.h"
-#include "sw/cli/load_run_input.h"
+#include "sw/cli/command.h"
 #include "sw/cli/run_options.h"
 #include "sw/process/interrupt.h"
 #include "sw/process/streams.h"
@@ -80,10 +77,17 @@ void say_verified(const runs::RunInput& input) {
                                    input.frames, input.frames == 1 ? "" : "s"));
 }
 
-int run(const RunOptions& options) {
-  runs::RunInput input = load_run_input(options);
+struct RunCommandOptions : Options {
+  using Options::Options;
+  void check_together(process::Problems& problems) override { run.check_together("run", problems); }
+
+  RunOptions run{this, this};
+};
+
+int run(const RunCommandOptions& options) {
+  runs::RunInput input = options.run.load();
   std::optional<runs::Verification> verification;
-  if (options.verify) verification.emplace(input, options.pictures.source);
+  if (options.run.verify.is_given()) verification.emplace(input, options.run.pictures.source());
   Binder binder;
   runs::BlankPairs blank(input.board);
   host::FrameSource& pairs = input.timing_only ? static_cast<host::FrameSource&>(blank) : *input.pairs;
@@ -115,7 +119,10 @@ int run(const RunOptions& options) {
 }  // namespace
 
 void add_run(CLI::App& program, Action& action) {
-  add_command(program, action, "run", "Simulate a board on pairs of pictures", run);
+  add_command(
+      program, action, "run", "Simulate a board on pairs of pictures", run,
+      "Ctrl-C ends the run with the results of the frames that are finished; with cameras, --record or\n"
+      "--trace those that the core has begun are finished first.");
 }
 
 }  // namespace stereotlm::cli

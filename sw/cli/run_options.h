@@ -3,58 +3,89 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "sw/cli/board_options.h"
-#include "sw/cli/json_option.h"
-#include "sw/cli/picture_options.h"
+#include "sw/cli/options.h"
 #include "sw/cli/trace_options.h"
-#include "sw/cli/truth_options.h"
-#include "sw/cli/typed_option.h"
-
-namespace CLI {
-class App;
-}
+#include "sw/runs/run_input.h"
+#include "sw/runs/sources/picture_source.h"
 
 namespace stereotlm::cli {
 
-// Parses and checks the options of `run`.
-class RunOptions {
+// The options --truth and --truth-scale.
+class TruthOptions {
  public:
-  // Adds the options to the command, before parsing.
-  void add_to(CLI::App& command);
-  // Adds only those that say what is simulated, for another command. `run`: what BOARD may be beside a board.
-  void add_simulation_to(CLI::App& command, const std::string& beside_board = "");
-  // Whether none of these but BOARD is given.
-  bool has_board_only() const;
+  // `picture`: the picture whose truth it is, for the help.
+  TruthOptions(Options* of, const std::string& picture);
 
-  // To be called in the command's callback: throws Refused if options are wrong.
-  void check_usage();
-
-  const char* command_name = "run";  // the command that has the options, for messages
-  BoardOptions board;
-  PictureOptions pictures;
-  TruthOptions truth;
-  TraceOptions trace;
-  JsonOption json;
-  // Set by check_usage().
-  bool camera = true;  // false: preloaded
-  bool fast = true;    // false: fidelity cycle
-  bool timing_only = false;
-  bool verify = false;
-  std::optional<std::uint64_t> frames;
-  bool save_frames = false;
-  bool record = false;
-  std::optional<std::string> out;
+  std::optional<std::string> file() const { return file_.if_given(); }
+  double scale() const { return scale_.number<double>().value_or(1); }  // grey levels per disparity
 
  private:
-  void check_choices(process::Problems& problems);
-  void check_numbers(process::Problems& problems);
-  void check_combinations(process::Problems& problems) const;
+  Option file_;
+  Option scale_;
+};
 
-  Typed frames_;
-  Typed source_;
-  Typed fidelity_;
-  Typed out_;
+// The options that select the pictures of a run.
+class PictureOptions {
+ public:
+  explicit PictureOptions(Options* of);
+
+  bool is_given() const { return !sources_given().empty() || video_layout_.is_given(); }
+  // Reports a missing source of pictures, unless `may_be_missing`, and a pair with one side. Returns whether
+  // nothing is missing.
+  bool check_given(process::Problems& problems, bool may_be_missing) const;
+  // Reports several sources, and a video without its layout.
+  void check_together(process::Problems& problems) const;
+
+  // If there are no problems, exactly one member is set, or none if pictures may be missing.
+  runs::PictureSource source() const;
+
+ private:
+  std::vector<std::string> sources_given() const;
+
+  Option left_;
+  Option right_;
+  Option sequence_;
+  Option video_;
+  Option video_layout_;
+  Option synthetic_;
+};
+
+// The options of `run`. Those that say what is simulated are options of `conflicts` too.
+class RunOptions {
+ public:
+  // `more`: where the options that do not say what is simulated are added; null: nowhere. `beside_board`:
+  // what BOARD may be beside a board.
+  RunOptions(Options* of, Options* more, const std::string& beside_board = "");
+
+  // Whether no option that says what is simulated is given but BOARD.
+  bool has_board_only() const;
+  // Reports problems of several options together, and then also those of the files of the board. `command`:
+  // the name of the command.
+  void check_together(const std::string& command, process::Problems& problems) const;
+
+  // Loads and checks the inputs of the run. Throws Refused with all problems. Prints on standard error which
+  // pictures were converted to grey. Checking pictures may take long. An interrupt during that time ends the
+  // process, which has not changed anything yet. Afterwards interrupts are caught (catch_interrupts()).
+  runs::RunInput load() const;
+
+  bool is_fast() const { return fidelity.text() != "cycle"; }
+
+  BoardOptions board;
+  PictureOptions pictures;
+  Option frames;
+  SourceOption source;
+  Option fidelity;
+  Option timing_only;
+  Option verify;
+  TruthOptions truth;
+  Option out;
+  Option save_frames;
+  Option record;
+  TraceOptions trace;
+  JsonOption json;
 };
 
 }  // namespace stereotlm::cli

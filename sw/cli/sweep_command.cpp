@@ -6,21 +6,24 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 
 #include "calib/calibration.h"
-#include "sw/cli/add_command.h"
-#include "sw/cli/commands.h"
-#include "sw/cli/exit_status.h"
-#include "sw/cli/sweep_on_slurm.h"
+#include "platform/config/board_draft.h"
+#include "sw/cli/command.h"
 #include "sw/cli/sweep_options.h"
 #include "sw/explore/plan/conditions.h"
 #include "sw/explore/plan/plan.h"
+#include "sw/explore/slurm/shard_folder.h"
+#include "sw/explore/slurm/slurm_sweep.h"
 #include "sw/explore/store/store.h"
 #include "sw/explore/store/store_lock.h"
 #include "sw/explore/store/store_reader.h"
 #include "sw/explore/sweep/sweep.h"
 #include "sw/files/output_file.h"
 #include "sw/files/shell_word.h"
+#include "sw/files/whole_file.h"
+#include "sw/process/installation.h"
 #include "sw/process/interrupt.h"
 #include "sw/process/streams.h"
 #include "sw/runs/progress.h"
@@ -65,7 +68,7 @@ constexpr const char* kSweepFooter =
 
 explore::Plan load_plan(const SweepCommandOptions& options) {
   try {
-    return explore::Plan::load(options.plan.text, options.board.text);
+    return explore::Plan::load(options.plan.text(), options.board.text());
   } catch (const platform::BoardError& error) {
     process::Problems problems;
     problems.add(error);
@@ -78,8 +81,8 @@ explore::Plan load_plan(const SweepCommandOptions& options) {
 // nullopt if neither names one. Throws Refused if the calibration cannot be loaded or fits no point.
 std::optional<runs::CalibrationInput> calibration_of(const SweepCommandOptions& options,
                                                      explore::Plan& plan) {
-  const bool is_option = !options.calibration.text.empty();
-  const std::string path = is_option ? options.calibration.text : plan.calibration();
+  const bool is_option = !options.calibration.text().empty();
+  const std::string path = is_option ? options.calibration.text() : plan.calibration();
   if (path.empty()) return std::nullopt;
   const std::string named = is_option
                                 ? "--calibration"
@@ -97,8 +100,8 @@ std::optional<runs::CalibrationInput> calibration_of(const SweepCommandOptions& 
 }
 
 std::string summary(const explore::SweepCounts& counts, const SweepCommandOptions& options) {
-  std::string text = fmt::format("{}: {} points", options.plan.text, counts.total);
-  if (options.sweep.shards > 1) text += fmt::format(" in shard {}", options.shard.text);
+  std::string text = fmt::format("{}: {} points", options.plan.text(), counts.total);
+  if (options.shard.is_given()) text += fmt::format(" in shard {}", options.shard.text());
   text += fmt::format(": {} ok, {} impossible, {} failed", counts.ok, counts.impossible, counts.failed);
   if (counts.known > 0) text += fmt::format(", {} there already", counts.known);
   if (counts.excluded > 0) text += fmt::format(", {} left out by where", counts.excluded);
@@ -106,9 +109,9 @@ std::string summary(const explore::SweepCounts& counts, const SweepCommandOption
   return text + '\n';
 }
 
-// The lines with the reasons of points that failed, then of impossible ones, and the number of points for each
-// reason, the most frequent first. Of more than four reasons, a line counts those after the third, and the last
-// line says how to list all. One scan of the table; by name 'failed' comes before 'impossible'.
+// The lines with the reasons of points that failed, then of impossible ones, and the number of points for
+// each reason, the most frequent first. Of more than four reasons, a line counts those after the third, and
+// the last line says how to list all. One scan of the table; by name 'failed' comes before 'impossible'.
 std::string reasons(sqlite::Database& store) {
   sqlite::Statement statement(
       store,
@@ -136,15 +139,13 @@ std::string reasons(sqlite::Database& store) {
 
 int report(const explore::SweepCounts& counts, const SweepCommandOptions& options) {
   std::string text = summary(counts, options);
-  if (std::filesystem::exists(options.sweep.store)) {
-    sqlite::Database store(options.sweep.store, sqlite::Database::Access::kRead);
-    text += fmt::format("{}: {} points\n", options.sweep.store, store.number("SELECT count(*) FROM points"));
+  if (std::filesystem::exists(options.out.text())) {
+    sqlite::Database store(options.out.text(), sqlite::Database::Access::kRead);
+    text += fmt::format("{}: {} points\n", options.out.text(), store.number("SELECT count(*) FROM points"));
     text += reasons(store);
   }
   process::print(text);
-  if (counts.done() == counts.total) return kDone;
-  process::say("note", "interrupted: run the same command to resume");
-  return kInterrupted;
+  return counts.done() == counts.total ? kDone : interrupted("run the same command to resume");
 }
 
 // The end of an error message, which states that finished points are kept. Empty if the database cannot be
@@ -169,7 +170,7 @@ class ProgressFile {
     if (now >= next_) write(counts);
   }
   void write(const explore::SweepCounts& counts) {
-    if (options_.progress.text.empty()) return;
+    if (options_.progress.text().empty()) return;
     files::OutputFile file = options_.progress_file();
     file.write(explore::counts_text(counts));
     file.commit();
@@ -193,21 +194,20 @@ void check_open_files(std::uint64_t jobs, std::uint64_t points) {
 
 explore::SweepCounts sweep_here(const SweepCommandOptions& options, const explore::Plan& plan,
                                 const std::optional<runs::CalibrationInput>& calibration) {
-  check_open_files(options.sweep.jobs, plan.size());
+  const explore::SweepOptions sweep = options.sweep();
+  check_open_files(sweep.jobs, plan.size());
   ProgressFile file(options);
   try {
-    if (!options.sweep.known.empty()) {
-      const explore::FinishedStore known(options.sweep.known, options.sweep.version);
-    }
+    if (options.known.is_given()) const explore::FinishedStore known(sweep.known, sweep.version);
   } catch (const sqlite::DatabaseError& error) {
     process::refuse(fmt::format("--known {}", error.what()));
   }
   try {
-    const explore::StoreLock lock(options.sweep.store);
+    const explore::StoreLock lock(options.out.text());
     const auto open_store = [&] {
-      explore::Store(options.sweep.store, options.sweep.version).check_banks(plan.banks());
+      explore::Store(options.out.text(), sweep.version).check_banks(plan.banks());
     };
-    if (std::filesystem::file_size(options.sweep.store) > 0) open_store();
+    if (std::filesystem::file_size(options.out.text()) > 0) open_store();
     process::catch_interrupts();
     file.write({});
     open_store();  // creates a new store only after all other checks
@@ -222,7 +222,7 @@ explore::SweepCounts sweep_here(const SweepCommandOptions& options, const explor
   explore::SweepCounts counts;
   try {
     counts = explore::sweep(
-        plan, [&simulator](const explore::Point& point) { return simulator(point); }, options.sweep,
+        plan, [&simulator](const explore::Point& point) { return simulator(point); }, sweep,
         [&progress, &file](const explore::SweepCounts& done) {
           progress.show([&done](double seconds) { return runs::progress_text(done, 0, seconds); });
           file.show(done);
@@ -235,19 +235,84 @@ explore::SweepCounts sweep_here(const SweepCommandOptions& options, const explor
     throw;
   } catch (const explore::ConditionError& error) {
     progress.erase();
-    throw std::runtime_error(error.what() + kept_text(options.sweep.store, "correct the plan"));
+    throw std::runtime_error(error.what() + kept_text(options.out.text(), "correct the plan"));
   } catch (const std::exception& error) {
     progress.erase();
-    throw std::runtime_error(error.what() + kept_text(options.sweep.store, "run the same command to resume"));
+    throw std::runtime_error(error.what() + kept_text(options.out.text(), "run the same command to resume"));
   }
+  return counts;
+}
+
+// The sweep for Slurm, with the contents of all files that its tasks need.
+explore::ShardedSweep sharded(const SweepCommandOptions& options, const explore::Plan& plan,
+                              const std::optional<runs::CalibrationInput>& calibration) {
+  explore::ShardedSweep sweep;
+  sweep.plan = files::read_whole_file(plan.path());
+  if (platform::is_board_file(plan.board())) sweep.board = files::read_whole_file(plan.board());
+  if (calibration) {
+    const runs::InputCalibration& files = calibration->described;
+    sweep.calibration = {files::read_whole_file(files.file.path), files::read_whole_file(files.left_lut.path),
+                         files::read_whole_file(files.right_lut.path)};
+  }
+  sweep.banks = plan.banks();
+  sweep.version = process::kVersion;
+  sweep.points = plan.size();
+  sweep.shards = std::min(options.tasks(), plan.size());
+  return sweep;
+}
+
+std::string line_of(const explore::SlurmProgress& progress, std::uint64_t before, double seconds) {
+  std::string text = runs::progress_text(progress.counts, before, seconds);
+  text += fmt::format("   {} running", progress.running);
+  if (progress.waiting > 0) text += fmt::format(", {} waiting", progress.waiting);
+  if (!progress.reason.empty()) text += fmt::format(" ({})", progress.reason);
+  return text;
+}
+
+// Submits a sweep as jobs of Slurm, shows their progress, waits until they have ended, and returns the counts
+// of the sweep. If interrupted, cancels the jobs and returns early. Throws Refused if the jobs cannot be
+// submitted, and std::runtime_error if the sweep fails later.
+explore::SweepCounts sweep_on_slurm(const SweepCommandOptions& options, const explore::Plan& plan,
+                                    const std::optional<runs::CalibrationInput>& calibration) {
+  runs::ProgressLine progress;
+  const auto say_note = [&progress](const std::string& note) {
+    progress.erase();
+    process::say("note", note);
+  };
+  const auto opened = [&] {
+    try {
+      return explore::SlurmSweep(sharded(options, plan, calibration), options.out.text(),
+                                 options.sbatch_options(), say_note);
+    } catch (const sqlite::DatabaseError& error) {
+      process::refuse(fmt::format("--out {}", error.what()));
+    } catch (const std::system_error& error) {
+      process::refuse(fmt::format("--out {}: {}", options.out.text(), error.code().message()));
+    }
+  };
+  explore::SlurmSweep sweep = opened();
+  process::catch_interrupts();
+  try {
+    sweep.begin();
+  } catch (const sqlite::DatabaseError& error) {
+    process::refuse(fmt::format("--out {}", error.what()));
+  } catch (const std::exception& error) {
+    process::refuse(fmt::format("--launcher slurm: {}", error.what()));
+  }
+  std::optional<std::uint64_t> before;
+  const auto counts = sweep.wait([&](const explore::SlurmProgress& now) {
+    if (!before) before = now.counts.done();
+    progress.show([&](double seconds) { return line_of(now, *before, seconds); });
+    return !process::interrupted();
+  });
+  progress.erase();
   return counts;
 }
 
 int sweep(const SweepCommandOptions& options) {
   explore::Plan plan = load_plan(options);
   const auto calibration = calibration_of(options, plan);
-  const explore::SweepCounts counts =
-      options.is_slurm ? sweep_on_slurm(options, plan, calibration) : sweep_here(options, plan, calibration);
+  const explore::SweepCounts counts = options.is_slurm() ? sweep_on_slurm(options, plan, calibration)
+                                                         : sweep_here(options, plan, calibration);
   return report(counts, options);
 }
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <stdexcept>
-#include <string_view>
 #include <thread>
 #include <utility>
 
@@ -15,9 +14,14 @@
 namespace stereotlm::cli {
 namespace {
 
-constexpr unsigned kMostJobs = 1024;
-constexpr std::uint64_t kMostShards = 1000;  // the merge opens the files of all shards
-constexpr std::uint64_t kDefaultShards = 16;
+// "I/N" as I and N; nullopt if the text is not that, with I below N.
+std::optional<std::pair<std::uint64_t, std::uint64_t>> shard_of(const std::string& text) {
+  const std::size_t slash = std::min(text.find('/'), text.size());
+  const auto index = number_of<std::uint64_t>(text.substr(0, slash));
+  const auto count = number_of<std::uint64_t>(text.substr(std::min(slash + 1, text.size())));
+  if (!index || !count || *index >= *count) return std::nullopt;
+  return std::pair(*index, *count);
+}
 
 // Checks the value of one --sbatch. Reports options that the launcher itself passes to sbatch.
 void check_sbatch(const std::string& option, process::Problems& problems) {
@@ -34,98 +38,55 @@ void check_sbatch(const std::string& option, process::Problems& problems) {
 
 }  // namespace
 
-void SweepCommandOptions::add_to(CLI::App& command) {
-  plan.add_to(command, "PLAN", " ", "The plan's file");
-  out_.add_to(command, "--out", "DB", "The database to write, or to continue");
-  jobs_.add_to(command, "--jobs", "N", "Worker processes; default: the processors of this machine");
-  shard.add_to(command, "--shard", "I/N",
-               "Only every N-th point, from number I on (0 .. N-1); see stereotlm merge");
-  board.add_to(command, "--board", "BOARD", "In place of the board that the plan names");
-  calibration.add_to(command, "--calibration", "F", "In place of the calibration that the plan names");
-  known_.add_to(command, "--known", "DB2", "A database, only read, whose points are not run either");
-  progress.add_to(command, "--progress", "F", "Keep in this file how many points are done");
-  launcher_.add_to(command, "--launcher", "WHERE", "Where it runs: local, the default, or slurm");
-  shards_.add_to(command, "--shards", "N",
-                 fmt::format("With slurm: the tasks of the job array (default {})", kDefaultShards));
-  sbatch_.add_to(
-      command, "--sbatch", "NAME=VALUE",
-      "With slurm: an option of sbatch for all jobs, such as partition=long or time=8:00:00; again "
-      "for further ones");
-  sbatch_.takes_one_at_a_time();
+Rule SweepCommandOptions::is_shard() {
+  return valid("I/N with I in 0 .. N-1, such as 0/4",
+               [](const std::string& text) { return shard_of(text).has_value(); });
 }
 
-void SweepCommandOptions::check_usage() {
-  process::Problems problems;
-  if (!plan.is_given()) problems.add("PLAN: missing: the path of a plan");
-  if (!out_.is_given()) problems.add("--out: missing: the database to write, or to continue");
-  sweep.store = out_.text;
-  sweep.version = process::kVersion;
-  sweep.known = known_.text;
-  check_jobs(problems);
-  if (shard.is_given()) check_shard(problems);
-  check_launcher(problems);
-  for (const auto& [option, name] : {std::pair{&board, "--board"},
-                                     {&calibration, "--calibration"},
-                                     {&known_, "--known"},
-                                     {&progress, "--progress"}}) {
-    if (option->is_given() && option->text.empty()) problems.add(fmt::format("{}: empty", name));
-  }
-  if (!progress.text.empty()) check_progress(problems);
-  problems.check();
+void SweepCommandOptions::not_empty(const Option& option, process::Problems& problems) {
+  if (option.is_given() && option.text().empty()) problems.add(option.name() + ": empty");
 }
 
-void SweepCommandOptions::check_jobs(process::Problems& problems) {
-  sweep.jobs = std::max(1U, std::thread::hardware_concurrency());
-  if (!jobs_.is_given()) return;
-  const auto number = number_of<unsigned>(jobs_.text);
-  if (!number || *number < 1 || *number > kMostJobs) {
-    problems.add(fmt::format("--jobs = {}: must be 1..{}", jobs_.text, kMostJobs));
-  } else {
-    sweep.jobs = *number;
-  }
-}
-
-void SweepCommandOptions::check_shard(process::Problems& problems) {
-  const std::string_view text = shard.text;
-  const std::size_t slash = std::min(text.find('/'), text.size());
-  const auto index = number_of<std::uint64_t>(text.substr(0, slash));
-  const auto count = number_of<std::uint64_t>(text.substr(std::min(slash + 1, text.size())));
-  if (!index || !count || *index >= *count) {
-    problems.add(fmt::format("--shard = {}: must be I/N with I in 0 .. N-1, such as 0/4", text));
-    return;
-  }
-  sweep.shard = *index;
-  sweep.shards = *count;
-}
-
-void SweepCommandOptions::check_launcher(process::Problems& problems) {
-  if (launcher_.is_given()) is_one_of({"local", "slurm"}, "--launcher", launcher_.text, problems);
-  is_slurm = launcher_.text == "slurm";
-  shards = kDefaultShards;
-  const auto refuse_given = [&problems](bool is_given, const char* name, const char* rule) {
-    if (is_given) problems.add(fmt::format("{}: {}", name, rule));
+void SweepCommandOptions::check_together(process::Problems& problems) {
+  const auto refuse_given = [&problems](const Option& option, const char* rule) {
+    if (option.is_given()) problems.add(fmt::format("{}: {}", option.name(), rule));
   };
-  if (!is_slurm) {
-    refuse_given(shards_.is_given(), "--shards", "goes with --launcher slurm");
-    refuse_given(sbatch_.is_given(), "--sbatch", "goes with --launcher slurm");
-    return;
+  if (is_slurm()) {
+    refuse_given(jobs, "not with --launcher slurm: --sbatch cpus-per-task=N");
+    refuse_given(shard, "not with --launcher slurm, which submits all shards");
+    refuse_given(known, "not with --launcher slurm");
+    refuse_given(progress, "not with --launcher slurm");
+    for (const std::string& option : sbatch.texts()) check_sbatch(option, problems);
+  } else {
+    refuse_given(shards, "goes with --launcher slurm");
+    refuse_given(sbatch, "goes with --launcher slurm");
   }
-  refuse_given(jobs_.is_given(), "--jobs", "not with --launcher slurm: --sbatch cpus-per-task=N");
-  refuse_given(shard.is_given(), "--shard", "not with --launcher slurm, which submits all shards");
-  refuse_given(known_.is_given(), "--known", "not with --launcher slurm");
-  refuse_given(progress.is_given(), "--progress", "not with --launcher slurm");
-  if (shards_.is_given()) {
-    const auto number = number_of<std::uint64_t>(shards_.text);
-    if (!number || *number < 1 || *number > kMostShards) {
-      problems.add(fmt::format("--shards = {}: must be 1..{}", shards_.text, kMostShards));
-    } else {
-      shards = *number;
-    }
+  if (progress.text().empty()) return;
+  try {
+    progress_file();  // it is replaced, and must therefore not be another file of the user
+  } catch (const std::runtime_error& error) {
+    problems.add(fmt::format("--progress {}", error.what()));
   }
-  for (const std::string& option : sbatch_.text) {
-    check_sbatch(option, problems);
-    sbatch_options.push_back("--" + option);
-  }
+}
+
+explore::SweepOptions SweepCommandOptions::sweep() const {
+  explore::SweepOptions options;
+  options.store = out.text();
+  options.version = process::kVersion;
+  options.known = known.text();
+  options.jobs = jobs.number<unsigned>().value_or(std::max(1U, std::thread::hardware_concurrency()));
+  std::tie(options.shard, options.shards) = shard_of(shard.text()).value_or(std::pair(0, 1));
+  return options;
+}
+
+std::uint64_t SweepCommandOptions::tasks() const {
+  return shards.number<std::uint64_t>().value_or(kDefaultShards);
+}
+
+std::vector<std::string> SweepCommandOptions::sbatch_options() const {
+  std::vector<std::string> options;
+  for (const std::string& option : sbatch.texts()) options.push_back("--" + option);
+  return options;
 }
 
 files::OutputFile SweepCommandOptions::progress_file() const {
@@ -133,17 +94,8 @@ files::OutputFile SweepCommandOptions::progress_file() const {
                                   const std::string text = files::read_whole_file(path);
                                   return text == explore::counts_text(explore::read_counts(text));
                                 }};
-  return files::OutputFile(progress.text, kind,
-                           {{"--out", out_.text}, {"PLAN", plan.text}, {"--known", known_.text}});
-}
-
-// --progress replaces its file, which must therefore not be another file of the user.
-void SweepCommandOptions::check_progress(process::Problems& problems) const {
-  try {
-    progress_file();
-  } catch (const std::runtime_error& error) {
-    problems.add(fmt::format("--progress {}", error.what()));
-  }
+  return files::OutputFile(progress.text(), kind,
+                           {{"--out", out.text()}, {"PLAN", plan.text()}, {"--known", known.text()}});
 }
 
 }  // namespace stereotlm::cli

@@ -1,5 +1,7 @@
 #include "sw/cli/text.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <sstream>
 
@@ -20,6 +22,16 @@ std::string paragraph(const std::string& head, std::size_t indent, const std::st
     line += (has_word ? " " : "") + word;
   }
   return lines + line + '\n';
+}
+
+std::string with_coloured_words(std::string text, std::size_t from,
+                                const std::vector<std::pair<std::string, process::Colour>>& words) {
+  for (const auto& [word, colour] : words) {
+    const std::string coloured = process::coloured(STDOUT_FILENO, colour, word);
+    for (std::size_t at = from; (at = text.find(word, at)) != std::string::npos; at += coloured.size())
+      text.replace(at, word.size(), coloured);
+  }
+  return text;
 }
 
 }  // namespace stereotlm::cli

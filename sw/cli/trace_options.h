@@ -1,42 +1,35 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <vector>
 
 #include "platform/config/board_config.h"
-#include "sw/cli/typed_option.h"
+#include "sw/cli/options.h"
 #include "sw/process/problems.h"
 #include "sw/trace/trace.h"
-
-namespace CLI {
-class App;
-}
 
 namespace stereotlm::cli {
 
 // The options --trace and --trace-window.
 class TraceOptions {
  public:
-  // Adds the options to a command, before parsing.
-  void add_to(CLI::App& command);
-  // To be called in the command's callback: reports problems.
-  void check_usage(process::Problems& problems);
+  explicit TraceOptions(Options* of);
+
+  // Reports a trace that is none, or whose files another trace writes too, and a vcd without a window.
+  void check_together(process::Problems& problems) const;
   // Reports a window outside the images of the board, or after the last of `frames` frames.
   void check_window(const platform::BoardConfig& board, std::uint64_t frames,
                     process::Problems& problems) const;
 
-  // Set by check_usage().
-  std::vector<trace::TraceFile> files;
-  std::optional<trace::TraceWindow> window;
+  // The traces, without those that are none.
+  std::vector<trace::TraceFile> files() const;
+  // nullopt if there is no window.
+  std::optional<trace::TraceWindow> window() const;
 
  private:
-  std::optional<std::filesystem::path> shared_output(const trace::TraceFile& file) const;
-  void check_files(process::Problems& problems);
-
-  TypedList files_;
-  Typed window_;
+  Option files_;
+  Option window_;
 };
 
 }  // namespace stereotlm::cli

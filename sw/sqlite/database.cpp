@@ -146,11 +146,6 @@ void Statement::bind(int place, const std::variant<std::int64_t, double, std::st
   }
 }
 
-void Statement::bind_column(int place, const Statement& from, int column) {
-  const int code = sqlite3_bind_value(handle_, place, sqlite3_column_value(from.handle_, column));
-  if (code != SQLITE_OK) database_.fail(code);
-}
-
 void Statement::clear_bindings() { sqlite3_clear_bindings(handle_); }
 
 bool Statement::step() {

@@ -65,8 +65,6 @@ class Statement {
   void bind(int place, const std::string& text);
   void bind(int place, std::int64_t number);
   void bind(int place, const std::variant<std::int64_t, double, std::string>& value);
-  // Sets the parameter to the value of a column of the current row of `from`.
-  void bind_column(int place, const Statement& from, int column);
   void clear_bindings();
 
   bool step();   // goes to the next row; returns whether there is one

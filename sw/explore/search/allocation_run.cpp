@@ -1,12 +1,9 @@
 #include "sw/explore/search/allocation_run.h"
 
-#include <fmt/format.h>
-
-#include <stdexcept>
 #include <vector>
 
 #include "sw/explore/plan/points.h"
-#include "sw/sqlite/database.h"
+#include "sw/explore/store/store_reader.h"
 
 namespace stereotlm::explore {
 namespace {
@@ -15,37 +12,27 @@ namespace {
 // is whole, it has given up a board that is not in the database.
 void record_outcomes(const std::vector<std::size_t>& numbers, const std::string& path, bool is_whole,
                      AllocationSearch& search) {
-  sqlite::Database store(path, sqlite::Database::Access::kRead);
-  sqlite::Statement find(
-      store, search.run().camera
-                 ? "SELECT status, reason, cycles, \"frames_per_second.steady\", "
-                   "\"frames_per_second.steady_uncertainty\", \"cameras.left.dropped_pixels\" + "
-                   "\"cameras.right.dropped_pixels\" FROM points WHERE hash = ?"
-                 : "SELECT status, reason, cycles, \"frames_per_second.core\" FROM points WHERE hash = ?");
+  StoredRow row(path);
   for (const std::size_t number : numbers) {
     const Point point = search.point(number);
-    find.bind(1, point.hash);
-    if (!find.step()) {
+    if (!row.find(point.hash)) {
       if (is_whole) search.record_given_up(number);
-      find.reset();
       continue;
     }
     AllocationOutcome outcome;
-    if (find.text(0) != "ok") {
-      outcome.failure = find.text(1);
+    if (row.text("status") != "ok") {
+      outcome.failure = row.text("reason");
       search.record(number, outcome);
-      find.reset();
       continue;
     }
     const auto behind_last_write = static_cast<std::uint64_t>(point.board->fpga.pipeline_latency_cycles);
-    outcome.cycles = static_cast<std::uint64_t>(find.integer(2)) + point.run.frames * behind_last_write;
-    outcome.frames_per_second = find.real(3);
-    if (search.run().camera) {
-      outcome.uncertainty = find.real(4);
-      outcome.loses_pixels = find.integer(5) > 0;
-    }
+    outcome.cycles = static_cast<std::uint64_t>(row.integer("cycles")) + point.run.frames * behind_last_write;
+    outcome.frames_per_second =
+        row.real(search.run().camera ? "frames_per_second.steady" : "frames_per_second.core");
+    outcome.uncertainty = row.real("frames_per_second.steady_uncertainty");
+    outcome.loses_pixels =
+        row.integer("cameras.left.dropped_pixels") + row.integer("cameras.right.dropped_pixels") > 0;
     search.record(number, outcome);
-    find.reset();
   }
 }
 

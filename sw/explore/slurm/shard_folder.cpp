@@ -86,10 +86,6 @@ std::string text_of(const std::string& path) {
 
 }  // namespace
 
-std::uint64_t ShardedSweep::points_of(std::uint64_t shard) const {
-  return points > shard ? (points - shard - 1) / shards + 1 : 0;
-}
-
 ShardFolder::ShardFolder(const std::string& store)
     : store_(fs::weakly_canonical(fs::absolute(behind_links(store))).string()), path_(store_ + kEnding) {}
 
@@ -126,8 +122,7 @@ void ShardFolder::keep_points(const std::string& version) {
   if (stores.empty()) return;
   for (const std::string& path : stores) {
     if (fs::path(path).extension() != ".work") continue;
-    { const Store completed(path, version); }
-    merge_stores({path}, path);  // removes its journal, with which the merge below would open two more files
+    const Store completed(path, version);
   }
   const StoreLock lock(store_);
   if (fs::file_size(store_) > 0) stores.push_back(store_);

@@ -24,9 +24,6 @@ struct ShardedSweep {
   std::string version;                     // of the program
   std::uint64_t points = 0;
   std::uint64_t shards = 1;
-
-  // The number of points of a shard.
-  std::uint64_t points_of(std::uint64_t shard) const;
 };
 
 // The folder STORE.shards, on a file system that all machines share. It holds copies of the plan, its board

@@ -52,9 +52,7 @@ SlurmSweep::SlurmSweep(const ShardedSweep& sweep, const std::string& store,
       options_(options),
       say_(std::move(say)),
       folder_(store),
-      name_(name_of(folder_.path())),
-      shards_(sweep.shards),
-      done_(sweep.shards) {}
+      name_(name_of(folder_.path())) {}
 
 // Makes all checks that can refuse the sweep before it changes anything.
 void SlurmSweep::begin() {
@@ -76,8 +74,11 @@ void SlurmSweep::begin() {
       folder_.begin(sweep_);
     }
     refresh();
-    if (is_at_work) say_(fmt::format("the jobs are there already: {}", fmt::join(live_jobs_, ", ")));
-    submit_missing();
+    if (is_at_work) {
+      say_(fmt::format("the jobs are there already: {}", fmt::join(live_jobs_, ", ")));
+    } else if (!folder_.is_merged()) {
+      submit_round();
+    }
   } catch (...) {
     if (is_new) {
       if (!live_jobs_.empty()) cancel_in_slurm({live_jobs_.begin(), live_jobs_.end()});
@@ -101,17 +102,15 @@ SweepCounts SlurmSweep::wait(const std::function<bool(const SlurmProgress&)>& ke
     }
     try {
       refresh();
-      if (folder_.is_merged() && live_jobs_.empty()) break;
-      submit_missing();
+      if (live_jobs_.empty() && folder_.is_merged()) break;
+      if (live_jobs_.empty()) submit_round();
       failures = 0;
     } catch (const SlurmError& error) {
       if (++failures == kMostFailures) {
         throw SlurmError(fmt::format("{}; {}", error.what(), kJobsContinue));
       }
       if (failures == 1) say_(fmt::format("{}: asking again", error.what()));
-      continue;
     }
-    if (live_jobs_.empty() && !folder_.is_merged()) give_up();
   }
   folder_.remove();
   return progress_.counts;
@@ -123,90 +122,55 @@ void SlurmSweep::refresh() {
   folder_.refresh();
   live_jobs_.clear();
   progress_ = {};
-  merge_.is_live = false;
-  for (Work& shard : shards_) shard.is_live = false;
-  for (const SlurmTask& task : tasks) take(task);
-  for (std::uint64_t shard = 0; shard < sweep_.shards; ++shard) {
-    SweepCounts counts = folder_.counts(shard);
-    done_[shard] = counts.done();
-    counts.total = sweep_.points_of(shard);
-    progress_.counts.add(counts);
+  for (const SlurmTask& task : tasks) {
+    if (!task.is_live()) {
+      if (jobs_.count(task.job) > 0) ends_[task.index] = task.state;
+      continue;
+    }
+    live_jobs_.insert(task.job);
+    jobs_.insert(task.job);
+    if (!task.index) continue;
+    const bool waits = task.state == "PENDING";
+    ++(waits ? progress_.waiting : progress_.running);
+    if (waits && progress_.reason.empty()) progress_.reason = task.reason;
   }
+  for (std::uint64_t shard = 0; shard < sweep_.shards; ++shard) progress_.counts.add(folder_.counts(shard));
+  progress_.counts.total = sweep_.points;
 }
 
-void SlurmSweep::take(const SlurmTask& task) {
-  if (task.is_live()) live_jobs_.insert(task.job);
-  if (task.index && *task.index >= sweep_.shards) return;  // belongs to another sweep into this store
-  Work& work = task.index ? shards_[*task.index] : merge_;
-  if (!task.is_live()) {
-    if (work.job == task.job) work.end = task.state;
-    return;
-  }
-  work.job = task.job;
-  work.is_live = true;
-  work.end.clear();
-  if (!task.index) return;
-  const bool waits = task.state == "PENDING";
-  ++(waits ? progress_.waiting : progress_.running);
-  if (waits && progress_.reason.empty()) progress_.reason = task.reason;
-}
-
-// Submits the shards that are neither finished nor live: all shards at first, lost shards later.
-void SlurmSweep::submit_missing() {
+void SlurmSweep::submit_round() {
   std::vector<std::uint64_t> missing;
-  std::vector<std::uint64_t> lost;
-  bool is_whole = true;
   for (std::uint64_t shard = 0; shard < sweep_.shards; ++shard) {
-    if (folder_.is_whole(shard)) continue;
-    is_whole = false;
-    Work& work = shards_[shard];
-    if (work.is_live || work.is_given_up) continue;
-    if (!work.job.empty()) lost.push_back(shard);
-    if (may_continue(work, done_[shard])) missing.push_back(shard);
+    if (!folder_.is_whole(shard)) missing.push_back(shard);
   }
-  if (!lost.empty()) {
-    const std::string& end = shards_[lost.front()].end;
-    say_(fmt::format("lost: {} ({}); submitting {}", shards_text(lost),
-                     end.empty() ? "gone from the queue" : end,
-                     missing.empty()                 ? "no more"
-                     : missing.size() == lost.size() ? "again"
-                                                     : shards_text(missing)));
-  }
+  if (!jobs_.empty()) end_round(missing);
+  std::vector<std::string> behind;
   if (!missing.empty()) {
-    submit_shards(missing);
-    submit_merge();
-  } else if (is_whole && !folder_.is_merged() && !merge_.is_live && !merge_.is_given_up &&
-             may_continue(merge_, 0)) {
-    submit_merge();
+    const std::string job =
+        submit(folder_.task_script(), ShardFolder::task_log("%a"), {"--array=" + array_text(missing)});
+    progress_.waiting += missing.size();
+    say_(fmt::format("job {}: {} of {}", job, shards_text(missing), sweep_.shards));
+    behind = {"--dependency=afterany:" + job};
   }
+  const std::string merge = submit(folder_.merge_script(), ShardFolder::kMergeLog, behind);
+  say_(fmt::format("job {}: the merge into {}", merge, folder_.store()));
 }
 
-void SlurmSweep::submit_shards(const std::vector<std::uint64_t>& shards) {
-  const std::string job =
-      submit(folder_.task_script(), ShardFolder::task_log("%a"), {"--array=" + array_text(shards)});
-  for (const std::uint64_t shard : shards) {
-    shards_[shard].job = job;
-    shards_[shard].is_live = true;
-    shards_[shard].end.clear();
-  }
-  progress_.waiting += shards.size();
-  say_(fmt::format("job {}: {} of {}", job, shards_text(shards), sweep_.shards));
+// Throws at round number kMostLosses that has ended without a further point.
+void SlurmSweep::end_round(const std::vector<std::uint64_t>& missing) {
+  const std::uint64_t done = progress_.counts.done();
+  losses_ = done > most_done_ ? 1 : losses_ + 1;
+  most_done_ = std::max(most_done_, done);
+  if (losses_ == kMostLosses) give_up(missing);
+  if (!missing.empty())
+    say_(fmt::format("lost: {} ({}); submitting again", shards_text(missing), end_of(missing.front())));
+  jobs_.clear();
+  ends_.clear();
 }
 
-// Submits the merge, which starts after all live jobs. Its script checks that all shards are whole.
-void SlurmSweep::submit_merge() {
-  if (merge_.is_live) {
-    cancel_in_slurm({merge_.job});
-    live_jobs_.erase(merge_.job);
-    merge_.is_live = false;
-  }
-  std::vector<std::string> options;
-  if (!live_jobs_.empty())
-    options.push_back(fmt::format("--dependency=afterany:{}", fmt::join(live_jobs_, ":")));
-  merge_.job = submit(folder_.merge_script(), ShardFolder::kMergeLog, options);
-  merge_.is_live = true;
-  merge_.end.clear();
-  say_(fmt::format("job {}: the merge into {}", merge_.job, folder_.store()));
+std::string SlurmSweep::end_of(std::optional<std::uint64_t> shard) const {
+  const auto end = ends_.find(shard);
+  return end == ends_.end() ? "gone from the queue" : end->second;
 }
 
 std::string SlurmSweep::submit(const std::string& script, const std::string& log,
@@ -219,17 +183,8 @@ std::string SlurmSweep::submit(const std::string& script, const std::string& log
   const std::string job =
       submit_to_slurm(all, script, {program, folder_.path(), std::to_string(sweep_.shards), folder_.store()});
   live_jobs_.insert(job);
+  jobs_.insert(job);
   return job;
-}
-
-// Counts a loss if the work was submitted before. Gives the work up at loss number kMostLosses, and returns
-// false then.
-bool SlurmSweep::may_continue(Work& work, std::uint64_t done) const {
-  if (work.job.empty()) return true;
-  work.losses = done > work.most_done ? 1 : work.losses + 1;
-  work.most_done = std::max(work.most_done, done);
-  work.is_given_up = work.losses == kMostLosses;
-  return !work.is_given_up;
 }
 
 void SlurmSweep::cancel() {
@@ -249,19 +204,17 @@ void SlurmSweep::cancel() {
   folder_.remove();
 }
 
-void SlurmSweep::give_up() const {
-  const auto is_given_up = [](const Work& work) { return work.is_given_up; };
-  const auto shard = std::find_if(shards_.begin(), shards_.end(), is_given_up);
-  const auto number = std::to_string(shard - shards_.begin());
-  const bool is_merge = shard == shards_.end();
+void SlurmSweep::give_up(const std::vector<std::uint64_t>& missing) const {
+  const bool is_merge = missing.empty();
+  const std::string number = is_merge ? "" : std::to_string(missing.front());
   const std::string log =
       folder_.path() + '/' + (is_merge ? ShardFolder::kMergeLog : ShardFolder::task_log(number));
-  const std::string& end = is_merge ? merge_.end : shard->end;
   throw std::runtime_error(fmt::format(
       "{} has been lost {} times without a further point ({}); {}; finished points are kept in {}: run the "
       "same "
       "command to resume",
-      is_merge ? "the merge" : "shard " + number, kMostLosses, end.empty() ? "gone from the queue" : end,
+      is_merge ? "the merge" : "shard " + number, kMostLosses,
+      end_of(is_merge ? std::nullopt : std::optional(missing.front())),
       std::filesystem::exists(log) ? fmt::format("its log {} ends with: {}", log, ShardFolder::last_line(log))
                                    : fmt::format("there is no {}: the nodes must share this folder", log),
       folder_.path()));

@@ -2,6 +2,8 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -20,9 +22,10 @@ struct SlurmProgress {
   std::string reason;         // why the first waiting shard waits, in Slurm's words; empty: not known
 };
 
-// A sweep on a cluster: its shards are the tasks of a job array of Slurm, and its last job merges them into
-// the store. This process reports the progress, and submits lost work again. If it ends, the jobs continue,
-// and a new process finds them by their name.
+// A sweep on a cluster, in rounds. A round is a job array of Slurm, one task for each shard that is not
+// whole, and behind it a job that merges all shards into the store. Once all jobs of a round have ended, and
+// shards were lost, the next round begins. This process reports the progress. If it ends, the jobs of its
+// round continue, and a new process finds them by their name.
 class SlurmSweep {
  public:
   using Say = std::function<void(const std::string& note)>;
@@ -38,41 +41,33 @@ class SlurmSweep {
 
   // Waits until all points are in the store, and removes the folder of the shards. `keep_going` is called
   // several times a second. Once it returns false, the jobs are cancelled, and their finished points are
-  // merged into the store. Throws SlurmError, DatabaseError, or std::runtime_error; the last also if a shard
-  // is lost repeatedly. After an exception the finished points stay in the folder.
+  // merged into the store. Throws SlurmError, DatabaseError, or std::runtime_error; the last also if
+  // rounds end repeatedly without a further point. After an exception the finished points stay in the folder.
   SweepCounts wait(const std::function<bool(const SlurmProgress&)>& keep_going);
 
  private:
-  // The task of a shard, or the merge.
-  struct Work {
-    std::string job;       // number of the job that was listed or submitted last; empty: none
-    bool is_live = false;  // the job waits or runs
-    bool is_given_up = false;
-    int losses = 0;               // successive losses without a further point
-    std::uint64_t most_done = 0;  // largest number of points that were done at a loss
-    std::string end;              // Slurm's state of the ended job; empty: not known
-  };
-
   void refresh();
-  void take(const SlurmTask& task);
-  void submit_missing();
-  void submit_shards(const std::vector<std::uint64_t>& shards);
-  void submit_merge();
+  void submit_round();
+  void end_round(const std::vector<std::uint64_t>& missing);
   std::string submit(const std::string& script, const std::string& log,
                      const std::vector<std::string>& options);
-  bool may_continue(Work& work, std::uint64_t done) const;
   void cancel();
-  [[noreturn]] void give_up() const;
+  [[noreturn]] void give_up(const std::vector<std::uint64_t>& missing) const;
+  // Slurm's state of the ended task of a shard, or of the merge, for a message.
+  std::string end_of(std::optional<std::uint64_t> shard) const;
 
   ShardedSweep sweep_;
   std::vector<std::string> options_;
   Say say_;
   ShardFolder folder_;
   std::string name_;                 // of the jobs
-  std::vector<Work> shards_;         // [shard]
-  std::vector<std::uint64_t> done_;  // [shard]: number of points that are done
-  Work merge_;
   std::set<std::string> live_jobs_;  // numbers
+  // Of the round that was submitted or found last: the numbers of its jobs, and how its tasks and its merge
+  // have ended.
+  std::set<std::string> jobs_;
+  std::map<std::optional<std::uint64_t>, std::string> ends_;  // [shard]; nullopt: the merge
+  int losses_ = 0;                                            // successive rounds without a further point
+  std::uint64_t most_done_ = 0;                               // points that were done at the end of a round
   SlurmProgress progress_;
 };
 

@@ -4,16 +4,15 @@
 #include <sqlite3.h>
 
 #include <algorithm>
+#include <cstring>
 #include <filesystem>
 #include <map>
-#include <memory>
 #include <set>
 #include <stdexcept>
 #include <system_error>
 
 #include "sw/explore/store/store_layout.h"
 #include "sw/explore/store/store_lock.h"
-#include "sw/explore/store/store_reader.h"
 #include "sw/files/output_file.h"
 
 namespace stereotlm::explore {
@@ -21,154 +20,140 @@ namespace {
 
 namespace fs = std::filesystem;
 
-using Readers = std::vector<std::unique_ptr<StoreReader>>;
-
-// The order of column names. Numbers inside names compare as numbers: bank2 comes before bank10.
-bool is_before(const std::string& a, const std::string& b) {
-  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
-  std::size_t i = 0;
-  std::size_t j = 0;
-  while (i < a.size() && j < b.size()) {
-    if (is_digit(a[i]) && is_digit(b[j])) {
-      std::size_t i_end = i;
-      std::size_t j_end = j;
-      while (i_end < a.size() && is_digit(a[i_end])) ++i_end;
-      while (j_end < b.size() && is_digit(b[j_end])) ++j_end;
-      if (i_end - i != j_end - j) return i_end - i < j_end - j;
-      const int order = a.compare(i, i_end - i, b, j, j_end - j);
-      if (order != 0) return order < 0;
-      i = i_end;
-      j = j_end;
-    } else {
-      if (a[i] != b[j]) return a[i] < b[j];
-      ++i;
-      ++j;
-    }
-  }
-  return a.size() - i < b.size() - j;
-}
-
-// Throws unless all points have the same version.
-void check_versions(const Readers& readers) {
-  const StoreReader* first = nullptr;
-  std::string of_first;
-  for (const auto& reader : readers) {
-    for (const std::string& version : reader->versions()) {
-      if (first == nullptr) {
-        first = reader.get();
-        of_first = version;
-      }
-      if (version == of_first) continue;
-      throw sqlite::DatabaseError(
-          fmt::format("{}: holds points of version {}, and {} of version {}: they do not mix", reader->path(),
-                      version, first->path(), of_first));
-    }
-  }
-}
-
-// Throws if two columns differ only in case.
-void check_columns(const Readers& readers) {
-  const auto is_less = [](const std::string& a, const std::string& b) {
+struct IsLessWithoutCase {
+  bool operator()(const std::string& a, const std::string& b) const {
     return sqlite3_stricmp(a.c_str(), b.c_str()) < 0;
-  };
-  std::map<std::string, const StoreReader*, decltype(is_less)> all(is_less);
-  for (const auto& reader : readers) {
-    for (const std::string& column : reader->columns()) {
-      const auto& [name, first] = *all.emplace(column, reader.get()).first;
+  }
+};
+
+// The columns and keys of all inputs.
+class Inputs {
+ public:
+  // Throws if a file is no store, if the points have different versions, or if two columns differ only in
+  // case.
+  explicit Inputs(const std::vector<std::string>& paths) : paths_(paths) {
+    for (const std::string& path : paths) {
+      sqlite::Database input(path, sqlite::Database::Access::kRead);
+      check_layout(input);
+      add_columns(input);
+      for (const std::string& key : first_column_of(input, "SELECT name FROM keys")) keys_.insert(key);
+      if (paths.size() > 1) check_version_of(input);  // Store refuses a second version
+    }
+  }
+
+  // The columns without kFirstColumns. Numbers inside names compare as numbers: bank2 comes before bank10.
+  std::vector<std::string> further_columns() const {
+    std::vector<std::string> columns;
+    for (const auto& [name, path] : columns_) {
+      if (std::find(kFirstColumns.begin(), kFirstColumns.end(), name) == kFirstColumns.end())
+        columns.push_back(name);
+    }
+    std::sort(columns.begin(), columns.end(), [](const std::string& a, const std::string& b) {
+      return strverscmp(a.c_str(), b.c_str()) < 0;
+    });
+    return columns;
+  }
+  const std::set<std::string>& keys() const { return keys_; }
+
+  // The first input that has the point.
+  const std::string& first_with(const std::string& hash) const {
+    return *std::find_if(paths_.begin(), paths_.end(), [&hash](const std::string& path) {
+      const sqlite::Database input(path, sqlite::Database::Access::kRead);
+      sqlite::Statement find(input, kFindPoint);
+      return has_point(find, hash);
+    });
+  }
+
+ private:
+  void add_columns(const sqlite::Database& input) {
+    for (const std::string& column : columns_of(input)) {
+      const auto& [name, first] = *columns_.emplace(column, input.path()).first;
       if (name == column) continue;
       throw sqlite::DatabaseError(
-          fmt::format("{}: its column {} differs from {} of {} only in case: they do not mix", reader->path(),
-                      column, name, first->path()));
+          fmt::format("{}: its column {} differs from {} of {} only in case: they do not mix", input.path(),
+                      column, name, first));
     }
   }
-}
 
-// The columns of all readers without kFirstColumns, in the order of is_before().
-std::vector<std::string> further_columns(const Readers& readers) {
-  check_columns(readers);
-  std::set<std::string> names;
-  for (const auto& reader : readers) names.insert(reader->columns().begin(), reader->columns().end());
-  for (const char* first : kFirstColumns) names.erase(first);
-  std::vector<std::string> columns(names.begin(), names.end());
-  std::sort(columns.begin(), columns.end(), is_before);
-  return columns;
-}
-
-void copy_keys(const Readers& readers, sqlite::Database& out) {
-  std::set<std::string> keys;
-  for (const auto& reader : readers) keys.insert(reader->keys().begin(), reader->keys().end());
-  for (const std::string& key : keys) insert_board_key(out, key);
-}
-
-// The index in `columns` of each column of a reader.
-std::vector<int> places_of(const StoreReader& reader, const std::vector<std::string>& columns) {
-  std::vector<int> places;
-  for (const std::string& column : reader.columns())
-    places.push_back(static_cast<int>(std::find(columns.begin(), columns.end(), column) - columns.begin()));
-  return places;
-}
-
-// Copies each point once. Throws if two readers hold different results of the same point.
-void copy_points(Readers& readers, sqlite::Database& out, const std::vector<std::string>& columns) {
-  sqlite::Statement insert(out, insert_point_sql(columns));
-  std::map<const StoreReader*, std::vector<int>> places;
-  for (const auto& reader : readers) places.emplace(reader.get(), places_of(*reader, columns));
-  for (;;) {
-    StoreReader* first = nullptr;
-    for (const auto& reader : readers) {
-      if (!reader->at_end() && (first == nullptr || reader->hash() < first->hash())) first = reader.get();
-    }
-    if (first == nullptr) return;
-    const std::string hash = first->hash();
-    for (const auto& reader : readers) {
-      if (reader.get() == first || reader->at_end() || reader->hash() != hash) continue;
-      if (reader->whole_text(columns) != first->whole_text(columns)) {
-        throw sqlite::DatabaseError(
-            fmt::format("{}: holds another result of point {} than {}", reader->path(), hash, first->path()));
+  void check_version_of(const sqlite::Database& input) {
+    for (const std::string& version : first_column_of(input, "SELECT DISTINCT version FROM points")) {
+      if (version_.empty()) {
+        version_ = version;
+        path_of_version_ = input.path();
       }
-      reader->next();
-    }
-    insert.clear_bindings();
-    int column = 0;
-    for (const int place : places.at(first)) insert.bind_column(place + 1, first->point(), column++);
-    insert.run();
-    first->next();
-  }
-}
-
-// Copies the blame of each point once. Readers that hold the same point hold the same blame.
-void copy_blame(Readers& readers, sqlite::Database& out) {
-  sqlite::Statement insert(out, insert_blame_sql());
-  for (const auto& reader : readers) reader->next_blame();
-  for (;;) {
-    StoreReader* first = nullptr;
-    for (const auto& reader : readers) {
-      if (reader->has_blame() && (first == nullptr || reader->blame_hash() < first->blame_hash()))
-        first = reader.get();
-    }
-    if (first == nullptr) return;
-    const std::string hash = first->blame_hash();
-    for (; first->has_blame() && first->blame_hash() == hash; first->next_blame()) {
-      for (int i = 0; i < first->blame().columns(); ++i) insert.bind_column(i + 1, first->blame(), i);
-      insert.run();
-    }
-    for (const auto& reader : readers) {
-      while (reader->has_blame() && reader->blame_hash() == hash) reader->next_blame();
+      if (version == version_) continue;
+      throw sqlite::DatabaseError(
+          fmt::format("{}: holds points of version {}, and {} of version {}: they do not mix", input.path(),
+                      version, path_of_version_, version_));
     }
   }
-}
 
-// Copies the points and the blame of a single store, which is attached as `input`, to the same bytes as the
-// functions above do.
-void copy_attached(sqlite::Database& out, const std::vector<std::string>& columns) {
+  const std::vector<std::string>& paths_;
+  std::map<std::string, std::string, IsLessWithoutCase> columns_;  // [name]: the first input that has it
+  std::set<std::string> keys_;
+  std::string version_;
+  std::string path_of_version_;
+};
+
+// The columns as a list of SQL, each with this in front of it.
+std::string listed(const std::vector<std::string>& columns, const std::string& table = "") {
   std::string names;
   for (const std::string& column : columns)
-    names += (names.empty() ? "" : ", ") + sqlite::quoted_name(column);
-  out.execute(
-      fmt::format("INSERT INTO main.points({}) SELECT {} FROM input.points ORDER BY hash", names, names));
-  out.execute(
-      fmt::format("INSERT INTO main.blame({0}) SELECT {0} FROM input.blame ORDER BY hash, port, bank, by",
-                  kBlameColumns));
+    names += (names.empty() ? "" : ", ") + table + sqlite::quoted_name(column);
+  return names;
+}
+
+// The hash of a point of which the attached stores `input` and `gathered` hold different results; empty if
+// there is none. A column that `input` lacks is NULL. `columns`: of `gathered`.
+std::string different_point(const sqlite::Database& database, const std::vector<std::string>& columns) {
+  const std::vector<std::string> own =
+      first_column_of(database, "SELECT name FROM pragma_table_info('points', 'input')");
+  std::string values;
+  for (const std::string& column : columns) {
+    const bool is_there = std::find(own.begin(), own.end(), column) != own.end();
+    values += (values.empty() ? "" : ", ") + (is_there ? "i." + sqlite::quoted_name(column) : "NULL");
+  }
+  const char* blame =
+      "SELECT hash FROM (SELECT {0} FROM {1}.blame WHERE hash IN (SELECT hash FROM {2}.points)"
+      " EXCEPT SELECT {0} FROM {2}.blame)";
+  const std::vector<std::string> hashes = first_column_of(
+      database,
+      fmt::format("SELECT i.hash FROM input.points AS i JOIN gathered.points AS g ON g.hash = i.hash "
+                  "WHERE ({}) IS NOT ({}) UNION ALL {} UNION ALL {} LIMIT 1",
+                  values, listed(columns, "g."), fmt::format(blame, kBlameColumns, "input", "gathered"),
+                  fmt::format(blame, kBlameColumns, "gathered", "input")));
+  return hashes.empty() ? "" : hashes.front();
+}
+
+// Puts the points of all inputs into the attached store `gathered`, which is empty. Throws if two inputs hold
+// different results of the same point. `columns`: of `gathered`.
+void gather(const std::vector<std::string>& paths, const Inputs& inputs, sqlite::Database& database,
+            const std::vector<std::string>& columns) {
+  for (const std::string& path : paths) {
+    database.attach(path, "input");
+    database.execute("BEGIN");
+    if (const std::string hash = different_point(database, columns); !hash.empty()) {
+      throw sqlite::DatabaseError(
+          fmt::format("{}: holds another result of point {} than {}", path, hash, inputs.first_with(hash)));
+    }
+    const std::string names =
+        listed(first_column_of(database, "SELECT name FROM pragma_table_info('points', 'input')"));
+    database.execute(
+        fmt::format("INSERT OR IGNORE INTO gathered.points({0}) SELECT {0} FROM input.points", names));
+    database.execute(
+        fmt::format("INSERT OR IGNORE INTO gathered.blame({0}) SELECT {0} FROM input.blame", kBlameColumns));
+    database.execute("COMMIT");
+    database.execute("DETACH input");
+  }
+}
+
+// Copies the points of an attached store, so that the bytes depend only on the points.
+void copy(sqlite::Database& database, const std::string& from, const std::vector<std::string>& columns) {
+  database.execute(fmt::format("INSERT INTO main.points({0}) SELECT {0} FROM {1}.points ORDER BY hash",
+                               listed(columns), from));
+  database.execute(
+      fmt::format("INSERT INTO main.blame({0}) SELECT {0} FROM {1}.blame ORDER BY hash, port, bank, by",
+                  kBlameColumns, from));
 }
 
 // Moves the contents of the journal of a store into its file, so that the journal can be removed.
@@ -186,10 +171,10 @@ void merge_stores(const std::vector<std::string>& inputs, const std::string& sto
   const std::string out = behind_links(store);
   std::error_code none;
   if (fs::file_size(out, none) > 0 && !none) empty_journal(out);
-  Readers readers;
-  readers.reserve(inputs.size());
-  for (const std::string& input : inputs) readers.push_back(std::make_unique<StoreReader>(input));
-  if (readers.size() > 1) check_versions(readers);  // Store refuses a second version
+  const Inputs all(inputs);
+  const std::vector<std::string> further = all.further_columns();
+  std::vector<std::string> columns(kFirstColumns.begin(), kFirstColumns.end());
+  columns.insert(columns.end(), further.begin(), further.end());
   files::OutputFile file(out, store_kind());
   {
     sqlite::Database database(file.aside().path().string(), sqlite::Database::Access::kWrite,
@@ -197,24 +182,22 @@ void merge_stores(const std::vector<std::string>& inputs, const std::string& sto
     if (is_interrupted != nullptr) database.interrupt_if(is_interrupted);
     database.execute(
         "PRAGMA journal_mode = OFF; PRAGMA synchronous = NORMAL; PRAGMA main.locking_mode = EXCLUSIVE");
-    if (inputs.size() == 1) {
+    const bool is_single = inputs.size() == 1;
+    if (is_single) {
       database.attach(inputs.front(), "input");
       database.execute("PRAGMA input.mmap_size = 0x40000000");  // pages are read without a system call
+    } else {
+      database.execute("ATTACH '' AS gathered");  // SQLite removes the file of this database itself
+      database.execute("PRAGMA gathered.journal_mode = OFF; PRAGMA gathered.synchronous = OFF");
+      create_tables(database, further, "gathered");
+      gather(inputs, all, database, columns);
     }
     database.execute("BEGIN");
-    std::vector<std::string> columns = further_columns(readers);
-    create_tables(database, columns);
-    columns.insert(columns.begin(), kFirstColumns.begin(), kFirstColumns.end());
-    copy_keys(readers, database);
-    if (inputs.size() == 1) {
-      copy_attached(database, columns);
-    } else {
-      copy_points(readers, database, columns);
-      copy_blame(readers, database);
-    }
+    create_tables(database, further);
+    for (const std::string& key : all.keys()) insert_board_key(database, key);
+    copy(database, is_single ? "input" : "gathered", columns);
     database.execute("COMMIT");
   }
-  readers.clear();
   file.complete();
   for (const char* ending : {"-wal", "-shm"}) fs::remove(out + ending, none);
   file.commit();

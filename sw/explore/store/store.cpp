@@ -29,6 +29,17 @@ std::vector<const platform::BoardValue*> further_values(const StoredPoint& point
   return values;
 }
 
+// SQL that inserts a point with these columns, unless the table has the point.
+std::string insert_point_sql(const std::vector<std::string>& columns) {
+  std::string names;
+  std::string places;
+  for (const std::string& name : columns) {
+    names += (names.empty() ? "" : ", ") + sqlite::quoted_name(name);
+    places += places.empty() ? "?" : ", ?";
+  }
+  return fmt::format("INSERT OR IGNORE INTO points({}) VALUES({})", names, places);
+}
+
 }  // namespace
 
 Store::Store(const std::string& path, const std::string& version, std::chrono::milliseconds busy_timeout)
@@ -37,7 +48,8 @@ Store::Store(const std::string& path, const std::string& version, std::chrono::m
   check_version(database_, version);
   read_columns();
   find_ = std::make_unique<sqlite::Statement>(database_, kFindPoint);
-  insert_blame_ = std::make_unique<sqlite::Statement>(database_, insert_blame_sql());
+  insert_blame_ = std::make_unique<sqlite::Statement>(
+      database_, fmt::format("INSERT INTO blame({}) VALUES(?, ?, ?, ?, ?)", kBlameColumns));
 }
 
 // The first process to open the file creates the tables.
@@ -88,7 +100,7 @@ bool Store::add(const StoredPoint& point) {
     int place = 0;
     for (const std::string& text : {point.hash, point.status, point.reason, version_, point.config})
       insert.bind(++place, text);
-    for (const platform::BoardValue* value : values) insert.bind(++place, value->value);
+    for (const platform::BoardValue* value : values) insert.bind(++place, *value);
     insert.run();
     const bool is_new = sqlite3_changes(database_.handle()) > 0;
     for (const StoredBlame& row : point.blame) {

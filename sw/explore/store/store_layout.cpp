@@ -19,22 +19,25 @@ bool has_point(sqlite::Statement& find, const std::string& hash) {
   return found;
 }
 
-void create_tables(sqlite::Database& database, const std::vector<std::string>& further_columns) {
-  database.execute(
-      fmt::format("PRAGMA application_id = {}; PRAGMA user_version = {}", kApplicationId, kLayout));
-  create_points(database, further_columns);
-  database.execute(
-      "CREATE TABLE blame(hash TEXT NOT NULL, port TEXT NOT NULL, bank TEXT NOT NULL, by TEXT NOT NULL, "
-      "cycles INTEGER NOT NULL, PRIMARY KEY(hash, port, bank, by)) WITHOUT ROWID");
-  database.execute("CREATE TABLE keys(name TEXT PRIMARY KEY NOT NULL) WITHOUT ROWID");
+void create_tables(sqlite::Database& database, const std::vector<std::string>& further_columns,
+                   const std::string& schema) {
+  database.execute(fmt::format("PRAGMA {0}.application_id = {1}; PRAGMA {0}.user_version = {2}", schema,
+                               kApplicationId, kLayout));
+  create_points(database, further_columns, schema);
+  database.execute(fmt::format(
+      "CREATE TABLE {}.blame(hash TEXT NOT NULL, port TEXT NOT NULL, bank TEXT NOT NULL, by TEXT NOT NULL, "
+      "cycles INTEGER NOT NULL, PRIMARY KEY(hash, port, bank, by)) WITHOUT ROWID",
+      schema));
+  database.execute(fmt::format("CREATE TABLE {}.keys(name TEXT PRIMARY KEY NOT NULL) WITHOUT ROWID", schema));
 }
 
-void create_points(sqlite::Database& database, const std::vector<std::string>& further_columns) {
+void create_points(sqlite::Database& database, const std::vector<std::string>& further_columns,
+                   const std::string& schema) {
   std::string columns =
       "hash TEXT PRIMARY KEY NOT NULL, status TEXT NOT NULL, reason TEXT NOT NULL, "
       "version TEXT NOT NULL, config TEXT NOT NULL";
   for (const std::string& name : further_columns) columns += ", " + sqlite::quoted_name(name);
-  database.execute(fmt::format("CREATE TABLE points({})", columns));
+  database.execute(fmt::format("CREATE TABLE {}.points({})", schema, columns));
 }
 
 files::FileKind store_kind() {
@@ -78,20 +81,6 @@ void insert_board_key(const sqlite::Database& database, const std::string& name)
   sqlite::Statement insert(database, "INSERT INTO keys(name) VALUES(?)");
   insert.bind(1, name);
   insert.run();
-}
-
-std::string insert_point_sql(const std::vector<std::string>& columns) {
-  std::string names;
-  std::string places;
-  for (const std::string& name : columns) {
-    names += (names.empty() ? "" : ", ") + sqlite::quoted_name(name);
-    places += places.empty() ? "?" : ", ?";
-  }
-  return fmt::format("INSERT OR IGNORE INTO points({}) VALUES({})", names, places);
-}
-
-std::string insert_blame_sql() {
-  return fmt::format("INSERT INTO blame({}) VALUES(?, ?, ?, ?, ?)", kBlameColumns);
 }
 
 }  // namespace stereotlm::explore

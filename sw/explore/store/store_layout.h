@@ -20,10 +20,12 @@ inline constexpr const char* kBlameColumns = "hash, port, bank, by, cycles";
 inline constexpr const char* kFindPoint = "SELECT 1 FROM points WHERE hash = ?";
 bool has_point(sqlite::Statement& find, const std::string& hash);
 
-// Creates the tables in an empty database.
-void create_tables(sqlite::Database& database, const std::vector<std::string>& further_columns);
+// Creates the tables in an empty database. `schema`: the name under which it is attached.
+void create_tables(sqlite::Database& database, const std::vector<std::string>& further_columns,
+                   const std::string& schema = "main");
 // Creates table `points` alone.
-void create_points(sqlite::Database& database, const std::vector<std::string>& further_columns);
+void create_points(sqlite::Database& database, const std::vector<std::string>& further_columns,
+                   const std::string& schema = "main");
 // How a file that is a store begins.
 files::FileKind store_kind();
 // Throws if the file is not a store, or has another layout.
@@ -38,9 +40,5 @@ std::vector<std::string> columns_of(const sqlite::Database& database);
 
 // Notes in table `keys` that this column of `points` is a key of the board, not a figure.
 void insert_board_key(const sqlite::Database& database, const std::string& name);
-// SQL that inserts a point with these columns, unless the table has the point.
-std::string insert_point_sql(const std::vector<std::string>& columns);
-// SQL that inserts a row of blame, with the columns kBlameColumns.
-std::string insert_blame_sql();
 
 }  // namespace stereotlm::explore

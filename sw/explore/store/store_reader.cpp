@@ -1,9 +1,5 @@
 #include "sw/explore/store/store_reader.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-
 #include "sw/explore/store/store_layout.h"
 
 namespace stereotlm::explore {
@@ -42,43 +38,6 @@ std::int64_t StoredRow::integer(const std::string& column) const {
 double StoredRow::real(const std::string& column) const {
   const auto found = columns_.find(column);
   return found == columns_.end() ? 0 : find_.real(found->second);
-}
-
-StoreReader::StoreReader(const std::string& path) : database_(path, sqlite::Database::Access::kRead) {
-  check_layout(database_);
-  columns_ = columns_of(database_);
-  keys_ = first_column_of(database_, "SELECT name FROM keys");
-  points_.emplace(database_, "SELECT * FROM points ORDER BY hash");
-  blame_of_point_.emplace(
-      database_,
-      fmt::format("SELECT {} FROM blame WHERE hash = ? ORDER BY hash, port, bank, by", kBlameColumns));
-  blame_.emplace(database_, fmt::format("SELECT {} FROM blame ORDER BY hash, port, bank, by", kBlameColumns));
-  next();
-}
-
-std::vector<std::string> StoreReader::versions() const {
-  return first_column_of(database_, "SELECT DISTINCT version FROM points ORDER BY version");
-}
-
-void StoreReader::next() {
-  has_point_ = points_->step();
-  hash_ = has_point_ ? points_->text(0) : "";
-}
-
-std::string StoreReader::whole_text(const std::vector<std::string>& columns) {
-  std::string text;
-  for (const std::string& column : columns) {
-    const auto found = std::find(columns_.begin(), columns_.end(), column);
-    if (found != columns_.end()) text += points_->text(static_cast<int>(found - columns_.begin()));
-    text += '\n';
-  }
-  blame_of_point_->bind(1, hash_);
-  while (blame_of_point_->step()) {
-    for (int column = 1; column < blame_of_point_->columns(); ++column)
-      text += blame_of_point_->text(column) + ' ';
-  }
-  blame_of_point_->reset();
-  return text;
 }
 
 }  // namespace stereotlm::explore

@@ -1,7 +1,6 @@
 """calibrate, and --calibration, on a rig that is made up."""
 
 import hashlib
-import os
 import re
 import shutil
 import signal
@@ -242,21 +241,6 @@ class RefusedCalibrations(CalibrateTest):
         self.assertRegex(text, rf"(?m)^{step} {problem}$")
         self.assertNotIn("failed", text)
 
-    def test_missing_and_damaged_ones_are_refused(self):
-        rig = self.copy_of_rig()
-        text = rig.read_text()
-        other_offset = text.replace("disparity_offset: 0", "disparity_offset: 1")
-        for damaged, problem in (
-            (other_offset, "matrices and disparity_offset: must be those that its tables were made with"),
-            ("", "line 1: no OpenCV FileStorage"),
-            ("%YAML:1.0\n---\na: " + "1" * 2**20, "1048593 bytes: must be 1000000 at most"),
-        ):
-            rig.write_text(damaged)
-            self.refused_with(rig, f"--calibration '{rig}': {problem}")
-        self.refused_with(self.folder / "none.yaml", "none.yaml': no such file")
-        self.refused_with(self.folder / "rig.yml", "must end in .yaml")
-        self.refused_with(self.folder, "must end in .yaml")
-
     def test_missing_long_and_foreign_tables_are_refused(self):
         rig = self.copy_of_rig()
         for side in SIDES:
@@ -268,10 +252,6 @@ class RefusedCalibrations(CalibrateTest):
             table.write_bytes(whole)
         shutil.copy(self.folder / "rig_right.lut", self.folder / "rig_left.lut")
         self.refused_with(rig, "rig_left.lut': SHA-256")
-        os.truncate(self.folder / "rig_left.lut", 2**40)
-        self.refused_with(rig, f"'{self.folder}/rig_left.lut': {2**40} bytes: must be 1228800 at most")
-        (self.folder / "rig_left.lut").unlink()
-        self.refused_with(rig, "rig_left.lut': no such file")
 
     def test_those_for_another_board_are_refused(self):
         size = "image size = 640x480: must be that of the board's images, 320x480"
@@ -279,15 +259,6 @@ class RefusedCalibrations(CalibrateTest):
         for side in SIDES:
             both = f"needs a board with both tables, but allocation.{side}_lut = none"
             self.refused_with(self.rig, both, board=sets(f"allocation.{side}_lut=none"))
-
-    def test_one_inside_the_result_folder_is_refused(self):
-        self.copy_of_rig()
-        self.out.mkdir()
-        for path in self.folder.glob("rig*"):
-            path.rename(self.out / path.name)
-        with self.unchanged(self.out):
-            process = run(*self.scene("--out", self.out, rig=self.out / "rig.yaml"))
-            self.refused(process, "holds 'rig.yaml'")
 
 
 class RefusedPictures(CalibrateTest):

@@ -2,12 +2,11 @@
 
 import csv
 import os
-import resource
 import signal
 
 import program
 from pictures import read_png
-from program import CAMERA_RATES, HEIGHT, PROGRESS, RESULT_FILES, SMALL, WIDTH
+from program import CAMERA_RATES, PROGRESS, RESULT_FILES, SMALL
 from program import ProgramTest, Terminal, run, sets
 
 
@@ -104,30 +103,12 @@ class Recording(CameraTest):
         self.camera("--frames", "5", "--record", "--verify")
         self.assertEqual(self.stats(), stats)
 
-    def test_a_full_disk_leaves_the_folder_as_it_was(self):
-        limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))
-        command = self.arguments("--timing-only", "--record", "--frames", "20", "--out", self.out)
-        self.fails(run(*command, preexec_fn=limit), "'rows.csv' cannot be written: File too large")
-        self.assertFalse(self.out.exists())
-
     def test_a_recorded_run_is_repeated_by_diff(self):
         self.camera("--frames", "3", "--record")
         self.succeeds(run("diff", self.out, self.out))
 
 
 class Figures(CameraTest):
-    def test_a_computer_has_figures_of_its_own(self):
-        table = self.camera("--frames", "20")
-        stats = self.stats()
-        self.assertNotIn("failed", stats)
-        self.assertLess(stats["frames_per_second"]["system"], stats["bound"]["system"])
-        masters = [master["name"] for master in stats["pci"]["masters"]]
-        self.assertEqual(masters, ["host", "left_capture", "right_capture", "bridge"])
-        words = WIDTH * HEIGHT // 4
-        tables = 2 * WIDTH * HEIGHT
-        self.assertEqual(stats["bridge"]["dma_words"], 20 * words + tables)
-        self.assertGreaterEqual(stats["bridge"]["posted_words"], 2 * 20 * words)
-        self.assertIn("\nlatency      capture to host, ms: min ", table)
 
     def test_torn_pictures_are_warned_of_wherever_a_computer_runs(self):
         torn = sets("capture.fifo_words=4", "capture.fifo_trigger_words=2",

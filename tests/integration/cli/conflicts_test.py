@@ -1,8 +1,6 @@
 """run --record and conflicts: where in the picture, and when in a frame, ports wait for banks."""
 
 import csv
-import json
-import math
 import signal
 import resource
 import struct
@@ -100,39 +98,6 @@ class Command(ConflictsTest):
         self.assertIn("rows              waits %   bank0 %", text)
         text = self.succeeds(run("conflicts", *self.scene, *PRELOADED))
         self.assertIn("waits        none\n", text)
-
-    def test_waits_lie_where_the_ports_meet(self):
-        """left_lut waits one cycle for each slot of left_pixel. The last rows of results need no more slots."""
-        width, height, window, disparities = 32, 41, 15, 16
-        options = sets(f"image.width={width}", f"image.height={height}", f"matcher.window={window}",
-                       f"matcher.disparities={disparities}", "matcher.filter=none", "matcher.fetch=line_buffer")
-        command = ["conflicts", "fpl2003", *PRELOADED, "--timing-only", "--frames", "1", *SHARED, *options]
-        # Column i + C is consumed when result i leaves (contract section 2), so C slots come before the first result.
-        ahead = disparities - 1 + window // 2 + window // 2 * width
-        waits = width * height - ahead
-        last_row = waits // width
-        place = f"80 % in rows 0..{math.ceil(0.8 * waits / width) - 1}"
-        text = self.succeeds(run(*command, "--out", self.out)).splitlines()
-        self.assertRegex(text[1], rf"^waits        left_lut on bank0 for left_pixel: \d+ cycles \(.* %\), {place}$")
-        (wait,) = json.loads(self.succeeds(run(*command, "--json")))["waits"]
-        self.assertEqual(f"80 % in rows {wait['first_row']}..{wait['last_row']}", place)
-        self.assertNotIn("first_column", wait)
-        # Eight bands at most, two cycles a slot where there are slots.
-        bands = {line.split()[0]: float(line.split()[1]) for line in text[4:]}
-        firsts = range(0, height, 6)
-        self.assertEqual(list(bands), [f"{first}..{min(first + 5, height - 1)}" for first in firsts])
-        for first, percent in zip(firsts, bands.values(), strict=True):
-            if first + 5 < last_row:
-                self.assertEqual(percent, 50)
-            elif first > last_row:
-                self.assertEqual(percent, 0)
-        tiles = {(int(row["first_row"]), int(row["first_column"])): int(row["cycles"])
-                 for row in self.table("conflicts.csv") if row["first_row"]}
-        for (row, column), cycles in tiles.items():
-            self.assertLessEqual(row * width + column, waits)
-            if row < last_row - 1:
-                self.assertEqual(cycles, 4, (row, column))
-        self.assertGreaterEqual(len(tiles), (last_row - 1) * width // 4)
 
     @program.slow
     def test_it_writes_tables_and_figures(self):

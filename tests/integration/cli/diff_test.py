@@ -8,7 +8,7 @@ import signal
 
 import program
 from pictures import avi, noise, pgm, read_png
-from program import CAMERA_RATES, CYCLE, HEIGHT, PRELOADED, SMALL, WIDTH
+from program import CAMERA_RATES, HEIGHT, PRELOADED, SMALL, WIDTH
 from program import ProgramTest, Terminal, run, sets, sha256, shared_folder
 
 SHARED = sets("allocation.left_lut=bank0")  # with every second left picture
@@ -123,19 +123,6 @@ class Differences(DiffTest):
         self.assertEqual(lines[3:5], ["board A B", "cameras.frame_rate_hz 29.97 25"])
         self.assertEqual(lines[6:], ["no figure and no row differs", "", ONE_FRAME])
 
-    def test_keys_that_only_one_board_file_has_are_compared(self):
-        a, b = shared_run(*SCENE), shared_run(*SCENE, *sets("matcher.units=2", "fpga.pixel_cache=word"))
-        self.assertIn("units: 2", (b / "config.yaml").read_text())
-        self.assertNotIn("units", (a / "config.yaml").read_text())
-        lines = self.lines(a, b)
-        self.assertEqual(lines[3:6], ["board A B", "fpga.pixel_cache none word", "matcher.units all 2"])
-        self.assertIn(ONE_FRAME, lines)
-
-    def test_fidelities_differ_in_their_names_only(self):
-        lines = self.lines(shared_run(*SCENE), shared_run(*SCENE, *CYCLE))
-        self.assertEqual(lines[3:5], ["run options A B", "fidelity fast cycle"])
-        self.assertIn("no figure and no row differs", lines)
-
 
 class WorkedValues(DiffTest):
     """Those of models/contract.md, section 2: what a shared bank costs."""
@@ -188,13 +175,6 @@ class Frames(DiffTest):
         self.assertIn(parts, lines)
         self.assertIn("disparities: the same, pixel for pixel, in 3 frames", lines)
         self.assertFalse([line for line in lines if line.startswith(PARTING)])
-
-    def test_another_fetch_gives_the_same_pictures(self):
-        a, b = shared_run(*SCENE), shared_run(*SCENE, *sets("matcher.fetch=line_buffer"))
-        self.assertEqual((a / "disparity.png").read_bytes(), (b / "disparity.png").read_bytes())
-        lines = self.lines(a, b)
-        self.assertIn(ONE_FRAME, lines)
-        self.assertTrue([line for line in lines if line.startswith(f"{PARTING}0, row 0: ")])
 
     def test_frames_of_another_size_are_compared_as_a_whole(self):
         narrow = sets("image.width=16", f"image.height={HEIGHT}")
@@ -275,15 +255,6 @@ class Computer(DiffTest):
         both = len(ours & theirs)
         self.assertGreater(both, 1)
         self.assertEqual(lines[-1], f"disparities: the same, pixel for pixel, in {both} frames")
-
-    def test_the_host_is_blamed_row_by_row(self):
-        self.write(self.a, "--frames", "4")
-        self.write(self.b, "--frames", "4", *sets("allocation.left_image=[bank0, bank0]"))
-        path = self.folder / "rows.csv"
-        self.lines(self.a, self.b, "--csv", path)
-        (row,) = stats_of(self.b)["blame"]
-        self.assertEqual((row["port"], row["by"]), ("left_pixel", "host"))
-        self.assertEqual(sum(int(row["b_left_pixel_stall_cycles"]) for row in table_of(path)), row["cycles"])
 
     def test_it_is_compared_with_the_board_alone(self):
         self.write(self.a, "--frames", "3")
@@ -407,28 +378,6 @@ class Folders(DiffTest):
         versions = f"it was written by version 0.0.9, this is {version}\n"
         self.fails(process, f"again 0; {versions}")
         self.refused(self.diff("stats.json", '"frames": 1', '"frames": 2'), f"note: {versions}")
-
-    def test_files_that_run_has_not_written_so_are_refused(self):
-        process = self.diff("stats.json", "\n}\n", ',\n  "failed": ["1 = 2"]\n}\n')
-        rule = 'failed = ["1 = 2"]: must be a run in which nothing failed'
-        self.refused_in_one_line(process, f"{self.b}/stats.json:", rule)
-        for text in ("{", "[]", '"x"', ""):
-            (self.b / "stats.json").write_text(text)
-            process = run("diff", self.a, self.b)
-            self.refused_in_one_line(process, f"{self.b}/stats.json:1: must be as run writes it")
-        self.file("b/run.json", "{}")
-        self.file("b/config.yaml", "image: 3\nextra: 1\n")
-        process = run("diff", self.a, self.b)
-        texts = (f"'{self.b}/run.json': must be as run writes it", "config.yaml:2:1: extra")
-        self.assertGreater(len(self.refused(process, *texts)), 3)
-
-    def test_a_layout_that_does_not_go_with_its_videos_is_refused(self):
-        video = self.file("v.avi", avi(2 * WIDTH, HEIGHT, [noise(2 * WIDTH, HEIGHT, 1)]))
-        self.succeeds(self.run_with("--video", video, "--video-layout", "side_by_side", "--out", self.b))
-        for before, layout in (("side_by_side", "two"), ("two", "three")):
-            process = self.diff("run.json", before, layout)
-            rule = f"video_layout = {layout}: must be that of 1 file"
-            self.refused_in_one_line(process, f"'{self.b}/run.json': {rule}")
 
 
 class Usage(DiffTest):

@@ -276,7 +276,7 @@ class Paths(ProgramTest):
             if not loop.is_symlink():
                 loop.symlink_to(loop.name)
             too_long = self.folder / f"{'long' * 64}{ending}"
-            for path in (loop, loop / f"x{ending}", too_long, self.left / f"x{ending}"):
+            for path in (loop, too_long):
                 process = run(*arguments, path)
                 self.assertNotIn("filesystem error", process.stderr)
                 self.refused(process, option)
@@ -323,18 +323,6 @@ class OutputFolders(ProgramTest):
         shutil.copy(self.left, self.folder / "out.pgm")  # its name begins like the folder's
         for left in (self.folder / "out.pgm", self.out / ".." / "left.pgm"):
             self.succeeds(self.run_small("--out", self.out, left=left))
-
-    def test_a_full_disk_leaves_the_folder_as_it_was(self):
-        def run_on_full_disk(*more):
-            limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (100, 100))
-            return run(*self.run_arguments("--out", self.out, *more), preexec_fn=limit)
-
-        problem = "cannot be written: File too large"
-        self.fails(run_on_full_disk(), f"'disparity.png' {problem}")
-        self.assertFalse(self.out.exists())
-        self.succeeds(self.run_small("--out", self.out))
-        with self.unchanged(self.out):
-            self.fails(run_on_full_disk("--save-frames", "--frames", "3"), f"'frames/000000.png' {problem}")
 
 
 class Outputs(ProgramTest):

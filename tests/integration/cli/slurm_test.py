@@ -2,15 +2,13 @@
 
 import os
 import pathlib
-import re
 import signal
-import socket
 import subprocess
 
 import program
 from program import Terminal, run, wait_until
 from slurm_cluster import Cluster
-from sweep_test import MORE, PLAN, SweepTest
+from sweep_test import MORE, SweepTest
 
 # Long enough to do something while it runs.
 SLOW = """
@@ -157,33 +155,6 @@ class LostShards(SlurmTest):
         self.assert_whole()
 
 
-class Refusals(SlurmTest):
-    def test_refusals_quote_slurm_and_leave_nothing(self):
-        disparities = "matcher.disparities: {from: 1, to: 50, step: 1}"
-        many = self.file("many.yaml", PLAN.replace("[3, 5, 7]", f"[3]\n  {disparities}"))
-        slurm = "error: --launcher slurm: sbatch: "
-        failed = "Batch job submission failed: Invalid partition name specified"
-        partition = f"invalid partition specified: nope; {failed}"
-        with socket.socket() as unused:
-            unused.bind(("127.0.0.1", 0))
-            text = (cluster.folder / "slurm.conf").read_text()
-            port = f"SlurmctldPort={unused.getsockname()[1]}"
-            config = self.file("slurm.conf", re.sub("SlurmctldPort=.*", port, text))
-            environment = {**cluster.environment, "SLURM_CONF": str(config)}
-            no_controller = self.launch(environment=environment)
-        for process, *texts in (
-            (no_controller, "squeue: ", "Unable to contact slurm controller"),
-            (self.launch("--sbatch", "partition=nope"), f"{slurm}{partition}"),
-            (self.launch("--shards", 200, plan=many), slurm, "Invalid job array specification"),
-        ):
-            self.refused_in_one_line(process, *texts)
-        self.assertEqual(list(self.folder.glob("points.db*")), [])
-        self.assertEqual(cluster.jobs(), [])
-        self.succeeds(self.sweep())
-        with self.unchanged(self.folder):
-            self.refused(self.launch("--sbatch", "partition=nope"), "nope")
-
-
 class Interrupted(SlurmTest):
     def test_an_interrupt_cancels_the_jobs_and_keeps_their_points(self):
         process = self.begin_points()
@@ -229,16 +200,6 @@ class Interrupted(SlurmTest):
         one = self.file("one.yaml", SLOW.replace("[5, 7]", "[5]").replace("to: 19", "to: 10"))
         self.assertRegex(self.succeeds(self.launch(plan=one)), "1 points: .* 1 there already")
         self.assertGreaterEqual(self.points(), 1)
-
-    def test_a_restart_of_the_controller_is_waited_for(self):
-        process = self.begin_points()
-        cluster.end(cluster.daemons[1])
-        for _ in range(2):
-            self.assertTrue(process.stderr.readline().startswith("stereotlm: note: job"))
-        self.assertRegex(process.stderr.readline(), "note: squeue: .*: asking again")
-        cluster.start_controller()
-        self.finishes(process)
-        self.assert_whole()
 
 
 if __name__ == "__main__":

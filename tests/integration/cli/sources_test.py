@@ -170,17 +170,6 @@ class Video(SourceTest):
         self.assertEqual(process.stderr, f"stereotlm: note: {note}\n")
         self.assertEqual(self.stats()["frames"], 2)
 
-    def test_sources_inside_the_result_folder_are_refused(self):
-        self.succeeds(self.run_small("--out", self.out))
-        video = self.video("out/frames/000000.png", 1, "left", "right")
-        inside = self.sequence(2, "out/frames/sequence")
-        with self.unchanged(self.out):
-            self.refused(self.run_with("--sequence", inside, "--out", self.out), "holds 'frames/sequence'")
-        shutil.rmtree(inside)
-        with self.unchanged(self.out):
-            self.refused(self.run_with("--video", video, "--video-layout", "side_by_side", "--out", self.out),
-                         f"result folder '{self.out}': --video '{video}' lies in it and would be replaced")
-
 
 class Synthetic(SourceTest):
     def test_its_accuracy_is_printed_and_kept_out_of_the_figures(self):

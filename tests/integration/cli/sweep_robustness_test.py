@@ -1,13 +1,11 @@
 """sweep on a machine that fails it: full disks, locked or read-only databases, processes that are killed."""
 
 import os
-import random
 import re
 import resource
 import sqlite3
 import subprocess
 import sys
-import time
 
 import program
 from program import HEIGHT, WIDTH, of_plain_user, run, wait_until
@@ -108,24 +106,6 @@ class FullDisk(RobustnessTest):
         self.refused_in_one_line(process, f"--progress '{progress}': cannot be written: No space left on device")
 
 
-class Killed(RobustnessTest):
-    def test_a_kill_at_any_time_leads_to_the_same_bytes(self):
-        """Ten times, each at another moment between its begin and its end."""
-        expected = self.expected()
-        begin = time.monotonic()
-        self.succeeds(self.sweep())
-        duration = time.monotonic() - begin
-        self.store.unlink()
-        moments = random.Random(1)
-        for _ in range(10):
-            for _ in range(2):  # killed, and killed again
-                process = self.start("sweep", self.plan, "--out", self.store, "--jobs", 2)
-                time.sleep(moments.uniform(0, duration))
-                self.close(process)
-            self.finished(expected)
-            self.store.unlink()
-
-
 class LockedDatabase(RobustnessTest):
     def test_a_lock_is_waited_for(self):
         self.succeeds(self.sweep())
@@ -139,16 +119,6 @@ class LockedDatabase(RobustnessTest):
             with self.unchanged(self.store):
                 _, errors = process.communicate(timeout=60)
                 self.assertEqual(process.returncode, 0, errors)
-
-    def test_a_lock_is_waited_for_up_to_a_minute(self):
-        self.succeeds(self.sweep())
-        before = self.store.read_bytes()
-        self.lock("BEGIN IMMEDIATE")
-        begin = time.monotonic()
-        problem = f"--out {self.store}: another process keeps it locked"
-        self.refused_in_one_line(self.sweep(), problem)
-        self.assertGreater(time.monotonic() - begin, 59)
-        self.assertTrue(self.store.read_bytes() == before)
 
     def test_a_database_that_a_merge_writes_is_refused_at_once(self):
         """Also where the merge is the first to write to it. It waits for the database that it reads."""

@@ -141,23 +141,6 @@ class Sweep(SweepTest):
         self.succeeds(self.sweep("--board", board))
         self.assertEqual(self.query('SELECT DISTINCT "fpga.clock_mhz" FROM points'), [(50,)])
 
-    def test_words_beside_numbers_and_maps_are_values_of_their_columns(self):
-        vary = "vary: {matcher.units: [all, 40, 81], matcher.rows: [1, 2], matcher.cost: [sad, {census: 5}]}\n"
-        where = "where: matcher.units <> 40 OR matcher.cost LIKE '%census%'\n"
-        plan = self.file("keys.yaml", PLAN[:PLAN.index("vary")] + vary + where)
-        said = self.succeeds(self.sweep(plan=plan))
-        self.assertIn("12 points: 6 ok, 4 impossible, 0 failed, 2 left out by where", said)
-        keys = '"matcher.units", "matcher.rows", "matcher.cost", "fpga.tables", "fpga.pixel_cache"'
-        rows = self.query(f"SELECT {keys} FROM points WHERE status = 'ok'")
-        self.assertEqual(set(rows), {
-            (units, lines, cost, "separate", "none")
-            for units, cost in (("all", "sad"), ("all", "{census: 5}"), (40, "{census: 5}")) for lines in (1, 2)})
-        reasons = self.query("SELECT DISTINCT reason FROM points WHERE status = 'impossible'")
-        self.assertEqual(reasons, [("matcher.units = 81: 1..disparities, which is 80, or all",)])
-        ((config,),) = self.query(f"SELECT config FROM points WHERE ({keys}) = (40, 2, '{{census: 5}}', "
-                                  "'separate', 'none')")
-        self.assertIn("  units: 40\n  rows: 2\n  cost: {census: 5}\n", config)
-
     def test_names_that_sqlite_would_take_for_no_file_are_files(self):
         sweep, here = ["sweep", self.plan, "--out"], {"cwd": self.folder}
         merged = self.folder / "file:merged.db"
@@ -365,16 +348,6 @@ class Meanwhile(SweepTest):
         self.store.unlink()
         gone = f"{self.store}: was removed or replaced while in use: its points are lost"
         self.ends(process, 1, errors=f"stereotlm: error: {gone}\n")
-
-    def test_a_damaged_database_is_not_said_to_be_kept(self):
-        process = self.begin()
-        with open(self.store, "r+b") as damaged:
-            damaged.write(b"damage" * 1000)
-        (self.folder / "points.db-wal").write_bytes(b"")
-        out, errors = process.communicate(timeout=60)
-        self.assertEqual((process.returncode, out), (1, ""), errors)
-        self.assertIn("points.db", errors)
-        self.assertNotIn("kept", errors)
 
     @program.slow
     def test_a_terminal_shows_its_progress(self):

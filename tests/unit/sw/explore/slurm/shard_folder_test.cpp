@@ -2,25 +2,19 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
-#include "sw/explore/store/store_reader.h"
 #include "tests/unit/sw/explore/store_files.h"
 
 namespace stereotlm::explore {
 namespace {
 
-namespace fs = std::filesystem;
 using test::message_of;
 using test::read_file;
 using test::write_file;
-using ::testing::ElementsAre;
 using ::testing::EndsWith;
-using ::testing::UnorderedElementsAre;
 
 ShardedSweep three_shards() {
   ShardedSweep sweep;
@@ -36,7 +30,6 @@ class ShardFolderTest : public StoreFiles {
   ShardFolderTest() { folder.lock(); }
 
   static std::string shard_file(const std::string& name) { return "a.db.shards/" + name; }
-  std::string text_of(const std::string& name) const { return read_file(file(shard_file(name))); }
   void write(const std::string& name, const std::string& text) const {
     write_file(file(shard_file(name)), text);
   }
@@ -44,15 +37,6 @@ class ShardFolderTest : public StoreFiles {
   std::string store = file("a.db");
   ShardFolder folder{store};
 };
-
-TEST(ShardedSweep, SharesItsPoints) {
-  ShardedSweep sweep = three_shards();
-  EXPECT_EQ(sweep.points_of(0), 4U);
-  EXPECT_EQ(sweep.points_of(1), 3U);
-  EXPECT_EQ(sweep.points_of(2), 3U);
-  sweep.shards = 11;
-  EXPECT_EQ(sweep.points_of(10), 0U);
-}
 
 TEST_F(ShardFolderTest, BelongsToTheSweepThatHasBegunIt) {
   EXPECT_FALSE(folder.is_of(three_shards()));
@@ -69,50 +53,6 @@ TEST_F(ShardFolderTest, BelongsToTheSweepThatHasBegunIt) {
   }
 }
 
-TEST_F(ShardFolderTest, HoldsTheFilesThatItsTasksNeedAndNoOthers) {
-  ShardedSweep sweep = three_shards();
-  sweep.board = "extends: fpl2003\n";
-  sweep.calibration = {"the rig", "left", "right"};
-  folder.begin(sweep);
-  EXPECT_THAT(names_in(folder.path()),
-              UnorderedElementsAre("lock", "sweep", "plan.yaml", "board.yaml", "calibration.yaml",
-                                   "calibration_left.lut", "calibration_right.lut", "task.sh", "merge.sh"));
-  EXPECT_EQ(text_of("plan.yaml"), sweep.plan);
-  EXPECT_EQ(text_of("board.yaml"), *sweep.board);
-  EXPECT_EQ(text_of("calibration.yaml"), "the rig");
-  EXPECT_EQ(text_of("calibration_left.lut"), "left");
-  EXPECT_EQ(text_of("calibration_right.lut"), "right");
-  folder.begin(three_shards());
-  EXPECT_THAT(names_in(folder.path()),
-              UnorderedElementsAre("lock", "sweep", "plan.yaml", "task.sh", "merge.sh"));
-  folder.remove();
-  EXPECT_FALSE(folder.exists());
-}
-
-TEST_F(ShardFolderTest, IsLockedForOneProcess) {
-  ShardFolder other(store);
-  EXPECT_THAT(message_of([&] { other.lock(); }),
-              EndsWith("a.db.shards: another process waits for these shards already"));
-}
-
-TEST_F(ShardFolderTest, ReportsTheShardsAsOfTheLastRefresh) {
-  folder.begin(three_shards());
-  write("shard_1.db", "");
-  write("shard_2.work", "");
-  write("shard_1.progress", "ok 3\n");
-  write("merged", "");
-  EXPECT_FALSE(folder.is_whole(1));
-  folder.refresh();
-  EXPECT_FALSE(folder.is_whole(0));
-  EXPECT_TRUE(folder.is_whole(1));
-  EXPECT_FALSE(folder.is_whole(2));
-  EXPECT_EQ(folder.counts(1).ok, 3U);
-  EXPECT_EQ(folder.counts(0).done(), 0U);
-  EXPECT_FALSE(folder.is_merged()) << "without the store";
-  add("a.db", {ok_point("h1")});
-  EXPECT_TRUE(folder.is_merged());
-}
-
 TEST_F(ShardFolderTest, KeepsThePointsOfAllShards) {
   add("a.db", {ok_point("h1")});
   folder.begin(three_shards());
@@ -125,26 +65,6 @@ TEST_F(ShardFolderTest, KeepsThePointsOfAllShards) {
   EXPECT_EQ(read_file(store), read_file(file("expected.db")));
 }
 
-TEST_F(ShardFolderTest, KeepsThePointsOfManyShardsWithFewOpenFiles) {
-  constexpr std::size_t kShards = 40;
-  folder.begin(three_shards());
-  for (std::size_t shard = 0; shard < kShards; ++shard)
-    add(shard_file("shard_" + std::to_string(shard) + ".work"), {ok_point("h" + std::to_string(shard))});
-  rlimit before{};
-  ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &before), 0);
-  const rlimit few = {64, before.rlim_max};
-  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &few), 0);
-  folder.keep_points("1");
-  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &before), 0);
-  EXPECT_EQ(hashes("a.db").size(), kShards);
-}
-
-TEST_F(ShardFolderTest, MakesNoStoreWithoutPoints) {
-  folder.begin(three_shards());
-  folder.keep_points("1");
-  EXPECT_FALSE(fs::exists(store));
-}
-
 TEST_F(ShardFolderTest, RefusesAStoreOfAnotherVersionOrWithBanksThatDifferOnlyInCase) {
   StoredPoint point = ok_point("h1");
   point.keys = {{"ssram.banks.a.words", std::int64_t{1}}};
@@ -155,13 +75,6 @@ TEST_F(ShardFolderTest, RefusesAStoreOfAnotherVersionOrWithBanksThatDifferOnlyIn
   sweep.version = "2";
   EXPECT_THAT(message_of([&] { folder.begin(sweep); }),
               EndsWith("a.db: holds points of version 1; this is version 2: give another file"));
-}
-
-TEST_F(ShardFolderTest, GivesTheStoreTheFormThatManyMayRead) {
-  add("a.db", {ok_point("h1")});
-  folder.begin(three_shards());
-  EXPECT_TRUE(FinishedStore(store, "1").has("h1"));
-  EXPECT_THAT(names(), UnorderedElementsAre("a.db", "a.db.shards"));
 }
 
 }  // namespace

@@ -13,41 +13,6 @@
 namespace stereotlm::explore {
 namespace {
 
-TEST(Claims, BeginsThePointsInTheirOrderAndCountsTheirEnds) {
-  Claims claims(2, 7);
-  const std::vector<PointEnd> ends = {PointEnd::kExcluded,   PointEnd::kKnown,  PointEnd::kOk,
-                                      PointEnd::kImpossible, PointEnd::kFailed, PointEnd::kGivenUp,
-                                      PointEnd::kOk};
-  for (std::size_t point = 0; point < ends.size(); ++point) {
-    EXPECT_EQ(claims.begin(point % 2), point);
-    EXPECT_EQ(claims.counts().done(), point);
-    claims.end(point % 2, ends[point]);
-  }
-  EXPECT_EQ(claims.begin(0), std::nullopt);
-  EXPECT_EQ(counts_text(claims.counts()), counts_text({7, 1, 1, 2, 1, 1, 1}));
-}
-
-TEST(Claims, BeginsAnUnfinishedPointOfThePlaceAgain) {
-  Claims claims(2, 3);
-  EXPECT_EQ(claims.unfinished(1), std::nullopt);
-  EXPECT_EQ(claims.begin(0), 0U);
-  EXPECT_EQ(claims.begin(1), 1U);
-  EXPECT_EQ(claims.unfinished(1), 1U);
-  EXPECT_EQ(claims.begin(1), 1U);
-  claims.end(1, PointEnd::kOk);
-  EXPECT_EQ(claims.unfinished(1), std::nullopt);
-  EXPECT_EQ(claims.begin(1), 2U);
-  EXPECT_EQ(claims.begin(0), 0U);
-}
-
-TEST(Claims, BeginsNoPointOnceItIsStopped) {
-  Claims claims(1, 3);
-  EXPECT_EQ(claims.begin(0), 0U);
-  claims.stop();
-  EXPECT_EQ(claims.begin(0), std::nullopt) << "not even the unfinished one";
-  EXPECT_EQ(claims.counts().done(), 0U);
-}
-
 TEST(Claims, GivesEachPointToOneOfManyProcesses) {
   constexpr std::size_t kProcesses = 4;
   constexpr std::uint64_t kPoints = 20000;

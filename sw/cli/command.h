@@ -1,0 +1,73 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "sw/cli/options.h"
+
+namespace stereotlm::cli {
+
+// Exit status of the program (contract section 5).
+inline constexpr int kDone = 0;
+inline constexpr int kFailed = 1;   // the command failed while it worked
+inline constexpr int kRefused = 2;  // the command was refused before it began
+inline constexpr int kInterrupted = 130;
+
+// Executes the command that was parsed and returns the exit status. Throws Refused if the command cannot be
+// done; it has then had no effect.
+using Action = std::function<int()>;
+
+// Parses the arguments and returns the action that main() runs. For --help and --version, the action prints
+// the text. Throws Refused if the arguments are wrong.
+Action parse_command_line(int argc, const char* const* argv);
+
+// Adds a command to the program. `footer`: the end of its help. when_parsed() sets what the parser calls if
+// the command line has the command.
+CLI::App& add_command(CLI::App& program, const std::string& name, const std::string& description,
+                      const std::string& footer);
+void when_parsed(CLI::App& command, const std::function<void()>& parsed);
+
+// Adds a command with options. Parsing checks them, and sets `action` to `run` with them, if the command line
+// has the command.
+template <typename CommandOptions>
+void add_command(CLI::App& program, Action& action, const std::string& name, const std::string& description,
+                 int (*run)(const CommandOptions&), const std::string& footer = "") {
+  CLI::App& command = add_command(program, name, description, footer);
+  const auto options = std::make_shared<CommandOptions>(command);
+  when_parsed(command, [options, run, &action] {
+    options->check_usage();
+    action = [options, run] { return run(*options); };
+  });
+}
+
+// Each function adds one command to the program. Parsing sets `action` if the command line has that command,
+// and throws Refused if its options are wrong.
+void add_run(CLI::App& program, Action& action);
+void add_check(CLI::App& program, Action& action);
+void add_boards(CLI::App& program, Action& action);
+void add_keys(CLI::App& program, Action& action);
+void add_bounds(CLI::App& program, Action& action);
+void add_explain(CLI::App& program, Action& action);
+void add_calibrate(CLI::App& program, Action& action);
+void add_allocate(CLI::App& program, Action& action);
+void add_sweep(CLI::App& program, Action& action);
+void add_merge(CLI::App& program, Action& action);
+void add_plot(CLI::App& program, Action& action);
+void add_conflicts(CLI::App& program, Action& action);
+void add_diagram(CLI::App& program, Action& action);
+void add_diff(CLI::App& program, Action& action);
+void add_report(CLI::App& program, Action& action);
+void add_paper(CLI::App& program, Action& action);
+
+// Prints the document to standard output.
+void print_json(const nlohmann::ordered_json& document);
+
+// Prints a note that the command was interrupted, and returns kInterrupted. `what`: what that means.
+int interrupted(const std::string& what);
+
+// Reports now if no folder for temporary files can be made, which the command will need.
+void check_temporary_folder(process::Problems& problems);
+
+}  // namespace stereotlm::cli

@@ -1,0 +1,106 @@
+#include "sw/cli/options.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "platform/config/board_keys.h"
+#include "sw/cli/command.h"
+#include "sw/files/json_text.h"
+#include "sw/files/temporary_folder.h"
+#include "sw/process/streams.h"
+
+// Implements options.h and command.h. The commands include these instead of CLI11, which takes long to
+// compile.
+namespace stereotlm::cli {
+
+Rule required(const std::string& what) {
+  return [what](const Option& option, process::Problems& problems) {
+    const bool is_empty = option.text().empty() && option.texts().empty();
+    if (!option.is_given() || is_empty) problems.add(fmt::format("{}: missing: {}", option.name(), what));
+  };
+}
+
+Rule valid(const std::string& rule, const std::function<bool(const std::string&)>& is_valid) {
+  return [rule, is_valid](const Option& option, process::Problems& problems) {
+    if (option.is_given() && !is_valid(option.text()))
+      problems.add(fmt::format("{} = {}: must be {}", option.name(), option.text(), rule));
+  };
+}
+
+Rule one_of(const std::vector<std::string>& words) {
+  return valid(platform::listed(words), [words](const std::string& text) {
+    return std::find(words.begin(), words.end(), text) != words.end();
+  });
+}
+
+Rule ends_in(const std::string& ending) {
+  return [ending](const Option& option, process::Problems& problems) {
+    if (option.is_given() && std::filesystem::path(option.text()).extension() != ending)
+      problems.add(fmt::format("{} '{}': must end in {}", option.name(), option.text(), ending));
+  };
+}
+
+Rule goes_with(const Option& other, const std::string& value) {
+  return [&other, value](const Option& option, process::Problems& problems) {
+    if (option.is_given() && !other.is_given())
+      problems.add(fmt::format("{}: goes with {} {}", option.name(), other.name(), value));
+  };
+}
+
+void Options::check_usage() {
+  process::Problems problems;
+  for (const auto& [option, rules] : rules_) {
+    for (const Rule& rule : rules) rule(*option, problems);
+  }
+  check_together(problems);
+  problems.check();
+}
+
+Option::Option(Options* of, const std::string& name, const std::string& value, const std::string& meaning,
+               const std::vector<Rule>& rules, Takes takes)
+    : name_(name.substr(0, name.find(','))) {
+  if (of == nullptr) return;
+  of->rules_.emplace_back(this, rules);
+  CLI::App& command = *of->command_;
+  if (value.empty()) {
+    command.add_flag(name, is_given_, meaning);
+    return;
+  }
+  CLI::Option* option = takes == Takes::kOne ? command.add_option(name, text_, meaning)
+                                             : command.add_option(name, texts_, meaning);
+  option->option_text(value)->each([this](const std::string& /*word*/) { is_given_ = true; });
+  if (takes == Takes::kOneOrTwo) option->expected(1, 2);
+  if (takes == Takes::kRepeated) option->allow_extra_args(false);
+}
+
+CLI::App& add_command(CLI::App& program, const std::string& name, const std::string& description,
+                      const std::string& footer) {
+  CLI::App* command = program.add_subcommand(name, description);
+  command->footer(footer);
+  command->add_flag_callback("--quiet", process::leave_out_notes, "Leave out notes and progress");
+  return *command;
+}
+
+void when_parsed(CLI::App& command, const std::function<void()>& parsed) { command.callback(parsed); }
+
+void print_json(const nlohmann::ordered_json& document) {
+  process::print(files::json_text(document, nlohmann::ordered_json::error_handler_t::replace));
+}
+
+int interrupted(const std::string& what) {
+  process::say("note", "interrupted: " + what);
+  return kInterrupted;
+}
+
+void check_temporary_folder(process::Problems& problems) {
+  try {
+    const files::TemporaryFolder folder;
+  } catch (const std::runtime_error& error) {
+    problems.add(error.what());
+  }
+}
+
+}  // namespace stereotlm::cli
