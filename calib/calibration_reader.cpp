@@ -7,30 +7,69 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
 
-#include "calib/storage_yaml.h"
+#include "platform/yaml/yaml_tree.h"
 
 namespace stereotlm::calib {
 namespace {
 
-using Kind = StorageValue::Kind;
+using platform::YamlNode;
+
+constexpr const char* kRule = "must be OpenCV FileStorage YAML";
+
+[[noreturn]] void refuse(int line, const std::string& found, const std::string& rule) {
+  throw std::runtime_error(fmt::format("line {}: {}: {}", line, found, rule));
+}
+
+// Refuses what FileStorage does not write: anchors, aliases, keys that are no texts, and keys that are
+// repeated.
+void check_tree(const YamlNode& node) {
+  if (!node.misuse.empty()) refuse(node.place.line, "an anchor or alias", kRule);
+  for (const YamlNode& item : node.items) check_tree(item);
+  std::set<std::string> keys;
+  for (const auto& [key, value] : node.entries) {
+    if (!key.is_scalar()) refuse(key.place.line, "a key that is no text", kRule);
+    if (!keys.insert(key.text).second) refuse(key.place.line, key.text, "must be there once");
+    check_tree(value);
+  }
+}
+
+// The map of a FileStorage text.
+YamlNode parse_storage(const std::string& text) {
+  constexpr const char* kBegin = "%YAML:1.0";
+  if (text.rfind(kBegin, 0) != 0)
+    refuse(1, "no OpenCV FileStorage", fmt::format("must begin with {}", kBegin));
+  if (text.size() > kMostCalibrationBytes)
+    throw std::runtime_error(fmt::format("{} bytes: must be {} at most", text.size(), kMostCalibrationBytes));
+  try {
+    // The first line is no directive of YAML. As a comment it is ignored.
+    YamlNode root =
+        platform::parse_yaml('#' + text.substr(1), platform::Place::kBoard, platform::Dialect::kOpenCv);
+    if (!root.is_map()) refuse(root.place.line, "no map of keys and values", kRule);
+    check_tree(root);
+    return root;
+  } catch (const platform::YamlError& error) {
+    refuse(error.place.line, error.what(), kRule);
+  }
+}
 
 // The value as a number. Nullopt if its text is in quotes, or if a part of the text does not belong to a
 // number.
 template <typename Number>
-std::optional<Number> number_of(const StorageValue& value) {
+std::optional<Number> number_of(const YamlNode& value) {
   Number number = 0;
   const char* const end = value.text.data() + value.text.size();
   const auto [stop, error] = std::from_chars(value.text.data(), end, number);
-  if (value.kind != Kind::kScalar || value.quoted || error != std::errc() || stop != end) return std::nullopt;
+  if (!value.is_scalar() || value.quoted || error != std::errc() || stop != end) return std::nullopt;
   return number;
 }
 
 // Accepts the words that OpenCV writes for numbers that are not finite.
-std::optional<double> double_of(const StorageValue& value) {
+std::optional<double> double_of(const YamlNode& value) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   if (value.text == ".Inf") return kInfinity;
   if (value.text == "-.Inf") return -kInfinity;
@@ -41,27 +80,27 @@ std::optional<double> double_of(const StorageValue& value) {
 // Reads a map of the file. `path` precedes the keys in messages.
 class Reader {
  public:
-  explicit Reader(const StorageValue& map, std::string path = "") : map_(map), path_(std::move(path)) {}
+  explicit Reader(const YamlNode& map, std::string path = "") : map_(map), path_(std::move(path)) {}
 
-  const StorageValue& at(const std::string& key) const {
-    const StorageValue* const found = map_.find(key);
+  const YamlNode& at(const std::string& key) const {
+    const YamlNode::Entry* const found = map_.find(key);
     if (found == nullptr) {
       throw std::runtime_error(fmt::format("{}{}: missing: a calibration has this key", path_, key));
     }
-    return *found;
+    return found->value;
   }
 
   bool has(const std::string& key) const { return map_.find(key) != nullptr; }
 
   Reader map(const std::string& key) const {
-    const StorageValue& found = at(key);
-    if (found.kind != Kind::kMap) refuse(key, "no map", "must be a map");
+    const YamlNode& found = at(key);
+    if (!found.is_map()) refuse(key, "no map", "must be a map");
     return Reader(found, path_ + key + ".");
   }
 
-  const std::vector<StorageValue>& list(const std::string& key) const {
-    const StorageValue& found = at(key);
-    if (found.kind != Kind::kList) refuse(key, "no list", "must be a list");
+  const std::vector<YamlNode>& list(const std::string& key) const {
+    const YamlNode& found = at(key);
+    if (!found.is_list()) refuse(key, "no list", "must be a list");
     return found.items;
   }
 
@@ -84,8 +123,8 @@ class Reader {
   }
 
   std::string text(const std::string& key) const {
-    const StorageValue& found = at(key);
-    if (found.kind != Kind::kScalar) refuse(key, "no text", "must be a text");
+    const YamlNode& found = at(key);
+    if (!found.is_scalar()) refuse(key, "no text", "must be a text");
     return found.text;
   }
 
@@ -101,14 +140,15 @@ class Reader {
       refuse(key, fmt::format("{}x{} of {}", found_rows, found_columns, its.text("dt")),
              fmt::format("must be {}x{} of d, doubles", rows, columns));
     }
-    const std::vector<StorageValue>& data = its.list("data");
+    const std::vector<YamlNode>& data = its.list("data");
     if (data.size() != static_cast<std::size_t>(rows * columns))
       its.refuse("data", fmt::format("{} numbers", data.size()), fmt::format("must be {}", rows * columns));
     for (int i = 0; i < rows * columns; ++i) {
-      const StorageValue& item = data[static_cast<std::size_t>(i)];
+      const YamlNode& item = data[static_cast<std::size_t>(i)];
       const auto value = double_of(item);
-      if (!value) its.refuse_at(item.line, "data", "no number", "must hold numbers");
-      if (!std::isfinite(*value)) its.refuse_at(item.line, "data", "not finite", "must hold finite numbers");
+      if (!value) its.refuse_at(item.place.line, "data", "no number", "must hold numbers");
+      if (!std::isfinite(*value))
+        its.refuse_at(item.place.line, "data", "not finite", "must hold finite numbers");
       result(i / columns, i % columns) = *value;
     }
     return result;
@@ -144,16 +184,16 @@ class Reader {
   }
 
   [[noreturn]] void refuse(const std::string& key, const std::string& found, const std::string& rule) const {
-    refuse_at(at(key).line, key, found, rule);
+    refuse_at(at(key).place.line, key, found, rule);
   }
 
  private:
   [[noreturn]] void refuse_at(int line, const std::string& key, const std::string& found,
                               const std::string& rule) const {
-    throw std::runtime_error(fmt::format("line {}: {}{}: {}: {}", line, path_, key, found, rule));
+    calib::refuse(line, fmt::format("{}{}: {}", path_, key, found), rule);
   }
 
-  const StorageValue& map_;
+  const YamlNode& map_;
   std::string path_;
 };
 
@@ -196,7 +236,7 @@ Quality quality_of(const Reader& file) {
 
 std::vector<Source> sources_of(const Reader& file) {
   std::vector<Source> sources;
-  for (const StorageValue& item : file.list("sources")) {
+  for (const YamlNode& item : file.list("sources")) {
     const Reader source(item, "sources.");
     sources.push_back({source.text("left"), source.text("right"), source.count("corners_used")});
   }
@@ -228,7 +268,7 @@ Calibration calibration_of(const Reader& file) {
 }  // namespace
 
 Calibration parse_calibration(const std::string& text) {
-  const StorageValue root = parse_storage(text);
+  const YamlNode root = parse_storage(text);
   return calibration_of(Reader(root));
 }
 

@@ -5,8 +5,8 @@
 #include <opencv2/core.hpp>
 #include <stdexcept>
 
+#include "calib/calibration_reader.h"
 #include "calib/opencv_conversions.h"
-#include "calib/storage_yaml.h"
 
 namespace stereotlm::calib {
 namespace {
@@ -69,10 +69,10 @@ std::string calibration_yaml(const Calibration& calibration) {
   write(file, calibration.sources);
   write(file, calibration.quality);
   std::string text = file.releaseAndGetString();
-  if (text.size() > kMostStorageBytes) {
+  if (text.size() > kMostCalibrationBytes) {
     throw std::runtime_error(
         fmt::format("a calibration of {} pairs = {} bytes: must be {} at most: fewer pairs, or shorter paths",
-                    calibration.sources.size(), text.size(), kMostStorageBytes));
+                    calibration.sources.size(), text.size(), kMostCalibrationBytes));
   }
   return text;
 }

@@ -9,7 +9,6 @@
 #include <system_error>
 
 #include "calib/calibration_reader.h"
-#include "calib/storage_yaml.h"
 #include "sw/files/folder_entries.h"
 #include "sw/files/whole_file.h"
 
@@ -99,7 +98,7 @@ void check_earlier(const runs::RigFiles& files, bool makes_pictures, bool in_com
   if (makes_pictures) check_folder(files.pictures, kPictures);
   if (!is_there(files.calibration)) return;
   try {
-    calib::parse_calibration(files::read_whole_file(files.calibration, calib::kMostStorageBytes));
+    calib::parse_calibration(files::read_whole_file(files.calibration, calib::kMostCalibrationBytes));
   } catch (const std::exception& error) {
     throw std::runtime_error(fmt::format("'{}': exists and is no calibration ({}): must be moved away",
                                          files.calibration.string(), error.what()));

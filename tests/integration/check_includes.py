@@ -14,15 +14,16 @@ import sys
 MAY_INCLUDE = {
     "models": ["models"],
     "platform": ["platform", "models"],
-    "calib": ["calib", "models/kernels"],
+    "calib": ["calib", "models/kernels", "platform/yaml"],
     "sw": ["sw", "platform", "models", "calib"],
     "tests": ["tests", "sw", "platform", "models", "calib"],
 }
 # The same within a folder: room -> rooms below it in the same folder. A file belongs to the longest room that its
 # path begins with.
 ROOMS = {
-    "platform/config": ["platform/boards"],
-    "platform": ["platform/config"],
+    "platform/yaml": [],
+    "platform/config": ["platform/boards", "platform/yaml"],
+    "platform": ["platform/config", "platform/yaml"],
     "sw/files": [],
     "sw/driver": [],
     "sw/media": [],

@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "platform/yaml/utf8.h"
+
 namespace stereotlm::report {
 namespace {
 
@@ -35,30 +37,14 @@ struct Character {
   std::string_view bytes;
 };
 
-// The character at the beginning of the text, which is not empty. A byte that begins none is kReplacement.
-Character first_character(std::string_view text) {
-  const auto byte = [text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  const std::size_t length = byte(0) < 0x80    ? 1
-                             : byte(0) >= 0xF0 ? 4
-                             : byte(0) >= 0xE0 ? 3
-                             : byte(0) >= 0xC2 ? 2
-                                               : 0;
-  if (length == 0 || length > text.size() || byte(0) > 0xF4) return {kReplacement, text.substr(0, 1)};
-  constexpr std::array<unsigned char, 5> kFirstBits = {0, 0x7F, 0x1F, 0x0F, 0x07};
-  char32_t code = byte(0) & kFirstBits[length];
-  for (std::size_t i = 1; i < length; ++i) {
-    if ((byte(i) & 0xC0U) != 0x80) return {kReplacement, text.substr(0, 1)};
-    code = code << 6U | (byte(i) & 0x3FU);
-  }
-  constexpr std::array<char32_t, 5> kLeast = {0, 0, 0x80, 0x800, 0x10000};
-  const bool is_surrogate = code >= 0xD800 && code <= 0xDFFF;
-  if (code < kLeast[length] || code > 0x10FFFF || is_surrogate) return {kReplacement, text.substr(0, 1)};
-  return {code, text.substr(0, length)};
-}
-
+// The characters of a text. A byte that begins none is kReplacement.
 std::vector<Character> characters(std::string_view text) {
   std::vector<Character> all;
-  for (; !text.empty(); text.remove_prefix(all.back().bytes.size())) all.push_back(first_character(text));
+  for (; !text.empty(); text.remove_prefix(all.back().bytes.size())) {
+    const auto [code, bytes] = platform::first_character(text);
+    all.push_back(bytes == 0 ? Character{kReplacement, text.substr(0, 1)}
+                             : Character{code, text.substr(0, bytes)});
+  }
   return all;
 }
 

@@ -7,7 +7,6 @@
 
 #include "calib/calibration_reader.h"
 #include "calib/lut_file.h"
-#include "calib/storage_yaml.h"
 #include "calib/tables.h"
 #include "sw/files/sha256.h"
 #include "sw/files/whole_file.h"
@@ -66,7 +65,7 @@ std::optional<CalibrationInput> load_calibration(const std::string& path, const 
     for (const fs::path& file : {files.calibration, files.left_lut, files.right_lut}) {
       input.files.push_back({named, file.string()});
     }
-    const std::string content = files::read_whole_file(files.calibration, calib::kMostStorageBytes);
+    const std::string content = files::read_whole_file(files.calibration, calib::kMostCalibrationBytes);
     input.described.file = described(files.calibration, content);
     try {
       input.calibration = std::make_shared<const calib::Calibration>(calib::parse_calibration(content));

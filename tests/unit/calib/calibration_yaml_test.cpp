@@ -11,7 +11,6 @@
 
 #include "calib/calibration_reader.h"
 #include "calib/opencv_conversions.h"
-#include "calib/storage_yaml.h"
 #include "calib/synthetic_rig.h"
 #include "tests/support/scratch_folder.h"
 
@@ -113,12 +112,12 @@ TEST(CalibrationYaml, IsRefusedInBoundedTimeIfItIsHugeOrDeep) {
   for (const std::string part : {"[", "{a: ", "- ", "\n- ", "? ", "a: ", "[a, ", "\"", "!", "!!a ", "&a ",
                                  "*a ", "#", "\n ", "|\n ", ",", ": ", "[1,"}) {
     std::string text = begin;
-    while (text.size() + part.size() <= kMostStorageBytes) text += part;
+    while (text.size() + part.size() <= kMostCalibrationBytes) text += part;
     EXPECT_THROW(parse_calibration(text), std::runtime_error) << part;
   }
   const std::string deep = "line 3: nested too deeply: 8 maps and lists in each other at most";
   EXPECT_EQ(refusal(begin + std::string(50'000, '[')), deep);
-  EXPECT_EQ(refusal(begin + "1 " + std::string(kMostStorageBytes, '#')),
+  EXPECT_EQ(refusal(begin + "1 " + std::string(kMostCalibrationBytes, '#')),
             "1000019 bytes: must be 1000000 at most");
 }
 

@@ -90,15 +90,6 @@ TEST(BoardExtends, SuppliesWhatTheFileLeavesOutMapByMap) {
       expected);
 }
 
-TEST(BoardExtends, WorksBesideALoadThatNoPresetHas) {
-  BoardConfig expected;
-  expected.pci.memory_wait_clocks = 4;
-  expected.pci.load = PciLoadConfig{16, 2.5, 0, 0};
-  EXPECT_EQ(load_text("extends: fpl2003\n"
-                      "pci: {load: {burst_words: 16, interval_us: 2.5}, memory_wait_clocks: 4}\n"),
-            expected);
-}
-
 TEST(BoardExtends, TakesBanksFiltersAndListsWhole) {
   const BoardConfig board = load_text(
       "extends: fpl2003\n"
