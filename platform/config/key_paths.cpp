@@ -14,23 +14,28 @@ namespace {
 
 std::string_view last_part(std::string_view path) { return path.substr(path.rfind('.') + 1); }
 
-// The path without its last part.
-std::string_view section_of(std::string_view path) {
-  const std::size_t dot = path.rfind('.');
-  return dot == std::string_view::npos ? "" : path.substr(0, dot);
+// likely_distance() of two paths, without the sections with which both begin.
+std::optional<std::size_t> likely_path_distance(std::string_view path, std::string_view known) {
+  for (std::size_t dot = path.find('.'); dot != std::string_view::npos; dot = path.find('.')) {
+    if (path.substr(0, dot + 1) != known.substr(0, dot + 1)) break;
+    path.remove_prefix(dot + 1);
+    known.remove_prefix(dot + 1);
+  }
+  return likely_distance(path, known);
 }
 
-// The known path nearest to an unknown one; empty if no path is near. A known key of another section counts
-// as 2 further away: the right key in a wrong section is nearer than most wrong keys in the right section.
-// Below `ssram.banks` every name counts as the name of a bank.
+// The known path nearest to an unknown one; empty if no path is near. A key that only has a similar name,
+// in any section, counts as 2 further away. So the right key in a wrong section is nearer than most wrong keys
+// in the right section. Below `ssram.banks` every name counts as the name of a bank.
 std::string nearest_path(const std::string& path) {
   const std::string schema = schema_path(path);
   std::string best;
   std::size_t best_distance = std::numeric_limits<std::size_t>::max();
   const auto offer = [&](const std::string& known) {
     if (is_below(schema, known) || schema == known) return;  // a section that holds `path`, or of a bank
-    auto distance = likely_distance(last_part(schema), last_part(known));
-    if (distance && section_of(schema) != section_of(known)) *distance += 2;
+    auto distance = likely_path_distance(schema, known);
+    const auto moved = likely_distance(last_part(schema), last_part(known));
+    if (moved && (!distance || *moved + 2 < *distance)) distance = *moved + 2;
     if (!distance || *distance >= best_distance) return;
     best = known;
     best_distance = *distance;

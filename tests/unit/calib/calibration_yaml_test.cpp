@@ -95,13 +95,15 @@ TEST(CalibrationYaml, IsRefusedIfItIsNoStorage) {
            {begin, "line 3: no map of keys and values" + no_storage},
            {begin + "- 1\n", "line 3: no map of keys and values" + no_storage},
            {begin + "other: 1\n", "image_width: missing: a calibration has this key"},
-           {begin + "a: 1\nM1: [1, 2\n", "line 5: end of sequence flow not found" + no_storage},
-           {begin + "M1:\n   a: 1\n   : : x\n", "image_width: missing: a calibration has this key"},
+           {begin + "a: 1\nM1: [1, 2\n",
+            "line 5: not YAML: found the end, expected a comma or the ] of a list that began with [" +
+                no_storage},
+           {begin + "M1:\n   a: 1\n   : : x\n", "line 5: a key that is no text" + no_storage},
            {begin + "a: 1\nb: 2\na: 3\n", "line 5: a: must be there once"},
            {begin + "a: &x 1\n", "line 3: an anchor or alias" + no_storage},
-           {begin + "[a, b]: 1\n", "line 3: a key that is a map or list" + no_storage},
-           {begin + "a: 1\n---\nb: 2\n", "line 4: a second document: must be the only one"},
-           {begin + "a: 1\nb: \x04\n", "line 4: control character 0x04" + no_storage},
+           {begin + "[a, b]: 1\n", "line 3: a key that is no text" + no_storage},
+           {begin + "a: 1\n---\nb: 2\n", "line 4: one YAML document only" + no_storage},
+           {begin + "a: 1\nb: \x04\n", "line 4: control character 0x04: not allowed in YAML" + no_storage},
        }) {
     EXPECT_EQ(refusal(text), problem) << text;
   }
@@ -115,7 +117,7 @@ TEST(CalibrationYaml, IsRefusedInBoundedTimeIfItIsHugeOrDeep) {
     while (text.size() + part.size() <= kMostCalibrationBytes) text += part;
     EXPECT_THROW(parse_calibration(text), std::runtime_error) << part;
   }
-  const std::string deep = "line 3: nested too deeply: 8 maps and lists in each other at most";
+  const std::string deep = "line 3: nested too deeply: at most 100 levels: must be OpenCV FileStorage YAML";
   EXPECT_EQ(refusal(begin + std::string(50'000, '[')), deep);
   EXPECT_EQ(refusal(begin + "1 " + std::string(kMostCalibrationBytes, '#')),
             "1000019 bytes: must be 1000000 at most");

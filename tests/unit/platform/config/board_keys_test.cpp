@@ -23,6 +23,7 @@ TEST(NearestKey, IsNamedWhereItCanBeMeant) {
       {"widht", "image.width"},
       {"image.clock_mhz", "pci.clock_mhz"},
       {"pci.lode", "pci.load"},
+      {"image_width", "image.width"},
       {"matcher.filter.sift", "matcher.filter.shift"},
       {"matcher.windows", "matcher.window"},
       {"ssram.banks.b.wrods", "ssram.banks.b.words"},
