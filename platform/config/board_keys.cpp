@@ -27,18 +27,18 @@ using Entry = YamlNode::Entry;
 
 constexpr std::size_t kMaximumBuffers = 3;  // entries of an image or disparity list
 
-Key integer(const char* path, std::string meaning, const char* unit, const IntegerRule& rule,
-            int& (*field)(BoardConfig&)) {
+Key integer(const char* path, int* (*field)(BoardConfig&), std::string meaning, const char* unit,
+            const IntegerRule& rule) {
   return {path, std::move(meaning), unit, IntegerKey{field}, rule.text(), rule};
 }
 
-Key integer_or(const char* none, const char* path, std::optional<int>& (*field)(BoardConfig&),
+Key integer_or(const char* none, const char* path, std::optional<int>* (*field)(BoardConfig&),
                const char* meaning, const char* unit, const IntegerRule& rule) {
   return {path, meaning, unit, OptionalIntegerKey{none, field}, rule.text() + " or " + none, rule};
 }
 
-Key decimal(const char* path, const char* meaning, const char* unit, double min, double max,
-            double& (*field)(BoardConfig&)) {
+Key decimal(const char* path, double* (*field)(BoardConfig&), const char* meaning, const char* unit,
+            double min, double max) {
   return {path, meaning, unit, DecimalKey{min, max, field}, fmt::format("{}..{}", min, max), std::nullopt};
 }
 
@@ -46,20 +46,20 @@ Key decimal(const char* path, const char* meaning, const char* unit, double min,
 // word itself.
 template <typename Field>
 Key word(const char* path, Field field, const char* meaning, std::vector<std::string> words) {
-  using Value = std::remove_reference_t<decltype(field(std::declval<BoardConfig&>()))>;
+  using Value = std::remove_pointer_t<decltype(field(std::declval<BoardConfig&>()))>;
   WordKey key;
   key.words = words;
   if constexpr (std::is_same_v<Value, std::string>) {
-    key.get = [field](const BoardConfig& board) { return field(const_cast<BoardConfig&>(board)); };
+    key.get = [field](const BoardConfig& board) { return *field(const_cast<BoardConfig&>(board)); };
     key.set = [field, words](BoardConfig& board, int index) {
-      field(board) = words[static_cast<std::size_t>(index)];
+      *field(board) = words[static_cast<std::size_t>(index)];
     };
   } else {
     key.get = [field, words](const BoardConfig& board) {
-      const auto index = static_cast<std::size_t>(field(const_cast<BoardConfig&>(board)));
+      const auto index = static_cast<std::size_t>(*field(const_cast<BoardConfig&>(board)));
       return index < words.size() ? words[index] : std::to_string(index);
     };
-    key.set = [field](BoardConfig& board, int index) { field(board) = static_cast<Value>(index); };
+    key.set = [field](BoardConfig& board, int index) { *field(board) = static_cast<Value>(index); };
   }
   return {path, meaning, "", std::move(key), listed(words), std::nullopt};
 }
@@ -311,9 +311,9 @@ std::vector<Key> make_keys() {
                                                   memory::kTurnaroundRule.text(), turnaround_kinds());
   const std::string default_turnaround =
       fmt::format("turnaround of a {} bank that gives none of its own", turnaround_kinds());
-  Key trigger_words = integer(
-      "capture.fifo_trigger_words", "words in the FIFO at which it asks for the PCI bus", "words", {1, 4096},
-      [](B & b) -> auto& { return b.capture.fifo_trigger_words; });
+  Key trigger_words =
+      integer("capture.fifo_trigger_words", [](B& b) { return &b.capture.fifo_trigger_words; },
+              "words in the FIFO at which it asks for the PCI bus", "words", {1, 4096});
   trigger_words.rule_text = "1..fifo_words";
   return {
       coded(
@@ -322,40 +322,34 @@ std::vector<Key> make_keys() {
           "a text of one or more characters without control characters; quoted if it could be read as "
           "a number, a truth value or null"),
       integer(
-          "image.width", size_meaning("width", fpga::kWidthWithTableRule), "pixels", fpga::kWidthRule,
-          [](B & b) -> auto& { return b.image.width; }),
+          "image.width", [](B& b) { return &b.image.width; },
+          size_meaning("width", fpga::kWidthWithTableRule), "pixels", fpga::kWidthRule),
       integer(
-          "image.height", size_meaning("height", fpga::kHeightWithTableRule), "pixels", fpga::kHeightRule,
-          [](B & b) -> auto& { return b.image.height; }),
+          "image.height", [](B& b) { return &b.image.height; },
+          size_meaning("height", fpga::kHeightWithTableRule), "pixels", fpga::kHeightRule),
       decimal(
-          "cameras.frame_rate_hz", "frame rate of both cameras; on demand that of their line times", "Hz",
-          0.1, 1000, [](B & b) -> auto& { return b.cameras.frame_rate_hz; }),
-      word("cameras.trigger", [](B & b) -> auto& { return b.cameras.trigger; },
+          "cameras.frame_rate_hz", [](B& b) { return &b.cameras.frame_rate_hz; },
+          "frame rate of both cameras; on demand that of their line times", "Hz", 0.1, 1000),
+      word("cameras.trigger", [](B& b) { return &b.cameras.trigger; },
            "whether frames follow a frame clock, or begin when triggered", {"free_running", "on_demand"}),
-      word("capture.destination", [](B & b) -> auto& { return b.capture.destination; },
+      word("capture.destination", [](B& b) { return &b.capture.destination; },
            "where capture writes: the FPGA board, or a ring in host memory", {"board", "host_memory"}),
-      integer(
-          "capture.host_frames", "pairs in the ring in host memory, which takes at most 1 GiB", "pairs",
-          {1, 64}, [](B & b) -> auto& { return b.capture.host_frames; }),
-      integer(
-          "capture.fifo_words", "FIFO of a capture board", "words", {1, 4096},
-          [](B & b) -> auto& { return b.capture.fifo_words; }),
+      integer("capture.host_frames", [](B& b) { return &b.capture.host_frames; },
+              "pairs in the ring in host memory, which takes at most 1 GiB", "pairs", {1, 64}),
+      integer("capture.fifo_words", [](B& b) { return &b.capture.fifo_words; }, "FIFO of a capture board",
+              "words", {1, 4096}),
       trigger_words,
       decimal(
-          "pci.clock_mhz", "clock of the PCI bus", "MHz", 1, 1000,
-          [](B & b) -> auto& { return b.pci.clock_mhz; }),
-      integer(
-          "pci.latency_timer_clocks", "latency timer of every PCI master", "clocks", {0, 255},
-          [](B & b) -> auto& { return b.pci.latency_timer_clocks; }),
-      integer(
-          "pci.bridge_wait_clocks", "wait clocks of the bridge as a PCI target", "clocks", {0, 255},
-          [](B & b) -> auto& { return b.pci.bridge_wait_clocks; }),
-      integer(
-          "pci.memory_wait_clocks", "wait clocks of host memory as a PCI target", "clocks", {0, 255},
-          [](B & b) -> auto& { return b.pci.memory_wait_clocks; }),
+          "pci.clock_mhz", [](B& b) { return &b.pci.clock_mhz; }, "clock of the PCI bus", "MHz", 1, 1000),
+      integer("pci.latency_timer_clocks", [](B& b) { return &b.pci.latency_timer_clocks; },
+              "latency timer of every PCI master", "clocks", {0, 255}),
+      integer("pci.bridge_wait_clocks", [](B& b) { return &b.pci.bridge_wait_clocks; },
+              "wait clocks of the bridge as a PCI target", "clocks", {0, 255}),
+      integer("pci.memory_wait_clocks", [](B& b) { return &b.pci.memory_wait_clocks; },
+              "wait clocks of host memory as a PCI target", "clocks", {0, 255}),
       optional(integer(
-          "pci.width_bits", "width of the PCI bus; optional, without it 32", "bits", pci::kWidthRule,
-          [](B & b) -> auto& { return b.pci.width_bits; })),
+          "pci.width_bits", [](B& b) { return &b.pci.width_bits; },
+          "width of the PCI bus; optional, without it 32", "bits", pci::kWidthRule)),
       optional({"pci.load", "a third-party master that loads the PCI bus; optional, without it none", "",
                 SectionKey{[](const B& b) { return b.pci.load.has_value(); },
                            [](B& b, bool is_given) {
@@ -363,60 +357,56 @@ std::vector<Key> make_keys() {
                            }},
                 "none or a map of burst_words, interval_us, first_us, access_us", std::nullopt}),
       integer(
-          "pci.load.burst_words", "words that each transfer of the load reads", "words", pci::kLoadBurstRule,
-          [](B & b) -> auto& { return b.pci.load.value().burst_words; }),
+          "pci.load.burst_words", [](B& b) { return &b.pci.load.value().burst_words; },
+          "words that each transfer of the load reads", "words", pci::kLoadBurstRule),
       decimal(
-          "pci.load.interval_us",
+          "pci.load.interval_us", [](B& b) { return &b.pci.load.value().interval_us; },
           "from one transfer's request to the next, to the nearest picosecond; 0: asks again at once, a hog",
-          "us", 0, microseconds(pci::kLoadTimeRule.max),
-          [](B & b) -> auto& { return b.pci.load.value().interval_us; }),
+          "us", 0, microseconds(pci::kLoadTimeRule.max)),
       optional(decimal(
-          "pci.load.first_us", "time of the first request, to the nearest picosecond; optional, without it 0",
-          "us", 0, microseconds(pci::kLoadTimeRule.max),
-          [](B & b) -> auto& { return b.pci.load.value().first_us; })),
+          "pci.load.first_us", [](B& b) { return &b.pci.load.value().first_us; },
+          "time of the first request, to the nearest picosecond; optional, without it 0", "us", 0,
+          microseconds(pci::kLoadTimeRule.max))),
       optional(decimal(
-          "pci.load.access_us",
+          "pci.load.access_us", [](B& b) { return &b.pci.load.value().access_us; },
           "time that the load's own device makes the bus wait before the first word, to the "
           "nearest picosecond; optional, without it 0",
-          "us", 0, microseconds(pci::kLoadAccessRule.max),
-          [](B & b) -> auto& { return b.pci.load.value().access_us; })),
+          "us", 0, microseconds(pci::kLoadAccessRule.max))),
       decimal(
-          "bridge.local_clock_mhz", "clock of the bridge's local bus", "MHz", 1, 1000,
-          [](B & b) -> auto& { return b.bridge.local_clock_mhz; }),
-      integer(
-          "bridge.dma_burst_words", "longest burst of a DMA channel", "words", {1, 1024},
-          [](B & b) -> auto& { return b.bridge.dma_burst_words; }),
-      integer(
-          "bridge.posted_words", "posted writes that the bridge can hold", "words", {1, 4096},
-          [](B & b) -> auto& { return b.bridge.posted_words; }),
+          "bridge.local_clock_mhz", [](B& b) { return &b.bridge.local_clock_mhz; },
+          "clock of the bridge's local bus", "MHz", 1, 1000),
+      integer("bridge.dma_burst_words", [](B& b) { return &b.bridge.dma_burst_words; },
+              "longest burst of a DMA channel", "words", {1, 1024}),
+      integer("bridge.posted_words", [](B& b) { return &b.bridge.posted_words; },
+              "posted writes that the bridge can hold", "words", {1, 4096}),
       word(
-          "fpga.device", [](B & b) -> auto& { return b.fpga.device; }, "the FPGA, for its resources",
+          "fpga.device", [](B& b) { return &b.fpga.device; }, "the FPGA, for its resources",
           names_in(area::kDevices)),
       decimal(
-          "fpga.clock_mhz", "clock of the FPGA core and of the SSRAM banks", "MHz", 1, 1000,
-          [](B & b) -> auto& { return b.fpga.clock_mhz; }),
+          "fpga.clock_mhz", [](B& b) { return &b.fpga.clock_mhz; },
+          "clock of the FPGA core and of the SSRAM banks", "MHz", 1, 1000),
       word(
-          "fpga.arbitration", [](B & b) -> auto& { return b.fpga.arbiter.policy; },
+          "fpga.arbitration", [](B& b) { return &b.fpga.arbiter.policy; },
           "how a bank picks one of the ports that request it", names_in(memory::arbitration_policies())),
       coded("fpga.priority", read_priority, write_priority, priority_meaning(),
             fmt::format("a list that names each port once: {}", fmt::join(port_names(), ", "))),
       integer(
-          "fpga.lane_fifo_slots", "slots that may be in a lane, taken and not yet consumed", "slots",
-          fpga::kLaneFifoRule, [](B & b) -> auto& { return b.fpga.lane_fifo_slots; }),
+          "fpga.lane_fifo_slots", [](B& b) { return &b.fpga.lane_fifo_slots; },
+          "slots that may be in a lane, taken and not yet consumed", "slots", fpga::kLaneFifoRule),
       integer(
-          "fpga.result_fifo_words",
+          "fpga.result_fifo_words", [](B& b) { return &b.fpga.result_fifo_words; },
           "queue of result words before the result port; with fewer than 2 for each of matcher.rows "
           "the matcher waits for it",
-          "words", fpga::kResultFifoRule, [](B & b) -> auto& { return b.fpga.result_fifo_words; }),
+          "words", fpga::kResultFifoRule),
       integer(
-          "fpga.pipeline_latency_cycles", "cycles of registers that the model does not spell out", "cycles",
-          fpga::kPipelineLatencyRule, [](B & b) -> auto& { return b.fpga.pipeline_latency_cycles; }),
-      optional(word("fpga.tables", [](B & b) -> auto& { return b.fpga.joint_tables; },
+          "fpga.pipeline_latency_cycles", [](B& b) { return &b.fpga.pipeline_latency_cycles; },
+          "cycles of registers that the model does not spell out", "cycles", fpga::kPipelineLatencyRule),
+      optional(word("fpga.tables", [](B& b) { return &b.fpga.joint_tables; },
                     "whether each side has a look-up table of its own, "
                     "or both share one; optional, without it separate",
                     {"separate", "joint"})),
       optional(word(
-          "fpga.pixel_cache", [](B & b) -> auto& { return b.fpga.pixel_cache; },
+          "fpga.pixel_cache", [](B& b) { return &b.fpga.pixel_cache; },
           "whether a lane keeps the last word that it read, for each slot of a column; optional, without it "
           "none",
           {"none", "word"})),
@@ -437,11 +427,11 @@ std::vector<Key> make_keys() {
       banks_key(Buffer::kLeftLut, "bank of the left rectification table", table_rule),
       banks_key(Buffer::kRightLut, "bank of the right rectification table", table_rule),
       integer(
-          "matcher.window", "rows and columns of the matching window", "pixels", kernels::kWindowRule,
-          [](B & b) -> auto& { return b.matcher.window; }),
+          "matcher.window", [](B& b) { return &b.matcher.window; }, "rows and columns of the matching window",
+          "pixels", kernels::kWindowRule),
       integer(
-          "matcher.disparities", "number of candidate disparities", "pixels", kernels::kDisparitiesRule,
-          [](B & b) -> auto& { return b.matcher.disparities; }),
+          "matcher.disparities", [](B& b) { return &b.matcher.disparities; },
+          "number of candidate disparities", "pixels", kernels::kDisparitiesRule),
       coded("matcher.filter", read_filter, write_filter, "filter before matching",
             "none, log7 or a map of kernel, shift"),
       part("matcher.filter.kernel", "weights of a filter of one's own, rows from the top", "",
@@ -449,21 +439,21 @@ std::vector<Key> make_keys() {
                kernels::kKernelEntryRule.text() + ", sum 0"),
       part("matcher.filter.shift", "right shift of the sum of a filter of one's own", "bits",
            kernels::kShiftRule.text(), kernels::kShiftRule),
-      word("matcher.fetch", [](B & b) -> auto& { return b.matcher.fetch; },
+      word("matcher.fetch", [](B& b) { return &b.matcher.fetch; },
            "how often a pixel is read: in every column of its window, or once", {"column", "line_buffer"}),
       integer_or(
-          "off", "matcher.lr_tolerance", [](B & b) -> auto& { return b.matcher.lr_tolerance; },
+          "off", "matcher.lr_tolerance", [](B& b) { return &b.matcher.lr_tolerance; },
           "difference that the left-right check tolerates", "pixels", kernels::kLrToleranceRule),
       optional(integer_or(
-          "all", "matcher.units", [](B & b) -> auto& { return b.matcher.units; },
+          "all", "matcher.units", [](B& b) { return &b.matcher.units; },
           "column and window modules, at most matcher.disparities; optional, without it all, "
           "one for each disparity",
           "modules", fpga::kUnitsRule)),
       optional(integer(
-          "matcher.rows",
+          "matcher.rows", [](B& b) { return &b.matcher.rows; },
           "rows of results computed at once, 1 unless matcher.fetch is column; optional, without "
           "it 1",
-          "rows", fpga::kRowsRule, [](B & b) -> auto& { return b.matcher.rows; })),
+          "rows", fpga::kRowsRule)),
       optional(coded("matcher.cost", read_cost, write_cost,
                      "how two windows are compared; optional, without it sad", listed(cost_texts()))),
       part("matcher.cost.census", "rows and columns of the neighbourhood of the census bits", "pixels",
@@ -474,7 +464,7 @@ std::vector<Key> make_keys() {
 // The value of a key's field. The accessors need a board that is not const.
 template <typename FieldKey>
 auto field(const FieldKey& key, const BoardConfig& board) {
-  return key.field(const_cast<BoardConfig&>(board));
+  return *key.field(const_cast<BoardConfig&>(board));
 }
 
 }  // namespace
@@ -543,14 +533,14 @@ struct FromNode {
   BoardConfig& board;
 
   void operator()(const IntegerKey& kind) const {
-    if (const auto value = values.read_integer(key, entry.value)) kind.field(board) = *value;
+    if (const auto value = values.read_integer(key, entry.value)) *kind.field(board) = *value;
   }
   void operator()(const OptionalIntegerKey& kind) const {
     if (entry.value.is(kind.none)) {
       values.accept(key.path, entry.value.place);
-      kind.field(board) = std::nullopt;
+      *kind.field(board) = std::nullopt;
     } else if (const auto value = values.read_integer(key, entry.value)) {
-      kind.field(board) = *value;
+      *kind.field(board) = *value;
     }
   }
   void operator()(const DecimalKey& kind) const {
@@ -560,7 +550,7 @@ struct FromNode {
       return values.report(key.path, entry.value, type + key.rule_text);
     }
     values.accept(key.path, entry.value.place);
-    kind.field(board) = *value;
+    *kind.field(board) = *value;
   }
   void operator()(const WordKey& kind) const {
     if (const auto index = values.read_word(key.path, entry.value, kind.words)) kind.set(board, *index);

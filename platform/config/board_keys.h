@@ -25,19 +25,19 @@ struct Key;
 // `--set`, sweeps and knobs follow from it. On a board without `pci.load`, `field` of the keys below it throws
 // std::bad_optional_access.
 struct IntegerKey {
-  int& (*field)(BoardConfig&);
+  int* (*field)(BoardConfig&);
 };
 
 // An integer, or a word that stands for no value.
 struct OptionalIntegerKey {
   const char* none;
-  std::optional<int>& (*field)(BoardConfig&);
+  std::optional<int>* (*field)(BoardConfig&);
 };
 
 struct DecimalKey {
   double min;
   double max;
-  double& (*field)(BoardConfig&);
+  double* (*field)(BoardConfig&);
 
   bool allows(double value) const { return value >= min && value <= max; }  // false for NaN
 };

@@ -323,22 +323,22 @@ class Steps {
 
   void add_key(const Key& key, const platform::IntegerKey& integer) {
     BoardConfig now = board_;
-    const int from = integer.field(now);
+    const int from = *integer.field(now);
     for (const int change : {static_cast<int>(key.numbers->step), -static_cast<int>(key.numbers->step)}) {
       add({key.path,
            std::to_string(from),
            std::to_string(from + change),
            {},
            begins_with(key.path, "matcher.") && key.path != "matcher.rows"},
-          [&](BoardConfig& b) { integer.field(b) += change; });
+          [&](BoardConfig& b) { *integer.field(b) += change; });
     }
   }
   void add_key(const Key& key, const platform::DecimalKey& decimal) {
     BoardConfig now = board_;
-    const double from = decimal.field(now);
+    const double from = *decimal.field(now);
     for (const double change : {1.0, -1.0}) {
       add({key.path, fmt::format("{:g}", from), fmt::format("{:g}", from + change)},
-          [&](BoardConfig& b) { decimal.field(b) += change; });
+          [&](BoardConfig& b) { *decimal.field(b) += change; });
     }
   }
   void add_key(const Key& key, const platform::WordKey& word) {
