@@ -239,6 +239,7 @@ TEST(BoardImage, IsLargerThan2048OnlyWithoutTables) {
   const std::string end = " to none, or a smaller image";
   const std::string none = "left_lut: none, right_lut: none";
   expect_refusals({{text(2052, 1, ""), width + both + end},
+                   {text(2052, 480, ""), width + both + end},  // and not that banks are too small
                    {text(4, 2049, ""), height + both + end},
                    {text(2052, 1, "left_lut: none"), width + "allocation.right_lut" + end},
                    {text(4, 2049, "right_lut: none"), height + "allocation.left_lut" + end},
