@@ -3,7 +3,7 @@
 include(CMakePackageConfigHelpers)
 
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/stereotlm)
-set(package_libraries kernels area arbitration models boards config platform)
+set(package_libraries kernels area arbitration models yaml config platform)
 
 foreach(library ${package_libraries})
   set_target_properties(stereotlm_${library} PROPERTIES EXPORT_NAME ${library})

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "platform/config/board_keys.h"
+#include "platform/config/key_paths.h"
 
 namespace stereotlm::platform {
 

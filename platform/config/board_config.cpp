@@ -3,186 +3,99 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 #include <numeric>
 #include <set>
 #include <stdexcept>
-#include <tuple>
 #include <utility>
-#include <variant>
 
-#include "models/kernels/stereo.h"
 #include "platform/config/board_keys.h"
 #include "platform/config/board_rules.h"
 #include "platform/config/buffer_layout.h"
+#include "platform/config/key_paths.h"
+#include "platform/config/value_reader.h"
 
 namespace stereotlm::platform {
 namespace {
 
-// Checks the rules of single fields and stores the path of each key whose field breaks its rule.
-class FieldChecker {
+// Finds the broken rules of a board. The place of a finding is the index of its key.
+class Checker {
  public:
-  explicit FieldChecker(const BoardConfig& board) : board_(board), writable_(board) {}
+  explicit Checker(const BoardConfig& board) : board_(board), copy_(board), values_(true, findings_) {}
 
-  void check() {
-    for (const Key& key : board_keys()) {
-      const bool is_of_load = key.path.rfind("pci.load.", 0) == 0;
-      if (is_of_load && !board_.pci.load) continue;
-      std::visit([&](const auto& rule) { check_key(key, rule); }, key.rule);
+  std::vector<Finding> check() {
+    const std::vector<Key>& keys = board_keys();
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+      const Key& key = keys[i];
+      if (key.path == "ssram.banks.NAME.words") check_banks(place_of(i));
+      if (!has_value(key) || !has_key(board_, key) || is_plainly_valid(key, board_)) continue;
+      const std::size_t before = findings_.size();
+      YamlNode::Entry entry{YamlNode::plain(key.path, place_of(i)), value_node(key, board_)};
+      for_each_node(entry.value, [i](YamlNode& node) { node.place = place_of(i); });
+      read_value(values_, key, entry, copy_);
+      if (findings_.size() > before) broken_.insert(key.path);
     }
-  }
-
-  bool broke(const std::string& path) const { return broken_.count(path) > 0; }
-  // The problems, sorted by the index of their key in board_keys(): that is the order of the fields.
-  std::multimap<std::size_t, std::string> found;
-
-  // The index in board_keys() of the first key at or below the path.
-  static std::size_t order_of(const std::string& path) {
-    const std::string schema = schema_path(path);
-    const auto& keys = board_keys();
-    const auto at = std::find_if(keys.begin(), keys.end(), [&](const Key& key) {
-      return key.path.compare(0, schema.size(), schema) == 0;
-    });
-    return static_cast<std::size_t>(at - keys.begin());
+    const auto is_valid = [this](const std::string& path) { return broken_.count(path) == 0; };
+    for (BrokenRule& rule : broken_rules(board_, is_valid)) {
+      const std::string path = schema_path(rule.involved.front());
+      const auto key = std::find_if(keys.begin(), keys.end(), [&](const Key& one) {
+        return path.compare(0, one.path.size(), one.path) == 0;
+      });
+      values_.report_between_keys(place_of(static_cast<std::size_t>(key - keys.begin())), rule.text);
+    }
+    std::stable_sort(findings_.begin(), findings_.end(),
+                     [](const Finding& a, const Finding& b) { return a.place.line < b.place.line; });
+    return std::move(findings_);
   }
 
  private:
-  template <typename Value>
-  void report(const std::string& path, const Value& value, const std::string& rule) {
-    broken_.insert(path);
-    found.emplace(order_of(path), fmt::format("{} = {}: {}", path, value, rule));
-  }
+  static Place place_of(std::size_t key) { return {Place::kFirstSet, static_cast<int>(key), 1}; }
 
-  void check_key(const Key& key, const IntegerKey& integer) {
-    const int value = integer.field(writable_);
-    if (!integer.rule.allows(value)) report(key.path, value, key.rule_text);
-  }
-  void check_key(const Key& key, const DecimalKey& decimal) {
-    const double value = decimal.field(writable_);
-    if (!decimal.allows(value)) report(key.path, value, key.rule_text);
-  }
-  void check_key(const Key& key, const WordKey& word) {
-    const int index = word.get(board_);
-    if (index >= 0 && index < static_cast<int>(word.words.size())) return;
-    report(key.path, word.text(board_), kMustBeOneOf + key.rule_text);
-  }
-  void check_key(const Key& key, const OtherKey&) {
-    if (key.path == "name") {
-      if (!is_board_name(board_.name)) report(key.path, board_.name, key.rule_text);
-    } else if (key.path == "fpga.priority") {
-      check_priority(key);
-    } else if (key.path == "ssram.banks.NAME.words") {
-      check_banks();
-    } else if (const auto buffer = buffer_of_key(key.path)) {
-      visit_buffer(board_.allocation, *buffer, [&](const auto& banks) { check_buffer(key, banks); });
-    } else if (key.path == "matcher.filter" && board_.matcher.filter) {
-      for (const std::string& text : kernels::problems(*board_.matcher.filter)) {
-        found.emplace(order_of(key.path), "matcher.filter." + text);
-      }
-    } else if (key.path == "matcher.lr_tolerance" && board_.matcher.lr_tolerance) {
-      const int value = *board_.matcher.lr_tolerance;
-      if (!kernels::kLrToleranceRule.allows(value)) report(key.path, value, key.rule_text);
-    } else if (key.path == "matcher.units" && board_.matcher.units) {
-      const int value = *board_.matcher.units;
-      if (!fpga::kUnitsRule.allows(value)) report(key.path, value, key.rule_text);
-    } else if (key.path == "matcher.cost.census" && !kernels::problems(board_.matcher.cost).empty()) {
-      const kernels::MatchingCost& cost = board_.matcher.cost;
-      const bool is_census = cost.kind == kernels::CostKind::kCensus;
-      report(key.path, cost.census_size, is_census ? key.rule_text : "0 unless the cost is census");
-    }
-  }
-
-  void check_priority(const Key& key) {
-    const auto& list = board_.fpga.arbiter.priority;
-    std::vector<std::string> names;
-    for (const memory::Port port : list) {
-      names.emplace_back(port < fpga::kPortCount ? fpga::kPorts[port].name : "(no port)");
-    }
-    const std::set<std::string> different(names.begin(), names.end());
-    if (different.size() < list.size() || different.count("(no port)") > 0) {
-      report(key.path, list_text(names), key.rule_text);
-    }
-  }
-
-  void check_banks() {
-    if (!memory::kBankCountRule.allows(static_cast<std::int64_t>(board_.banks.size()))) {
-      report("ssram.banks", fmt::format("{} banks", board_.banks.size()), rule_text("ssram.banks"));
-    }
+  void check_banks(const Place& place) {
+    const auto report = [&](const std::string& path, const std::string& value, const std::string& rule) {
+      values_.report(place, path, value, rule);
+      broken_.insert(path);
+    };
+    const std::string path = "ssram.banks";
+    if (!memory::kBankCountRule.allows(static_cast<std::int64_t>(board_.banks.size())))
+      report(path, fmt::format("{} banks", board_.banks.size()), rule_text(path));
     std::set<std::string> names;
     for (const BankConfig& bank : board_.banks) {
-      const std::string path = "ssram.banks." + bank.name;
-      if (!is_bank_name(bank.name)) report("ssram.banks", bank.name, kBankNameRule);
-      if (!names.insert(bank.name).second) report("ssram.banks", bank.name, "repeated name");
+      const std::string own = below(path, bank.name);
+      if (!is_bank_name(bank.name)) report(path, bank.name, kBankNameRule);
+      if (!names.insert(bank.name).second) report(path, bank.name, "repeated name");
       if (!memory::kBankWordsRule.allows(bank.words))
-        report(path + ".words", bank.words, memory::kBankWordsRule.text());
+        report(own + ".words", std::to_string(bank.words), memory::kBankWordsRule.text());
       if (!memory::is_bank_kind(bank.kind)) {
-        report(path + ".kind", static_cast<int>(bank.kind), kMustBeOneOf + listed(bank_kind_names()));
+        report(own + ".kind", std::to_string(static_cast<int>(bank.kind)),
+               kMustBeOneOf + listed(bank_kind_names()));
       } else if (const auto rule = memory::broken_turnaround_rule(bank.kind, bank.turnaround_cycles);
                  !rule.empty()) {
-        report(path + ".turnaround_cycles", bank.turnaround_cycles, rule);
+        report(own + ".turnaround_cycles", std::to_string(bank.turnaround_cycles), rule);
       }
     }
   }
 
-  void check_buffer(const Key& key, const std::vector<std::string>& banks) {
-    if (banks.empty() || banks.size() > kMaximumBuffers) report(key.path, list_text(banks), key.rule_text);
-  }
-  void check_buffer(const Key&, const std::optional<std::string>&) {}  // a table may be absent
-
   const BoardConfig& board_;
-  BoardConfig writable_;  // a copy, because the keys' accessors need a mutable board
-  std::set<std::string> broken_;
+  BoardConfig copy_;  // that the values are read into
+  std::vector<Finding> findings_;
+  ValueReader values_;
+  std::set<std::string> broken_;  // paths of the values that break a rule of their own
 };
 
 void add(std::vector<BufferPlace>& list, const BufferPlace& place) { list.push_back(place); }
 void add(std::optional<BufferPlace>& table, const BufferPlace& place) { table = place; }
 
+}  // namespace
+
+std::vector<std::string> problems(const BoardConfig& board) {
+  std::vector<std::string> texts;
+  for (Finding& finding : Checker(board).check()) texts.push_back(std::move(finding.text));
+  return texts;
+}
+
 void require_valid(const BoardConfig& board) {
   const std::vector<std::string> found = problems(board);
   if (!found.empty()) throw std::invalid_argument(fmt::format("{}", fmt::join(found, "\n")));
-}
-
-auto fields(const PciLoadConfig& load) {
-  return std::tie(load.burst_words, load.interval_us, load.first_us, load.access_us);
-}
-
-auto fields(const BankConfig& bank) {
-  return std::tie(bank.name, bank.words, bank.kind, bank.turnaround_cycles);
-}
-
-auto fields(const BoardConfig& b) {
-  return std::tie(
-      b.name, b.image.width, b.image.height, b.cameras.frame_rate_hz, b.cameras.trigger,
-      b.capture.destination, b.capture.host_frames, b.capture.fifo_words, b.capture.fifo_trigger_words,
-      b.pci.clock_mhz, b.pci.latency_timer_clocks, b.pci.bridge_wait_clocks, b.pci.memory_wait_clocks,
-      b.pci.width_bits, b.pci.load, b.bridge.local_clock_mhz, b.bridge.dma_burst_words, b.bridge.posted_words,
-      b.fpga.device, b.fpga.clock_mhz, b.fpga.arbiter.policy, b.fpga.arbiter.priority, b.fpga.lane_fifo_slots,
-      b.fpga.result_fifo_words, b.fpga.pipeline_latency_cycles, b.allocation.left_image,
-      b.allocation.right_image, b.allocation.disparity, b.allocation.left_lut, b.allocation.right_lut,
-      b.matcher.window, b.matcher.disparities, b.matcher.filter, b.matcher.fetch, b.matcher.lr_tolerance,
-      b.matcher.units, b.matcher.rows, b.matcher.cost, b.fpga.joint_tables, b.fpga.pixel_cache);
-}
-
-}  // namespace
-
-bool operator==(const PciLoadConfig& a, const PciLoadConfig& b) { return fields(a) == fields(b); }
-
-bool operator==(const BoardConfig& a, const BoardConfig& b) {
-  return fields(a) == fields(b) &&
-         std::equal(a.banks.begin(), a.banks.end(), b.banks.begin(), b.banks.end(),
-                    [](const BankConfig& x, const BankConfig& y) { return fields(x) == fields(y); });
-}
-
-std::vector<std::string> problems(const BoardConfig& board) {
-  FieldChecker checker(board);
-  checker.check();
-  const auto is_valid = [&checker](const std::string& path) { return !checker.broke(path); };
-  for (BrokenRule& rule : broken_rules(board, is_valid)) {
-    checker.found.emplace(FieldChecker::order_of(rule.involved.front()), std::move(rule.text));
-  }
-  std::vector<std::string> all;
-  for (auto& [order, text] : checker.found) all.push_back(std::move(text));
-  return all;
 }
 
 BufferLayout layout_buffers(const BoardConfig& board) {

@@ -115,13 +115,14 @@ struct BoardConfig {
   MatcherConfig matcher;
 };
 
-bool operator==(const PciLoadConfig& a, const PciLoadConfig& b);
 bool operator==(const BoardConfig& a, const BoardConfig& b);
 inline bool operator!=(const BoardConfig& a, const BoardConfig& b) { return !(a == b); }
 
 // Returns every broken rule as `path.of.key = value: rule`, in the order of the fields; nothing if the board
 // can be built. The reader of board files checks the same rules, and adds file, line and column.
 std::vector<std::string> problems(const BoardConfig& board);
+// Throws std::invalid_argument with all problems() if there are any.
+void require_valid(const BoardConfig& board);
 
 // The place of a buffer: an index into BoardConfig::banks, and the first word in that bank.
 struct BufferPlace {
@@ -140,7 +141,7 @@ struct BufferLayout {
   std::optional<BufferPlace> right_lut;
 };
 
-// Computes the places. Throws std::invalid_argument with all problems() if there are any.
+// Computes the places. Throws as require_valid() does.
 BufferLayout layout_buffers(const BoardConfig& board);
 
 // The number of frames after which all allocation lists start over: the least common multiple of their

@@ -11,9 +11,9 @@
 #include <tuple>
 #include <utility>
 
-#include "platform/config/board_keys.h"
 #include "platform/config/board_reader.h"
-#include "platform/config/text_file.h"
+#include "platform/config/key_paths.h"
+#include "platform/yaml/words.h"
 
 namespace stereotlm::platform {
 namespace {
@@ -30,7 +30,7 @@ void merge_into(YamlNode& own, const YamlNode& base, const std::string& path) {
   if (!own.is_map() || !base.is_map() || is_whole) return;
   for (const YamlNode::Entry& entry : base.entries) {
     if (YamlNode::Entry* mine = own.find(entry.key.text)) {
-      merge_into(mine->value, entry.value, path.empty() ? entry.key.text : path + '.' + entry.key.text);
+      merge_into(mine->value, entry.value, below(path, entry.key.text));
     } else {
       own.entries.push_back(entry);
     }
@@ -57,29 +57,20 @@ std::string way_problem(const YamlNode& tree, const std::string& path) {
     const YamlNode::Entry* const entry = at->find(part);
     if (entry == nullptr) break;
     at = &entry->value;
-    passed += (passed.empty() ? "" : ".") + part;
+    passed = below(passed, part);
   }
   return "";
 }
 
 // Puts the value into the tree at the path. If the tree cannot hold it there, returns way_problem(), else "".
 std::string put(YamlNode& tree, const std::string& path, YamlNode value, const Place& place) {
+  std::string problem = way_problem(tree, path);
+  if (!problem.empty()) return problem;
   YamlNode* at = &tree;
   YamlNode::Entry* entry = nullptr;
   for (const std::string& part : parts_of(path)) {
-    if (!at->is_map()) return way_problem(tree, path);
+    if (at->find(part) == nullptr) at->add(YamlNode::plain(part, place), YamlNode::map(place));
     entry = at->find(part);
-    if (entry == nullptr) {
-      YamlNode key;
-      key.kind = YamlNode::Kind::kScalar;
-      key.text = part;
-      key.place = place;
-      YamlNode map;
-      map.kind = YamlNode::Kind::kMap;
-      map.place = place;
-      at->entries.push_back({std::move(key), std::move(map)});
-      entry = &at->entries.back();
-    }
     at = &entry->value;
   }
   entry->key.place = place;
@@ -109,13 +100,8 @@ bool is_file(const std::filesystem::path& path) {
   return std::filesystem::is_regular_file(path, none);
 }
 
-void set_source(YamlNode& node, int source) {
-  node.place.source = source;
-  for (YamlNode& item : node.items) set_source(item, source);
-  for (YamlNode::Entry& entry : node.entries) {
-    set_source(entry.key, source);
-    set_source(entry.value, source);
-  }
+std::string text_of(const std::string& path, const YamlNode& value, const std::string& rule) {
+  return fmt::format("{} = {}: {}", path, short_text(value), rule);
 }
 
 }  // namespace
@@ -130,7 +116,7 @@ std::string path_problem(const std::string& path) {
     if (!is_bank && std::find(known.begin(), known.end(), part) == known.end()) {
       return unknown_key_text(path);
     }
-    schema += (schema.empty() ? "" : ".") + (is_bank ? "NAME" : part);
+    schema = below(schema, is_bank ? "NAME" : part);
   }
   return "";
 }
@@ -162,7 +148,7 @@ BoardDraft::BoardDraft(const std::string& board) {
   try {
     tree_ = parse_yaml(text, Place::kBoard);
   } catch (const YamlError& error) {
-    fail(text_of(error.place), error.what());
+    fail(place_text(error.place), error.what());
   }
   resolve_extends();
 }
@@ -177,11 +163,9 @@ BoardDraft BoardDraft::of_preset(std::string_view name) {
 
 // Removes `extends` from the tree, and adds the values of the preset that it names.
 void BoardDraft::resolve_extends() {
-  const auto is_extends = [](const YamlNode::Entry& entry) {
-    return entry.key.is_scalar() && entry.key.text == "extends";
-  };
+  const auto is_extends = [](const YamlNode::Entry& entry) { return entry.key.is("extends"); };
   const auto report = [this](const Place& place, const YamlNode& value, const std::string& rule) {
-    findings_.emplace_back(place, fmt::format("extends = {}: {}", short_text(value), rule));
+    findings_.emplace_back(place, text_of("extends", value, rule));
   };
   std::optional<YamlNode> base;
   for (std::size_t i = 0; i < tree_.entries.size(); ++i) {
@@ -222,18 +206,15 @@ void BoardDraft::set(const std::string& assignment) {
     return !source.has_lines && source.name == name;
   });
   sources_.push_back({name, false});
+  const std::string text = equals == std::string::npos ? "(nothing)" : assignment.substr(equals + 1);
   const auto report = [&](const std::string& rule) {
-    YamlNode value;
-    value.kind = YamlNode::Kind::kScalar;
-    value.text = equals == std::string::npos ? "(nothing)" : assignment.substr(equals + 1);
-    findings_.emplace_back(place, fmt::format("{} = {}: {}", path, short_text(value), rule));
+    findings_.emplace_back(place, text_of(path, YamlNode::plain(text), rule));
   };
   if (equals == std::string::npos) return report("--set needs path=value");
   if (const std::string problem = path_problem(path); !problem.empty()) return report(problem);
   if (is_repeated) return report("the same path was set before");
   try {
-    const std::string problem =
-        put(tree_, path, parse_flow_value(assignment.substr(equals + 1), place.source), place);
+    const std::string problem = put(tree_, path, parse_flow_value(text, place.source), place);
     if (!problem.empty()) report(problem);
   } catch (const YamlError& error) {
     report(error.what());
@@ -242,13 +223,12 @@ void BoardDraft::set(const std::string& assignment) {
 
 void BoardDraft::replace(const std::string& path, YamlNode value, const std::string& file) {
   if (!tree_.is_map()) return;  // read() reports it
-  set_source(value, next_place().source);
-  const Place place = value.place;
+  const int source = next_place().source;
+  for_each_node(value, [source](YamlNode& node) { node.place.source = source; });
   sources_.push_back({file, true});
-  const std::string text = short_text(value);
   std::string problem = path_problem(path);
-  if (problem.empty()) problem = put(tree_, path, std::move(value), place);
-  if (!problem.empty()) findings_.emplace_back(place, fmt::format("{} = {}: {}", path, text, problem));
+  if (problem.empty()) problem = put(tree_, path, value, value.place);
+  if (!problem.empty()) findings_.emplace_back(value.place, text_of(path, value, problem));
 }
 
 // Reads a tree that holds only this value. A missing key is a problem of the value only if the key belongs
@@ -259,16 +239,15 @@ std::vector<Diagnostic> BoardDraft::problems_of(const std::string& path, const Y
   std::string problem = path_problem(path);
   if (problem.empty()) problem = way_problem(tree_, path);
   if (problem.empty()) {
-    YamlNode alone;
-    alone.kind = YamlNode::Kind::kMap;
+    YamlNode alone = YamlNode::map();
     put(alone, path, value, value.place);
     read_board(alone, value.is_map(), findings);
   } else {
-    findings.emplace_back(value.place, fmt::format("{} = {}: {}", path, short_text(value), problem));
+    findings.emplace_back(value.place, text_of(path, value, problem));
   }
   std::vector<Diagnostic> problems;
   for (Finding& finding : findings) {
-    const bool is_outside = finding.missing.compare(0, path.size() + 1, path + '.') != 0;
+    const bool is_outside = !is_below(finding.missing, path);
     if (!finding.missing.empty() && (is_outside || finding.is_between_keys)) continue;
     problems.push_back({fmt::format("{}:{}:{}", file, finding.place.line, finding.place.column),
                         std::move(finding.text), false});
@@ -294,14 +273,14 @@ BoardDraft::Reading BoardDraft::read_with_problems() const {
   std::set<std::pair<std::string, std::string>> reported;
   reading.problems.reserve(findings.size());
   for (Finding& finding : findings) {
-    std::string place = text_of(finding.place);
+    std::string place = place_text(finding.place);
     if (!reported.emplace(place, finding.text).second) continue;
     reading.problems.push_back({std::move(place), std::move(finding.text), finding.is_between_keys});
   }
   return reading;
 }
 
-std::string BoardDraft::text_of(const Place& place) const {
+std::string BoardDraft::place_text(const Place& place) const {
   std::string name = place.source == Place::kBoard ? board_name_ : "preset";
   if (place.source >= Place::kFirstSet) {
     const Source& source = sources_[static_cast<std::size_t>(place.source - Place::kFirstSet)];

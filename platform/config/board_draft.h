@@ -7,7 +7,7 @@
 #include "platform/config/board_config.h"
 #include "platform/config/board_yaml.h"
 #include "platform/config/value_reader.h"
-#include "platform/config/yaml_tree.h"
+#include "platform/yaml/yaml_tree.h"
 
 namespace stereotlm::platform {
 
@@ -64,7 +64,7 @@ class BoardDraft {
 
   BoardDraft() = default;
   void resolve_extends();
-  std::string text_of(const Place& place) const;
+  std::string place_text(const Place& place) const;
   Place next_place() const { return {Place::kFirstSet + static_cast<int>(sources_.size()), 1, 1}; }
 
   std::string board_name_;       // name of the file or preset, for messages

@@ -4,11 +4,7 @@
 
 #include <algorithm>
 #include <array>
-#include <functional>
-#include <limits>
 #include <map>
-#include <numeric>
-#include <optional>
 #include <stdexcept>
 #include <type_traits>
 #include <utility>
@@ -20,76 +16,62 @@
 #include "models/memory/arbitration_policies.h"
 #include "models/pci/pci_config.h"
 #include "platform/config/buffer_layout.h"
-#include "platform/config/yaml_tree.h"
+#include "platform/config/key_paths.h"
+#include "platform/config/value_reader.h"
+#include "platform/yaml/utf8.h"
 
 namespace stereotlm::platform {
 namespace {
 
-template <auto... kMembers>
-auto& member(BoardConfig& board) {
-  return (board.*....*kMembers);
+using Entry = YamlNode::Entry;
+
+constexpr std::size_t kMaximumBuffers = 3;  // entries of an image or disparity list
+
+Key integer(const char* path, int* (*field)(BoardConfig&), std::string meaning, const char* unit,
+            const IntegerRule& rule) {
+  return {path, std::move(meaning), unit, IntegerKey{field}, rule.text(), rule};
 }
 
-template <auto kMember>
-auto& load_member(BoardConfig& board) {
-  return board.pci.load.value().*kMember;
+Key integer_or(const char* none, const char* path, std::optional<int>* (*field)(BoardConfig&),
+               const char* meaning, const char* unit, const IntegerRule& rule) {
+  return {path, meaning, unit, OptionalIntegerKey{none, field}, rule.text() + " or " + none, rule};
 }
 
-template <auto... kMembers>
-int get_enum(const BoardConfig& board) {
-  return static_cast<int>((board.*....*kMembers));
+Key decimal(const char* path, double* (*field)(BoardConfig&), const char* meaning, const char* unit,
+            double min, double max) {
+  return {path, meaning, unit, DecimalKey{min, max, field}, fmt::format("{}..{}", min, max), std::nullopt};
 }
 
-template <auto... kMembers>
-std::string enum_text(const BoardConfig& board) {
-  return std::to_string(get_enum<kMembers...>(board));
+// A key of one of a few words. The field is an enumeration, whose values are in the order of the words, or the
+// word itself.
+template <typename Field>
+Key word(const char* path, Field field, const char* meaning, std::vector<std::string> words) {
+  using Value = std::remove_pointer_t<decltype(field(std::declval<BoardConfig&>()))>;
+  WordKey key;
+  key.words = words;
+  if constexpr (std::is_same_v<Value, std::string>) {
+    key.get = [field](const BoardConfig& board) { return *field(const_cast<BoardConfig&>(board)); };
+    key.set = [field, words](BoardConfig& board, int index) {
+      *field(board) = words[static_cast<std::size_t>(index)];
+    };
+  } else {
+    key.get = [field, words](const BoardConfig& board) {
+      const auto index = static_cast<std::size_t>(*field(const_cast<BoardConfig&>(board)));
+      return index < words.size() ? words[index] : std::to_string(index);
+    };
+    key.set = [field](BoardConfig& board, int index) { *field(board) = static_cast<Value>(index); };
+  }
+  return {path, meaning, "", std::move(key), listed(words), std::nullopt};
 }
 
-template <auto... kMembers>
-void set_enum(BoardConfig& board, int index) {
-  auto& field = (board.*....*kMembers);
-  field = static_cast<std::remove_reference_t<decltype(field)>>(index);
+template <typename Read, typename Write>
+Key coded(const char* path, Read read, Write write, std::string meaning, std::string rule) {
+  return {path, std::move(meaning), "", CodedKey{read, write}, std::move(rule), std::nullopt};
 }
 
-Key integer(const char* path, std::string meaning, const char* unit, IntegerRule rule,
-            int& (*field)(BoardConfig&)) {
-  return {path, std::move(meaning), unit, IntegerKey{rule, field}, rule.text()};
-}
-
-Key decimal(const char* path, const char* meaning, const char* unit, double min, double max,
-            double& (*field)(BoardConfig&)) {
-  return {path, meaning, unit, DecimalKey{min, max, field}, fmt::format("{}..{}", min, max)};
-}
-
-template <auto... kMembers>
-Key word(const char* path, const char* meaning, std::vector<std::string> words) {
-  std::string text = listed(words);
-  WordKey key{std::move(words), get_enum<kMembers...>, set_enum<kMembers...>, enum_text<kMembers...>};
-  return {path, meaning, "", std::move(key), text};
-}
-
-// A key whose value is one of the names that kNames() returns. The board stores the name itself.
-template <const std::vector<std::string>& (*kNames)(), auto... kMembers>
-Key name(const char* path, const char* meaning) {
-  const auto get = [](const BoardConfig& board) {
-    const auto found = std::find(kNames().begin(), kNames().end(), (board.*....*kMembers));
-    return found == kNames().end() ? -1 : static_cast<int>(found - kNames().begin());
-  };
-  const auto set = [](BoardConfig& board, int index) {
-    (board.*....*kMembers) = kNames()[static_cast<std::size_t>(index)];
-  };
-  const auto text = [](const BoardConfig& board) { return (board.*....*kMembers); };
-  return {path, meaning, "", WordKey{kNames(), get, set, text}, listed(kNames())};
-}
-
-Key other(const char* path, std::string meaning, const char* unit, std::string text) {
-  return {path, std::move(meaning), unit, OtherKey{}, std::move(text)};
-}
-
-// A key with code of its own that takes numbers, and possibly words.
-Key other_integer(const char* path, std::string meaning, const char* unit, IntegerRule rule,
-                  std::string text) {
-  return {path, std::move(meaning), unit, OtherKey{rule}, std::move(text)};
+Key part(const char* path, std::string meaning, const char* unit, std::string rule,
+         const std::optional<IntegerRule>& numbers = std::nullopt) {
+  return {path, std::move(meaning), unit, PartKey{}, std::move(rule), numbers};
 }
 
 Key optional(Key key) {
@@ -106,13 +88,8 @@ std::vector<std::string> names_in(const Table& table) {
   return names;
 }
 
-const std::vector<std::string>& device_names() {
-  static const std::vector<std::string> kNames = names_in(area::kDevices);
-  return kNames;
-}
-
-const std::vector<std::string>& policy_names() {
-  static const std::vector<std::string> kNames = names_in(memory::arbitration_policies());
+const std::vector<std::string>& port_names() {
+  static const std::vector<std::string> kNames = names_in(fpga::kPorts);
   return kNames;
 }
 
@@ -128,34 +105,200 @@ std::string size_meaning(const char* size, const IntegerRule& with_table) {
   return fmt::format("{} of the images, at most {} with a look-up table", size, with_table.max);
 }
 
-std::string port_names() {
-  std::vector<std::string> names;
-  for (const fpga::CorePort& port : fpga::kPorts) names.emplace_back(port.name);
-  return fmt::format("{}", fmt::join(names, ", "));
+std::vector<std::string> census_size_texts() {
+  const IntegerRule& rule = kernels::kCensusSizeRule;
+  std::vector<std::string> texts;
+  for (std::int64_t size = rule.min; size <= rule.max; size += rule.step)
+    texts.push_back(std::to_string(size));
+  return texts;
 }
 
-std::vector<int> census_sizes() {
-  const IntegerRule& rule = kernels::kCensusSizeRule;
-  std::vector<int> sizes;
-  for (std::int64_t size = rule.min; size <= rule.max; size += rule.step)
-    sizes.push_back(static_cast<int>(size));
-  return sizes;
-}
+constexpr std::array kPlainCosts = {kernels::CostKind::kSad, kernels::CostKind::kSsd,
+                                    kernels::CostKind::kZncc};
 
 // Every cost.
 std::vector<std::string> cost_texts() {
-  using kernels::CostKind;
   std::vector<std::string> texts;
-  for (const CostKind kind : {CostKind::kSad, CostKind::kSsd, CostKind::kZncc})
-    texts.push_back(cost_text({kind, 0}));
-  for (const int size : census_sizes()) texts.push_back(cost_text({CostKind::kCensus, size}));
+  for (const kernels::CostKind kind : kPlainCosts) texts.push_back(cost_text({kind, 0}));
+  for (const std::string& size : census_size_texts())
+    texts.push_back(fmt::format("{{{}: {}}}", kernels::name_of(kernels::CostKind::kCensus), size));
   return texts;
 }
 
-std::vector<std::string> census_size_texts() {
-  std::vector<std::string> texts;
-  for (const int size : census_sizes()) texts.push_back(std::to_string(size));
-  return texts;
+bool is_board_name(std::string_view name) {
+  const bool printable = std::none_of(
+      name.begin(), name.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; });
+  return !name.empty() && printable && is_utf8(name);
+}
+
+void read_name(ValueReader& values, const Key& key, const Entry& entry, BoardConfig& board) {
+  if (!is_text(entry.value) || !is_board_name(entry.value.text))
+    return values.report(key.path, entry.value, key.rule_text);
+  board.name = entry.value.text;
+}
+
+void read_priority(ValueReader& values, const Key& key, const Entry& entry, BoardConfig& board) {
+  if (!entry.value.is_list()) return values.report(key.path, entry.value, key.rule_text);
+  const std::size_t before = values.finding_count();
+  std::vector<std::string> missing = port_names();
+  memory::PriorityList ports;
+  for (const YamlNode& item : entry.value.items) {
+    const auto port = values.read_word(key.path, item, port_names());
+    if (!port) continue;
+    const auto name = std::find(missing.begin(), missing.end(), item.text);
+    if (name == missing.end()) {
+      values.report(key.path, item, "repeated; each port once");
+    } else {
+      missing.erase(name);
+    }
+    ports.push_back(static_cast<memory::Port>(*port));
+  }
+  if (values.finding_count() > before) return;
+  if (!missing.empty())
+    return values.report(key.path, entry.value,
+                         fmt::format("each port once; {} missing", fmt::join(missing, ", ")));
+  board.fpga.arbiter.priority = ports;
+}
+
+YamlNode write_priority(const BoardConfig& board) {
+  std::vector<YamlNode> ports;
+  for (const memory::Port port : board.fpga.arbiter.priority)
+    ports.push_back(YamlNode::word(port < fpga::kPortCount ? fpga::kPorts[port].name : "(no port)"));
+  return YamlNode::list(std::move(ports));
+}
+
+// Reads the names of banks. Whether they exist is a rule between keys (board_rules.h).
+void read_banks(ValueReader& values, const Key& key, const YamlNode& node, std::vector<std::string>& banks) {
+  const std::vector<YamlNode> single = {node};
+  const std::vector<YamlNode>& items = node.is_list() ? node.items : single;
+  if (items.empty() || items.size() > kMaximumBuffers) return values.report(key.path, node, key.rule_text);
+  const std::size_t before = values.finding_count();
+  banks.clear();
+  for (const YamlNode& item : items) {
+    if (!values.check_use(key.path, item)) continue;
+    if (!item.is_scalar()) {
+      values.report(key.path, item, key.rule_text);
+      continue;
+    }
+    values.accept(fmt::format("{}[{}]", key.path, banks.size()), item.place);
+    banks.push_back(item.text);
+  }
+  if (values.finding_count() == before) values.accept(key.path, node.place);
+}
+
+void read_banks(ValueReader& values, const Key& key, const YamlNode& node, std::optional<std::string>& bank) {
+  const YamlNode& item = node.is_list() && node.items.size() == 1 ? node.items[0] : node;
+  if (!values.check_use(key.path, item)) return;
+  if (!item.is_scalar()) return values.report(key.path, item, key.rule_text);
+  values.accept(key.path, item.place);
+  bank = item.text == "none" ? std::nullopt : std::optional(item.text);
+}
+
+YamlNode banks_node(const std::vector<std::string>& banks) {
+  std::vector<YamlNode> items;
+  for (const std::string& bank : banks) items.push_back(YamlNode::word(bank));
+  return YamlNode::list(std::move(items));
+}
+YamlNode banks_node(const std::optional<std::string>& bank) { return YamlNode::word(bank.value_or("none")); }
+
+Key banks_key(Buffer buffer, const char* meaning, const std::string& rule) {
+  const auto read = [buffer](ValueReader& values, const Key& key, const Entry& entry, BoardConfig& board) {
+    visit_buffer(board.allocation, buffer, [&](auto& banks) { read_banks(values, key, entry.value, banks); });
+  };
+  const auto write = [buffer](const BoardConfig& board) {
+    return visit_buffer(board.allocation, buffer, [](const auto& banks) { return banks_node(banks); });
+  };
+  return coded(key_of(buffer), read, write, meaning, rule);
+}
+
+void read_kernel(ValueReader& values, const Key& key, const YamlNode& node, kernels::FilterKernel& filter) {
+  if (!values.check_use(key.path, node)) return;
+  const auto size = static_cast<std::int64_t>(node.items.size());
+  if (!node.is_list() || !kernels::kKernelSizeRule.allows(size))
+    return values.report(key.path, node, key.rule_text);
+  const std::size_t before = values.finding_count();
+  const std::string rule = "entries " + kernels::kKernelEntryRule.text();
+  std::int64_t sum = 0;
+  for (const YamlNode& row : node.items) {
+    if (!values.check_use(key.path, row)) continue;
+    if (!row.is_list() || row.items.size() != node.items.size()) {
+      values.report(key.path, row, fmt::format("a row of {} entries, as many as there are rows", size));
+      continue;
+    }
+    for (const YamlNode& item : row.items) {
+      filter.weights.push_back(
+          values.read_integer(key.path, item, kernels::kKernelEntryRule, rule).value_or(0));
+      sum += filter.weights.back();
+    }
+  }
+  filter.size = static_cast<int>(size);
+  if (values.finding_count() == before && sum != 0)
+    values.report(key.path, node, fmt::format("the entries' sum must be 0, not {}", sum));
+}
+
+void read_filter(ValueReader& values, const Key& key, const Entry& entry, BoardConfig& board) {
+  const YamlNode& node = entry.value;
+  if (node.is("none")) {
+    board.matcher.filter = std::nullopt;
+  } else if (node.is("log7")) {
+    board.matcher.filter = kernels::log7();
+  } else if (!node.is_map()) {
+    values.report(key.path, node, key.rule_text);
+  } else {
+    const auto entries =
+        values.read_entries(key.path, node, entry.key.place, child_keys(key.path), child_keys(key.path));
+    kernels::FilterKernel filter;
+    if (const auto kernel = entries->find("kernel"); kernel != entries->end())
+      read_kernel(values, board_key("matcher.filter.kernel"), kernel->second->value, filter);
+    if (const auto shift = entries->find("shift"); shift != entries->end())
+      filter.shift = values.read_integer(board_key("matcher.filter.shift"), shift->second->value).value_or(0);
+    board.matcher.filter = std::move(filter);
+  }
+}
+
+YamlNode write_filter(const BoardConfig& board) {
+  const auto& filter = board.matcher.filter;
+  if (!filter) return YamlNode::word("none");
+  if (*filter == kernels::log7()) return YamlNode::word("log7");
+  std::vector<YamlNode> rows;
+  for (std::size_t i = 0; i < filter->weights.size(); ++i) {
+    if (filter->size <= 0 || i % static_cast<std::size_t>(filter->size) == 0)
+      rows.push_back(YamlNode::list({}));
+    rows.back().items.push_back(YamlNode::plain(std::to_string(filter->weights[i])));
+  }
+  YamlNode node = YamlNode::map();
+  node.add(YamlNode::word("kernel"), YamlNode::list(std::move(rows))).style = YamlNode::Style::kOther;
+  node.add(YamlNode::word("shift"), YamlNode::plain(std::to_string(filter->shift)));
+  return node;
+}
+
+void read_cost(ValueReader& values, const Key& key, const Entry& entry, BoardConfig& board) {
+  const YamlNode& node = entry.value;
+  if (node.is_map()) {
+    const auto entries =
+        values.read_entries(key.path, node, entry.key.place, child_keys(key.path), child_keys(key.path));
+    if (entries->empty()) return;
+    const auto size = values.read_integer(board_key("matcher.cost.census"), entries->begin()->second->value);
+    board.matcher.cost = {kernels::CostKind::kCensus,
+                          size.value_or(static_cast<int>(kernels::kCensusSizeRule.min))};
+    return;
+  }
+  for (const kernels::CostKind kind : kPlainCosts) {
+    if (!node.is(kernels::name_of(kind))) continue;
+    board.matcher.cost = {kind, 0};
+    return;
+  }
+  values.report(key.path, node, kMustBeOneOf + key.rule_text);
+}
+
+YamlNode write_cost(const BoardConfig& board) {
+  const kernels::MatchingCost& cost = board.matcher.cost;
+  const YamlNode name = YamlNode::word(kernels::name_of(cost.kind));
+  if (cost.kind != kernels::CostKind::kCensus && cost.census_size == 0) return name;
+  YamlNode node = YamlNode::map();
+  node.style = YamlNode::Style::kOther;
+  node.add(name, YamlNode::plain(std::to_string(cost.census_size)));
+  return node;
 }
 
 std::vector<Key> make_keys() {
@@ -169,249 +312,159 @@ std::vector<Key> make_keys() {
   const std::string default_turnaround =
       fmt::format("turnaround of a {} bank that gives none of its own", turnaround_kinds());
   Key trigger_words =
-      integer("capture.fifo_trigger_words", "words in the FIFO at which it asks for the PCI bus", "words",
-              {1, 4096}, member<&B::capture, &CaptureConfig::fifo_trigger_words>);
+      integer("capture.fifo_trigger_words", [](B& b) { return &b.capture.fifo_trigger_words; },
+              "words in the FIFO at which it asks for the PCI bus", "words", {1, 4096});
   trigger_words.rule_text = "1..fifo_words";
   return {
-      other("name", "the board's name, as results give it", "",
-            "a text of one or more characters without control characters; quoted if it could be read as "
-            "a number, a truth value or null"),
-      integer("image.width", size_meaning("width", fpga::kWidthWithTableRule), "pixels", fpga::kWidthRule,
-              member<&B::image, &ImageConfig::width>),
-      integer("image.height", size_meaning("height", fpga::kHeightWithTableRule), "pixels", fpga::kHeightRule,
-              member<&B::image, &ImageConfig::height>),
-      decimal("cameras.frame_rate_hz", "frame rate of both cameras; on demand that of their line times", "Hz",
-              0.1, 1000, member<&B::cameras, &CamerasConfig::frame_rate_hz>),
-      word<&B::cameras, &CamerasConfig::trigger>(
-          "cameras.trigger", "whether frames follow a frame clock, or begin when triggered",
-          {"free_running", "on_demand"}),
-      word<&B::capture, &CaptureConfig::destination>(
-          "capture.destination", "where capture writes: the FPGA board, or a ring in host memory",
-          {"board", "host_memory"}),
-      integer("capture.host_frames", "pairs in the ring in host memory, which takes at most 1 GiB", "pairs",
-              {1, 64}, member<&B::capture, &CaptureConfig::host_frames>),
-      integer("capture.fifo_words", "FIFO of a capture board", "words", {1, 4096},
-              member<&B::capture, &CaptureConfig::fifo_words>),
-      trigger_words,
-      decimal("pci.clock_mhz", "clock of the PCI bus", "MHz", 1, 1000,
-              member<&B::pci, &PciConfig::clock_mhz>),
-      integer("pci.latency_timer_clocks", "latency timer of every PCI master", "clocks", {0, 255},
-              member<&B::pci, &PciConfig::latency_timer_clocks>),
-      integer("pci.bridge_wait_clocks", "wait clocks of the bridge as a PCI target", "clocks", {0, 255},
-              member<&B::pci, &PciConfig::bridge_wait_clocks>),
-      integer("pci.memory_wait_clocks", "wait clocks of host memory as a PCI target", "clocks", {0, 255},
-              member<&B::pci, &PciConfig::memory_wait_clocks>),
-      optional(integer("pci.width_bits", "width of the PCI bus; optional, without it 32", "bits",
-                       pci::kWidthRule, member<&B::pci, &PciConfig::width_bits>)),
-      optional(other("pci.load", "a third-party master that loads the PCI bus; optional, without it none", "",
-                     "none or a map of burst_words, interval_us, first_us, access_us")),
-      integer("pci.load.burst_words", "words that each transfer of the load reads", "words",
-              pci::kLoadBurstRule, load_member<&PciLoadConfig::burst_words>),
+      coded(
+          "name", read_name, [](const B& b) { return YamlNode::word(b.name); },
+          "the board's name, as results give it",
+          "a text of one or more characters without control characters; quoted if it could be read as "
+          "a number, a truth value or null"),
+      integer(
+          "image.width", [](B& b) { return &b.image.width; },
+          size_meaning("width", fpga::kWidthWithTableRule), "pixels", fpga::kWidthRule),
+      integer(
+          "image.height", [](B& b) { return &b.image.height; },
+          size_meaning("height", fpga::kHeightWithTableRule), "pixels", fpga::kHeightRule),
       decimal(
-          "pci.load.interval_us",
+          "cameras.frame_rate_hz", [](B& b) { return &b.cameras.frame_rate_hz; },
+          "frame rate of both cameras; on demand that of their line times", "Hz", 0.1, 1000),
+      word("cameras.trigger", [](B& b) { return &b.cameras.trigger; },
+           "whether frames follow a frame clock, or begin when triggered", {"free_running", "on_demand"}),
+      word("capture.destination", [](B& b) { return &b.capture.destination; },
+           "where capture writes: the FPGA board, or a ring in host memory", {"board", "host_memory"}),
+      integer("capture.host_frames", [](B& b) { return &b.capture.host_frames; },
+              "pairs in the ring in host memory, which takes at most 1 GiB", "pairs", {1, 64}),
+      integer("capture.fifo_words", [](B& b) { return &b.capture.fifo_words; }, "FIFO of a capture board",
+              "words", {1, 4096}),
+      trigger_words,
+      decimal(
+          "pci.clock_mhz", [](B& b) { return &b.pci.clock_mhz; }, "clock of the PCI bus", "MHz", 1, 1000),
+      integer("pci.latency_timer_clocks", [](B& b) { return &b.pci.latency_timer_clocks; },
+              "latency timer of every PCI master", "clocks", {0, 255}),
+      integer("pci.bridge_wait_clocks", [](B& b) { return &b.pci.bridge_wait_clocks; },
+              "wait clocks of the bridge as a PCI target", "clocks", {0, 255}),
+      integer("pci.memory_wait_clocks", [](B& b) { return &b.pci.memory_wait_clocks; },
+              "wait clocks of host memory as a PCI target", "clocks", {0, 255}),
+      optional(integer(
+          "pci.width_bits", [](B& b) { return &b.pci.width_bits; },
+          "width of the PCI bus; optional, without it 32", "bits", pci::kWidthRule)),
+      optional({"pci.load", "a third-party master that loads the PCI bus; optional, without it none", "",
+                SectionKey{[](const B& b) { return b.pci.load.has_value(); },
+                           [](B& b, bool is_given) {
+                             b.pci.load = is_given ? std::optional(PciLoadConfig()) : std::nullopt;
+                           }},
+                "none or a map of burst_words, interval_us, first_us, access_us", std::nullopt}),
+      integer(
+          "pci.load.burst_words", [](B& b) { return &b.pci.load.value().burst_words; },
+          "words that each transfer of the load reads", "words", pci::kLoadBurstRule),
+      decimal(
+          "pci.load.interval_us", [](B& b) { return &b.pci.load.value().interval_us; },
           "from one transfer's request to the next, to the nearest picosecond; 0: asks again at once, a hog",
-          "us", 0, microseconds(pci::kLoadTimeRule.max), load_member<&PciLoadConfig::interval_us>),
-      optional(decimal("pci.load.first_us",
-                       "time of the first request, to the nearest picosecond; optional, without it 0", "us",
-                       0, microseconds(pci::kLoadTimeRule.max), load_member<&PciLoadConfig::first_us>)),
-      optional(decimal("pci.load.access_us",
-                       "time that the load's own device makes the bus wait before the first word, to the "
-                       "nearest picosecond; optional, without it 0",
-                       "us", 0, microseconds(pci::kLoadAccessRule.max),
-                       load_member<&PciLoadConfig::access_us>)),
-      decimal("bridge.local_clock_mhz", "clock of the bridge's local bus", "MHz", 1, 1000,
-              member<&B::bridge, &BridgeConfig::local_clock_mhz>),
-      integer("bridge.dma_burst_words", "longest burst of a DMA channel", "words", {1, 1024},
-              member<&B::bridge, &BridgeConfig::dma_burst_words>),
-      integer("bridge.posted_words", "posted writes that the bridge can hold", "words", {1, 4096},
-              member<&B::bridge, &BridgeConfig::posted_words>),
-      name<device_names, &B::fpga, &FpgaConfig::device>("fpga.device", "the FPGA, for its resources"),
-      decimal("fpga.clock_mhz", "clock of the FPGA core and of the SSRAM banks", "MHz", 1, 1000,
-              member<&B::fpga, &FpgaConfig::clock_mhz>),
-      name<policy_names, &B::fpga, &FpgaConfig::arbiter, &memory::ArbiterConfig::policy>(
-          "fpga.arbitration", "how a bank picks one of the ports that request it"),
-      other("fpga.priority", priority_meaning(), "", "a list that names each port once: " + port_names()),
-      integer("fpga.lane_fifo_slots", "slots that may be in a lane, taken and not yet consumed", "slots",
-              fpga::kLaneFifoRule, member<&B::fpga, &FpgaConfig::lane_fifo_slots>),
-      integer("fpga.result_fifo_words",
-              "queue of result words before the result port; with fewer than 2 for each of matcher.rows "
-              "the matcher waits for it",
-              "words", fpga::kResultFifoRule, member<&B::fpga, &FpgaConfig::result_fifo_words>),
-      integer("fpga.pipeline_latency_cycles", "cycles of registers that the model does not spell out",
-              "cycles", fpga::kPipelineLatencyRule, member<&B::fpga, &FpgaConfig::pipeline_latency_cycles>),
-      optional(word<&B::fpga, &FpgaConfig::joint_tables>("fpga.tables",
-                                                         "whether each side has a look-up table of its own, "
-                                                         "or both share one; optional, without it separate",
-                                                         {"separate", "joint"})),
-      optional(word<&B::fpga, &FpgaConfig::pixel_cache>(
-          "fpga.pixel_cache",
+          "us", 0, microseconds(pci::kLoadTimeRule.max)),
+      optional(decimal(
+          "pci.load.first_us", [](B& b) { return &b.pci.load.value().first_us; },
+          "time of the first request, to the nearest picosecond; optional, without it 0", "us", 0,
+          microseconds(pci::kLoadTimeRule.max))),
+      optional(decimal(
+          "pci.load.access_us", [](B& b) { return &b.pci.load.value().access_us; },
+          "time that the load's own device makes the bus wait before the first word, to the "
+          "nearest picosecond; optional, without it 0",
+          "us", 0, microseconds(pci::kLoadAccessRule.max))),
+      decimal(
+          "bridge.local_clock_mhz", [](B& b) { return &b.bridge.local_clock_mhz; },
+          "clock of the bridge's local bus", "MHz", 1, 1000),
+      integer("bridge.dma_burst_words", [](B& b) { return &b.bridge.dma_burst_words; },
+              "longest burst of a DMA channel", "words", {1, 1024}),
+      integer("bridge.posted_words", [](B& b) { return &b.bridge.posted_words; },
+              "posted writes that the bridge can hold", "words", {1, 4096}),
+      word(
+          "fpga.device", [](B& b) { return &b.fpga.device; }, "the FPGA, for its resources",
+          names_in(area::kDevices)),
+      decimal(
+          "fpga.clock_mhz", [](B& b) { return &b.fpga.clock_mhz; },
+          "clock of the FPGA core and of the SSRAM banks", "MHz", 1, 1000),
+      word(
+          "fpga.arbitration", [](B& b) { return &b.fpga.arbiter.policy; },
+          "how a bank picks one of the ports that request it", names_in(memory::arbitration_policies())),
+      coded("fpga.priority", read_priority, write_priority, priority_meaning(),
+            fmt::format("a list that names each port once: {}", fmt::join(port_names(), ", "))),
+      integer(
+          "fpga.lane_fifo_slots", [](B& b) { return &b.fpga.lane_fifo_slots; },
+          "slots that may be in a lane, taken and not yet consumed", "slots", fpga::kLaneFifoRule),
+      integer(
+          "fpga.result_fifo_words", [](B& b) { return &b.fpga.result_fifo_words; },
+          "queue of result words before the result port; with fewer than 2 for each of matcher.rows "
+          "the matcher waits for it",
+          "words", fpga::kResultFifoRule),
+      integer(
+          "fpga.pipeline_latency_cycles", [](B& b) { return &b.fpga.pipeline_latency_cycles; },
+          "cycles of registers that the model does not spell out", "cycles", fpga::kPipelineLatencyRule),
+      optional(word("fpga.tables", [](B& b) { return &b.fpga.joint_tables; },
+                    "whether each side has a look-up table of its own, "
+                    "or both share one; optional, without it separate",
+                    {"separate", "joint"})),
+      optional(word(
+          "fpga.pixel_cache", [](B& b) { return &b.fpga.pixel_cache; },
           "whether a lane keeps the last word that it read, for each slot of a column; optional, without it "
           "none",
           {"none", "word"})),
-      other_integer("ssram.default.words", "depth of a bank that gives none of its own", "words",
-                    memory::kBankWordsRule, memory::kBankWordsRule.text()),
-      other("ssram.default.kind", "kind of a bank that gives none of its own", "", kinds),
-      optional(other_integer("ssram.default.turnaround_cycles", default_turnaround, "cycles",
-                             memory::kTurnaroundRule, turnaround_rule)),
-      optional(other_integer("ssram.banks.NAME.words", "depth of the bank NAME", "words",
-                             memory::kBankWordsRule, memory::kBankWordsRule.text())),
-      optional(other("ssram.banks.NAME.kind", "kind of the bank NAME", "", kinds)),
-      optional(other_integer("ssram.banks.NAME.turnaround_cycles",
-                             "cycles lost when the bank NAME changes between reads and writes", "cycles",
-                             memory::kTurnaroundRule, turnaround_rule)),
-      other(key_of(Buffer::kLeftImage), "banks of the left input buffers, used in turn", "", image_rule),
-      other(key_of(Buffer::kRightImage), "banks of the right input buffers, used in turn", "", image_rule),
-      other(key_of(Buffer::kDisparity), "banks of the result buffers, used in turn", "", list_rule),
-      other(key_of(Buffer::kLeftLut), "bank of the left rectification table", "", table_rule),
-      other(key_of(Buffer::kRightLut), "bank of the right rectification table", "", table_rule),
-      integer("matcher.window", "rows and columns of the matching window", "pixels", kernels::kWindowRule,
-              member<&B::matcher, &MatcherConfig::window>),
-      integer("matcher.disparities", "number of candidate disparities", "pixels", kernels::kDisparitiesRule,
-              member<&B::matcher, &MatcherConfig::disparities>),
-      other("matcher.filter", "filter before matching", "", "none, log7 or a map of kernel, shift"),
-      other("matcher.filter.kernel", "weights of a filter of one's own, rows from the top", "",
-            "a square list of lists, " + kernels::kKernelSizeRule.text() + " rows, entries " +
-                kernels::kKernelEntryRule.text() + ", sum 0"),
-      other_integer("matcher.filter.shift", "right shift of the sum of a filter of one's own", "bits",
-                    kernels::kShiftRule, kernels::kShiftRule.text()),
-      word<&B::matcher, &MatcherConfig::fetch>(
-          "matcher.fetch", "how often a pixel is read: in every column of its window, or once",
-          {"column", "line_buffer"}),
-      other_integer("matcher.lr_tolerance", "difference that the left-right check tolerates", "pixels",
-                    kernels::kLrToleranceRule, kernels::kLrToleranceRule.text() + " or off"),
-      optional(
-          other_integer("matcher.units",
-                        "column and window modules, at most matcher.disparities; optional, without it all, "
-                        "one for each disparity",
-                        "modules", fpga::kUnitsRule, fpga::kUnitsRule.text() + " or all")),
-      optional(
-          integer("matcher.rows",
-                  "rows of results computed at once, 1 unless matcher.fetch is column; optional, without "
-                  "it 1",
-                  "rows", fpga::kRowsRule, member<&B::matcher, &MatcherConfig::rows>)),
-      optional(other("matcher.cost", "how two windows are compared; optional, without it sad", "",
-                     listed(cost_texts()))),
-      other_integer("matcher.cost.census", "rows and columns of the neighbourhood of the census bits",
-                    "pixels", kernels::kCensusSizeRule, listed(census_size_texts())),
+      part("ssram.default.words", "depth of a bank that gives none of its own", "words",
+           memory::kBankWordsRule.text(), memory::kBankWordsRule),
+      part("ssram.default.kind", "kind of a bank that gives none of its own", "", kinds),
+      optional(part("ssram.default.turnaround_cycles", default_turnaround, "cycles", turnaround_rule,
+                    memory::kTurnaroundRule)),
+      optional(part("ssram.banks.NAME.words", "depth of the bank NAME", "words",
+                    memory::kBankWordsRule.text(), memory::kBankWordsRule)),
+      optional(part("ssram.banks.NAME.kind", "kind of the bank NAME", "", kinds)),
+      optional(part("ssram.banks.NAME.turnaround_cycles",
+                    "cycles lost when the bank NAME changes between reads and writes", "cycles",
+                    turnaround_rule, memory::kTurnaroundRule)),
+      banks_key(Buffer::kLeftImage, "banks of the left input buffers, used in turn", image_rule),
+      banks_key(Buffer::kRightImage, "banks of the right input buffers, used in turn", image_rule),
+      banks_key(Buffer::kDisparity, "banks of the result buffers, used in turn", list_rule),
+      banks_key(Buffer::kLeftLut, "bank of the left rectification table", table_rule),
+      banks_key(Buffer::kRightLut, "bank of the right rectification table", table_rule),
+      integer(
+          "matcher.window", [](B& b) { return &b.matcher.window; }, "rows and columns of the matching window",
+          "pixels", kernels::kWindowRule),
+      integer(
+          "matcher.disparities", [](B& b) { return &b.matcher.disparities; },
+          "number of candidate disparities", "pixels", kernels::kDisparitiesRule),
+      coded("matcher.filter", read_filter, write_filter, "filter before matching",
+            "none, log7 or a map of kernel, shift"),
+      part("matcher.filter.kernel", "weights of a filter of one's own, rows from the top", "",
+           "a square list of lists, " + kernels::kKernelSizeRule.text() + " rows, entries " +
+               kernels::kKernelEntryRule.text() + ", sum 0"),
+      part("matcher.filter.shift", "right shift of the sum of a filter of one's own", "bits",
+           kernels::kShiftRule.text(), kernels::kShiftRule),
+      word("matcher.fetch", [](B& b) { return &b.matcher.fetch; },
+           "how often a pixel is read: in every column of its window, or once", {"column", "line_buffer"}),
+      integer_or(
+          "off", "matcher.lr_tolerance", [](B& b) { return &b.matcher.lr_tolerance; },
+          "difference that the left-right check tolerates", "pixels", kernels::kLrToleranceRule),
+      optional(integer_or(
+          "all", "matcher.units", [](B& b) { return &b.matcher.units; },
+          "column and window modules, at most matcher.disparities; optional, without it all, "
+          "one for each disparity",
+          "modules", fpga::kUnitsRule)),
+      optional(integer(
+          "matcher.rows", [](B& b) { return &b.matcher.rows; },
+          "rows of results computed at once, 1 unless matcher.fetch is column; optional, without "
+          "it 1",
+          "rows", fpga::kRowsRule)),
+      optional(coded("matcher.cost", read_cost, write_cost,
+                     "how two windows are compared; optional, without it sad", listed(cost_texts()))),
+      part("matcher.cost.census", "rows and columns of the neighbourhood of the census bits", "pixels",
+           listed(census_size_texts()), kernels::kCensusSizeRule),
   };
 }
 
-// The edit distance of two words: the least number of characters to change, add, remove or swap with a
-// neighbour.
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> above_last(b.size() + 1);
-  std::vector<std::size_t> above(b.size() + 1);
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    above_last.swap(above);
-    above.swap(row);
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      row[j] = std::min({row[j - 1] + 1, above[j] + 1, above[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1)});
-      const bool is_exchanged = i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1];
-      if (is_exchanged) row[j] = std::min(row[j], above_last[j - 2] + 1);
-    }
-  }
-  return row[b.size()];
-}
-
-// The edit distance of a word from a known word; nullopt if the known word was probably not meant. It was
-// probably meant if at most one of three characters is edited, or if `word` is the known word without its
-// last part, such as a unit.
-std::optional<std::size_t> likely_distance(std::string_view word, std::string_view known) {
-  const bool is_begin = !word.empty() && word.size() < known.size() && known[word.size()] == '_' &&
-                        known.substr(0, word.size()) == word;
-  if (is_begin) return 1;
-  const auto [shorter, longer] = std::minmax({word.size(), known.size()});
-  const std::size_t most = (longer + 2) / 3;
-  if (longer - shorter > most) return std::nullopt;
-  const std::size_t distance = edit_distance(word, known);
-  return distance <= most && distance < longer ? std::optional(distance) : std::nullopt;
-}
-
-// likely_distance() of two paths, without the sections with which both begin.
-std::optional<std::size_t> likely_path_distance(std::string_view path, std::string_view known) {
-  for (std::size_t dot = path.find('.'); dot != std::string_view::npos; dot = path.find('.')) {
-    if (path.substr(0, dot + 1) != known.substr(0, dot + 1)) break;
-    path.remove_prefix(dot + 1);
-    known.remove_prefix(dot + 1);
-  }
-  return likely_distance(path, known);
-}
-
-bool is_below(std::string_view path, std::string_view section) {
-  return path.size() > section.size() && path[section.size()] == '.' &&
-         path.substr(0, section.size()) == section;
-}
-
-std::string_view last_part(std::string_view path) { return path.substr(path.rfind('.') + 1); }
-
-// The known path nearest to an unknown one; empty if no path is near. Below `ssram.banks` every name counts
-// as the name of a bank.
-std::string nearest_path(const std::string& path) {
-  const std::string schema = schema_path(path);
-  std::string best;
-  std::size_t best_distance = std::numeric_limits<std::size_t>::max();
-  const auto offer = [&](const std::string& known, std::optional<std::size_t> distance) {
-    if (!distance || *distance >= best_distance) return;
-    best = known;
-    best_distance = *distance;
-  };
-  const auto offer_known = [&](const std::string& known) {
-    if (is_below(schema, known)) return;  // the section that holds `path`
-    if (schema == known) return;          // the schema path of a bank, not a key
-    offer(known, likely_path_distance(schema, known));
-    // A known key of another section counts as 2 further away. So the right key in a wrong section is nearer
-    // than most wrong keys in the right section.
-    if (const auto moved = likely_distance(last_part(schema), last_part(known))) offer(known, *moved + 2);
-  };
-  offer_known("extends");
-  for (const Key& key : board_keys()) {
-    for (std::size_t dot = key.path.find('.'); dot != std::string::npos; dot = key.path.find('.', dot + 1)) {
-      offer_known(key.path.substr(0, dot));
-    }
-    offer_known(key.path);
-  }
-  const std::string name = "ssram.banks.NAME";
-  if (schema.compare(0, name.size(), name) == 0 && best.compare(0, name.size(), name) == 0) {
-    const std::size_t begin = name.size() - 4;
-    best = path.substr(0, path.find('.', begin)) + best.substr(name.size());
-  }
-  return best;
-}
-
-struct Names {
-  std::vector<std::string> all;
-  std::vector<std::string> required;
-};
-
-// The names directly below a path. All paths are computed once, because sweeps read thousands of boards.
-const Names& names_below(std::string_view path) {
-  static const std::map<std::string, Names, std::less<>> kNames = [] {
-    std::map<std::string, Names, std::less<>> found;
-    const auto add = [&found](const std::string& full, bool is_required) {
-      const std::size_t dot = full.rfind('.');
-      Names& names = found[dot == std::string::npos ? "" : full.substr(0, dot)];
-      const std::string name(last_part(full));
-      if (!names.all.empty() && names.all.back() == name) return;
-      names.all.push_back(name);
-      if (is_required) names.required.push_back(name);
-    };
-    for (const Key& key : board_keys()) {
-      for (std::size_t dot = key.path.find('.'); dot != std::string::npos;
-           dot = key.path.find('.', dot + 1)) {
-        const std::string section = key.path.substr(0, dot);
-        if (found.count(section) == 0) add(section, true);
-        found[section];
-      }
-      add(key.path, !key.is_optional);
-    }
-    return found;
-  }();
-  static const Names kNone;
-  const auto found = kNames.find(path);
-  return found == kNames.end() ? kNone : found->second;
+// The value of a key's field. The accessors need a board that is not const.
+template <typename FieldKey>
+auto field(const FieldKey& key, const BoardConfig& board) {
+  return *key.field(const_cast<BoardConfig&>(board));
 }
 
 }  // namespace
@@ -421,73 +474,129 @@ const std::vector<Key>& board_keys() {
   return table;
 }
 
+const Key* find_key(std::string_view path) {
+  static const auto kByPath = [] {
+    std::map<std::string_view, const Key*> keys;
+    for (const Key& key : board_keys()) keys[key.path] = &key;
+    return keys;
+  }();
+  const auto found = kByPath.find(path);
+  return found == kByPath.end() ? nullptr : found->second;
+}
+
 const Key& board_key(std::string_view path) {
-  for (const Key& key : board_keys()) {
-    if (key.path == path) return key;
-  }
+  if (const Key* const key = find_key(path)) return *key;
   throw std::out_of_range(fmt::format("{}: not a key of a board", path));
 }
 
-const std::vector<std::string>& child_keys(std::string_view path) { return names_below(path).all; }
-
-const std::vector<std::string>& required_keys(std::string_view path) { return names_below(path).required; }
-
-std::size_t required_count(std::string_view path) {
-  const auto& names = required_keys(path);
-  const bool is_key = std::any_of(board_keys().begin(), board_keys().end(),
-                                  [path](const Key& key) { return key.path == path; });
-  if (is_key || names.empty()) return 1;
-  std::size_t count = 0;
-  for (const std::string& name : names)
-    count += required_count(path.empty() ? name : std::string(path) + '.' + name);
-  return count;
+bool has_key(const BoardConfig& board, const Key& key) {
+  static const auto kSections = [] {
+    std::vector<const Key*> sections;
+    for (const Key& one : board_keys()) {
+      if (std::holds_alternative<SectionKey>(one.kind)) sections.push_back(&one);
+    }
+    return sections;
+  }();
+  return std::all_of(kSections.begin(), kSections.end(), [&](const Key* section) {
+    return !is_below(key.path, section->path) || std::get<SectionKey>(section->kind).is_given(board);
+  });
 }
 
-std::string rule_text(std::string_view path) {
-  for (const Key& key : board_keys()) {
-    if (key.path == path) return key.rule_text;
+namespace {
+
+// Overloads for each kind of key.
+struct ToNode {
+  const BoardConfig& board;
+
+  YamlNode operator()(const IntegerKey& key) const {
+    return YamlNode::plain(std::to_string(field(key, board)));
   }
-  if (path == "ssram.banks") return "a map of " + memory::kBankCountRule.text() + " banks";
-  return fmt::format("a map of {}", fmt::join(child_keys(path), ", "));
-}
-
-std::string schema_path(const std::string& path) {
-  const std::string banks = "ssram.banks.";
-  if (path.compare(0, banks.size(), banks) != 0) return path;
-  const std::size_t end = path.find('.', banks.size());
-  return banks + "NAME" + (end == std::string::npos ? "" : path.substr(end));
-}
-
-std::string unknown_key_text(const std::string& path) {
-  const std::string nearest = nearest_path(path);
-  return nearest.empty() ? "unknown key, and no known key is near"
-                         : "unknown key; nearest known key: " + nearest;
-}
-
-std::string nearest_text(std::string_view word, const std::vector<std::string>& words) {
-  const std::string* nearest = nullptr;
-  std::size_t least = std::numeric_limits<std::size_t>::max();
-  for (const std::string& known : words) {
-    const auto distance = likely_distance(word, known);
-    if (!distance || *distance >= least) continue;
-    nearest = &known;
-    least = *distance;
+  YamlNode operator()(const OptionalIntegerKey& key) const {
+    const std::optional<int> number = field(key, board);
+    return number ? YamlNode::plain(std::to_string(*number)) : YamlNode::word(key.none);
   }
-  return nearest == nullptr ? "" : "; nearest: " + *nearest;
+  YamlNode operator()(const DecimalKey& key) const {
+    return YamlNode::plain(decimal_text(field(key, board)));
+  }
+  YamlNode operator()(const WordKey& key) const { return YamlNode::word(key.get(board)); }
+  YamlNode operator()(const CodedKey& key) const { return key.write(board); }
+  template <typename Other>
+  YamlNode operator()(const Other& /*key*/) const {
+    throw std::logic_error("a key without a value of its own");
+  }
+};
+
+struct FromNode {
+  ValueReader& values;
+  const Key& key;
+  const Entry& entry;
+  BoardConfig& board;
+
+  void operator()(const IntegerKey& kind) const {
+    if (const auto value = values.read_integer(key, entry.value)) *kind.field(board) = *value;
+  }
+  void operator()(const OptionalIntegerKey& kind) const {
+    if (entry.value.is(kind.none)) {
+      values.accept(key.path, entry.value.place);
+      *kind.field(board) = std::nullopt;
+    } else if (const auto value = values.read_integer(key, entry.value)) {
+      *kind.field(board) = *value;
+    }
+  }
+  void operator()(const DecimalKey& kind) const {
+    const auto value = decimal_of(entry.value);
+    if (!value || !kind.allows(*value)) {
+      const char* const type = value ? "" : "not a decimal number (such as 29.97, not in quotes); ";
+      return values.report(key.path, entry.value, type + key.rule_text);
+    }
+    values.accept(key.path, entry.value.place);
+    *kind.field(board) = *value;
+  }
+  void operator()(const WordKey& kind) const {
+    if (const auto index = values.read_word(key.path, entry.value, kind.words)) kind.set(board, *index);
+  }
+  void operator()(const CodedKey& kind) const { kind.read(values, key, entry, board); }
+  template <typename Other>
+  void operator()(const Other& /*kind*/) const {
+    throw std::logic_error(key.path + ": a key without a value of its own");
+  }
+};
+
+}  // namespace
+
+bool has_value(const Key& key) {
+  return !std::holds_alternative<SectionKey>(key.kind) && !std::holds_alternative<PartKey>(key.kind);
 }
 
-std::string listed(const std::vector<std::string>& words) {
-  std::string out;
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    if (i > 0) out += i + 1 == words.size() ? " or " : ", ";
-    out += words[i];
+YamlNode value_node(const Key& key, const BoardConfig& board) { return std::visit(ToNode{board}, key.kind); }
+
+void read_value(ValueReader& values, const Key& key, const Entry& entry, BoardConfig& board) {
+  if (values.check_use(key.path, entry.value)) std::visit(FromNode{values, key, entry, board}, key.kind);
+}
+
+bool is_plainly_valid(const Key& key, const BoardConfig& board) {
+  if (const auto* const word = std::get_if<WordKey>(&key.kind))
+    return std::find(word->words.begin(), word->words.end(), word->get(board)) != word->words.end();
+  if (const auto* const integer = std::get_if<IntegerKey>(&key.kind))
+    return key.numbers->allows(field(*integer, board));
+  if (const auto* const decimal = std::get_if<DecimalKey>(&key.kind))
+    return decimal->allows(field(*decimal, board));
+  return false;
+}
+
+bool allows_number(const Key& key, const YamlNode& number) {
+  if (key.numbers) {
+    const auto value = integer_of(number);
+    return value && key.numbers->allows(*value);
   }
-  return out;
+  const auto* const decimal = std::get_if<DecimalKey>(&key.kind);
+  return decimal == nullptr || decimal->allows(decimal_of(number).value_or(decimal->min - 1));
 }
 
 std::string cost_text(const kernels::MatchingCost& cost) {
-  const char* const name = kernels::name_of(cost.kind);
-  return cost.kind == kernels::CostKind::kCensus ? fmt::format("{{{}: {}}}", name, cost.census_size) : name;
+  BoardConfig board;
+  board.matcher.cost = cost;
+  return flow_text(write_cost(board));
 }
 
 const std::vector<std::string>& bank_kind_names() {
@@ -508,12 +617,6 @@ bool is_bank_name(std::string_view name) {
   return !name.empty() && letter(name[0]) && name != "none" &&
          std::all_of(name.begin(), name.end(),
                      [&](char c) { return letter(c) || (c >= '0' && c <= '9') || c == '_' || c == '-'; });
-}
-
-bool is_board_name(std::string_view name) {
-  const bool printable = std::none_of(
-      name.begin(), name.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; });
-  return !name.empty() && printable && is_utf8(name);
 }
 
 }  // namespace stereotlm::platform

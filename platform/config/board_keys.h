@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -9,94 +11,100 @@
 
 #include "models/kernels/integer_rule.h"
 #include "platform/config/board_config.h"
+#include "platform/yaml/words.h"
+#include "platform/yaml/yaml_tree.h"
 
 namespace stereotlm::platform {
 
 using kernels::IntegerRule;
 
-// The schema of board files: each key with its rule, once. The reader, the writer, problems() and the `keys`
-// command use this table. On a board without `pci.load`, `field` of the keys below it throws
+class ValueReader;
+struct Key;
+
+// The table of the keys of board files: each key with its rule, once. Reader, writer, problems(), `keys`,
+// `--set`, sweeps and knobs follow from it. On a board without `pci.load`, `field` of the keys below it throws
 // std::bad_optional_access.
 struct IntegerKey {
-  IntegerRule rule;
-  int& (*field)(BoardConfig&);
+  int* (*field)(BoardConfig&);
+};
+
+// An integer, or a word that stands for no value.
+struct OptionalIntegerKey {
+  const char* none;
+  std::optional<int>* (*field)(BoardConfig&);
 };
 
 struct DecimalKey {
   double min;
   double max;
-  double& (*field)(BoardConfig&);
+  double* (*field)(BoardConfig&);
 
   bool allows(double value) const { return value >= min && value <= max; }  // false for NaN
 };
 
-// A key whose value is one of a few words. `get` and `set` use the index of the word in `words`. If the
-// board's value is none of the words, `get` returns an index outside the list. `text` returns the value as a
-// text for messages.
+// A key whose value is one of a few words. If the board's value is none of them, `get` returns the value as a
+// text for messages. `set` uses the index of the word in `words`.
 struct WordKey {
   std::vector<std::string> words;
-  int (*get)(const BoardConfig&);
-  void (*set)(BoardConfig&, int);
-  std::string (*text)(const BoardConfig&);
+  std::function<std::string(const BoardConfig&)> get;
+  std::function<void(BoardConfig&, int)> set;
 };
 
-// A key with code of its own in the reader and the writer.
-struct OtherKey {
-  std::optional<IntegerRule> numbers;  // the rule for numbers; nullopt: takes no numbers
+// `none`, or a map of the keys below it.
+struct SectionKey {
+  bool (*is_given)(const BoardConfig&);
+  void (*give)(BoardConfig&, bool is_given);  // with the default of each key
 };
+
+// A value with code of its own. `read` reports what is wrong with the value of `entry`, or sets the board.
+struct CodedKey {
+  std::function<void(ValueReader&, const Key&, const YamlNode::Entry& entry, BoardConfig&)> read;
+  std::function<YamlNode(const BoardConfig&)> write;
+};
+
+// A part of the value of another key, whose code reads and writes it; or a key of a bank.
+struct PartKey {};
 
 struct Key {
   std::string path;     // dotted; NAME stands for a bank's name
   std::string meaning;  // one line
   std::string unit;     // empty: none
-  std::variant<IntegerKey, DecimalKey, WordKey, OtherKey> rule;
-  std::string rule_text;     // the range or the allowed values
-  bool is_optional = false;  // may be missing from its map
+  std::variant<IntegerKey, OptionalIntegerKey, DecimalKey, WordKey, SectionKey, CodedKey, PartKey> kind;
+  std::string rule_text;               // the range or the allowed values
+  std::optional<IntegerRule> numbers;  // the rule for integers; nullopt: takes none
+  bool is_optional = false;            // may be missing from its map
 };
 
 // All keys, in the order in which the writer of board files writes them.
 const std::vector<Key>& board_keys();
-const Key& board_key(std::string_view path);  // throws std::out_of_range
+const Key* find_key(std::string_view path);    // nullptr if there is no such key
+const Key& board_key(std::string_view path);   // throws std::out_of_range
+bool has_key(const BoardConfig&, const Key&);  // false for a key below a section that is not given
 
-// The names of the keys directly below a path ("" is the top), in order; empty below a single value.
-const std::vector<std::string>& child_keys(std::string_view path);
+// Whether boards have a value of this key: it is neither a SectionKey nor a PartKey.
+bool has_value(const Key& key);
+// The value of a key that has_value().
+YamlNode value_node(const Key& key, const BoardConfig& board);
+// Sets the value of a key that has_value(), or reports its problems.
+void read_value(ValueReader& values, const Key& key, const YamlNode::Entry& entry, BoardConfig& board);
+// Whether the board's value of the key is a number or a word that the key allows. For other values read_value()
+// says whether they are valid.
+bool is_plainly_valid(const Key& key, const BoardConfig& board);
+// Whether the key allows a number. True for a key without a rule for numbers.
+bool allows_number(const Key& key, const YamlNode& number);
 
-// The keys of child_keys() that are not optional.
-const std::vector<std::string>& required_keys(std::string_view path);
-
-// The number of required keys at or below the path, where all banks count as one key. "" is the whole board.
-std::size_t required_count(std::string_view path);
-
-// The rule of a key. The rule of a map lists its keys: "a map of width, height".
-std::string rule_text(std::string_view path);
-
-// The message for an unknown path: "unknown key; nearest known key: PATH", or a text that says that no known
-// key is near.
-std::string unknown_key_text(const std::string& path);
-
-// "; nearest: WORD" with the word of least edit distance, the first of equals; empty if no word is near.
-std::string nearest_text(std::string_view word, const std::vector<std::string>& words);
-
-// `path` with NAME in place of a bank's name: `ssram.banks.NAME.words` for `ssram.banks.bank0.words`.
-std::string schema_path(const std::string& path);
-
-// Joins words: "a, b or c".
-std::string listed(const std::vector<std::string>& words);
 // What a message says before the listed() words to one of which a value must be equal.
 inline constexpr const char* kMustBeOneOf = "must be one of ";
 
 // A cost as a board file has it: "sad", "{census: 5}".
 std::string cost_text(const kernels::MatchingCost& cost);
 
-inline constexpr std::size_t kMaximumBuffers = 3;  // entries of an image or disparity list
-inline constexpr const char* kBankNameRule = "a bank's name is [A-Za-z][A-Za-z0-9_-]*, and not none";
-
 // The names that board files use for the kinds of banks, in the order of memory::BankKind.
 const std::vector<std::string>& bank_kind_names();
 // The kinds of banks that have turnaround, joined by listed(): "sync_burst".
 std::string turnaround_kinds();
 
+inline constexpr const char* kBankNameRule = "a bank's name is [A-Za-z][A-Za-z0-9_-]*, and not none";
 bool is_bank_name(std::string_view name);
-bool is_board_name(std::string_view name);  // UTF-8, not empty, without control characters
 
 }  // namespace stereotlm::platform

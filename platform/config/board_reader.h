@@ -4,7 +4,7 @@
 
 #include "platform/config/board_config.h"
 #include "platform/config/value_reader.h"
-#include "platform/config/yaml_tree.h"
+#include "platform/yaml/yaml_tree.h"
 
 namespace stereotlm::platform {
 

@@ -22,7 +22,4 @@ struct BrokenRule {
 std::vector<BrokenRule> broken_rules(const BoardConfig& board,
                                      const std::function<bool(const std::string&)>& is_valid);
 
-// "[bank0, bank1]"
-std::string list_text(const std::vector<std::string>& words);
-
 }  // namespace stereotlm::platform

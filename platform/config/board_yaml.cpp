@@ -2,6 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <system_error>
 #include <utility>
 
 #include "platform/boards/presets.h"
@@ -29,6 +34,21 @@ std::string lines_of(const std::vector<Diagnostic>& diagnostics, const std::stri
 
 BoardError::BoardError(std::vector<Diagnostic> diagnostics, const std::string& note)
     : std::runtime_error(lines_of(diagnostics, note)), diagnostics_(std::move(diagnostics)) {}
+
+std::string read_text_file(const std::string& path, const std::string& kind) {
+  const auto refuse = [&path](const std::string& rule) { throw BoardError({{path, rule}}); };
+  constexpr std::size_t kLargestBytes = std::size_t{1} << 20;
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error)) refuse("a folder, not a " + kind);
+  std::ifstream file(path, std::ios::binary);
+  if (!file) refuse(fmt::format("cannot be read: {}", std::strerror(errno)));
+  std::string text(kLargestBytes + 1, '\0');
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (file.bad()) refuse("cannot be read: input error");
+  text.resize(static_cast<std::size_t>(file.gcount()));
+  if (text.size() > kLargestBytes) refuse(fmt::format("larger than {} bytes: not a {}", kLargestBytes, kind));
+  return text;
+}
 
 BoardConfig load_board(const std::string& board, const std::vector<std::string>& sets) {
   BoardDraft draft(board);

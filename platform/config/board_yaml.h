@@ -32,6 +32,10 @@ class BoardError : public std::runtime_error {
   std::vector<Diagnostic> diagnostics_;
 };
 
+// Returns the whole text of a file. `kind` is the kind of file in messages, such as "board file". Throws
+// BoardError if the file cannot be read or is larger than 1 MiB.
+std::string read_text_file(const std::string& path, const std::string& kind);
+
 // Loads a board (contract section 4). `board` is the path of a board file if it has a `/` or ends in `.yaml`,
 // else the name of a preset. `sets` are `path=value` pairs. They are applied in order after presets are
 // merged. Each value is one YAML flow value. It replaces the whole value at its path, or is added there, so

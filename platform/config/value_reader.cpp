@@ -6,7 +6,7 @@
 #include <set>
 #include <utility>
 
-#include "platform/config/yaml_values.h"
+#include "platform/config/key_paths.h"
 
 namespace stereotlm::platform {
 
@@ -24,10 +24,6 @@ std::optional<std::string> name_before_colon(const YamlNode::Entry& entry,
 }
 
 }  // namespace
-
-std::string below(const std::string& path, const std::string& name) {
-  return path.empty() ? name : path + '.' + name;
-}
 
 void ValueReader::report_between_keys(const Place& place, std::string text) {
   findings_.emplace_back(place, std::move(text));

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "platform/config/board_keys.h"
-#include "platform/config/yaml_tree.h"
+#include "platform/yaml/yaml_tree.h"
 
 namespace stereotlm::platform {
 
@@ -20,9 +20,6 @@ struct Finding {
   bool is_between_keys = false;  // the rule involves several keys
   std::string missing;           // path of a missing key or section; else empty
 };
-
-// The path of `name` below `path`: "image.width" for "image" and "width". The top is "".
-std::string below(const std::string& path, const std::string& name);
 
 // Reads maps and single values of a board's tree; read_board() uses it. If a value breaks its rule, appends a
 // finding and returns nullopt. Stores the path and place of each value that keeps its rule.
@@ -37,7 +34,6 @@ class ValueReader {
   void report_between_keys(const Place& place, std::string text);
   void report(const Place& place, const std::string& path, const std::string& value, const std::string& rule);
   void report(const std::string& path, const YamlNode& node, const std::string& rule);
-  void report_missing(const Place& place, const std::string& path, const std::string& rule);
   // Reports a missing key that the value of another key requires.
   void report_missing_beside(const Place& place, const std::string& path, const std::string& rule);
   std::size_t finding_count() const { return findings_.size(); }
@@ -56,6 +52,10 @@ class ValueReader {
                                       const std::vector<std::string>& known,
                                       const std::vector<std::string>& required);
 
+  // With the rule of a key that takes integers.
+  std::optional<int> read_integer(const Key& key, const YamlNode& node) {
+    return read_integer(key.path, node, *key.numbers, key.rule_text);
+  }
   std::optional<int> read_integer(const std::string& path, const YamlNode& node, const IntegerRule& rule,
                                   const std::string& rule_text);
 
@@ -64,6 +64,7 @@ class ValueReader {
                                const std::vector<std::string>& words);
 
  private:
+  void report_missing(const Place& place, const std::string& path, const std::string& rule);
   void report_repeated(const YamlNode::Entry& entry, const YamlNode::Entry& first, const std::string& path);
 
   bool report_missing_;

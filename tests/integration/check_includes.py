@@ -21,8 +21,9 @@ MAY_INCLUDE = {
 # The same within a folder: room -> rooms below it in the same folder. A file belongs to the longest room that its
 # path begins with.
 ROOMS = {
-    "platform/config": ["platform/boards"],
-    "platform": ["platform/config"],
+    "platform/yaml": [],
+    "platform/config": ["platform/boards", "platform/yaml"],
+    "platform": ["platform/config", "platform/yaml"],
     "sw/files": [],
     "sw/driver": [],
     "sw/media": ["sw/files", "sw/process"],

@@ -9,7 +9,7 @@
 #include <map>
 
 #include "platform/config/board_keys.h"
-#include "platform/config/yaml_tree.h"
+#include "platform/yaml/yaml_tree.h"
 
 namespace stereotlm::explore {
 namespace {
@@ -29,10 +29,7 @@ const std::vector<std::string>& names() {
   static const std::vector<std::string> kNames = [] {
     std::vector<std::string> all;
     for (const platform::Key& key : platform::board_keys()) {
-      if (key.path.find("ssram.") == 0 || key.path.find("matcher.filter.") == 0 ||
-          key.path.find("matcher.cost.") == 0 || key.path == "pci.load")
-        continue;
-      all.push_back(key.path == "name" ? "board.name" : key.path);
+      if (platform::has_value(key)) all.push_back(key.path == "name" ? "board.name" : key.path);
     }
     all.insert(all.end(), {kBankCount, "run.source", "run.frames"});
     return all;
@@ -143,10 +140,8 @@ std::string Conditions::reason_of(const sqlite::DatabaseError& error) const {
     default:
       break;
   }
-  platform::YamlNode reason;
-  reason.kind = platform::YamlNode::Kind::kScalar;
-  reason.text = std::string(error.what()).substr(database_.path().size() + 2);  // without "where: "
-  return short_text(reason);
+  return platform::short_text(
+      std::string(error.what()).substr(database_.path().size() + 2));  // without "where: "
 }
 
 bool Conditions::hold(const std::vector<BoardValue>& values) {

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "platform/config/value_reader.h"
+#include "platform/config/key_paths.h"
 
 namespace stereotlm::explore {
 namespace {

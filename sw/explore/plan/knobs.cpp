@@ -53,13 +53,19 @@ class Steps {
                          key.path == "fpga.tables" ||  // add_tables()
                          (begins_with(key.path, "pci.load") && !board_.pci.load);
       if (stays || (is_of_computer(key.path) && !camera)) continue;
-      std::visit([&](const auto& rule) { add_key(key, rule); }, key.rule);
+      std::visit([&](const auto& kind) { add_key(key, kind); }, key.kind);
     }
   }
 
   void add_filters() {
-    if (board_.matcher.filter) add_filter(std::nullopt, "none");
-    if (!(board_.matcher.filter == kernels::log7())) add_filter(kernels::log7(), "log7");
+    const auto& now = board_.matcher.filter;
+    const std::string from = !now ? "none" : now == kernels::log7() ? "log7" : "its own";
+    const auto add_filter = [&](const std::optional<kernels::FilterKernel>& filter, const char* to) {
+      if (from != to)
+        add({"matcher.filter", from, to, {}, true}, [&](BoardConfig& b) { b.matcher.filter = filter; });
+    };
+    add_filter(std::nullopt, "none");
+    add_filter(kernels::log7(), "log7");
   }
 
   // Only the number of passes changes the time.
@@ -71,9 +77,7 @@ class Steps {
       const auto text = [](const std::optional<int>& value) {
         return value ? std::to_string(*value) : "all";
       };
-      BoardConfig changed = board_;
-      changed.matcher.units = other;
-      add({"matcher.units", text(now), text(other), std::move(changed)});
+      add({"matcher.units", text(now), text(other)}, [&](BoardConfig& b) { b.matcher.units = other; });
     };
     const int passes = fpga::passes_of(disparities, now.value_or(disparities));
     if (passes > 2) add_to(fewest(passes - 1));
@@ -87,38 +91,39 @@ class Steps {
     if (!left || !right) return;
     if (!board_.fpga.joint_tables) {
       for (const std::string& bank : std::set<std::string>{*left, *right}) {
-        BoardConfig changed = board_;
-        changed.fpga.joint_tables = true;
-        changed.allocation.left_lut = changed.allocation.right_lut = bank;
-        add_best({"fpga.tables", "separate", "joint in " + bank, std::move(changed)});
+        add_best({"fpga.tables", "separate", "joint in " + bank}, [&](BoardConfig& b) {
+          b.fpga.joint_tables = true;
+          b.allocation.left_lut = b.allocation.right_lut = bank;
+        });
       }
       return;
     }
-    BoardConfig changed = board_;
-    changed.fpga.joint_tables = false;
-    const PlacedBuffer right_lut = platform::buffers(changed).back();
+    BoardConfig separate = board_;
+    separate.fpga.joint_tables = false;
+    const PlacedBuffer right_lut = platform::buffers(separate).back();
     const auto free = std::find_if(board_.banks.begin(), board_.banks.end(), [&](const BankConfig& bank) {
       return buffers_in(bank.name) == 0 && can_hold(bank, right_lut);
     });
-    if (free != board_.banks.end()) changed.allocation.right_lut = free->name;
-    std::string to = "separate, right_lut in " + *changed.allocation.right_lut;
-    add_best({"fpga.tables", "joint", std::move(to), std::move(changed)});
+    if (free != board_.banks.end()) separate.allocation.right_lut = free->name;
+    const std::string to = "separate, right_lut in " + *separate.allocation.right_lut;
+    add_best({"fpga.tables", "joint", to}, [&](BoardConfig& b) { b = separate; });
   }
 
   void add_costs() {
     using kernels::CostKind;
-    using kernels::MatchingCost;
-    const MatchingCost& now = board_.matcher.cost;
-    const int size = now.kind == CostKind::kCensus ? now.census_size : kCensusSize;
-    for (const MatchingCost& cost :
-         {MatchingCost{CostKind::kSad, 0}, MatchingCost{CostKind::kSsd, 0}, MatchingCost{CostKind::kZncc, 0},
-          MatchingCost{CostKind::kCensus, size}, MatchingCost{CostKind::kCensus, size + 2},
-          MatchingCost{CostKind::kCensus, size - 2}}) {
-      const bool is_other_size = cost.kind == CostKind::kCensus && cost.census_size != size;
-      if (cost == now || (is_other_size && now.kind != CostKind::kCensus)) continue;
-      BoardConfig changed = board_;
-      changed.matcher.cost = cost;
-      add({"matcher.cost", cost_text(now), cost_text(cost), std::move(changed), true});
+    const kernels::MatchingCost& now = board_.matcher.cost;
+    std::vector<kernels::MatchingCost> others = {
+        {CostKind::kSad, 0}, {CostKind::kSsd, 0}, {CostKind::kZncc, 0}};
+    if (now.kind == CostKind::kCensus) {
+      others.push_back({CostKind::kCensus, now.census_size + 2});
+      others.push_back({CostKind::kCensus, now.census_size - 2});
+    } else {
+      others.push_back({CostKind::kCensus, kCensusSize});
+    }
+    for (const kernels::MatchingCost& cost : others) {
+      if (cost == now) continue;
+      add({"matcher.cost", cost_text(now), cost_text(cost), {}, true},
+          [&](BoardConfig& b) { b.matcher.cost = cost; });
     }
   }
 
@@ -134,9 +139,7 @@ class Steps {
     std::set<Order> known = {list};
     const auto add_order = [&](const Order& order, const std::string& from, const std::string& to) {
       if (!known.insert(order).second) return;
-      BoardConfig changed = board_;
-      changed.fpga.arbiter.priority = order;
-      add({"fpga.priority", from, to, std::move(changed)});
+      add({"fpga.priority", from, to}, [&](BoardConfig& b) { b.fpga.arbiter.priority = order; });
     };
     for (std::size_t first = 0; first + 1 < list.size(); ++first) {
       Order order = list;
@@ -157,10 +160,7 @@ class Steps {
   }
 
   void add_load() {
-    if (!board_.pci.load) return;
-    BoardConfig changed = board_;
-    changed.pci.load.reset();
-    add({"pci.load", "as it is", "none", std::move(changed)});
+    if (board_.pci.load) add({"pci.load", "as it is", "none"}, [](BoardConfig& b) { b.pci.load.reset(); });
   }
 
   void add_kinds() {
@@ -168,16 +168,17 @@ class Steps {
     for (const BankConfig& bank : board_.banks) kinds.insert(bank.kind);
     const std::string from = kinds.size() > 1 ? "different" : memory::traits_of(*kinds.begin()).name;
     for (const memory::BankTraits& traits : memory::kBankTraits) {
-      BoardConfig changed = board_;
-      for (BankConfig& bank : changed.banks) {
-        bank.kind = traits.kind;
-        if (!traits.has_turnaround) {
-          bank.turnaround_cycles = 0;
-        } else if (bank.turnaround_cycles == 0) {
-          bank.turnaround_cycles = kTurnaroundCycles;
+      if (from == traits.name) continue;
+      add({"ssram.banks.*.kind", from, traits.name}, [&](BoardConfig& b) {
+        for (BankConfig& bank : b.banks) {
+          bank.kind = traits.kind;
+          if (!traits.has_turnaround) {
+            bank.turnaround_cycles = 0;
+          } else if (bank.turnaround_cycles == 0) {
+            bank.turnaround_cycles = kTurnaroundCycles;
+          }
         }
-      }
-      if (!(changed == board_)) add({"ssram.banks.*.kind", from, traits.name, std::move(changed)});
+      });
     }
   }
 
@@ -190,49 +191,48 @@ class Steps {
     if (cycles.empty()) return;
     const bool is_one = cycles.size() == 1;
     for (const int change : {1, -1}) {
-      BoardConfig changed = board_;
-      for (BankConfig& bank : changed.banks) {
-        if (memory::traits_of(bank.kind).has_turnaround) bank.turnaround_cycles += change;
-      }
       add({"ssram.banks.*.turnaround_cycles", is_one ? std::to_string(*cycles.begin()) : "different",
            is_one ? std::to_string(*cycles.begin() + change)
-                  : std::string("one ") + (change > 0 ? "more" : "less") + " each",
-           std::move(changed)});
+                  : std::string("one ") + (change > 0 ? "more" : "less") + " each"},
+          [&](BoardConfig& b) {
+            for (BankConfig& bank : b.banks) {
+              if (memory::traits_of(bank.kind).has_turnaround) bank.turnaround_cycles += change;
+            }
+          });
     }
   }
 
   void add_buffers() {
-    using Banks = std::vector<std::string>;
-    const auto lengthen = [this](const std::string& knob, std::size_t size, const Banks& banks,
-                                 BoardConfig changed) {
-      add({knob, counted(size), fmt::format("{}, in {}", counted(size + 1), fmt::join(banks, " and ")),
-           std::move(changed), false, knob + " more"});
+    const auto lengthen = [this](const std::string& knob, std::size_t size, const std::string& banks,
+                                 const auto& change) {
+      add({knob,
+           counted(size),
+           fmt::format("{}, in {}", counted(size + 1), banks),
+           {},
+           false,
+           knob + " more"},
+          change);
     };
     const std::string pairs = fmt::format("{}, {}", key_of(Buffer::kLeftImage), name_of(Buffer::kRightImage));
     const std::size_t size = board_.allocation.left_image.size();
     for (const std::string& left : quiet_banks(Buffer::kLeftImage)) {
       for (const std::string& right : quiet_banks(Buffer::kRightImage)) {
-        BoardConfig changed = board_;
-        changed.allocation.left_image.push_back(left);
-        changed.allocation.right_image.push_back(right);
-        lengthen(pairs, size, {left, right}, std::move(changed));
+        lengthen(pairs, size, left + " and " + right, [&](BoardConfig& b) {
+          b.allocation.left_image.push_back(left);
+          b.allocation.right_image.push_back(right);
+        });
       }
     }
-    BoardConfig fewer = board_;
-    fewer.allocation.left_image.pop_back();
-    fewer.allocation.right_image.pop_back();
-    add({pairs, counted(size), counted(size - 1), std::move(fewer)});
-
+    add({pairs, counted(size), counted(size - 1)}, [](BoardConfig& b) {
+      b.allocation.left_image.pop_back();
+      b.allocation.right_image.pop_back();
+    });
     const std::string results = key_of(Buffer::kDisparity);
     const std::size_t count = board_.allocation.disparity.size();
-    for (const std::string& bank : quiet_banks(Buffer::kDisparity)) {
-      BoardConfig changed = board_;
-      changed.allocation.disparity.push_back(bank);
-      lengthen(results, count, {bank}, std::move(changed));
-    }
-    fewer = board_;
-    fewer.allocation.disparity.pop_back();
-    add({results, counted(count), counted(count - 1), std::move(fewer)});
+    for (const std::string& bank : quiet_banks(Buffer::kDisparity))
+      lengthen(results, count, bank, [&](BoardConfig& b) { b.allocation.disparity.push_back(bank); });
+    add({results, counted(count), counted(count - 1)},
+        [](BoardConfig& b) { b.allocation.disparity.pop_back(); });
   }
 
   void add_banks_more() {
@@ -243,22 +243,24 @@ class Steps {
     while (std::any_of(board_.banks.begin(), board_.banks.end(), is_name)) name += '_';
     for (const PlacedBuffer& buffer : platform::buffers(board_)) {
       if (buffers_in(buffer.bank) < 2) continue;
-      const auto move_to = [&](BoardConfig changed, const std::string& bank, const std::string& to) {
-        move_buffer(changed, buffer, bank);
-        add_best(
-            {"a bank more", fmt::format("{} in {}", buffer.label(), buffer.bank), to, std::move(changed)});
+      const std::string from = fmt::format("{} in {}", buffer.label(), buffer.bank);
+      const auto move_to = [&](const std::string& bank, const std::string& to, const auto& prepare) {
+        add_best({"a bank more", from, to}, [&](BoardConfig& b) {
+          prepare(b);
+          move_buffer(b, buffer, bank);
+        });
       };
       bool is_held = false;
       for (const BankConfig& bank : board_.banks) {
         if (buffers_in(bank.name) > 0 || !can_hold(bank, buffer)) continue;
         is_held = true;
-        move_to(board_, bank.name, "in " + bank.name);
+        move_to(bank.name, "in " + bank.name, [](BoardConfig& /*board*/) {});
       }
       if (is_held) continue;
-      BoardConfig changed = board_;
-      changed.banks.push_back(bank_of(buffer.bank));
-      changed.banks.back().name = name;
-      move_to(std::move(changed), name, "in a new bank");
+      move_to(name, "in a new bank", [&](BoardConfig& b) {
+        b.banks.push_back(bank_of(buffer.bank));
+        b.banks.back().name = name;
+      });
     }
   }
 
@@ -266,11 +268,11 @@ class Steps {
     for (const BankConfig& left : board_.banks) {
       for (const BankConfig& taking : board_.banks) {
         if (left.name == taking.name || buffers_in(left.name) == 0 || buffers_in(taking.name) == 0) continue;
-        BoardConfig changed = board_;
-        for (const PlacedBuffer& buffer : platform::buffers(board_)) {
-          if (buffer.bank == left.name) move_buffer(changed, buffer, taking.name);
-        }
-        add_best({"a bank less", left.name, "into " + taking.name, std::move(changed)});
+        add_best({"a bank less", left.name, "into " + taking.name}, [&](BoardConfig& b) {
+          for (const PlacedBuffer& buffer : platform::buffers(board_)) {
+            if (buffer.bank == left.name) move_buffer(b, buffer, taking.name);
+          }
+        });
       }
     }
   }
@@ -286,7 +288,11 @@ class Steps {
   }
 
  private:
-  void add(KnobStep step) {
+  // Adds the step to the board that `change` makes of this one.
+  template <typename Change>
+  void add(KnobStep step, const Change& change) {
+    step.board = board_;
+    change(step.board);
     const std::vector<std::string> problems = platform::problems(step.board);
     if (problems.empty()) {
       if (step.board.fpga.joint_tables && joint_problem_) {
@@ -309,57 +315,45 @@ class Steps {
     forbidden_.push_back({{step.knob, step.from, step.to, reason}, step.group});
   }
   // One of several alternatives.
-  void add_best(KnobStep step) {
+  template <typename Change>
+  void add_best(KnobStep step, const Change& change) {
     step.group = step.knob;
-    add(std::move(step));
+    add(std::move(step), change);
   }
 
   void add_key(const Key& key, const platform::IntegerKey& integer) {
-    const int step = static_cast<int>(integer.rule.step);
-    for (const int change : {step, -step}) {
-      BoardConfig changed = board_;
-      int& value = integer.field(changed);
-      const int from = value;
-      value += change;
-      add({key.path, std::to_string(from), std::to_string(value), changed,
-           begins_with(key.path, "matcher.") && key.path != "matcher.rows"});
+    BoardConfig now = board_;
+    const int from = *integer.field(now);
+    for (const int change : {static_cast<int>(key.numbers->step), -static_cast<int>(key.numbers->step)}) {
+      add({key.path,
+           std::to_string(from),
+           std::to_string(from + change),
+           {},
+           begins_with(key.path, "matcher.") && key.path != "matcher.rows"},
+          [&](BoardConfig& b) { *integer.field(b) += change; });
     }
   }
   void add_key(const Key& key, const platform::DecimalKey& decimal) {
+    BoardConfig now = board_;
+    const double from = *decimal.field(now);
     for (const double change : {1.0, -1.0}) {
-      BoardConfig changed = board_;
-      double& value = decimal.field(changed);
-      const double from = value;
-      value += change;
-      add({key.path, fmt::format("{:g}", from), fmt::format("{:g}", value), changed});
+      add({key.path, fmt::format("{:g}", from), fmt::format("{:g}", from + change)},
+          [&](BoardConfig& b) { *decimal.field(b) += change; });
     }
   }
   void add_key(const Key& key, const platform::WordKey& word) {
-    const int now = word.get(board_);
-    for (int other = 0; other < static_cast<int>(word.words.size()); ++other) {
-      if (other == now) continue;
-      BoardConfig changed = board_;
-      word.set(changed, other);
-      std::string to = word.words[static_cast<std::size_t>(other)];
-      if (changed.matcher.fetch != board_.matcher.fetch && board_.matcher.rows != 1) {
-        changed.matcher.rows = 1;  // as the line buffer needs
-        to += ", matcher.rows 1";
-      }
-      add({key.path, word.words[static_cast<std::size_t>(now)], to, changed});
+    const std::string now = word.get(board_);
+    for (std::size_t other = 0; other < word.words.size(); ++other) {
+      if (word.words[other] == now) continue;
+      const bool is_one_row = key.path == "matcher.fetch" && board_.matcher.rows != 1;
+      add({key.path, now, word.words[other] + (is_one_row ? ", matcher.rows 1" : "")}, [&](BoardConfig& b) {
+        word.set(b, static_cast<int>(other));
+        if (is_one_row) b.matcher.rows = 1;  // as the line buffer needs
+      });
     }
   }
-  void add_key(const Key&, const platform::OtherKey&) {}
-
-  void add_filter(const std::optional<kernels::FilterKernel>& filter, const char* name) {
-    const auto& now = board_.matcher.filter;
-    BoardConfig changed = board_;
-    changed.matcher.filter = filter;
-    add({"matcher.filter",
-         !now                     ? "none"
-         : now == kernels::log7() ? "log7"
-                                  : "its own",
-         name, std::move(changed), true});
-  }
+  template <typename Other>
+  void add_key(const Key& /*key*/, const Other& /*kind*/) {}  // no step, or one of its own
 
   std::size_t buffers_in(const std::string& bank) const {
     std::size_t count = 0;

@@ -14,7 +14,7 @@ struct KnobStep {
   std::string knob;  // a key, or "a bank more", "a bank less"
   std::string from;
   std::string to;
-  platform::BoardConfig board;
+  platform::BoardConfig board{};
   bool changes_disparities = false;  // the changed board computes other disparities
   // Steps of one group are alternatives (which buffer gets the bank), and only the best of them counts. Empty:
   // the step has no alternatives.

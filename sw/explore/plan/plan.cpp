@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "platform/config/key_paths.h"
 #include "platform/config/tables.h"
 #include "sw/explore/plan/shuffled_numbers.h"
 
@@ -37,9 +38,7 @@ Point Plan::point(std::uint64_t number) const {
   if (!reading.problems.empty()) {
     return impossible_point(number, draft.to_yaml(), reading.board, run, rules_of(reading.problems));
   }
-  auto problem = size_problem(reading.board);
-  if (!problem) problem = buffer_problem(reading.board);
-  if (!problem) problem = joint_problem(reading.board);
+  const auto problem = table_problem(reading.board, [](const char*) { return true; });
   if (!problem) return make_point(number, reading.board, run);
   return impossible_point(number, to_yaml(reading.board), reading.board, run,
                           fmt::format("{}: {}", kCalibrationPath, *problem));
@@ -51,30 +50,23 @@ std::optional<std::string> Plan::use_calibration(const std::string& sha256, int 
   tables_width_ = width;
   tables_height_ = height;
   tables_joint_problem_ = joint_problem;
-  auto problem = varies("image") ? std::nullopt : size_problem(*base_board_);
-  if (!problem && !varies("allocation")) problem = buffer_problem(*base_board_);
-  if (!problem && !varies("fpga.tables")) problem = this->joint_problem(*base_board_);
+  return table_problem(*base_board_, [this](const char* path) { return !varies(path); });
+}
+
+std::optional<std::string> Plan::table_problem(const platform::BoardConfig& board,
+                                               const std::function<bool(const char*)>& is_checked) const {
+  if (run_.calibration.empty()) return std::nullopt;
+  std::optional<std::string> problem;
+  if (is_checked("image")) problem = platform::calibration_size_problem(board, tables_width_, tables_height_);
+  if (!problem && is_checked("allocation")) problem = platform::calibration_buffer_problem(board);
+  if (!problem && is_checked("fpga.tables") && board.fpga.joint_tables) problem = tables_joint_problem_;
   return problem;
-}
-
-std::optional<std::string> Plan::size_problem(const platform::BoardConfig& board) const {
-  if (run_.calibration.empty()) return std::nullopt;
-  return platform::calibration_size_problem(board, tables_width_, tables_height_);
-}
-
-std::optional<std::string> Plan::buffer_problem(const platform::BoardConfig& board) const {
-  if (run_.calibration.empty()) return std::nullopt;
-  return platform::calibration_buffer_problem(board);
-}
-
-std::optional<std::string> Plan::joint_problem(const platform::BoardConfig& board) const {
-  return board.fpga.joint_tables ? tables_joint_problem_ : std::nullopt;
 }
 
 bool Plan::varies(const std::string& path) const {
   const std::vector<std::string> paths = varied();
   return std::any_of(paths.begin(), paths.end(), [&path](const std::string& one) {
-    return one == path || one.compare(0, path.size() + 1, path + '.') == 0;
+    return one == path || platform::is_below(one, path);
   });
 }
 

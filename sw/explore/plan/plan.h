@@ -1,13 +1,14 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "platform/config/board_config.h"
 #include "platform/config/board_draft.h"
-#include "platform/config/yaml_tree.h"
+#include "platform/yaml/yaml_tree.h"
 #include "sw/explore/plan/plan_values.h"
 #include "sw/explore/plan/points.h"
 
@@ -75,11 +76,11 @@ class Plan : public Points {
     PointRun run;
   };
   Combination combination(std::uint64_t number) const;
-  // The reason for which a board cannot have the tables of the calibration: its image size, or a side without
-  // a buffer for a table. Nullopt if there is no such reason, or no calibration.
-  std::optional<std::string> size_problem(const platform::BoardConfig& board) const;
-  std::optional<std::string> buffer_problem(const platform::BoardConfig& board) const;
-  std::optional<std::string> joint_problem(const platform::BoardConfig& board) const;
+  // The reason for which a board cannot have the tables of the calibration: its image size, a side without a
+  // buffer for a table, or tables that cannot be joined. Nullopt if there is no such reason, or no calibration.
+  // Reasons that depend on keys at or below a path for which `is_checked` is false are left out.
+  std::optional<std::string> table_problem(const platform::BoardConfig& board,
+                                           const std::function<bool(const char*)>& is_checked) const;
   bool varies(const std::string& path) const;  // whether the key or a key below it varies
 
   std::string path_;

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <map>
 
-#include "platform/config/board_keys.h"
-#include "platform/config/value_reader.h"
+#include "platform/config/key_paths.h"
+#include "platform/yaml/words.h"
 
 namespace stereotlm::explore {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "platform/config/board_yaml.h"
-#include "platform/config/yaml_tree.h"
+#include "platform/yaml/yaml_tree.h"
 
 namespace stereotlm::explore {
 

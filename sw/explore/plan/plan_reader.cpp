@@ -7,12 +7,11 @@
 #include <optional>
 #include <stdexcept>
 #include <utility>
-#include <variant>
 
 #include "platform/config/board_keys.h"
-#include "platform/config/text_file.h"
-#include "platform/config/yaml_tree.h"
-#include "platform/config/yaml_values.h"
+#include "platform/config/board_yaml.h"
+#include "platform/config/key_paths.h"
+#include "platform/yaml/yaml_tree.h"
 #include "sw/explore/plan/conditions.h"
 #include "sw/explore/plan/plan.h"
 #include "sw/explore/plan/plan_findings.h"
@@ -248,36 +247,31 @@ class PlanReader {
     if (!range) return std::nullopt;
     take_banks(entry.key, {});
     PlanValues values(*range, node.place);
-    check_range(name, path, node, *range, values);
+    check_range(name, path, node, values);
     return values;
   }
 
   // Reports all refused values of a range in one line.
   void check_range(const std::string& name, const std::string& path, const YamlNode& node,
-                   const DecimalRange& range, const PlanValues& values) {
-    RefusedNumbers refused = refused_by_rule(path, range);
-    // A key without a rule for numbers allows all numbers or none.
-    if (refused.count == 0 && !problems_of(path, values.at(0)).empty()) refused = {range.count, 0};
-    if (refused.count == 0) return;
-    const std::vector<Diagnostic> first = problems_of(path, values.at(refused.first));
-    findings_.report(name, node,
-                     fmt::format("{} of {} values refused, the first: {}", refused.count, range.count,
-                                 first.empty() ? values.at(refused.first).text : first.front().text));
-  }
-
-  static RefusedNumbers refused_by_rule(const std::string& path, const DecimalRange& range) {
-    if (path == kFramesPath) return refused_numbers(range, kFramesRule);
-    const std::string schema = platform::schema_path(path);
-    for (const platform::Key& key : platform::board_keys()) {
-      if (key.path != schema) continue;
-      if (const auto* rule = std::get_if<platform::IntegerKey>(&key.rule))
-        return refused_numbers(range, rule->rule);
-      if (const auto* rule = std::get_if<platform::DecimalKey>(&key.rule))
-        return refused_numbers(range, *rule);
-      const auto* other = std::get_if<platform::OtherKey>(&key.rule);
-      if (other != nullptr && other->numbers) return refused_numbers(range, *other->numbers);
+                   const PlanValues& values) {
+    const platform::Key* const key = platform::find_key(platform::schema_path(path));
+    const auto allows = [&](const YamlNode& number) {
+      if (path == kFramesPath) return kFramesRule.allows(platform::integer_of(number).value_or(0));
+      return key == nullptr || platform::allows_number(*key, number);
+    };
+    std::uint64_t refused = 0;
+    YamlNode first = values.at(0);
+    for (std::uint64_t i = 0; i < values.size(); ++i) {
+      const YamlNode number = values.at(i);
+      if (!allows(number) && refused++ == 0) first = number;
     }
-    return {};
+    const std::vector<Diagnostic> problems = problems_of(path, first);
+    // A key without a rule for numbers allows all numbers or none.
+    if (refused == 0 && !problems.empty()) refused = values.size();
+    if (refused == 0) return;
+    findings_.report(name, node,
+                     fmt::format("{} of {} values refused, the first: {}", refused, values.size(),
+                                 problems.empty() ? first.text : problems.front().text));
   }
 
   std::vector<Diagnostic> problems_of(const std::string& path, const YamlNode& value) const {

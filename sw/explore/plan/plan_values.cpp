@@ -6,7 +6,7 @@
 #include <array>
 #include <cstdlib>
 
-#include "platform/config/yaml_values.h"
+#include "platform/yaml/yaml_tree.h"
 
 namespace stereotlm::explore {
 namespace {
@@ -40,23 +40,6 @@ std::optional<Decimal> exact_decimal(const platform::YamlNode& node) {
 // The number of digits of a value that is written with `places` places.
 int digits_with(const Decimal& value, int places) {
   return static_cast<int>(std::to_string(std::abs(value.digits)).size()) + places - value.places;
-}
-
-platform::YamlNode scalar(const std::string& text, const platform::Place& place) {
-  platform::YamlNode node;
-  node.kind = platform::YamlNode::Kind::kScalar;
-  node.place = place;
-  node.text = text;
-  return node;
-}
-
-template <typename Allows>
-RefusedNumbers count_refused(const DecimalRange& range, const Allows& allows) {
-  RefusedNumbers refused;
-  for (std::uint64_t i = 0; i < range.count; ++i) {
-    if (!allows(i) && refused.count++ == 0) refused.first = i;
-  }
-  return refused;
 }
 
 }  // namespace
@@ -114,22 +97,8 @@ std::optional<DecimalRange> read_range(const std::string& name, const platform::
                       places};
 }
 
-RefusedNumbers refused_numbers(const DecimalRange& range, const platform::IntegerRule& rule) {
-  if (range.places > 0) return {range.count, 0};  // "7.0" is not an integer
-  return count_refused(range, [&](std::uint64_t number) { return rule.allows(range.digits(number)); });
-}
-
-// A rule that allows both ends of the range allows all numbers of it.
-RefusedNumbers refused_numbers(const DecimalRange& range, const platform::DecimalKey& rule) {
-  const auto allows = [&](std::uint64_t number) {
-    return rule.allows(platform::decimal_of(scalar(range.text(number), {})).value());
-  };
-  if (allows(0) && allows(range.count - 1)) return {};
-  return count_refused(range, allows);
-}
-
 platform::YamlNode PlanValues::at(std::uint64_t number) const {
-  return range_ ? scalar(range_->text(number), place_) : list_.at(number);
+  return range_ ? platform::YamlNode::plain(range_->text(number), place_) : list_.at(number);
 }
 
 }  // namespace stereotlm::explore

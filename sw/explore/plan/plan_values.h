@@ -6,8 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "platform/config/board_keys.h"
-#include "platform/config/yaml_tree.h"
+#include "platform/yaml/yaml_tree.h"
 #include "sw/explore/plan/plan_findings.h"
 
 namespace stereotlm::explore {
@@ -28,14 +27,6 @@ struct DecimalRange {
 // returns nullopt. `name` is the name of the range in messages.
 std::optional<DecimalRange> read_range(const std::string& name, const platform::YamlNode& node,
                                        PlanFindings& findings);
-
-// How many numbers of a range break a rule, and which is the first.
-struct RefusedNumbers {
-  std::uint64_t count = 0;
-  std::uint64_t first = 0;  // its index in the range
-};
-RefusedNumbers refused_numbers(const DecimalRange& range, const platform::IntegerRule& rule);
-RefusedNumbers refused_numbers(const DecimalRange& range, const platform::DecimalKey& rule);
 
 // The values that a plan gives one key: a list, or a range, whose values are made one by one.
 class PlanValues {

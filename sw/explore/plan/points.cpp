@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "platform/config/yaml_values.h"
+#include "platform/yaml/yaml_tree.h"
 #include "sw/files/sha256.h"
 
 namespace stereotlm::explore {

@@ -8,7 +8,7 @@
 #include "platform/config/board_config.h"
 #include "platform/config/board_keys.h"
 #include "platform/config/board_yaml.h"
-#include "platform/config/yaml_tree.h"
+#include "platform/yaml/yaml_tree.h"
 
 namespace stereotlm::explore {
 

@@ -25,58 +25,40 @@ TEST(BoardPresets, AreTheBoardsOfThisProject) {
 }
 
 TEST(BoardPresets, AreTheDefaultBoardConfigWithAFewChanges) {
-  const auto expect_preset = [](const std::string& name, const auto& change) {
-    BoardConfig expected;
-    expected.name = name;
-    change(expected);
-    EXPECT_EQ(load_board(name), expected) << name;
-  };
-  expect_preset("fpl2003", [](BoardConfig& /*board*/) {});
-  expect_preset("fpl2003-no-calibration", [](BoardConfig& board) {
-    board.allocation.left_lut.reset();
-    board.allocation.right_lut.reset();
-  });
-  expect_preset("fpl2003-line-buffer",
-                [](BoardConfig& board) { board.matcher.fetch = fpga::Fetch::kLineBuffer; });
-  expect_preset("fpl2003-qvga", [](BoardConfig& board) { board.image = {320, 240}; });
-  expect_preset("fpl2003-syncburst", [](BoardConfig& board) {
-    for (BankConfig& bank : board.banks) bank.kind = memory::BankKind::kSyncBurst, bank.turnaround_cycles = 2;
-  });
-  expect_preset("fpl2003-triple", [](BoardConfig& board) {
-    board.banks.push_back({"bank8"});
-    board.banks.push_back({"bank9"});
-    board.allocation.left_image = {"bank0", "bank1", "bank8"};
-    board.allocation.right_image = {"bank2", "bank3", "bank9"};
-  });
-  expect_preset("four-rows", [](BoardConfig& board) { board.matcher.rows = 4; });
-  expect_preset("half-the-modules", [](BoardConfig& board) { board.matcher.units = 40; });
-  const auto use_two_banks = [](BoardConfig& board) {
-    board.fpga.joint_tables = true;
-    board.fpga.pixel_cache = fpga::PixelCache::kWord;
-    auto& priority = board.fpga.arbiter.priority;
-    std::rotate(priority.begin(), priority.begin() + 1, priority.end());  // the host comes last
-    board.banks.resize(2);
-    const Names pictures = {"bank1", "bank1"};
-    board.allocation = {pictures, pictures, pictures, "bank0", "bank0"};
-  };
-  expect_preset("two-banks", use_two_banks);
-  expect_preset("two-banks-four-rows", [&](BoardConfig& board) {
-    use_two_banks(board);
-    board.matcher.rows = 4;
-  });
-  expect_preset("wvga-60hz", [](BoardConfig& board) {
-    board.image = {752, 480};
-    board.cameras.frame_rate_hz = 60;
-    board.matcher.fetch = fpga::Fetch::kLineBuffer;
-  });
-  expect_preset("megapixel-pci64", [](BoardConfig& board) {
-    board.image = {1280, 960};
-    board.cameras.frame_rate_hz = 30;
-    board.pci.clock_mhz = 66.667;
-    board.pci.width_bits = 64;
-    for (BankConfig& bank : board.banks) bank.words = 2097152;
-    board.matcher.fetch = fpga::Fetch::kLineBuffer;
-  });
+  EXPECT_EQ(load_board("fpl2003"), BoardConfig());
+  const std::string line_buffer = "matcher.fetch=line_buffer";
+  const Names triple = {"ssram.banks.bank8={}", "ssram.banks.bank9={}",
+                        "allocation.left_image=[bank0, bank1, bank8]",
+                        "allocation.right_image=[bank2, bank3, bank9]"};
+  const std::vector<std::pair<std::string, Names>> presets = {
+      {"fpl2003-no-calibration", {"allocation.left_lut=none", "allocation.right_lut=none"}},
+      {"fpl2003-line-buffer", {line_buffer}},
+      {"fpl2003-qvga", {"image={width: 320, height: 240}"}},
+      {"fpl2003-syncburst", {"ssram.default={words: 524288, kind: sync_burst, turnaround_cycles: 2}"}},
+      {"fpl2003-triple", triple},
+      {"four-rows", {"matcher.rows=4"}},
+      {"half-the-modules", {"matcher.units=40"}},
+      {"wvga-60hz", {"image={width: 752, height: 480}", "cameras.frame_rate_hz=60", line_buffer}},
+      {"megapixel-pci64",
+       {"image={width: 1280, height: 960}", "cameras.frame_rate_hz=30", "pci.clock_mhz=66.667",
+        "pci.width_bits=64", "ssram.default.words=2097152", line_buffer}}};
+  for (const auto& [name, changes] : presets) {
+    Names sets = changes;
+    sets.push_back("name=" + name);
+    EXPECT_EQ(load_board(name), load_board("fpl2003", sets)) << name;
+  }
+  BoardConfig two_banks;
+  two_banks.name = "two-banks";
+  two_banks.fpga.joint_tables = true;
+  two_banks.fpga.pixel_cache = fpga::PixelCache::kWord;
+  auto& priority = two_banks.fpga.arbiter.priority;
+  std::rotate(priority.begin(), priority.begin() + 1, priority.end());  // the host comes last
+  two_banks.banks.resize(2);
+  const Names pictures = {"bank1", "bank1"};
+  two_banks.allocation = {pictures, pictures, pictures, "bank0", "bank0"};
+  EXPECT_EQ(load_board("two-banks"), two_banks);
+  EXPECT_EQ(load_board("two-banks-four-rows"),
+            load_board("two-banks", {"name=two-banks-four-rows", "matcher.rows=4"}));
 }
 
 TEST(BoardExtends, SuppliesWhatTheFileLeavesOutMapByMap) {
@@ -88,15 +70,6 @@ TEST(BoardExtends, SuppliesWhatTheFileLeavesOutMapByMap) {
       load_text(
           "extends: fpl2003-syncburst\nimage: {width: 320}\nssram: {default: {turnaround_cycles: 3}}\n"),
       expected);
-}
-
-TEST(BoardExtends, WorksBesideALoadThatNoPresetHas) {
-  BoardConfig expected;
-  expected.pci.memory_wait_clocks = 4;
-  expected.pci.load = PciLoadConfig{16, 2.5, 0, 0};
-  EXPECT_EQ(load_text("extends: fpl2003\n"
-                      "pci: {load: {burst_words: 16, interval_us: 2.5}, memory_wait_clocks: 4}\n"),
-            expected);
 }
 
 TEST(BoardExtends, TakesBanksFiltersAndListsWhole) {

@@ -1,6 +1,7 @@
 #include "tests/unit/platform/config/board_files.h"
 
 #include <fmt/format.h>
+#include <gtest/gtest.h>
 
 #include <sstream>
 #include <stdexcept>
@@ -38,6 +39,11 @@ std::string refusal_of_board(const std::string& board, const std::vector<std::st
     return error.what();
   }
   return "";
+}
+
+void expect_refusals(const std::vector<Refusal>& refusals) {
+  for (const auto& [text, message, sets] : refusals)
+    EXPECT_EQ(refusal_of(text, sets), message) << text << fmt::format("{}", fmt::join(sets, " "));
 }
 
 std::string block_board() {

@@ -16,6 +16,14 @@ std::string refusal_of(const std::string& text, const std::vector<std::string>& 
 // The same for a preset or a path.
 std::string refusal_of_board(const std::string& board, const std::vector<std::string>& sets);
 
+// Expects that boards are refused with these messages. An empty message: the text is a board.
+struct Refusal {
+  std::string text;
+  std::string message;
+  std::vector<std::string> sets = {};  // beside the text
+};
+void expect_refusals(const std::vector<Refusal>& refusals);
+
 // A whole board, the paper's but with the deepest banks and a load on the PCI bus, with each single value in
 // a line of its own.
 std::string block_board();

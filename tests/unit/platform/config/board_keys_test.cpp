@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "platform/config/board_yaml.h"
+#include "platform/config/key_paths.h"
 #include "tests/unit/platform/config/board_files.h"
 
 namespace stereotlm::platform::testing {
@@ -22,6 +23,7 @@ TEST(NearestKey, IsNamedWhereItCanBeMeant) {
       {"widht", "image.width"},
       {"image.clock_mhz", "pci.clock_mhz"},
       {"pci.lode", "pci.load"},
+      {"image_width", "image.width"},
       {"matcher.filter.sift", "matcher.filter.shift"},
       {"matcher.windows", "matcher.window"},
       {"ssram.banks.b.wrods", "ssram.banks.b.words"},
@@ -234,7 +236,7 @@ TEST_P(BoardKeys, RefuseAValueBeyondTheirRuleAtItsPlace) {
     const ChangedBoard board = board_with(key.path, value);
     const std::string shown = value.size() > 60 ? value.substr(0, 57) + "..." : value;
     const bool is_word =
-        std::holds_alternative<WordKey>(board_key(key.path).rule) || key.path == "matcher.cost";
+        std::holds_alternative<WordKey>(board_key(key.path).kind) || key.path == "matcher.cost";
     const std::string text =
         fmt::format("{} = {}: {}{}", key.path, shown, is_word ? "must be one of " : "", key.rule);
     EXPECT_EQ(refusal_of(board.text), board.place + ": " + text);
@@ -288,6 +290,19 @@ TEST(BoardKeysTable, ListsEveryKeyOfTheCasesAndOfBanksFiltersAndCosts) {
     EXPECT_TRUE(listed.insert(key.path).second) << key.path;
   }
   EXPECT_EQ(listed, expected);
+}
+
+TEST(BoardKeysTable, SaysWhichKeysMayBeMissing) {
+  for (const Key& key : board_keys()) {
+    if (!has_value(key) || key.path.find("pci.load.") == 0) continue;
+    EXPECT_EQ(key.is_optional, key.meaning.find("optional, without it") != std::string::npos) << key.path;
+    std::string text = board_with(key.path, "DROP").text;
+    const std::size_t value = text.find("DROP");
+    const std::size_t begin = text.rfind('\n', value) + 1;  // npos + 1 is 0
+    text.erase(begin, text.find('\n', value) + 1 - begin);
+    const std::string missing = fmt::format(": {}: missing: {}", key.path, key.rule_text);
+    EXPECT_EQ(refusal_of(text).find(missing) == std::string::npos, key.is_optional) << key.path;
+  }
 }
 
 TEST(BoardKeysTable, GivesTheRangesThatMessagesGive) {

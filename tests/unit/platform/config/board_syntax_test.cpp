@@ -90,23 +90,6 @@ board.yaml:6:9: ssram.default.words: missing: 1..67108864
 board.yaml:6:9: ssram.default.kind: missing: zbt_pipelined, zbt_flow_through, sync_burst or qdr)");
 }
 
-TEST(BoardSyntax, ReportsEachKeyThatIsLeftOut) {
-  for (const KeyInfo& key : keys()) {
-    const bool is_optional =
-        key.path == "extends" || key.meaning.find("optional, without it") != std::string::npos ||
-        key.path.find("turnaround") != std::string::npos || key.path.find("NAME") != std::string::npos ||
-        key.path.find("matcher.filter.") == 0 || key.path.find("matcher.cost.") == 0 ||
-        key.path.find("ssram.default") == 0;
-    if (is_optional) continue;
-    std::string text = board_with(key.path, "DROP").text;
-    const std::size_t value = text.find("DROP");
-    const std::size_t begin = text.rfind('\n', value) + 1;  // npos + 1 is 0
-    text.erase(begin, text.find('\n', value) + 1 - begin);
-    EXPECT_NE(refusal_of(text).find(fmt::format(": {}: missing: {}", key.path, key.range)), std::string::npos)
-        << key.path;
-  }
-}
-
 TEST(BoardSyntax, RefusesASectionThatIsNoMap) {
   for (const std::string value : {"5", "[width]", "null", "wide"}) {
     EXPECT_EQ(refusal_of("extends: fpl2003\nimage: " + value),
@@ -231,17 +214,6 @@ TEST(BoardSyntax, NamesTheNearestPresetForAnUnknownOne) {
       "megapixel-pci64");
   EXPECT_NE(refusal_of_board("board.yml", {}).find("not a preset"), std::string::npos);
   EXPECT_NE(refusal_of_board("", {}).find("not a preset"), std::string::npos);
-}
-
-TEST(BoardSyntax, GivesEachDiagnosticItsPlaceAndText) {
-  try {
-    load_board("fpl2003", {"image.width=3", "image.height=0"});
-    FAIL() << "a board";
-  } catch (const BoardError& error) {
-    ASSERT_EQ(error.diagnostics().size(), 2U);
-    EXPECT_EQ(error.diagnostics()[1].place, "--set image.height");
-    EXPECT_EQ(error.diagnostics()[1].text, "image.height = 0: 1..8192");
-  }
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "platform/config/yaml_tree.h"
+#include "platform/yaml/yaml_tree.h"
 
 #include <gtest/gtest.h>
 

@@ -184,20 +184,6 @@ TEST(Plan, VariesKeysThatTakeWordsBesideNumbersOrMaps) {
   EXPECT_THAT(plan.point(4).reason, HasSubstr("matcher.units = 81: 1..disparities, which is 80, or all"));
 }
 
-TEST(Plan, RefusesValuesOfOptionalKeysThatNoBoardHas) {
-  const auto refusal = [](const std::string& vary) {
-    return test::message_of([&vary] { plan_of("vary: {" + vary + "}\n"); });
-  };
-  EXPECT_THAT(refusal("matcher.units: [all, none]"), HasSubstr("matcher.units = none: not an integer"));
-  EXPECT_THAT(refusal("matcher.units: {from: 250, to: 256, step: 2}"), HasSubstr("1 of 4 values refused"));
-  EXPECT_THAT(refusal("matcher.cost: [sad, {census: 4}]"), HasSubstr("matcher.cost.census = 4: 3, 5 or 7"));
-  EXPECT_THAT(
-      refusal("matcher.cost: [ncc]"),
-      HasSubstr(
-          "matcher.cost = ncc: must be one of sad, ssd, zncc, {census: 3}, {census: 5} or {census: 7}"));
-  EXPECT_THAT(refusal("matcher.rows: [1, 17]"), HasSubstr("matcher.rows = 17: 1..16"));
-}
-
 TEST(Plan, VariesTheRunOfItsPoints) {
   const Plan plan = plan_of("vary:\n  run.source: [preloaded, camera]\n  run.frames: [3, 4]\n");
   ASSERT_EQ(plan.size(), 4U);
@@ -442,6 +428,8 @@ TEST(PlanRefusals, CountTheRefusedValuesOfARangeAndNameOneThatDoesNotEnd) {
        "1 of 1000000 values refused, the first: ssram.banks.bank0.words = 0: 1.."},
       {"matcher.lr_tolerance", "{from: -1, to: 253, step: 1}",
        "1 of 255 values refused, the first: matcher.lr_tolerance = -1: 0..253 or off"},
+      {"matcher.units", "{from: 250, to: 256, step: 2}",
+       "1 of 4 values refused, the first: matcher.units = 256: 1..254 or all"},
       {"run.frames", "{from: 0, to: 999999, step: 1}",
        "1 of 1000000 values refused, the first: run.frames = 0: 1..1000000, the frames"},
       {"matcher.fetch", "{from: 1, to: 3, step: 1}",

@@ -1,5 +1,3 @@
-#include "platform/config/yaml_tree.h"
-
 #include <fmt/format.h>
 #include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/exceptions.h>
@@ -12,40 +10,23 @@
 #include <string_view>
 #include <utility>
 
+#include "platform/yaml/utf8.h"
+#include "platform/yaml/yaml_tree.h"
+
 namespace stereotlm::platform {
 namespace {
 
-bool continues_character(char byte) { return (static_cast<unsigned char>(byte) & 0xC0U) == 0x80U; }
-
-// Length in bytes of the UTF-8 character that begins at `at`; 0 if there is none.
-std::size_t character_length(std::string_view text, std::size_t at) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  const unsigned first = byte(at);
-  const std::size_t length = first < 0x80 ? 1 : first < 0xC2 ? 0 : first < 0xE0 ? 2 : first < 0xF0 ? 3 : 4;
-  if (length == 0 || first > 0xF4 || at + length > text.size()) return 0;
-  for (std::size_t i = 1; i < length; ++i) {
-    if (!continues_character(text[at + i])) return 0;
-  }
-  if (length >= 3) {  // overlong forms, surrogates, beyond U+10FFFF
-    const unsigned second = byte(at + 1);
-    if ((first == 0xE0 && second < 0xA0) || (first == 0xED && second > 0x9F) ||
-        (first == 0xF0 && second < 0x90) || (first == 0xF4 && second > 0x8F)) {
-      return 0;
-    }
-  }
-  return length;
-}
-
-void check_characters(const std::string& text, int source) {
+// yaml-cpp stops at some control characters, and accepts others.
+void check_characters(std::string_view text, int source) {
   Place place{source, 1, 1};
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t length = character_length(text, at);
-    const auto byte = static_cast<unsigned char>(text[at]);
+  while (!text.empty()) {
+    const auto byte = static_cast<unsigned char>(text.front());
+    const std::size_t length = first_character(text).bytes;
     if (length == 0) throw YamlError(place, fmt::format("byte 0x{:02X}: the text is not UTF-8", byte));
     if ((byte < 0x20 && byte != '\t' && byte != '\n' && byte != '\r') || byte == 0x7F) {
       throw YamlError(place, fmt::format("control character 0x{:02X}: not allowed in YAML", byte));
     }
-    at += length;
+    text.remove_prefix(length);
     ++place.column;
     if (byte == '\n') {
       ++place.line;
@@ -220,16 +201,15 @@ std::string syntax_rule(const std::string& text, std::size_t size, const YAML::E
   const bool has_tab = text.substr(line, indentation - line).find('\t') != std::string::npos;
   const std::string_view expected = expectation(has_tab ? YAML::ErrorMsg::TAB_IN_INDENTATION : error.msg);
   if (expected.empty()) return "not YAML: " + error.msg;
-  YamlNode rest;
-  rest.kind = YamlNode::Kind::kScalar;
-  rest.text = text.substr(at, std::min(text.find('\n', at), size) - at);
+  const std::string rest = text.substr(at, std::min(text.find('\n', at), size) - at);
   const bool is_end = text.find_first_not_of(" \t\r\n", at) >= size;
   return fmt::format("not YAML: found {}, expected {}", is_end ? "the end" : quoted_text(short_text(rest)),
                      expected);
 }
 
 // The first `size` characters of `text` are the user's; this reader has added the rest.
-YamlNode parse_document(const std::string& text, std::size_t size, int source) {
+YamlNode parse_document(const std::string& text, std::size_t size, int source,
+                        Dialect dialect = Dialect::kBoard) {
   check_characters(text, source);
   const Places places(text, source);
   TreeBuilder builder(text, places);
@@ -245,104 +225,12 @@ YamlNode parse_document(const std::string& text, std::size_t size, int source) {
   return builder.take_root();
 }
 
-// Appends the value in flow style to `out`. May leave out text beyond `enough` bytes.
-void append_text(const YamlNode& node, std::size_t enough, std::string& out) {
-  if (out.size() > enough) return;
-  switch (node.kind) {
-    case YamlNode::Kind::kNull:
-      out += !node.text.empty() ? node.text : node.misuse.empty() ? "(nothing)" : "(anchor or alias)";
-      break;
-    case YamlNode::Kind::kScalar:
-      out += node.quoted ? quoted_text(node.text) : node.text;
-      break;
-    case YamlNode::Kind::kList:
-      out += '[';
-      for (std::size_t i = 0; i < node.items.size() && out.size() <= enough; ++i) {
-        if (i > 0) out += ", ";
-        append_text(node.items[i], enough, out);
-      }
-      out += ']';
-      break;
-    case YamlNode::Kind::kMap:
-      out += '{';
-      for (std::size_t i = 0; i < node.entries.size() && out.size() <= enough; ++i) {
-        if (i > 0) out += ", ";
-        append_text(node.entries[i].key, enough, out);
-        out += ": ";
-        append_text(node.entries[i].value, enough, out);
-      }
-      out += '}';
-      break;
-  }
-}
-
-// A scalar in flow style: as it was written, or in quotes if it has characters with a meaning in YAML.
-std::string flow_scalar(const YamlNode& node) {
-  constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_.+-";
-  if (node.kind == YamlNode::Kind::kNull) return "~";
-  const bool is_plain = !node.quoted && !node.text.empty() && node.text != "-" &&
-                        node.text.find_first_not_of(kPlain) == std::string::npos;
-  return is_plain ? node.text : quoted_text(node.text);
-}
-
-void append_flow(const YamlNode& node, std::string& out) {
-  const char* separator = "";
-  if (node.is_list()) {
-    out += '[';
-    for (const YamlNode& item : node.items) {
-      out += std::exchange(separator, ", ");
-      append_flow(item, out);
-    }
-    out += ']';
-  } else if (node.is_map()) {
-    out += '{';
-    for (const YamlNode::Entry& entry : node.entries) {
-      out += std::exchange(separator, ", ");
-      append_flow(entry.key, out);
-      out += ": ";
-      append_flow(entry.value, out);
-    }
-    out += '}';
-  } else {
-    out += flow_scalar(node);
-  }
-}
-
-void append_block(const YamlNode& map, const std::string& indent, std::string& out) {
-  for (const YamlNode::Entry& entry : map.entries) {
-    out += indent;
-    append_flow(entry.key, out);
-    out += ':';
-    if (entry.value.is_map() && !entry.value.entries.empty()) {
-      out += '\n';
-      append_block(entry.value, indent + "  ", out);
-    } else {
-      out += ' ';
-      append_flow(entry.value, out);
-      out += '\n';
-    }
-  }
-}
-
 }  // namespace
-
-const YamlNode::Entry* YamlNode::find(const std::string& key) const {
-  const auto found = std::find_if(entries.begin(), entries.end(), [&](const Entry& entry) {
-    return entry.key.is_scalar() && entry.key.text == key;
-  });
-  return found == entries.end() ? nullptr : &*found;
-}
-
-YamlNode::Entry* YamlNode::find(const std::string& key) {
-  return const_cast<Entry*>(std::as_const(*this).find(key));
-}
 
 YamlNode parse_yaml(const std::string& text, int source) {
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-  if (std::string_view(text).substr(0, kByteOrderMark.size()) == kByteOrderMark) {
-    return parse_document(text.substr(kByteOrderMark.size()), text.size() - kByteOrderMark.size(), source);
-  }
-  return parse_document(text, text.size(), source);
+  const std::size_t begin = text.rfind(kByteOrderMark, 0) == 0 ? kByteOrderMark.size() : 0;
+  return parse_document(text.substr(begin), text.size() - begin, source);
 }
 
 // Parses the text as the only item of a flow list, because block style is not allowed there. The line break
@@ -354,56 +242,6 @@ YamlNode parse_flow_value(const std::string& text, int source) {
                             (!list.items[0].is_map() || text[first] == '{');
   if (!is_one_value) throw YamlError({source, 1, 1}, "one YAML flow value, such as 3, [a, b] or {a: 1}");
   return std::move(list.items[0]);
-}
-
-bool is_utf8(std::string_view text) {
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t length = character_length(text, at);
-    if (length == 0) return false;
-    at += length;
-  }
-  return true;
-}
-
-std::string quoted_text(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') {
-      out += '\\';
-      out += c;
-    } else if (c == '\n') {
-      out += "\\n";
-    } else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) {
-      out += fmt::format("\\x{:02X}", static_cast<unsigned char>(c));
-    } else {
-      out += c;
-    }
-  }
-  return out + '"';
-}
-
-std::string flow_text(const YamlNode& node) {
-  std::string out;
-  append_text(node, out.max_size(), out);
-  return out;
-}
-
-std::string yaml_text(const YamlNode& map) {
-  std::string out;
-  append_block(map, "", out);
-  return out;
-}
-
-std::string short_text(const YamlNode& node) {
-  constexpr std::size_t kLimit = 60;
-  std::string out;
-  append_text(node, kLimit + 20, out);
-  std::replace_if(
-      out.begin(), out.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; }, ' ');
-  if (out.size() <= kLimit) return out;
-  std::size_t end = kLimit - 3;
-  while (end > 0 && continues_character(out[end])) --end;
-  return out.substr(0, end) + "...";
 }
 
 }  // namespace stereotlm::platform

@@ -1,0 +1,130 @@
+#include "platform/config/key_paths.h"
+
+#include <fmt/format.h>
+
+#include <limits>
+#include <map>
+#include <optional>
+
+#include "models/memory/memory_config.h"
+#include "platform/config/board_keys.h"
+
+namespace stereotlm::platform {
+namespace {
+
+std::string_view last_part(std::string_view path) { return path.substr(path.rfind('.') + 1); }
+
+// likely_distance() of two paths, without the sections with which both begin.
+std::optional<std::size_t> likely_path_distance(std::string_view path, std::string_view known) {
+  for (std::size_t dot = path.find('.'); dot != std::string_view::npos; dot = path.find('.')) {
+    if (path.substr(0, dot + 1) != known.substr(0, dot + 1)) break;
+    path.remove_prefix(dot + 1);
+    known.remove_prefix(dot + 1);
+  }
+  return likely_distance(path, known);
+}
+
+// The known path nearest to an unknown one; empty if no path is near. A key that only has a similar name,
+// in any section, counts as 2 further away. So the right key in a wrong section is nearer than most wrong keys
+// in the right section. Below `ssram.banks` every name counts as the name of a bank.
+std::string nearest_path(const std::string& path) {
+  const std::string schema = schema_path(path);
+  std::string best;
+  std::size_t best_distance = std::numeric_limits<std::size_t>::max();
+  const auto offer = [&](const std::string& known) {
+    if (is_below(schema, known) || schema == known) return;  // a section that holds `path`, or of a bank
+    auto distance = likely_path_distance(schema, known);
+    const auto moved = likely_distance(last_part(schema), last_part(known));
+    if (moved && (!distance || *moved + 2 < *distance)) distance = *moved + 2;
+    if (!distance || *distance >= best_distance) return;
+    best = known;
+    best_distance = *distance;
+  };
+  offer("extends");
+  for (const Key& key : board_keys()) {
+    for (std::size_t dot = key.path.find('.'); dot != std::string::npos; dot = key.path.find('.', dot + 1))
+      offer(key.path.substr(0, dot));
+    offer(key.path);
+  }
+  const std::string name = "ssram.banks.NAME";
+  if (is_below(best, name) && is_below(schema, name))
+    best = path.substr(0, path.find('.', name.size() - 4)) + best.substr(name.size());
+  return best;
+}
+
+struct Names {
+  std::vector<std::string> all;
+  std::vector<std::string> required;
+};
+
+// The names directly below a path. All paths are computed once, because sweeps read thousands of boards.
+const Names& names_below(std::string_view path) {
+  static const std::map<std::string, Names, std::less<>> kNames = [] {
+    std::map<std::string, Names, std::less<>> found;
+    const auto add = [&found](const std::string& full, bool is_required) {
+      const std::size_t dot = full.rfind('.');
+      Names& names = found[dot == std::string::npos ? "" : full.substr(0, dot)];
+      const std::string name(last_part(full));
+      if (!names.all.empty() && names.all.back() == name) return;
+      names.all.push_back(name);
+      if (is_required) names.required.push_back(name);
+    };
+    for (const Key& key : board_keys()) {
+      for (std::size_t dot = key.path.find('.'); dot != std::string::npos;
+           dot = key.path.find('.', dot + 1)) {
+        const std::string section = key.path.substr(0, dot);
+        if (found.count(section) == 0) add(section, true);
+        found[section];
+      }
+      add(key.path, !key.is_optional);
+    }
+    return found;
+  }();
+  static const Names kNone;
+  const auto found = kNames.find(path);
+  return found == kNames.end() ? kNone : found->second;
+}
+
+}  // namespace
+
+std::string below(const std::string& path, const std::string& name) {
+  return path.empty() ? name : path + '.' + name;
+}
+
+bool is_below(std::string_view path, std::string_view section) {
+  return path.size() > section.size() && path[section.size()] == '.' &&
+         path.substr(0, section.size()) == section;
+}
+
+const std::vector<std::string>& child_keys(std::string_view path) { return names_below(path).all; }
+
+const std::vector<std::string>& required_keys(std::string_view path) { return names_below(path).required; }
+
+std::size_t required_count(std::string_view path) {
+  const auto& names = required_keys(path);
+  if (find_key(path) != nullptr || names.empty()) return 1;
+  std::size_t count = 0;
+  for (const std::string& name : names) count += required_count(below(std::string(path), name));
+  return count;
+}
+
+std::string rule_text(std::string_view path) {
+  if (const Key* const key = find_key(path)) return key->rule_text;
+  if (path == "ssram.banks") return "a map of " + memory::kBankCountRule.text() + " banks";
+  return fmt::format("a map of {}", fmt::join(child_keys(path), ", "));
+}
+
+std::string schema_path(const std::string& path) {
+  const std::string banks = "ssram.banks.";
+  if (path.compare(0, banks.size(), banks) != 0) return path;
+  const std::size_t end = path.find('.', banks.size());
+  return banks + "NAME" + (end == std::string::npos ? "" : path.substr(end));
+}
+
+std::string unknown_key_text(const std::string& path) {
+  const std::string nearest = nearest_path(path);
+  return nearest.empty() ? "unknown key, and no known key is near"
+                         : "unknown key; nearest known key: " + nearest;
+}
+
+}  // namespace stereotlm::platform
