@@ -208,8 +208,7 @@ std::string syntax_rule(const std::string& text, std::size_t size, const YAML::E
 }
 
 // The first `size` characters of `text` are the user's; this reader has added the rest.
-YamlNode parse_document(const std::string& text, std::size_t size, int source,
-                        Dialect dialect = Dialect::kBoard) {
+YamlNode parse_document(const std::string& text, std::size_t size, int source) {
   check_characters(text, source);
   const Places places(text, source);
   TreeBuilder builder(text, places);

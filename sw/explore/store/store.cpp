@@ -100,7 +100,7 @@ bool Store::add(const StoredPoint& point) {
     int place = 0;
     for (const std::string& text : {point.hash, point.status, point.reason, version_, point.config})
       insert.bind(++place, text);
-    for (const platform::BoardValue* value : values) insert.bind(++place, *value);
+    for (const platform::BoardValue* value : values) insert.bind(++place, value->value);
     insert.run();
     const bool is_new = sqlite3_changes(database_.handle()) > 0;
     for (const StoredBlame& row : point.blame) {
