@@ -31,8 +31,8 @@ def searched(path):
     for line in path.read_text().splitlines():
         if row := ROW.fullmatch(line):
             banks, allocations, simulated, best, uncertainty, bound, tied, witness = row.groups()
-            found[int(banks)] = {"allocations": int(allocations), "simulated": int(simulated), "best": float(best),
-                                 "uncertainty": float(uncertainty or 0), "bound": float(bound),
+            found[int(banks)] = {"allocations": int(allocations), "simulated": int(simulated),
+                                 "best": float(best), "uncertainty": float(uncertainty or 0), "bound": float(bound),
                                  "tied": int(tied), "witness": witness}
     return found
 

@@ -43,15 +43,16 @@ def read(database, shares, **more):
     found = study.points(database, **COLUMNS, **more)
     for point in found:
         point["turnaround_cycles"] = point["turnaround_cycles"] or 0
-    return [{"shared": name, **study.only(found, kind=kind, turnaround_cycles=clocks,
-                                          **dict(zip(("left_image", "right_image", "left_lut", "disparity"), where)))}
+    buffers = ("left_image", "right_image", "left_lut", "disparity")
+    return [{"shared": name,
+             **study.only(found, kind=kind, turnaround_cycles=clocks, **dict(zip(buffers, where)))}
             for name, where in shares.items() for kind, clocks in KINDS]
 
 
 def table(found, shares, rate):
     header = ["in one bank", "ZBT pipelined", "ZBT flow-through", *(f"sync burst, {n}" for n in (1, 2, 3, 4))]
-    return study.markdown(header, [[name, *(f"{point[rate]:.2f}" for point in found if point["shared"] == name)]
-                                   for name in shares])
+    rows = [[name, *(f"{point[rate]:.2f}" for point in found if point["shared"] == name)] for name in shares]
+    return study.markdown(header, rows)
 
 
 def draw(axis, found, shares, rate, title):

@@ -128,7 +128,8 @@ def banks_table(found):
 def draw(found):
     figure, (left, right) = study.panels(2, height=4.4, width=5.2)
     for (fetch, disparities), (look, color) in DRAWN.items():
-        points = sorted((point for point in found["folds"] if point["window"] == WINDOW and point["fetch"] == fetch
+        points = sorted((point for point in found["folds"]
+                         if point["window"] == WINDOW and point["fetch"] == fetch
                          and point["disparities"] == disparities), key=lambda point: point["slices"])
         left.plot([point["slices"] for point in points], [point["core"] for point in points],
                   look, color=color, markersize=4, label=f"{FETCHES[fetch]}, D = {disparities}")

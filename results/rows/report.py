@@ -246,7 +246,8 @@ def main():
     lost = [1 - two["real rig"][rows] / by_rows[rows]["core"] for rows in range(1, 9)]
     needed = min(rows for rows in CAMERA_ROWS
                  if all(point["steady"] > 29.96 for point in found["cameras"]
-                        if point["rate_hz"] == 29.97 and point["fetch"] == "column" and point["rows"] == rows))
+                        if point["rate_hz"] == 29.97 and point["fetch"] == "column"
+                        and point["rows"] == rows))
     text = TEXT.format(
     rows=rows_table(found),
     takeover=takeover_table(found),

@@ -100,7 +100,8 @@ def check(maps, runs):
         granted = study.only(runs["banks" + which], name="one bank", rows=1)[f"{side}_grants"]
         if in_a_frame(found["read"]) != granted:
             raise SystemExit(
-                f"{side}{which}: {in_a_frame(found['read'])} misses by the table, {granted} words read by the run")
+                f"{side}{which}: {in_a_frame(found['read'])} misses by the table, {granted} words read by "
+                "the run")
 
 
 def reads_table(maps):
@@ -359,10 +360,12 @@ def main():
         rig_three=found["core_both_rig"][3]["best"], rig_loss=100 * (1 - rig["core"] / two["core"]),
         rig_words=words("_rig"), identity_words=words(""), rig_extra=cycles(rig) - cycles(eight),
         robin_loss=100 * (1 - robin[""] / two["core"]), robin_gain=100 * (robin["_rig"] / rig["core"] - 1),
-        qdr=banks("_rig", name="one qdr", rows=1)["core"], fewest=fewest, top=top, rig_fewest=rig_fewest, rig_top=rig_top,
+        qdr=banks("_rig", name="one qdr", rows=1)["core"], fewest=fewest, top=top, rig_fewest=rig_fewest,
+        rig_top=rig_top,
         rig_four=computer[4]["best"],
         computer_two=steady["two banks"],
-        computer_rig_two=steady["two banks_rig"], first=steady["host first"], rig_first=steady["host first_rig"])
+        computer_rig_two=steady["two banks_rig"], first=steady["host first"],
+        rig_first=steady["host first_rig"])
     (HERE / "README.md").write_text(study.page(text))
 
 
