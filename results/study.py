@@ -32,7 +32,8 @@ def searched(path):
         if row := ROW.fullmatch(line):
             banks, allocations, simulated, best, uncertainty, bound, tied, witness = row.groups()
             found[int(banks)] = {"allocations": int(allocations), "simulated": int(simulated),
-                                 "best": float(best), "uncertainty": float(uncertainty or 0), "bound": float(bound),
+                                 "best": float(best), "uncertainty": float(uncertainty or 0),
+                                 "bound": float(bound),
                                  "tied": int(tied), "witness": witness}
     return found
 
