@@ -131,7 +131,8 @@ class StereoCoreBench : public testing::Test {
     return banks[bank]->stats().reads + banks[bank]->stats().writes;
   }
   std::uint64_t accesses(std::uint32_t bank) const {
-    return transported(bank) + core->crossbar().direct_accesses(bank);
+    return transported(bank) + core->crossbar().direct_accesses(bank) +
+           core->frames().direct_counts().accesses[bank];
   }
   std::uint64_t blamed(std::uint32_t bank, memory::Port victim, memory::Port by) const {
     return core->crossbar().arbiters()[bank].stats().blame[victim][by];

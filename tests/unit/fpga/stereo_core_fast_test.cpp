@@ -234,8 +234,7 @@ TEST_F(StereoCoreDirectAccess, TakenBackWithinAFrameIsReportedAndRaisesError) {
   EXPECT_EQ(status(), registers::kStatusDone | registers::kStatusError);
   EXPECT_EQ(result_words(), Words(kImageWords, 77));
   EXPECT_EQ(frame_cycles(), std::vector<std::uint64_t>{frame_cycles_alone(4)});
-  // The stage has counted all writes, as many as the port was granted.
-  EXPECT_EQ(core->datapath().result_writer().stats().writes, kImageWords);
+  EXPECT_EQ(core->frames().direct_counts().written_words, kImageWords);
   EXPECT_EQ(accesses(kResult), port(kResultPort).granted());
   start();
   finish();

@@ -97,7 +97,9 @@ class HostedRun {
     for (std::size_t bank = 0; bank < banks_.size(); ++bank) {
       const memory::SsramBank::Stats& stats = banks_[bank]->stats();
       text += "accesses: " +
-              std::to_string(stats.reads + stats.writes + core_->crossbar().direct_accesses(bank)) + '\n';
+              std::to_string(stats.reads + stats.writes + core_->crossbar().direct_accesses(bank) +
+                             core_->frames().direct_counts().accesses[bank]) +
+              '\n';
       for (std::uint32_t word = 0; word < kBankWords; ++word) {
         if (word % 16 == 0) text += "\nwords " + std::to_string(word) + ':';
         text += ' ' + std::to_string(banks_[bank]->words()[word]);
