@@ -11,6 +11,7 @@
 #include "platform/audit.h"
 #include "platform/config/board_config.h"
 #include "platform/statistics.h"
+#include "platform/trace_records.h"
 
 namespace stereotlm::platform {
 
@@ -49,5 +50,8 @@ class Conflicts {
   fpga::ConflictRecorder recorder_;
   ConflictSums sums_;  // of the frames that were taken, without `blame`
 };
+
+// The runs of a frame of the core: its grants and its stalls, strip by strip.
+FrameRuns frame_runs(const fpga::FrameConflicts& frame);
 
 }  // namespace stereotlm::platform

@@ -14,12 +14,11 @@
 #include "models/clock.h"
 #include "models/fpga/frame_observer.h"
 #include "models/pci/bridge_observer.h"
-#include "platform/collect_computer.h"
+#include "platform/collect.h"
 #include "platform/config/board_config.h"
 #include "platform/config/buffer_layout.h"
 #include "platform/driver_observer.h"
 #include "platform/timeline_records.h"
-#include "platform/timeline_sums.h"
 
 namespace stereotlm::platform {
 

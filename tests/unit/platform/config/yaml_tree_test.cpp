@@ -38,7 +38,7 @@ TEST(YamlTree, IsReadWithManyBanksInLinearTime) {
   for (int i = 0; i < 250'000; ++i)
     text += "a_bank_with_a_long_name_of_its_own_" + std::to_string(i) + ": {},";
   std::vector<Finding> findings;
-  read_board(parse_yaml("ssram: {banks: {" + text + "}}", Place::kBoard), false, findings);
+  read_board(parse_yaml("ssram: {banks: {" + text + "}}", Place::kBoard), findings);
   ASSERT_EQ(findings.size(), 1U);
   EXPECT_NE(findings[0].text.find("250000 banks; a map of 1..64 banks"), std::string::npos);
 }
