@@ -68,6 +68,10 @@ class LoopProcessor : public pci::PciMasterIf {
     }
     return *loop_;
   }
+  // To be called while the core runs no frame.
+  ComputerCounters computer_counters() {
+    return loop().controls().counters(loop().board().counters(), loop().now_ps());
+  }
 
   pci::PciBurst begin_burst(std::uint64_t address_clock_ps) override {
     granted_ps.push_back(address_clock_ps);
@@ -177,14 +181,6 @@ class LoopRun : public LoopProcessor {
     const std::uint64_t end_ps = loop().now_ps() + kFramePs;
     while (loop().now_ps() < end_ps) loop().run(end_ps);
   }
-  // Runs to the next interrupt, for `most_ps` at most. Returns whether it has come.
-  bool run_to_interrupt(std::uint64_t most_ps) {
-    const std::uint64_t end_ps = loop().now_ps() + most_ps;
-    while (!loop().interrupt() && loop().now_ps() < end_ps)
-      loop().run(std::min(end_ps, loop().now_ps() + step_ps_));
-    note("interrupt {} {}\n", loop().interrupt(), loop().now_ps());
-    return loop().interrupt();
-  }
   // The first descriptor is at `address` in host memory.
   void start_dma(std::uint64_t channel, std::uint32_t address) {
     write(dma_register(channel, pci::bridge::kDmaDescriptor), address);
@@ -198,6 +194,7 @@ class LoopRun : public LoopProcessor {
   // To be called first, if the run is to be traced.
   void trace(const fpga::CycleWindow& window) {
     trace_.emplace(config, window, trace_text_);
+    loop().controls().trace_buses(*trace_);
     loop().trace_buses(*trace_);
   }
   // What was traced.
@@ -206,7 +203,7 @@ class LoopRun : public LoopProcessor {
     return trace_text_.text;
   }
   std::string counters() {
-    const ComputerCounters counters = loop().counters();
+    const ComputerCounters counters = computer_counters();
     std::string text = fmt::format("pci {} {}\n", counters.pci.clocks, counters.pci.busy_clocks);
     for (const pci::PciBusControl::MasterStats& master : counters.pci.masters) {
       text += fmt::format("{} {} {} {} {} {}\n", master.name, master.transactions, master.words,
