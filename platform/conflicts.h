@@ -33,7 +33,6 @@ struct ConflictSums {
 // The ConflictRecorder of a board, with the sums of all that it has handed out.
 class Conflicts {
  public:
-  // Throws std::invalid_argument if the board has problems.
   explicit Conflicts(const BoardConfig& board, std::size_t most_tiles = fpga::ConflictRecorder::kMostTiles);
 
   fpga::ConflictRecorder& recorder() { return recorder_; }

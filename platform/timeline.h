@@ -30,7 +30,6 @@ namespace stereotlm::platform {
 // earlier, since the beginning of the oldest wait that still runs.
 class Timeline : private pci::BridgeObserver, private fpga::FrameObserver, private DriverObserver {
  public:
-  // Throws std::invalid_argument if the board has problems.
   explicit Timeline(const BoardConfig& board);
   Timeline(const Timeline&) = delete;
   Timeline& operator=(const Timeline&) = delete;

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <initializer_list>
 #include <utility>
 
 #include "platform/config/board_reader.h"
@@ -42,10 +41,6 @@ class RuleChecker {
 
   // Adds the broken rule `text()` unless it is kept, or a value that it involves is not valid by itself.
   // Returns whether it is kept.
-  template <typename Text>
-  bool require(bool is_kept, std::initializer_list<const char*> involved, const Text& text) {
-    return is_kept || require(false, std::vector<std::string>(involved.begin(), involved.end()), text);
-  }
   template <typename Text>
   bool require(bool is_kept, const std::vector<std::string>& involved, const Text& text) {
     if (is_kept || !all_valid(involved)) return true;

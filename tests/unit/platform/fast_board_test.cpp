@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -61,12 +60,6 @@ TEST_F(FastBoardTest, ReportsAFrameThatMakesNoProgressWithItsWaits) {
   EXPECT_EQ(text.substr(0, text.find(';')), "core: no slot consumed and no result written for 8192 cycles");
   EXPECT_NE(text.find("; frame 0 of the core, cycle "), std::string::npos);
   EXPECT_NE(text.find("left_lut asks for bank number 3"), std::string::npos);
-}
-
-TEST_F(FastBoardTest, MustHaveNoProblems) {
-  config.matcher.window = 4;
-  EXPECT_THROW(FastBoard(config, fpga::Fidelity::kFast, [](std::uint64_t /*time_ps*/) {}),
-               std::invalid_argument);
 }
 
 }  // namespace
