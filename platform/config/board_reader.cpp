@@ -82,7 +82,6 @@ class BoardReader {
     if (!values_.check_use(key.path, entry.value)) return;
     const bool is_none = entry.value.is("none");
     if (!is_none && !entry.value.is_map()) return values_.report(key.path, entry.value, key.rule_text);
-    board_.pci.load = std::nullopt;
     if (is_none) return;
     board_.pci.load.emplace();
     read_section(key.path, entry.value, entry.key.place);
