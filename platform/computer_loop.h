@@ -38,7 +38,8 @@ class ComputerLoop : private pci::BridgeControl::Host {
   static constexpr std::uint64_t kEndOfTime = (std::uint64_t{1} << 60U) - 1;
   // Steps the blocks to the time at which the interrupt rises or notice() is called, at most to `end_ps`. The
   // decisions of that time are still to be made, because whatever the processor does then comes before them.
-  // If it returns at `end_ps`, those of that time have been made. Throws std::invalid_argument unless `end_ps` is below kEndOfTime.
+  // If it returns at `end_ps`, those of that time have been made. Throws std::invalid_argument unless
+  // `end_ps` is below kEndOfTime.
   void run(std::uint64_t end_ps);
   // The time up to which the blocks have been stepped.
   std::uint64_t now_ps() const { return now_ps_; }

@@ -47,8 +47,8 @@ std::vector<std::string> parts_of(const std::string& path) {
   return parts;
 }
 
-// Puts the value into the tree at the path. Returns the reason for which the tree cannot hold it there, and is
-// then unchanged; empty if it can.
+// Puts the value into the tree at the path, and returns an empty text. If the tree cannot hold it there,
+// returns the reason, and leaves the tree unchanged.
 std::string put(YamlNode& tree, const std::string& path, YamlNode value, const Place& place) {
   YamlNode* at = &tree;
   YamlNode::Entry* entry = nullptr;

@@ -45,9 +45,9 @@ class ValueReader {
   // Reports an anchor, an alias or a tag, and returns false if the value has one.
   bool check_use(const std::string& path, const YamlNode& node);
 
-  // Returns the entries of a map whose keys are in `known`, each key once, in the order of the text; reports a
-  // value that is no map, and returns nullopt. Reports keys that are not in `known`, repeated keys, and missing
-  // keys of `required`. `key` is the place of the map's own key, at which missing keys are reported.
+  // Returns the entries of a map whose keys are in `known`, each key once, in the order of the text. Reports
+  // keys that are not in `known`, repeated keys, and missing keys of `required`. Reports a value that is no
+  // map, and returns nullopt. `key` is the place of the map's own key, at which missing keys are reported.
   std::optional<Entries> read_entries(const std::string& path, const YamlNode& node, const Place& key,
                                       const std::vector<std::string>& known,
                                       const std::vector<std::string>& required);
@@ -89,8 +89,8 @@ struct BrokenRule {
 std::vector<BrokenRule> broken_rules(const BoardConfig& board,
                                      const std::function<bool(const std::string&)>& is_valid);
 
-// The tree of a board file with the values of the board. It has no `extends`, and leaves out optional keys that
-// have their default.
+// The tree of a board file with the values of the board. It has no `extends`. It leaves out optional keys
+// that have their default.
 YamlNode board_node(const BoardConfig& board);
 
 }  // namespace stereotlm::platform

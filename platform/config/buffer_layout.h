@@ -78,8 +78,8 @@ void move_buffer(BoardConfig& board, const PlacedBuffer& buffer, const std::stri
 // Size of a buffer in 32-bit words.
 std::uint64_t buffer_words(const PlacedBuffer& buffer, const ImageConfig& image);
 
-// The addresses of the buffers on the local bus, in the order of buffers(). Buffers that share a bank begin at
-// word 0 and follow each other in that order (contract 1.5).
+// The addresses of the buffers on the local bus, in the order of buffers(). Buffers that share a bank begin
+// at word 0, and follow each other in that order (contract 1.5).
 std::vector<AddressRange> buffer_ranges(const BoardConfig& board);
 
 // The values of the base registers for these buffers.

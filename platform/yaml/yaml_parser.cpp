@@ -15,7 +15,7 @@
 namespace stereotlm::platform {
 namespace {
 
-// The length in bytes of the character at the beginning of the text, which is not empty; 0 if it is not UTF-8.
+// The length in bytes of the first character of the text, which is not empty; 0 if it is not UTF-8.
 std::size_t character_length(std::string_view text) {
   const auto first = static_cast<unsigned char>(text.front());
   const std::size_t length = first < 0x80 ? 1 : first < 0xC2 ? 0 : first < 0xE0 ? 2 : first < 0xF0 ? 3 : 4;
