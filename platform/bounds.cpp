@@ -10,6 +10,8 @@
 #include "models/capture/camera_timing.h"
 #include "models/fpga/access_pattern.h"
 #include "models/fpga/frame_geometry.h"
+#include "models/fpga/register_map.h"
+#include "platform/config/buffer_layout.h"
 
 namespace stereotlm::platform {
 namespace {
@@ -49,8 +51,9 @@ bool has_separate_ports(const BoardConfig& board, int bank) {
   return memory::has_separate_ports(board.banks[static_cast<std::size_t>(bank)].kind);
 }
 
-int bank_in_turn(const std::vector<BufferPlace>& list, std::uint64_t frame) {
-  return list[frame % list.size()].bank;
+int bank_of(std::uint32_t base) { return static_cast<int>(fpga::registers::bank_of(base)); }
+int bank_in_turn(const std::vector<std::uint32_t>& bases, std::uint64_t frame) {
+  return bank_of(bases[frame % bases.size()]);
 }
 
 // Equal transfers over the PCI bus that a frame needs.
@@ -148,7 +151,7 @@ double bridge_rate(const BoardConfig& board, bool whole_pictures) {
 // larger of the reads and the writes.
 std::vector<std::uint64_t> bank_accesses(const BoardConfig& board, const FrameAccesses& accesses,
                                          bool pairs_are_written, std::uint64_t frames) {
-  const BufferLayout layout = layout_buffers(board);
+  const fpga::BufferBases bases = buffer_bases(board);
   // A picture has as many words as a result.
   const std::uint64_t words = fpga::FrameGeometry(core_config(board)).result_words;
   std::vector<std::uint64_t> reads(board.banks.size());
@@ -158,17 +161,17 @@ std::vector<std::uint64_t> bank_accesses(const BoardConfig& board, const FrameAc
   };
   const auto write = [&](int bank) { writes[static_cast<std::size_t>(bank)] += words; };
   for (std::uint64_t frame = 0; frame < frames; ++frame) {
-    const int left = bank_in_turn(layout.left_image, frame);
-    const int right = bank_in_turn(layout.right_image, frame);
+    const int left = bank_in_turn(bases.left_images, frame);
+    const int right = bank_in_turn(bases.right_images, frame);
     read(left, accesses.left.pixel);
     read(right, accesses.right.pixel);
-    if (layout.left_lut) read(layout.left_lut->bank, accesses.left.lut);
-    if (layout.right_lut) read(layout.right_lut->bank, accesses.right.lut);
+    if (bases.left_lut) read(bank_of(*bases.left_lut), accesses.left.lut);
+    if (bases.right_lut) read(bank_of(*bases.right_lut), accesses.right.lut);
     if (pairs_are_written) {
       write(left);
       write(right);
     }
-    const int disparity = bank_in_turn(layout.disparity, frame);
+    const int disparity = bank_in_turn(bases.disparities, frame);
     write(disparity);
     read(disparity, words);  // by the host
   }
@@ -191,7 +194,7 @@ FrameAccesses frame_accesses(const BoardConfig& board, const Tables& tables) {
 std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const FrameAccesses& accesses,
                                         std::uint64_t frame) {
   const fpga::FrameGeometry geometry(core_config(board));
-  const BufferLayout layout = layout_buffers(board);
+  const fpga::BufferBases bases = buffer_bases(board);
   const auto latency = [&board](int bank) {
     return static_cast<std::uint64_t>(
         memory::read_latency_cycles(board.banks[static_cast<std::size_t>(bank)].kind));
@@ -202,14 +205,14 @@ std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const FrameAcc
     std::optional<int> lut;  // bank of its table
     PortAccesses accesses;
   };
-  const auto lut_bank = [](const std::optional<BufferPlace>& place) {
-    return place ? std::optional<int>(place->bank) : std::nullopt;
+  const auto lut_bank = [](const std::optional<std::uint32_t>& base) {
+    return base ? std::optional<int>(bank_of(*base)) : std::nullopt;
   };
   const std::array<SideOfFrame, 2> sides = {
-      SideOfFrame{"left", bank_in_turn(layout.left_image, frame), lut_bank(layout.left_lut), accesses.left},
-      SideOfFrame{"right", bank_in_turn(layout.right_image, frame),
-                  lut_bank(board.fpga.joint_tables ? layout.left_lut : layout.right_lut), accesses.right}};
-  const int disparity = bank_in_turn(layout.disparity, frame);
+      SideOfFrame{"left", bank_in_turn(bases.left_images, frame), lut_bank(bases.left_lut), accesses.left},
+      SideOfFrame{"right", bank_in_turn(bases.right_images, frame),
+                  lut_bank(board.fpga.joint_tables ? bases.left_lut : bases.right_lut), accesses.right}};
+  const int disparity = bank_in_turn(bases.disparities, frame);
   const auto pipeline = static_cast<std::uint64_t>(board.fpga.pipeline_latency_cycles);
   const auto passes = static_cast<std::uint64_t>(geometry.passes);
   const std::uint64_t after_last_slot =
@@ -265,12 +268,8 @@ std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const FrameAcc
 }
 
 std::vector<RateBound> computer_bounds(const BoardConfig& board, const FrameAccesses& accesses,
-                                       bool whole_pictures) {
-  return computer_bounds(board, accesses, whole_pictures, allocation_period_frames(board));
-}
-
-std::vector<RateBound> computer_bounds(const BoardConfig& board, const FrameAccesses& accesses,
-                                       bool whole_pictures, std::uint64_t frames) {
+                                       bool whole_pictures, std::optional<std::uint64_t> some_frames) {
+  const std::uint64_t frames = some_frames.value_or(allocation_period_frames(board));
   const bool to_host = board.capture.destination == CaptureDestination::kHostMemory;
   const auto of_banks = bank_accesses(board, accesses, to_host || whole_pictures, frames);
   std::vector<RateBound> bounds = {{"camera", camera_rate(board)},
@@ -304,10 +303,6 @@ std::vector<ResourceBound> turn_bounds(const BoardConfig& board, const FrameAcce
     }
   }
   return turn;
-}
-
-Bound core_bound(const BoardConfig& board, const Tables& tables) {
-  return core_bound(board, frame_accesses(board, tables));
 }
 
 Bound core_bound(const BoardConfig& board, const FrameAccesses& accesses) {

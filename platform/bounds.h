@@ -22,7 +22,6 @@ struct FrameAccesses {
   PortAccesses right;
 };
 
-// Throws std::invalid_argument if the board has problems.
 FrameAccesses frame_accesses(const BoardConfig& board, const Tables& tables);
 
 // A lower bound for the length of a frame: the cycles that one resource of the core needs for it, pipeline
@@ -56,19 +55,20 @@ inline std::optional<std::string> bank_of_resource(const std::string& resource) 
 }
 
 // The bounds of frame number `frame` with these accesses: first the ports, then the banks that the frame
-// uses, last the matcher. Throws std::invalid_argument if the board has problems.
+// uses, last the matcher.
 std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const FrameAccesses& accesses,
                                         std::uint64_t frame);
 
 // For each frame of one turn of the allocation's lists, the resource of frame_bounds() that needs the most
-// cycles. If several need as many, it is the last of them in the order of frame_bounds(). Throws as
-// frame_bounds() does.
+// cycles. If several need as many, it is the last of them in the order of frame_bounds().
 std::vector<ResourceBound> turn_bounds(const BoardConfig& board, const FrameAccesses& accesses);
 
 // The upper bound for the frame rate of the core over whole turns of the allocation's lists, and the resource
-// that limits the slowest frame of a turn. Throws as frame_bounds() does.
+// that limits the slowest frame of a turn.
 Bound core_bound(const BoardConfig& board, const FrameAccesses& accesses);
-Bound core_bound(const BoardConfig& board, const Tables& tables);
+inline Bound core_bound(const BoardConfig& board, const Tables& tables) {
+  return core_bound(board, frame_accesses(board, tables));
+}
 
 // An upper bound for the frame rate that one part of the computer allows. It counts every master of the part.
 //
@@ -90,19 +90,18 @@ struct RateBound {
 };
 
 // The bounds of the computer, in the order of the table at RateBound: over whole turns of the allocation's
-// lists, or over frames 0..frames-1. Throws std::invalid_argument if the board has problems.
+// lists, or over frames 0..frames-1.
 std::vector<RateBound> computer_bounds(const BoardConfig& board, const FrameAccesses& accesses,
-                                       bool whole_pictures);
-std::vector<RateBound> computer_bounds(const BoardConfig& board, const FrameAccesses& accesses,
-                                       bool whole_pictures, std::uint64_t frames);
+                                       bool whole_pictures,
+                                       std::optional<std::uint64_t> frames = std::nullopt);
 
 // Sets bound.system to the least of bound.core and the bounds of computer_bounds(), and
-// bound.system_limited_by to its resource. Throws as computer_bounds() does.
+// bound.system_limited_by to its resource.
 void add_system_bound(const BoardConfig& board, const FrameAccesses& accesses, bool whole_pictures,
                       Bound& bound);
 
 // An upper bound for the steady rate of a whole computer that loses no pixels: bound.system of core_bound() and
-// add_system_bound(). Throws as they do.
+// add_system_bound().
 double steady_bound(const BoardConfig& board, const FrameAccesses& accesses);
 
 }  // namespace stereotlm::platform

@@ -37,12 +37,13 @@ std::int64_t phase_tolerance_ps(const Clock& pci, const Clock& local) {
 
 CameraLines::CameraLines(pci::PciBusControl& pci_bus, pci::BridgeControl& bridge, FastBoard& board,
                          std::array<capture::CaptureControl, 2>& captures, bool has_pixels)
-    : buses_{pci_bus, board.local_bus()},
+    : pci_bus_(pci_bus),
+      local_bus_(board.local_bus()),
       bridge_(bridge),
       board_(board),
       captures_(captures),
       has_pixels_(has_pixels),
-      phase_tolerance_ps_(phase_tolerance_ps(buses_.pci_clock(), buses_.local_clock())) {}
+      phase_tolerance_ps_(phase_tolerance_ps(pci_bus.clock(), local_bus_.clock())) {}
 
 bool CameraLines::skip(std::uint64_t now_ps, std::uint64_t end_ps) {
   bridge_.settle(now_ps);
@@ -81,10 +82,14 @@ std::optional<CameraLines::OfSides<std::uint64_t>> CameraLines::bank_addresses()
   return addresses;
 }
 
+CameraLines::BusCounts CameraLines::counts() const {
+  return {pci_bus_.transactions(), pci_bus_.busy_clocks(), local_bus_.bursts(), local_bus_.busy_clocks()};
+}
+
 CameraLines::Beginning CameraLines::beginning(std::uint64_t now_ps) const {
-  const Clock& local = buses_.local_clock();
+  const Clock& local = local_bus_.clock();
   const std::uint64_t local_ps = local.edge_ps(local.edge_at_or_after(now_ps));
-  return {buses_.pci.position().last_granted, from_to(captures_[0].requested_ps(), now_ps),
+  return {pci_bus_.position().last_granted, from_to(captures_[0].requested_ps(), now_ps),
           from_to(now_ps, local_ps)};
 }
 
@@ -96,35 +101,30 @@ const CameraLines::Line* CameraLines::find(const Beginning& beginning) const {
 
 // Whether the line ends before `end_ps`, before the first request of any other master, and before the next line.
 bool CameraLines::fits_before(const Line& line, std::uint64_t now_ps, std::uint64_t end_ps) const {
-  const Clock& local = buses_.local_clock();
+  const Clock& local = local_bus_.clock();
   const std::uint64_t idle_clock = local.edge_at_or_after(now_ps) + line.idle_clock;
   const std::uint64_t last_ps = local.edge_ps(idle_clock + 1);  // behind the end of all PCI bursts
-  const std::uint64_t request = buses_.pci.earliest_request_beside(kCaptures);
-  if (request != kNever && buses_.pci_clock().edge_ps(request) <= last_ps) return false;
+  const std::uint64_t request = pci_bus_.earliest_request_beside(kCaptures);
+  if (request != kNever && pci_bus_.clock().edge_ps(request) <= last_ps) return false;
   const capture::CaptureFifo& fifo = captures_[0].fifo();
   return last_ps < end_ps && last_ps < fifo.first_request_ps(fifo.next_row() + 1);
 }
 
 void CameraLines::apply(const Line& line, std::uint64_t now_ps, const OfSides<std::uint64_t>& addresses) {
-  const std::uint64_t first = buses_.pci.decision_clock();
-  const std::uint64_t first_local = buses_.local_clock().edge_at_or_after(now_ps);
+  const std::uint64_t first = pci_bus_.decision_clock();
+  const std::uint64_t first_local = local_bus_.clock().edge_at_or_after(now_ps);
   for (std::size_t side = 0; side < kSides; ++side)
-    buses_.pci.skip_bursts(kMasters[side], line.sides[side].pci);
-  buses_.pci.skip_to({line.pci.last_granted, first + line.pci.free_clock}, line.buses.pci_busy);
+    pci_bus_.skip_bursts(kMasters[side], line.sides[side].pci);
+  pci_bus_.skip_to({line.pci.last_granted, first + line.pci.free_clock}, line.buses.pci_busy);
   bridge_.skip_posted((bridge_.turn() + line.turns) % pci::bridge::kChannels, line.most_posted);
-  buses_.local.skip_bursts(line.buses.bursts, line.buses.local_busy, first_local + line.idle_clock);
+  local_bus_.skip_bursts(line.buses.bursts, line.buses.local_busy, first_local + line.idle_clock);
   const std::uint64_t words = words_of_line();
   for (std::size_t side = 0; side < kSides; ++side) {
     const Line::Side& of_side = line.sides[side];
     bridge_.count_skipped(addresses[side], words);
-    const std::vector<fpga::HostPort::ServedWords>& bursts = of_side.bursts;
-    std::uint32_t* const stored =
-        board_.skip_words(true, addresses[side], words, first_local + bursts.front().first_cycle,
-                          first_local + bursts.back().first_cycle + bursts.back().words);
-    if (board_.is_recorded()) board_.record_skipped(true, addresses[side], first_local, bursts);
+    std::uint32_t* const stored = board_.skip_writes(addresses[side], words, first_local, of_side.bursts);
     if (has_pixels_) captures_[side].copy_line(stored);
-    captures_[side].skip_line(buses_.pci_clock().edge_ps(first + of_side.end_clock),
-                              of_side.pci.transactions);
+    captures_[side].skip_line(pci_bus_.clock().edge_ps(first + of_side.end_clock), of_side.pci.transactions);
   }
 }
 
@@ -135,22 +135,22 @@ void CameraLines::begin_record(std::uint64_t now_ps, const Beginning& beginning,
   record_ = {};
   record_.beginning = beginning;
   record_.row = captures_[0].fifo().next_row();
-  record_.pci_clock = buses_.pci.decision_clock();
-  record_.local_clock = buses_.local_clock().edge_at_or_after(now_ps);
+  record_.pci_clock = pci_bus_.decision_clock();
+  record_.local_clock = local_bus_.clock().edge_at_or_after(now_ps);
   record_.addresses = addresses;
   for (std::size_t side = 0; side < kSides; ++side) {
-    record_.counts[side] = buses_.pci.counts(kMasters[side]);
+    record_.counts[side] = pci_bus_.counts(kMasters[side]);
     record_.full_checks[side] = captures_[side].fifo().full_checks();
     record_.request_clocks[side] = record_.pci_clock;
   }
-  record_.buses = buses_.counts();
+  record_.buses = counts();
   record_.turn = bridge_.turn();
 }
 
 void CameraLines::stepped(std::uint64_t now_ps, bool is_of_pci_bus) {
-  if (is_of_pci_bus) record_pci_step(buses_.pci_clock().edge_at_or_after(now_ps));
+  if (is_of_pci_bus) record_pci_step(pci_bus_.clock().edge_at_or_after(now_ps));
   record_.line.most_posted = std::max<std::uint64_t>(record_.line.most_posted, bridge_.posted_words());
-  if (buses_.local.bursts() != record_.buses.bursts + record_.line.buses.bursts) record_local_burst();
+  if (local_bus_.bursts() != record_.buses.bursts + record_.line.buses.bursts) record_local_burst();
 }
 
 void CameraLines::record_pci_step(std::uint64_t clock) {
@@ -158,12 +158,12 @@ void CameraLines::record_pci_step(std::uint64_t clock) {
   narrow_local_bounds(clock);
   for (std::size_t side = 0; side < kSides; ++side) {
     Line::Side& of_side = record_.line.sides[side];
-    pci::PciBusControl::MasterCounts so_far = buses_.pci.counts(kMasters[side]);
+    pci::PciBusControl::MasterCounts so_far = pci_bus_.counts(kMasters[side]);
     so_far.subtract(record_.counts[side]);
     if (so_far.transactions != of_side.pci.transactions) of_side.end_clock = clock - record_.pci_clock;
     of_side.pci = so_far;
     // A request counts from the first clock at or after its time. That of the next line is not of this one.
-    const std::uint64_t requested = buses_.pci.request_clock(kMasters[side]);
+    const std::uint64_t requested = pci_bus_.request_clock(kMasters[side]);
     if (requested != kNever && requested != record_.request_clocks[side] &&
         !captures_[side].is_between_lines()) {
       narrow_pixel_bounds(requested - 1);
@@ -175,7 +175,7 @@ void CameraLines::record_pci_step(std::uint64_t clock) {
 
 // The same words stay complete at this clock of the PCI bus.
 void CameraLines::narrow_pixel_bounds(std::uint64_t pci_clock) {
-  const std::uint64_t time_ps = buses_.pci_clock().edge_ps(pci_clock);
+  const std::uint64_t time_ps = pci_bus_.clock().edge_ps(pci_clock);
   const capture::CaptureFifo::Span span = captures_[0].fifo().same_words(record_.row, time_ps);
   record_.pci_earlier_ps = std::min(record_.pci_earlier_ps, from_to(span.first_ps, time_ps) - kRounding);
   record_.pci_later_ps = std::min(record_.pci_later_ps, from_to(time_ps, span.end_ps) - kRounding);
@@ -183,8 +183,8 @@ void CameraLines::narrow_pixel_bounds(std::uint64_t pci_clock) {
 
 // The same clock of the local bus stays the next one at this clock of the PCI bus.
 void CameraLines::narrow_local_bounds(std::uint64_t pci_clock) {
-  const Clock& local = buses_.local_clock();
-  const std::uint64_t time_ps = buses_.pci_clock().edge_ps(pci_clock);
+  const Clock& local = local_bus_.clock();
+  const std::uint64_t time_ps = pci_bus_.clock().edge_ps(pci_clock);
   const std::uint64_t next = local.edge_at_or_after(time_ps);
   const std::uint64_t next_ps = local.edge_ps(next);
   // A clock that begins at this very time must still do so.
@@ -194,8 +194,8 @@ void CameraLines::narrow_local_bounds(std::uint64_t pci_clock) {
 }
 
 void CameraLines::record_local_burst() {
-  const LocalBurst& burst = buses_.local.burst();
-  const std::uint64_t first = buses_.local.request_clock() - record_.local_clock;
+  const LocalBurst& burst = local_bus_.burst();
+  const std::uint64_t first = local_bus_.request_clock() - record_.local_clock;
   const bool is_right =
       memory::bank_of_address(burst.address) == memory::bank_of_address(record_.addresses[1]);
   record_.line.sides[is_right ? 1 : 0].bursts.push_back({first, burst.words});
@@ -207,14 +207,18 @@ void CameraLines::end_record() {
   is_recording_ = false;
   record_.local_earlier_ps = std::max(record_.local_earlier_ps, phase_tolerance_ps_);
   record_.local_later_ps = std::max(record_.local_later_ps, phase_tolerance_ps_);
-  const BusCounts buses = buses_.counts().since(record_.buses);
+  BusCounts buses = counts();
+  buses.transactions -= record_.buses.transactions;
+  buses.pci_busy -= record_.buses.pci_busy;
+  buses.bursts -= record_.buses.bursts;
+  buses.local_busy -= record_.buses.local_busy;
   if (!record_is_whole(buses)) return;
   Line& line = record_.line;
-  line.pci = buses_.pci.position();
+  line.pci = pci_bus_.position();
   line.pci.free_clock -= record_.pci_clock;
   line.buses = buses;
   line.turns = (bridge_.turn() + pci::bridge::kChannels - record_.turn) % pci::bridge::kChannels;
-  line.idle_clock = buses_.local.idle_clock() - record_.local_clock;
+  line.idle_clock = local_bus_.idle_clock() - record_.local_clock;
   Bounds bounds = {record_.beginning, record_.beginning};
   bounds.least.pci_ps -= record_.pci_earlier_ps;
   bounds.most.pci_ps += record_.pci_later_ps;

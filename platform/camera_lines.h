@@ -9,7 +9,6 @@
 #include "models/capture/capture_control.h"
 #include "models/pci/bridge_control.h"
 #include "models/pci/pci_bus_control.h"
-#include "platform/bridge_buses.h"
 #include "platform/computer_parts.h"
 #include "platform/fast_board.h"
 
@@ -48,7 +47,7 @@ class CameraLines {
     return captures_[0].is_between_lines() && captures_[1].is_between_lines() &&
            captures_[0].requested_ps() == captures_[1].requested_ps() &&
            captures_[0].fifo().next_row() == captures_[1].fifo().next_row() &&
-           buses_.pci.request_clock(kLeftCapture) == buses_.pci.decision_clock();
+           pci_bus_.request_clock(kLeftCapture) == pci_bus_.decision_clock();
   }
   // To be called then, before that decision, at `now_ps`. Before `end_ps` nothing but the PCI bus and the
   // bridge has an event. Returns true if it has skipped the line, instead of that decision.
@@ -69,6 +68,13 @@ class CameraLines {
   template <class T>
   using OfSides = std::array<T, kSides>;  // [left, right]
 
+  // What the two buses of the bridge have done, up to a time or since a time.
+  struct BusCounts {
+    std::uint64_t transactions = 0;  // on the PCI bus, of all masters
+    std::uint64_t pci_busy = 0;      // clocks
+    std::uint64_t bursts = 0;        // on the local bus
+    std::uint64_t local_busy = 0;    // clocks
+  };
   // How a line begins.
   struct Beginning {
     std::size_t last_granted = 0;  // master of the PCI bus
@@ -122,6 +128,7 @@ class CameraLines {
   };
 
   std::optional<OfSides<std::uint64_t>> bank_addresses() const;
+  BusCounts counts() const;  // while the local bus is idle
   Beginning beginning(std::uint64_t now_ps) const;
   const Line* find(const Beginning& beginning) const;
   bool fits_before(const Line& line, std::uint64_t now_ps, std::uint64_t end_ps) const;
@@ -140,7 +147,8 @@ class CameraLines {
     return static_cast<std::uint64_t>(captures_[0].fifo().words_per_line());
   }
 
-  BridgeBuses buses_;
+  pci::PciBusControl& pci_bus_;
+  fpga::LocalBusControl& local_bus_;
   pci::BridgeControl& bridge_;
   FastBoard& board_;
   OfSides<capture::CaptureControl>& captures_;

@@ -8,7 +8,6 @@
 #include "models/capture/capture_register_file.h"
 #include "models/capture/capture_registers.h"
 #include "models/pci/bridge_registers.h"
-#include "platform/computer_parts.h"
 
 namespace stereotlm::platform {
 namespace {
@@ -17,41 +16,32 @@ bool is_one_word(const pci::PciAccess& access, std::uint64_t end) {
   return access.count == 1 && access.address < end;
 }
 
-[[noreturn]] void refuse_end(std::uint64_t end_ps) {
-  throw std::invalid_argument("end_ps = " + std::to_string(end_ps) + ": must be below " +
-                              std::to_string(ComputerLoop::kEndOfTime));
-}
-
 }  // namespace
 
 ComputerLoop::ComputerLoop(const BoardConfig& config, unsigned char* host_memory,
                            std::uint64_t host_memory_bytes, capture::CameraSource& left,
                            capture::CameraSource& right, fpga::Fidelity fidelity)
     : pci_bus_(pci_config(config, host_memory_bytes)),
-      board_(config, fidelity, *this),
+      board_(config, fidelity, [this](std::uint64_t now_ps) { bridge_.ring(now_ps); }),
       bridge_(bridge_config(config), pci_bus_.slot(kBridge), board_.local_bus(), *this),
       captures_{capture::CaptureControl(capture_config(config)),
                 capture::CaptureControl(capture_config(config))},
       cameras_{capture::CameraControl(camera_config(config), left, captures_[0]),
                capture::CameraControl(camera_config(config), right, captures_[1])},
       host_memory_(host_memory),
-      capture_registers_{CaptureRegisterTarget(captures_[0]), CaptureRegisterTarget(captures_[1])},
-      traffic_device_(config.pci.load ? traffic_config(config)->access_ps : 0),
       lines_(pci_bus_, bridge_, board_, captures_, fidelity == fpga::Fidelity::kFast) {
+  for (std::size_t window = 0; window < kTrafficDevice; ++window)
+    pci_bus_.bind(window, windows_.emplace_back(*this, window));
   bind();
   if (const auto traffic = traffic_config(config)) {
-    pci_bus_.bind(kTrafficDevice, traffic_device_);
+    pci_bus_.bind(kTrafficDevice, windows_.emplace_back(*this, kTrafficDevice));
+    traffic_access_ps_ = traffic->access_ps;
     traffic_.emplace(*traffic).start(pci_bus_.slot(kTrafficGenerator));
   }
 }
 
 void ComputerLoop::bind() {
   board_.local_bus().bind(bridge_.local_bus_master());
-  pci_bus_.bind(kHostMemory, host_memory_);
-  pci_bus_.bind(kBridgeSlave, bridge_slave_);
-  pci_bus_.bind(kBridgeRegisters, bridge_registers_);
-  pci_bus_.bind(kLeftRegisters, capture_registers_[0]);
-  pci_bus_.bind(kRightRegisters, capture_registers_[1]);
   captures_[0].bind(pci_bus_.slot(kLeftCapture), cameras_[0]);
   captures_[1].bind(pci_bus_.slot(kRightCapture), cameras_[1]);
   captures_[0].bind_partner(captures_[1]);
@@ -61,7 +51,6 @@ void ComputerLoop::bind() {
 }
 
 pci::PciSlot& ComputerLoop::host_slot() { return pci_bus_.slot(kHost); }
-const pci::PciSlot& ComputerLoop::host_slot() const { return pci_bus_.slot(kHost); }
 
 std::uint64_t ComputerLoop::next_event() const {
   const auto camera = [this](std::size_t side) { return cameras_[side].next_ps(); };
@@ -77,11 +66,14 @@ std::uint64_t ComputerLoop::next_event() const {
   const std::uint64_t cameras =
       std::min({event(camera(0), kLeftCamera), event(camera(1), kRightCamera),
                 capture(0, kLeftDecides, kLeftPixels), capture(1, kRightDecides, kRightPixels)});
-  return std::min({buses, core, cameras, event(bridge_slave_.next_ps(), kSlaveRead)});
+  return std::min({buses, core, cameras, event(bridge_read_ps_, kSlaveRead)});
 }
 
 void ComputerLoop::run(std::uint64_t end_ps) {
-  if (end_ps >= kEndOfTime) refuse_end(end_ps);
+  if (end_ps >= kEndOfTime) {
+    throw std::invalid_argument("end_ps = " + std::to_string(end_ps) + ": must be below " +
+                                std::to_string(kEndOfTime));
+  }
   noticed_ = false;
   lines_.drop();
   for (;;) {
@@ -113,8 +105,7 @@ bool ComputerLoop::skip_lines(std::uint64_t end_ps) {
 std::uint64_t ComputerLoop::skips_end_ps(std::uint64_t end_ps) const {
   if (trace_ != nullptr) end_ps = std::min(end_ps, trace_->skips_end_ps(now_ps_));
   return std::min({end_ps, board_.next_ps(), board_.local_bus().next_ps(), captures_[0].next_ps(),
-                   captures_[1].next_ps(), cameras_[0].next_ps(), cameras_[1].next_ps(),
-                   bridge_slave_.next_ps()});
+                   captures_[1].next_ps(), cameras_[0].next_ps(), cameras_[1].next_ps(), bridge_read_ps_});
 }
 
 void ComputerLoop::note_step(Kind kind) {
@@ -144,7 +135,7 @@ void ComputerLoop::step(Kind kind) {
     case kRightCamera:
       return cameras_[kind - kLeftCamera].step(now_ps_);
     case kSlaveRead:
-      return bridge_slave_.step(now_ps_);
+      return read_bridge();
     case kLeftPixels:
     case kRightPixels:
       return captures_[kind - kLeftPixels].step(now_ps_);
@@ -163,63 +154,72 @@ ComputerControls ComputerLoop::controls() {
           {&cameras_[0], &cameras_[1]}};
 }
 
-pci::PciAnswer ComputerLoop::HostMemoryTarget::access(std::uint64_t /*now_ps*/, const pci::PciAccess& access,
-                                                      std::uint64_t at_ps) {
-  unsigned char* const stored = memory_ + access.address;
-  if (access.write) {
-    std::memcpy(stored, access.words, 4 * access.count);
-  } else {
-    std::memcpy(access.words, stored, 4 * access.count);
+pci::PciAnswer ComputerLoop::access(std::size_t window, std::uint64_t now_ps, const pci::PciAccess& access,
+                                    std::uint64_t at_ps) {
+  switch (window) {
+    case kHostMemory: {
+      unsigned char* const stored = host_memory_ + access.address;
+      const bool write = access.write;
+      std::memcpy(write ? static_cast<void*>(stored) : access.words,
+                  write ? static_cast<const void*>(access.words) : stored, 4 * access.count);
+      return {at_ps, true};
+    }
+    case kBridgeSlave:
+      return access_bridge(now_ps, access, at_ps);
+    case kBridgeRegisters:
+      return {at_ps, access_bridge_register(now_ps, access)};
+    case kLeftRegisters:
+    case kRightRegisters:
+      return {at_ps, access_capture_register(window - kLeftRegisters, now_ps, access)};
+    default:
+      break;
   }
-  return {at_ps, true};
+  // The device of the traffic generator.
+  if (access.write) return {at_ps, false};
+  std::fill_n(access.words, access.count, 0);
+  return {at_ps + traffic_access_ps_, true};
 }
 
-pci::PciAnswer ComputerLoop::BridgeSlaveTarget::access(std::uint64_t now_ps, const pci::PciAccess& access,
-                                                       std::uint64_t at_ps) {
+pci::PciAnswer ComputerLoop::access_bridge(std::uint64_t now_ps, const pci::PciAccess& access,
+                                           std::uint64_t at_ps) {
   if (access.write) {
     const auto* const data = reinterpret_cast<const unsigned char*>(access.words);
-    return {at_ps, loop_.bridge_.write(now_ps, access.address, data, access.count)};
+    return {at_ps, bridge_.write(now_ps, access.address, data, access.count)};
   }
-  read_ = access;
-  next_ps_ = at_ps;
+  bridge_read_ = access;
+  bridge_read_ps_ = at_ps;
   return {kNever, true};
 }
 
-void ComputerLoop::BridgeSlaveTarget::step(std::uint64_t now_ps) {
-  next_ps_ = kNever;
-  loop_.bridge_.read(now_ps, read_.address, reinterpret_cast<unsigned char*>(read_.words), read_.count);
+void ComputerLoop::read_bridge() {
+  bridge_read_ps_ = kNever;
+  bridge_.read(now_ps_, bridge_read_.address, reinterpret_cast<unsigned char*>(bridge_read_.words),
+               bridge_read_.count);
 }
 
-pci::PciAnswer ComputerLoop::BridgeRegisterTarget::access(std::uint64_t now_ps, const pci::PciAccess& access,
-                                                          std::uint64_t at_ps) {
-  if (!is_one_word(access, pci::bridge::kRegisterWindowBytes)) {
-    bridge_.count_error();
-    return {at_ps, false};
+bool ComputerLoop::access_bridge_register(std::uint64_t now_ps, const pci::PciAccess& access) {
+  if (is_one_word(access, pci::bridge::kRegisterWindowBytes)) {
+    return access.write ? bridge_.write_register(now_ps, access.address, *access.words)
+                        : bridge_.read_register(access.address, *access.words);
   }
-  return {at_ps, access.write ? bridge_.write_register(now_ps, access.address, *access.words)
-                              : bridge_.read_register(access.address, *access.words)};
+  bridge_.count_error();
+  return false;
 }
 
-pci::PciAnswer ComputerLoop::CaptureRegisterTarget::access(std::uint64_t now_ps, const pci::PciAccess& access,
-                                                           std::uint64_t at_ps) {
+bool ComputerLoop::access_capture_register(std::size_t side, std::uint64_t now_ps,
+                                           const pci::PciAccess& access) {
+  capture::CaptureControl& board = captures_[side];
   if (!is_one_word(access, capture::registers::kEnd) ||
       !capture::CaptureRegisterFile::allows(access.write, access.address)) {
-    board_.count_refused_access();
-    return {at_ps, false};
+    board.count_refused_access();
+    return false;
   }
   if (access.write) {
-    board_.write(now_ps, access.address, *access.words);
+    board.write(now_ps, access.address, *access.words);
   } else {
-    *access.words = board_.read(access.address);
+    *access.words = board.read(access.address);
   }
-  return {at_ps, true};
-}
-
-pci::PciAnswer ComputerLoop::TrafficTarget::access(std::uint64_t /*now_ps*/, const pci::PciAccess& access,
-                                                   std::uint64_t at_ps) {
-  if (access.write) return {at_ps, false};
-  std::fill_n(access.words, access.count, 0);
-  return {at_ps + access_ps_, true};
+  return true;
 }
 
 }  // namespace stereotlm::platform

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <optional>
 
 #include "models/capture/camera_control.h"
@@ -14,6 +15,7 @@
 #include "models/time_ps.h"
 #include "platform/bus_trace.h"
 #include "platform/camera_lines.h"
+#include "platform/computer_parts.h"
 #include "platform/computer_view.h"
 #include "platform/config/board_config.h"
 #include "platform/fast_board.h"
@@ -23,7 +25,7 @@ namespace stereotlm::platform {
 // The computer without its processor at fidelity fast or timing: the controls of all blocks, bound directly
 // and stepped in the order of their events (contract section 3, "To the clock"). No kernel. The master kHost of
 // the PCI bus is free for the processor's bridge.
-class ComputerLoop : private FastBoard::Doorbell, private pci::BridgeControl::Host {
+class ComputerLoop : private pci::BridgeControl::Host {
  public:
   // `host_memory` has `host_memory_bytes` bytes. It, `left` and `right` outlive the loop. Throws
   // std::invalid_argument if the board has problems.
@@ -36,7 +38,8 @@ class ComputerLoop : private FastBoard::Doorbell, private pci::BridgeControl::Ho
   static constexpr std::uint64_t kEndOfTime = (std::uint64_t{1} << 60U) - 1;
   // Steps the blocks to the time at which the interrupt rises or notice() is called, at most to `end_ps`. The
   // decisions of that time are still to be made, because whatever the processor does then comes before them.
-  // If it returns at `end_ps`, those of that time have been made. Throws std::invalid_argument unless `end_ps` is below kEndOfTime.
+  // If it returns at `end_ps`, those of that time have been made. Throws std::invalid_argument unless
+  // `end_ps` is below kEndOfTime.
   void run(std::uint64_t end_ps);
   // The time up to which the blocks have been stepped.
   std::uint64_t now_ps() const { return now_ps_; }
@@ -48,9 +51,7 @@ class ComputerLoop : private FastBoard::Doorbell, private pci::BridgeControl::Ho
   }
 
   pci::PciSlot& host_slot();
-  const pci::PciSlot& host_slot() const;
   FastBoard& board() { return board_; }
-  const FastBoard& board() const { return board_; }
   ComputerControls controls();
   // The buses are traced: the loop skips nothing that `trace` shows.
   void trace_buses(const BusTrace& trace) { trace_ = &trace; }
@@ -59,54 +60,20 @@ class ComputerLoop : private FastBoard::Doorbell, private pci::BridgeControl::Ho
   std::uint64_t skipped_lines() const { return lines_.skipped(); }
 
  private:
-  // The targets of the PCI bus.
-  class HostMemoryTarget : public pci::PciTarget {
+  // A window of the PCI bus, whose accesses the loop hands to the block behind it.
+  class Window : public pci::PciTarget {
    public:
-    explicit HostMemoryTarget(unsigned char* memory) : memory_(memory) {}
-    pci::PciAnswer access(std::uint64_t now_ps, const pci::PciAccess& access, std::uint64_t at_ps) override;
-
-   private:
-    unsigned char* memory_;
-  };
-  class BridgeSlaveTarget : public pci::PciTarget {
-   public:
-    explicit BridgeSlaveTarget(ComputerLoop& loop) : loop_(loop) {}
+    Window(ComputerLoop& loop, std::size_t window) : loop_(loop), window_(window) {}
     std::size_t writable_words(std::uint64_t now_ps, std::uint64_t /*address*/, std::size_t words) override {
-      return loop_.bridge_.writable_words(now_ps, words);
+      return window_ == kBridgeSlave ? loop_.bridge_.writable_words(now_ps, words) : words;
     }
-    pci::PciAnswer access(std::uint64_t now_ps, const pci::PciAccess& access, std::uint64_t at_ps) override;
-    // The end of the address clock of a read: the time at which it reaches the bridge.
-    std::uint64_t next_ps() const { return next_ps_; }
-    void step(std::uint64_t now_ps);
+    pci::PciAnswer access(std::uint64_t now_ps, const pci::PciAccess& access, std::uint64_t at_ps) override {
+      return loop_.access(window_, now_ps, access, at_ps);
+    }
 
    private:
     ComputerLoop& loop_;
-    pci::PciAccess read_;
-    std::uint64_t next_ps_ = kNever;
-  };
-  class BridgeRegisterTarget : public pci::PciTarget {
-   public:
-    explicit BridgeRegisterTarget(pci::BridgeControl& bridge) : bridge_(bridge) {}
-    pci::PciAnswer access(std::uint64_t now_ps, const pci::PciAccess& access, std::uint64_t at_ps) override;
-
-   private:
-    pci::BridgeControl& bridge_;
-  };
-  class CaptureRegisterTarget : public pci::PciTarget {
-   public:
-    explicit CaptureRegisterTarget(capture::CaptureControl& board) : board_(board) {}
-    pci::PciAnswer access(std::uint64_t now_ps, const pci::PciAccess& access, std::uint64_t at_ps) override;
-
-   private:
-    capture::CaptureControl& board_;
-  };
-  class TrafficTarget : public pci::PciTarget {
-   public:
-    explicit TrafficTarget(std::uint64_t access_ps) : access_ps_(access_ps) {}
-    pci::PciAnswer access(std::uint64_t now_ps, const pci::PciAccess& access, std::uint64_t at_ps) override;
-
-   private:
-    std::uint64_t access_ps_;
+    std::size_t window_;
   };
 
   // The events of one time, in their order (contract section 3, "To the clock").
@@ -128,6 +95,11 @@ class ComputerLoop : private FastBoard::Doorbell, private pci::BridgeControl::Ho
   };
 
   void bind();
+  pci::PciAnswer access(std::size_t window, std::uint64_t now_ps, const pci::PciAccess& access,
+                        std::uint64_t at_ps);
+  pci::PciAnswer access_bridge(std::uint64_t now_ps, const pci::PciAccess& access, std::uint64_t at_ps);
+  bool access_bridge_register(std::uint64_t now_ps, const pci::PciAccess& access);
+  bool access_capture_register(std::size_t side, std::uint64_t now_ps, const pci::PciAccess& access);
   // A number that orders events by time, then by kind. kNever is behind all times.
   static constexpr unsigned kKindBits = 4;
   static_assert(kEndOfTime == kNever >> kKindBits);
@@ -136,10 +108,10 @@ class ComputerLoop : private FastBoard::Doorbell, private pci::BridgeControl::Ho
   }
   std::uint64_t next_event() const;
   void step(Kind kind);
+  void read_bridge();
   bool skip_lines(std::uint64_t end_ps);
   std::uint64_t skips_end_ps(std::uint64_t end_ps) const;
   void note_step(Kind kind);
-  void ring(std::uint64_t now_ps) override { bridge_.ring(now_ps); }
   void slave_read_ended(std::uint64_t now_ps, bool ok) override { pci_bus_.answer(now_ps, {now_ps, ok}); }
   void interrupt_changed(std::uint64_t /*now_ps*/) override {}
 
@@ -149,15 +121,15 @@ class ComputerLoop : private FastBoard::Doorbell, private pci::BridgeControl::Ho
   std::array<capture::CaptureControl, 2> captures_;  // left, right
   std::array<capture::CameraControl, 2> cameras_;
   std::optional<pci::TrafficControl> traffic_;
-  HostMemoryTarget host_memory_;
-  BridgeSlaveTarget bridge_slave_{*this};
-  BridgeRegisterTarget bridge_registers_{bridge_};
-  std::array<CaptureRegisterTarget, 2> capture_registers_;
-  TrafficTarget traffic_device_;
+  std::deque<Window> windows_;  // [PciTargetWindow]
+  unsigned char* host_memory_;
+  std::uint64_t traffic_access_ps_ = 0;  // for which the device of the traffic generator makes the bus wait
   CameraLines lines_;
   const BusTrace* trace_ = nullptr;
   std::uint64_t now_ps_ = 0;
-  bool interrupt_ = false;  // level after the last step
+  pci::PciAccess bridge_read_;
+  std::uint64_t bridge_read_ps_ = kNever;  // the end of the address clock of a read: it reaches the bridge
+  bool interrupt_ = false;                 // level after the last step
   bool noticed_ = false;
 };
 

@@ -10,7 +10,7 @@
 #include "models/pci/bridge_control.h"
 #include "models/pci/pci_bus_control.h"
 #include "platform/bus_trace.h"
-#include "platform/collect_computer.h"
+#include "platform/collect.h"
 #include "platform/timeline.h"
 
 namespace stereotlm::platform {
@@ -50,7 +50,7 @@ class ComputerView {
   virtual ComputerControls controls() = 0;
   // The time up to which the controls have been stepped.
   virtual std::uint64_t now_ps() const = 0;
-  virtual BoardCounters board_counters() const = 0;
+  virtual BoardCounters board_counters() = 0;
   // Advances a running frame to the present.
   virtual void catch_up() = 0;
 };

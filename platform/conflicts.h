@@ -11,6 +11,7 @@
 #include "platform/audit.h"
 #include "platform/config/board_config.h"
 #include "platform/statistics.h"
+#include "platform/trace_records.h"
 
 namespace stereotlm::platform {
 
@@ -32,7 +33,6 @@ struct ConflictSums {
 // The ConflictRecorder of a board, with the sums of all that it has handed out.
 class Conflicts {
  public:
-  // Throws std::invalid_argument if the board has problems.
   explicit Conflicts(const BoardConfig& board, std::size_t most_tiles = fpga::ConflictRecorder::kMostTiles);
 
   fpga::ConflictRecorder& recorder() { return recorder_; }
@@ -49,5 +49,8 @@ class Conflicts {
   fpga::ConflictRecorder recorder_;
   ConflictSums sums_;  // of the frames that were taken, without `blame`
 };
+
+// The runs of a frame of the core: its grants and its stalls, strip by strip.
+FrameRuns frame_runs(const fpga::FrameConflicts& frame);
 
 }  // namespace stereotlm::platform

@@ -13,7 +13,7 @@ namespace stereotlm::platform {
 // Fidelity::kTiming, and take a tenth of the time. A process may call the function any number of times;
 // sweeps do.
 //
-// Throws std::invalid_argument if the board has problems, the tables do not fit the board, or `frames` is 0.
+// Throws std::invalid_argument if the tables do not fit the board, or `frames` is 0.
 // Throws std::runtime_error if the matcher does not work and no result is written for stall_timeout_cycles,
 // because the frame would never end.
 Statistics run_core(const BoardConfig& board, const Tables& tables, std::uint64_t frames,

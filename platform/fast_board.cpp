@@ -4,6 +4,7 @@
 
 #include <cstring>
 #include <stdexcept>
+#include <utility>
 
 #include "models/fpga/core_ports.h"
 #include "models/memory/crossbar_address.h"
@@ -11,20 +12,11 @@
 #include "platform/config/buffer_layout.h"
 
 namespace stereotlm::platform {
-namespace {
-
-const BoardConfig& checked(const BoardConfig& config) {
-  if (const auto found = problems(config); !found.empty()) throw std::invalid_argument(found.front());
-  return config;
-}
-
-}  // namespace
-
-FastBoard::FastBoard(const BoardConfig& config, fpga::Fidelity fidelity, Doorbell& doorbell,
-                     std::uint64_t stall_timeout_cycles)
-    : config_(core_config(checked(config))),
+FastBoard::FastBoard(const BoardConfig& config, fpga::Fidelity fidelity,
+                     std::function<void(std::uint64_t)> ring, std::uint64_t stall_timeout_cycles)
+    : config_(core_config(require_valid(config))),
       bank_configs_(ssram_configs(config)),
-      doorbell_(doorbell),
+      ring_(std::move(ring)),
       clock_(config_.clock_mhz),
       arbitration_(config.fpga.arbiter, bank_configs_),
       frames_(config_, bank_configs_, arbitration_, stall_timeout_cycles),
@@ -51,13 +43,15 @@ bool FastBoard::serves_one_word_per_cycle(std::uint64_t address, std::uint64_t b
          host_port_.serves_one_word_per_cycle(bank);
 }
 
-std::uint32_t* FastBoard::skip_words(bool write, std::uint64_t address, std::uint64_t words,
-                                     std::uint64_t first_cycle, std::uint64_t end_cycle) {
+std::uint32_t* FastBoard::skip_writes(std::uint64_t address, std::uint64_t words, std::uint64_t cycle,
+                                      const std::vector<fpga::HostPort::ServedWords>& bursts) {
   const std::size_t bank = memory::bank_of_address(address);
-  local_bus_.count_words(write, address, words);
-  host_port_.count_skipped(bank, write, first_cycle, end_cycle, words);
+  local_bus_.count_words(true, address, words);
+  host_port_.count_skipped(bank, true, cycle + bursts.front().first_cycle,
+                           cycle + bursts.back().first_cycle + bursts.back().words, words);
+  if (frames_.is_recorded()) host_port_.record_skipped(true, address, cycle, bursts);
   count_direct(bank, words);
-  if (write) changes(address, 4 * words);
+  changes(address, 4 * words);
   return reinterpret_cast<std::uint32_t*>(direct(address, 4 * words));
 }
 
@@ -127,7 +121,7 @@ unsigned char* FastBoard::direct(std::uint64_t address, std::uint64_t bytes) {
 void FastBoard::frame_ended(bool failed) {
   const bool was_done = registers_.done();
   registers_.finish_frame(frames_.frame_cycles().back(), failed);
-  if (!was_done) doorbell_.ring(now_ps_);
+  if (!was_done) ring_(now_ps_);
 }
 
 void FastBoard::failed(const std::string& why) { throw std::runtime_error("core: " + why); }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -30,17 +31,9 @@ class FastBoard : private fpga::LocalBusControl::Core,
                   private fpga::FastCore::Board,
                   private memory::DirectBanks {
  public:
-  // Receives the core's interrupt.
-  class Doorbell {
-   public:
-    virtual ~Doorbell() = default;
-    // The interrupt rises.
-    virtual void ring(std::uint64_t now_ps) = 0;
-  };
-
-  // `doorbell` outlives the board. A frame without progress for `stall_timeout_cycles` stalls. Throws
-  // std::invalid_argument if the board has problems.
-  FastBoard(const BoardConfig& config, fpga::Fidelity fidelity, Doorbell& doorbell,
+  // `ring(now_ps)`: the core's interrupt rises. A frame without progress for `stall_timeout_cycles` stalls.
+  // Throws std::invalid_argument if the board has problems.
+  FastBoard(const BoardConfig& config, fpga::Fidelity fidelity, std::function<void(std::uint64_t)> ring,
             std::uint64_t stall_timeout_cycles = std::uint64_t{1} << 26U);
   FastBoard(const FastBoard&) = delete;
   FastBoard& operator=(const FastBoard&) = delete;
@@ -64,17 +57,10 @@ class FastBoard : private fpga::LocalBusControl::Core,
   //
   // Whether bursts to these bytes are served one word a cycle, independently of the running frame.
   bool serves_one_word_per_cycle(std::uint64_t address, std::uint64_t bytes) const;
-  // Such bursts have moved `words` words from `address` on. See HostPort::count_skipped(). Returns the place
-  // of the words, which the caller moves.
-  std::uint32_t* skip_words(bool write, std::uint64_t address, std::uint64_t words, std::uint64_t first_cycle,
-                            std::uint64_t end_cycle);
-  // Whether the running frame is recorded. If so, record_skipped() is to be called for these words too. See
-  // HostPort.
-  bool is_recorded() const { return frames_.is_recorded(); }
-  void record_skipped(bool write, std::uint64_t address, std::uint64_t cycle,
-                      const std::vector<fpga::HostPort::ServedWords>& bursts) {
-    host_port_.record_skipped(write, address, cycle, bursts);
-  }
+  // Such bursts have written `words` words from `address` on. The cycles of `bursts` count from `cycle`. See
+  // HostPort::count_skipped() and record_skipped(). Returns the place of the words, which the caller writes.
+  std::uint32_t* skip_writes(std::uint64_t address, std::uint64_t words, std::uint64_t cycle,
+                             const std::vector<fpga::HostPort::ServedWords>& bursts);
 
   // Advances the running frame to `now_ps`, for observers. See StereoCore::catch_up().
   void catch_up(std::uint64_t now_ps);
@@ -107,7 +93,7 @@ class FastBoard : private fpga::LocalBusControl::Core,
 
   fpga::CoreConfig config_;
   std::vector<memory::SsramBankConfig> bank_configs_;
-  Doorbell& doorbell_;
+  std::function<void(std::uint64_t)> ring_;
   Clock clock_;
   std::deque<memory::Ram> banks_;
   memory::Arbitration arbitration_;

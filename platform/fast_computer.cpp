@@ -38,7 +38,7 @@ void FastComputer::request(pci::PciMasterIf& master, std::uint64_t from_ps) {
 }
 
 pci::BurstResult FastComputer::transferred(std::uint64_t now_ps) const {
-  return loop_.host_slot().transferred(now_ps);
+  return loop_.pci_bus().slot(kHost).transferred(now_ps);
 }
 
 void FastComputer::end_burst(const pci::BurstResult& result) {

@@ -14,12 +14,11 @@
 #include "models/clock.h"
 #include "models/fpga/frame_observer.h"
 #include "models/pci/bridge_observer.h"
-#include "platform/collect_computer.h"
+#include "platform/collect.h"
 #include "platform/config/board_config.h"
 #include "platform/config/buffer_layout.h"
 #include "platform/driver_observer.h"
 #include "platform/timeline_records.h"
-#include "platform/timeline_sums.h"
 
 namespace stereotlm::platform {
 
@@ -31,7 +30,6 @@ namespace stereotlm::platform {
 // earlier, since the beginning of the oldest wait that still runs.
 class Timeline : private pci::BridgeObserver, private fpga::FrameObserver, private DriverObserver {
  public:
-  // Throws std::invalid_argument if the board has problems.
   explicit Timeline(const BoardConfig& board);
   Timeline(const Timeline&) = delete;
   Timeline& operator=(const Timeline&) = delete;

@@ -2,21 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <stdexcept>
-
-#include "platform/config/board_keys.h"
-#include "platform/config/key_paths.h"
-
 namespace stereotlm::platform {
 
-const area::Device& device_of(const BoardConfig& board) {
-  const area::Device* device = area::find_device(board.fpga.device);
-  if (device == nullptr) {
-    throw std::invalid_argument("fpga.device = " + board.fpga.device + ": " + kMustBeOneOf +
-                                rule_text("fpga.device"));
-  }
-  return *device;
-}
+const area::Device& device_of(const BoardConfig& board) { return *area::find_device(board.fpga.device); }
 
 std::vector<area::Item> area_items(const BoardConfig& board) { return area::items(core_config(board)); }
 

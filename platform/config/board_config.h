@@ -118,42 +118,21 @@ struct BoardConfig {
 bool operator==(const BoardConfig& a, const BoardConfig& b);
 inline bool operator!=(const BoardConfig& a, const BoardConfig& b) { return !(a == b); }
 
-// Returns every broken rule as `path.of.key = value: rule`, in the order of the fields; nothing if the board
-// can be built. The reader of board files checks the same rules, and adds file, line and column.
+// Returns every broken rule as `path.of.key = value: rule`: first those of single values in the order of the
+// keys, then those between keys. Nothing if the board can be built. The board is read as its own board file
+// would be. All other functions that take a board expect one without problems.
 std::vector<std::string> problems(const BoardConfig& board);
-// Throws std::invalid_argument with all problems() if there are any.
-void require_valid(const BoardConfig& board);
-
-// The place of a buffer: an index into BoardConfig::banks, and the first word in that bank.
-struct BufferPlace {
-  int bank = 0;
-  std::uint32_t first_word = 0;
-};
-
-// The places of all buffers (contract 1.5). Buffers that share a bank begin at word 0 and follow each other
-// in the order left_image, right_image, disparity (each in list order), left_lut, right_lut. Joint tables are
-// left_lut; right_lut then has no place.
-struct BufferLayout {
-  std::vector<BufferPlace> left_image;
-  std::vector<BufferPlace> right_image;
-  std::vector<BufferPlace> disparity;
-  std::optional<BufferPlace> left_lut;
-  std::optional<BufferPlace> right_lut;
-};
-
-// Computes the places. Throws as require_valid() does.
-BufferLayout layout_buffers(const BoardConfig& board);
+// Returns the board. Throws std::invalid_argument with all problems() if there are any.
+const BoardConfig& require_valid(const BoardConfig& board);
 
 // The number of frames after which all allocation lists start over: the least common multiple of their
 // lengths.
 std::uint64_t allocation_period_frames(const BoardConfig& board);
 
-// The configuration of one bank's module.
-memory::SsramBankConfig ssram_config(const BoardConfig& board, const BankConfig& bank);
-// Those of all banks, in the order of the board.
+// The configurations of the banks' modules, in the order of the board.
 std::vector<memory::SsramBankConfig> ssram_configs(const BoardConfig& board);
 
-// The configuration of the core. Throws as layout_buffers() does.
+// The configuration of the core.
 fpga::CoreConfig core_config(const BoardConfig& board);
 
 }  // namespace stereotlm::platform

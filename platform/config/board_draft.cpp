@@ -11,8 +11,7 @@
 #include <tuple>
 #include <utility>
 
-#include "platform/config/board_reader.h"
-#include "platform/config/key_paths.h"
+#include "platform/config/board_keys.h"
 #include "platform/yaml/words.h"
 
 namespace stereotlm::platform {
@@ -48,47 +47,40 @@ std::vector<std::string> parts_of(const std::string& path) {
   return parts;
 }
 
-// The reason for which the tree cannot hold a value at the path; empty if it can.
-std::string way_problem(const YamlNode& tree, const std::string& path) {
-  const YamlNode* at = &tree;
+// Puts the value into the tree at the path, and returns an empty text. If the tree cannot hold it there,
+// returns the reason, and leaves the tree unchanged.
+std::string put(YamlNode& tree, const std::string& path, YamlNode value, const Place& place) {
+  YamlNode* at = &tree;
+  YamlNode::Entry* entry = nullptr;
   std::string passed;
   for (const std::string& part : parts_of(path)) {
     if (!at->is_map()) return fmt::format("{} is not a map here; set it as a whole", passed);
-    const YamlNode::Entry* const entry = at->find(part);
-    if (entry == nullptr) break;
-    at = &entry->value;
-    passed = below(passed, part);
-  }
-  return "";
-}
-
-// Puts the value into the tree at the path. If the tree cannot hold it there, returns way_problem(), else "".
-std::string put(YamlNode& tree, const std::string& path, YamlNode value, const Place& place) {
-  std::string problem = way_problem(tree, path);
-  if (!problem.empty()) return problem;
-  YamlNode* at = &tree;
-  YamlNode::Entry* entry = nullptr;
-  for (const std::string& part : parts_of(path)) {
     if (at->find(part) == nullptr) at->add(YamlNode::plain(part, place), YamlNode::map(place));
     entry = at->find(part);
     at = &entry->value;
+    passed = below(passed, part);
   }
   entry->key.place = place;
   entry->value = std::move(value);
   return "";
 }
 
+void leave_out_missing(std::vector<Finding>& findings) {
+  findings.erase(std::remove_if(findings.begin(), findings.end(),
+                                [](const Finding& finding) { return !finding.missing.empty(); }),
+                 findings.end());
+}
+
 // If most keys are missing, replaces the findings of missing keys by one that advises `extends`: the author
 // of such a file usually wants to extend a preset.
 void advise_extends(std::vector<Finding>& findings) {
-  const auto is_missing = [](const Finding& finding) { return !finding.missing.empty(); };
   std::size_t missing = 0;
   for (const Finding& finding : findings) {
-    if (is_missing(finding)) missing += required_count(finding.missing);
+    if (!finding.missing.empty()) missing += required_count(finding.missing);
   }
   const std::size_t all = required_count("");
   if (2 * missing <= all) return;
-  findings.erase(std::remove_if(findings.begin(), findings.end(), is_missing), findings.end());
+  leave_out_missing(findings);
   const std::string text = fmt::format(
       "{} of the {} keys of a board are missing: begin the file with `extends: {}`, which supplies them",
       missing, all, preset_names().front());
@@ -237,11 +229,12 @@ std::vector<Diagnostic> BoardDraft::problems_of(const std::string& path, const Y
                                                 const std::string& file) const {
   std::vector<Finding> findings;
   std::string problem = path_problem(path);
-  if (problem.empty()) problem = way_problem(tree_, path);
+  YamlNode tree = tree_;
+  if (problem.empty()) problem = put(tree, path, value, value.place);
   if (problem.empty()) {
     YamlNode alone = YamlNode::map();
     put(alone, path, value, value.place);
-    read_board(alone, value.is_map(), findings);
+    read_board(alone, findings);
   } else {
     findings.emplace_back(value.place, text_of(path, value, problem));
   }
@@ -263,7 +256,8 @@ BoardConfig BoardDraft::read() const {
 
 BoardDraft::Reading BoardDraft::read_with_problems() const {
   std::vector<Finding> findings = findings_;
-  Reading reading{read_board(tree_, is_whole_, findings), {}};
+  Reading reading{read_board(tree_, findings), {}};
+  if (!is_whole_) leave_out_missing(findings);
   if (!has_extends_) advise_extends(findings);
   std::stable_sort(findings.begin(), findings.end(), [](const Finding& a, const Finding& b) {
     return std::tie(a.place.source, a.place.line, a.place.column) <

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "platform/config/board_config.h"
+#include "platform/config/board_reader.h"
 #include "platform/config/board_yaml.h"
-#include "platform/config/value_reader.h"
 #include "platform/yaml/yaml_tree.h"
 
 namespace stereotlm::platform {

@@ -15,10 +15,8 @@
 #include "models/kernels/stereo.h"
 #include "models/memory/arbitration_policies.h"
 #include "models/pci/pci_config.h"
+#include "platform/config/board_reader.h"
 #include "platform/config/buffer_layout.h"
-#include "platform/config/key_paths.h"
-#include "platform/config/value_reader.h"
-#include "platform/yaml/utf8.h"
 
 namespace stereotlm::platform {
 namespace {
@@ -128,7 +126,7 @@ std::vector<std::string> cost_texts() {
 bool is_board_name(std::string_view name) {
   const bool printable = std::none_of(
       name.begin(), name.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; });
-  return !name.empty() && printable && is_utf8(name);
+  return !name.empty() && printable;
 }
 
 void read_name(ValueReader& values, const Key& key, const Entry& entry, BoardConfig& board) {
@@ -167,7 +165,7 @@ YamlNode write_priority(const BoardConfig& board) {
   return YamlNode::list(std::move(ports));
 }
 
-// Reads the names of banks. Whether they exist is a rule between keys (board_rules.h).
+// Reads the names of banks. Whether they exist is a rule between keys (board_rules.cpp).
 void read_banks(ValueReader& values, const Key& key, const YamlNode& node, std::vector<std::string>& banks) {
   const std::vector<YamlNode> single = {node};
   const std::vector<YamlNode>& items = node.is_list() ? node.items : single;
@@ -248,10 +246,12 @@ void read_filter(ValueReader& values, const Key& key, const Entry& entry, BoardC
     const auto entries =
         values.read_entries(key.path, node, entry.key.place, child_keys(key.path), child_keys(key.path));
     kernels::FilterKernel filter;
-    if (const auto kernel = entries->find("kernel"); kernel != entries->end())
-      read_kernel(values, board_key("matcher.filter.kernel"), kernel->second->value, filter);
-    if (const auto shift = entries->find("shift"); shift != entries->end())
-      filter.shift = values.read_integer(board_key("matcher.filter.shift"), shift->second->value).value_or(0);
+    for (const Entry* const part : *entries) {
+      if (part->key.is("kernel"))
+        read_kernel(values, board_key("matcher.filter.kernel"), part->value, filter);
+      else
+        filter.shift = values.read_integer(board_key("matcher.filter.shift"), part->value).value_or(0);
+    }
     board.matcher.filter = std::move(filter);
   }
 }
@@ -278,7 +278,7 @@ void read_cost(ValueReader& values, const Key& key, const Entry& entry, BoardCon
     const auto entries =
         values.read_entries(key.path, node, entry.key.place, child_keys(key.path), child_keys(key.path));
     if (entries->empty()) return;
-    const auto size = values.read_integer(board_key("matcher.cost.census"), entries->begin()->second->value);
+    const auto size = values.read_integer(board_key("matcher.cost.census"), entries->front()->value);
     board.matcher.cost = {kernels::CostKind::kCensus,
                           size.value_or(static_cast<int>(kernels::kCensusSizeRule.min))};
     return;
@@ -351,11 +351,8 @@ std::vector<Key> make_keys() {
           "pci.width_bits", [](B& b) { return &b.pci.width_bits; },
           "width of the PCI bus; optional, without it 32", "bits", pci::kWidthRule)),
       optional({"pci.load", "a third-party master that loads the PCI bus; optional, without it none", "",
-                SectionKey{[](const B& b) { return b.pci.load.has_value(); },
-                           [](B& b, bool is_given) {
-                             b.pci.load = is_given ? std::optional(PciLoadConfig()) : std::nullopt;
-                           }},
-                "none or a map of burst_words, interval_us, first_us, access_us", std::nullopt}),
+                SectionKey{}, "none or a map of burst_words, interval_us, first_us, access_us",
+                std::nullopt}),
       integer(
           "pci.load.burst_words", [](B& b) { return &b.pci.load.value().burst_words; },
           "words that each transfer of the load reads", "words", pci::kLoadBurstRule),
@@ -490,16 +487,7 @@ const Key& board_key(std::string_view path) {
 }
 
 bool has_key(const BoardConfig& board, const Key& key) {
-  static const auto kSections = [] {
-    std::vector<const Key*> sections;
-    for (const Key& one : board_keys()) {
-      if (std::holds_alternative<SectionKey>(one.kind)) sections.push_back(&one);
-    }
-    return sections;
-  }();
-  return std::all_of(kSections.begin(), kSections.end(), [&](const Key* section) {
-    return !is_below(key.path, section->path) || std::get<SectionKey>(section->kind).is_given(board);
-  });
+  return board.pci.load.has_value() || !is_below(key.path, "pci.load");
 }
 
 namespace {
@@ -572,16 +560,6 @@ YamlNode value_node(const Key& key, const BoardConfig& board) { return std::visi
 
 void read_value(ValueReader& values, const Key& key, const Entry& entry, BoardConfig& board) {
   if (values.check_use(key.path, entry.value)) std::visit(FromNode{values, key, entry, board}, key.kind);
-}
-
-bool is_plainly_valid(const Key& key, const BoardConfig& board) {
-  if (const auto* const word = std::get_if<WordKey>(&key.kind))
-    return std::find(word->words.begin(), word->words.end(), word->get(board)) != word->words.end();
-  if (const auto* const integer = std::get_if<IntegerKey>(&key.kind))
-    return key.numbers->allows(field(*integer, board));
-  if (const auto* const decimal = std::get_if<DecimalKey>(&key.kind))
-    return decimal->allows(field(*decimal, board));
-  return false;
 }
 
 bool allows_number(const Key& key, const YamlNode& number) {

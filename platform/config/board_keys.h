@@ -50,11 +50,8 @@ struct WordKey {
   std::function<void(BoardConfig&, int)> set;
 };
 
-// `none`, or a map of the keys below it.
-struct SectionKey {
-  bool (*is_given)(const BoardConfig&);
-  void (*give)(BoardConfig&, bool is_given);  // with the default of each key
-};
+// `pci.load`: `none`, or a map of the keys below it.
+struct SectionKey {};
 
 // A value with code of its own. `read` reports what is wrong with the value of `entry`, or sets the board.
 struct CodedKey {
@@ -79,7 +76,7 @@ struct Key {
 const std::vector<Key>& board_keys();
 const Key* find_key(std::string_view path);    // nullptr if there is no such key
 const Key& board_key(std::string_view path);   // throws std::out_of_range
-bool has_key(const BoardConfig&, const Key&);  // false for a key below a section that is not given
+bool has_key(const BoardConfig&, const Key&);  // false for a key below a `pci.load` that is not given
 
 // Whether boards have a value of this key: it is neither a SectionKey nor a PartKey.
 bool has_value(const Key& key);
@@ -87,11 +84,33 @@ bool has_value(const Key& key);
 YamlNode value_node(const Key& key, const BoardConfig& board);
 // Sets the value of a key that has_value(), or reports its problems.
 void read_value(ValueReader& values, const Key& key, const YamlNode::Entry& entry, BoardConfig& board);
-// Whether the board's value of the key is a number or a word that the key allows. For other values read_value()
-// says whether they are valid.
-bool is_plainly_valid(const Key& key, const BoardConfig& board);
 // Whether the key allows a number. True for a key without a rule for numbers.
 bool allows_number(const Key& key, const YamlNode& number);
+
+// The path of `name` below `path`: "image.width" for "image" and "width". The top is "".
+std::string below(const std::string& path, const std::string& name);
+
+// Whether the path is one below `section`.
+bool is_below(std::string_view path, std::string_view section);
+
+// The names of the keys directly below a path ("" is the top), in order; empty below a single value.
+const std::vector<std::string>& child_keys(std::string_view path);
+
+// The keys of child_keys() that are not optional.
+const std::vector<std::string>& required_keys(std::string_view path);
+
+// The number of required keys at or below the path, where all banks count as one key. "" is the whole board.
+std::size_t required_count(std::string_view path);
+
+// The rule of a key. The rule of a map lists its keys: "a map of width, height".
+std::string rule_text(std::string_view path);
+
+// `path` with NAME in place of a bank's name: `ssram.banks.NAME.words` for `ssram.banks.bank0.words`.
+std::string schema_path(const std::string& path);
+
+// The message for an unknown path: "unknown key; nearest known key: PATH", or a text that says that no known
+// key is near.
+std::string unknown_key_text(const std::string& path);
 
 // What a message says before the listed() words to one of which a value must be equal.
 inline constexpr const char* kMustBeOneOf = "must be one of ";

@@ -2,16 +2,28 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <optional>
+#include <set>
+#include <stdexcept>
 #include <utility>
 #include <variant>
 
 #include "platform/config/board_keys.h"
-#include "platform/config/board_rules.h"
-#include "platform/config/key_paths.h"
 
 namespace stereotlm::platform {
 namespace {
+
+// The known name in a key such as "census:5", which YAML takes for one word without a value.
+std::optional<std::string> name_before_colon(const YamlNode::Entry& entry,
+                                             const std::vector<std::string>& known) {
+  const bool has_value = entry.value.kind != YamlNode::Kind::kNull || !entry.value.text.empty();
+  if (!entry.key.is_scalar() || has_value) return std::nullopt;
+  const std::string name = entry.key.text.substr(0, entry.key.text.find(':'));
+  const bool is_joined = name.size() + 1 < entry.key.text.size();
+  return is_joined && std::find(known.begin(), known.end(), name) != known.end() ? std::optional(name)
+                                                                                 : std::nullopt;
+}
 
 // A value of `ssram.default` or of a bank, if the tree has it, and its place. `value` is empty if it could
 // not be read.
@@ -40,7 +52,7 @@ const Place& latest(const Place& first, const Place& second) {
 
 class BoardReader {
  public:
-  BoardReader(bool report_missing, std::vector<Finding>& findings) : values_(report_missing, findings) {}
+  explicit BoardReader(std::vector<Finding>& findings) : values_(findings) {}
 
   BoardConfig read(const YamlNode& tree) {
     read_section("", tree, {Place::kBoard, 1, 1});
@@ -53,33 +65,36 @@ class BoardReader {
     const auto entries = values_.read_entries(path, node, key, child_keys(path), required_keys(path));
     if (!entries) return;
     if (path == "ssram") return read_ssram(*entries);
-    for (const auto& [name, entry] : *entries) {
-      const std::string full = below(path, name);
+    for (const YamlNode::Entry* const entry : *entries) {
+      const std::string full = below(path, entry->key.text);
       const Key* const known = find_key(full);
       if (known == nullptr) {
         read_section(full, entry->value, entry->key.place);
-      } else if (const auto* const section = std::get_if<SectionKey>(&known->kind)) {
-        read_optional_section(*known, *section, *entry);
+      } else if (std::holds_alternative<SectionKey>(known->kind)) {
+        read_load(*known, *entry);
       } else {
         read_value(values_, *known, *entry, board_);
       }
     }
   }
 
-  void read_optional_section(const Key& key, const SectionKey& section, const YamlNode::Entry& entry) {
+  void read_load(const Key& key, const YamlNode::Entry& entry) {
     if (!values_.check_use(key.path, entry.value)) return;
     const bool is_none = entry.value.is("none");
     if (!is_none && !entry.value.is_map()) return values_.report(key.path, entry.value, key.rule_text);
-    section.give(board_, !is_none);
-    if (!is_none) read_section(key.path, entry.value, entry.key.place);
+    if (is_none) return;
+    board_.pci.load.emplace();
+    read_section(key.path, entry.value, entry.key.place);
   }
 
   void read_ssram(const ValueReader::Entries& entries) {
     BankEntry defaults;
-    if (const auto found = entries.find("default"); found != entries.end())
-      defaults = read_bank_entry("ssram.default", *found->second);
-    if (const auto found = entries.find("banks"); found != entries.end())
-      read_banks(found->second->value, defaults);
+    for (const YamlNode::Entry* const entry : entries) {
+      if (entry->key.is("default")) defaults = read_bank_entry("ssram.default", *entry);
+    }
+    for (const YamlNode::Entry* const entry : entries) {
+      if (entry->key.is("banks")) read_banks(entry->value, defaults);
+    }
   }
 
   BankEntry read_bank_entry(const std::string& path, const YamlNode::Entry& entry) {
@@ -89,7 +104,8 @@ class BoardReader {
     const auto entries =
         values_.read_entries(path, entry.value, entry.key.place, child_keys(schema), required_keys(schema));
     if (!entries) return bank;
-    for (const auto& [name, given] : *entries) {
+    for (const YamlNode::Entry* const given : *entries) {
+      const std::string& name = given->key.text;
       const std::string full = below(path, name);
       const auto& numbers = board_key(below(schema, name)).numbers;
       const std::optional<int> value =
@@ -136,11 +152,8 @@ class BoardReader {
     const bool names_valid = values_.finding_count() == before;
     board_.banks.clear();
     bool default_lacks_turnaround = false;
-    for (const YamlNode::Entry& entry : node.entries) {  // in the order of the file
-      const auto found = entries->find(entry.key.text);
-      if (found == entries->end() || found->second != &entry) continue;
-      read_bank(below(path, entry.key.text), entry, defaults, default_lacks_turnaround);
-    }
+    for (const YamlNode::Entry* const entry : *entries)
+      read_bank(below(path, entry->key.text), *entry, defaults, default_lacks_turnaround);
     if (names_valid) values_.accept(path, node.place);
     if (default_lacks_turnaround) {
       values_.report_missing_beside(latest(defaults.key, defaults.kind.place),
@@ -199,8 +212,140 @@ class BoardReader {
 
 }  // namespace
 
-BoardConfig read_board(const YamlNode& tree, bool report_missing, std::vector<Finding>& findings) {
-  return BoardReader(report_missing, findings).read(tree);
+void ValueReader::report_between_keys(const Place& place, std::string text) {
+  findings_.emplace_back(place, std::move(text));
+  findings_.back().is_between_keys = true;
+}
+
+void ValueReader::report(const Place& place, const std::string& path, const std::string& value,
+                         const std::string& rule) {
+  findings_.emplace_back(place, fmt::format("{} = {}: {}", path.empty() ? "the board" : path, value, rule));
+}
+
+void ValueReader::report(const std::string& path, const YamlNode& node, const std::string& rule) {
+  report(node.place, path, short_text(node), rule);
+}
+
+void ValueReader::report_missing(const Place& place, const std::string& path, const std::string& rule) {
+  findings_.emplace_back(place, fmt::format("{}: missing: {}", path, rule));
+  findings_.back().missing = path;
+}
+
+void ValueReader::report_missing_beside(const Place& place, const std::string& path,
+                                        const std::string& rule) {
+  report_missing(place, path, rule);
+  findings_.back().is_between_keys = true;
+}
+
+void ValueReader::accept(const std::string& path, const Place& place) {
+  valid_.insert_or_assign(path, place);
+}
+
+const Place* ValueReader::find(const std::string& path) const {
+  const auto found = valid_.find(path);
+  return found == valid_.end() ? nullptr : &found->second;
+}
+
+bool ValueReader::check_use(const std::string& path, const YamlNode& node) {
+  if (!node.misuse.empty()) report(path, node, node.misuse);
+  return node.misuse.empty();
+}
+
+std::optional<ValueReader::Entries> ValueReader::read_entries(const std::string& path, const YamlNode& node,
+                                                              const Place& key,
+                                                              const std::vector<std::string>& known,
+                                                              const std::vector<std::string>& required) {
+  if (!node.misuse.empty()) {  // the message does not show values that a preset added to the map
+    report(node.place, path, node.is_map() ? "{..}" : short_text(node), node.misuse);
+  }
+  if (!node.is_map()) {
+    if (node.misuse.empty()) report(path, node, rule_text(schema_path(path)));
+    return std::nullopt;
+  }
+  Entries entries;
+  const auto find = [&entries](const std::string& name) {
+    return std::find_if(entries.begin(), entries.end(),
+                        [&](const YamlNode::Entry* entry) { return entry->key.text == name; });
+  };
+  std::set<std::string> joined;  // names that are joined with their value by the colon
+  for (const YamlNode::Entry& entry : node.entries) {
+    const std::string full = below(path, entry.key.is_scalar() ? entry.key.text : short_text(entry.key));
+    if (!entry.key.misuse.empty()) report(entry.key.place, full, short_text(entry.value), entry.key.misuse);
+    if (!entry.key.is_scalar() || std::find(known.begin(), known.end(), entry.key.text) == known.end()) {
+      const bool is_bank = path == "ssram.banks";
+      std::string rule = is_bank ? kBankNameRule : unknown_key_text(full);
+      if (const auto name = name_before_colon(entry, known)) {
+        joined.insert(*name);
+        rule = fmt::format("a blank is missing after the colon: {}: {}", *name,
+                           entry.key.text.substr(name->size() + 1));
+      }
+      report(entry.key.place, full, short_text(entry.value), rule);
+    } else if (const auto first = find(entry.key.text); first != entries.end()) {
+      report_repeated(entry, **first, full);
+    } else {
+      entries.push_back(&entry);
+    }
+  }
+  for (const std::string& name : required) {
+    const std::string full = below(path, name);
+    if (find(name) == entries.end() && joined.count(name) == 0) report_missing(key, full, rule_text(full));
+  }
+  return entries;
+}
+
+void ValueReader::report_repeated(const YamlNode::Entry& entry, const YamlNode::Entry& first,
+                                  const std::string& path) {
+  const Place& place = first.key.place;
+  const bool is_beside = place.source == Place::kBoard && entry.key.place.source == Place::kBoard;
+  report(entry.key.place, path, short_text(entry.value),
+         is_beside ? fmt::format("repeated key, first at {}:{}", place.line, place.column) : "repeated key");
+}
+
+std::optional<int> ValueReader::read_integer(const std::string& path, const YamlNode& node,
+                                             const IntegerRule& rule, const std::string& rule_text) {
+  if (!check_use(path, node)) return std::nullopt;
+  const auto value = integer_of(node);
+  if (!value) {
+    report(path, node, fmt::format("not an integer (decimal digits, not in quotes); {}", rule_text));
+  } else if (!rule.allows(*value)) {
+    report(path, node, rule_text);
+  } else {
+    accept(path, node.place);
+    return static_cast<int>(*value);
+  }
+  return std::nullopt;
+}
+
+std::optional<int> ValueReader::read_word(const std::string& path, const YamlNode& node,
+                                          const std::vector<std::string>& words) {
+  if (!check_use(path, node)) return std::nullopt;
+  const auto found = std::find(words.begin(), words.end(), node.text);
+  if (!node.is_scalar() || found == words.end()) {
+    report(path, node, kMustBeOneOf + listed(words));
+    return std::nullopt;
+  }
+  accept(path, node.place);
+  return static_cast<int>(found - words.begin());
+}
+
+BoardConfig read_board(const YamlNode& tree, std::vector<Finding>& findings) {
+  return BoardReader(findings).read(tree);
+}
+
+std::vector<std::string> problems(const BoardConfig& board) {
+  YamlNode tree = board_node(board);
+  for_each_node(tree, [](YamlNode& node) { node.place.source = Place::kPreset; });
+  std::vector<Finding> findings;
+  read_board(tree, findings);
+  std::vector<std::string> texts;
+  for (Finding& finding : findings) texts.push_back(std::move(finding.text));
+  return texts;
+}
+
+const BoardConfig& require_valid(const BoardConfig& board) {
+  const std::vector<std::string> found = problems(board);
+  if (!found.empty()) throw std::invalid_argument(fmt::format("{}", fmt::join(found, "\n")));
+  return board;
 }
 
 }  // namespace stereotlm::platform

@@ -1,11 +1,9 @@
-#include "platform/config/board_rules.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <initializer_list>
 #include <utility>
 
+#include "platform/config/board_reader.h"
 #include "platform/config/buffer_layout.h"
 #include "platform/yaml/words.h"
 
@@ -22,16 +20,17 @@ class RuleChecker {
       : board_(board), is_valid_(is_valid) {}
 
   std::vector<BrokenRule> check() {
-    check_capture();
     const bool fits_width = check_image_size("image.width", board_.image.width, fpga::kWidthWithTableRule);
     const bool fits_height =
         check_image_size("image.height", board_.image.height, fpga::kHeightWithTableRule);
-    check_matcher();
-    check_joint_tables();
+    check_capture();
+    check_result_queue();
     // Deeper banks would not help tables that are too large anyhow.
     if (fits_width && fits_height) check_bank_depths();
     check_list_lengths();
     check_bank_names();
+    check_joint_tables();
+    check_matcher();
     return std::move(found_);
   }
 
@@ -42,10 +41,6 @@ class RuleChecker {
 
   // Adds the broken rule `text()` unless it is kept, or a value that it involves is not valid by itself.
   // Returns whether it is kept.
-  template <typename Text>
-  bool require(bool is_kept, std::initializer_list<const char*> involved, const Text& text) {
-    return is_kept || require(false, std::vector<std::string>(involved.begin(), involved.end()), text);
-  }
   template <typename Text>
   bool require(bool is_kept, const std::vector<std::string>& involved, const Text& text) {
     if (is_kept || !all_valid(involved)) return true;
@@ -98,14 +93,18 @@ class RuleChecker {
           "matcher.rows = {}: must be 1 where matcher.fetch is line_buffer; with column it may be {}",
           matcher.rows, fpga::kRowsRule.text());
     });
-    require(
-        fpga::can_queue_rows(board_.fpga.result_fifo_words, matcher.rows),
-        {"fpga.result_fifo_words", "matcher.rows"}, [&] {
-          return fmt::format(
-              "fpga.result_fifo_words = {}: at least {}, a word for each of the rows that are computed at "
-              "once; or fewer matcher.rows",
-              board_.fpga.result_fifo_words, matcher.rows);
-        });
+  }
+
+  void check_result_queue() {
+    const int words = board_.fpga.result_fifo_words;
+    const int rows = board_.matcher.rows;
+    require(fpga::can_queue_rows(words, rows), {"fpga.result_fifo_words", "matcher.rows"}, [&] {
+      return fmt::format(
+          "fpga.result_fifo_words = {}: at least {}, a word for each of the rows that are computed at once; "
+          "or "
+          "fewer matcher.rows",
+          words, rows);
+    });
   }
 
   void check_joint_tables() {

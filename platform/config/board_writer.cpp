@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "platform/config/board_keys.h"
+#include "platform/config/board_reader.h"
 #include "platform/config/board_yaml.h"
 #include "platform/config/buffer_layout.h"
-#include "platform/config/key_paths.h"
 
 namespace stereotlm::platform {
 namespace {
@@ -46,13 +46,13 @@ YamlNode section_node(const std::string& path, const BoardConfig& board) {
     const Key* const key = find_key(full);
     YamlNode value;
     if (full == "ssram.default") {
-      value = bank_node(board.banks.front(), nullptr);
+      value = bank_node(board.banks.empty() ? BankConfig() : board.banks.front(), nullptr);
     } else if (full == "ssram.banks") {
       value = YamlNode::map();
       for (const BankConfig& bank : board.banks)
         value.add(YamlNode::word(bank.name), bank_node(bank, &board.banks.front()));
     } else if (key == nullptr || std::holds_alternative<SectionKey>(key->kind)) {
-      if (key != nullptr && !std::get<SectionKey>(key->kind).is_given(board)) continue;
+      if (key != nullptr && !board.pci.load) continue;
       value = section_node(full, board);
     } else {
       value = value_node(*key, board);
@@ -88,10 +88,9 @@ std::vector<std::string> bank_sets(const BoardConfig& from, const BoardConfig& t
 
 }  // namespace
 
-std::string to_yaml(const BoardConfig& board) {
-  require_valid(board);
-  return yaml_text(section_node("", board));
-}
+YamlNode board_node(const BoardConfig& board) { return section_node("", board); }
+
+std::string to_yaml(const BoardConfig& board) { return yaml_text(board_node(board)); }
 
 std::vector<BoardValue> values_of(const BoardConfig& board) {
   std::vector<BoardValue> values;

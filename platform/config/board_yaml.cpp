@@ -9,7 +9,6 @@
 #include <system_error>
 #include <utility>
 
-#include "platform/boards/presets.h"
 #include "platform/config/board_draft.h"
 #include "platform/config/board_keys.h"
 

@@ -44,7 +44,7 @@ BoardConfig load_board(const std::string& board, const std::vector<std::string>&
 
 // The board as a complete board file, without `extends`. load_board() reads it back to an equal BoardConfig.
 // `ssram.default` has the values of the first bank; the other banks give only the values that differ. There
-// is no `pci.load` if the board has none. Throws std::invalid_argument if the board has problems().
+// is no `pci.load` if the board has none.
 std::string to_yaml(const BoardConfig& board);
 
 // One value of a board.
@@ -62,7 +62,16 @@ std::vector<BoardValue> values_of(const BoardConfig& board);
 // given whole.
 std::vector<std::string> sets_between(const BoardConfig& from, const BoardConfig& to);
 
-// Names of the boards that are compiled in, `fpl2003` first.
+// A board file that is compiled in.
+struct Preset {
+  std::string_view name;
+  std::string_view text;
+};
+
+// All presets, `fpl2003` first.
+const std::vector<Preset>& presets();
+
+// Their names.
 std::vector<std::string> preset_names();
 
 // The text of a preset's file. Throws std::out_of_range for an unknown name.

@@ -1,5 +1,8 @@
 #include "platform/config/buffer_layout.h"
 
+#include <algorithm>
+#include <map>
+
 #include "models/fpga/register_map.h"
 
 namespace stereotlm::platform {
@@ -16,20 +19,6 @@ std::string& bank_at(std::vector<std::string>& banks, int index) {
   return banks[static_cast<std::size_t>(index)];
 }
 std::string& bank_at(std::optional<std::string>& bank, int /*index*/) { return *bank; }
-
-std::uint32_t word_of(const BufferPlace& place) {
-  return fpga::registers::base(static_cast<std::uint32_t>(place.bank), place.first_word);
-}
-
-std::vector<std::uint32_t> words_of(const std::vector<BufferPlace>& places) {
-  std::vector<std::uint32_t> words;
-  for (const BufferPlace& place : places) words.push_back(word_of(place));
-  return words;
-}
-
-std::optional<std::uint32_t> word_of(const std::optional<BufferPlace>& place) {
-  return place ? std::optional(word_of(*place)) : std::nullopt;
-}
 
 }  // namespace
 
@@ -64,26 +53,48 @@ std::uint64_t buffer_words(const PlacedBuffer& buffer, const ImageConfig& image)
   return buffer.index < 0 ? pixels : pixels / 4;
 }
 
-fpga::BufferBases buffer_bases(const BoardConfig& board) {
-  const BufferLayout layout = layout_buffers(board);
-  return {words_of(layout.left_image), words_of(layout.right_image), words_of(layout.disparity),
-          word_of(layout.left_lut),    word_of(layout.right_lut),    board.fpga.joint_tables};
-}
-
 std::vector<AddressRange> buffer_ranges(const BoardConfig& board) {
-  const fpga::BufferBases words = buffer_bases(board);
-  std::vector<std::uint32_t> first_words;
-  for (const auto* list : {&words.left_images, &words.right_images, &words.disparities})
-    first_words.insert(first_words.end(), list->begin(), list->end());
-  for (const auto& table : {words.left_lut, words.right_lut}) {
-    if (table) first_words.push_back(*table);
-  }
   std::vector<AddressRange> ranges;
+  std::map<std::string, std::uint64_t> used;  // [bank]: words
   for (const PlacedBuffer& buffer : buffers(board)) {
-    const std::uint64_t first = fpga::registers::base_address(first_words[ranges.size()]);
-    ranges.push_back({first, first + 4 * buffer_words(buffer, board.image)});
+    const auto bank = std::find_if(board.banks.begin(), board.banks.end(),
+                                   [&](const BankConfig& one) { return one.name == buffer.bank; });
+    const std::uint64_t words = buffer_words(buffer, board.image);
+    const std::uint64_t first = fpga::registers::base_address(
+        fpga::registers::base(static_cast<std::uint32_t>(bank - board.banks.begin()),
+                              static_cast<std::uint32_t>(used[buffer.bank])));
+    ranges.push_back({first, first + 4 * words});
+    used[buffer.bank] += words;
   }
   return ranges;
+}
+
+fpga::BufferBases buffer_bases(const BoardConfig& board) {
+  fpga::BufferBases bases;
+  bases.has_joint_tables = board.fpga.joint_tables;
+  const std::vector<PlacedBuffer> placed = buffers(board);
+  const std::vector<AddressRange> ranges = buffer_ranges(board);
+  for (std::size_t i = 0; i < placed.size(); ++i) {
+    const auto base = static_cast<std::uint32_t>(ranges[i].first / 4);
+    switch (placed[i].buffer) {
+      case Buffer::kLeftImage:
+        bases.left_images.push_back(base);
+        break;
+      case Buffer::kRightImage:
+        bases.right_images.push_back(base);
+        break;
+      case Buffer::kDisparity:
+        bases.disparities.push_back(base);
+        break;
+      case Buffer::kLeftLut:
+        bases.left_lut = base;
+        break;
+      case Buffer::kRightLut:
+        bases.right_lut = base;
+        break;
+    }
+  }
+  return bases;
 }
 
 }  // namespace stereotlm::platform

@@ -39,8 +39,8 @@ constexpr const char* name_of(Buffer buffer) {
 // The member of a key such as "allocation.left_image"; nullopt if the key is not one of an allocation.
 std::optional<Buffer> buffer_of_key(std::string_view key);
 
-// Calls `visit` with the member `buffer` of `all`, which is an AllocationConfig or a BufferLayout. The member
-// is a std::vector for a list, and a std::optional for a table. Returns the result of `visit`.
+// Calls `visit` with the member `buffer` of `all`, which is an AllocationConfig. The member is a std::vector
+// for a list, and a std::optional for a table. Returns the result of `visit`.
 template <typename All, typename Visit>
 decltype(auto) visit_buffer(All& all, Buffer buffer, const Visit& visit) {
   switch (buffer) {
@@ -78,10 +78,11 @@ void move_buffer(BoardConfig& board, const PlacedBuffer& buffer, const std::stri
 // Size of a buffer in 32-bit words.
 std::uint64_t buffer_words(const PlacedBuffer& buffer, const ImageConfig& image);
 
-// The values of the base registers for these buffers. Throws as layout_buffers() does.
-fpga::BufferBases buffer_bases(const BoardConfig& board);
-
-// The addresses of the buffers on the local bus, in the order of buffers(). Throws as layout_buffers() does.
+// The addresses of the buffers on the local bus, in the order of buffers(). Buffers that share a bank begin
+// at word 0, and follow each other in that order (contract 1.5).
 std::vector<AddressRange> buffer_ranges(const BoardConfig& board);
+
+// The values of the base registers for these buffers.
+fpga::BufferBases buffer_bases(const BoardConfig& board);
 
 }  // namespace stereotlm::platform

@@ -1,5 +1,3 @@
-#include "platform/config/key_paths.h"
-
 #include <fmt/format.h>
 
 #include <limits>

@@ -10,18 +10,32 @@
 #include <string_view>
 #include <utility>
 
-#include "platform/yaml/utf8.h"
 #include "platform/yaml/yaml_tree.h"
 
 namespace stereotlm::platform {
 namespace {
+
+// The length in bytes of the first character of the text, which is not empty; 0 if it is not UTF-8.
+std::size_t character_length(std::string_view text) {
+  const auto first = static_cast<unsigned char>(text.front());
+  const std::size_t length = first < 0x80 ? 1 : first < 0xC2 ? 0 : first < 0xE0 ? 2 : first < 0xF0 ? 3 : 4;
+  if (length < 2) return length;
+  if (length > text.size() || first > 0xF4) return 0;
+  if (!std::all_of(text.begin() + 1, text.begin() + static_cast<std::ptrdiff_t>(length), continues_character))
+    return 0;
+  // These first bytes could also begin a code that is too long, a surrogate, or one beyond 0x10FFFF.
+  const auto second = static_cast<unsigned char>(text[1]);
+  const bool is_valid = (first != 0xE0 || second >= 0xA0) && (first != 0xED || second < 0xA0) &&
+                        (first != 0xF0 || second >= 0x90) && (first != 0xF4 || second < 0x90);
+  return is_valid ? length : 0;
+}
 
 // yaml-cpp stops at some control characters, and accepts others.
 void check_characters(std::string_view text, int source) {
   Place place{source, 1, 1};
   while (!text.empty()) {
     const auto byte = static_cast<unsigned char>(text.front());
-    const std::size_t length = first_character(text).bytes;
+    const std::size_t length = character_length(text);
     if (length == 0) throw YamlError(place, fmt::format("byte 0x{:02X}: the text is not UTF-8", byte));
     if ((byte < 0x20 && byte != '\t' && byte != '\n' && byte != '\r') || byte == 0x7F) {
       throw YamlError(place, fmt::format("control character 0x{:02X}: not allowed in YAML", byte));

@@ -10,8 +10,6 @@
 #include <system_error>
 #include <utility>
 
-#include "platform/yaml/utf8.h"
-
 namespace stereotlm::platform {
 namespace {
 

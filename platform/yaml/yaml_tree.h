@@ -114,6 +114,9 @@ std::string flow_text(const YamlNode& node);
 // The map as YAML in block style. parse_yaml() reads the same values back, without `place` and `misuse`.
 std::string yaml_text(const YamlNode& map);
 
+// Whether this byte of a UTF-8 text belongs to a character that an earlier byte begins.
+constexpr bool continues_character(char byte) { return (static_cast<unsigned char>(byte) & 0xC0U) == 0x80U; }
+
 // `text` in double quotes, with YAML's escapes.
 std::string quoted_text(const std::string& text);
 

@@ -7,7 +7,7 @@
 
 namespace stereotlm::driver {
 
-// The configuration of a board's driver. Throws std::invalid_argument if the board has problems.
+// The configuration of a board's driver.
 DriverConfig driver_config(const platform::BoardConfig& board, std::uint64_t frames);
 
 }  // namespace stereotlm::driver

@@ -7,7 +7,7 @@
 
 #include "calib/calibration.h"
 #include "calib/depth.h"
-#include "platform/trace_runs.h"
+#include "platform/conflicts.h"
 #include "sw/files/json_text.h"
 #include "sw/media/encode.h"
 #include "sw/process/streams.h"

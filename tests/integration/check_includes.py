@@ -66,7 +66,7 @@ FREE_OF = [
     (re.compile(r"models/memory/(arbitration|bank_arbiter|change_watch|direct_banks)\."), SYSTEMC, "SystemC"),
     (re.compile(r"models/pci/(bridge_register_file|dma_channel|local_bus_master)\."), SYSTEMC, "SystemC"),
     (re.compile(r"models/pci/(pci_slot|posted_writes)\."), SYSTEMC, "SystemC"),
-    (re.compile(r"platform/(bridge_buses|computer_parts|trace_records|trace_runs)\."), SYSTEMC, "SystemC"),
+    (re.compile(r"platform/(computer_parts|conflicts|timeline_records|trace_records)\."), SYSTEMC, "SystemC"),
     (re.compile(r"(sw/(driver|explore|files|media|paper|process|report|sqlite|stats|trace)|calib)/"), SYSTEMC, "SystemC"),
     (re.compile(r"(models|platform)/"), OPENCV, "OpenCV"),
     (re.compile(r"(models|platform)/"), EIGEN, "Eigen"),

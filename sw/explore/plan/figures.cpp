@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "platform/config/key_paths.h"
+#include "platform/config/board_keys.h"
 
 namespace stereotlm::explore {
 namespace {

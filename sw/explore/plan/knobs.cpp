@@ -12,7 +12,7 @@
 #include "models/fpga/core_ports.h"
 #include "models/kernels/filter_kernel.h"
 #include "platform/config/board_keys.h"
-#include "platform/config/board_rules.h"
+#include "platform/config/board_reader.h"
 #include "platform/config/board_yaml.h"
 #include "platform/config/buffer_layout.h"
 #include "sw/explore/store/bank_names.h"

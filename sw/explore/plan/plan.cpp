@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "platform/config/key_paths.h"
+#include "platform/config/board_keys.h"
 #include "platform/config/tables.h"
 #include "sw/explore/plan/shuffled_numbers.h"
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <map>
 
-#include "platform/config/key_paths.h"
+#include "platform/config/board_keys.h"
 #include "platform/yaml/words.h"
 
 namespace stereotlm::explore {

@@ -10,7 +10,6 @@
 
 #include "platform/config/board_keys.h"
 #include "platform/config/board_yaml.h"
-#include "platform/config/key_paths.h"
 #include "platform/yaml/yaml_tree.h"
 #include "sw/explore/plan/conditions.h"
 #include "sw/explore/plan/plan.h"

@@ -12,7 +12,7 @@
 #include "platform/audit.h"
 #include "platform/bounds.h"
 #include "platform/figures.h"
-#include "platform/timeline_sums.h"
+#include "platform/timeline_records.h"
 #include "sw/stats/stats_differences.h"
 #include "sw/stats/stats_json.h"
 #include "sw/stats/timeline_csv.h"

@@ -9,7 +9,7 @@
 #include "models/binder.h"
 #include "models/capture/camera.h"
 #include "platform/bus_trace.h"
-#include "platform/collect_computer.h"
+#include "platform/collect.h"
 #include "platform/computer_view.h"
 #include "platform/timeline.h"
 #include "sw/driver/stereo_driver.h"

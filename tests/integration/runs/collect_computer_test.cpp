@@ -1,6 +1,4 @@
 // Identities of the computer, checked with the counters of a valid run of which one is changed.
-#include "platform/collect_computer.h"
-
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "platform/collect.h"
 #include "platform/config/board_yaml.h"
 #include "platform/config/buffer_layout.h"
 #include "sw/runs/simulation/camera_simulation.h"
@@ -31,8 +30,8 @@ class CollectComputer : public testing::Test {
     counters = simulation.computer().counters();
   }
   platform::Statistics statistics() {
-    return platform::collect_statistics(
-        board, tables, "cycle", simulation.computer().core().frame_cycles(), counters, deliveries);
+    return platform::collect_statistics(board, tables, "cycle", simulation.computer().core().frame_cycles(),
+                                        counters, deliveries);
   }
 
   platform::BoardConfig board = platform::load_board(

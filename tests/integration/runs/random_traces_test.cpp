@@ -20,7 +20,7 @@
 
 #include "models/clock.h"
 #include "platform/config/board_yaml.h"
-#include "platform/trace_runs.h"
+#include "platform/conflicts.h"
 #include "sw/runs/simulation/make_simulation.h"
 #include "sw/sqlite/database.h"
 #include "sw/trace/trace.h"

@@ -210,15 +210,6 @@ TEST_F(CoreBound, RepeatsWithTheLeastCommonMultipleOfTheLists) {
   EXPECT_EQ(allocation_period_frames(board), 3U);
 }
 
-TEST_F(CoreBound, RefusesABoardWithProblems) {
-  board.matcher.window = 4;
-  EXPECT_THROW(core_bound(board, Tables{}), std::invalid_argument);
-  EXPECT_THROW(frame_bounds(board, {}, 0), std::invalid_argument);
-  board = small_board();
-  board.allocation.disparity.clear();
-  EXPECT_THROW(core_bound(board, identity_tables(board)), std::invalid_argument);
-}
-
 TEST_F(CoreBound, IsThatOfAWholeTurnOfTheLists) {
   board.allocation.left_lut = "bank1";  // meets the left image in every other frame
   const Tables tables = identity_tables(board);

@@ -163,7 +163,7 @@ TEST_F(ComputerLoopTest, RefusesBurstsOfSeveralWordsToRegisters) {
 }
 
 TEST_F(ComputerLoopTest, RefusesABoardWithProblems) {
-  config.matcher.window = 4;
+  config.allocation.left_lut = "bank9";
   EXPECT_THROW(loop(), std::invalid_argument);
 }
 

@@ -406,13 +406,5 @@ TEST_F(FastComputerErrors, OfAPictureOfAnotherSizeReachTheReport) {
   EXPECT_NE(text.find("picture of frame 1 = 16 x 5: must be 16 x 6"), std::string::npos);
 }
 
-TEST(FastComputerConfig, MustHaveNoProblems) {
-  BoardConfig wrong = fast_cameras();
-  wrong.matcher.window = 4;
-  EXPECT_THROW(RunningComputer(
-                   Fidelity::kFast, [](LoggedBus&) {}, wrong),
-               std::invalid_argument);
-}
-
 }  // namespace
 }  // namespace stereotlm::platform

@@ -181,14 +181,6 @@ class LoopRun : public LoopProcessor {
     const std::uint64_t end_ps = loop().now_ps() + kFramePs;
     while (loop().now_ps() < end_ps) loop().run(end_ps);
   }
-  // Runs to the next interrupt, for `most_ps` at most. Returns whether it has come.
-  bool run_to_interrupt(std::uint64_t most_ps) {
-    const std::uint64_t end_ps = loop().now_ps() + most_ps;
-    while (!loop().interrupt() && loop().now_ps() < end_ps)
-      loop().run(std::min(end_ps, loop().now_ps() + step_ps_));
-    note("interrupt {} {}\n", loop().interrupt(), loop().now_ps());
-    return loop().interrupt();
-  }
   // The first descriptor is at `address` in host memory.
   void start_dma(std::uint64_t channel, std::uint32_t address) {
     write(dma_register(channel, pci::bridge::kDmaDescriptor), address);

@@ -65,22 +65,5 @@ TEST(BoardArea, RemarksOnAClockAboveThePapers) {
             "fpga.clock_mhz = 40.5: above the 40 MHz that the paper's core reached");
 }
 
-TEST(BoardArea, IsRefusedForABoardWithProblems) {
-  BoardConfig board;
-  board.fpga.device = "xc4vlx25";
-  EXPECT_THROW(area_of(board), std::invalid_argument);
-  try {
-    device_of(board);
-    FAIL() << "no exception";
-  } catch (const std::invalid_argument& error) {
-    EXPECT_STREQ(error.what(),
-                 "fpga.device = xc4vlx25: must be one of xc2v1000, xc2v1500, xc2v2000, xc2v3000, xc2v4000, "
-                 "xc2v6000 or xc2v8000");
-  }
-  board = BoardConfig();
-  board.matcher.window = 4;
-  EXPECT_THROW(area_items(board), std::invalid_argument);
-}
-
 }  // namespace
 }  // namespace stereotlm::platform

@@ -1,5 +1,6 @@
 #include "platform/config/board_config.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,14 +9,16 @@
 #include <string>
 #include <vector>
 
+#include "models/fpga/register_map.h"
 #include "platform/config/buffer_layout.h"
 
 namespace stereotlm::platform {
 namespace {
 
+using ::testing::ElementsAre;
 using Problems = std::vector<std::string>;
 
-TEST(BoardConfig, ReportsEveryBrokenRuleInTheOrderOfTheFields) {
+TEST(BoardConfig, ReportsEveryBrokenRuleInTheOrderOfTheKeys) {
   BoardConfig board;
   board.name = "a\nb";
   board.image.width = 642;
@@ -31,8 +34,6 @@ TEST(BoardConfig, ReportsEveryBrokenRuleInTheOrderOfTheFields) {
   board.banks[2].name = "none";
   board.banks[3].words = 0;
   board.banks[4].kind = memory::BankKind::kSyncBurst;
-  board.banks[5].turnaround_cycles = 3;
-  board.banks[6].kind = static_cast<memory::BankKind>(4);
   board.allocation.disparity = {};
   board.matcher.filter = kernels::FilterKernel{7, {1, 2}, 32};
   board.matcher.lr_tolerance = 254;
@@ -42,40 +43,36 @@ TEST(BoardConfig, ReportsEveryBrokenRuleInTheOrderOfTheFields) {
   board.fpga.pixel_cache = static_cast<fpga::PixelCache>(2);
   EXPECT_EQ(
       problems(board),
-      (Problems{
-          "name = \"a\\nb\": a text of one or more characters without control characters; quoted if it "
-          "could be read as a number, a truth value or null",
-          "image.width = 642: 4..8192, a multiple of 4",
-          "cameras.frame_rate_hz = nan: not a decimal number (such as 29.97, not in quotes); 0.1..1000",
-          "capture.fifo_trigger_words = 141: 1..fifo_words, which is 140",
-          "pci.clock_mhz = inf: not a decimal number (such as 29.97, not in quotes); 1..1000",
-          "pci.load.burst_words = 0: 1..1024",
-          "pci.load.interval_us = -0.5: 0..1000000000",
-          "pci.load.access_us = 1000000.5: 0..1000000",
-          "fpga.device = xc4vlx25: must be one of xc2v1000, xc2v1500, xc2v2000, xc2v3000, "
-          "xc2v4000, xc2v6000 or xc2v8000",
-          "fpga.arbitration = lottery: must be one of fixed_priority, round_robin or age",
-          "fpga.priority = result: repeated; each port once",
-          "fpga.priority = \"(no port)\": must be one of left_lut, right_lut, left_pixel, right_pixel, "
-          "result or host",
-          "fpga.pixel_cache = \"2\": must be one of none or word",
-          "ssram.banks = bank0: repeated name",
-          "ssram.banks = none: a bank's name is [A-Za-z][A-Za-z0-9_-]*, and not none",
-          "ssram.banks.bank3.words = 0: 1..67108864",
-          "ssram.banks.bank4.turnaround_cycles = 0: 1..16 for sync_burst",
-          "ssram.banks.bank5.turnaround_cycles = 3: 0 for zbt_pipelined",
-          "ssram.banks.bank6.kind = 4: must be one of zbt_pipelined, zbt_flow_through, sync_burst or qdr",
-          "allocation.disparity = []: a bank, or a list of 1 to 3 banks",
-          "matcher.filter.kernel = [[1, 2]]: a square list of lists, 3..31, odd rows, entries "
-          "-32768..32767, sum 0",
-          "matcher.filter.shift = 32: 0..31",
-          "matcher.lr_tolerance = 254: 0..253 or off",
-          "matcher.units = 255: 1..254 or all",
-          "matcher.rows = 17: 1..16",
-
-          "matcher.cost.sad = 4: unknown key; nearest known key: pci.load",
-          "matcher.cost.census: missing: 3, 5 or 7"}));
-  EXPECT_THROW(core_config(board), std::invalid_argument);
+      (Problems{"name = \"a\\nb\": a text of one or more characters without control characters; quoted if it "
+                "could be read as a number, a truth value or null",
+                "image.width = 642: 4..8192, a multiple of 4",
+                "cameras.frame_rate_hz = nan: not a decimal number (such as 29.97, not in quotes); 0.1..1000",
+                "pci.clock_mhz = inf: not a decimal number (such as 29.97, not in quotes); 1..1000",
+                "pci.load.burst_words = 0: 1..1024",
+                "pci.load.interval_us = -0.5: 0..1000000000",
+                "pci.load.access_us = 1000000.5: 0..1000000",
+                "fpga.device = xc4vlx25: must be one of xc2v1000, xc2v1500, xc2v2000, xc2v3000, "
+                "xc2v4000, xc2v6000 or xc2v8000",
+                "fpga.arbitration = lottery: must be one of fixed_priority, round_robin or age",
+                "fpga.priority = result: repeated; each port once",
+                "fpga.priority = \"(no port)\": must be one of left_lut, right_lut, left_pixel, right_pixel, "
+                "result or host",
+                "fpga.pixel_cache = \"2\": must be one of none or word",
+                "ssram.banks.bank0 = {}: repeated key",
+                "ssram.banks.none = {}: a bank's name is [A-Za-z][A-Za-z0-9_-]*, and not none",
+                "ssram.banks.bank3.words = 0: 1..67108864",
+                "ssram.banks.bank4.turnaround_cycles = 0: 1..16",
+                "allocation.disparity = []: a bank, or a list of 1 to 3 banks",
+                "matcher.filter.kernel = [[1, 2]]: a square list of lists, 3..31, odd rows, entries "
+                "-32768..32767, sum 0",
+                "matcher.filter.shift = 32: 0..31",
+                "matcher.lr_tolerance = 254: 0..253 or off",
+                "matcher.units = 255: 1..254 or all",
+                "matcher.rows = 17: 1..16",
+                "matcher.cost.sad = 4: unknown key; nearest known key: pci.load",
+                "matcher.cost.census: missing: 3, 5 or 7",
+                "capture.fifo_trigger_words = 141: 1..fifo_words, which is 140"}));
+  EXPECT_THROW(require_valid(board), std::invalid_argument);
 }
 
 TEST(BoardConfig, IsCheckedByTheRulesBetweenKeys) {
@@ -88,7 +85,7 @@ TEST(BoardConfig, IsCheckedByTheRulesBetweenKeys) {
                       "matcher.units = 81: 1..disparities, which is 80, or all"}));
   board = BoardConfig();
   board.banks.clear();
-  EXPECT_EQ(problems(board), Problems{"ssram.banks = 0 banks: a map of 1..64 banks"});
+  EXPECT_EQ(problems(board), Problems{"ssram.banks = {}: 0 banks; a map of 1..64 banks"});
 }
 
 TEST(BoardConfig, HandsOptionalKeysToTheCore) {
@@ -116,24 +113,16 @@ TEST(BoardConfig, LaysBuffersOfOneBankOneBehindTheOther) {
   board.allocation.disparity = {"bank1", "bank1"};
   board.allocation.left_lut = "bank1";
   board.allocation.right_lut = "bank1";
-  const BufferLayout layout = layout_buffers(board);
-  const auto expect_place = [](const BufferPlace& place, int bank, std::uint32_t first_word) {
-    EXPECT_EQ(place.bank, bank);
-    EXPECT_EQ(place.first_word, first_word);
-  };
-  ASSERT_EQ(layout.left_image.size(), 3U);
-  ASSERT_EQ(layout.right_image.size(), 3U);
-  ASSERT_EQ(layout.disparity.size(), 2U);
-  expect_place(layout.left_image[0], 1, 0);
-  expect_place(layout.left_image[1], 0, 0);
-  expect_place(layout.left_image[2], 1, 6);
-  expect_place(layout.right_image[0], 0, 6);
-  expect_place(layout.right_image[1], 1, 12);
-  expect_place(layout.right_image[2], 2, 0);
-  expect_place(layout.disparity[0], 1, 18);
-  expect_place(layout.disparity[1], 1, 24);
-  expect_place(layout.left_lut.value(), 1, 30);
-  expect_place(layout.right_lut.value(), 1, 54);
+  const fpga::BufferBases bases = buffer_bases(board);
+  const auto base = fpga::registers::base;
+  EXPECT_THAT(bases.left_images, ElementsAre(base(1, 0), base(0, 0), base(1, 6)));
+  EXPECT_THAT(bases.right_images, ElementsAre(base(0, 6), base(1, 12), base(2, 0)));
+  EXPECT_THAT(bases.disparities, ElementsAre(base(1, 18), base(1, 24)));
+  EXPECT_EQ(bases.left_lut, base(1, 30));
+  EXPECT_EQ(bases.right_lut, base(1, 54));
+  const std::vector<AddressRange> ranges = buffer_ranges(board);
+  EXPECT_EQ(ranges.back().first, fpga::registers::base_address(base(1, 54)));
+  EXPECT_EQ(ranges.back().end, fpga::registers::base_address(base(1, 54 + 24)));
 }
 
 TEST(BoardConfig, LaysOutJointTablesAsOneBuffer) {
@@ -141,40 +130,24 @@ TEST(BoardConfig, LaysOutJointTablesAsOneBuffer) {
   board.fpga.joint_tables = true;
   board.allocation.right_lut = board.allocation.left_lut;
   EXPECT_EQ(buffers(board).size(), 7U);
-  const BufferLayout layout = layout_buffers(board);
-  EXPECT_EQ(layout.left_lut.value().bank, 6);
-  EXPECT_FALSE(layout.right_lut.has_value());
   EXPECT_TRUE(core_config(board).right_table);
   const fpga::BufferBases bases = buffer_bases(board);
   EXPECT_TRUE(bases.has_joint_tables);
+  EXPECT_EQ(bases.left_lut, fpga::registers::base(6, 0));
   EXPECT_FALSE(bases.right_lut.has_value());
   EXPECT_EQ(buffer_ranges(board).size(), 7U);
   move_buffer(board, buffers(board).back(), "bank7");
   EXPECT_EQ(board.allocation.left_lut, "bank7");
   EXPECT_EQ(board.allocation.right_lut, "bank7");
-  board.banks[7].words = 307199;
-  EXPECT_THROW(layout_buffers(board), std::invalid_argument);
 }
 
 TEST(BoardConfig, LaysOutNoTableThatDoesNotExist) {
   BoardConfig board;
   board.allocation.left_lut = std::nullopt;
-  EXPECT_FALSE(layout_buffers(board).left_lut.has_value());
-  EXPECT_TRUE(layout_buffers(board).right_lut.has_value());
+  EXPECT_FALSE(buffer_bases(board).left_lut.has_value());
+  EXPECT_TRUE(buffer_bases(board).right_lut.has_value());
   EXPECT_FALSE(core_config(board).left_table);
   EXPECT_TRUE(core_config(board).right_table);
-}
-
-TEST(BoardConfig, IsNotLaidOutWithProblems) {
-  BoardConfig board;
-  board.allocation.left_lut = "bank9";
-  EXPECT_THROW(layout_buffers(board), std::invalid_argument);
-  EXPECT_THROW(core_config(board), std::invalid_argument);
-  board = BoardConfig();
-  board.banks[6].words = 307199;
-  EXPECT_THROW(layout_buffers(board), std::invalid_argument);
-  board.banks[6].words = 307200;
-  EXPECT_NO_THROW(layout_buffers(board));
 }
 
 }  // namespace

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "platform/config/board_yaml.h"
-#include "platform/config/key_paths.h"
 #include "tests/unit/platform/config/board_files.h"
 
 namespace stereotlm::platform::testing {

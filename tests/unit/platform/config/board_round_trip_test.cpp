@@ -209,12 +209,6 @@ TEST(BoardRoundTrip, WritesTheShortestDecimals) {
   EXPECT_NE(text.find("  frame_rate_hz: 29.97\n"), std::string::npos);
 }
 
-TEST(BoardRoundTrip, RefusesToWriteABoardWithProblems) {
-  BoardConfig board;
-  board.image.width = 3;
-  EXPECT_THROW(to_yaml(board), std::invalid_argument);
-}
-
 // A board file is a board or is refused, whatever was done to it.
 RC_GTEST_PROP(BoardRoundTrip, ADamagedFileIsABoardOrIsRefused, ()) {
   std::string text(preset_text("fpl2003"));

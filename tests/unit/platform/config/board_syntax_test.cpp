@@ -157,8 +157,8 @@ TEST(BoardSyntax, RefusesTextThatIsNotUtf8) {
   EXPECT_EQ(refusal_of("extends: fpl2003\nname: gr\xF6\xDF"
                        "e\n"),
             "board.yaml:2:9: byte 0xF6: the text is not UTF-8");
-  for (const std::string bad :
-       {"\xC0\x80", "\xE0\x80\x80", "\xED\xA0\x80", "\xF4\x90\x80\x80", "\xE2\x82", "\xFF"}) {
+  for (const std::string bad : {"\xC0\x80", "\xE0\x80\x80", "\xED\xA0\x80", "\xF0\x80\x80\x80",
+                                "\xF4\x90\x80\x80", "\xF5\x80\x80\x80", "\xE2\x82", "\xFF"}) {
     EXPECT_EQ(refusal_of("# ü" + bad).substr(0, 19), "board.yaml:1:4: byt");
   }
   EXPECT_EQ(refusal_of(std::string("# \0", 3)),

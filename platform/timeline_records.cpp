@@ -1,4 +1,4 @@
-#include "platform/timeline_sums.h"
+#include "platform/timeline_records.h"
 
 #include <numeric>
 
@@ -6,6 +6,7 @@
 #include "platform/computer_parts.h"
 
 namespace stereotlm::platform {
+
 void TimelineSums::add(const TimelineEvent& event) {
   const std::string_view what = event.what;
   Sums& sums = sums_[{event.kind, what, event.why}];
