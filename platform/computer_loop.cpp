@@ -5,17 +5,10 @@
 #include <stdexcept>
 #include <string>
 
-#include "models/capture/capture_register_file.h"
-#include "models/capture/capture_registers.h"
-#include "models/pci/bridge_registers.h"
 #include "platform/computer_parts.h"
 
 namespace stereotlm::platform {
 namespace {
-
-bool is_one_word(const pci::PciAccess& access, std::uint64_t end) {
-  return access.count == 1 && access.address < end;
-}
 
 [[noreturn]] void refuse_end(std::uint64_t end_ps) {
   throw std::invalid_argument("end_ps = " + std::to_string(end_ps) + ": must be below " +
@@ -35,7 +28,6 @@ ComputerLoop::ComputerLoop(const BoardConfig& config, unsigned char* host_memory
       cameras_{capture::CameraControl(camera_config(config), left, captures_[0]),
                capture::CameraControl(camera_config(config), right, captures_[1])},
       host_memory_(host_memory),
-      capture_registers_{CaptureRegisterTarget(captures_[0]), CaptureRegisterTarget(captures_[1])},
       traffic_device_(config.pci.load ? traffic_config(config)->access_ps : 0),
       lines_(pci_bus_, bridge_, board_, captures_, fidelity == fpga::Fidelity::kFast) {
   bind();
@@ -49,9 +41,9 @@ void ComputerLoop::bind() {
   board_.local_bus().bind(bridge_.local_bus_master());
   pci_bus_.bind(kHostMemory, host_memory_);
   pci_bus_.bind(kBridgeSlave, bridge_slave_);
-  pci_bus_.bind(kBridgeRegisters, bridge_registers_);
-  pci_bus_.bind(kLeftRegisters, capture_registers_[0]);
-  pci_bus_.bind(kRightRegisters, capture_registers_[1]);
+  pci_bus_.bind(kBridgeRegisters, bridge_);
+  pci_bus_.bind(kLeftRegisters, captures_[0]);
+  pci_bus_.bind(kRightRegisters, captures_[1]);
   captures_[0].bind(pci_bus_.slot(kLeftCapture), cameras_[0]);
   captures_[1].bind(pci_bus_.slot(kRightCapture), cameras_[1]);
   captures_[0].bind_partner(captures_[1]);
@@ -188,31 +180,6 @@ pci::PciAnswer ComputerLoop::BridgeSlaveTarget::access(std::uint64_t now_ps, con
 void ComputerLoop::BridgeSlaveTarget::step(std::uint64_t now_ps) {
   next_ps_ = kNever;
   loop_.bridge_.read(now_ps, read_.address, reinterpret_cast<unsigned char*>(read_.words), read_.count);
-}
-
-pci::PciAnswer ComputerLoop::BridgeRegisterTarget::access(std::uint64_t now_ps, const pci::PciAccess& access,
-                                                          std::uint64_t at_ps) {
-  if (!is_one_word(access, pci::bridge::kRegisterWindowBytes)) {
-    bridge_.count_error();
-    return {at_ps, false};
-  }
-  return {at_ps, access.write ? bridge_.write_register(now_ps, access.address, *access.words)
-                              : bridge_.read_register(access.address, *access.words)};
-}
-
-pci::PciAnswer ComputerLoop::CaptureRegisterTarget::access(std::uint64_t now_ps, const pci::PciAccess& access,
-                                                           std::uint64_t at_ps) {
-  if (!is_one_word(access, capture::registers::kEnd) ||
-      !capture::CaptureRegisterFile::allows(access.write, access.address)) {
-    board_.count_refused_access();
-    return {at_ps, false};
-  }
-  if (access.write) {
-    board_.write(now_ps, access.address, *access.words);
-  } else {
-    *access.words = board_.read(access.address);
-  }
-  return {at_ps, true};
 }
 
 pci::PciAnswer ComputerLoop::TrafficTarget::access(std::uint64_t /*now_ps*/, const pci::PciAccess& access,

@@ -59,7 +59,7 @@ class ComputerLoop : private FastBoard::Doorbell, private pci::BridgeControl::Ho
   std::uint64_t skipped_lines() const { return lines_.skipped(); }
 
  private:
-  // The targets of the PCI bus.
+  // The targets of the PCI bus, beside the registers, which the controls serve.
   class HostMemoryTarget : public pci::PciTarget {
    public:
     explicit HostMemoryTarget(unsigned char* memory) : memory_(memory) {}
@@ -72,7 +72,7 @@ class ComputerLoop : private FastBoard::Doorbell, private pci::BridgeControl::Ho
    public:
     explicit BridgeSlaveTarget(ComputerLoop& loop) : loop_(loop) {}
     std::size_t writable_words(std::uint64_t now_ps, std::uint64_t /*address*/, std::size_t words) override {
-      return loop_.bridge_.writable_words(now_ps, words);
+      return loop_.bridge_.postable_words(now_ps, words);
     }
     pci::PciAnswer access(std::uint64_t now_ps, const pci::PciAccess& access, std::uint64_t at_ps) override;
     // The end of the address clock of a read: the time at which it reaches the bridge.
@@ -83,22 +83,6 @@ class ComputerLoop : private FastBoard::Doorbell, private pci::BridgeControl::Ho
     ComputerLoop& loop_;
     pci::PciAccess read_;
     std::uint64_t next_ps_ = kNever;
-  };
-  class BridgeRegisterTarget : public pci::PciTarget {
-   public:
-    explicit BridgeRegisterTarget(pci::BridgeControl& bridge) : bridge_(bridge) {}
-    pci::PciAnswer access(std::uint64_t now_ps, const pci::PciAccess& access, std::uint64_t at_ps) override;
-
-   private:
-    pci::BridgeControl& bridge_;
-  };
-  class CaptureRegisterTarget : public pci::PciTarget {
-   public:
-    explicit CaptureRegisterTarget(capture::CaptureControl& board) : board_(board) {}
-    pci::PciAnswer access(std::uint64_t now_ps, const pci::PciAccess& access, std::uint64_t at_ps) override;
-
-   private:
-    capture::CaptureControl& board_;
   };
   class TrafficTarget : public pci::PciTarget {
    public:
@@ -151,8 +135,6 @@ class ComputerLoop : private FastBoard::Doorbell, private pci::BridgeControl::Ho
   std::optional<pci::TrafficControl> traffic_;
   HostMemoryTarget host_memory_;
   BridgeSlaveTarget bridge_slave_{*this};
-  BridgeRegisterTarget bridge_registers_{bridge_};
-  std::array<CaptureRegisterTarget, 2> capture_registers_;
   TrafficTarget traffic_device_;
   CameraLines lines_;
   const BusTrace* trace_ = nullptr;
