@@ -16,7 +16,7 @@ class Receiver : public StreamIf<VideoFrame> {
     EXPECT_EQ(frame.begin_ps, kernel_time::now_ps());
     EXPECT_EQ(frame.timing, &camera_.timing());
     frames.push_back(frame);
-    if (frame.number == takes) EXPECT_TRUE(camera_.link->take(frame.number));
+    if (frame.number == takes) camera_.link->take(frame.number);
   }
 
   std::uint64_t takes = UINT64_MAX;
