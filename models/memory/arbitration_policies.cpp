@@ -18,9 +18,9 @@ State no_state(const PriorityList& /*list*/, State /*state*/, PortMask /*request
   return 0;
 }
 
-// round_robin: the first requesting port wins in a cyclic search of the list, which begins after the last port
-// granted. The state is the place in the list where the search begins; a refusal because of turnaround does
-// not change it.
+// round_robin: the first requesting port wins in a cyclic search of the list, which begins after the last
+// port granted. The state is the place in the list where the search begins; a refusal because of turnaround
+// does not change it.
 
 Port round_robin_winner(const PriorityList& list, State state, PortMask requests) {
   std::size_t place = state;
