@@ -38,8 +38,9 @@ void expect_close(double found, double expected, const std::string& what) {
 void expect_to_read(const Statistics& statistics, const BoardConfig& board) {
   const std::string text = stats::stats_json(statistics, {});
   const bool camera = statistics.computer.has_value();
-  EXPECT_EQ(stats::stats_json(read_stats(text, board, statistics.fidelity, statistics.frames, camera), {}),
-            text);
+  EXPECT_EQ(
+      stats::stats_json(stats::read_stats(text, board, statistics.fidelity, statistics.frames, camera), {}),
+      text);
 }
 
 // Every link has its MB/s, and those of each bank, port and PCI master have the sums of the statistics.
