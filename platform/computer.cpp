@@ -66,14 +66,13 @@ void Computer::bind_pci(Binder& binder) {
 void Computer::bind_capture() {
   const auto bind = [](capture::Camera& camera, capture::CaptureBoard& grabber) {
     camera.frames_out.bind(grabber.frames_in);
-    camera.lines_out.bind(grabber.lines_in);
-    grabber.takes_out.bind(camera.takes_in);
+    grabber.camera.bind(camera.link);
   };
   bind(left_camera, left_capture);
   bind(right_camera, right_capture);
   // The trigger of the left capture board starts both cameras.
-  left_capture.triggers_out.bind(left_camera.triggers_in);
-  left_capture.triggers_out.bind(right_camera.triggers_in);
+  left_capture.triggered.bind(left_camera.link);
+  left_capture.triggered.bind(right_camera.link);
   left_capture.partner.bind(right_capture.as_partner);
   right_capture.partner.bind(left_capture.as_partner);
 }

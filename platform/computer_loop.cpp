@@ -5,18 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "models/capture/capture_register_file.h"
-#include "models/capture/capture_registers.h"
-#include "models/pci/bridge_registers.h"
-
 namespace stereotlm::platform {
-namespace {
-
-bool is_one_word(const pci::PciAccess& access, std::uint64_t end) {
-  return access.count == 1 && access.address < end;
-}
-
-}  // namespace
 
 ComputerLoop::ComputerLoop(const BoardConfig& config, unsigned char* host_memory,
                            std::uint64_t host_memory_bytes, capture::CameraSource& left,
@@ -30,11 +19,9 @@ ComputerLoop::ComputerLoop(const BoardConfig& config, unsigned char* host_memory
                capture::CameraControl(camera_config(config), right, captures_[1])},
       host_memory_(host_memory),
       lines_(pci_bus_, bridge_, board_, captures_, fidelity == fpga::Fidelity::kFast) {
-  for (std::size_t window = 0; window < kTrafficDevice; ++window)
-    pci_bus_.bind(window, windows_.emplace_back(*this, window));
   bind();
   if (const auto traffic = traffic_config(config)) {
-    pci_bus_.bind(kTrafficDevice, windows_.emplace_back(*this, kTrafficDevice));
+    pci_bus_.bind(kTrafficDevice, traffic_device_);
     traffic_access_ps_ = traffic->access_ps;
     traffic_.emplace(*traffic).start(pci_bus_.slot(kTrafficGenerator));
   }
@@ -42,6 +29,11 @@ ComputerLoop::ComputerLoop(const BoardConfig& config, unsigned char* host_memory
 
 void ComputerLoop::bind() {
   board_.local_bus().bind(bridge_.local_bus_master());
+  pci_bus_.bind(kHostMemory, host_memory_window_);
+  pci_bus_.bind(kBridgeSlave, bridge_slave_);
+  pci_bus_.bind(kBridgeRegisters, bridge_);
+  pci_bus_.bind(kLeftRegisters, captures_[0]);
+  pci_bus_.bind(kRightRegisters, captures_[1]);
   captures_[0].bind(pci_bus_.slot(kLeftCapture), cameras_[0]);
   captures_[1].bind(pci_bus_.slot(kRightCapture), cameras_[1]);
   captures_[0].bind_partner(captures_[1]);
@@ -166,11 +158,6 @@ pci::PciAnswer ComputerLoop::access(std::size_t window, std::uint64_t now_ps, co
     }
     case kBridgeSlave:
       return access_bridge(now_ps, access, at_ps);
-    case kBridgeRegisters:
-      return {at_ps, access_bridge_register(now_ps, access)};
-    case kLeftRegisters:
-    case kRightRegisters:
-      return {at_ps, access_capture_register(window - kLeftRegisters, now_ps, access)};
     default:
       break;
   }
@@ -195,31 +182,6 @@ void ComputerLoop::read_bridge() {
   bridge_read_ps_ = kNever;
   bridge_.read(now_ps_, bridge_read_.address, reinterpret_cast<unsigned char*>(bridge_read_.words),
                bridge_read_.count);
-}
-
-bool ComputerLoop::access_bridge_register(std::uint64_t now_ps, const pci::PciAccess& access) {
-  if (is_one_word(access, pci::bridge::kRegisterWindowBytes)) {
-    return access.write ? bridge_.write_register(now_ps, access.address, *access.words)
-                        : bridge_.read_register(access.address, *access.words);
-  }
-  bridge_.count_error();
-  return false;
-}
-
-bool ComputerLoop::access_capture_register(std::size_t side, std::uint64_t now_ps,
-                                           const pci::PciAccess& access) {
-  capture::CaptureControl& board = captures_[side];
-  if (!is_one_word(access, capture::registers::kEnd) ||
-      !capture::CaptureRegisterFile::allows(access.write, access.address)) {
-    board.count_refused_access();
-    return false;
-  }
-  if (access.write) {
-    board.write(now_ps, access.address, *access.words);
-  } else {
-    *access.words = board.read(access.address);
-  }
-  return true;
 }
 
 }  // namespace stereotlm::platform

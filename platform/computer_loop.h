@@ -3,7 +3,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <optional>
 
 #include "models/capture/camera_control.h"
@@ -60,12 +59,12 @@ class ComputerLoop : private pci::BridgeControl::Host {
   std::uint64_t skipped_lines() const { return lines_.skipped(); }
 
  private:
-  // A window of the PCI bus, whose accesses the loop hands to the block behind it.
+  // A window of the PCI bus, whose accesses the loop serves. The controls serve those to registers.
   class Window : public pci::PciTarget {
    public:
     Window(ComputerLoop& loop, std::size_t window) : loop_(loop), window_(window) {}
     std::size_t writable_words(std::uint64_t now_ps, std::uint64_t /*address*/, std::size_t words) override {
-      return window_ == kBridgeSlave ? loop_.bridge_.writable_words(now_ps, words) : words;
+      return window_ == kBridgeSlave ? loop_.bridge_.postable_words(now_ps, words) : words;
     }
     pci::PciAnswer access(std::uint64_t now_ps, const pci::PciAccess& access, std::uint64_t at_ps) override {
       return loop_.access(window_, now_ps, access, at_ps);
@@ -98,8 +97,6 @@ class ComputerLoop : private pci::BridgeControl::Host {
   pci::PciAnswer access(std::size_t window, std::uint64_t now_ps, const pci::PciAccess& access,
                         std::uint64_t at_ps);
   pci::PciAnswer access_bridge(std::uint64_t now_ps, const pci::PciAccess& access, std::uint64_t at_ps);
-  bool access_bridge_register(std::uint64_t now_ps, const pci::PciAccess& access);
-  bool access_capture_register(std::size_t side, std::uint64_t now_ps, const pci::PciAccess& access);
   // A number that orders events by time, then by kind. kNever is behind all times.
   static constexpr unsigned kKindBits = 4;
   static_assert(kEndOfTime == kNever >> kKindBits);
@@ -121,7 +118,9 @@ class ComputerLoop : private pci::BridgeControl::Host {
   std::array<capture::CaptureControl, 2> captures_;  // left, right
   std::array<capture::CameraControl, 2> cameras_;
   std::optional<pci::TrafficControl> traffic_;
-  std::deque<Window> windows_;  // [PciTargetWindow]
+  Window host_memory_window_{*this, kHostMemory};
+  Window bridge_slave_{*this, kBridgeSlave};
+  Window traffic_device_{*this, kTrafficDevice};
   unsigned char* host_memory_;
   std::uint64_t traffic_access_ps_ = 0;  // for which the device of the traffic generator makes the bus wait
   CameraLines lines_;

@@ -13,7 +13,7 @@
 #include "models/capture/capture_observer.h"
 #include "models/clock.h"
 #include "models/fpga/frame_observer.h"
-#include "models/pci/bridge_observer.h"
+#include "models/pci/dma_channel.h"
 #include "platform/collect.h"
 #include "platform/config/board_config.h"
 #include "platform/config/buffer_layout.h"

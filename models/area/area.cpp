@@ -4,7 +4,6 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "models/area/cost_arithmetic.h"
 #include "models/area/filter_arithmetic.h"
 #include "models/fpga/frame_geometry.h"
 
@@ -13,6 +12,7 @@ namespace {
 
 using fpga::CoreConfig;
 using fpga::Fetch;
+using kernels::CostKind;
 
 constexpr int kEntryBits = 11 + 11 + 1;     // contract 1.1: source row, source column, valid
 constexpr int kJointEntryBits = 7 + 8 + 1;  // contract 7.3, for one side: dy, dx, valid
@@ -20,6 +20,88 @@ constexpr int kOffsetBits = 12;             // contract 7.3: X and Y are -2048..
 constexpr int kDisparityBits = 8;           // contract 1.5, 255 = invalid
 constexpr int kWordBits = 32;
 constexpr int kValidBit = 1;
+
+// The resources of the cost functions (contract 7.6): what compares two pixels, the census bits of a pixel,
+// and what compares two scores of zncc.
+
+constexpr std::int64_t kMostProduct = kMostPixel * kMostPixel;
+
+Resources zero_test(int bits) { return {(bits + 3) / 4}; }  // 4 bits a LUT, joined by the carry chain
+
+// What a column module does with two pixels.
+struct PairArithmetic {
+  Resources resources;    // for one pair per cycle
+  std::int64_t most = 0;  // largest value of the result
+  int pixel_bits = 0;     // bits of a pixel, as it goes to the modules
+};
+
+//   sad     the absolute difference
+//   ssd     the difference and a multiplier that squares it
+//   zncc    a multiplier
+//   census  two LUTs count how many of two bits differ; a tree of adders sums the counts
+PairArithmetic pair_arithmetic(const kernels::MatchingCost& cost) {
+  switch (cost.kind) {
+    case CostKind::kSad:
+      break;
+    case CostKind::kSsd:
+      return {adder(kPixelBits + 1) + product(kPixelBits, kPixelBits), kMostProduct, kPixelBits};
+    case CostKind::kZncc:
+      return {product(kPixelBits, kPixelBits), kMostProduct, kPixelBits};
+    case CostKind::kCensus: {
+      const int bits = cost.census_bits();
+      return {Resources{bits} + adder_tree(bits / 2, 2), bits, bits};
+    }
+  }
+  return {absolute_difference(kPixelBits), kMostPixel, kPixelBits};
+}
+
+// Computes the census bits of one pixel per cycle, on one side. c is the size of the neighbourhood.
+// - c * c - 1 comparators, and registers for the c * (c - 1) pixels that the next position needs too.
+// - `moves_down`: the neighbourhood moves down a column; else to the right, behind a line buffer. At the top
+//   of a column these registers are loaded with the c - 1 rows above, through one selector per bit. The
+//   newest pixels of these rows come from the line memories, the pixels of the c - 1 columns before from
+//   further registers.
+Resources census_bits(const kernels::MatchingCost& cost, bool moves_down) {
+  const int before = 2 * cost.half();
+  const int kept = cost.census_size * before * kPixelBits;
+  const int above = before * before * kPixelBits;
+  Resources bits = cost.census_bits() * comparator(kPixelBits) + registers(kept);
+  if (moves_down) bits += selector(kept) + registers(above);
+  return bits;
+}
+
+// zncc: the widths that follow from the window, and the parts for one pixel or candidate. N is the number of
+// pixels of a window. By the inequality of Cauchy and Schwarz |cov| is at most the larger variance, which is
+// largest where half the pixels are 0 and half are 255.
+struct ZnccArithmetic {
+  explicit ZnccArithmetic(int window)
+      : count(std::int64_t{window} * window), variance_bits(bits_of(kMostProduct * count * count / 4)) {}
+
+  int score_bits() const { return 3 * variance_bits + 1; }  // numerator cov * |cov|, and denominator
+
+  // The two products of a variance or a covariance.
+  Resources products() const {
+    return product(bits_of(count), bits_of(kMostProduct * count)) + product(sum_bits, sum_bits);
+  }
+  // N * sum(F^2) - sum(F)^2, with its register; the lowest bit of a variance of 0 is set, so that a fraction
+  // is never 0 / 0.
+  Resources variance() const {
+    return products() + adder(variance_bits) + zero_test(variance_bits) + registers(variance_bits);
+  }
+  // cov = N * sum(FrFl) - sum(Fr) * sum(Fl), then cov * |cov|, with its register.
+  Resources score() const {
+    return products() + adder(variance_bits + 1) + selector(variance_bits) +
+           product(variance_bits, variance_bits) + registers(2 * variance_bits + 1);
+  }
+  // Compares two fractions, and selects one: multiplies each numerator by the denominator of the other.
+  Resources select() const {
+    return 2 * product(2 * variance_bits, variance_bits) + comparator(score_bits()) + selector(score_bits());
+  }
+
+  std::int64_t count;                          // N
+  int sum_bits = bits_of(kMostPixel * count);  // of the sum of the pixels of a window
+  int variance_bits;                           // of N * sum(F^2) - sum(F)^2; also of |cov|
+};
 
 // The configuration, and the widths that follow from it.
 struct Core {
@@ -115,7 +197,7 @@ void add_filter(const Core& core, Items& items) {
 // valid bits, at most 2, for which they have room.
 void add_census(const Core& core, Items& items) {
   const CoreConfig& config = core.config;
-  if (config.cost.kind != kernels::CostKind::kCensus) return;
+  if (config.cost.kind != CostKind::kCensus) return;
   const int before_bits = 2 * config.cost.half() * kPixelBits;
   add("census bits", 2, 2 * census_bits(config.cost, !core.columns_of_pixels), items);
   if (!core.columns_of_pixels)
@@ -197,14 +279,14 @@ void add_modules(const Core& core, Items& items) {
 // row of results. Those of the right side go from module to module, one column later in each. Each window
 // module has the arithmetic of its score.
 void add_scores(const Core& core, Items& items) {
-  if (core.config.cost.kind != kernels::CostKind::kZncc) return;
+  if (core.config.cost.kind != CostKind::kZncc) return;
   const std::int64_t rows = core.config.rows;
   const ZnccArithmetic zncc(core.config.window);
   const Resources side =
       column_sum(core, {}, kMostPixel, 1) + column_sum(core, core.pair.resources, core.pair.most, 1) +
       rows * (window_sum(core, kMostPixel, 1) + window_sum(core, core.pair.most, 1) + zncc.variance());
   add("window statistics", 2 * rows, 2 * side, items);
-  const Delays right = delays(core, 1, zncc.sum_bits() + zncc.variance_bits());
+  const Delays right = delays(core, 1, zncc.sum_bits + zncc.variance_bits);
   add("right statistics delays", rows * right.count, rows * right.all, items);
   add("scores", rows * core.units, rows * core.units * zncc.score(), items);
 }
@@ -217,7 +299,7 @@ struct Rank {
 };
 
 Rank rank_of(const Core& core) {
-  if (core.config.cost.kind == kernels::CostKind::kZncc) {
+  if (core.config.cost.kind == CostKind::kZncc) {
     const ZnccArithmetic zncc(core.config.window);
     return {zncc.score_bits(), zncc.select()};
   }

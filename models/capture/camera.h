@@ -3,37 +3,31 @@
 #include <cstdint>
 #include <systemc>
 
-#include "models/capture/camera_beats.h"
 #include "models/capture/camera_control.h"
 #include "models/step_event.h"
 #include "models/stream.h"
 
 namespace stereotlm::capture {
 
+// The camera as its capture boards see it: `board.camera.bind(camera.link)`.
+class FrameCameraIf : public virtual sc_core::sc_interface, public FrameCamera {};
+
 // The camera of one side (contract section 3). Its frames begin with the frame clock, or on demand when it is
-// triggered. A frame that the capture board takes is sent line by line, with blanking. Cost: one event per
-// frame, and one per line of a taken frame.
+// triggered. The capture board that takes a frame reads its pixels when they have arrived. Cost: one event
+// per frame.
 //
 // A trigger is accepted from the last pixel of a frame on, and begins the next frame immediately. The camera
 // ignores and counts a trigger that comes earlier, one that comes while another trigger is pending, and every
 // trigger if it runs freely.
 //
-// SC_REPORT_ERROR (type /stereotlm/camera) reports: a picture of another size; TakeFrame for a frame that is
+// SC_REPORT_ERROR (type /stereotlm/camera) reports: a picture of another size; the taking of a frame that is
 // not the running one or has been taken already.
-class Camera : public sc_core::sc_module, private FrameReceiver {
+class Camera : public sc_core::sc_module, private FrameReceiver, private FrameCameraIf {
  public:
   using Stats = CameraControl::Stats;
 
   StreamOut<VideoFrame> frames_out{"frames_out"};
-  StreamOut<VideoLine> lines_out{"lines_out"};
-
- private:
-  void take(const TakeFrame& taken);
-  void trigger(const Trigger& trigger);
-
- public:
-  StreamIn<TakeFrame, Camera, &Camera::take> takes_in{"takes_in", this};
-  StreamIn<Trigger, Camera, &Camera::trigger> triggers_in{"triggers_in", this};
+  sc_core::sc_export<FrameCameraIf> link{"link"};
 
   // `source` outlives the camera. Throws std::invalid_argument if the configuration has problems or the
   // kernel's time resolution is not 1 ps.
@@ -45,13 +39,15 @@ class Camera : public sc_core::sc_module, private FrameReceiver {
 
  private:
   void begin_frame(const VideoFrame& frame) override { frames_out->push(frame); }
+  bool take(std::uint64_t number) override;
+  void copy_words(int first, int count, std::uint32_t* to) const override {
+    control_.copy_words(first, count, to);
+  }
+  void trigger(std::uint64_t begin_ps) override;
   void step();
-  void send_line();
 
   CameraControl control_;
   StepEvent step_due_{"step_due"};
-  sc_core::sc_event line_begins_{"line_begins"};
-  int row_ = 0;  // next row to send
 };
 
 }  // namespace stereotlm::capture

@@ -39,7 +39,7 @@ void CameraControl::step(std::uint64_t now_ps) {
   board_.begin_frame({number, now_ps, &timing_});
 }
 
-void CameraControl::take(std::uint64_t number) {
+bool CameraControl::take(std::uint64_t number) {
   if (number + 1 != stats_.frames || taken_) {
     throw std::logic_error("frame " + std::to_string(number) + " taken: must be the running one, once; " +
                            std::to_string(stats_.frames) + " have begun");
@@ -52,10 +52,7 @@ void CameraControl::take(std::uint64_t number) {
   }
   taken_ = true;
   picture_ = &picture;
-}
-
-const std::uint8_t* CameraControl::row(int row) const {
-  return picture_->pixels.data() + static_cast<std::size_t>(row) * static_cast<std::size_t>(timing_.width());
+  return true;
 }
 
 void CameraControl::copy_words(int first, int count, std::uint32_t* to) const {

@@ -38,15 +38,11 @@ class CameraControl : public FrameCamera {
 
   // Throws std::logic_error if frame `number` is not the running one, has been taken already, or if its
   // picture has another size.
-  void take(std::uint64_t number) override;
+  bool take(std::uint64_t number) override;
   void copy_words(int first, int count, std::uint32_t* to) const override;
   void trigger(std::uint64_t begin_ps) override;
 
   const CameraTiming& timing() const { return timing_; }
-  // The running frame.
-  std::uint64_t frame_begin_ps() const { return frame_begin_ps_; }
-  // Pixels of a row of the last frame taken.
-  const std::uint8_t* row(int row) const;
   const Stats& stats() const { return stats_; }
 
  private:

@@ -4,7 +4,7 @@
 
 #include "models/capture/camera_timing.h"
 
-// The calls between a camera and its capture board. Plain C++; camera_beats.h has the messages of the modules.
+// The calls between a camera and its capture board. Plain C++; camera.h has the sockets of the modules.
 namespace stereotlm::capture {
 
 // A frame begins, at begin_ps.
@@ -26,7 +26,8 @@ class FrameCamera {
  public:
   virtual ~FrameCamera() = default;
   // The board takes frame `number`, which is the running one. To be called before its first word is complete.
-  virtual void take(std::uint64_t number) = 0;
+  // Returns false if the camera is in error: then the pixels of the frame never come.
+  virtual bool take(std::uint64_t number) = 0;
   // Copies `count` words of the last frame taken, from word `first` on. Word 0 has the frame's first pixels.
   // The pixels of the words must have arrived. The next frame may have begun.
   virtual void copy_words(int first, int count, std::uint32_t* to) const = 0;

@@ -6,9 +6,8 @@
 #include <optional>
 #include <systemc>
 #include <tlm>
-#include <vector>
 
-#include "models/capture/camera_beats.h"
+#include "models/capture/camera.h"
 #include "models/capture/capture_control.h"
 #include "models/capture/capture_registers.h"
 #include "models/interrupt.h"
@@ -30,13 +29,11 @@ class CapturePartnerIf : public virtual sc_core::sc_interface, public CapturePar
 // clock. The board requests the bus in advance, for the time at which the FIFO will need it. A burst, pixel
 // or word therefore costs no event beside those of the bus.
 //
-// SC_REPORT_ERROR (type /stereotlm/capture_board) reports: a line that no capture expects; a grant that the
-// board has not requested, or for a time before its request; the end of a burst that does not run; a result
-// that the burst cannot have.
+// SC_REPORT_ERROR (type /stereotlm/capture_board) reports: a grant that the board has not requested, or for a
+// time before its request; the end of a burst that does not run; a result that the burst cannot have.
 class CaptureBoard : public sc_core::sc_module,
                      private pci::PciMasterIf,
                      private pci::PciSlot,
-                     private FrameCamera,
                      private CapturePartnerIf,
                      private InterruptIf {
  public:
@@ -45,9 +42,9 @@ class CaptureBoard : public sc_core::sc_module,
   tlm_utils::simple_target_socket<CaptureBoard> registers{"registers"};
   pci::PciMasterPort pci{"pci"};
   InterruptOut interrupt{"interrupt"};
-  StreamOut<TakeFrame> takes_out{"takes_out"};
-  // Binds to any number of cameras, or none.
-  sc_core::sc_port<StreamIf<Trigger>, 0, sc_core::SC_ZERO_OR_MORE_BOUND> triggers_out{"triggers_out"};
+  sc_core::sc_port<FrameCameraIf> camera{"camera"};  // whose frames come in at frames_in
+  // The cameras that the board triggers: any number, or none.
+  sc_core::sc_port<FrameCameraIf, 0, sc_core::SC_ZERO_OR_MORE_BOUND> triggered{"triggered"};
   // The two boards of a pair are bound to each other: `left.partner.bind(right.as_partner)` and vice versa.
   // An unbound board decides alone whether it takes a frame.
   sc_core::sc_port<CapturePartnerIf, 1, sc_core::SC_ZERO_OR_MORE_BOUND> partner{"partner"};
@@ -55,11 +52,9 @@ class CaptureBoard : public sc_core::sc_module,
 
  private:
   void take_frame(const VideoFrame& frame);
-  void take_line(const VideoLine& line);
 
  public:
   StreamIn<VideoFrame, CaptureBoard, &CaptureBoard::take_frame> frames_in{"frames_in", this};
-  StreamIn<VideoLine, CaptureBoard, &CaptureBoard::take_line> lines_in{"lines_in", this};
 
   // Throws std::invalid_argument if the configuration has problems.
   CaptureBoard(const sc_core::sc_module_name& name, const CaptureBoardConfig& config);
@@ -90,25 +85,17 @@ class CaptureBoard : public sc_core::sc_module,
   bool is_asserted() const override { return control_.interrupt(); }
   const sc_core::sc_event& changed_event() const override { return interrupt_changed_; }
 
-  void pass_request();
-
   // The control calls these.
-  void request(pci::PciMasterIf& master, std::uint64_t from_ps) override;
+  void request(pci::PciMasterIf& /*control*/, std::uint64_t from_ps) override {
+    pci->request(*this, from_ps);
+  }
   pci::BurstResult transferred(std::uint64_t now_ps) const override { return pci->transferred(now_ps); }
   const Clock& clock() const override { return pci->clock(); }
-  void take(std::uint64_t number) override;
-  void copy_words(int first, int count, std::uint32_t* to) const override;
-  void trigger(std::uint64_t begin_ps) override;
 
   CaptureControl control_;
   StepEvent step_due_{"step_due"};
   sc_core::sc_event interrupt_changed_{"interrupt_changed"};
   bool interrupt_before_ = false;
-  VideoFrame begun_;                        // the last frame that has begun
-  VideoFrame frame_;                        // the frame that is captured
-  std::vector<const std::uint8_t*> lines_;  // [row]: pixels of its lines that have begun
-  std::uint64_t next_line_ps_ = kNever;     // the next line begins; kNever: all lines have begun
-  std::uint64_t request_ps_ = kNever;       // a request of the bus that waits for a line; kNever: none
 };
 
 }  // namespace stereotlm::capture

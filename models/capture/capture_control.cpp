@@ -4,7 +4,76 @@
 #include <stdexcept>
 #include <string>
 
+#include "models/capture/capture_registers.h"
+
 namespace stereotlm::capture {
+
+bool CaptureRegisterFile::write(std::uint64_t time_ps, std::uint64_t address, std::uint32_t value) {
+  switch (address) {
+    case registers::kBufferAddress:
+      buffer_address_ = value;
+      return false;
+    case registers::kStatus:
+      clear(value);
+      return false;
+    default:
+      if ((value & registers::kControlArm) != 0) arm(time_ps);
+      return (value & registers::kControlTrigger) != 0;
+  }
+}
+
+bool CaptureRegisterFile::allows(bool write, std::uint64_t address) {
+  return write ? address < registers::kFrameNumberLow
+               : address != registers::kControl && address < registers::kEnd;
+}
+
+std::uint32_t CaptureRegisterFile::read(std::uint64_t address) const {
+  const Capture last = last_capture_.value_or(Capture{});
+  switch (address) {
+    case registers::kStatus:
+      return (armed_ ? registers::kStatusArmed : 0U) | (capturing_ ? registers::kStatusCapturing : 0U) |
+             (done_ ? registers::kStatusDone : 0U) | (words_lost_ ? registers::kStatusWordsLost : 0U) |
+             (arm_refused_ ? registers::kStatusArmRefused : 0U);
+    case registers::kBufferAddress:
+      return buffer_address_;
+    case registers::kFrameNumberLow:
+      return static_cast<std::uint32_t>(last.frame);
+    case registers::kFrameNumberHigh:
+      return static_cast<std::uint32_t>(last.frame >> 32U);
+    case registers::kDroppedPixels:
+      return static_cast<std::uint32_t>(last.dropped_pixels);
+    default:
+      return static_cast<std::uint32_t>(last.lost_words);
+  }
+}
+
+void CaptureRegisterFile::arm(std::uint64_t time_ps) {
+  if (armed_ || buffer_address_ % 4 != 0) {
+    arm_refused_ = true;
+    return;
+  }
+  armed_ = true;
+  armed_ps_ = time_ps;
+  armed_address_ = buffer_address_;
+}
+
+void CaptureRegisterFile::clear(std::uint32_t status_bits) {
+  done_ = done_ && (status_bits & registers::kStatusDone) == 0;
+  words_lost_ = words_lost_ && (status_bits & registers::kStatusWordsLost) == 0;
+  arm_refused_ = arm_refused_ && (status_bits & registers::kStatusArmRefused) == 0;
+}
+
+std::uint32_t CaptureRegisterFile::start() {
+  armed_ = false;
+  capturing_ = true;
+  return armed_address_;
+}
+
+void CaptureRegisterFile::finish(const Capture& capture) {
+  capturing_ = false;
+  done_ = true;
+  last_capture_ = capture;
+}
 
 CaptureControl::CaptureControl(const CaptureBoardConfig& config) : fifo_(config) {
   burst_words_.reserve(static_cast<std::size_t>(config.fifo_words));
@@ -26,6 +95,25 @@ void CaptureControl::step(std::uint64_t now_ps) {
     decide(now_ps);
   }
   next_ps_ = std::min(decision_ps_, finish_ps_);
+}
+
+pci::PciAnswer CaptureControl::access(std::uint64_t /*now_ps*/, const pci::PciAccess& access,
+                                      std::uint64_t at_ps) {
+  if (access.count != 1 || !CaptureRegisterFile::allows(access.write, access.address)) {
+    ++stats_.refused_accesses;
+    return {at_ps, false};
+  }
+  if (access.write) {
+    write(at_ps, access.address, *access.words);
+  } else {
+    *access.words = register_file_.read(access.address);
+  }
+  return {at_ps, true};
+}
+
+std::optional<std::uint32_t> CaptureControl::value_at(std::uint64_t address) const {
+  if (!CaptureRegisterFile::allows(false, address)) return std::nullopt;
+  return register_file_.read(address);
 }
 
 void CaptureControl::write(std::uint64_t time_ps, std::uint64_t address, std::uint32_t value) {
@@ -94,7 +182,7 @@ void CaptureControl::start(std::uint64_t now_ps) {
   capture_ = {frame_.number, frame_.begin_ps, 0, fifo_.dropped_pixels(), 0, stats_.words};
   if (observer_ != nullptr) observer_->capture_begun(frame_.number, frame_.begin_ps);
   fifo_.begin_frame(*frame_.timing, frame_.begin_ps);
-  camera_->take(frame_.number);
+  if (!camera_->take(frame_.number)) return;  // this capture never ends
   fifo_.advance(now_ps);
   proceed(now_ps);
 }

@@ -8,11 +8,50 @@
 #include "models/capture/capture_config.h"
 #include "models/capture/capture_fifo.h"
 #include "models/capture/capture_observer.h"
-#include "models/capture/capture_register_file.h"
 #include "models/pci/pci_slot.h"
 #include "models/time_ps.h"
 
 namespace stereotlm::capture {
+
+// The registers of a capture board (capture_registers.h): the armed capture, the status and the level of the
+// interrupt. Plain C++.
+class CaptureRegisterFile {
+ public:
+  // Whether there is a register at this byte address, and whether it has this direction.
+  static bool allows(bool write, std::uint64_t address);
+  // `address`: of a register that can be read.
+  std::uint32_t read(std::uint64_t address) const;
+  // `address`: of a register that can be written. Returns whether the write triggers the cameras.
+  bool write(std::uint64_t time_ps, std::uint64_t address, std::uint32_t value);
+
+  // Whether a capture is armed, and was armed at `time_ps` already.
+  bool armed_at(std::uint64_t time_ps) const { return armed_ && armed_ps_ <= time_ps; }
+  bool capturing() const { return capturing_; }
+  // Starts the armed capture, and returns its buffer address.
+  std::uint32_t start();
+  // To be called when words of the running capture are lost, because the bus did not take them.
+  void lose_words() { words_lost_ = true; }
+  // Ends the running capture.
+  void finish(const Capture& capture);
+  // The last capture that has ended; none before the first one ends.
+  const std::optional<Capture>& last_capture() const { return last_capture_; }
+
+  bool interrupt() const { return done_ || words_lost_; }
+
+ private:
+  void arm(std::uint64_t time_ps);
+  void clear(std::uint32_t status_bits);
+
+  std::uint32_t buffer_address_ = 0;
+  bool armed_ = false;
+  std::uint64_t armed_ps_ = 0;
+  std::uint32_t armed_address_ = 0;
+  bool capturing_ = false;
+  bool done_ = false;
+  bool words_lost_ = false;
+  bool arm_refused_ = false;
+  std::optional<Capture> last_capture_;
+};
 
 // The other board of a pair. Both boards take a camera frame, or neither does.
 class CapturePartner {
@@ -28,7 +67,10 @@ class CapturePartner {
 //
 // Its steps are this decision, 1 ps after the beginning of each frame, and the end of a capture whose last
 // pixels are dropped. Everything else happens in the calls of its camera and of the bus.
-class CaptureControl : public FrameReceiver, public CapturePartner, public pci::PciMasterIf {
+class CaptureControl : public FrameReceiver,
+                       public CapturePartner,
+                       public pci::PciMasterIf,
+                       public pci::PciTarget {
  public:
   // Each camera frame is counted as started, or as dropped for one reason. It is counted only 1 ps after it
   // begins.
@@ -71,10 +113,11 @@ class CaptureControl : public FrameReceiver, public CapturePartner, public pci::
   bool decides_next() const { return decision_ps_ <= finish_ps_; }
   void step(std::uint64_t now_ps);
 
-  // Accesses of registers that can be read or written. A write takes effect at `time_ps`, now or later.
-  std::uint32_t read(std::uint64_t address) const { return register_file_.read(address); }
-  void write(std::uint64_t time_ps, std::uint64_t address, std::uint32_t value);
-  void count_refused_access() { ++stats_.refused_accesses; }
+  // An access to the registers. Refuses, and counts, one that is not one word of a register with this
+  // direction. A write takes effect at `at_ps`, now or later.
+  pci::PciAnswer access(std::uint64_t now_ps, const pci::PciAccess& access, std::uint64_t at_ps) override;
+  // The value of a register, without effect; none if there is no register that can be read.
+  std::optional<std::uint32_t> value_at(std::uint64_t address) const;
   // The level of the interrupt. Writes, steps and ends of bursts change it.
   bool interrupt() const { return register_file_.interrupt(); }
 
@@ -110,6 +153,8 @@ class CaptureControl : public FrameReceiver, public CapturePartner, public pci::
  private:
   enum class Readiness : std::uint8_t { kNotEvaluated, kReady, kNotArmed, kBusy };
   enum class BusState : std::uint8_t { kIdle, kRequested, kBurst };
+
+  void write(std::uint64_t time_ps, std::uint64_t address, std::uint32_t value);
 
   // These decide whether this board takes the frame that has begun.
   Readiness readiness();

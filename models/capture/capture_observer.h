@@ -3,9 +3,17 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "models/capture/capture_register_file.h"
-
 namespace stereotlm::capture {
+
+// A capture, from the frame that it takes to its last word.
+struct Capture {
+  std::uint64_t frame = 0;  // number of the camera frame
+  std::uint64_t begin_ps = 0;
+  std::uint64_t end_ps = 0;
+  std::uint64_t dropped_pixels = 0;
+  std::uint64_t lost_words = 0;
+  std::uint64_t words = 0;  // words written
+};
 
 // Why a capture board does not take a frame of its camera.
 enum class DropReason : std::uint8_t { kNotArmed, kBusy, kPartner };

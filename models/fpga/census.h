@@ -5,7 +5,7 @@
 
 #include "models/fpga/beats.h"
 #include "models/fpga/core_config.h"
-#include "models/kernels/census_columns.h"
+#include "models/kernels/census.h"
 #include "models/stream.h"
 
 namespace stereotlm::fpga {

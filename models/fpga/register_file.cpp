@@ -2,8 +2,8 @@
 
 #include <cstring>
 
+#include "models/access_rules.h"
 #include "models/kernel_time.h"
-#include "models/register_access.h"
 
 namespace stereotlm::fpga {
 
@@ -19,7 +19,7 @@ RegisterFile::RegisterFile(const sc_core::sc_module_name& name) : sc_module(name
 }
 
 tlm::tlm_response_status RegisterFile::check(const tlm::tlm_generic_payload& access) {
-  const tlm::tlm_response_status status = check_register_access(access, registers::kEnd);
+  const tlm::tlm_response_status status = check_access(access, registers_below(registers::kEnd));
   if (status != tlm::TLM_OK_RESPONSE) return status;
   return CoreRegisters::allows(access.is_write(), access.get_address()) ? tlm::TLM_OK_RESPONSE
                                                                         : tlm::TLM_COMMAND_ERROR_RESPONSE;

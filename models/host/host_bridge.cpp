@@ -3,27 +3,16 @@
 #include <cstddef>
 #include <cstring>
 
+#include "models/access_rules.h"
+
 namespace stereotlm::host {
-namespace {
-
-tlm::tlm_response_status check(const tlm::tlm_generic_payload& access) {
-  const unsigned length = access.get_data_length();
-  if (access.get_command() == tlm::TLM_IGNORE_COMMAND) return tlm::TLM_COMMAND_ERROR_RESPONSE;
-  if (length == 0 || length % 4 != 0 || access.get_streaming_width() < length)
-    return tlm::TLM_BURST_ERROR_RESPONSE;
-  if (access.get_address() % 4 != 0) return tlm::TLM_ADDRESS_ERROR_RESPONSE;
-  if (access.get_byte_enable_ptr() != nullptr) return tlm::TLM_BYTE_ENABLE_ERROR_RESPONSE;
-  return tlm::TLM_OK_RESPONSE;
-}
-
-}  // namespace
 
 HostBridge::HostBridge(const sc_core::sc_module_name& name) : sc_module(name) {
   cpu.register_b_transport(this, &HostBridge::transport);
 }
 
 void HostBridge::transport(tlm::tlm_generic_payload& access, sc_core::sc_time& delay) {
-  tlm::tlm_response_status status = check(access);
+  tlm::tlm_response_status status = check_access(access, {});
   if (status == tlm::TLM_OK_RESPONSE) {
     if (delay != sc_core::SC_ZERO_TIME) wait(delay);
     delay = sc_core::SC_ZERO_TIME;

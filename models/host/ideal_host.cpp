@@ -11,7 +11,7 @@ namespace {
 
 namespace registers_of = fpga::registers;
 
-constexpr char kIdealHostReport[] = "/stereotlm/ideal_host";
+void report(const std::string& text) { SC_REPORT_ERROR("/stereotlm/ideal_host", text.c_str()); }
 
 std::uint32_t in_turn(const std::vector<std::uint32_t>& list, std::uint64_t frame) {
   return list[frame % list.size()];
@@ -85,11 +85,9 @@ bool IdealHost::load_pictures(std::uint32_t left, std::uint32_t right) {
   const StereoPair& pair = source_.pair(frames_done_);
   for (const kernels::GrayImage* image : {&pair.left, &pair.right}) {
     if (image->width == config_.width && image->height == config_.height) continue;
-    SC_REPORT_ERROR(kIdealHostReport, ("frame " + std::to_string(frames_done_) + ": picture of " +
-                                       std::to_string(image->width) + " x " + std::to_string(image->height) +
-                                       " for images of " + std::to_string(config_.width) + " x " +
-                                       std::to_string(config_.height))
-                                          .c_str());
+    report("frame " + std::to_string(frames_done_) + ": picture of " + std::to_string(image->width) + " x " +
+           std::to_string(image->height) + " for images of " + std::to_string(config_.width) + " x " +
+           std::to_string(config_.height));
     return false;
   }
   preload(left, pair.left.pixels.data(), pair.left.pixels.size());
@@ -111,21 +109,18 @@ bool IdealHost::start_frame() {
                       with_value(", disparity", disparity);
   if (config_.buffers.left_lut) bases += with_value(", left_lut", *config_.buffers.left_lut);
   if (config_.buffers.right_lut) bases += with_value(", right_lut", *config_.buffers.right_lut);
-  SC_REPORT_ERROR(kIdealHostReport, ("frame " + std::to_string(frames_done_) +
-                                     ": the core refuses to start with the bases " + bases)
-                                        .c_str());
+  report("frame " + std::to_string(frames_done_) + ": the core refuses to start with the bases " + bases);
   return false;
 }
 
 bool IdealHost::end_frame() {
   if ((read_status() & registers_of::kStatusError) != 0) {
-    SC_REPORT_ERROR(kIdealHostReport,
-                    ("frame " + std::to_string(frames_done_) + ": the core reports an error").c_str());
+    report("frame " + std::to_string(frames_done_) + ": the core reports an error");
     return false;
   }
   if (config_.pixels) {
-    read_back(in_turn(config_.buffers.disparities, frames_done_), disparity_.pixels.data(),
-              disparity_.pixels.size());
+    debug(tlm::TLM_READ_COMMAND, in_turn(config_.buffers.disparities, frames_done_), disparity_.pixels.data(),
+          disparity_.pixels.size());
   }
   const std::uint64_t frame = frames_done_++;
   sink_.take(frame, disparity_);
@@ -135,41 +130,33 @@ bool IdealHost::end_frame() {
 void IdealHost::write_register(std::uint64_t address, std::uint32_t value) {
   sc_core::sc_time delay;
   if (!access_.write(address, value, delay)) {
-    SC_REPORT_ERROR(kIdealHostReport, ("register " + std::to_string(address) + " refuses a write").c_str());
+    report("register " + std::to_string(address) + " refuses a write");
   }
 }
 
 std::uint32_t IdealHost::read_status() {
   sc_core::sc_time delay;
   if (!access_.read(registers_of::kStatus, delay)) {
-    SC_REPORT_ERROR(kIdealHostReport,
-                    ("register " + std::to_string(registers_of::kStatus) + " refuses a read").c_str());
+    report("register " + std::to_string(registers_of::kStatus) + " refuses a read");
   }
   return access_.word();
 }
 
 void IdealHost::preload(std::uint32_t base, const void* bytes, std::size_t size) {
-  // debug() does not change the data of a write.
-  debug(tlm::TLM_WRITE_COMMAND, base, const_cast<unsigned char*>(static_cast<const unsigned char*>(bytes)),
-        size);
+  debug(tlm::TLM_WRITE_COMMAND, base, const_cast<void*>(bytes), size);  // which does not change them
 }
 
-void IdealHost::read_back(std::uint32_t base, void* bytes, std::size_t size) {
-  debug(tlm::TLM_READ_COMMAND, base, static_cast<unsigned char*>(bytes), size);
-}
-
-void IdealHost::debug(tlm::tlm_command command, std::uint32_t base, unsigned char* bytes, std::size_t size) {
+void IdealHost::debug(tlm::tlm_command command, std::uint32_t base, void* bytes, std::size_t size) {
   tlm::tlm_generic_payload access;
   access.set_command(command);
   access.set_address(registers_of::base_address(base));
-  access.set_data_ptr(bytes);
+  access.set_data_ptr(static_cast<unsigned char*>(bytes));
   access.set_data_length(static_cast<unsigned>(size));
   access.set_streaming_width(static_cast<unsigned>(size));
   const unsigned moved = memory->transport_dbg(access);
   if (moved != size) {
-    SC_REPORT_ERROR(kIdealHostReport, ("the buffer at base " + std::to_string(base) + " takes " +
-                                       std::to_string(moved) + " of " + std::to_string(size) + " bytes")
-                                          .c_str());
+    report("the buffer at base " + std::to_string(base) + " takes " + std::to_string(moved) + " of " +
+           std::to_string(size) + " bytes");
   }
 }
 

@@ -61,8 +61,7 @@ class IdealHost : public sc_core::sc_module {
   std::uint32_t read_status();
   // These move a whole buffer, and report an error if the memory refuses a part of it.
   void preload(std::uint32_t base, const void* bytes, std::size_t size);
-  void read_back(std::uint32_t base, void* bytes, std::size_t size);
-  void debug(tlm::tlm_command command, std::uint32_t base, unsigned char* bytes, std::size_t size);
+  void debug(tlm::tlm_command command, std::uint32_t base, void* bytes, std::size_t size);
 
   IdealHostConfig config_;
   const kernels::RectificationTable* left_table_;

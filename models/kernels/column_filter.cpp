@@ -2,25 +2,14 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <stdexcept>
 
 namespace stereotlm::kernels {
-namespace {
-
-const std::optional<FilterKernel>& checked(const std::optional<FilterKernel>& kernel) {
-  if (kernel) {
-    if (const auto found = problems(*kernel); !found.empty()) throw std::invalid_argument(found.front());
-  }
-  return kernel;
-}
-
-}  // namespace
 
 ColumnFilter::ColumnFilter(int width, int height, int rows_per_column, int rows_per_strip,
                            const std::optional<FilterKernel>& kernel, const Simd& simd)
     : simd_(simd.column),
       rows_per_column_(rows_per_column),
-      kernel_(checked(kernel)),
+      kernel_(kernel),
       pixels_(width, height, rows_per_column, rows_per_strip, kernel ? kernel->half() : 0),
       output_(static_cast<std::size_t>(padded_rows(rows_per_column))) {
   if (kernel_) {

@@ -19,8 +19,7 @@ namespace stereotlm::kernels {
 // it enters.
 class ColumnFilter {
  public:
-  // Throws std::invalid_argument if the kernel has problems, the image has no pixels, or `rows_per_column` is
-  // outside 1..kMostRows.
+  // The kernel has no problems.
   ColumnFilter(int width, int height, int rows_per_column, int rows_per_strip,
                const std::optional<FilterKernel>& kernel, const Simd& simd = best_simd());
 

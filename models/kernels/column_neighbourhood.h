@@ -4,12 +4,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <stdexcept>
-#include <string>
 #include <vector>
 
 #include "models/kernels/column_simd.h"
-#include "models/kernels/integer_rule.h"
 #include "models/kernels/pixel_column.h"
 
 namespace stereotlm::kernels {
@@ -22,14 +19,9 @@ namespace stereotlm::kernels {
 template <class Value>
 class ColumnNeighbourhood {
  public:
-  // Throws std::invalid_argument if the image has no pixels, or `rows_per_column` is outside 1..kMostRows.
+  // The image has pixels; `rows_per_column` is 1..kMostRows.
   ColumnNeighbourhood(int width, int height, int rows_per_column, int rows_per_strip, int half)
       : width_(width), height_(height), rows_(rows_per_column), step_(rows_per_strip), half_(half) {
-    if (width < 1 || height < 1) {
-      throw std::invalid_argument("image = " + std::to_string(width) + " x " + std::to_string(height) +
-                                  ": must have pixels");
-    }
-    IntegerRule{1, kMostRows}.required("rows_per_column", rows_per_column);
     const auto size = static_cast<std::size_t>(2 * half + 1);
     line_stride_ = static_cast<std::size_t>(padded_rows(2 * half_));
     line_values_.resize(static_cast<std::size_t>(width_) * line_stride_);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "models/kernels/limits.h"
 #include "models/kernels/select_min.h"
 
 namespace stereotlm::kernels {
@@ -14,10 +13,8 @@ bool ColumnScorer::is_needed(int window, const MatchingCost& cost) {
 }
 
 ColumnScorer::ColumnScorer(int window, int disparities, const MatchingCost& cost)
-    : window_(kWindowRule.required("window", window)),
-      pixels_(std::int64_t{window} * window),
-      are_products_(cost.kind == CostKind::kZncc) {
-  const auto candidates = static_cast<std::size_t>(kDisparitiesRule.required("disparities", disparities));
+    : window_(window), pixels_(std::int64_t{window} * window), are_products_(cost.kind == CostKind::kZncc) {
+  const auto candidates = static_cast<std::size_t>(disparities);
   right_history_.resize(candidates);
   covariances_.resize(candidates);
   right_variances_.assign(candidates, 1);

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "models/kernels/correlation.h"
-#include "models/kernels/lane_array.h"
 #include "models/kernels/simd.h"
+#include "models/kernels/simd_array.h"
 
 namespace stereotlm::kernels {
 

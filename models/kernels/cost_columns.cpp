@@ -2,10 +2,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <stdexcept>
-#include <string>
-
-#include "models/kernels/limits.h"
 
 namespace stereotlm::kernels {
 namespace {
@@ -17,15 +13,13 @@ constexpr int kColumnsBetweenMoves = 1024;
 CostColumns::CostColumns(int window, int disparities, const MatchingCost& cost, const Simd& simd)
     : simd_(simd.column),
       cost_(cost),
-      window_(kWindowRule.required("window", window)),
+      window_(window),
       rows_(window * cost.pixel_bytes()),
-      lanes_(padded_lanes(kDisparitiesRule.required("disparities", disparities))),
+      lanes_(padded_lanes(disparities)),
       right_histories_(static_cast<std::size_t>(rows_) *
                        static_cast<std::size_t>(kColumnsBetweenMoves + lanes_)),
       newest_(static_cast<std::size_t>(rows_)),
       window_sums_(disparities) {
-  if (const auto found = problems(cost); !found.empty())
-    throw std::invalid_argument("cost: " + found.front());
   const auto columns = static_cast<std::size_t>(window);
   if (cost.kind == CostKind::kSad || cost.kind == CostKind::kCensus) {
     narrow_sums_.assign(columns, LaneArray<std::int16_t>(disparities));

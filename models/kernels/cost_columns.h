@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "models/kernels/lane_array.h"
 #include "models/kernels/matching_cost.h"
 #include "models/kernels/simd.h"
+#include "models/kernels/simd_array.h"
 
 namespace stereotlm::kernels {
 
@@ -24,7 +24,7 @@ constexpr int candidate_count(int column, int row, int width, int height, int wi
 // that it holds the sum of candidate d for the window that ends at this column.
 class CostColumns {
  public:
-  // Throws std::invalid_argument outside kWindowRule and kDisparitiesRule, or if the cost has problems.
+  // `window` keeps kWindowRule, `disparities` kDisparitiesRule; the cost has no problems.
   CostColumns(int window, int disparities, const MatchingCost& cost = {}, const Simd& simd = best_simd());
 
   void start_frame();

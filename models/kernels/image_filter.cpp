@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "models/kernels/limits.h"
+#include "models/checked.h"
 
 namespace stereotlm::kernels {
 
@@ -15,7 +15,7 @@ ImageFilter::ImageFilter(int width, int height, const FilterKernel& kernel, cons
     throw std::invalid_argument("image = " + std::to_string(width) + " x " + std::to_string(height) +
                                 ": must have pixels");
   }
-  if (const auto found = problems(kernel); !found.empty()) throw std::invalid_argument(found.front());
+  checked(kernel);
 
   std::int64_t positive = 0;
   for (const int weight : kernel.weights) positive += std::max(weight, 0);

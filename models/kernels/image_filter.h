@@ -7,7 +7,7 @@
 
 #include "models/kernels/filter_kernel.h"
 #include "models/kernels/simd.h"
-#include "models/kernels/vector_array.h"
+#include "models/kernels/simd_array.h"
 
 namespace stereotlm::kernels {
 

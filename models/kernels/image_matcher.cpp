@@ -4,8 +4,8 @@
 #include <array>
 #include <cstring>
 #include <limits>
-#include <stdexcept>
 
+#include "models/checked.h"
 #include "models/kernels/limits.h"
 #include "models/kernels/words.h"
 
@@ -29,8 +29,7 @@ ImageMatcher::ImageMatcher(int width, int height, int window, int disparities, b
   plan_.window = kWindowRule.required("window", window);
   plan_.disparities = kDisparitiesRule.required("disparities", disparities);
   plan_.right_based = right_based;
-  if (const auto found = problems(cost); !found.empty())
-    throw std::invalid_argument("cost: " + found.front());
+  checked("cost", cost);
   windows_across_ = width - 2 * radius_;
   windows_down_ = height - 2 * radius_;
   if (windows_across_ < 1 || windows_down_ < 1) return;
@@ -218,8 +217,8 @@ void ImageMatcher::run(const std::uint8_t* left, const std::uint8_t* right, std:
   std::fill_n(left_disparity, pixels, kInvalidDisparity);
   if (plan_.right_based) std::fill_n(right_disparity, pixels, kInvalidDisparity);
   if (windows_across_ < 1 || windows_down_ < 1) return;
-  column_sums_.clear();
-  for (Side* side : {&left_, &right_}) side->column_statistics.clear();
+  column_sums_.fill(0);
+  for (Side* side : {&left_, &right_}) side->column_statistics.fill(0);
   if (left_.census) {
     left_.census->run(left);
     right_.census->run(right);

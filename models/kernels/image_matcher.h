@@ -5,11 +5,11 @@
 #include <optional>
 #include <vector>
 
-#include "models/kernels/census_transform.h"
+#include "models/kernels/census.h"
 #include "models/kernels/correlation_search.h"
 #include "models/kernels/matching_cost.h"
 #include "models/kernels/simd.h"
-#include "models/kernels/vector_array.h"
+#include "models/kernels/simd_array.h"
 
 namespace stereotlm::kernels {
 

@@ -34,8 +34,10 @@ struct IntegerRule {
     if (!allows(value)) problems.push_back(problem(field, value));
   }
   // Throws std::invalid_argument if the value is not allowed; else returns it.
-  int required(const std::string& field, int value) const {
-    if (!allows(value)) throw std::invalid_argument(problem(field, value));
+  template <class Integer>
+  Integer required(const std::string& field, Integer value) const {
+    const auto number = static_cast<std::int64_t>(value);
+    if (!allows(number)) throw std::invalid_argument(problem(field, number));
     return value;
   }
 };

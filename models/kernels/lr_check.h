@@ -5,7 +5,6 @@
 #include <cstdlib>
 #include <optional>
 
-#include "models/kernels/limits.h"
 #include "models/kernels/words.h"
 
 namespace stereotlm::kernels {
@@ -24,11 +23,7 @@ inline bool left_right_consistent(std::uint8_t left_based, std::uint8_t right_ba
 // long, so that both results belong to the same column.
 class LrCheck {
  public:
-  // Throws std::invalid_argument outside kDisparitiesRule and kLrToleranceRule.
-  LrCheck(int disparities, std::optional<int> tolerance)
-      : delay_(kDisparitiesRule.required("disparities", disparities) - 1), tolerance_(tolerance) {
-    if (tolerance) kLrToleranceRule.required("lr_tolerance", *tolerance);
-  }
+  LrCheck(int disparities, std::optional<int> tolerance) : delay_(disparities - 1), tolerance_(tolerance) {}
 
   void start_frame() { time_ = 0; }
 

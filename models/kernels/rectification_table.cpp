@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <stdexcept>
 
+#include "models/checked.h"
 #include "models/kernels/simd.h"
 
 namespace stereotlm::kernels {
@@ -94,8 +95,7 @@ void require_usable(const RectificationTable& table, const GrayImage& image) {
                                 std::to_string(image.height) + " with a table of " +
                                 std::to_string(table.width) + " x " + std::to_string(table.height));
   }
-  if (const auto found = problems(table); !found.empty())
-    throw std::invalid_argument("rectify: " + found.front());
+  checked("rectify", table);
 }
 
 GrayImage rectify(const GrayImage& source, const RectificationTable& table) {

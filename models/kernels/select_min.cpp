@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "models/kernels/limits.h"
 #include "models/kernels/words.h"
 
 namespace stereotlm::kernels {
@@ -34,7 +33,7 @@ std::uint8_t select_min_tree(const ColumnScores& scores, int candidates) {
 
 SelectMinChain::SelectMinChain(int disparities, const Simd& simd)
     : simd_(simd.column),
-      disparities_(kDisparitiesRule.required("disparities", disparities)),
+      disparities_(disparities),
       lanes_(padded_lanes(disparities)),
       held_(kBefore + disparities),
       next_(kBefore + disparities) {
@@ -52,8 +51,7 @@ std::uint8_t SelectMinChain::step(const std::int32_t* window_sums, int candidate
   return disparity_of(held_.data()[kBefore + disparities_ - 1]);
 }
 
-ScoreChain::ScoreChain(int disparities)
-    : held_(static_cast<std::size_t>(kDisparitiesRule.required("disparities", disparities))) {}
+ScoreChain::ScoreChain(int disparities) : held_(static_cast<std::size_t>(disparities)) {}
 
 void ScoreChain::start_frame() { std::fill(held_.begin(), held_.end(), Held{}); }
 

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "models/kernels/column_scores.h"
-#include "models/kernels/lane_array.h"
 #include "models/kernels/simd.h"
+#include "models/kernels/simd_array.h"
 #include "models/kernels/words.h"
 
 namespace stereotlm::kernels {
@@ -28,7 +28,6 @@ std::uint8_t select_min_tree(const ColumnScores& scores, int candidates);
 // disparities-1 columns back: right-based matching.
 class SelectMinChain {
  public:
-  // Throws std::invalid_argument outside kDisparitiesRule.
   explicit SelectMinChain(int disparities, const Simd& simd = best_simd());
 
   void start_frame();
@@ -47,7 +46,6 @@ class SelectMinChain {
 // The same chain for scores. If two scores are equal, module d keeps the score of module d-1 here too.
 class ScoreChain {
  public:
-  // Throws std::invalid_argument outside kDisparitiesRule.
   explicit ScoreChain(int disparities);
 
   void start_frame();

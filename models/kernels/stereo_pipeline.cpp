@@ -2,19 +2,11 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <stdexcept>
 
+#include "models/checked.h"
 #include "models/kernels/words.h"
 
 namespace stereotlm::kernels {
-namespace {
-
-const StereoConfig& checked(const StereoConfig& config) {
-  if (const auto found = problems(config); !found.empty()) throw std::invalid_argument(found.front());
-  return config;
-}
-
-}  // namespace
 
 StereoPipeline::StereoPipeline(int width, int height, const StereoConfig& config, const Simd& simd)
     : width_(width),

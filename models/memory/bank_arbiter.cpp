@@ -1,31 +1,48 @@
 #include "models/memory/bank_arbiter.h"
 
-#include <memory>
 #include <stdexcept>
 #include <string>
 
-#include "models/memory/arbitration_policies.h"
+#include "models/checked.h"
 
 namespace stereotlm::memory {
 namespace {
 
 constexpr bool contend(std::size_t requests) { return (requests & (requests - 1)) != 0; }
 
-std::unique_ptr<const ArbitrationPolicy> make_policy(const ArbiterConfig& config) {
-  if (const auto found = problems(config); !found.empty()) throw std::invalid_argument(found.front());
-  return find_arbitration_policy(config.policy)->make(config.priority);
-}
-
-const SsramBankConfig& checked(const SsramBankConfig& bank) {
-  if (const auto found = problems(bank); !found.empty()) throw std::invalid_argument(found.front());
-  return bank;
-}
-
 }  // namespace
+
+DecisionTable::DecisionTable(const ArbiterConfig& config)
+    : policy_(find_arbitration_policy(checked(config).policy)), list_(config.priority) {}
+
+DecisionTable::Row& DecisionTable::Row::after_idle_cycles(std::uint64_t cycles) {
+  Row* row = this;
+  for (; cycles > 0 && row->after_idle != row; --cycles) row = row->after_idle;
+  return *row;
+}
+
+DecisionTable::Row& DecisionTable::row_of(ArbitrationPolicy::State state) {
+  const auto [entry, is_new] = rows_.try_emplace(state);
+  Row& row = entry->second;
+  if (is_new) {
+    row.state = state;
+    row.after_idle = &row_of(policy_->next(list_, state, 0, 0));
+  }
+  return row;
+}
+
+void DecisionTable::fill(Row& row, PortMask requests) {
+  Decision& decision = row.decisions[requests];
+  if (decision.is_known()) return;
+  const Port winner = policy_->winner(list_, row.state, requests);
+  decision.if_granted = &row_of(policy_->next(list_, row.state, requests, mask_of(winner)));
+  decision.if_refused = &row_of(policy_->next(list_, row.state, requests, 0));
+  decision.winner = winner;
+}
 
 // With separate ports an access never delays one in the other direction: both may be granted in one cycle.
 BankArbiter::BankArbiter(const ArbiterConfig& config, const SsramBankConfig& bank)
-    : table_(make_policy(config)),
+    : table_(config),
       port_count_(config.priority.size()),
       has_separate_ports_(has_separate_ports(checked(bank).kind)),
       positions_{PolicyPosition{&table_.row_of(0)}, PolicyPosition{&table_.row_of(0)}},

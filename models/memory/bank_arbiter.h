@@ -3,8 +3,9 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <unordered_map>
 
-#include "models/memory/decision_table.h"
+#include "models/memory/arbitration_policies.h"
 #include "models/memory/memory_config.h"
 
 namespace stereotlm::memory {
@@ -25,6 +26,40 @@ struct ArbiterStats {
       blame{};  // [stalled port][port granted, or kTurnaround]: stall cycles
 };
 
+// Memo of an arbitration policy for BankArbiter: one row for each state that was reached.
+class DecisionTable {
+ public:
+  struct Row;
+  struct Decision {
+    Row* if_granted = nullptr;  // the next state if the winner is granted
+    Row* if_refused = nullptr;  // the next state if the bank is turning round
+    std::size_t winner = 0;     // index of the port
+
+    bool is_known() const { return if_granted != nullptr; }
+  };
+  struct Row {
+    ArbitrationPolicy::State state = 0;
+    Row* after_idle = nullptr;  // the next state after a cycle without request
+    std::array<Decision, std::size_t{1} << kMostPorts> decisions;  // [mask of requests]; see fill()
+
+    // The row after some cycles without request.
+    Row& after_idle_cycles(std::uint64_t cycles);
+  };
+
+  // Throws std::invalid_argument if the configuration has problems.
+  explicit DecisionTable(const ArbiterConfig& config);
+
+  // Returns the row of a state, which is added if there is none. Rows are never moved or removed.
+  Row& row_of(ArbitrationPolicy::State state);
+  // Computes row.decisions[requests] if it is not known. `requests` has at least one port.
+  void fill(Row& row, PortMask requests);
+
+ private:
+  const ArbitrationPolicy* policy_;
+  PriorityList list_;
+  std::unordered_map<ArbitrationPolicy::State, Row> rows_;
+};
+
 // Decides in each cycle which port may access one bank (contract section 2). The policy chooses the winner
 // first. If the bank is still turning round for the winner's direction, no port is granted. A bank with
 // separate ports grants one read and one write in a cycle: each direction has a state of the policy, and only
@@ -42,8 +77,9 @@ class BankArbiter {
   BankArbiter(const ArbiterConfig& config, const SsramBankConfig& bank);
 
   // Decides one cycle with at least one request. Throws std::invalid_argument if one of the ports
-  // 0 .. kMostPorts - 1 requests that is not in the priority list. `writes`: the ports that would write. `cycle` must increase from call to call; a cycle that is left out has no request. The caller passes the outcomes to count(), in
-  // the order of the cycles.
+  // 0 .. kMostPorts - 1 requests that is not in the priority list. `writes`: the ports that would write.
+  // `cycle` must increase from call to call; a cycle that is left out has no request. The caller passes the
+  // outcomes to count(), in the order of the cycles.
   Outcome decide(std::uint64_t cycle, PortMask requests, PortMask writes) {
     return has_separate_ports_ ? decide_each_direction(cycle, requests, writes)
                                : decide_at(positions_[0], cycle, requests, writes) | kNothing << kHalf;

@@ -1,8 +1,9 @@
 #include "models/memory/crossbar.h"
 
 #include <algorithm>
-#include <stdexcept>
 #include <string>
+
+#include "models/checked.h"
 
 namespace stereotlm::memory {
 namespace {
@@ -10,7 +11,9 @@ namespace {
 constexpr std::uint64_t kOffsetMask = (std::uint64_t{1} << kBankAddressBits) - 1;
 constexpr std::uint64_t bank_base(std::uint64_t address) { return address & ~kOffsetMask; }
 
-const CrossbarConfig& checked(const std::string& name, const CrossbarConfig& config) {
+}  // namespace
+
+std::vector<std::string> problems(const CrossbarConfig& config) {
   auto found = problems(config.arbiter);
   kBankCountRule.check("banks", static_cast<std::int64_t>(config.banks.size()), found);
   for (const SsramBankConfig& bank : config.banks) {
@@ -19,11 +22,8 @@ const CrossbarConfig& checked(const std::string& name, const CrossbarConfig& con
       found.push_back("clock_mhz = " + std::to_string(bank.clock_mhz) + ": must be the same for all banks");
     }
   }
-  if (!found.empty()) throw std::invalid_argument(name + ": " + found.front());
-  return config;
+  return found;
 }
-
-}  // namespace
 
 Crossbar::Crossbar(const sc_core::sc_module_name& name, const CrossbarConfig& config)
     : sc_module(name),

@@ -26,6 +26,9 @@ struct CrossbarConfig {
   PortMask silent_ports = 0;
 };
 
+// Every broken rule as `field = value: rule`; empty if the crossbar can be built.
+std::vector<std::string> problems(const CrossbarConfig& config);
+
 // The crossbar between the ports and the banks, with one arbiter per bank. It has no process: the clocked
 // process of its owner calls arbitrate() once per cycle, with the ports that request. Each port is routed to
 // one bank and one direction. The stage behind a granted port makes its access in the same cycle: one word by

@@ -31,7 +31,7 @@ std::vector<std::string> problems(const ArbiterConfig& config) {
   std::vector<std::string> found;
   if (find_arbitration_policy(config.policy) == nullptr) {
     std::string names;
-    for (const PolicyEntry& policy : arbitration_policies())
+    for (const ArbitrationPolicy& policy : arbitration_policies())
       names += (names.empty() ? "" : ", ") + std::string(policy.name);
     found.push_back("policy = " + config.policy + ": must be one of " + names);
   }

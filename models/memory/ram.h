@@ -1,18 +1,17 @@
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <cstdlib>
-#include <cstring>
 #include <memory>
 #include <new>
 #include <systemc>
 #include <tlm>
 
+#include "models/access_rules.h"
+
 namespace stereotlm::memory {
 
-// The stored bytes of SsramBank and HostMemory, with the operations of a base-protocol target. They are zeros
-// at first; untouched pages take no memory of the simulating machine.
+// The bytes of a memory. They are zeros at first; untouched pages take no memory of the simulating machine.
 class Ram {
  public:
   // Throws std::bad_alloc.
@@ -29,54 +28,6 @@ class Ram {
     return address <= bytes_ && length <= bytes_ - address;
   }
 
-  // Executes a read or a write with its byte enables. All its bytes must be inside the memory.
-  void move(tlm::tlm_generic_payload& access) {
-    unsigned char* stored = data_.get() + access.get_address();
-    unsigned char* data = access.get_data_ptr();
-    const bool reads = access.is_read();
-    const unsigned length = access.get_data_length();
-    const unsigned char* enables = access.get_byte_enable_ptr();
-    if (enables == nullptr) {
-      std::memcpy(reads ? data : stored, reads ? stored : data, length);
-      return;
-    }
-    const unsigned enable_length = access.get_byte_enable_length();
-    for (unsigned byte = 0; byte < length; ++byte) {
-      if (enables[byte % enable_length] != TLM_BYTE_ENABLED) continue;
-      (reads ? data[byte] : stored[byte]) = reads ? stored[byte] : data[byte];
-    }
-  }
-
-  // Debug transport: moves the bytes that lie inside the memory, and returns their number.
-  unsigned debug(tlm::tlm_generic_payload& access) {
-    const std::uint64_t address = access.get_address();
-    if (access.get_command() == tlm::TLM_IGNORE_COMMAND || address >= bytes_) return 0;
-    const auto length =
-        static_cast<unsigned>(std::min<std::uint64_t>(access.get_data_length(), bytes_ - address));
-    unsigned char* stored = data_.get() + address;
-    unsigned char* data = access.get_data_ptr();
-    std::memcpy(access.is_read() ? data : stored, access.is_read() ? stored : data, length);
-    return length;
-  }
-
-  // Grants DMI to the whole memory, for reads and writes, if the address is inside it. Otherwise returns
-  // false, and `dmi` is the range beyond the memory.
-  bool grant_dmi(const tlm::tlm_generic_payload& access, const sc_core::sc_time& read_time,
-                 tlm::tlm_dmi& dmi) {
-    dmi.allow_read_write();
-    if (access.get_address() >= bytes_) {
-      dmi.set_start_address(bytes_);
-      dmi.set_end_address(UINT64_MAX);
-      return false;
-    }
-    dmi.set_dmi_ptr(data_.get());
-    dmi.set_start_address(0);
-    dmi.set_end_address(bytes_ - 1);
-    dmi.set_read_latency(read_time);
-    dmi.set_write_latency(sc_core::SC_ZERO_TIME);
-    return true;
-  }
-
  private:
   struct Free {
     void operator()(void* memory) const { std::free(memory); }
@@ -84,6 +35,44 @@ class Ram {
 
   std::uint64_t bytes_;
   std::unique_ptr<unsigned char[], Free> data_;
+};
+
+// The base-protocol target that SsramBank and HostMemory bind to their sockets. b_transport never waits. A
+// read adds `read_time` to `delay`, a write nothing. nb_transport_fw has the same effect and returns
+// TLM_COMPLETED. An access that breaks the rules has the response of check_access(), and no effect. Debug
+// transport takes any length. DMI grants the whole memory, for reads and writes, and is never revoked.
+class RamTarget : public tlm::tlm_fw_transport_if<> {
+ public:
+  // Debug transport and DMI are not counted.
+  struct Stats {
+    std::uint64_t reads = 0;  // transactions
+    std::uint64_t writes = 0;
+    std::uint64_t errors = 0;  // refused accesses
+  };
+
+  // `rules.end` is the number of bytes. `report`: the type of the SC_REPORT_ERROR for a phase other than
+  // BEGIN_REQ.
+  RamTarget(const AccessRules& rules, const sc_core::sc_time& read_time, const char* report)
+      : rules_(rules), read_time_(read_time), report_(report), ram_(rules.end) {}
+
+  void b_transport(tlm::tlm_generic_payload& access, sc_core::sc_time& delay) override;
+  tlm::tlm_sync_enum nb_transport_fw(tlm::tlm_generic_payload& access, tlm::tlm_phase& phase,
+                                     sc_core::sc_time& delay) override;
+  unsigned transport_dbg(tlm::tlm_generic_payload& access) override;
+  bool get_direct_mem_ptr(tlm::tlm_generic_payload& access, tlm::tlm_dmi& dmi) override;
+
+  const Stats& stats() const { return stats_; }
+  const Ram& ram() const { return ram_; }
+  Ram& ram() { return ram_; }
+
+ private:
+  void move(tlm::tlm_generic_payload& access);
+
+  AccessRules rules_;
+  sc_core::sc_time read_time_;
+  const char* report_;
+  Ram ram_;
+  Stats stats_;
 };
 
 }  // namespace stereotlm::memory

@@ -5,6 +5,69 @@
 
 namespace stereotlm::pci {
 
+BridgeRegisterFile::Decoded BridgeRegisterFile::decode(std::uint64_t offset) {
+  if (offset < bridge::kInterruptStatus)
+    return {bridge::kPage, static_cast<std::size_t>((offset - bridge::kPage) / 4)};
+  if (offset < bridge::kDmaDescriptor) return {offset, 0};
+  const std::uint64_t in_channels = offset - bridge::kDmaDescriptor;
+  return {bridge::kDmaDescriptor + in_channels % bridge::kChannelStride,
+          static_cast<std::size_t>(in_channels / bridge::kChannelStride)};
+}
+
+bool BridgeRegisterFile::allows(bool write, std::uint64_t offset) {
+  if (offset >= bridge::kRegisterWindowBytes) return false;
+  switch (decode(offset).name) {
+    case bridge::kPage:
+    case bridge::kInterruptStatus:
+    case bridge::kInterruptEnable:
+    case bridge::kDmaDescriptor:
+      return true;
+    case bridge::kDmaControl:
+      return write;
+    case bridge::kDmaStatus:
+      return !write;
+    default:
+      return false;
+  }
+}
+
+std::uint32_t BridgeRegisterFile::read(std::uint64_t offset) const {
+  const auto [name, index] = decode(offset);
+  switch (name) {
+    case bridge::kPage:
+      return pages_[index];
+    case bridge::kInterruptStatus:
+      return interrupt_status_;
+    case bridge::kInterruptEnable:
+      return interrupt_enable_;
+    case bridge::kDmaDescriptor:
+      return channels_[index].descriptor();
+    default:
+      return std::uint32_t{channels_[index].busy()};
+  }
+}
+
+DmaChannel* BridgeRegisterFile::write(std::uint64_t offset, std::uint32_t value) {
+  const auto [name, index] = decode(offset);
+  switch (name) {
+    case bridge::kPage:
+      pages_[index] = value;
+      break;
+    case bridge::kInterruptStatus:
+      interrupt_status_ &= ~value;
+      break;
+    case bridge::kInterruptEnable:
+      interrupt_enable_ = value & bridge::kAllInterrupts;
+      break;
+    case bridge::kDmaDescriptor:
+      channels_[index].set_descriptor(value);
+      break;
+    default:
+      if ((value & 1U) != 0) return &channels_[index];
+  }
+  return nullptr;
+}
+
 BridgeControl::BridgeControl(const PciBridgeConfig& config, PciSlot& slot, LocalBusIf& local_bus, Host& host)
     : config_(config),
       slot_(slot),
@@ -19,7 +82,7 @@ void BridgeControl::observe(BridgeObserver& observer) {
   for (DmaChannel& channel : channels_) channel.observe(observer);
 }
 
-std::size_t BridgeControl::writable_words(std::uint64_t now_ps, std::size_t words) const {
+std::size_t BridgeControl::postable_words(std::uint64_t now_ps, std::size_t words) const {
   return std::min(words, local_bus_.free_places(now_ps));
 }
 
@@ -111,26 +174,21 @@ void BridgeControl::count_skipped(std::uint64_t address, std::uint64_t words) {
   count_for_banks(words_taken_, address, words);
 }
 
-bool BridgeControl::write_register(std::uint64_t now_ps, std::uint64_t offset, std::uint32_t value) {
-  if (!BridgeRegisterFile::allows(true, offset)) {
+PciAnswer BridgeControl::access(std::uint64_t now_ps, const PciAccess& access, std::uint64_t at_ps) {
+  if (access.count != 1 || !BridgeRegisterFile::allows(access.write, access.address)) {
     count_error();
-    return false;
+    return {at_ps, false};
   }
-  DmaChannel* const started = register_file_.write(offset, value);
-  drive_interrupts(now_ps);
-  if (observer_ != nullptr && offset == bridge::kInterruptStatus)
-    observer_->interrupts_cleared(now_ps, value);
-  if (started != nullptr) run(now_ps, started->start(now_ps));
-  return true;
-}
-
-bool BridgeControl::read_register(std::uint64_t offset, std::uint32_t& value) {
-  if (!BridgeRegisterFile::allows(false, offset)) {
-    count_error();
-    return false;
+  if (access.write) {
+    DmaChannel* const started = register_file_.write(access.address, *access.words);
+    drive_interrupts(now_ps);
+    if (observer_ != nullptr && access.address == bridge::kInterruptStatus)
+      observer_->interrupts_cleared(now_ps, *access.words);
+    if (started != nullptr) run(now_ps, started->start(now_ps));
+  } else {
+    *access.words = register_file_.read(access.address);
   }
-  value = register_file_.read(offset);
-  return true;
+  return {at_ps, true};
 }
 
 void BridgeControl::raise(std::uint64_t now_ps, std::uint32_t interrupts) {

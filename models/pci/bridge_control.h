@@ -7,8 +7,7 @@
 #include <vector>
 
 #include "models/local_burst.h"
-#include "models/pci/bridge_observer.h"
-#include "models/pci/bridge_register_file.h"
+#include "models/pci/bridge_registers.h"
 #include "models/pci/dma_channel.h"
 #include "models/pci/local_bus_master.h"
 #include "models/pci/pci_config.h"
@@ -16,6 +15,43 @@
 #include "models/words_by_range.h"
 
 namespace stereotlm::pci {
+
+// The registers of the bridge (bridge_registers.h): keeps the pages of the apertures and the interrupt
+// registers. Registers of a DMA channel are kept by the channel. Plain C++.
+//
+// `offset`: a multiple of 4.
+class BridgeRegisterFile {
+ public:
+  // `channels` outlives this object.
+  explicit BridgeRegisterFile(DmaChannels& channels) : channels_(channels) {}
+
+  // Whether the register exists and can be accessed in this direction.
+  static bool allows(bool write, std::uint64_t offset);
+  // These need allows().
+  std::uint32_t read(std::uint64_t offset) const;
+  // Returns the channel whose start bit has been written, or null.
+  DmaChannel* write(std::uint64_t offset, std::uint32_t value);
+
+  // The first word on the board that an aperture leads to, as kPage names it.
+  std::uint32_t page(std::size_t aperture) const { return pages_[aperture]; }
+  // Sets bits of kInterruptStatus.
+  void raise(std::uint32_t bits) { interrupt_status_ |= bits; }
+  // The level of INTA#.
+  bool interrupts() const { return (interrupt_status_ & interrupt_enable_) != 0; }
+
+ private:
+  struct Decoded {
+    std::uint64_t name = 0;  // offset of the register; of page or channel 0 if it exists for each
+    std::size_t index = 0;   // number of the page or channel
+  };
+
+  static Decoded decode(std::uint64_t offset);
+
+  DmaChannels& channels_;
+  std::array<std::uint32_t, bridge::kApertures> pages_{};
+  std::uint32_t interrupt_status_ = 0;
+  std::uint32_t interrupt_enable_ = 0;
+};
 
 // The timing of PciBridge (contract section 3, "Bridge"), its registers and its counters. Plain C++.
 //
@@ -26,7 +62,7 @@ namespace stereotlm::pci {
 // - LocalBusMaster arbitrates the local bus.
 //
 // Errors of posted writes and of DMA set bits of kInterruptStatus.
-class BridgeControl final : public PciMasterIf, private LocalBusMaster::Listener {
+class BridgeControl final : public PciMasterIf, public PciTarget, private LocalBusMaster::Listener {
  public:
   struct Stats {
     std::uint64_t posted_words = 0;       // words of writes that the slave window took
@@ -60,17 +96,15 @@ class BridgeControl final : public PciMasterIf, private LocalBusMaster::Listener
   // The slave window. `offset`: a multiple of 4; the words are inside the window.
   //
   // How many of `words` words a write can have now: STOP#.
-  std::size_t writable_words(std::uint64_t now_ps, std::size_t words) const;
+  std::size_t postable_words(std::uint64_t now_ps, std::size_t words) const;
   // Posts a write. Returns false, without effect, if it has more words than there are free places.
   bool write(std::uint64_t now_ps, std::uint64_t offset, const unsigned char* data, std::size_t words);
   // Begins a read, which ends with Host::slave_read_ended(). `data` must stay until then. To be called if no
   // other read is under way.
   void read(std::uint64_t now_ps, std::uint64_t offset, unsigned char* data, std::size_t words);
 
-  // The register window. `offset`: a multiple of 4 in the window. These return false, without effect, if the
-  // register does not exist or has the other direction.
-  bool write_register(std::uint64_t now_ps, std::uint64_t offset, std::uint32_t value);
-  bool read_register(std::uint64_t offset, std::uint32_t& value);
+  // The register window. Refuses, and counts, an access that is not one word of a register with this direction.
+  PciAnswer access(std::uint64_t now_ps, const PciAccess& access, std::uint64_t at_ps) override;
 
   // Counts an access that was refused before it came here.
   void count_error() { ++stats_.errors; }

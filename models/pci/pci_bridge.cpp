@@ -1,10 +1,7 @@
 #include "models/pci/pci_bridge.h"
 
-#include <cstring>
-
 #include "models/checked.h"
 #include "models/kernel_time.h"
-#include "models/register_access.h"
 
 namespace stereotlm::pci {
 
@@ -32,22 +29,11 @@ void PciBridge::step() {
 }
 
 std::size_t PciBridge::writable_words(std::uint64_t /*address*/, std::size_t words) const {
-  return control_.writable_words(kernel_time::now_ps(), words);
-}
-
-tlm::tlm_response_status PciBridge::check_slave(const tlm::tlm_generic_payload& access) {
-  const std::uint64_t bytes = access.get_data_length();
-  if (access.get_command() == tlm::TLM_IGNORE_COMMAND) return tlm::TLM_COMMAND_ERROR_RESPONSE;
-  if (access.get_byte_enable_ptr() != nullptr) return tlm::TLM_BYTE_ENABLE_ERROR_RESPONSE;
-  if (bytes == 0 || bytes % 4 != 0 || access.get_streaming_width() < bytes)
-    return tlm::TLM_BURST_ERROR_RESPONSE;
-  if (access.get_address() % 4 != 0 || access.get_address() + bytes > bridge::kSlaveWindowBytes)
-    return tlm::TLM_ADDRESS_ERROR_RESPONSE;
-  return tlm::TLM_OK_RESPONSE;
+  return control_.postable_words(kernel_time::now_ps(), words);
 }
 
 void PciBridge::access_slave(tlm::tlm_generic_payload& access, sc_core::sc_time& delay) {
-  tlm::tlm_response_status status = check_slave(access);
+  tlm::tlm_response_status status = check_access(access, {bridge::kSlaveWindowBytes});
   if (status != tlm::TLM_OK_RESPONSE) {
     control_.count_error();
   } else {
@@ -82,25 +68,9 @@ void PciBridge::slave_read_ended(std::uint64_t /*now_ps*/, bool ok) {
   read_ended_.notify(sc_core::SC_ZERO_TIME);
 }
 
-void PciBridge::access_registers(tlm::tlm_generic_payload& access, sc_core::sc_time& /*delay*/) {
-  tlm::tlm_response_status status = check_register_access(access, bridge::kRegisterWindowBytes);
-  if (status != tlm::TLM_OK_RESPONSE) {
-    control_.count_error();
-  } else {
-    const std::uint64_t offset = access.get_address();
-    std::uint32_t value = 0;
-    bool ok = false;
-    if (access.is_write()) {
-      std::memcpy(&value, access.get_data_ptr(), 4);
-      ok = control_.write_register(kernel_time::now_ps(), offset, value);
-      await_step();
-    } else {
-      ok = control_.read_register(offset, value);
-      if (ok) std::memcpy(access.get_data_ptr(), &value, 4);
-    }
-    if (!ok) status = tlm::TLM_COMMAND_ERROR_RESPONSE;
-  }
-  access.set_response_status(status);
+void PciBridge::access_registers(tlm::tlm_generic_payload& access, sc_core::sc_time& delay) {
+  pci::access_registers(control_, bridge::kRegisterWindowBytes, access, delay);
+  await_step();
 }
 
 void PciBridge::ring() {

@@ -56,7 +56,6 @@ class PciBridge : public sc_core::sc_module,
   // These serve the slave window and the register window.
   std::size_t writable_words(std::uint64_t address, std::size_t words) const override;
   void access_slave(tlm::tlm_generic_payload& access, sc_core::sc_time& delay);
-  static tlm::tlm_response_status check_slave(const tlm::tlm_generic_payload& access);
   bool read_slave(std::uint64_t offset, unsigned char* data, std::size_t words);
   void slave_read_ended(std::uint64_t now_ps, bool ok) override;
   void access_registers(tlm::tlm_generic_payload& access, sc_core::sc_time& delay);

@@ -8,39 +8,31 @@
 #include <vector>
 
 #include "models/clock.h"
-#include "models/pci/pci_bus_observer.h"
 #include "models/pci/pci_config.h"
 #include "models/pci/pci_slot.h"
 #include "models/time_ps.h"
 
 namespace stereotlm::pci {
 
-// When a target has responded to an access, and how.
-struct PciAnswer {
-  std::uint64_t time_ps = 0;  // kNever: not yet
-  bool ok = true;
+// A burst on the PCI bus that has ended. Each time is that at which a clock of the bus begins.
+struct EndedPciBurst {
+  std::size_t master = 0;             // its slot
+  std::optional<std::size_t> window;  // none: a master abort
+  bool write = false;
+  std::uint64_t address = 0;     // on the bus
+  std::uint64_t words = 0;       // transferred
+  std::uint64_t request_ps = 0;  // the first clock that could have been granted to the master
+  std::uint64_t address_ps = 0;  // the address clock
+  std::uint64_t data_ps = 0;     // the clock after the address clock
+  std::uint64_t end_ps = 0;      // the idle clock
 };
 
-// The access of a burst. Its address is relative to the target's window.
-struct PciAccess {
-  bool write = true;
-  std::uint64_t address = 0;
-  std::uint32_t* words = nullptr;
-  std::size_t count = 0;
-};
-
-// A target of the bus, called by the bus.
-class PciTarget {
+// Receives the bursts of the PCI bus, for traces. Plain C++.
+class PciBusObserver {
  public:
-  virtual ~PciTarget() = default;
-  // STOP#: called at the address clock of a write. Returns how many of its `words` words the target takes.
-  virtual std::size_t writable_words(std::uint64_t /*now_ps*/, std::uint64_t /*address*/, std::size_t words) {
-    return words;
-  }
-  // A write is called at the end of its last data clock, which is `at_ps`. A read is called in the address
-  // clock, and reads at the end of that clock, `at_ps`. An answer that is not given yet is given by
-  // PciBusControl::answer().
-  virtual PciAnswer access(std::uint64_t now_ps, const PciAccess& access, std::uint64_t at_ps) = 0;
+  virtual ~PciBusObserver() = default;
+  // Called at the end of each burst.
+  virtual void pci_burst_ended(const EndedPciBurst& burst) = 0;
 };
 
 // The arbitration and the timing of PciBus, which describes them, and its counters. Plain C++.

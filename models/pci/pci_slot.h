@@ -7,9 +7,9 @@
 
 #include "models/clock.h"
 
-// The protocol between the PCI bus and its masters: REQ#, GNT# and the burst that follows (PCI 2.2). Plain C++;
-// pci_slot_if.h has the sockets. The targets of PciBus use the base protocol, those of PciBusControl are a
-// PciTarget.
+// The protocol between the PCI bus and its masters and targets: REQ#, GNT# and the burst that follows (PCI
+// 2.2). Plain C++; pci_slot_if.h has the sockets. The targets of PciBus use the base protocol, those of
+// PciBusControl are a PciTarget.
 namespace stereotlm::pci {
 
 // The burst for which a master uses its grant.
@@ -70,6 +70,34 @@ class PciSlot {
   // word. `end` and `end_ps` have no meaning yet.
   virtual BurstResult transferred(std::uint64_t now_ps) const = 0;
   virtual const Clock& clock() const = 0;
+};
+
+// When a target has responded to an access, and how.
+struct PciAnswer {
+  std::uint64_t time_ps = 0;  // kNever: not yet
+  bool ok = true;
+};
+
+// The access of a burst. Its address is relative to the target's window.
+struct PciAccess {
+  bool write = true;
+  std::uint64_t address = 0;
+  std::uint32_t* words = nullptr;
+  std::size_t count = 0;
+};
+
+// A target of the bus, called by the bus.
+class PciTarget {
+ public:
+  virtual ~PciTarget() = default;
+  // STOP#: called at the address clock of a write. Returns how many of its `words` words the target takes.
+  virtual std::size_t writable_words(std::uint64_t /*now_ps*/, std::uint64_t /*address*/, std::size_t words) {
+    return words;
+  }
+  // A write is called at the end of its last data clock, which is `at_ps`. A read is called in the address
+  // clock, and reads at the end of that clock, `at_ps`. An answer that is not given yet is given by
+  // PciBusControl::answer().
+  virtual PciAnswer access(std::uint64_t now_ps, const PciAccess& access, std::uint64_t at_ps) = 0;
 };
 
 }  // namespace stereotlm::pci

@@ -23,7 +23,6 @@ class PostedWrites {
     std::size_t words = 0;
   };
 
-  // Throws std::invalid_argument outside kPostedWordsRule.
   explicit PostedWrites(std::size_t places);
 
   std::size_t places() const { return places_; }
@@ -34,7 +33,7 @@ class PostedWrites {
   // The words that wait and are not being sent.
   std::vector<Run> waiting() const;
 
-  // Appends words. Throws std::invalid_argument if there are not as many free places.
+  // Appends words, at most as many as there are free places.
   void push(std::uint64_t address, const void* words, std::size_t count);
   // Begins a burst of 1..most words. To be called if waits(), and no burst is being sent. The words stay in
   // place until sent().

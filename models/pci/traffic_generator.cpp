@@ -23,17 +23,12 @@ void TrafficGenerator::end_burst(const BurstResult& result) {
 }
 
 void TrafficGenerator::respond(tlm::tlm_generic_payload& access, sc_core::sc_time& delay) {
-  if (!access.is_read()) {
-    access.set_response_status(tlm::TLM_COMMAND_ERROR_RESPONSE);
-  } else if (access.get_data_length() % 4 != 0 || access.get_streaming_width() < access.get_data_length()) {
-    access.set_response_status(tlm::TLM_BURST_ERROR_RESPONSE);
-  } else if (access.get_byte_enable_ptr() != nullptr) {
-    access.set_response_status(tlm::TLM_BYTE_ENABLE_ERROR_RESPONSE);
-  } else {
-    std::memset(access.get_data_ptr(), 0, access.get_data_length());
-    delay += kernel_time::to_time(access_ps_);
-    access.set_response_status(tlm::TLM_OK_RESPONSE);
-  }
+  tlm::tlm_response_status status = check_access(access, {});
+  if (access.is_write()) status = tlm::TLM_COMMAND_ERROR_RESPONSE;
+  access.set_response_status(status);
+  if (status != tlm::TLM_OK_RESPONSE) return;
+  std::memset(access.get_data_ptr(), 0, access.get_data_length());
+  delay += kernel_time::to_time(access_ps_);
 }
 
 }  // namespace stereotlm::pci

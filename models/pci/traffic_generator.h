@@ -16,13 +16,12 @@ namespace stereotlm::pci {
 // target at its address, and never writes. A transfer that the bus has cut, disconnected or retried continues
 // immediately. An aborted transfer is reported with SC_REPORT_ERROR (type /stereotlm/traffic_generator) and
 // is the last one.
-class TrafficGenerator : public sc_core::sc_module, private PciMasterIf {
+class TrafficGenerator : public sc_core::sc_module, private PciMasterIf, private PciSlot {
  public:
   PciMasterPort pci{"pci"};
-  // The device, which stays unbound if the master reads from another target. A read of whole words returns
-  // zeros after access_ps. TLM_COMMAND_ERROR_RESPONSE refuses any other command, TLM_BURST_ERROR_RESPONSE a
-  // length that is not whole words or a smaller streaming width, and TLM_BYTE_ENABLE_ERROR_RESPONSE byte
-  // enables.
+  // The device, which stays unbound if the master reads from another target. A read of whole words without byte
+  // enables returns zeros after access_ps. Other accesses are refused with the responses of check_access(), a
+  // write with TLM_COMMAND_ERROR_RESPONSE.
   tlm_utils::simple_target_socket_optional<TrafficGenerator> device{"device"};
 
   // Throws std::invalid_argument if the configuration has problems.
@@ -33,27 +32,15 @@ class TrafficGenerator : public sc_core::sc_module, private PciMasterIf {
     return control_.begin_burst(address_clock_ps);
   }
   void end_burst(const BurstResult& result) override;
-  void start_of_simulation() override { control_.start(slot_); }
+  void start_of_simulation() override { control_.start(*this); }
   void respond(tlm::tlm_generic_payload& access, sc_core::sc_time& delay);
 
-  // The slot, in which this module stands before the control.
-  class Slot : public PciSlot {
-   public:
-    explicit Slot(TrafficGenerator& generator) : generator_(generator) {}
-    void request(PciMasterIf& /*control*/, std::uint64_t from_ps) override {
-      generator_.pci->request(generator_, from_ps);
-    }
-    BurstResult transferred(std::uint64_t now_ps) const override {
-      return generator_.pci->transferred(now_ps);
-    }
-    const Clock& clock() const override { return generator_.pci->clock(); }
-
-   private:
-    TrafficGenerator& generator_;
-  };
+  // The control calls these.
+  void request(PciMasterIf& /*control*/, std::uint64_t from_ps) override { pci->request(*this, from_ps); }
+  BurstResult transferred(std::uint64_t now_ps) const override { return pci->transferred(now_ps); }
+  const Clock& clock() const override { return pci->clock(); }
 
   TrafficControl control_;
-  Slot slot_{*this};
   std::uint64_t access_ps_;
 };
 

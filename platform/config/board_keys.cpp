@@ -94,7 +94,7 @@ const std::vector<std::string>& port_names() {
 // The meaning of `fpga.priority` under each policy: "the ports, highest priority first; ..".
 std::string priority_meaning() {
   std::vector<std::string> meanings;
-  for (const memory::PolicyEntry& policy : memory::arbitration_policies())
+  for (const memory::ArbitrationPolicy& policy : memory::arbitration_policies())
     meanings.emplace_back(policy.list_meaning);
   return fmt::format("the ports, {}", fmt::join(meanings, "; "));
 }

@@ -8,29 +8,19 @@
 namespace stereotlm::capture {
 namespace {
 
-// Takes the frame that the test names, at once or when take() is called.
-class Receiver : public StreamIf<VideoFrame>, public StreamIf<VideoLine> {
+// Takes the frame that the test names.
+class Receiver : public StreamIf<VideoFrame> {
  public:
-  explicit Receiver(Camera& camera) : camera_(camera) {
-    camera.frames_out.bind(*this);
-    camera.lines_out.bind(*this);
-  }
+  explicit Receiver(Camera& camera) : camera_(camera) { camera.frames_out.bind(*this); }
   void push(const VideoFrame& frame) override {
     EXPECT_EQ(frame.begin_ps, kernel_time::now_ps());
     EXPECT_EQ(frame.timing, &camera_.timing());
     frames.push_back(frame);
-    if (frame.number == takes) take(frame.number);
+    if (frame.number == takes) camera_.link->take(frame.number);
   }
-  void push(const VideoLine& line) override {
-    lines.push_back(line);
-    lines_ps.push_back(kernel_time::now_ps());
-  }
-  void take(std::uint64_t number) { camera_.takes_in->push({number}); }
 
   std::uint64_t takes = UINT64_MAX;
   std::vector<VideoFrame> frames;
-  std::vector<VideoLine> lines;
-  std::vector<std::uint64_t> lines_ps;
 
  private:
   Camera& camera_;
@@ -42,7 +32,7 @@ class CameraTest : public testing::Test {
     camera.emplace("camera", CameraConfig{8, height, 29.97, trigger}, source);
     receiver.emplace(*camera);
   }
-  void trigger(std::uint64_t delay_ps = 0) { camera->triggers_in->push({kernel_time::to_time(delay_ps)}); }
+  void trigger(std::uint64_t delay_ps = 0) { camera->link->trigger(kernel_time::now_ps() + delay_ps); }
   std::uint64_t frame_ps(std::uint64_t number) const { return camera->timing().frame_ps(number); }
   std::size_t frames_by(std::uint64_t time_ps) const {
     run_to(time_ps);
@@ -55,7 +45,7 @@ class CameraTest : public testing::Test {
   std::optional<Receiver> receiver;
 };
 
-TEST_F(CameraTest, BeginsItsFramesWithTheFrameClockAndSendsNothingOfAFrameThatIsNotTaken) {
+TEST_F(CameraTest, BeginsItsFramesWithTheFrameClockAndAsksForNoPictureOfAFrameThatIsNotTaken) {
   build(CameraTrigger::kFreeRunning);
   EXPECT_EQ(frames_by(frame_ps(3) - 1), 3U);
   ASSERT_EQ(frames_by(frame_ps(3)), 4U);
@@ -64,35 +54,22 @@ TEST_F(CameraTest, BeginsItsFramesWithTheFrameClockAndSendsNothingOfAFrameThatIs
     EXPECT_EQ(receiver->frames[i].begin_ps, frame_ps(i));
   }
   EXPECT_EQ(camera->stats().frames, 4U);
-  EXPECT_TRUE(receiver->lines.empty());
   EXPECT_TRUE(source.asked.empty());
 }
 
-TEST_F(CameraTest, SendsEachLineOfATakenFrameAtItsBeginning) {
+TEST_F(CameraTest, GivesTheWordsOfTheLastFrameTaken) {
   build(CameraTrigger::kFreeRunning);
   receiver->takes = 1;
   run_to(frame_ps(3));
   EXPECT_EQ(source.asked, std::vector<std::uint64_t>{1});
   EXPECT_EQ(source.begins_ps, std::vector<std::uint64_t>{frame_ps(1)});
-  ASSERT_EQ(receiver->lines.size(), 5U);
+  std::vector<std::uint32_t> words(3);
+  camera->link->copy_words(5, 3, words.data());
   const kernels::GrayImage picture = source.picture(1);
-  for (int row = 0; row < 5; ++row) {
-    const auto i = static_cast<std::size_t>(row);
-    EXPECT_EQ(receiver->lines[i].row, row);
-    EXPECT_EQ(receiver->lines_ps[i], frame_ps(1) + camera->timing().row_ps(row));
-    for (int column = 0; column < 8; ++column)
-      EXPECT_EQ(receiver->lines[i].pixels[column], picture.at(column, row)) << column << ", " << row;
+  for (std::size_t word = 0; word < 3; ++word) {
+    for (std::size_t i = 0; i < 4; ++i)
+      EXPECT_EQ(words[word] >> (8 * i) & 0xFF, picture.pixels[4 * (5 + word) + i]) << word << ", " << i;
   }
-}
-
-TEST_F(CameraTest, SendsTheFirstLineWhenTheFrameIsTakenAndTheNextInTime) {
-  build(CameraTrigger::kFreeRunning);
-  run_to(1);
-  receiver->take(0);
-  run_to(frame_ps(1) - 1);
-  ASSERT_EQ(receiver->lines.size(), 5U);
-  EXPECT_EQ(receiver->lines_ps[0], 1U);
-  EXPECT_EQ(receiver->lines_ps[1], camera->timing().row_ps(1));
 }
 
 TEST_F(CameraTest, BeginsAFrameAtTheTimeOfItsTriggerOnDemand) {
@@ -153,7 +130,7 @@ TEST_F(CameraTest, ReportsAPictureOfAnotherSize) {
   build(CameraTrigger::kFreeRunning, 6);
   run_to(1);
   test::ExpectedReport expected("/stereotlm/camera");
-  EXPECT_THROW(receiver->take(0), sc_core::sc_report);
+  EXPECT_THROW(camera->link->take(0), sc_core::sc_report);
   EXPECT_EQ(expected.text(), "camera: picture of frame 0 = 8 x 5: must be 8 x 6");
 }
 
@@ -161,10 +138,10 @@ TEST_F(CameraTest, ReportsAFrameThatIsNotRunningOrTakenTwice) {
   build(CameraTrigger::kFreeRunning);
   run_to(frame_ps(1));
   test::ExpectedReport expected("/stereotlm/camera", 3);
-  EXPECT_THROW(receiver->take(0), sc_core::sc_report);
-  EXPECT_THROW(receiver->take(2), sc_core::sc_report);
-  receiver->take(1);
-  EXPECT_THROW(receiver->take(1), sc_core::sc_report);
+  EXPECT_THROW(camera->link->take(0), sc_core::sc_report);
+  EXPECT_THROW(camera->link->take(2), sc_core::sc_report);
+  camera->link->take(1);
+  EXPECT_THROW(camera->link->take(1), sc_core::sc_report);
   EXPECT_EQ(expected.text(), "camera: frame 1 taken: must be the running one, once; 2 have begun");
 }
 

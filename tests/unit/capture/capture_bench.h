@@ -58,8 +58,7 @@ struct CaptureSide {
     binder.bind(host.socket, board.registers, prefix + "host_to_registers");
     board.pci.bind(bus.slot);
     camera.frames_out.bind(board.frames_in);
-    camera.lines_out.bind(board.lines_in);
-    board.takes_out.bind(camera.takes_in);
+    board.camera.bind(camera.link);
   }
 
   std::uint32_t status() { return host.read(registers::kStatus).word; }

@@ -165,7 +165,7 @@ TEST_F(CaptureRegisters, ArmTheNextCaptureWhileOneRuns) {
 TEST_F(CaptureRegisters, TriggerTheCamera) {
   camera.trigger = CameraTrigger::kOnDemand;
   build();
-  side->board.triggers_out.bind(side->camera.triggers_in);
+  side->board.triggered.bind(side->camera.link);
   run_to(1'000);
   side->write(kBufferAddress, kAddress);
   side->write(kControl, kControlArm | kControlTrigger);
@@ -236,18 +236,6 @@ TEST_F(CaptureRegisters, StartAFrameThatBeginsWhenTheLastCaptureEndsButNotEarlie
   run_to(frame_ps(3) + 1);
   EXPECT_EQ(side->board.last_capture()->frame, 1U);
   EXPECT_EQ(stats().started_frames, 3U);
-}
-
-TEST_F(CaptureRegisters, ReportALineThatNoCaptureExpects) {
-  build();
-  const std::vector<std::uint8_t> pixels(16);
-  test::ExpectedReport expected("/stereotlm/capture_board", 2);
-  run_to(1);
-  EXPECT_THROW(side->board.lines_in->push({0, pixels.data()}), sc_core::sc_report);
-  EXPECT_EQ(expected.text(), "board: line 0 came: no capture expects it");
-  side->arm(kAddress);
-  run_to(frame_ps(1) + 1);
-  EXPECT_THROW(side->board.lines_in->push({2, pixels.data()}), sc_core::sc_report);
 }
 
 TEST(CaptureBoard, RefusesAConfigurationWithProblems) {

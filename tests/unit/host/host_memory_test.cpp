@@ -21,7 +21,8 @@ using Words = std::vector<std::uint32_t>;
 
 constexpr std::uint64_t kBytes = 64;
 
-// Memory with two initiators, each behind a monitor.
+// Memory with two initiators, each behind a monitor. ssram_bank_test.cpp tests what both memories share
+// (memory::RamTarget).
 class HostMemoryTest : public testing::Test {
  protected:
   void build(const test::ProtocolOptions& options = {}) {
@@ -111,22 +112,6 @@ TEST_F(HostMemoryTest, RefusesIncorrectAccesses) {
   EXPECT_EQ(memory.stats().writes, 0U);
   EXPECT_EQ(host.debug_read(0, kBytes / 4), Words(kBytes / 4));
   EXPECT_EQ(binder->take_violations().size(), 4U);  // lengths of 0, of data and of byte enables
-}
-
-TEST_F(HostMemoryTest, CompletesANonBlockingAccessAtOnce) {
-  build();
-  EXPECT_EQ(host.request(tlm::TLM_WRITE_COMMAND, 8, 77, sc_time(1, sc_core::SC_NS)), tlm::TLM_COMPLETED);
-  EXPECT_EQ(host.request(tlm::TLM_READ_COMMAND, 8), tlm::TLM_COMPLETED);
-  ASSERT_EQ(host.answers.size(), 2U);
-  EXPECT_EQ(host.answers[0].at, sc_time(1, sc_core::SC_NS));
-  EXPECT_EQ(host.answers[1].word, 77U);
-}
-
-TEST_F(HostMemoryTest, GivesDebugTransportAsMuchAsItHas) {
-  build();
-  EXPECT_EQ(host.debug_write(kBytes - 8, {1, 2, 3}), 8U);
-  EXPECT_EQ(host.debug_read(kBytes - 8, 3), (Words{1, 2}));
-  EXPECT_EQ(host.debug_read(kBytes, 1), Words{});
 }
 
 TEST_F(HostMemoryTest, GrantsItselfForDirectAccess) {

@@ -1,14 +1,11 @@
-#include "models/kernels/census_columns.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <bitset>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "models/kernels/census_transform.h"
+#include "models/kernels/census.h"
 #include "models/kernels/simd.h"
 #include "tests/support/random_board.h"
 #include "tests/support/reference_arithmetic.h"
@@ -66,16 +63,6 @@ TEST(CensusTransform, EqualsTheLiteralBitsWithEachInstructionSet) {
       }
     }
   }
-}
-
-TEST(Census, RefusesSizesOutsideTheirRange) {
-  EXPECT_NO_THROW(CensusColumns(4, 1, 3, 1, {CostKind::kCensus, 7}));
-  EXPECT_NO_THROW(CensusTransform(4, 1, {CostKind::kCensus, 3}));
-  for (const int size : {1, 4, 9}) {
-    EXPECT_THROW(CensusColumns(4, 1, 3, 1, {CostKind::kCensus, size}), std::invalid_argument);
-    EXPECT_THROW(CensusTransform(4, 1, {CostKind::kCensus, size}), std::invalid_argument);
-  }
-  EXPECT_THROW(CensusTransform(0, 1, {CostKind::kCensus, 3}), std::invalid_argument);
 }
 
 }  // namespace

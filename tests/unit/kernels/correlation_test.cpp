@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "models/kernels/lane_array.h"
 #include "models/kernels/simd.h"
+#include "models/kernels/simd_array.h"
 #include "models/kernels/stereo_pipeline.h"
 #include "tests/support/random_board.h"
 #include "tests/support/reference_arithmetic.h"

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -70,24 +69,6 @@ TEST(SelectMinChain, EqualsALoopOverTheDiagonalWithEachInstructionSet) {
       }
     }
   }
-}
-
-TEST(SelectMinChain, RefusesDisparitiesOutsideTheirRange) {
-  EXPECT_NO_THROW(SelectMinChain(1));
-  EXPECT_NO_THROW(SelectMinChain(254));
-  EXPECT_THROW(SelectMinChain(0), std::invalid_argument);
-  EXPECT_THROW(SelectMinChain(255), std::invalid_argument);
-}
-
-TEST(ScoreChain, RefusesDisparitiesOutsideTheirRange) {
-  for (const int disparities : {0, 255}) EXPECT_THROW(ScoreChain{disparities}, std::invalid_argument);
-}
-
-TEST(LrCheck, RefusesDisparitiesOrToleranceOutsideTheirRange) {
-  EXPECT_NO_THROW(LrCheck(1, 0));
-  EXPECT_NO_THROW(LrCheck(254, 253));
-  for (const int disparities : {0, 255}) EXPECT_THROW(LrCheck(disparities, 0), std::invalid_argument);
-  for (const int tolerance : {-1, 254}) EXPECT_THROW(LrCheck(8, tolerance), std::invalid_argument);
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
-#include <memory>
 #include <ostream>
 #include <set>
 #include <string>
@@ -13,7 +12,7 @@
 
 namespace stereotlm::memory {
 
-void PrintTo(const PolicyEntry& policy, std::ostream* out) { *out << policy.name; }
+void PrintTo(const ArbitrationPolicy& policy, std::ostream* out) { *out << policy.name; }
 
 namespace {
 
@@ -22,10 +21,6 @@ using State = ArbitrationPolicy::State;
 const PriorityList kList = {port::kRightLut, port::kResult,    port::kLeftLut,
                             port::kHost,     port::kLeftPixel, port::kRightPixel};
 
-std::unique_ptr<const ArbitrationPolicy> policy_of(const std::string& name) {
-  return find_arbitration_policy(name)->make(kList);
-}
-
 // The first of the list, from `place` on, that requests.
 Port first_requesting(std::size_t place, PortMask requests) {
   while ((requests & mask_of(kList[place % kPortCount])) == 0) ++place;
@@ -33,7 +28,7 @@ Port first_requesting(std::size_t place, PortMask requests) {
 }
 
 // The rules that each policy must keep in every state that it can reach (ArbitrationPolicy).
-class EveryPolicy : public testing::TestWithParam<PolicyEntry> {
+class EveryPolicy : public testing::TestWithParam<ArbitrationPolicy> {
  protected:
   EveryPolicy() {
     std::vector<State> found = {0};
@@ -45,20 +40,21 @@ class EveryPolicy : public testing::TestWithParam<PolicyEntry> {
       for (unsigned requests = 0; requests <= kAll; ++requests) {
         const State state = found[i];
         const auto mask = static_cast<PortMask>(requests);
-        add(policy_->next(state, mask, 0));
-        if (mask != 0) add(policy_->next(state, mask, mask_of(policy_->winner(state, mask))));
+        add(policy_->next(kList, state, mask, 0));
+        if (mask != 0) add(policy_->next(kList, state, mask, mask_of(policy_->winner(kList, state, mask))));
       }
     }
   }
 
-  std::unique_ptr<const ArbitrationPolicy> policy_ = GetParam().make(kList);
+  const ArbitrationPolicy* policy_ = &GetParam();
   std::set<State> states_;
 };
 
 TEST_P(EveryPolicy, LetsOneOfTheRequestsWin) {
   for (const State state : states_) {
     for (unsigned requests = 1; requests <= kAll; ++requests)
-      ASSERT_NE(requests & mask_of(policy_->winner(state, static_cast<PortMask>(requests))), 0U) << state;
+      ASSERT_NE(requests & mask_of(policy_->winner(kList, state, static_cast<PortMask>(requests))), 0U)
+          << state;
   }
 }
 
@@ -66,8 +62,8 @@ TEST_P(EveryPolicy, TakesFurtherUncontendedGrantsToAPortForIdleCycles) {
   for (const State state : states_) {
     for (const Port port : kList) {
       const PortMask mask = mask_of(port);
-      const State granted = policy_->next(state, mask, mask);
-      ASSERT_EQ(policy_->next(granted, mask, mask), policy_->next(granted, 0, 0)) << state;
+      const State granted = policy_->next(kList, state, mask, mask);
+      ASSERT_EQ(policy_->next(kList, granted, mask, mask), policy_->next(kList, granted, 0, 0)) << state;
     }
   }
 }
@@ -76,7 +72,7 @@ TEST_P(EveryPolicy, ForgetsAsTheTableSays) {
   bool forgets = true;
   for (const State state : states_) {
     for (const Port port : kList)
-      forgets = forgets && policy_->next(state, mask_of(port), mask_of(port)) == 0;
+      forgets = forgets && policy_->next(kList, state, mask_of(port), mask_of(port)) == 0;
   }
   EXPECT_EQ(forgets, GetParam().forgets);
 }
@@ -85,30 +81,31 @@ INSTANTIATE_TEST_SUITE_P(ArbitrationPolicies, EveryPolicy, testing::ValuesIn(arb
                          [](const auto& suite) { return std::string(suite.param.name); });
 
 TEST(ArbitrationPolicies, AreFoundByTheirNames) {
-  for (const PolicyEntry& policy : arbitration_policies())
+  for (const ArbitrationPolicy& policy : arbitration_policies())
     EXPECT_EQ(find_arbitration_policy(policy.name), &policy);
   EXPECT_EQ(find_arbitration_policy("lottery"), nullptr);
 }
 
 TEST(FixedPriorityPolicy, LetsTheFirstOfTheListWinForEverySetOfRequests) {
-  const auto policy = policy_of("fixed_priority");
+  const auto* const policy = find_arbitration_policy("fixed_priority");
   for (unsigned requests = 1; requests <= kAll; ++requests) {
     const auto mask = static_cast<PortMask>(requests);
-    EXPECT_EQ(policy->winner(0, mask), first_requesting(0, mask)) << requests;
-    EXPECT_EQ(policy->next(0, mask, mask_of(first_requesting(0, mask))), 0U);
+    EXPECT_EQ(policy->winner(kList, 0, mask), first_requesting(0, mask)) << requests;
+    EXPECT_EQ(policy->next(kList, 0, mask, mask_of(first_requesting(0, mask))), 0U);
   }
 }
 
 TEST(RoundRobinPolicy, SearchesFromTheHeadOfTheListAtFirstAndThenFromAfterTheLastPortGranted) {
-  const auto policy = policy_of("round_robin");
+  const auto* const policy = find_arbitration_policy("round_robin");
   for (std::size_t granted = 0; granted <= kPortCount; ++granted) {  // so many ports of the list, in turn
     State state = 0;
     for (std::size_t place = 0; place < granted; ++place)
-      state = policy->next(state, kAll, mask_of(kList[place]));
+      state = policy->next(kList, state, kAll, mask_of(kList[place]));
     for (unsigned requests = 1; requests <= kAll; ++requests) {
       const auto mask = static_cast<PortMask>(requests);
-      EXPECT_EQ(policy->winner(state, mask), first_requesting(granted, mask)) << granted << ' ' << requests;
-      EXPECT_EQ(policy->next(state, mask, 0), state);
+      EXPECT_EQ(policy->winner(kList, state, mask), first_requesting(granted, mask))
+          << granted << ' ' << requests;
+      EXPECT_EQ(policy->next(kList, state, mask, 0), state);
     }
   }
 }

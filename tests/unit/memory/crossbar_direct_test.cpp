@@ -6,8 +6,8 @@
 #include <tuple>
 #include <vector>
 
-#include "tests/unit/memory/crossbar_bench.h"
 #include "tests/support/scripted_ends.h"
+#include "tests/unit/memory/crossbar_bench.h"
 
 namespace stereotlm::memory {
 namespace {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "tests/support/expected_report.h"
-#include "tests/unit/memory/crossbar_bench.h"
 #include "tests/support/scripted_ends.h"
+#include "tests/unit/memory/crossbar_bench.h"
 
 namespace stereotlm::memory {
 namespace {

@@ -1,11 +1,40 @@
-#include "models/kernels/census_transform.h"
+#include "models/kernels/census.h"
 
 #include <algorithm>
 #include <array>
-#include <stdexcept>
-#include <string>
 
 namespace stereotlm::kernels {
+
+CensusColumns::CensusColumns(int width, int height, int rows_per_column, int rows_per_strip,
+                             const MatchingCost& cost)
+    : half_(cost.half()),
+      rows_(rows_per_column),
+      pixels_(width, height, rows_per_column, rows_per_strip, half_),
+      output_(static_cast<std::size_t>(rows_per_column * cost.pixel_bytes())) {
+  start_frame(0);
+}
+
+PixelColumn CensusColumns::push(const PixelColumn& column) {
+  std::copy_n(column.values, rows_, pixels_.begin_column());
+  if (!pixels_.finish_column(column.valid)) return output();
+  const std::uint8_t* const columns = pixels_.columns();
+  const std::ptrdiff_t half = half_;
+  std::uint8_t* out = output_.data();
+  for (std::ptrdiff_t k = 0; k < rows_; ++k) {
+    const std::uint8_t middle = columns[half * pixels_.stride() + half + k];
+    unsigned bits = 0;
+    int bit = 0;
+    for (std::ptrdiff_t i = 0; i <= 2 * half; ++i) {
+      for (std::ptrdiff_t j = 0; j <= 2 * half; ++j) {
+        if (i == half && j == half) continue;
+        bits = bits << 1U | unsigned{columns[i * pixels_.stride() + k + j] < middle};
+        if (++bit % 8 == 0) *out++ = static_cast<std::uint8_t>(bits);
+      }
+    }
+  }
+  output_valid_ = pixels_.valid();
+  return output();
+}
 
 CensusTransform::CensusTransform(int width, int height, const MatchingCost& cost, const Simd& simd)
     : width_(width),
@@ -13,11 +42,6 @@ CensusTransform::CensusTransform(int width, int height, const MatchingCost& cost
       half_(cost.half()),
       simd_(simd.frame),
       stride_(static_cast<std::size_t>(width + 2 * half_ + kMostFrameVectorBytes)) {
-  kCensusSizeRule.required("census_size", cost.census_size);
-  if (width < 1 || height < 1) {
-    throw std::invalid_argument("image = " + std::to_string(width) + " x " + std::to_string(height) +
-                                ": must have pixels");
-  }
   const auto pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   padded_.resize(static_cast<std::size_t>(height) * stride_);
   planes_.resize(static_cast<std::size_t>(cost.pixel_bytes()));
