@@ -230,8 +230,8 @@ class Waveform {
   }
 
   void take_up_to(std::uint64_t time_ps, const std::deque<ChangeStream*>& streams) {
+    for (const std::uint32_t signal : touched_) is_touched_[signal] = 0;
     touched_.clear();
-    std::fill(is_touched_.begin(), is_touched_.end(), char{0});
     for (ChangeStream* const stream : streams) {
       for (; stream->change() && stream->change()->time_ps <= time_ps; stream->advance()) {
         const ChangeStream::Change& change = *stream->change();
