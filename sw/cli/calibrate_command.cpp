@@ -267,15 +267,18 @@ int print_grid(const CalibrateOptions& options) {
     const runs::CalibrationFunctions& functions = runs::calibration_functions();
     sheet = is_pdf ? functions.grid_sheet_pdf(grid) : functions.grid_sheet_svg(grid);
   });
+  bool is_written = false;
   process::attempt_or_refuse("--out ", [&] {
     files::OutputFile file(options.out.text(), {"sheet of the same grid", [&sheet](const fs::path& earlier) {
                                                   return files::read_whole_file(earlier) == sheet;
                                                 }});
     file.write(sheet);
     file.complete();
-    if (!process::interrupted()) file.commit();
+    if (process::interrupted()) return;
+    file.commit();
+    is_written = true;
   });
-  if (process::interrupted()) return leave_unwritten();
+  if (!is_written) return leave_unwritten();
   process::print(fmt::format("{}: {}x{} squares of {} mm, {}x{} inner corners; print it at 100 %\n",
                              options.out.text(), grid.columns + 1, grid.rows + 1, grid.square_mm,
                              grid.columns, grid.rows));
@@ -333,11 +336,14 @@ class Calibrator {
     calibrate();
     for (const std::string& picture : result_.skipped)
       process::say("note", picture + ": the pair is skipped");
+    bool is_written = false;
     process::attempt_or_refuse("--out ", [&] {
       write();
-      if (!process::interrupted()) output_->commit();
+      if (process::interrupted()) return;
+      output_->commit();
+      is_written = true;
     });
-    if (process::interrupted()) return leave_unwritten();
+    if (!is_written) return leave_unwritten();
     process::print(calibration_summary(result_, request_.pictures.size()) + written_text());
     return kDone;
   }

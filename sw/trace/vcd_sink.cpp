@@ -255,8 +255,9 @@ class Waveform {
 
   void write_time(std::uint64_t time_ps) {
     last_ps_ = time_ps;
+    const fmt::format_int digits(time_ps);
     text_ += '#';
-    text_ += fmt::format_int(time_ps).c_str();
+    text_.append(digits.data(), digits.size());
     text_ += '\n';
   }
 
@@ -272,8 +273,8 @@ class Waveform {
       text_ += value == kNoNumber ? "bz" : "bx";
     } else {
       std::array<char, 33> digits = {'b'};
-      char* const end = digits.data() + digits.size();
-      text_.append(digits.data(), std::to_chars(digits.data() + 1, end, value, 2).ptr);
+      const char* const end = std::to_chars(digits.data() + 1, digits.data() + digits.size(), value, 2).ptr;
+      text_.append(digits.data(), static_cast<std::size_t>(end - digits.data()));
     }
     text_ += line_ends_[signal];
     if (text_.size() < kTextBytes) return;
