@@ -176,10 +176,16 @@ class Waveform {
       : file_(file), signals_(signals), is_touched_(signals.all.size()), is_active_(signals.all.size()) {
     for (const Signal& signal : signals.all) {
       next_values_.push_back(signal.idle);
-      line_ends_.push_back((signal.bits == 1 ? "" : " ") + signal.code + '\n');
+      LineEnd& end = line_ends_.emplace_back();
+      end.size = ((signal.bits == 1 ? "" : " ") + signal.code + '\n').copy(end.text.data(), end.text.size());
     }
     values_ = next_values_;
-    for (const std::string& word : signals.words) words_.push_back('s' + word);
+    std::size_t longest = kMostDigits;
+    for (const std::string& word : signals.words) {
+      words_.push_back('s' + word);
+      longest = std::max(longest, words_.back().size());
+    }
+    line_.resize(longest + sizeof(LineEnd::text));
   }
 
   Span write(const std::deque<ChangeStream*>& streams, const TimeSpan& window) {
@@ -211,6 +217,12 @@ class Waveform {
 
  private:
   static constexpr std::size_t kTextBytes = std::size_t{1} << 16U;
+  static constexpr std::size_t kMostDigits = 33;  // and the letter before them
+  // What stands behind a value. All bytes are copied, which takes less time than to copy the right number.
+  struct LineEnd {
+    std::array<char, 8> text{};
+    std::size_t size = 0;
+  };
 
   void write_header() {
     text_ = kVcdMark;
@@ -265,18 +277,21 @@ class Waveform {
     const Signal& its = signals_.all[signal];
     const std::uint32_t value = values_[signal];
     if (value != its.idle) is_active_[signal] = 1;
+    char* to = line_.data();
     if (its.bits == 1) {
-      text_ += value != 0 ? '1' : '0';
+      *to++ = value != 0 ? '1' : '0';
     } else if (its.bits == 0) {
-      text_ += words_[value];
-    } else if (value >= kUnknown) {
-      text_ += value == kNoNumber ? "bz" : "bx";
+      to = std::copy(words_[value].begin(), words_[value].end(), to);
     } else {
-      std::array<char, 33> digits = {'b'};
-      const char* const end = std::to_chars(digits.data() + 1, digits.data() + digits.size(), value, 2).ptr;
-      text_.append(digits.data(), static_cast<std::size_t>(end - digits.data()));
+      *to++ = 'b';
+      if (value >= kUnknown)
+        *to++ = value == kNoNumber ? 'z' : 'x';
+      else
+        to = std::to_chars(to, line_.data() + line_.size(), value, 2).ptr;
     }
-    text_ += line_ends_[signal];
+    const LineEnd& end = line_ends_[signal];
+    std::copy(end.text.begin(), end.text.end(), to);
+    text_.append(line_.data(), static_cast<std::size_t>(to - line_.data()) + end.size);
     if (text_.size() < kTextBytes) return;
     file_.write(text_);
     text_.clear();
@@ -284,9 +299,10 @@ class Waveform {
 
   files::AsideFile& file_;
   const Signals& signals_;
-  std::vector<std::string> line_ends_;  // [signal]: what stands behind a value
-  std::vector<std::string> words_;      // as values
-  std::vector<std::uint32_t> values_;   // [signal]
+  std::vector<LineEnd> line_ends_;     // [signal]
+  std::vector<std::string> words_;     // as values
+  std::vector<char> line_;             // a value with its end
+  std::vector<std::uint32_t> values_;  // [signal]
   std::vector<std::uint32_t> next_values_;
   std::vector<char> is_touched_;
   std::vector<char> is_active_;  // [signal]: has had another value than its idle one
