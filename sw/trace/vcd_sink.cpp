@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <deque>
@@ -180,6 +179,10 @@ class Waveform {
       end.size = ((signal.bits == 1 ? "" : " ") + signal.code + '\n').copy(end.text.data(), end.text.size());
     }
     values_ = next_values_;
+    for (std::size_t byte = 0; byte < digits_.size(); ++byte) {
+      for (std::size_t bit = 0; bit < 8; ++bit)
+        digits_[byte][bit] = (byte >> (7 - bit) & 1U) != 0 ? '1' : '0';
+    }
     std::size_t longest = kMostDigits;
     for (const std::string& word : signals.words) {
       words_.push_back('s' + word);
@@ -287,7 +290,7 @@ class Waveform {
       if (value >= kUnknown)
         *to++ = value == kNoNumber ? 'z' : 'x';
       else
-        to = std::to_chars(to, line_.data() + line_.size(), value, 2).ptr;
+        to = put_digits(value, to);
     }
     const LineEnd& end = line_ends_[signal];
     std::copy(end.text.begin(), end.text.end(), to);
@@ -297,12 +300,23 @@ class Waveform {
     text_.clear();
   }
 
+  // Puts the binary digits of a number without leading zeros, and returns their end. Up to 32 bytes change.
+  char* put_digits(std::uint32_t value, char* to) const {
+    std::array<char, 64> digits{};
+    for (std::size_t byte = 0; byte < 4; ++byte)
+      std::copy_n(digits_[value >> (24 - 8 * byte) & 0xFFU].begin(), 8, digits.data() + 8 * byte);
+    const auto zeros = static_cast<std::size_t>(__builtin_clz(value | 1U));
+    std::copy_n(digits.data() + zeros, 32, to);
+    return to + 32 - zeros;
+  }
+
   files::AsideFile& file_;
   const Signals& signals_;
-  std::vector<LineEnd> line_ends_;     // [signal]
-  std::vector<std::string> words_;     // as values
-  std::vector<char> line_;             // a value with its end
-  std::vector<std::uint32_t> values_;  // [signal]
+  std::array<std::array<char, 8>, 256> digits_{};  // [byte]: its binary digits
+  std::vector<LineEnd> line_ends_;                 // [signal]
+  std::vector<std::string> words_;                 // as values
+  std::vector<char> line_;                         // a value with its end
+  std::vector<std::uint32_t> values_;              // [signal]
   std::vector<std::uint32_t> next_values_;
   std::vector<char> is_touched_;
   std::vector<char> is_active_;  // [signal]: has had another value than its idle one
