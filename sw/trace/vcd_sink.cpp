@@ -188,7 +188,7 @@ class Waveform {
       words_.push_back('s' + word);
       longest = std::max(longest, words_.back().size());
     }
-    line_.resize(longest + sizeof(LineEnd::text));
+    text_.resize(kTextBytes + longest + sizeof(LineEnd::text));
   }
 
   Span write(const std::deque<ChangeStream*>& streams, const TimeSpan& window) {
@@ -196,10 +196,10 @@ class Waveform {
     for (ChangeStream* const stream : streams) stream->rewind();
     take_up_to(window.begin_ps, streams);
     write_time(window.begin_ps);
-    text_ += "$dumpvars\n";
+    put("$dumpvars\n");
     values_ = next_values_;
     for (std::size_t signal = 0; signal < values_.size(); ++signal) write_value(signal);
-    text_ += "$end\n";
+    put("$end\n");
     while (true) {
       std::uint64_t time_ps = UINT64_MAX;
       for (const ChangeStream* const stream : streams) {
@@ -210,7 +210,7 @@ class Waveform {
       write_changes(time_ps);
     }
     if (window.end_ps != UINT64_MAX && window.end_ps != last_ps_) write_time(window.end_ps);
-    file_.write(text_);
+    flush();
     Span span = {window.begin_ps, last_ps_, window.wait_ps, {}};
     for (std::size_t signal = 0; signal < is_active_.size(); ++signal) {
       if (is_active_[signal] != 0) span.active_scopes.insert(signals_.all[signal].scope);
@@ -228,20 +228,21 @@ class Waveform {
   };
 
   void write_header() {
-    text_ = kVcdMark;
+    std::string text = kVcdMark;
     const std::string* scope = nullptr;
     for (const Signal& signal : signals_.all) {
       if (scope == nullptr || *scope != signal.scope) {
-        if (scope != nullptr) text_ += "$upscope $end\n";
-        text_ += "$scope module " + signal.scope + " $end\n";
+        if (scope != nullptr) text += "$upscope $end\n";
+        text += "$scope module " + signal.scope + " $end\n";
         scope = &signal.scope;
       }
       const std::string range = signal.bits > 1 ? fmt::format(" [{}:0]", signal.bits - 1) : "";
-      fmt::format_to(std::back_inserter(text_), "$var {} {} {} {}{} $end\n",
+      fmt::format_to(std::back_inserter(text), "$var {} {} {} {}{} $end\n",
                      signal.bits == 0 ? "string" : "wire", std::max(signal.bits, 1U), signal.code,
                      signal.name, range);
     }
-    text_ += "$upscope $end\n$enddefinitions $end\n";
+    text += "$upscope $end\n$enddefinitions $end\n";
+    file_.write(text);
   }
 
   void take_up_to(std::uint64_t time_ps, const std::deque<ChangeStream*>& streams) {
@@ -271,16 +272,16 @@ class Waveform {
   void write_time(std::uint64_t time_ps) {
     last_ps_ = time_ps;
     const fmt::format_int digits(time_ps);
-    text_ += '#';
-    text_.append(digits.data(), digits.size());
-    text_ += '\n';
+    put("#");
+    put({digits.data(), digits.size()});
+    put("\n");
   }
 
   void write_value(std::size_t signal) {
     const Signal& its = signals_.all[signal];
     const std::uint32_t value = values_[signal];
     if (value != its.idle) is_active_[signal] = 1;
-    char* to = line_.data();
+    char* to = text_.data() + size_;
     if (its.bits == 1) {
       *to++ = value != 0 ? '1' : '0';
     } else if (its.bits == 0) {
@@ -294,12 +295,20 @@ class Waveform {
     }
     const LineEnd& end = line_ends_[signal];
     std::copy(end.text.begin(), end.text.end(), to);
-    text_.append(line_.data(), static_cast<std::size_t>(to - line_.data()) + end.size);
-    if (text_.size() < kTextBytes) return;
-    file_.write(text_);
-    text_.clear();
+    size_ = static_cast<std::size_t>(to - text_.data()) + end.size;
+    if (size_ >= kTextBytes) flush();
   }
 
+  // Puts a short text.
+  void put(std::string_view text) {
+    std::copy(text.begin(), text.end(), text_.data() + size_);
+    size_ += text.size();
+    if (size_ >= kTextBytes) flush();
+  }
+  void flush() {
+    file_.write({text_.data(), size_});
+    size_ = 0;
+  }
   // Puts the binary digits of a number without leading zeros, and returns their end. Up to 32 bytes change.
   char* put_digits(std::uint32_t value, char* to) const {
     std::array<char, 64> digits{};
@@ -315,13 +324,13 @@ class Waveform {
   std::array<std::array<char, 8>, 256> digits_{};  // [byte]: its binary digits
   std::vector<LineEnd> line_ends_;                 // [signal]
   std::vector<std::string> words_;                 // as values
-  std::vector<char> line_;                         // a value with its end
   std::vector<std::uint32_t> values_;              // [signal]
   std::vector<std::uint32_t> next_values_;
   std::vector<char> is_touched_;
   std::vector<char> is_active_;  // [signal]: has had another value than its idle one
   std::vector<std::uint32_t> touched_;
-  std::string text_;
+  std::vector<char> text_;  // with room for a line behind kTextBytes
+  std::size_t size_ = 0;    // of the text
   std::uint64_t last_ps_ = 0;
 };
 
