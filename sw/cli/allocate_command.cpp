@@ -170,23 +170,19 @@ std::unique_ptr<files::OutputFile> open_written(const AllocateOptions& options, 
       [&board](const std::filesystem::path& path) { return is_written_board(path, board); }};
   const std::vector<files::NamedFile> others = {{"BOARD", options.board.name()},
                                                 {"--out", options.out.text()}};
-  try {
-    return std::make_unique<files::OutputFile>(options.write.text(), kind, others);
-  } catch (const std::runtime_error& error) {
-    problems.add(fmt::format("--write {}", error.what()));
-    return nullptr;
-  }
+  std::unique_ptr<files::OutputFile> file;
+  problems.attempt("--write ",
+                   [&] { file = std::make_unique<files::OutputFile>(options.write.text(), kind, others); });
+  return file;
 }
 
 void check_store(const explore::SweepOptions& sweep, const BoardConfig& board) {
   std::vector<std::string> names;
   for (const platform::BankConfig& bank : board.banks) names.push_back(bank.name);
-  try {
+  process::attempt_or_refuse("--out ", [&] {
     const explore::StoreLock lock(sweep.store);
     explore::Store(sweep.store, sweep.version).check_banks(names);
-  } catch (const sqlite::DatabaseError& error) {
-    process::refuse(fmt::format("--out {}", error.what()));
-  }
+  });
 }
 
 bool show_progress(runs::ProgressLine& line, const explore::SearchProgress& progress) {

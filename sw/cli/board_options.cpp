@@ -33,11 +33,7 @@ std::vector<std::string> BoardOptions::words_without_allocation() const {
 
 LoadedBoard BoardOptions::load(process::Problems& problems) const {
   LoadedBoard loaded;
-  try {
-    loaded.board = platform::load_board(name(), sets_.texts());
-  } catch (const platform::BoardError& error) {
-    problems.add(error);
-  }
+  problems.attempt("", [&] { loaded.board = platform::load_board(name(), sets_.texts()); });
   if (calibration_.is_given()) {
     loaded.calibration =
         runs::load_calibration(calibration_.text(), loaded.board ? &*loaded.board : nullptr, problems);

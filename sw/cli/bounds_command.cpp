@@ -14,8 +14,8 @@
 #include "sw/cli/board_options.h"
 #include "sw/cli/command.h"
 #include "sw/process/streams.h"
+#include "sw/stats/console_table.h"
 #include "sw/stats/stats_json.h"
-#include "sw/stats/wait_text.h"
 
 namespace stereotlm::cli {
 namespace {

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
@@ -7,19 +9,19 @@
 #include <functional>
 #include <future>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <system_error>
 #include <utility>
 #include <vector>
 
+#include "calib/depth.h"
 #include "calib/synthetic_rig.h"
 #include "calib/tables.h"
 #include "models/kernels/limits.h"
-#include "sw/cli/calibration_output.h"
-#include "sw/cli/calibration_summary.h"
+#include "sw/cli/calibration_files.h"
 #include "sw/cli/command.h"
-#include "sw/cli/grid_pictures.h"
 #include "sw/files/output_file.h"
 #include "sw/files/sha256.h"
 #include "sw/files/whole_file.h"
@@ -31,7 +33,110 @@
 namespace stereotlm::cli {
 namespace {
 
+using calib::Calibration;
+using calib::RowError;
 namespace fs = std::filesystem;
+
+constexpr int kWindow = 7;  // window of fpl2003, pixels
+
+std::string row(const std::string& name, const std::string& text) {
+  return fmt::format("{:<16} {}\n", name, text);
+}
+
+std::string rows_text(const RowError& error) {
+  return fmt::format("mean {:.3f} px, max {:.3f}, {} corners", error.mean_px, error.max_px, error.corners);
+}
+
+std::string camera_text(const calib::CameraModel& camera) {
+  return fmt::format("focal length {:.1f}, {:.1f} px, centre ({:.1f}, {:.1f}), distortion {:.4f}",
+                     camera.matrix(0, 0), camera.matrix(1, 1), camera.matrix(0, 2), camera.matrix(1, 2),
+                     fmt::join(camera.distortion, " "));
+}
+
+std::string pairs_text(const calib::CalibrationResult& result, std::size_t pictures) {
+  const auto& sources = result.calibration.sources;
+  const std::size_t corners =
+      std::accumulate(sources.begin(), sources.end(), std::size_t{0},
+                      [](std::size_t sum, const calib::Source& source) { return sum + source.corners_used; });
+  return fmt::format("{} of {} with the grid; of {} corners each, {} fit, {} do not", result.pairs.size(),
+                     pictures, result.calibration.grid.corners(), corners, result.left_out.size());
+}
+
+// The nearest and the farthest depth that the disparities cover, at the centre of the picture.
+std::string depths_text(const Calibration& made) {
+  const calib::DepthGeometry geometry = {made.rectification.q, made.disparity_offset};
+  const auto depth = [&](int disparity) {
+    const auto point = geometry.point(made.rig.width / 2.0, made.rig.height / 2.0, disparity);
+    return point ? fmt::format("{:.0f} mm", point->z()) : "infinity";
+  };
+  return depth(made.disparities - 1) + " .. " + depth(0);
+}
+
+std::string disparities_text(const Calibration& made) {
+  const calib::DisparityRange& grid = made.quality.disparities;
+  const int first = made.disparity_offset;
+  const int last = first + made.disparities - 1;
+  return fmt::format("{:.1f} .. {:.1f} of the grid; offset {}: 0 .. {} of the board are {} .. {}, {}{}",
+                     grid.min, grid.max, first, made.disparities - 1, first, last, depths_text(made),
+                     grid.min < first || grid.max > last ? " (the grid's do not fit)" : "");
+}
+
+std::string table_text(const kernels::RectificationTable& table) {
+  const auto invalid = std::count_if(table.entries.begin(), table.entries.end(),
+                                     [](std::uint32_t entry) { return !kernels::entry_is_valid(entry); });
+  std::string text = fmt::format("{} of {} entries without source", invalid, table.entries.size());
+  if (table.height >= kWindow) {
+    const std::vector<int> lines = calib::source_lines(table, kWindow);
+    text += fmt::format("; a window of {} lines touches up to {} of the picture", kWindow,
+                        *std::max_element(lines.begin(), lines.end()));
+  }
+  return text;
+}
+
+std::string left_out_text(const calib::CalibrationResult& result) {
+  constexpr std::size_t kMost = 10;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(kMost, result.left_out.size()); ++i) {
+    const calib::LeftOutCorner& corner = result.left_out[i];
+    const calib::Source& source = result.calibration.sources[corner.pair];
+    const auto columns = static_cast<std::size_t>(result.calibration.grid.columns);
+    text += row(i == 0 ? "left out" : "",
+                fmt::format("corner ({}, {}) of '{}' and '{}': off by {:.2f} px", corner.corner % columns,
+                            corner.corner / columns, source.left, source.right, corner.misfit_px));
+  }
+  if (result.left_out.size() > kMost)
+    text += row("", fmt::format("and {} more", result.left_out.size() - kMost));
+  return text;
+}
+
+std::string calibration_summary(const calib::CalibrationResult& result, std::size_t pictures) {
+  const Calibration& made = result.calibration;
+  const calib::Quality& quality = made.quality;
+  const Eigen::AngleAxisd turn(made.rig.rotation);
+  constexpr double kDegrees = 57.29577951308232;
+  std::string text = row("pairs", pairs_text(result, pictures));
+  text += left_out_text(result);
+  text += row("left camera", camera_text(made.rig.left));
+  text += row("right camera", camera_text(made.rig.right));
+  if (result.lens == calib::Lens::kWithoutK3) {
+    text += row("lenses", "k3 is taken as 0: the grid was not seen far enough out to determine it");
+  }
+  text += row("baseline", fmt::format("{:.2f} mm; turned by {:.2f} degrees against each other",
+                                      made.rig.translation.norm(), kDegrees * turn.angle()));
+  text += row("reprojection", fmt::format("RMS {:.3f} px (left {:.3f}, right {:.3f})", quality.stereo_rms_px,
+                                          quality.left_rms_px, quality.right_rms_px));
+  text += row("row error", rows_text(quality.row_error));
+  text += row("found again", rows_text(quality.found_again) + ", in the rectified pictures");
+  if (quality.held_out) {
+    text += row("held out", fmt::format("reprojection RMS {:.3f} px; row error {}; each pair by the others",
+                                        quality.held_out->rms_px, rows_text(quality.held_out->row_error)));
+  }
+  text += row("rectified", fmt::format("focal length {:.1f} px", made.rectification.p1(0, 0)));
+  text += row("disparities", disparities_text(made));
+  text += row("left table", table_text(result.tables.left));
+  text += row("right table", table_text(result.tables.right));
+  return text;
+}
 
 constexpr int kSyntheticWidth = 640;  // image width of fpl2003, pixels
 constexpr int kSyntheticHeight = 480;
@@ -71,12 +176,46 @@ Rule is_offset() {
 struct CalibrateOptions : Options {
   using Options::Options;
 
-  void check_together(process::Problems& problems) override;
+  void check_together(process::Problems& problems) override {
+    const std::string extension = std::filesystem::path(out.text()).extension();
+    if (print_grid.is_given()) {
+      for (const Option* option : {&grid, &left, &right, &synthetic, &disparities, &offset}) {
+        if (option->is_given())
+          problems.add(fmt::format("{}: does not go with --print-grid", option->name()));
+      }
+      if (out.is_given() && extension != ".pdf" && extension != ".svg")
+        problems.add(fmt::format("--out '{}': must end in .pdf or .svg", out.text()));
+    } else {
+      if (!grid.is_given()) problems.add(fmt::format("--grid: missing: {}", kGridRule));
+      if (synthetic.is_given() && (left.is_given() || right.is_given()))
+        problems.add("--synthetic: makes its own pictures: does not go with --left and --right");
+      for (const auto& [side, option] : {std::pair("left", &left), std::pair("right", &right)}) {
+        if (!synthetic.is_given() && !option->is_given())
+          problems.add(fmt::format("--{0}: missing: the {0} camera's pictures (or --synthetic SEED)", side));
+      }
+      ends_in(".yaml")(out, problems);
+    }
+    if (!problems.empty()) {
+      problems.add_note(std::string("a complete command: ") +
+                        (print_grid.is_given() ? kPrintExample : kCalibrateExample));
+    } else {
+      for (const std::string& problem : calib::problems(grid_shape()))
+        problems.add(fmt::format("grid: {}", problem));
+    }
+  }
 
   // Of --grid, or of --print-grid.
-  calib::GridShape grid_shape() const;
+  calib::GridShape grid_shape() const {
+    calib::GridShape shape;
+    read_grid(print_grid.is_given() ? print_grid.text() : grid.text(), shape);
+    shape.square_mm = square.number<double>().value_or(0);
+    return shape;
+  }
   // Columns; nullopt: auto.
-  std::optional<int> disparity_offset() const;
+  std::optional<int> disparity_offset() const {
+    if (!offset.is_given() && synthetic.is_given()) return 0;
+    return offset.number<int>();
+  }
 
   Option left =
       Option(this, "--left", "'GLOB'",
@@ -117,70 +256,29 @@ struct CalibrateOptions : Options {
              {required("the calibration, F.yaml, or the sheet of --print-grid, F.pdf or F.svg")});
 };
 
-void CalibrateOptions::check_together(process::Problems& problems) {
-  const std::string extension = std::filesystem::path(out.text()).extension();
-  if (print_grid.is_given()) {
-    for (const Option* option : {&grid, &left, &right, &synthetic, &disparities, &offset}) {
-      if (option->is_given()) problems.add(fmt::format("{}: does not go with --print-grid", option->name()));
-    }
-    if (out.is_given() && extension != ".pdf" && extension != ".svg")
-      problems.add(fmt::format("--out '{}': must end in .pdf or .svg", out.text()));
-  } else {
-    if (!grid.is_given()) problems.add(fmt::format("--grid: missing: {}", kGridRule));
-    if (synthetic.is_given() && (left.is_given() || right.is_given()))
-      problems.add("--synthetic: makes its own pictures: does not go with --left and --right");
-    for (const auto& [side, option] : {std::pair("left", &left), std::pair("right", &right)}) {
-      if (!synthetic.is_given() && !option->is_given())
-        problems.add(fmt::format("--{0}: missing: the {0} camera's pictures (or --synthetic SEED)", side));
-    }
-    ends_in(".yaml")(out, problems);
-  }
-  if (!problems.empty()) {
-    problems.add_note(std::string("a complete command: ") +
-                      (print_grid.is_given() ? kPrintExample : kCalibrateExample));
-  } else {
-    for (const std::string& problem : calib::problems(grid_shape()))
-      problems.add(fmt::format("grid: {}", problem));
-  }
-}
-
-calib::GridShape CalibrateOptions::grid_shape() const {
-  calib::GridShape shape;
-  read_grid(print_grid.is_given() ? print_grid.text() : grid.text(), shape);
-  shape.square_mm = square.number<double>().value_or(0);
-  return shape;
-}
-
-std::optional<int> CalibrateOptions::disparity_offset() const {
-  if (!offset.is_given() && synthetic.is_given()) return 0;
-  return offset.number<int>();
-}
-
-[[noreturn]] void refuse_step(const std::string& option, const std::exception& error) {
-  process::refuse(option + (option.empty() ? "" : " ") + error.what());
-}
-
 int leave_unwritten() { return interrupted("nothing was written"); }
 
 int print_grid(const CalibrateOptions& options) {
   const calib::GridShape grid = options.grid_shape();
   process::catch_interrupts();
-  try {
+  std::string sheet;
+  process::attempt_or_refuse("--print-grid: ", [&] {
     const bool is_pdf = fs::path(options.out.text()).extension() == ".pdf";
     const runs::CalibrationFunctions& functions = runs::calibration_functions();
-    const std::string sheet = is_pdf ? functions.grid_sheet_pdf(grid) : functions.grid_sheet_svg(grid);
+    sheet = is_pdf ? functions.grid_sheet_pdf(grid) : functions.grid_sheet_svg(grid);
+  });
+  bool is_written = false;
+  process::attempt_or_refuse("--out ", [&] {
     files::OutputFile file(options.out.text(), {"sheet of the same grid", [&sheet](const fs::path& earlier) {
                                                   return files::read_whole_file(earlier) == sheet;
                                                 }});
     file.write(sheet);
     file.complete();
-    if (process::interrupted()) return leave_unwritten();
+    if (process::interrupted()) return;
     file.commit();
-  } catch (const std::invalid_argument& error) {
-    refuse_step("--print-grid:", error);
-  } catch (const std::exception& error) {
-    refuse_step("--out", error);
-  }
+    is_written = true;
+  });
+  if (!is_written) return leave_unwritten();
   process::print(fmt::format("{}: {}x{} squares of {} mm, {}x{} inner corners; print it at 100 %\n",
                              options.out.text(), grid.columns + 1, grid.rows + 1, grid.square_mm,
                              grid.columns, grid.rows));
@@ -220,7 +318,7 @@ class Calibrator {
       inputs.push_back({"--left", pair.left_name});
       inputs.push_back({"--right", pair.right_name});
     }
-    try {
+    problems.attempt("--out ", [&] {
       files_ = runs::rig_files(options_.out.text());
       fs::path folder = files_.calibration.parent_path();
       if (folder.empty()) folder = ".";
@@ -232,21 +330,20 @@ class Calibrator {
       }
       output_ =
           std::make_unique<files::OutputFolder>(folder, calibration_content(files_, is_synthetic, inputs));
-    } catch (const std::exception& error) {
-      problems.add(fmt::format("--out {}", error.what()));
-    }
+    });
     if (process::interrupted()) return leave_unwritten();
     problems.check();
     calibrate();
     for (const std::string& picture : result_.skipped)
       process::say("note", picture + ": the pair is skipped");
-    try {
+    bool is_written = false;
+    process::attempt_or_refuse("--out ", [&] {
       write();
-      if (process::interrupted()) return leave_unwritten();
+      if (process::interrupted()) return;
       output_->commit();
-    } catch (const std::runtime_error& error) {
-      refuse_step("--out", error);
-    }
+      is_written = true;
+    });
+    if (!is_written) return leave_unwritten();
     process::print(calibration_summary(result_, request_.pictures.size()) + written_text());
     return kDone;
   }
@@ -262,11 +359,7 @@ class Calibrator {
       output_.reset();
       std::_Exit(leave_unwritten());
     }
-    try {
-      result_ = result.get();
-    } catch (const std::exception& error) {
-      refuse_step("", error);
-    }
+    process::attempt_or_refuse("", [&] { result_ = result.get(); });
   }
 
   void load_pictures(process::Problems& problems) {
@@ -274,14 +367,12 @@ class Calibrator {
       request_.pictures = load_grid_pictures(options_.left.texts(), options_.right.texts(), problems);
       return;
     }
-    try {
+    problems.attempt("--synthetic: ", [&] {
       rig_ = std::make_unique<calib::SyntheticRig>(*options_.synthetic.number<std::uint64_t>(),
                                                    kSyntheticWidth, kSyntheticHeight);
       request_.pictures =
           synthetic_pictures(*rig_, request_.grid, runs::rig_files(options_.out.text()).pictures);
-    } catch (const std::exception& error) {
-      problems.add(fmt::format("--synthetic: {}", error.what()));
-    }
+    });
   }
 
   // Adds a file of the calibration, which has this path.

@@ -1,11 +1,15 @@
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "sw/cli/options.h"
+#include "sw/process/streams.h"
 
 namespace stereotlm::cli {
 
@@ -60,6 +64,16 @@ void add_diagram(CLI::App& program, Action& action);
 void add_diff(CLI::App& program, Action& action);
 void add_report(CLI::App& program, Action& action);
 void add_paper(CLI::App& program, Action& action);
+
+inline constexpr std::size_t kTextColumns = 100;
+
+// Wraps `text` to lines of at most kTextColumns columns; a longer word has a line of its own. The first line
+// begins with `head`, padded to `indent`; the others are indented by `indent`. Each line ends with a newline.
+std::string paragraph(const std::string& head, std::size_t indent, const std::string& text);
+
+// The text with these words in colour, from the byte `from` on, if standard output is a terminal.
+std::string with_coloured_words(std::string text, std::size_t from,
+                                const std::vector<std::pair<std::string, process::Colour>>& words);
 
 // Prints the document to standard output.
 void print_json(const nlohmann::ordered_json& document);

@@ -11,6 +11,7 @@
 #include <system_error>
 #include <vector>
 
+#include "models/binder.h"
 #include "sw/cli/command.h"
 #include "sw/cli/run_options.h"
 #include "sw/files/output_file.h"
@@ -24,18 +25,17 @@
 #include "sw/runs/progress.h"
 #include "sw/runs/recorded_run.h"
 #include "sw/runs/rerun.h"
-#include "sw/runs/run_mode.h"
 #include "sw/runs/run_results.h"
-#include "sw/stats/conflicts_csv.h"
+#include "sw/stats/record_csv.h"
 
 namespace stereotlm::cli {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kScript = "plot_conflicts.py";
+constexpr const char* kConflictsScript = "plot_conflicts.py";
 constexpr const char* kMark = "conflicts.csv";  // the file that is moved into place last
-constexpr std::array kFigures = {"bank_rows", "picture", "time_line", "causes"};
+constexpr std::array kConflictFigures = {"bank_rows", "picture", "time_line", "causes"};
 constexpr std::array kEndings = {".png", ".svg", ".pdf", ".csv"};
 constexpr const char* kConflictsFooter =
     "Printed are who waits at which bank for whom, and where in the picture. Written are conflicts.csv,\n"
@@ -87,7 +87,7 @@ struct ConflictsOptions : Options {
 
 bool is_file_name(const std::string& name) {
   if (name == kMark || name == "rows.csv") return true;
-  return std::any_of(kFigures.begin(), kFigures.end(), [&name](const std::string& figure) {
+  return std::any_of(kConflictFigures.begin(), kConflictFigures.end(), [&name](const std::string& figure) {
     return std::any_of(kEndings.begin(), kEndings.end(),
                        [&](const char* ending) { return name == figure + ending; });
   });
@@ -193,13 +193,13 @@ bool draw(const ConflictsOptions& options, const runs::RunInput& input, const ru
     files::write_whole_file(path / "picture.raw",
                             std::string(shown_left.pixels.begin(), shown_left.pixels.end()));
   }
-  const auto end = process::run_script(kScript, options.arguments(path));
+  const auto end = process::run_script(kConflictsScript, options.arguments(path));
   if (process::interrupted()) return false;
   if (end.status != 0) {
-    throw std::runtime_error(fmt::format("the figures cannot be drawn: {} has ended with {}: {}", kScript,
-                                         end.status, end.errors));
+    throw std::runtime_error(fmt::format("the figures cannot be drawn: {} has ended with {}: {}",
+                                         kConflictsScript, end.status, end.errors));
   }
-  for (const std::string figure : kFigures) {
+  for (const std::string figure : kConflictFigures) {
     for (const char* ending : kEndings) {
       const fs::path file = path / (figure + ending);
       if (fs::exists(file)) folder.add(figure + ending, files::read_whole_file(file));
@@ -211,7 +211,7 @@ bool draw(const ConflictsOptions& options, const runs::RunInput& input, const ru
 // Refuses --format or --size if they are wrong, before anything is simulated.
 void check_looks(const ConflictsOptions& options) {
   if (options.arguments().empty()) return;
-  const auto end = process::run_script(kScript, options.arguments());
+  const auto end = process::run_script(kConflictsScript, options.arguments());
   if (end.status != 0) process::refuse(end.errors.substr(0, end.errors.find_last_not_of('\n') + 1));
 }
 
@@ -221,17 +221,12 @@ int conflicts(const ConflictsOptions& options) {
   runs::RunInput& input = subject.input;
   std::optional<files::OutputFolder> folder;
   if (options.out.is_given()) {
-    try {
-      folder.emplace(options.out.text(), content_of(input));
-    } catch (const std::runtime_error& error) {
-      process::refuse(error.what());
-    }
+    process::attempt_or_refuse("", [&] { folder.emplace(options.out.text(), content_of(input)); });
   }
   Binder binder;
   runs::BlankPairs blank(input.board);
   host::FrameSource& pairs = input.timing_only ? static_cast<host::FrameSource&>(blank) : *input.pairs;
-  const auto simulation =
-      runs::make_simulation(input.board, input.tables, pairs, runs::run_mode(input), binder);
+  const auto simulation = runs::make_simulation(input.board, input.tables, pairs, input.mode(), binder);
   Shown shown;
   if (!simulate(*simulation, input, folder ? &*folder : nullptr, shown))
     return interrupted("nothing is written");

@@ -67,16 +67,17 @@ int diagram(const DiagramOptions& options) {
   const std::string chart =
       options.is_run() ? chart_of_run(options.board.name(), problems) : chart_of_board(options, problems);
   problems.check();
-  try {
+  bool is_written = false;
+  process::attempt_or_refuse("--out ", [&] {
     files::OutputFile file(options.out.text(),
                            files::marked_kind("chart of stereotlm diagram", {{0, report::kChartMark}}));
     file.write(chart);
     file.complete();
-    if (process::interrupted()) return interrupted("no chart is written");
+    if (process::interrupted()) return;
     file.commit();
-  } catch (const std::runtime_error& error) {
-    process::refuse(fmt::format("--out {}", error.what()));
-  }
+    is_written = true;
+  });
+  if (!is_written) return interrupted("no chart is written");
   process::print(fmt::format("{}: the memory chart of {}\n", options.out.text(), options.board.name()));
   return kDone;
 }

@@ -9,7 +9,6 @@
 #include "platform/config/board_keys.h"
 #include "platform/config/board_yaml.h"
 #include "sw/cli/command.h"
-#include "sw/cli/text.h"
 #include "sw/process/problems.h"
 #include "sw/process/streams.h"
 

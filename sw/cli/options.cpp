@@ -1,10 +1,12 @@
 #include "sw/cli/options.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "platform/config/board_keys.h"
 #include "sw/cli/command.h"
@@ -86,6 +88,35 @@ CLI::App& add_command(CLI::App& program, const std::string& name, const std::str
 
 void when_parsed(CLI::App& command, const std::function<void()>& parsed) { command.callback(parsed); }
 
+std::string paragraph(const std::string& head, std::size_t indent, const std::string& text) {
+  std::string lines;
+  std::string line = head;
+  line.resize(std::max(indent, head.size()), ' ');
+  bool has_word = false;
+  std::istringstream words(text);
+  for (std::string word; words >> word; has_word = true) {
+    if (has_word && line.size() + 1 + word.size() > kTextColumns) {
+      lines += line + '\n';
+      line.assign(indent, ' ');
+      has_word = false;
+    }
+    line += (has_word ? " " : "") + word;
+  }
+  return lines + line + '\n';
+}
+
+std::string with_coloured_words(std::string text, std::size_t from,
+                                const std::vector<std::pair<std::string, process::Colour>>& words) {
+  for (const auto& [word, colour] : words) {
+    const std::size_t size = word.find('\n');  // a line ends without colour
+    std::string coloured = process::coloured(STDOUT_FILENO, colour, word.substr(0, size));
+    if (size != std::string::npos) coloured += word.substr(size);
+    for (std::size_t at = from; (at = text.find(word, at)) != std::string::npos; at += coloured.size())
+      text.replace(at, word.size(), coloured);
+  }
+  return text;
+}
+
 void print_json(const nlohmann::ordered_json& document) {
   process::print(files::json_text(document, nlohmann::ordered_json::error_handler_t::replace));
 }
@@ -96,11 +127,7 @@ int interrupted(const std::string& what) {
 }
 
 void check_temporary_folder(process::Problems& problems) {
-  try {
-    const files::TemporaryFolder folder;
-  } catch (const std::runtime_error& error) {
-    problems.add(error.what());
-  }
+  problems.attempt("", [] { const files::TemporaryFolder folder; });
 }
 
 }  // namespace stereotlm::cli

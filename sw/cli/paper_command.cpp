@@ -16,7 +16,6 @@
 #include "platform/config/board_yaml.h"
 #include "sw/cli/command.h"
 #include "sw/cli/run_options.h"
-#include "sw/cli/text.h"
 #include "sw/files/output_folder.h"
 #include "sw/files/temporary_folder.h"
 #include "sw/files/whole_file.h"
@@ -37,7 +36,7 @@
 namespace stereotlm::cli {
 namespace {
 
-constexpr const char* kScript = "plot_paper.py";
+constexpr const char* kPaperScript = "plot_paper.py";
 constexpr const char* kPaperFooter =
     "Written are paper.md, every claim with paper value, model value, bound, rule, verdict and the commands\n"
     "that give the numbers again; claims.csv with a row for each case; table1.csv, table2.csv, banks.csv\n"
@@ -160,11 +159,11 @@ bool draw(std::map<std::string, std::string>& files) {
   const files::TemporaryFolder temporary;
   const std::filesystem::path& folder = temporary.path();
   for (const auto& [name, bytes] : files) files::write_whole_file(folder / name, bytes);
-  const auto end = process::run_script(kScript, {"--", folder.string()});
+  const auto end = process::run_script(kPaperScript, {"--", folder.string()});
   if (process::interrupted()) return false;
   if (end.status != 0) {
-    throw std::runtime_error(fmt::format("the figures cannot be drawn: {} has ended with {}: {}", kScript,
-                                         end.status, end.errors));
+    throw std::runtime_error(fmt::format("the figures cannot be drawn: {} has ended with {}: {}",
+                                         kPaperScript, end.status, end.errors));
   }
   for (const char* figure : paper::kFigures) {
     for (const char* ending : {".png", ".svg"}) {
@@ -197,11 +196,9 @@ int compare_with_paper(const PaperOptions& options) {
   check_temporary_folder(problems);
   const auto given = load_pair(options, problems);
   std::unique_ptr<files::OutputFolder> folder;
-  try {
+  problems.attempt(fmt::format("--out {}: ", options.out.text()), [&] {
     folder = std::make_unique<files::OutputFolder>(options.out.text(), content_of(options));
-  } catch (const std::runtime_error& error) {
-    problems.add(fmt::format("--out {}: {}", options.out.text(), error.what()));
-  }
+  });
   problems.check();
   if (given) {
     for (const std::string& note : given->notes) process::say("note", note);

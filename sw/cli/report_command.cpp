@@ -18,8 +18,8 @@
 #include "sw/report/page_data/difference_data.h"
 #include "sw/report/page_data/run_data.h"
 #include "sw/runs/explanation.h"
-#include "sw/runs/frame_alignment.h"
 #include "sw/runs/recorded_run.h"
+#include "sw/runs/rerun.h"
 #include "sw/stats/console_table.h"
 
 namespace stereotlm::cli {
@@ -73,11 +73,7 @@ std::optional<Json> data_of_run(const ReportOptions& options, process::Problems&
   problems.check();
   Json data = report::run_data(*run, input.tables);
   if (options.quick.is_given()) {
-    try {
-      report::add_recorded_files(*run, data);
-    } catch (const std::runtime_error& error) {
-      process::refuse(error.what());
-    }
+    process::attempt_or_refuse("", [&] { report::add_recorded_files(*run, data); });
   } else {
     if (!report::add_repetition(*run, input, data)) return std::nullopt;
     runs::Explanation explanation(run->board, input.tables, input.camera);
@@ -112,12 +108,9 @@ std::optional<Json> data_of_two_runs(const ReportOptions& options, process::Prob
 std::optional<Json> data_of(const ReportOptions& options, process::Problems& problems) {
   if (options.inputs.texts().size() == 2) return data_of_two_runs(options, problems);
   if (!options.is_database()) return data_of_run(options, problems);
-  try {
-    return Json{{"kind", "database"}, {"database", report::database_data(options.inputs.texts().front())}};
-  } catch (const std::runtime_error& error) {  // a DatabaseError, or no points
-    problems.add(error.what());
-  }
-  return std::nullopt;
+  Json data = {{"kind", "database"}};
+  problems.attempt("", [&] { data["database"] = report::database_data(options.inputs.texts().front()); });
+  return data;
 }
 
 // `run`: of run_data().
@@ -134,12 +127,10 @@ int report(const ReportOptions& options) {
   process::catch_interrupts();
   process::Problems problems;
   std::optional<files::OutputFile> file;
-  try {
+  problems.attempt("--out ", [&] {
     file.emplace(options.out.text(),
                  files::marked_kind("page of stereotlm report", {{0, report::page_mark()}}));
-  } catch (const std::runtime_error& error) {
-    problems.add(fmt::format("--out {}", error.what()));
-  }
+  });
   std::optional<Json> data = data_of(options, problems);
   if (process::interrupted()) return interrupted("no page is written");
   problems.check();

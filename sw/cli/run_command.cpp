@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 
+#include "models/binder.h"
 #include "platform/bounds.h"
 #include "sw/cli/command.h"
 #include "sw/cli/run_options.h"
@@ -11,7 +12,6 @@
 #include "sw/process/streams.h"
 #include "sw/runs/progress.h"
 #include "sw/runs/run_input.h"
-#include "sw/runs/run_mode.h"
 #include "sw/runs/run_results.h"
 #include "sw/runs/verification.h"
 
@@ -23,7 +23,7 @@ using runs::Simulation;
 // Builds the simulation. If that fails, refuses the command, because no cycle has been simulated yet.
 std::unique_ptr<Simulation> build(const runs::RunInput& input, host::FrameSource& pairs, Binder& binder) {
   try {
-    return runs::make_simulation(input.board, input.tables, pairs, runs::run_mode(input), binder);
+    return runs::make_simulation(input.board, input.tables, pairs, input.mode(), binder);
   } catch (const std::exception& error) {
     process::refuse(fmt::format("the board cannot be built: {}", error.what()));
   }

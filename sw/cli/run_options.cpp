@@ -2,18 +2,310 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <functional>
+#include <iterator>
+#include <regex>
+#include <set>
+#include <string>
+#include <system_error>
 #include <utility>
 
+#include "calib/calibration.h"
 #include "platform/config/board_keys.h"
+#include "platform/config/board_yaml.h"
+#include "sw/files/sha256.h"
+#include "sw/process/installation.h"
+#include "sw/process/interrupt.h"
+#include "sw/process/streams.h"
+#include "sw/runs/run_json.h"
+#include "sw/runs/sources/calibration_library.h"
+#include "sw/runs/sources/open_source.h"
 
 namespace stereotlm::cli {
 namespace {
 
+namespace fs = std::filesystem;
+
+constexpr const char* kWindowForms =
+    "frame=F, frame=F,rows=A..B, frame=F,cycles=A..B or cycles=A..B, with integers and A not above B; each "
+    "may "
+    "end with ,longest-wait";
+
+// nullopt if the text has none of the forms.
+std::optional<trace::TraceWindow> window_of(const std::string& text) {
+  static const std::regex form(
+      R"((?:frame=(\d+)(?:,(rows|cycles)=(\d+)\.\.(\d+))?|cycles=(\d+)\.\.(\d+))(,longest-wait)?)");
+  std::smatch match;
+  if (!std::regex_match(text, match, form)) return std::nullopt;
+  trace::TraceWindow found;
+  fpga::CycleWindow& window = found.cycles;
+  found.around_longest_wait = match[7].matched;
+  if (match[2] == "rows") window.unit = fpga::CycleWindow::Unit::kRows;
+  if (match[1].matched && !(window.frame = number_of<std::uint64_t>(match[1].str()))) return std::nullopt;
+  const std::size_t range = match[3].matched ? 3 : 5;
+  if (!match[range].matched) return found;
+  const auto first = number_of<std::uint64_t>(match[range].str());
+  const auto last = number_of<std::uint64_t>(match[range + 1].str());
+  if (!first || !last || *first > *last) return std::nullopt;
+  window.first = *first;
+  window.last = *last;
+  return found;
+}
+
+void is_window(const Option& option, process::Problems& problems) {
+  if (option.is_given() && !window_of(option.text()))
+    problems.add(fmt::format("--trace-window = '{}': must be {}", option.text(), kWindowForms));
+}
+
+std::vector<std::string> format_names() {
+  std::vector<std::string> names;
+  for (const trace::TraceFormat& format : trace::kTraceFormats) names.emplace_back(format.name);
+  return names;
+}
+
+// nullopt if the text is not FORMAT:FILE.
+std::optional<trace::TraceFile> file_of(const std::string& text) {
+  const std::size_t colon = text.find(':');
+  const auto* const format =
+      std::find_if(std::begin(trace::kTraceFormats), std::end(trace::kTraceFormats),
+                   [&](const trace::TraceFormat& each) { return each.name == text.substr(0, colon); });
+  if (colon == std::string::npos || format == std::end(trace::kTraceFormats) || colon + 1 == text.size())
+    return std::nullopt;
+  return trace::TraceFile{format, text.substr(colon + 1)};
+}
+
 constexpr const char* kPictureOptions =
     "--left F --right F, --sequence DIR, --video F [F2] or --synthetic SEED";
 
+// Whether `inner` is the folder or lies below it, after resolving links and dots. False if either does not
+// exist.
+bool lies_in(const fs::path& inner, const fs::path& folder) {
+  std::error_code no_inner;
+  std::error_code no_folder;
+  const fs::path inside = fs::canonical(inner, no_inner).lexically_relative(fs::canonical(folder, no_folder));
+  return !no_inner && !no_folder && *inside.begin() != "..";
+}
+
+class InputLoader {
+ public:
+  explicit InputLoader(const RunOptions& options) : options_(options) {}
+
+  runs::RunInput load() {
+    auto [board, calibration] = options_.board.load(problems_);
+    problems_.attempt("", [&, &board = board] { load_pictures(board ? &*board : nullptr); });
+    if (calibration)
+      source_.files.insert(source_.files.end(), calibration->files.begin(), calibration->files.end());
+    check_truth();
+    process::catch_interrupts();
+    input_.inputs = source_.files;
+    input_.inputs.push_back({"BOARD", options_.board.name()});
+    if (options_.out.is_given()) {
+      problems_.attempt("", [&] {
+        input_.folder =
+            std::make_unique<files::OutputFolder>(options_.out.text(), runs::result_content(input_.inputs));
+      });
+    }
+    problems_.check();
+    input_.board = *board;
+    problems_.attempt("", [&, &calibration = calibration] {
+      input_.tables = runs::tables_of(input_.board, calibration);
+      if (calibration) {
+        input_.calibration = calibration->calibration;
+        input_.described.calibration = calibration->described;
+      }
+      input_.config_yaml = platform::to_yaml(input_.board);
+      describe();
+    });
+    options_.trace.check_window(input_.board, input_.frames, problems_);
+    problems_.check();
+    open_traces();
+    problems_.check();
+    for (const std::string& note : source_.notes) process::say("note", note);
+    if (input_.calibration) say_what_is_not_seen();
+    if (input_.calibration && !options_.timing_only.is_given())
+      problems_.attempt("", [&] { say_how_rows_agree(); });
+    problems_.check();
+    input_.pairs = std::move(source_.pairs);
+    return std::move(input_);
+  }
+
+ private:
+  void load_pictures(const platform::BoardConfig* board) {
+    source_ = runs::open_source(options_.pictures.source(), board, input_.described, problems_);
+    if (!options_.truth.file()) return;
+    const runs::NamedFile file = {"--truth", *options_.truth.file()};
+    source_.files.push_back(file);
+    input_.truth = runs::open_truth(file, options_.truth.scale(), board, problems_);
+    if (!input_.truth) return;
+    problems_.attempt(file.option + ' ', [&] {
+      input_.described.truth = {fs::absolute(file.path).string(), files::sha256_file(file.path)};
+    });
+  }
+
+  void check_truth() {
+    if (!options_.truth.file() || !options_.source.is_camera() || !source_.pairs ||
+        source_.pairs->length() == 1)
+      return;
+    problems_.add(fmt::format(
+        "--truth: cameras drop frames: which of {} pairs the last frame shows is not known before the run: "
+        "must be a run with one pair, or with --source preloaded",
+        source_.pairs->length()));
+  }
+
+  void open_traces() {
+    const std::vector<trace::TraceFile> files = options_.trace.files();
+    const auto window = options_.trace.window();
+    if (files.empty()) return;
+    if (window) input_.trace_window = window->cycles;
+    problems_.attempt("--trace ", [&] {
+      for (const trace::TraceFile& file : files) {
+        const fs::path folder = trace::outputs_of(file).front().parent_path();
+        if (!options_.out.is_given() || !lies_in(folder, options_.out.text())) continue;
+        throw std::runtime_error(
+            fmt::format("'{}': inside the result folder '{}', which is replaced whole: must lie "
+                        "outside the folder of --out",
+                        file.path, options_.out.text()));
+      }
+      input_.trace = std::make_unique<trace::Trace>(files, input_.board, window);
+    });
+  }
+
+  // Prints how well the rows of the rectified pictures match. A poor match gives a warning: the calibration
+  // may be of another rig, which its file alone does not reveal.
+  void say_how_rows_agree() {
+    constexpr double kDoubtful = 1.5;  // pixels
+    constexpr std::size_t kFew = 10;
+    constexpr std::size_t kMany = 50;
+    const host::StereoPair& pair = source_.pairs->pair(0);
+    const calib::MatchedRows rows = runs::calibration_functions().matched_rows(
+        kernels::rectify(pair.left, *input_.tables.left), kernels::rectify(pair.right, *input_.tables.right),
+        input_.board.matcher.disparities);
+    const std::string what = fmt::format(
+        "--calibration: of {} conspicuous points of the first left picture {} are found "
+        "in the right one",
+        rows.points, rows.error.corners);
+    if (rows.error.corners < kFew) {
+      const bool is_doubtful = rows.points >= kMany;
+      process::say(is_doubtful ? "warning" : "note",
+                   what + (is_doubtful ? ": is it of this rig, and are left and right not exchanged?"
+                                       : ": too few to see whether it is of this rig"));
+      return;
+    }
+    const bool is_doubtful = rows.error.mean_px > kDoubtful;
+    process::say(is_doubtful ? "warning" : "note",
+                 fmt::format("{}; their rows differ by {:.2f} pixels on average{}", what, rows.error.mean_px,
+                             is_doubtful ? ": is it of this rig?" : ""));
+  }
+
+  void say_what_is_not_seen() const {
+    const int made_for = input_.calibration->disparities;
+    const int has = input_.board.matcher.disparities;
+    if (has >= made_for) return;
+    process::say(
+        "note",
+        fmt::format(
+            "--calibration: was made for {} disparities: the nearest objects exceed the {} of this board",
+            made_for, has));
+  }
+
+  void describe() {
+    const runs::PictureSource source = options_.pictures.source();
+    const bool has_end = source.sequence || source.video;
+    input_.camera = options_.source.is_camera();
+    input_.fast = options_.is_fast();
+    input_.timing_only = options_.timing_only.is_given();
+    input_.record = options_.record.is_given();
+    input_.json = options_.json.is_given();
+    input_.frames = options_.frames.number<std::uint64_t>().value_or(has_end ? source_.pairs->length() : 1);
+    runs::RecordedOptions& run = input_.described;
+    run.program_version = process::kVersion;
+    run.source = input_.camera ? "camera" : "preloaded";
+    run.fidelity = input_.fast ? "fast" : "cycle";
+    run.timing_only = input_.timing_only;
+    run.verify = options_.verify.is_given();
+    run.frames = input_.frames;
+    run.truth_scale = options_.truth.scale();
+    run.save_frames = options_.save_frames.is_given();
+    run.record = input_.record;
+    run_json(run);  // throws now, instead of after the run, if a path cannot be recorded
+  }
+
+  const RunOptions& options_;
+  process::Problems problems_;
+  runs::OpenedSource source_;
+  runs::RunInput input_;
+};
+
 }  // namespace
+
+TraceOptions::TraceOptions(Options* of)
+    : files_(
+          of, "--trace", "FORMAT:FILE",
+          fmt::format("Write a trace of the run; FORMAT is {}; repeat it for more traces; a vcd whose FILE "
+                      "ends in .fst becomes FST",
+                      fmt::join(format_names(), ", ")),
+          {}, Takes::kRepeated),
+      window_(
+          of, "--trace-window", "WINDOW",
+          "Trace each cycle of a part of the run: frame=F[,rows=A..B | ,cycles=A..B] or cycles=A..B, the "
+          "limits included; frames and rows count from 0, cycles from the frame's first or from power-up; "
+          "with ,longest-wait only the cycles around the longest wait in it; vcd needs a window",
+          {is_window, goes_with(files_, "FORMAT:FILE")}) {}
+
+void TraceOptions::check_together(process::Problems& problems) const {
+  std::set<std::filesystem::path> outputs;
+  for (const std::string& text : files_.texts()) {
+    const auto file = file_of(text);
+    if (!file) {
+      problems.add(fmt::format("--trace '{}': must be FORMAT:FILE, where FORMAT is {}", text,
+                               platform::listed(format_names())));
+      continue;
+    }
+    try {
+      const auto own = trace::outputs_of(*file);
+      const auto shared =
+          std::find_if(own.begin(), own.end(),
+                       [&outputs](const std::filesystem::path& output) { return outputs.count(output) > 0; });
+      if (shared != own.end())
+        problems.add(fmt::format("--trace '{}': '{}' is the file of two traces: each needs its own", text,
+                                 shared->string()));
+      outputs.insert(own.begin(), own.end());
+    } catch (const std::system_error&) {  // trace::Trace says why
+    }
+    if (file->format->needs_window && !window_.is_given())
+      problems.add(fmt::format("--trace '{}': needs --trace-window: a {} has only the cycles of a window",
+                               text, file->format->name));
+  }
+}
+
+void TraceOptions::check_window(const platform::BoardConfig& board, std::uint64_t frames,
+                                process::Problems& problems) const {
+  const auto traced = window();
+  if (!traced) return;
+  const fpga::CycleWindow& cycles = traced->cycles;
+  if (cycles.frame && *cycles.frame >= frames) {
+    problems.add(fmt::format("--trace-window = '{}': frame {}: must be below the frames of the run, {}",
+                             window_.text(), *cycles.frame, frames));
+  }
+  const auto height = static_cast<std::uint64_t>(board.image.height);
+  if (cycles.unit == fpga::CycleWindow::Unit::kRows && cycles.last >= height) {
+    problems.add(fmt::format("--trace-window = '{}': row {}: must be below the rows of the image, {}",
+                             window_.text(), cycles.last, height));
+  }
+}
+
+std::vector<trace::TraceFile> TraceOptions::files() const {
+  std::vector<trace::TraceFile> files;
+  for (const std::string& text : files_.texts()) {
+    if (auto file = file_of(text)) files.push_back(std::move(*file));
+  }
+  return files;
+}
+
+std::optional<trace::TraceWindow> TraceOptions::window() const { return window_of(window_.text()); }
 
 TruthOptions::TruthOptions(Options* of, const std::string& picture)
     : file_(of, "--truth", "F", fmt::format("Ground truth of {}, 8-bit grey, 0 = unknown", picture)),
@@ -83,7 +375,7 @@ runs::PictureSource PictureOptions::source() const {
   if (left_.is_given()) source.pair = {left_.text(), right_.text()};
   source.sequence = sequence_.if_given();
   if (const auto layout = runs::video_layout_of(video_layout_.text()); video_.is_given() && layout)
-    source.video = {video_.texts(), *layout, video_layout_.text()};
+    source.video = {video_.texts(), *layout};
   source.synthetic = synthetic_.number<std::uint64_t>();
   return source;
 }
@@ -149,5 +441,7 @@ void RunOptions::check_together(const std::string& command, process::Problems& p
     problems.add_note(
         fmt::format("a complete command: stereotlm {} fpl2003 --left left.png --right right.png", command));
 }
+
+runs::RunInput RunOptions::load() const { return InputLoader(*this).load(); }
 
 }  // namespace stereotlm::cli

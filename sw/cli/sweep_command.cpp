@@ -2,20 +2,25 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <system_error>
+#include <thread>
+#include <utility>
+#include <vector>
 
 #include "calib/calibration.h"
 #include "platform/config/board_draft.h"
 #include "sw/cli/command.h"
-#include "sw/cli/sweep_options.h"
+#include "sw/cli/options.h"
 #include "sw/explore/plan/conditions.h"
 #include "sw/explore/plan/plan.h"
 #include "sw/explore/slurm/shard_folder.h"
 #include "sw/explore/slurm/slurm_sweep.h"
+#include "sw/explore/store/merge_stores.h"
 #include "sw/explore/store/store.h"
 #include "sw/explore/store/store_lock.h"
 #include "sw/explore/store/store_reader.h"
@@ -32,6 +37,147 @@
 
 namespace stereotlm::cli {
 namespace {
+
+// "I/N" as I and N; nullopt if the text is not that, with I below N.
+std::optional<std::pair<std::uint64_t, std::uint64_t>> shard_of(const std::string& text) {
+  const std::size_t slash = std::min(text.find('/'), text.size());
+  const auto index = number_of<std::uint64_t>(text.substr(0, slash));
+  const auto count = number_of<std::uint64_t>(text.substr(std::min(slash + 1, text.size())));
+  if (!index || !count || *index >= *count) return std::nullopt;
+  return std::pair(*index, *count);
+}
+
+// Checks the value of one --sbatch. Reports options that the launcher itself passes to sbatch.
+void check_sbatch(const std::string& option, process::Problems& problems) {
+  const std::vector<std::string> own = {"array", "dependency", "error", "job-name", "output", "wait", "wrap"};
+  const std::string name = option.substr(0, option.find('='));
+  const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || c == '-'; };
+  if (name.empty() || name[0] == '-' || !std::all_of(name.begin(), name.end(), is_letter)) {
+    problems.add(fmt::format(
+        "--sbatch = {}: must be a long option of sbatch without its dashes, such as partition=long", option));
+  } else if (std::find(own.begin(), own.end(), name) != own.end()) {
+    problems.add(fmt::format("--sbatch = {}: given by the launcher; others may be given", option));
+  }
+}
+
+// The options of `sweep`.
+struct SweepCommandOptions : Options {
+  using Options::Options;
+
+  void check_together(process::Problems& problems) override {
+    const auto refuse_given = [&problems](const Option& option, const char* rule) {
+      if (option.is_given()) problems.add(fmt::format("{}: {}", option.name(), rule));
+    };
+    if (is_slurm()) {
+      refuse_given(jobs, "not with --launcher slurm: --sbatch cpus-per-task=N");
+      refuse_given(shard, "not with --launcher slurm, which submits all shards");
+      refuse_given(known, "not with --launcher slurm");
+      refuse_given(progress, "not with --launcher slurm");
+      for (const std::string& option : sbatch.texts()) check_sbatch(option, problems);
+    } else {
+      refuse_given(shards, "goes with --launcher slurm");
+      refuse_given(sbatch, "goes with --launcher slurm");
+    }
+    if (progress.text().empty()) return;
+    // It is replaced, and must therefore not be another file of the user.
+    problems.attempt("--progress ", [this] { progress_file(); });
+  }
+
+  explore::SweepOptions sweep() const {
+    explore::SweepOptions options;
+    options.store = out.text();
+    options.version = process::kVersion;
+    options.known = known.text();
+    options.jobs = jobs.number<unsigned>().value_or(std::max(1U, std::thread::hardware_concurrency()));
+    std::tie(options.shard, options.shards) = shard_of(shard.text()).value_or(std::pair(0, 1));
+    return options;
+  }
+  bool is_slurm() const { return launcher.text() == "slurm"; }
+  // Of the job array.
+  std::uint64_t tasks() const { return shards.number<std::uint64_t>().value_or(kDefaultShards); }
+  // With their dashes.
+  std::vector<std::string> sbatch_options() const {
+    std::vector<std::string> options;
+    for (const std::string& option : sbatch.texts()) options.push_back("--" + option);
+    return options;
+  }
+  // The file of --progress, for one write.
+  files::OutputFile progress_file() const {
+    const files::FileKind kind = {"file of --progress", [](const std::filesystem::path& path) {
+                                    const std::string text = files::read_whole_file(path);
+                                    return text == explore::counts_text(explore::read_counts(text));
+                                  }};
+    return files::OutputFile(progress.text(), kind,
+                             {{"--out", out.text()}, {"PLAN", plan.text()}, {"--known", known.text()}});
+  }
+
+  Option plan = Option(this, "PLAN", " ", "The plan's file", {required("the path of a plan")});
+  Option out = Option(this, "--out", "DB", "The database to write, or to continue",
+                      {required("the database to write, or to continue")});
+  Option jobs = Option(this, "--jobs", "N", "Worker processes; default: the processors of this machine",
+                       {is_within<unsigned>(kMostJobs)});
+  Option shard =
+      Option(this, "--shard", "I/N",
+             "Only every N-th point, from number I on (0 .. N-1); see stereotlm merge", {is_shard()});
+  Option board = Option(this, "--board", "BOARD", "In place of the board that the plan names", {not_empty});
+  Option calibration =
+      Option(this, "--calibration", "F", "In place of the calibration that the plan names", {not_empty});
+  Option known =
+      Option(this, "--known", "DB2", "A database, only read, whose points are not run either", {not_empty});
+  Option progress =
+      Option(this, "--progress", "F", "Keep in this file how many points are done", {not_empty});
+  Option launcher = Option(this, "--launcher", "WHERE", "Where it runs: local, the default, or slurm",
+                           {one_of({"local", "slurm"})});
+  Option shards = Option(this, "--shards", "N", "With slurm: the tasks of the job array (default 16)",
+                         {is_within<std::uint64_t>(kMostShards)});
+  Option sbatch =
+      Option(this, "--sbatch", "NAME=VALUE",
+             "With slurm: an option of sbatch for all jobs, such as partition=long or time=8:00:00; again "
+             "for further ones",
+             {}, Takes::kRepeated);
+
+ private:
+  static constexpr std::uint64_t kMostJobs = 1024;
+  static constexpr std::uint64_t kMostShards = 1000;
+  static constexpr std::uint64_t kDefaultShards = 16;
+
+  template <typename Number>
+  static Rule is_within(std::uint64_t most) {
+    return number<Number>("1.." + std::to_string(most),
+                          [most](Number count) { return count >= 1 && count <= most; });
+  }
+  static Rule is_shard() {
+    return valid("I/N with I in 0 .. N-1, such as 0/4",
+                 [](const std::string& text) { return shard_of(text).has_value(); });
+  }
+  static void not_empty(const Option& option, process::Problems& problems) {
+    if (option.is_given() && option.text().empty()) problems.add(option.name() + ": empty");
+  }
+};
+
+struct MergeOptions : Options {
+  using Options::Options;
+
+  Option out = Option(this, "OUT", " ", "The database to write", {required("the database to write")});
+  Option inputs = Option(this, "DB", "...", "Databases of sweep, such as those of its shards",
+                         {required("the databases to merge")}, Takes::kList);
+};
+
+int merge(const MergeOptions& options) {
+  try {
+    const explore::StoreLock lock(options.out.text());
+    process::catch_interrupts();
+    explore::merge_stores(options.inputs.texts(), options.out.text(), process::interrupted);
+  } catch (const sqlite::DatabaseError& error) {
+    if (process::interrupted()) return interrupted("nothing is written");
+    process::refuse(error.what());
+  }
+  sqlite::Database merged(options.out.text(), sqlite::Database::Access::kRead);
+  const std::size_t inputs = options.inputs.texts().size();
+  process::print(fmt::format("{}: {} points of {} database{}\n", options.out.text(),
+                             merged.number("SELECT count(*) FROM points"), inputs, inputs == 1 ? "" : "s"));
+  return kDone;
+}
 
 constexpr std::chrono::seconds kBetweenCounts{2};
 // Timeout for a locked database, if the database is only opened to check that it can be read.
@@ -67,14 +213,10 @@ constexpr const char* kSweepFooter =
     "program. A task uses the processors that its job has: --sbatch cpus-per-task=8.";
 
 explore::Plan load_plan(const SweepCommandOptions& options) {
-  try {
-    return explore::Plan::load(options.plan.text(), options.board.text());
-  } catch (const platform::BoardError& error) {
-    process::Problems problems;
-    problems.add(error);
-    problems.check();
-    throw;
-  }
+  std::optional<explore::Plan> plan;
+  process::attempt_or_refuse("",
+                             [&] { plan = explore::Plan::load(options.plan.text(), options.board.text()); });
+  return std::move(*plan);
 }
 
 // Loads the calibration that --calibration or the plan names, and gives its tables to the plan. Returns
@@ -197,11 +339,9 @@ explore::SweepCounts sweep_here(const SweepCommandOptions& options, const explor
   const explore::SweepOptions sweep = options.sweep();
   check_open_files(sweep.jobs, plan.size());
   ProgressFile file(options);
-  try {
+  process::attempt_or_refuse("--known ", [&] {
     if (options.known.is_given()) const explore::FinishedStore known(sweep.known, sweep.version);
-  } catch (const sqlite::DatabaseError& error) {
-    process::refuse(fmt::format("--known {}", error.what()));
-  }
+  });
   try {
     const explore::StoreLock lock(options.out.text());
     const auto open_store = [&] {
@@ -317,6 +457,13 @@ int sweep(const SweepCommandOptions& options) {
 }
 
 }  // namespace
+
+void add_merge(CLI::App& program, Action& action) {
+  add_command(
+      program, action, "merge", "Put the points of several databases of sweep into one", merge,
+      "The bytes of OUT depend on nothing but the points: neither on the number of databases nor on their\n"
+      "order. OUT may be one of them. Databases that hold different results of one point are an error.");
+}
 
 void add_sweep(CLI::App& program, Action& action) {
   add_command(program, action, "sweep", "Simulate all points of a plan, and keep their figures", sweep,

@@ -9,6 +9,7 @@
 #include "models/fpga/register_map.h"
 #include "models/kernels/joint_table.h"
 #include "models/pci/bridge_registers.h"
+#include "platform/config/buffer_layout.h"
 
 namespace stereotlm::driver {
 namespace {
@@ -42,24 +43,6 @@ std::uint64_t results_start(const DriverConfig& config) {
 
 }  // namespace
 
-std::vector<std::string> problems(const DriverConfig& config) {
-  std::vector<std::string> found;
-  const auto rule = [&found](bool kept, const std::string& problem) {
-    if (!kept) found.push_back(problem);
-  };
-  rule(config.width >= 4 && config.width % 4 == 0,
-       "width = " + std::to_string(config.width) + ": must be a multiple of 4, at least 4");
-  rule(config.height >= 1, "height = " + std::to_string(config.height) + ": must be at least 1");
-  rule(config.frames >= 1, "frames = 0: must be at least 1");
-  rule(!config.buffers.left_images.empty() &&
-           config.buffers.left_images.size() == config.buffers.right_images.size(),
-       "left_images and right_images: must be equally long, and not empty");
-  rule(!config.buffers.disparities.empty(), "disparities: must not be empty");
-  rule(!config.capture_to_host || config.host_frames >= 1,
-       "host_frames = " + std::to_string(config.host_frames) + ": must be at least 1");
-  return found;
-}
-
 std::uint64_t host_memory_bytes(const DriverConfig& config) {
   return results_start(config) + config.buffers.disparities.size() * picture_bytes(config);
 }
@@ -67,7 +50,6 @@ std::uint64_t host_memory_bytes(const DriverConfig& config) {
 StereoDriver::StereoDriver(const DriverConfig& config, const std::vector<std::uint32_t>* left_table,
                            const std::vector<std::uint32_t>* right_table, FrameListener& listener)
     : config_(config), left_table_(left_table), right_table_(right_table), listener_(listener) {
-  if (const auto found = problems(config); !found.empty()) throw std::invalid_argument(found.front());
   const auto check = [this](const char* side, bool is_used, const std::vector<std::uint32_t>* table) {
     const std::size_t entries = table != nullptr ? table->size() : 0;
     const std::uint64_t expected = is_used ? table_bytes(config_) / 4 : 0;
@@ -326,6 +308,18 @@ std::uint32_t StereoDriver::bridge(std::uint64_t offset) {
 }
 void StereoDriver::bridge(std::uint64_t offset, std::uint32_t value) {
   bus_->write(config_.devices.bridge_registers + offset, value);
+}
+
+DriverConfig driver_config(const platform::BoardConfig& board, std::uint64_t frames) {
+  DriverConfig config;
+  config.width = board.image.width;
+  config.height = board.image.height;
+  config.frames = frames;
+  config.buffers = platform::buffer_bases(board);
+  config.capture_to_host = board.capture.destination == platform::CaptureDestination::kHostMemory;
+  config.host_frames = board.capture.host_frames;
+  config.trigger_cameras = board.cameras.trigger == platform::CameraTrigger::kOnDemand;
+  return config;
 }
 
 }  // namespace stereotlm::driver

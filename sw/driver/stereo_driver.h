@@ -10,27 +10,26 @@
 #include "models/fpga/buffer_bases.h"
 #include "models/host/program.h"
 #include "models/kernels/joint_table.h"
+#include "platform/config/board_config.h"
 #include "platform/device_map.h"
 #include "platform/driver_observer.h"
 
 // The program on the host (contract section 3). It uses only host::HostBus, so that it runs on the CPU of the
 // model and could run on a real machine.
+
 namespace stereotlm::driver {
 
 // The configuration of a StereoDriver.
 struct DriverConfig {
-  int width = 0;   // pixels
-  int height = 0;  // pixels
-  std::uint64_t frames = 1;
+  int width = 0;             // pixels, a multiple of 4
+  int height = 0;            // pixels
+  std::uint64_t frames = 1;  // 1 or more
   fpga::BufferBases buffers;
   bool capture_to_host = false;  // capture.destination: host_memory
   int host_frames = 3;           // pairs in the ring in host memory
   bool trigger_cameras = false;  // cameras.trigger: on_demand
   platform::DeviceMap devices;
 };
-
-// Every broken rule as `field = value: rule`; empty if a driver can be built.
-std::vector<std::string> problems(const DriverConfig& config);
 
 // Bytes of host memory that the driver uses, from address 0 of that memory.
 std::uint64_t host_memory_bytes(const DriverConfig& config);
@@ -60,8 +59,8 @@ class FrameListener {
 class StereoDriver : public host::Program {
  public:
   // Entries of the tables, row by row (contract 1.1); null for a side without table. The driver joins those
-  // of joint tables. The tables and `listener` outlive the driver. Throws std::invalid_argument if the
-  // configuration has problems, a table does not have one entry per pixel, or joint tables do not fit.
+  // of joint tables. The tables and `listener` outlive the driver. Throws std::invalid_argument if a
+  // table does not have one entry per pixel, or joint tables do not fit.
   StereoDriver(const DriverConfig& config, const std::vector<std::uint32_t>* left_table,
                const std::vector<std::uint32_t>* right_table, FrameListener& listener);
 
@@ -140,5 +139,8 @@ class StereoDriver : public host::Program {
   std::vector<std::uint64_t> camera_frames_;  // camera frame of each finished capture
   bool core_to_acknowledge_ = false;
 };
+
+// The configuration of a board's driver.
+DriverConfig driver_config(const platform::BoardConfig& board, std::uint64_t frames);
 
 }  // namespace stereotlm::driver

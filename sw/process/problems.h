@@ -34,6 +34,20 @@ class Problems {
     diagnostics_.insert(diagnostics_.end(), error.diagnostics().begin(), error.diagnostics().end());
   }
 
+  // Calls `step`, and adds what it throws, behind the prefix. Returns whether it throws nothing.
+  template <typename Step>
+  bool attempt(const std::string& prefix, const Step& step) {
+    try {
+      step();
+      return true;
+    } catch (const platform::BoardError& error) {
+      add(error);
+    } catch (const std::exception& error) {
+      add(prefix + error.what());
+    }
+    return false;
+  }
+
   // Adds a hint about the problems.
   void add_note(const std::string& text) { lines_.push_back("stereotlm: note: " + text); }
   bool empty() const { return lines_.empty(); }
@@ -62,5 +76,13 @@ class Problems {
 
 // Refuses the command because of one problem.
 [[noreturn]] inline void refuse(const std::string& text) { throw Refused({"stereotlm: error: " + text}); }
+
+// Calls `step`, and refuses the command if it throws, with the message behind the prefix.
+template <typename Step>
+void attempt_or_refuse(const std::string& prefix, const Step& step) {
+  Problems problems;
+  problems.attempt(prefix, step);
+  problems.check();
+}
 
 }  // namespace stereotlm::process

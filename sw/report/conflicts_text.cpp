@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "sw/stats/wait_text.h"
+#include "sw/stats/console_table.h"
 
 namespace stereotlm::report {
 namespace {

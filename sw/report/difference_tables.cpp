@@ -9,7 +9,7 @@
 #include <variant>
 
 #include "models/fpga/core_ports.h"
-#include "sw/stats/wait_text.h"
+#include "sw/stats/console_table.h"
 
 namespace stereotlm::report {
 namespace {

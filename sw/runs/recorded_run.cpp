@@ -68,7 +68,7 @@ PictureSource pictures_of(const RecordedOptions& options) {
     }
     std::vector<std::string> files;
     for (const InputFile& file : options.video) files.push_back(file.path);
-    pictures.video = PictureSource::Video{files, *layout, options.video_layout};
+    pictures.video = PictureSource::Video{files, *layout};
   }
   pictures.synthetic = options.synthetic;
   return pictures;
@@ -79,13 +79,6 @@ void check_sequence(const InputFolder& found, const InputFolder& recorded) {
   if (found.files.size() == recorded.files.size()) return;
   throw std::runtime_error(fmt::format("'{}': {} pairs: must be those of the run, {}", found.path,
                                        found.files.size() / 2, recorded.files.size() / 2));
-}
-
-media::Truth truth_of(const RecordedOptions& options, const platform::BoardConfig& board) {
-  media::Truth truth = media::load_truth(options.truth->path, options.truth_scale);
-  if (const auto problem = size_problem(truth.grey.width, truth.grey.height, &board))
-    throw std::runtime_error(fmt::format("'{}'{}", options.truth->path, *problem));
-  return truth;
 }
 
 }  // namespace
@@ -103,15 +96,7 @@ std::optional<RecordedRun> read_recorded_run(const std::string& argument, const 
   run.folder = folder;
   bool is_right = true;
   const auto attempt = [&](const std::string& what, const std::function<void()>& step) {
-    try {
-      step();
-    } catch (const platform::BoardError& error) {
-      problems.add(error);
-      is_right = false;
-    } catch (const std::exception& error) {
-      problems.add(what + error.what());
-      is_right = false;
-    }
+    is_right &= problems.attempt(what, step);
   };
   std::error_code error;
   const fs::file_status status = fs::status(folder, error);
@@ -153,25 +138,14 @@ std::optional<RecordedRun> load_recorded_run(const std::string& argument, const 
   if (!run) return std::nullopt;
   bool is_right = true;
   for (const RecordedFile& input : inputs_of(run->options)) {
-    try {
-      check_input(input);
-    } catch (const std::exception& error) {
-      problems.add(fmt::format("{}: {} {}", name_of(*run), input.option, error.what()));
-      is_right = false;
-    }
+    is_right &= problems.attempt(fmt::format("{}: {} ", name_of(*run), input.option),
+                                 [&input] { check_input(input); });
   }
   return is_right ? run : std::nullopt;
 }
 
 RunInput open_again(const RecordedRun& run, process::Problems& problems) {
   process::Problems found;
-  const auto attempt = [&found](const std::string& option, const auto& step) {
-    try {
-      step();
-    } catch (const std::exception& error) {
-      found.add(option + error.what());
-    }
-  };
   RunInput input;
   input.board = run.board;
   input.described = run.options;
@@ -184,12 +158,14 @@ RunInput open_again(const RecordedRun& run, process::Problems& problems) {
   RecordedOptions described;
   input.pairs = open_source(pictures_of(run.options), &run.board, described, found).pairs;
   if (described.sequence)
-    attempt("--sequence ", [&] { check_sequence(*described.sequence, *run.options.sequence); });
+    found.attempt("--sequence ", [&] { check_sequence(*described.sequence, *run.options.sequence); });
   std::optional<CalibrationInput> calibration;
   if (run.options.calibration)
     calibration = load_calibration(run.options.calibration->file.path, &run.board, found);
-  attempt("", [&] { input.tables = tables_of(run.board, calibration); });
-  if (run.options.truth) attempt("--truth ", [&] { input.truth = truth_of(run.options, run.board); });
+  found.attempt("", [&] { input.tables = tables_of(run.board, calibration); });
+  if (run.options.truth)
+    input.truth =
+        open_truth({"--truth", run.options.truth->path}, run.options.truth_scale, &run.board, found);
   if (!found.empty()) problems.add(fmt::format("{}: {}", name_of(run), found.in_one_line()));
   return input;
 }

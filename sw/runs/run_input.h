@@ -13,7 +13,8 @@
 #include "sw/media/truth.h"
 #include "sw/runs/result_folder.h"
 #include "sw/runs/run_json.h"
-#include "sw/runs/sources/pair_source.h"
+#include "sw/runs/simulation/simulation.h"
+#include "sw/runs/sources/open_source.h"
 #include "sw/trace/trace.h"
 
 namespace stereotlm::calib {
@@ -41,6 +42,12 @@ struct RunInput {
   std::string config_yaml;                        // text of the result file config.yaml
   RecordedOptions described;                      // content of run.json; `frames` as requested
   std::unique_ptr<files::OutputFolder> folder;    // null: no result files
+
+  // The mode of the simulation.
+  RunMode mode() const {
+    const fpga::Fidelity at_fast = timing_only ? fpga::Fidelity::kTiming : fpga::Fidelity::kFast;
+    return {camera, fast ? at_fast : fpga::Fidelity::kCycle, frames, record || trace != nullptr};
+  }
 };
 
 }  // namespace stereotlm::runs

@@ -11,13 +11,12 @@
 #include "sw/files/json_text.h"
 #include "sw/media/encode.h"
 #include "sw/process/streams.h"
+#include "sw/runs/simulation/simulate_point.h"
 #include "sw/runs/sources/calibration_library.h"
-#include "sw/runs/waitless_core.h"
 #include "sw/stats/accuracy.h"
-#include "sw/stats/conflicts_csv.h"
 #include "sw/stats/console_table.h"
+#include "sw/stats/record_csv.h"
 #include "sw/stats/stats_json.h"
-#include "sw/stats/timeline_csv.h"
 
 namespace stereotlm::runs {
 namespace {
@@ -123,9 +122,7 @@ void Records::add(const fpga::FrameConflicts& frame) {
 
 void Records::finish(Simulation& simulation) {
   add(simulation);
-  if (!input_.record) return;
-  stats::conflicts_csv(input_.board, *simulation.conflicts(),
-                       [this](const std::string& piece) { append_("conflicts.csv", piece); });
+  if (input_.record) append_("conflicts.csv", stats::conflicts_csv(input_.board, *simulation.conflicts()));
 }
 
 void leave_out_truth_of_another_pair(RunInput& input, std::uint64_t frames_done) {
@@ -159,12 +156,9 @@ bool deliver(RunInput& input, const platform::Statistics& statistics, const Resu
   if (input.folder) write_files(input, statistics, last, accuracy, differences);
   for (const std::string& identity : statistics.failed)
     process::say("error", "identity does not hold: " + identity);
-  const platform::BoardConfig& board = input.board;
-  const stats::BoardClocks clocks = {board.fpga.clock_mhz, board.pci.clock_mhz, board.bridge.local_clock_mhz,
-                                     board.pci.width_bits};
   const stats::TableExtras extras = extras_of(input, statistics, last, accuracy);
   process::print(input.json ? files::json_text(stats::run_document(statistics, extras))
-                            : stats::console_table(statistics, clocks, extras));
+                            : stats::console_table(statistics, input.board, extras));
   say_lost_pixels(statistics);
   if (accuracy) say_if_doubtful(input, *accuracy);
   for (const std::string& difference : differences) process::say("error", difference);

@@ -9,9 +9,7 @@
 
 #include "models/binder.h"
 #include "sw/process/interrupt.h"
-#include "sw/runs/run_mode.h"
 #include "sw/runs/sources/open_source.h"
-#include "sw/stats/stats_differences.h"
 #include "sw/stats/stats_json.h"
 
 namespace stereotlm::runs {
@@ -56,7 +54,7 @@ void run_other(const RunInput& input, const PictureSource& pictures, const proce
   BlankPairs blank(input.board);
   host::FrameSource& source = pairs ? static_cast<host::FrameSource&>(*pairs) : blank;
   Binder binder;
-  RunMode mode = run_mode(input);
+  RunMode mode = input.mode();
   mode.record = false;
   mode.fidelity = input.fast ? fpga::Fidelity::kCycle : fpga::Fidelity::kFast;
   const auto simulation = make_simulation(input.board, input.tables, source, mode, binder);

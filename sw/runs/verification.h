@@ -11,7 +11,7 @@
 #include "sw/runs/progress.h"
 #include "sw/runs/run_input.h"
 #include "sw/runs/simulation/simulation.h"
-#include "sw/runs/sources/picture_source.h"
+#include "sw/runs/sources/open_source.h"
 
 namespace stereotlm::runs {
 

@@ -4,8 +4,6 @@
 
 #include <algorithm>
 
-#include "sw/stats/wait_text.h"
-
 namespace stereotlm::stats {
 namespace {
 
@@ -47,9 +45,9 @@ std::string computer_rate_lines(const platform::Statistics& statistics) {
          bound_line("computer bound", *statistics.bound.system, statistics.bound.system_limited_by);
 }
 
-std::string pci_lines(const platform::ComputerStatistics& computer, const BoardClocks& clocks) {
-  const double words_a_clock = clocks.pci_width_bits / 32.0;
-  const double peak = words_a_clock * kBytesPerWord * clocks.pci_mhz;
+std::string pci_lines(const platform::ComputerStatistics& computer, const platform::BoardConfig& board) {
+  const double words_a_clock = board.pci.width_bits / 32.0;
+  const double peak = words_a_clock * kBytesPerWord * board.pci.clock_mhz;
   std::size_t width = 12;
   for (const platform::PciMasterStatistics& master : computer.pci_masters)
     width = std::max(width, master.name.size());
@@ -59,17 +57,17 @@ std::string pci_lines(const platform::ComputerStatistics& computer, const BoardC
     const double use = share(master.words, computer.pci_clocks) / words_a_clock;
     text += fmt::format("{:<{}} {:>14} {:>14} {:>7.2f} {:>9.2f} {:>9.2f} {:>12.3f}\n", master.name, width,
                         master.transactions, master.words, 100 * use, use * peak, peak,
-                        share(master.wait_clocks, master.transactions) / clocks.pci_mhz);
+                        share(master.wait_clocks, master.transactions) / board.pci.clock_mhz);
   }
   return text;
 }
 
-std::string computer_lines(const platform::ComputerStatistics& computer, const BoardClocks& clocks) {
-  std::string text = pci_lines(computer, clocks);
+std::string computer_lines(const platform::ComputerStatistics& computer, const platform::BoardConfig& board) {
+  std::string text = pci_lines(computer, board);
   text += fmt::format("{:<12} busy {:.2f} % of its clocks\n", "pci bus",
                       100 * share(computer.pci_busy_clocks, computer.pci_clocks));
   const std::uint64_t words = computer.posted_words + computer.dma_words;
-  const double peak = kBytesPerWord * clocks.local_mhz;
+  const double peak = kBytesPerWord * board.bridge.local_clock_mhz;
   text += fmt::format(
       "{:<12} busy {:.2f} % of its clocks, {:.2f} of {:.2f} MB/s: {} words posted, {} by DMA\n", "local bus",
       100 * share(computer.local_busy_clocks, computer.local_clocks),
@@ -140,12 +138,12 @@ std::string lost_pixels_text(std::uint64_t pixels) {
                      pixels == 1 ? "" : "s");
 }
 
-std::string console_table(const platform::Statistics& statistics, const BoardClocks& clocks,
+std::string console_table(const platform::Statistics& statistics, const platform::BoardConfig& board,
                           const TableExtras& extras) {
   std::string text = rate_lines(statistics) + computer_rate_lines(statistics) +
-                     bank_lines(statistics, clocks.fpga_mhz) +
+                     bank_lines(statistics, board.fpga.clock_mhz) +
                      wait_lines(statistics, extras.waitless_frames_per_second);
-  if (statistics.computer) text += computer_lines(*statistics.computer, clocks);
+  if (statistics.computer) text += computer_lines(*statistics.computer, board);
   if (extras.answered_percent) text += disparities_line(*extras.answered_percent);
   if (extras.accuracy) text += accuracy_line(*extras.accuracy);
   return text;

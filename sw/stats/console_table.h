@@ -4,18 +4,34 @@
 #include <optional>
 #include <string>
 
+#include "platform/bounds.h"
+#include "platform/config/board_config.h"
 #include "platform/statistics.h"
 #include "sw/stats/accuracy.h"
 
 namespace stereotlm::stats {
 
-// The clocks of a board, and the width of its PCI bus, by which the table converts cycles to rates.
-struct BoardClocks {
-  double fpga_mhz = 40;
-  double pci_mhz = 33.333;
-  double local_mhz = 40;
-  int pci_width_bits = 32;
-};
+// Whom a port waits for: "left_pixel", "the turnaround". `by`: as in stats.json.
+inline std::string cause_text(const std::string& by) { return by == "turnaround" ? "the turnaround" : by; }
+
+// "left_lut on bank0 for left_pixel"
+inline std::string wait_text(const std::string& port, const std::string& bank, const std::string& by) {
+  return port + " on " + bank + " for " + cause_text(by);
+}
+
+// The name of a resource of the bounds, such as "bank bank0", for people: "bank0".
+inline std::string resource_text(const std::string& resource) {
+  return platform::bank_of_resource(resource).value_or(resource);
+}
+
+// The same in a sentence: "the matcher", "the cameras", "bank0".
+inline std::string resource_words(const std::string& resource) {
+  if (resource == "matcher") return "the matcher";
+  if (resource == "camera") return "the cameras";
+  if (resource == "pci") return "the PCI bus";
+  if (resource == "bridge") return "the PCI bridge";
+  return resource_text(resource);
+}
 
 // What the table shows beside the statistics.
 struct TableExtras {
@@ -28,7 +44,7 @@ struct TableExtras {
 // What a run or a page says of torn pictures: "captures lose 7 pixels: ..". Empty if no pixel is lost.
 std::string lost_pixels_text(std::uint64_t pixels);
 
-// The table that a run prints:
+// The table that a run of this board prints:
 // - Frames per second and their bounds.
 // - For each bank its traffic, and the share of the cycles in which it is busy (`busy %`).
 // - Who waits longest at which bank for whom, and the frame rate that all waits cost.
@@ -36,7 +52,7 @@ std::string lost_pixels_text(std::uint64_t pixels);
 //   mean wait for the bus; the use of both buses; dropped camera frames by reason; the latency.
 // - How much of the last frame is answered, and the accuracy, if given.
 // Lines have at most 100 columns; a name of more than 24 characters is shortened. Text is ASCII except names and ±.
-std::string console_table(const platform::Statistics& statistics, const BoardClocks& clocks,
+std::string console_table(const platform::Statistics& statistics, const platform::BoardConfig& board,
                           const TableExtras& extras = {});
 
 }  // namespace stereotlm::stats

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <tuple>
 #include <type_traits>
@@ -21,6 +23,7 @@ namespace stereotlm::stats {
 namespace {
 
 using Json = nlohmann::ordered_json;
+using Pointer = Json::json_pointer;
 
 // A key of an object, and the member that holds its value.
 template <typename Object, typename Value>
@@ -110,8 +113,6 @@ void each_field(Document& document, Statistics& statistics) {
   document.field("/cameras", computer.cameras);
   document.field("/latency_ms/capture_to_host", computer.capture_to_host_ms);
 }
-
-using Pointer = Json::json_pointer;
 
 // Whether the value is an object with fields_of().
 template <typename Value, typename = void>
@@ -342,6 +343,18 @@ std::optional<Accuracy> read_accuracy(const StatsReader& reader) {
   return accuracy;
 }
 
+// Every value by its path. Paths are sorted as text: entry 10 of a list comes before entry 2.
+std::map<std::string, std::string> values_of(const std::string& text) {
+  std::map<std::string, std::string> values;
+  try {
+    const nlohmann::json flat = nlohmann::json::parse(text).flatten();
+    for (const auto& [path, value] : flat.items()) values[path] = value.dump();
+  } catch (const nlohmann::json::exception& error) {
+    throw std::runtime_error(fmt::format("statistics that are not JSON: {}", error.what()));
+  }
+  return values;
+}
+
 }  // namespace
 
 Json area_json(const area::Area& area) {
@@ -411,6 +424,26 @@ platform::Statistics read_stats(const std::string& text, const platform::BoardCo
   if (statistics.computer) platform::audit_computer(*statistics.computer, audit);
   reader.check(audit);
   return statistics;
+}
+
+std::vector<std::string> stats_differences(const std::string& first, const std::string& second,
+                                           const std::string& first_name, const std::string& second_name) {
+  const auto firsts = values_of(first);
+  const auto seconds = values_of(second);
+  const auto value = [](const auto& values, const std::string& path) {
+    const auto found = values.find(path);
+    return found == values.end() ? std::string("absent") : found->second;
+  };
+  auto paths = firsts;
+  paths.insert(seconds.begin(), seconds.end());
+  std::vector<std::string> lines;
+  for (const auto& [path, unused] : paths) {
+    const std::string one = value(firsts, path);
+    const std::string other = value(seconds, path);
+    if (one != other)
+      lines.push_back(fmt::format("{}: {} {}, {} {}", path, first_name, one, second_name, other));
+  }
+  return lines;
 }
 
 }  // namespace stereotlm::stats

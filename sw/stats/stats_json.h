@@ -4,6 +4,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "models/area/area.h"
 #include "platform/config/board_config.h"
@@ -32,5 +33,10 @@ platform::Statistics read_stats(const std::string& text, const platform::BoardCo
 
 // The part `area` of stats.json.
 nlohmann::ordered_json area_json(const area::Area& area);
+
+// The differences of two texts of stats.json, one line each: "/banks/0/reads: fast 5, cycle 6". A key that
+// only one text has is "absent" in the other. Throws std::runtime_error if a text is not JSON.
+std::vector<std::string> stats_differences(const std::string& first, const std::string& second,
+                                           const std::string& first_name, const std::string& second_name);
 
 }  // namespace stereotlm::stats

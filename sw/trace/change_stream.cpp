@@ -27,7 +27,7 @@ void ChangeStream::fail() const {
 }
 
 void ChangeStream::store() {
-  if (std::fwrite(buffer_.data(), sizeof(Change), buffer_.size(), file_) != buffer_.size()) fail();
+  if (std::fwrite(buffer_.data(), sizeof(Record), buffer_.size(), file_) != buffer_.size()) fail();
   buffer_.clear();
 }
 
@@ -37,12 +37,13 @@ void ChangeStream::rewind() {
   advance();
 }
 
-// Leaves the buffer empty at the end of the file.
-void ChangeStream::load() {
+// Leaves the buffer empty at the end of the file, and returns false then.
+bool ChangeStream::load() {
   buffer_.resize(kBuffered);
-  buffer_.resize(std::fread(buffer_.data(), sizeof(Change), kBuffered, file_));
+  buffer_.resize(std::fread(buffer_.data(), sizeof(Record), kBuffered, file_));
   if (std::ferror(file_) != 0) fail();
   next_ = 0;
+  return !buffer_.empty();
 }
 
 }  // namespace stereotlm::trace

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <deque>
@@ -176,10 +175,20 @@ class Waveform {
       : file_(file), signals_(signals), is_touched_(signals.all.size()), is_active_(signals.all.size()) {
     for (const Signal& signal : signals.all) {
       next_values_.push_back(signal.idle);
-      line_ends_.push_back((signal.bits == 1 ? "" : " ") + signal.code + '\n');
+      LineEnd& end = line_ends_.emplace_back();
+      end.size = ((signal.bits == 1 ? "" : " ") + signal.code + '\n').copy(end.text.data(), end.text.size());
     }
     values_ = next_values_;
-    for (const std::string& word : signals.words) words_.push_back('s' + word);
+    for (std::size_t byte = 0; byte < digits_.size(); ++byte) {
+      for (std::size_t bit = 0; bit < 8; ++bit)
+        digits_[byte][bit] = (byte >> (7 - bit) & 1U) != 0 ? '1' : '0';
+    }
+    std::size_t longest = kMostDigits;
+    for (const std::string& word : signals.words) {
+      words_.push_back('s' + word);
+      longest = std::max(longest, words_.back().size());
+    }
+    text_.resize(kTextBytes + longest + sizeof(LineEnd::text));
   }
 
   Span write(const std::deque<ChangeStream*>& streams, const TimeSpan& window) {
@@ -187,10 +196,10 @@ class Waveform {
     for (ChangeStream* const stream : streams) stream->rewind();
     take_up_to(window.begin_ps, streams);
     write_time(window.begin_ps);
-    text_ += "$dumpvars\n";
+    put("$dumpvars\n");
     values_ = next_values_;
     for (std::size_t signal = 0; signal < values_.size(); ++signal) write_value(signal);
-    text_ += "$end\n";
+    put("$end\n");
     while (true) {
       std::uint64_t time_ps = UINT64_MAX;
       for (const ChangeStream* const stream : streams) {
@@ -201,7 +210,7 @@ class Waveform {
       write_changes(time_ps);
     }
     if (window.end_ps != UINT64_MAX && window.end_ps != last_ps_) write_time(window.end_ps);
-    file_.write(text_);
+    flush();
     Span span = {window.begin_ps, last_ps_, window.wait_ps, {}};
     for (std::size_t signal = 0; signal < is_active_.size(); ++signal) {
       if (is_active_[signal] != 0) span.active_scopes.insert(signals_.all[signal].scope);
@@ -211,27 +220,34 @@ class Waveform {
 
  private:
   static constexpr std::size_t kTextBytes = std::size_t{1} << 16U;
+  static constexpr std::size_t kMostDigits = 33;  // and the letter before them
+  // What stands behind a value. All bytes are copied, which takes less time than to copy the right number.
+  struct LineEnd {
+    std::array<char, 8> text{};
+    std::size_t size = 0;
+  };
 
   void write_header() {
-    text_ = kVcdMark;
+    std::string text = kVcdMark;
     const std::string* scope = nullptr;
     for (const Signal& signal : signals_.all) {
       if (scope == nullptr || *scope != signal.scope) {
-        if (scope != nullptr) text_ += "$upscope $end\n";
-        text_ += "$scope module " + signal.scope + " $end\n";
+        if (scope != nullptr) text += "$upscope $end\n";
+        text += "$scope module " + signal.scope + " $end\n";
         scope = &signal.scope;
       }
       const std::string range = signal.bits > 1 ? fmt::format(" [{}:0]", signal.bits - 1) : "";
-      fmt::format_to(std::back_inserter(text_), "$var {} {} {} {}{} $end\n",
+      fmt::format_to(std::back_inserter(text), "$var {} {} {} {}{} $end\n",
                      signal.bits == 0 ? "string" : "wire", std::max(signal.bits, 1U), signal.code,
                      signal.name, range);
     }
-    text_ += "$upscope $end\n$enddefinitions $end\n";
+    text += "$upscope $end\n$enddefinitions $end\n";
+    file_.write(text);
   }
 
   void take_up_to(std::uint64_t time_ps, const std::deque<ChangeStream*>& streams) {
+    for (const std::uint32_t signal : touched_) is_touched_[signal] = 0;
     touched_.clear();
-    std::fill(is_touched_.begin(), is_touched_.end(), char{0});
     for (ChangeStream* const stream : streams) {
       for (; stream->change() && stream->change()->time_ps <= time_ps; stream->advance()) {
         const ChangeStream::Change& change = *stream->change();
@@ -255,42 +271,66 @@ class Waveform {
 
   void write_time(std::uint64_t time_ps) {
     last_ps_ = time_ps;
-    text_ += '#';
-    text_ += fmt::format_int(time_ps).c_str();
-    text_ += '\n';
+    const fmt::format_int digits(time_ps);
+    put("#");
+    put({digits.data(), digits.size()});
+    put("\n");
   }
 
   void write_value(std::size_t signal) {
     const Signal& its = signals_.all[signal];
     const std::uint32_t value = values_[signal];
     if (value != its.idle) is_active_[signal] = 1;
+    char* to = text_.data() + size_;
     if (its.bits == 1) {
-      text_ += value != 0 ? '1' : '0';
+      *to++ = value != 0 ? '1' : '0';
     } else if (its.bits == 0) {
-      text_ += words_[value];
-    } else if (value >= kUnknown) {
-      text_ += value == kNoNumber ? "bz" : "bx";
+      to = std::copy(words_[value].begin(), words_[value].end(), to);
     } else {
-      std::array<char, 33> digits = {'b'};
-      char* const end = digits.data() + digits.size();
-      text_.append(digits.data(), std::to_chars(digits.data() + 1, end, value, 2).ptr);
+      *to++ = 'b';
+      if (value >= kUnknown)
+        *to++ = value == kNoNumber ? 'z' : 'x';
+      else
+        to = put_digits(value, to);
     }
-    text_ += line_ends_[signal];
-    if (text_.size() < kTextBytes) return;
-    file_.write(text_);
-    text_.clear();
+    const LineEnd& end = line_ends_[signal];
+    std::copy(end.text.begin(), end.text.end(), to);
+    size_ = static_cast<std::size_t>(to - text_.data()) + end.size;
+    if (size_ >= kTextBytes) flush();
+  }
+
+  // Puts a short text.
+  void put(std::string_view text) {
+    std::copy(text.begin(), text.end(), text_.data() + size_);
+    size_ += text.size();
+    if (size_ >= kTextBytes) flush();
+  }
+  void flush() {
+    file_.write({text_.data(), size_});
+    size_ = 0;
+  }
+  // Puts the binary digits of a number without leading zeros, and returns their end. Up to 32 bytes change.
+  char* put_digits(std::uint32_t value, char* to) const {
+    std::array<char, 64> digits{};
+    for (std::size_t byte = 0; byte < 4; ++byte)
+      std::copy_n(digits_[value >> (24 - 8 * byte) & 0xFFU].begin(), 8, digits.data() + 8 * byte);
+    const auto zeros = static_cast<std::size_t>(__builtin_clz(value | 1U));
+    std::copy_n(digits.data() + zeros, 32, to);
+    return to + 32 - zeros;
   }
 
   files::AsideFile& file_;
   const Signals& signals_;
-  std::vector<std::string> line_ends_;  // [signal]: what stands behind a value
-  std::vector<std::string> words_;      // as values
-  std::vector<std::uint32_t> values_;   // [signal]
+  std::array<std::array<char, 8>, 256> digits_{};  // [byte]: its binary digits
+  std::vector<LineEnd> line_ends_;                 // [signal]
+  std::vector<std::string> words_;                 // as values
+  std::vector<std::uint32_t> values_;              // [signal]
   std::vector<std::uint32_t> next_values_;
   std::vector<char> is_touched_;
   std::vector<char> is_active_;  // [signal]: has had another value than its idle one
   std::vector<std::uint32_t> touched_;
-  std::string text_;
+  std::vector<char> text_;  // with room for a line behind kTextBytes
+  std::size_t size_ = 0;    // of the text
   std::uint64_t last_ps_ = 0;
 };
 

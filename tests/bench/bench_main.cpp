@@ -18,6 +18,7 @@
 
 #include "calib/opencv_conversions.h"
 #include "calib/tables.h"
+#include "models/binder.h"
 #include "models/kernels/image_filter.h"
 #include "models/kernels/image_matcher.h"
 #include "models/kernels/simd.h"
@@ -26,7 +27,7 @@
 #include "platform/config/board_yaml.h"
 #include "sw/files/whole_file.h"
 #include "sw/process/child.h"
-#include "sw/runs/simulation/make_simulation.h"
+#include "sw/runs/simulation/simulation.h"
 #include "sw/stats/stats_json.h"
 #include "tests/bench/bench_pair.h"
 #include "tests/bench/board_process.h"

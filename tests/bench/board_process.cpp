@@ -7,9 +7,10 @@
 #include <stdexcept>
 #include <systemc>
 
+#include "models/binder.h"
 #include "platform/config/board_yaml.h"
 #include "platform/statistics.h"
-#include "sw/runs/simulation/make_simulation.h"
+#include "sw/runs/simulation/simulation.h"
 
 namespace stereotlm::bench {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "platform/figures.h"
 #include "sw/report/chart/chart_text.h"
-#include "sw/stats/wait_text.h"
+#include "sw/stats/console_table.h"
 
 namespace stereotlm::report {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "models/fpga/frame_geometry.h"
 #include "platform/audit.h"
-#include "sw/stats/conflicts_csv.h"
+#include "sw/stats/record_csv.h"
 
 namespace stereotlm::report {
 namespace {

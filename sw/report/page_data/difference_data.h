@@ -5,7 +5,7 @@
 
 #include "platform/config/tables.h"
 #include "sw/report/page_data/conflict_data.h"
-#include "sw/runs/frame_alignment.h"
+#include "sw/runs/rerun.h"
 
 namespace stereotlm::report {
 

@@ -13,9 +13,8 @@
 #include "platform/bounds.h"
 #include "platform/figures.h"
 #include "platform/timeline_records.h"
-#include "sw/stats/stats_differences.h"
+#include "sw/stats/record_csv.h"
 #include "sw/stats/stats_json.h"
-#include "sw/stats/timeline_csv.h"
 
 namespace stereotlm::report {
 namespace {

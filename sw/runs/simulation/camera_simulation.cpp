@@ -7,7 +7,7 @@
 
 #include "models/kernel_time.h"
 #include "platform/fast_computer.h"
-#include "sw/driver/board_driver.h"
+#include "sw/driver/stereo_driver.h"
 
 namespace stereotlm::runs {
 namespace {

@@ -34,8 +34,7 @@ class CameraSimulation : public Simulation, private driver::FrameListener {
   void trace_buses(platform::BusTrace& buses) override { computer_->trace_buses(buses); }
 
   void end_early() override;
-  void record_rows() override { computer_->core().record_rows(); }
-  std::vector<fpga::RowProfile> take_rows() override { return computer_->core().take_rows(); }
+  fpga::FrameRun& core() override { return computer_->core(); }
   platform::TimelineRecords take_timeline() override;
   platform::Statistics statistics() const override;
   platform::ComputerView& computer() { return *computer_; }
@@ -60,8 +59,6 @@ class CameraSimulation : public Simulation, private driver::FrameListener {
   const host::StereoPair& captured_pair(std::uint64_t number, std::uint64_t begin_ps);
   void frame_delivered(const driver::DeliveredFrame& frame) override;
   void check_progress() override;
-  void record(fpga::ConflictRecorder& conflicts) override { computer_->core().record(conflicts); }
-  void record(fpga::CycleRecorder& cycles) override { computer_->core().record(cycles); }
 
   const platform::BoardConfig& board_;
   fpga::Fidelity fidelity_;

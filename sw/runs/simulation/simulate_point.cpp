@@ -1,26 +1,31 @@
 #include "sw/runs/simulation/simulate_point.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "models/binder.h"
+#include "platform/config/buffer_layout.h"
 #include "platform/core_run.h"
 #include "platform/figures.h"
 #include "sw/explore/sweep/sweep.h"
 #include "sw/files/sha256.h"
 #include "sw/process/child.h"
 #include "sw/runs/simulation/camera_simulation.h"
-#include "sw/runs/simulation/make_simulation.h"
+#include "sw/runs/simulation/simulation.h"
 #include "sw/stats/stats_json.h"
 
 namespace stereotlm::runs {
 namespace {
 
 using Json = nlohmann::ordered_json;
+using platform::BankConfig;
+using platform::BoardConfig;
 
 bool is_table_of(const std::optional<kernels::RectificationTable>& table, const platform::BoardConfig& board,
                  bool is_used) {
@@ -49,6 +54,19 @@ std::optional<Json> simulate_computer(const explore::Point& point, const platfor
     if (so_far && hopeless(*so_far)) return std::nullopt;
   }
   return document_of(simulation->statistics());
+}
+
+BoardConfig with_a_bank_for_each_buffer(const BoardConfig& board) {
+  BoardConfig changed = board;
+  changed.banks.clear();
+  for (const platform::PlacedBuffer& buffer : platform::buffers(board)) {
+    BankConfig bank = *std::find_if(board.banks.begin(), board.banks.end(),
+                                    [&](const BankConfig& each) { return each.name == buffer.bank; });
+    bank.name = "own" + std::to_string(changed.banks.size());
+    platform::move_buffer(changed, buffer, bank.name);
+    changed.banks.push_back(std::move(bank));
+  }
+  return changed;
 }
 
 }  // namespace
@@ -136,6 +154,17 @@ PixelRun simulate_pixels(const platform::BoardConfig& board, const platform::Tab
   run.last.pixels.assign(last.begin(), last.end());
   child.next();
   return run;
+}
+
+double waitless_frames_per_second(const platform::BoardConfig& board, const platform::Tables& tables,
+                                  std::uint64_t frames) {
+  const std::uint64_t turn = std::min(platform::allocation_period_frames(board), frames);
+  const std::vector<std::uint64_t> frame_cycles =
+      platform::run_core(with_a_bank_for_each_buffer(board), tables, turn).frame_cycles;
+  std::uint64_t cycles = 0;
+  for (std::uint64_t frame = 0; frame < turn; ++frame)
+    cycles += frame_cycles[frame] * ((frames - frame + turn - 1) / turn);
+  return board.fpga.clock_mhz * 1e6 * static_cast<double>(frames) / static_cast<double>(cycles);
 }
 
 }  // namespace stereotlm::runs

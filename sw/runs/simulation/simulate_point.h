@@ -7,6 +7,7 @@
 
 #include "models/host/frame_source.h"
 #include "models/kernels/gray_image.h"
+#include "platform/config/board_config.h"
 #include "platform/config/tables.h"
 #include "platform/statistics.h"
 #include "sw/explore/plan/figures.h"
@@ -53,5 +54,11 @@ struct PixelRun {
 // PointSimulator does.
 PixelRun simulate_pixels(const platform::BoardConfig& board, const platform::Tables& tables,
                          host::FrameSource& pairs, std::uint64_t frames);
+
+// The frame rate of the core over frames 0..frames-1 if no port ever waited for a bank: each buffer is in a
+// bank of its own, of the kind that it has now, and no host accesses the banks. Simulates one turn of the
+// allocation's lists without pixels. Throws as platform::run_core() does.
+double waitless_frames_per_second(const platform::BoardConfig& board, const platform::Tables& tables,
+                                  std::uint64_t frames);
 
 }  // namespace stereotlm::runs

@@ -8,6 +8,9 @@
 
 #include "models/clock.h"
 #include "models/kernel_time.h"
+#include "platform/collect.h"
+#include "platform/preloaded_system.h"
+#include "sw/runs/simulation/camera_simulation.h"
 
 namespace stereotlm::runs {
 namespace {
@@ -16,6 +19,52 @@ namespace {
 // frame that begins in these cycles take additional time.
 constexpr double kSliceCycles = 40'000;
 constexpr double kFastSliceCycles = 2'000'000;
+
+// The board alone with an ideal host.
+class PreloadedSimulation : public Simulation, private host::FrameSource, private host::FrameSink {
+ public:
+  PreloadedSimulation(const platform::BoardConfig& board, const platform::Tables& tables,
+                      host::FrameSource& pairs, const RunMode& mode, Binder& binder)
+      : Simulation(board, tables, pairs, mode.frames, mode.fidelity),
+        board_(board),
+        tables_(tables),
+        system_("system", board, tables, mode.frames, *this, *this, binder, mode.fidelity),
+        counters_(platform::counters_of(system_.board)) {}
+
+  fpga::FrameRun& core() override { return system_.board.core.frames(); }
+
+  void end_early() override {
+    if (recorder() == nullptr) {
+      set_frames(frames_done());
+      return;
+    }
+    const std::uint64_t begun = recorder()->frames_begun();
+    set_frames(begun);
+    recorder()->record_only(begun);
+  }
+
+  platform::Statistics statistics() const override {
+    platform::Statistics statistics = platform::collect_statistics(board_, tables_, system_.board, counters_);
+    check_conflicts(statistics);
+    return statistics;
+  }
+
+ private:
+  const host::StereoPair& pair(std::uint64_t frame) override { return load_pair(frame); }
+  // Saves the counters at the end of each frame, because the counters of an interrupted run must not include a
+  // part of the running frame.
+  void take(std::uint64_t frame, const kernels::GrayImage& disparity) override {
+    counters_ = platform::counters_of(system_.board);
+    add_result({frame, disparity});
+  }
+  // Lets a frame that is fast-forwarded pass with the time, so that advance() returns within it.
+  void check_progress() override { system_.board.core.catch_up(); }
+
+  const platform::BoardConfig& board_;
+  const platform::Tables& tables_;
+  platform::PreloadedSystem system_;
+  platform::BoardCounters counters_;  // counters at the end of the last finished frame
+};
 
 }  // namespace
 
@@ -44,7 +93,7 @@ std::vector<Result> Simulation::advance() {
   return std::move(new_);
 }
 
-void Simulation::record_conflicts() { record(conflicts_.emplace(board_).recorder()); }
+void Simulation::record_conflicts() { core().record(conflicts_.emplace(board_).recorder()); }
 
 void Simulation::trace(const fpga::CycleWindow& window, fpga::CycleObserver& cycles,
                        platform::BusObserver& buses) {
@@ -54,7 +103,7 @@ void Simulation::trace(const fpga::CycleWindow& window, fpga::CycleObserver& cyc
                   static_cast<fpga::CycleObserver&>(*this));
   if (tables_.left) cycles_->set_entries(fpga::Side::kLeft, tables_.left->entries.data());
   if (tables_.right) cycles_->set_entries(fpga::Side::kRight, tables_.right->entries.data());
-  record(*cycles_);
+  core().record(*cycles_);
   trace_buses(buses_.emplace(board_, window, static_cast<platform::BusObserver&>(*this)));
 }
 
@@ -92,6 +141,22 @@ void Simulation::add_result(Result result) {
   }
   new_.push_back(std::move(result));
   if (finished()) sc_core::sc_pause();  // nothing after the last frame matters
+}
+
+std::unique_ptr<Simulation> make_simulation(const platform::BoardConfig& board,
+                                            const platform::Tables& tables, host::FrameSource& pairs,
+                                            const RunMode& mode, Binder& binder) {
+  std::unique_ptr<Simulation> simulation;
+  if (mode.camera) {
+    auto computer =
+        std::make_unique<CameraSimulation>(board, tables, pairs, mode.frames, binder, mode.fidelity);
+    if (mode.record) computer->record_timeline();
+    simulation = std::move(computer);
+  } else {
+    simulation = std::make_unique<PreloadedSimulation>(board, tables, pairs, mode, binder);
+  }
+  if (mode.record) simulation->record_conflicts();
+  return simulation;
 }
 
 }  // namespace stereotlm::runs

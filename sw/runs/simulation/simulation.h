@@ -2,13 +2,14 @@
 
 #include <cstdint>
 #include <exception>
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "models/fpga/core_cycle.h"
 #include "models/fpga/cycle_recorder.h"
 #include "models/fpga/fidelity.h"
-#include "models/fpga/row_profile.h"
+#include "models/fpga/frame_run.h"
 #include "models/host/frame_source.h"
 #include "models/kernels/gray_image.h"
 #include "platform/bus_trace.h"
@@ -17,6 +18,10 @@
 #include "platform/conflicts.h"
 #include "platform/statistics.h"
 #include "platform/timeline_records.h"
+
+namespace stereotlm {
+class Binder;
+}
 
 namespace stereotlm::runs {
 
@@ -52,11 +57,8 @@ class Simulation : private fpga::CycleObserver, private platform::BusObserver {
   std::uint64_t cycles() const;
   std::uint64_t cycles_of_done() const { return cycles_of_done_; }
 
-  // Starts recording row profiles, with the next frame of the core.
-  virtual void record_rows() = 0;
-  // The row profiles of the frames that the core has finished since the last call, in the order of the
-  // results. A whole computer delivers these results later.
-  virtual std::vector<fpga::RowProfile> take_rows() = 0;
+  // The frames of the core, which may have ended before their results are delivered.
+  virtual fpga::FrameRun& core() = 0;
 
   // The records of a run that is recorded, since the last call; those up to the end of the run once it has
   // finished. It must be called regularly, because they fill memory, and before statistics(). A board alone
@@ -95,9 +97,6 @@ class Simulation : private fpga::CycleObserver, private platform::BusObserver {
   fpga::ConflictRecorder* recorder() { return conflicts_ ? &conflicts_->recorder() : nullptr; }
   // Adds the identities of what is recorded that do not hold.
   void check_conflicts(platform::Statistics& statistics) const;
-  // Hands everything that the core does to the recorder.
-  virtual void record(fpga::ConflictRecorder& conflicts) = 0;
-  virtual void record(fpga::CycleRecorder& cycles) = 0;
   // Hands what the buses do to the trace. A board alone has none.
   virtual void trace_buses(platform::BusTrace& /*buses*/) {}
   // Called by advance(). Throws std::runtime_error if the simulation has stalled.
@@ -139,6 +138,37 @@ class Simulation : private fpga::CycleObserver, private platform::BusObserver {
   fpga::CycleObserver* cycle_observer_ = nullptr;
   platform::BusObserver* bus_observer_ = nullptr;
   std::exception_ptr failure_;  // exception of the source or of an observer
+};
+
+// The options of a simulation, without board, tables and pictures.
+struct RunMode {
+  bool camera = true;  // true: the whole computer; false: the board alone (preloaded)
+  fpga::Fidelity fidelity = fpga::Fidelity::kFast;
+  std::uint64_t frames = 1;
+  bool record = false;  // see Simulation::take_conflicts(); the whole computer: also take_timeline()
+};
+
+// Creates a CameraSimulation, or a simulation of the board alone with an ideal host, in which frame f shows pair
+// f. A board alone that ends early drops the running frame, but finishes it if conflicts are recorded. The arguments, except `mode`, outlive it. Throws
+// std::exception if it cannot be built.
+std::unique_ptr<Simulation> make_simulation(const platform::BoardConfig& board,
+                                            const platform::Tables& tables, host::FrameSource& pairs,
+                                            const RunMode& mode, Binder& binder);
+
+// Pairs of black pictures, for runs without pixels.
+class BlankPairs : public host::FrameSource {
+ public:
+  explicit BlankPairs(const platform::BoardConfig& board) : image_(board.image) {}
+  const host::StereoPair& pair(std::uint64_t /*frame*/) override {
+    if (pair_.left.pixels.empty()) {
+      pair_ = {{image_.width, image_.height}, {image_.width, image_.height}};
+    }
+    return pair_;
+  }
+
+ private:
+  platform::ImageConfig image_;
+  host::StereoPair pair_;  // created at its first use
 };
 
 }  // namespace stereotlm::runs

@@ -9,7 +9,8 @@
 #include "calib/tables.h"
 #include "sw/files/sha256.h"
 #include "sw/files/whole_file.h"
-#include "sw/runs/sources/rig_files.h"
+#include "sw/process/installation.h"
+#include "sw/runs/sources/calibration_library.h"
 
 namespace stereotlm::runs {
 namespace {
@@ -44,17 +45,27 @@ kernels::RectificationTable load_table(const fs::path& path, const calib::Rig& r
 
 }  // namespace
 
+const CalibrationFunctions& calibration_functions() {
+  static const auto& functions = *static_cast<const CalibrationFunctions*>(process::plugin_symbol(
+      "libstereotlm_calibration.so", "stereotlm_calibration_functions", "calibrates cameras"));
+  return functions;
+}
+
+RigFiles rig_files(const std::string& calibration) {
+  const fs::path path = calibration;
+  if (path.extension() != ".yaml") {
+    throw std::runtime_error(fmt::format("'{}': the file of a calibration must end in .yaml", calibration));
+  }
+  const auto beside = [&path](const char* ending) {
+    return path.parent_path() / (path.stem().string() + ending);
+  };
+  return {path, beside("_left.lut"), beside("_right.lut"), beside("_drawings"), beside("_pictures")};
+}
+
 std::optional<CalibrationInput> load_calibration(const std::string& path, const platform::BoardConfig* board,
                                                  process::Problems& problems, const std::string& named) {
   bool is_right = true;
-  const auto attempt = [&](const auto& step) {
-    try {
-      step();
-    } catch (const std::exception& error) {
-      problems.add(fmt::format("{} {}", named, error.what()));
-      is_right = false;
-    }
-  };
+  const auto attempt = [&](const auto& step) { is_right &= problems.attempt(named + ' ', step); };
   const auto at_path = [&path](const std::string& problem) {
     return std::runtime_error(fmt::format("'{}': {}", path, problem));
   };

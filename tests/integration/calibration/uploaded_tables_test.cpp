@@ -14,7 +14,7 @@
 #include "platform/computer.h"
 #include "platform/config/board_yaml.h"
 #include "platform/config/buffer_layout.h"
-#include "sw/driver/board_driver.h"
+#include "sw/driver/stereo_driver.h"
 #include "tests/support/monitoring_binder.h"
 
 namespace stereotlm {

@@ -1,7 +1,5 @@
 // How `calibrate` behaves when a call of the file system fails or the process is killed. files::OutputFolder,
 // which also writes results and documents, is tested only here.
-#include "sw/cli/calibration_output.h"
-
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -19,6 +17,7 @@
 
 #include "calib/calibration.h"
 #include "calib/synthetic_rig.h"
+#include "sw/cli/calibration_files.h"
 #include "sw/files/output_folder.h"
 #include "sw/files/whole_file.h"
 #include "tests/support/fork.h"

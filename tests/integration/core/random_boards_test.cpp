@@ -10,7 +10,7 @@
 #include "platform/config/board_yaml.h"
 #include "platform/conflicts.h"
 #include "platform/core_run.h"
-#include "sw/stats/conflicts_csv.h"
+#include "sw/stats/record_csv.h"
 #include "tests/integration/core/preloaded_run.h"
 #include "tests/support/board_of_random.h"
 #include "tests/support/fork.h"

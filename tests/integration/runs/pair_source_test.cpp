@@ -1,5 +1,3 @@
-#include "sw/runs/sources/pair_source.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

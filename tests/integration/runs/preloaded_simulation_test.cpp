@@ -1,13 +1,14 @@
-#include "sw/runs/simulation/preloaded_simulation.h"
-
 #include <gtest/gtest.h>
 
+#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <utility>
 #include <vector>
 
+#include "models/binder.h"
 #include "platform/config/board_yaml.h"
+#include "sw/runs/simulation/simulation.h"
 #include "tests/support/expected_report.h"
 #include "tests/support/noise_pairs.h"
 
@@ -16,7 +17,9 @@ namespace {
 
 class PreloadedSimulationTest : public testing::Test {
  protected:
-  void build(std::uint64_t frames = 10) { simulation.emplace(board, tables, pairs, frames, binder); }
+  void build(std::uint64_t frames = 10, fpga::Fidelity fidelity = fpga::Fidelity::kCycle) {
+    simulation = runs::make_simulation(board, tables, pairs, {false, fidelity, frames}, binder);
+  }
   std::string message_of_advancing() {
     try {
       simulation->advance();
@@ -30,7 +33,7 @@ class PreloadedSimulationTest : public testing::Test {
   platform::Tables tables = platform::identity_tables(board);
   test::NoisePairs pairs{32, 24};
   Binder binder;
-  std::optional<runs::PreloadedSimulation> simulation;
+  std::unique_ptr<runs::Simulation> simulation;
 };
 
 TEST_F(PreloadedSimulationTest, AdvancesInSlicesUntilTheLastFrame) {
@@ -68,14 +71,14 @@ TEST_F(PreloadedSimulationTest, AdvancesInSlicesUntilTheLastFrame) {
 
 // Notes how far the simulation is when the first cycle of a window is observed.
 struct TimeOfWindow : fpga::CycleObserver, platform::BusObserver {
-  explicit TimeOfWindow(const runs::PreloadedSimulation& observed) : simulation(observed) {}
+  explicit TimeOfWindow(const runs::Simulation& observed) : simulation(observed) {}
   void cycle(const fpga::CoreCycle& /*cycle*/) override {
     if (!cycles) cycles = simulation.cycles();
   }
   void burst(const platform::BusBurst& /*burst*/) override {}
   void level(const platform::QueueLevel& /*level*/) override {}
 
-  const runs::PreloadedSimulation& simulation;
+  const runs::Simulation& simulation;
   std::optional<std::uint64_t> cycles;
 };
 
@@ -84,7 +87,7 @@ TEST_F(PreloadedSimulationTest, ComputesALongFrameInManySlicesAtFidelityFast) {
   board = platform::load_board("fpl2003", {"image.width=64", "image.height=64", "matcher.window=31",
                                            "matcher.disparities=254", "matcher.units=1"});
   tables = platform::identity_tables(board);
-  simulation.emplace(board, tables, pairs, 1, binder, fpga::Fidelity::kTiming);
+  build(1, fpga::Fidelity::kTiming);
   simulation->record_conflicts();
   TimeOfWindow observer(*simulation);
   simulation->trace({{}, fpga::CycleWindow::Unit::kCycles, 20'000'000, 20'000'000}, observer, observer);

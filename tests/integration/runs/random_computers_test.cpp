@@ -20,8 +20,7 @@
 #include "sw/explore/plan/points.h"
 #include "sw/process/child.h"
 #include "sw/runs/simulation/camera_simulation.h"
-#include "sw/stats/conflicts_csv.h"
-#include "sw/stats/timeline_csv.h"
+#include "sw/stats/record_csv.h"
 #include "tests/support/board_of_random.h"
 #include "tests/support/fork.h"
 #include "tests/support/monitoring_binder.h"
@@ -61,7 +60,7 @@ Outcome simulate(const platform::BoardConfig& board, const platform::Tables& tab
                  std::uint64_t frames, Fidelity fidelity) {
   test::MonitoringBinder binder;
   runs::CameraSimulation simulation(board, tables, pairs, frames, binder, fidelity);
-  simulation.record_rows();
+  simulation.core().record_rows();
   simulation.record_timeline();
   Outcome outcome;
   while (!simulation.finished()) {
@@ -70,7 +69,7 @@ Outcome simulate(const platform::BoardConfig& board, const platform::Tables& tab
     outcome.timeline += stats::timeline_csv(records.events);
     outcome.latencies += stats::latency_csv(records.latencies);
   }
-  outcome.rows = simulation.take_rows();
+  outcome.rows = simulation.core().take_rows();
   outcome.statistics = simulation.statistics();
   return outcome;
 }

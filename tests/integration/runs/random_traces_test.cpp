@@ -21,7 +21,7 @@
 #include "models/clock.h"
 #include "platform/config/board_yaml.h"
 #include "platform/conflicts.h"
-#include "sw/runs/simulation/make_simulation.h"
+#include "sw/runs/simulation/simulation.h"
 #include "sw/sqlite/database.h"
 #include "sw/trace/trace.h"
 #include "tests/support/board_of_random.h"

@@ -1,5 +1,3 @@
-#include "sw/runs/waitless_core.h"
-
 #include <gtest/gtest.h>
 
 #include <string>
@@ -7,6 +5,7 @@
 
 #include "platform/config/board_yaml.h"
 #include "platform/core_run.h"
+#include "sw/runs/simulation/simulate_point.h"
 
 namespace stereotlm::runs {
 namespace {

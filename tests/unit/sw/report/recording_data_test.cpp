@@ -9,8 +9,7 @@
 #include <vector>
 
 #include "platform/config/board_yaml.h"
-#include "sw/stats/conflicts_csv.h"
-#include "sw/stats/timeline_csv.h"
+#include "sw/stats/record_csv.h"
 
 namespace stereotlm::report {
 namespace {

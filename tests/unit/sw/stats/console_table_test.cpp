@@ -48,6 +48,15 @@ platform::Statistics in_a_computer() {
   return statistics;
 }
 
+platform::BoardConfig clocks(double fpga_mhz, double pci_mhz, double local_mhz, int pci_width_bits = 32) {
+  platform::BoardConfig board;
+  board.fpga.clock_mhz = fpga_mhz;
+  board.pci.clock_mhz = pci_mhz;
+  board.pci.width_bits = pci_width_bits;
+  board.bridge.local_clock_mhz = local_mhz;
+  return board;
+}
+
 TEST(ConsoleTable, ShowsTheCoreAndTheComputerAroundIt) {
   const std::string core =
       "core          39331.500 frames/s   1017 cycles a frame, 2 frames\n"
@@ -59,7 +68,7 @@ TEST(ConsoleTable, ShowsTheCoreAndTheComputerAroundIt) {
       "waits        mostly left_pixel on out for the turnaround: 250 cycles (12.50 %)\n";
   EXPECT_EQ(console_table(two_banks(), {}), core + banks);
   EXPECT_EQ(
-      console_table(in_a_computer(), {40, 30, 40}),
+      console_table(in_a_computer(), clocks(40, 30, 40)),
       core +
           "computer         17.980 ± 0.250 frames/s   steady over 12 frames; 17.500 from power-up\n"
           "computer bound   29.970 frames/s   limited by camera\n" +
@@ -76,7 +85,7 @@ TEST(ConsoleTable, ShowsTheCoreAndTheComputerAroundIt) {
 }
 
 TEST(ConsoleTable, ShowsTheRatesOfAPciBusOf64Bits) {
-  const std::string text = console_table(in_a_computer(), {40, 30, 40, 64});
+  const std::string text = console_table(in_a_computer(), clocks(40, 30, 40, 64));
   EXPECT_THAT(
       text, HasSubstr("left_capture            100           3000   15.00     36.00    240.00        1.111\n"
                       "pci bus      busy 25.00 % of its clocks\n"));
@@ -85,7 +94,7 @@ TEST(ConsoleTable, ShowsTheRatesOfAPciBusOf64Bits) {
 TEST(ConsoleTable, KeepsTheColumnsUnderALongName) {
   platform::Statistics statistics = in_a_computer();
   statistics.computer->pci_masters.push_back({"right_capture", 100, 3000, 3333});
-  const std::string text = console_table(statistics, {40, 30, 40});
+  const std::string text = console_table(statistics, clocks(40, 30, 40));
   EXPECT_THAT(text, HasSubstr("\npci master      transactions          words  data %"));
   EXPECT_THAT(text, HasSubstr("\nright_capture            100           3000   30.00"));
 }
@@ -104,7 +113,7 @@ TEST(ConsoleTable, ShowsNoSteadyRateOfFewFramesAndNoWaitWhereNoPortWaits) {
   platform::Statistics statistics = in_a_computer();
   statistics.frames_per_second.steady.reset();
   statistics.blame.clear();
-  const std::string text = console_table(statistics, {62.5, 33, 40});
+  const std::string text = console_table(statistics, clocks(62.5, 33, 40));
   EXPECT_THAT(
       text,
       HasSubstr("\ncomputer         17.500 frames/s   from power-up; too few frames for a steady rate\n"));
@@ -161,7 +170,7 @@ TEST(ConsoleTable, StaysWithinAHundredColumns) {
   statistics.cycles = 9'999'999'999'999;
   statistics.bound.core_limited_by = std::string(300, 'l');
   std::istringstream lines(
-      console_table(statistics, {1000, 1000, 1000}, {999999, 100, Accuracy{100, 100, 100}}));
+      console_table(statistics, clocks(1000, 1000, 1000), {999999, 100, Accuracy{100, 100, 100}}));
   std::string line;
   int count = 0;
   while (std::getline(lines, line)) {

@@ -1,6 +1,6 @@
-#include "sw/stats/timeline_csv.h"
-
 #include <gtest/gtest.h>
+
+#include "sw/stats/record_csv.h"
 
 namespace stereotlm::stats {
 namespace {

@@ -14,7 +14,6 @@
 
 #include "models/clock.h"
 #include "sw/sqlite/database.h"
-#include "sw/trace/longest_wait.h"
 #include "tests/support/file_size_limit.h"
 #include "tests/support/made_trace.h"
 #include "tests/support/scratch_folder.h"

@@ -1,4 +1,4 @@
-#include "sw/stats/conflicts_csv.h"
+#include "sw/stats/record_csv.h"
 
 #include <fmt/format.h>
 
@@ -6,13 +6,14 @@
 #include <array>
 #include <charconv>
 #include <cstddef>
+#include <iterator>
+#include <optional>
 #include <vector>
 
 namespace stereotlm::stats {
 namespace {
 
 constexpr std::ptrdiff_t kMostDigits = 20;
-constexpr std::size_t kPieceBytes = std::size_t{1} << 16U;
 constexpr std::array<const char*, fpga::FrameConflicts::kAccessKinds> kAccessNames = {"core", "capture",
                                                                                       "upload", "read_back"};
 
@@ -30,6 +31,10 @@ char* put(char* to, std::uint64_t number, char behind) {
 void append(std::string& text, std::uint64_t number, char behind) {
   std::array<char, kMostDigits + 1> bytes;
   text.append(bytes.data(), put(bytes.data(), number, behind));
+}
+
+std::string text_of(const std::optional<std::uint64_t>& number) {
+  return number ? fmt::to_string(*number) : std::string();
 }
 
 }  // namespace
@@ -86,13 +91,6 @@ std::string conflicts_csv_head() {
 }
 
 std::string conflicts_csv(const platform::BoardConfig& board, const fpga::ConflictRecorder& recorder) {
-  std::string text;
-  conflicts_csv(board, recorder, [&text](const std::string& piece) { text += piece; });
-  return text;
-}
-
-void conflicts_csv(const platform::BoardConfig& board, const fpga::ConflictRecorder& recorder,
-                   const std::function<void(const std::string& piece)>& take) {
   std::string text = conflicts_csv_head();
   const fpga::TileGrid& grid = recorder.grid();
   const std::vector<const fpga::ConflictRecorder::Stalls*> stalls = recorder.stalls();
@@ -116,11 +114,37 @@ void conflicts_csv(const platform::BoardConfig& board, const fpga::ConflictRecor
       text += names[index];
       append(text, cycles, '\n');
     }
-    if (text.size() < kPieceBytes) continue;
-    take(text);
-    text.clear();
   }
-  take(text);
+  return text;
+}
+
+std::string timeline_csv_head() {
+  return "kind,class,frame,camera_frame,start_ps,end_ps,words,dropped_pixels,why\n";
+}
+
+std::string timeline_csv(const std::vector<platform::TimelineEvent>& events) {
+  std::string text;
+  for (const platform::TimelineEvent& event : events) {
+    fmt::format_to(std::back_inserter(text), "{},{},{},{},{},{},{},{},{}\n",
+                   platform::kEventKindNames[static_cast<std::size_t>(event.kind)], event.what,
+                   text_of(event.frame), text_of(event.camera_frame), event.begin_ps, event.end_ps,
+                   event.words, event.dropped_pixels, event.why);
+  }
+  return text;
+}
+
+std::string latency_csv_head() {
+  return fmt::format("frame,camera_frame,captured_ps,{}_ps,latency_ps\n",
+                     fmt::join(platform::kLatencyParts, "_ps,"));
+}
+
+std::string latency_csv(const std::vector<platform::FrameLatency>& latencies) {
+  std::string text;
+  for (const platform::FrameLatency& latency : latencies) {
+    fmt::format_to(std::back_inserter(text), "{},{},{},{},{}\n", latency.frame, latency.camera_frame,
+                   latency.begin_ps, fmt::join(latency.parts_ps, ","), latency.sum_ps());
+  }
+  return text;
 }
 
 }  // namespace stereotlm::stats

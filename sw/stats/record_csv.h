@@ -1,11 +1,12 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <string>
+#include <vector>
 
 #include "models/fpga/conflict_recorder.h"
 #include "platform/config/board_config.h"
+#include "platform/timeline_records.h"
 
 namespace stereotlm::stats {
 
@@ -22,8 +23,12 @@ std::string csv_tile(const platform::BoardConfig& board, const fpga::TileGrid& g
 // The text of conflicts.csv, and its head.
 std::string conflicts_csv_head();
 std::string conflicts_csv(const platform::BoardConfig& board, const fpga::ConflictRecorder& recorder);
-// The same text in pieces of some 64 kB, because the whole can have tens of MB.
-void conflicts_csv(const platform::BoardConfig& board, const fpga::ConflictRecorder& recorder,
-                   const std::function<void(const std::string& piece)>& take);
+
+// The lines of timeline.csv and of latency.csv. README.md describes the columns. The heads are lines of their
+// own.
+std::string timeline_csv_head();
+std::string timeline_csv(const std::vector<platform::TimelineEvent>& events);
+std::string latency_csv_head();
+std::string latency_csv(const std::vector<platform::FrameLatency>& latencies);
 
 }  // namespace stereotlm::stats

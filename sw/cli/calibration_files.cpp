@@ -1,23 +1,31 @@
-#include "sw/cli/grid_pictures.h"
+#include "sw/cli/calibration_files.h"
 
 #include <fmt/format.h>
+#include <fnmatch.h>
 #include <glob.h>
 
 #include <algorithm>
+#include <array>
+#include <exception>
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <string>
 #include <system_error>
 #include <utility>
 
+#include "calib/calibration.h"
 #include "models/fpga/core_config.h"
 #include "sw/files/sha256.h"
+#include "sw/files/whole_file.h"
+#include "sw/media/load.h"
 #include "sw/process/interrupt.h"
 #include "sw/process/streams.h"
-#include "sw/media/load.h"
 
 namespace stereotlm::cli {
 namespace {
+
+namespace fs = std::filesystem;
 
 using Names = std::vector<std::string>;
 
@@ -146,6 +154,28 @@ class Loader {
   int count_ = 0;
 };
 
+// Patterns for fnmatch() of what follows F in the names of the files.
+constexpr std::array kEndings = {".yaml",
+                                 "_left.lut",
+                                 "_right.lut",
+                                 "_drawings/",
+                                 "_drawings/corners_+([0-9]).png",
+                                 "_drawings/rectified_+([0-9]).png",
+                                 "_drawings/displacement.png",
+                                 "_drawings/source_lines.png",
+                                 "_pictures/",
+                                 "_pictures/@(left|right)_+([0-9]).png",
+                                 "_pictures/scene_@(left|right|truth).png"};
+
+bool is_calibration(const fs::path& file) {
+  try {
+    calib::parse_calibration(files::read_whole_file(file, calib::kMostCalibrationBytes));
+    return true;
+  } catch (const std::exception& /*error*/) {
+    return false;
+  }
+}
+
 }  // namespace
 
 std::vector<calib::PicturePair> load_grid_pictures(const Names& left, const Names& right,
@@ -170,6 +200,27 @@ std::vector<calib::PicturePair> load_grid_pictures(const Names& left, const Name
   loader.say_converted();
   compare_names(left_files, right_files);
   return pairs;
+}
+
+files::OutputContent calibration_content(const runs::RigFiles& files, bool makes_pictures,
+                                         const std::vector<files::NamedFile>& inputs) {
+  const std::string stem = files.calibration.stem();
+  files::OutputContent content;
+  content.called = "folder";
+  content.mark = files.calibration.filename();
+  content.kind = {"calibration", is_calibration};
+  content.rule =
+      "only files that calibrate has made, with their calibration, are replaced: must be moved away";
+  content.is_ours = [stem](const std::string& name) {
+    return name.rfind(stem, 0) == 0 && std::any_of(kEndings.begin(), kEndings.end(), [&](const char* ending) {
+             return fnmatch(ending, name.c_str() + stem.size(), FNM_EXTMATCH | FNM_PATHNAME) == 0;
+           });
+  };
+  content.others_stay = true;
+  if (!makes_pictures) content.kept = files.pictures.filename();
+  content.aside = stem + ".partial";
+  content.inputs = inputs;
+  return content;
 }
 
 }  // namespace stereotlm::cli
