@@ -12,7 +12,7 @@
 #include "models/fpga/core_ports.h"
 #include "platform/config/board_yaml.h"
 #include "sw/cli/text.h"
-#include "sw/explore/plan/figures.h"
+#include "sw/explore/store/store.h"
 #include "sw/report/diff_verdict.h"
 #include "sw/report/difference_tables.h"
 

@@ -5,7 +5,7 @@
 #include "sw/cli/board_options.h"
 #include "sw/cli/command.h"
 #include "sw/cli/explanation_report.h"
-#include "sw/explore/store/bank_names.h"
+#include "sw/explore/store/store.h"
 #include "sw/process/interrupt.h"
 #include "sw/process/streams.h"
 #include "sw/runs/explanation.h"

@@ -212,7 +212,7 @@ class ExplanationText {
 
   std::string forbidden() const {
     std::string text;
-    for (const explore::ForbiddenStep& step : explanation_.knobs().forbidden)
+    for (const explore::KnobStep& step : explanation_.knobs().forbidden)
       text += paragraph("not possible here: ", 2,
                         fmt::format("{}: {} -> {}, because {}", step.knob, step.from, step.to, step.reason));
     return text;
@@ -299,7 +299,7 @@ void add_changes(Explanation& explanation, Json& document) {
   }
   document["changes"] = std::move(changes);
   Json& impossible = document["impossible"] = Json::array();
-  for (const explore::ForbiddenStep& step : explanation.knobs().forbidden) {
+  for (const explore::KnobStep& step : explanation.knobs().forbidden) {
     impossible.push_back(change_json(step));
     impossible.back()["reason"] = step.reason;
   }

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "sw/cli/command.h"
-#include "sw/explore/store/merge_stores.h"
 #include "sw/explore/store/store.h"
 #include "sw/explore/store/store_lock.h"
 #include "sw/process/interrupt.h"

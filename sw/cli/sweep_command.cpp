@@ -18,7 +18,6 @@
 #include "sw/explore/slurm/slurm_sweep.h"
 #include "sw/explore/store/store.h"
 #include "sw/explore/store/store_lock.h"
-#include "sw/explore/store/store_reader.h"
 #include "sw/explore/sweep/sweep.h"
 #include "sw/files/output_file.h"
 #include "sw/files/shell_word.h"
@@ -198,7 +197,7 @@ explore::SweepCounts sweep_here(const SweepCommandOptions& options, const explor
   check_open_files(sweep.jobs, plan.size());
   ProgressFile file(options);
   try {
-    if (options.known.is_given()) const explore::FinishedStore known(sweep.known, sweep.version);
+    if (options.known.is_given()) const explore::StoredRow known(sweep.known, sweep.version);
   } catch (const sqlite::DatabaseError& error) {
     process::refuse(fmt::format("--known {}", error.what()));
   }
@@ -222,7 +221,7 @@ explore::SweepCounts sweep_here(const SweepCommandOptions& options, const explor
   explore::SweepCounts counts;
   try {
     counts = explore::sweep(
-        plan, [&simulator](const explore::Point& point) { return simulator(point); }, sweep,
+        plan.points(), [&simulator](const explore::Point& point) { return simulator(point); }, sweep,
         [&progress, &file](const explore::SweepCounts& done) {
           progress.show([&done](double seconds) { return runs::progress_text(done, 0, seconds); });
           file.show(done);

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "platform/yaml/yaml_tree.h"
 #include "sw/files/sha256.h"
 
@@ -68,9 +70,11 @@ Point impossible_point(std::uint64_t number, const std::string& yaml, const plat
   return point;
 }
 
-const std::vector<Condition>& Points::conditions() const {
-  static const std::vector<Condition> kNone;
-  return kNone;
+Points board_points(std::vector<platform::BoardConfig> boards, const PointRun& run) {
+  const std::uint64_t size = boards.size();
+  return {size, [boards = std::move(boards), run](std::uint64_t number) {
+            return make_point(number, boards.at(number), run);
+          }};
 }
 
 }  // namespace stereotlm::explore

@@ -1,5 +1,3 @@
-#include "sw/explore/store/merge_stores.h"
-
 #include <fmt/format.h>
 #include <sqlite3.h>
 
@@ -11,6 +9,7 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "sw/explore/store/store.h"
 #include "sw/explore/store/store_layout.h"
 #include "sw/explore/store/store_lock.h"
 #include "sw/files/output_file.h"

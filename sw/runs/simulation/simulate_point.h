@@ -9,8 +9,8 @@
 #include "models/kernels/gray_image.h"
 #include "platform/config/tables.h"
 #include "platform/statistics.h"
-#include "sw/explore/plan/figures.h"
 #include "sw/explore/plan/points.h"
+#include "sw/explore/store/store.h"
 
 namespace stereotlm::runs {
 

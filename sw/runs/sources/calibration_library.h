@@ -7,7 +7,6 @@
 #include "calib/calibrate.h"
 #include "calib/drawings.h"
 #include "calib/grid_sheet.h"
-#include "calib/matched_rows.h"
 
 namespace stereotlm::runs {
 

@@ -1,8 +1,8 @@
-#include "sw/demo/demo_pair.h"
-
 #include <gtest/gtest.h>
 
 #include <stdexcept>
+
+#include "sw/demo/demo_pictures.h"
 
 namespace stereotlm::demo {
 namespace {

@@ -1,9 +1,9 @@
-#include "sw/demo/panels.h"
-
 #include <gtest/gtest.h>
 
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
+
+#include "sw/demo/demo_pictures.h"
 
 namespace stereotlm::demo {
 namespace {

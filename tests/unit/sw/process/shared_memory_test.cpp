@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include "sw/process/child_process.h"
+#include "sw/process/child.h"
 
 namespace stereotlm::process {
 namespace {

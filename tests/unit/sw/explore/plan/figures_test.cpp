@@ -1,11 +1,10 @@
-#include "sw/explore/plan/figures.h"
-
 #include <gtest/gtest.h>
 
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "sw/explore/store/store.h"
 #include "sw/stats/stats_json.h"
 
 namespace stereotlm::explore {

@@ -10,8 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "sw/explore/store/merge_stores.h"
-#include "sw/explore/store/store_reader.h"
 #include "tests/unit/sw/explore/store_files.h"
 
 namespace stereotlm::explore {
@@ -32,8 +30,7 @@ StoredPoint point(const std::string& hash, std::int64_t cycles = 7) {
   StoredPoint point = ok_point(hash);
   point.config = "name: x\n";
   point.keys = {{"image.width", std::int64_t{640}}};
-  point.figures = {{"cycles", cycles}, {"rate", 0.5}};
-  point.blame = {{"left_pixel", "bank0", "host", 3}};
+  point.figures = {{{"cycles", cycles}, {"rate", 0.5}}, {{"left_pixel", "bank0", "host", 3}}};
   return point;
 }
 
@@ -71,7 +68,7 @@ TEST_F(StoreTest, KeepsARowForEachPoint) {
 TEST_F(StoreTest, AddsAPointAfterOneWithTheSameNewColumnsThatCouldNotBeAdded) {
   Store store(file("a.db"), kVersion);
   StoredPoint broken = point("h1");
-  broken.blame.push_back(broken.blame.front());  // the same row twice
+  broken.figures.blame.push_back(broken.figures.blame.front());  // the same row twice
   EXPECT_THAT(message_of([&] { store.add(broken); }), HasSubstr("UNIQUE constraint failed"));
   EXPECT_FALSE(store.has("h1"));
   EXPECT_THAT(rows("a.db", "SELECT count(*) FROM pragma_table_info('points')"), ElementsAre("5"));
@@ -86,7 +83,7 @@ TEST_F(StoreTest, TakesPointsWithAnyColumnsFromSeveralConnections) {
   two.add(point("h2"));
   StoredPoint other = point("h3");
   other.keys.push_back({"select \"from\"", "a'b"});
-  other.figures = {{"frames_per_second.system", 2.5}};
+  other.figures.values = {{"frames_per_second.system", 2.5}};
   one.add(other);
   other.hash = "h4";
   two.add(other);
@@ -101,7 +98,7 @@ TEST_F(StoreTest, TakesPointsWithAnyColumnsFromSeveralConnections) {
 TEST_F(StoreTest, ListsTheColumnsThatHoldKeys) {
   StoredPoint other = point("h2");
   other.keys.push_back({"bridge.posted_words", std::int64_t{64}});
-  other.figures.push_back({"bridge.posted_words.counted", std::int64_t{9}});
+  other.figures.values.push_back({"bridge.posted_words.counted", std::int64_t{9}});
   add("a.db", {point("h1")});
   add("b.db", {other});
   merge({"a.db", "b.db"}, "ab.db");
@@ -114,7 +111,7 @@ TEST_F(StoreTest, HoldsPointsOfOneVersion) {
   add("a.db", {point("h1")});
   const std::string text = file("a.db") + ": holds points of version 1; this is version 2: give another file";
   EXPECT_EQ(open_error("a.db", "2"), text);
-  EXPECT_EQ(message_of([&] { FinishedStore(file("a.db"), "2"); }), text);
+  EXPECT_EQ(message_of([&] { StoredRow(file("a.db"), "2"); }), text);
   for (const std::string hash : {"h0", "h1", "h2"}) {
     add(hash + ".db", {point(hash)}, "2");
     EXPECT_THAT(merge_error({"a.db", hash + ".db"}, "c.db"),
@@ -166,7 +163,7 @@ TEST_F(StoreTest, MergesToTheSameBytesInAnyOrder) {
   StoredPoint wide = point("h2");
   wide.keys = {{"matcher.window", std::int64_t{7}}};
   for (const char* const bank : {"bank10", "bank2", "bank1", "bank12", "bank"})
-    wide.figures.push_back({std::string("banks.") + bank + ".reads", std::int64_t{1}});
+    wide.figures.values.push_back({std::string("banks.") + bank + ".reads", std::int64_t{1}});
   add("a.db", {point("h3")});
   add("b.db", {wide, point("h1")});
   add("all.db", {point("h1"), wide, point("h3")});
@@ -189,7 +186,7 @@ TEST_F(StoreTest, MergesToTheSameBytesInAnyOrder) {
 
 TEST_F(StoreTest, DoesNotMergeDifferentResultsOfAPoint) {
   StoredPoint blamed = point("h1");
-  blamed.blame.push_back({"result", "bank0", "host", 4});
+  blamed.figures.blame.push_back({"result", "bank0", "host", 4});
   add("a.db", {point("h1")});
   add("b.db", {point("h1", 8)});
   add("blamed.db", {blamed});

@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "sw/process/child_process.h"
+#include "sw/process/child.h"
 #include "sw/process/shared_memory.h"
 
 namespace stereotlm::explore {
