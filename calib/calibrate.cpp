@@ -171,11 +171,6 @@ std::optional<HeldOut> held_out(const CalibrationRequest& request, const RigFit&
   return std::nullopt;
 }
 
-constexpr int kMostPoints = 150;
-constexpr int kReach = 7;     // pixels of the window to each side of a point
-constexpr int kMostRows = 8;  // rows that are searched above and below
-constexpr float kLeastCorrelation = 0.9F;
-
 // The position of the maximum of a parabola through three values, from the middle one, which is the largest:
 // -0.5..0.5.
 double between(double before, double largest, double after) {
@@ -236,6 +231,10 @@ MatchedRows matched_rows(const kernels::GrayImage& left, const kernels::GrayImag
                                 std::to_string(right.height) + ": must be as large as the left one, " +
                                 std::to_string(left.width) + "x" + std::to_string(left.height));
   }
+  constexpr int kMostPoints = 150;
+  constexpr int kReach = 7;     // pixels of the window to each side of a point
+  constexpr int kMostRows = 8;  // rows that are searched above and below
+  constexpr float kLeastCorrelation = 0.9F;
   constexpr double kQuality = 0.02;
   constexpr double kDistance = 16;
   std::vector<cv::Point2f> points;

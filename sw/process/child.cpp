@@ -111,39 +111,26 @@ void Pipe::close_end(std::size_t end) {
   ends_[end] = -1;
 }
 
-ChildProcess::ChildProcess(const std::function<int()>& work) {
+Child::Child(const std::function<void(const Tell& tell)>& work) {
   const pid_t parent = getpid();
   std::fflush(nullptr);  // otherwise both processes would write the contents of the buffers
   pid_ = fork();
   if (pid_ < 0) throw_errno("fork");
-  if (pid_ > 0) return;
+  if (pid_ > 0) {
+    messages_.close_write_end();
+    return;
+  }
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(1);  // the parent ended before prctl()
-  _exit(work());
+  messages_.close_read_end();
+  _exit(run_child(work, messages_.write_end()));
 }
 
-ChildProcess::~ChildProcess() {
+Child::~Child() {
   if (pid_ < 0) return;
   kill(pid_, SIGKILL);
   while (waitpid(pid_, nullptr, 0) < 0 && errno == EINTR) {
   }
-}
-
-int ChildProcess::wait() {
-  int status = 0;
-  while (waitpid(pid_, &status, 0) < 0) {
-    if (errno != EINTR) throw_errno("waitpid");
-  }
-  pid_ = -1;
-  return status;
-}
-
-Child::Child(const std::function<void(const Tell& tell)>& work)
-    : process_([&] {
-        messages_.close_read_end();
-        return run_child(work, messages_.write_end());
-      }) {
-  messages_.close_write_end();
 }
 
 bool Child::has_news(std::chrono::milliseconds wait) {
@@ -160,7 +147,14 @@ std::optional<std::string> Child::next() {
   bool is_whole = read_all(messages_.read_end(), &header, sizeof header);
   text.resize(header.bytes);
   is_whole = is_whole && read_all(messages_.read_end(), text.data(), text.size());
-  if (!is_whole) throw ChildDied(process_.wait());
+  if (!is_whole) {
+    int status = 0;
+    while (waitpid(pid_, &status, 0) < 0) {
+      if (errno != EINTR) throw_errno("waitpid");
+    }
+    pid_ = -1;
+    throw ChildDied(status);
+  }
   if (header.kind == Kind::kMessage) return text;
   if (header.kind == Kind::kOutOfMemory) throw std::bad_alloc();
   if (header.kind == Kind::kFailure) throw std::runtime_error(text);

@@ -51,36 +51,21 @@ class Pipe {
   std::array<int, 2> ends_{-1, -1};
 };
 
-// A child process, forked from this process. It is killed when this process ends.
-class ChildProcess {
- public:
-  // Forks. The child has a copy of everything but the threads; it shares open files and their positions with
-  // this process. It runs `work`, which must not throw, and exits with the status that `work` returns,
-  // without running destructors of static objects. Throws std::system_error if the system cannot fork.
-  explicit ChildProcess(const std::function<int()>& work);
-  // Kills the child if it still runs.
-  ~ChildProcess();
-  ChildProcess(const ChildProcess&) = delete;
-  ChildProcess& operator=(const ChildProcess&) = delete;
-
-  // Waits until the child has ended, and returns its status as waitpid() gives it. May be called once. Throws
-  // std::system_error.
-  int wait();
-
- private:
-  pid_t pid_ = -1;  // -1 after wait()
-};
-
 // A child process that does one piece of work and sends messages about it. Simulations run in such processes,
 // because a process can elaborate SystemC only once. A fork starts faster than a program, because all
-// libraries are already loaded.
+// libraries are already loaded. The child is killed when this process ends.
 class Child {
  public:
   using Tell = std::function<void(const std::string& message)>;
 
-  // Forks. The child has a copy of everything but the threads (see ChildProcess). It runs `work` and exits.
-  // Throws std::system_error if the system cannot fork.
+  // Forks. The child has a copy of everything but the threads; it shares open files and their positions with
+  // this process. It runs `work` and exits, without running destructors of static objects. Throws
+  // std::system_error if the system cannot fork.
   explicit Child(const std::function<void(const Tell& tell)>& work);
+  // Kills the child if it still runs.
+  ~Child();
+  Child(const Child&) = delete;
+  Child& operator=(const Child&) = delete;
 
   // Waits until next() would return without waiting, a signal has been caught, or the time is over. Returns
   // true in the first case.
@@ -93,7 +78,7 @@ class Child {
 
  private:
   Pipe messages_;
-  ChildProcess process_;
+  pid_t pid_ = -1;  // -1 after its end was waited for
 };
 
 }  // namespace stereotlm::process

@@ -80,11 +80,11 @@ AllocationSearch::AllocationSearch(const platform::BoardConfig& board, int most_
   });
   outcomes_.resize(by_frames_ ? frame_boards_.size() : fitting_.size());
   given_up_.resize(outcomes_.size());
+  order_.resize(outcomes_.size());
+  std::iota(order_.begin(), order_.end(), std::size_t{0});
   if (by_frames_) return;
   for (const Placement& placement : fitting_) bounds_.push_back(bound(placed(board_, placement)));
-  by_bound_.resize(fitting_.size());
-  std::iota(by_bound_.begin(), by_bound_.end(), std::size_t{0});
-  std::stable_sort(by_bound_.begin(), by_bound_.end(),
+  std::stable_sort(order_.begin(), order_.end(),
                    [this](std::size_t a, std::size_t b) { return bounds_[a] > bounds_[b]; });
 }
 
@@ -103,31 +103,24 @@ void AllocationSearch::record(std::size_t number, const AllocationOutcome& outco
   outcomes_.at(number) = outcome;
 }
 
-std::vector<std::size_t> AllocationSearch::next() const {
+std::vector<std::size_t> AllocationSearch::left() const {
+  const auto to_reach = by_frames_ ? std::map<int, double>() : rates_to_reach(rated());
   std::vector<std::size_t> numbers;
-  if (by_frames_) {
-    for (std::size_t number = 0; number < outcomes_.size(); ++number) {
-      if (!outcomes_[number]) numbers.push_back(number);
-    }
-    return numbers;
-  }
-  const std::map<int, double> to_reach = rates_to_reach(rated());
-  std::map<int, std::uint64_t> taken;
-  for (const std::size_t place : by_bound_) {
-    if (is_done(place) || !may_tie(place, to_reach)) continue;
-    if (taken[banks_used(fitting_[place])]++ < kBoardsPerRound) numbers.push_back(place);
+  for (const std::size_t number : order_) {
+    if (!outcomes_[number] && !given_up_[number] && (by_frames_ || may_tie(number, to_reach)))
+      numbers.push_back(number);
   }
   return numbers;
 }
 
-std::uint64_t AllocationSearch::most_left() const {
-  if (by_frames_) return next().size();
-  const std::map<int, double> to_reach = rates_to_reach(rated());
-  std::uint64_t left = 0;
-  for (std::size_t number = 0; number < outcomes_.size(); ++number) {
-    if (!is_done(number) && may_tie(number, to_reach)) ++left;
-  }
-  return left;
+std::vector<std::size_t> AllocationSearch::next() const {
+  std::vector<std::size_t> numbers = left();
+  std::map<int, std::uint64_t> taken;
+  const auto is_for_later = [&](std::size_t number) {
+    return taken[banks_used(fitting_[number])]++ >= kBoardsPerRound;
+  };
+  if (!by_frames_) numbers.erase(std::remove_if(numbers.begin(), numbers.end(), is_for_later), numbers.end());
+  return numbers;
 }
 
 double AllocationSearch::rate_to_reach(std::size_t number) const {

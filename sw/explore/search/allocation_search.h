@@ -88,7 +88,7 @@ class AllocationSearch {
   double rate_to_reach(std::size_t number) const;
   // The largest number of boards that may still have to be simulated: all boards except those that were
   // recorded, given up or left out so far.
-  std::uint64_t most_left() const;
+  std::uint64_t most_left() const { return left().size(); }
 
   std::size_t size() const { return outcomes_.size(); }
   Point point(std::size_t number) const;
@@ -108,9 +108,8 @@ class AllocationSearch {
  private:
   // nullopt until all boards of the placement are simulated.
   std::optional<AllocationOutcome> outcome_of(std::size_t placement) const;
-  bool is_done(std::size_t placement) const {
-    return outcomes_[placement].has_value() || given_up_[placement];
-  }
+  // The numbers of the boards that may still have to be simulated, in the order of their simulation.
+  std::vector<std::size_t> left() const;
   // A placement that counts.
   struct Rated {
     std::size_t place;  // index of fitting_
@@ -130,13 +129,13 @@ class AllocationSearch {
   std::uint64_t turn_frames_;  // frames in one turn of the allocation's lists
   std::uint64_t placements_ = 0;
   std::vector<Placement> fitting_;
-  std::vector<std::size_t> by_bound_;  // indices of fitting_, the highest bound first
-  std::vector<double> bounds_;         // [index of fitting_]: frames per second
+  std::vector<double> bounds_;  // [index of fitting_]: frames per second
   std::vector<platform::BoardConfig> frame_boards_;
   std::map<std::string, std::size_t> frame_numbers_;  // [key_of(board)]: index of frame_boards_
-  // Both by the number of a board, which is an index of frame_boards_ if by_frames_, else of fitting_.
+  // By the number of a board, which is an index of frame_boards_ if by_frames_, else of fitting_.
   std::vector<bool> given_up_;                              // whether the run was given up
   std::vector<std::optional<AllocationOutcome>> outcomes_;  // the result, once it is known
+  std::vector<std::size_t> order_;  // all numbers; of placements the highest bound first
 };
 
 // The progress of simulate().

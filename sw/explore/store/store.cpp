@@ -111,7 +111,7 @@ Store::Store(const std::string& path, const std::string& version, std::chrono::m
   create();
   check_version(database_, version);
   read_columns();
-  find_ = std::make_unique<sqlite::Statement>(database_, kFindPoint);
+  find_ = std::make_unique<sqlite::Statement>(database_, "SELECT 1 FROM points WHERE hash = ?");
   insert_blame_ = std::make_unique<sqlite::Statement>(
       database_, fmt::format("INSERT INTO blame({}) VALUES(?, ?, ?, ?, ?)", kBlameColumns));
 }
@@ -154,7 +154,12 @@ void Store::check_banks(const std::vector<std::string>& banks) const {
   }
 }
 
-bool Store::has(const std::string& hash) { return has_point(*find_, hash); }
+bool Store::has(const std::string& hash) {
+  find_->bind(1, hash);
+  const bool is_there = find_->step();
+  find_->reset();
+  return is_there;
+}
 
 bool Store::add(const StoredPoint& point) {
   const std::vector<const platform::BoardValue*> values = further_values(point);

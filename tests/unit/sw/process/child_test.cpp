@@ -50,10 +50,10 @@ TEST(Pipe, LeavesNoFileOpen) {
   EXPECT_EQ(open_files(), before);
 }
 
-TEST(ChildProcess, IsGoneWhenItIsDestroyed) {
+TEST(Child, IsGoneWhenItIsDestroyed) {
   Pipe pipe;
   {
-    const ChildProcess child([] { return pause(); });
+    const Child child([](const Child::Tell& /*tell*/) { pause(); });
   }
   EXPECT_TRUE(ends_empty(pipe));
 }
@@ -64,13 +64,13 @@ void wait_until_it_has_ended() {
   while (getppid() == forker) usleep(1000);
 }
 
-TEST(ChildProcess, DoesNotBeginItsWorkAfterTheEndOfItsParent) {
+TEST(Child, DoesNotBeginItsWorkAfterTheEndOfItsParent) {
   Pipe pipe;
   const pid_t parent = fork();
   if (parent == 0) {
     forker = getpid();
     pthread_atfork(nullptr, nullptr, wait_until_it_has_ended);
-    const ChildProcess child([&] { return write_all(pipe.write_end(), "", 1) ? 0 : 1; });
+    const Child child([&](const Child::Tell& /*tell*/) { write_all(pipe.write_end(), "", 1); });
     _exit(0);
   }
   ASSERT_EQ(waitpid(parent, nullptr, 0), parent);
