@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "platform/config/board_yaml.h"
+#include "sw/explore/plan/conditions.h"
 #include "sw/explore/plan/plan.h"
 #include "sw/explore/store/store_lock.h"
 #include "sw/process/child.h"
@@ -98,6 +99,7 @@ TEST_F(SweepTest, StoresAndCountsTheWayInWhichEachPointEnds) {
   EXPECT_TRUE(std::is_sorted(done.begin(), done.end()));
   EXPECT_EQ(done.back(), kPoints);
   EXPECT_EQ(count("a.db"), kStored);
+  EXPECT_EQ(count("a.db", "status = 'ok'"), kOk);
   EXPECT_EQ(count("a.db", "status = 'failed' AND reason = 'a window that fails' AND \"matcher.window\" = 11"),
             6U);
   EXPECT_EQ(count("a.db",
@@ -250,6 +252,20 @@ TEST_F(SweepTest, BeginsAPointAgainWhoseWorkerHasDiedUntilItHasDiedThreeTimes) {
         .execute("DELETE FROM points WHERE " + failed);
     expect_whole("a.db");
   }
+}
+
+TEST_F(SweepTest, RenamesAFigureThatHasThePathOfAKey) {
+  const auto same_path = [](const Point& /*point*/) -> Figures {
+    return {{{"image.width", std::int64_t{5}}}, {}};
+  };
+  sweep(board_points({platform::load_board("fpl2003")}, {}), same_path, options("a.db"), always);
+  EXPECT_EQ(count("a.db", "\"image.width\" = 640 AND \"image.width.counted\" = 5"), 1U);
+}
+
+TEST_F(SweepTest, EndsIfAConditionCannotBeComputed) {
+  Points points = board_points({platform::load_board("fpl2003")}, {});
+  points.conditions = {{"abs(-9223372036854775807 - image.height / 480) > 0", "plan.yaml:1:8", "where"}};
+  EXPECT_THROW(sweep(points, evaluate, options("a.db"), always), ConditionError);
 }
 
 TEST_F(SweepTest, EndsIfTheMachineLacksSomething) {
