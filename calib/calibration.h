@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "calib/grid_shape.h"
 #include "calib/rig.h"
 #include "calib/rig_fit.h"
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "calib/grid_shape.h"
+#include "calib/rig.h"
 #include "models/kernels/gray_image.h"
 #include "models/kernels/rectification_table.h"
 

@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "calib/grid_shape.h"
+#include "calib/rig.h"
 #include "models/kernels/gray_image.h"
 
 namespace stereotlm::calib {

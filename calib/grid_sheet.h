@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "calib/grid_shape.h"
+#include "calib/rig.h"
 
 namespace stereotlm::calib {
 

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "calib/grid_shape.h"
 #include "calib/rig.h"
 
 namespace stereotlm::calib {

@@ -8,7 +8,6 @@
 #include <variant>
 #include <vector>
 
-#include "calib/grid_shape.h"
 #include "calib/rig.h"
 #include "models/kernels/gray_image.h"
 

@@ -6,7 +6,6 @@
 #include <optional>
 #include <vector>
 
-#include "calib/grid_shape.h"
 #include "calib/rig.h"
 #include "calib/scene.h"
 #include "models/kernels/gray_image.h"

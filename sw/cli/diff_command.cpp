@@ -15,7 +15,7 @@
 #include "models/fpga/core_ports.h"
 #include "platform/config/board_yaml.h"
 #include "sw/cli/command.h"
-#include "sw/explore/plan/figures.h"
+#include "sw/explore/store/store.h"
 #include "sw/process/interrupt.h"
 #include "sw/process/streams.h"
 #include "sw/report/diff_verdict.h"

@@ -14,7 +14,7 @@
 #include "platform/config/buffer_layout.h"
 #include "sw/cli/board_options.h"
 #include "sw/cli/command.h"
-#include "sw/explore/store/bank_names.h"
+#include "sw/explore/store/store.h"
 #include "sw/files/shell_word.h"
 #include "sw/process/interrupt.h"
 #include "sw/process/streams.h"
@@ -214,7 +214,7 @@ class ExplanationText {
 
   std::string forbidden() const {
     std::string text;
-    for (const explore::ForbiddenStep& step : explanation_.knobs().forbidden)
+    for (const explore::KnobStep& step : explanation_.knobs().forbidden)
       text += paragraph("not possible here: ", 2,
                         fmt::format("{}: {} -> {}, because {}", step.knob, step.from, step.to, step.reason));
     return text;
@@ -301,7 +301,7 @@ void add_changes(Explanation& explanation, Json& document) {
   }
   document["changes"] = std::move(changes);
   Json& impossible = document["impossible"] = Json::array();
-  for (const explore::ForbiddenStep& step : explanation.knobs().forbidden) {
+  for (const explore::KnobStep& step : explanation.knobs().forbidden) {
     impossible.push_back(change_json(step));
     impossible.back()["reason"] = step.reason;
   }

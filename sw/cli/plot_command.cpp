@@ -15,9 +15,9 @@
 #include "sw/files/output_folder.h"
 #include "sw/files/temporary_folder.h"
 #include "sw/files/whole_file.h"
+#include "sw/process/command.h"
 #include "sw/process/interrupt.h"
 #include "sw/process/problems.h"
-#include "sw/process/python_script.h"
 #include "sw/process/streams.h"
 
 namespace stereotlm::cli {

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "sw/cli/command.h"
-#include "sw/explore/store/bank_names.h"
+#include "sw/explore/store/store.h"
 #include "sw/files/output_file.h"
 #include "sw/process/installation.h"
 #include "sw/process/interrupt.h"

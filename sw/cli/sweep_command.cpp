@@ -20,10 +20,8 @@
 #include "sw/explore/plan/plan.h"
 #include "sw/explore/slurm/shard_folder.h"
 #include "sw/explore/slurm/slurm_sweep.h"
-#include "sw/explore/store/merge_stores.h"
 #include "sw/explore/store/store.h"
 #include "sw/explore/store/store_lock.h"
-#include "sw/explore/store/store_reader.h"
 #include "sw/explore/sweep/sweep.h"
 #include "sw/files/output_file.h"
 #include "sw/files/shell_word.h"
@@ -340,7 +338,7 @@ explore::SweepCounts sweep_here(const SweepCommandOptions& options, const explor
   check_open_files(sweep.jobs, plan.size());
   ProgressFile file(options);
   process::attempt_or_refuse("--known ", [&] {
-    if (options.known.is_given()) const explore::FinishedStore known(sweep.known, sweep.version);
+    if (options.known.is_given()) const explore::StoredRow known(sweep.known, sweep.version);
   });
   try {
     const explore::StoreLock lock(options.out.text());
@@ -362,7 +360,7 @@ explore::SweepCounts sweep_here(const SweepCommandOptions& options, const explor
   explore::SweepCounts counts;
   try {
     counts = explore::sweep(
-        plan, [&simulator](const explore::Point& point) { return simulator(point); }, sweep,
+        plan.points(), [&simulator](const explore::Point& point) { return simulator(point); }, sweep,
         [&progress, &file](const explore::SweepCounts& done) {
           progress.show([&done](double seconds) { return runs::progress_text(done, 0, seconds); });
           file.show(done);

@@ -2,22 +2,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cstdint>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <stdexcept>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "calib/calibration.h"
 #include "calib/depth.h"
 #include "calib/tables.h"
 #include "models/kernels/stereo.h"
-#include "sw/demo/demo_pair.h"
-#include "sw/demo/panels.h"
+#include "sw/demo/demo_pictures.h"
 #include "sw/files/output_file.h"
 #include "sw/files/whole_file.h"
 #include "sw/media/encode.h"
@@ -58,24 +55,13 @@ void prepare(const fs::path& source, const fs::path& out) {
   std::printf("%.0f\n", media::disparities_needed({pair.truth, kTruthScale}));
 }
 
-int parse_disparities(std::string_view text) {
-  int value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  const kernels::IntegerRule& rule = kernels::kDisparitiesRule;
-  if (error != std::errc() || end != text.data() + text.size() || !rule.allows(value)) {
-    throw std::invalid_argument("DISPARITIES = " + std::string(text) + ": must be an integer, " +
-                                rule.text());
-  }
-  return value;
-}
-
 Panel disparity_panel(const std::string& caption, const kernels::GrayImage& image, int disparities,
                       const std::string& missing) {
   return {caption, image, disparities, "0", std::to_string(disparities - 1), missing};
 }
 
 void montage(const std::vector<std::string>& arguments) {
-  const int disparities = parse_disparities(arguments[3]);
+  const int disparities = kernels::kDisparitiesRule.required("DISPARITIES", std::stoi(arguments[3]));
   std::vector<Panel> panels = {
       {"left picture", media::load_gray(arguments[1]).image, 0, "", "", ""},
       disparity_panel("disparity, pixels", media::load_gray(arguments[2]).image, disparities, "no answer")};

@@ -3,7 +3,6 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/file.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -19,14 +18,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kProbe = "probe";
-
-// Whether the open file is the one at `path`.
-bool is_same(int file, const fs::path& path) {
-  struct stat opened = {};
-  struct stat there = {};
-  const bool is_known = fstat(file, &opened) == 0 && lstat(path.c_str(), &there) == 0;
-  return is_known && opened.st_dev == there.st_dev && opened.st_ino == there.st_ino;
-}
 
 // Moves the entries that are there. An entry that `to` already has is an error.
 void move_all(const std::vector<fs::path>& names, const fs::path& from, const fs::path& to) {
@@ -90,7 +81,7 @@ bool OutputFolder::try_lock() {
     owns_aside_ = false;
     refuse("in use by another run");
   }
-  if (is_same(lock_, aside())) return true;
+  if (is_open_at(lock_, aside())) return true;
   close(lock_);
   lock_ = -1;
   return false;

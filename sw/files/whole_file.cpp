@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -98,6 +99,13 @@ std::vector<std::filesystem::path> entries(const std::filesystem::path& folder) 
   for (std::filesystem::path& name : names) name = name.filename();
   std::sort(names.begin(), names.end());
   return names;
+}
+
+bool is_open_at(int file, const std::filesystem::path& path) {
+  struct stat opened = {};
+  struct stat there = {};
+  const bool is_known = fstat(file, &opened) == 0 && lstat(path.c_str(), &there) == 0;
+  return is_known && opened.st_dev == there.st_dev && opened.st_ino == there.st_ino;
 }
 
 bool is_there(const std::filesystem::path& path) {

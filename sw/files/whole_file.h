@@ -48,6 +48,9 @@ void sync_folder(const std::filesystem::path& folder);
 // Names of the entries of a folder, sorted. Throws std::filesystem::filesystem_error.
 std::vector<std::filesystem::path> entries(const std::filesystem::path& folder);
 
+// Whether the open file is the one at `path`, which is not a symbolic link.
+bool is_open_at(int file, const std::filesystem::path& path);
+
 // Whether an entry exists, is a regular file, is a folder. A symbolic link exists, but is neither file nor
 // folder.
 bool is_there(const std::filesystem::path& path);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "calib/split_mix.h"
 #include "models/fpga/core_config.h"
 #include "models/kernels/limits.h"
 
@@ -10,30 +11,15 @@ namespace {
 
 using kernels::GrayImage;
 
-// SplitMix64 (Steele, Lea and Flood, 2014): its step and its mixing function.
-constexpr std::uint64_t kStep = 0x9E3779B97F4A7C15U;
+using calib::SplitMix;
 
-std::uint64_t mixed(std::uint64_t value) {
-  value = (value ^ value >> 30U) * 0xBF58476D1CE4E5B9U;
-  value = (value ^ value >> 27U) * 0x94D049BB133111EBU;
-  return value ^ value >> 31U;
-}
-
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : state_(seed) {}
-  std::uint64_t next() { return mixed(state_ += kStep); }
-  // A number from 0 to count-1.
-  std::uint64_t below(std::uint64_t count) { return next() % count; }
-
- private:
-  std::uint64_t state_;
-};
+// A random number from 0 to count-1.
+std::uint64_t below(std::uint64_t count, SplitMix& random) { return random.next() % count; }
 
 // The noise of a texture at this position, 0 .. 2^bits-1.
 int noise(std::uint64_t texture, int column, int row, unsigned bits) {
   const std::uint64_t position = static_cast<std::uint64_t>(row) << 32U | static_cast<std::uint64_t>(column);
-  return static_cast<int>(mixed(texture + position * kStep) >> (64 - bits));
+  return static_cast<int>(calib::mixed(texture + position * calib::kSplitMixStep) >> (64 - bits));
 }
 
 // The grey level of a texture, 24..214: the sum of noise by pixel and noise by patch of 4 x 4 pixels, so that
@@ -44,8 +30,8 @@ std::uint8_t texel(std::uint64_t texture, int column, int row) {
 }
 
 // A random length from one to three eighths of the side.
-int size_within(int side, Random& random) {
-  const int part = side / 8 + static_cast<int>(random.below(static_cast<std::uint64_t>(side) / 4 + 1));
+int size_within(int side, SplitMix& random) {
+  const int part = side / 8 + static_cast<int>(below(static_cast<std::uint64_t>(side) / 4 + 1, random));
   return std::max(1, part);
 }
 
@@ -64,13 +50,13 @@ SyntheticScene::SyntheticScene(std::uint64_t seed, int width, int height, int di
   const int nearest = std::min(kernels::kDisparitiesRule.required("disparities", disparities) - 1, width / 4);
   far_ = std::min(nearest, std::max(1, nearest / 8));
   floor_near_ = std::max(far_, nearest / 3);
-  Random random(seed);
+  SplitMix random(seed);
   background_texture_ = random.next();
   const auto path = [&random](int range, int side) {
     Path result;
     result.range = static_cast<std::uint64_t>(range);
-    result.start = range > 0 ? random.below(2 * result.range) : 0;
-    result.speed = (1 + random.below(3)) * static_cast<std::uint64_t>(std::max(1, side / 160));
+    result.start = range > 0 ? below(2 * result.range, random) : 0;
+    result.speed = (1 + below(3, random)) * static_cast<std::uint64_t>(std::max(1, side / 160));
     return result;
   };
   const int count = static_cast<int>(boxes_.size());

@@ -13,8 +13,7 @@
 #include "models/kernels/matching_cost.h"
 #include "platform/config/board_yaml.h"
 #include "platform/config/buffer_layout.h"
-#include "sw/explore/plan/knobs.h"
-#include "sw/explore/search/allocation_run.h"
+#include "sw/explore/plan/points.h"
 #include "sw/explore/search/allocation_search.h"
 #include "sw/files/shell_word.h"
 #include "sw/files/temporary_folder.h"
@@ -67,14 +66,14 @@ class Boards {
 
   // Returns false if `keep_going` has ended the simulations.
   bool simulate(const Means& means, const std::function<bool(std::uint64_t done)>& keep_going) {
-    return batch_.run(explore::BoardPoints{boards_, run_}, means.evaluate, means.version, means.jobs,
+    return batch_.run(explore::board_points(boards_, run_), means.evaluate, means.version, means.jobs,
                       [&](const explore::SweepCounts& counts) { return keep_going(counts.done()); });
   }
 
   // To be called after simulate().
   Measured of(const BoardRun& run) {
     const std::size_t number = numbers_.at(words_of(run));
-    const explore::StoredRow& row = batch_.row_of(explore::BoardPoints{boards_, run_}.point(number));
+    const explore::StoredRow& row = batch_.row_of(explore::make_point(number, boards_[number], run_));
     const bool camera = run_.camera;
     if (camera &&
         row.integer("cameras.left.dropped_pixels") + row.integer("cameras.right.dropped_pixels") > 0)

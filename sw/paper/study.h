@@ -8,7 +8,7 @@
 
 #include "platform/config/board_config.h"
 #include "platform/statistics.h"
-#include "sw/explore/sweep/batch.h"
+#include "sw/explore/sweep/sweep.h"
 #include "sw/paper/claims.h"
 
 namespace stereotlm::paper {

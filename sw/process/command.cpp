@@ -1,6 +1,7 @@
 #include "sw/process/command.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <signal.h>
 #include <spawn.h>
 #include <sys/mman.h>
@@ -9,8 +10,11 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstring>
+#include <filesystem>
 #include <system_error>
 
+#include "sw/process/installation.h"
 #include "sw/process/interrupt.h"
 
 namespace stereotlm::process {
@@ -111,6 +115,27 @@ CommandEnd run_command(const std::vector<std::string>& words, const std::vector<
   constexpr int kSignalled = 128;
   return {WIFSIGNALED(status) ? kSignalled + WTERMSIG(status) : WEXITSTATUS(status), out.text(),
           errors.text()};
+}
+
+CommandEnd run_script(const std::string& script, const std::vector<std::string>& arguments,
+                      const std::string& python) {
+  const std::string path = installed_path(STEREOTLM_SCRIPT_FOLDER) / script;
+  if (!std::filesystem::is_regular_file(path))
+    throw std::runtime_error(fmt::format("'{}': not found: it is installed with the program", path));
+  // -E and -s: variables of the environment (PYTHON..) and packages of the user have no effect. -B: Python
+  // writes no file beside the script.
+  std::vector<std::string> words = {python, "-E", "-s", "-B", path};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::string cause;
+  try {
+    return run_command(words, {}, true);
+  } catch (const CommandMissing& /*error*/) {
+    cause = std::strerror(ENOENT);
+  } catch (const std::system_error& error) {
+    cause = error.code().message();
+  }
+  throw std::runtime_error(
+      fmt::format("'{}', which draws the figures: cannot be started: {}", python, cause));
 }
 
 }  // namespace stereotlm::process

@@ -175,7 +175,7 @@ Explanation::Explanation(const platform::BoardConfig& board, const platform::Tab
                       : kCoreFrames,
            ""},
       knobs_(explore::knob_steps(board, camera, joint_problem(tables))),
-      points_(boards(), run_),
+      points_(explore::board_points(boards(), run_)),
       accesses_(platform::frame_accesses(board, tables)) {
   const std::uint64_t turn = platform::allocation_period_frames(board);
   for (std::uint64_t frame = 0; frame < turn; ++frame)

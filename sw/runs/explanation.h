@@ -12,7 +12,7 @@
 #include "platform/config/tables.h"
 #include "sw/explore/plan/knobs.h"
 #include "sw/explore/store/store.h"
-#include "sw/explore/sweep/batch.h"
+#include "sw/explore/sweep/sweep.h"
 #include "sw/runs/simulation/simulate_point.h"
 
 namespace stereotlm::runs {
@@ -118,7 +118,7 @@ class Explanation {
   const platform::Tables& tables_;
   explore::PointRun run_;
   explore::KnobSteps knobs_;
-  explore::BoardPoints points_;
+  explore::Points points_;
   explore::Batch batch_;
   platform::FrameAccesses accesses_;
   std::vector<std::vector<platform::ResourceBound>> bounds_;  // [frame of one turn of the lists]

@@ -5,7 +5,7 @@
 #include <functional>
 #include <string>
 
-#include "sw/explore/search/allocation_run.h"
+#include "sw/explore/search/allocation_search.h"
 #include "sw/explore/sweep/sweep.h"
 
 namespace stereotlm::runs {

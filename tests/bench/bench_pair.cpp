@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <random>
 
-#include "sw/demo/demo_pair.h"
+#include "sw/demo/demo_pictures.h"
 #include "sw/media/load.h"
 
 namespace stereotlm::bench {

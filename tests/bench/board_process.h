@@ -8,7 +8,6 @@
 #include "models/host/frame_source.h"
 #include "platform/config/tables.h"
 #include "sw/process/child.h"
-#include "sw/process/child_process.h"
 
 namespace stereotlm::bench {
 

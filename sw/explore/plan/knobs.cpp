@@ -15,7 +15,7 @@
 #include "platform/config/board_reader.h"
 #include "platform/config/board_yaml.h"
 #include "platform/config/buffer_layout.h"
-#include "sw/explore/store/bank_names.h"
+#include "sw/explore/store/store.h"
 
 namespace stereotlm::explore {
 namespace {
@@ -281,8 +281,8 @@ class Steps {
     KnobSteps all = {std::move(steps_), {}};
     std::set<std::string> groups;  // with a possible or a listed step
     for (const KnobStep& step : all.possible) groups.insert(step.group);
-    for (auto& [step, group] : forbidden_) {
-      if (group.empty() || groups.insert(group).second) all.forbidden.push_back(std::move(step));
+    for (KnobStep& step : forbidden_) {
+      if (step.group.empty() || groups.insert(step.group).second) all.forbidden.push_back(std::move(step));
     }
     return all;
   }
@@ -294,13 +294,11 @@ class Steps {
     step.board = board_;
     change(step.board);
     const std::vector<std::string> problems = platform::problems(step.board);
+    if (problems.empty() && step.board.fpga.joint_tables && joint_problem_)
+      return forbid(std::move(step), *joint_problem_);
     if (problems.empty()) {
-      if (step.board.fpga.joint_tables && joint_problem_) {
-        forbid(step, *joint_problem_);
-      } else {
-        step.sets = platform::sets_between(board_, step.board);
-        steps_.push_back(std::move(step));
-      }
+      step.sets = platform::sets_between(board_, step.board);
+      steps_.push_back(std::move(step));
       return;
     }
     std::set<std::string> rules;
@@ -309,10 +307,11 @@ class Steps {
       rules.insert(rule.text);
     const auto is_rule = [&](const std::string& problem) { return rules.count(problem) > 0; };
     if (!std::all_of(problems.begin(), problems.end(), is_rule)) return;  // out of the range of its key
-    forbid(step, problems.front());
+    forbid(std::move(step), problems.front());
   }
-  void forbid(const KnobStep& step, const std::string& reason) {
-    forbidden_.push_back({{step.knob, step.from, step.to, reason}, step.group});
+  void forbid(KnobStep step, const std::string& reason) {
+    step.reason = reason;
+    forbidden_.push_back(std::move(step));
   }
   // One of several alternatives.
   template <typename Change>
@@ -404,7 +403,7 @@ class Steps {
   const BoardConfig& board_;
   const std::optional<std::string>& joint_problem_;
   std::vector<KnobStep> steps_;
-  std::vector<std::pair<ForbiddenStep, std::string>> forbidden_;  // second: the group of the step
+  std::vector<KnobStep> forbidden_;
 };
 
 }  // namespace

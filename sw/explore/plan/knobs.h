@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "platform/config/board_config.h"
-#include "sw/explore/plan/points.h"
 
 namespace stereotlm::explore {
 
@@ -20,20 +19,14 @@ struct KnobStep {
   // the step has no alternatives.
   std::string group{};
   std::vector<std::string> sets{};  // the values of `--set` that make the changed board
-};
-
-// A step that a rule between several keys forbids, or that the tables forbid.
-struct ForbiddenStep {
-  std::string knob;
-  std::string from;
-  std::string to;
-  std::string reason;  // the problem of the changed board, or of the tables
+  std::string reason{};             // of a forbidden step: the problem of the changed board, or of the tables
 };
 
 struct KnobSteps {
   std::vector<KnobStep> possible;
-  // Of a group none, if one of its steps is possible; else the first.
-  std::vector<ForbiddenStep> forbidden;
+  // The steps that a rule between several keys forbids, or that the tables forbid. Of a group none, if one of
+  // its steps is possible; else the first.
+  std::vector<KnobStep> forbidden;
 };
 
 // One step of every knob of a board, as long as the value is in the range of its key:
@@ -57,18 +50,5 @@ struct KnobSteps {
 // nullopt if they can be joined.
 KnobSteps knob_steps(const platform::BoardConfig& board, bool camera,
                      const std::optional<std::string>& joint_problem);
-
-// A list of boards as points, in the order of the list.
-class BoardPoints : public Points {
- public:
-  BoardPoints(std::vector<platform::BoardConfig> boards, const PointRun& run)
-      : boards_(std::move(boards)), run_(run) {}
-  std::uint64_t size() const override { return boards_.size(); }
-  Point point(std::uint64_t number) const override { return make_point(number, boards_.at(number), run_); }
-
- private:
-  std::vector<platform::BoardConfig> boards_;
-  PointRun run_;
-};
 
 }  // namespace stereotlm::explore

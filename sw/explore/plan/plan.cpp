@@ -3,11 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <utility>
 
+#include "calib/split_mix.h"
 #include "platform/config/board_keys.h"
 #include "platform/config/tables.h"
-#include "sw/explore/plan/shuffled_numbers.h"
 
 namespace stereotlm::explore {
 namespace {
@@ -18,15 +19,56 @@ std::string rules_of(const std::vector<platform::Diagnostic>& problems) {
   return text;
 }
 
+// The Feistel network of shuffled_number(), for numbers of 2 * half_bits bits.
+std::uint64_t permuted(std::uint64_t number, unsigned half_bits, std::uint64_t seed) {
+  constexpr std::uint64_t kRounds = 6;
+  const std::uint64_t mask = (std::uint64_t{1} << half_bits) - 1;
+  std::uint64_t left = number >> half_bits;
+  std::uint64_t right = number & mask;
+  for (std::uint64_t round = 0; round < kRounds; ++round) {
+    const std::uint64_t key = calib::mixed(seed + (round + 1) * calib::kSplitMixStep);
+    const std::uint64_t next = left ^ (calib::mixed(right ^ key) & mask);
+    left = right;
+    right = next;
+  }
+  return left << half_bits | right;
+}
+
 }  // namespace
 
+std::uint64_t shuffled_number(std::uint64_t size, std::uint64_t seed, std::uint64_t place) {
+  unsigned half_bits = 1;
+  while (std::uint64_t{1} << 2 * half_bits < size) ++half_bits;
+  std::uint64_t number = permuted(place, half_bits, seed);
+  while (number >= size) number = permuted(number, half_bits, seed);
+  return number;
+}
+
+platform::YamlNode PlanValues::at(std::uint64_t number) const {
+  if (!list.empty()) return list.at(number);
+  const std::int64_t value = from + static_cast<std::int64_t>(number) * step;
+  std::string text = std::to_string(std::abs(value));
+  const auto behind = static_cast<std::size_t>(places);
+  if (text.size() <= behind) text.insert(0, behind + 1 - text.size(), '0');
+  if (behind > 0) text.insert(text.size() - behind, ".");
+  return platform::YamlNode::plain((value < 0 ? "-" : "") + text, place);
+}
+
 Plan::Combination Plan::combination(std::uint64_t number) const {
+  std::uint64_t rest = sample_ ? shuffled_number(product_, sample_->seed, number) : number;
+  std::vector<std::uint64_t> places(axes_.size());
+  for (std::size_t axis = axes_.size(); axis-- > 0; rest /= axes_[axis].size())
+    places[axis] = rest % axes_[axis].size();
   Combination made = {*base_, run_};
-  for (const PlanValue& value : values_at(number)) {
-    if (may_vary(value.path)) {
-      apply_run_key(value.path, value.value, made.run);
-    } else {
-      made.draft.replace(value.path, value.value, path_);
+  for (std::size_t axis = 0; axis < axes_.size(); ++axis) {
+    for (std::size_t i = 0; i < axes_[axis].paths.size(); ++i) {
+      const std::string& path = axes_[axis].paths[i];
+      const platform::YamlNode value = axes_[axis].values[i].at(places[axis]);
+      if (may_vary(path)) {
+        apply_run_key(path, value, made.run);
+      } else {
+        made.draft.replace(path, value, path_);
+      }
     }
   }
   return made;
@@ -68,19 +110,6 @@ bool Plan::varies(const std::string& path) const {
   return std::any_of(paths.begin(), paths.end(), [&path](const std::string& one) {
     return one == path || platform::is_below(one, path);
   });
-}
-
-std::vector<PlanValue> Plan::values_at(std::uint64_t number) const {
-  std::uint64_t rest = sample_ ? ShuffledNumbers(product_, sample_->seed).at(number) : number;
-  std::vector<PlanValue> chosen;
-  for (auto axis = axes_.rbegin(); axis != axes_.rend(); ++axis) {
-    const std::uint64_t place = rest % axis->size();
-    rest /= axis->size();
-    for (std::size_t i = axis->paths.size(); i-- > 0;)
-      chosen.push_back({axis->paths[i], axis->values[i].at(place)});
-  }
-  std::reverse(chosen.begin(), chosen.end());
-  return chosen;
 }
 
 std::vector<std::string> Plan::varied() const {

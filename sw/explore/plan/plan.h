@@ -9,21 +9,29 @@
 #include "platform/config/board_config.h"
 #include "platform/config/board_draft.h"
 #include "platform/yaml/yaml_tree.h"
-#include "sw/explore/plan/plan_values.h"
 #include "sw/explore/plan/points.h"
 
 namespace stereotlm::explore {
 
-// One value that a plan gives a key.
-struct PlanValue {
-  std::string path;
-  platform::YamlNode value;
+// The values that a plan gives one key: a list, or a range of exact decimal numbers, which are made one by one.
+struct PlanValues {
+  std::vector<platform::YamlNode> list = {};  // empty: the range
+  // The range: `from`, `from` + `step`, and so on. Both are digits without the decimal point.
+  std::int64_t from = 0;
+  std::int64_t step = 1;
+  std::uint64_t count = 0;
+  int places = 0;              // digits behind the decimal point
+  platform::Place place = {};  // of the range in the plan
+
+  std::uint64_t size() const { return list.empty() ? count : list.size(); }
+  // A number of the range is written as a board file has it, such as "39.9".
+  platform::YamlNode at(std::uint64_t number) const;
 };
 
 // The plan of a sweep: a board, values for some of its keys, and the combinations of these values that are
 // points. Each point is made from its number, so that a plan takes as much memory for a million points as for
 // ten.
-class Plan : public Points {
+class Plan {
  public:
   // Reads a plan file. `board`: a board in place of the one that the plan names; empty: none. Throws
   // platform::BoardError with everything that is wrong, and with the number of points that the plan would
@@ -31,10 +39,13 @@ class Plan : public Points {
   static Plan load(const std::string& path, const std::string& board = "");
 
   // The number of points before conditions leave out some.
-  std::uint64_t size() const override { return sample_ ? sample_->points : product_; }
+  std::uint64_t size() const { return sample_ ? sample_->points : product_; }
   // number: 0..size()-1. Each call reads and checks a board.
-  Point point(std::uint64_t number) const override;
-  const std::vector<Condition>& conditions() const override { return conditions_; }
+  Point point(std::uint64_t number) const;
+  // The points as a sequence, which is valid as long as this plan.
+  Points points() const {
+    return {size(), [this](std::uint64_t number) { return point(number); }, conditions_};
+  }
   // Paths whose values vary, in the order of the file.
   std::vector<std::string> varied() const;
   // Names of all banks of all points, sorted.
@@ -69,7 +80,6 @@ class Plan : public Points {
   };
 
   Plan(const std::string& path, const std::string& board) : path_(path), board_(board) {}
-  std::vector<PlanValue> values_at(std::uint64_t number) const;
   // The values that the plan gives a point, before they are checked.
   struct Combination {
     platform::BoardDraft draft;
@@ -99,5 +109,10 @@ class Plan : public Points {
   std::vector<Condition> conditions_;
   std::optional<Sample> sample_;
 };
+
+// The numbers 0..size-1 in an order that depends on a seed: the number at `place`, 0..size-1. A Feistel network
+// permutes the numbers of the smallest even number of bits that suffices, and is applied again until the
+// result is below `size`. size: 1..2^62.
+std::uint64_t shuffled_number(std::uint64_t size, std::uint64_t seed, std::uint64_t place);
 
 }  // namespace stereotlm::explore

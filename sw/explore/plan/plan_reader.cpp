@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
+#include <cstdlib>
 #include <limits>
 #include <map>
 #include <optional>
@@ -10,11 +12,11 @@
 
 #include "platform/config/board_keys.h"
 #include "platform/config/board_yaml.h"
+#include "platform/yaml/words.h"
 #include "platform/yaml/yaml_tree.h"
 #include "sw/explore/plan/conditions.h"
 #include "sw/explore/plan/plan.h"
-#include "sw/explore/plan/plan_findings.h"
-#include "sw/explore/store/bank_names.h"
+#include "sw/explore/store/store.h"
 
 namespace stereotlm::explore {
 
@@ -26,23 +28,53 @@ namespace {
 
 constexpr std::uint64_t kMostPoints = std::uint64_t{1} << 62U;
 constexpr std::size_t kMostConditions = 1000;
+constexpr std::int64_t kMostValues = 1'000'000;  // of one range
+constexpr int kMostDigits = 15;                  // of a number as the plan has it
+constexpr int kMostRangeDigits = 18;  // of a number that is written with as many places as its range has
+
+// A decimal number: an integer, and the number of its digits behind the decimal point.
+struct Decimal {
+  std::int64_t digits = 0;
+  int places = 0;
+};
+
+// The exact value of a node; nullopt if it is not a decimal number (see platform::decimal_of()) of at most
+// kMostDigits digits.
+std::optional<Decimal> exact_decimal(const platform::YamlNode& node) {
+  if (!platform::decimal_of(node)) return std::nullopt;
+  std::string text = node.text;
+  const std::size_t point = text.find('.');
+  Decimal value;
+  if (point != std::string::npos) {
+    value.places = static_cast<int>(text.size() - point - 1);
+    text.erase(point, 1);
+  }
+  if (text.size() > kMostDigits) return std::nullopt;
+  value.digits = std::stoll(text);
+  return value;
+}
+
+// The number of digits of a value that is written with `places` places.
+int digits_with(const Decimal& value, int places) {
+  return static_cast<int>(std::to_string(std::abs(value.digits)).size()) + places - value.places;
+}
 
 }  // namespace
 
 // Reads one plan, and collects everything that is wrong with it.
 class PlanReader {
  public:
-  PlanReader(const std::string& path, const std::string& board) : plan_(path, board), findings_(path) {}
+  PlanReader(const std::string& path, const std::string& board) : plan_(path, board) {}
 
   Plan read() {
     YamlNode tree;
     try {
       tree = platform::parse_yaml(platform::read_text_file(plan_.path_, "plan"), Place::kBoard);
     } catch (const platform::YamlError& error) {
-      findings_.report(error.place, error.what());
+      report(error.place, error.what());
       fail();
     }
-    if (const Entries* sections = findings_.read_map(
+    if (const Entries* sections = read_map(
             "", tree, {"board", "run", "set", "vary", "zip", "where", "sample"}, "a plan is a map")) {
       read_base(*sections, tree);
       if (const YamlNode* vary = find(*sections, "vary")) read_vary(*vary);
@@ -51,21 +83,59 @@ class PlanReader {
       count_points();
       if (const YamlNode* sample = find(*sections, "sample")) read_sample(*sample);
     }
-    if (findings_.all().empty()) check_first_point();
-    if (findings_.all().empty()) compute_conditions();
-    if (!findings_.all().empty()) fail();
+    if (findings_.empty()) check_first_point();
+    if (findings_.empty()) compute_conditions();
+    if (!findings_.empty()) fail();
     std::sort(plan_.banks_.begin(), plan_.banks_.end());
     return std::move(plan_);
   }
 
  private:
-  using Entries = PlanFindings::Entries;
+  using Entries = std::vector<YamlNode::Entry>;
 
   [[noreturn]] void fail() const {
     throw platform::BoardError(
-        findings_.all(), plan_.product_ > 1
-                             ? fmt::format("{}: the plan would have {} points", plan_.path_, plan_.size())
-                             : "");
+        findings_, plan_.product_ > 1
+                       ? fmt::format("{}: the plan would have {} points", plan_.path_, plan_.size())
+                       : "");
+  }
+
+  std::string place_text(const Place& place) const {  // "plan.yaml:3:9"
+    return fmt::format("{}:{}:{}", plan_.path(), place.line, place.column);
+  }
+  void report(const Place& place, const std::string& text) { findings_.push_back({place_text(place), text}); }
+  // Reports `path = value: rule`.
+  void report(const std::string& path, const YamlNode& node, const std::string& rule) {
+    report(node.place, fmt::format("{} = {}: {}", path, short_text(node), rule));
+  }
+  // Adds errors that already have a place.
+  void add(const std::vector<Diagnostic>& found) {
+    findings_.insert(findings_.end(), found.begin(), found.end());
+  }
+
+  // The entries of a map. Reports repeated entries, and entries whose keys are not among `known`; without
+  // known keys all keys are allowed. If the value is not a map, reports it with `rule` and returns null.
+  const Entries* read_map(const std::string& path, const YamlNode& node,
+                          const std::vector<std::string>& known, const std::string& rule) {
+    if (!node.is_map()) {
+      report(path.empty() ? "the plan" : path, node,
+             known.empty() ? rule : fmt::format("{} of {}", rule, fmt::join(known, ", ")));
+      return nullptr;
+    }
+    std::map<std::string, Place> first;
+    for (const YamlNode::Entry& entry : node.entries) {
+      const std::string name = short_text(entry.key);
+      const std::string full = platform::below(path, name);
+      const auto [at, is_new] = first.emplace(name, entry.key.place);
+      if (!known.empty() && std::find(known.begin(), known.end(), name) == known.end()) {
+        report(entry.key.place, fmt::format("{} = {}: unknown key{}; keys: {}", full, short_text(entry.value),
+                                            platform::nearest_text(name, known), platform::listed(known)));
+      } else if (!is_new) {
+        report(entry.key.place, fmt::format("{} = {}: repeated key, first at {}:{}", full,
+                                            short_text(entry.value), at->second.line, at->second.column));
+      }
+    }
+    return &node.entries;
   }
 
   static const YamlNode* find(const Entries& entries, const std::string& name) {
@@ -79,10 +149,9 @@ class PlanReader {
   void read_base(const Entries& sections, const YamlNode& tree) {
     if (const YamlNode* run = find(sections, "run")) read_run(*run);
     const YamlNode* const board = find(sections, "board");
-    if (board == nullptr)
-      return findings_.report(tree.place, "board: missing: a preset, or the path of a board file");
+    if (board == nullptr) return report(tree.place, "board: missing: a preset, or the path of a board file");
     if (!board->is_scalar() || board->text.empty())
-      return findings_.report("board", *board, "a preset, or the path of a board file");
+      return report("board", *board, "a preset, or the path of a board file");
     const bool is_option = !plan_.board_.empty();
     if (!is_option) plan_.board_ = board->text;
     try {
@@ -92,18 +161,17 @@ class PlanReader {
         // The problem is in the name of the board, or in a line of its file.
         const bool is_of_name = problem.place == plan_.board_;
         const std::string text = fmt::format("board = {}: {}", plan_.board_, problem.text);
-        findings_.add({!is_of_name ? problem
-                       : is_option ? Diagnostic{"--board", text}
-                                   : Diagnostic{findings_.place_text(board->place), text}});
+        add({!is_of_name ? problem
+             : is_option ? Diagnostic{"--board", text}
+                         : Diagnostic{place_text(board->place), text}});
       }
       return;
     }
     auto base = plan_.base_->read_with_problems();
-    findings_.add(base.problems);
+    add(base.problems);
     if (!base.problems.empty()) return plan_.base_.reset();
     if (const YamlNode* set = find(sections, "set")) {
-      const Entries* const entries =
-          findings_.read_map("set", *set, {}, "a map of keys of the board and their values");
+      const Entries* const entries = read_map("set", *set, {}, "a map of keys of the board and their values");
       if (entries == nullptr) return;
       for (const YamlNode::Entry& entry : *entries) {
         take_path("set", entry.key);
@@ -112,26 +180,25 @@ class PlanReader {
       }
     }
     base = plan_.base_->read_with_problems();
-    findings_.add(base.problems);
+    add(base.problems);
     if (!base.problems.empty()) return;
     for (const platform::BankConfig& bank : base.board.banks) take_bank(bank.name, board->place);
     plan_.base_board_ = std::move(base.board);
   }
 
   void read_run(const YamlNode& node) {
-    const Entries* const entries =
-        findings_.read_map("run", node, {"source", "frames", "calibration"}, "a map");
+    const Entries* const entries = read_map("run", node, {"source", "frames", "calibration"}, "a map");
     if (entries == nullptr) return;
     for (const YamlNode::Entry& entry : *entries) {
       const std::string path = "run." + entry.key.text;
       if (const std::string rule = run_key_problem(path, entry.value); !rule.empty()) {
-        findings_.report(path, entry.value, rule);
+        report(path, entry.value, rule);
         continue;
       }
       apply_run_key(path, entry.value, plan_.run_);
       if (path != kCalibrationPath) continue;
       plan_.calibration_ = entry.value.text;
-      plan_.calibration_place_ = findings_.place_text(entry.value.place);
+      plan_.calibration_place_ = place_text(entry.value.place);
     }
   }
 
@@ -147,14 +214,14 @@ class PlanReader {
                                                         : platform::path_problem(path);
     const auto [first, is_new] = places_.emplace(path, key.place);
     if (!rule.empty()) {
-      findings_.report(key.place, fmt::format("{}: {}: {}", section, path, rule));
+      report(key.place, fmt::format("{}: {}: {}", section, path, rule));
     } else if (!is_new) {
-      findings_.report(key.place, fmt::format("{}: {}: given before, at {}:{}", section, path,
-                                              first->second.line, first->second.column));
+      report(key.place, fmt::format("{}: {}: given before, at {}:{}", section, path, first->second.line,
+                                    first->second.column));
     }
     const auto report_overlap = [&](const auto& other) {
-      findings_.report(key.place, fmt::format("{}: {}: overlaps {}, given at {}:{}", section, path,
-                                              other->first, other->second.line, other->second.column));
+      report(key.place, fmt::format("{}: {}: overlaps {}, given at {}:{}", section, path, other->first,
+                                    other->second.line, other->second.column));
     };
     for (std::size_t dot = path.find('.'); dot != std::string::npos; dot = path.find('.', dot + 1)) {
       const auto around = places_.find(path.substr(0, dot));
@@ -187,13 +254,13 @@ class PlanReader {
     if (is_new) {
       plan_.banks_.push_back(name);
     } else if (known->second != name) {
-      findings_.report(place, bank_names_problem(known->second, name));
+      report(place, bank_names_problem(known->second, name));
     }
   }
 
   void read_vary(const YamlNode& node) {
-    const Entries* const entries = findings_.read_map(
-        "vary", node, {}, "a map of keys of the board and lists or ranges of their values");
+    const Entries* const entries =
+        read_map("vary", node, {}, "a map of keys of the board and lists or ranges of their values");
     if (entries == nullptr) return;
     for (const YamlNode::Entry& entry : *entries) {
       if (!take_path("vary", entry.key)) continue;
@@ -203,10 +270,9 @@ class PlanReader {
   }
 
   void read_zip(const YamlNode& node) {
-    if (!node.is_list())
-      return findings_.report("zip", node, "a list of maps; the keys of a map move together");
+    if (!node.is_list()) return report("zip", node, "a list of maps; the keys of a map move together");
     for (const YamlNode& group : node.items) {
-      const Entries* const entries = findings_.read_map("zip", group, {}, "a map of keys that move together");
+      const Entries* const entries = read_map("zip", group, {}, "a map of keys that move together");
       if (entries == nullptr) continue;
       Plan::Axis axis;
       for (const YamlNode::Entry& entry : *entries) {
@@ -214,9 +280,9 @@ class PlanReader {
         auto values = values_of("zip", entry);
         if (!values) continue;
         if (!axis.values.empty() && values->size() != axis.size()) {
-          findings_.report(entry.value.place,
-                           fmt::format("zip: {}: {} values; must be as many as {} has, {}", entry.key.text,
-                                       values->size(), axis.paths.front(), axis.size()));
+          report(entry.value.place,
+                 fmt::format("zip: {}: {} values; must be as many as {} has, {}", entry.key.text,
+                             values->size(), axis.paths.front(), axis.size()));
           continue;
         }
         axis.paths.push_back(entry.key.text);
@@ -234,20 +300,65 @@ class PlanReader {
     const YamlNode& node = entry.value;
     const std::string name = section + ": " + path;
     if (node.is_list() && !node.items.empty()) {
-      for (const YamlNode& value : node.items) findings_.add(problems_of(path, value));
+      for (const YamlNode& value : node.items) add(problems_of(path, value));
       take_banks(entry.key, node.items);
-      return PlanValues(node.items);
+      return PlanValues{node.items};
     }
     if (!node.is_map() || node.find("from") == nullptr) {
-      findings_.report(name, node, "a list of values, or a range such as {from: 16, to: 128, step: 16}");
+      report(name, node, "a list of values, or a range such as {from: 16, to: 128, step: 16}");
       return std::nullopt;
     }
-    const auto range = read_range(name, node, findings_);
+    const auto range = read_range(name, node);
     if (!range) return std::nullopt;
     take_banks(entry.key, {});
-    PlanValues values(*range, node.place);
-    check_range(name, path, node, values);
-    return values;
+    check_range(name, path, node, *range);
+    return range;
+  }
+
+  // Reads a range such as {from: 16, to: 128, step: 16}. If the value is no range, reports the problems and
+  // returns nullopt. `name` is the name of the range in messages.
+  std::optional<PlanValues> read_range(const std::string& name, const YamlNode& node) {
+    constexpr std::array kKeys = {"from", "to", "step"};
+    if (read_map(name, node, {kKeys.begin(), kKeys.end()}, "a range") == nullptr) return std::nullopt;
+    const std::string rule = fmt::format("a decimal number of at most {} digits", kMostDigits);
+    std::array<Decimal, kKeys.size()> numbers;
+    int places = 0;
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      const YamlNode::Entry* const entry = node.find(kKeys[i]);
+      if (entry == nullptr) {
+        report(node.place, fmt::format("{}.{}: missing: {}", name, kKeys[i], rule));
+        return std::nullopt;
+      }
+      const auto number = exact_decimal(entry->value);
+      if (!number) {
+        report(fmt::format("{}.{}", name, kKeys[i]), entry->value, rule);
+        return std::nullopt;
+      }
+      numbers[i] = *number;
+      places = std::max(places, number->places);
+    }
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      if (digits_with(numbers[i], places) > kMostRangeDigits) {
+        report(fmt::format("{}.{}", name, kKeys[i]), node.find(kKeys[i])->value,
+               fmt::format("at most {} digits, with the {} decimal places that the range has",
+                           kMostRangeDigits, places));
+        return std::nullopt;
+      }
+    }
+    for (Decimal& number : numbers) {
+      for (; number.places < places; ++number.places) number.digits *= 10;
+    }
+    const auto& [from, to, step] = numbers;
+    const std::int64_t distance = to.digits - from.digits;
+    if (step.digits <= 0 || distance < 0 || distance % step.digits != 0 ||
+        distance / step.digits >= kMostValues) {
+      report(name, node,
+             fmt::format("to must be from plus a number of steps, at most {} values", kMostValues));
+      return std::nullopt;
+    }
+    return PlanValues{{},          from.digits,
+                      step.digits, static_cast<std::uint64_t>(distance / step.digits) + 1,
+                      places,      node.place};
   }
 
   // Reports all refused values of a range in one line.
@@ -268,16 +379,16 @@ class PlanReader {
     // A key without a rule for numbers allows all numbers or none.
     if (refused == 0 && !problems.empty()) refused = values.size();
     if (refused == 0) return;
-    findings_.report(name, node,
-                     fmt::format("{} of {} values refused, the first: {}", refused, values.size(),
-                                 problems.empty() ? first.text : problems.front().text));
+    report(name, node,
+           fmt::format("{} of {} values refused, the first: {}", refused, values.size(),
+                       problems.empty() ? first.text : problems.front().text));
   }
 
   std::vector<Diagnostic> problems_of(const std::string& path, const YamlNode& value) const {
     if (may_vary(path)) {
       const std::string rule = run_key_problem(path, value);
       if (rule.empty()) return {};
-      return {{findings_.place_text(value.place), fmt::format("{} = {}: {}", path, short_text(value), rule)}};
+      return {{place_text(value.place), fmt::format("{} = {}: {}", path, short_text(value), rule)}};
     }
     if (!plan_.base_board_) return {};
     return plan_.base_->problems_of(path, value, plan_.path_);
@@ -286,20 +397,18 @@ class PlanReader {
   void read_conditions(const YamlNode& node) {
     const std::vector<YamlNode> single = {node};
     if (node.items.size() > kMostConditions)
-      return findings_.report("where", node, fmt::format("at most {} conditions", kMostConditions));
+      return report("where", node, fmt::format("at most {} conditions", kMostConditions));
     for (const YamlNode& item : node.is_list() ? node.items : single) {
       if (!item.is_scalar()) {
-        findings_.report("where", item,
-                         "an SQL expression over keys, such as image.width * image.height <= 307200");
+        report("where", item, "an SQL expression over keys, such as image.width * image.height <= 307200");
         continue;
       }
       try {
-        const Condition condition = {item.text, findings_.place_text(item.place),
-                                     "where = " + short_text(item)};
+        const Condition condition = {item.text, place_text(item.place), "where = " + short_text(item)};
         const Conditions compiled({condition});
         plan_.conditions_.push_back(condition);
       } catch (const std::invalid_argument& error) {
-        findings_.report("where", item, fmt::format("not an SQL expression over keys: {}", error.what()));
+        report("where", item, fmt::format("not an SQL expression over keys: {}", error.what()));
       }
     }
   }
@@ -308,7 +417,7 @@ class PlanReader {
   void check_first_point() {
     const auto [draft, run] = plan_.combination(0);
     for (const Diagnostic& problem : draft.read_with_problems().problems) {
-      if (!problem.is_between_keys) findings_.add({problem});
+      if (!problem.is_between_keys) add({problem});
     }
   }
 
@@ -324,7 +433,7 @@ class PlanReader {
         compiled.hold(first);
         compiled.hold(last);
       } catch (const ConditionError& error) {
-        findings_.add({{condition.place, condition.name + ": " + error.reason}});
+        add({{condition.place, condition.name + ": " + error.reason}});
       }
     }
   }
@@ -333,7 +442,7 @@ class PlanReader {
     for (const Plan::Axis& axis : plan_.axes_) {
       const std::uint64_t values = axis.size();
       if (plan_.product_ > kMostPoints / values) {
-        findings_.add({{plan_.path_, "more than 2^62 points"}});
+        add({{plan_.path_, "more than 2^62 points"}});
         plan_.product_ = 1;
         return;
       }
@@ -342,29 +451,29 @@ class PlanReader {
   }
 
   void read_sample(const YamlNode& node) {
-    const Entries* const entries = findings_.read_map("sample", node, {"points", "seed"}, "a map");
+    const Entries* const entries = read_map("sample", node, {"points", "seed"}, "a map");
     if (entries == nullptr) return;
     Plan::Sample sample;
     const auto read = [&](const std::string& name, std::uint64_t least, std::uint64_t most,
                           std::uint64_t& out) {
       const YamlNode* const value = find(*entries, name);
       if (value == nullptr)
-        return findings_.report(node.place, fmt::format("sample.{}: missing: {}..{}", name, least, most));
+        return report(node.place, fmt::format("sample.{}: missing: {}..{}", name, least, most));
       const auto number = platform::integer_of(*value);
       if (!number || *number < 0 || static_cast<std::uint64_t>(*number) < least ||
           static_cast<std::uint64_t>(*number) > most) {
-        return findings_.report("sample." + name, *value, fmt::format("{}..{}", least, most));
+        return report("sample." + name, *value, fmt::format("{}..{}", least, most));
       }
       out = static_cast<std::uint64_t>(*number);
     };
-    const std::size_t before = findings_.all().size();
+    const std::size_t before = findings_.size();
     read("points", 1, plan_.product_, sample.points);
     read("seed", 0, std::numeric_limits<std::int64_t>::max(), sample.seed);
-    if (findings_.all().size() == before) plan_.sample_ = sample;
+    if (findings_.size() == before) plan_.sample_ = sample;
   }
 
   Plan plan_;
-  PlanFindings findings_;
+  std::vector<Diagnostic> findings_;
   std::map<std::string, Place> places_;       // [path that occurs in the plan]
   std::map<std::string, std::string> banks_;  // [name without_case()]: name
 };

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "platform/yaml/yaml_tree.h"
 #include "sw/files/sha256.h"
 
@@ -31,16 +33,21 @@ void apply_run_key(const std::string& run_key, const platform::YamlNode& value, 
     run.frames = static_cast<std::uint64_t>(platform::integer_of(value).value_or(0));
 }
 
-namespace {
+Point make_point(std::uint64_t number, const platform::BoardConfig& board, const PointRun& run) {
+  const PointRun its_run = {run.camera, frames_of(run, board), run.calibration};
+  Point point = impossible_point(number, to_yaml(board), board, its_run, "");
+  point.board = board;
+  return point;
+}
 
-// The members that possible and impossible points have in common.
-Point point_of(std::uint64_t number, const std::string& yaml, const platform::BoardConfig& board,
-               const PointRun& run) {
+Point impossible_point(std::uint64_t number, const std::string& yaml, const platform::BoardConfig& asked_for,
+                       const PointRun& run, const std::string& reason) {
   Point point;
   point.number = number;
   point.yaml = yaml;
+  point.reason = reason;
   point.run = run;
-  point.values = values_of(board);
+  point.values = values_of(asked_for);
   const char* const source = run.camera ? "camera" : "preloaded";
   point.values.push_back({kSourcePath, source});
   point.values.push_back({kFramesPath, static_cast<std::int64_t>(run.frames)});
@@ -53,24 +60,11 @@ Point point_of(std::uint64_t number, const std::string& yaml, const platform::Bo
   return point;
 }
 
-}  // namespace
-
-Point make_point(std::uint64_t number, const platform::BoardConfig& board, const PointRun& run) {
-  Point point = point_of(number, to_yaml(board), board, {run.camera, frames_of(run, board), run.calibration});
-  point.board = board;
-  return point;
-}
-
-Point impossible_point(std::uint64_t number, const std::string& yaml, const platform::BoardConfig& asked_for,
-                       const PointRun& run, const std::string& reason) {
-  Point point = point_of(number, yaml, asked_for, run);
-  point.reason = reason;
-  return point;
-}
-
-const std::vector<Condition>& Points::conditions() const {
-  static const std::vector<Condition> kNone;
-  return kNone;
+Points board_points(std::vector<platform::BoardConfig> boards, const PointRun& run) {
+  const std::uint64_t size = boards.size();
+  return {size, [boards = std::move(boards), run](std::uint64_t number) {
+            return make_point(number, boards.at(number), run);
+          }};
 }
 
 }  // namespace stereotlm::explore

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -73,20 +74,14 @@ struct Condition {
 };
 
 // A sequence of points. Each point is made from its number when it is needed, and not stored.
-class Points {
- public:
-  virtual ~Points() = default;
-  virtual std::uint64_t size() const = 0;
-  virtual Point point(std::uint64_t number) const = 0;  // number: 0..size()-1
-  // A point is left out unless all conditions are true for it. By default there are none.
-  virtual const std::vector<Condition>& conditions() const;
-
- protected:
-  Points() = default;
-  Points(const Points&) = default;
-  Points(Points&&) = default;
-  Points& operator=(const Points&) = default;
-  Points& operator=(Points&&) = default;
+struct Points {
+  std::uint64_t size = 0;
+  std::function<Point(std::uint64_t number)> point;  // number: 0..size-1
+  // A point is left out unless all conditions are true for it.
+  std::vector<Condition> conditions = {};
 };
+
+// A list of boards as points, in the order of the list.
+Points board_points(std::vector<platform::BoardConfig> boards, const PointRun& run);
 
 }  // namespace stereotlm::explore

@@ -9,6 +9,7 @@
 
 #include "platform/config/buffer_layout.h"
 #include "sw/explore/search/allocations.h"
+#include "sw/explore/store/store.h"
 
 namespace stereotlm::explore {
 namespace {
@@ -27,6 +28,34 @@ std::string key_of(const platform::BoardConfig& board) {
   std::string key;
   for (const platform::PlacedBuffer& buffer : platform::buffers(board)) key += buffer.bank + ' ';
   return key;
+}
+
+// Records the results of some boards in the search. Reads them from the database. If the sweep of the boards
+// is whole, it has given up a board that is not in the database.
+void record_outcomes(const std::vector<std::size_t>& numbers, const std::string& path, bool is_whole,
+                     AllocationSearch& search) {
+  StoredRow row(path);
+  for (const std::size_t number : numbers) {
+    const Point point = search.point(number);
+    if (!row.find(point.hash)) {
+      if (is_whole) search.record_given_up(number);
+      continue;
+    }
+    AllocationOutcome outcome;
+    if (row.text("status") != "ok") {
+      outcome.failure = row.text("reason");
+      search.record(number, outcome);
+      continue;
+    }
+    const auto behind_last_write = static_cast<std::uint64_t>(point.board->fpga.pipeline_latency_cycles);
+    outcome.cycles = static_cast<std::uint64_t>(row.integer("cycles")) + point.run.frames * behind_last_write;
+    outcome.frames_per_second =
+        row.real(search.run().camera ? "frames_per_second.steady" : "frames_per_second.core");
+    outcome.uncertainty = row.real("frames_per_second.steady_uncertainty");
+    outcome.loses_pixels =
+        row.integer("cameras.left.dropped_pixels") + row.integer("cameras.right.dropped_pixels") > 0;
+    search.record(number, outcome);
+  }
 }
 
 }  // namespace
@@ -51,11 +80,11 @@ AllocationSearch::AllocationSearch(const platform::BoardConfig& board, int most_
   });
   outcomes_.resize(by_frames_ ? frame_boards_.size() : fitting_.size());
   given_up_.resize(outcomes_.size());
+  order_.resize(outcomes_.size());
+  std::iota(order_.begin(), order_.end(), std::size_t{0});
   if (by_frames_) return;
   for (const Placement& placement : fitting_) bounds_.push_back(bound(placed(board_, placement)));
-  by_bound_.resize(fitting_.size());
-  std::iota(by_bound_.begin(), by_bound_.end(), std::size_t{0});
-  std::stable_sort(by_bound_.begin(), by_bound_.end(),
+  std::stable_sort(order_.begin(), order_.end(),
                    [this](std::size_t a, std::size_t b) { return bounds_[a] > bounds_[b]; });
 }
 
@@ -74,31 +103,24 @@ void AllocationSearch::record(std::size_t number, const AllocationOutcome& outco
   outcomes_.at(number) = outcome;
 }
 
-std::vector<std::size_t> AllocationSearch::next() const {
+std::vector<std::size_t> AllocationSearch::left() const {
+  const auto to_reach = by_frames_ ? std::map<int, double>() : rates_to_reach(rated());
   std::vector<std::size_t> numbers;
-  if (by_frames_) {
-    for (std::size_t number = 0; number < outcomes_.size(); ++number) {
-      if (!outcomes_[number]) numbers.push_back(number);
-    }
-    return numbers;
-  }
-  const std::map<int, double> to_reach = rates_to_reach(rated());
-  std::map<int, std::uint64_t> taken;
-  for (const std::size_t place : by_bound_) {
-    if (is_done(place) || !may_tie(place, to_reach)) continue;
-    if (taken[banks_used(fitting_[place])]++ < kBoardsPerRound) numbers.push_back(place);
+  for (const std::size_t number : order_) {
+    if (!outcomes_[number] && !given_up_[number] && (by_frames_ || may_tie(number, to_reach)))
+      numbers.push_back(number);
   }
   return numbers;
 }
 
-std::uint64_t AllocationSearch::most_left() const {
-  if (by_frames_) return next().size();
-  const std::map<int, double> to_reach = rates_to_reach(rated());
-  std::uint64_t left = 0;
-  for (std::size_t number = 0; number < outcomes_.size(); ++number) {
-    if (!is_done(number) && may_tie(number, to_reach)) ++left;
-  }
-  return left;
+std::vector<std::size_t> AllocationSearch::next() const {
+  std::vector<std::size_t> numbers = left();
+  std::map<int, std::uint64_t> taken;
+  const auto is_for_later = [&](std::size_t number) {
+    return taken[banks_used(fitting_[number])]++ >= kBoardsPerRound;
+  };
+  if (!by_frames_) numbers.erase(std::remove_if(numbers.begin(), numbers.end(), is_for_later), numbers.end());
+  return numbers;
 }
 
 double AllocationSearch::rate_to_reach(std::size_t number) const {
@@ -218,6 +240,29 @@ std::string AllocationSearch::first_failure() const {
     return fmt::format("{}: {}", allocation_text(*point(number).board), outcomes_[number]->failure);
   }
   return "";
+}
+
+bool simulate(AllocationSearch& search, const Evaluate& evaluate, const SweepOptions& sweep,
+              const std::function<bool(const SearchProgress& progress)>& keep_going) {
+  SearchProgress before;
+  before.is_narrowed = search.by_frames();
+  for (auto numbers = search.next(); !numbers.empty(); numbers = search.next()) {
+    const std::uint64_t left = search.most_left();
+    const auto progress_of = [&](const SweepCounts& counts) {
+      return SearchProgress{before.done + counts.done(), before.simulated + counts.done() - counts.known,
+                            left - counts.done(), before.is_narrowed};
+    };
+    const auto counts = explore::sweep(
+        {numbers.size(), [&](std::uint64_t i) { return search.point(numbers.at(i)); }}, evaluate, sweep,
+        [&](const SweepCounts& running) { return keep_going(progress_of(running)); });
+    const bool is_whole = counts.done() == counts.total;
+    // Without a point the database has no columns of figures.
+    if (counts.done() > 0) record_outcomes(numbers, sweep.store, is_whole, search);
+    if (!is_whole) return false;
+    before = progress_of(counts);
+    before.is_narrowed = true;
+  }
+  return true;
 }
 
 }  // namespace stereotlm::explore

@@ -10,6 +10,7 @@
 #include "platform/config/board_config.h"
 #include "sw/explore/plan/points.h"
 #include "sw/explore/search/allocations.h"
+#include "sw/explore/sweep/sweep.h"
 
 namespace stereotlm::explore {
 
@@ -87,7 +88,7 @@ class AllocationSearch {
   double rate_to_reach(std::size_t number) const;
   // The largest number of boards that may still have to be simulated: all boards except those that were
   // recorded, given up or left out so far.
-  std::uint64_t most_left() const;
+  std::uint64_t most_left() const { return left().size(); }
 
   std::size_t size() const { return outcomes_.size(); }
   Point point(std::size_t number) const;
@@ -107,9 +108,8 @@ class AllocationSearch {
  private:
   // nullopt until all boards of the placement are simulated.
   std::optional<AllocationOutcome> outcome_of(std::size_t placement) const;
-  bool is_done(std::size_t placement) const {
-    return outcomes_[placement].has_value() || given_up_[placement];
-  }
+  // The numbers of the boards that may still have to be simulated, in the order of their simulation.
+  std::vector<std::size_t> left() const;
   // A placement that counts.
   struct Rated {
     std::size_t place;  // index of fitting_
@@ -129,27 +129,30 @@ class AllocationSearch {
   std::uint64_t turn_frames_;  // frames in one turn of the allocation's lists
   std::uint64_t placements_ = 0;
   std::vector<Placement> fitting_;
-  std::vector<std::size_t> by_bound_;  // indices of fitting_, the highest bound first
-  std::vector<double> bounds_;         // [index of fitting_]: frames per second
+  std::vector<double> bounds_;  // [index of fitting_]: frames per second
   std::vector<platform::BoardConfig> frame_boards_;
   std::map<std::string, std::size_t> frame_numbers_;  // [key_of(board)]: index of frame_boards_
-  // Both by the number of a board, which is an index of frame_boards_ if by_frames_, else of fitting_.
+  // By the number of a board, which is an index of frame_boards_ if by_frames_, else of fitting_.
   std::vector<bool> given_up_;                              // whether the run was given up
   std::vector<std::optional<AllocationOutcome>> outcomes_;  // the result, once it is known
+  std::vector<std::size_t> order_;  // all numbers; of placements the highest bound first
 };
 
-// Some boards of a search as points.
-class AllocationPoints : public Points {
- public:
-  // `search` must outlive this object.
-  AllocationPoints(const AllocationSearch& search, std::vector<std::size_t> numbers)
-      : search_(search), numbers_(std::move(numbers)) {}
-  std::uint64_t size() const override { return numbers_.size(); }
-  Point point(std::uint64_t number) const override { return search_.point(numbers_.at(number)); }
-
- private:
-  const AllocationSearch& search_;
-  std::vector<std::size_t> numbers_;
+// The progress of simulate().
+struct SearchProgress {
+  std::uint64_t done = 0;       // boards with a result
+  std::uint64_t simulated = 0;  // those of `done` that the store did not have before
+  std::uint64_t most_left = 0;  // upper limit for the boards that are left
+  // Whether most_left is without the boards that first results leave out. The first results leave out most
+  // boards.
+  bool is_narrowed = false;
 };
+
+// Simulates the boards that a search selects, until it selects no more, and records the results in the
+// search. The results are stored in `sweep.store`. `keep_going` is called several times a second. The search
+// ends early if it returns false, and simulate() then returns false; results until then are recorded. A board
+// that could not be simulated is recorded as failed. Throws as sweep() does.
+bool simulate(AllocationSearch& search, const Evaluate& evaluate, const SweepOptions& sweep,
+              const std::function<bool(const SearchProgress& progress)>& keep_going);
 
 }  // namespace stereotlm::explore

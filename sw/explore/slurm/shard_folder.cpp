@@ -13,7 +13,6 @@
 #include <system_error>
 #include <vector>
 
-#include "sw/explore/store/merge_stores.h"
 #include "sw/explore/store/store.h"
 #include "sw/explore/store/store_lock.h"
 #include "sw/files/sha256.h"

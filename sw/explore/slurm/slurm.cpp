@@ -61,21 +61,17 @@ bool SlurmTask::is_live() const {
   return std::find(kEnded.begin(), kEnded.end(), state) == kEnded.end();
 }
 
-std::vector<SlurmTask> read_squeue(const std::string& text) {
+std::vector<SlurmTask> slurm_jobs(const std::string& name) {
+  const std::string text =
+      run({"squeue", "--noheader", "--array", "--states=all", "--name=" + name, "--format=%F|%K|%T|%r"});
   std::vector<SlurmTask> tasks;
   for (const std::string& line : split(text, '\n')) {
     const std::vector<std::string> parts = split(line, '|');
-    if (parts.size() != 4 || !number_of(parts[0])) {
+    if (parts.size() != 4 || !number_of(parts[0]))
       throw SlurmError(fmt::format("squeue: unexpected output: {}", line));
-    }
     tasks.push_back({parts[0], number_of(parts[1]), parts[2], parts[3]});
   }
   return tasks;
-}
-
-std::vector<SlurmTask> slurm_jobs(const std::string& name) {
-  return read_squeue(
-      run({"squeue", "--noheader", "--array", "--states=all", "--name=" + name, "--format=%F|%K|%T|%r"}));
 }
 
 std::string submit_to_slurm(const std::vector<std::string>& options, const std::string& script,

@@ -27,9 +27,6 @@ struct SlurmTask {
 // The jobs with this name, including those that ended in the last minutes. Throws SlurmError.
 std::vector<SlurmTask> slurm_jobs(const std::string& name);
 
-// Reads the output of squeue in the format that slurm_jobs() asks for. Throws SlurmError.
-std::vector<SlurmTask> read_squeue(const std::string& text);
-
 // Submits the shell script `script` with these arguments, and returns the number of the job. `options`: for
 // sbatch; if an option is repeated, its last value counts. Throws SlurmError.
 std::string submit_to_slurm(const std::vector<std::string>& options, const std::string& script,

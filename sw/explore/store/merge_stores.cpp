@@ -1,5 +1,3 @@
-#include "sw/explore/store/merge_stores.h"
-
 #include <fmt/format.h>
 #include <sqlite3.h>
 
@@ -11,6 +9,7 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "sw/explore/store/store.h"
 #include "sw/explore/store/store_layout.h"
 #include "sw/explore/store/store_lock.h"
 #include "sw/files/output_file.h"
@@ -57,11 +56,8 @@ class Inputs {
 
   // The first input that has the point.
   const std::string& first_with(const std::string& hash) const {
-    return *std::find_if(paths_.begin(), paths_.end(), [&hash](const std::string& path) {
-      const sqlite::Database input(path, sqlite::Database::Access::kRead);
-      sqlite::Statement find(input, kFindPoint);
-      return has_point(find, hash);
-    });
+    return *std::find_if(paths_.begin(), paths_.end(),
+                         [&hash](const std::string& path) { return StoredRow(path).find(hash); });
   }
 
  private:

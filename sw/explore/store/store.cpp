@@ -4,13 +4,36 @@
 #include <sqlite3.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <utility>
 
-#include "sw/explore/store/bank_names.h"
+#include "platform/config/board_keys.h"
 #include "sw/explore/store/store_layout.h"
 
 namespace stereotlm::explore {
 namespace {
+
+using Json = nlohmann::ordered_json;
+
+bool is_list_of_named(const Json& value) {
+  return value.is_array() && !value.empty() && value.front().is_object() && value.front().contains("name");
+}
+
+void append(const std::string& path, const Json& value, std::vector<platform::BoardValue>& values) {
+  if (value.is_object()) {
+    for (const auto& [key, child] : value.items()) {
+      if (key != "name") append(platform::below(path, key), child, values);
+    }
+  } else if (is_list_of_named(value)) {
+    for (const Json& item : value) append(platform::below(path, item["name"]), item, values);
+  } else if (value.is_number_integer()) {
+    values.push_back({path, value.get<std::int64_t>()});
+  } else if (value.is_number()) {
+    values.push_back({path, value.get<double>()});
+  } else {
+    values.push_back({path, value.is_string() ? value.get<std::string>() : value.dump()});
+  }
+}
 
 // Waits until no other process writes. SQLite itself does not wait before it changes the kind of its journal.
 void wait_for_writers(sqlite::Database& database) { database.execute("BEGIN IMMEDIATE; COMMIT"); }
@@ -23,7 +46,7 @@ std::string journal_of(const sqlite::Database& database) {
 // The values of a point, except those of kFirstColumns.
 std::vector<const platform::BoardValue*> further_values(const StoredPoint& point) {
   std::vector<const platform::BoardValue*> values;
-  for (const auto* part : {&point.keys, &point.figures}) {
+  for (const auto* part : {&point.keys, &point.figures.values}) {
     for (const platform::BoardValue& value : *part) values.push_back(&value);
   }
   return values;
@@ -42,12 +65,53 @@ std::string insert_point_sql(const std::vector<std::string>& columns) {
 
 }  // namespace
 
+Figures figures_of(const Json& document) {
+  Figures figures;
+  for (const auto& [key, value] : document.items()) {
+    if (key == "schema") continue;
+    if (key == "blame") {
+      for (const Json& row : value) {
+        figures.blame.push_back({row["port"], row["bank"], row["by"], row["cycles"].get<std::int64_t>()});
+      }
+    } else {
+      append(key, value, figures.values);
+    }
+  }
+  return figures;
+}
+
+std::string without_case(std::string name) {
+  for (char& c : name) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return name;
+}
+
+bool differ_in_case(const std::string& a, const std::string& b) {
+  return a != b && without_case(a) == without_case(b);
+}
+
+std::optional<std::string> bank_names_problem(const platform::BoardConfig& board) {
+  for (const platform::BankConfig& one : board.banks) {
+    for (const platform::BankConfig& other : board.banks) {
+      if (differ_in_case(one.name, other.name)) return bank_names_problem(one.name, other.name);
+    }
+  }
+  return std::nullopt;
+}
+
+std::string bank_names_problem(const std::string& one, const std::string& other) {
+  return fmt::format(
+      "ssram.banks = {}, {}: the names differ only in case: a database could not distinguish their columns",
+      one, other);
+}
+
 Store::Store(const std::string& path, const std::string& version, std::chrono::milliseconds busy_timeout)
     : database_(path, sqlite::Database::Access::kCreate, busy_timeout), version_(version) {
   create();
   check_version(database_, version);
   read_columns();
-  find_ = std::make_unique<sqlite::Statement>(database_, kFindPoint);
+  find_ = std::make_unique<sqlite::Statement>(database_, "SELECT 1 FROM points WHERE hash = ?");
   insert_blame_ = std::make_unique<sqlite::Statement>(
       database_, fmt::format("INSERT INTO blame({}) VALUES(?, ?, ?, ?, ?)", kBlameColumns));
 }
@@ -90,7 +154,12 @@ void Store::check_banks(const std::vector<std::string>& banks) const {
   }
 }
 
-bool Store::has(const std::string& hash) { return has_point(*find_, hash); }
+bool Store::has(const std::string& hash) {
+  find_->bind(1, hash);
+  const bool is_there = find_->step();
+  find_->reset();
+  return is_there;
+}
 
 bool Store::add(const StoredPoint& point) {
   const std::vector<const platform::BoardValue*> values = further_values(point);
@@ -103,7 +172,7 @@ bool Store::add(const StoredPoint& point) {
     for (const platform::BoardValue* value : values) insert.bind(++place, value->value);
     insert.run();
     const bool is_new = sqlite3_changes(database_.handle()) > 0;
-    for (const StoredBlame& row : point.blame) {
+    for (const StoredBlame& row : point.figures.blame) {
       if (!is_new) break;
       place = 0;
       for (const std::string& text : {point.hash, row.port, row.bank, row.by})
@@ -143,7 +212,7 @@ sqlite::Statement& Store::insertion(const StoredPoint& point,
 void Store::add_columns(const StoredPoint& point) {
   read_columns();  // another process may have added some
   std::vector<std::string> missing;
-  for (const auto* values : {&point.keys, &point.figures}) {
+  for (const auto* values : {&point.keys, &point.figures.values}) {
     for (const platform::BoardValue& value : *values) {
       if (!columns_.insert(value.path).second) continue;
       missing.push_back(value.path);
@@ -165,6 +234,35 @@ void Store::add_columns(const StoredPoint& point) {
   }
   for (const std::string& column : missing)
     database_.execute("ALTER TABLE points ADD COLUMN " + sqlite::quoted_name(column));
+}
+
+StoredRow::StoredRow(const std::string& path, const std::string& version)
+    : database_(path, sqlite::Database::Access::kRead) {
+  check_layout(database_);
+  if (!version.empty()) check_version(database_, version);
+  find_.emplace(database_, "SELECT * FROM points WHERE hash = ?");
+  for (int column = 0; column < find_->columns(); ++column) columns_[find_->name(column)] = column;
+}
+
+bool StoredRow::find(const std::string& hash) {
+  find_->reset();
+  find_->bind(1, hash);
+  return find_->step();
+}
+
+std::string StoredRow::text(const std::string& column) const {
+  const auto found = columns_.find(column);
+  return found == columns_.end() ? "" : find_->text(found->second);
+}
+
+std::int64_t StoredRow::integer(const std::string& column) const {
+  const auto found = columns_.find(column);
+  return found == columns_.end() ? 0 : find_->integer(found->second);
+}
+
+double StoredRow::real(const std::string& column) const {
+  const auto found = columns_.find(column);
+  return found == columns_.end() ? 0 : find_->real(found->second);
 }
 
 }  // namespace stereotlm::explore

@@ -2,11 +2,15 @@
 
 #include <chrono>
 #include <cstdint>
+#include <map>
 #include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
+#include "platform/config/board_config.h"
 #include "platform/config/board_yaml.h"
 #include "sw/sqlite/database.h"
 
@@ -20,16 +24,42 @@ struct StoredBlame {
   std::int64_t cycles = 0;
 };
 
+// The contents of stats.json as one row of a database.
+struct Figures {
+  // Each value has the dotted path of its key. The path of an element of a list has the element's member
+  // `name`, as in "banks.bank0.reads". A list of numbers is one text, "[1,2]".
+  std::vector<platform::BoardValue> values;
+  std::vector<StoredBlame> blame;
+};
+
+// `document`: as stats::stats_document() returns it.
+Figures figures_of(const nlohmann::ordered_json& document);
+
 // Everything that a database holds about one point.
 struct StoredPoint {
   std::string hash;
   std::string status;  // "ok"; "impossible": there is no such board; "failed": the run ended with an error
   std::string reason;  // for the status, unless it is "ok"
   std::string config;  // the board in full
-  std::vector<platform::BoardValue> keys;     // of the board and the run; each has a column
-  std::vector<platform::BoardValue> figures;  // each has a column, and a path that no key has
-  std::vector<StoredBlame> blame;
+  std::vector<platform::BoardValue> keys;  // of the board and the run; each has a column
+  Figures figures;                         // each value has a column, and a path that no key has
 };
+
+// The names of banks are parts of names of columns. SQLite ignores the case of letters there, but names of
+// banks are case-sensitive.
+
+// The name with letters A to Z in lower case.
+std::string without_case(std::string name);
+
+// Whether two different names become equal without_case().
+bool differ_in_case(const std::string& a, const std::string& b);
+
+// The rule that the bank names of a board break, as `key = value: rule`, if a database cannot have a column
+// for each bank; nothing if it can.
+std::optional<std::string> bank_names_problem(const platform::BoardConfig& board);
+
+// The same rule for two names that differ_in_case().
+std::string bank_names_problem(const std::string& one, const std::string& other);
 
 // Writes results of points to an SQLite file. Table `points` has one row for each point, table `blame`
 // several, and table `keys` lists the columns of `points` that hold keys of a board or a run. A point is
@@ -69,5 +99,37 @@ class Store {
   std::unique_ptr<sqlite::Statement> insert_blame_;
   std::vector<Insertion> insertions_;
 };
+
+// Reads one point at a time from the file of a Store, which it finds by its hash. Member functions throw
+// DatabaseError. Must not be used across fork(). Once merge_stores() has written the file, any number of
+// machines may read it at the same time.
+class StoredRow {
+ public:
+  // Throws if the file holds points of another version of the program; an empty version allows any.
+  explicit StoredRow(const std::string& path, const std::string& version = "");
+
+  // Selects a point; returns whether the store has it.
+  bool find(const std::string& hash);
+
+  // Columns of the selected point. A column that the file does not have, or that is NULL, reads as "" and 0.
+  std::string text(const std::string& column) const;
+  std::int64_t integer(const std::string& column) const;
+  double real(const std::string& column) const;
+
+ private:
+  sqlite::Database database_;
+  std::optional<sqlite::Statement> find_;
+  std::map<std::string, int> columns_;
+};
+
+// Writes the points of all `inputs` to the file `store`, in the order of their hashes. The inputs are files
+// that a Store or merge_stores() has written. The bytes of the new file depend only on the points.
+// `store` may be one of the inputs. If `store` is a symbolic link, the file behind it is replaced. The old
+// file is replaced only when the new one is complete and on the disk; its mode and owner are kept. No other
+// process may write to `store` meanwhile (see StoreLock). Throws DatabaseError (database.h), also if two
+// inputs hold different results of one point, if the points have different versions, or if `store` exists and
+// is neither empty nor a file of a Store, or as soon as `is_interrupted`, unless null, returns true.
+void merge_stores(const std::vector<std::string>& inputs, const std::string& store,
+                  bool (*is_interrupted)() = nullptr);
 
 }  // namespace stereotlm::explore

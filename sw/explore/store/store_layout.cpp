@@ -12,13 +12,6 @@ constexpr int kLayout = 2;
 
 }  // namespace
 
-bool has_point(sqlite::Statement& find, const std::string& hash) {
-  find.bind(1, hash);
-  const bool found = find.step();
-  find.reset();
-  return found;
-}
-
 void create_tables(sqlite::Database& database, const std::vector<std::string>& further_columns,
                    const std::string& schema) {
   database.execute(fmt::format("PRAGMA {0}.application_id = {1}; PRAGMA {0}.user_version = {2}", schema,

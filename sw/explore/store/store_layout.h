@@ -16,10 +16,6 @@ namespace stereotlm::explore {
 inline constexpr std::array kFirstColumns = {"hash", "status", "reason", "version", "config"};
 inline constexpr const char* kBlameColumns = "hash, port, bank, by, cycles";
 
-// The query that has_point() needs as `find`.
-inline constexpr const char* kFindPoint = "SELECT 1 FROM points WHERE hash = ?";
-bool has_point(sqlite::Statement& find, const std::string& hash);
-
 // Creates the tables in an empty database. `schema`: the name under which it is attached.
 void create_tables(sqlite::Database& database, const std::vector<std::string>& further_columns,
                    const std::string& schema = "main");

@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "sw/files/output_file.h"
+#include "sw/files/whole_file.h"
 
 namespace stereotlm::explore {
 namespace {
@@ -20,14 +21,6 @@ constexpr off_t kPlace = off_t{1} << 61;
 constexpr std::chrono::milliseconds kBetweenTries{20};
 
 enum class Outcome { kLocked, kBusy, kReplaced, kFailed };
-
-// Whether the path leads to the open file.
-bool is_at(int file, const std::string& name) {
-  struct stat opened = {};
-  struct stat there = {};
-  const bool is_there = fstat(file, &opened) == 0 && stat(name.c_str(), &there) == 0;
-  return is_there && opened.st_dev == there.st_dev && opened.st_ino == there.st_ino;
-}
 
 bool is_empty(int file) {
   struct stat opened = {};
@@ -45,7 +38,7 @@ Outcome try_lock(int file, const std::string& store) {
   if (fcntl(file, F_OFD_SETLK, &range) != 0) {
     return errno == EAGAIN || errno == EACCES ? Outcome::kBusy : Outcome::kFailed;
   }
-  return is_at(file, store) ? Outcome::kLocked : Outcome::kReplaced;
+  return files::is_open_at(file, store) ? Outcome::kLocked : Outcome::kReplaced;
 }
 
 }  // namespace
@@ -87,11 +80,11 @@ void StoreLock::open_store() {
 }
 
 void StoreLock::check() const {
-  if (!is_at(file_, path_)) throw StoreGone(store_);
+  if (!files::is_open_at(file_, path_)) throw StoreGone(store_);
 }
 
 StoreLock::~StoreLock() {
-  if (is_made_ && is_empty(file_) && is_at(file_, path_)) unlink(path_.c_str());
+  if (is_made_ && is_empty(file_) && files::is_open_at(file_, path_)) unlink(path_.c_str());
   close(file_);
 }
 

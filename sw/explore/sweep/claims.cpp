@@ -4,14 +4,6 @@
 #include <new>
 
 namespace stereotlm::explore {
-namespace {
-
-// [PointEnd]: the member that counts these points
-constexpr std::array<std::uint64_t SweepCounts::*, 6> kCountOf = {
-    &SweepCounts::excluded,   &SweepCounts::known,  &SweepCounts::ok,
-    &SweepCounts::impossible, &SweepCounts::failed, &SweepCounts::given_up};
-
-}  // namespace
 
 Claims::Claims(std::size_t places, std::uint64_t points)
     : points_(points),
@@ -19,7 +11,6 @@ Claims::Claims(std::size_t places, std::uint64_t points)
       memory_((1 + places) * sizeof(Place)),
       stopped_(new (memory_.data()) std::atomic<bool>(false)),
       places_(static_cast<Place*>(memory_.data()) + 1) {
-  static_assert(kCountOf.size() == kEnds);
   std::uninitialized_value_construct_n(places_, places);
 }
 
@@ -46,7 +37,8 @@ SweepCounts Claims::counts() const {
   SweepCounts counts;
   counts.total = points_;
   for (std::size_t place = 0; place < size_; ++place) {
-    for (std::size_t end = 0; end < kEnds; ++end) counts.*kCountOf[end] += places_[place].ended[end];
+    for (std::size_t end = 1; end < kCounts.size(); ++end)
+      counts.*kCounts[end].second += places_[place].ended[end];
   }
   return counts;
 }

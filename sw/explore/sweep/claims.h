@@ -11,8 +11,8 @@
 
 namespace stereotlm::explore {
 
-// The way in which a point has ended.
-enum class PointEnd : std::uint8_t { kExcluded, kKnown, kOk, kImpossible, kFailed, kGivenUp };
+// The way in which a point has ended: an index in kCounts.
+enum class PointEnd : std::uint8_t { kExcluded = 1, kKnown, kOk, kImpossible, kFailed, kGivenUp };
 
 // The points that the workers of a sweep have begun and ended, in memory that all its processes share. A point
 // is a number from 0. Each worker has a place; when it dies, its successor takes the place over. One store to
@@ -37,12 +37,11 @@ class Claims {
   SweepCounts counts() const;
 
  private:
-  static constexpr std::size_t kEnds = 6;
   // A cache line for each place, because each is written by another processor.
   struct alignas(64) Place {
-    std::atomic<std::uint64_t> last;                      // the point that was begun last
-    std::atomic<std::uint64_t> begun;                     // number of points
-    std::array<std::atomic<std::uint64_t>, kEnds> ended;  // [PointEnd]: number of points
+    std::atomic<std::uint64_t> last;                               // the point that was begun last
+    std::atomic<std::uint64_t> begun;                              // number of points
+    std::array<std::atomic<std::uint64_t>, kCounts.size()> ended;  // [PointEnd]: number of points
   };
 
   std::uint64_t points_;

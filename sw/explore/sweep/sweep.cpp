@@ -6,10 +6,12 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
+#include <csignal>
 #include <map>
 #include <memory>
+#include <new>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -17,30 +19,127 @@
 #include <utility>
 #include <vector>
 
-#include "sw/explore/store/merge_stores.h"
+#include "sw/explore/plan/conditions.h"
 #include "sw/explore/store/store.h"
 #include "sw/explore/store/store_lock.h"
-#include "sw/explore/sweep/worker.h"
+#include "sw/explore/sweep/claims.h"
+#include "sw/process/child.h"
 
 namespace stereotlm::explore {
 namespace {
-
-constexpr std::array<std::pair<const char*, std::uint64_t SweepCounts::*>, 7> kCounts = {{
-    {"total", &SweepCounts::total},
-    {"excluded", &SweepCounts::excluded},
-    {"known", &SweepCounts::known},
-    {"ok", &SweepCounts::ok},
-    {"impossible", &SweepCounts::impossible},
-    {"failed", &SweepCounts::failed},
-    {"given_up", &SweepCounts::given_up},
-}};
 
 constexpr int kPollMs = 20;  // between two calls of keep_going
 
 // The number of points of the shard.
 std::uint64_t points_of(const Points& points, const SweepOptions& options) {
-  const std::uint64_t size = points.size();
-  return size > options.shard ? (size - options.shard - 1) / options.shards + 1 : 0;
+  return points.size > options.shard ? (points.size - options.shard - 1) / options.shards + 1 : 0;
+}
+
+StoredPoint row_of(const Point& point, const std::string& status, const std::string& reason) {
+  return {point.hash, status, reason, point.yaml, point.values, {}};
+}
+
+// Renames a figure that has the same path as a key, because both have a column: bridge.posted_words is the
+// number of words that the bridge can hold, bridge.posted_words.counted the number of words that it has
+// taken.
+Figures beside_keys(Figures figures, const std::vector<platform::BoardValue>& keys) {
+  for (platform::BoardValue& figure : figures.values) {
+    const auto is_key = [&figure](const platform::BoardValue& key) { return key.path == figure.path; };
+    if (std::any_of(keys.begin(), keys.end(), is_key)) figure.path += ".counted";
+  }
+  return figures;
+}
+
+// What the processes of a sweep have in common.
+struct SweepState {
+  const Points& points;
+  const Evaluate& evaluate;
+  const SweepOptions& options;
+  Claims claims;                // number i is point number shard + i * shards
+  process::SharedLock writing;  // of the store, because SQLite's own wait polls every few milliseconds
+
+  Point point(std::uint64_t claim) const { return points.point(options.shard + claim * options.shards); }
+};
+
+// Runs in the process of the worker: simulates and stores points.
+class PointRunner {
+ public:
+  explicit PointRunner(const SweepState& state)
+      : state_(state),
+        conditions_(state.points.conditions),
+        store_(state.options.store, state.options.version, state.options.busy_timeout) {
+    if (!state.options.known.empty()) known_.emplace(state.options.known, state.options.version);
+  }
+
+  PointEnd run(const Point& point) {
+    if (!conditions_.hold(point.values)) return PointEnd::kExcluded;
+    if (store_.has(point.hash) || (known_ && known_->find(point.hash))) return PointEnd::kKnown;
+    StoredPoint row = row_of(point, "impossible", point.reason);
+    const PointEnd end = point.board ? simulate(point, row) : PointEnd::kImpossible;
+    if (end == PointEnd::kGivenUp) return end;
+    const process::SharedLock::Turn turn(state_.writing);
+    return store_.add(row) ? end : PointEnd::kKnown;
+  }
+
+ private:
+  PointEnd simulate(const Point& point, StoredPoint& row) const {
+    row.status = "failed";
+    try {
+      row.figures = beside_keys(state_.evaluate(point), row.keys);
+      row.status = "ok";
+      return PointEnd::kOk;
+    } catch (const GivenUp&) {
+      return PointEnd::kGivenUp;
+    } catch (const process::ChildDied& error) {
+      if (error.signal() != 0) throw;
+      row.reason = error.what();
+    } catch (const std::system_error&) {
+      throw;
+    } catch (const std::bad_alloc&) {
+      throw;
+    } catch (const std::exception& error) {
+      row.reason = error.what();
+    }
+    return PointEnd::kFailed;
+  }
+
+  const SweepState& state_;
+  Conditions conditions_;
+  Store store_;
+  std::optional<StoredRow> known_;
+};
+
+// The work of the process at a place: begins points until none is left, simulates and stores them. Sends the
+// text of a ConditionError.
+void run_worker(SweepState& state, std::size_t place, const process::Child::Tell& tell) {
+  // Ctrl-C in a terminal goes to all processes. Only the parent process, which stops the sweep, handles it.
+  std::signal(SIGINT, SIG_IGN);
+  std::signal(SIGTERM, SIG_DFL);
+  try {
+    auto claim = state.claims.begin(place);
+    if (!claim) return;
+    PointRunner runner(state);
+    for (; claim; claim = state.claims.begin(place)) state.claims.end(place, runner.run(state.point(*claim)));
+  } catch (const process::ChildDied& error) {
+    std::signal(error.signal(), SIG_DFL);
+    std::raise(error.signal());
+    throw;  // the signal does not end a process by default
+  } catch (const ConditionError& error) {
+    tell(error.what());
+  }
+}
+
+// Waits for the end of a worker. Returns the way in which it died, such as "ended with signal 9 (Killed)", or
+// nullopt if it has ended because no point was left to begin. Throws the error for which it had to stop.
+std::optional<std::string> death_of(process::Child& worker) {
+  try {
+    if (const auto condition = worker.next()) throw ConditionError(*condition, *condition);
+    return std::nullopt;
+  } catch (const process::ChildDied& error) {
+    return error.how();
+  } catch (const std::bad_alloc&) {
+    return "run out of memory";
+  }
 }
 
 class Sweep {
@@ -83,7 +182,10 @@ class Sweep {
     lock.check();
   }
 
-  void start_worker(std::size_t place) { workers_[place] = std::make_unique<Worker>(state_, place); }
+  void start_worker(std::size_t place) {
+    workers_[place] = std::make_unique<process::Child>(
+        [&state = state_, place](const process::Child::Tell& tell) { run_worker(state, place, tell); });
+  }
 
   // Waits until a worker has ended, or it is time for keep_going.
   void wait() {
@@ -97,29 +199,25 @@ class Sweep {
     }
   }
 
-  // A worker that has died gets a successor, which begins its unfinished point again.
+  // A worker that has died gets a successor, which begins its unfinished point again. A point whose workers
+  // have died too often is stored as failed.
   void end_worker(std::size_t place) {
-    const auto death = workers_[place]->wait();
+    const auto death = death_of(*workers_[place]);
     workers_[place].reset();
     if (!death) return;
     const auto claim = state_.claims.unfinished(place);
     if (claim && ++deaths_[*claim] == kMostDeaths) {
-      state_.claims.end(place, fail(state_.number_of(*claim),
-                                    fmt::format("its process has {}, {} times: to try again, delete this row "
-                                                "and give the same command",
-                                                *death, kMostDeaths)));
+      Store store(state_.options.store, state_.options.version, state_.options.busy_timeout);
+      const std::string reason =
+          fmt::format("its process has {}, {} times: to try again, delete this row and give the same command",
+                      *death, kMostDeaths);
+      const bool is_new = store.add(row_of(state_.point(*claim), "failed", reason));
+      state_.claims.end(place, is_new ? PointEnd::kFailed : PointEnd::kKnown);
     }
     start_worker(place);
   }
 
-  // Stores a point whose workers have died as a point that has failed.
-  PointEnd fail(std::uint64_t number, const std::string& reason) {
-    Store store(state_.options.store, state_.options.version, state_.options.busy_timeout);
-    return store.add(failed_point(state_.points.point(number), reason)) ? PointEnd::kFailed
-                                                                        : PointEnd::kKnown;
-  }
-
-  std::vector<std::unique_ptr<Worker>> workers_;  // [place]; nullptr: it has ended
+  std::vector<std::unique_ptr<process::Child>> workers_;  // [place]; nullptr: it has ended
   SweepState state_;
   std::map<std::uint64_t, int> deaths_;  // [claim]: workers that died while they simulated it
 };
@@ -166,6 +264,28 @@ std::uint64_t workers_with_files(std::uint64_t workers) {
   }
   for (const int file : files) close(file);
   return files.size() < kOwnFiles ? 0 : files.size() - kOwnFiles;
+}
+
+bool Batch::run(const Points& points, const Evaluate& evaluate, const std::string& version, unsigned jobs,
+                const std::function<bool(const SweepCounts& counts)>& keep_going) {
+  SweepOptions options;
+  options.store = path_;
+  options.version = version;
+  options.jobs = jobs;
+  row_.reset();
+  const SweepCounts counts = sweep(points, evaluate, options, keep_going);
+  return counts.done() == counts.total;
+}
+
+const StoredRow& Batch::row_of(const Point& point) {
+  if (!row_) row_ = std::make_unique<StoredRow>(path_);
+  StoredRow& row = *row_;
+  if (!row.find(point.hash))
+    throw std::runtime_error(fmt::format("point {} was not simulated", point.number));
+  if (row.text("status") != "ok") {
+    throw PointFailed(fmt::format("{}: {}", point.board->name, row.text("reason")));
+  }
+  return row;
 }
 
 }  // namespace stereotlm::explore

@@ -1,12 +1,17 @@
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <memory>
+#include <stdexcept>
 #include <string>
+#include <utility>
 
-#include "sw/explore/plan/figures.h"
 #include "sw/explore/plan/points.h"
+#include "sw/explore/store/store.h"
+#include "sw/files/temporary_folder.h"
 #include "sw/sqlite/database.h"
 
 namespace stereotlm::explore {
@@ -25,6 +30,16 @@ struct SweepCounts {
   void add(const SweepCounts& other);
 };
 
+inline constexpr std::array<std::pair<const char*, std::uint64_t SweepCounts::*>, 7> kCounts = {{
+    {"total", &SweepCounts::total},
+    {"excluded", &SweepCounts::excluded},
+    {"known", &SweepCounts::known},
+    {"ok", &SweepCounts::ok},
+    {"impossible", &SweepCounts::impossible},
+    {"failed", &SweepCounts::failed},
+    {"given_up", &SweepCounts::given_up},
+}};
+
 // One line for each number, such as "ok 12".
 std::string counts_text(const SweepCounts& counts);
 // Reads the lines of counts_text(). A number without a line is 0.
@@ -37,7 +52,7 @@ struct GivenUp {};
 // A function that simulates a point that has a board. It is called in worker processes, which are forked from
 // this one. If it throws an exception, the point has failed, and the text of the exception is the reason.
 // Some exceptions have another meaning: GivenUp; std::system_error, which ends the sweep, because the machine
-// lacks something; process::EndedBySignal and std::bad_alloc, which count as the death of the worker.
+// lacks something; process::ChildDied of a signal and std::bad_alloc, which count as the death of the worker.
 using Evaluate = std::function<Figures(const Point& point)>;
 
 struct SweepOptions {
@@ -67,5 +82,34 @@ SweepCounts sweep(const Points& points, const Evaluate& evaluate, const SweepOpt
 
 // The number of workers that the limit on open files allows, at most `workers`.
 std::uint64_t workers_with_files(std::uint64_t workers);
+
+// The run of a point failed. what() names its board and the reason.
+class PointFailed : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+// Simulates a few points on several processors, for `explain` and `paper`. The results are in a database in a
+// temporary folder, which is removed when the batch is destroyed.
+class Batch {
+ public:
+  // Throws std::runtime_error if the folder cannot be made.
+  Batch() : path_((folder_.path() / "points.db").string()) {}
+
+  // Runs sweep(). Returns false if `keep_going` has ended the sweep. May be called again with further points.
+  bool run(const Points& points, const Evaluate& evaluate, const std::string& version, unsigned jobs,
+           const std::function<bool(const SweepCounts& counts)>& keep_going);
+
+  // The path of the database, which exists after run().
+  const std::string& path() const { return path_; }
+  // The results of a point, valid until the next call. Throws PointFailed, and std::runtime_error if the
+  // point was not simulated.
+  const StoredRow& row_of(const Point& point);
+
+ private:
+  files::TemporaryFolder folder_;
+  std::string path_;
+  std::unique_ptr<StoredRow> row_;
+};
 
 }  // namespace stereotlm::explore

@@ -286,7 +286,7 @@ Json knobs_data(const BoardConfig& board, runs::Explanation& explanation) {
     steps.push_back(std::move(step));
   }
   Json forbidden = Json::array();
-  for (const explore::ForbiddenStep& step : explanation.knobs().forbidden)
+  for (const explore::KnobStep& step : explanation.knobs().forbidden)
     forbidden.push_back({{"knob", step.knob}, {"from", step.from}, {"to", step.to}, {"reason", step.reason}});
   return {{"board", std::move(base)},
           {"steps", std::move(steps)},

@@ -10,8 +10,8 @@
 #include "platform/config/board_config.h"
 #include "platform/config/tables.h"
 #include "platform/statistics.h"
-#include "sw/explore/plan/figures.h"
 #include "sw/explore/plan/points.h"
+#include "sw/explore/store/store.h"
 
 namespace stereotlm::runs {
 

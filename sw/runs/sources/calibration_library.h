@@ -7,14 +7,13 @@
 #include "calib/calibrate.h"
 #include "calib/drawings.h"
 #include "calib/grid_sheet.h"
-#include "calib/matched_rows.h"
 
 namespace stereotlm::runs {
 
 // The functions of calib that need OpenCV and cairo. They are in a library that is loaded by the first call
 // of calibration_functions().
 struct CalibrationFunctions {
-  // calibrate.h, calibration_yaml.h, matched_rows.h
+  // calibrate.h, calibration.h
   calib::CalibrationResult (*calibrate)(const calib::CalibrationRequest& request);
   std::string (*calibration_yaml)(const calib::Calibration& calibration);
   calib::MatchedRows (*matched_rows)(const kernels::GrayImage& left, const kernels::GrayImage& right,

@@ -1,10 +1,9 @@
-#include "sw/process/python_script.h"
-
 #include <gmock/gmock.h>
 
 #include <stdexcept>
 #include <string>
 
+#include "sw/process/command.h"
 #include "tests/support/scratch_folder.h"
 
 namespace stereotlm::runs {

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "calib/matched_rows.h"
+#include "calib/calibrate.h"
 #include "calib/synthetic_rig.h"
 #include "calib/tables.h"
 

@@ -6,13 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "sw/explore/store/merge_stores.h"
 #include "sw/explore/store/store.h"
 #include "tests/support/scratch_folder.h"
 
 namespace stereotlm::explore {
 
-inline StoredPoint ok_point(const std::string& hash) { return {hash, "ok", "", "", {}, {}, {}}; }
+inline StoredPoint ok_point(const std::string& hash) { return {hash, "ok", "", "", {}, {}}; }
 
 // A test that has a folder for databases.
 class StoreFiles : public ::testing::Test {

@@ -1,11 +1,15 @@
 #include "sw/process/child.h"
 
 #include <gtest/gtest.h>
+#include <pthread.h>
 #include <sys/time.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <chrono>
 #include <csignal>
+#include <filesystem>
+#include <iterator>
 #include <new>
 #include <stdexcept>
 #include <string>
@@ -16,6 +20,62 @@ namespace stereotlm::process {
 namespace {
 
 using namespace std::chrono_literals;
+
+std::ptrdiff_t open_files() {
+  return std::distance(std::filesystem::directory_iterator("/proc/self/fd"), {});
+}
+
+// Whether the pipe ends without a byte, once all other processes have closed its write end.
+bool ends_empty(Pipe& pipe) {
+  pipe.close_write_end();
+  char byte = 0;
+  return !read_all(pipe.read_end(), &byte, 1);
+}
+
+TEST(Pipe, ReportsThatItsReadEndIsClosed) {
+  signal(SIGPIPE, SIG_IGN);
+  Pipe pipe;
+  EXPECT_TRUE(write_all(pipe.write_end(), "x", 1));
+  pipe.close_read_end();
+  EXPECT_FALSE(write_all(pipe.write_end(), "x", 1));
+}
+
+TEST(Pipe, LeavesNoFileOpen) {
+  const auto before = open_files();
+  {
+    Pipe pipe;
+    pipe.close_read_end();
+    EXPECT_EQ(open_files(), before + 1);
+  }
+  EXPECT_EQ(open_files(), before);
+}
+
+TEST(Child, IsGoneWhenItIsDestroyed) {
+  Pipe pipe;
+  {
+    const Child child([](const Child::Tell& /*tell*/) { pause(); });
+  }
+  EXPECT_TRUE(ends_empty(pipe));
+}
+
+pid_t forker = 0;
+
+void wait_until_it_has_ended() {
+  while (getppid() == forker) usleep(1000);
+}
+
+TEST(Child, DoesNotBeginItsWorkAfterTheEndOfItsParent) {
+  Pipe pipe;
+  const pid_t parent = fork();
+  if (parent == 0) {
+    forker = getpid();
+    pthread_atfork(nullptr, nullptr, wait_until_it_has_ended);
+    const Child child([&](const Child::Tell& /*tell*/) { write_all(pipe.write_end(), "", 1); });
+    _exit(0);
+  }
+  ASSERT_EQ(waitpid(parent, nullptr, 0), parent);
+  EXPECT_TRUE(ends_empty(pipe));
+}
 
 TEST(Child, SendsMessagesOfAnySizeAndContentInOrder) {
   const std::vector<std::string> messages = {"", std::string(1'000'000, 'x'), std::string("a\0b\n", 4),
@@ -75,9 +135,10 @@ TEST(Child, ReportsHowItHasFailedBehindItsMessages) {
     try {
       child.next();
       ADD_FAILURE() << text;
-    } catch (const EndedBySignal& end) {
-      EXPECT_EQ(end.signal(), SIGKILL);
+    } catch (const ChildDied& end) {
       EXPECT_EQ(end.what(), text);
+      EXPECT_EQ(end.signal() == SIGKILL, end.how() == "ended with signal 9 (Killed)") << end.how();
+      EXPECT_EQ(end.signal() == 0, end.how() == "ended with exit status 3") << end.how();
     } catch (const std::exception& error) {
       EXPECT_EQ(error.what(), text);
       EXPECT_EQ(dynamic_cast<const std::bad_alloc*>(&error) != nullptr, text == std::bad_alloc().what());

@@ -1,13 +1,13 @@
 #include "sw/process/shared_memory.h"
 
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
 #include <csignal>
 #include <memory>
+#include <optional>
 #include <vector>
 
-#include "sw/process/child_process.h"
+#include "sw/process/child.h"
 
 namespace stereotlm::process {
 namespace {
@@ -16,11 +16,8 @@ TEST(SharedMemory, ShowsWhatAnotherProcessHasWritten) {
   const SharedMemory memory(sizeof(int));
   const auto* const value = static_cast<const int*>(memory.data());
   EXPECT_EQ(*value, 0);
-  ChildProcess child([&memory] {
-    *static_cast<int*>(memory.data()) = 7;
-    return 0;
-  });
-  EXPECT_EQ(child.wait(), 0);
+  Child child([&memory](const Child::Tell& /*tell*/) { *static_cast<int*>(memory.data()) = 7; });
+  EXPECT_EQ(child.next(), std::nullopt);
   EXPECT_EQ(*value, 7);
 }
 
@@ -31,17 +28,16 @@ TEST(SharedLock, LetsOneProcessInAtATime) {
   const SharedMemory memory(sizeof(int));
   auto* const sum = static_cast<volatile int*>(memory.data());
   const SharedLock lock;
-  std::vector<std::unique_ptr<ChildProcess>> children(kProcesses);
+  std::vector<std::unique_ptr<Child>> children(kProcesses);
   for (auto& child : children) {
-    child = std::make_unique<ChildProcess>([&] {
+    child = std::make_unique<Child>([&](const Child::Tell& /*tell*/) {
       for (int time = 0; time < kTimes; ++time) {
         const SharedLock::Turn turn(lock);
         *sum = *sum + 1;
       }
-      return 0;
     });
   }
-  for (const auto& child : children) EXPECT_EQ(child->wait(), 0);
+  for (const auto& child : children) EXPECT_EQ(child->next(), std::nullopt);
   EXPECT_EQ(*sum, kProcesses * kTimes);
 }
 
@@ -49,11 +45,11 @@ TEST(SharedLock, LetsTheNextProcessInWhenOneDies) {
   const SharedLock lock;
   const auto take_turn = [&lock](bool dies) {
     const SharedLock::Turn turn(lock);
-    return dies ? raise(SIGKILL) : 0;
+    if (dies) raise(SIGKILL);
   };
-  EXPECT_TRUE(WIFSIGNALED(ChildProcess([&] { return take_turn(true); }).wait()));
-  EXPECT_EQ(take_turn(false), 0);
-  EXPECT_EQ(ChildProcess([&] { return take_turn(false); }).wait(), 0);
+  EXPECT_THROW(Child([&](const Child::Tell& /*tell*/) { take_turn(true); }).next(), ChildDied);
+  take_turn(false);
+  EXPECT_EQ(Child([&](const Child::Tell& /*tell*/) { take_turn(false); }).next(), std::nullopt);
 }
 
 }  // namespace

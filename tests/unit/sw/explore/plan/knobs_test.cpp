@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "platform/config/board_yaml.h"
-#include "sw/explore/store/bank_names.h"
+#include "sw/explore/store/store.h"
 
 namespace stereotlm::explore {
 namespace {
@@ -226,8 +226,7 @@ TEST(KnobSteps, HaveTheSetsThatMakeTheirBoard) {
 TEST(KnobSteps, AreForbiddenWhereAnotherKeyForbidsThem) {
   const auto forbidden = [](const std::string& preset, const Texts& sets) {
     Texts texts;
-    for (const ForbiddenStep& step :
-         knob_steps(platform::load_board(preset, sets), false, std::nullopt).forbidden)
+    for (const KnobStep& step : knob_steps(platform::load_board(preset, sets), false, std::nullopt).forbidden)
       texts.push_back(fmt::format("{}: {} -> {}: {}", step.knob, step.from, step.to, step.reason));
     return texts;
   };

@@ -499,5 +499,37 @@ TEST(PlanRefusals, AreForCalibrationsThatAreNoFileOrVary) {
                     {":2:8: vary: run.calibration: can only be given in `run`: one for all points"}}});
 }
 
+std::vector<std::uint64_t> shuffled(std::uint64_t size, std::uint64_t seed, std::uint64_t first_places) {
+  std::vector<std::uint64_t> all;
+  for (std::uint64_t place = 0; place < first_places; ++place)
+    all.push_back(shuffled_number(size, seed, place));
+  return all;
+}
+
+TEST(ShuffledNumber, HoldEachNumberOnce) {
+  for (const std::uint64_t size : {1U, 2U, 3U, 4U, 5U, 16U, 17U, 1000U, 4097U}) {
+    std::vector<std::uint64_t> numbers = shuffled(size, 7, size);
+    std::sort(numbers.begin(), numbers.end());
+    for (std::uint64_t i = 0; i < size; ++i) ASSERT_EQ(numbers[i], i) << size;
+  }
+}
+
+TEST(ShuffledNumber, DependOnTheSeed) {
+  const auto one = shuffled(100, 1, 100);
+  EXPECT_EQ(shuffled(100, 1, 100), one);
+  EXPECT_NE(shuffled(100, 2, 100), one);
+  EXPECT_FALSE(std::is_sorted(one.begin(), one.end()));
+}
+
+TEST(ShuffledNumber, PutEachNumberIntoTheFirstHalfForHalfOfTheSeeds) {
+  constexpr std::uint64_t kSize = 10;
+  constexpr std::uint64_t kSeeds = 2000;
+  std::vector<int> early(kSize);
+  for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
+    for (const std::uint64_t number : shuffled(kSize, seed, kSize / 2)) ++early[number];
+  }
+  for (const int times : early) EXPECT_NEAR(times, kSeeds / 2, 5 * 23) << "five standard deviations";
+}
+
 }  // namespace
 }  // namespace stereotlm::explore

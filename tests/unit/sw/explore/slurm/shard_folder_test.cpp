@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "sw/explore/slurm/slurm.h"
 #include "tests/unit/sw/explore/store_files.h"
 
 namespace stereotlm::explore {
@@ -75,6 +76,19 @@ TEST_F(ShardFolderTest, RefusesAStoreOfAnotherVersionOrWithBanksThatDifferOnlyIn
   sweep.version = "2";
   EXPECT_THAT(message_of([&] { folder.begin(sweep); }),
               EndsWith("a.db: holds points of version 1; this is version 2: give another file"));
+}
+
+TEST(Slurm, TaskIsLiveUntilItHasEnded) {
+  for (const char* state : {"PENDING", "RUNNING", "COMPLETING", "CONFIGURING", "SUSPENDED", "REQUEUED"})
+    EXPECT_TRUE((SlurmTask{"1", 0, state, ""}.is_live())) << state;
+  for (const char* state : {"COMPLETED", "FAILED", "CANCELLED", "TIMEOUT", "NODE_FAIL", "OUT_OF_MEMORY"})
+    EXPECT_FALSE((SlurmTask{"1", 0, state, ""}.is_live())) << state;
+}
+
+TEST(Slurm, ArrayNamesRanges) {
+  EXPECT_EQ(array_text({0}), "0");
+  EXPECT_EQ(array_text({0, 1, 2, 3}), "0-3");
+  EXPECT_EQ(array_text({0, 3, 5, 6, 9}), "0,3,5-6,9");
 }
 
 }  // namespace

@@ -7,11 +7,12 @@
 #include <unistd.h>
 
 #include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
-#include "sw/explore/store/merge_stores.h"
-#include "sw/explore/store/store_reader.h"
+#include "sw/stats/stats_json.h"
 #include "tests/unit/sw/explore/store_files.h"
 
 namespace stereotlm::explore {
@@ -32,8 +33,7 @@ StoredPoint point(const std::string& hash, std::int64_t cycles = 7) {
   StoredPoint point = ok_point(hash);
   point.config = "name: x\n";
   point.keys = {{"image.width", std::int64_t{640}}};
-  point.figures = {{"cycles", cycles}, {"rate", 0.5}};
-  point.blame = {{"left_pixel", "bank0", "host", 3}};
+  point.figures = {{{"cycles", cycles}, {"rate", 0.5}}, {{"left_pixel", "bank0", "host", 3}}};
   return point;
 }
 
@@ -71,7 +71,7 @@ TEST_F(StoreTest, KeepsARowForEachPoint) {
 TEST_F(StoreTest, AddsAPointAfterOneWithTheSameNewColumnsThatCouldNotBeAdded) {
   Store store(file("a.db"), kVersion);
   StoredPoint broken = point("h1");
-  broken.blame.push_back(broken.blame.front());  // the same row twice
+  broken.figures.blame.push_back(broken.figures.blame.front());  // the same row twice
   EXPECT_THAT(message_of([&] { store.add(broken); }), HasSubstr("UNIQUE constraint failed"));
   EXPECT_FALSE(store.has("h1"));
   EXPECT_THAT(rows("a.db", "SELECT count(*) FROM pragma_table_info('points')"), ElementsAre("5"));
@@ -86,7 +86,7 @@ TEST_F(StoreTest, TakesPointsWithAnyColumnsFromSeveralConnections) {
   two.add(point("h2"));
   StoredPoint other = point("h3");
   other.keys.push_back({"select \"from\"", "a'b"});
-  other.figures = {{"frames_per_second.system", 2.5}};
+  other.figures.values = {{"frames_per_second.system", 2.5}};
   one.add(other);
   other.hash = "h4";
   two.add(other);
@@ -101,7 +101,7 @@ TEST_F(StoreTest, TakesPointsWithAnyColumnsFromSeveralConnections) {
 TEST_F(StoreTest, ListsTheColumnsThatHoldKeys) {
   StoredPoint other = point("h2");
   other.keys.push_back({"bridge.posted_words", std::int64_t{64}});
-  other.figures.push_back({"bridge.posted_words.counted", std::int64_t{9}});
+  other.figures.values.push_back({"bridge.posted_words.counted", std::int64_t{9}});
   add("a.db", {point("h1")});
   add("b.db", {other});
   merge({"a.db", "b.db"}, "ab.db");
@@ -114,7 +114,7 @@ TEST_F(StoreTest, HoldsPointsOfOneVersion) {
   add("a.db", {point("h1")});
   const std::string text = file("a.db") + ": holds points of version 1; this is version 2: give another file";
   EXPECT_EQ(open_error("a.db", "2"), text);
-  EXPECT_EQ(message_of([&] { FinishedStore(file("a.db"), "2"); }), text);
+  EXPECT_EQ(message_of([&] { StoredRow(file("a.db"), "2"); }), text);
   for (const std::string hash : {"h0", "h1", "h2"}) {
     add(hash + ".db", {point(hash)}, "2");
     EXPECT_THAT(merge_error({"a.db", hash + ".db"}, "c.db"),
@@ -166,7 +166,7 @@ TEST_F(StoreTest, MergesToTheSameBytesInAnyOrder) {
   StoredPoint wide = point("h2");
   wide.keys = {{"matcher.window", std::int64_t{7}}};
   for (const char* const bank : {"bank10", "bank2", "bank1", "bank12", "bank"})
-    wide.figures.push_back({std::string("banks.") + bank + ".reads", std::int64_t{1}});
+    wide.figures.values.push_back({std::string("banks.") + bank + ".reads", std::int64_t{1}});
   add("a.db", {point("h3")});
   add("b.db", {wide, point("h1")});
   add("all.db", {point("h1"), wide, point("h3")});
@@ -189,7 +189,7 @@ TEST_F(StoreTest, MergesToTheSameBytesInAnyOrder) {
 
 TEST_F(StoreTest, DoesNotMergeDifferentResultsOfAPoint) {
   StoredPoint blamed = point("h1");
-  blamed.blame.push_back({"result", "bank0", "host", 4});
+  blamed.figures.blame.push_back({"result", "bank0", "host", 4});
   add("a.db", {point("h1")});
   add("b.db", {point("h1", 8)});
   add("blamed.db", {blamed});
@@ -230,6 +230,53 @@ TEST_F(StoreTest, BehindALinkIsReplacedAndTheLinkStays) {
   EXPECT_THAT(hashes("real/b.db"), ElementsAre("h1", "h2"));
   EXPECT_EQ(fs::status(file("b.db")).permissions(), fs::perms{0640});
   EXPECT_THAT(names_in(file("real")), ElementsAre("b.db")) << "without its journal";
+}
+
+using Value = decltype(platform::BoardValue::value);
+
+platform::Statistics statistics() {
+  platform::Statistics statistics;
+  statistics.board = "fpl2003";
+  statistics.fidelity = "fast";
+  statistics.cycles = 300;
+  statistics.frame_cycles = {100, 200};
+  statistics.frames_per_second.core = 18.5;
+  statistics.bound = {20.25, "matcher", {}, ""};
+  statistics.banks = {{"bank0", 7}, {"b-1", 8}};
+  statistics.ports = {{"left_pixel", 5, 3}};
+  statistics.blame = {{"left_pixel", "bank0", "host", 2}, {"left_pixel", "bank0", "turnaround", 1}};
+  statistics.computer.emplace();
+  statistics.computer->pci_clocks = 99;
+  statistics.computer->pci_masters = {{"host", 4, 5, 6}};
+  statistics.computer->cameras = {{"left", 10}};
+  statistics.computer->capture_to_host_ms.p95 = 1.5;
+  return statistics;
+}
+
+TEST(Figures, HaveTheDottedPathsOfStatsJsonAndRowsOfBlame) {
+  const Figures figures = figures_of(stats::stats_document(statistics(), std::nullopt));
+  std::map<std::string, Value> values;
+  for (const platform::BoardValue& value : figures.values)
+    EXPECT_TRUE(values.emplace(value.path, value.value).second) << value.path << " twice";
+  const std::map<std::string, Value> expected = {{"board", "fpl2003"},
+                                                 {"cycles", std::int64_t{300}},
+                                                 {"frame_cycles", "[100,200]"},
+                                                 {"frames_per_second.core", 18.5},
+                                                 {"bound.core_limited_by", "matcher"},
+                                                 {"banks.bank0.reads", std::int64_t{7}},
+                                                 {"banks.b-1.reads", std::int64_t{8}},
+                                                 {"ports.left_pixel.stall_cycles", std::int64_t{3}},
+                                                 {"pci.clocks", std::int64_t{99}},
+                                                 {"pci.masters.host.words", std::int64_t{5}},
+                                                 {"cameras.left.frames", std::int64_t{10}},
+                                                 {"latency_ms.capture_to_host.p95", 1.5}};
+  for (const auto& [path, value] : expected) EXPECT_EQ(values.at(path), value) << path;
+  for (const char* const absent : {"schema", "blame", "bound.system"}) EXPECT_EQ(values.count(absent), 0U);
+  ASSERT_EQ(figures.blame.size(), 2U);
+  EXPECT_EQ(figures.blame[1].port, "left_pixel");
+  EXPECT_EQ(figures.blame[1].bank, "bank0");
+  EXPECT_EQ(figures.blame[1].by, "turnaround");
+  EXPECT_EQ(figures.blame[1].cycles, 1);
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "sw/process/child_process.h"
+#include "sw/process/child.h"
 #include "sw/process/shared_memory.h"
 
 namespace stereotlm::explore {
@@ -19,17 +19,16 @@ TEST(Claims, GivesEachPointToOneOfManyProcesses) {
   Claims claims(kProcesses, kPoints);
   const process::SharedMemory memory(kPoints);
   auto* const times = static_cast<unsigned char*>(memory.data());  // [point]: how often it was begun
-  std::vector<std::unique_ptr<process::ChildProcess>> children;
+  std::vector<std::unique_ptr<process::Child>> children;
   for (std::size_t place = 0; place < kProcesses; ++place) {
-    children.push_back(std::make_unique<process::ChildProcess>([&claims, times, place] {
+    children.push_back(std::make_unique<process::Child>([&claims, times, place](const auto& /*tell*/) {
       while (const auto point = claims.begin(place)) {
         ++times[*point];
         claims.end(place, PointEnd::kOk);
       }
-      return 0;
     }));
   }
-  for (const auto& child : children) EXPECT_EQ(child->wait(), 0);
+  for (const auto& child : children) EXPECT_EQ(child->next(), std::nullopt);
   EXPECT_EQ(claims.counts().ok, kPoints);
   EXPECT_TRUE(std::all_of(times, times + kPoints, [](unsigned char number) { return number == 1; }));
 }

@@ -19,9 +19,11 @@
 #include <utility>
 #include <vector>
 
+#include "platform/config/board_yaml.h"
+#include "sw/explore/plan/conditions.h"
 #include "sw/explore/plan/plan.h"
 #include "sw/explore/store/store_lock.h"
-#include "sw/process/child_process.h"
+#include "sw/process/child.h"
 #include "tests/unit/sw/explore/store_files.h"
 
 namespace stereotlm::explore {
@@ -75,12 +77,12 @@ class SweepTest : public StoreFiles {
     }
   }
   std::string sweep_error(const SweepOptions& options, const Evaluate& evaluate_point = evaluate) const {
-    return message_of([&] { sweep(plan(), evaluate_point, options, always); });
+    return message_of([&] { sweep(plan().points(), evaluate_point, options, always); });
   }
   // Finishes a store, which must then have the bytes of one that a single worker has made without a break.
   SweepCounts expect_whole(const std::string& store) const {
-    const SweepCounts counts = sweep(plan(), evaluate, options(store, 2), always);
-    if (!fs::exists(file("reference.db"))) sweep(plan(), evaluate, options("reference.db"), always);
+    const SweepCounts counts = sweep(plan().points(), evaluate, options(store, 2), always);
+    if (!fs::exists(file("reference.db"))) sweep(plan().points(), evaluate, options("reference.db"), always);
     EXPECT_TRUE(read_file(file(store)) == read_file(file("reference.db"))) << store;
     return counts;
   }
@@ -88,7 +90,7 @@ class SweepTest : public StoreFiles {
 
 TEST_F(SweepTest, StoresAndCountsTheWayInWhichEachPointEnds) {
   std::vector<std::uint64_t> done;
-  const SweepCounts counts = sweep(plan(), evaluate, options("a.db"), [&](const SweepCounts& now) {
+  const SweepCounts counts = sweep(plan().points(), evaluate, options("a.db"), [&](const SweepCounts& now) {
     done.push_back(now.done());
     return now.total == kPoints;
   });
@@ -97,6 +99,7 @@ TEST_F(SweepTest, StoresAndCountsTheWayInWhichEachPointEnds) {
   EXPECT_TRUE(std::is_sorted(done.begin(), done.end()));
   EXPECT_EQ(done.back(), kPoints);
   EXPECT_EQ(count("a.db"), kStored);
+  EXPECT_EQ(count("a.db", "status = 'ok'"), kOk);
   EXPECT_EQ(count("a.db", "status = 'failed' AND reason = 'a window that fails' AND \"matcher.window\" = 11"),
             6U);
   EXPECT_EQ(count("a.db",
@@ -121,7 +124,7 @@ TEST(SweepCounts, AreReadBackAndAddUp) {
 TEST_F(SweepTest, GivesTheSameBytesForAnyNumberOfJobs) {
   for (const unsigned jobs : {2U, 3U, 200U}) {
     const std::string store = std::to_string(jobs) + ".db";
-    EXPECT_EQ(sweep(plan(), evaluate, options(store, jobs), always).ok, kOk);
+    EXPECT_EQ(sweep(plan().points(), evaluate, options(store, jobs), always).ok, kOk);
     expect_whole(store);
   }
 }
@@ -135,7 +138,7 @@ TEST_F(SweepTest, GivesTheSameBytesInShardsThatAreMerged) {
       SweepOptions part = options(stores.back());
       part.shard = shard;
       part.shards = shards;
-      const SweepCounts counts = sweep(plan(), evaluate, part, always);
+      const SweepCounts counts = sweep(plan().points(), evaluate, part, always);
       EXPECT_EQ(counts.done(), counts.total);
       points += counts.total;
     }
@@ -159,7 +162,7 @@ TEST_F(SweepTest, GivesEachWorkerItsShareAtOnce) {
     }
     throw std::runtime_error("other workers are idle");
   };
-  EXPECT_EQ(sweep(Plan::load(file("eight.yaml")), waits, options("a.db", 8), always).ok, 8U);
+  EXPECT_EQ(sweep(Plan::load(file("eight.yaml")).points(), waits, options("a.db", 8), always).ok, 8U);
 }
 
 TEST_F(SweepTest, HandsOutNoPointsOnceItIsStopped) {
@@ -169,8 +172,8 @@ TEST_F(SweepTest, HandsOutNoPointsOnceItIsStopped) {
     std::this_thread::sleep_for(5ms);
     return evaluate(point);
   };
-  const SweepCounts counts =
-      sweep(plan(), slow, options("a.db", 2), [](const SweepCounts& now) { return now.done() == 0; });
+  const SweepCounts counts = sweep(plan().points(), slow, options("a.db", 2),
+                                   [](const SweepCounts& now) { return now.done() == 0; });
   EXPECT_EQ(counts.total, 999'000U);
   EXPECT_GT(counts.done(), 0U);
   EXPECT_LT(counts.done(), 1000U);
@@ -179,16 +182,16 @@ TEST_F(SweepTest, HandsOutNoPointsOnceItIsStopped) {
 TEST_F(SweepTest, SimulatesNoPointThatItsStoreOrTheKnownStoreHas) {
   SweepOptions half = options("a.db");
   half.shards = 2;
-  sweep(plan(), evaluate, half, always);
+  sweep(plan().points(), evaluate, half, always);
   SweepOptions rest = options("b.db");
   rest.known = file("a.db");
-  const SweepCounts counts = sweep(plan(), evaluate, rest, always);
+  const SweepCounts counts = sweep(plan().points(), evaluate, rest, always);
   EXPECT_GT(counts.known, 0U);
   EXPECT_EQ(counts.known, count("a.db"));
   EXPECT_EQ(counts.known + count("b.db"), kStored);
   merge({"a.db", "b.db"}, "merged.db");
   const auto never = [](const Point& /*point*/) -> Figures { std::abort(); };
-  const SweepCounts again = sweep(plan(), never, options("merged.db"), always);
+  const SweepCounts again = sweep(plan().points(), never, options("merged.db"), always);
   EXPECT_EQ(again.known, kStored);
   EXPECT_EQ(again.ok + again.failed, 0U);
   expect_whole("merged.db");
@@ -202,7 +205,7 @@ TEST_F(SweepTest, KeepsFinishedPointsWhenItIsKilled) {
         std::this_thread::sleep_for(10ms);
         return evaluate(point);
       };
-      sweep(plan(), slow, options("a.db", 2), always);
+      sweep(plan().points(), slow, options("a.db", 2), always);
       _exit(0);
     }
     while (count("a.db") < 4 * attempt) std::this_thread::sleep_for(1ms);
@@ -226,8 +229,7 @@ TEST_F(SweepTest, BeginsAPointAgainWhoseWorkerHasDiedUntilItHasDiedThreeTimes) {
   const std::vector<Death> deaths = {
       {"ended with signal 9 (Killed)", 1, [] { raise(SIGKILL); }},
       {"ended with signal 9 (Killed)", 3, [] { raise(SIGKILL); }},
-      {"ended with signal 11 (Segmentation fault)", 1,
-       [] { throw process::EndedBySignal("the process of the run was ended", SIGSEGV); }},
+      {"ended with signal 11 (Segmentation fault)", 1, [] { throw process::ChildDied(SIGSEGV); }},
       {"ended with exit status 3", 1, [] { _exit(3); }},
       {"run out of memory", 3, [] { throw std::bad_alloc(); }}};
   for (const Death& death : deaths) {
@@ -238,7 +240,7 @@ TEST_F(SweepTest, BeginsAPointAgainWhoseWorkerHasDiedUntilItHasDiedThreeTimes) {
       return evaluate(point);
     };
     for (const char* const name : {"died", "a.db"}) fs::remove(file(name));
-    const SweepCounts counts = sweep(plan(), dies, options("a.db", death.jobs), always);
+    const SweepCounts counts = sweep(plan().points(), dies, options("a.db", death.jobs), always);
     EXPECT_EQ(counts.done(), kPoints);
     EXPECT_EQ(counts.ok, kOk - kOkOfAWindow) << death.text;
     EXPECT_EQ(counts.failed, 2 * kOkOfAWindow) << death.text;
@@ -250,6 +252,20 @@ TEST_F(SweepTest, BeginsAPointAgainWhoseWorkerHasDiedUntilItHasDiedThreeTimes) {
         .execute("DELETE FROM points WHERE " + failed);
     expect_whole("a.db");
   }
+}
+
+TEST_F(SweepTest, RenamesAFigureThatHasThePathOfAKey) {
+  const auto same_path = [](const Point& /*point*/) -> Figures {
+    return {{{"image.width", std::int64_t{5}}}, {}};
+  };
+  sweep(board_points({platform::load_board("fpl2003")}, {}), same_path, options("a.db"), always);
+  EXPECT_EQ(count("a.db", "\"image.width\" = 640 AND \"image.width.counted\" = 5"), 1U);
+}
+
+TEST_F(SweepTest, EndsIfAConditionCannotBeComputed) {
+  Points points = board_points({platform::load_board("fpl2003")}, {});
+  points.conditions = {{"abs(-9223372036854775807 - image.height / 480) > 0", "plan.yaml:1:8", "where"}};
+  EXPECT_THROW(sweep(points, evaluate, options("a.db"), always), ConditionError);
 }
 
 TEST_F(SweepTest, EndsIfTheMachineLacksSomething) {
@@ -279,7 +295,7 @@ TEST_F(SweepTest, ReportsAStoreThatIsLockedBeforeOrWhileItRuns) {
     while (point.number >= kPoints / 2 && !fs::exists(file("locked"))) std::this_thread::sleep_for(1ms);
     return evaluate(point);
   };
-  EXPECT_EQ(message_of([&] { sweep(plan(), waits_for_lock, impatient, lock); }), locked);
+  EXPECT_EQ(message_of([&] { sweep(plan().points(), waits_for_lock, impatient, lock); }), locked);
   other.reset();
   const std::uint64_t before = count("a.db");
   EXPECT_GE(before, 5U) << "finished points are kept";
@@ -305,7 +321,7 @@ TEST_F(SweepTest, EndsWhenItsStoreIsGone) {
         std::this_thread::sleep_for(1ms);
       return evaluate(point);
     };
-    EXPECT_THROW(sweep(plan(), waits_for_removal, options("a.db"), remove), StoreGone);
+    EXPECT_THROW(sweep(plan().points(), waits_for_removal, options("a.db"), remove), StoreGone);
     EXPECT_TRUE(is_last || done < kPoints);
     EXPECT_FALSE(fs::exists(file("a.db")));
   }
@@ -313,7 +329,7 @@ TEST_F(SweepTest, EndsWhenItsStoreIsGone) {
 
 TEST_F(SweepTest, RefusesAStoreThatAnotherSweepUses) {
   bool is_tried = false;
-  sweep(plan(), evaluate, options("a.db"), [&](const SweepCounts& /*counts*/) {
+  sweep(plan().points(), evaluate, options("a.db"), [&](const SweepCounts& /*counts*/) {
     if (std::exchange(is_tried, true)) return true;
     EXPECT_EQ(sweep_error(options("a.db")),
               file("a.db") + ": another process is at work on it: wait for its end, or give another file");
@@ -321,6 +337,15 @@ TEST_F(SweepTest, RefusesAStoreThatAnotherSweepUses) {
   });
   EXPECT_TRUE(is_tried);
   expect_whole("a.db");
+}
+
+TEST(Batch, ReportsWhyAPointHasNoFigures) {
+  const Points points = board_points({platform::load_board("fpl2003")}, {});
+  const auto fails = [](const Point& /*point*/) -> Figures { throw std::runtime_error("too large"); };
+  Batch batch;
+  ASSERT_TRUE(batch.run(points, fails, "1", 1, [](const SweepCounts&) { return true; }));
+  EXPECT_THROW(batch.row_of(points.point(0)), PointFailed);
+  EXPECT_EQ(test::message_of([&] { batch.row_of(points.point(0)); }), "fpl2003: too large");
 }
 
 }  // namespace

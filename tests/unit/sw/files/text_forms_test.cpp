@@ -1,12 +1,29 @@
-#include "sw/files/sha256.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <string>
+#include <vector>
+
+#include "sw/files/sha256.h"
+#include "sw/files/shell_word.h"
+#include "sw/process/command.h"
 #include "tests/support/scratch_folder.h"
 
 namespace stereotlm::files {
 namespace {
+
+TEST(ShellCommand, IsReadByAShellAsItsWords) {
+  const std::vector<std::string> words = {"printf", "%s|",    "fpl2003", "a b", "",
+                                          "it's",   "[x, y]", "$HOME",   "*",   "\"\\"};
+  EXPECT_EQ(process::run_command({"sh", "-c", shell_command(words)}).out,
+            "fpl2003|a b||it's|[x, y]|$HOME|*|\"\\|");
+}
+
+TEST(ShellWord, IsQuotedOnlyIfItMustBe) {
+  EXPECT_EQ(shell_word("--set"), "--set");
+  EXPECT_EQ(shell_word("allocation.left_lut=bank0"), "allocation.left_lut=bank0");
+  EXPECT_EQ(shell_word("a b"), "'a b'");
+}
 
 using ::testing::HasSubstr;
 

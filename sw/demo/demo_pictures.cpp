@@ -1,8 +1,13 @@
-#include "sw/demo/demo_pair.h"
+#include "sw/demo/demo_pictures.h"
 
 #include <algorithm>
+#include <limits>
+#include <opencv2/core.hpp>
 #include <stdexcept>
 #include <string>
+
+#include "calib/canvas.h"
+#include "models/kernels/lr_check.h"
 
 namespace stereotlm::demo {
 namespace {
@@ -33,7 +38,43 @@ GrayImage middle_at_half_size(const GrayImage& full, std::uint8_t (*pixel)(const
   return half;
 }
 
+cv::Mat shown(const Panel& panel) {
+  if (panel.levels == 0) return calib::in_grey(panel.image);
+  cv::Mat1f values(panel.image.height, panel.image.width);
+  std::transform(panel.image.pixels.begin(), panel.image.pixels.end(), values.begin(), [](std::uint8_t level) {
+    return level == kernels::kInvalidDisparity ? std::numeric_limits<float>::quiet_NaN() : level;
+  });
+  return calib::in_colors(values, 0, panel.levels - 1);
+}
+
 }  // namespace
+
+std::vector<std::uint8_t> encode_side_by_side_png(const std::vector<Panel>& panels) {
+  using calib::kMargin;
+  if (panels.empty()) throw std::invalid_argument("panels = 0: at least one picture is needed");
+  std::vector<cv::Mat> pictures;
+  int width = kMargin;
+  int height = 0;
+  for (const Panel& panel : panels) {
+    pictures.push_back(shown(panel));
+    width += panel.image.width + kMargin;
+    height = std::max(height, panel.image.height + (panel.levels == 0 ? 0 : calib::kScaleHeight));
+  }
+  const int top = kMargin + calib::kCaptionHeight;
+  cv::Mat canvas(top + height + kMargin, width, CV_8UC3, calib::kWhite);
+  int left = kMargin;
+  for (std::size_t i = 0; i < panels.size(); ++i) {
+    const cv::Rect place({left, top}, pictures[i].size());
+    pictures[i].copyTo(canvas(place));
+    calib::draw_caption(canvas, panels[i].caption, place);
+    if (panels[i].levels != 0) {
+      calib::draw_color_scale(canvas, {left, place.br().y + calib::kScaleHeight - kMargin}, place.width,
+                              panels[i].first, panels[i].last, panels[i].missing);
+    }
+    left += place.width + kMargin;
+  }
+  return calib::encode_png(canvas);
+}
 
 DemoPair make_demo_pair(const GrayImage& left, const GrayImage& right, const GrayImage& truth) {
   for (const GrayImage* other : {&right, &truth}) {
