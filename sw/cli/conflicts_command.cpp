@@ -247,13 +247,12 @@ int conflicts(const ConflictsOptions& options) {
     folder->add(kMark, csv);
     folder->commit();
   }
-  const report::ConflictSummary summary =
-      report::conflict_summary(input.board, *simulation->conflicts(), shown.sums.sums());
+  const auto document = report::conflicts_document(input.board, *simulation->conflicts(), shown.sums.sums());
   runs::say_lost_pixels(statistics);
   if (options.json.is_given()) {
-    print_json(report::conflicts_document(summary));
+    print_json(document);
   } else {
-    process::print(report::conflicts_text(summary));
+    process::print(report::conflicts_text(document));
   }
   return kDone;
 }

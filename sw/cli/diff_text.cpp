@@ -13,7 +13,6 @@
 #include "platform/config/board_yaml.h"
 #include "sw/cli/text.h"
 #include "sw/explore/plan/figures.h"
-#include "sw/report/diff_verdict.h"
 #include "sw/report/difference_tables.h"
 
 namespace stereotlm::cli {

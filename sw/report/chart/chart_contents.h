@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "sw/report/chart/chart_traffic.h"
+#include "sw/report/chart/chart_links.h"
 
 namespace stereotlm::report {
 

@@ -1,5 +1,3 @@
-#include "sw/report/page_data/run_data.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -27,7 +25,7 @@
 #include "sw/media/encode.h"
 #include "sw/process/interrupt.h"
 #include "sw/report/chart/memory_chart.h"
-#include "sw/report/page_data/recording_data.h"
+#include "sw/report/page_data/page_data.h"
 #include "sw/runs/limiter_text.h"
 #include "sw/runs/progress.h"
 #include "sw/stats/stats_json.h"

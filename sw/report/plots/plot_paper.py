@@ -6,7 +6,7 @@ import os
 
 import command
 import style
-from drawing import Sheet, ticks_at
+from drawing import HEAD, Sheet, ticks_at
 from style import QUIET, bound, bound_handle, line_handle
 
 MODEL, PAPER, SECOND = style.BLUE, style.VERMILION, style.GREEN
@@ -57,7 +57,7 @@ def table1(folder, options):
     sheet.note(f"Table 1: {image_of(board)}, {board['matcher.disparities']} disparities, {filter_of(board)}, "
                f"{board['fpga.clock_mhz']} MHz. Below: model less paper, with the rule ({board['rule']}) shaded; the bar is "
                "what rounding to the printed digit leaves open.")
-    rates, deviations = sheet.rows([2.7, 1.5])
+    rates, deviations = sheet.grid([2.7, 1.5])
     bounds, values = numbers(rows, "bound_frames_per_second"), numbers(rows, "model_frames_per_second")
     printed = numbers(rows, "paper_frames_per_second")
     rates.plot(xs, bounds, **bound(MODEL))
@@ -96,7 +96,7 @@ def table2(folder, options):
     sheet.legend([paper_handle(), (line_handle(MODEL, "o"), "model, counted; one constant is fitted to these rows")])
     sheet.note(f"Table 2: window {window_of(board)}, {board['fpga.device'].upper()}. Below: model less paper, with the rule "
                f"({board['size_rule']}) shaded; the bars are what rounding to whole percents leaves open.")
-    sizes, errors = sheet.rows([2.5, 1.5])
+    sizes, errors = sheet.grid([2.5, 1.5])
     model_line(sizes, xs, values)
     sizes.errorbar(xs, printed, yerr=[below, above], color=PAPER, linestyle="", marker="D", markersize=5,
                    markerfacecolor="white", markeredgewidth=1.3, capsize=3, linewidth=1, zorder=4)
@@ -127,7 +127,7 @@ def banks(folder, options):
     sheet.note(f"{image_of(board)}, {window_of(board)}, {board['matcher.disparities']} disparities, "
                f"{board['fpga.clock_mhz']} MHz. Below each number of banks: how many allocations to so many fit; the "
                "rate of each is known, and none is higher. Triangles need not be the best that there is.")
-    panels = sheet.columns(2, 2.8, 0.75, bottom=0.72)
+    panels = sheet.grid([2.8], 2, 0.75, 0.2, bottom=0.72, above=HEAD)
     for axes, claim, heading in zip(panels, ("banks", "banks_of_matching"),
                                     ("with calibration", "without calibration")):
         every = [row for row in rows if row["claim"] == claim]

@@ -103,7 +103,7 @@ def draw(points, options):
     sheet.note(points.pixels_note(places))
     sheet.note(points.size_note(places))
     sheet.note(points.note(len(places)))
-    (axes,) = sheet.rows([3.6])
+    (axes,) = sheet.grid([3.6])
     is_many = len(xs) > MANY
     axes.plot(*zip(*dict.fromkeys(zip(xs, ys))), "o", color=OTHER, markersize=2 if is_many else 4,
               alpha=0.35 if is_many else 0.6, markeredgewidth=0, zorder=2, rasterized=is_many)

@@ -573,7 +573,7 @@ for size in (None, (4.6, 6)):
     for count in (1, 2, 4, 6):
         for most in (0.37, 3, 20.4, 99.6, 1234, 1999, 104000.5):
             sheet = drawing.Sheet("title", size)
-            panels = sheet.columns(count, 2, 0.6)
+            panels = sheet.grid([2], count, 0.6, 0.2)
             drawing.ticks_of_columns(panels, most)
             sheet.figure.canvas.draw()
             labels = [label for axes in panels for label in axes.get_xticklabels() if label.get_text()]

@@ -1,9 +1,6 @@
 // The data of the page (README.md), as the charts ask for it: tables of points, and what a recording holds.
 import {sum} from './format.js';
 
-// The values of a column of a database, one for each row.
-const unpack = (column, rows) => column.list ?? new Array(rows).fill(column.constant);
-
 export class Table {
   constructor(columns, rows) {
     this.rows = rows;
@@ -24,7 +21,7 @@ export class Table {
   }
   column(name) {
     const column = this.columns.get(name);
-    column.list = unpack(column, this.rows);
+    column.list ??= new Array(this.rows).fill(column.constant);
     return column.list;
   }
   // These columns of these rows, as addChart() takes its numbers.
@@ -37,21 +34,6 @@ export class Table {
 // The rows of a table {names, rows} as objects.
 export const objectsOf = ({names, rows}) =>
     rows.map(row => Object.fromEntries(names.map((name, i) => [name, row[i]])));
-
-// The texts of the part `boards`: text(row).
-export class Boards {
-  constructor({shape, shapes}, rows) {
-    this.shape = unpack(shape, rows);
-    const sizes = shapes.map(() => 0);
-    this.place = this.shape.map(each => sizes[each]++);
-    this.words = shapes.map(
-        (words, each) => words.map(word => typeof word === 'string' ? word : unpack(word, sizes[each])));
-  }
-  text(row) {
-    const words = this.words[this.shape[row]];
-    return words.map(word => typeof word === 'string' ? word : word[this.place[row]]).join('');
-  }
-}
 
 const known = new WeakMap();
 

@@ -1,6 +1,5 @@
 // The page of a database: its charts, filters, table, and the board of a point.
 import {addAnswers, addChart, addGroup, addHead, htmlTable} from './card.js';
-import {Boards} from './data.js';
 import {addParallel, addScatter} from './database_charts.js';
 import {button, folded, h, note, textBox} from './dom.js';
 import {resourceText} from './findings.js';
@@ -90,8 +89,8 @@ function addTable(page, points, first, choose) {
 }
 
 export function showDatabase(page, {database}) {
+  const {boards} = database;
   const points = new Points(database);
-  const boards = new Boards(database.boards, points.size);
   const hasNumbers = name =>
       points.table.has(name) && points.column(name).some(each => typeof each === 'number');
   const rateName = kRateColumns.find(hasNumbers) ?? points.figures[0];
@@ -174,7 +173,7 @@ export function showDatabase(page, {database}) {
     scatter.redraw();
     const figures = points.table.names.map(name => [name, points.column(name)[row]]);
     board.replaceChildren(
-        textBox(boards.text(row), `point_${row}.yaml`),
+        textBox(boards.points[row].map(line => boards.lines[line]).join(''), `point_${row}.yaml`),
         folded('All figures', htmlTable(['column', 'value'], figures, 500)));
     boardChart.element.querySelector('h2').textContent = `Board of the point: ${keysOf(row)}`;
     boardChart.element.scrollIntoView({block: 'nearest'});

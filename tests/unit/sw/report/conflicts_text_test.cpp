@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -41,7 +42,7 @@ TEST(ConflictsText, SumsFramesAndShowsTheBanksThatAreUsed) {
   sums.add(frame());
   sums.add(frame());
   const platform::Conflicts none(board());
-  EXPECT_EQ(conflicts_text(conflict_summary(board(), none.recorder(), sums.sums())),
+  EXPECT_EQ(conflicts_text(conflicts_document(board(), none.recorder(), sums.sums())),
             "core         0 cycles in 0 frames\n"
             "waits        none\n"
             "rows              waits %       a %       b %\n"
@@ -83,7 +84,7 @@ class MadeConflicts {
 
   // What is said of the only wait behind its cycles and percent.
   std::string place() const {
-    const std::string text = conflicts_text(conflict_summary(board_, conflicts_.recorder(), sums_.sums()));
+    const std::string text = conflicts_text(conflicts_document(board_, conflicts_.recorder(), sums_.sums()));
     const std::size_t begin = text.find(" %), ") + 5;
     return text.substr(begin, text.find('\n', begin) - begin);
   }

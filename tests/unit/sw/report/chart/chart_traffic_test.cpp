@@ -1,4 +1,4 @@
-#include "sw/report/chart/chart_traffic.h"
+#include "sw/report/chart/chart_links.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

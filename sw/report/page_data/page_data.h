@@ -1,12 +1,13 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 
 #include "models/kernels/gray_image.h"
 #include "platform/config/tables.h"
+#include "sw/report/page_data/recording_data.h"
 #include "sw/runs/explanation.h"
+#include "sw/runs/frame_alignment.h"
 #include "sw/runs/recorded_run.h"
 #include "sw/runs/rerun.h"
 
@@ -30,5 +31,20 @@ void add_recorded_files(const runs::RecordedRun& run, nlohmann::ordered_json& da
 
 // The part `knobs`: what one step of each knob gains, and what it takes of the FPGA.
 nlohmann::ordered_json knobs_data(const platform::BoardConfig& board, runs::Explanation& explanation);
+
+// One of two compared runs, and what its repetition has recorded of waits.
+struct ComparedRun {
+  const runs::RecordedRun& run;
+  const platform::Tables& tables;
+  RecordingData waits;
+};
+
+// The parts `runs` and `difference`.
+nlohmann::ordered_json two_runs_data(const ComparedRun& a, const ComparedRun& b,
+                                     const runs::FrameAlignment& aligned, const runs::DiffLimits& limits);
+
+// The part `database`: the points of a database of `sweep`. Throws sqlite::DatabaseError if the file cannot be
+// read or is no such database, and std::runtime_error if it has no points.
+nlohmann::ordered_json database_data(const std::string& path);
 
 }  // namespace stereotlm::report
