@@ -14,7 +14,7 @@ from matplotlib.ticker import FixedFormatter, FixedLocator, LogLocator, MaxNLoca
 
 import style
 from points import BANKS_USED, UNITS_USED, Unusable
-from style import INK, LABEL_SIZE, LEGEND_SIZE, QUIET, SIZE, SMALL_SIZE, TITLE_SIZE
+from style import LABEL_SIZE, LEGEND_SIZE, QUIET, SIZE, SMALL_SIZE, TITLE_SIZE
 
 WIDTH = 7.2  # inches, if the user asks for no other size
 MARGIN = 0.1  # inches
@@ -93,7 +93,7 @@ def table(header, rows):
 class Sheet:
     """The page of a figure: a title, panels with sizes in inches, and below them the legend, a list and notes.
 
-    legend(), list_entry() and note() must be called before grid(), which creates the panels.
+    legend() and note() must be called before grid(), which creates the panels.
     width: in inches.
     """
 
@@ -107,8 +107,7 @@ class Sheet:
         self._formats = formats or style.USUAL_FORMATS
         self._heading = style.wrapped(heading, TITLE_SIZE, self._room(), bold=True)
         self._legends = []
-        self._list = []
-        self._notes = []
+        self._below = []  # (line, color) of texts below the legend
 
     def _room(self):
         return self.width - 2 * MARGIN
@@ -118,13 +117,10 @@ class Sheet:
         if handles:
             self._legends.append(LegendGroup(handles, self._room()))
 
-    def note(self, text):
+    def note(self, text, color=QUIET, indent=""):
+        """Adds a text below the legend, if it is not empty. indent: of its further lines."""
         if text:
-            self._notes += style.wrapped(text, SMALL_SIZE, self._room())
-
-    def list_entry(self, number, text):
-        """Adds an entry to the list between the legend and the notes."""
-        self._list += style.wrapped(f"{number}  {text}", SMALL_SIZE, self._room(), indent=" " * 6)
+            self._below += [(line, color) for line in style.wrapped(text, SMALL_SIZE, self._room(), indent)]
 
     def grid(self, heights, count=1, left=0.85, right=0.25, bottom=0.5, above=0, least=None):
         """Creates and returns panels: one of each height from the top, or `count` side by side from the left.
@@ -175,8 +171,7 @@ class Sheet:
         """
         top = MARGIN + TITLE_LINE * len(self._heading) + 0.04 + more_above
         legend = sum(group.lines for group in self._legends) * LINE + (0.06 if self._legends else 0)
-        below = [*self._list, *self._notes]
-        notes = len(below) * NOTE_LINE + (0.1 if below else 0)
+        notes = len(self._below) * NOTE_LINE + (0.1 if self._below else 0)
         around = top + bottom + legend + notes + 0.05
         if self.height is not None:
             inside = self.height - around
@@ -192,10 +187,9 @@ class Sheet:
         for group in self._legends:
             group.draw(self.figure, at / total)
             at -= group.lines * LINE
-        for number, line in enumerate(reversed(below)):
-            is_note = number < len(self._notes)
+        for number, (line, color) in enumerate(reversed(self._below)):
             self.figure.text(MARGIN / self.width, (0.06 + number * NOTE_LINE) / total, line, fontsize=SMALL_SIZE,
-                             va="bottom", color=QUIET if is_note else INK)
+                             va="bottom", color=color)
         return total, inside, top
 
     @property

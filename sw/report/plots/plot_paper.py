@@ -47,6 +47,16 @@ def model_line(axes, xs, ys, color=MODEL, **look):
     axes.plot(xs, ys, color=color, zorder=3, **style.POINT, **look)
 
 
+def rule_panel(axes, tolerance, most, label, x_label, xs):
+    """A panel of differences: the rule, shaded, and a scale of up to `most` on both sides of zero."""
+    axes.axhspan(-tolerance, tolerance, color=RULE, zorder=1)
+    axes.axhline(0, color=QUIET, linewidth=0.8, zorder=1.4)
+    axes.set_ylim(-most, most)
+    axes.set_ylabel(label)
+    axes.set_xlabel(x_label)
+    ticks_at(axes, xs)
+
+
 def table1(folder, options):
     """Draws frames per second over the window and, below, the deviation from the paper."""
     rows = sorted(read(folder, "table1"), key=lambda row: int(row["window"]))
@@ -65,8 +75,6 @@ def table1(folder, options):
     paper_points(rates, xs, printed)
     rates.set_ylim(0, max(printed + bounds) * 1.08)
     rates.set_ylabel("core, frames/s")
-    deviations.axhspan(-tolerance, tolerance, color=RULE, zorder=1)
-    deviations.axhline(0, color=QUIET, linewidth=0.8, zorder=1.4)
     percents = numbers(rows, "deviation_percent")
     halves = [100 * half / value for half, value in zip(numbers(rows, "paper_half_digit"), printed)]
     for x, percent, half, row in zip(xs, percents, halves, rows):
@@ -75,11 +83,8 @@ def table1(folder, options):
                             zorder=3)
         if row["verdict"] != "confirmed":
             deviations.annotate(f"{percent:+.2f} %", (x, percent), (8, -3), textcoords="offset points", fontsize=8)
-    deviations.set_ylabel("model less\npaper, %")
     most = max(abs(percent) + half for percent, half in zip(percents, halves))
-    deviations.set_ylim(-1.15 * most, 1.15 * most)
-    deviations.set_xlabel("window n, pixels (of n x n)")
-    ticks_at(deviations, xs)
+    rule_panel(deviations, tolerance, 1.15 * most, "model less\npaper, %", "window n, pixels (of n x n)", xs)
     return sheet
 
 
@@ -102,14 +107,9 @@ def table2(folder, options):
                    markerfacecolor="white", markeredgewidth=1.3, capsize=3, linewidth=1, zorder=4)
     sizes.set_ylim(0, max(most + values) * 1.08)
     sizes.set_ylabel("area, % of the slices")
-    errors.axhspan(-tolerance, tolerance, color=RULE, zorder=1)
-    errors.axhline(0, color=QUIET, linewidth=0.8, zorder=1.4)
     errors.errorbar(xs, numbers(rows, "error_points"), yerr=[above, below], color=MODEL, linestyle="", marker="o",
                     markersize=5, capsize=3, linewidth=1, zorder=3)
-    errors.set_ylim(-1.8 * tolerance, 1.8 * tolerance)
-    errors.set_ylabel("model less paper,\npercentage points")
-    errors.set_xlabel("disparities D")
-    ticks_at(errors, xs)
+    rule_panel(errors, tolerance, 1.8 * tolerance, "model less paper,\npercentage points", "disparities D", xs)
     return sheet
 
 

@@ -95,7 +95,7 @@ def draw(points, options):
     sheet.legend(handles)
     names = [name(points, [places[at] for at in front if (xs[at], ys[at]) == corner]) for corner in corners]
     for number, text in enumerate(names[:MOST_NAMED], 1):
-        sheet.list_entry(number, text)
+        sheet.note(f"{number}  {text}", style.INK, " " * 6)
     if len(names) > MOST_NAMED:
         sheet.note(f"{len(names) - MOST_NAMED} more of the front are in the table.")
     if any(uncertainties):

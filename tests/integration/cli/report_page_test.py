@@ -8,6 +8,7 @@ import math
 import random
 import re
 import shlex
+import shutil
 import sqlite3
 import tempfile
 import unittest
@@ -463,6 +464,7 @@ class Rates(PageTest):
             column, sense = axis.split(":")
             self.browser.choose(f"scatter-{name}", column)
             self.browser.choose(f"best-{name}", sense)
+        shutil.rmtree(self.out, ignore_errors=True)
         self.succeeds(script("plot_pareto.py", self.store, "--out", self.out, "--pareto", ",".join(axes)))
         shown, drawn = (list(csv.DictReader(io.StringIO(text)))
                         for text in (self.browser.csv("scatter"), (self.out / "pareto.csv").read_text()))
