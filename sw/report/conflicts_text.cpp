@@ -140,20 +140,20 @@ std::string where(const Json& wait) {
 
 }  // namespace
 
-void StripSums::add(const fpga::FrameConflicts& frame) {
-  if (sums_.strips.empty()) {
-    sums_ = frame;
+void add_frame(const fpga::FrameConflicts& frame, fpga::FrameConflicts& sums) {
+  if (sums.strips.empty()) {
+    sums = frame;
     return;
   }
-  for (std::size_t strip = 0; strip < sums_.strips.size(); ++strip) {
-    fpga::StripConflicts& sum = sums_.strips[strip];
+  for (std::size_t strip = 0; strip < sums.strips.size(); ++strip) {
+    fpga::StripConflicts& sum = sums.strips[strip];
     sum.cycles += frame.strips[strip].cycles;
     for (std::size_t requester = 0; requester < sum.stalls.size(); ++requester)
       sum.stalls[requester] += frame.strips[strip].stalls[requester];
   }
-  for (std::size_t place = 0; place < sums_.accesses.size(); ++place) {
-    for (std::size_t kind = 0; kind < sums_.accesses[place].size(); ++kind)
-      sums_.accesses[place][kind] += frame.accesses[place][kind];
+  for (std::size_t place = 0; place < sums.accesses.size(); ++place) {
+    for (std::size_t kind = 0; kind < sums.accesses[place].size(); ++kind)
+      sums.accesses[place][kind] += frame.accesses[place][kind];
   }
 }
 

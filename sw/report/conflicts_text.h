@@ -8,15 +8,9 @@
 
 namespace stereotlm::report {
 
-// Cycles and accesses of each strip of results, the fill first, summed over frames.
-class StripSums {
- public:
-  void add(const fpga::FrameConflicts& frame);
-  const fpga::FrameConflicts& sums() const { return sums_; }
-
- private:
-  fpga::FrameConflicts sums_;
-};
+// Adds a frame to `sums`: cycles and accesses of each strip of results, the fill first. `sums` is empty before
+// the first frame.
+void add_frame(const fpga::FrameConflicts& frame, fpga::FrameConflicts& sums);
 
 // What `conflicts` says of a run, as `conflicts --json` prints it: who waits where for whom, the longest wait
 // first, and where in the picture: the first of the shortest ranges of rows and columns that have 80 % of the
