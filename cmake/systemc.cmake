@@ -12,3 +12,15 @@ target_include_directories(stereotlm_systemc SYSTEM INTERFACE ${SYSTEMC_INCLUDE_
 # SystemC enables dynamic processes only with this macro; TLM's convenience sockets need them.
 target_compile_definitions(stereotlm_systemc INTERFACE SC_INCLUDE_DYNAMIC_PROCESSES)
 target_link_libraries(stereotlm_systemc INTERFACE ${SYSTEMC_LIBRARY} Threads::Threads)
+
+# The library links only with the C++ standard that it was built for.
+include(CheckCXXSourceCompiles)
+set(CMAKE_REQUIRED_INCLUDES ${SYSTEMC_INCLUDE_DIR})
+set(CMAKE_REQUIRED_LIBRARIES ${SYSTEMC_LIBRARY} Threads::Threads)
+check_cxx_source_compiles("#include <systemc>
+int sc_main(int, char*[]) { return 0; }" STEREOTLM_SYSTEMC_FITS_CXX${CMAKE_CXX_STANDARD})
+unset(CMAKE_REQUIRED_INCLUDES)
+unset(CMAKE_REQUIRED_LIBRARIES)
+if(NOT STEREOTLM_SYSTEMC_FITS_CXX${CMAKE_CXX_STANDARD})
+  message(FATAL_ERROR "CMAKE_CXX_STANDARD = ${CMAKE_CXX_STANDARD}: must be that for which ${SYSTEMC_LIBRARY} was built; Debian's is 17")
+endif()

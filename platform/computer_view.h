@@ -23,6 +23,13 @@ struct ComputerControls {
   fpga::FrameRun& core;
   std::array<capture::CaptureControl*, 2> captures;      // left, right
   std::array<const capture::CameraControl*, 2> cameras;  // left, right
+
+  // `board`: the counters of the board at `now_ps`, up to which the controls have been stepped.
+  ComputerCounters counters(BoardCounters board, std::uint64_t now_ps) const;
+  // Hands everything that happens to `timeline`, which outlives the controls. To be called at time 0.
+  void record(Timeline& timeline) const;
+  // Hands what the buses and the queues do to `trace`, which outlives the controls. To be called at time 0.
+  void trace_buses(BusTrace& trace) const;
 };
 
 // What Computer and FastComputer show of a run.
@@ -32,13 +39,12 @@ class ComputerView {
 
   fpga::FrameRun& core() { return controls().core; }
   // To be called while the core runs no frame.
-  ComputerCounters counters();
+  ComputerCounters counters() { return controls().counters(board_counters(), now_ps()); }
   // A measure of progress towards a result. It advances a running frame to the present.
   std::uint64_t work_done();
-  // Hands everything that happens to `timeline`, which outlives the computer. To be called at time 0.
-  void record(Timeline& timeline);
-  // Hands what the buses and the queues do to `trace`, which outlives the computer. To be called at time 0.
-  virtual void trace_buses(BusTrace& trace);
+  // See ComputerControls.
+  void record(Timeline& timeline) { controls().record(timeline); }
+  virtual void trace_buses(BusTrace& trace) { controls().trace_buses(trace); }
 
  private:
   virtual ComputerControls controls() = 0;

@@ -1,4 +1,5 @@
-"""What the studies share: the points of a sweep's database, tables, and figures whose bytes depend on the data alone."""
+"""What the studies share: the points of a sweep's database, tables, and figures whose bytes depend on the
+data alone."""
 import csv
 import pathlib
 import re
@@ -17,20 +18,22 @@ from points import Points  # noqa: E402
 
 style.use()
 
-# A row that `allocate` prints: banks, allocations, simulated, best rate, its uncertainty (only for a whole computer),
-# its percentage of the best of all, bound, number of allocations that tie, one of them.
+# A row that `allocate` prints: banks, allocations, simulated, best rate, its uncertainty (only for a whole
+# computer), its percentage of the best of all, bound, number of allocations that tie, one of them.
 ROW = re.compile(r" +(\d+) +(\d+) +(\d+) +(\d+\.\d+)(?: ± (\d+\.\d+))? +\d+\.\d+ +(\d+\.\d+) +(\d+)  (.*)")
 
 
 def searched(path):
-    """What `allocate` has printed into this file. By number of banks: the values of the row, such as the best rate and
+    """What `allocate` has printed into this file. By number of banks: the values of the row, such as the best
+    rate and
     an allocation that has it."""
     found = {}
     for line in path.read_text().splitlines():
         if row := ROW.fullmatch(line):
             banks, allocations, simulated, best, uncertainty, bound, tied, witness = row.groups()
-            found[int(banks)] = {"allocations": int(allocations), "simulated": int(simulated), "best": float(best),
-                                 "uncertainty": float(uncertainty or 0), "bound": float(bound),
+            found[int(banks)] = {"allocations": int(allocations), "simulated": int(simulated),
+                                 "best": float(best), "uncertainty": float(uncertainty or 0),
+                                 "bound": float(bound),
                                  "tied": int(tied), "witness": witness}
     return found
 
@@ -42,12 +45,14 @@ def fewest_of_best(rates):
 
 
 def best_table(searches, banks):
-    """The best rates of searches, each a text and what `searched` has found; the first that ties with the best is bold."""
+    """The best rates of searches, each a text and what `searched` has found; the first that ties with the
+    best is bold."""
     lines = []
     for what, rates in searches:
         fewest = fewest_of_best(rates)
         cells = (f"{rates[number]['best']:.3f}" if number in rates else "" for number in banks)
-        lines.append([what, *(f"**{cell}**" if number == fewest else cell for number, cell in zip(banks, cells))])
+        lines.append([what, *(f"**{cell}**" if number ==
+                     fewest else cell for number, cell in zip(banks, cells))])
     return markdown(["", *(f"{number}" for number in banks)], lines)
 
 
@@ -60,14 +65,16 @@ def witness_table(rates):
 
 
 def points(database, **columns):
-    """The points of a database, in the order of its rows: a map each from these names to the columns that they stand for."""
+    """The points of a database, in the order of its rows: a map each from these names to the columns that
+    they stand for."""
     connection = sqlite3.connect(f"file:{database}?mode=ro", uri=True)
     try:
         failed = connection.execute("SELECT reason FROM points WHERE status != 'ok' LIMIT 1").fetchone()
         if failed:
             raise SystemExit(f"{database}: {failed[0]}")
         names = ", ".join(f'"{column}"' for column in columns.values())
-        return [dict(zip(columns, row)) for row in connection.execute(f"SELECT {names} FROM points ORDER BY hash")]
+        return [dict(zip(columns, row))
+                     for row in connection.execute(f"SELECT {names} FROM points ORDER BY hash")]
     finally:
         connection.close()
 
@@ -96,8 +103,14 @@ def page(text):
         if block and not block.startswith(("|", "!", "#", "\n")):
             indent = "  " if block.startswith("- ") else ""
             text = " ".join(block.split()).replace(" %", "\N{NO-BREAK SPACE}%")
-            block = textwrap.fill(text, 110, subsequent_indent=indent, break_long_words=False,
-                                  break_on_hyphens=False).replace("\N{NO-BREAK SPACE}", " ") + "\n" * block.endswith("\n")
+            block = textwrap.fill(
+    text,
+    110,
+    subsequent_indent=indent,
+    break_long_words=False,
+    break_on_hyphens=False).replace(
+        "\N{NO-BREAK SPACE}",
+         " ") + "\n" * block.endswith("\n")
         blocks.append(block)
     return "".join(blocks)
 

@@ -14,10 +14,16 @@ DEFAULT = "[host, result, left_pixel, right_pixel, left_lut, right_lut]"
 BUFFERS = ("left_image", "right_image", "left_lut", "right_lut", "disparity")
 # By what shares banks, for the core alone: the banks of BUFFERS.
 CORE = {
-    "results with left table": "0 1 2 3 2", "results with right table": "0 1 2 3 3", "results with left pictures": "0 1 2 3 0",
-    "both pictures": "0 0 2 3 4", "both tables": "0 1 2 2 4", "tables with their pictures": "0 1 0 1 4",
-    "tables with the other side's": "0 1 1 0 4", "the best of 3 banks": "0 1 1 2 0", "everything": "0 0 0 0 0",
-}
+    "results with left table": "0 1 2 3 2",
+    "results with right table": "0 1 2 3 3",
+    "results with left pictures": "0 1 2 3 0",
+    "both pictures": "0 0 2 3 4",
+    "both tables": "0 1 2 2 4",
+    "tables with their pictures": "0 1 0 1 4",
+    "tables with the other side's": "0 1 1 0 4",
+    "the best of 3 banks": "0 1 1 2 0",
+    "everything": "0 0 0 0 0",
+     }
 # By what shares banks, for the whole computer: the lists of banks of the left pictures and of the results.
 COMPUTER = {
     "nothing (8 banks)": ("[bank0, bank1]", "[bank4, bank5]"),
@@ -35,9 +41,14 @@ DRAWN = dict(zip(POLICIES, zip((style.BLUE, style.SKY, style.VERMILION, style.OR
 
 
 def read_core(database):
-    """A row for each allocation and policy: rates of the slowest, the default and the fastest order of priority."""
-    found = study.points(database, policy="fpga.arbitration", order="fpga.priority", rate="frames_per_second.core",
-                         bound="bound.core", **{name: f"allocation.{name}" for name in BUFFERS})
+    """A row for each allocation and policy: rates of the slowest, the default and the fastest order of
+    priority."""
+    found = study.points(database,
+    policy="fpga.arbitration",
+    order="fpga.priority",
+    rate="frames_per_second.core",
+    bound="bound.core",
+     **{name: f"allocation.{name}" for name in BUFFERS})
     rows = []
     for shared, banks in CORE.items():
         where = dict(zip(BUFFERS, (f"bank{bank}" for bank in banks.split())))
@@ -47,17 +58,33 @@ def read_core(database):
         for policy in ("fixed_priority", "round_robin"):
             rates = [point["rate"] for point in here if point["policy"] == policy]
             default = study.only(here, policy=policy, order=DEFAULT)
-            rows.append({"shared": shared, **where, "policy": policy, "orders": len(rates), "slowest": min(rates),
-                         "default": default["rate"], "fastest": max(rates), "bound": default["bound"]})
+            rows.append({"shared": shared,
+    **where,
+    "policy": policy,
+    "orders": len(rates),
+    "slowest": min(rates),
+    "default": default["rate"],
+    "fastest": max(rates),
+     "bound": default["bound"]})
     return rows
 
 
 def read_computer(database):
-    found = study.points(database, policy="fpga.arbitration", order="fpga.priority", left_image="allocation.left_image",
-                         left_lut="allocation.left_lut", disparity="allocation.disparity", core="frames_per_second.core",
-                         steady="frames_per_second.steady", dropped="cameras.left.dropped_pixels",
-                         frames="cameras.left.captured_frames", width="image.width", height="image.height",
-                         p50="latency_ms.capture_to_host.p50", host_stall_cycles="ports.host.stall_cycles")
+    found = study.points(
+    database,
+    policy="fpga.arbitration",
+    order="fpga.priority",
+    left_image="allocation.left_image",
+    left_lut="allocation.left_lut",
+    disparity="allocation.disparity",
+    core="frames_per_second.core",
+    steady="frames_per_second.steady",
+    dropped="cameras.left.dropped_pixels",
+    frames="cameras.left.captured_frames",
+    width="image.width",
+    height="image.height",
+    p50="latency_ms.capture_to_host.p50",
+     host_stall_cycles="ports.host.stall_cycles")
     rows = []
     for shared, (left_image, disparity) in COMPUTER.items():
         for name, (policy, order) in POLICIES.items():
@@ -66,19 +93,28 @@ def read_computer(database):
             here = study.only(found, policy=policy, order=order, left_image=left_image, disparity=disparity,
                               **({"left_lut": left_lut} if left_lut else {}))
             lost = 100 * here["dropped"] / (here["frames"] * here["width"] * here["height"])
-            rows.append({"shared": shared, "ports": name, **{key: here[key] for key in (
-                "policy", "order", "core", "steady", "p50", "host_stall_cycles")}, "lost_percent": round(lost, 3)})
+            rows.append({"shared": shared,
+    "ports": name,
+    **{key: here[key] for key in ( "policy",
+    "order",
+    "core",
+    "steady",
+    "p50",
+    "host_stall_cycles")},
+    "lost_percent": round(lost,
+     3)})
     return rows
 
 
 def core_table(rows):
     lines = []
     for shared in CORE:
-        fixed, ring = (study.only(rows, shared=shared, policy=policy) for policy in ("fixed_priority", "round_robin"))
+        fixed, ring = (study.only(rows, shared=shared, policy=policy)
+                       for policy in ("fixed_priority", "round_robin"))
         lines.append([shared, f"{fixed['default']:.3f}", f"{fixed['slowest']:.3f} .. {fixed['fastest']:.3f}",
                       f"{ring['slowest']:.3f} .. {ring['fastest']:.3f}", f"{fixed['bound']:.3f}"])
-    return study.markdown(["in one bank", "fixed priority, default", "all 120 orders", "round robin, all 120 rings", "bound"],
-                          lines)
+    return study.markdown(["in one bank", "fixed priority, default", "all 120 orders",
+                          "round robin, all 120 rings", "bound"], lines)
 
 
 def computer_table(rows):
@@ -91,15 +127,25 @@ def computer_table(rows):
 def draw(core, computer):
     figure, (left, middle, right) = study.panels(3, height=4.6, width=4.5, width_ratios=(1.15, 1, 0.95))
     names = list(CORE)[::-1]
-    for policy, shift, color, marker in (("fixed_priority", 0.14, style.BLUE, "o"), ("round_robin", -0.14, style.ORANGE, "s")):
+    for policy, shift, color, marker in (
+    ("fixed_priority", 0.14, style.BLUE, "o"), ("round_robin", -0.14, style.ORANGE, "s")):
         rows = [study.only(core, shared=name, policy=policy) for name in names]
         at = [number + shift for number in range(len(rows))]
-        left.hlines(at, [row["slowest"] for row in rows], [row["fastest"] for row in rows], color=color, linewidth=3)
+        left.hlines(at, [row["slowest"] for row in rows], [row["fastest"]
+                    for row in rows], color=color, linewidth=3)
         left.plot([row["default"] for row in rows], at, marker, color=color, label=policy.replace("_", " "))
     rows = [study.only(core, shared=name, policy="fixed_priority") for name in names]
-    left.plot([row["bound"] for row in rows], range(len(rows)), **style.bound(style.INK, of_x=True, label="bound"))
-    left.set(yticks=range(len(names)), yticklabels=names, title="the core alone: slowest to fastest of 120 orders",
-             xlabel="core, frames/s", xlim=(0, 20))
+    left.plot([row["bound"] for row in rows], range(len(rows)),
+              **style.bound(style.INK, of_x=True, label="bound"))
+    left.set(
+    yticks=range(
+        len(names)),
+        yticklabels=names,
+        title="the core alone: slowest to fastest of 120 orders",
+        xlabel="core, frames/s",
+        xlim=(
+            0,
+             20))
     study.legend(left, ncol=3, loc="upper center", bbox_to_anchor=(0.4, -0.12), columnspacing=1)
     names = list(COMPUTER)[::-1]
     for number, (name, (color, marker)) in enumerate(DRAWN.items()):
@@ -110,11 +156,21 @@ def draw(core, computer):
         right.plot([row["lost_percent"] for row in rows], at, marker, color=color, markersize=6)
     for axis in (middle, right):
         axis.set(yticks=range(len(names)), yticklabels=[], ylim=(-0.5, len(names) - 0.5))
-        axis.hlines([place + 0.5 for place in range(len(names) - 1)], 0, 1, transform=axis.get_yaxis_transform(),
-                    color=style.GRID, linewidth=0.8)
+        axis.hlines([place + 0.5 for place in range(len(names) - 1)], 0, 1,
+                    transform=axis.get_yaxis_transform(), color=style.GRID, linewidth=0.8)
         axis.grid(False, axis="y")
-    middle.set(yticklabels=[name.replace(" (", "\n(").replace(", ", ",\n") for name in names], xlabel="steady, frames/s",
-               title="the whole computer: rate", xlim=(0, 20))
+    middle.set(
+    yticklabels=[
+        name.replace(
+            " (",
+            "\n(").replace(
+                ", ",
+                ",\n") for name in names],
+                xlabel="steady, frames/s",
+                title="the whole computer: rate",
+                xlim=(
+                    0,
+                     20))
     right.set(xlabel="pixels of the left camera, %", title="the whole computer: pixels lost", xlim=(-3, 103))
     study.legend(middle, ncol=4, loc="upper center", bbox_to_anchor=(0.9, -0.12), columnspacing=1)
     middle.get_legend().set_in_layout(False)  # it may reach below the next panel
@@ -123,17 +179,17 @@ def draw(core, computer):
 
 TEXT = """# Arbitration
 
-**Question.** Where several ports share a bank, does it matter who goes first, and would a fair arbiter be better than
-the default, a fixed priority of `host, result, left_pixel, right_pixel, left_lut, right_lut`?
+**Question.** Where several ports share a bank, does it matter who goes first, and would a fair arbiter be
+better than the default, a fixed priority of `host, result, left_pixel, right_pixel, left_lut, right_lut`?
 
-Made by `results/arbitration/run` (after `./setup tests` and the release build) from [core.yaml](core.yaml) and
-[computer.yaml](computer.yaml): `fpl2003`, 640x480, 7x7, D = 80, ZBT pipelined memories, large enough for all buffers.
-All rows are in [core.csv](core.csv) and [computer.csv](computer.csv).
+Made by `results/arbitration/run` (after `./setup tests` and the release build) from [core.yaml](core.yaml)
+and [computer.yaml](computer.yaml): `fpl2003`, 640x480, 7x7, D = 80, ZBT pipelined memories, large enough for
+all buffers. All rows are in [core.csv](core.csv) and [computer.csv](computer.csv).
 
 ![frame rates of all orders; pixels lost](arbitration.png)
 
-The core alone, whose host port is idle: every order of the other five ports, and every ring of round robin, frames
-per second:
+The core alone, whose host port is idle: every order of the other five ports, and every ring of round robin,
+frames per second:
 
 {core}
 
@@ -144,19 +200,19 @@ The whole computer, cameras at 29.97 Hz, 31 frames: where the local bus shares b
 **Found.**
 
 - Within the core the order hardly matters: between the slowest and the fastest of 120 orders lies at most
-  {spread:.2f} % ("{widest}"), and round robin is never more than {gain:.2f} % faster than the default. Both lanes
-  wait for each other, and a bank that is asked all the time gives one word a clock whoever is first: what the bank
-  bounds, the order does not change.
-- What matters is the place of the host. With the host last, a lane that reads in 99 % of all clocks leaves the local
-  bus next to nothing: the FIFOs of the capture boards overflow and {lost:.0f} % of the pixels are lost with 5 banks,
-  although the frame rate looks best. Host first or second, or round robin, loses none.
-- Round robin gives the host its words as well, and costs no more: the rate that is delivered is within {robin:.1f} % of
-  that of host first wherever no pixel is lost.
+  {spread:.2f} % ("{widest}"), and round robin is never more than {gain:.2f} % faster than the default. Both
+  lanes wait for each other, and a bank that is asked all the time gives one word a clock whoever is first:
+  what the bank bounds, the order does not change.
+- What matters is the place of the host. With the host last, a lane that reads in 99 % of all clocks leaves
+  the local bus next to nothing: the FIFOs of the capture boards overflow and {lost:.0f} % of the pixels are
+  lost with 5 banks, although the frame rate looks best. Host first or second, or round robin, loses none.
+- Round robin gives the host its words as well, and costs no more: the rate that is delivered is within
+  {robin:.1f} % of that of host first wherever no pixel is lost.
 
-**Limits.** One kind of memory: with `sync_burst` each change of direction costs, and the order decides how often
-there is one. Queues are those of `fpl2003` ([results/banks](../banks/README.md) has longer ones). A frame rate beside
-lost pixels is that of broken pictures; it can be a little above the core's where the first read-back took longer than
-the last.
+**Limits.** One kind of memory: with `sync_burst` each change of direction costs, and the order decides how
+often there is one. Queues are those of `fpl2003` ([results/banks](../banks/README.md) has longer ones). A
+frame rate beside lost pixels is that of broken pictures; it can be a little above the core's where the first
+read-back took longer than the last.
 """
 
 
@@ -167,13 +223,23 @@ def main():
     draw(core, computer)
     fixed = [row for row in core if row["policy"] == "fixed_priority"]
     widest = max(fixed, key=lambda row: row["fastest"] / row["slowest"])
-    gain = max(study.only(core, shared=row["shared"], policy="round_robin")["default"] / row["default"] for row in fixed)
+    gain = max(
+    study.only(
+        core,
+        shared=row["shared"],
+        policy="round_robin")["default"] /
+         row["default"] for row in fixed)
     robin = max(abs(study.only(computer, shared=name, ports="round robin")["steady"] /
                     study.only(computer, shared=name, ports="host first")["steady"] - 1) for name in COMPUTER)
-    text = TEXT.format(core=core_table(core), computer=computer_table(computer),
-                       spread=100 * (widest["fastest"] / widest["slowest"] - 1), widest=widest["shared"], gain=100 * (gain - 1),
-                       lost=study.only(computer, shared="the buffers of each list (5 banks)", ports="host last")["lost_percent"],
-                       robin=100 * robin)
+    text = TEXT.format(core=core_table(core),
+    computer=computer_table(computer),
+    spread=100 * (widest["fastest"] / widest["slowest"] - 1),
+    widest=widest["shared"],
+    gain=100 * (gain - 1),
+    lost=study.only(computer,
+    shared="the buffers of each list (5 banks)",
+    ports="host last")["lost_percent"],
+     robin=100 * robin)
     (HERE / "README.md").write_text(text)
 
 

@@ -27,7 +27,9 @@ std::string paragraph(const std::string& head, std::size_t indent, const std::st
 std::string with_coloured_words(std::string text, std::size_t from,
                                 const std::vector<std::pair<std::string, process::Colour>>& words) {
   for (const auto& [word, colour] : words) {
-    const std::string coloured = process::coloured(STDOUT_FILENO, colour, word);
+    const std::size_t size = word.find('\n');  // a line ends without colour
+    std::string coloured = process::coloured(STDOUT_FILENO, colour, word.substr(0, size));
+    if (size != std::string::npos) coloured += word.substr(size);
     for (std::size_t at = from; (at = text.find(word, at)) != std::string::npos; at += coloured.size())
       text.replace(at, word.size(), coloured);
   }

@@ -31,7 +31,7 @@ class Browser:
         self.driver.quit()
 
     def open(self, path, width=1280, theme="light"):
-        """Opens a page; the milliseconds until it is drawn."""
+        """Opens a page, and waits until it is drawn."""
         metrics = {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": False}
         self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", metrics)
         begin = time.monotonic()
@@ -39,10 +39,8 @@ class Browser:
         while not self.all("footer") and time.monotonic() < begin + 10:
             pass  # the page waits until its data is unpacked
         self.drawn()
-        took = 1000 * (time.monotonic() - begin)
         self.choose("theme", theme)
         self.drawn()
-        return took
 
     def drawn(self):
         """Waits for two frames of the screen."""

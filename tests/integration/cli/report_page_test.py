@@ -5,10 +5,10 @@ import functools
 import io
 import json
 import math
+import pathlib
 import random
 import re
 import shlex
-import shutil
 import sqlite3
 import tempfile
 import unittest
@@ -100,10 +100,13 @@ class PageTest(ProgramTest):
         super().tearDown()
 
     def opened(self, page, change):
-        """Opens the page with data that `change(data)` has changed; the milliseconds until it is drawn."""
+        """Opens the page with data that `change(data)` has changed."""
         data = data_of(page)
         change(data)
-        return self.browser.open(with_data(page, data, self.folder / "page.html"))
+        self.browser.open(with_data(page, data, self.folder / "page.html"))
+
+    def selected_points(self):
+        return int(self.browser.text("#front-text").split()[0])
 
     def charts(self):
         return [card.get_attribute("id") for card in self.browser.all("section.card")]
@@ -369,27 +372,24 @@ class Database(PageTest):
         """Those of the CSV of a chart."""
         return list(csv.DictReader(io.StringIO(self.browser.csv(chart))))
 
-    def selected(self):
-        return int(self.browser.text("#front-text").split()[0])
-
     def test_is_brushed_in_the_scatter_and_along_an_axis(self):
-        self.assertEqual(self.selected(), self.size)
+        self.assertEqual(self.selected_points(), self.size)
         self.browser.drag("#scatter .brush-xy", (0.01, 0.02), (0.6, 0.98))
-        part = self.selected()
+        part = self.selected_points()
         self.assertGreater(part, 0)
         self.assertLess(part, self.size)
         self.browser.drag("#parallel .brush-y", (0.5, 0.02), (0.5, 0.45))
-        self.assertLess(self.selected(), part)
+        self.assertLess(self.selected_points(), part)
         self.assertEqual({row["allocation.left_lut"] for row in self.rows("points")}, {"bank6"})
         self.browser.button("filters", "Select all points")
-        self.assertEqual(self.selected(), self.size)
+        self.assertEqual(self.selected_points(), self.size)
 
     def test_is_filtered_by_values(self):
         self.browser.click("#filters input[data-key='matcher.window'][data-value='7']")
-        self.assertEqual(self.selected(), self.size * 2 // 3)
+        self.assertEqual(self.selected_points(), self.size * 2 // 3)
         self.assertEqual({row["matcher.window"] for row in self.rows("points")}, {"3", "5"})
         self.browser.click("#filters input[data-key='matcher.window'][data-value='7']")
-        self.assertEqual(self.selected(), self.size)
+        self.assertEqual(self.selected_points(), self.size)
 
     def test_gives_the_board_of_a_point_on_the_front_and_in_the_table(self):
         stored = sqlite3.connect(database())
@@ -464,10 +464,10 @@ class Rates(PageTest):
             column, sense = axis.split(":")
             self.browser.choose(f"scatter-{name}", column)
             self.browser.choose(f"best-{name}", sense)
-        shutil.rmtree(self.out, ignore_errors=True)
-        self.succeeds(script("plot_pareto.py", self.store, "--out", self.out, "--pareto", ",".join(axes)))
+        out = pathlib.Path(tempfile.mkdtemp(dir=self.out.parent))
+        self.succeeds(script("plot_pareto.py", self.store, "--out", out, "--pareto", ",".join(axes)))
         shown, drawn = (list(csv.DictReader(io.StringIO(text)))
-                        for text in (self.browser.csv("scatter"), (self.out / "pareto.csv").read_text()))
+                        for text in (self.browser.csv("scatter"), (out / "pareto.csv").read_text()))
         return [sorted((float(row["area.slices"]), float(row["frames_per_second.steady"])) for row in rows)
                 for rows in (shown, [row for row in drawn if row["front"] == "1"])]
 
@@ -868,43 +868,21 @@ class Names(PageTest):
 
 
 class Large(PageTest):
-    """12,000 points. The limits are wide, because the machine may have other work."""
+    def test_12000_points_are_shown_and_brushed(self):
+        points = 12000
 
-    def test_open_and_brush_quickly(self):
         def change(data):
             drawn = random.Random(1)
-            points = 12000
             column = lambda name, draw: {"name": name, "list": [draw() for _ in range(points)]}
             columns = [column(f"figure_{i}", drawn.random) for i in range(8)]
             columns.append(column("matcher.window", lambda: drawn.choice([3, 5, 7])))
             data["database"].update(points=points, columns=columns, keys=["matcher.window"],
                                     boards={"lines": ["name: a\n"], "points": [[0]] * points})
 
-        took = self.opened(page_of(database()), change)
-        self.browser.run("document.getElementById('scatter').scrollIntoView()")
-        rate = self.browser.driver.execute_async_script("""
-            const done = arguments[0];
-            const area = document.querySelector('#scatter .brush-xy');
-            const box = area.getBoundingClientRect();
-            const send = (type, share) => area.dispatchEvent(new PointerEvent(type, {
-                bubbles: true, pointerId: 1, buttons: 1, clientX: box.left + share * box.width,
-                clientY: box.top + share * box.height}));
-            area.setPointerCapture = () => {};
-            send('pointerdown', 0.1);
-            let frames = 0;
-            const begin = performance.now();
-            const step = now => {
-              if (++frames > 60) {
-                send('pointerup', 0.9);
-                return done(1000 * 60 / (performance.now() - begin));
-              }
-              send('pointermove', 0.1 + 0.8 * frames / 60);
-              requestAnimationFrame(step);
-            };
-            requestAnimationFrame(step);""")
-        print(f"12,000 points: opened in {took:.0f} ms, brushed at {rate:.0f} frames/s")
-        self.assertLess(took, 6000)
-        self.assertGreater(rate, 8)
+        self.opened(page_of(database()), change)
+        self.browser.drag("#scatter .brush-xy", (0.1, 0.1), (0.9, 0.9))
+        self.assertGreater(self.selected_points(), points // 4)
+        self.assertLess(self.selected_points(), points)
 
 
 if __name__ == "__main__":

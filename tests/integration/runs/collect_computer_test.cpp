@@ -30,7 +30,7 @@ class CollectComputer : public testing::Test {
     // The core is idle: as many frames as deliveries.
     counters = simulation.computer().counters();
   }
-  platform::Statistics statistics() const {
+  platform::Statistics statistics() {
     return platform::collect_statistics(
         board, tables, "cycle", simulation.computer().core().frame_cycles(), counters, deliveries);
   }

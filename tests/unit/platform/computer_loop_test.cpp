@@ -70,7 +70,7 @@ TEST_F(ComputerLoopTest, LetsTheProcessorTakePartInTheDecisionsOfTheTimeOfAnInte
   EXPECT_EQ(loop().now_ps(), started_ps);
   loop().run(kFar);
   EXPECT_EQ(loop().now_ps(), interrupt_ps);
-  EXPECT_EQ(loop().counters().pci.masters[kTrafficGenerator].transactions, 1U);
+  EXPECT_EQ(computer_counters().pci.masters[kTrafficGenerator].transactions, 1U);
   bursts.push_back({false, kDevices.host_memory, {0}});
   request(interrupt_ps);
   loop().run(kFar);
@@ -82,7 +82,7 @@ TEST_F(ComputerLoopTest, LetsTheProcessorTakePartInTheDecisionsOfTheTimeOfAnInte
 // the time at which C comes, it has chosen B alone, and sends C by itself.
 TEST_F(ComputerLoopTest, EndsABurstOfTheLocalBusBeforeWordsArePostedAtThatTime) {
   for (const std::size_t words : {11U, 12U}) {
-    const std::uint64_t before = loop().counters().local_bus.bursts;
+    const std::uint64_t before = computer_counters().local_bus.bursts;
     std::uint64_t address = kDevices.bridge_slave;
     for (const std::size_t count : {words, std::size_t{1}, std::size_t{1}}) {
       bursts.push_back({true, address, Words(count, 7)});
@@ -91,7 +91,7 @@ TEST_F(ComputerLoopTest, EndsABurstOfTheLocalBusBeforeWordsArePostedAtThatTime) 
     request(loop().now_ps());
     loop().run(kFar);
     loop().run(loop().now_ps() + 100 * kEdgePs);
-    EXPECT_EQ(loop().counters().local_bus.bursts - before, words == 11 ? 3U : 2U) << words;
+    EXPECT_EQ(computer_counters().local_bus.bursts - before, words == 11 ? 3U : 2U) << words;
   }
 }
 
@@ -147,7 +147,7 @@ TEST_F(ComputerLoopTest, TakesAFrameWhoseCapturesAreArmedAsItBegins) {
     computer.run(kFar);
     EXPECT_EQ(computer.now_ps(), frame_ps + late_ps);
     computer.run(frame_ps + 2 * kEdgePs);
-    EXPECT_EQ(computer.counters().cameras[0].capture.started_frames, late_ps == 0 ? 1U : 0U);
+    EXPECT_EQ(other.computer_counters().cameras[0].capture.started_frames, late_ps == 0 ? 1U : 0U);
   }
 }
 
@@ -157,8 +157,8 @@ TEST_F(ComputerLoopTest, RefusesBurstsOfSeveralWordsToRegisters) {
          {kDevices.bridge_registers, kDevices.left_capture + capture_map::kStatus})
       EXPECT_EQ(access(write, address, Words(2)), pci::BurstEnd::kTargetError);
   }
-  EXPECT_EQ(loop().counters().bridge.errors, 2U);
-  EXPECT_EQ(loop().counters().cameras[0].capture.refused_accesses, 2U);
+  EXPECT_EQ(computer_counters().bridge.errors, 2U);
+  EXPECT_EQ(computer_counters().cameras[0].capture.refused_accesses, 2U);
   EXPECT_EQ(access(true, kDevices.host_memory, Words(2)), pci::BurstEnd::kComplete);
 }
 

@@ -68,6 +68,10 @@ class LoopProcessor : public pci::PciMasterIf {
     }
     return *loop_;
   }
+  // To be called while the core runs no frame.
+  ComputerCounters computer_counters() {
+    return loop().controls().counters(loop().board().counters(), loop().now_ps());
+  }
 
   pci::PciBurst begin_burst(std::uint64_t address_clock_ps) override {
     granted_ps.push_back(address_clock_ps);
@@ -198,6 +202,7 @@ class LoopRun : public LoopProcessor {
   // To be called first, if the run is to be traced.
   void trace(const fpga::CycleWindow& window) {
     trace_.emplace(config, window, trace_text_);
+    loop().controls().trace_buses(*trace_);
     loop().trace_buses(*trace_);
   }
   // What was traced.
@@ -206,7 +211,7 @@ class LoopRun : public LoopProcessor {
     return trace_text_.text;
   }
   std::string counters() {
-    const ComputerCounters counters = loop().counters();
+    const ComputerCounters counters = computer_counters();
     std::string text = fmt::format("pci {} {}\n", counters.pci.clocks, counters.pci.busy_clocks);
     for (const pci::PciBusControl::MasterStats& master : counters.pci.masters) {
       text += fmt::format("{} {} {} {} {} {}\n", master.name, master.transactions, master.words,
