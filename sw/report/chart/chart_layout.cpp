@@ -13,7 +13,6 @@
 #include <utility>
 #include <vector>
 
-#include "sw/report/chart/chart_contents.h"
 #include "sw/report/chart/chart_text.h"
 
 namespace stereotlm::report {
