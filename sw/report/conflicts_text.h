@@ -8,8 +8,8 @@
 
 namespace stereotlm::report {
 
-// Adds a frame to `sums`: cycles and accesses of each strip of results, the fill first. `sums` is empty before
-// the first frame.
+// Adds a frame to `sums`: cycles and accesses of each strip of results, the fill first. `sums` is empty
+// before the first frame.
 void add_frame(const fpga::FrameConflicts& frame, fpga::FrameConflicts& sums);
 
 // What `conflicts` says of a run, as `conflicts --json` prints it: who waits where for whom, the longest wait

@@ -32,7 +32,8 @@ std::uint64_t cycles_of_frames(const nlohmann::ordered_json& stats);
 // Values with their paths. A value that one run does not have is "-" there.
 using Values = std::vector<platform::BoardValue>;
 
-// The values that differ, in the order of A; values that only B has follow. The pointers are into `a` and `b`.
+// The values that differ, in the order of A; values that only B has follow. The pointers are into `a` and
+// `b`.
 struct Differing {
   std::string path;
   const decltype(platform::BoardValue::value)* a;  // null: missing

@@ -25,8 +25,8 @@ constexpr double kPlayStep = 1.5;
 constexpr long kBendCost = 2;  // in crossings: of an edge that does not run straight
 constexpr long kNearCost = 5;
 
-// An edge in the channel between the banks, on its left, and the ports, on its right. It runs from its bank to
-// `track_x`, there up or down, and on to its port.
+// An edge in the channel between the banks, on its left, and the ports, on its right. It runs from its bank
+// to `track_x`, there up or down, and on to its port.
 struct ChannelEdge {
   double bank_y = 0;
   double port_y = 0;

@@ -36,8 +36,8 @@ std::string name_of_block(const std::string& id);
 // ports begin with the name of a port.
 std::vector<ChartLink> chart_links(const platform::BoardConfig& board, ChartExtent extent);
 
-// The banks that a port accesses: an entry for each of its buffers, in the order in which the frames use them.
-// Empty for the host's port and for a port that does not exist.
+// The banks that a port accesses: an entry for each of its buffers, in the order in which the frames use
+// them. Empty for the host's port and for a port that does not exist.
 std::vector<std::string> banks_of(const platform::BoardConfig& board, const fpga::CorePort& port);
 
 // What the memory chart shows of a run.
@@ -53,10 +53,10 @@ struct ChartTraffic {
 // The traffic of a run of this board.
 //
 // Links of banks have the accesses of the counted cycles of all frames, and their time. A port of the core
-// makes equally many accesses in each frame, so its grants divide by the frames. The host has the accesses of a
-// bank that no other port made. Links around the board have the words since power-up, and that time: a camera
-// the pixels that its capture board has written, the CPU its register accesses, the bridge the words written
-// into it (edge-pci-bridge) and those that its DMA moved over PCI (edge-bridge-pci).
+// makes equally many accesses in each frame, so its grants divide by the frames. The host has the accesses of
+// a bank that no other port made. Links around the board have the words since power-up, and that time: a
+// camera the pixels that its capture board has written, the CPU its register accesses, the bridge the words
+// written into it (edge-pci-bridge) and those that its DMA moved over PCI (edge-bridge-pci).
 ChartTraffic chart_traffic(const platform::BoardConfig& board, const platform::Statistics& statistics);
 
 }  // namespace stereotlm::report

@@ -156,7 +156,7 @@ std::string fitted(const std::string& text, double size, bool bold, double width
     if (at_begin) {
       begin += next;
     } else {
-      end = std::string(next) + end;
+      end.insert(0, next);
     }
   }
   return begin + std::string(kEllipsis) + end;

@@ -144,8 +144,8 @@ class TimelineData {
   std::vector<Latency> latencies_;
 };
 
-// The part `recording` of a page's data: the files that `run --record` writes, as sums and as a limited number
-// of events, so that the page stays small however long the run is.
+// The part `recording` of a page's data: the files that `run --record` writes, as sums and as a limited
+// number of events, so that the page stays small however long the run is.
 class RecordingData {
  public:
   // `camera`: with the time line of a computer. `folder`: that of the files, for messages. `board` outlives
