@@ -132,14 +132,14 @@ Subject load(const ConflictsOptions& options) {
 
 // What the figures show beside the tables: sums over the frames, and one frame.
 struct Shown {
-  report::StripSums sums;
+  fpga::FrameConflicts sums;
   std::uint64_t frames = 0;
   std::uint64_t longest = 0;         // the frame with the most cycles
   std::uint64_t longest_cycles = 0;  // 0: none yet
   fpga::FrameConflicts longest_frame;
 
   void add(const fpga::FrameConflicts& frame) {
-    sums.add(frame);
+    report::add_frame(frame, sums);
     std::uint64_t cycles = 0;
     for (const fpga::StripConflicts& strip : frame.strips) cycles += strip.cycles;
     if (cycles > longest_cycles) {
@@ -179,7 +179,7 @@ bool draw(const ConflictsOptions& options, const runs::RunInput& input, const ru
   const platform::BoardConfig& board = input.board;
   const std::string head = stats::rows_csv_head(board);
   files::write_whole_file(path / kMark, conflicts_csv);
-  files::write_whole_file(path / "sums.csv", head + stats::rows_csv(board, 0, shown.sums.sums()));
+  files::write_whole_file(path / "sums.csv", head + stats::rows_csv(board, 0, shown.sums));
   files::write_whole_file(path / "frame.csv",
                           head + stats::rows_csv(board, shown.longest, shown.longest_frame));
   const nlohmann::ordered_json about = {{"board", board.name},          {"width", board.image.width},
@@ -242,13 +242,12 @@ int conflicts(const ConflictsOptions& options) {
     folder->add(kMark, csv);
     folder->commit();
   }
-  const report::ConflictSummary summary =
-      report::conflict_summary(input.board, *simulation->conflicts(), shown.sums.sums());
+  const auto document = report::conflicts_document(input.board, *simulation->conflicts(), shown.sums);
   runs::say_lost_pixels(statistics);
   if (options.json.is_given()) {
-    print_json(report::conflicts_document(summary));
+    print_json(document);
   } else {
-    process::print(report::conflicts_text(summary));
+    process::print(report::conflicts_text(document));
   }
   return kDone;
 }

@@ -18,7 +18,6 @@
 #include "sw/explore/store/store.h"
 #include "sw/process/interrupt.h"
 #include "sw/process/streams.h"
-#include "sw/report/diff_verdict.h"
 #include "sw/report/difference_tables.h"
 #include "sw/runs/recorded_run.h"
 #include "sw/runs/rerun.h"

@@ -14,9 +14,7 @@
 #include "sw/process/interrupt.h"
 #include "sw/process/streams.h"
 #include "sw/report/html_page.h"
-#include "sw/report/page_data/database_data.h"
-#include "sw/report/page_data/difference_data.h"
-#include "sw/report/page_data/run_data.h"
+#include "sw/report/page_data/page_data.h"
 #include "sw/runs/explanation.h"
 #include "sw/runs/recorded_run.h"
 #include "sw/runs/rerun.h"
@@ -93,10 +91,10 @@ std::optional<Json> data_of_two_runs(const ReportOptions& options, process::Prob
   const runs::RunInput input_b = runs::open_again(*b, problems);
   problems.check();
   const runs::DiffLimits limits(*a, *b);
-  report::ComparedRun of_a(*a, input_a.tables);
-  report::ComparedRun of_b(*b, input_b.tables);
+  report::ComparedRun of_a{*a, input_a.tables, {a->board, false}};
+  report::ComparedRun of_b{*b, input_b.tables, {b->board, false}};
   const auto record = [](report::ComparedRun& run) -> runs::Rerun::Record {
-    return [&run](const std::string& name, const std::string& text) { run.record(name, text); };
+    return [&run](const std::string& name, const std::string& text) { run.waits.add(name, text); };
   };
   runs::FrameAlignment aligned(*a, *b, limits, nullptr, record(of_a), record(of_b));
   if (!aligned.run()) return std::nullopt;

@@ -14,6 +14,8 @@
 namespace stereotlm::report {
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 constexpr std::size_t kMostBands = 8;  // of rows in the table
 constexpr double kMost = 0.8;          // the share of the stalls that a place must have
 
@@ -39,33 +41,34 @@ std::pair<std::size_t, std::size_t> shortest_run(const std::vector<std::uint64_t
   return best;
 }
 
-// The place of shortest_run(); nullopt if that is most of it. `length`: rows or columns of a value; `whole`:
-// those of the picture.
-std::optional<Range> place_of(const std::vector<std::uint64_t>& values, std::size_t length, int whole) {
+// Adds the place of shortest_run() as "first_NAME" and "last_NAME", unless that is most of it. `length`: rows
+// or columns of a value; `whole`: those of the picture.
+void add_place(const std::string& name, const std::vector<std::uint64_t>& values, std::size_t length,
+               int whole, Json& json) {
   const auto [first, end] = shortest_run(values);
-  if (static_cast<double>(end - first) >= 0.75 * static_cast<double>(values.size())) return std::nullopt;
-  return Range{static_cast<int>(first * length),
-               static_cast<int>(std::min(end * length, static_cast<std::size_t>(whole))) - 1};
+  if (static_cast<double>(end - first) >= 0.75 * static_cast<double>(values.size())) return;
+  json["first_" + name] = first * length;
+  json["last_" + name] = std::min(end * length, static_cast<std::size_t>(whole)) - 1;
 }
 
-ConflictSummary::Wait wait_of(const platform::BoardConfig& board, const fpga::TileGrid& grid,
-                              const fpga::ConflictRecorder::Stalls& stalls, std::uint64_t cycles) {
-  ConflictSummary::Wait wait;
-  wait.port = fpga::requester_name(stalls.requester);
-  wait.bank = board.banks[stalls.bank].name;
-  wait.by = fpga::requester_name(stalls.by);
-  wait.cycles = sum_of(stalls.cycles);
-  wait.cycles_percent = percent_of(wait.cycles, cycles);
+Json wait_of(const platform::BoardConfig& board, const fpga::TileGrid& grid,
+             const fpga::ConflictRecorder::Stalls& stalls, std::uint64_t cycles) {
   std::vector<std::uint64_t> rows(grid.rows);
   std::vector<std::uint64_t> columns(grid.columns);
   for (std::size_t tile = 1; tile < stalls.cycles.size(); ++tile) {
     rows[(tile - 1) / grid.columns] += stalls.cycles[tile];
     columns[(tile - 1) % grid.columns] += stalls.cycles[tile];
   }
-  wait.is_in_fill = sum_of(rows) == 0;
-  if (wait.is_in_fill) return wait;
-  wait.rows = place_of(rows, grid.rows_of_tile, board.image.height);
-  wait.columns = place_of(columns, grid.columns_of_tile, board.image.width);
+  const bool is_in_fill = sum_of(rows) == 0;
+  Json wait = {{"port", fpga::requester_name(stalls.requester)},
+               {"bank", board.banks[stalls.bank].name},
+               {"by", fpga::requester_name(stalls.by)},
+               {"cycles", sum_of(stalls.cycles)},
+               {"cycles_percent", percent_of(sum_of(stalls.cycles), cycles)},
+               {"before_first_row", is_in_fill}};
+  if (is_in_fill) return wait;
+  add_place("row", rows, grid.rows_of_tile, board.image.height, wait);
+  add_place("column", columns, grid.columns_of_tile, board.image.width, wait);
   return wait;
 }
 
@@ -82,145 +85,113 @@ std::vector<std::size_t> used_banks(const fpga::FrameConflicts& sums) {
   return banks;
 }
 
-// The band of strips first..end-1, without its rows.
-ConflictSummary::Band band_of(const fpga::FrameConflicts& sums, const std::vector<std::size_t>& banks,
-                              std::size_t first, std::size_t end) {
+// Adds to a band what happens in the strips first..end-1.
+void add_strips(const platform::BoardConfig& board, const fpga::FrameConflicts& sums, std::size_t first,
+                std::size_t end, Json& band) {
   std::uint64_t cycles = 0;
   std::uint64_t stalls = 0;
-  std::vector<std::uint64_t> accesses(banks.size());
+  std::vector<std::uint64_t> accesses(sums.banks);
   for (std::size_t strip = first; strip < end; ++strip) {
     cycles += sums.strips[strip].cycles;
     stalls += sum_of(sums.strips[strip].stalls);
-    for (std::size_t index = 0; index < banks.size(); ++index)
-      accesses[index] += sum_of(sums.accesses[strip * sums.banks + banks[index]]);
+    for (std::size_t bank = 0; bank < sums.banks; ++bank)
+      accesses[bank] += sum_of(sums.accesses[strip * sums.banks + bank]);
   }
-  ConflictSummary::Band band;
-  band.waits_percent = percent_of(stalls, cycles);
-  for (const std::uint64_t each : accesses) band.banks_percent.push_back(percent_of(each, cycles));
-  return band;
+  band["waits_percent"] = percent_of(stalls, cycles);
+  band["banks"] = Json::array();
+  for (const std::size_t bank : used_banks(sums)) {
+    band["banks"].push_back(
+        {{"name", board.banks[bank].name}, {"accesses_percent", percent_of(accesses[bank], cycles)}});
+  }
 }
 
-void add_bands(const platform::BoardConfig& board, const fpga::FrameConflicts& sums,
-               ConflictSummary& summary) {
-  const std::vector<std::size_t> banks = used_banks(sums);
-  for (const std::size_t bank : banks) summary.banks.push_back(board.banks[bank].name);
-  summary.bands.push_back(band_of(sums, banks, 0, 1));
+// The fill, and bands of rows from top to bottom.
+Json bands_of(const platform::BoardConfig& board, const fpga::FrameConflicts& sums) {
+  Json bands = Json::array({Json::object()});
+  add_strips(board, sums, 0, 1, bands.back());
   const std::size_t strips = sums.strips.size() - 1;
   const std::size_t height = (strips + kMostBands - 1) / kMostBands;
   const auto rows = static_cast<std::size_t>(board.matcher.rows);
   for (std::size_t first = 1; first <= strips; first += height) {
     const std::size_t end = std::min(first + height, strips + 1);
-    summary.bands.push_back(band_of(sums, banks, first, end));
     const std::size_t last = std::min((end - 1) * rows, static_cast<std::size_t>(board.image.height)) - 1;
-    summary.bands.back().rows = {static_cast<int>((first - 1) * rows), static_cast<int>(last)};
+    bands.push_back({{"first_row", (first - 1) * rows}, {"last_row", last}});
+    add_strips(board, sums, first, end, bands.back());
   }
+  return bands;
 }
 
-std::string range_text(const Range& range) { return fmt::format("{}..{}", range.first, range.last); }
+// The rows or columns of a place; empty if it has none.
+std::string range_text(const Json& json, const std::string& name) {
+  if (!json.contains("first_" + name)) return "";
+  return fmt::format("{}..{}", json["first_" + name].get<int>(), json["last_" + name].get<int>());
+}
 
-std::string where(const ConflictSummary::Wait& wait) {
-  if (wait.is_in_fill) return "before the first row of results";
+std::string where(const Json& wait) {
+  if (wait["before_first_row"].get<bool>()) return "before the first row of results";
   std::string text;
-  for (const auto& [name, range] : {std::pair("rows", wait.rows), std::pair("columns", wait.columns)}) {
-    if (!range) continue;
-    text +=
-        fmt::format("{}{:.0f} % in {} {}", text.empty() ? "" : ", ", 100 * kMost, name, range_text(*range));
+  for (const std::string name : {"row", "column"}) {
+    const std::string range = range_text(wait, name);
+    if (range.empty()) continue;
+    text += fmt::format("{}{:.0f} % in {}s {}", text.empty() ? "" : ", ", 100 * kMost, name, range);
   }
   return text.empty() ? "all over the picture" : text;
 }
 
-nlohmann::ordered_json json_of(const ConflictSummary::Wait& wait) {
-  nlohmann::ordered_json json = {{"port", wait.port},
-                                 {"bank", wait.bank},
-                                 {"by", wait.by},
-                                 {"cycles", wait.cycles},
-                                 {"cycles_percent", wait.cycles_percent},
-                                 {"before_first_row", wait.is_in_fill}};
-  if (wait.rows) {
-    json["first_row"] = wait.rows->first;
-    json["last_row"] = wait.rows->last;
-  }
-  if (wait.columns) {
-    json["first_column"] = wait.columns->first;
-    json["last_column"] = wait.columns->last;
-  }
-  return json;
-}
-
-nlohmann::ordered_json json_of(const ConflictSummary::Band& band, const std::vector<std::string>& banks) {
-  nlohmann::ordered_json json = nlohmann::ordered_json::object();
-  if (band.rows) {
-    json["first_row"] = band.rows->first;
-    json["last_row"] = band.rows->last;
-  }
-  json["waits_percent"] = band.waits_percent;
-  nlohmann::ordered_json& all = json["banks"] = nlohmann::ordered_json::array();
-  for (std::size_t bank = 0; bank < banks.size(); ++bank)
-    all.push_back({{"name", banks[bank]}, {"accesses_percent", band.banks_percent[bank]}});
-  return json;
-}
-
 }  // namespace
 
-void StripSums::add(const fpga::FrameConflicts& frame) {
-  if (sums_.strips.empty()) {
-    sums_ = frame;
+void add_frame(const fpga::FrameConflicts& frame, fpga::FrameConflicts& sums) {
+  if (sums.strips.empty()) {
+    sums = frame;
     return;
   }
-  for (std::size_t strip = 0; strip < sums_.strips.size(); ++strip) {
-    fpga::StripConflicts& sum = sums_.strips[strip];
+  for (std::size_t strip = 0; strip < sums.strips.size(); ++strip) {
+    fpga::StripConflicts& sum = sums.strips[strip];
     sum.cycles += frame.strips[strip].cycles;
     for (std::size_t requester = 0; requester < sum.stalls.size(); ++requester)
       sum.stalls[requester] += frame.strips[strip].stalls[requester];
   }
-  for (std::size_t place = 0; place < sums_.accesses.size(); ++place) {
-    for (std::size_t kind = 0; kind < sums_.accesses[place].size(); ++kind)
-      sums_.accesses[place][kind] += frame.accesses[place][kind];
+  for (std::size_t place = 0; place < sums.accesses.size(); ++place) {
+    for (std::size_t kind = 0; kind < sums.accesses[place].size(); ++kind)
+      sums.accesses[place][kind] += frame.accesses[place][kind];
   }
 }
 
-ConflictSummary conflict_summary(const platform::BoardConfig& board, const fpga::ConflictRecorder& recorder,
-                                 const fpga::FrameConflicts& sums) {
-  ConflictSummary summary;
-  summary.board = board.name;
-  summary.frames = recorder.frames();
-  summary.cycles = sum_of(recorder.tile_cycles());
+Json conflicts_document(const platform::BoardConfig& board, const fpga::ConflictRecorder& recorder,
+                        const fpga::FrameConflicts& sums) {
+  const std::uint64_t cycles = sum_of(recorder.tile_cycles());
+  std::vector<Json> waits;
   for (const fpga::ConflictRecorder::Stalls* stalls : recorder.stalls())
-    summary.waits.push_back(wait_of(board, recorder.grid(), *stalls, summary.cycles));
-  std::stable_sort(summary.waits.begin(), summary.waits.end(),
-                   [](const auto& a, const auto& b) { return a.cycles > b.cycles; });
-  add_bands(board, sums, summary);
-  return summary;
+    waits.push_back(wait_of(board, recorder.grid(), *stalls, cycles));
+  std::stable_sort(waits.begin(), waits.end(),
+                   [](const Json& a, const Json& b) { return a["cycles"] > b["cycles"]; });
+  return {{"schema", 1},      {"board", board.name}, {"frames", recorder.frames()},
+          {"cycles", cycles}, {"waits", waits},      {"rows", bands_of(board, sums)}};
 }
 
-std::string conflicts_text(const ConflictSummary& summary) {
-  std::string text = fmt::format("core         {} cycles in {} frame{}\n", summary.cycles, summary.frames,
-                                 summary.frames == 1 ? "" : "s");
-  if (summary.waits.empty()) text += "waits        none\n";
-  for (const ConflictSummary::Wait& wait : summary.waits) {
-    text += fmt::format("waits        {}: {} cycles ({:.2f} %), {}\n",
-                        stats::wait_text(wait.port, wait.bank, wait.by), wait.cycles, wait.cycles_percent,
-                        where(wait));
+std::string conflicts_text(const Json& document) {
+  const auto frames = document["frames"].get<std::uint64_t>();
+  std::string text = fmt::format("core         {} cycles in {} frame{}\n",
+                                 document["cycles"].get<std::uint64_t>(), frames, frames == 1 ? "" : "s");
+  if (document["waits"].empty()) text += "waits        none\n";
+  for (const Json& wait : document["waits"]) {
+    text +=
+        fmt::format("waits        {}: {} cycles ({:.2f} %), {}\n",
+                    stats::wait_text(wait["port"], wait["bank"], wait["by"]),
+                    wait["cycles"].get<std::uint64_t>(), wait["cycles_percent"].get<double>(), where(wait));
   }
   text += "rows              waits %";
-  for (const std::string& bank : summary.banks) text += fmt::format(" {:>9}", bank + " %");
+  for (const Json& bank : document["rows"].front()["banks"])
+    text += fmt::format(" {:>9}", bank["name"].get<std::string>() + " %");
   text += '\n';
-  for (const ConflictSummary::Band& band : summary.bands) {
-    text += fmt::format("{:<15} {:>9.2f}", band.rows ? range_text(*band.rows) : "fill", band.waits_percent);
-    for (const double percent : band.banks_percent) text += fmt::format(" {:>9.2f}", percent);
+  for (const Json& band : document["rows"]) {
+    const std::string rows = range_text(band, "row");
+    text += fmt::format("{:<15} {:>9.2f}", rows.empty() ? "fill" : rows, band["waits_percent"].get<double>());
+    for (const Json& bank : band["banks"])
+      text += fmt::format(" {:>9.2f}", bank["accesses_percent"].get<double>());
     text += '\n';
   }
   return text;
-}
-
-nlohmann::ordered_json conflicts_document(const ConflictSummary& summary) {
-  nlohmann::ordered_json document = {
-      {"schema", 1}, {"board", summary.board}, {"frames", summary.frames}, {"cycles", summary.cycles}};
-  nlohmann::ordered_json& waits = document["waits"] = nlohmann::ordered_json::array();
-  for (const ConflictSummary::Wait& wait : summary.waits) waits.push_back(json_of(wait));
-  nlohmann::ordered_json& bands = document["rows"] = nlohmann::ordered_json::array();
-  for (const ConflictSummary::Band& band : summary.bands) bands.push_back(json_of(band, summary.banks));
-  return document;
 }
 
 }  // namespace stereotlm::report

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -10,13 +11,29 @@
 
 namespace stereotlm::report {
 
+// A run as the verdict needs it: its stats.json, and the clock of its core.
+struct JudgedRun {
+  const nlohmann::ordered_json& stats;
+  double clock_mhz;
+};
+
+// The comparison of two runs in one sentence: which is faster, by how much, where the difference arises, and
+// whether the disparities are the same. The rates are the steady ones if both runs have them, else those
+// from power-up, else those of the core. What lies within the uncertainty of both is no difference. `pixels`:
+// null if the disparities are not compared.
+std::string diff_verdict(const JudgedRun& a, const JudgedRun& b, const stats::PixelComparison* pixels);
+
+// The sum of `frame_cycles`.
+std::uint64_t cycles_of_frames(const nlohmann::ordered_json& stats);
+
 // The tables that `diff` prints for two runs, A and B. A table shows only what differs; without differences
 // it is an empty string. Differences are B - A. Text is ASCII except names and values.
 
 // Values with their paths. A value that one run does not have is "-" there.
 using Values = std::vector<platform::BoardValue>;
 
-// The values that differ, in the order of A; values that only B has follow. The pointers are into `a` and `b`.
+// The values that differ, in the order of A; values that only B has follow. The pointers are into `a` and
+// `b`.
 struct Differing {
   std::string path;
   const decltype(platform::BoardValue::value)* a;  // null: missing

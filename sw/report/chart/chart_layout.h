@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "sw/report/chart/chart_traffic.h"
+#include "sw/report/chart/chart_links.h"
 
 // What is drawn in a memory chart, with its place. Lengths are in pixels, y grows downwards. Colours are
 // names: memory_chart.cpp has their values.

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "sw/report/chart/chart_traffic.h"
+#include "sw/report/chart/chart_links.h"
 
 namespace stereotlm::report {
 

@@ -1,5 +1,3 @@
-#include "sw/report/page_data/conflict_data.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,6 +7,7 @@
 
 #include "models/fpga/frame_geometry.h"
 #include "platform/audit.h"
+#include "sw/report/page_data/recording_data.h"
 #include "sw/stats/record_csv.h"
 
 namespace stereotlm::report {
@@ -105,24 +104,13 @@ void ConflictData::add_tiles(std::string_view text) {
     const std::array<std::size_t, 3> cause = {tiles_csv_.index(kPort, requesters_),
                                               tiles_csv_.index(kBank, banks_),
                                               tiles_csv_.index(kBy, causes_)};
-    const std::pair place(tile, cause);
-    tiles_csv_.require(!last_place_ || place > *last_place_, kTileRow,
-                       "must follow the line before, by tile, port, bank and cause");
-    const std::uint64_t tile_cycles = tiles_csv_.number(kTileCycles);
-    const std::uint64_t cycles = tiles_csv_.number(kStalls, tile_cycles, 1);
+    const std::uint64_t cycles = tiles_csv_.number(kStalls, tiles_csv_.number(kTileCycles), 1);
     sums_.blame[cause] += cycles;
-    Line& line = lines_[tile == 0 ? 0 : 1 + (tile - 1) / grid_.columns];
-    line.stalls_of_tiles[cause[0]] += cycles;
-    const bool is_new = !last_place_ || last_place_->first != tile;
-    tiles_csv_.require(is_new || tile_cycles == tile_cycles_, kTileCycles,
-                       "must be those of the line before");
-    if (is_new) line.tile_cycles += tile_cycles;
-    tile_cycles_ = tile_cycles;
-    last_place_ = place;
+    lines_[tile == 0 ? 0 : 1 + (tile - 1) / grid_.columns].stalls_of_tiles[cause[0]] += cycles;
     const std::string_view name = tiles_csv_.cells(kPort, 3);
     auto found = stalls_.find(name);
     if (found == stalls_.end()) found = stalls_.emplace(name, 1 + grid_.rows * grid_.columns).first;
-    found->second[tile] = cycles;
+    found->second[tile] += cycles;
   });
 }
 
@@ -142,7 +130,6 @@ void ConflictData::check(const platform::Statistics& statistics) {
   for (std::size_t row = 0; row < lines_.size(); ++row) {
     const Line& line = lines_[row];
     const std::string name = row == 0 ? "recorded: fill" : fmt::format("recorded: row {} of tiles", row - 1);
-    of_tiles.at_most(name + ": tile_cycles", line.tile_cycles, "cycles in rows.csv", line.cycles);
     for (std::size_t requester = 0; requester < requesters_.size(); ++requester) {
       of_tiles.equal(fmt::format("{}: stalls of {}", name, requesters_[requester]),
                      line.stalls_of_tiles[requester], "those in rows.csv", line.stalls[requester]);

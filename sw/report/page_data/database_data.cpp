@@ -1,19 +1,18 @@
-#include "sw/report/page_data/database_data.h"
-
 #include <fmt/format.h>
 #include <sqlite3.h>
 
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <stdexcept>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "sw/explore/store/store_layout.h"
 #include "sw/process/interrupt.h"
+#include "sw/report/page_data/page_data.h"
 #include "sw/sqlite/database.h"
 
 namespace stereotlm::report {
@@ -48,64 +47,38 @@ Json value_of(const sqlite::Statement& row, int column) {
   }
 }
 
-// The values of a column. As long as all are the same, only one is kept.
-template <typename Value>
-class Column {
- public:
-  template <typename Text>
-  void add(const Text& value) {
-    if (size_ == 0) first_ = value;
-    if (all_.empty() && !(first_ == value)) all_.assign(size_, first_);
-    if (!all_.empty()) all_.emplace_back(value);
-    ++size_;
-  }
-  bool is_constant() const { return all_.empty(); }
-  const Value& first() const { return first_; }
-  Json json() const { return is_constant() ? Json{{"constant", first_}} : Json{{"list", all_}}; }
+// The values of a column.
+struct Column {
+  Json constant;
+  Json list = Json::array();  // empty as long as all values are the same
 
- private:
-  std::size_t size_ = 0;
-  Value first_;
-  std::vector<Value> all_;
+  void add(std::size_t row, const Json& value) {
+    if (row == 0) constant = value;
+    if (list.empty() && value != constant) list = std::vector<Json>(row, constant);
+    if (!list.empty()) list.push_back(value);
+  }
 };
 
-// Texts of which most words are the same: files of boards. Texts with as many words have one shape.
-class BoardTexts {
- public:
+// Files of boards, most lines of which are in many of them.
+struct BoardTexts {
+  std::map<std::string, std::size_t, std::less<>> numbers;  // of the lines
+  Json lines = Json::array();
+  Json texts = Json::array();  // the numbers of the lines of each
+
   void add(std::string_view text) {
-    const std::vector<std::string_view> words = words_of(text);
-    const auto [shape, is_new] = shapes_.emplace(
-        words.size(), std::pair(shapes_.size(), std::vector<Column<std::string>>(words.size())));
-    shape_of_row_.add(shape->second.first);
-    for (std::size_t i = 0; i < words.size(); ++i) shape->second.second[i].add(words[i]);
-  }
-
-  Json json() const {
-    std::vector<Json> shapes(shapes_.size());
-    for (const auto& [length, shape] : shapes_) {
-      Json words = Json::array();
-      for (const Column<std::string>& word : shape.second)
-        words.push_back(word.is_constant() ? Json(word.first()) : word.json());
-      shapes[shape.first] = std::move(words);
+    std::vector<std::size_t> found;
+    while (!text.empty()) {
+      const std::string_view line = text.substr(0, std::min(text.find('\n'), text.size() - 1) + 1);
+      auto known = numbers.find(line);
+      if (known == numbers.end()) {
+        known = numbers.emplace(line, lines.size()).first;
+        lines.push_back(line);
+      }
+      found.push_back(known->second);
+      text.remove_prefix(line.size());
     }
-    return {{"shape", shape_of_row_.json()}, {"shapes", std::move(shapes)}};
+    texts.push_back(found);
   }
-
- private:
-  // The text in pieces, each of which ends with a space or a newline.
-  static std::vector<std::string_view> words_of(std::string_view text) {
-    std::vector<std::string_view> words;
-    for (std::size_t end = text.find_first_of(" \n"); end != text.npos; end = text.find_first_of(" \n")) {
-      words.push_back(text.substr(0, end + 1));
-      text.remove_prefix(end + 1);
-    }
-    words.push_back(text);
-    return words;
-  }
-
-  // By the number of words: the number of the shape, and its words.
-  std::map<std::size_t, std::pair<std::size_t, std::vector<Column<std::string>>>> shapes_;
-  Column<std::size_t> shape_of_row_;
 };
 
 }  // namespace
@@ -114,7 +87,7 @@ Json database_data(const std::string& path) {
   sqlite::Database database(path, sqlite::Database::Access::kRead);
   explore::check_layout(database);
   const std::vector<std::string> names = explore::columns_of(database);
-  std::vector<Column<Json>> columns(names.size());
+  std::vector<Column> columns(names.size());
   std::vector<bool> shown_columns;
   for (const std::string& name : names) shown_columns.push_back(is_shown(name));
   BoardTexts boards;
@@ -123,7 +96,7 @@ Json database_data(const std::string& path) {
   for (; !process::interrupted() && points.step(); ++size) {
     for (std::size_t i = 0; i < names.size(); ++i) {
       const int column = static_cast<int>(i);
-      if (shown_columns[i]) columns[i].add(value_of(points, column));
+      if (shown_columns[i]) columns[i].add(size, value_of(points, column));
       if (names[i] == "config") boards.add(points.text(column));
     }
   }
@@ -135,16 +108,19 @@ Json database_data(const std::string& path) {
       left_out.push_back(names[i]);
       continue;
     }
-    Json column = {{"name", names[i]}};
-    column.update(columns[i].json());
-    shown.push_back(std::move(column));
+    shown.push_back({{"name", names[i]}});
+    if (columns[i].list.empty()) {
+      shown.back()["constant"] = std::move(columns[i].constant);
+    } else {
+      shown.back()["list"] = std::move(columns[i].list);
+    }
   }
   return {{"path", path},
           {"points", size},
           {"keys", explore::first_column_of(database, "SELECT name FROM keys ORDER BY name")},
           {"columns", std::move(shown)},
           {"left_out", std::move(left_out)},
-          {"boards", boards.json()}};
+          {"boards", {{"lines", std::move(boards.lines)}, {"points", std::move(boards.texts)}}}};
 }
 
 }  // namespace stereotlm::report

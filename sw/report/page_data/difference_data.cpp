@@ -1,13 +1,11 @@
-#include "sw/report/page_data/difference_data.h"
-
 #include <array>
 #include <cstdint>
 #include <utility>
 #include <vector>
 
 #include "models/fpga/core_ports.h"
-#include "sw/report/diff_verdict.h"
-#include "sw/report/page_data/run_data.h"
+#include "sw/report/difference_tables.h"
+#include "sw/report/page_data/page_data.h"
 
 namespace stereotlm::report {
 namespace {
@@ -83,11 +81,6 @@ Json difference_data(const ComparedRun& a, const ComparedRun& b, const runs::Fra
 }
 
 }  // namespace
-
-void ComparedRun::record(const std::string& name, std::string_view text) {
-  if (name == "rows.csv") waits.add_rows(text);
-  if (name == "conflicts.csv") waits.add_tiles(text);
-}
 
 Json two_runs_data(const ComparedRun& a, const ComparedRun& b, const runs::FrameAlignment& aligned,
                    const runs::DiffLimits& limits) {

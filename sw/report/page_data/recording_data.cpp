@@ -1,8 +1,12 @@
 #include "sw/report/page_data/recording_data.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <charconv>
 #include <fstream>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 namespace stereotlm::report {
@@ -27,6 +31,78 @@ void read_in_pieces(const std::filesystem::path& path, Take take) {
 
 }  // namespace
 
+CsvLines::CsvLines(std::string path, const std::string& head)
+    : path_(std::move(path)), head_(head.substr(0, head.find('\n'))) {
+  split(head_);
+  names_.assign(cells_.begin(), cells_.end());
+}
+
+void CsvLines::read(std::string_view text, const std::function<void()>& line) {
+  while (!text.empty()) {
+    const std::size_t size = text.find('\n');
+    ++line_;
+    if (size == std::string_view::npos) fail("must end with a newline");
+    const std::string_view next = text.substr(0, size);
+    text.remove_prefix(size + 1);
+    if (line_ == 1) {
+      if (next != head_) fail(fmt::format("must be the head '{}'", head_));
+      continue;
+    }
+    split(next);
+    if (cells_.size() != names_.size())
+      fail(fmt::format("{} cells: must be {}, as in the head", cells_.size(), names_.size()));
+    line();
+  }
+}
+
+void CsvLines::finish(const platform::Audit& audit) const {
+  if (line_ == 0) throw std::runtime_error(fmt::format("{}:1: missing: the head '{}'", path_, head_));
+  if (!audit.failed().empty()) fail(audit.failed().front());
+}
+
+std::string_view CsvLines::cells(std::size_t first, std::size_t count) const {
+  const std::string_view& last = cells_[first + count - 1];
+  const char* const begin = cells_[first].data();
+  return {begin, static_cast<std::size_t>(last.data() + last.size() - begin)};
+}
+
+std::uint64_t CsvLines::number(std::size_t column, std::uint64_t most, std::uint64_t least) const {
+  const std::string_view cell = cells_[column];
+  std::uint64_t number = 0;
+  if (cell != "0") {  // most are
+    const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), number);
+    if (error != std::errc() || end != cell.data() + cell.size() || cell.front() == '0') number = UINT64_MAX;
+  }
+  if (number < least || number > most)
+    refuse(column, fmt::format("must be an integer of {}..{}", least, most));
+  return number;
+}
+
+std::size_t CsvLines::index(std::size_t column, const std::vector<std::string>& names) const {
+  const auto found = std::find(names.begin(), names.end(), cells_[column]);
+  if (found == names.end()) refuse(column, fmt::format("must be one of {}", fmt::join(names, ", ")));
+  return static_cast<std::size_t>(found - names.begin());
+}
+
+void CsvLines::split(std::string_view line) {
+  cells_.clear();
+  std::size_t begin = 0;
+  for (std::size_t end = 0; end < line.size(); ++end) {
+    if (line[end] != ',') continue;
+    cells_.push_back(line.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  cells_.push_back(line.substr(begin));
+}
+
+void CsvLines::refuse(std::size_t column, const std::string& rule) const {
+  fail(fmt::format("{} = {}: {}", names_[column], cells_[column], rule));
+}
+
+void CsvLines::fail(const std::string& text) const {
+  throw std::runtime_error(fmt::format("{}:{}: {}", path_, line_, text));
+}
+
 RecordingData::RecordingData(const platform::BoardConfig& board, bool camera,
                              const std::filesystem::path& folder)
     : folder_(folder), conflicts_(board, folder) {
@@ -34,17 +110,10 @@ RecordingData::RecordingData(const platform::BoardConfig& board, bool camera,
 }
 
 void RecordingData::add(const std::string& name, std::string_view text) {
-  if (name == "rows.csv") {
-    conflicts_.add_rows(text);
-  } else if (name == "conflicts.csv") {
-    conflicts_.add_tiles(text);
-  } else if (name == "timeline.csv") {
-    timeline_.value().add_events(text);
-  } else if (name == "latency.csv") {
-    timeline_.value().add_latencies(text);
-  } else {
-    throw std::logic_error("no file of a recording: " + name);
-  }
+  if (name == "rows.csv") conflicts_.add_rows(text);
+  if (name == "conflicts.csv") conflicts_.add_tiles(text);
+  if (timeline_ && name == "timeline.csv") timeline_->add_events(text);
+  if (timeline_ && name == "latency.csv") timeline_->add_latencies(text);
 }
 
 bool RecordingData::add_folder(const platform::Statistics& statistics) {

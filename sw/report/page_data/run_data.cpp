@@ -1,5 +1,3 @@
-#include "sw/report/page_data/run_data.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,13 +19,14 @@
 #include "platform/config/board_area.h"
 #include "platform/config/board_yaml.h"
 #include "platform/config/buffer_layout.h"
+#include "platform/config/key_paths.h"
 #include "sw/files/base64.h"
 #include "sw/files/shell_word.h"
 #include "sw/files/whole_file.h"
 #include "sw/media/encode.h"
 #include "sw/process/interrupt.h"
 #include "sw/report/chart/memory_chart.h"
-#include "sw/report/page_data/recording_data.h"
+#include "sw/report/page_data/page_data.h"
 #include "sw/runs/explanation.h"
 #include "sw/runs/progress.h"
 #include "sw/stats/stats_json.h"
@@ -71,24 +70,14 @@ std::string command_of(const runs::RecordedRun& run) {
   return text + " --out DIR";
 }
 
-Json json_of(const std::variant<std::int64_t, double, std::string>& value) {
-  return std::visit([](const auto& each) { return Json(each); }, value);
-}
-
-// The name of the key in keys(): the name of a bank is NAME there.
-std::string listed_path(const std::string& path) {
-  const std::string banks = "ssram.banks.";
-  if (path.compare(0, banks.size(), banks) != 0) return path;
-  return banks + "NAME" + path.substr(path.find('.', banks.size()));
-}
-
 Json settings_of(const BoardConfig& board) {
   std::map<std::string, platform::KeyInfo> known;
   for (const platform::KeyInfo& key : platform::keys()) known[key.path] = key;
   Json all = Json::array();
   for (const platform::BoardValue& value : platform::values_of(board)) {
-    Json setting = {{"key", value.path}, {"value", json_of(value.value)}};
-    const auto key = known.find(listed_path(value.path));
+    Json setting = {{"key", value.path}};
+    std::visit([&setting](const auto& its) { setting["value"] = its; }, value.value);
+    const auto key = known.find(platform::schema_path(value.path));
     if (key != known.end()) {
       setting["meaning"] = key->second.meaning;
       if (!key->second.unit.empty()) setting["unit"] = key->second.unit;

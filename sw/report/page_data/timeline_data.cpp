@@ -1,5 +1,3 @@
-#include "sw/report/page_data/timeline_data.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,6 +11,7 @@
 #include "platform/bounds.h"
 #include "platform/figures.h"
 #include "platform/timeline_records.h"
+#include "sw/report/page_data/recording_data.h"
 #include "sw/stats/record_csv.h"
 #include "sw/stats/stats_json.h"
 
@@ -53,21 +52,13 @@ TimelineData::TimelineData(const platform::BoardConfig& board, const std::filesy
 
 // An event with the names of the line.
 platform::TimelineEvent TimelineData::event_of_line() const {
-  constexpr std::array kColumns = {kKind, kClass, kWhy};
-  std::array<std::vector<std::string>, kColumns.size()> allowed;  // by the cells before
+  const std::string_view kind = events_csv_.cell(kKind);
+  const std::string_view why = events_csv_.cell(kWhy);
   for (const platform::EventName& known : platform::kEventNames) {
-    const std::array<std::string_view, kColumns.size()> names = {name_of(known.kind), known.what, known.why};
-    std::size_t same = 0;
-    while (same < names.size() && events_csv_.cell(kColumns[same]) == names[same]) ++same;
-    if (same == names.size()) return {known.kind, known.what, {}, {}, 0, 0, 0, 0, known.why};
-    for (std::size_t column = 0; column <= same; ++column) {
-      std::vector<std::string>& names_here = allowed[column];
-      if (names_here.empty() || names_here.back() != names[column]) names_here.emplace_back(names[column]);
-    }
+    if (kind == name_of(known.kind) && events_csv_.cell(kClass) == known.what && why == known.why)
+      return {known.kind, known.what, {}, {}, 0, 0, 0, 0, known.why};
   }
-  for (std::size_t column = 0; column < kColumns.size(); ++column)
-    events_csv_.index(kColumns[column], allowed[column]);
-  throw std::logic_error("the names of an event are not found");
+  events_csv_.refuse(kClass, fmt::format("must be a class of {} with why = {}", kind, why));
 }
 
 void TimelineData::add_events(std::string_view text) {

@@ -1,7 +1,7 @@
 """Figures that have a row for each point: selects and names the points, and draws stacked bars."""
 
 import style
-from drawing import WIDTH, Sheet, in_words, ticks_of_columns
+from drawing import HEAD, WIDTH, Sheet, in_words, ticks_of_columns
 from matplotlib.patches import Patch
 from points import natural, short_names, text_of
 from style import SMALL_SIZE
@@ -95,7 +95,7 @@ def stacked(points, options, rows, heading, ports, parts, cycles, unit):
     sheet = Sheet(heading, options.size, options.format)
     sheet.legend([(Patch(color=parts[part][1]), parts[part][0]) for part in shown])
     rows.note_below(sheet)
-    panels = sheet.columns(len(ports), rows.height, rows.left(), rows.least)
+    panels = sheet.grid([rows.height], len(ports), rows.left(), 0.2, above=HEAD, least=rows.least)
     for axes, port in zip(panels, ports):
         for place, center in zip(rows.places, rows.centers):
             at = 0

@@ -81,30 +81,20 @@ def parse(arguments, description, has_pareto):
     return parser.parse_args(arguments)
 
 
-def formats_of(text):
-    """The value of --format as a list; None if it does not have this form."""
-    kinds = text.split(",")
-    return kinds if set(kinds) <= set(style.FORMATS) and len(set(kinds)) == len(kinds) else None
-
-
-def size_of(text):
-    """The value of --size as (width, height) in inches; None if it does not have this form or range."""
-    match = re.fullmatch(r"(\d+(?:\.\d+)?)x(\d+(?:\.\d+)?)", text, re.ASCII)
-    size = tuple(map(float, match.groups())) if match else ()
-    return size if size and all(LEAST_SIZE <= each <= MOST_SIZE for each in size) else None
-
-
 def read_looks(options):
     """Replaces the texts of --format and --size by their values, or None if they are not given. Returns problems."""
     problems = []
-    kinds = f"must be {', '.join(style.FORMATS)}, or several with commas"
-    inches = f"must be WIDTHxHEIGHT in inches, each {LEAST_SIZE} to {MOST_SIZE}, such as 7.2x4.5"
-    for name, read, rule in (("format", formats_of, kinds), ("size", size_of, inches)):
-        text = getattr(options, name)
-        value = None if text is None else read(text)
-        if text is not None and value is None:
-            problems.append(f"--{name} = {text}: {rule}")
-        setattr(options, name, value)
+    if options.format is not None:
+        text, options.format = options.format, options.format.split(",")
+        if not set(options.format) <= set(style.FORMATS) or len(set(options.format)) < len(options.format):
+            problems.append(f"--format = {text}: must be {', '.join(style.FORMATS)}, or several with commas")
+    if options.size is not None:
+        text = options.size
+        match = re.fullmatch(r"(\d+(?:\.\d+)?)x(\d+(?:\.\d+)?)", text, re.ASCII)
+        options.size = tuple(map(float, match.groups())) if match else ()
+        if not options.size or not all(LEAST_SIZE <= each <= MOST_SIZE for each in options.size):
+            problems.append(f"--size = {text}: must be WIDTHxHEIGHT in inches, each {LEAST_SIZE} to {MOST_SIZE}, "
+                            "such as 7.2x4.5")
     return problems
 
 

@@ -5,6 +5,7 @@ import io
 import math
 import re
 
+import numpy
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -13,7 +14,7 @@ from matplotlib.ticker import FixedFormatter, FixedLocator, LogLocator, MaxNLoca
 
 import style
 from points import BANKS_USED, UNITS_USED, Unusable
-from style import INK, LABEL_SIZE, LEGEND_SIZE, QUIET, SIZE, SMALL_SIZE, TITLE_SIZE
+from style import LABEL_SIZE, LEGEND_SIZE, QUIET, SIZE, SMALL_SIZE, TITLE_SIZE
 
 WIDTH = 7.2  # inches, if the user asks for no other size
 MARGIN = 0.1  # inches
@@ -22,6 +23,8 @@ NOTE_LINE = 0.14
 TITLE_LINE = 0.2
 HANDLE, BETWEEN = 0.42, 0.19  # inches: the sample of an entry of the legend, and the gap between two entries
 LEAST_HEIGHT, LEAST_WIDTH = 0.8, 0.5  # inches, of a panel
+GAP = 0.12  # inches, between two panels
+HEAD = 0.22  # inches: the title of a panel
 MOST_TICKS = 14
 # Marks of points that do not fit the FPGA, or whose pictures are not complete.
 MARK = {"color": "#000000", "linestyle": "", "zorder": 3.5}
@@ -90,7 +93,7 @@ def table(header, rows):
 class Sheet:
     """The page of a figure: a title, panels with sizes in inches, and below them the legend, a list and notes.
 
-    legend(), list_entry() and note() must be called before rows() or columns(), which create the panels.
+    legend() and note() must be called before grid(), which creates the panels.
     width: in inches.
     """
 
@@ -104,8 +107,7 @@ class Sheet:
         self._formats = formats or style.USUAL_FORMATS
         self._heading = style.wrapped(heading, TITLE_SIZE, self._room(), bold=True)
         self._legends = []
-        self._list = []
-        self._notes = []
+        self._below = []  # (line, color) of texts below the legend
 
     def _room(self):
         return self.width - 2 * MARGIN
@@ -115,49 +117,28 @@ class Sheet:
         if handles:
             self._legends.append(LegendGroup(handles, self._room()))
 
-    def note(self, text):
+    def note(self, text, color=QUIET, indent=""):
+        """Adds a text below the legend, if it is not empty. indent: of its further lines."""
         if text:
-            self._notes += style.wrapped(text, SMALL_SIZE, self._room())
+            self._below += [(line, color) for line in style.wrapped(text, SMALL_SIZE, self._room(), indent)]
 
-    def list_entry(self, number, text):
-        """Adds an entry to the list between the legend and the notes."""
-        self._list += style.wrapped(f"{number}  {text}", SMALL_SIZE, self._room(), indent=" " * 6)
+    def grid(self, heights, count=1, left=0.85, right=0.25, bottom=0.5, above=0, least=None):
+        """Creates and returns panels: one of each height from the top, or `count` side by side from the left.
 
-    def rows(self, heights, left=0.85, gap=0.15, bottom=0.5, right=0.25):
-        """Creates and returns panels above each other, from the top, which share their x axis."""
-        gaps = gap * (len(heights) - 1)
-        total, inside, top = self._begin(sum(heights) + gaps, 0, bottom, LEAST_HEIGHT * len(heights) + gaps)
-        self._need_width(left + right, 2 * LEAST_WIDTH)
-        scale_of_heights = (inside - gaps) / sum(heights)
-        at = total - top
-        for height in heights:
-            height *= scale_of_heights
-            at -= height
-            axes = self.figure.add_axes(
-                [left / self.width, at / total, (self.width - left - right) / self.width, height / total],
-                sharex=self.panels[0] if self.panels else None)
-            self.panels.append(axes)
-            at -= gap
-        for axes in self.panels[:-1]:
-            axes.tick_params(labelbottom=False)
-        return self.panels
-
-    def columns(self, count, height, left, least=LEAST_HEIGHT, headed=True, gap=0.1, bottom=0.5, right=0.2):
-        """Creates and returns panels side by side, from the left, which share their y axis.
-
-        least: the least height. headed: the panels have titles of their own.
+        Panels above each other share their x axis, panels side by side their y axis.
+        left, right, bottom, above: inches around them; least: the least height of all.
         """
-        total, inside, top = self._begin(height, 0.22 * headed, bottom, least)
-        self._need_width(left + right + gap * (count - 1), LEAST_WIDTH * count)
-        width = (self.width - left - right - gap * (count - 1)) / count
-        for number in range(count):
-            axes = self.figure.add_axes(
-                [(left + number * (width + gap)) / self.width, (total - top - inside) / total, width / self.width,
-                 inside / total],
-                sharey=self.panels[0] if self.panels else None)
-            self.panels.append(axes)
-            if number:
-                axes.tick_params(labelleft=False)
+        gaps = GAP * (len(heights) - 1)
+        total, inside, top = self._begin(sum(heights) + gaps, above, bottom, least or LEAST_HEIGHT * len(heights) + gaps)
+        width = self.width - left - right - GAP * (count - 1)
+        if width < LEAST_WIDTH * count:
+            raise Unusable(f"--size {self.width:g}x{self.height:g}: this figure needs a width of "
+                           f"{rounded_up(self.width - width + LEAST_WIDTH * count)} inches")
+        axes = self.figure.subplots(len(heights), count, sharex="col", sharey="row", squeeze=False, gridspec_kw={
+            "left": left / self.width, "right": 1 - right / self.width, "top": 1 - top / total,
+            "bottom": 1 - (top + inside) / total, "height_ratios": heights,
+            "hspace": GAP * len(heights) / (inside - gaps), "wspace": GAP * count / width})
+        self.panels = list(axes.flat)
         return self.panels
 
     def head(self, axes, text):
@@ -190,8 +171,7 @@ class Sheet:
         """
         top = MARGIN + TITLE_LINE * len(self._heading) + 0.04 + more_above
         legend = sum(group.lines for group in self._legends) * LINE + (0.06 if self._legends else 0)
-        below = [*self._list, *self._notes]
-        notes = len(below) * NOTE_LINE + (0.1 if below else 0)
+        notes = len(self._below) * NOTE_LINE + (0.1 if self._below else 0)
         around = top + bottom + legend + notes + 0.05
         if self.height is not None:
             inside = self.height - around
@@ -207,16 +187,10 @@ class Sheet:
         for group in self._legends:
             group.draw(self.figure, at / total)
             at -= group.lines * LINE
-        for number, line in enumerate(reversed(below)):
-            is_note = number < len(self._notes)
+        for number, (line, color) in enumerate(reversed(self._below)):
             self.figure.text(MARGIN / self.width, (0.06 + number * NOTE_LINE) / total, line, fontsize=SMALL_SIZE,
-                             va="bottom", color=QUIET if is_note else INK)
+                             va="bottom", color=color)
         return total, inside, top
-
-    def _need_width(self, around, least):
-        if self.width < around + least:
-            size = f"{self.width:g}x{self.height:g}"
-            raise Unusable(f"--size {size}: this figure needs a width of {rounded_up(around + least)} inches")
 
     @property
     def files(self):
@@ -245,21 +219,13 @@ class LegendGroup:
         most = max(1, int((room + BETWEEN) / (widest + HANDLE + BETWEEN)))
         rows = -(-len(handles) // most)
         self.columns = -(-len(handles) // rows)
-        self.lines = max(sum(len(each) for each in part) for part in parted(lines, self.columns))
+        # matplotlib distributes the entries on the columns as array_split() does.
+        parts = numpy.array_split(list(map(len, lines)), self.columns)
+        self.lines = max(int(part.sum()) for part in parts)
 
     def draw(self, figure, top):
         figure.legend(self.artists, self.texts, loc="upper center", ncol=self.columns, borderpad=0, borderaxespad=0,
                       labelspacing=0.25, columnspacing=1.6, handlelength=2.6, bbox_to_anchor=(0.5, top))
-
-
-def parted(items, count):
-    """The items in so many parts, as matplotlib distributes the entries of a legend on columns."""
-    size, larger = divmod(len(items), count)
-    parts = []
-    for number in range(count):
-        parts.append(items[: size + (number < larger)])
-        items = items[size + (number < larger) :]
-    return parts
 
 
 def mark_handle(mark):
@@ -292,7 +258,7 @@ def ticks_at(axes, values):
     axes.xaxis.set_minor_locator(NullLocator())
 
 
-def ticks_of_columns(panels, most, gap=0.1):
+def ticks_of_columns(panels, most):
     """Sets scale and ticks of panels side by side, from 0 to `most`, so that no labels of neighbors touch."""
     length = length_of(panels[0], "x")
     end = 1.03 * most
@@ -301,7 +267,7 @@ def ticks_of_columns(panels, most, gap=0.1):
         ticks = [number * step for number in range(int(most / step + 1e-9) + 1)]
         labels = [f"{tick:.10g}" for tick in ticks]
         widths = [style.text_width(label, SIZE) for label in labels]
-        places = [tick / end * length for tick in ticks] + [length + gap]
+        places = [tick / end * length for tick in ticks] + [length + GAP]
         widths.append(widths[0])
         if all(places[at + 1] - places[at] > (widths[at] + widths[at + 1]) / 2 + 0.05 for at in range(len(ticks))):
             break

@@ -81,7 +81,7 @@ def draw(points, options, heading, x, x_keys, panels, best=False):
     for text in (families.note, points.pixels_note(places), above_note(points, places, panels), points.size_note(places),
                  points.note(len(places))):
         sheet.note(text)
-    for axes, panel in zip(sheet.rows([panel.height for panel in panels]), panels):
+    for axes, panel in zip(sheet.grid([panel.height for panel in panels]), panels):
         for group, look in families.envelopes:
             draw_envelope(axes, points, group, xs, panel, look)
         for family in [] if families.envelopes else families.all:

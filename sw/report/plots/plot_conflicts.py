@@ -75,7 +75,7 @@ def bank_rows(recorded, options):
     sheet = Sheet("How busy banks are, and who waits, from the top of the picture to its bottom", options.size,
                   options.format)
     sheet.note("Of the cycles of each row of results: accesses of the bank, or waits of the port. " + recorded.note)
-    (axes,) = sheet.columns(1, 4.2, 0.7, headed=False, bottom=1.5, right=0.3)
+    (axes,) = sheet.grid([4.2], 1, 0.7, 0.3, bottom=1.5)
     edges = [int(row["first_row"]) for row in rows] + [recorded.about["height"]]
     values = [[recorded.share(row, name) for name in columns] for row in rows]
     shown = axes.pcolormesh(range(len(columns) + 1), edges, values, cmap=style.SCALE, vmin=0, vmax=100,
@@ -111,8 +111,7 @@ def picture(recorded, options):
     sheet.note("Waits of all ports, of the cycles after which the results of this place leave. "
                "The ports read ahead of the results. " + recorded.note)
     left, right = 0.6, 0.25
-    (axes,) = sheet.columns(1, (sheet.width - left - right) * height / width, left, headed=False, bottom=0.95,
-                            right=right)
+    (axes,) = sheet.grid([(sheet.width - left - right) * height / width], 1, left, right, bottom=0.95)
     extent = (0, width, height, 0)
     if recorded.picture:
         axes.imshow(recorded.picture, cmap="gray", vmin=0, vmax=255, extent=extent, aspect="auto")
@@ -139,7 +138,7 @@ def time_line(recorded, options):
     sheet.legend([(Patch(color=color), name_of(name)) for name, color in waiting.items()])
     sheet.note(f"Frame {recorded.about['frame']}, the one with the most cycles, by rows of results; the first step "
                "is the time before the first results. " + recorded.note)
-    panels = sheet.rows([2.0, 1.4] if waiting else [2.0], left=0.8)
+    panels = sheet.grid([2.0, 1.4] if waiting else [2.0], left=0.8)
     for number, (bank, color) in enumerate(colors.items()):
         panels[0].stairs([recorded.share(row, bank) for row in recorded.frame], times, color=color, baseline=None,
                          linewidth=1.2, linestyle=style.DASHES[number // len(BANK_COLORS) % 4])
@@ -176,7 +175,7 @@ def causes(recorded, options):
     sheet.legend([(Patch(color=colors[by]), by if by == "turnaround" else f"for {by}") for by in blamed])
     sheet.note(recorded.note)
     widest = max(style.text_width(f"{port} on {bank}", style.SIZE) for bank, port in places)
-    panels = sheet.columns(1, 0.3 + 0.3 * len(places), widest + 0.3, headed=False)
+    panels = sheet.grid([0.3 + 0.3 * len(places)], 1, widest + 0.3, 0.2)
     for number, (bank, port) in enumerate(places):
         at = 0
         for by in blamed:

@@ -6,7 +6,7 @@ import os
 
 import command
 import style
-from drawing import Sheet, ticks_at
+from drawing import HEAD, Sheet, ticks_at
 from style import QUIET, bound, bound_handle, line_handle
 
 MODEL, PAPER, SECOND = style.BLUE, style.VERMILION, style.GREEN
@@ -47,6 +47,16 @@ def model_line(axes, xs, ys, color=MODEL, **look):
     axes.plot(xs, ys, color=color, zorder=3, **style.POINT, **look)
 
 
+def rule_panel(axes, tolerance, most, label, x_label, xs):
+    """A panel of differences: the rule, shaded, and a scale of up to `most` on both sides of zero."""
+    axes.axhspan(-tolerance, tolerance, color=RULE, zorder=1)
+    axes.axhline(0, color=QUIET, linewidth=0.8, zorder=1.4)
+    axes.set_ylim(-most, most)
+    axes.set_ylabel(label)
+    axes.set_xlabel(x_label)
+    ticks_at(axes, xs)
+
+
 def table1(folder, options):
     """Draws frames per second over the window and, below, the deviation from the paper."""
     rows = sorted(read(folder, "table1"), key=lambda row: int(row["window"]))
@@ -57,7 +67,7 @@ def table1(folder, options):
     sheet.note(f"Table 1: {image_of(board)}, {board['matcher.disparities']} disparities, {filter_of(board)}, "
                f"{board['fpga.clock_mhz']} MHz. Below: model less paper, with the rule ({board['rule']}) shaded; the bar is "
                "what rounding to the printed digit leaves open.")
-    rates, deviations = sheet.rows([2.7, 1.5])
+    rates, deviations = sheet.grid([2.7, 1.5])
     bounds, values = numbers(rows, "bound_frames_per_second"), numbers(rows, "model_frames_per_second")
     printed = numbers(rows, "paper_frames_per_second")
     rates.plot(xs, bounds, **bound(MODEL))
@@ -65,8 +75,6 @@ def table1(folder, options):
     paper_points(rates, xs, printed)
     rates.set_ylim(0, max(printed + bounds) * 1.08)
     rates.set_ylabel("core, frames/s")
-    deviations.axhspan(-tolerance, tolerance, color=RULE, zorder=1)
-    deviations.axhline(0, color=QUIET, linewidth=0.8, zorder=1.4)
     percents = numbers(rows, "deviation_percent")
     halves = [100 * half / value for half, value in zip(numbers(rows, "paper_half_digit"), printed)]
     for x, percent, half, row in zip(xs, percents, halves, rows):
@@ -75,11 +83,8 @@ def table1(folder, options):
                             zorder=3)
         if row["verdict"] != "confirmed":
             deviations.annotate(f"{percent:+.2f} %", (x, percent), (8, -3), textcoords="offset points", fontsize=8)
-    deviations.set_ylabel("model less\npaper, %")
     most = max(abs(percent) + half for percent, half in zip(percents, halves))
-    deviations.set_ylim(-1.15 * most, 1.15 * most)
-    deviations.set_xlabel("window n, pixels (of n x n)")
-    ticks_at(deviations, xs)
+    rule_panel(deviations, tolerance, 1.15 * most, "model less\npaper, %", "window n, pixels (of n x n)", xs)
     return sheet
 
 
@@ -96,20 +101,15 @@ def table2(folder, options):
     sheet.legend([paper_handle(), (line_handle(MODEL, "o"), "model, counted; one constant is fitted to these rows")])
     sheet.note(f"Table 2: window {window_of(board)}, {board['fpga.device'].upper()}. Below: model less paper, with the rule "
                f"({board['size_rule']}) shaded; the bars are what rounding to whole percents leaves open.")
-    sizes, errors = sheet.rows([2.5, 1.5])
+    sizes, errors = sheet.grid([2.5, 1.5])
     model_line(sizes, xs, values)
     sizes.errorbar(xs, printed, yerr=[below, above], color=PAPER, linestyle="", marker="D", markersize=5,
                    markerfacecolor="white", markeredgewidth=1.3, capsize=3, linewidth=1, zorder=4)
     sizes.set_ylim(0, max(most + values) * 1.08)
     sizes.set_ylabel("area, % of the slices")
-    errors.axhspan(-tolerance, tolerance, color=RULE, zorder=1)
-    errors.axhline(0, color=QUIET, linewidth=0.8, zorder=1.4)
     errors.errorbar(xs, numbers(rows, "error_points"), yerr=[above, below], color=MODEL, linestyle="", marker="o",
                     markersize=5, capsize=3, linewidth=1, zorder=3)
-    errors.set_ylim(-1.8 * tolerance, 1.8 * tolerance)
-    errors.set_ylabel("model less paper,\npercentage points")
-    errors.set_xlabel("disparities D")
-    ticks_at(errors, xs)
+    rule_panel(errors, tolerance, 1.8 * tolerance, "model less paper,\npercentage points", "disparities D", xs)
     return sheet
 
 
@@ -127,7 +127,7 @@ def banks(folder, options):
     sheet.note(f"{image_of(board)}, {window_of(board)}, {board['matcher.disparities']} disparities, "
                f"{board['fpga.clock_mhz']} MHz. Below each number of banks: how many allocations to so many fit; the "
                "rate of each is known, and none is higher. Triangles need not be the best that there is.")
-    panels = sheet.columns(2, 2.8, 0.75, bottom=0.72)
+    panels = sheet.grid([2.8], 2, 0.75, 0.2, bottom=0.72, above=HEAD)
     for axes, claim, heading in zip(panels, ("banks", "banks_of_matching"),
                                     ("with calibration", "without calibration")):
         every = [row for row in rows if row["claim"] == claim]

@@ -95,7 +95,7 @@ def draw(points, options):
     sheet.legend(handles)
     names = [name(points, [places[at] for at in front if (xs[at], ys[at]) == corner]) for corner in corners]
     for number, text in enumerate(names[:MOST_NAMED], 1):
-        sheet.list_entry(number, text)
+        sheet.note(f"{number}  {text}", style.INK, " " * 6)
     if len(names) > MOST_NAMED:
         sheet.note(f"{len(names) - MOST_NAMED} more of the front are in the table.")
     if any(uncertainties):
@@ -103,7 +103,7 @@ def draw(points, options):
     sheet.note(points.pixels_note(places))
     sheet.note(points.size_note(places))
     sheet.note(points.note(len(places)))
-    (axes,) = sheet.rows([3.6])
+    (axes,) = sheet.grid([3.6])
     is_many = len(xs) > MANY
     axes.plot(*zip(*dict.fromkeys(zip(xs, ys))), "o", color=OTHER, markersize=2 if is_many else 4,
               alpha=0.35 if is_many else 0.6, markeredgewidth=0, zorder=2, rasterized=is_many)

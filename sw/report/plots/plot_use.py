@@ -26,7 +26,7 @@ def draw(points, options):
         sheet.legend([(Patch(color=style.MISSING), "the board has no such bank")])
     rows.note_below(sheet, "Of the cycles in which the core works on a frame, those in which the bank serves an access.")
     height, least = (max(each, LEAST_HEIGHT) for each in (rows.height, rows.least))
-    (axes,) = sheet.columns(1, height, rows.left(), least, headed=False, bottom=0.95, right=0.3)
+    (axes,) = sheet.grid([height], 1, rows.left(), 0.3, bottom=0.95, least=least)
     numbers = [[float("nan") if use is None else use for use in row] for row in percent]
     axes.set_facecolor(style.MISSING)
     shown = axes.pcolormesh(range(len(banks) + 1), rows.edges, numbers, cmap=style.SHARES, vmin=0, vmax=100,

@@ -1,6 +1,7 @@
 """run --record and conflicts: where in the picture, and when in a frame, ports wait for banks."""
 
 import csv
+import re
 import signal
 import resource
 import struct
@@ -98,6 +99,10 @@ class Command(ConflictsTest):
         self.assertIn("rows              waits %   bank0 %", text)
         text = self.succeeds(run("conflicts", *self.scene, *PRELOADED))
         self.assertIn("waits        none\n", text)
+        text = self.succeeds(run("conflicts", *self.scene, *CAPTURES))
+        cycles = [int(each) for each in re.findall(r"^waits .*: (\d+) cycles", text, re.MULTILINE)]
+        self.assertGreater(len(set(cycles)), 1)
+        self.assertEqual(cycles, sorted(cycles, reverse=True), "the longest first")
 
     @program.slow
     def test_it_writes_tables_and_figures(self):

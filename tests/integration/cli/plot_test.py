@@ -305,6 +305,7 @@ class Figures(FigureTest):
             self.assertEqual(row["units_used"], "80" if units == "all" else units)
         self.shows("rows", "rows of results at once", "matcher.units = all", "1", "2", "4")
         self.shows("units", "column and window modules", "matcher.rows = 4", "20", "40", "80")
+        self.assertEqual(self.texts("units").count("80"), 1, "both panels have one axis")
         self.assertEqual([len(self.curves(name)) for name in ("rows", "units")], [6, 6])  # in two panels
         axes = "units_used:min,frames_per_second.core:max"
         self.assertIn("9 points, 3 of them on the front", self.plot("pareto", store, "--pareto", axes))
@@ -573,7 +574,7 @@ for size in (None, (4.6, 6)):
     for count in (1, 2, 4, 6):
         for most in (0.37, 3, 20.4, 99.6, 1234, 1999, 104000.5):
             sheet = drawing.Sheet("title", size)
-            panels = sheet.columns(count, 2, 0.6)
+            panels = sheet.grid([2], count, 0.6, 0.2)
             drawing.ticks_of_columns(panels, most)
             sheet.figure.canvas.draw()
             labels = [label for axes in panels for label in axes.get_xticklabels() if label.get_text()]
@@ -587,6 +588,12 @@ print("apart")
         command = [PYTHON, "-B", "-c", script_of, str(SCRIPTS)]
         process = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
         self.assertEqual(self.succeeds(process), "apart\n")
+
+    def test_columns_that_have_no_room_are_not_drawn(self):
+        store = self.sweep(ALLOCATIONS)
+        (line,) = self.refused(script("plot_states.py", store, "--out", self.out, "--size", "2x20"))
+        self.assertRegex(line, r"states not drawn: --size 2x20: this figure needs a width of \d\.\d inches$")
+        self.succeeds(script("plot_states.py", store, "--out", self.out, "--size", "6x20"))
 
     def test_use_has_a_scale_of_its_colors(self):
         store = self.sweep(WINDOWS)

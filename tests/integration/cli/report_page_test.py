@@ -877,7 +877,7 @@ class Large(PageTest):
             columns = [column(f"figure_{i}", drawn.random) for i in range(8)]
             columns.append(column("matcher.window", lambda: drawn.choice([3, 5, 7])))
             data["database"].update(points=points, columns=columns, keys=["matcher.window"],
-                                    boards={"shape": {"constant": 0}, "shapes": [["name: a\n"]]})
+                                    boards={"lines": ["name: a\n"], "points": [[0]] * points})
 
         self.opened(page_of(database()), change)
         self.browser.drag("#scatter .brush-xy", (0.1, 0.1), (0.9, 0.9))

@@ -1,70 +1,19 @@
-// The data of the page (README.md), as the charts ask for it: tables of points, and what a recording holds.
+// What a recording holds (README.md), as the charts ask for it.
 import {sum} from './format.js';
-
-// The values of a column of a database, one for each row.
-const unpack = (column, rows) => column.list ?? new Array(rows).fill(column.constant);
-
-export class Table {
-  constructor(columns, rows) {
-    this.rows = rows;
-    this.columns = new Map(columns.map(column => [column.name, column]));
-  }
-  get names() {
-    return [...this.columns.keys()];
-  }
-  has(name) {
-    return this.columns.has(name);
-  }
-  isConstant(name) {
-    return 'constant' in (this.columns.get(name) ?? {constant: null});
-  }
-  // A column that follows from others.
-  add(name, list) {
-    this.columns.set(name, {name, list});
-  }
-  column(name) {
-    const column = this.columns.get(name);
-    column.list = unpack(column, this.rows);
-    return column.list;
-  }
-  // These columns of these rows, as addChart() takes its numbers.
-  numbers(names = this.names, rows = [...Array(this.rows).keys()]) {
-    const columns = names.map(name => this.column(name));
-    return [names, rows.map(row => columns.map(values => values[row]))];
-  }
-}
 
 // The rows of a table {names, rows} as objects.
 export const objectsOf = ({names, rows}) =>
     rows.map(row => Object.fromEntries(names.map((name, i) => [name, row[i]])));
-
-// The texts of the part `boards`: text(row).
-export class Boards {
-  constructor({shape, shapes}, rows) {
-    this.shape = unpack(shape, rows);
-    const sizes = shapes.map(() => 0);
-    this.place = this.shape.map(each => sizes[each]++);
-    this.words = shapes.map(
-        (words, each) => words.map(word => typeof word === 'string' ? word : unpack(word, sizes[each])));
-  }
-  text(row) {
-    const words = this.words[this.shape[row]];
-    return words.map(word => typeof word === 'string' ? word : word[this.place[row]]).join('');
-  }
-}
-
-const known = new WeakMap();
 
 // The lines of the picture in a recording, from top to bottom, each of `height` rows, as sums over all
 // frames: {frames, lines, height, cycles, fill, accesses: [{bank, by, values, fill}], stalls: [{port, bank,
 // by, values, fill, total}]}. `fill` is before the first line. null without a recording.
 export function linesOf({recording}) {
   if (!recording) return null;
-  if (known.has(recording)) return known.get(recording);
   const {frames, rows: {lines, height, cycles, accesses}, stalls} = recording;
   const split = ([fill, ...values]) => ({fill, values, total: fill + sum(values)});
   const all = split(cycles);
-  known.set(recording, {
+  return {
     frames,
     lines,
     height,
@@ -73,8 +22,7 @@ export function linesOf({recording}) {
     accesses: accesses.map(({bank, by, accesses: column}) => ({bank, by, ...split(column)})),
     stalls: stalls.map(({port, bank, by, rows}) => ({port, bank, by, ...split(rows)}))
                 .sort((a, b) => b.total - a.total)
-  });
-  return known.get(recording);
+  };
 }
 
 // The last row of a line, and the rows of lines `from` to `to` - 1, as text.

@@ -192,7 +192,7 @@ export function addScatter(page, points, choose) {
     ],
     note:
         'Drag to select points, click one for its board. Arrow keys go along the front, Enter opens a point.',
-    numbers: () => points.table.numbers([...new Set([x.name, y.name, ...points.keys])], points.front(x, y))
+    numbers: () => points.numbers([...new Set([x.name, y.name, ...points.keys])], points.front(x, y))
   });
   points.whenSelected(final => repaint(final));
   return {redraw: () => repaint(true)};
@@ -302,7 +302,7 @@ export function addParallel(page, points) {
     body: folded(
         'Axes', note('Ctrl-click takes or leaves an axis.'),
         h('select', {id: 'parallel-axes', multiple: true, size: 6, change}, options)),
-    numbers: () => points.table.numbers(state.names, points.selectedRows())
+    numbers: () => points.numbers(state.names, points.selectedRows())
   });
   // In one frame of the screen at most one picture, whatever moves the brush.
   let waiting = false;

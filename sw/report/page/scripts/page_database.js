@@ -1,6 +1,5 @@
 // The page of a database: its charts, filters, table, and the board of a point.
 import {addAnswers, addChart, addGroup, addHead, htmlTable} from './card.js';
-import {Boards} from './data.js';
 import {addParallel, addScatter} from './database_charts.js';
 import {button, folded, h, note, textBox} from './dom.js';
 import {resourceText} from './findings.js';
@@ -13,7 +12,7 @@ const kRowsShown = 100;
 // Filters: the values of each key that varies, to be switched off and on.
 function addFilters(page, points) {
   const shown = points.keys.filter(key => new Set(points.column(key)).size <= kMostChips);
-  if (points.table.has('status') && !points.table.isConstant('status')) shown.unshift('status');
+  if (points.has('status') && !points.isConstant('status')) shown.unshift('status');
   const groups = shown.map(key => {
     const values = points.column(key);
     const boxes = new Map();
@@ -56,7 +55,7 @@ function addTable(page, points, first, choose) {
   const show = () => {
     const rows = rowsInOrder();
     const opener = row => button('Board', () => choose(row), {'data-row': row});
-    const [, shown] = points.table.numbers(names, rows.slice(0, kRowsShown));
+    const [, shown] = points.numbers(names, rows.slice(0, kRowsShown));
     const table = htmlTable(['', ...names], shown.map((row, i) => [opener(rows[i]), ...row.map(shortened)]));
     [...table.querySelectorAll('th')].slice(1).forEach((cell, i) => {
       const name = names[i];
@@ -84,16 +83,14 @@ function addTable(page, points, first, choose) {
     title: 'The selected points',
     body: host,
     note: 'Click a column to sort by it.',
-    numbers: () =>
-        points.table.numbers(points.table.names.filter(name => !points.table.isConstant(name)), rowsInOrder())
+    numbers: () => points.numbers(points.allNames.filter(name => !points.isConstant(name)), rowsInOrder())
   });
 }
 
 export function showDatabase(page, {database}) {
+  const {boards} = database;
   const points = new Points(database);
-  const boards = new Boards(database.boards, points.size);
-  const hasNumbers = name =>
-      points.table.has(name) && points.column(name).some(each => typeof each === 'number');
+  const hasNumbers = name => points.has(name) && points.column(name).some(each => typeof each === 'number');
   const rateName = kRateColumns.find(hasNumbers) ?? points.figures[0];
   const kind = kRates[kRateColumns.indexOf(rateName)];
   const {best, ties} = points.fastest(rateName);
@@ -103,8 +100,8 @@ export function showDatabase(page, {database}) {
     return kind ? `${rateWith(amount, open)} frames/s, ${kind[1]}` : `${fixed(amount, 2)} ${rateName}`;
   };
   const keysOf = row => points.keys.map(key => `${key} ${value(points.column(key)[row])}`).join(', ');
-  const names = new Set(points.table.has('name') ? points.column('name') : []);
-  const statuses = points.table.has('status') ? points.column('status') : [];
+  const names = new Set(points.has('name') ? points.column('name') : []);
+  const statuses = points.has('status') ? points.column('status') : [];
   const bad = statuses.filter(status => status !== 'ok').length;
   addHead(page, {
     kind: 'database',
@@ -118,7 +115,7 @@ export function showDatabase(page, {database}) {
   // Of points with cameras, what sets the bound of the whole computer.
   const [ofSystem, ofCore] = ['system', 'core']
                                  .map(each => `bound.${each}_limited_by`)
-                                 .map(name => points.table.has(name) ? points.column(name) : []);
+                                 .map(name => points.has(name) ? points.column(name) : []);
   const tally = new Map();
   for (let row = 0; row < points.size; ++row) {
     const name = ofSystem[row] ?? ofCore[row];
@@ -172,9 +169,9 @@ export function showDatabase(page, {database}) {
   const choose = row => {
     points.chosen = row;
     scatter.redraw();
-    const figures = points.table.names.map(name => [name, points.column(name)[row]]);
+    const figures = points.allNames.map(name => [name, points.column(name)[row]]);
     board.replaceChildren(
-        textBox(boards.text(row), `point_${row}.yaml`),
+        textBox(boards.points[row].map(line => boards.lines[line]).join(''), `point_${row}.yaml`),
         folded('All figures', htmlTable(['column', 'value'], figures, 500)));
     boardChart.element.querySelector('h2').textContent = `Board of the point: ${keysOf(row)}`;
     boardChart.element.scrollIntoView({block: 'nearest'});

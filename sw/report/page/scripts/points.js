@@ -1,5 +1,4 @@
 // The points of a database: their columns, which of them are selected, and the front of Pareto.
-import {Table} from './data.js';
 import {kRates, value} from './format.js';
 
 export const kRateColumns = kRates.map(([name]) => `frames_per_second.${name}`);
@@ -12,13 +11,13 @@ const kFirst = [
 
 export class Points {
   constructor({columns, points, keys}) {
-    this.table = new Table(columns, points);
     this.size = points;
+    this.columns = new Map(columns.map(({name, ...column}) => [name, column]));
     this.addShares();
-    this.keys = keys.filter(key => this.table.has(key) && !this.table.isConstant(key));
-    this.constantKeys = keys.filter(key => this.table.has(key) && this.table.isConstant(key));
-    const figures = this.table.names.filter(name => !keys.includes(name));
-    const differ = figures.filter(name => !this.table.isConstant(name));
+    this.keys = keys.filter(key => this.has(key) && !this.isConstant(key));
+    this.constantKeys = keys.filter(key => this.has(key) && this.isConstant(key));
+    const figures = this.allNames.filter(name => !keys.includes(name));
+    const differ = figures.filter(name => !this.isConstant(name));
     this.figures = differ.length > 0 ? differ : figures;
     this.figures.sort((a, b) => this.rank(a) - this.rank(b));
     this.filters = new Map();  // of a name: row => whether the point passes
@@ -32,25 +31,41 @@ export class Points {
   }
   // Utilization of each bank and stalls of each port in percent, as run's stats.json has the former.
   addShares() {
-    if (!this.table.has('cycles')) return;
-    const cycles = this.table.column('cycles');
-    for (const name of [...this.table.names]) {
+    if (!this.has('cycles')) return;
+    const cycles = this.column('cycles');
+    for (const name of this.allNames) {
       const target = name.startsWith('banks.') ? name.replace(/busy_cycles$/, 'utilization') :
           name.startsWith('ports.')            ? name.replace(/stall_cycles$/, 'stall_percent') :
                                                  name;
-      if (target === name) continue;
-      if (this.table.isConstant(name)) continue;
+      if (target === name || this.isConstant(name)) continue;
       const factor = target.endsWith('percent') ? 100 : 1;
-      this.table.add(
-          target,
-          this.table.column(name).map((value, row) => value === null ? null : factor * value / cycles[row]));
+      const list = this.column(name).map((each, row) => each === null ? null : factor * each / cycles[row]);
+      this.columns.set(target, {list});
     }
   }
+  // The columns that are offered, and all columns.
   get names() {
     return [...this.figures, ...this.keys];
   }
+  get allNames() {
+    return [...this.columns.keys()];
+  }
+  has(name) {
+    return this.columns.has(name);
+  }
+  isConstant(name) {
+    return 'constant' in this.columns.get(name);
+  }
+  // The values of a column, one for each row.
   column(name) {
-    return this.table.column(name);
+    const column = this.columns.get(name);
+    column.list ??= new Array(this.size).fill(column.constant);
+    return column.list;
+  }
+  // These columns of these rows, as addChart() takes its numbers.
+  numbers(names, rows) {
+    const columns = names.map(name => this.column(name));
+    return [names, rows.map(row => columns.map(values => values[row]))];
   }
   isNumeric(name) {
     return this.column(name).every(value => value === null || typeof value === 'number');
@@ -79,7 +94,7 @@ export class Points {
   }
 
   hasUncertainty(name) {
-    return this.table.has(`${name}_uncertainty`);
+    return this.has(`${name}_uncertainty`);
   }
   // How far each value of a column may be off.
   uncertainty(name) {
@@ -88,8 +103,7 @@ export class Points {
 
   // Returns the number of banks that the allocation of a point names.
   banksUsed() {
-    const lists =
-        this.table.names.filter(name => name.startsWith('allocation.')).map(name => this.column(name));
+    const lists = this.allNames.filter(name => name.startsWith('allocation.')).map(name => this.column(name));
     return row => {
       const banks = new Set(lists.flatMap(list => value(list[row]).match(/[^[\], ]+/g) ?? []));
       return banks.size - (banks.has('none') ? 1 : 0);
@@ -100,10 +114,10 @@ export class Points {
   // there is none.
   sound(name) {
     const numbers = this.column(name);
-    const limits = this.table.names.filter(each => /^area\..*_percent$/.test(each))
+    const limits = this.allNames.filter(each => /^area\..*_percent$/.test(each))
                        .map(each => [each, 100])
                        .concat(['left', 'right'].map(side => [`cameras.${side}.dropped_pixels`, 0]))
-                       .filter(([each]) => this.table.has(each))
+                       .filter(([each]) => this.has(each))
                        .map(([each, most]) => [this.column(each), most]);
     const all = [...numbers.keys()].filter(row => typeof numbers[row] === 'number');
     const sound = all.filter(row => limits.every(([values, most]) => values[row] <= most));
@@ -117,7 +131,7 @@ export class Points {
     const rows = this.sound(name);
     const banksUsed = this.banksUsed();
     const best = rows.reduce((a, b) => rates[b] > rates[a] ? b : a, rows[0]);
-    const slices = this.table.has('area.slices') ? this.column('area.slices') : rates.map(() => 0);
+    const slices = this.has('area.slices') ? this.column('area.slices') : rates.map(() => 0);
     const ties = rows.filter(row => rates[best] - rates[row] <= open[best] + open[row])
                      .map(row => ({row, banks: banksUsed(row), slices: slices[row], rate: rates[row]}));
     ties.sort((a, b) => a.banks - b.banks || a.slices - b.slices || b.rate - a.rate);

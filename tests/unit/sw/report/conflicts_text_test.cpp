@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -37,11 +38,10 @@ platform::BoardConfig board(int width = 8, int height = 3) {
 }
 
 TEST(ConflictsText, SumsFramesAndShowsTheBanksThatAreUsed) {
-  StripSums sums;
-  sums.add(frame());
-  sums.add(frame());
+  fpga::FrameConflicts sums;
+  for (int i = 0; i < 2; ++i) add_frame(frame(), sums);
   const platform::Conflicts none(board());
-  EXPECT_EQ(conflicts_text(conflict_summary(board(), none.recorder(), sums.sums())),
+  EXPECT_EQ(conflicts_text(conflicts_document(board(), none.recorder(), sums)),
             "core         0 cycles in 0 frames\n"
             "waits        none\n"
             "rows              waits %       a %       b %\n"
@@ -78,12 +78,12 @@ class MadeConflicts {
       for (const std::uint64_t group : groups) end_group(strip * group);
     }
     recorder.end_frame(cycle, control);
-    sums_.add(conflicts_.take_frames().front());
+    add_frame(conflicts_.take_frames().front(), sums_);
   }
 
   // What is said of the only wait behind its cycles and percent.
   std::string place() const {
-    const std::string text = conflicts_text(conflict_summary(board_, conflicts_.recorder(), sums_.sums()));
+    const std::string text = conflicts_text(conflicts_document(board_, conflicts_.recorder(), sums_));
     const std::size_t begin = text.find(" %), ") + 5;
     return text.substr(begin, text.find('\n', begin) - begin);
   }
@@ -91,7 +91,7 @@ class MadeConflicts {
  private:
   platform::BoardConfig board_ = board(32, 15);
   platform::Conflicts conflicts_;
-  StripSums sums_;
+  fpga::FrameConflicts sums_;
 };
 
 constexpr Parts kAll = {1, 1, 1, 1, 1, 1, 1, 1};

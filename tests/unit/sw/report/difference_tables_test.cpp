@@ -9,8 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "sw/report/diff_verdict.h"
-
 namespace stereotlm::report {
 namespace {
 

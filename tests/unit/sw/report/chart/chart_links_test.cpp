@@ -3,16 +3,27 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <string>
+
 #include "platform/config/board_yaml.h"
+#include "platform/core_run.h"
+#include "sw/runs/simulation/camera_simulation.h"
+#include "sw/stats/stats_json.h"
+#include "tests/support/board_of_random.h"
+#include "tests/support/fork.h"
+#include "tests/support/noise_pairs.h"
 
 namespace stereotlm::report {
 namespace {
 
+using platform::BoardConfig;
 using platform::load_board;
+using platform::Statistics;
 using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
+using ::testing::UnorderedElementsAre;
 
 std::vector<std::string> ids(const std::vector<ChartLink>& links) {
   std::vector<std::string> all;
@@ -77,6 +88,136 @@ TEST(ChartLinks, HaveThePeaksOfTheirClocks) {
   EXPECT_DOUBLE_EQ(link_of(board, "edge-right_capture-pci").peak, 8 * 66.667);
   EXPECT_DOUBLE_EQ(link_of(board, "edge-local_bus-host").peak, 200);
   EXPECT_DOUBLE_EQ(link_of(board, "edge-left_pixel-bank0").peak, 80) << "a port makes one access a cycle";
+}
+
+// The sum over the links with this end.
+double sum_of(const ChartTraffic& traffic, const BoardConfig& board, const std::string& block) {
+  double sum = 0;
+  for (const ChartLink& link : chart_links(board, traffic.extent)) {
+    if (link.from == block || link.to == block) sum += traffic.megabytes_per_second.at(link.id());
+  }
+  return sum;
+}
+
+void expect_close(double found, double expected, const std::string& what) {
+  EXPECT_NEAR(found, expected, 1e-9 * (1 + expected)) << what;
+}
+
+// What is written is read again.
+void expect_to_read(const Statistics& statistics, const BoardConfig& board) {
+  const std::string text = stats::stats_json(statistics, {});
+  const bool camera = statistics.computer.has_value();
+  EXPECT_EQ(
+      stats::stats_json(stats::read_stats(text, board, statistics.fidelity, statistics.frames, camera), {}),
+      text);
+}
+
+// Every link has its MB/s, and those of each bank, port and PCI master have the sums of the statistics.
+void expect_sums_of(const Statistics& statistics, const BoardConfig& board) {
+  expect_to_read(statistics, board);
+  const ChartTraffic traffic = chart_traffic(board, statistics);
+  EXPECT_EQ(traffic.megabytes_per_second.size(), chart_links(board, traffic.extent).size());
+  for (const platform::BankStatistics& bank : statistics.banks) {
+    expect_close(sum_of(traffic, board, "bank-" + bank.name), bank.megabytes_per_second, bank.name);
+    EXPECT_EQ(traffic.busy_percent.at("bank-" + bank.name), 100 * bank.utilization);
+  }
+  const double cycles = static_cast<double>(statistics.cycles);
+  for (const platform::PortStatistics& port : statistics.ports) {
+    double sum = sum_of(traffic, board, "port-" + port.name);
+    if (statistics.computer && port.name == "host")
+      sum -= traffic.megabytes_per_second.at("edge-local_bus-host");
+    expect_close(sum, 4 * static_cast<double>(port.grants) * board.fpga.clock_mhz / cycles, port.name);
+    expect_close(traffic.waits_percent.at("port-" + port.name),
+                 100 * static_cast<double>(port.stall_cycles) / cycles, port.name);
+  }
+  if (!statistics.computer) return;
+  const platform::ComputerStatistics& around = *statistics.computer;
+  const double us = static_cast<double>(around.pci_clocks) / board.pci.clock_mhz;
+  const bool to_host = board.capture.destination == platform::CaptureDestination::kHostMemory;
+  std::uint64_t of_host_memory = 0;
+  const std::map<std::string, std::string> links = {{"host", "edge-cpu-pci"},
+                                                    {"left_capture", "edge-left_capture-pci"},
+                                                    {"right_capture", "edge-right_capture-pci"},
+                                                    {"bridge", "edge-bridge-pci"},
+                                                    {"load", "edge-load-pci"}};
+  for (const platform::PciMasterStatistics& master : around.pci_masters) {
+    expect_close(traffic.megabytes_per_second.at(links.at(master.name)),
+                 4 * static_cast<double>(master.words) / us, master.name);
+    const bool is_capture = master.name == "left_capture" || master.name == "right_capture";
+    if (master.name == "bridge" || (to_host && is_capture)) of_host_memory += master.words;
+  }
+  expect_close(traffic.megabytes_per_second.at("edge-pci-host_memory"),
+               4 * static_cast<double>(of_host_memory) / us, "host memory");
+  expect_close(traffic.megabytes_per_second.at("edge-pci-bridge"),
+               4 * static_cast<double>(around.posted_words) / us, "posted");
+}
+
+TEST(ChartTraffic, OfRandomBoardsHasTheSumsOfTheirStatistics) {
+  test::RandomKnobs knobs = test::RandomKnobs::all();
+  knobs.large_images = false;
+  for (std::uint64_t seed = 0; seed < 100; ++seed) {
+    const test::RandomBoard random = test::make_random_board(seed, knobs);
+    SCOPED_TRACE(test::describe(random));
+    const BoardConfig board = test::board_config(random);
+    const auto frames = static_cast<std::uint64_t>(random.frames);
+    expect_sums_of(platform::run_core(board, test::board_tables(random), frames), board);
+  }
+}
+
+TEST(ChartTraffic, OfRandomComputersHasTheSumsOfTheirStatistics) {
+  test::RandomKnobs knobs = test::RandomKnobs::all();
+  knobs.large_images = false;
+  std::vector<test::ChildWork> jobs;
+  for (std::uint64_t seed = 0; seed < 24; ++seed) {
+    jobs.emplace_back([seed, knobs] {
+      const test::RandomComputer random = test::make_random_computer(seed, knobs);
+      SCOPED_TRACE(test::describe(random.board));
+      const BoardConfig board = test::board_config(random);
+      const platform::Tables tables = test::board_tables(random.board);
+      test::NoisePairs pairs(board.image.width, board.image.height);
+      Binder binder;
+      runs::CameraSimulation simulation(board, tables, pairs, static_cast<std::uint64_t>(random.input.frames),
+                                        binder, fpga::Fidelity::kTiming);
+      while (!simulation.finished()) simulation.advance();
+      expect_sums_of(simulation.statistics(), board);
+      return std::string();
+    });
+  }
+  for (const test::ChildResult& result : test::run_in_children(jobs, 2))
+    EXPECT_TRUE(result.ok()) << result.text;
+}
+
+// A run without accesses.
+Statistics idle_run() {
+  Statistics run;
+  run.frames = 3;
+  run.cycles = 400;
+  run.bound.core_limited_by = "bank bank0";
+  for (const fpga::CorePort& port : fpga::kPorts) run.ports.push_back({port.name});
+  for (const platform::BankConfig& bank : BoardConfig().banks) run.banks.push_back({bank.name});
+  return run;
+}
+
+TEST(ChartTraffic, NamesTheKindOfEachRate) {
+  Statistics run = idle_run();
+  run.frames_per_second.core = 12.345;
+  run.bound.core = 123.45;
+  EXPECT_THAT(chart_traffic({}, run).summary,
+              ElementsAre("12.35 frames/s, core only; 3 frames", "bound 123.5 frames/s, set by bank0"));
+}
+
+TEST(ChartTraffic, MarksWhatLimitsTheRate) {
+  const auto limiting = [](const std::string& resource) {
+    Statistics run = idle_run();
+    run.bound.core_limited_by = resource;
+    return chart_traffic({}, run).limiting;
+  };
+  EXPECT_THAT(limiting("bank bank0"), UnorderedElementsAre("bank-bank0"));
+  EXPECT_THAT(limiting("matcher"), UnorderedElementsAre("stage-matcher"));
+  EXPECT_THAT(limiting("port left_lut"), UnorderedElementsAre("port-left_lut"));
+  EXPECT_THAT(limiting("camera"), UnorderedElementsAre("part-left_camera", "part-right_camera"));
+  EXPECT_THAT(limiting("pci"), UnorderedElementsAre("part-pci"));
+  EXPECT_THAT(limiting("bridge"), UnorderedElementsAre("part-bridge"));
 }
 
 }  // namespace
