@@ -19,7 +19,7 @@
 #include "platform/config/board_area.h"
 #include "platform/config/board_yaml.h"
 #include "platform/config/buffer_layout.h"
-#include "platform/config/key_paths.h"
+#include "platform/config/board_keys.h"
 #include "sw/files/base64.h"
 #include "sw/files/shell_word.h"
 #include "sw/files/whole_file.h"
