@@ -7,8 +7,8 @@
 #include "platform/config/tables.h"
 #include "sw/report/page_data/recording_data.h"
 #include "sw/runs/explanation.h"
-#include "sw/runs/rerun.h"
 #include "sw/runs/recorded_run.h"
+#include "sw/runs/rerun.h"
 
 namespace stereotlm::report {
 
