@@ -10,9 +10,11 @@ foreach(library ${package_libraries})
   target_compile_features(stereotlm_${library} PUBLIC cxx_std_17)
   install(TARGETS stereotlm_${library} EXPORT stereotlm_targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 endforeach()
-install(EXPORT stereotlm_targets NAMESPACE stereotlm:: FILE stereotlmTargets.cmake DESTINATION ${package_folder})
+install(EXPORT stereotlm_targets NAMESPACE stereotlm:: FILE stereotlmTargets.cmake DESTINATION
+  ${package_folder})
 
-install(DIRECTORY models platform DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/stereotlm FILES_MATCHING PATTERN "*.h")
+install(DIRECTORY models platform DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/stereotlm FILES_MATCHING PATTERN
+  "*.h")
 
 configure_package_config_file(cmake/stereotlmConfig.cmake.in ${PROJECT_BINARY_DIR}/stereotlmConfig.cmake
   INSTALL_DESTINATION ${package_folder} NO_SET_AND_CHECK_MACRO)

@@ -22,5 +22,7 @@ int sc_main(int, char*[]) { return 0; }" STEREOTLM_SYSTEMC_FITS_CXX${CMAKE_CXX_S
 unset(CMAKE_REQUIRED_INCLUDES)
 unset(CMAKE_REQUIRED_LIBRARIES)
 if(NOT STEREOTLM_SYSTEMC_FITS_CXX${CMAKE_CXX_STANDARD})
-  message(FATAL_ERROR "CMAKE_CXX_STANDARD = ${CMAKE_CXX_STANDARD}: must be that for which ${SYSTEMC_LIBRARY} was built; Debian's is 17")
+  message(FATAL_ERROR
+    "CMAKE_CXX_STANDARD = ${CMAKE_CXX_STANDARD}: must be that for which "
+    "${SYSTEMC_LIBRARY} was built; Debian's is 17")
 endif()
