@@ -26,7 +26,7 @@ int line_of(const YAML::Mark& mark) { return mark.is_null() ? 1 : mark.line + 1;
 // Reads a map of the file. `path` precedes the keys in messages.
 class Reader {
  public:
-  explicit Reader(YAML::Node map, std::string path = "") : map_(std::move(map)), path_(std::move(path)) {
+  explicit Reader(const YAML::Node& map, std::string path = "") : map_(map), path_(std::move(path)) {
     if (!map_.IsMap())
       refuse_line(line_of(map_.Mark()), path_ + "no map", "must be a map of keys and values");
     std::set<std::string> keys;

@@ -30,8 +30,8 @@ cv::Mat in_colors(const cv::Mat1f& values, double first, double last);
 inline constexpr int kTextHeight = 10;  // pixels
 int text_width(const std::string& text, double scale = 1);
 
-// Draws UTF-8; of any other text, '?' for each byte that is not ASCII. `left_bottom` is the bottom left corner
-// of the first letter.
+// Draws UTF-8; of any other text, '?' for each byte that is not ASCII. `left_bottom` is the bottom left
+// corner of the first letter.
 void draw_text(cv::Mat& canvas, const std::string& text, cv::Point left_bottom, double scale = 1,
                const cv::Scalar& color = kBlack);
 

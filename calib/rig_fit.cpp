@@ -232,9 +232,9 @@ Eigen::Isometry3d moved(const Eigen::Isometry3d& pose, const Step& step) {
   return result;
 }
 
-// The pose of the grid, which maps grid coordinates to camera coordinates of the left camera. It minimises the
-// squared distances, in the pictures of both cameras, between the used corners as found and their positions
-// under this pose (Gauss-Newton).
+// The pose of the grid, which maps grid coordinates to camera coordinates of the left camera. It minimises
+// the squared distances, in the pictures of both cameras, between the used corners as found and their
+// positions under this pose (Gauss-Newton).
 class PoseFit {
  public:
   PoseFit(const Rig& rig, const GridShape& shape, const GridPair& pair, const std::vector<bool>& used)

@@ -11,8 +11,8 @@ inline sc_core::sc_time to_time(std::uint64_t ps) { return sc_core::sc_time::fro
 inline std::uint64_t to_ps(const sc_core::sc_time& time) { return time.value(); }
 inline std::uint64_t now_ps() { return to_ps(sc_core::sc_time_stamp()); }
 
-// Throws std::invalid_argument unless the kernel's time resolution is 1 ps, its default. The conversions above
-// need it.
+// Throws std::invalid_argument unless the kernel's time resolution is 1 ps, its default. The conversions
+// above need it.
 inline void check_resolution() {
   if (sc_core::sc_get_time_resolution() != sc_core::sc_time(1, sc_core::SC_PS)) {
     throw std::invalid_argument("time resolution = " + sc_core::sc_get_time_resolution().to_string() +

@@ -108,9 +108,10 @@ PciDemand pci_demand(const BoardConfig& board, bool whole_pictures, std::optiona
   return demand;
 }
 
-// Either the bus serves every transfer of the load when it is due. Or the load has a backlog and requests all the
-// time: then it gets a burst between any two bursts of another master, and the latency timer cuts all bursts. A
-// frame may see both. At most one transfer that is due and one that is cut lie partly outside of it.
+// Either the bus serves every transfer of the load when it is due. Or the load has a backlog and requests all
+// the time: then it gets a burst between any two bursts of another master, and the latency timer cuts all
+// bursts. A frame may see both. At most one transfer that is due and one that is cut lie partly outside of
+// it.
 double pci_rate(const BoardConfig& board, bool whole_pictures) {
   const double hz = board.pci.clock_mhz * 1e6;
   const double alone = static_cast<double>(pci_demand(board, whole_pictures, std::nullopt).clocks);

@@ -100,8 +100,8 @@ std::vector<RateBound> computer_bounds(const BoardConfig& board, const FrameAcce
 void add_system_bound(const BoardConfig& board, const FrameAccesses& accesses, bool whole_pictures,
                       Bound& bound);
 
-// An upper bound for the steady rate of a whole computer that loses no pixels: bound.system of core_bound() and
-// add_system_bound().
+// An upper bound for the steady rate of a whole computer that loses no pixels: bound.system of core_bound()
+// and add_system_bound().
 double steady_bound(const BoardConfig& board, const FrameAccesses& accesses);
 
 }  // namespace stereotlm::platform

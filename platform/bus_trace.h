@@ -24,8 +24,8 @@
 namespace stereotlm::platform {
 
 // Traces the buses and the queues of a computer in a window, at every fidelity with the same records
-// (trace_records.h). The controls of the blocks report what they do. A computer skips no burst that belongs to
-// the window. Plain C++.
+// (trace_records.h). The controls of the blocks report what they do. A computer skips no burst that belongs
+// to the window. Plain C++.
 //
 // The window is a range of times, or the time of a frame of the core, from its start strobe to its end. A
 // burst belongs to it if the burst ends after the window begins, and requests its bus before the window ends.

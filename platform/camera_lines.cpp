@@ -12,8 +12,8 @@ namespace {
 constexpr std::array<std::size_t, 2> kMasters = {kLeftCapture, kRightCapture};
 constexpr pci::PciBusControl::Masters kCaptures =
     pci::PciBusControl::mask_of(kLeftCapture) | pci::PciBusControl::mask_of(kRightCapture);
-// Each time is rounded to whole ps. So the distance of two clocks, or of two pixels, may be 1 ps longer in one
-// line than in another. Two such distances lie between the beginning of a line and two times whose order
+// Each time is rounded to whole ps. So the distance of two clocks, or of two pixels, may be 1 ps longer in
+// one line than in another. Two such distances lie between the beginning of a line and two times whose order
 // matters. Rounding moves each of the two distances by up to 1 ps. The third ps keeps the times apart.
 constexpr std::int64_t kRounding = 3;
 // Recording stops when the records exceed the skipped lines by this number.
@@ -27,8 +27,8 @@ std::int64_t from_to(std::uint64_t from_ps, std::uint64_t to_ps) {
   return static_cast<std::int64_t>(to_ps) - static_cast<std::int64_t>(from_ps);
 }
 
-// Against the clocks of the local bus those of the PCI bus may have few phases. Then two phases that differ by
-// less than half a step are the same.
+// Against the clocks of the local bus those of the PCI bus may have few phases. Then two phases that differ
+// by less than half a step are the same.
 std::int64_t phase_tolerance_ps(const Clock& pci, const Clock& local) {
   return static_cast<std::int64_t>(local.edge_ps(1) / pci.phases_against(local) / 2) - kRounding;
 }
@@ -99,7 +99,8 @@ const CameraLines::Line* CameraLines::find(const Beginning& beginning) const {
   return found != bounds_.end() ? &lines_[static_cast<std::size_t>(found - bounds_.begin())] : nullptr;
 }
 
-// Whether the line ends before `end_ps`, before the first request of any other master, and before the next line.
+// Whether the line ends before `end_ps`, before the first request of any other master, and before the next
+// line.
 bool CameraLines::fits_before(const Line& line, std::uint64_t now_ps, std::uint64_t end_ps) const {
   const Clock& local = local_bus_.clock();
   const std::uint64_t idle_clock = local.edge_at_or_after(now_ps) + line.idle_clock;
@@ -234,8 +235,8 @@ void CameraLines::end_record() {
   }
 }
 
-// Whether the record holds for later lines: all words were stored, none can have found its FIFO full, no other
-// master had a bus, and the bounds hold some time. `buses`: what the buses have done in the line.
+// Whether the record holds for later lines: all words were stored, none can have found its FIFO full, no
+// other master had a bus, and the bounds hold some time. `buses`: what the buses have done in the line.
 bool CameraLines::record_is_whole(const BusCounts& buses) const {
   if (captures_[0].fifo().next_row() != record_.row + 1) return false;  // the next line came before the end
   std::uint64_t transactions = 0;

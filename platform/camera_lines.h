@@ -16,33 +16,37 @@ namespace stereotlm::platform {
 
 // Skips lines of the cameras that repeat what an earlier line did.
 //
-// Both cameras send a line at the same time. Its words take bursts on the PCI bus, wait in the bridge, and take
-// bursts on the local bus to their banks. What happens when depends on three series of times: the arrivals of
-// the first and of the last pixel of each word, the clocks of the PCI bus, and the clocks of the local bus. These
-// are seldom in step, so the times of one line seldom come again. But only their order matters: which words are
-// complete when a clock of the PCI bus begins, and which clock of the local bus is the next one then.
+// Both cameras send a line at the same time. Its words take bursts on the PCI bus, wait in the bridge, and
+// take bursts on the local bus to their banks. What happens when depends on three series of times: the
+// arrivals of the first and of the last pixel of each word, the clocks of the PCI bus, and the clocks of the
+// local bus. These are seldom in step, so the times of one line seldom come again. But only their order
+// matters: which words are complete when a clock of the PCI bus begins, and which clock of the local bus is
+// the next one then.
 //
 // So a line is stepped once and recorded: what it counts, and in which clocks it ends. Beside that stands how
-// far the clocks of the PCI bus could move against the pixels, and those of the local bus against those of the
-// PCI bus, before two times would change places. A later line is skipped if it begins within these bounds, and
-// if the same master had the PCI bus last (the bus is granted in turn). A line that no record fits is stepped.
+// far the clocks of the PCI bus could move against the pixels, and those of the local bus against those of
+// the PCI bus, before two times would change places. A later line is skipped if it begins within these
+// bounds, and if the same master had the PCI bus last (the bus is granted in turn). A line that no record
+// fits is stepped.
 //
 // This holds only for lines that nothing else touches:
 // - Bridge, local bus and PCI bus are idle when the line begins, and both boards request then.
 // - The words go to two banks, and each bank takes one word a cycle, beside the frame of the core. The local
 //   bus and the core must have the same clock.
 // - Until the last word is stored, no other master requests the PCI bus, and no other block has an event.
-// - No pixel arrives when its FIFO would be full if no word left: else it would also matter in which data clock
+// - No pixel arrives when its FIFO would be full if no word left: else it would also matter in which data
+// clock
 //   each word leaves.
 // The first line of a picture and the last one are always stepped.
 class CameraLines {
  public:
-  // `has_pixels`: whether the words of the skipped lines are written. The other arguments outlive this object.
+  // `has_pixels`: whether the words of the skipped lines are written. The other arguments outlive this
+  // object.
   CameraLines(pci::PciBusControl& pci_bus, pci::BridgeControl& bridge, FastBoard& board,
               std::array<capture::CaptureControl, 2>& captures, bool has_pixels);
 
-  // Whether a line begins with the next decision of the PCI bus: both boards wait for the same line, and the bus
-  // is free as they request it.
+  // Whether a line begins with the next decision of the PCI bus: both boards wait for the same line, and the
+  // bus is free as they request it.
   bool begins() const {
     return captures_[0].is_between_lines() && captures_[1].is_between_lines() &&
            captures_[0].requested_ps() == captures_[1].requested_ps() &&
@@ -92,7 +96,8 @@ class CameraLines {
              least.last_granted == beginning.last_granted;
     }
   };
-  // What a line does. Clocks are counted from the one with which it begins, on the local bus from the next one.
+  // What a line does. Clocks are counted from the one with which it begins, on the local bus from the next
+  // one.
   struct Line {
     struct Side {
       pci::PciBusControl::MasterCounts pci;
@@ -109,8 +114,8 @@ class CameraLines {
   // The line that is being recorded.
   struct Record {
     Beginning beginning;
-    // How far the clocks of the PCI bus could move against the pixels, and those of the local bus against those
-    // of the PCI bus.
+    // How far the clocks of the PCI bus could move against the pixels, and those of the local bus against
+    // those of the PCI bus.
     std::int64_t pci_earlier_ps = kFar, pci_later_ps = kFar;
     std::int64_t local_earlier_ps = kFar, local_later_ps = kFar;
     Line line;                      // so far

@@ -131,8 +131,8 @@ void audit_captures(const ComputerStatistics& computer, const ComputerCounters& 
   }
 }
 
-// The frames from power-up need not be whole turns of the lists. Their rate is compared with the bounds of just
-// these frames.
+// The frames from power-up need not be whole turns of the lists. Their rate is compared with the bounds of
+// just these frames.
 void audit_rates(const BoardConfig& config, const FrameAccesses& accesses, bool whole_pictures,
                  const Statistics& statistics, Audit& audit) {
   constexpr double kRoundingFactor = 1 + 1e-9;  // rates are rounded quotients

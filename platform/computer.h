@@ -25,8 +25,8 @@ namespace stereotlm::platform {
 
 // The whole computer (paper figure 4; `--source camera`): two cameras, two capture boards, the FPGA board
 // behind its PCI bridge, host memory, and the processor that runs `program`. The board key `pci.load` adds a
-// traffic generator. DeviceMap has the addresses of the devices. The core is at Fidelity::kCycle; FastComputer
-// is the computer at the others.
+// traffic generator. DeviceMap has the addresses of the devices. The core is at Fidelity::kCycle;
+// FastComputer is the computer at the others.
 class Computer : public sc_core::sc_module, public ComputerView {
  public:
   // `program`, `left` and `right` outlive the computer. Throws std::invalid_argument if the board has

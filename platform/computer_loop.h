@@ -22,8 +22,8 @@
 namespace stereotlm::platform {
 
 // The computer without its processor at fidelity fast or timing: the controls of all blocks, bound directly
-// and stepped in the order of their events (contract section 3, "To the clock"). No kernel. The master kHost of
-// the PCI bus is free for the processor's bridge.
+// and stepped in the order of their events (contract section 3, "To the clock"). No kernel. The master kHost
+// of the PCI bus is free for the processor's bridge.
 class ComputerLoop : private pci::BridgeControl::Host {
  public:
   // `host_memory` has `host_memory_bytes` bytes. It, `left` and `right` outlive the loop. Throws

@@ -24,8 +24,8 @@
 namespace stereotlm::platform {
 
 // The board of board.h at fidelity fast or timing, without modules and without the kernel: the same controls,
-// bound directly. Only the local bus reaches it. Its frames always work directly on memory; one that cannot is
-// an error.
+// bound directly. Only the local bus reaches it. Its frames always work directly on memory; one that cannot
+// is an error.
 class FastBoard : private fpga::LocalBusControl::Core,
                   private fpga::CoreRegisters::Starter,
                   private fpga::FastCore::Board,

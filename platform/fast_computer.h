@@ -21,9 +21,9 @@
 
 namespace stereotlm::platform {
 
-// The computer of computer.h at fidelity fast or timing. Only the processor with its bridge and its memory are
-// modules. All other blocks are stepped by ComputerLoop, which runs ahead of the kernel up to the next time at
-// which the program sees something: the end of a register access, or an interrupt.
+// The computer of computer.h at fidelity fast or timing. Only the processor with its bridge and its memory
+// are modules. All other blocks are stepped by ComputerLoop, which runs ahead of the kernel up to the next
+// time at which the program sees something: the end of a register access, or an interrupt.
 class FastComputer : public sc_core::sc_module,
                      public ComputerView,
                      private InterruptIf,

@@ -28,8 +28,8 @@ struct FrameRuns {
   std::vector<TraceRun> runs;
 };
 
-// A burst on the PCI bus or on the local bus. Times are since power-up, and each is the beginning of a clock of
-// the bus.
+// A burst on the PCI bus or on the local bus. Times are since power-up, and each is the beginning of a clock
+// of the bus.
 //
 // On the local bus a posted burst requests the bus from the post of its first word on, a read and a burst of
 // DMA from their start on. The list has no burst that the local bus refuses.
@@ -40,8 +40,8 @@ struct BusBurst {
   // PCI bus: "host", "left_capture", "right_capture", "bridge", "load". Local bus: "posted", "read", "dma0",
   // "dma1".
   const char* master = "";
-  // PCI bus: "host_memory", "bridge", "bridge_registers", "left_capture", "right_capture", "load", or "none" for
-  // a master abort. Local bus: the name of a bank, or "registers" for those of the core.
+  // PCI bus: "host_memory", "bridge", "bridge_registers", "left_capture", "right_capture", "load", or "none"
+  // for a master abort. Local bus: the name of a bank, or "registers" for those of the core.
   const char* target = "";
   bool write = false;
   std::uint64_t address = 0;     // on the bus
@@ -54,7 +54,8 @@ struct BusBurst {
 
 // A queue holds this number of words from a time on.
 //
-// - The FIFO of a capture board: its complete words. A word comes with its last pixel, and leaves at the end of
+// - The FIFO of a capture board: its complete words. A word comes with its last pixel, and leaves at the end
+// of
 //   its data clock, or of the burst that loses it. There is one level for each time.
 // - The posted words: as each write is posted, and as the places of a posted burst become free, which is the
 //   end of its idle clock. Of two levels at the same time the later one holds.

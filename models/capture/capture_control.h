@@ -93,7 +93,8 @@ class CaptureControl : public FrameReceiver,
   // Throws std::invalid_argument if the configuration has problems.
   explicit CaptureControl(const CaptureBoardConfig& config);
 
-  // The neighbours outlive the board. Without a partner it decides alone. It may trigger any number of cameras.
+  // The neighbours outlive the board. Without a partner it decides alone. It may trigger any number of
+  // cameras.
   void bind(pci::PciSlot& slot, FrameCamera& camera);
   void bind_partner(CapturePartner& partner) { partner_ = &partner; }
   void bind_triggered(FrameCamera& camera) { triggered_.push_back(&camera); }
@@ -123,14 +124,15 @@ class CaptureControl : public FrameReceiver,
 
   void begin_frame(const VideoFrame& frame) override;
   bool can_start(std::uint64_t frame, std::uint64_t begin_ps) override;
-  // These throw std::logic_error for a grant that was not requested, or for a time before its request, and for
-  // the end of a burst that does not run or cannot have this result.
+  // These throw std::logic_error for a grant that was not requested, or for a time before its request, and
+  // for the end of a burst that does not run or cannot have this result.
   pci::PciBurst begin_burst(std::uint64_t address_clock_ps) override;
   void end_burst(const pci::BurstResult& result) override;
 
   // To skip lines that repeat:
   //
-  // Whether the board waits for the next line of its picture; and for the time from which it requests the bus.
+  // Whether the board waits for the next line of its picture; and for the time from which it requests the
+  // bus.
   bool is_between_lines() const { return bus_state_ == BusState::kRequested && fifo_.is_between_lines(); }
   std::uint64_t requested_ps() const { return requested_ps_; }
   const CaptureFifo& fifo() const { return fifo_; }

@@ -76,8 +76,8 @@ class CaptureFifo {
   std::uint64_t first_request_ps(int row) const {
     return arrival_ps(std::min(trigger_words_, words_per_line_) * kernels::kPixelsPerWord - 1, row);
   }
-  // From `first_ps` on, and before `end_ps`, as many words have begun, and are complete, as at `time_ps`. Some
-  // of this row's pixels have arrived then, but none of the next row's, which exists.
+  // From `first_ps` on, and before `end_ps`, as many words have begun, and are complete, as at `time_ps`.
+  // Some of this row's pixels have arrived then, but none of the next row's, which exists.
   struct Span {
     std::uint64_t first_ps = 0;
     std::uint64_t end_ps = 0;

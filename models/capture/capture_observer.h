@@ -32,15 +32,15 @@ class CaptureObserver {
   virtual void interrupt_cleared(std::uint64_t now_ps) = 0;
 };
 
-// Receives the words of a capture board's FIFO, for traces. Words that come are reported by their times, and so are
-// words that leave: later than they do, and perhaps several times. Plain C++.
+// Receives the words of a capture board's FIFO, for traces. Words that come are reported by their times, and
+// so are words that leave: later than they do, and perhaps several times. Plain C++.
 class FifoObserver {
  public:
   virtual ~FifoObserver() = default;
   // The last pixel of a word has arrived.
   virtual void word_came(std::uint64_t time_ps) = 0;
-  // All words that leave at this time: the end of their data clock, of a burst that loses them, or of a line that is
-  // skipped.
+  // All words that leave at this time: the end of their data clock, of a burst that loses them, or of a line
+  // that is skipped.
   virtual void words_left(std::uint64_t time_ps, std::size_t words) = 0;
 };
 

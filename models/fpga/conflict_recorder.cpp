@@ -145,7 +145,8 @@ void ConflictRecorder::repeat(const GroupConflicts* const* groups, std::size_t s
   }
 }
 
-// Adds the stalls of a group that comes `count` times, every `step` groups, `first` groups after the next one.
+// Adds the stalls of a group that comes `count` times, every `step` groups, `first` groups after the next
+// one.
 void ConflictRecorder::add_stalls(const GroupConflicts& group, std::size_t first, std::size_t count,
                                   std::size_t step, const memory::Arbitration& arbitration) {
   for (const memory::Stall& stall : group.stalls) {
@@ -237,7 +238,8 @@ void ConflictRecorder::end_frame(std::uint64_t end_cycle, const CoreControl& con
   ended_.push_back(std::move(frame_));
 }
 
-// Distributes the words of uncontended bursts over the strips, and their stalls over the tiles and the strips.
+// Distributes the words of uncontended bursts over the strips, and their stalls over the tiles and the
+// strips.
 void ConflictRecorder::count_served() {
   const auto first_behind = [](const std::vector<std::uint64_t>& ends, std::uint64_t cycle) {
     return static_cast<std::size_t>(std::upper_bound(ends.begin(), ends.end(), cycle) - ends.begin());

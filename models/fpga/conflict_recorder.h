@@ -30,8 +30,8 @@ struct TileGrid {
   std::size_t strips_of_tile;
 };
 
-// The cycles of one group of four columns of the matcher, up to the end of the cycle in which it is complete; or
-// a part of them.
+// The cycles of one group of four columns of the matcher, up to the end of the cycle in which it is complete;
+// or a part of them.
 struct GroupConflicts {
   std::uint64_t cycles = 0;
   std::uint64_t host_words = 0;  // that the host is granted
@@ -45,8 +45,8 @@ struct StallCause {
   std::size_t by = 0;  // requester, or kTurnaroundToBlame
 };
 
-// The cycles of a strip of results in one frame: those after the last group of the strip before, up to its own
-// last group.
+// The cycles of a strip of results in one frame: those after the last group of the strip before, up to its
+// own last group.
 struct StripConflicts {
   std::uint64_t cycles = 0;
   std::array<std::uint64_t, kRequesters> stalls{};     // [requester]
@@ -125,7 +125,8 @@ class ConflictRecorder {
   // [side]: the passes of the pixel port are counted as grants until this is called with null.
   void assume_accesses(const std::array<const AccessPattern*, 2>& assumed) { assumed_ = assumed; }
 
-  // For HostPort. The traffic of a burst, and that of the words which take part in the arbitration from now on.
+  // For HostPort. The traffic of a burst, and that of the words which take part in the arbitration from now
+  // on.
   HostTraffic traffic_of(bool write, std::uint64_t address) const;
   void set_host_traffic(HostTraffic traffic) { traffic_ = traffic; }
   // Words of the host have been served in an uncontended bank, in cycles of the running frame, or, if not
@@ -230,8 +231,8 @@ class ConflictRecorder {
   std::size_t strip_tile_ = 0;  // the first tile of this strip
   std::array<std::uint64_t, kCorePortCount> grants_{};  // [port]: up to the end of the strip before
   std::array<const AccessPattern*, 2> assumed_{};
-  // [place_of()]: the first cycle after the part of a tile in its strip. Only if the host may be refused in an
-  // uncontended bank: then its stalls are brought to their tiles when the frame has ended.
+  // [place_of()]: the first cycle after the part of a tile in its strip. Only if the host may be refused in
+  // an uncontended bank: then its stalls are brought to their tiles when the frame has ended.
   std::vector<std::uint64_t> ends_;
   std::vector<std::uint64_t> strip_ends_;  // [strip]: the first cycle after it
   std::vector<Served> served_;

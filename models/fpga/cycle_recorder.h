@@ -29,9 +29,9 @@ class HostWords {
   virtual Word next_word() const = 0;
 };
 
-// Reports to an observer what every port does in each cycle of a window. FastForward must not skip these cycles.
-// Addresses follow from the slots and from the look-up tables, so that memory need not hold them. Plain C++;
-// used at every fidelity, with the same cycles.
+// Reports to an observer what every port does in each cycle of a window. FastForward must not skip these
+// cycles. Addresses follow from the slots and from the look-up tables, so that memory need not hold them.
+// Plain C++; used at every fidelity, with the same cycles.
 class CycleRecorder {
  public:
   // `conflicts` records all frames, and is given to FrameRun too. All references outlive this object.
@@ -55,15 +55,15 @@ class CycleRecorder {
   }
 
   // Reports accesses of the host that do not contend with the frame, or that come while no frame runs. If
-  // `granted`, consecutive words are granted in `cycles` cycles from `cycle` on. Otherwise the first word waits in
-  // these cycles because of the turnaround. To be called in the order of the cycles, and before the frame is
-  // stepped there.
+  // `granted`, consecutive words are granted in `cycles` cycles from `cycle` on. Otherwise the first word
+  // waits in these cycles because of the turnaround. To be called in the order of the cycles, and before the
+  // frame is stepped there.
   void host_accesses(const HostWords::Word& first, std::uint64_t cycle, std::uint64_t cycles, bool granted) {
     accesses_.push_back({first, cycle, cycles, granted});
   }
 
-  // Hands out the accesses of the host before `end_cycle` while no frame runs. To be called regularly, because they
-  // fill memory, and at the end of the run. Later accesses may be known by then.
+  // Hands out the accesses of the host before `end_cycle` while no frame runs. To be called regularly,
+  // because they fill memory, and at the end of the run. Later accesses may be known by then.
   void hand_out(std::uint64_t end_cycle) {
     if (!frame_) report_accesses(end_cycle);
   }

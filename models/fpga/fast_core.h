@@ -54,9 +54,9 @@ class FastCore {
   // To be called instead of HostPort::route() unless a stepped frame runs.
   void route(const HostRoute& route);
 
-  // Does what is due at `now_ps`. Returns the time of the next call; kNever: the next call is due when a frame
-  // starts. When a burst begins to request, a call is due in any case. An event at the time of an edge belongs
-  // to the cycle that begins there.
+  // Does what is due at `now_ps`. Returns the time of the next call; kNever: the next call is due when a
+  // frame starts. When a burst begins to request, a call is due in any case. An event at the time of an edge
+  // belongs to the cycle that begins there.
   std::uint64_t advance(std::uint64_t now_ps);
 
  private:

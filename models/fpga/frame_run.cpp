@@ -97,8 +97,8 @@ void FrameRun::finish() {
   stepper_.record(static_cast<ConflictRecorder*>(nullptr));
 }
 
-// The slots and words are those of the control, so that an audit can compare them with the geometry. The accesses
-// are those of the tables.
+// The slots and words are those of the control, so that an audit can compare them with the geometry. The
+// accesses are those of the tables.
 void FrameRun::count_direct() {
   const FrameGeometry& geometry = control().geometry();
   const auto count = [this](std::size_t port, std::uint64_t accesses) {

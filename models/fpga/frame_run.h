@@ -17,8 +17,8 @@
 
 namespace stereotlm::fpga {
 
-// What frames that work directly on memory do there, over all frames. Their data moves through no stage, so no
-// stage counts it.
+// What frames that work directly on memory do there, over all frames. Their data moves through no stage, so
+// no stage counts it.
 struct DirectCounts {
   std::vector<std::uint64_t> accesses;   // [bank]
   std::array<std::uint64_t, 2> slots{};  // [side]: issued to the lane

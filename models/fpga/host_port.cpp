@@ -138,8 +138,8 @@ void HostPort::serve_word(std::uint64_t cycle, std::uint64_t edge_ps) {
 }
 
 // Serves one word a cycle from `first_cycle` on, to the end of the burst. After its first grant the port is
-// alone with requests that all win: each further one changes the state of the bank's policy as a cycle without
-// request does (memory::ArbitrationPolicy), and has the same outcome.
+// alone with requests that all win: each further one changes the state of the bank's policy as a cycle
+// without request does (memory::ArbitrationPolicy), and has the same outcome.
 void HostPort::serve_in_step(std::uint64_t first_cycle) {
   const std::uint64_t first = std::max(first_cycle, bus_.request_clock());
   const std::size_t words = bus_.words_left();

@@ -58,8 +58,8 @@ class HostPort : private HostWords {
   void serve_contended();
   // Serves the words of an uncontended burst. A word may be served early, but another master of the registers
   // could start a frame on its bank from `horizon_ps` on. Returns the time to call again, in ps: either a
-  // later time, or the end of the finishing frame, which must be ended first. Returns nothing if no word waits
-  // any more.
+  // later time, or the end of the finishing frame, which must be ended first. Returns nothing if no word
+  // waits any more.
   std::optional<std::uint64_t> serve_uncontended(std::uint64_t horizon_ps);
   // To be called for each cycle in which the host requests while no frame runs, if serve_uncontended() is not
   // called.
@@ -81,8 +81,8 @@ class HostPort : private HostWords {
     std::uint64_t first_cycle;
     std::uint64_t words;
   };
-  // Gives the recorder of the running frame, which FrameRun::is_recorded(), skipped bursts of one direction to
-  // such a bank, from byte address `address` on. Their cycles are counted from `cycle` on.
+  // Gives the recorder of the running frame, which FrameRun::is_recorded(), skipped bursts of one direction
+  // to such a bank, from byte address `address` on. Their cycles are counted from `cycle` on.
   void record_skipped(bool write, std::uint64_t address, std::uint64_t cycle,
                       const std::vector<ServedWords>& bursts);
 

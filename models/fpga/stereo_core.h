@@ -82,7 +82,8 @@ class StereoCore : public sc_core::sc_module, private FastCore::Board {
 
   // Advances control() to the present, for observers of a running frame. Two counts are provisional until a
   // burst contends for a bank of the frame, or the frame ends:
-  // - A pass on an uncontended pixel port counts as a grant, in the arbiters' reads too, and FrameRun::waits()
+  // - A pass on an uncontended pixel port counts as a grant, in the arbiters' reads too, and
+  // FrameRun::waits()
   //   shows it as a request.
   // - Words of a burst for an uncontended bank count as idle cycles of the host port.
   void catch_up();

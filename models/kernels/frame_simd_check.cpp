@@ -4,8 +4,8 @@
 namespace stereotlm::kernels::STEREOTLM_SIMD {
 namespace {
 
-// kernels::kInvalidDisparity. Its header has inline functions, which must not be compiled with the instructions
-// of this file.
+// kernels::kInvalidDisparity. Its header has inline functions, which must not be compiled with the
+// instructions of this file.
 constexpr std::uint8_t kInvalid = 0xFF;
 
 // Stores the disparities of `left` that agree with those of `right`, in the next `count` pixels.

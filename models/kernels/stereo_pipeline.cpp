@@ -46,8 +46,8 @@ void StereoPipeline::run(const std::uint8_t* left, const std::uint8_t* right, co
   check(left_table, disparity);
 }
 
-// Every pixel with a window has a left-based disparity, which points to a pixel with a window. The others have
-// none.
+// Every pixel with a window has a left-based disparity, which points to a pixel with a window. The others
+// have none.
 void StereoPipeline::check(const std::uint32_t* left_table, std::uint8_t* disparity) const {
   std::fill_n(disparity, left_.disparity.size(), kInvalidDisparity);
   const int windows = width_ - 2 * radius_;  // in a row

@@ -27,8 +27,8 @@ class Arbitration {
   // The rule that a route of this port to this bank breaks: "port = 7: must be 0..5". Empty if both exist.
   std::string route_problem(Port port, std::size_t bank) const;
   // Routes the port to this bank from the next arbitrate() on. `write`: direction of all its requests. This
-  // and the next two throw std::invalid_argument if the port is not one of the priority list, or the bank does
-  // not exist.
+  // and the next two throw std::invalid_argument if the port is not one of the priority list, or the bank
+  // does not exist.
   void route(Port port, std::size_t bank, bool write);
   // Removes the route of the port, which must not request from now on.
   void unroute(Port port);

@@ -55,7 +55,8 @@ class BridgeRegisterFile {
 
 // The timing of PciBridge (contract section 3, "Bridge"), its registers and its counters. Plain C++.
 //
-// - Writes to the slave window are posted: their words wait in the bridge, in order, for the local bus. A word
+// - Writes to the slave window are posted: their words wait in the bridge, in order, for the local bus. A
+// word
 //   frees its place when its burst on the local bus ends. A read waits until all writes before it have left.
 // - A DMA channel fetches a descriptor, then moves its words in bursts (dma_channel.h). Both channels share
 //   one PCI master, which serves their transfers in the order in which they start.
@@ -103,7 +104,8 @@ class BridgeControl final : public PciMasterIf, public PciTarget, private LocalB
   // other read is under way.
   void read(std::uint64_t now_ps, std::uint64_t offset, unsigned char* data, std::size_t words);
 
-  // The register window. Refuses, and counts, an access that is not one word of a register with this direction.
+  // The register window. Refuses, and counts, an access that is not one word of a register with this
+  // direction.
   PciAnswer access(std::uint64_t now_ps, const PciAccess& access, std::uint64_t at_ps) override;
 
   // Counts an access that was refused before it came here.

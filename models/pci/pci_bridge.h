@@ -24,8 +24,8 @@ namespace stereotlm::pci {
 // - A read of the slave window blocks until its words have arrived.
 //
 // These accesses have an error response and no effect: a register access that is not one aligned word or has
-// the wrong direction, a slave access outside the window, and a posted write of more words than there are free
-// places.
+// the wrong direction, a slave access outside the window, and a posted write of more words than there are
+// free places.
 class PciBridge : public sc_core::sc_module,
                   private PciSlot,
                   private PciMasterIf,

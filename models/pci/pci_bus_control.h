@@ -86,7 +86,8 @@ class PciBusControl {
 
   // To skip bursts that repeat:
   //
-  // The clock that the next decide() grants, and the first clock of a master's request (kNever: there is none).
+  // The clock that the next decide() grants, and the first clock of a master's request (kNever: there is
+  // none).
   std::uint64_t decision_clock() const { return decision_clock_; }
   std::uint64_t request_clock(std::size_t master) const { return requests_[master].clock; }
   // The earliest of these clocks over all masters but some.

@@ -66,8 +66,8 @@ class PciSlot {
   // REQ#, asserted until the bus is granted. The request counts from the first clock that begins at or after
   // `from_ps`, now or later. A second request before the grant changes nothing.
   virtual void request(PciMasterIf& master, std::uint64_t from_ps) = 0;
-  // The words of the master's running burst that have been transferred by `now_ps`, and the clock of the first
-  // word. `end` and `end_ps` have no meaning yet.
+  // The words of the master's running burst that have been transferred by `now_ps`, and the clock of the
+  // first word. `end` and `end_ps` have no meaning yet.
   virtual BurstResult transferred(std::uint64_t now_ps) const = 0;
   virtual const Clock& clock() const = 0;
 };

@@ -19,9 +19,9 @@ namespace stereotlm::pci {
 class TrafficGenerator : public sc_core::sc_module, private PciMasterIf, private PciSlot {
  public:
   PciMasterPort pci{"pci"};
-  // The device, which stays unbound if the master reads from another target. A read of whole words without byte
-  // enables returns zeros after access_ps. Other accesses are refused with the responses of check_access(), a
-  // write with TLM_COMMAND_ERROR_RESPONSE.
+  // The device, which stays unbound if the master reads from another target. A read of whole words without
+  // byte enables returns zeros after access_ps. Other accesses are refused with the responses of
+  // check_access(), a write with TLM_COMMAND_ERROR_RESPONSE.
   tlm_utils::simple_target_socket_optional<TrafficGenerator> device{"device"};
 
   // Throws std::invalid_argument if the configuration has problems.

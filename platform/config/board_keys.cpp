@@ -40,10 +40,10 @@ Key decimal(const char* path, double* (*field)(BoardConfig&), const char* meanin
   return {path, meaning, unit, DecimalKey{min, max, field}, fmt::format("{}..{}", min, max), std::nullopt};
 }
 
-// A key of one of a few words. The field is an enumeration, whose values are in the order of the words, or the
-// word itself.
+// A key of one of a few words. The field is an enumeration, whose values are in the order of the words, or
+// the word itself.
 template <typename Field>
-Key word(const char* path, Field field, const char* meaning, std::vector<std::string> words) {
+Key word(const char* path, Field field, const char* meaning, const std::vector<std::string>& words) {
   using Value = std::remove_pointer_t<decltype(field(std::declval<BoardConfig&>()))>;
   WordKey key;
   key.words = words;

@@ -22,8 +22,8 @@ class ValueReader;
 struct Key;
 
 // The table of the keys of board files: each key with its rule, once. Reader, writer, problems(), `keys`,
-// `--set`, sweeps and knobs follow from it. On a board without `pci.load`, `field` of the keys below it throws
-// std::bad_optional_access.
+// `--set`, sweeps and knobs follow from it. On a board without `pci.load`, `field` of the keys below it
+// throws std::bad_optional_access.
 struct IntegerKey {
   int* (*field)(BoardConfig&);
 };

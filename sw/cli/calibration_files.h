@@ -19,9 +19,9 @@ std::vector<calib::PicturePair> load_grid_pictures(const std::vector<std::string
                                                    const std::vector<std::string>& right,
                                                    process::Problems& problems);
 
-// The files of `calibrate` in the folder of the calibration F.yaml: its mark F.yaml, the tables, the drawings,
-// and the pictures if it `makes_pictures`; otherwise an existing F_pictures/ stays. Other files in the folder
-// stay. New files are first written to the folder F.partial beside F.yaml.
+// The files of `calibrate` in the folder of the calibration F.yaml: its mark F.yaml, the tables, the
+// drawings, and the pictures if it `makes_pictures`; otherwise an existing F_pictures/ stays. Other files in
+// the folder stay. New files are first written to the folder F.partial beside F.yaml.
 files::OutputContent calibration_content(const runs::RigFiles& files, bool makes_pictures,
                                          const std::vector<files::NamedFile>& inputs = {});
 

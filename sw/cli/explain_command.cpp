@@ -326,7 +326,7 @@ Json explanation_document(const BoardConfig& board, Explanation& explanation) {
       {"bound", {{"frames_per_second", row.real(of)}, {"limited_by", row.text(of + "_limited_by")}}}};
   if (explanation.camera()) document["uncertainty_frames_per_second"] = now.uncertainty;
   document["limited_by"] = runs::limiter_text(explanation);
-  const runs::Explanation::Budget& budget = explanation.budget();
+  const runs::Budget& budget = explanation.budget();
   document["time_percent"] = {{"bound", budget.bound}, {"queues", budget.queues}, {"waits", budget.waits}};
   for (const auto& [why, share] : budget.core_waits) document["time_percent"]["core_waits"][why] = share;
   const double queue = runs::result_queue_percent(explanation);

@@ -41,10 +41,11 @@ GrayImage middle_at_half_size(const GrayImage& full, std::uint8_t (*pixel)(const
 cv::Mat shown(const Panel& panel) {
   if (panel.levels == 0) return calib::in_grey(panel.image);
   cv::Mat1f values(panel.image.height, panel.image.width);
-  std::transform(
-      panel.image.pixels.begin(), panel.image.pixels.end(), values.begin(), [](std::uint8_t level) {
-        return level == kernels::kInvalidDisparity ? std::numeric_limits<float>::quiet_NaN() : level;
-      });
+  std::transform(panel.image.pixels.begin(), panel.image.pixels.end(), values.begin(),
+                 [](std::uint8_t level) {
+                   return level == kernels::kInvalidDisparity ? std::numeric_limits<float>::quiet_NaN()
+                                                              : static_cast<float>(level);
+                 });
   return calib::in_colors(values, 0, panel.levels - 1);
 }
 

@@ -235,8 +235,8 @@ std::vector<fs::path> OutputFolder::with_mark_last(const fs::path& folder) const
 }
 
 // The names of the folders in the folder of unfinished files say how far a commit has come, because repair()
-// relies on them. Until `new` is renamed to `complete`, earlier files may be missing in DIR, and all are there
-// or in `earlier`. From then on, new files may be missing in DIR, and all are there or in `complete`.
+// relies on them. Until `new` is renamed to `complete`, earlier files may be missing in DIR, and all are
+// there or in `earlier`. From then on, new files may be missing in DIR, and all are there or in `complete`.
 void OutputFolder::move_into_place(const std::vector<fs::path>& names) const {
   for (const fs::path& name : names) {
     if (is_folder(made() / name)) sync_folder(made() / name);

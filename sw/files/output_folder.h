@@ -38,8 +38,8 @@ struct OutputContent {
 //
 // New files are written to DIR/.partial (inside DIR, so that DIR may be a mount point). commit() moves them
 // into place. If a run was killed in its commit, the next constructor completes that commit, or undoes it if
-// not all earlier files had been moved away. While the object exists, DIR/.partial is locked, so that a second
-// run is refused.
+// not all earlier files had been moved away. While the object exists, DIR/.partial is locked, so that a
+// second run is refused.
 class OutputFolder {
  public:
   // Creates DIR and its missing parents and checks that DIR is writable. Throws std::runtime_error, and

@@ -117,7 +117,7 @@ std::vector<Case> costs(const std::optional<GivenPair>& given) {
       cases.push_back({fmt::format("{}, {}", cost, scene.name), 0, {run_of("sad"), run_of(cost)}});
     cases.back().runs.push_back(run_of("{census: 5}"));
   };
-  for (const std::uint64_t seed : {1, 2, 3})
+  for (const std::uint64_t seed : {1U, 2U, 3U})
     add({fmt::format("synthetic {}", seed), {"--synthetic", std::to_string(seed)}, seed}, {});
   if (given) {
     add({"the given pair",

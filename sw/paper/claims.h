@@ -101,12 +101,12 @@ struct Claim {
   std::vector<Case> cases;
 };
 
-// All numbers of the paper that are compared, each with its place, its boards and its rule. Costs are compared
-// on synthetic scenes, and on the given pair if there is one.
+// All numbers of the paper that are compared, each with its place, its boards and its rule. Costs are
+// compared on synthetic scenes, and on the given pair if there is one.
 std::vector<Claim> claims(const std::optional<GivenPair>& given = std::nullopt);
 
-// Whether the modelled value of a case confirms the printed one: kConfirmed or kNotConfirmed; kOpen instead of
-// kConfirmed for kBanksFound, which is no proof.
+// Whether the modelled value of a case confirms the printed one: kConfirmed or kNotConfirmed; kOpen instead
+// of kConfirmed for kBanksFound, which is no proof.
 Verdict verdict_of(const Claim& claim, double printed, double modelled);
 
 // The verdict on a claim, from the verdicts on its cases. If all cases have the same verdict, the claim has

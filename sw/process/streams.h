@@ -11,8 +11,8 @@ void print(std::string_view text);
 
 // Writes one line to standard error: "stereotlm: KIND: text".
 void say(const std::string& kind, const std::string& text);
-// Writes a line to standard error as it is. A line of say() and a line of Problems are treated alike: the kind is
-// coloured, and a note is left out after leave_out_notes().
+// Writes a line to standard error as it is. A line of say() and a line of Problems are treated alike: the
+// kind is coloured, and a note is left out after leave_out_notes().
 void say_line(const std::string& line);
 
 // From then on, say() leaves out notes, and no progress is shown. Children of the process inherit this.

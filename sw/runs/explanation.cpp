@@ -328,7 +328,7 @@ std::vector<Explanation::Resource> Explanation::resources() {
   return all;
 }
 
-const Explanation::Budget& Explanation::budget() {
+const Budget& Explanation::budget() {
   if (budget_) return *budget_;
   budget_.emplace();
   double frames_share = 100;
@@ -411,7 +411,7 @@ std::string limiter_text(Explanation& explanation) {
 }
 
 std::string budget_text(Explanation& explanation) {
-  const Explanation::Budget& budget = explanation.budget();
+  const Budget& budget = explanation.budget();
   std::string text = fmt::format("{:.2f} % the matcher and the ports", budget.bound);
   if (budget.queues >= kVisiblePercent) text += fmt::format(", {:.2f} % queues and latencies", budget.queues);
   if (budget.waits >= kVisiblePercent) text += fmt::format(", {:.2f} % waits for banks", budget.waits);

@@ -17,12 +17,21 @@
 
 namespace stereotlm::runs {
 
+// What the time of a frame goes to, in percent of it. The shares sum to 100.
+struct Budget {
+  double bound = 0;   // the frame takes as long as its matcher and ports need for it
+  double queues = 0;  // queues and latencies of the core
+  double waits = 0;   // ports wait for banks
+  // The core waits for its next start, by reason (sw/report/README.md, Time line); of the core alone empty.
+  std::map<std::string, double> core_waits;
+};
+
 // Simulates a board, and once more one board for each step of a knob, without pixels: what limits the board,
 // and what each step gains or costs.
 class Explanation {
  public:
-  // The default numbers of frames of each board. 6 and 36 are multiples of every possible turn of the lists (1, 2,
-  // 3 or 6); the whole computer has up to 6 more for the warm-up.
+  // The default numbers of frames of each board. 6 and 36 are multiples of every possible turn of the lists
+  // (1, 2, 3 or 6); the whole computer has up to 6 more for the warm-up.
   static constexpr std::uint64_t kCoreFrames = 6;
   static constexpr std::uint64_t kComputerFrames = 42;
   // The fewest frames of the whole computer with which every board has a steady rate.
@@ -71,26 +80,19 @@ class Explanation {
     std::string name;
     double frames_per_second = 0;  // its bound
     double headroom_percent = 0;   // share of the time of a frame that the resource does not need
-    // The measured use. Ports, matcher and banks: share of the cycles of the frames in which they work on a slot
-    // or make an access. Buses: share of their clocks that are not idle. Cameras: share of their frames that are
-    // captured.
+    // The measured use. Ports, matcher and banks: share of the cycles of the frames in which they work on a
+    // slot or make an access. Buses: share of their clocks that are not idle. Cameras: share of their frames
+    // that are captured.
     double busy_percent = 0;
     std::uint64_t frame = 0;  // the frame with the least headroom
     bool varies = false;      // the headroom is larger in other frames
   };
   // All resources, the least headroom first. For ports and matcher, and for the banks of the core alone, the
-  // headroom is the least over the frames of one turn of the lists. The time of a frame is its cycles and, for
-  // a whole computer, its share of the time between frames.
+  // headroom is the least over the frames of one turn of the lists. The time of a frame is its cycles and,
+  // for a whole computer, its share of the time between frames.
   std::vector<Resource> resources();
 
-  // What the time of a frame goes to, in percent of it. The shares sum to 100.
-  struct Budget {
-    double bound = 0;   // the frame takes as long as its matcher and ports need for it
-    double queues = 0;  // queues and latencies of the core
-    double waits = 0;   // ports wait for banks
-    // The core waits for its next start, by reason (sw/report/README.md, Time line); of the core alone empty.
-    std::map<std::string, double> core_waits;
-  };
+  // See Budget.
   const Budget& budget();
 
   // Why the board is not faster.
@@ -125,8 +127,8 @@ class Explanation {
   std::optional<Budget> budget_;
 };
 
-// The longest wait of a port of the core, at this resource ("bank bank0") or at any bank. Waits of the host do not
-// count: they cost the core nothing.
+// The longest wait of a port of the core, at this resource ("bank bank0") or at any bank. Waits of the host
+// do not count: they cost the core nothing.
 std::optional<explore::StoredBlame> longest_wait(Explanation& explanation, const std::string& resource = "");
 
 // Why a board is not faster, after "limited by": "the matcher, at its bound of 18.596 frames/s".

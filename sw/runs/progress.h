@@ -34,7 +34,8 @@ std::string progress_text(const explore::SearchProgress& progress, double second
 // A time for a progress line: "0:08", "1:02:03", or "years" for more than 30 years.
 std::string time_text(double seconds);
 
-// A progress line on standard error, if that is a terminal and notes are not left out. The destructor erases it.
+// A progress line on standard error, if that is a terminal and notes are not left out. The destructor erases
+// it.
 class ProgressLine {
  public:
   ProgressLine();

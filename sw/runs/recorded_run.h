@@ -28,8 +28,8 @@ struct RecordedRun {
 std::optional<RecordedRun> read_recorded_run(const std::string& argument, const std::string& folder,
                                              const std::string& rule, process::Problems& problems);
 
-// The same, for `argument`, which must be a folder. Checks as well that every input file still exists with the
-// recorded SHA-256.
+// The same, for `argument`, which must be a folder. Checks as well that every input file still exists with
+// the recorded SHA-256.
 std::optional<RecordedRun> load_recorded_run(const std::string& argument, const std::string& folder,
                                              process::Problems& problems);
 

@@ -65,8 +65,8 @@ struct DiffLimits {
 // core, and the disparities of frames that show the same camera frame.
 class FrameAlignment {
  public:
-  // Starts both runs. All arguments outlive the object. `csv`: gets the compared rows; may be null. `record_a`
-  // and `record_b`: what Rerun hands to a record; may be null.
+  // Starts both runs. All arguments outlive the object. `csv`: gets the compared rows; may be null.
+  // `record_a` and `record_b`: what Rerun hands to a record; may be null.
   FrameAlignment(const RecordedRun& a, const RecordedRun& b, const DiffLimits& limits, stats::RowsCsv* csv,
                  Rerun::Record record_a = nullptr, Rerun::Record record_b = nullptr);
 

@@ -15,9 +15,9 @@ namespace stereotlm::runs {
 // Throws std::runtime_error if they cannot be written.
 void save_frame(const RunInput& input, const Result& result);
 
-// Takes what the simulation has recorded since the last call: with --record as text for the files of the result
-// folder, with --trace for the traces, which it does not commit. The constructor begins the files. finish() adds
-// what is complete only at the end of the run.
+// Takes what the simulation has recorded since the last call: with --record as text for the files of the
+// result folder, with --trace for the traces, which it does not commit. The constructor begins the files.
+// finish() adds what is complete only at the end of the run.
 class Records {
  public:
   // Adds text to the end of a file.
@@ -45,10 +45,10 @@ void leave_out_verify(RunInput& input);
 // Prints a warning if captures have lost pixels.
 void say_lost_pixels(const platform::Statistics& statistics);
 
-// Writes the result files and prints the table, or with --json the document. `last`: the result of the last frame. `differences`: found by
-// --verify. Prints the differences and the identities that do not hold, and lists them as `failed` in
-// stats.json. Returns true if there are no differences and all identities hold. Throws std::runtime_error if
-// the files cannot be written; an earlier result is then unchanged.
+// Writes the result files and prints the table, or with --json the document. `last`: the result of the last
+// frame. `differences`: found by --verify. Prints the differences and the identities that do not hold, and
+// lists them as `failed` in stats.json. Returns true if there are no differences and all identities hold.
+// Throws std::runtime_error if the files cannot be written; an earlier result is then unchanged.
 bool deliver(RunInput& input, const platform::Statistics& statistics, const Result& last,
              const std::vector<std::string>& differences = {});
 

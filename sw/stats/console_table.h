@@ -51,7 +51,8 @@ std::string lost_pixels_text(std::uint64_t pixels);
 // - For a computer: each PCI master's traffic, the share of the clocks that its data takes (`data %`) and its
 //   mean wait for the bus; the use of both buses; dropped camera frames by reason; the latency.
 // - How much of the last frame is answered, and the accuracy, if given.
-// Lines have at most 100 columns; a name of more than 24 characters is shortened. Text is ASCII except names and ±.
+// Lines have at most 100 columns; a name of more than 24 characters is shortened. Text is ASCII except names
+// and ±.
 std::string console_table(const platform::Statistics& statistics, const platform::BoardConfig& board,
                           const TableExtras& extras = {});
 

@@ -49,8 +49,8 @@ class ChangeStream {
   }
 
  private:
-  // A change at the time of the record before, or, with kIsTime, the upper and the lower half of the time of the
-  // next changes. Half as many bytes as a Change are written.
+  // A change at the time of the record before, or, with kIsTime, the upper and the lower half of the time of
+  // the next changes. Half as many bytes as a Change are written.
   struct Record {
     std::uint32_t signal;
     std::uint32_t value;

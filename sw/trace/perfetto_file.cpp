@@ -81,7 +81,8 @@ ProtoMessage clock(std::uint64_t id, bool is_incremental) {
   return message;
 }
 
-// Both clocks show 0: the first time of a sequence counts from power-up, the next ones from the packet before.
+// Both clocks show 0: the first time of a sequence counts from power-up, the next ones from the packet
+// before.
 ProtoMessage clocks() {
   ProtoMessage message;
   message.message(clock_snapshot::kClock, clock(clock_snapshot::kBootTime, false));

@@ -16,8 +16,9 @@
 
 namespace stereotlm::trace {
 
-// Finds the longest wait of a port for a bank, and keeps the cycles around it: 30 before it, or those that there are,
-// and behind it so many that there are 60 beside it. Of equal waits it takes the first one with 30 cycles before it.
+// Finds the longest wait of a port for a bank, and keeps the cycles around it: 30 before it, or those that
+// there are, and behind it so many that there are 60 beside it. Of equal waits it takes the first one with 30
+// cycles before it.
 class LongestWait {
  public:
   // Cycles in their order. One that is left out ends every wait.

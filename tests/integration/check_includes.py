@@ -18,8 +18,8 @@ MAY_INCLUDE = {
     "sw": ["sw", "platform", "models", "calib"],
     "tests": ["tests", "sw", "platform", "models", "calib"],
 }
-# The same within a folder: room -> rooms below it in the same folder. A file belongs to the longest room that its
-# path begins with.
+# The same within a folder: room -> rooms below it in the same folder. A file belongs to the longest room that
+# its path begins with.
 ROOMS = {
     "platform/yaml": [],
     "platform/config": ["platform/boards", "platform/yaml"],
@@ -59,7 +59,8 @@ FREE_OF = [
     (re.compile(r"models/.*_control\.(h|cpp)$"), SYSTEMC, "SystemC"),
     (re.compile(r"models/(clock|local_burst|period|time_ps|words_by_range)\.(h|cpp)$"), SYSTEMC, "SystemC"),
     (re.compile(r"models/capture/(camera_(link|timing)|capture_(fifo|register_file))\."), SYSTEMC, "SystemC"),
-    (re.compile(r"models/fpga/(assumed_accesses|burst_trust|conflict_recorder|core_cycle|core_stepper)\."), SYSTEMC, "SystemC"),
+    (re.compile(r"models/fpga/(assumed_accesses|burst_trust|conflict_recorder|core_cycle|core_stepper)\."),
+     SYSTEMC, "SystemC"),
     (re.compile(r"models/fpga/(cycle_recorder|direct_frame|fast_\w+|requesters)\."), SYSTEMC, "SystemC"),
     (re.compile(r"models/fpga/core_registers\.cpp"), SYSTEMC, "SystemC"),
     (re.compile(r"models/fpga/(frame_run|host_port|stall_watchdog|transition_cache)\."), SYSTEMC, "SystemC"),
@@ -67,7 +68,8 @@ FREE_OF = [
     (re.compile(r"models/pci/(bridge_register_file|dma_channel|local_bus_master)\."), SYSTEMC, "SystemC"),
     (re.compile(r"models/pci/(pci_slot|posted_writes)\."), SYSTEMC, "SystemC"),
     (re.compile(r"platform/(computer_parts|conflicts|timeline_records|trace_records)\."), SYSTEMC, "SystemC"),
-    (re.compile(r"(sw/(driver|explore|files|media|paper|process|report|sqlite|stats|trace)|calib)/"), SYSTEMC, "SystemC"),
+    (re.compile(r"(sw/(driver|explore|files|media|paper|process|report|sqlite|stats|trace)|calib)/"), SYSTEMC,
+     "SystemC"),
     (re.compile(r"(models|platform)/"), OPENCV, "OpenCV"),
     (re.compile(r"(models|platform)/"), EIGEN, "Eigen"),
     (re.compile(r"models/"), FILES_OR_YAML, "YAML or files"),

@@ -8,8 +8,8 @@ namespace stereotlm::test {
 
 // Rules of a link in addition to the rules of the base protocol.
 struct ProtocolOptions {
-  // Data length, streaming width and address are whole 32-bit words, as on every memory-mapped socket here, and
-  // the streaming width is at least the data length. Without it streaming bursts are allowed too (14.15).
+  // Data length, streaming width and address are whole 32-bit words, as on every memory-mapped socket here,
+  // and the streaming width is at least the data length. Without it streaming bursts are allowed too (14.15).
   bool whole_words = true;
 };
 

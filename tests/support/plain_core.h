@@ -54,9 +54,9 @@ struct PlainRowEnd {
 // What the host's port is used for.
 enum class PlainTraffic { kCapture, kUpload, kReadBack };
 
-// Where in the picture, and when in a frame, ports stall. A cycle belongs to the tile whose results leave next:
-// four columns of a strip of R rows. Number 0 is the fill: the cycles up to the one in which column C - 1 is
-// consumed. What comes after the last results belongs to the last tile.
+// Where in the picture, and when in a frame, ports stall. A cycle belongs to the tile whose results leave
+// next: four columns of a strip of R rows. Number 0 is the fill: the cycles up to the one in which column C -
+// 1 is consumed. What comes after the last results belongs to the last tile.
 //
 // Who waits and who is to blame is a number: the ports in the order of PlainPort, with one for each
 // PlainTraffic in the place of the host, then turnaround.

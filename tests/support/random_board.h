@@ -61,8 +61,8 @@ struct RandomKnobs {
   // Of computers: captures contend with the frame, by a local bus in step with the core, and the accesses of
   // the frame are regular. No knob of section 7: the models have a faster way there.
   bool contended_captures = false;
-  // Of computers: captures go to banks of their own, by a local bus in step with the core. The models skip most
-  // of their lines.
+  // Of computers: captures go to banks of their own, by a local bus in step with the core. The models skip
+  // most of their lines.
   bool apart_captures = false;
 
   static constexpr RandomKnobs all() { return {true, true, true, true, true, true, true, true, true, true}; }

@@ -64,8 +64,8 @@ class TransactionLogger : public sc_core::sc_module,
   std::vector<LoggedTransaction>& log_;
 };
 
-// Puts a TransactionLogger into every link that leads to the crossbar of the core or to a bank. It must outlive
-// the simulation.
+// Puts a TransactionLogger into every link that leads to the crossbar of the core or to a bank. It must
+// outlive the simulation.
 class LoggingBinder : public Binder {
  public:
   void bind(InitiatorSocket& from, TargetSocket& to, const std::string& link) override {

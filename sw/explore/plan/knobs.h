@@ -15,8 +15,8 @@ struct KnobStep {
   std::string to;
   platform::BoardConfig board{};
   bool changes_disparities = false;  // the changed board computes other disparities
-  // Steps of one group are alternatives (which buffer gets the bank), and only the best of them counts. Empty:
-  // the step has no alternatives.
+  // Steps of one group are alternatives (which buffer gets the bank), and only the best of them counts.
+  // Empty: the step has no alternatives.
   std::string group{};
   std::vector<std::string> sets{};  // the values of `--set` that make the changed board
   std::string reason{};             // of a forbidden step: the problem of the changed board, or of the tables

@@ -13,7 +13,8 @@
 
 namespace stereotlm::explore {
 
-// The values that a plan gives one key: a list, or a range of exact decimal numbers, which are made one by one.
+// The values that a plan gives one key: a list, or a range of exact decimal numbers, which are made one by
+// one.
 struct PlanValues {
   std::vector<platform::YamlNode> list = {};  // empty: the range
   // The range: `from`, `from` + `step`, and so on. Both are digits without the decimal point.
@@ -87,8 +88,8 @@ class Plan {
   };
   Combination combination(std::uint64_t number) const;
   // The reason for which a board cannot have the tables of the calibration: its image size, a side without a
-  // buffer for a table, or tables that cannot be joined. Nullopt if there is no such reason, or no calibration.
-  // Reasons that depend on keys at or below a path for which `is_checked` is false are left out.
+  // buffer for a table, or tables that cannot be joined. Nullopt if there is no such reason, or no
+  // calibration. Reasons that depend on keys at or below a path for which `is_checked` is false are left out.
   std::optional<std::string> table_problem(const platform::BoardConfig& board,
                                            const std::function<bool(const char*)>& is_checked) const;
   bool varies(const std::string& path) const;  // whether the key or a key below it varies
@@ -110,9 +111,9 @@ class Plan {
   std::optional<Sample> sample_;
 };
 
-// The numbers 0..size-1 in an order that depends on a seed: the number at `place`, 0..size-1. A Feistel network
-// permutes the numbers of the smallest even number of bits that suffices, and is applied again until the
-// result is below `size`. size: 1..2^62.
+// The numbers 0..size-1 in an order that depends on a seed: the number at `place`, 0..size-1. A Feistel
+// network permutes the numbers of the smallest even number of bits that suffices, and is applied again until
+// the result is below `size`. size: 1..2^62.
 std::uint64_t shuffled_number(std::uint64_t size, std::uint64_t seed, std::uint64_t place);
 
 }  // namespace stereotlm::explore

@@ -25,15 +25,15 @@ struct PointRun {
   std::string calibration;   // SHA-256 of the tables; empty: the tables are the identity
 };
 
-// The least window of the steady rate (platform::SteadyRate) in a run of the default length. It is whole turns
-// of lists of 1, 2 or 3.
+// The least window of the steady rate (platform::SteadyRate) in a run of the default length. It is whole
+// turns of lists of 1, 2 or 3.
 inline constexpr std::uint64_t kSteadyFrames = 12;
 // The same for the runs of `allocate`, whose rates mostly differ by less than a percent.
 inline constexpr std::uint64_t kSearchSteadyFrames = 10 * kSteadyFrames;
 
-// The number of frames of a run: run.frames if it is not 0. The default for the board alone is one turn of the
-// allocation's lists. If no frame affects the next, one turn has the same frame rate as any number of turns.
-// The default for the whole computer is one turn more than kSteadyFrames.
+// The number of frames of a run: run.frames if it is not 0. The default for the board alone is one turn of
+// the allocation's lists. If no frame affects the next, one turn has the same frame rate as any number of
+// turns. The default for the whole computer is one turn more than kSteadyFrames.
 std::uint64_t frames_of(const PointRun& run, const platform::BoardConfig& board);
 
 // Whether the points of a plan may differ in this key of the run.

@@ -33,11 +33,11 @@ platform::BoardConfig placed(const platform::BoardConfig& board, const Placement
 // bank with turnaround keeps the direction of its last access.)
 bool frames_are_independent(const platform::BoardConfig& board);
 
-// A board that computes only frame number `frame` of the placement: it has only the buffers of that frame. Its
-// name is "one frame of NAME", for those who read it in a database.
-// Each bank of the placement is replaced by the first equal bank that has not yet replaced another one. If
-// frames_are_independent(), two frames with the same such board take the same number of cycles, even if they
-// belong to different placements.
+// A board that computes only frame number `frame` of the placement: it has only the buffers of that frame.
+// Its name is "one frame of NAME", for those who read it in a database. Each bank of the placement is
+// replaced by the first equal bank that has not yet replaced another one. If frames_are_independent(), two
+// frames with the same such board take the same number of cycles, even if they belong to different
+// placements.
 platform::BoardConfig board_of_frame(const platform::BoardConfig& board, const Placement& placement,
                                      std::uint64_t frame);
 

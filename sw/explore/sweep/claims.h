@@ -14,9 +14,10 @@ namespace stereotlm::explore {
 // The way in which a point has ended: an index in kCounts.
 enum class PointEnd : std::uint8_t { kExcluded = 1, kKnown, kOk, kImpossible, kFailed, kGivenUp };
 
-// The points that the workers of a sweep have begun and ended, in memory that all its processes share. A point
-// is a number from 0. Each worker has a place; when it dies, its successor takes the place over. One store to
-// memory begins a point, and one store ends it: a place is thus valid at whatever moment its worker dies.
+// The points that the workers of a sweep have begun and ended, in memory that all its processes share. A
+// point is a number from 0. Each worker has a place; when it dies, its successor takes the place over. One
+// store to memory begins a point, and one store ends it: a place is thus valid at whatever moment its worker
+// dies.
 class Claims {
  public:
   Claims(std::size_t places, std::uint64_t points);  // throws std::system_error

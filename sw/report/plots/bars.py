@@ -50,7 +50,8 @@ class Rows:
         short = short_names(self.points.varied)
         names = []
         for place in self.places:
-            parts = [f"{short[key]}={text_of(self.points.column(key)[place])}".replace(" ", "\N{NO-BREAK SPACE}")
+            parts = [f"{short[key]}={text_of(self.points.column(key)[place])}".replace(" ",
+                                                                                       "\N{NO-BREAK SPACE}")
                      for key in self.points.varied]
             names.append(", ".join(parts))
         if not self.points.varied:
@@ -65,7 +66,8 @@ class Rows:
 
     def left(self):
         """The width of the names in inches."""
-        return 0.2 + max(style.text_width(line, SMALL_SIZE) for name in self.names for line in name.split("\n"))
+        return 0.2 + max(style.text_width(line, SMALL_SIZE) for name in self.names
+                         for line in name.split("\n"))
 
     def note_below(self, sheet, text=""):
         """Writes which points are shown, and `text`, below the figure."""
@@ -83,13 +85,15 @@ class Rows:
 def stacked(points, options, rows, heading, ports, parts, cycles, unit):
     """A sheet with a panel for each port, and in it a bar for each point, stacked from its parts.
 
-    parts: {part: (name, color)}; those without cycles are not shown. cycles(place, port, part): of all frames.
+    parts: {part: (name, color)}; those without cycles are not shown.
+    cycles(place, port, part): of all frames.
     unit: what an axis of cycles a frame says.
     """
     frames = points.frames()
     shares = {(place, port, part): cycles(place, port, part) / frames[place]
               for place in rows.places for port in ports for part in parts}
-    shown = [part for part in parts if any(shares[place, port, part] for place in rows.places for port in ports)]
+    shown = [part for part in parts if any(shares[place, port, part] for place in rows.places
+                                           for port in ports)]
     most = max(sum(shares[place, port, part] for part in shown) for place in rows.places for port in ports)
     factor, word = in_words(most)
     sheet = Sheet(heading, options.size, options.format)

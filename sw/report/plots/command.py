@@ -1,6 +1,7 @@
 """What the plot scripts share: their command line, its checks, and how the figures are written.
 
-`stereotlm plot` runs plot_all.py with a folder of its own, --into. It checks --out, and replaces the files there.
+`stereotlm plot` runs plot_all.py with a folder of its own, --into. It checks --out, and replaces the files
+there.
 Exit status: 0 done; 2 refused before anything was written; 1 failed after that; 130 interrupted.
 """
 
@@ -62,19 +63,20 @@ def parse(arguments, description, has_pareto):
              " [--format F,..] [--size WxH]")
     parser = Parser(prog=NAME, description=description, allow_abbrev=False, usage=usage)
     parser.add_argument("database", metavar="DB", nargs="?", help="a database of stereotlm sweep")
-    parser.add_argument("--out", metavar="DIR", help="folder of the figures, created if missing: new or empty")
+    parser.add_argument("--out", metavar="DIR",
+                        help="folder of the figures, created if missing: new or empty")
     parser.add_argument("--only", metavar="KEY=VALUE", action="append", default=[],
                         help="only points whose key has that value; may be given for several keys")
     parser.add_argument("--format", metavar="F,..",
                         help=f"kinds of files, out of {', '.join(style.FORMATS)}; "
                              f"default {','.join(style.USUAL_FORMATS)}")
     parser.add_argument("--size", metavar="WxH",
-                        help=f"width and height of each figure in inches, {LEAST_SIZE} to {MOST_SIZE}; default: 7.2, "
-                             "and as high as its content")
+                        help=f"width and height of each figure in inches, {LEAST_SIZE} to {MOST_SIZE}; "
+                             "default: 7.2, and as high as its content")
     if has_pareto:
         parser.add_argument("--pareto", metavar="X:SENSE,Y:SENSE",
-                            help="columns of the Pareto front, and whether the most or the least of each is best: "
-                                 "max or min; default area.slices:min,frames_per_second.core:max")
+                            help="columns of the Pareto front, and whether the most or the least of each "
+                                 "is best: max or min; default area.slices:min,frames_per_second.core:max")
     # Of `stereotlm plot`: the folder that gets the figures instead of --out, and what is wrong with --out.
     parser.add_argument("--into", help=argparse.SUPPRESS)
     parser.add_argument("--problem", help=argparse.SUPPRESS)
@@ -82,7 +84,8 @@ def parse(arguments, description, has_pareto):
 
 
 def read_looks(options):
-    """Replaces the texts of --format and --size by their values, or None if they are not given. Returns problems."""
+    """Replaces the texts of --format and --size by their values, or None if they are not given. Returns
+    problems."""
     problems = []
     if options.format is not None:
         text, options.format = options.format, options.format.split(",")
@@ -93,8 +96,8 @@ def read_looks(options):
         match = re.fullmatch(r"(\d+(?:\.\d+)?)x(\d+(?:\.\d+)?)", text, re.ASCII)
         options.size = tuple(map(float, match.groups())) if match else ()
         if not options.size or not all(LEAST_SIZE <= each <= MOST_SIZE for each in options.size):
-            problems.append(f"--size = {text}: must be WIDTHxHEIGHT in inches, each {LEAST_SIZE} to {MOST_SIZE}, "
-                            "such as 7.2x4.5")
+            problems.append(f"--size = {text}: must be WIDTHxHEIGHT in inches, each {LEAST_SIZE} to "
+                            f"{MOST_SIZE}, such as 7.2x4.5")
     return problems
 
 
@@ -134,7 +137,8 @@ def prepare(options, check):
 
 
 def draw_all(points, options, figures):
-    """Returns the files of all figures that apply, a line about each figure, and the texts that the font lacks."""
+    """Returns the files of all figures that apply, a line about each figure, and the texts that the font
+    lacks."""
     files = {}
     said = []
     boxed = set()
@@ -170,8 +174,10 @@ def run(description, figures, arguments, check):
     except OSError as error:
         raise OSError(f"--out {options.out}: cannot be written to: {error.strerror}") from None
     if boxed:
-        texts = ", ".join(f"'{each}'" if each.isprintable() else ascii(each) for each in sorted(boxed)[:MOST_NAMED])
-        tell("note", f"the font of the figures lacks {texts}: boxes in PNG and PDF; SVG and CSV have the text")
+        texts = ", ".join(f"'{each}'" if each.isprintable() else ascii(each)
+                          for each in sorted(boxed)[:MOST_NAMED])
+        tell("note",
+             f"the font of the figures lacks {texts}: boxes in PNG and PDF; SVG and CSV have the text")
     kinds = ", ".join(options.format or style.USUAL_FORMATS)
     say([*about_points(points), *said,
          f"{options.out}: {len(files)} files: {kinds} and csv of each figure that is drawn"])
@@ -198,10 +204,10 @@ def main(description, figures, check=None):
     """Runs a plot script and ends the process with its exit status if it fails.
 
     description: for --help.
-    figures: {name: draw}, in the order of drawing. draw(points, options) returns a Drawing, or raises Unusable if
-    the figure does not apply.
-    check: None if the script has no option --pareto. Otherwise check(points, options) returns the problems of its
-    value; points is None if the database cannot be read.
+    figures: {name: draw}, in the order of drawing. draw(points, options) returns a Drawing, or raises
+    Unusable if the figure does not apply.
+    check: None if the script has no option --pareto. Otherwise check(points, options) returns the problems of
+    its value; points is None if the database cannot be read.
     """
     try:
         run(description, figures, sys.argv[1:], check)
@@ -215,10 +221,11 @@ def main(description, figures, check=None):
 
 
 def main_of_tables(description, read, figures):
-    """Runs a script that draws the tables in a folder, into the same folder. Without a folder it checks the options.
+    """Runs a script that draws the tables in a folder, into the same folder. Without a folder it checks the
+    options.
 
-    read(folder) returns what the figures show. figures: {name: draw}; draw(shown, options) returns a Drawing or a
-    Sheet, or None if the figure does not apply.
+    read(folder) returns what the figures show. figures: {name: draw}; draw(shown, options) returns a Drawing
+    or a Sheet, or None if the figure does not apply.
     """
     parser = argparse.ArgumentParser(prog=NAME, description=description, allow_abbrev=False)
     parser.add_argument("folder", nargs="?", help="folder with the tables, which gets the figures")

@@ -10,7 +10,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.text import Text
-from matplotlib.ticker import FixedFormatter, FixedLocator, LogLocator, MaxNLocator, NullLocator, ScalarFormatter
+from matplotlib.ticker import (FixedFormatter, FixedLocator, LogLocator, MaxNLocator, NullLocator,
+                               ScalarFormatter)
 
 import style
 from points import BANKS_USED, UNITS_USED, Unusable
@@ -32,7 +33,8 @@ TOO_LARGE = {**MARK, "marker": "x", "markersize": 4.5, "label": "more area than 
 LOSES_PIXELS = {**MARK, "marker": "+", "markersize": 6.5, "label": "loses pixels"}
 
 UNITS = [("_percent", "%"), ("_mhz", "MHz"), ("_hz", "Hz"), ("megabytes_per_second", "MB/s"), ("_us", "us"),
-         ("_ms", "ms"), ("_cycles", "cycles"), ("clocks", "clocks"), ("_words", "words"), ("_slots", "slots"), ("_bytes", "bytes"),
+         ("_ms", "ms"), ("_cycles", "cycles"), ("clocks", "clocks"), ("_words", "words"), ("_slots", "slots"),
+         ("_bytes", "bytes"),
          ("_pixels", "pixels"), ("_frames", "frames"), ("image.width", "pixels"), ("image.height", "pixels")]
 MEANINGS = {
     "frames_per_second.core": "core, frames/s",
@@ -91,14 +93,16 @@ def table(header, rows):
 
 
 class Sheet:
-    """The page of a figure: a title, panels with sizes in inches, and below them the legend, a list and notes.
+    """The page of a figure: a title, panels with sizes in inches, and below them the legend, a list and
+    notes.
 
     legend() and note() must be called before grid(), which creates the panels.
     width: in inches.
     """
 
     def __init__(self, heading, size=None, formats=None):
-        """size: (width, height) in inches; None: WIDTH, and as high as the content. formats: some of style.FORMATS."""
+        """size: (width, height) in inches; None: WIDTH, and as high as the content. formats: some of
+        style.FORMATS."""
         style.use()
         self.figure = Figure()
         FigureCanvasAgg(self.figure)
@@ -129,12 +133,14 @@ class Sheet:
         left, right, bottom, above: inches around them; least: the least height of all.
         """
         gaps = GAP * (len(heights) - 1)
-        total, inside, top = self._begin(sum(heights) + gaps, above, bottom, least or LEAST_HEIGHT * len(heights) + gaps)
+        total, inside, top = self._begin(sum(heights) + gaps, above, bottom,
+                                         least or LEAST_HEIGHT * len(heights) + gaps)
         width = self.width - left - right - GAP * (count - 1)
         if width < LEAST_WIDTH * count:
             raise Unusable(f"--size {self.width:g}x{self.height:g}: this figure needs a width of "
                            f"{rounded_up(self.width - width + LEAST_WIDTH * count)} inches")
-        axes = self.figure.subplots(len(heights), count, sharex="col", sharey="row", squeeze=False, gridspec_kw={
+        axes = self.figure.subplots(len(heights), count, sharex="col", sharey="row", squeeze=False,
+                                    gridspec_kw={
             "left": left / self.width, "right": 1 - right / self.width, "top": 1 - top / total,
             "bottom": 1 - (top + inside) / total, "height_ratios": heights,
             "hspace": GAP * len(heights) / (inside - gaps), "wspace": GAP * count / width})
@@ -150,7 +156,8 @@ class Sheet:
         """Writes the name of the x axis of all columns below them, at this distance in inches."""
         boxes = [axes.get_position() for axes in self.panels]
         bottom = boxes[0].y0 - distance / self.figure.get_size_inches()[1]
-        self.figure.text((boxes[0].x0 + boxes[-1].x1) / 2, bottom, text, ha="center", va="center", fontsize=LABEL_SIZE)
+        self.figure.text((boxes[0].x0 + boxes[-1].x1) / 2, bottom, text, ha="center", va="center",
+                         fontsize=LABEL_SIZE)
 
     def color_bar(self, shown, text, below):
         """Draws the scale of the colors of `shown` under the panels, `below` inches from them."""
@@ -176,8 +183,8 @@ class Sheet:
         if self.height is not None:
             inside = self.height - around
             if inside < least:
-                raise Unusable(f"--size {self.width:g}x{self.height:g}: so wide, this figure needs a height of "
-                               f"{rounded_up(around + least)} inches")
+                raise Unusable(f"--size {self.width:g}x{self.height:g}: so wide, this figure needs a height "
+                               f"of {rounded_up(around + least)} inches")
         total = around + inside
         self.figure.set_size_inches(self.width, total)
         for number, line in enumerate(self._heading):
@@ -188,7 +195,8 @@ class Sheet:
             group.draw(self.figure, at / total)
             at -= group.lines * LINE
         for number, (line, color) in enumerate(reversed(self._below)):
-            self.figure.text(MARGIN / self.width, (0.06 + number * NOTE_LINE) / total, line, fontsize=SMALL_SIZE,
+            self.figure.text(MARGIN / self.width, (0.06 + number * NOTE_LINE) / total, line,
+                             fontsize=SMALL_SIZE,
                              va="bottom", color=color)
         return total, inside, top
 
@@ -209,7 +217,8 @@ def rounded_up(inches):
 
 
 class LegendGroup:
-    """Entries of the legend, in as many columns as have room, and none that would be empty. lines: its height."""
+    """Entries of the legend, in as many columns as have room, and none that would be empty. lines: its
+    height."""
 
     def __init__(self, handles, room):
         self.artists = [artist for artist, _ in handles]
@@ -224,7 +233,8 @@ class LegendGroup:
         self.lines = max(int(part.sum()) for part in parts)
 
     def draw(self, figure, top):
-        figure.legend(self.artists, self.texts, loc="upper center", ncol=self.columns, borderpad=0, borderaxespad=0,
+        figure.legend(self.artists, self.texts, loc="upper center", ncol=self.columns, borderpad=0,
+                      borderaxespad=0,
                       labelspacing=0.25, columnspacing=1.6, handlelength=2.6, bbox_to_anchor=(0.5, top))
 
 
@@ -239,7 +249,8 @@ def length_of(axes, which):
 
 
 def ticks_at(axes, values):
-    """Sets the ticks of the x axis to the values of the points, if there is room for that, with the labels that fit."""
+    """Sets the ticks of the x axis to the values of the points, if there is room for that, with the labels
+    that fit."""
     if len(values) > MOST_TICKS:
         axes.xaxis.set_major_locator(MaxNLocator(integer=all(value == int(value) for value in values)))
         return
@@ -269,7 +280,8 @@ def ticks_of_columns(panels, most):
         widths = [style.text_width(label, SIZE) for label in labels]
         places = [tick / end * length for tick in ticks] + [length + GAP]
         widths.append(widths[0])
-        if all(places[at + 1] - places[at] > (widths[at] + widths[at + 1]) / 2 + 0.05 for at in range(len(ticks))):
+        if all(places[at + 1] - places[at] > (widths[at] + widths[at + 1]) / 2 + 0.05
+               for at in range(len(ticks))):
             break
     else:
         ticks, labels = [0], ["0"]
@@ -287,10 +299,11 @@ def in_words(most):
 
 
 def scale(axes, which, label, values, *remarks, are_counts=False):
-    """Sets scale and label of an axis. The scale is logarithmic if the values differ much, else it begins at zero.
+    """Sets scale and label of an axis. The scale is logarithmic if the values differ much, else it begins at
+    zero.
 
-    which: "x" or "y". remarks: added to the label in brackets. are_counts: a few whole numbers, such as banks, are not
-    seen from zero.
+    which: "x" or "y". remarks: added to the label in brackets. are_counts: a few whole numbers, such as
+    banks, are not seen from zero.
     """
     values = [value for value in values if value is not None]
     axis, limit = getattr(axes, which + "axis"), getattr(axes, f"set_{which}lim")

@@ -141,7 +141,8 @@ class Families:
         return groups
 
     def _looks(self, combinations):
-        """({combination: Look}, legend); (None, []) if there are too many combinations of values of `told`."""
+        """({combination: Look}, legend); (None, []) if there are too many combinations of values of
+        `told`."""
         if len(combinations) == 1:
             return {combinations[0]: Look()}, []
         if len(combinations) > MOST_LINES:
@@ -216,7 +217,8 @@ def shortened(text):
 
 
 def colors_of(combinations):
-    """A color for each combination; shades if these are four or more numbers, one of which may be a word such as all.
+    """A color for each combination; shades if these are four or more numbers, one of which may be a word such
+    as all.
 
     None if there are too many.
     """

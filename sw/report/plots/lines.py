@@ -22,7 +22,7 @@ class Panel:
     column: str
     height: float  # inches
     beside: str = None  # another column, drawn thin and dotted
-    limit: tuple = None  # (value, text in the legend) of a line that is drawn if the column comes near to the value
+    limit: tuple = None  # (value, text in the legend) of a line that is drawn if the column comes near it
     listed: list = ()  # further columns for the table
     partial: bool = False  # some points have no value in this column
 
@@ -34,7 +34,8 @@ class Panel:
 
     def need_numbers(self, points, places):
         values = points.column(self.column)
-        points.need_numbers(self.drawn(), [place for place in places if not self.partial or values[place] is not None])
+        points.need_numbers(self.drawn(),
+                            [place for place in places if not self.partial or values[place] is not None])
 
 
 def rate_panels(points):
@@ -51,7 +52,8 @@ def of_key(points, options, key, heading, x=None, with_area=False):
     points.need_variation(key)
     panels = rate_panels(points)
     if with_area:
-        panels.append(Panel("area.slices_percent", MORE_HEIGHT, limit=(100, "the FPGA is full"), listed=["area.slices"]))
+        panels.append(Panel("area.slices_percent", MORE_HEIGHT, limit=(100, "the FPGA is full"),
+                            listed=["area.slices"]))
     return draw(points, options, heading, x or key, [key], panels)
 
 
@@ -78,7 +80,8 @@ def draw(points, options, heading, x, x_keys, panels, best=False):
               if reaches_limit(points, panel, places)]
     marks = [mark_handle(LOSES_PIXELS)] if losing else []
     sheet.legend([*handles(families, panels, best, with_dots), *limits, *marks])
-    for text in (families.note, points.pixels_note(places), above_note(points, places, panels), points.size_note(places),
+    for text in (families.note, points.pixels_note(places), above_note(points, places, panels),
+                 points.size_note(places),
                  points.note(len(places))):
         sheet.note(text)
     for axes, panel in zip(sheet.grid([panel.height for panel in panels]), panels):
@@ -111,7 +114,8 @@ def handles(families, panels, best, with_dots):
     entries = []
     color = GRAY if families.legend else families.all[0].look.color
     if families.envelopes:
-        entries += [(Patch(color=color, alpha=ALL, linewidth=0), "all points, from the least to the greatest"),
+        entries += [(Patch(color=color, alpha=ALL, linewidth=0),
+                     "all points, from the least to the greatest"),
                     (Patch(color=color, alpha=ALL + MIDDLE, linewidth=0), "the middle half of them"),
                     (line_handle(color, None if families.legend else "o"), "median")]
     elif families.as_points:
@@ -137,7 +141,8 @@ def above_note(points, places, panels):
             values, bounds = points.column(panel.column), points.column(panel.bound)
             above = [place for place in places if values[place] is not None and values[place] > bounds[place]]
             if above:
-                return f"Above the bound by no more than the uncertainty: {counted(len(above), 'steady rate')}."
+                return (f"Above the bound by no more than the uncertainty: "
+                        f"{counted(len(above), 'steady rate')}.")
     return ""
 
 
@@ -193,7 +198,8 @@ def draw_envelope(axes, points, places, xs, panel, look):
     axes.plot(list(at), quarters[1], color=look.color, **{**style.POINT, "marker": look.marker}, zorder=3)
     if panel.bound:
         bounds = points.column(panel.bound)
-        axes.plot(list(at), [bounds[place] for place in greatest_places(xs, bounds, there)], **bound(look.color))
+        axes.plot(list(at), [bounds[place] for place in greatest_places(xs, bounds, there)],
+                  **bound(look.color))
 
 
 def draw_family(axes, points, family, xs, panel, as_points, not_best, with_dots):
@@ -203,14 +209,16 @@ def draw_family(axes, points, family, xs, panel, as_points, not_best, with_dots)
     with_dots: the other points at each x are drawn as dots, else as their range.
     """
     values, look = points.column(panel.column), family.look
-    there = sorted((place for place in family.places if values[place] is not None), key=lambda place: xs[place])
+    there = sorted((place for place in family.places if values[place] is not None),
+                   key=lambda place: xs[place])
 
     def plot(places, column, **more):
         axes.plot([xs[place] for place in places], [column[place] for place in places],
                   **{"color": look.color, **more})
 
     if as_points or (not_best is not None and with_dots):
-        plot(there, values, marker="o", linestyle="", markersize=4 if as_points else 3, markeredgewidth=0, alpha=0.5,
+        plot(there, values, marker="o", linestyle="", markersize=4 if as_points else 3, markeredgewidth=0,
+             alpha=0.5,
              zorder=2)
     elif not_best is not None and there:
         at = by_x(there, xs, values)
@@ -222,6 +230,7 @@ def draw_family(axes, points, family, xs, panel, as_points, not_best, with_dots)
         return
     best = greatest_places(xs, values, [each for each in there if each not in (not_best or ())])
     if panel.beside:
-        plot(best, points.column(panel.beside), linewidth=0.8, linestyle=":", marker=look.marker, markersize=3.5,
+        plot(best, points.column(panel.beside), linewidth=0.8, linestyle=":", marker=look.marker,
+             markersize=3.5,
              markerfacecolor="white", zorder=2)
     plot(best, values, linestyle=look.dashes, **{**style.POINT, "marker": look.marker}, zorder=3)

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""The figures of stereotlm conflicts, from its tables: where in the picture and when in a frame ports wait for banks."""
+"""The figures of stereotlm conflicts, from its tables: where in the picture and when in a frame ports wait
+for banks."""
 
 import csv
 import json
@@ -23,7 +24,8 @@ def read(folder, name):
 
 
 class Recorded:
-    """What a run has recorded. tiles: rows of conflicts.csv; sums, frame: rows of rows.csv, the fill first."""
+    """What a run has recorded. tiles: rows of conflicts.csv; sums, frame: rows of rows.csv, the fill
+    first."""
 
     def __init__(self, folder):
         with open(os.path.join(folder, "about.json"), encoding="utf-8") as file:
@@ -40,8 +42,11 @@ class Recorded:
             self.picture = [list(pixels[at : at + width]) for at in range(0, len(pixels), width)]
         names = list(self.sums[0])
         self.banks = [name[: -len("_core_accesses")] for name in names if name.endswith("_core_accesses")]
-        self.banks = [bank for bank in self.banks if sum(map(lambda row: self.accesses(row, bank), self.sums))]
-        self.waiting = [name for name in names if name.endswith(STALLS) and any(int(row[name]) for row in self.sums)]
+        self.banks = [bank for bank in self.banks if sum(map(lambda row: self.accesses(row, bank),
+                                                             self.sums))]
+        self.waiting = [name
+                        for name in names
+                        if name.endswith(STALLS) and any(int(row[name]) for row in self.sums)]
         frames = self.about["frames"]
         self.note = f"Board {self.about['board']}; {frames} frame{'s' if frames > 1 else ''}."
 
@@ -72,9 +77,11 @@ def bank_rows(recorded, options):
     """The use of the banks, and the stalls, row by row."""
     columns = [*recorded.banks, *recorded.waiting]
     rows = recorded.sums[1:]
-    sheet = Sheet("How busy banks are, and who waits, from the top of the picture to its bottom", options.size,
+    sheet = Sheet("How busy banks are, and who waits, from the top of the picture to its bottom",
+                  options.size,
                   options.format)
-    sheet.note("Of the cycles of each row of results: accesses of the bank, or waits of the port. " + recorded.note)
+    sheet.note("Of the cycles of each row of results: accesses of the bank, or waits of the port. " +
+               recorded.note)
     (axes,) = sheet.grid([4.2], 1, 0.7, 0.3, bottom=1.5)
     edges = [int(row["first_row"]) for row in rows] + [recorded.about["height"]]
     values = [[recorded.share(row, name) for name in columns] for row in rows]
@@ -136,11 +143,13 @@ def time_line(recorded, options):
     sheet.legend([(style.line_handle(color, "", style.DASHES[number // len(BANK_COLORS) % 4]), bank)
                   for number, (bank, color) in enumerate(colors.items())])
     sheet.legend([(Patch(color=color), name_of(name)) for name, color in waiting.items()])
-    sheet.note(f"Frame {recorded.about['frame']}, the one with the most cycles, by rows of results; the first step "
+    sheet.note(f"Frame {recorded.about['frame']}, the one with the most cycles, by rows of results; the "
+               f"first step "
                "is the time before the first results. " + recorded.note)
     panels = sheet.grid([2.0, 1.4] if waiting else [2.0], left=0.8)
     for number, (bank, color) in enumerate(colors.items()):
-        panels[0].stairs([recorded.share(row, bank) for row in recorded.frame], times, color=color, baseline=None,
+        panels[0].stairs([recorded.share(row, bank) for row in recorded.frame], times, color=color,
+                         baseline=None,
                          linewidth=1.2, linestyle=style.DASHES[number // len(BANK_COLORS) % 4])
     panels[0].set_ylabel("bank busy, %")
     panels[0].set_ylim(0, 105)
@@ -169,7 +178,8 @@ def causes(recorded, options):
     blamed = sorted({by for _, _, by in lost})
     colors = dict(zip(blamed, [*style.COLORS, style.GRAY, "#999933", "#882255"]))
     frames = recorded.about["frames"]
-    most = max(sum(cycles for (port, bank, _), cycles in lost.items() if (bank, port) == place) for place in places)
+    most = max(sum(cycles for (port, bank, _), cycles in lost.items() if (bank, port) == place)
+               for place in places)
     factor, word = in_words(most / frames)
     sheet = Sheet("Which port waits at which bank, and for whom", options.size, options.format)
     sheet.legend([(Patch(color=colors[by]), by if by == "turnaround" else f"for {by}") for by in blamed])

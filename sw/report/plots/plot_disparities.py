@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Frames per second and area against the disparities, a line for each combination of the other keys that vary."""
+"""Frames per second and area against the disparities, a line for each combination of the other keys that
+vary."""
 
 import command
 import lines

@@ -35,7 +35,8 @@ def filter_of(row):
 
 
 def paper_handle():
-    return (line_handle(PAPER, "D", "", markersize=5, markerfacecolor="white", markeredgewidth=1.3), "printed in the paper")
+    return (line_handle(PAPER, "D", "", markersize=5, markerfacecolor="white", markeredgewidth=1.3),
+            "printed in the paper")
 
 
 def paper_points(axes, xs, ys):
@@ -63,10 +64,11 @@ def table1(folder, options):
     xs = [int(row["window"]) for row in rows]
     board, tolerance = rows[0], float(rows[0]["tolerance_percent"])
     sheet = Sheet("The paper's Table 1: frame rate against the window", options.size, options.format)
-    sheet.legend([paper_handle(), (line_handle(MODEL, "o"), "model, the core alone"), (bound_handle(MODEL), "bound")])
-    sheet.note(f"Table 1: {image_of(board)}, {board['matcher.disparities']} disparities, {filter_of(board)}, "
-               f"{board['fpga.clock_mhz']} MHz. Below: model less paper, with the rule ({board['rule']}) shaded; the bar is "
-               "what rounding to the printed digit leaves open.")
+    sheet.legend([paper_handle(), (line_handle(MODEL, "o"), "model, the core alone"),
+                  (bound_handle(MODEL), "bound")])
+    sheet.note(f"Table 1: {image_of(board)}, {board['matcher.disparities']} disparities, "
+               f"{filter_of(board)}, {board['fpga.clock_mhz']} MHz. Below: model less paper, with the rule "
+               f"({board['rule']}) shaded; the bar is what rounding to the printed digit leaves open.")
     rates, deviations = sheet.grid([2.7, 1.5])
     bounds, values = numbers(rows, "bound_frames_per_second"), numbers(rows, "model_frames_per_second")
     printed = numbers(rows, "paper_frames_per_second")
@@ -79,17 +81,20 @@ def table1(folder, options):
     halves = [100 * half / value for half, value in zip(numbers(rows, "paper_half_digit"), printed)]
     for x, percent, half, row in zip(xs, percents, halves, rows):
         color = MODEL if row["verdict"] == "confirmed" else PAPER
-        deviations.errorbar(x, percent, yerr=half, color=color, marker="o", markersize=5, capsize=3, linewidth=1,
+        deviations.errorbar(x, percent, yerr=half, color=color, marker="o", markersize=5, capsize=3,
+                            linewidth=1,
                             zorder=3)
         if row["verdict"] != "confirmed":
-            deviations.annotate(f"{percent:+.2f} %", (x, percent), (8, -3), textcoords="offset points", fontsize=8)
+            deviations.annotate(f"{percent:+.2f} %", (x, percent), (8, -3), textcoords="offset points",
+                                fontsize=8)
     most = max(abs(percent) + half for percent, half in zip(percents, halves))
     rule_panel(deviations, tolerance, 1.15 * most, "model less\npaper, %", "window n, pixels (of n x n)", xs)
     return sheet
 
 
 def table2(folder, options):
-    """Draws slices over the disparities and, below, the error. Bars: what rounding in the paper leaves open."""
+    """Draws slices over the disparities and, below, the error. Bars: what rounding in the paper leaves
+    open."""
     rows = sorted(read(folder, "table2"), key=lambda row: int(row["disparities"]))
     xs = [int(row["disparities"]) for row in rows]
     board, tolerance = rows[0], float(rows[0]["size_tolerance_points"])
@@ -98,18 +103,22 @@ def table2(folder, options):
     below = [value - low for value, low in zip(printed, least)]
     above = [high - value for value, high in zip(printed, most)]
     sheet = Sheet("The paper's Table 2: area against the disparities", options.size, options.format)
-    sheet.legend([paper_handle(), (line_handle(MODEL, "o"), "model, counted; one constant is fitted to these rows")])
-    sheet.note(f"Table 2: window {window_of(board)}, {board['fpga.device'].upper()}. Below: model less paper, with the rule "
-               f"({board['size_rule']}) shaded; the bars are what rounding to whole percents leaves open.")
+    sheet.legend([paper_handle(),
+                  (line_handle(MODEL, "o"), "model, counted; one constant is fitted to these rows")])
+    sheet.note(f"Table 2: window {window_of(board)}, {board['fpga.device'].upper()}. Below: model less "
+               f"paper, with the rule ({board['size_rule']}) shaded; the bars are what rounding to whole "
+               "percents leaves open.")
     sizes, errors = sheet.grid([2.5, 1.5])
     model_line(sizes, xs, values)
     sizes.errorbar(xs, printed, yerr=[below, above], color=PAPER, linestyle="", marker="D", markersize=5,
                    markerfacecolor="white", markeredgewidth=1.3, capsize=3, linewidth=1, zorder=4)
     sizes.set_ylim(0, max(most + values) * 1.08)
     sizes.set_ylabel("area, % of the slices")
-    errors.errorbar(xs, numbers(rows, "error_points"), yerr=[above, below], color=MODEL, linestyle="", marker="o",
+    errors.errorbar(xs, numbers(rows, "error_points"), yerr=[above, below], color=MODEL, linestyle="",
+                    marker="o",
                     markersize=5, capsize=3, linewidth=1, zorder=3)
-    rule_panel(errors, tolerance, 1.8 * tolerance, "model less paper,\npercentage points", "disparities D", xs)
+    rule_panel(errors, tolerance, 1.8 * tolerance, "model less paper,\npercentage points", "disparities D",
+               xs)
     return sheet
 
 
@@ -125,8 +134,9 @@ def banks(folder, options):
                   (line_handle(SECOND, "^", ""), "the whole computer, one allocation each"),
                   (line_handle(PAPER, None, (0, (4, 2))), "banks that the paper says are needed")])
     sheet.note(f"{image_of(board)}, {window_of(board)}, {board['matcher.disparities']} disparities, "
-               f"{board['fpga.clock_mhz']} MHz. Below each number of banks: how many allocations to so many fit; the "
-               "rate of each is known, and none is higher. Triangles need not be the best that there is.")
+               f"{board['fpga.clock_mhz']} MHz. Below each number of banks: how many allocations to so many "
+               "fit; the rate of each is known, and none is higher. Triangles need not be the best that "
+               "there is.")
     panels = sheet.grid([2.8], 2, 0.75, 0.2, bottom=0.72, above=HEAD)
     for axes, claim, heading in zip(panels, ("banks", "banks_of_matching"),
                                     ("with calibration", "without calibration")):
@@ -138,7 +148,8 @@ def banks(folder, options):
         sheet.head(axes, heading)
         axes.set_xticks(xs, [f"{row['banks']}\n({row['allocations']})" for row in every])
         axes.set_xlim(min(xs) - 0.5, max(xs) + 0.5)
-    panels[0].plot([int(row["banks"]) for row in computer], numbers(computer, "frames_per_second"), color=SECOND,
+    panels[0].plot([int(row["banks"]) for row in computer], numbers(computer, "frames_per_second"),
+                   color=SECOND,
                    marker="^", linestyle="", markersize=5.5, zorder=2.8)
     panels[0].set_ylim(0, max(numbers(rows, "bound_frames_per_second")) * 1.12)
     panels[0].set_ylabel("frames/s")

@@ -49,12 +49,16 @@ def uncertainty_of(points, column, places):
 def front_of(columns, senses, uncertainties):
     """Indices of the points of the Pareto front, from the best x on.
 
-    From one point to the next one column, which is exact, becomes worse, and the other one better by more than the
-    uncertainty of both points. Points that are the same in the former, and tie in the latter, are all on the front.
+    From one point to the next one column, which is exact, becomes worse, and the other one better by more
+    than the uncertainty of both points. Points that are the same in the former, and tie in the latter, are
+    all on the front.
     columns, senses, uncertainties: of x and y.
     """
-    xs, ys = ([value if sense == "min" else -value for value in column] for column, sense in zip(columns, senses))
-    along, across, doubt = (xs, ys, uncertainties[1]) if uncertainties[0] is None else (ys, xs, uncertainties[0])
+    xs, ys = ([value if sense == "min" else -value for value in column]
+              for column, sense in zip(columns, senses))
+    along, across, doubt = xs, ys, uncertainties[1]
+    if uncertainties[0] is not None:
+        along, across, doubt = ys, xs, uncertainties[0]
     front, last = [], None  # last: the next point has to beat it
     for place in sorted(range(len(xs)), key=lambda place: (along[place], across[place])):
         loss = -math.inf if last is None else across[place] - across[last]
@@ -81,12 +85,14 @@ def draw(points, options):
     uncertainties = [uncertainty_of(points, column, places) for column in (x, y)]
     front = front_of((xs, ys), (x_sense, y_sense), uncertainties)
     corners = list(dict.fromkeys((xs[place], ys[place]) for place in front))
-    bounds = {axis: points.column(bound_of(column)) for axis, column in (("x", x), ("y", y)) if bound_of(column)}
+    bounds = {axis: points.column(bound_of(column)) for axis, column in (("x", x),
+                                                                         ("y", y)) if bound_of(column)}
     points.need_numbers(filter(None, (bound_of(x), bound_of(y))), [places[at] for at in front])
 
     heading = "Pareto front: " + ", ".join(re.sub(", (.*)", r" (\1)", title(column)) for column in (x, y))
     sheet = Sheet(heading, options.size, options.format)
-    handles = [(line_handle(FRONT, "o"), "Pareto front"), (line_handle(OTHER, "o", "", markersize=4), "other points")]
+    handles = [(line_handle(FRONT, "o"), "Pareto front"),
+               (line_handle(OTHER, "o", "", markersize=4), "other points")]
     if bounds:
         handles.append((bound_handle(FRONT), "bound of a point of the front"))
     marks = [(mark, pairs_with_only(marked, places, xs, ys))
@@ -116,16 +122,19 @@ def draw(points, options):
         axes.plot(*((limits, others) if axis == "x" else (others, limits)), **bound(FRONT, of_x=axis == "x"))
     for which, (column, sense) in zip("xy", axes_of):
         limits = [bounds[which][places[at]] for at in front] if which in bounds else []
-        scale(axes, which, title(column), [*(points.column(column)[place] for place in places), *limits], SENSES[sense],
+        scale(axes, which, title(column), [*(points.column(column)[place] for place in places), *limits],
+              SENSES[sense],
               are_counts=column in (*points.keys, BANKS_USED, UNITS_USED))
     draw_front(axes, corners, xs, ys, axes_of)
 
     of_front = {place: number for number, place in enumerate(front)}
     lost = [each for each in LOST_PIXELS if each in points.names]
     doubts = [f"{column}_uncertainty" for column, doubt in zip((x, y), uncertainties) if doubt]
-    columns = list(dict.fromkeys(["hash", *points.varied, x, y, *doubts, *filter(None, (bound_of(x), bound_of(y))),
+    columns = list(dict.fromkeys(["hash", *points.varied, x, y, *doubts,
+                                  *filter(None, (bound_of(x), bound_of(y))),
                                   *lost]))
-    order = sorted(range(len(places)), key=lambda at: (of_front.get(at, len(front)), points.hashes[places[at]]))
+    order = sorted(range(len(places)),
+                   key=lambda at: (of_front.get(at, len(front)), points.hashes[places[at]]))
     rows = [[*(points.column(each)[places[at]] for each in columns), int(at in of_front)] for at in order]
     said = f"{counted(len(places), 'point')}, {len(front)} of them on the front"
     return Drawing(sheet, [*columns, "front"], rows, said)
@@ -152,12 +161,14 @@ def draw_front(axes, corners, xs, ys, axes_of):
     rise, seat = (1, "bottom") if axes_of[1][1] == "max" else (-1, "top")
     for first, last in numbers_apart(axes, corners[:MOST_NAMED]):
         text = str(first + 1) if first == last else f"{first + 1}\N{EN DASH}{last + 1}"
-        axes.annotate(text, corners[first], (5 * side, 6 * rise), textcoords="offset points", fontsize=NUMBER_SIZE,
+        axes.annotate(text, corners[first], (5 * side, 6 * rise), textcoords="offset points",
+                      fontsize=NUMBER_SIZE,
                       ha=align, va=seat, zorder=4)
 
 
 def numbers_apart(axes, corners):
-    """Groups (first, last) of corners, so that the numbers of two groups do not touch: those that do are merged."""
+    """Groups (first, last) of corners, so that the numbers of two groups do not touch: those that do are
+    merged."""
     to_inches = axes.transData + axes.figure.dpi_scale_trans.inverted()
     inches = [to_inches.transform(corner) for corner in corners]
     groups = [(number, number) for number in range(len(corners))]

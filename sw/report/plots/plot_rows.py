@@ -9,7 +9,8 @@ import lines
 
 
 def draw(points, options):
-    return lines.of_key(points, options, "matcher.rows", "Frame rate and area against the rows of results at once",
+    return lines.of_key(points, options, "matcher.rows",
+                        "Frame rate and area against the rows of results at once",
                         with_area=True)
 
 

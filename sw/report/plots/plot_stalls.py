@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""The cycles in which each port waits in a frame, point by point, by cause: the port that was granted, or turnaround."""
+"""The cycles in which each port waits in a frame, point by point, by cause: the port that was granted, or
+turnaround."""
 
 import bars
 import command
@@ -8,7 +9,8 @@ from drawing import Drawing
 from points import PORTS, TURNAROUND, Unusable, counted
 
 CAUSES = {by: (by if by == TURNAROUND else f"for {by}", color)
-          for by, color in zip([*PORTS, TURNAROUND], [style.ORANGE, style.SKY, style.BLUE, style.GREEN, style.PINK,
+          for by, color in zip([*PORTS, TURNAROUND],
+                               [style.ORANGE, style.SKY, style.BLUE, style.GREEN, style.PINK,
                                                       "#999999", style.BLACK])}
 
 

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""What each port does in the cycles of a frame, point by point: granted, passed, waiting, blocked, starved or idle."""
+"""What each port does in the cycles of a frame, point by point: granted, passed, waiting, blocked, starved or
+idle."""
 
 import bars
 import command
@@ -28,13 +29,15 @@ def draw(points, options):
     def cycles(place, port, count):
         return points.column(f"ports.{port}.{count}")[place]
 
-    sheet = bars.stacked(points, options, rows, "What each port does in the cycles of a frame", ports, STATES, cycles,
+    sheet = bars.stacked(points, options, rows, "What each port does in the cycles of a frame", ports, STATES,
+                         cycles,
                          "cycles a frame")
     header = ["hash", *points.varied, "frames", "port", *STATES]
     table = [[*(points.column(each)[place] for each in header[: len(points.varied) + 2]), port,
               *(cycles(place, port, count) for count in STATES)]
              for place in rows.places for port in ports]
-    return Drawing(sheet, header, table, f"{counted(len(rows.places), 'point')}, {counted(len(ports), 'port')}")
+    return Drawing(sheet, header, table,
+                   f"{counted(len(rows.places), 'point')}, {counted(len(ports), 'port')}")
 
 
 if __name__ == "__main__":

@@ -14,7 +14,9 @@ TEXT_CHANGES = 55  # percent; above it white text is easier to read than black
 
 def draw(points, options):
     rows = bars.Rows(points, options)
-    columns = sorted((name for name in points.names if name.startswith("banks.") and name.endswith(".utilization")),
+    columns = sorted((name
+                      for name in points.names
+                      if name.startswith("banks.") and name.endswith(".utilization")),
                      key=natural)
     banks = [name.split(".", 1)[1].rpartition(".")[0] for name in columns]
     for name in columns:
@@ -24,7 +26,8 @@ def draw(points, options):
                for place in rows.places]
     if any(None in row for row in percent):
         sheet.legend([(Patch(color=style.MISSING), "the board has no such bank")])
-    rows.note_below(sheet, "Of the cycles in which the core works on a frame, those in which the bank serves an access.")
+    rows.note_below(sheet, "Of the cycles in which the core works on a frame, those in which the bank serves "
+                           "an access.")
     height, least = (max(each, LEAST_HEIGHT) for each in (rows.height, rows.least))
     (axes,) = sheet.grid([height], 1, rows.left(), 0.3, bottom=0.95, least=least)
     numbers = [[float("nan") if use is None else use for use in row] for row in percent]
@@ -50,7 +53,8 @@ def draw(points, options):
     sheet.color_bar(shown, "use of the bank, % of cycles", 0.42)
     header = ["hash", *points.varied, *columns]
     table = [[points.column(each)[place] for each in header] for place in rows.places]
-    return Drawing(sheet, header, table, f"{counted(len(rows.places), 'point')}, {counted(len(banks), 'bank')}")
+    return Drawing(sheet, header, table,
+                   f"{counted(len(rows.places), 'point')}, {counted(len(banks), 'bank')}")
 
 
 if __name__ == "__main__":

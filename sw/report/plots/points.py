@@ -18,7 +18,8 @@ ADMINISTRATION = {"hash", "status", "reason", "version", "config"}
 
 MOST_NAMED = 12  # names or values in a message
 
-# Additional columns: the number of distinct banks that the allocation names; the number that matcher.units stands for.
+# Additional columns: the number of distinct banks that the allocation names; the number that matcher.units
+# stands for.
 BANKS_USED = "banks_used"
 UNITS_USED = "units_used"
 
@@ -100,12 +101,13 @@ class Points:
         self.path = path
         self.name = os.fsencode(os.path.basename(path)).decode(errors="replace")
         self._database = self._open()
-        self.names = [row[0] for row in self._rows("SELECT name FROM pragma_table_info('points') ORDER BY cid")]
+        self.names = [row[0]
+                      for row in self._rows("SELECT name FROM pragma_table_info('points') ORDER BY cid")]
         keys = {row[0] for row in self._rows("SELECT name FROM keys")}
         self.keys = [name for name in self.names if name in keys]
         self.total = self._rows("SELECT count(*) FROM points")[0][0]
-        self.left_out = dict(self._rows("SELECT status, count(*) FROM points WHERE status <> 'ok' GROUP BY status "
-                                        "ORDER BY status DESC"))
+        self.left_out = dict(self._rows("SELECT status, count(*) FROM points WHERE status <> 'ok' "
+                                        "GROUP BY status ORDER BY status DESC"))
         self._select("status = 'ok'", [])
 
     def _select(self, condition, values):
@@ -133,7 +135,8 @@ class Points:
         if application != APPLICATION_ID:
             raise Unusable(f"{self.path}: not a database of stereotlm sweep")
         if layout != LAYOUT:
-            raise Unusable(f"{self.path}: its layout is {layout}, of another version; this version reads {LAYOUT}")
+            raise Unusable(f"{self.path}: its layout is {layout}, of another version; this version reads "
+                           f"{LAYOUT}")
         return database
 
     def _rows(self, sql, *values):
@@ -190,12 +193,14 @@ class Points:
         return self._columns[name]
 
     def blame(self, place):
-        """The stalls of one point: rows (port, bank, by, cycles). by: the port that was granted, or turnaround."""
+        """The stalls of one point: rows (port, bank, by, cycles). by: the port that was granted, or
+        turnaround."""
         rows = self._rows("SELECT port, bank, by, cycles FROM blame WHERE hash = ? ORDER BY port, bank, by",
                           self.hashes[place])
         for port, bank, by, cycles in rows:
             if not is_number(cycles):
-                raise Unusable(f"blame of point {self.hashes[place]}: {port}, {bank}, {by}: cycles = {cycles}: {NUMBER}")
+                raise Unusable(f"blame of point {self.hashes[place]}: {port}, {bank}, {by}: cycles = "
+                               f"{cycles}: {NUMBER}")
         return rows
 
     def stall_cycles(self):
@@ -222,7 +227,8 @@ class Points:
 
     def pixels_note(self, places):
         count = len(set(places) & set(self.losing_pixels()))
-        return f"{count} of the points lose pixels: the pictures that they match are not whole." if count else ""
+        text = f"{count} of the points lose pixels: the pictures that they match are not whole."
+        return text if count else ""
 
     def varies(self, name):
         return len(set(self.column(name))) > 1
@@ -285,8 +291,8 @@ class Points:
 
     def why_left_out(self):
         """The most frequent reasons of points without figures, as rows (status, reason, number of points)."""
-        return self._rows("SELECT status, reason, count(*) FROM points WHERE status <> 'ok' GROUP BY status, reason "
-                          "ORDER BY 3 DESC, 1, 2 LIMIT 3")
+        return self._rows("SELECT status, reason, count(*) FROM points WHERE status <> 'ok' "
+                          "GROUP BY status, reason ORDER BY 3 DESC, 1, 2 LIMIT 3")
 
     def _varied(self):
         counts = []
@@ -312,7 +318,8 @@ class Points:
         banks = [name for name in self.names if name.startswith("ssram.banks.")]
         for ending in sorted({name.rsplit(".", 1)[1] for name in banks}):
             ours = [name for name in banks if name.endswith("." + ending)]
-            if len(ours) > 1 and set(ours) <= set(varied) and len({tuple(self.column(name)) for name in ours}) == 1:
+            if len(ours) > 1 and set(ours) <= set(varied) and len({tuple(self.column(name))
+                                                                   for name in ours}) == 1:
                 name = f"ssram.banks.*.{ending}"
                 self._columns[name] = self.column(ours[0])
                 at = varied.index(ours[0])

@@ -13,7 +13,8 @@ from matplotlib.ft2font import LOAD_NO_HINTING
 from matplotlib.lines import Line2D
 from matplotlib.path import Path
 
-SHEET = matplotlib.rc_params_from_file(os.path.join(os.path.dirname(os.path.abspath(__file__)), "style.mplstyle"),
+SHEET = matplotlib.rc_params_from_file(os.path.join(os.path.dirname(os.path.abspath(__file__)),
+                                                    "style.mplstyle"),
                                        use_default_template=False)
 FONT, SCALE = SHEET["font.sans-serif"][0], SHEET["image.cmap"]
 SIZE, LABEL_SIZE, TITLE_SIZE, LEGEND_SIZE, SMALL_SIZE = 9, 9.5, 11, 8.5, 7  # points
@@ -29,16 +30,16 @@ SHARES = "Blues"  # for shares with their number written into them
 
 # A mark that a point of the line has, with a white edge where it crosses others.
 POINT = {"marker": "o", "markeredgecolor": "white", "markeredgewidth": 0.6}
-# A bound is a lid on each point: a bar with both ends bent down. It is visible where point and bound are equal, and
-# no band, which would be read as an interval of confidence.
+# A bound is a lid on each point: a bar with both ends bent down. It is visible where point and bound are
+# equal, and no band, which would be read as an interval of confidence.
 LID = Path([(-1, -0.55), (-1, 0), (1, 0), (1, -0.55)])
 LID_OF_X = Path([(-0.55, -1), (0, -1), (0, 1), (-0.55, 1)])
 FAINT_LINE = {"color": QUIET, "linewidth": 0.9, "linestyle": (0, (6, 3)), "zorder": 1.4}
 
 FORMATS = ["png", "svg", "pdf"]
 USUAL_FORMATS = ["png", "svg"]
-# Nothing of the time or the release is written into the files. `stereotlm plot` (plot_command.cpp) knows its own
-# files by the maker.
+# Nothing of the time or the release is written into the files. `stereotlm plot` (plot_command.cpp) knows its
+# own files by the maker.
 MAKER = "stereotlm"
 METADATA = {"png": {"Software": MAKER}, "svg": {"Date": None, "Creator": MAKER},
             "pdf": {"Creator": MAKER, "Producer": None, "CreationDate": None}}
@@ -82,7 +83,8 @@ def text_width(text, size, bold=False):
 
 
 def wrapped(text, size, width, indent="", bold=False):
-    """The lines of a text, broken at blanks; in words that are longer than a line at no-break spaces, or anywhere."""
+    """The lines of a text, broken at blanks; in words that are longer than a line at no-break spaces, or
+    anywhere."""
     lines = []
     line = ""
     for word in text.split(" "):

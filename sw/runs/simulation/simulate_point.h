@@ -23,8 +23,8 @@ class PointSimulator {
   // Uses the tables of a calibration on boards that they fit.
   explicit PointSimulator(const platform::Tables& tables) : tables_(tables), is_calibrated_(true) {}
 
-  // Called repeatedly while a whole computer is simulated, with its steady rate so far. Returns true to give up
-  // the simulation.
+  // Called repeatedly while a whole computer is simulated, with its steady rate so far. Returns true to give
+  // up the simulation.
   using Hopeless = std::function<bool(const platform::SteadyRate& so_far)>;
 
   // Simulates a point. Throws std::runtime_error if that fails, and explore::GivenUp if it was given up.
@@ -37,9 +37,10 @@ class PointSimulator {
   bool is_calibrated_ = false;
 };
 
-// What the core of a whole computer does in the window of the steady rate: shares of its time, which sum to 1.
-// The key is empty for its frames, else the reason for which it waits for its next start (sw/report/README.md,
-// Time line). The run of `frames` frames must have a steady rate. Throws as PointSimulator does.
+// What the core of a whole computer does in the window of the steady rate: shares of its time, which sum to
+// 1. The key is empty for its frames, else the reason for which it waits for its next start
+// (sw/report/README.md, Time line). The run of `frames` frames must have a steady rate. Throws as
+// PointSimulator does.
 std::map<std::string, double> core_time(const platform::BoardConfig& board, const platform::Tables& tables,
                                         std::uint64_t frames);
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <stdexcept>
 #include <systemc>
 #include <utility>
@@ -51,8 +52,8 @@ class PreloadedSimulation : public Simulation, private host::FrameSource, privat
 
  private:
   const host::StereoPair& pair(std::uint64_t frame) override { return load_pair(frame); }
-  // Saves the counters at the end of each frame, because the counters of an interrupted run must not include a
-  // part of the running frame.
+  // Saves the counters at the end of each frame, because the counters of an interrupted run must not include
+  // a part of the running frame.
   void take(std::uint64_t frame, const kernels::GrayImage& disparity) override {
     counters_ = platform::counters_of(system_.board);
     add_result({frame, disparity});
@@ -117,8 +118,8 @@ void Simulation::check_conflicts(platform::Statistics& statistics) const {
 }
 
 std::uint64_t Simulation::cycles() const {
-  return static_cast<std::uint64_t>(sc_core::sc_time_stamp().to_seconds() * board_.fpga.clock_mhz * 1e6 +
-                                    0.5);
+  return static_cast<std::uint64_t>(
+      std::llround(sc_core::sc_time_stamp().to_seconds() * board_.fpga.clock_mhz * 1e6));
 }
 
 const host::StereoPair& Simulation::load_pair(std::uint64_t number) {

@@ -65,17 +65,17 @@ class Simulation : private fpga::CycleObserver, private platform::BusObserver {
   // has none.
   virtual platform::TimelineRecords take_timeline() { return {}; }
 
-  // Records where and when the ports of the core stall, from the next frame of the core on. To be called before
-  // advance(). A board alone then finishes its running frame when it ends early. statistics() also checks the
-  // identities of what is recorded.
+  // Records where and when the ports of the core stall, from the next frame of the core on. To be called
+  // before advance(). A board alone then finishes its running frame when it ends early. statistics() also
+  // checks the identities of what is recorded.
   void record_conflicts();
   // The frames of the core that have ended since the last call. To be called as take_timeline().
   std::vector<fpga::FrameConflicts> take_conflicts();
   // Null if conflicts are not recorded.
   const fpga::ConflictRecorder* conflicts() const { return conflicts_ ? &conflicts_->recorder() : nullptr; }
 
-  // Reports to the observers what the core does in the window, and around it the buses and queues of a computer.
-  // To be called after record_conflicts(), before advance(). The observers outlive the simulation.
+  // Reports to the observers what the core does in the window, and around it the buses and queues of a
+  // computer. To be called after record_conflicts(), before advance(). The observers outlive the simulation.
   // An exception of an observer ends the simulation, and advance() throws it.
   void trace(const fpga::CycleWindow& window, fpga::CycleObserver& cycles, platform::BusObserver& buses);
 
@@ -148,9 +148,9 @@ struct RunMode {
   bool record = false;  // see Simulation::take_conflicts(); the whole computer: also take_timeline()
 };
 
-// Creates a CameraSimulation, or a simulation of the board alone with an ideal host, in which frame f shows pair
-// f. A board alone that ends early drops the running frame, but finishes it if conflicts are recorded. The arguments, except `mode`, outlive it. Throws
-// std::exception if it cannot be built.
+// Creates a CameraSimulation, or a simulation of the board alone with an ideal host, in which frame f shows
+// pair f. A board alone that ends early drops the running frame, but finishes it if conflicts are recorded.
+// The arguments, except `mode`, outlive it. Throws std::exception if it cannot be built.
 std::unique_ptr<Simulation> make_simulation(const platform::BoardConfig& board,
                                             const platform::Tables& tables, host::FrameSource& pairs,
                                             const RunMode& mode, Binder& binder);

@@ -103,9 +103,9 @@ GrayImage part_of(const GrayImage& image, int column, int row, int width, int he
 // others are decoded again at each use.
 class SequencePairs : public PairSource {
  public:
-  // Reads every picture once, and adds them to `opened` and `described`. Throws std::runtime_error, without the
-  // name of the option, if the folder cannot be read, holds no pair or a picture without partner, or holds a
-  // picture that cannot be read or does not fit the board.
+  // Reads every picture once, and adds them to `opened` and `described`. Throws std::runtime_error, without
+  // the name of the option, if the folder cannot be read, holds no pair or a picture without partner, or
+  // holds a picture that cannot be read or does not fit the board.
   SequencePairs(const std::string& folder, const platform::BoardConfig* board, OpenedSource& opened,
                 RecordedOptions& described)
       : PairSource("--sequence", 0) {
@@ -163,10 +163,10 @@ class SequencePairs : public PairSource {
 // The pairs of `--video F [F2] --video-layout L`.
 class VideoPairs : public PairSource {
  public:
-  // Decodes each video once. Adds a note to `opened` for a video with fewer frames than its header states. Throws
-  // std::runtime_error, without the name of the option, if a video cannot be decoded, if its frames have another
-  // size than the layout needs, or if two videos differ in their number of frames. `board`: null if unknown; no
-  // pair may then be requested.
+  // Decodes each video once. Adds a note to `opened` for a video with fewer frames than its header states.
+  // Throws std::runtime_error, without the name of the option, if a video cannot be decoded, if its frames
+  // have another size than the layout needs, or if two videos differ in their number of frames. `board`: null
+  // if unknown; no pair may then be requested.
   VideoPairs(const PictureSource::Video& options, const platform::BoardConfig* board, OpenedSource& opened)
       : PairSource("--video", 0), layout_(options.layout) {
     for (const std::string& file : options.files) {

@@ -75,7 +75,9 @@ def placements():
 
 def rate_text(rates):
     """Rates of stats.json as they are printed."""
-    return f"{rates['steady']:.3f} ± {rates['steady_uncertainty']:.3f}" if "steady" in rates else f"{rates['core']:.3f}"
+    if "steady" not in rates:
+        return f"{rates['core']:.3f}"
+    return f"{rates['steady']:.3f} ± {rates['steady_uncertainty']:.3f}"
 
 
 class Allocate(ProgramTest):
@@ -121,7 +123,8 @@ class Allocate(ProgramTest):
         return found
 
     def rates_of_all(self, text, source, frames):
-        """The least possible, simulated and most possible rates of all that lose no pixel, simulated as a plan, by
+        """The least possible, simulated and most possible rates of all that lose no pixel, simulated as a
+        plan, by
         number of banks; the number of all."""
         chosen = list(placements())
         lists = (", ".join(banks[place] for banks in chosen) for place in range(len(BUFFERS)))
@@ -153,12 +156,15 @@ class Allocate(ProgramTest):
         self.assertEqual([row["banks"] for row in document["banks"]], sorted(expected))
         name = "core" if source == "preloaded" else "steady"
         all_rates = [each for rates in expected.values() for each in rates]
-        tied = lambda rates: [rate for _, rate, most in rates if most >= max(least for least, _, _ in rates) * (1 - 1e-9)]
+        tied = lambda rates: [rate
+                              for _, rate, most in rates
+                              if most >= max(least for least, _, _ in rates) * (1 - 1e-9)]
         for row in document["banks"]:
             rates = expected[row["banks"]]
             self.assertEqual(row["frames_per_second"][name], max(rate for _, rate, _ in rates))
             self.assertEqual(row["tied"], len(tied(rates)), row["banks"])
-            self.assertGreaterEqual(row["bound_frames_per_second"], max(least for least, _, _ in rates) * (1 - 1e-9))
+            self.assertGreaterEqual(row["bound_frames_per_second"],
+                                    max(least for least, _, _ in rates) * (1 - 1e-9))
         best = document["best"]
         highest = best["highest_frames_per_second"][name]
         self.assertEqual(highest, max(rate for _, rate, _ in all_rates))
@@ -191,7 +197,8 @@ class Allocate(ProgramTest):
         shared = sets("fpga.tables=joint", "allocation.right_lut=bank6", "fpga.pixel_cache=word")
         said = self.succeeds(self.allocate(*PRELOADED, *shared, board="fpl2003", banks=3))
         self.assertRegex(said, r"The best of all is 18\.5959 frames/s; .*\n"
-                               r"It needs 3 banks \(18\.5959 frames/s\): the best with fewer gives 18\.5958\.")
+                               r"It needs 3 banks \(18\.5959 frames/s\): "
+                               r"the best with fewer gives 18\.5958\.")
 
     def test_finds_the_best_of_all_for_the_core_with_turnaround(self):
         said, _, _ = self.compare(BURST, "preloaded", 3, "--frames", 3)
@@ -200,7 +207,8 @@ class Allocate(ProgramTest):
     @program.slow
     def test_finds_the_best_of_all_for_the_computer(self):
         said, rows, document = self.compare(BOARD, "camera", 13, "--frames", 13)
-        rule = ("frames/s: steady, over 12 frames, ± what these leave open (a tenth of it with --frames 121);\n"
+        rule = ("frames/s: steady, over 12 frames, ± what these leave open (a tenth of it with --frames "
+                "121);\n"
                 "an allocation that loses a pixel does not count\n")
         self.assertIn(rule, said)
         total = lambda name: sum(int(row[name]) for row in rows.values())
@@ -210,19 +218,22 @@ class Allocate(ProgramTest):
         kept = min((row for row in document["banks"] if row["frames_per_second"]["steady"] >= highest * 0.7),
                    key=lambda row: row["banks"])
         again = self.succeeds(self.allocate("--frames", 13, "--keep-fps", 70))
-        self.assertIn(f"70 % of it is kept with {kept['banks']} banks ({rate_text(kept['frames_per_second'])} frames/s",
+        self.assertIn(f"70 % of it is kept with {kept['banks']} banks "
+                      f"({rate_text(kept['frames_per_second'])} frames/s",
                       again)
 
     @program.slow
     def test_a_run_is_given_up_only_if_it_is_slower(self):
-        """Of the default length, of which most are given up: none of those that are left out may be the best."""
+        """Of the default length, of which most are given up: none of those that are left out may be the
+        best."""
         rates, _ = self.rates_of_all(BOARD, "camera", 121)
         document = self.found(self.allocate("--json", board=self.board()))
         self.assertEqual(document["frames"], 121)
         self.assertGreater(sum(row["given_up"] for row in document["banks"]), 0)
         for row in document["banks"]:
             least = max(least for least, _, _ in rates[row["banks"]])
-            self.assertEqual(row["frames_per_second"]["steady"], max(rate for _, rate, _ in rates[row["banks"]]))
+            self.assertEqual(row["frames_per_second"]["steady"],
+                             max(rate for _, rate, _ in rates[row["banks"]]))
             self.assertEqual(row["tied"], sum(most >= least for _, _, most in rates[row["banks"]]))
 
     def test_the_command_and_the_file_give_the_rate_of_the_best(self):
@@ -236,10 +247,12 @@ class Allocate(ProgramTest):
             best = document["best"]["frames_per_second"]
             self.assertEqual(printed, rate_text(best))
             shown = self.succeeds(run("run", *words))
-            self.assertRegex(shown, rf"(?m)^{'core' if source == 'preloaded' else 'computer'} +{printed} frames/s ")
+            self.assertRegex(shown, rf"(?m)^{'core' if source == 'preloaded' else 'computer'} +{printed} "
+                                    rf"frames/s ")
             self.assertEqual(document["best"]["command"][2:], words)
             self.assertEqual(document["written"], str(name))
-            for run_words in (words, [name, "--source", source, "--timing-only", "--frames", document["frames"]]):
+            for run_words in (words,
+                              [name, "--source", source, "--timing-only", "--frames", document["frames"]]):
                 rates = self.rates_of(*run_words)
                 self.assertEqual({key: rates[key] for key in best}, best)
             self.store.unlink()
@@ -271,7 +284,8 @@ class Allocate(ProgramTest):
         out, errors = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 130)
         self.assertEqual(errors, "stereotlm: note: interrupted: run the same command to resume\n")
-        rates = self.query(self.store, """SELECT "frames_per_second.steady", "frames_per_second.steady_uncertainty"
+        rates = self.query(self.store,
+                           """SELECT "frames_per_second.steady", "frames_per_second.steady_uncertainty"
             FROM points WHERE status = 'ok'
             AND "cameras.left.dropped_pixels" + "cameras.right.dropped_pixels" = 0""")
         found = self.rates_of(written, "--timing-only", "--frames", 122)
@@ -291,12 +305,14 @@ class Allocate(ProgramTest):
 
     def test_another_file_is_not_replaced_by_the_best(self):
         board = self.board()
-        rule = "exists, and is not known as a file of this board with another allocation, which alone is replaced"
+        rule = ("exists, and is not known as a file of this board with another allocation, which alone is "
+                "replaced")
         process = self.allocate(*PRELOADED, "--write", board, board=board)
         self.refused_in_one_line(process, f"--write '{board}': is the file of BOARD: must be another")
         self.assertFalse(self.store.exists())
         database = self.folder / "found.yaml"
-        process = run("allocate", board, "--banks", 2, "--out", database, "--write", f"{self.folder}/./found.yaml")
+        process = run("allocate", board, "--banks", 2, "--out", database, "--write",
+                      f"{self.folder}/./found.yaml")
         self.refused_in_one_line(process, "is the file of --out: must be another")
         self.assertFalse(database.exists())
         best = self.folder / "best.yaml"
@@ -381,15 +397,18 @@ class Allocate(ProgramTest):
         for line, text in zip(lines, wrong, strict=True):
             self.assertIn(text, line)
         for frames, rule in (("0", "1..1000000"), ("x", "1..1000000")):
-            self.refused_in_one_line(self.allocate("--frames", frames), f"--frames = {frames}: must be {rule}")
+            self.refused_in_one_line(self.allocate("--frames", frames),
+                                     f"--frames = {frames}: must be {rule}")
         rule = "must be a multiple of 2, one turn of the lists of buffers"
-        self.refused_in_one_line(self.allocate("--frames", 3, *PRELOADED, board="fpl2003"), f"--frames = 3: {rule}")
+        self.refused_in_one_line(self.allocate("--frames", 3, *PRELOADED, board="fpl2003"),
+                                 f"--frames = 3: {rule}")
         rule += ", and at least two turns"
         self.refused_in_one_line(self.allocate("--frames", 2, board="fpl2003"), f"--frames = 2: {rule}")
         for banks in ("0", "x", "2.5"):
             self.refused_in_one_line(self.allocate(banks=banks), f"--banks = {banks}: must be 1 or more")
         process = self.allocate(banks=6)
-        rule = "--banks = 6: must be 1..5, the banks of the board; --set 'ssram.banks.NEW={}' gives it one more"
+        rule = ("--banks = 6: must be 1..5, the banks of the board; --set 'ssram.banks.NEW={}' gives it one "
+                "more")
         self.refused_in_one_line(process, rule)
         self.succeeds(self.allocate(*PRELOADED, *sets("ssram.banks.NEW={}"), banks=6))
         self.refused_in_one_line(self.allocate("--keep-fps", "101"), "--keep-fps = 101")

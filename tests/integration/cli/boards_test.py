@@ -43,7 +43,8 @@ class Check(ProgramTest):
         for command, *options in (["check"], ["bounds"], ["explain"], ["run", "--synthetic", "1"],
                                   ["allocate", "--banks", "2", "--out", self.folder / "a.db"]):
             self.refused(run(command, self.out, *options), said)
-        self.refused_in_one_line(run("check", "out", cwd=self.folder), "out: a folder", "its board is out/config.yaml")
+        self.refused_in_one_line(run("check", "out", cwd=self.folder), "out: a folder",
+                                 "its board is out/config.yaml")
 
     def test_sums_up_the_board_as_set(self):
         text = self.succeeds(run("check", "fpl2003", *SMALL, *sets("matcher.window=5")))
@@ -56,7 +57,8 @@ class Check(ProgramTest):
             self.assertTrue(self.succeeds(run("check", path)).startswith(f"{path}: ok: 320x240"))
 
     def test_takes_one_value_with_each_set(self):
-        self.succeeds(run("check", "--set=allocation.disparity=[bank0, bank1]", "--set", "matcher.window=5", "fpl2003"))
+        self.succeeds(run("check", "--set=allocation.disparity=[bank0, bank1]", "--set", "matcher.window=5",
+                          "fpl2003"))
 
     def test_says_everything_that_is_wrong_with_its_place(self):
         path = self.file("mine.yaml", "extends: fpl2003\nimage: {width: 3, hight: 2}\n")
@@ -133,7 +135,8 @@ class Bounds(ProgramTest):
     def around_the_board(self, *assignments):
         """What each part of the computer allows, and the bound of the computer."""
         lines, _ = self.parts(*assignments)
-        parts = [line.rsplit(maxsplit=1) for line in lines[lines.index("the whole computer, with all masters") + 2 : -2]]
+        parts = [line.rsplit(maxsplit=1)
+                 for line in lines[lines.index("the whole computer, with all masters") + 2 : -2]]
         return {name.strip(): float(rate) for name, rate in parts}, lines[-1]
 
     def test_lists_each_resource(self):
@@ -216,7 +219,8 @@ class Explain(ProgramTest):
 
     def rows(self, text):
         """(rate, gained, key, to, FPGA %) of the changes."""
-        pattern = (r"^ +([\d.]+) +([+-][\d.]+) +[+-][\d.]+ +([+-]?[\d.]+) +[+-]?\d+  (.+?)(?: \*)?: .* -> (.*?)"
+        pattern = (r"^ +([\d.]+) +([+-][\d.]+) +[+-][\d.]+ +([+-]?[\d.]+) +[+-]?\d+  (.+?)(?: \*)?: .* -> "
+                   r"(.*?)"
                    r"(?:, [+-]\d+ multipliers)?(?:  does not fit)?(?:  loses (?:no )?pixels)?(?:  ~)?$")
         found = re.findall(pattern, text, re.M)
         return [(rate, gained, key, to, price) for rate, gained, price, key, to in found]
@@ -252,7 +256,8 @@ class Explain(ProgramTest):
         rate = self.rate(*CAMERA_RATES)
         stats = self.stats()
         uncertainty = stats["frames_per_second"]["steady_uncertainty"]
-        self.assertTrue(text.startswith(f"fpl2003, the whole computer: {rate:.3f} ± {uncertainty:.3f} frames/s, "))
+        self.assertTrue(text.startswith(f"fpl2003, the whole computer: {rate:.3f} ± {uncertainty:.3f} "
+                                        f"frames/s, "))
         # The headroom is of the time from one frame of the computer to the next, and not only of the core's.
         bounds = json.loads(self.succeeds(run("bounds", "fpl2003", *SMALL, *CAMERA_RATES, "--json")))
         limits = {row["resource"]: row["frames_per_second"] for row in bounds["computer"]}
@@ -264,7 +269,8 @@ class Explain(ProgramTest):
         for resource in ("matcher", "camera", "pci", "bridge", "bank bank0"):
             name = resource.removeprefix("bank ")
             ((headroom, percent),) = re.findall(rf"(?m)^ +([\d.]+) +([\d.]+) +[\d.]+  {name}(?:,.*)?$", text)
-            self.assertAlmostEqual(float(headroom), 100 * (1 - rate / limits[resource]), delta=0.006, msg=resource)
+            self.assertAlmostEqual(float(headroom), 100 * (1 - rate / limits[resource]), delta=0.006,
+                                   msg=resource)
             if resource in busy:
                 self.assertAlmostEqual(float(percent), 100 * busy[resource], delta=0.0051)
         self.assertIn("no port waits for another", text)
@@ -293,14 +299,18 @@ class Explain(ProgramTest):
                 self.assertEqual((rate, gained), (f"{found:.3f}", f"{found - now:+.3f}"), key)
                 percent = change["area"]["slices_percent"] - document["area"]["slices_percent"]
                 self.assertAlmostEqual(float(price), percent, delta=0.0051, msg=key)
-            for change in changes[::4] + [one for one in changes if one["key"].startswith(("allocation", "a bank"))]:
+            for change in changes[::4] + [one for one in changes if one["key"].startswith(("allocation",
+                                                                                           "a bank"))]:
                 keys = [pasted.partition("=")[0] for pasted in change["sets"]]
                 earlier = [*SMALL, *options]
-                kept = [earlier[i + 1] for i in range(0, len(earlier), 2) if earlier[i + 1].partition("=")[0] not in keys]
-                command = ["run", "fpl2003", *source, "--timing-only", "--frames", document["frames"], "--out", self.out]
+                kept = [earlier[i + 1] for i in range(0, len(earlier),
+                                                      2) if earlier[i + 1].partition("=")[0] not in keys]
+                command = ["run", "fpl2003", *source, "--timing-only", "--frames", document["frames"],
+                           "--out", self.out]
                 self.succeeds(run(*command, *sets(*kept, *change["sets"])))
                 rates = self.stats()["frames_per_second"]
-                self.assertEqual(rates["core" if source else "steady"], change["frames_per_second"], change["sets"])
+                self.assertEqual(rates["core" if source else "steady"], change["frames_per_second"],
+                                 change["sets"])
 
     def test_a_change_whose_sets_are_not_its_text_has_them_below(self):
         text = self.explain(*PRELOADED, *SHARED)
@@ -316,11 +326,13 @@ class Explain(ProgramTest):
             (full_size, r"the captures: the core waits [\d.]+ % of the time"),
             ([*full_size, *sets("pci.load={burst_words: 1, interval_us: 0, access_us: 50}")],
              r"the PCI bus: captures lose \d+ pixels while 42 frames are delivered, so pictures are torn"),
-            ([*full_size, *sets("matcher.fetch=line_buffer")], "the cameras, at the bound of 120.000 frames/s"),
+            ([*full_size, *sets("matcher.fetch=line_buffer")],
+             "the cameras, at the bound of 120.000 frames/s"),
         ]
         for options, limiter in cases:
             text = unwrapped(self.succeeds(run("explain", "fpl2003", *options)))
-            self.assertRegex(text, rf"^fpl2003, the whole computer: [\d.]+ ± [\d.]+ frames/s, limited by {limiter}")
+            self.assertRegex(text, rf"^fpl2003, the whole computer: [\d.]+ ± [\d.]+ frames/s, limited by "
+                                   rf"{limiter}")
 
     def test_frames_are_those_of_the_option(self):
         text = self.explain(*CAMERA_RATES, "--frames", 12)
@@ -336,11 +348,13 @@ class Explain(ProgramTest):
         rate = self.rate(*short)
         lost = 100 * (1 - rate / self.stats()["bound"]["core"])
         self.assertGreater(lost, 1)
-        self.assertIn(f"{said} {lost:.2f} % of the cycles the matcher waits for a place in it (fpga.result_fifo_words)\n",
+        self.assertIn(f"{said} {lost:.2f} % of the cycles the matcher waits for a place in it "
+                      f"(fpga.result_fifo_words)\n",
                       unwrapped(text))
         self.assertLessEqual(max(map(len, text.splitlines())), 100)
         # The step to five rows would need a longer queue. That to the line buffer is one to a single row.
-        self.assertIn("\nnot possible here: matcher.rows: 4 -> 5, because fpga.result_fifo_words = 4: at least 5", text)
+        self.assertIn("\nnot possible here: matcher.rows: 4 -> 5, because fpga.result_fifo_words = 4: at "
+                      "least 5", text)
         (fetch,) = (row for row in self.rows(text) if row[2] == "matcher.fetch")
         self.assertEqual(fetch[3], "line_buffer, matcher.rows 1")
         line_buffer = sets("matcher.disparities=4", "matcher.fetch=line_buffer", "fpga.result_fifo_words=4")

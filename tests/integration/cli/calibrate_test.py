@@ -292,7 +292,8 @@ class RefusedPictures(CalibrateTest):
         drawings = self.folder / "new_drawings"
         left, right = ([drawings / f"{name}_0[0-2].png"] for name in ("corners", "rectified"))
         process = self.calibrate(left=left, right=right)
-        self.refused(process, f"--left '{drawings}/corners_00.png' lies in it and would be replaced: an input must")
+        self.refused(process, f"--left '{drawings}/corners_00.png' lies in it and would be replaced: an "
+                              f"input must")
 
 
 class RefusedPlaces(CalibrateTest):
@@ -376,7 +377,8 @@ class PrintGrid(ProgramTest):
         stream = re.search(rb"stream\n(.*?)\nendstream", (self.folder / "grid.pdf").read_bytes(), re.S)[1]
         point = rb"(\S+)\s(\S+)\s"
         square = point + rb"m\s\S+\s\S+\sl\s" + point + rb"l\s\S+\s\S+\sl\s+h"
-        squares = [[25.4 / 72 * float(each) for each in found] for found in re.findall(square, zlib.decompress(stream))]
+        squares = [[25.4 / 72 * float(each) for each in found]
+                   for found in re.findall(square, zlib.decompress(stream))]
         places = set()
         for left, top, right, bottom in squares:
             place = [(left - 23.5) / 25, (top - 12.5) / 25, (right - 48.5) / 25, (bottom - 37.5) / 25]
@@ -388,7 +390,8 @@ class PrintGrid(ProgramTest):
     def test_wrong_sheets_are_refused(self):
         sheet = self.file("grid.pdf", "precious")
         with self.unchanged(self.folder):
-            self.refused(self.print_grid("grid.pdf"), "is not known as a sheet of the same grid, which alone is replaced")
+            self.refused(self.print_grid("grid.pdf"),
+                         "is not known as a sheet of the same grid, which alone is replaced")
             self.refused(self.print_grid("grid.png"), "must end in .pdf or .svg")
             process = self.print_grid("new.pdf", "--left", "x", "--disparities", "3")
             rule = "does not go with --print-grid"

@@ -81,7 +81,8 @@ class Recording(CameraTest):
         for camera in stats["cameras"]:
             captures, drops = of("capture", camera["name"]), of("drop", camera["name"])
             self.assertEqual(len(captures), camera["captured_frames"])
-            self.assertEqual(sum(int(event["dropped_pixels"]) for event in captures), camera["dropped_pixels"])
+            self.assertEqual(sum(int(event["dropped_pixels"]) for event in captures),
+                             camera["dropped_pixels"])
             for why in ("not_armed", "busy", "partner"):
                 dropped = camera["dropped_by_partner" if why == "partner" else f"dropped_{why}"]
                 self.assertEqual(sum(event["why"] == why for event in drops), dropped)

@@ -14,7 +14,8 @@ TABLES = ("rows.csv", "conflicts.csv")
 FIGURES = ("bank_rows", "picture", "time_line", "causes")
 SHARED = sets("allocation.left_lut=bank0")  # with every second left picture
 # Captures into the bank of both left pictures, which the core reads.
-CAPTURES = [*CAMERA_RATES, *sets("allocation.left_image=[bank0, bank0]", "allocation.disparity=[bank0, bank0]")]
+CAPTURES = [*CAMERA_RATES,
+            *sets("allocation.left_image=[bank0, bank0]", "allocation.disparity=[bank0, bank0]")]
 
 
 class ConflictsTest(ProgramTest):
@@ -34,10 +35,13 @@ class ConflictsTest(ProgramTest):
         self.assertEqual(sum(int(row["cycles"]) for row in rows), sum(stats["frame_cycles"]) - pipeline)
         self.assertEqual({int(row["frame"]) for row in rows}, set(range(stats["frames"])))
         for port in stats["ports"]:
-            columns = [name for name in rows[0] if name.startswith(port["name"]) and name.endswith("_stall_cycles")]
+            columns = [name
+                       for name in rows[0]
+                       if name.startswith(port["name"]) and name.endswith("_stall_cycles")]
             self.assertEqual(sum(int(row[name]) for row in rows for name in columns), port["stall_cycles"])
         for bank in stats["banks"]:
-            columns = [f"{bank['name']}_{kind}_accesses" for kind in ("core", "capture", "upload", "read_back")]
+            columns = [f"{bank['name']}_{kind}_accesses" for kind in ("core", "capture", "upload",
+                                                                      "read_back")]
             accesses = sum(int(row[name]) for row in rows for name in columns)
             self.assertEqual(accesses, bank["reads"] + bank["writes"])
         blame = {}
@@ -46,7 +50,8 @@ class ConflictsTest(ProgramTest):
             key = port(row["port"]), row["bank"], port(row["by"])
             blame[key] = blame.get(key, 0) + int(row["cycles"])
             self.assertNotEqual(row["cycles"], "0")
-        self.assertEqual(blame, {(row["port"], row["bank"], row["by"]): row["cycles"] for row in stats["blame"]})
+        self.assertEqual(blame,
+                         {(row["port"], row["bank"], row["by"]): row["cycles"] for row in stats["blame"]})
 
 
 class Recorded(ConflictsTest):
@@ -133,7 +138,8 @@ class Command(ConflictsTest):
             self.assertFalse(self.out.exists())
 
     def test_without_stalls_there_is_no_figure_of_their_causes(self):
-        self.succeeds(run("conflicts", *self.scene, *PRELOADED, "--timing-only", "--size", "5x6", "--out", self.out))
+        self.succeeds(run("conflicts", *self.scene, *PRELOADED, "--timing-only", "--size", "5x6", "--out",
+                          self.out))
         self.assertFalse((self.out / "causes.png").exists())
         size = struct.unpack(">II", (self.out / "bank_rows.png").read_bytes()[16:24])
         self.assertEqual(size, (1000, 1200))
@@ -151,12 +157,14 @@ class Command(ConflictsTest):
     def test_names_are_text(self):
         board = self.file("board.yaml", b"extends: fpl2003\nname: $x_{<script>}$\n")
         self.scene[0] = str(board)
-        self.succeeds(run("conflicts", *self.scene, *PRELOADED, *SHARED, "--format", "svg", "--out", self.out))
+        self.succeeds(run("conflicts", *self.scene, *PRELOADED, *SHARED, "--format", "svg", "--out",
+                          self.out))
         self.assertIn("Board $x_{&lt;script&gt;}$", (self.out / "causes.svg").read_text())
 
     def test_its_example_is_a_command_of_its_own(self):
         example = self.refused(run("conflicts", "fpl2003"))[-1]
-        self.assertTrue(example.startswith("stereotlm: note: a complete command: stereotlm conflicts fpl2003 "), example)
+        begin = "stereotlm: note: a complete command: stereotlm conflicts fpl2003 "
+        self.assertTrue(example.startswith(begin), example)
 
     def test_what_does_not_fit_is_refused(self):
         recorded = self.folder / "recorded"

@@ -55,7 +55,8 @@ class Diagram(ProgramTest):
         command = re.search(r"stereotlm diagram (\S+) --out (\S+\.svg)", text)
         self.assertIn(f'src="{command[2]}"', text)
         self.succeeds(run("diagram", command[1], "--out", self.svg))
-        self.assertEqual(self.svg.read_bytes(), (ROOT / command[2]).read_bytes(), f"must be written again: {command[0]}")
+        self.assertEqual(self.svg.read_bytes(), (ROOT / command[2]).read_bytes(),
+                         f"must be written again: {command[0]}")
 
     def test_takes_a_preset_before_a_folder_of_its_name(self):
         (self.folder / "fpl2003").mkdir()
@@ -75,13 +76,16 @@ class Diagram(ProgramTest):
             (["diagram", "fpl2003"], "--out: missing"),
             (["diagram", *svg], "BOARD: missing"),
             (["diagram", "fpl2003", "--out", "x.png"], "--out 'x.png': must end in .svg"),
-            (["diagram", "fpl2003", "--out", self.folder / "none/x.svg"], "none/x.svg': there is no such folder"),
+            (["diagram", "fpl2003", "--out", self.folder / "none/x.svg"],
+             "none/x.svg': there is no such folder"),
             (["diagram", "fpl2004", *svg], "fpl2004: not a preset"),
-            (["diagram", "fpl2003", "--source", "disk", *svg], "--source = disk: must be camera or preloaded"),
+            (["diagram", "fpl2003", "--source", "disk", *svg],
+             "--source = disk: must be camera or preloaded"),
             (["diagram", self.out, "--source", "camera", *svg], "a run has its board"),
             (["diagram", self.out, *sets("matcher.window=5"), *svg], "a run has its board"),
         ], run)
-        self.refused(run("diagram", empty, *svg), "BOARD must be a board, or a folder that run --out has written")
+        self.refused(run("diagram", empty, *svg),
+                     "BOARD must be a board, or a folder that run --out has written")
         self.assertFalse(self.svg.exists())
 
 

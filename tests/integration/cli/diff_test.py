@@ -81,9 +81,12 @@ class Differences(DiffTest):
         rates = [stats["frames_per_second"]["core"] for stats in (of_a, of_b)]
         gain = f"{rates[0] - rates[1]:.3f} frames/s ({100 * (rates[0] / rates[1] - 1):.2f} %), core only"
         most = max(of_b["blame"], key=lambda row: row["cycles"])
-        wait = f"{most['port']} waits {most['cycles'] / 2:.0f} cycles a frame more on {most['bank']} for {most['by']}"
-        self.assertEqual(self.verdict(a, b), f"A is faster by {gain}: in B {wait}; the disparities are the same.")
-        self.assertEqual(self.verdict(b, a), f"B is faster by {gain}: in A {wait}; the disparities are the same.")
+        wait = (f"{most['port']} waits {most['cycles'] / 2:.0f} cycles a frame more on {most['bank']} for "
+                f"{most['by']}")
+        self.assertEqual(self.verdict(a, b),
+                         f"A is faster by {gain}: in B {wait}; the disparities are the same.")
+        self.assertEqual(self.verdict(b, a),
+                         f"B is faster by {gain}: in A {wait}; the disparities are the same.")
         same = f"A and B are equally fast, {rates[0]:.3f} frames/s, core only; the disparities are the same."
         self.assertEqual(self.verdict(a, a), same)
 
@@ -95,9 +98,11 @@ class Differences(DiffTest):
                          rf"^B is faster .*: a frame takes {cycles[0]} cycles in A, limited by matcher, "
                          rf"and {cycles[1]} in B, limited by \w+.*; the disparities are the same\.$")
         fast = shared_run(*SCENE, *sets("fpga.clock_mhz=50"), "--frames", "2")
-        self.assertIn("(25.00 %), core only: the core runs at 40 MHz in A and at 50 MHz in B;", self.verdict(a, fast))
+        self.assertIn("(25.00 %), core only: the core runs at 40 MHz in A and at 50 MHz in B;",
+                      self.verdict(a, fast))
         cache = shared_run(*SCENE, *sets("fpga.clock_mhz=40.000001"), "--frames", "2")
-        self.assertIn("A and B are equally fast to 0.001 frames/s, core only: the core runs at 40 MHz in A and at",
+        self.assertIn("A and B are equally fast to 0.001 frames/s, core only: the core runs at 40 MHz in A "
+                      "and at",
                       self.verdict(a, cache).replace("\n", " "))
         timing = shared_run(*SMALL, "--timing-only", "--frames", "2")
         self.assertIn("; the disparities are not compared.", self.verdict(a, timing))
@@ -107,8 +112,10 @@ class Differences(DiffTest):
     def test_the_verdict_names_a_wait_that_is_at_least_half_of_the_difference(self):
         """A pixel takes 3 cycles in A and 1 in B. Where A shares a bank, it waits for 3 more."""
         board = [*SMALL, *TIMING, *sets("matcher.window=3", "matcher.disparities=16")]
-        # A shares a bank in every second frame, so the wait is 3 of 5 cycles, then 3 of 7. The drain adds some.
-        for frames, least, most, said in ((1, 0.5, 0.6, ": in A left_lut waits "), (2, 0.4, 0.5, ": a frame takes ")):
+        # A shares a bank in every second frame, so the wait is 3 of 5 cycles, then 3 of 7. The drain adds
+        # some.
+        for frames, least, most, said in ((1, 0.5, 0.6, ": in A left_lut waits "),
+                                          (2, 0.4, 0.5, ": a frame takes ")):
             folders = [shared_run(*board, *more, "--frames", frames)
                        for more in (SHARED, sets("matcher.fetch=line_buffer"))]
             of_a, of_b = map(stats_of, folders)
@@ -234,7 +241,8 @@ class Computer(DiffTest):
         self.assertGreater(rates[1]["steady"], rates[0]["steady"])
         self.assertLess(rates[1]["core"], rates[0]["core"])
         for runs, name in (((self.a, self.b), "B"), ((self.b, self.a), "A")):
-            self.assertRegex(self.verdict(*runs), rf"^{name} is faster by .*, steady: the core is not faster in {name}, "
+            self.assertRegex(self.verdict(*runs), rf"^{name} is faster by .*, steady: the core is not faster "
+                                                  rf"in {name}, "
                                                   "and the difference arises around it; ")
 
     def test_its_figures_and_disparities_of_the_same_camera_frame_are_compared(self):
@@ -365,10 +373,12 @@ class Folders(DiffTest):
     def test_other_figures_fail(self):
         other = f"B '{self.b}': repeated, it has other figures: "
         none, one = '"contended_cycles": 0', '"contended_cycles": 1'
-        self.fails(self.diff("stats.json", none, one), f"{other}/banks/0/contended_cycles: recorded 1, again 0\n")
+        self.fails(self.diff("stats.json", none, one),
+                   f"{other}/banks/0/contended_cycles: recorded 1, again 0\n")
         self.fails(self.diff("stats.json", none, one), other, ", and 1 more\n")
         process = self.diff("config.yaml", "window: 7", "window: 5")
-        self.refused_in_one_line(process, f"{self.b}/stats.json:", "which follows from other figures and the board")
+        self.refused_in_one_line(process, f"{self.b}/stats.json:",
+                                 "which follows from other figures and the board")
 
     def test_both_versions_are_named(self):
         version = json.loads((self.b / "run.json").read_text())["version"]

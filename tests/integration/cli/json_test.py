@@ -1,4 +1,5 @@
-"""The option --json: documents that keep their schemas, with the figures of runs, of their files and of the board."""
+"""The option --json: documents that keep their schemas, with the figures of runs, of their files and of the
+board."""
 
 import csv
 import json
@@ -31,7 +32,8 @@ class Json(ProgramTest):
 
     def small_run(self, *options):
         """The result folder of a small preloaded run with a shared bank, and its stats.json."""
-        self.succeeds(run("run", "fpl2003", *SMALL, *PRELOADED, *SHARED, "--synthetic", 1, "--frames", 2, *options,
+        self.succeeds(run("run", "fpl2003", *SMALL, *PRELOADED, *SHARED, "--synthetic", 1, "--frames", 2,
+                          *options,
                           "--out", self.out))
         return self.stats()
 
@@ -49,7 +51,8 @@ class Json(ProgramTest):
         self.assertEqual({key: area[key] for key in stats["area"]}, stats["area"])
         for part, count in (("luts", 1), ("flip_flops", 1), ("block_rams", 1), ("multipliers", 1)):
             self.assertEqual(count * sum(row[part] for row in area["parts"]), stats["area"][part])
-        self.assertEqual((area["device"], area["fits"], area["smallest_device"]), ("xc2v6000", True, "xc2v1500"))
+        self.assertEqual((area["device"], area["fits"], area["smallest_device"]),
+                         ("xc2v6000", True, "xc2v1500"))
         self.assertEqual(document["bound"]["core"], stats["bound"]["core"])
         self.assertEqual(document["bound"]["core_limited_by"], stats["bound"]["core_limited_by"])
         # Of the lists of two banks each frame is bound by its slowest resource; the bound is their mean.
@@ -79,25 +82,29 @@ class Json(ProgramTest):
         self.assertEqual(document["bound"]["frames_per_second"], stats["bound"]["core"])
         self.assertEqual({key: document["area"][key] for key in stats["area"]}, stats["area"])
         blame = {(row["port"], row["bank"], row["by"]): row["cycles_percent"] for row in document["blame"]}
-        expected = {(row["port"], row["bank"], row["by"]): 100 * row["cycles"] / stats["cycles"] for row in stats["blame"]}
+        expected = {(row["port"], row["bank"], row["by"]): 100 * row["cycles"] / stats["cycles"]
+                    for row in stats["blame"]}
         self.assertEqual(blame.keys(), expected.keys())
         for wait, percent in blame.items():
             self.assertAlmostEqual(percent, expected[wait], places=6)
         changes = {(row["key"], row["to"]): row for row in document["changes"]}
-        for key, to in (("matcher.window", "9"), ("matcher.fetch", "line_buffer"), ("matcher.filter", "none")):
+        for key, to in (("matcher.window", "9"), ("matcher.fetch", "line_buffer"),
+                        ("matcher.filter", "none")):
             change = changes[key, to]
             changed = self.small_run(*sets(f"{key}={to}"))
             self.assertAlmostEqual(change["frames_per_second"], changed["frames_per_second"]["core"])
             gained = changed["frames_per_second"]["core"] - stats["frames_per_second"]["core"]
             self.assertAlmostEqual(change["gained_frames_per_second"], gained)
-            self.assertAlmostEqual(change["gained_percent"], 100 * gained / stats["frames_per_second"]["core"])
+            self.assertAlmostEqual(change["gained_percent"],
+                                   100 * gained / stats["frames_per_second"]["core"])
             self.assertEqual(change["area"]["slices"], changed["area"]["slices"])
         self.assertEqual((document["impossible"], document["failed"]), ([], []))
 
     def test_explain_names_what_is_impossible_and_a_queue_that_is_too_short(self):
         short = sets("matcher.rows=4", "matcher.disparities=4", "fpga.result_fifo_words=4")
         document = self.document("explain", "fpl2003", *SMALL, *PRELOADED, *short)
-        stats = json.loads(self.succeeds(run("run", "fpl2003", *SMALL, *PRELOADED, *short, "--synthetic", 1, "--json")))
+        stats = json.loads(self.succeeds(run("run", "fpl2003", *SMALL, *PRELOADED, *short, "--synthetic", 1,
+                                             "--json")))
         lost = 100 * (1 - stats["frames_per_second"]["core"] / stats["bound"]["core"])
         self.assertAlmostEqual(document["result_queue_wait_percent"], lost)
         change = document["impossible"][0]
@@ -106,7 +113,8 @@ class Json(ProgramTest):
         self.assertIn(change["reason"], refused[0])
 
     def test_conflicts_has_the_figures_of_a_run(self):
-        document = self.document("conflicts", "fpl2003", *SMALL, *PRELOADED, *SHARED, "--synthetic", 1, "--frames", 2)
+        document = self.document("conflicts", "fpl2003", *SMALL, *PRELOADED, *SHARED, "--synthetic", 1,
+                                 "--frames", 2)
         stats = self.small_run("--record")
         self.assertEqual((document["cycles"], document["frames"]), (stats["cycles"], stats["frames"]))
         waits = [{key: row[key] for key in ("port", "bank", "by", "cycles")} for row in document["waits"]]
@@ -116,12 +124,15 @@ class Json(ProgramTest):
             self.assertAlmostEqual(row["cycles_percent"], 100 * row["cycles"] / stats["cycles"], places=6)
         with (self.out / "rows.csv").open() as rows:
             recorded = list(csv.DictReader(rows))
-        in_percent = lambda rows, columns: 100 * sum(int(row[column]) for row in rows for column in columns) / sum(
+        in_percent = lambda rows, columns: 100 * sum(int(row[column]) for row in rows
+                                                     for column in columns) / sum(
             int(row["cycles"]) for row in rows)
         waiting = [column for column in recorded[0] if column.endswith("_stall_cycles")]
         for band in document["rows"]:
             first, last = band.get("first_row"), band.get("last_row")
-            rows = [row for row in recorded if (row["first_row"] == "" if first is None else row["first_row"] != "" and
+            rows = [row
+                    for row in recorded
+                    if (row["first_row"] == "" if first is None else row["first_row"] != "" and
                                                 first <= int(row["first_row"]) <= last)]
             self.assertAlmostEqual(band["waits_percent"], in_percent(rows, waiting), places=6)
             for bank in band["banks"]:
@@ -140,8 +151,10 @@ class Json(ProgramTest):
                 continue
             answered = re.search(r"disparities +in (.*) %", table)[1]
             self.assertEqual(f"{beside['disparities_percent']:.2f}", answered)
-            self.assertEqual(f"{beside['waitless_frames_per_second']:.3f}", re.search(r"of (.*), which the core", table)[1])
-            self.assertEqual(f"{beside['accuracy']['answered_percent']:.2f}", re.search(r"answered: (.*) %", table)[1])
+            self.assertEqual(f"{beside['waitless_frames_per_second']:.3f}",
+                             re.search(r"of (.*), which the core", table)[1])
+            self.assertEqual(f"{beside['accuracy']['answered_percent']:.2f}",
+                             re.search(r"answered: (.*) %", table)[1])
 
     def test_diff_has_what_differs_of_both_runs(self):
         a, b = self.folder / "a", self.folder / "b"
@@ -161,14 +174,16 @@ class Json(ProgramTest):
         frames = list(enumerate(zip(of_a["frame_cycles"], of_b["frame_cycles"], strict=True)))
         expected = [{"frame": frame, "a": x, "b": y} for frame, (x, y) in frames if x != y]
         self.assertEqual(document["frames"], expected)
-        self.assertEqual(document["waits"], [{"port": row["port"], "bank": row["bank"], "by": row["by"], "a": 0,
+        self.assertEqual(document["waits"],
+                         [{"port": row["port"], "bank": row["bank"], "by": row["by"], "a": 0,
                                               "b": row["cycles"]} for row in of_b["blame"]])
         rows = document["rows"]
         self.assertEqual(rows["frames"], 2)
         self.assertEqual(sum(row["cycles"] for row in rows["ranges"]), of_b["cycles"] - of_a["cycles"])
         waiting = sum(row["waiting_cycles"]["left_lut"] for row in rows["ranges"])
         self.assertEqual(waiting, sum(row["cycles"] for row in of_b["blame"] if row["port"] == "left_lut"))
-        self.assertEqual(document["disparities"], {"frames": 2, "frames_that_differ": 0, "pixels_that_differ": 0})
+        self.assertEqual(document["disparities"],
+                         {"frames": 2, "frames_that_differ": 0, "pixels_that_differ": 0})
         self.assertRegex(document["verdict"], r"^A is faster by .*\.$")
         alone = self.document("diff", a, a)
         for part in ("settings", "options", "figures", "frames", "waits"):
@@ -185,7 +200,8 @@ class Json(ProgramTest):
 
     def test_keys_are_those_of_a_board_file(self):
         keys = {row["key"]: row for row in self.document("keys")["keys"]}
-        self.assertEqual(keys["matcher.window"], {"key": "matcher.window", "unit": "pixels", "range": "3..31, odd",
+        self.assertEqual(keys["matcher.window"],
+                         {"key": "matcher.window", "unit": "pixels", "range": "3..31, odd",
                                                   "meaning": "rows and columns of the matching window"})
         self.assertNotIn("unit", keys["cameras.trigger"])
         board = self.succeeds(run("boards", "--show", "fpl2003"))
@@ -194,7 +210,8 @@ class Json(ProgramTest):
                 self.assertIn(f"{section}.{key.split(':')[0].strip()}", keys)
 
     def test_check_lists_the_problems_with_place_key_value_and_rule(self):
-        text = "extends: fpl2003\nname: a\nmatcher:\n  window: 6\n  cost: {census: 4}\nfoo: 1\nimage: {width: [1, 2]}\n"
+        text = ("extends: fpl2003\nname: a\nmatcher:\n  window: 6\n  cost: {census: 4}\nfoo: 1\nimage: "
+                "{width: [1, 2]}\n")
         board = self.file("board.yaml", text)
         arguments = ["check", board, *sets("allocation.left_lut=bank9")]
         printed = run(*arguments)

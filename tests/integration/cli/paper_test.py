@@ -54,7 +54,8 @@ class PaperTest(ProgramTest):
         super().setUp()
         if PaperTest.files is None:
             # It is written over an earlier one, and leaves other files.
-            self.file("out/paper.md", "# The paper's figures beside the model's\n\nWritten by `stereotlm paper`. Old.")
+            self.file("out/paper.md", "# The paper's figures beside the model's\n\nWritten by `stereotlm "
+                                      "paper`. Old.")
             self.file("out/run", "script")
             PaperTest.said = self.succeeds(run("paper", "--out", self.out, *pair_with_truth()))
             PaperTest.files = self.result()
@@ -133,7 +134,8 @@ class Numbers(PaperTest):
             self.assertEqual(words[:2] + words[-2:], ["stereotlm", "allocate", "--out", "banks.db"])
             said = self.succeeds(run(*words[1:-1], self.folder / f"{claim}.db"))
             for row in rows:
-                rates = rf"{float(row['frames_per_second']):.3f} +[\d.]+ +{float(row['bound_frames_per_second']):.3f}"
+                rates = (rf"{float(row['frames_per_second']):.3f} +[\d.]+ "
+                         rf"+{float(row['bound_frames_per_second']):.3f}")
                 numbers = rf"{row['banks']} +{row['allocations']} +\d+ +{rates} +{row['reached_by']}"
                 self.assertRegex(said, rf"\n +{numbers}  {row['allocation']}\n")
 
@@ -288,7 +290,8 @@ class Refusals(ProgramTest):
                 (arguments(left=None), f"error: --left: {whole}"),
                 (arguments(right=None), f"error: --right: {whole}"),
                 (arguments(truth=None, truth_scale=None), f"error: --truth: {whole}"),
-                (["paper", "--out", self.out, "--truth-scale", "2"], "error: --truth-scale: goes with --truth F"),
+                (["paper", "--out", self.out, "--truth-scale", "2"],
+                 "error: --truth-scale: goes with --truth F"),
                 (arguments(truth_scale="0"), f"error: --truth-scale = 0: {number}"),
                 (arguments(left=self.left), f"error: --left '{self.left}': {small}"),
                 (arguments(right=self.right), f"error: --right '{self.right}': {small}"),
@@ -299,7 +302,8 @@ class Refusals(ProgramTest):
                 # 254 disparities are not refused: the one line is of the folder.
                 (arguments(truth=far, truth_scale="0.00396", out=self.left), f"error: --out {self.left}: "),
             ])
-            lines = self.refused(run(*arguments(left=none, right=self.right, out=self.left)), "--out", "--left")
+            lines = self.refused(run(*arguments(left=none, right=self.right, out=self.left)), "--out",
+                                 "--left")
             self.assertEqual(len(lines), 3)
 
 

@@ -39,7 +39,8 @@ class Earlier(PlotTest):
         problem = "the new files cannot be moved into place: use.png: File exists"
         self.ends(process, 1, errors=f"stereotlm: error: --out '{self.out}': {problem}\n")
         texts = {"banks": b"a", "states": b"b", "window": b"c"}
-        files = {name + ending: data for name, text in texts.items() for ending, data in ((".png", DRAWN), (".csv", text))}
+        files = {name + ending: data for name, text in texts.items() for ending, data in ((".png", DRAWN),
+                                                                                          (".csv", text))}
         self.assertEqual(self.result(), {**files, "use.png": b"mine"})
         self.is_in(self.out, *files, "use.png")
 
@@ -93,18 +94,24 @@ class Refusals(PlotTest):
         kinds = "must be png, svg, pdf, or several with commas"
         size = "must be WIDTHxHEIGHT in inches, each 2 to 40, such as 7.2x4.5"
         for wrong in ("", "jpg", "PDF", "png,", "svg,png,svg"):
-            self.assertEqual(self.refused_plot(self.store, "--format", wrong), [f"--format = {wrong}: {kinds}"])
-        for wrong in ("", "7", "7x", "7x4x2", "1.9x5", "5x1.9", "40.1x5", "5x40.1", "-7x5", "7 x 5", "1e1x5", "nanx5"):
+            self.assertEqual(self.refused_plot(self.store, "--format", wrong),
+                             [f"--format = {wrong}: {kinds}"])
+        for wrong in ("", "7", "7x", "7x4x2", "1.9x5", "5x1.9", "40.1x5", "5x40.1", "-7x5", "7 x 5", "1e1x5",
+                      "nanx5"):
             self.assertEqual(self.refused_plot(self.store, f"--size={wrong}"), [f"--size = {wrong}: {size}"])
         lines = self.refused(run("plot", self.store, "--out", self.out, "--format", "x", "--size", "y"))
-        self.assertEqual(lines, [f"stereotlm: error: --format = x: {kinds}", f"stereotlm: error: --size = y: {size}"])
+        self.assertEqual(lines,
+                         [f"stereotlm: error: --format = x: {kinds}",
+                          f"stereotlm: error: --size = y: {size}"])
 
     def test_figures_for_which_the_size_is_too_small_are_not_drawn(self):
         """The size that is asked for instead is the least that is enough."""
-        needs = re.compile(r"window not drawn: --size 4x2: so wide, this figure needs a height of (\d+\.\d) inches$")
+        needs = re.compile(r"window not drawn: --size 4x2: so wide, this figure needs a height of (\d+\.\d) "
+                           r"inches$")
         (line,) = self.refused(script("plot_window.py", self.store, "--out", self.out, "--size", "4x2"))
         least = float(needs.search(line)[1])
-        self.refused(script("plot_window.py", self.store, "--out", self.out, "--size", f"4x{least - 0.1:.1f}"))
+        self.refused(script("plot_window.py", self.store, "--out", self.out, "--size",
+                            f"4x{least - 0.1:.1f}"))
         self.succeeds(script("plot_window.py", self.store, "--out", self.out, "--size", f"4x{least:.1f}"))
 
     @program.slow
@@ -155,12 +162,15 @@ class Refusals(PlotTest):
             path.symlink_to(self.left)
 
         folder = pathlib.Path.mkdir
-        for make, name in (*((file, name) for name in ("notes.txt", "window.csv", "use.png", "use.svg", "use.pdf")),
-                           (file, "window.ps"), (folder, "frames"), (folder, "window.png"), (link, "window.png")):
+        for make, name in (*((file, name) for name in ("notes.txt", "window.csv", "use.png", "use.svg",
+                                                       "use.pdf")),
+                           (file, "window.ps"), (folder, "frames"), (folder, "window.png"),
+                           (link, "window.png")):
             given = self.folder / "given"
             given.mkdir()
             make(given / name)
-            self.refused_in_one_line(run("plot", self.store, "--out", given), f"--out '{given}': holds '{name}': {FOLDER}")
+            self.refused_in_one_line(run("plot", self.store, "--out", given),
+                                     f"--out '{given}': holds '{name}': {FOLDER}")
             self.refused_in_one_line(script("plot_window.py", self.store, "--out", given), "must be empty")
             self.is_in(given, name)
             shutil.rmtree(given)
@@ -210,7 +220,8 @@ class Environment(PlotTest):
         self.file("matplotlib.py", "raise ImportError('another one')\n")
         self.succeeds(run("plot", store, "--out", self.out))
         with self.unchanged(self.out):
-            for variables in ({"PYTHONPATH": str(self.folder), "MPLBACKEND": "nonsense", "PYTHONSAFEPATH": "1"},
+            for variables in ({"PYTHONPATH": str(self.folder), "MPLBACKEND": "nonsense",
+                               "PYTHONSAFEPATH": "1"},
                               {"PYTHONHOME": str(self.folder), "PYTHONOPTIMIZE": "2"}):
                 process = run("plot", store, "--out", self.out, env={**os.environ, **variables})
                 self.assertEqual((process.returncode, process.stderr), (0, ""), variables)

@@ -83,8 +83,10 @@ class FigureTest(PlotTest):
                 for line, found_width in found if found_width == width]
 
     def bounds(self, name):
-        """The places of the marks of bounds in a drawing, without the legend: a list of (x, y) for each line."""
-        groups = re.findall(r'<g id="bound">(.*?)</g>\n   </g>', (self.out / f"{name}.svg").read_text(), re.DOTALL)
+        """The places of the marks of bounds in a drawing, without the legend: a list of (x, y) for each
+        line."""
+        groups = re.findall(r'<g id="bound">(.*?)</g>\n   </g>', (self.out / f"{name}.svg").read_text(),
+                            re.DOTALL)
         return [[tuple(map(float, pair)) for pair in re.findall(r'<use [^>]*x="([^"]*)" y="([^"]*)"', group)]
                 for group in groups if "clip-path" in group]
 
@@ -142,7 +144,8 @@ class Figures(FigureTest):
     def check_lines(self):
         """One for each combination of the other keys, through the points of that combination alone."""
         fetches = ("matcher.fetch = column", "matcher.fetch = line_buffer")
-        self.shows("window", "Frame rate against the size of the window", "window n, pixels (of n x n)", "bound", *fetches, *map(str, SIZES))
+        self.shows("window", "Frame rate against the size of the window", "window n, pixels (of n x n)",
+                   "bound", *fetches, *map(str, SIZES))
         self.assertIn("core, frames/s", " ".join(self.texts("window")))
         for curves in (self.curves("window"), self.bounds("window")):
             self.assertEqual(len(curves), FAMILIES)
@@ -214,7 +217,8 @@ class Figures(FigureTest):
         self.assertLessEqual(rates, set(self.table("window")[0]))
         self.shows("window", "whole computer, steady frames/s", "from power-up, tables included")
         self.assertEqual((len(self.curves("window")), len(self.bounds("window"))), (2, 2))
-        change(store, 'UPDATE points SET "bound.system" = 0.9 * "frames_per_second.steady" WHERE "matcher.window" = 3')
+        change(store, 'UPDATE points SET "bound.system" = 0.9 * "frames_per_second.steady" WHERE '
+                      '"matcher.window" = 3')
         self.plot("window", store)
         self.shows("window", "Above the bound by no more than the uncertainty: 1 steady rate.")
 
@@ -251,17 +255,20 @@ class Figures(FigureTest):
         self.shows("window", "fpga.arbitration = $a$")
 
     def test_many_points_without_lines_are_envelopes(self):
-        """One for each value of the key that leaves the least range: its corners are the least and the greatest."""
+        """One for each value of the key that leaves the least range: its corners are the least and the
+        greatest."""
         header = [*HEADER, "fpga.clock_mhz", "matcher.fetch", *RATES]
         rates = {"column": 1, "line_buffer": 10}
-        rows = [("made", "preloaded", window, clock, fetch, clock * rate / window, 1.5 * clock * rate / window)
+        rows = [("made", "preloaded", window, clock, fetch, clock * rate / window,
+                 1.5 * clock * rate / window)
                 for window in (3, 5, 7) for clock in range(20, 80) for fetch, rate in rates.items()]
         store = make_database(self.folder / "many.db", header, rows[::-1])
         self.assertIn("360 points, 2 envelopes", self.plot("window", store))
         self.assertEqual(len(self.table("window")), 360)
         many = "120 combinations of fpga.clock_mhz, matcher.fetch are more than can be told apart"
         self.shows("window", f"Envelopes: {many}; --only KEY=VALUE draws fewer.", "matcher.fetch = column",
-                   "matcher.fetch = line_buffer", "all points, from the least to the greatest", "greatest bound",
+                   "matcher.fetch = line_buffer", "all points, from the least to the greatest",
+                   "greatest bound",
                    "median")
         medians, (all_column, middle_column, all_kept, _) = self.curves("window"), self.ranges("window")
         self.assertEqual([len(curve) for curve in medians], [3, 3])
@@ -285,7 +292,8 @@ class Figures(FigureTest):
         header = [*ALLOCATED, *RATES]
         rows = [("made", "preloaded", f"bank{lut}", f"[bank0, bank{number}]", number / 10 + banks, 50)
                 for banks, lut in ((0, 0), (1, 400)) for number in range(1, 161)]
-        self.assertIn("320 points, 1 line\n", self.plot("banks", make_database(self.folder / "many.db", header, rows)))
+        self.assertIn("320 points, 1 line\n",
+                      self.plot("banks", make_database(self.folder / "many.db", header, rows)))
         ((best,), (surface,)) = self.curves("banks"), self.ranges("banks")
         self.assertEqual(len(best), 2)
         for x, y in best:
@@ -496,7 +504,8 @@ class Names(FigureTest):
         store = self.sweep(SMALL_BOARD + f"vary: {{matcher.window: [3, 5], name: [{names}]}}\n")
         process = script("plot_window.py", store, "--out", self.out)
         self.assertIn("8 points, 4 lines\n", self.succeeds(process))
-        lacks = "the font of the figures lacks '\u65e5\u672c': boxes in PNG and PDF; SVG and CSV have the text\n"
+        lacks = ("the font of the figures lacks '\u65e5\u672c': boxes in PNG and PDF; SVG and CSV have the "
+                 "text\n")
         self.assertEqual(process.stderr, f"plot_window.py: note: {lacks}")
         self.assertIn("\u65e5\u672c board", " ".join(self.texts("window")))
 
@@ -507,7 +516,8 @@ class Names(FigureTest):
         ports = [f"ports.{port}.{count}" for port in reader.PORTS for count in STATES]
         banks = [f"banks.{bank}.utilization" for bank in ("$a_0$", "<b>&")]
         header = [*HEADER, "allocation.disparity", *RATES, *banks, "frames", *ports]
-        rows = [(name, "preloaded", window, "[bank0]", number * 9 / window, 99, 0.5, 0.7, 1, *[5] * len(ports))
+        rows = [(name, "preloaded", window, "[bank0]", number * 9 / window, 99, 0.5, 0.7, 1,
+                 *[5] * len(ports))
                 for number, name in enumerate(names, 1) for window in (3, 5)]
         store = make_database(self.folder / "$x_2$ <i> 5%.db", header, rows)
         change(store, "INSERT INTO blame SELECT hash, 'left_lut', '$b$', 'result', 5 FROM points")
@@ -530,7 +540,8 @@ class Formats(FigureTest):
     HEADER = [*HEADER, "matcher.fetch", "allocation.disparity", *RATES]
 
     def store(self):
-        rows = [("made", "preloaded", window, fetch, "[bank0]", 90 / window + more, 99) for window in (3, 5, 7)
+        rows = [("made", "preloaded", window, fetch, "[bank0]", 90 / window + more, 99) for window in (3, 5,
+                                                                                                       7)
                 for fetch, more in (("column", 0), ("line_buffer", 9))]
         return make_database(self.folder / "made.db", self.HEADER, rows)
 

@@ -37,7 +37,8 @@ vary:
 """
 
 # Beginnings of the columns of made databases that are no keys.
-FIGURES_OF_RUNS = ("frames", "bound.", "area.", "latency_ms.", "pci.clocks", "cameras.left", "cameras.right", "ports.",
+FIGURES_OF_RUNS = ("frames", "bound.", "area.", "latency_ms.", "pci.clocks", "cameras.left", "cameras.right",
+                   "ports.",
                    "banks.")
 
 # Runs scripts, each in a fork of one process that has loaded matplotlib: that takes longer than most figures.

@@ -15,11 +15,13 @@ from pictures import noise, pgm, ppm
 from program import HEIGHT, PRELOADED, SMALL, WIDTH, ProgramTest, of_plain_user, run, sets
 
 COMMANDS = (
-    "run check boards keys bounds explain calibrate sweep merge allocate plot conflicts diff diagram report paper"
+    "run check boards keys bounds explain calibrate sweep merge allocate plot conflicts diff diagram report "
+    "paper"
 ).split()
 OPTIONS_OF_RUN = (
     "BOARD,--left,--right,--sequence,--video F [F2],--video-layout,--synthetic,--frames,--truth,"
-    "--truth-scale,--set,--out,--save-frames,--record,--fidelity fast|cycle,--timing-only,--verify,--trace FORMAT:FILE,--trace-window,default 1"
+    "--truth-scale,--set,--out,--save-frames,--record,--fidelity fast|cycle,--timing-only,--verify,--trace "
+    "FORMAT:FILE,--trace-window,default 1"
 )
 NO_INTEGERS = ("-1", "1.5", "x", "", "18446744073709551616")
 
@@ -172,7 +174,8 @@ class Pictures(ProgramTest):
             (self.file("cut.pgm", self.left.read_bytes()[:-1]), "truncated"),
             (self.file("text.png", "This is a text.\n" * 10), "not a picture"),
             (self.file("comment.pgm", comment), "30000x30000 pixels: a board's images are 8192x8192 at most"),
-            (self.file("wide.bmp", wide), "more than 8192x8192 pixels: a board's images are 8192x8192 at most"),
+            (self.file("wide.bmp", wide),
+             "more than 8192x8192 pixels: a board's images are 8192x8192 at most"),
             *((self.picture(*wrong), f"{wrong[0]}x{wrong[1]} {size}") for wrong in sizes),
         ):
             with self.subTest(reason=reason):
@@ -221,7 +224,8 @@ class Environment(ProgramTest):
                 limit = lambda: resource.setrlimit(resource.RLIMIT_NOFILE, (most, most))
                 process = run(*command, cwd=self.folder, preexec_fn=limit)
                 ends.append(process.returncode)
-                self.assertEqual("Too many open files" in process.stderr, "(the limit: ulimit -n)" in process.stderr)
+                self.assertEqual("Too many open files" in process.stderr,
+                                 "(the limit: ulimit -n)" in process.stderr)
                 self.assertTrue(process.returncode == 0 or "ulimit -n" in process.stderr, process.stderr)
         self.assertGreater(len(ends) - ends.count(0), 10)
 
@@ -270,7 +274,8 @@ class Paths(ProgramTest):
             (["conflicts", "--synthetic", "1"], "", ""),
             (["report", self.out, "--quick", "--out"], "--out", ".html"),
             (["diagram", "fpl2003", "--out"], "--out", ".svg"),
-            (["allocate", "fpl2003", "--banks", "8", "--out", self.folder / "a.db", "--write"], "--write", ".yaml"),
+            (["allocate", "fpl2003", "--banks", "8", "--out", self.folder / "a.db", "--write"], "--write",
+             ".yaml"),
         ):
             loop = self.folder / f"loop{ending}"
             if not loop.is_symlink():
@@ -297,7 +302,8 @@ class OutputFolders(ProgramTest):
         with self.subTest(out=out, path=path), self.unchanged(self.out):
             command = ["run", "fpl2003", *SMALL, *PRELOADED, *options, "--out", out]
             self.refused_in_one_line(run(*command, cwd=self.folder), "error: result folder",
-                                     f"--{names[0]} '{path}' lies in it and would be replaced: an input must lie elsewhere")
+                                     f"--{names[0]} '{path}' lies in it and would be replaced: an input must "
+                                     f"lie elsewhere")
 
     def test_folders_with_pictures_of_the_run_are_refused(self):
         self.succeeds(self.run_small("--out", self.out))
@@ -337,7 +343,8 @@ class Outputs(ProgramTest):
         plan = self.file("plan.yaml", "board: fpl2003\nset: {image.width: 32, image.height: 24}\n")
         self.succeeds(run("sweep", plan, "--out", self.store))
         traced = ["run", "fpl2003", *SMALL, *PRELOADED, "--timing-only", "--trace-window", "frame=0"]
-        allocate = ["allocate", "fpl2003", *SMALL, *PRELOADED, "--banks", "8", "--out", self.folder / "search.db"]
+        allocate = ["allocate", "fpl2003", *SMALL, *PRELOADED, "--banks", "8", "--out",
+                    self.folder / "search.db"]
         grid = ["calibrate", "--print-grid", "9x6", "--square-mm", "25", "--out"]
         # By the ending of the file: the command, up to the file.
         self.writers = {
@@ -386,7 +393,8 @@ class Outputs(ProgramTest):
                 target.write_bytes(data)
                 with self.subTest(ending=ending, kind=kind), self.unchanged(self.folder):
                     path = link if kind == "sweep" else target
-                    self.refused_in_one_line(run(*self.command(ending, path)), f"'{path}': exists, and is not known as a ",
+                    self.refused_in_one_line(run(*self.command(ending, path)),
+                                             f"'{path}': exists, and is not known as a ",
                                              "which alone is replaced: move it away, or give another file")
 
     def test_files_of_a_result_folder_are_refused(self):
@@ -403,19 +411,22 @@ class Outputs(ProgramTest):
             make(self.store, page)
             with self.unchanged(self.folder):
                 for store in (page, self.store):
-                    self.refused_in_one_line(run("report", store, "--out", page), "is not known as a page of stereotlm")
+                    self.refused_in_one_line(run("report", store, "--out", page),
+                                             "is not known as a page of stereotlm")
             page.unlink()
 
     def test_a_trace_is_not_written_beside_the_journal_of_another_database(self):
         path = self.folder / "a.db"
         journal = self.file("a.db-wal", "changes")
         with self.unchanged(self.folder):
-            self.refused_in_one_line(run(*self.command(".trace.db", path)), f"'{path}': beside it lies 'a.db-wal'")
+            self.refused_in_one_line(run(*self.command(".trace.db", path)),
+                                     f"'{path}': beside it lies 'a.db-wal'")
         journal.unlink()
         self.succeeds(run(*self.command(".trace.db", path)))
         journal.write_text("changes")
         with self.unchanged(self.folder):
-            self.refused_in_one_line(run(*self.command(".trace.db", path)), f"'{path}': beside it lies 'a.db-wal'")
+            self.refused_in_one_line(run(*self.command(".trace.db", path)),
+                                     f"'{path}': beside it lies 'a.db-wal'")
 
     def test_an_fst_needs_no_other_name_in_its_folder(self):
         (self.folder / "own.fst.vcd").mkdir()
@@ -426,8 +437,10 @@ class Outputs(ProgramTest):
         scene = ["fpl2003", *SMALL, *PRELOADED, "--synthetic", "1"]
         own = {"conflicts": ["conflicts", *scene, "--out"], "plot": ["plot", self.store, "--out"],
                "paper": ["paper", "--out"]}
-        for name, entry in (("conflicts", "rows.csv"), ("conflicts", "conflicts.csv"), ("conflicts", "picture.png"),
-                            ("plot", "window.csv"), ("plot", "use.png"), ("paper", "paper.md"), ("paper", "claims.csv")):
+        for name, entry in (("conflicts", "rows.csv"), ("conflicts", "conflicts.csv"),
+                            ("conflicts", "picture.png"),
+                            ("plot", "window.csv"), ("plot", "use.png"), ("paper", "paper.md"),
+                            ("paper", "claims.csv")):
             path = self.file(f"{name}/{entry}", "mine")
             with self.subTest(name=name, entry=entry), self.unchanged(self.folder):
                 self.refused_in_one_line(run(*own[name], path.parent), f"holds '{entry}'")
@@ -450,7 +463,8 @@ class Outputs(ProgramTest):
                "page": ["report", self.a, "--out", "page.html"],
                "page of a database": ["report", self.store, "--out", "page.html"],
                "page of two": ["report", self.a, self.b, "--out", "page.html"],
-               "traces": ["run", "fpl2003", *SMALL, *PRELOADED, "--timing-only", "--frames", "2000", "--trace",
+               "traces": ["run", "fpl2003", *SMALL, *PRELOADED, "--timing-only", "--frames", "2000",
+                          "--trace",
                           "sqlite:own.db", "--trace", "perfetto:own.perfetto"]}
         self.succeeds(run(*own[".yaml"], cwd=self.folder))
         for name, command in own.items():

@@ -22,7 +22,8 @@ from selenium.webdriver.common.keys import Keys
 
 SCENE = [*SMALL, "--synthetic", "1"]
 SHARED = sets("allocation.left_lut=bank0")
-UNWANTED = r"stall|refused|knob|\bpaint|counted|all together|places of|heavy frame|blocked|starved|passed|10\^"
+UNWANTED = (r"stall|refused|knob|\bpaint|counted|all together|places of|heavy "
+            r"frame|blocked|starved|passed|10\^")
 NASTY = "<script>hacked=1</script><img src=x onerror=hacked=1> \"q\" 'a' $x & {{y}}"
 NASTY_FOLDER = "<img src=x onerror=hacked=1> \"q\" 'a' $x & y"
 
@@ -140,7 +141,8 @@ class EveryChart(PageTest):
             "database": page_of(database()),
         }
         for name, page in pages.items():
-            for width, theme in ((390, "light"), (390, "dark"), (1280, "light"), (1280, "dark"), (2560, "light")):
+            for width, theme in ((390, "light"), (390, "dark"), (1280, "light"), (1280, "dark"),
+                                 (2560, "light")):
                 with self.subTest(page=name, width=width, theme=theme):
                     self.browser.open(page, width, theme)
                     self.assertEqual(self.charts(), self.CHARTS[name].split())
@@ -167,14 +169,15 @@ class EveryChart(PageTest):
     def reads_well(self):
         """One word for a thing, one style of numbers, no full stop in a title."""
         texts = self.browser.run(
-            "return [...document.querySelectorAll('dd, h2, section .note, .legend, .plot text, .memory text')]"
-            ".map(element => element.textContent)"
+            "return [...document.querySelectorAll('dd, h2, section .note, .legend, .plot text, .memory "
+            "text')].map(element => element.textContent)"
         )
         for text in texts:
             self.assertNotRegex(text.lower(), UNWANTED)
             self.assertNotRegex(text, r"(?<![\d.,_])\d,\d{3}(?![,\d])", "grouped below 10,000")
             self.assertNotRegex(text, r"(?<![\d.,_/])\d{5}", "not grouped")
-        for title in self.browser.run("return [...document.querySelectorAll('h1, h2')].map(each => each.textContent)"):
+        for title in self.browser.run("return [...document.querySelectorAll('h1, h2')].map(each => "
+                                      "each.textContent)"):
             self.assertFalse(title.endswith("."), title)
 
     def test_tells_its_numbers_to_the_keyboard(self):
@@ -442,17 +445,20 @@ class Rates(PageTest):
     """Rates that tie, and what sets their bounds. The page and `plot` have the same front."""
 
     HEADER = ["name", "run.source", "allocation.left_lut", "allocation.left_image", "area.slices",
-              "area.slices_percent", "cameras.left.dropped_pixels", "frames_per_second.core", "frames_per_second.steady",
+              "area.slices_percent", "cameras.left.dropped_pixels", "frames_per_second.core",
+              "frames_per_second.steady",
               "frames_per_second.steady_uncertainty", "bound.core_limited_by", "bound.system_limited_by",
               "bound.system"]
 
     def open(self, *points):
-        """A database of points (slices, banks, steady rate, its uncertainty, % of the slices, lost pixels)."""
+        """A database of points (slices, banks, steady rate, its uncertainty, % of the slices, lost
+        pixels)."""
         rows = []
         for slices, banks, rate, uncertainty, percent, pixels in ((*point, 50, 0)[:6] for point in points):
             pictures = "[" + ", ".join(f"bank{i}" for i in range(1, banks)) + "]"
             limits = ("bank bank0", "camera" if rate > 29 else "bank bank0")
-            rows.append(("made", "camera", "bank0", pictures, slices, percent, pixels, 99, rate, uncertainty, *limits,
+            rows.append(("made", "camera", "bank0", pictures, slices, percent, pixels, 99, rate, uncertainty,
+                         *limits,
                          31))
         self.store = make_database(self.folder / "made.db", self.HEADER, rows)
         self.succeeds(run("report", self.store, "--out", self.folder / "made.html"))
@@ -620,12 +626,11 @@ class Tools(PageTest):
         for page in (page_of(computer()), page_of(*two_computers())):
             self.browser.open(page, width=390)
             left, right = self.browser.run(
-                "const box = element => element.getBoundingClientRect();"
-                "const memory = document.querySelector('.memory');"
-                "const blocks = [...memory.querySelectorAll('svg:not([hidden]) .block')].map(box);"
-                "const highest = Math.min(...blocks.map(each => each.top));"
-                "const first = blocks.find(each => each.top === highest);"
-                "return [first.left - box(memory).left, box(memory).right - first.right]")
+                "const box = element => element.getBoundingClientRect();const memory = "
+                "document.querySelector('.memory');const blocks = "
+                "[...memory.querySelectorAll('svg:not([hidden]) .block')].map(box);const highest = "
+                "Math.min(...blocks.map(each => each.top));const first = blocks.find(each => each.top === "
+                "highest);return [first.left - box(memory).left, box(memory).right - first.right]")
             self.assertGreater(left, 0)
             self.assertGreater(right, 0)
 
@@ -663,7 +668,8 @@ class Answers(PageTest):
         self.opened(core(), change)
         first = "right_lut waits in 6.1 % of all cycles: 3.2 % for result, 2.9 % for host and less, on bank2"
         self.assertEqual(self.answer("Who waits for whom?"),
-                         f"{first}.Then left_pixel 3.3 %, for host on bank0; result 0.5 %, mostly for host on bank1.")
+                         f"{first}.Then left_pixel 3.3 %, for host on bank0; result 0.5 %, mostly for host "
+                         f"on bank1.")
         self.assertEqual(self.browser.text("#blame h2"), first)
 
     def test_a_recording_names_what_the_host_moves(self):
@@ -701,7 +707,9 @@ class Answers(PageTest):
     def test_the_first_change_can_be_pasted_and_its_conditions_are_stated(self):
         self.opened(core(), lambda _: None)
         answer = self.answer("What to change first?")
-        (step,) = [step for step in data_of(page_of(core()))["run"]["knobs"]["steps"] if step["knob"] == "a bank more"]
+        (step,
+         ) = [step
+              for step in data_of(page_of(core()))["run"]["knobs"]["steps"] if step["knob"] == "a bank more"]
         self.assertIn(f"To try it: --set '{step['sets'][0]}'.", answer)
         self.assertIn("Only changes that keep the disparities are named, and that gain 1 % or more.", answer)
 
@@ -713,24 +721,29 @@ class Answers(PageTest):
 
         (self.rate,) = (each["value"] for each in data_of(page_of(computer()))["run"]["settings"]
                         if each["key"] == "cameras.frame_rate_hz")
-        dropped = "12 of 26 frames of the left camera are dropped, because its capture board is not armed as they begin"
+        dropped = ("12 of 26 frames of the left camera are dropped, because its capture board is not armed "
+                   "as they begin")
         share = 0.99
         self.opened(computer(), change)
         self.assertIn(f"{dropped}. The cameras deliver", self.answer("What limits?"))
         self.assertIn("This is expected.", self.browser.text("#time .note"))
         share = 1
         self.opened(computer(), change)
-        self.assertIn(f"{dropped}. It is armed when the tables are uploaded and a buffer is free.", self.answer("What limits?"))
+        self.assertIn(f"{dropped}. It is armed when the tables are uploaded and a buffer is free.",
+                      self.answer("What limits?"))
 
     def steps(self, *changed):
-        """Changes the steps of a run to these: (knob, from, to, gain in %, what else differs from the board)."""
+        """Changes the steps of a run to these: (knob, from, to, gain in %, what else differs from the
+        board)."""
 
         def change(run):
             board = run["knobs"]["board"]
             run["knobs"]["steps"] = [
-                {**board, "knob": knob, "from": before, "to": to, "has_effect": True, "changes_disparities": False,
+                {**board, "knob": knob, "from": before, "to": to, "has_effect": True,
+                 "changes_disparities": False,
                  "frames_per_second": board["frames_per_second"] * (1 + gain / 100), "idle_banks": [],
-                 "new_banks": 0, "sets": [f"{knob}={to}"], **more, "area": {**board["area"], **more.get("area", {})}}
+                 "new_banks": 0, "sets": [f"{knob}={to}"], **more,
+                 "area": {**board["area"], **more.get("area", {})}}
                 for knob, before, to, gain, more in changed
             ]
 
@@ -747,7 +760,8 @@ class Answers(PageTest):
         joint = ("fpga.tables", "separate", "joint in bank3", 4.6, slices(22, 0.1))
         self.opened(core(), self.steps(largest, large, kind, joint, bank))
         self.assertRegex(self.answer("What to change first?"),
-                         r"^right_lut: bank2 → bank4 gives .* frames/s, core only \(\+4\.6 %\)\.To try it: .*\."
+                         r"^right_lut: bank2 → bank4 gives .* frames/s, core only \(\+4\.6 %\)\.To try it: "
+                         r".*\."
                          r"Only changes that keep the disparities are named, and that gain 1 % or more\."
                          r"The largest gain: matcher\.rows: 1 → 2 gives .* \(\+40\.0 %\)\. "
                          r"It needs \+6016 slices \(\+17\.8 % of the FPGA\)\.$")
@@ -759,7 +773,8 @@ class Answers(PageTest):
         self.assertTrue(self.answer("What to change first?").startswith(
             "kind of memory of all banks (ssram.banks.*.kind): zbt_pipelined → qdr gives"))
         self.assertIn("takes other memory chips.", self.answer("What does it cost?"))
-        self.assertEqual(self.browser.text("#knobs h2"), "First: kind of memory of all banks: zbt_pipelined → qdr, +6.0 %")
+        self.assertEqual(self.browser.text("#knobs h2"),
+                         "First: kind of memory of all banks: zbt_pipelined → qdr, +6.0 %")
         self.opened(core(), self.steps(("fpga.arbitration", "age", "round_robin", 0.9, {})))
         self.assertIn("no single change gains 1 %", self.answer("What to change first?"))
 
@@ -816,7 +831,8 @@ class TwoRuns(PageTest):
         self.assertRegex(head, rf"from {rate_a:,.1f}( ± .*)? to {rate_b:,.1f}( ± .*)? frames/s, steady$")
         self.assertEqual(self.answer("What was changed?"),
                          "allocation.left_lut: bank6 → bank0name: fpl2003 → another name")
-        self.assertIn("in B left_lut waits 123,456 cycles a frame more", self.answer("Which is faster, and why?"))
+        self.assertIn("in B left_lut waits 123,456 cycles a frame more",
+                      self.answer("Which is faster, and why?"))
         self.assertIn("% for host capture", self.answer("Who waits for whom?"))
         self.assertIn("host capture", {row["by"] for row in self.browser.table("blame")})
         frame = data["difference"]["camera_frame"]

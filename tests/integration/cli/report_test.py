@@ -66,7 +66,8 @@ class Run(ReportTest):
             expected = [0] * (tiles["columns"] * tiles["rows"])
             for row in recorded:
                 if (row["port"], row["bank"], row["by"]) == cause:
-                    line, column = int(row["first_row"]) // tiles["height"], int(row["first_column"]) // tiles["width"]
+                    line = int(row["first_row"]) // tiles["height"]
+                    column = int(row["first_column"]) // tiles["width"]
                     expected[line * tiles["columns"] + column] += int(row["cycles"])
             self.assertEqual(each["tiles"], expected)
             self.assertEqual(sum(expected), sum(each["rows"][1:]))
@@ -90,7 +91,8 @@ class Run(ReportTest):
 
     def test_a_change_has_an_effect_if_the_page_can_show_it(self):
         knobs = self.data(self.run_of("slow", *PRELOADED, *sets("fpga.clock_mhz=1")))["run"]["knobs"]
-        gains = [abs(step["frames_per_second"] - knobs["board"]["frames_per_second"]) for step in knobs["steps"]]
+        gains = [abs(step["frames_per_second"] - knobs["board"]["frames_per_second"])
+                 for step in knobs["steps"]]
         self.assertEqual([step["has_effect"] for step in knobs["steps"]], [gain >= 0.0005 for gain in gains])
         self.assertTrue(any(0 < gain < 0.0005 for gain in gains) or 0 in gains)
         self.assertTrue(any(0.0005 <= gain < 0.5 for gain in gains))
@@ -129,21 +131,27 @@ class RecordedFiles(ReportTest):
     STATS = [
         (r'"utilization": [\d.]+', '"utilization": 7.5', 11, "banks.0.utilization = 7.5: must be 0."),
         (r'"utilization": [\d.]+', '"utilization": nan', 11, "must be as run writes it: "),
-        (r'"reads": \d+', '"reads": -1', 11, "banks.0.reads = -1: must be an integer of 0..9223372036854775807"),
-        (r'"reads": \d+', '"reads": 18446744073709551615', 11, "banks.0.reads = 18446744073709551615: must be"),
+        (r'"reads": \d+', '"reads": -1', 11,
+         "banks.0.reads = -1: must be an integer of 0..9223372036854775807"),
+        (r'"reads": \d+', '"reads": 18446744073709551615', 11,
+         "banks.0.reads = 18446744073709551615: must be"),
         (r'"reads": \d+, ', "", 11, "banks.0.reads: missing"),
-        (r'"contended_cycles": \d+', '"contended_cycles": 99999', 11, "bank bank0: contended_cycles = 99999, but cycles"),
+        (r'"contended_cycles": \d+', '"contended_cycles": 99999', 11,
+         "bank bank0: contended_cycles = 99999, but cycles"),
         (r'"idle_cycles": \d+', '"idle_cycles": 1', 11, "bank bank0: busy + turnaround + idle cycles"),
         (r'"name": "bank3"', '"name": "bank9"', 14, 'banks.3.name = "bank9": must be "bank3"'),
         (r'    {"name": "bank3".*\n', "", 14, 'banks.3.name = "bank4": must be "bank3"'),
         (r'"passed_cycles": \d+', '"passed_cycles": 1', 21, "port left_lut: sum of its states"),
-        (r'"grants": (\d+), "stall_cycles": 0', r'"grants": \g<1>0, "stall_cycles": 0', 22, "port right_lut: "),
+        (r'"grants": (\d+), "stall_cycles": 0', r'"grants": \g<1>0, "stall_cycles": 0', 22,
+         "port right_lut: "),
         (r'"by": "left_pixel"', '"by": "left_eye"', 29, 'blame.0.by = "left_eye": must be one of left_lut, '),
-        (r'"bank": "bank0"', '"bank": "bank7"', 29, 'blame.0.bank = "bank7": must be a bank that the port accesses'),
+        (r'"bank": "bank0"', '"bank": "bank7"', 29,
+         'blame.0.bank = "bank7": must be a bank that the port accesses'),
         (r'"frames": 3', '"frames": 4', 5, "frames = 4: must be 3"),
         (r'"cycles": \d+,\n', '"cycles": 5,\n', 6, "cycles = 5: must be "),
         (r'"core": [\d.]+', '"core": 1', 8, "frames_per_second.core = 1: must be "),
-        (r'"core_limited_by": "[^"]*"', '"core_limited_by": "luck"', 9, 'bound.core_limited_by = "luck": must be one of'),
+        (r'"core_limited_by": "[^"]*"', '"core_limited_by": "luck"', 9,
+         'bound.core_limited_by = "luck": must be one of'),
         (r'"schema": 1,', '"schema": 1,\n  "extra": 1,', 3, "extra = 1: must be left out"),
         (r'"schema": 1,', '"schema":  1,', 2, "must be as run writes it: keys in their order"),
         (r'"dropped_busy": \d+', '"dropped_busy": 77', 44, "camera left: dropped_frames"),
@@ -151,14 +159,21 @@ class RecordedFiles(ReportTest):
     TABLES = [
         ("conflicts.csv", r"\n0,0,0,", r"\n18446744073709551615,0,0,", 3,
          "first_row = 18446744073709551615: must be an integer of 0..23"),
-        ("conflicts.csv", r"\n0,0,0,3", r"\n0,0,0,7", 3, "first_row = 0: must be the place of a tile, such as '0,0,0,3'"),
-        ("conflicts.csv", r"\n0,0,0,3,", r"\n0,0,32,35,", 3, "first_column = 32: must be an integer of 0..31"),
-        ("conflicts.csv", r"(\n0,0,0,3,.*)", r"\1\1", None, "left_lut on bank0 because of left_pixel: stalls in the tiles"),
-        ("conflicts.csv", r"(?s)\n.*", "\n" + "".join(f",,,,9,port{i},bank0,host,1\n" for i in range(20000)), 2,
+        ("conflicts.csv", r"\n0,0,0,3", r"\n0,0,0,7", 3,
+         "first_row = 0: must be the place of a tile, such as '0,0,0,3'"),
+        ("conflicts.csv", r"\n0,0,0,3,", r"\n0,0,32,35,", 3,
+         "first_column = 32: must be an integer of 0..31"),
+        ("conflicts.csv", r"(\n0,0,0,3,.*)", r"\1\1", None,
+         "left_lut on bank0 because of left_pixel: stalls in the tiles"),
+        ("conflicts.csv", r"(?s)\n.*", "\n" + "".join(f",,,,9,port{i},bank0,host,1\n" for i in range(20000)),
+         2,
          "port = port0: must be one of left_lut, right_lut, "),
-        ("conflicts.csv", r",bank0,left_pixel,", ",bank9,left_pixel,", 2, "bank = bank9: must be one of bank0, bank1, "),
-        ("conflicts.csv", r"(left_pixel),\d+\n", r"\1,1\n", None, "left_lut on bank0 because of left_pixel: stalls in the tiles"),
-        ("conflicts.csv", r"(?s)\n.*", "\n", 1, "left_lut on bank0 because of left_pixel: stalls in the tiles = 0"),
+        ("conflicts.csv", r",bank0,left_pixel,", ",bank9,left_pixel,", 2,
+         "bank = bank9: must be one of bank0, bank1, "),
+        ("conflicts.csv", r"(left_pixel),\d+\n", r"\1,1\n", None,
+         "left_lut on bank0 because of left_pixel: stalls in the tiles"),
+        ("conflicts.csv", r"(?s)\n.*", "\n", 1,
+         "left_lut on bank0 because of left_pixel: stalls in the tiles = 0"),
         ("conflicts.csv", r"(?s).*", "", 1, "missing: the head 'first_row,"),
         ("rows.csv", r"\n0,0,0,\d+", r"\n0,0,0,nan", 3, "cycles = nan: must be an integer"),
         ("rows.csv", r"\n0,0,0,\d+", r"\n0,0,0,07", 3, "cycles = 07: must be an integer"),
@@ -170,7 +185,8 @@ class RecordedFiles(ReportTest):
         ("rows.csv", r"(?s).*", "frame\n", 1, "must be the head 'frame,first_row,"),
         ("timeline.csv", r"(?s)\n.*", "\n" + "".join(f"wait,c{i},,,0,0,0,0,host\n" for i in range(200000)), 2,
          "class = c0: must be a class of wait with why = host\n"),
-        ("timeline.csv", r"\ndrop,left,,0,0,", r"\ndrop,left,,0,5,", 2, "end_ps = 0: must be an integer of 5.."),
+        ("timeline.csv", r"\ndrop,left,,0,0,", r"\ndrop,left,,0,5,", 2,
+         "end_ps = 0: must be an integer of 5.."),
         ("timeline.csv", r"not_armed", "tired", 2, "class = left: must be a class of drop with why = tired"),
         ("timeline.csv", r"(\nframe,cycles,.*),(\d+),0,", r"\1,1,0,", None, "recorded: words of results"),
         ("latency.csv", r",(\d+)\n1,", r",\g<1>0\n1,", 2, "latency_ps = "),
@@ -249,7 +265,8 @@ class TwoRuns(ReportTest):
         stalls = [(row["by"], sum(row["rows"]))
                   for row in of_b["recording"]["stalls"]]
         self.assertIn("host capture", dict(stalls))
-        self.assertEqual(sum(cycles for _, cycles in stalls), sum(row["cycles"] for row in self.stats(b)["blame"]))
+        self.assertEqual(sum(cycles for _, cycles in stalls),
+                         sum(row["cycles"] for row in self.stats(b)["blame"]))
 
     def test_of_different_sizes_have_no_rows(self):
         a = self.run_of("a", *PRELOADED)

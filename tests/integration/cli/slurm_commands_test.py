@@ -104,7 +104,8 @@ class Commands(SlurmCommands):
     def test_a_refused_merge_cancels_the_shards(self):
         refuse = 'printf "sbatch: error: too many jobs\\nsbatch: error: sorry\\n" >&2; exit 1 #'
         self.write("sbatch", SBATCH.replace('echo "$job|N/A', refuse))
-        lines = self.refused(self.launch(END="PENDING"), "error: --launcher slurm: sbatch: too many jobs; sorry")
+        lines = self.refused(self.launch(END="PENDING"),
+                             "error: --launcher slurm: sbatch: too many jobs; sorry")
         self.assertEqual(lines[:-1], ["stereotlm: note: job 1: shard 0 of 1"])
         self.assertEqual((self.commands / "cancelled").read_text(), "1\n")
         self.assertFalse(self.shards.exists())

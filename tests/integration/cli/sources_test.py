@@ -195,7 +195,8 @@ class Truth(SourceTest):
 
 
     def test_a_truth_that_most_answers_miss_by_more_than_1_is_doubted(self):
-        note = ("stereotlm: note: --truth: 100.00 % of the answers are off by more than 1: is it of this picture, "
+        note = ("stereotlm: note: --truth: 100.00 % of the answers are off by more than 1: is it of this "
+                "picture, "
                 "and is --truth-scale 1 right?\n")
         for grey, errors in ((b"\1", ""), (b"\2", note)):  # every answer is 0
             truth = self.file("truth.pgm", pgm(WIDTH, HEIGHT, grey * WIDTH * HEIGHT))

@@ -103,7 +103,8 @@ class FullDisk(RobustnessTest):
         progress = self.disk / "progress"
         store = self.folder / "a.db"
         process = self.on_disk_of(0, "sweep", self.plan, "--out", store, "--progress", progress)
-        self.refused_in_one_line(process, f"--progress '{progress}': cannot be written: No space left on device")
+        self.refused_in_one_line(process,
+                                 f"--progress '{progress}': cannot be written: No space left on device")
 
 
 class LockedDatabase(RobustnessTest):

@@ -65,9 +65,11 @@ class Sweep(SweepTest):
             values = list(range(5, 5 + count))  # above 4 disparities: each is impossible for its own reason
             keys = f"set: {{matcher.disparities: 4}}\nvary: {{matcher.units: {values}}}\n"
             store = self.folder / f"{count} points.db"
-            said = self.succeeds(run("sweep", self.file("plan.yaml", f"board: fpl2003\n{keys}"), "--out", store))
+            said = self.succeeds(run("sweep", self.file("plan.yaml", f"board: fpl2003\n{keys}"), "--out",
+                                     store))
             self.assertEqual(said.count("  1 impossible: matcher.units = "), shown)
-            further = re.search(r"  (\d) impossible: \1 further reasons\nAll reasons:\n  (sqlite3 .*)\n$", said)
+            further = re.search(r"  (\d) impossible: \1 further reasons\nAll reasons:\n  (sqlite3 .*)\n$",
+                                said)
             if shown == count:
                 self.assertIsNone(further)
                 continue
@@ -159,7 +161,8 @@ class Studies(SweepTest):
     @program.slow
     def test_the_first_point_of_each_plan_runs(self):
         names = {plan.parent.name for plan in STUDIES}
-        expected = {"arbitration", "bank_kinds", "banks", "buffers", "costs", "fetch", "folds", "rows", "two_banks"}
+        expected = {"arbitration", "bank_kinds", "banks", "buffers", "costs", "fetch", "folds", "rows",
+                    "two_banks"}
         self.assertLessEqual(expected, names)
         for plan in STUDIES:
             with self.subTest(plan=plan.relative_to(RESULTS)):

@@ -9,7 +9,8 @@ import signal
 import sqlite3
 
 import program
-from program import CAMERA_RATES, CYCLE, PRELOADED, PROGRESS, SMALL, ProgramTest, Terminal, run, sets, wait_until
+from program import (CAMERA_RATES, CYCLE, PRELOADED, PROGRESS, SMALL, ProgramTest, Terminal, run, sets,
+                     wait_until)
 
 CONTENDED = sets("allocation.left_lut=bank0", "allocation.left_image=[bank0, bank0]")
 TIMING = ["--timing-only", *CONTENDED]
@@ -63,7 +64,8 @@ class Files(TraceTest):
     def test_replace_earlier_ones_as_a_whole(self):
         window = ["--trace-window", "frame=0,rows=3..4"]
         formats = ("perfetto", "sqlite", "vcd", "vcd:other.fst")
-        options = [word for form in formats for word in ("--trace", form if ":" in form else f"{form}:run.{form}")]
+        options = [word for form in formats for word in ("--trace",
+                                                         form if ":" in form else f"{form}:run.{form}")]
         self.traced(*options, *window, "--frames", 3)
         before = self.result(self.folder)
         self.traced(*options, *window)
@@ -77,7 +79,8 @@ class Files(TraceTest):
         stats = self.stats()
         grants = dict(self.rows_of("SELECT port, sum(count) FROM runs WHERE kind = 'grant' GROUP BY port"))
         self.assertEqual(grants, {port["name"]: port["grants"] for port in stats["ports"] if port["grants"]})
-        waits = self.rows_of("SELECT port, bank, by, sum(count) FROM runs WHERE kind = 'wait' GROUP BY 1, 2, 3")
+        waits = self.rows_of("SELECT port, bank, by, sum(count) FROM runs WHERE kind = 'wait' GROUP BY 1, 2, "
+                             "3")
         self.assertGreater(len(waits), 0)
         self.assertEqual(sorted(waits), sorted((row["port"], row["bank"], row["by"], row["cycles"])
                                                for row in stats["blame"]))
@@ -101,7 +104,8 @@ class Files(TraceTest):
         accesses = self.rows_of("SELECT cycle, port, address FROM transactions")
         self.assertGreater(len(accesses), 1000)
         self.assertTrue(all(5000 <= cycle <= 5999 for cycle, _, _ in accesses))
-        addresses = {port: dict(self.changes()[f"{port}.address"]) for port in {port for _, port, _ in accesses}}
+        addresses = {port: dict(self.changes()[f"{port}.address"])
+                     for port in {port for _, port, _ in accesses}}
         for cycle, port, address in accesses:
             at = [value for time, value in addresses[port].items() if time <= cycle * 25000]
             self.assertEqual(int(at[-1], 2), address, (cycle, port))
@@ -125,10 +129,12 @@ class Files(TraceTest):
         self.assertLessEqual({"capture", "upload", "read_back", "frame", "interrupt", "wait"}, kinds)
 
     def times(self, name="run.vcd"):
-        return [int(line[1:]) for line in (self.folder / name).read_text().splitlines() if line.startswith("#")]
+        return [int(line[1:])
+                for line in (self.folder / name).read_text().splitlines() if line.startswith("#")]
 
     def test_of_a_window_are_waveforms_of_all_of_it(self):
-        tiny = [*sets("image.width=16", "image.height=6", "matcher.window=3", "matcher.disparities=4"), *PRELOADED,
+        tiny = [*sets("image.width=16", "image.height=6", "matcher.window=3", "matcher.disparities=4"),
+                *PRELOADED,
                 "--timing-only", "--frames", 3, *trace("vcd"), "--trace-window"]
         for first, last in ((740, 800), (5000, 5100)):  # the second one is behind the run
             self.succeeds(run("run", "fpl2003", *tiny, f"cycles={first}..{last}", cwd=self.folder))
@@ -162,7 +168,8 @@ class Files(TraceTest):
         self.assertEqual(self.times(), [0])
 
     def test_of_an_interrupted_run_are_those_of_the_finished_frames(self):
-        command = ["run", "fpl2003", *SMALL, *PRELOADED, *TIMING, "--frames", 10**6, "--out", self.out, "--trace",
+        command = ["run", "fpl2003", *SMALL, *PRELOADED, *TIMING, "--frames", 10**6, "--out", self.out,
+                   "--trace",
                    f"sqlite:{self.folder / 'run.sqlite'}"]
         self.assertEqual(Terminal(command).interrupt(PROGRESS, signal.SIGINT)[0], 130)
         self.assertEqual(self.rows_of("SELECT count(DISTINCT frame) FROM runs"), [(self.stats()["frames"],)])
@@ -203,8 +210,10 @@ class Refusals(TraceTest):
             ([*base, "--trace", "vcd"], "--trace 'vcd': must be FORMAT:FILE"),
             ([*base, "--trace", "vcd:"], "--trace 'vcd:': must be FORMAT:FILE"),
             ([*base, "--trace", "vcd:a"], "--trace 'vcd:a': needs --trace-window"),
-            ([*base, "--trace", "vcd:a.gtkw", "--trace-window", "frame=0"], "'a.gtkw': must not end in .gtkw"),
-            ([*base, "--trace", a_file, "--trace", f"sqlite:{self.folder}/./a"], "a' is the file of two traces: each needs its own"),
+            ([*base, "--trace", "vcd:a.gtkw", "--trace-window", "frame=0"],
+             "'a.gtkw': must not end in .gtkw"),
+            ([*base, "--trace", a_file, "--trace", f"sqlite:{self.folder}/./a"],
+             "a' is the file of two traces: each needs its own"),
             ([*base, "--trace", "vcd:a.vcd", "--trace", "vcd:a.fst", "--trace-window", "frame=0"],
              "a.gtkw' is the file of two traces"),
             ([*base, "--trace-window", "frame=0"], "--trace-window: goes with --trace FORMAT:FILE"),
@@ -222,12 +231,15 @@ class Refusals(TraceTest):
     def test_keep_files_that_are_no_traces(self):
         text = self.file("notes.md", "what I found")
         for form in ("perfetto", "sqlite", "vcd"):
-            process = run("run", "fpl2003", *SMALL, *PRELOADED, *TIMING, "--trace", f"{form}:{text}", "--trace-window",
+            process = run("run", "fpl2003", *SMALL, *PRELOADED, *TIMING, "--trace", f"{form}:{text}",
+                          "--trace-window",
                           "frame=0")
-            self.refused_in_one_line(process, "notes.md': exists, and is not known as a ", "of stereotlm, which alone")
+            self.refused_in_one_line(process, "notes.md': exists, and is not known as a ",
+                                     "of stereotlm, which alone")
         self.assertEqual(text.read_text(), "what I found")
         self.traced(*trace("sqlite"))
-        self.refused_in_one_line(run("run", "fpl2003", *SMALL, *PRELOADED, *TIMING, "--trace", "perfetto:run.sqlite",
+        self.refused_in_one_line(run("run", "fpl2003", *SMALL, *PRELOADED, *TIMING, "--trace",
+                                     "perfetto:run.sqlite",
                                      cwd=self.folder), "is not known as a Perfetto trace of stereotlm")
 
     def test_keep_inputs_and_results(self):

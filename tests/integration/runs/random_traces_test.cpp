@@ -269,8 +269,8 @@ Sums sums_of_sqlite(const std::filesystem::path& path) {
   return sums;
 }
 
-// The cycles of the ports of the core, by their states. A waveform shows no difference between a cycle in which a
-// port is idle and one in which no frame runs.
+// The cycles of the ports of the core, by their states. A waveform shows no difference between a cycle in
+// which a port is idle and one in which no frame runs.
 Sums states_of_vcd(const std::filesystem::path& path, const platform::BoardConfig& board) {
   const Clock clock(board.fpga.clock_mhz);
   const test::VcdFile file(test::read_file(path));

@@ -65,8 +65,8 @@ RectificationTable shifted(int width, int height, int distance) {
   return table;
 }
 
-// A table that moves everything by (offset, 1), its left half by `residual` further to the right and its right
-// half by as much less. Columns that would leave the picture have no source.
+// A table that moves everything by (offset, 1), its left half by `residual` further to the right and its
+// right half by as much less. Columns that would leave the picture have no source.
 RectificationTable parted(int width, int height, int offset, int residual) {
   RectificationTable table{width, height, {}};
   for (int row = 0; row < height; ++row) {

@@ -8,8 +8,8 @@
 
 namespace stereotlm::fpga {
 
-// All that a core counts at every fidelity, one line for each block: to be compared as a whole. (Stages count only
-// the data that moves through them.)
+// All that a core counts at every fidelity, one line for each block: to be compared as a whole. (Stages count
+// only the data that moves through them.)
 class CoreFigures {
  public:
   CoreFigures(const FrameRun& frames, const std::vector<memory::BankArbiter>& arbiters) {

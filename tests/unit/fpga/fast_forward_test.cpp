@@ -1,5 +1,5 @@
-// How few cycles are stepped. The random cores, boards and computers compare what is counted with frames that are
-// stepped and with the plain loops.
+// How few cycles are stepped. The random cores, boards and computers compare what is counted with frames that
+// are stepped and with the plain loops.
 #include "models/fpga/fast_forward.h"
 
 #include <gtest/gtest.h>
@@ -14,8 +14,8 @@
 namespace stereotlm::fpga {
 namespace {
 
-// The board of the paper without filter and with a word cache: joint tables in one bank, pictures and disparities
-// in another.
+// The board of the paper without filter and with a word cache: joint tables in one bank, pictures and
+// disparities in another.
 class FastForwardTest : public testing::Test {
  protected:
   static CoreConfig config() {
@@ -29,8 +29,8 @@ class FastForwardTest : public testing::Test {
     bases.fill(registers::base(1, 0));
     bases[0] = registers::base(0, 0);
   }
-  // The number of cycles that are stepped in each of three frames. Between two bursts of 32 words to the bank of
-  // the tables the host pauses for `pause` cycles; 0: no bursts.
+  // The number of cycles that are stepped in each of three frames. Between two bursts of 32 words to the bank
+  // of the tables the host pauses for `pause` cycles; 0: no bursts.
   std::vector<std::uint64_t> stepped_cycles(std::uint64_t pause) {
     std::vector<std::uint64_t> stepped;
     for (int frame = 0; frame < 3; ++frame) {

@@ -102,10 +102,10 @@ class LinesRun : public testing::LoopRun {
 
 BoardConfig board_of(const Keys& keys) { return testing::loop_board(297.3, keys); }
 
-// The PCI bus moves the words of both pictures' lines, at most two in a clock. So it takes a line at least as long as
-// it has words, in clocks.
+// The PCI bus moves the words of both pictures' lines, at most two in a clock. So it takes a line at least as
+// long as it has words, in clocks.
 std::uint64_t short_ps(const BoardConfig& board) {
-  return static_cast<std::uint64_t>(board.image.width / 4 * 1e6 / board.pci.clock_mhz);
+  return static_cast<std::uint64_t>(board.image.width * 1e6 / (4 * board.pci.clock_mhz));
 }
 
 std::uint64_t skipped_lines(const BoardConfig& board, const Program& program = {}) {

@@ -8,7 +8,7 @@ namespace stereotlm::platform {
 namespace {
 
 // The paper's board: 76,800 words a picture.
-constexpr double kPicture = 640 * 480 / 4;
+constexpr double kPicture = 640 * 480 / 4.0;
 
 class ComputerBounds : public ::testing::Test {
  protected:
@@ -71,9 +71,9 @@ TEST_F(ComputerBounds, CountTheLocalBusOfAllThreePictures) {
   EXPECT_DOUBLE_EQ(bound_of("bridge"), 40e6 / (3 * (kPicture - 4800 + 4800 * 2)));
 }
 
-// A load that requests the bus all the time gets a burst beside each of the bridge, which has the most: 2,401. Then
-// the latency timer of 64 clocks cuts each burst behind its word in clock 64: captures after 60 words, behind 4
-// wait clocks, and the load after 64. The bursts of one transfer of the load are left out.
+// A load that requests the bus all the time gets a burst beside each of the bridge, which has the most:
+// 2,401. Then the latency timer of 64 clocks cuts each burst behind its word in clock 64: captures after 60
+// words, behind 4 wait clocks, and the load after 64. The bursts of one transfer of the load are left out.
 TEST_F(ComputerBounds, CountTheBurstsOfALoadThatTheBusCannotRefuse) {
   const double alone = 33.333e6 / bound_of("pci");
   board.pci.load = PciLoadConfig{100, 0, 0, 0};

@@ -1,5 +1,5 @@
-// The event loop of the computer, without the kernel: where it stops, and the order of the events of one time.
-// Random computers compare its figures with the plain loop over events.
+// The event loop of the computer, without the kernel: where it stops, and the order of the events of one
+// time. Random computers compare its figures with the plain loop over events.
 #include "platform/computer_loop.h"
 
 #include <gtest/gtest.h>
@@ -95,9 +95,9 @@ TEST_F(ComputerLoopTest, EndsABurstOfTheLocalBusBeforeWordsArePostedAtThatTime) 
   }
 }
 
-// At this camera rate the last pixel of a frame arrives with a clock of the bus. The load keeps the bus for the
-// last line until its second word has found the FIFO, of one place, full: the capture ends with the last pixel.
-// A write that clears `done` at this time comes first, and has no effect; a ns later it has.
+// At this camera rate the last pixel of a frame arrives with a clock of the bus. The load keeps the bus for
+// the last line until its second word has found the FIFO, of one place, full: the capture ends with the last
+// pixel. A write that clears `done` at this time comes first, and has no effect; a ns later it has.
 class ComputerLoopPixels : public ComputerLoopTest, public ::testing::WithParamInterface<bool> {};
 
 TEST_P(ComputerLoopPixels, ArriveAfterTheWritesOfTheirTime) {

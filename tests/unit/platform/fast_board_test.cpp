@@ -1,5 +1,5 @@
-// The board without modules and without the kernel. Random computers compare its figures with the plain loop, and
-// fast_computer_test.cpp has what it refuses.
+// The board without modules and without the kernel. Random computers compare its figures with the plain loop,
+// and fast_computer_test.cpp has what it refuses.
 #include "platform/fast_board.h"
 
 #include <gtest/gtest.h>
@@ -47,8 +47,8 @@ class FastBoardTest : public ::testing::Test, public LocalBusMasterIf {
   std::uint64_t burst_end_ps = 0;
 };
 
-// A burst keeps the left table's bank from the frame, because the host comes first. The frame is checked every
-// 8192 cycles.
+// A burst keeps the left table's bank from the frame, because the host comes first. The frame is checked
+// every 8192 cycles.
 TEST_F(FastBoardTest, ReportsAFrameThatMakesNoProgressWithItsWaits) {
   EXPECT_EQ(board.frames().waits(), "the core runs no frame");
   std::uint32_t bank = 0;

@@ -345,8 +345,8 @@ TEST(FastComputer, IsMadeAtAllFidelitiesButCycle) {
 class FastComputerErrors : public ::testing::Test {
  protected:
   using Script = std::function<void(LoggedBus&)>;
-  // The report of a computer whose program is `script` and which `change` has changed. In a child, because the
-  // kernel does not unwind the stack of the program.
+  // The report of a computer whose program is `script` and which `change` has changed. In a child, because
+  // the kernel does not unwind the stack of the program.
   static std::string report(
       Fidelity fidelity, const Script& script,
       const std::function<void(RunningComputer&)>& change = [](auto&) {}) {

@@ -48,8 +48,8 @@ class NoiseSource : public capture::CameraSource {
   kernels::GrayImage picture_;
 };
 
-// A processor for ComputerLoop, whose bursts follow each other. The configuration may be changed before the first
-// call of loop().
+// A processor for ComputerLoop, whose bursts follow each other. The configuration may be changed before the
+// first call of loop().
 class LoopProcessor : public pci::PciMasterIf {
  public:
   struct Burst {
@@ -149,8 +149,8 @@ class TraceText : public BusObserver {
   std::string text;
 };
 
-// A processor that notes the times of its accesses and of the interrupts. The loop runs for at most `step_ps` at
-// a time: nothing can be skipped that does not end within such a step.
+// A processor that notes the times of its accesses and of the interrupts. The loop runs for at most `step_ps`
+// at a time: nothing can be skipped that does not end within such a step.
 class LoopRun : public LoopProcessor {
  public:
   LoopRun(const BoardConfig& board, fpga::Fidelity fidelity, std::uint64_t step_ps)
@@ -254,8 +254,8 @@ struct LoopOutcome {
   std::uint64_t skipped = 0;
 };
 
-// What a program does on a board. Expects the same figures, times and words if nothing is skipped: everything that
-// is skipped takes longer than `short_ps`.
+// What a program does on a board. Expects the same figures, times and words if nothing is skipped: everything
+// that is skipped takes longer than `short_ps`.
 template <class Run, class Program>
 LoopOutcome compare_with_steps(const BoardConfig& board, const Program& program, std::uint64_t short_ps) {
   const LoopOutcome skipping = Run(board, program, kLongPs).outcome();

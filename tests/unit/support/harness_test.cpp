@@ -1,5 +1,5 @@
-// What makes a test fail: a SystemC report that it did not announce, and a child process that fails. No test of the
-// models would notice that these fail no more.
+// What makes a test fail: a SystemC report that it did not announce, and a child process that fails. No test
+// of the models would notice that these fail no more.
 #include <gtest/gtest-spi.h>
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -1,5 +1,5 @@
-// The monitor reports each broken rule of the base protocol, and nothing else: no test of the models would notice
-// that it reports no more. The tests of the modules show that it lets correct calls pass.
+// The monitor reports each broken rule of the base protocol, and nothing else: no test of the models would
+// notice that it reports no more. The tests of the modules show that it lets correct calls pass.
 #include "tests/support/protocol_monitor.h"
 
 #include <gtest/gtest-spi.h>

@@ -91,7 +91,8 @@ export function addKnobs(page, run) {
     note: `One setting changed at a time, simulated with ${
               count(board.frames, 'frame')} each. Right: the gain, and what the change takes in ` +
         'addition. First: the largest gain that needs nothing new; if there is none, the largest of ' +
-        'all; where captures lose pixels, the best change that ends that. *: changes the disparities. †: captures lose pixels.',
+        'all; where captures lose pixels, the best change that ends that. *: changes the disparities. ' +
+        '†: captures lose pixels.',
     body: [
       keep, note(without.length > 0 && `Without effect here: ${without.join(', ')}.`),
       impossible.length > 0 &&
@@ -151,8 +152,8 @@ export function addArea(page, run) {
     title: `${fixed(total.slices_percent, 1)} % of the ${device.name}: ${whole(total.slices)} slices${
         total.fits ? '' : ', which does not fit'}`,
     note:
-        'An estimate: nothing is placed or routed. Bars: share of the logic, by the larger of a part\'s LUTs and ' +
-        'flip-flops.',
+        'An estimate: nothing is placed or routed. Bars: share of the logic, by the larger of a part\'s ' +
+        'LUTs and flip-flops.',
     body:
         h('div', {class: 'uses'}, use('slices', total.slices, device.slices),
           use('block RAMs', total.block_rams, device.block_rams),

@@ -146,8 +146,9 @@ export function addRoofline(page, run) {
              share > kNearRoof ? `a faster ${resourceText(by).replace('the ', '')} needs fewer accesses too` :
                                  withVerb(by, 'limit')),
     note:
-        'The line is the roof: what a bank with one access a cycle allows. Both axes are logarithmic. Large dots: ' +
-        'this board (orange), the first change and the largest gain. Small dots: all other single changes.',
+        'The line is the roof: what a bank with one access a cycle allows. Both axes are logarithmic. ' +
+        'Large dots: this board (orange), the first change and the largest gain. ' +
+        'Small dots: all other single changes.',
     numbers: () => [
         ['board', 'bank', 'accesses_per_pixel', 'megapixels_per_second', 'frames_per_second', 'clock_mhz'],
         [here, ...all].map(each => [each.name, each.bank, each.accesses, each.speed, each.fps, each.clock])]
@@ -204,10 +205,10 @@ export function addPortStates(page, {stats}, suffix = '') {
              `${worst.name} waits in ${percent(worst.stall_cycles / stats.cycles)} of the cycles` :
              'No port ever waits'),
     note:
-        'What each port does in all cycles of the frames; on the right the share granted. No access needed: ' +
-        'it has the word already, or the place is outside the picture. Output full: the queue behind it takes ' +
-        'no more. No input: nothing to work on has come. Idle: before its first and after its last work of a ' +
-        'frame; the host: no request.'
+        'What each port does in all cycles of the frames; on the right the share granted. No access ' +
+        'needed: it has the word already, or the place is outside the picture. Output full: the queue ' +
+        'behind it takes no more. No input: nothing to work on has come. Idle: before its first and after ' +
+        'its last work of a frame; the host: no request.'
   });
 }
 

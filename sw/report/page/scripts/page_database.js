@@ -3,7 +3,9 @@ import {addAnswers, addChart, addGroup, addHead, htmlTable} from './card.js';
 import {addParallel, addScatter} from './database_charts.js';
 import {button, folded, h, note, textBox} from './dom.js';
 import {resourceText} from './findings.js';
-import {capital, count, different, fixed, inOrder, kRates, rateWith, shortened, value, whole} from './format.js';
+import {
+    capital, count, different, fixed, inOrder, kRates, rateWith, shortened, value, whole,
+} from './format.js';
 import {kRateColumns, Points} from './points.js';
 
 const kMostChips = 16;

@@ -5,7 +5,9 @@ import {linesOf, tilesOf} from './data.js';
 import {commandLine, fileName, folded, h, note, textBox} from './dom.js';
 import {answersOf, headlineOf, settingOf, waitingRows} from './findings.js';
 import {count, sum, value} from './format.js';
-import {addBankUse, addBounds, addFrames, addPortStates, addRoofline, kBankStates, kPortStates} from './limits.js';
+import {
+    addBankUse, addBounds, addFrames, addPortStates, addRoofline, kBankStates, kPortStates,
+} from './limits.js';
 import {addMemory} from './memory.js';
 import {addPicture} from './picture.js';
 import {addLatency, addTimeLine} from './time.js';

@@ -31,14 +31,16 @@ board.yaml:2:34: image.widht = 7: unknown key; nearest known key: image.width
 board.yaml:2:44: image.width = 640: repeated key, first at 2:9
 board.yaml:3:26: cameras.frame_rate_hz = 1001: 0.1..1000
 board.yaml:3:41: cameras.trigger = off: must be one of free_running or on_demand
-board.yaml:5:11: fpga.device = xc2v600: must be one of xc2v1000, xc2v1500, xc2v2000, xc2v3000, xc2v4000, xc2v6000 or xc2v8000
+board.yaml:5:11: fpga.device = xc2v600: must be one of xc2v1000, xc2v1500, xc2v2000, xc2v3000, )"
+            R"(xc2v4000, xc2v6000 or xc2v8000
 board.yaml:6:3: fpga.arbitration = (nothing): must be one of fixed_priority, round_robin or age
 board.yaml:7:63: fpga.priority = left_lut: repeated; each port once
 board.yaml:8:1: größe = {ü: 1}: unknown key, and no known key is near
 board.yaml:9:11: matcher.filter.shift: missing: 0..31
 board.yaml:9:40: matcher.filter.kernel = [1, 2]: a row of 3 entries, as many as there are rows
 board.yaml:9:52: matcher.filter.kernel = 40000: entries -32768..32767
-board.yaml:9:59: matcher.filter.kernel = x: not an integer (decimal digits, not in quotes); entries -32768..32767
+board.yaml:9:59: matcher.filter.kernel = x: not an integer (decimal digits, not in quotes); )"
+            R"(entries -32768..32767
 board.yaml:9:72: matcher.fetch = columns: must be one of column or line_buffer
 board.yaml:9:95: matcher.lr_tolerance = false: not an integer (decimal digits, not in quotes); 0..253 or off
 board.yaml:10:1: << = {x: 1}: unknown key, and no known key is near
@@ -75,13 +77,15 @@ TEST(BoardSyntax, ReportsAMissingKeyAtItsParentOrAtTheTop) {
                  "ssram: {default: {}}\n"
                  "allocation: {left_image: b, right_image: b, disparity: b, left_lut: b, right_lut: b}\n"
                  "matcher: {window: 7, disparities: 80, filter: log7, fetch: column, lr_tolerance: 0}\n"),
-      R"(board.yaml:1:1: pci: missing: a map of clock_mhz, latency_timer_clocks, bridge_wait_clocks, memory_wait_clocks, width_bits, load
+      R"(board.yaml:1:1: pci: missing: a map of clock_mhz, latency_timer_clocks, bridge_wait_clocks, )"
+      R"(memory_wait_clocks, width_bits, load
 board.yaml:1:1: bridge: missing: a map of local_clock_mhz, dma_burst_words, posted_words
 board.yaml:2:1: image.height: missing: 1..8192
 board.yaml:5:1: fpga.device: missing: xc2v1000, xc2v1500, xc2v2000, xc2v3000, xc2v4000, xc2v6000 or xc2v8000
 board.yaml:5:1: fpga.clock_mhz: missing: 1..1000
 board.yaml:5:1: fpga.arbitration: missing: fixed_priority, round_robin or age
-board.yaml:5:1: fpga.priority: missing: a list that names each port once: left_lut, right_lut, left_pixel, right_pixel, result, host
+board.yaml:5:1: fpga.priority: missing: a list that names each port once: left_lut, right_lut, left_pixel, )"
+      R"(right_pixel, result, host
 board.yaml:5:1: fpga.lane_fifo_slots: missing: 1..64
 board.yaml:5:1: fpga.result_fifo_words: missing: 1..64
 board.yaml:5:1: fpga.pipeline_latency_cycles: missing: 0..1024

@@ -82,8 +82,8 @@ TEST(Claims, OfCostsIncludeAGivenPairWithItsDisparities) {
   }
 }
 
-// The one constant of the area model (area.h), for the least squared error over the rows of Table 2: images of
-// 640x480, windows of 7x7, tables and filters for both sides.
+// The one constant of the area model (area.h), for the least squared error over the rows of Table 2: images
+// of 640x480, windows of 7x7, tables and filters for both sides.
 TEST(Claims, OfSizesAreWhatTheConstantOfTheAreaModelIsFittedTo) {
   const area::Device& device = *area::find_device("xc2v6000");
   const double documented_errors[] = {0.96, 0.02, -0.41};  // percentage points

@@ -33,8 +33,8 @@ platform::Statistics small_run() {
 
 // The line of small_run().
 constexpr const char* kArea =
-    R"(  "area": {"slices": 7462, "slices_percent": 22.5, "luts": 11900, "flip_flops": 5300, "block_rams": 18, )"
-    R"("block_rams_percent": 12.5, "multipliers": 36, "multipliers_percent": 25})";
+    R"(  "area": {"slices": 7462, "slices_percent": 22.5, "luts": 11900, "flip_flops": 5300, )"
+    R"("block_rams": 18, "block_rams_percent": 12.5, "multipliers": 36, "multipliers_percent": 25})";
 
 TEST(StatsJson, HasTheKeysOfTheContractInTheirOrder) {
   EXPECT_EQ(stats_json(small_run(), Accuracy{4.25, 2, 81.5}),
@@ -48,8 +48,8 @@ TEST(StatsJson, HasTheKeysOfTheContractInTheirOrder) {
   "frames_per_second": {"core": 18.6},
   "bound": {"core": 19.25, "core_limited_by": "left_pixel"},
   "banks": [
-    {"name": "bank0", "reads": 1500, "writes": 20, "busy_cycles": 1520, "turnaround_cycles": 7, "idle_cycles": 473, )"
-            R"("contended_cycles": 3, "utilization": 0.76, "megabytes_per_second": 121.6}
+    {"name": "bank0", "reads": 1500, "writes": 20, "busy_cycles": 1520, "turnaround_cycles": 7, )"
+            R"("idle_cycles": 473, "contended_cycles": 3, "utilization": 0.76, "megabytes_per_second": 121.6}
   ],
   "ports": [
     {"name": "left_lut", "grants": 1, "stall_cycles": 2, "passed_cycles": 3, "idle_cycles": 4, )"

@@ -75,7 +75,8 @@ TEST_F(SqliteSinkTest, RunsHaveTheCyclesOfTheFrames) {
   EXPECT_GT(waits, 20);
 }
 
-// With 5 rows in strips of 2 the last strip has one row: a count of its own, because `count / rows` is the mean of a row.
+// With 5 rows in strips of 2 the last strip has one row: a count of its own, because `count / rows` is the
+// mean of a row.
 TEST_F(SqliteSinkTest, ALastStripWithFewerRowsIsARunOfItsOwn) {
   board_.matcher.rows = 2;
   platform::FrameRuns frame;
