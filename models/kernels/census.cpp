@@ -40,7 +40,7 @@ CensusTransform::CensusTransform(int width, int height, const MatchingCost& cost
     : width_(width),
       height_(height),
       half_(cost.half()),
-      simd_(simd.frame),
+      simd_(simd),
       stride_(static_cast<std::size_t>(width + 2 * half_ + kMostFrameVectorBytes)) {
   const auto pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   padded_.resize(static_cast<std::size_t>(height) * stride_);

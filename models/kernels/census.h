@@ -46,7 +46,7 @@ class CensusTransform {
   int width_;
   int height_;
   int half_;
-  const FrameSimd& simd_;
+  const Simd& simd_;
   std::size_t stride_;               // of padded_
   std::vector<std::int8_t> padded_;  // the image with its edges repeated, upper bits inverted
   std::vector<std::vector<std::uint8_t>> planes_;

@@ -7,7 +7,7 @@ namespace stereotlm::kernels {
 
 ColumnFilter::ColumnFilter(int width, int height, int rows_per_column, int rows_per_strip,
                            const std::optional<FilterKernel>& kernel, const Simd& simd)
-    : simd_(simd.column),
+    : simd_(simd),
       rows_per_column_(rows_per_column),
       kernel_(kernel),
       pixels_(width, height, rows_per_column, rows_per_strip, kernel ? kernel->half() : 0),

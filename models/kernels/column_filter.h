@@ -49,7 +49,7 @@ class ColumnFilter {
   void finish_column();
   void filter_wide(const float* columns);
 
-  const ColumnSimd& simd_;
+  const Simd& simd_;
   int rows_per_column_;
   std::optional<FilterKernel> kernel_;
   bool wide_ = false;           // a sum may exceed 24 bits, up to which a float is exact

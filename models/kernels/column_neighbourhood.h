@@ -6,8 +6,8 @@
 #include <cstring>
 #include <vector>
 
-#include "models/kernels/column_simd.h"
 #include "models/kernels/pixel_column.h"
+#include "models/kernels/simd.h"
 
 namespace stereotlm::kernels {
 

@@ -1,50 +1,168 @@
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
+#include "models/kernels/simd_vectors.h"
 
-namespace stereotlm::kernels {
+// The loops over one column of the matcher (Simd).
+namespace stereotlm::kernels::STEREOTLM_SIMD {
+namespace {
 
-// Arrays with one value per disparity are padded to a multiple of this many values. ColumnSimd reads and
-// writes the padding.
-inline constexpr int kLanePadding = 16;
-// Alignment of these arrays, and length of the longest vector that ColumnSimd uses, in bytes.
-inline constexpr int kLaneAlignment = 32;
+// Longer vectors gain nothing here, and no vector may be longer than kLanePadding values.
+constexpr int kColumnBytes = kBytes < 32 ? kBytes : 32;
+constexpr int kWords = kColumnBytes / 2;  // 16-bit values in a vector
+constexpr int kLongs = kColumnBytes / 4;  // 32-bit values in a vector
 
-// ColumnSimd::filter_column works on blocks of this many rows.
-inline constexpr int kFilterBlock = 8;
-constexpr int padded_rows(int rows) { return (rows + kFilterBlock - 1) / kFilterBlock * kFilterBlock; }
+using WordBytes = std::uint8_t __attribute__((vector_size(kWords)));
+using LongBytes = std::uint8_t __attribute__((vector_size(kLongs)));
+using Words = std::int16_t __attribute__((vector_size(2 * kWords)));
+using HalfWords = std::int16_t __attribute__((vector_size(2 * kLongs)));
+using Longs = std::int32_t __attribute__((vector_size(4 * kLongs)));
+using Reals = float __attribute__((vector_size(4 * kLongs)));
 
-// The loops over one column of the matcher, for one instruction set. Arrays over the disparities d hold
-// `lanes` values, a multiple of kLanePadding; arrays with values of more than 8 bits must be LaneArrays.
-struct ColumnSimd {
-  // Steps all column and window modules by one column. For each d: adds the sum over the `rows` of
-  // |histories[row][d] - left[row]| to windows[d], subtracts leaving[d], and stores the sum in leaving[d].
-  void (*sad_windows)(const std::uint8_t* const* histories, const std::uint8_t* left, int rows, int lanes,
-                      std::int16_t* leaving, std::int32_t* windows);
-  // The same with the number of bits in which histories[row][d] and left[row] differ.
-  void (*census_windows)(const std::uint8_t* const* histories, const std::uint8_t* left, int rows, int lanes,
-                         std::int16_t* leaving, std::int32_t* windows);
-  // The same with the square of the difference, and with the product.
-  void (*ssd_windows)(const std::uint8_t* const* histories, const std::uint8_t* left, int rows, int lanes,
-                      std::int32_t* leaving, std::int32_t* windows);
-  void (*product_windows)(const std::uint8_t* const* histories, const std::uint8_t* left, int rows, int lanes,
-                          std::int32_t* leaving, std::int32_t* windows);
+// GCC's own conversion to longer vectors takes four instructions instead of one.
+Words widened(WordBytes bytes) {
+#if defined(__AVX2__)
+  return reinterpret_cast<Words>(_mm256_cvtepu8_epi16(reinterpret_cast<__m128i>(bytes)));
+#else
+  return __builtin_convertvector(bytes, Words);
+#endif
+}
 
-  // Steps select-min unit A by one column: next[d] = min(held[d - 1], key(d)), where key(d) = sums[d] * 256 +
-  // d for d < candidates, else INT32_MAX. Reads held[-1]; writes `next` from 0 on.
-  void (*step_chain)(const std::int32_t* sums, int candidates, int lanes, const std::int32_t* held,
-                     std::int32_t* next);
+Longs widened(HalfWords values) {
+#if defined(__AVX2__)
+  return reinterpret_cast<Longs>(_mm256_cvtepi16_epi32(reinterpret_cast<__m128i>(values)));
+#else
+  return __builtin_convertvector(values, Longs);
+#endif
+}
 
-  // Select-min unit B: returns the smallest key(d).
-  std::int32_t (*smallest_key)(const std::int32_t* sums, int candidates, int lanes);
+// Adds the column sums less those that leave to the window sums, and stores them in their place.
+void replace_columns(Words sums, std::int16_t* leaving, std::int32_t* windows) {
+  const Words change = sums - load<Words>(leaving);
+  store(sums, leaving);
+  for (int part = 0; part < kWords; part += kLongs) {
+    std::int32_t* const window = windows + part;
+    const auto changes = load<HalfWords>(reinterpret_cast<const std::int16_t*>(&change) + part);
+    store(load<Longs>(window) + widened(changes), window);
+  }
+}
 
-  // Filters `rows` pixels of one column with a size x size kernel (size odd): out[k] = clamp(128 + floor(S /
-  // 2^shift), 0, 255), where S = sum over i, j of weights[i * size + j] * (value k + j of column i), and
-  // column i starts at columns + i * stride. Exact while no partial sum leaves -2^24..2^24. Reads columns up
-  // to padded_rows(rows) + size - 1, and writes `out` up to padded_rows(rows).
-  void (*filter_column)(const float* columns, std::ptrdiff_t stride, const float* weights, int size, int rows,
-                        int shift, std::uint8_t* out);
-};
+// ssd_windows and product_windows. `cost_of`: the cost of right pixels and a left pixel.
+template <class CostOf>
+void step_wide_windows(const std::uint8_t* const* histories, const std::uint8_t* left, int rows, int lanes,
+                       std::int32_t* leaving, std::int32_t* windows, CostOf cost_of) {
+  for (int d = 0; d < lanes; d += kLongs) {
+    Longs sums{};
+    for (int row = 0; row < rows; ++row) {
+      const auto right = __builtin_convertvector(load<LongBytes>(histories[row] + d), Longs);
+      sums += cost_of(right, left[row]);
+    }
+    store(load<Longs>(windows + d) + sums - load<Longs>(leaving + d), windows + d);
+    store(sums, leaving + d);
+  }
+}
 
-}  // namespace stereotlm::kernels
+void sad_windows(const std::uint8_t* const* histories, const std::uint8_t* left, int rows, int lanes,
+                 std::int16_t* leaving, std::int32_t* windows) {
+  for (int d = 0; d < lanes; d += kWords) {
+    Words sums{};
+    for (int row = 0; row < rows; ++row) {
+      const auto right = widened(load<WordBytes>(histories[row] + d));
+      const Words difference = right - left[row];
+      sums += difference < 0 ? -difference : difference;
+    }
+    replace_columns(sums, leaving + d, windows + d);
+  }
+}
+
+void census_windows(const std::uint8_t* const* histories, const std::uint8_t* left, int rows, int lanes,
+                    std::int16_t* leaving, std::int32_t* windows) {
+  for (int d = 0; d < lanes; d += kWords) {
+    Words sums{};
+    for (int row = 0; row < rows; ++row) {
+      WordBytes bits = load<WordBytes>(histories[row] + d) ^ left[row];
+      bits -= bits >> 1 & 0x55;
+      bits = (bits & 0x33) + (bits >> 2 & 0x33);
+      sums += widened((bits + (bits >> 4)) & 0x0F);
+    }
+    replace_columns(sums, leaving + d, windows + d);
+  }
+}
+
+void ssd_windows(const std::uint8_t* const* histories, const std::uint8_t* left, int rows, int lanes,
+                 std::int32_t* leaving, std::int32_t* windows) {
+  step_wide_windows(histories, left, rows, lanes, leaving, windows, [](Longs right, int left_pixel) {
+    const Longs difference = right - left_pixel;
+    return difference * difference;
+  });
+}
+
+void product_windows(const std::uint8_t* const* histories, const std::uint8_t* left, int rows, int lanes,
+                     std::int32_t* leaving, std::int32_t* windows) {
+  step_wide_windows(histories, left, rows, lanes, leaving, windows,
+                    [](Longs right, int left_pixel) { return right * left_pixel; });
+}
+
+// The key of a disparity. The compiler makes vectors of the loops over keys.
+std::int32_t key_of(std::int32_t sum, int d, int candidates) {
+  return d < candidates ? sum * 256 + d : INT32_MAX;
+}
+
+void step_chain(const std::int32_t* sums, int candidates, int lanes, const std::int32_t* held,
+                std::int32_t* __restrict next) {
+  for (int d = 0; d < lanes; ++d) next[d] = smaller(held[d - 1], key_of(sums[d], d, candidates));
+}
+
+std::int32_t smallest_key(const std::int32_t* sums, int candidates, int lanes) {
+  std::int32_t best = INT32_MAX;
+  for (int d = 0; d < lanes; ++d) best = smaller(best, key_of(sums[d], d, candidates));
+  return best;
+}
+
+// Compiled separately for each usual size of the kernel. kSize is 0 for all other sizes.
+template <int kSize>
+void filter_column_of(const float* columns, std::ptrdiff_t stride, const float* weights, int any_size,
+                      int rows, int shift, std::uint8_t* out) {
+  const int size = kSize != 0 ? kSize : any_size;
+  for (int k = 0; k < rows; k += kLongs) {
+    // Four independent sums, because each addition to one sum waits for the one before.
+    Reals even{};
+    Reals odd{};
+    Reals even_before{};
+    Reals odd_before{};
+    const float* weight = weights;
+    const float* tap = columns + k;
+    for (int i = 0; i < size; ++i, weight += size, tap += stride) {
+      for (int j = 0; j + 1 < size; j += 2) {
+        even += load<Reals>(tap + j) * weight[j];
+        odd += load<Reals>(tap + j + 1) * weight[j + 1];
+      }
+      even += load<Reals>(tap + size - 1) * weight[size - 1];
+      const Reals even_now = even;
+      const Reals odd_now = odd;
+      even = even_before;
+      odd = odd_before;
+      even_before = even_now;
+      odd_before = odd_now;
+    }
+    const auto sum = __builtin_convertvector((even + even_before) + (odd + odd_before), Longs);
+    const Longs level = larger(smaller((sum >> shift) + 128, Longs{} + 255), Longs{});
+    store(__builtin_convertvector(level, LongBytes), out + k);
+  }
+}
+
+void filter_column(const float* columns, std::ptrdiff_t stride, const float* weights, int size, int rows,
+                   int shift, std::uint8_t* out) {
+  switch (size) {
+    case 3:
+      return filter_column_of<3>(columns, stride, weights, size, rows, shift, out);
+    case 5:
+      return filter_column_of<5>(columns, stride, weights, size, rows, shift, out);
+    case 7:
+      return filter_column_of<7>(columns, stride, weights, size, rows, shift, out);
+    default:
+      return filter_column_of<0>(columns, stride, weights, size, rows, shift, out);
+  }
+}
+
+}  // namespace
+}  // namespace stereotlm::kernels::STEREOTLM_SIMD

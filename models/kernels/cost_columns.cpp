@@ -11,7 +11,7 @@ constexpr int kColumnsBetweenMoves = 1024;
 }  // namespace
 
 CostColumns::CostColumns(int window, int disparities, const MatchingCost& cost, const Simd& simd)
-    : simd_(simd.column),
+    : simd_(simd),
       cost_(cost),
       window_(window),
       rows_(window * cost.pixel_bytes()),
@@ -22,9 +22,9 @@ CostColumns::CostColumns(int window, int disparities, const MatchingCost& cost, 
       window_sums_(disparities) {
   const auto columns = static_cast<std::size_t>(window);
   if (cost.kind == CostKind::kSad || cost.kind == CostKind::kCensus) {
-    narrow_sums_.assign(columns, LaneArray<std::int16_t>(disparities));
+    narrow_sums_.assign(columns, SimdArray<std::int16_t>(disparities));
   } else {
-    wide_sums_.assign(columns, LaneArray<std::int32_t>(disparities));
+    wide_sums_.assign(columns, SimdArray<std::int32_t>(disparities));
   }
   start_frame();
 }

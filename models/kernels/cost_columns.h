@@ -5,7 +5,6 @@
 
 #include "models/kernels/matching_cost.h"
 #include "models/kernels/simd.h"
-#include "models/kernels/simd_array.h"
 
 namespace stereotlm::kernels {
 
@@ -35,7 +34,7 @@ class CostColumns {
   int lanes() const { return lanes_; }
 
  private:
-  const ColumnSimd& simd_;
+  const Simd& simd_;
   MatchingCost cost_;
   int window_;
   int rows_;  // bytes of a column
@@ -46,9 +45,9 @@ class CostColumns {
   std::vector<const std::uint8_t*> newest_;    // per byte: the newest pixel in its history
   // Column sums of the last n columns. Absolute differences and census bits fit into 16 bits: at most 31 *
   // 255 and 31 * 48.
-  std::vector<LaneArray<std::int16_t>> narrow_sums_;
-  std::vector<LaneArray<std::int32_t>> wide_sums_;
-  LaneArray<std::int32_t> window_sums_;  // at most 31 * 31 * 255 * 255
+  std::vector<SimdArray<std::int16_t>> narrow_sums_;
+  std::vector<SimdArray<std::int32_t>> wide_sums_;
+  SimdArray<std::int32_t> window_sums_;  // at most 31 * 31 * 255 * 255
 };
 
 }  // namespace stereotlm::kernels

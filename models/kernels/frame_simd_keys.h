@@ -1,6 +1,6 @@
 #pragma once
 
-#include "models/kernels/frame_simd_vectors.h"
+#include "models/kernels/simd_vectors.h"
 
 namespace stereotlm::kernels::STEREOTLM_SIMD {
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "models/kernels/frame_simd_keys.h"
-#include "models/kernels/frame_simd_vectors.h"
 
 namespace stereotlm::kernels::STEREOTLM_SIMD {
 
@@ -69,11 +68,11 @@ struct Group {
 
   Group(const MatchPlan& plan, const MatchMemory& memory, int first_disparity, std::int16_t* column_sums)
       : cost(plan, memory, first_disparity),
-        columns{Cost::right_pixels(memory),
-                Cost::left_pixels(memory) + std::ptrdiff_t{first_disparity} * Cost::kPixelLanes, column_sums},
+        columns{Cost::pixels(memory.right),
+                Cost::pixels(memory.left) + std::ptrdiff_t{first_disparity} * Cost::kPixelLanes, column_sums},
         outside(memory.outside + first_disparity * kLanes),
-        right_best(reinterpret_cast<Best*>(memory.right_best)),
-        left_best(reinterpret_cast<Best*>(memory.left_best) + first_disparity),
+        right_best(reinterpret_cast<Best*>(memory.right.best)),
+        left_best(reinterpret_cast<Best*>(memory.left.best) + first_disparity),
         window_begin(-std::ptrdiff_t{plan.window} * kCount * Cost::kSumLanes),
         first(first_disparity) {
     for (int j = 0; j < kCount; ++j) {
@@ -146,8 +145,8 @@ void match_group(const MatchPlan& plan, const MatchMemory& memory, int first, st
 template <class Cost, int kCount>
 void add_group(const MatchPlan& plan, const MatchMemory& memory, int first, std::int16_t* column_sums) {
   const Cost cost(plan, memory, first);
-  ColumnSums<Cost, kCount> columns{Cost::right_pixels(memory),
-                                   Cost::left_pixels(memory) + std::ptrdiff_t{first} * Cost::kPixelLanes,
+  ColumnSums<Cost, kCount> columns{Cost::pixels(memory.right),
+                                   Cost::pixels(memory.left) + std::ptrdiff_t{first} * Cost::kPixelLanes,
                                    column_sums};
   const int positions = plan.columns + plan.window - 1;
   for (std::ptrdiff_t u = 0; u < positions; ++u) {
@@ -157,17 +156,23 @@ void add_group(const MatchPlan& plan, const MatchMemory& memory, int first, std:
   }
 }
 
+template <int kCount>
+struct Count {
+  static constexpr int value = kCount;
+};
+
 template <int kCount, class Visit>
 void visit_rest(int count, int first, std::int16_t* column_sums, const Visit& visit) {
   if constexpr (kCount > 0) {
     if (count == kCount) {
-      visit.template group<kCount>(first, column_sums);
+      visit(Count<kCount>{}, first, column_sums);
     } else {
       visit_rest<kCount - 1>(count, first, column_sums, visit);
     }
   }
 }
 
+// visit(Count, first, column_sums): a group of disparities, the first one of them, and their column sums.
 template <class Cost, class Visit>
 void visit_groups(const MatchPlan& plan, const MatchMemory& memory, const Visit& visit) {
   const std::ptrdiff_t stride = (plan.columns + plan.window) * Cost::kSumLanes;
@@ -175,36 +180,12 @@ void visit_groups(const MatchPlan& plan, const MatchMemory& memory, const Visit&
   std::int16_t* column_sums = memory.column_sums;
   int first = 0;
   for (; first + Cost::kGroup <= plan.disparities; first += Cost::kGroup) {
-    visit.template group<Cost::kGroup>(first, column_sums + Cost::kGroup * Cost::kSumLanes);
+    visit(Count<Cost::kGroup>{}, first, column_sums + Cost::kGroup * Cost::kSumLanes);
     column_sums += Cost::kGroup * stride;
   }
   const int rest = plan.disparities - first;
   visit_rest<Cost::kGroup - 1>(rest, first, column_sums + rest * Cost::kSumLanes, visit);
 }
-
-template <class Cost>
-struct AddGroup {
-  const MatchPlan& plan;
-  const MatchMemory& memory;
-  template <int kCount>
-  void group(int first, std::int16_t* column_sums) const {
-    add_group<Cost, kCount>(plan, memory, first, column_sums);
-  }
-};
-
-template <class Cost>
-struct MatchGroup {
-  const MatchPlan& plan;
-  const MatchMemory& memory;
-  template <int kCount>
-  void group(int first, std::int16_t* column_sums) const {
-    if (plan.right_based) {
-      match_group<Cost, kCount, true>(plan, memory, first, column_sums);
-    } else {
-      match_group<Cost, kCount, false>(plan, memory, first, column_sums);
-    }
-  }
-};
 
 template <class Keys>
 void store_disparities(const typename Keys::Best* best, int count, std::int16_t* out) {
@@ -216,27 +197,36 @@ void store_disparities(const typename Keys::Best* best, int count, std::int16_t*
 template <class Cost>
 void add_row_with(const MatchPlan& plan, const MatchMemory& memory) {
   Cost::prepare(plan, memory, false);
-  visit_groups<Cost>(plan, memory, AddGroup<Cost>{plan, memory});
+  visit_groups<Cost>(plan, memory, [&](auto count, int first, std::int16_t* column_sums) {
+    add_group<Cost, decltype(count)::value>(plan, memory, first, column_sums);
+  });
 }
 
 template <class Cost>
 void match_row_with(const MatchPlan& plan, const MatchMemory& memory) {
   using Keys = typename Cost::Keys;
   Cost::prepare(plan, memory, true);
-  auto* right = reinterpret_cast<typename Keys::Best*>(memory.right_best);
-  auto* left = reinterpret_cast<typename Keys::Best*>(memory.left_best);
+  auto* right = reinterpret_cast<typename Keys::Best*>(memory.right.best);
+  auto* left = reinterpret_cast<typename Keys::Best*>(memory.left.best);
   const int left_positions = plan.columns + plan.disparities - 1;
   for (std::ptrdiff_t p = 0; p < plan.columns; ++p) right[p] = Keys::best_of_none();
   for (std::ptrdiff_t p = 0; p < left_positions; ++p) left[p] = Keys::best_of_none();
-  visit_groups<Cost>(plan, memory, MatchGroup<Cost>{plan, memory});
+  visit_groups<Cost>(plan, memory, [&](auto count, int first, std::int16_t* column_sums) {
+    constexpr int kCount = decltype(count)::value;
+    if (plan.right_based) {
+      match_group<Cost, kCount, true>(plan, memory, first, column_sums);
+    } else {
+      match_group<Cost, kCount, false>(plan, memory, first, column_sums);
+    }
+  });
   // Left windows beyond the end of a segment belong to the next segment, where their disparities are smaller.
   const auto band_begins = load<Int16s>(memory.band_begins);
   for (std::ptrdiff_t p = left_positions - 1; p >= plan.columns; --p) {
     auto& own = left[p - plan.columns];
     own = Keys::better(own, Keys::load_moved(left + p, band_begins));
   }
-  store_disparities<Keys>(left, plan.columns, memory.left_best);
-  if (plan.right_based) store_disparities<Keys>(right, plan.columns, memory.right_best);
+  store_disparities<Keys>(left, plan.columns, memory.left.best);
+  if (plan.right_based) store_disparities<Keys>(right, plan.columns, memory.right.best);
 }
 
 template <class Cost>
@@ -272,8 +262,7 @@ struct KeyedCost {
   static const WindowSum& left_key(const Score& key, std::ptrdiff_t /*j*/) { return key; }
   static void next() {}
   static void prepare(const MatchPlan& /*plan*/, const MatchMemory& /*memory*/, bool /*match*/) {}
-  static const std::int16_t* right_pixels(const MatchMemory& memory) { return memory.right_pixels; }
-  static const std::int16_t* left_pixels(const MatchMemory& memory) { return memory.left_pixels; }
+  static const std::int16_t* pixels(const MatchSide& side) { return side.pixels; }
 };
 
 // Returns kScale * (lower byte - upper byte) of each lane. The bytes must be small enough for 16 bits.

@@ -10,7 +10,7 @@
 namespace stereotlm::kernels {
 
 ImageFilter::ImageFilter(int width, int height, const FilterKernel& kernel, const Simd& simd)
-    : width_(width), height_(height), half_(kernel.half()), simd_(simd.frame) {
+    : width_(width), height_(height), half_(kernel.half()), simd_(simd) {
   if (width < 1 || height < 1) {
     throw std::invalid_argument("image = " + std::to_string(width) + " x " + std::to_string(height) +
                                 ": must have pixels");

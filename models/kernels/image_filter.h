@@ -7,7 +7,6 @@
 
 #include "models/kernels/filter_kernel.h"
 #include "models/kernels/simd.h"
-#include "models/kernels/simd_array.h"
 
 namespace stereotlm::kernels {
 
@@ -39,7 +38,7 @@ class ImageFilter {
   int width_;
   int height_;
   int half_;
-  const FrameSimd& simd_;
+  const Simd& simd_;
   std::vector<EqualRows> equal_rows_;
   std::vector<const std::int16_t*> sums_;  // EqualRows::sums of all equal_rows_
   std::vector<std::int32_t> pair_weights_;

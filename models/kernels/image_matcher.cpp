@@ -25,7 +25,7 @@ constexpr int rounded_up(int value, int unit) { return divided_up(value, unit) *
 
 ImageMatcher::ImageMatcher(int width, int height, int window, int disparities, bool right_based,
                            const MatchingCost& cost, const Simd& simd)
-    : width_(width), height_(height), radius_((window - 1) / 2), simd_(simd.frame) {
+    : width_(width), height_(height), radius_((window - 1) / 2), simd_(simd) {
   plan_.window = kWindowRule.required("window", window);
   plan_.disparities = kDisparitiesRule.required("disparities", disparities);
   plan_.right_based = right_based;
@@ -63,21 +63,11 @@ ImageMatcher::ImageMatcher(int width, int height, int window, int disparities, b
   column_sums_ = VectorArray(static_cast<std::size_t>(plan_.disparities) *
                              static_cast<std::size_t>(plan_.columns + window) *
                              static_cast<std::size_t>(loops_.sum_vectors) * lanes);
-  plan_.right_stride = pixel_stride(right_);
-  plan_.left_stride = pixel_stride(left_);
-  memory_ = {right_.pixel_vectors.data(),
-             left_.pixel_vectors.data(),
-             outside_.data(),
-             band_begins_.data(),
-             column_sums_.data(),
-             right_.best.data(),
-             left_.best.data(),
-             right_.unpacked.data(),
-             left_.unpacked.data(),
-             right_.column_statistics.data(),
-             left_.column_statistics.data(),
-             right_.window_statistics.data(),
-             left_.window_statistics.data()};
+  const auto side = [this](Side& its) -> MatchSide {
+    return {its.pixel_vectors.data(),     pixel_stride(its),           its.best.data(), its.unpacked.data(),
+            its.column_statistics.data(), its.window_statistics.data()};
+  };
+  memory_ = {side(right_), side(left_), outside_.data(), band_begins_.data(), column_sums_.data()};
 }
 
 void ImageMatcher::choose_loops(const MatchingCost& cost, const Simd& simd) {
@@ -90,7 +80,7 @@ void ImageMatcher::choose_loops(const MatchingCost& cost, const Simd& simd) {
       return;
     case CostKind::kZncc:
       loops_ = simd_.zncc_loops(plan_.window);
-      exact_.emplace(width_, plan_.window, plan_.disparities, simd);
+      exact_.emplace(width_, height_, plan_.window, plan_.disparities, simd);
       return;
     case CostKind::kCensus:
       pixel_bytes_ = cost.pixel_bytes();
@@ -191,23 +181,22 @@ void ImageMatcher::decide(const std::uint8_t* left, const std::uint8_t* right, s
                           std::uint8_t* right_disparity) {
   static_assert(kUndecided == kInvalidDisparity);  // no window is invalid
   exact_->set_images(left, right);
+  const auto across = static_cast<std::size_t>(windows_across_);
   for (int row = 0; row < windows_down_; ++row) {
-    bool row_is_set = false;
-    const auto decide_side = [&](std::uint8_t* disparities, auto best) {
-      disparities += (std::ptrdiff_t{row} + radius_) * width_ + radius_;
-      for (int column = 0; column < windows_across_; ++column) {
-        const void* const found =
-            std::memchr(disparities + column, kUndecided, static_cast<std::size_t>(windows_across_ - column));
-        if (found == nullptr) return;
-        column = static_cast<int>(static_cast<const std::uint8_t*>(found) - disparities);
-        if (!row_is_set) exact_->set_row(row);
-        row_is_set = true;
-        disparities[column] = best(column);
-      }
-    };
-    decide_side(left_disparity, [this](int column) { return exact_->left_based(column); });
-    if (plan_.right_based)
-      decide_side(right_disparity, [this](int column) { return exact_->right_based(column); });
+    const std::ptrdiff_t begin = (std::ptrdiff_t{row} + radius_) * width_ + radius_;
+    std::uint8_t* const left_row = left_disparity + begin;
+    std::uint8_t* const right_row = plan_.right_based ? right_disparity + begin : left_row;
+    if (std::memchr(left_row, kUndecided, across) == nullptr &&
+        std::memchr(right_row, kUndecided, across) == nullptr)
+      continue;
+    exact_->set_row(row);
+    for (int column = 0; column < windows_across_; ++column) {
+      if (left_row[column] == kUndecided) left_row[column] = exact_->left_based(column);
+    }
+    if (!plan_.right_based) continue;
+    for (int column = windows_across_ - 1; column >= 0; --column) {
+      if (right_row[column] == kUndecided) right_row[column] = exact_->right_based(column);
+    }
   }
 }
 

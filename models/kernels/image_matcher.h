@@ -9,7 +9,6 @@
 #include "models/kernels/correlation_search.h"
 #include "models/kernels/matching_cost.h"
 #include "models/kernels/simd.h"
-#include "models/kernels/simd_array.h"
 
 namespace stereotlm::kernels {
 
@@ -32,7 +31,7 @@ class ImageMatcher {
   struct Side {
     VectorArray rows;           // per band: one row, each pixel paired with the pixel that leaves the window
     VectorArray pixel_vectors;  // these pairs of pixels, as one vector per position
-    VectorArray unpacked;       // MatchMemory::right_unpacked or left_unpacked
+    VectorArray unpacked;       // MatchSide::unpacked
     VectorArray column_statistics;
     VectorArray window_statistics;
     VectorArray best;               // per position: the best keys, then the disparities
@@ -54,7 +53,7 @@ class ImageMatcher {
   int width_;
   int height_;
   int radius_;
-  const FrameSimd& simd_;
+  const Simd& simd_;
   MatchPlan plan_;
   MatchLoops loops_{};
   int pixel_bytes_ = 1;

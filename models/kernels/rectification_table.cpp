@@ -101,8 +101,8 @@ void require_usable(const RectificationTable& table, const GrayImage& image) {
 GrayImage rectify(const GrayImage& source, const RectificationTable& table) {
   require_usable(table, source);
   GrayImage rectified(table.width, table.height);
-  best_simd().frame.rectify(source.pixels.data(), table.entries.data(),
-                            static_cast<int>(table.entries.size()), table.width, rectified.pixels.data());
+  best_simd().rectify(source.pixels.data(), table.entries.data(), static_cast<int>(table.entries.size()),
+                      table.width, rectified.pixels.data());
   return rectified;
 }
 

@@ -19,7 +19,7 @@ constexpr std::uint8_t disparity_of(std::int32_t key) {
 }  // namespace
 
 std::uint8_t select_min_tree(const std::int32_t* window_sums, int candidates, int lanes, const Simd& simd) {
-  return disparity_of(simd.column.smallest_key(window_sums, candidates, lanes));
+  return disparity_of(simd.smallest_key(window_sums, candidates, lanes));
 }
 
 std::uint8_t select_min_tree(const ColumnScores& scores, int candidates) {
@@ -32,7 +32,7 @@ std::uint8_t select_min_tree(const ColumnScores& scores, int candidates) {
 }
 
 SelectMinChain::SelectMinChain(int disparities, const Simd& simd)
-    : simd_(simd.column),
+    : simd_(simd),
       disparities_(disparities),
       lanes_(padded_lanes(disparities)),
       held_(kBefore + disparities),

@@ -5,7 +5,6 @@
 
 #include "models/kernels/column_scores.h"
 #include "models/kernels/simd.h"
-#include "models/kernels/simd_array.h"
 #include "models/kernels/words.h"
 
 namespace stereotlm::kernels {
@@ -36,11 +35,11 @@ class SelectMinChain {
   std::uint8_t step(const std::int32_t* window_sums, int candidates);
 
  private:
-  const ColumnSimd& simd_;
+  const Simd& simd_;
   int disparities_;
   int lanes_;
-  LaneArray<std::int32_t> held_;  // [kBefore + d]: key that module d holds; before module 0, no candidate
-  LaneArray<std::int32_t> next_;  // written by step(), then swapped with held_
+  SimdArray<std::int32_t> held_;  // [kBefore + d]: key that module d holds; before module 0, no candidate
+  SimdArray<std::int32_t> next_;  // written by step(), then swapped with held_
 };
 
 // The same chain for scores. If two scores are equal, module d keeps the score of module d-1 here too.

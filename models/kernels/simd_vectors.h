@@ -12,6 +12,8 @@
 #include <immintrin.h>
 #endif
 
+#include "models/kernels/simd.h"
+
 namespace stereotlm::kernels::STEREOTLM_SIMD {
 
 // Bytes of the longest vector of the instruction set.
@@ -43,6 +45,87 @@ Vector smaller(Vector a, Vector b) {
 template <class Vector>
 Vector larger(Vector a, Vector b) {
   return a > b ? a : b;
+}
+
+constexpr std::ptrdiff_t kLanes = kBytes / 2;  // 16-bit lanes of a vector
+static_assert(kBytes <= kMostFrameVectorBytes);
+
+using Bytes = std::uint8_t __attribute__((vector_size(kBytes)));
+using Int16s = std::int16_t __attribute__((vector_size(kBytes)));
+using Int32s = std::int32_t __attribute__((vector_size(kBytes)));
+using Doubles = double __attribute__((vector_size(kBytes)));
+using HalfInt32s = std::int32_t __attribute__((vector_size(kBytes / 2)));
+using HalfVectorBytes = std::uint8_t __attribute__((vector_size(kBytes / 2)));
+
+inline Int16s int16s(int value) { return Int16s{} + static_cast<std::int16_t>(value); }
+inline Int32s int32s(int value) { return Int32s{} + value; }
+
+// Return the even or odd lanes, as 32-bit lanes.
+inline Int32s even_lanes(Int16s lanes) { return reinterpret_cast<Int32s>(lanes) << 16 >> 16; }
+inline Int32s odd_lanes(Int16s lanes) { return reinterpret_cast<Int32s>(lanes) >> 16; }
+inline Int16s join_lanes(Int32s even, Int32s odd) {
+  return reinterpret_cast<Int16s>((even & 0xFFFF) | odd << 16);
+}
+
+// By an intrinsic, because GCC's own conversion takes several instructions.
+inline Doubles to_doubles(HalfInt32s lanes) {
+#if defined(__AVX512BW__)
+  return reinterpret_cast<Doubles>(_mm512_maskz_cvtepi32_pd(0xFF, reinterpret_cast<__m256i>(lanes)));
+#elif defined(__AVX2__)
+  return reinterpret_cast<Doubles>(_mm256_cvtepi32_pd(reinterpret_cast<__m128i>(lanes)));
+#elif defined(__SSE2__)
+  return reinterpret_cast<Doubles>(_mm_cvtepi32_pd(_mm_cvtsi64_si128(reinterpret_cast<std::int64_t>(lanes))));
+#else
+  return __builtin_convertvector(lanes, Doubles);
+#endif
+}
+
+// Values of 32 bits, in separate vectors for even and odd lanes.
+struct Int32Pair {
+  Int32s even;
+  Int32s odd;
+};
+template <>
+inline Int32Pair load<Int32Pair>(const void* from) {
+  const auto* halves = static_cast<const std::int16_t*>(from);
+  return {load<Int32s>(halves), load<Int32s>(halves + kLanes)};
+}
+inline void store(const Int32Pair& pair, std::int16_t* to) {
+  store(pair.even, to);
+  store(pair.odd, to + kLanes);
+}
+inline Int32Pair operator+(const Int32Pair& a, const Int32Pair& b) {
+  return {a.even + b.even, a.odd + b.odd};
+}
+inline Int32Pair operator-(const Int32Pair& a, const Int32Pair& b) {
+  return {a.even - b.even, a.odd - b.odd};
+}
+
+// Pairs of a pixel that enters a window and one that leaves it, of even and of odd lanes.
+struct PixelPairs {
+  Int16s even;
+  Int16s odd;
+};
+inline PixelPairs load_pairs(const std::int16_t* pixels) {
+  return {load<Int16s>(pixels), load<Int16s>(pixels + kLanes)};
+}
+
+// Factors 1 and -1 for such a pair.
+inline Int16s entering_minus_leaving() { return reinterpret_cast<Int16s>(int32s(1 - 65536)); }
+
+// Multiplies lane by lane and adds the products of neighbours.
+inline Int32s multiply_pairs(Int16s a, Int16s b) {
+#if defined(__AVX512BW__)
+  return reinterpret_cast<Int32s>(
+      _mm512_madd_epi16(reinterpret_cast<__m512i>(a), reinterpret_cast<__m512i>(b)));
+#elif defined(__AVX2__)
+  return reinterpret_cast<Int32s>(
+      _mm256_madd_epi16(reinterpret_cast<__m256i>(a), reinterpret_cast<__m256i>(b)));
+#elif defined(__SSE2__)
+  return reinterpret_cast<Int32s>(_mm_madd_epi16(reinterpret_cast<__m128i>(a), reinterpret_cast<__m128i>(b)));
+#else
+  return even_lanes(a) * even_lanes(b) + odd_lanes(a) * odd_lanes(b);
+#endif
 }
 
 }  // namespace stereotlm::kernels::STEREOTLM_SIMD

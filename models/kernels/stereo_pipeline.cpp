@@ -13,7 +13,7 @@ StereoPipeline::StereoPipeline(int width, int height, const StereoConfig& config
       height_(height),
       radius_((checked(config).window - 1) / 2),
       tolerance_(config.lr_tolerance),
-      simd_(simd.frame),
+      simd_(simd),
       matcher_(width, height, config.window, config.disparities, config.lr_tolerance.has_value(), config.cost,
                simd) {
   if (config.filter) filter_.emplace(width, height, *config.filter, simd);

@@ -39,7 +39,7 @@ class StereoPipeline {
   int height_;
   int radius_;
   std::optional<int> tolerance_;
-  const FrameSimd& simd_;
+  const Simd& simd_;
   std::optional<ImageFilter> filter_;
   ImageMatcher matcher_;
   Side left_;

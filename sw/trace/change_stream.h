@@ -1,9 +1,19 @@
 #pragma once
 
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
+#include <cstdlib>
+#include <cstring>
 #include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <utility>
 #include <vector>
 
 namespace stereotlm::trace {
@@ -20,60 +30,57 @@ class ChangeStream {
   };
 
   // The temporary file is made in the folder of this file, which messages name.
-  explicit ChangeStream(std::filesystem::path beside);
+  explicit ChangeStream(std::filesystem::path beside) : beside_(std::move(beside)) {
+    std::string name = (beside_.parent_path() / ".changes_XXXXXX").string();
+    const int descriptor = mkostemp(name.data(), O_CLOEXEC);
+    if (descriptor < 0) fail();
+    unlink(name.c_str());
+    file_ = fdopen(descriptor, "w+b");
+    std::setvbuf(file_, nullptr, _IONBF, 0);
+  }
   ~ChangeStream() { std::fclose(file_); }
   ChangeStream(const ChangeStream&) = delete;
   ChangeStream& operator=(const ChangeStream&) = delete;
 
   // Times must not decrease.
   void add(std::uint64_t time_ps, std::uint32_t signal, std::uint32_t value) {
-    if (time_ps != time_ps_)
-      add_record({kIsTime | static_cast<std::uint32_t>(time_ps >> 32U), static_cast<std::uint32_t>(time_ps)});
-    time_ps_ = time_ps;
-    add_record({signal, value});
+    buffer_.push_back({time_ps, signal, value});
+    if (buffer_.size() == kBuffered) store();
   }
   // Goes to the first change. Nothing may be added after it.
-  void rewind();
+  void rewind() {
+    store();
+    if (std::fseek(file_, 0, SEEK_SET) != 0) fail();
+    load();
+  }
   // The current change; null behind the last one.
-  const Change* change() const { return is_at_end_ ? nullptr : &change_; }
+  const Change* change() const { return next_ != buffer_.size() ? &buffer_[next_] : nullptr; }
   void advance() {
-    while (next_ != buffer_.size() || load()) {
-      const Record record = buffer_[next_++];
-      if ((record.signal & kIsTime) == 0) {
-        change_ = {time_ps_, record.signal, record.value};
-        return;
-      }
-      time_ps_ = std::uint64_t{record.signal & ~kIsTime} << 32U | record.value;
-    }
-    is_at_end_ = true;
+    if (++next_ == buffer_.size()) load();
   }
 
  private:
-  // A change at the time of the record before, or, with kIsTime, the upper and the lower half of the time of
-  // the next changes. Half as many bytes as a Change are written.
-  struct Record {
-    std::uint32_t signal;
-    std::uint32_t value;
-  };
-  static constexpr std::uint32_t kIsTime = 0x80000000;
-  static constexpr std::size_t kBuffered = std::size_t{1} << 17U;  // records
+  static constexpr std::size_t kBuffered = std::size_t{1} << 16U;
 
-  void add_record(Record record) {
-    buffer_.push_back(record);
-    if (buffer_.size() == kBuffered) store();
+  void store() {
+    if (std::fwrite(buffer_.data(), sizeof(Change), buffer_.size(), file_) != buffer_.size()) fail();
+    buffer_.clear();
   }
-  void store();
-  bool load();
-  [[noreturn]] void fail() const;
+  // Leaves the buffer empty at the end of the file.
+  void load() {
+    buffer_.resize(kBuffered);
+    buffer_.resize(std::fread(buffer_.data(), sizeof(Change), kBuffered, file_));
+    if (std::ferror(file_) != 0) fail();
+    next_ = 0;
+  }
+  [[noreturn]] void fail() const {
+    throw std::runtime_error(fmt::format("{}: temporary file: {}", beside_.string(), std::strerror(errno)));
+  }
 
   std::filesystem::path beside_;
   std::FILE* file_;
-  std::vector<Record> buffer_;
-  std::uint64_t time_ps_ = UINT64_MAX;  // of the last record
-  // While the changes are read.
-  std::size_t next_ = 0;  // in the buffer
-  Change change_{};
-  bool is_at_end_ = false;
+  std::vector<Change> buffer_;
+  std::size_t next_ = 0;  // of the buffer, while the changes are read
 };
 
 }  // namespace stereotlm::trace

@@ -15,25 +15,6 @@
 
 namespace stereotlm::trace {
 
-// A message of Protocol Buffers in its wire format: fields, each with its number, in the order of the calls.
-class ProtoMessage {
- public:
-  void clear() { bytes_.clear(); }
-  bool empty() const { return bytes_.empty(); }
-  const std::string& bytes() const { return bytes_; }
-
-  void integer(std::uint32_t field, std::uint64_t value);
-  void fixed(std::uint32_t field, std::uint64_t value);
-  void real(std::uint32_t field, double value);
-  void text(std::uint32_t field, std::string_view text);
-  void message(std::uint32_t field, const ProtoMessage& message) { text(field, message.bytes_); }
-
- private:
-  void varint(std::uint64_t value);
-
-  std::string bytes_;
-};
-
 // The first packet of every file, by which the file is known: a text that viewers ignore.
 std::string perfetto_mark();
 
@@ -52,7 +33,7 @@ class PerfettoFile {
 
   // Describes a track, and its group if that is new. Returns the uuid of the track.
   std::uint64_t add(TrackGroup group, std::size_t rank, const std::string& name, const std::string& unit);
-  void write(ProtoMessage& packet);
+  void write(const std::string& packet);
 
   files::OutputFile& file_;
   std::uint64_t last_uuid_;
@@ -92,15 +73,15 @@ class PerfettoTrack {
   bool is_written() const { return uuid_ != 0; }
 
  private:
-  using Names = std::unordered_map<std::string, std::uint64_t>;
   // A table that has become larger is begun anew, so that memory does not grow with the run.
   static constexpr std::size_t kMostNames = 4096;
 
-  void open();
   void start_sequence();
-  std::uint64_t number_of(Names& names, std::uint32_t field, std::string_view name);
-  void add_name(std::string_view name, Arguments arguments);
-  void write_event(std::uint64_t time_ns, std::uint64_t type);
+  // The number of a name in its table, which is a field of the interned data. A new name goes into the packet.
+  std::uint64_t number_of(std::uint32_t table, std::string_view name);
+  // `fields`: of the event, besides its type.
+  void write_event(std::uint64_t time_ns, std::uint64_t type, std::string_view name, Arguments arguments,
+                   const std::string& fields);
 
   PerfettoFile& file_;
   TrackGroup group_;
@@ -110,12 +91,8 @@ class PerfettoTrack {
   std::uint64_t uuid_ = 0;  // 0: not written
   std::uint64_t last_ns_ = 0;
   double last_value_ = -1;  // of a counter, whose values are not negative
-  Names event_names_;
-  Names argument_names_;
-  // Parts of the packet that is made.
-  ProtoMessage interned_;
-  ProtoMessage event_;
-  ProtoMessage packet_;
+  std::array<std::unordered_map<std::string, std::uint64_t>, 2> names_;  // of events, of arguments
+  std::string interned_;  // new names of the packet that is made
 };
 
 // Tracks of one name, which Perfetto shows as one. Slices that overlap without being nested need several. The
@@ -126,7 +103,12 @@ class OverlappingTracks {
       : first_(file, group, rank, name), tracks_({first_}) {}
 
   // A track whose last slice has ended by then.
-  PerfettoTrack& free_at(std::uint64_t begin_ns);
+  PerfettoTrack& free_at(std::uint64_t begin_ns) {
+    for (PerfettoTrack& track : tracks_) {
+      if (track.last_ns() <= begin_ns) return track;
+    }
+    return tracks_.emplace_back(first_);
+  }
 
  private:
   PerfettoTrack first_;  // never written

@@ -62,17 +62,21 @@ class Rows {
 
   void frame(const platform::FrameRuns& frame) {
     frames_.slice(ns(frame.first_cycle), ns(frame.end_cycle), fmt::format("frame {}", frame.frame), {});
-    const TraceRun* run = frame.runs.data();
+    first_run_ = frame.runs.data();
+    const TraceRun* run = first_run_;
     const TraceRun* const end = run + frame.runs.size();
     std::uint64_t first_cycle = frame.first_cycle;
-    for (std::size_t number = 0; number < frame.strip_ends.size(); ++number) {
+    for (std::size_t strip = 0; strip < frame.strip_ends.size(); ++strip) {
       const TraceRun* const next =
-          std::find_if(run, end, [number](const TraceRun& later) { return later.strip != number; });
-      write_strip({number, first_cycle, frame.strip_ends[number], run, next, next_flow_});
-      next_flow_ += static_cast<std::uint64_t>(next - run);
+          std::find_if(run, end, [strip](const TraceRun& later) { return later.strip != strip; });
+      const std::uint64_t end_cycle = frame.strip_ends[strip];
+      strips_.slice(ns(first_cycle), ns(end_cycle), name_of(strip), {{"cycles", end_cycle - first_cycle}});
+      write_runs(run, next, first_cycle);
+      write_counters(run, next, first_cycle, end_cycle);
       run = next;
-      first_cycle = frame.strip_ends[number];
+      first_cycle = end_cycle;
     }
+    first_flow_ += frame.runs.size();
     for (auto* const tracks : {&port_waits_, &bank_use_}) {
       for (PerfettoTrack& track : *tracks) {
         if (track.is_written()) track.count(ns(frame.end_cycle), 0);
@@ -81,21 +85,6 @@ class Rows {
   }
 
  private:
-  // The runs of one strip.
-  struct Strip {
-    std::size_t number;
-    std::uint64_t first_cycle;
-    std::uint64_t end_cycle;
-    const TraceRun* first;
-    const TraceRun* last;
-    std::uint64_t first_flow;  // of the first run; the next ones follow
-
-    const TraceRun* begin() const { return first; }
-    const TraceRun* end() const { return last; }
-    std::uint64_t flow_of(const TraceRun& run) const {
-      return first_flow + static_cast<std::uint64_t>(&run - first);
-    }
-  };
   // A track with the first cycle that is free on it.
   struct Row {
     PerfettoTrack track;
@@ -103,6 +92,9 @@ class Rows {
   };
 
   std::uint64_t ns(std::uint64_t cycle) const { return board_.ps(cycle) / kPsPerNs; }
+  std::uint64_t flow_of(const TraceRun& run) const {
+    return first_flow_ + static_cast<std::uint64_t>(&run - first_run_);
+  }
 
   std::string name_of(std::size_t strip) const {
     if (strip == 0) return "fill";
@@ -113,39 +105,29 @@ class Rows {
 
   // The accesses of all ports come before the waits. A wait may then have an arrow from the accesses of the
   // winner: of two slices that begin at one time, the arrow leads from the first in the file.
-  void write_strip(const Strip& strip) {
-    strips_.slice(ns(strip.first_cycle), ns(strip.end_cycle), name_of(strip.number),
-                  {{"cycles", strip.end_cycle - strip.first_cycle}});
+  void write_runs(const TraceRun* begin, const TraceRun* end, std::uint64_t first_cycle) {
     for (std::vector<Row>* const rows : {&ports_, &banks_}) {
-      for (Row& row : *rows) row.free_cycle = std::max(row.free_cycle, strip.first_cycle);
+      for (Row& row : *rows) row.free_cycle = std::max(row.free_cycle, first_cycle);
     }
-    for (const TraceRun& run : strip) {
-      if (!run.by) write_grant(strip, run);
+    for (const TraceRun* run = begin; run != end; ++run) {
+      if (run->by) continue;
+      Flows flows;
+      for (const TraceRun* wait = begin; wait != end; ++wait) {
+        if (wait->by == run->requester && wait->bank == run->bank) flows.push_back(flow_of(*wait));
+      }
+      write_run(ports_[run->requester], *run,
+                fmt::format("{} {} x{}", writes(run->requester) ? "writes" : "reads",
+                            board_.bank_name(run->bank), run->count),
+                flows);
+      write_run(banks_[bank_track(board_, run->bank, run->requester)], *run,
+                fmt::format("{} x{}", fpga::requester_name(run->requester), run->count), {});
     }
-    for (const TraceRun& run : strip) {
-      if (run.by) write_wait(strip, run);
+    for (const TraceRun* run = begin; run != end; ++run) {
+      if (!run->by) continue;
+      write_run(ports_[run->requester], *run,
+                board_.wait_text(run->requester, run->count, *run->by, run->bank),
+                *run->by != fpga::kTurnaroundToBlame ? Flows{flow_of(*run)} : Flows{});
     }
-    write_counters(strip);
-  }
-
-  void write_grant(const Strip& strip, const TraceRun& run) {
-    Flows flows;
-    for (const TraceRun& wait : strip) {
-      if (wait.by == run.requester && wait.bank == run.bank) flows.push_back(strip.flow_of(wait));
-    }
-    write_run(ports_[run.requester], run,
-              fmt::format("{} {} x{}", writes(run.requester) ? "writes" : "reads", board_.bank_name(run.bank),
-                          run.count),
-              flows);
-    write_run(banks_[bank_track(board_, run.bank, run.requester)], run,
-              fmt::format("{} x{}", fpga::requester_name(run.requester), run.count), {});
-  }
-
-  void write_wait(const Strip& strip, const TraceRun& run) {
-    Flows flows;
-    if (*run.by != fpga::kTurnaroundToBlame) flows.push_back(strip.flow_of(run));
-    write_run(ports_[run.requester], run, board_.wait_text(run.requester, run.count, *run.by, run.bank),
-              flows);
   }
 
   void write_run(Row& row, const TraceRun& run, std::string_view name, const Flows& flows) {
@@ -154,16 +136,18 @@ class Rows {
     row.free_cycle = end_cycle;
   }
 
-  void write_counters(const Strip& strip) {
+  void write_counters(const TraceRun* begin, const TraceRun* end, std::uint64_t first_cycle,
+                      std::uint64_t end_cycle) {
     std::array<std::uint64_t, fpga::kRequesters> waits{};
     std::vector<std::uint64_t> uses(board_.banks.size());
-    for (const TraceRun& run : strip) (run.by ? waits[run.requester] : uses[run.bank]) += run.count;
-    const auto count = [begin = ns(strip.first_cycle)](PerfettoTrack& track, double value) {
-      if (value != 0 || track.is_written()) track.count(begin, value);
+    for (const TraceRun* run = begin; run != end; ++run)
+      (run->by ? waits[run->requester] : uses[run->bank]) += run->count;
+    const auto count = [time_ns = ns(first_cycle)](PerfettoTrack& track, double value) {
+      if (value != 0 || track.is_written()) track.count(time_ns, value);
     };
     for (std::size_t requester = 0; requester < waits.size(); ++requester)
       count(port_waits_[requester], static_cast<double>(waits[requester]));
-    const auto cycles = static_cast<double>(std::max<std::uint64_t>(strip.end_cycle - strip.first_cycle, 1));
+    const auto cycles = static_cast<double>(std::max<std::uint64_t>(end_cycle - first_cycle, 1));
     for (std::size_t bank = 0; bank < uses.size(); ++bank)
       count(bank_use_[bank], 100 * static_cast<double>(uses[bank]) / cycles);
   }
@@ -175,7 +159,8 @@ class Rows {
   std::vector<PerfettoTrack> port_waits_;  // [requester]
   std::vector<Row> banks_;                 // [bank_track()]
   std::vector<PerfettoTrack> bank_use_;    // [bank]
-  std::uint64_t next_flow_ = 1;
+  const TraceRun* first_run_ = nullptr;    // of the frame
+  std::uint64_t first_flow_ = 1;           // of that run; the next ones follow
 };
 
 // The cycles of a window: a slice for each access, and one for consecutive cycles in which a port waits for
@@ -227,84 +212,51 @@ class Cycles {
   }
 
  private:
-  enum class State : std::uint8_t { kNone, kWaits, kPasses, kBlocked, kStarved, kIsOwned, kWorks };
   enum class Arrow : std::uint8_t { kToPixel, kToResult };
+  // The slices of what a port does beside its accesses. [fpga::Intent]
+  static constexpr std::array<const char*, 5> kIntents = {"waits", "passes", nullptr, "blocked", "starved"};
   // Consecutive cycles in one state.
   struct Run {
-    State state = State::kNone;
+    const char* name = nullptr;  // of its slice; null: there is none
     PerfettoTrack* track = nullptr;
-    std::size_t requester = 0;  // of a port; or the owner of a bank, which may be kTurnaroundToBlame
-    std::size_t bank = 0;       // of a wait, like `by`
+    std::size_t requester = 0;  // of a wait, like `bank` and `by`
+    std::size_t bank = 0;
     std::size_t by = 0;
     std::uint64_t first_cycle = 0;
     std::uint64_t flow = 0;  // of a wait: the arrow from the access of the winner
 
-    auto key() const { return std::tie(state, track, requester, bank, by); }
+    auto key() const { return std::tie(name, track, bank, by); }
+    bool waits() const { return name == kIntents[0]; }
   };
 
   std::uint64_t ns(std::uint64_t cycle) const { return board_.ps(cycle) / kPsPerNs; }
 
   Run run_of(const CoreCycle& cycle, std::size_t port) {
     const PortCycle& now = cycle.ports[port];
-    Run run;
-    run.requester = requester_of_port(port, cycle.host_traffic);
-    run.track = &ports_[run.requester];
-    switch (now.intent) {
-      case Intent::kRequest:
-        if (now.granted) break;
-        run.state = State::kWaits;
-        run.bank = now.bank;
-        run.by = now.by;
-        break;
-      case Intent::kPass:
-        run.state = State::kPasses;
-        break;
-      case Intent::kBlocked:
-        run.state = State::kBlocked;
-        break;
-      case Intent::kStarved:
-        run.state = State::kStarved;
-        break;
-      case Intent::kIdle:
-        break;
-    }
+    if (now.granted) return {};
+    const std::size_t requester = requester_of_port(port, cycle.host_traffic);
+    Run run{kIntents[static_cast<std::size_t>(now.intent)], &ports_[requester], requester};
+    if (!run.waits()) return run;
+    run.bank = now.bank;
+    run.by = now.by;
     return run;
   }
 
   // Ends the run if `now` is another one, which then begins in this cycle.
   void show(Run& run, const Run& now, std::uint64_t cycle) {
     if (run.key() == now.key()) return;
-    if (run.state != State::kNone) {
+    if (run.name != nullptr) {
       const std::uint64_t cycles = cycle - run.first_cycle;
-      Flows flows;
-      if (run.flow != 0) flows.push_back(run.flow);
-      run.track->slice(ns(run.first_cycle), ns(cycle), name_of(run, cycles), {{"cycles", cycles}}, flows);
+      const std::string name =
+          run.waits() ? board_.wait_text(run.requester, cycles, run.by, run.bank) : run.name;
+      run.track->slice(ns(run.first_cycle), ns(cycle), name, {{"cycles", cycles}},
+                       run.flow != 0 ? Flows{run.flow} : Flows{});
     }
     run = now;
     run.first_cycle = cycle;
-    if (run.state != State::kWaits || run.by == fpga::kTurnaroundToBlame) return;
+    if (!run.waits() || run.by == fpga::kTurnaroundToBlame) return;
     run.flow = kFirstWaitFlow + waits_++;
     flows_[run.by].push_back(run.flow);
-  }
-
-  std::string name_of(const Run& run, std::uint64_t cycles) const {
-    switch (run.state) {
-      case State::kNone:
-        break;
-      case State::kWaits:
-        return board_.wait_text(run.requester, cycles, run.by, run.bank);
-      case State::kPasses:
-        return "passes";
-      case State::kBlocked:
-        return "blocked";
-      case State::kStarved:
-        return "starved";
-      case State::kIsOwned:
-        return fpga::requester_name(run.requester);
-      case State::kWorks:
-        return "works";
-    }
-    return "";
   }
 
   void set_owner(const CoreCycle& cycle, std::size_t port, std::vector<Run>& owners) {
@@ -313,21 +265,15 @@ class Cycles {
     const std::size_t requester = requester_of_port(port, cycle.host_traffic);
     const std::size_t track = bank_track(board_, now.bank, requester);
     if (!now.granted && now.by != fpga::kTurnaroundToBlame) return;
-    owners[track].state = State::kIsOwned;
+    owners[track].name = fpga::requester_name(now.granted ? requester : now.by);
     owners[track].track = &banks_[track];
-    owners[track].requester = now.granted ? requester : now.by;
   }
 
   // Banks, matcher and queues.
   void show_rest(const CoreCycle& cycle, const std::vector<Run>& owners) {
     for (std::size_t track = 0; track < owners.size(); ++track)
       show(bank_runs_[track], owners[track], cycle.cycle);
-    Run matcher;
-    if (cycle.works) {
-      matcher.state = State::kWorks;
-      matcher.track = &matcher_;
-    }
-    show(matcher_run_, matcher, cycle.cycle);
+    show(matcher_run_, cycle.works ? Run{"works", &matcher_} : Run{}, cycle.cycle);
     const std::array<std::uint32_t, 3> levels = {cycle.lane_slots[0], cycle.lane_slots[1],
                                                  cycle.result_words};
     for (std::size_t queue = 0; queue < levels.size(); ++queue)
@@ -426,17 +372,19 @@ class Computer {
   }
 
   void event(const TimelineEvent& event) {
-    const Names names = names_of(event);
+    const Shown& shown = kShown[static_cast<std::size_t>(event.kind)];
+    const std::string name = fmt::format(fmt::runtime(shown.track), event.what);
+    const std::string slice = fmt::format(fmt::runtime(shown.slice), event.what, event.why);
     const std::size_t rank = 3 + static_cast<std::size_t>(event.kind);
     const std::uint64_t begin = event.begin_ps / kPsPerNs;
     PerfettoTrack& track =
-        events_.try_emplace(names.track, file_, names.group, rank, names.track).first->second.free_at(begin);
+        events_.try_emplace(name, file_, shown.group, rank, name).first->second.free_at(begin);
     if (event.kind == EventKind::kDrop)
-      return track.instant(begin, names.slice, {{"camera frame", event.camera_frame}});
+      return track.instant(begin, slice, {{"camera frame", event.camera_frame}});
     const auto given = [](std::uint64_t number) {
       return number != 0 ? std::optional(number) : std::nullopt;
     };
-    track.slice(begin, event.end_ps / kPsPerNs, names.slice,
+    track.slice(begin, event.end_ps / kPsPerNs, slice,
                 {{"frame", event.frame},
                  {"camera frame", event.camera_frame},
                  {"words", given(event.words)},
@@ -448,33 +396,21 @@ class Computer {
     OverlappingTracks bursts;
     OverlappingTracks waits;
   };
-  struct Names {
-    TrackGroup group = TrackGroup::kSoftware;
-    std::string track;
-    std::string slice;
+  // The track and the slice of an event, by its class and, of a drop or a wait, its reason.
+  struct Shown {
+    TrackGroup group;
+    const char* track;
+    const char* slice;
   };
-
-  static Names names_of(const TimelineEvent& event) {
-    switch (event.kind) {
-      case EventKind::kCapture:
-        return {TrackGroup::kCapture, event.what, "capture"};
-      case EventKind::kDrop:
-        return {TrackGroup::kCapture, event.what, fmt::format("drop: {}", event.why)};
-      case EventKind::kUpload:
-        return {TrackGroup::kSoftware, "uploads", event.what};
-      case EventKind::kReadBack:
-        return {TrackGroup::kSoftware, "read-backs", event.what};
-      case EventKind::kFrame:
-        return {TrackGroup::kCore, "core", event.what};
-      case EventKind::kInterrupt:
-        return {TrackGroup::kSoftware, fmt::format("interrupt {}", event.what),
-                fmt::format("interrupt {}", event.what)};
-      case EventKind::kWait:
-        return {TrackGroup::kSoftware, fmt::format("wait {}", event.what),
-                fmt::format("{} waits: {}", event.what, event.why)};
-    }
-    return {};
-  }
+  // [EventKind]
+  static constexpr std::array<Shown, platform::kEventKindNames.size()> kShown = {
+      {{TrackGroup::kCapture, "{}", "capture"},
+       {TrackGroup::kCapture, "{}", "drop: {1}"},
+       {TrackGroup::kSoftware, "uploads", "{}"},
+       {TrackGroup::kSoftware, "read-backs", "{}"},
+       {TrackGroup::kCore, "core", "{}"},
+       {TrackGroup::kSoftware, "interrupt {}", "interrupt {}"},
+       {TrackGroup::kSoftware, "wait {}", "{} waits: {}"}}};
 
   PerfettoFile& file_;
   std::array<Bus, 2> buses_;

@@ -63,6 +63,10 @@ struct Signal {
   unsigned bits = 0;       // 0: its values are words
   std::uint32_t idle = 0;  // its value outside of the window
   std::string code;        // its name in the file
+
+  std::string range(const char* before) const {
+    return bits > 1 ? fmt::format("{}[{}:0]", before, bits - 1) : "";
+  }
 };
 
 // The signals of a board, and the words that they show.
@@ -175,42 +179,31 @@ class Waveform {
       : file_(file), signals_(signals), is_touched_(signals.all.size()), is_active_(signals.all.size()) {
     for (const Signal& signal : signals.all) {
       next_values_.push_back(signal.idle);
-      LineEnd& end = line_ends_.emplace_back();
-      end.size = ((signal.bits == 1 ? "" : " ") + signal.code + '\n').copy(end.text.data(), end.text.size());
+      line_ends_.push_back((signal.bits == 1 ? "" : " ") + signal.code + '\n');
     }
     values_ = next_values_;
-    for (std::size_t byte = 0; byte < digits_.size(); ++byte) {
-      for (std::size_t bit = 0; bit < 8; ++bit)
-        digits_[byte][bit] = (byte >> (7 - bit) & 1U) != 0 ? '1' : '0';
-    }
-    std::size_t longest = kMostDigits;
-    for (const std::string& word : signals.words) {
-      words_.push_back('s' + word);
-      longest = std::max(longest, words_.back().size());
-    }
-    text_.resize(kTextBytes + longest + sizeof(LineEnd::text));
   }
 
-  Span write(const std::deque<ChangeStream*>& streams, const TimeSpan& window) {
+  Span write(std::deque<ChangeStream>& streams, const TimeSpan& window) {
     write_header();
-    for (ChangeStream* const stream : streams) stream->rewind();
+    for (ChangeStream& stream : streams) stream.rewind();
     take_up_to(window.begin_ps, streams);
     write_time(window.begin_ps);
-    put("$dumpvars\n");
+    text_ += "$dumpvars\n";
     values_ = next_values_;
     for (std::size_t signal = 0; signal < values_.size(); ++signal) write_value(signal);
-    put("$end\n");
+    text_ += "$end\n";
     while (true) {
       std::uint64_t time_ps = UINT64_MAX;
-      for (const ChangeStream* const stream : streams) {
-        if (stream->change()) time_ps = std::min(time_ps, stream->change()->time_ps);
+      for (const ChangeStream& stream : streams) {
+        if (stream.change() != nullptr) time_ps = std::min(time_ps, stream.change()->time_ps);
       }
       if (time_ps == UINT64_MAX || time_ps > window.end_ps) break;
       take_up_to(time_ps, streams);
       write_changes(time_ps);
     }
     if (window.end_ps != UINT64_MAX && window.end_ps != last_ps_) write_time(window.end_ps);
-    flush();
+    file_.write(text_);
     Span span = {window.begin_ps, last_ps_, window.wait_ps, {}};
     for (std::size_t signal = 0; signal < is_active_.size(); ++signal) {
       if (is_active_[signal] != 0) span.active_scopes.insert(signals_.all[signal].scope);
@@ -219,38 +212,27 @@ class Waveform {
   }
 
  private:
-  static constexpr std::size_t kTextBytes = std::size_t{1} << 16U;
-  static constexpr std::size_t kMostDigits = 33;  // and the letter before them
-  // What stands behind a value. All bytes are copied, which takes less time than to copy the right number.
-  struct LineEnd {
-    std::array<char, 8> text{};
-    std::size_t size = 0;
-  };
-
   void write_header() {
-    std::string text = kVcdMark;
+    text_ = kVcdMark;
     const std::string* scope = nullptr;
     for (const Signal& signal : signals_.all) {
       if (scope == nullptr || *scope != signal.scope) {
-        if (scope != nullptr) text += "$upscope $end\n";
-        text += "$scope module " + signal.scope + " $end\n";
+        if (scope != nullptr) text_ += "$upscope $end\n";
+        text_ += "$scope module " + signal.scope + " $end\n";
         scope = &signal.scope;
       }
-      const std::string range = signal.bits > 1 ? fmt::format(" [{}:0]", signal.bits - 1) : "";
-      fmt::format_to(std::back_inserter(text), "$var {} {} {} {}{} $end\n",
-                     signal.bits == 0 ? "string" : "wire", std::max(signal.bits, 1U), signal.code,
-                     signal.name, range);
+      text_ += fmt::format("$var {} {} {} {}{} $end\n", signal.bits == 0 ? "string" : "wire",
+                           std::max(signal.bits, 1U), signal.code, signal.name, signal.range(" "));
     }
-    text += "$upscope $end\n$enddefinitions $end\n";
-    file_.write(text);
+    text_ += "$upscope $end\n$enddefinitions $end\n";
   }
 
-  void take_up_to(std::uint64_t time_ps, const std::deque<ChangeStream*>& streams) {
+  void take_up_to(std::uint64_t time_ps, std::deque<ChangeStream>& streams) {
     for (const std::uint32_t signal : touched_) is_touched_[signal] = 0;
     touched_.clear();
-    for (ChangeStream* const stream : streams) {
-      for (; stream->change() && stream->change()->time_ps <= time_ps; stream->advance()) {
-        const ChangeStream::Change& change = *stream->change();
+    for (ChangeStream& stream : streams) {
+      for (; stream.change() != nullptr && stream.change()->time_ps <= time_ps; stream.advance()) {
+        const ChangeStream::Change& change = *stream.change();
         next_values_[change.signal] = change.value;
         if (is_touched_[change.signal] == 0) touched_.push_back(change.signal);
         is_touched_[change.signal] = 1;
@@ -270,67 +252,41 @@ class Waveform {
   }
 
   void write_time(std::uint64_t time_ps) {
+    file_.write(text_);
+    text_.clear();
     last_ps_ = time_ps;
     const fmt::format_int digits(time_ps);
-    put("#");
-    put({digits.data(), digits.size()});
-    put("\n");
+    text_.append("#").append(digits.data(), digits.size()) += '\n';
   }
 
   void write_value(std::size_t signal) {
-    const Signal& its = signals_.all[signal];
     const std::uint32_t value = values_[signal];
-    if (value != its.idle) is_active_[signal] = 1;
-    char* to = text_.data() + size_;
-    if (its.bits == 1) {
-      *to++ = value != 0 ? '1' : '0';
-    } else if (its.bits == 0) {
-      to = std::copy(words_[value].begin(), words_[value].end(), to);
+    const unsigned bits = signals_.all[signal].bits;
+    if (value != signals_.all[signal].idle) is_active_[signal] = 1;
+    if (bits == 0) {
+      text_.append("s").append(signals_.words[value]);
+    } else if (value >= kUnknown) {
+      text_ += value == kNoNumber ? "bz" : "bx";
     } else {
-      *to++ = 'b';
-      if (value >= kUnknown)
-        *to++ = value == kNoNumber ? 'z' : 'x';
-      else
-        to = put_digits(value, to);
+      std::array<char, 33> digits{};  // and a letter before them
+      char* first = digits.end();
+      for (std::uint32_t rest = value; rest != 0 || first == digits.end(); rest >>= 1U)
+        *--first = (rest & 1U) != 0 ? '1' : '0';
+      if (bits > 1) *--first = 'b';
+      text_.append(first, digits.end());
     }
-    const LineEnd& end = line_ends_[signal];
-    std::copy(end.text.begin(), end.text.end(), to);
-    size_ = static_cast<std::size_t>(to - text_.data()) + end.size;
-    if (size_ >= kTextBytes) flush();
-  }
-
-  // Puts a short text.
-  void put(std::string_view text) {
-    std::copy(text.begin(), text.end(), text_.data() + size_);
-    size_ += text.size();
-    if (size_ >= kTextBytes) flush();
-  }
-  void flush() {
-    file_.write({text_.data(), size_});
-    size_ = 0;
-  }
-  // Puts the binary digits of a number without leading zeros, and returns their end. Up to 32 bytes change.
-  char* put_digits(std::uint32_t value, char* to) const {
-    std::array<char, 64> digits{};
-    for (std::size_t byte = 0; byte < 4; ++byte)
-      std::copy_n(digits_[value >> (24 - 8 * byte) & 0xFFU].begin(), 8, digits.data() + 8 * byte);
-    const auto zeros = static_cast<std::size_t>(__builtin_clz(value | 1U));
-    std::copy_n(digits.data() + zeros, 32, to);
-    return to + 32 - zeros;
+    text_ += line_ends_[signal];
   }
 
   files::AsideFile& file_;
   const Signals& signals_;
-  std::array<std::array<char, 8>, 256> digits_{};  // [byte]: its binary digits
-  std::vector<LineEnd> line_ends_;                 // [signal]
-  std::vector<std::string> words_;                 // as values
-  std::vector<std::uint32_t> values_;              // [signal]
+  std::vector<std::string> line_ends_;  // [signal]
+  std::vector<std::uint32_t> values_;   // [signal]
   std::vector<std::uint32_t> next_values_;
   std::vector<char> is_touched_;
   std::vector<char> is_active_;  // [signal]: has had another value than its idle one
   std::vector<std::uint32_t> touched_;
-  std::vector<char> text_;  // with room for a line behind kTextBytes
-  std::size_t size_ = 0;    // of the text
+  std::string text_;  // of the last time
   std::uint64_t last_ps_ = 0;
 };
 
@@ -359,11 +315,10 @@ unsigned flags_of(const Signal& signal) {
 }
 
 std::string line_of(const Signal& signal) {
-  const std::string range = signal.bits > 1 ? fmt::format("[{}:0]", signal.bits - 1) : "";
   // The name in braces is shown. Of a name with a point, GTKWave would show the part behind it.
   return fmt::format("[color] {0}\n@{1:x}\n+{{{2} {3}}} {2}.{3}{4}\n",
                      static_cast<unsigned>(color_of(signal)), flags_of(signal), signal.scope, signal.name,
-                     range);
+                     signal.range(""));
 }
 
 // The exponent of the zoom with which the span fills some 990 pixels: 200 pixels show 2^-zoom units of time.
@@ -499,7 +454,8 @@ class VcdSink : public TraceSink {
 
   void end(const TimeSpan& window) override {
     end_cycles();
-    const Span span = is_fst_ ? write_fst(window) : write_vcd(files_.front().aside(), window);
+    const Span span =
+        is_fst_ ? write_fst(window) : Waveform(files_.front().aside(), signals_).write(streams_, window);
     if (files_.size() > 1) files_.back().write(layout_of(path_.filename().string(), signals_, span));
   }
 
@@ -560,15 +516,9 @@ class VcdSink : public TraceSink {
     std::swap(shown_, now_);
   }
 
-  Span write_vcd(files::AsideFile& file, const TimeSpan& window) {
-    std::deque<ChangeStream*> streams;
-    for (ChangeStream& stream : streams_) streams.push_back(&stream);
-    return Waveform(file, signals_).write(streams, window);
-  }
-
   Span write_fst(const TimeSpan& window) {
     files::AsideFile text(files::linked_file(path_), path_.string());
-    const Span span = write_vcd(text, window);
+    const Span span = Waveform(text, signals_).write(streams_, window);
     text.complete();
     const fs::path& fst = files_.front().aside().path();
     const process::CommandEnd end = process::run_command({"vcd2fst", text.path().string(), fst.string()});

@@ -229,8 +229,8 @@ void add_kernels(const host::StereoPair& pair) {
       kernels::GrayImage out(width, height);
       for (auto _ : state) {
         for (const auto* image : {&pair.left, &pair.right})
-          simd->frame.rectify(image->pixels.data(), table->entries.data(), width * height, width,
-                              out.pixels.data());
+          simd->rectify(image->pixels.data(), table->entries.data(), width * height, width,
+                        out.pixels.data());
       }
     });
     add("kernels/two_filters" + end, [=, &pair](benchmark::State& state) {

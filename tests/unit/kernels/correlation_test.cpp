@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "models/kernels/simd.h"
-#include "models/kernels/simd_array.h"
 #include "models/kernels/stereo_pipeline.h"
 #include "tests/support/random_board.h"
 #include "tests/support/reference_arithmetic.h"
@@ -159,14 +158,14 @@ TEST(ImageMatcher, DecidesEqualCorrelationsExactly) {
 
 // x^2 / (x^2 + 1) rises with x. Up to 2^17 two neighbours differ by 2^-50 of their value or more: as doubles
 // many are equal.
-TEST(CorrelationSimd, FindsTheFirstOfTheGreatestScoresThatDoublesCannotDistinguish) {
+TEST(Simd, FindsTheFirstOfTheGreatestScoresThatDoublesCannotDistinguish) {
   test::SplitMix64 random(33);
   constexpr int kLargestRoot = 131070;
   for (int round = 0; round < 3000; ++round) {
     const int count = random.between(1, 254);
     const int roots = random.between(1, 20);
     const bool negative = random.chance(30);
-    LaneArray<std::int32_t> products(count);
+    SimdArray<std::int32_t> products(count);
     const auto padded = static_cast<std::size_t>(padded_lanes(count));
     const std::vector<double> sums(padded);
     std::vector<std::int64_t> variances(padded, 1);
@@ -186,8 +185,7 @@ TEST(CorrelationSimd, FindsTheFirstOfTheGreatestScoresThatDoublesCannotDistingui
     }
     const Candidates candidates{count, sums.data(), variances.data(), inverses.data()};
     for (const Simd* simd : simd_sets()) {
-      ASSERT_EQ(simd->correlation.best_candidate(candidates, products.data(), 1, 0, quotients.data()),
-                expected)
+      ASSERT_EQ(simd->best_candidate(candidates, products.data(), 1, 0, quotients.data()), expected)
           << simd->name;
     }
   }

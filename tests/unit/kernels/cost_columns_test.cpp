@@ -127,12 +127,12 @@ TEST(ColumnScorer, IsNeededForCorrelationsAndForSquaresOfLargeWindows) {
   }
 }
 
-TEST(LaneArray, IsPaddedAlignedAndZero) {
+TEST(SimdArray, IsPaddedAlignedAndZero) {
   for (const auto& [lanes, padded] :
        {std::pair(1, 16), std::pair(16, 16), std::pair(17, 32), std::pair(254, 256)}) {
     EXPECT_EQ(padded_lanes(lanes), padded);
-    LaneArray<std::int16_t> array(lanes);
-    EXPECT_EQ(reinterpret_cast<std::uintptr_t>(array.data()) % kLaneAlignment, 0U);
+    SimdArray<std::int16_t> array(lanes);
+    EXPECT_EQ(reinterpret_cast<std::uintptr_t>(array.data()) % kMostFrameVectorBytes, 0U);
     for (int lane = 0; lane < padded; ++lane) EXPECT_EQ(array.data()[lane], 0);
   }
 }

@@ -17,8 +17,8 @@ namespace {
 constexpr int kLargestSum = 31 * 31 * 255;
 
 // Window sums of one column. Those beyond the candidates are smaller than all others.
-LaneArray<std::int32_t> random_sums(int disparities, int candidates, int largest, test::SplitMix64& random) {
-  LaneArray<std::int32_t> sums(disparities);
+SimdArray<std::int32_t> random_sums(int disparities, int candidates, int largest, test::SplitMix64& random) {
+  SimdArray<std::int32_t> sums(disparities);
   sums.fill(0);
   for (int d = 0; d < candidates; ++d) sums.data()[d] = random.between(1, largest);
   return sums;
@@ -45,7 +45,7 @@ TEST(SelectMinChain, EqualsALoopOverTheDiagonalWithEachInstructionSet) {
     for (const Simd* simd : simd_sets()) chains.emplace_back(disparities, *simd);
     for (const int largest : {1, 4, kLargestSum}) {
       SCOPED_TRACE(std::to_string(disparities) + " disparities, sums up to " + std::to_string(largest));
-      std::vector<LaneArray<std::int32_t>> columns;
+      std::vector<SimdArray<std::int32_t>> columns;
       std::vector<int> candidates;
       for (SelectMinChain& chain : chains) chain.start_frame();
       for (int column = 0; column < 3 * disparities + 20; ++column) {

@@ -10,8 +10,8 @@ namespace {
 TEST(Simd, ListsTheInstructionSetsOfTheMachineBestFirst) {
   int lanes = kMostFrameLanes;
   for (const Simd* simd : simd_sets_from(nullptr)) {
-    EXPECT_LE(simd->frame.lanes, lanes) << simd->name;
-    lanes = simd->frame.lanes;
+    EXPECT_LE(simd->lanes, lanes) << simd->name;
+    lanes = simd->lanes;
     EXPECT_EQ(simd_sets_from(simd->name).front(), simd);
   }
   EXPECT_EQ(simd_sets_from("base").size(), 1U);

@@ -1,11 +1,69 @@
-#include "models/kernels/frame_simd_match.h"
-#include "models/kernels/simd_loops.h"
+#pragma once
 
-// Hamming distances of census bits. A pixel has 8 bits in each of kPlanes bytes.
+#include "models/kernels/frame_simd_match.h"
+
 namespace stereotlm::kernels::STEREOTLM_SIMD {
 namespace {
 
-using SignedBytes = std::int8_t __attribute__((vector_size(kBytes)));
+// Sum of absolute differences.
+template <class Keys>
+struct SadCost : KeyedCost<Keys> {
+  using Sum = Int16s;
+  static constexpr std::ptrdiff_t kPixelLanes = kLanes;
+  static constexpr std::ptrdiff_t kSumLanes = kLanes;
+
+  SadCost(const MatchPlan& /*plan*/, const MatchMemory& /*memory*/, int /*first*/) {}
+  static Int16s right(const std::int16_t* pixels) { return load<Int16s>(pixels); }
+  static Sum change(Int16s right_pixels, const std::int16_t* left_pixels) {
+    const auto a = reinterpret_cast<Bytes>(right_pixels);
+    const auto b = load<Bytes>(left_pixels);
+    return difference_of_bytes<Keys::kScale>(larger(a, b) - smaller(a, b));
+  }
+};
+
+MatchLoops sad_loops(int window) {
+  return window * window * 255 <= kLargestNarrowSum ? loops_of<SadCost<NarrowKeys>>()
+                                                    : loops_of<SadCost<WideKeys>>();
+}
+
+// Sum of squared differences. The pixels are multiplied by kFactor first, so that the sums have the scale of
+// the keys.
+template <class Keys, int kFactor>
+struct SsdCost : KeyedCost<Keys> {
+  static_assert(kFactor * kFactor == Keys::kSumScale);
+  using Sum = Int32Pair;
+  static constexpr std::ptrdiff_t kPixelLanes = 2 * kLanes;
+  static constexpr std::ptrdiff_t kSumLanes = 2 * kLanes;
+  static constexpr bool kUnpacks = true;
+
+  SsdCost(const MatchPlan& /*plan*/, const MatchMemory& /*memory*/, int /*first*/) {}
+  static void prepare(const MatchPlan& plan, const MatchMemory& memory, bool /*match*/) {
+    const int positions = plan.columns + plan.window - 1;
+    unpack<kFactor, kFactor>(memory.right.pixels, positions, memory.right.unpacked);
+    unpack<kFactor, kFactor>(memory.left.pixels, positions + plan.disparities - 1, memory.left.unpacked);
+  }
+  static const std::int16_t* pixels(const MatchSide& side) { return side.unpacked; }
+
+  static PixelPairs right(const std::int16_t* pixels) { return load_pairs(pixels); }
+  static Sum change(const PixelPairs& right_pixels, const std::int16_t* left_pixels) {
+    return {change(right_pixels.even - load<Int16s>(left_pixels)),
+            change(right_pixels.odd - load<Int16s>(left_pixels + kLanes))};
+  }
+
+ private:
+  // The square of the difference that enters, minus the square of the one that leaves.
+  static Int32s change(Int16s differences) {
+    return multiply_pairs(differences, differences * entering_minus_leaving());
+  }
+};
+
+MatchLoops ssd_loops(int window) {
+  return window * window <= kLargestWideSum / (255 * 255) ? loops_of<SsdCost<WideKeys, 16>>()
+                                                          : loops_of<SsdCost<WideGroupKeys, 2>>();
+}
+
+// Hamming distances of census bits. A pixel has 8 bits in each of kPlanes bytes.
+
 using Uint16s = std::uint16_t __attribute__((vector_size(kBytes)));
 
 Bytes bytes(int value) { return Bytes{} + static_cast<std::uint8_t>(value); }
@@ -73,8 +131,8 @@ struct CensusCost : KeyedCost<Keys> {
     Bytes planes[kPlanes];
   };
 
-  CensusCost(const MatchPlan& plan, const MatchMemory& /*memory*/, int /*first*/)
-      : right_stride_(plan.right_stride), left_stride_(plan.left_stride) {}
+  CensusCost(const MatchPlan& /*plan*/, const MatchMemory& memory, int /*first*/)
+      : right_stride_(memory.right.stride), left_stride_(memory.left.stride) {}
   Right right(const std::int16_t* pixels) const {
     Right right;
     for (std::ptrdiff_t plane = 0; plane < kPlanes; ++plane)
@@ -99,8 +157,6 @@ MatchLoops loops_of_planes(int window) {
                                                             : loops_of<CensusCost<WideKeys, kPlanes>>();
 }
 
-}  // namespace
-
 MatchLoops census_loops(int planes, int window) {
   switch (planes) {
     case 1:
@@ -112,22 +168,5 @@ MatchLoops census_loops(int planes, int window) {
   }
 }
 
-void census_row(const std::int8_t* const* rows, int half, int width, std::uint8_t* const* out) {
-  for (std::ptrdiff_t u = 0; u < width; u += kBytes) {
-    const auto middle = load<SignedBytes>(rows[half] + half + u);
-    Bytes set{};
-    int bit = 0;
-    for (int row = 0; row <= 2 * half; ++row) {
-      for (int column = 0; column <= 2 * half; ++column) {
-        if (row == half && column == half) continue;
-        const auto is_less = reinterpret_cast<Bytes>(load<SignedBytes>(rows[row] + column + u) < middle);
-        set |= is_less & bytes(1 << bit % 8);
-        if (++bit % 8 != 0) continue;
-        store(set, out[bit / 8 - 1] + u);
-        set = Bytes{};
-      }
-    }
-  }
-}
-
+}  // namespace
 }  // namespace stereotlm::kernels::STEREOTLM_SIMD

@@ -1,5 +1,6 @@
+#pragma once
+
 #include "models/kernels/frame_simd_match.h"
-#include "models/kernels/simd_loops.h"
 
 // Zero-mean normalised cross-correlation. The score of a candidate is cov * |cov| / (var_r * var_l). For a
 // right window var_r is common to all candidates, so that cov * |cov| / var_l is compared; for a left window
@@ -157,11 +158,6 @@ void add_statistics(const MatchPlan& plan, const std::int16_t* unpacked, int win
   }
 }
 
-struct PixelPairs {
-  Int16s even;
-  Int16s odd;
-};
-
 struct ZnccCost {
   using Keys = QuotientKeys;
   using Sum = Int32Pair;
@@ -177,25 +173,22 @@ struct ZnccCost {
   static constexpr bool kHasStatistics = true;
 
   ZnccCost(const MatchPlan& plan, const MatchMemory& memory, int first)
-      : right_window_(reinterpret_cast<const WindowStatistics*>(memory.right_windows)),
-        left_window_(reinterpret_cast<const WindowStatistics*>(memory.left_windows) + first),
+      : right_window_(reinterpret_cast<const WindowStatistics*>(memory.right.windows)),
+        left_window_(reinterpret_cast<const WindowStatistics*>(memory.left.windows) + first),
         pixels_(plan.window * plan.window),
         first_(first) {}
   static void prepare(const MatchPlan& plan, const MatchMemory& memory, bool match) {
     const int positions = plan.columns + plan.window - 1;
-    unpack<1, 1>(memory.right_pixels, positions, memory.right_unpacked);
-    unpack<1, -1>(memory.left_pixels, positions + plan.disparities - 1, memory.left_unpacked);
-    add_statistics<1>(plan, memory.right_unpacked, plan.columns, memory.right_columns,
-                      match ? memory.right_windows : nullptr);
-    add_statistics<-1>(plan, memory.left_unpacked, plan.columns + plan.disparities - 1, memory.left_columns,
-                       match ? memory.left_windows : nullptr);
+    unpack<1, 1>(memory.right.pixels, positions, memory.right.unpacked);
+    unpack<1, -1>(memory.left.pixels, positions + plan.disparities - 1, memory.left.unpacked);
+    add_statistics<1>(plan, memory.right.unpacked, plan.columns, memory.right.columns,
+                      match ? memory.right.windows : nullptr);
+    add_statistics<-1>(plan, memory.left.unpacked, plan.columns + plan.disparities - 1, memory.left.columns,
+                       match ? memory.left.windows : nullptr);
   }
-  static const std::int16_t* right_pixels(const MatchMemory& memory) { return memory.right_unpacked; }
-  static const std::int16_t* left_pixels(const MatchMemory& memory) { return memory.left_unpacked; }
+  static const std::int16_t* pixels(const MatchSide& side) { return side.unpacked; }
 
-  static PixelPairs right(const std::int16_t* pixels) {
-    return {load<Int16s>(pixels), load<Int16s>(pixels + kLanes)};
-  }
+  static PixelPairs right(const std::int16_t* pixels) { return load_pairs(pixels); }
   static Sum change(const PixelPairs& right_pixels, const std::int16_t* left_pixels) {
     return {multiply_pairs(right_pixels.even, load<Int16s>(left_pixels)),
             multiply_pairs(right_pixels.odd, load<Int16s>(left_pixels + kLanes))};
@@ -233,8 +226,7 @@ struct ZnccCost {
   int first_;
 };
 
-}  // namespace
-
 MatchLoops zncc_loops(int /*window*/) { return loops_of<ZnccCost>(); }
 
+}  // namespace
 }  // namespace stereotlm::kernels::STEREOTLM_SIMD
