@@ -6,23 +6,6 @@
 namespace stereotlm::trace {
 namespace {
 
-// The fields of a message of Protocol Buffers, in its wire format. A message is the text of its fields.
-std::string varint(std::uint64_t value) {
-  constexpr std::uint64_t kMore = 0x80;
-  std::string bytes;
-  for (; value >= kMore; value >>= 7U) bytes += static_cast<char>(value | kMore);
-  return bytes += static_cast<char>(value);
-}
-std::string integer(std::uint32_t field, std::uint64_t value) { return varint(field << 3U) + varint(value); }
-std::string fixed(std::uint32_t field, std::uint64_t value) {
-  std::string bytes = varint(field << 3U | 1U);
-  for (unsigned byte = 0; byte < 8; ++byte) bytes += static_cast<char>(value >> (8U * byte));
-  return bytes;
-}
-std::string text(std::uint32_t field, std::string_view value) {
-  return varint(field << 3U | 2U) + varint(value.size()).append(value);
-}
-
 // Numbers of fields and values in google/perfetto, protos/perfetto/trace.
 constexpr std::uint32_t kPacket = 1;  // in Trace
 namespace packet {
@@ -58,23 +41,30 @@ constexpr std::uint64_t kBootTime = 6, kOfSequence = 64;
 constexpr std::uint64_t kProcessUuid = 1;
 
 // The descriptor of a track or of a group.
-std::string described(std::uint64_t uuid, std::uint64_t parent, std::size_t rank, const std::string& name) {
-  return integer(descriptor::kUuid, uuid) + text(descriptor::kName, name) +
-         integer(descriptor::kParent, parent) + integer(descriptor::kRank, rank);
+ProtoMessage described(std::uint64_t uuid, std::uint64_t parent, std::size_t rank, const std::string& name) {
+  return ProtoMessage()
+      .integer(descriptor::kUuid, uuid)
+      .text(descriptor::kName, name)
+      .integer(descriptor::kParent, parent)
+      .integer(descriptor::kRank, rank);
 }
 
 }  // namespace
 
 std::string perfetto_mark() {
-  return text(kPacket, text(packet::kForTesting, text(1, "trace of stereotlm")));  // TestEvent.str
+  const ProtoMessage event = ProtoMessage().text(1, "trace of stereotlm");  // TestEvent.str
+  const ProtoMessage packet = ProtoMessage().text(packet::kForTesting, event);
+  return std::string(ProtoMessage().text(kPacket, packet));
 }
 
 PerfettoFile::PerfettoFile(files::OutputFile& file, const std::string& process)
     : file_(file), last_uuid_(kProcessUuid) {
   file_.write(perfetto_mark());
-  const std::string of_process = integer(descriptor::kPid, 1) + text(descriptor::kProcessName, process);
-  write(text(packet::kTrackDescriptor,
-             integer(descriptor::kUuid, kProcessUuid) + text(descriptor::kProcess, of_process)));
+  const ProtoMessage of_process =
+      ProtoMessage().integer(descriptor::kPid, 1).text(descriptor::kProcessName, process);
+  const ProtoMessage track =
+      ProtoMessage().integer(descriptor::kUuid, kProcessUuid).text(descriptor::kProcess, of_process);
+  write(ProtoMessage().text(packet::kTrackDescriptor, track));
 }
 
 std::uint64_t PerfettoFile::add(TrackGroup group, std::size_t rank, const std::string& name,
@@ -82,17 +72,20 @@ std::uint64_t PerfettoFile::add(TrackGroup group, std::size_t rank, const std::s
   const auto place = static_cast<std::size_t>(group);
   if (groups_[place] == 0) {
     groups_[place] = ++last_uuid_;
-    write(text(packet::kTrackDescriptor,
-               described(groups_[place], kProcessUuid, place, kTrackGroupNames[place]) +
-                   integer(descriptor::kChildOrder, descriptor::kByRank)));
+    ProtoMessage message = described(groups_[place], kProcessUuid, place, kTrackGroupNames[place]);
+    message.integer(descriptor::kChildOrder, descriptor::kByRank);
+    write(ProtoMessage().text(packet::kTrackDescriptor, message));
   }
-  std::string track = described(++last_uuid_, groups_[place], rank, name);
-  if (!unit.empty()) track += text(descriptor::kCounter, text(descriptor::kUnitName, unit));
-  write(text(packet::kTrackDescriptor, track));
+  ProtoMessage track = described(++last_uuid_, groups_[place], rank, name);
+  if (!unit.empty()) track.text(descriptor::kCounter, ProtoMessage().text(descriptor::kUnitName, unit));
+  write(ProtoMessage().text(packet::kTrackDescriptor, track));
   return last_uuid_;
 }
 
-void PerfettoFile::write(const std::string& packet) { file_.write(text(kPacket, packet)); }
+void PerfettoFile::write(std::string_view packet) {
+  packet_.clear();
+  file_.write(packet_.text(kPacket, packet));
+}
 
 PerfettoTrack::PerfettoTrack(PerfettoFile& file, TrackGroup group, std::size_t rank, std::string name,
                              std::string unit)
@@ -103,36 +96,44 @@ PerfettoTrack::PerfettoTrack(PerfettoFile& file, TrackGroup group, std::size_t r
 void PerfettoTrack::start_sequence() {
   names_ = {};
   last_ns_ = 0;
-  const std::string boot_time = integer(clocks::kId, clocks::kBootTime) + integer(clocks::kTimestamp, 0);
-  const std::string of_sequence = integer(clocks::kId, clocks::kOfSequence) + integer(clocks::kTimestamp, 0) +
-                                  integer(clocks::kIsIncremental, 1);
-  file_.write(integer(packet::kSequence, uuid_) + integer(packet::kSequenceFlags, packet::kStateCleared) +
-              text(packet::kClockSnapshot, text(clocks::kClock, boot_time) +
-                                               text(clocks::kClock, of_sequence) +
-                                               integer(clocks::kPrimary, clocks::kBootTime)) +
-              text(packet::kDefaults, integer(packet::kDefaultClock, clocks::kOfSequence) +
-                                          text(packet::kTrackEvent, integer(event::kTrack, uuid_))));
+  const auto clock = [](std::uint64_t id) {
+    return ProtoMessage().integer(clocks::kId, id).integer(clocks::kTimestamp, 0);
+  };
+  const ProtoMessage snapshot =
+      ProtoMessage()
+          .text(clocks::kClock, clock(clocks::kBootTime))
+          .text(clocks::kClock, clock(clocks::kOfSequence).integer(clocks::kIsIncremental, 1))
+          .integer(clocks::kPrimary, clocks::kBootTime);
+  const ProtoMessage defaults = ProtoMessage()
+                                    .integer(packet::kDefaultClock, clocks::kOfSequence)
+                                    .text(packet::kTrackEvent, ProtoMessage().integer(event::kTrack, uuid_));
+  file_.write(ProtoMessage()
+                  .integer(packet::kSequence, uuid_)
+                  .integer(packet::kSequenceFlags, packet::kStateCleared)
+                  .text(packet::kClockSnapshot, snapshot)
+                  .text(packet::kDefaults, defaults));
 }
 
 std::uint64_t PerfettoTrack::number_of(std::uint32_t table, std::string_view name) {
   auto& names = names_[table - interned::kEventNames];
   const auto [entry, is_new] = names.try_emplace(std::string(name), names.size() + 1);
-  if (is_new)
-    interned_ += text(table, integer(interned::kNumber, entry->second) + text(interned::kName, name));
+  if (is_new) {
+    interned_.text(table,
+                   ProtoMessage().integer(interned::kNumber, entry->second).text(interned::kName, name));
+  }
   return entry->second;
 }
 
 void PerfettoTrack::begin(std::uint64_t time_ns, std::string_view name, Arguments arguments,
                           const Flows& flows) {
-  std::string fields;
-  for (const std::uint64_t flow : flows) fields += fixed(event::kFlow, flow);
-  write_event(time_ns, event::kBegin, name, arguments, fields);
+  for (const std::uint64_t flow : flows) event_.fixed(event::kFlow, flow);
+  write_event(time_ns, event::kBegin, name, arguments);
 }
 
-void PerfettoTrack::end(std::uint64_t time_ns) { write_event(time_ns, event::kEnd, {}, {}, {}); }
+void PerfettoTrack::end(std::uint64_t time_ns) { write_event(time_ns, event::kEnd); }
 
 void PerfettoTrack::instant(std::uint64_t time_ns, std::string_view name, Arguments arguments) {
-  write_event(time_ns, event::kInstant, name, arguments, {});
+  write_event(time_ns, event::kInstant, name, arguments);
 }
 
 void PerfettoTrack::count(std::uint64_t time_ns, double value) {
@@ -141,31 +142,33 @@ void PerfettoTrack::count(std::uint64_t time_ns, double value) {
   const auto whole = static_cast<std::uint64_t>(value);
   std::uint64_t bits = 0;
   std::memcpy(&bits, &value, sizeof bits);
-  write_event(time_ns, event::kCount, {}, {},
-              static_cast<double>(whole) == value ? integer(event::kCounter, whole)
-                                                  : fixed(event::kDoubleCounter, bits));
+  static_cast<double>(whole) == value ? event_.integer(event::kCounter, whole)
+                                      : event_.fixed(event::kDoubleCounter, bits);
+  write_event(time_ns, event::kCount);
 }
 
 void PerfettoTrack::write_event(std::uint64_t time_ns, std::uint64_t type, std::string_view name,
-                                Arguments arguments, const std::string& fields) {
+                                Arguments arguments) {
   const bool is_new = !is_written();
   if (is_new) uuid_ = file_.add(group_, rank_, name_, unit_);
   if (is_new || (!name.empty() && names_[0].size() >= kMostNames)) start_sequence();
-  interned_.clear();
-  std::string bytes;
-  if (!name.empty()) bytes = integer(event::kName, number_of(interned::kEventNames, name));
+  if (!name.empty()) event_.integer(event::kName, number_of(interned::kEventNames, name));
   for (const Argument& argument : arguments) {
     if (!argument.value) continue;
-    bytes += text(event::kArgument,
-                  integer(event::kArgumentName, number_of(interned::kArgumentNames, argument.name)) +
-                      integer(event::kNumber, *argument.value));
+    event_.text(event::kArgument,
+                ProtoMessage()
+                    .integer(event::kArgumentName, number_of(interned::kArgumentNames, argument.name))
+                    .integer(event::kNumber, *argument.value));
   }
-  bytes += fields + integer(event::kType, type);
-  std::string packet = integer(packet::kTimestamp, time_ns - last_ns_) + integer(packet::kSequence, uuid_) +
-                       integer(packet::kSequenceFlags, packet::kNeedsState);
-  if (!interned_.empty()) packet += text(packet::kInternedData, interned_);
-  file_.write(packet + text(packet::kTrackEvent, bytes));
+  event_.integer(event::kType, type);
+  packet_.integer(packet::kTimestamp, time_ns - last_ns_)
+      .integer(packet::kSequence, uuid_)
+      .integer(packet::kSequenceFlags, packet::kNeedsState);
+  const std::string_view names = interned_;
+  if (!names.empty()) packet_.text(packet::kInternedData, names);
+  file_.write(packet_.text(packet::kTrackEvent, event_));
   last_ns_ = time_ns;
+  for (ProtoMessage* const message : {&interned_, &event_, &packet_}) message->clear();
 }
 
 }  // namespace stereotlm::trace

@@ -15,6 +15,36 @@
 
 namespace stereotlm::trace {
 
+// A message of Protocol Buffers in its wire format: fields, each with its number, in the order of the calls.
+class ProtoMessage {
+ public:
+  ProtoMessage& integer(std::uint32_t field, std::uint64_t value) {
+    return varint(field << 3U).varint(value);
+  }
+  ProtoMessage& fixed(std::uint32_t field, std::uint64_t value) {
+    varint(field << 3U | 1U);
+    for (unsigned byte = 0; byte < 8; ++byte) bytes_ += static_cast<char>(value >> (8U * byte));
+    return *this;
+  }
+  // A text or another message.
+  ProtoMessage& text(std::uint32_t field, std::string_view text) {
+    varint(field << 3U | 2U).varint(text.size()).bytes_ += text;
+    return *this;
+  }
+  operator std::string_view() const { return bytes_; }
+  void clear() { bytes_.clear(); }
+
+ private:
+  ProtoMessage& varint(std::uint64_t value) {
+    constexpr std::uint64_t kMore = 0x80;
+    for (; value >= kMore; value >>= 7U) bytes_ += static_cast<char>(value | kMore);
+    bytes_ += static_cast<char>(value);
+    return *this;
+  }
+
+  std::string bytes_;
+};
+
 // The first packet of every file, by which the file is known: a text that viewers ignore.
 std::string perfetto_mark();
 
@@ -33,9 +63,10 @@ class PerfettoFile {
 
   // Describes a track, and its group if that is new. Returns the uuid of the track.
   std::uint64_t add(TrackGroup group, std::size_t rank, const std::string& name, const std::string& unit);
-  void write(const std::string& packet);
+  void write(std::string_view packet);
 
   files::OutputFile& file_;
+  ProtoMessage packet_;
   std::uint64_t last_uuid_;
   std::array<std::uint64_t, kTrackGroupNames.size()> groups_{};  // uuid; 0: not written
 };
@@ -79,9 +110,9 @@ class PerfettoTrack {
   void start_sequence();
   // The number of a name in its table, which is a field of the interned data. A new name goes into the packet.
   std::uint64_t number_of(std::uint32_t table, std::string_view name);
-  // `fields`: of the event, besides its type.
-  void write_event(std::uint64_t time_ns, std::uint64_t type, std::string_view name, Arguments arguments,
-                   const std::string& fields);
+  // Writes the event with these fields too, and clears it.
+  void write_event(std::uint64_t time_ns, std::uint64_t type, std::string_view name = {},
+                   Arguments arguments = {});
 
   PerfettoFile& file_;
   TrackGroup group_;
@@ -92,7 +123,10 @@ class PerfettoTrack {
   std::uint64_t last_ns_ = 0;
   double last_value_ = -1;  // of a counter, whose values are not negative
   std::array<std::unordered_map<std::string, std::uint64_t>, 2> names_;  // of events, of arguments
-  std::string interned_;  // new names of the packet that is made
+  // Parts of the packet that is made.
+  ProtoMessage interned_;
+  ProtoMessage event_;
+  ProtoMessage packet_;
 };
 
 // Tracks of one name, which Perfetto shows as one. Slices that overlap without being nested need several. The
