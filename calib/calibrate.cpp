@@ -82,18 +82,18 @@ RigFit fit_with_lens(const CalibrationRequest& request, const std::vector<GridPa
 
 // Measures the used corners in the rectified pictures.
 void measure(const std::vector<CalibratedPair>& pairs, Calibration& made) {
-  RowErrors errors;
+  std::vector<double> errors;
   std::vector<double> disparities;
   for (const CalibratedPair& pair : pairs) {
     const GridPair corners = rectified(made.rig, made.rectification, pair.corners);
     for (std::size_t i = 0; i < pair.used.size(); ++i) {
       if (!pair.used[i]) continue;
-      errors.add(corners.left[i], corners.right[i]);
+      errors.push_back(corners.left[i].y() - corners.right[i].y());
       disparities.push_back(corners.left[i].x() - corners.right[i].x());
     }
   }
   const auto [min, max] = std::minmax_element(disparities.begin(), disparities.end());
-  made.quality.row_error = errors.result();
+  made.quality.row_error = row_error(errors);
   made.quality.disparities = {*min, *max};
 }
 
@@ -108,7 +108,7 @@ bool all_inside(const kernels::GrayImage& picture, const Corners& corners) {
 // rectified pictures count.
 RowError found_again(const CalibrationRequest& request, const CalibrationResult& result) {
   const Calibration& made = result.calibration;
-  RowErrors errors;
+  std::vector<double> errors;
   for (const CalibratedPair& pair : result.pairs) {
     const PicturePair& pictures = request.pictures[pair.picture];
     const kernels::GrayImage left = kernels::rectify(pictures.left, result.tables.left);
@@ -119,21 +119,26 @@ RowError found_again(const CalibrationRequest& request, const CalibrationResult&
     corners.left = refined(left, request.grid, corners.left);
     corners.right = refined(right, request.grid, corners.right);
     for (std::size_t i = 0; i < pair.used.size(); ++i) {
-      if (pair.used[i]) errors.add(corners.left[i], corners.right[i]);
+      if (pair.used[i]) errors.push_back(corners.left[i].y() - corners.right[i].y());
     }
   }
-  return errors.result();
+  return row_error(errors);
 }
 
 // Measures each pair with a calibration to which the pair did not contribute. If there are more than
-// kMostGroups pairs, each calibration leaves out several.
-HeldOut hold_out(const CalibrationRequest& request, const RigFit& fit, const std::vector<GridPair>& corners,
-                 const std::vector<std::size_t>& pairs, Lens lens) {
+// kMostGroups pairs, each calibration leaves out several. Returns nullopt if too few pairs would be left, or
+// if the rest determines no calibration.
+std::optional<HeldOut> held_out(const CalibrationRequest& request, const RigFit& fit,
+                                const std::vector<GridPair>& corners, Lens lens) try {
   constexpr std::size_t kMostGroups = 20;
+  std::vector<std::size_t> pairs;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    if (std::find(fit.used[i].begin(), fit.used[i].end(), true) != fit.used[i].end()) pairs.push_back(i);
+  }
+  if (pairs.size() <= kFewestPairs) return std::nullopt;
   const std::size_t groups = std::min(kMostGroups, pairs.size());
-  RowErrors rows;
+  std::vector<double> rows;
   double squares = 0;
-  std::size_t count = 0;
   for (std::size_t group = 0; group < groups; ++group) {
     auto used = fit.used;
     for (std::size_t i = group; i < pairs.size(); i += groups)
@@ -146,28 +151,15 @@ HeldOut hold_out(const CalibrationRequest& request, const RigFit& fit, const std
       const Misfit distances = misfit(rig, request.grid, corners[pair], fit.used[pair]);
       for (std::size_t corner = 0; corner < fit.used[pair].size(); ++corner) {
         if (!fit.used[pair][corner]) continue;
-        rows.add(its.left[corner], its.right[corner]);
+        rows.push_back(its.left[corner].y() - its.right[corner].y());
         squares += std::pow(distances.left[corner], 2) + std::pow(distances.right[corner], 2);
-        count += 2;
       }
     }
   }
-  return HeldOut{std::sqrt(squares / static_cast<double>(count)), rows.result()};
-}
-
-// The result of hold_out(); nullopt if too few pairs would be left, or if the rest determines no calibration.
-std::optional<HeldOut> held_out(const CalibrationRequest& request, const RigFit& fit,
-                                const std::vector<GridPair>& corners, Lens lens) {
-  std::vector<std::size_t> pairs;
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    if (std::find(fit.used[i].begin(), fit.used[i].end(), true) != fit.used[i].end()) pairs.push_back(i);
-  }
-  if (pairs.size() <= kFewestPairs) return std::nullopt;
-  try {
-    return hold_out(request, fit, corners, pairs, lens);
-  } catch (const std::runtime_error&) {
-  } catch (const std::domain_error&) {
-  }
+  return HeldOut{std::sqrt(squares / (2 * static_cast<double>(rows.size()))), row_error(rows)};
+} catch (const std::runtime_error&) {
+  return std::nullopt;
+} catch (const std::domain_error&) {
   return std::nullopt;
 }
 
@@ -241,7 +233,7 @@ MatchedRows matched_rows(const kernels::GrayImage& left, const kernels::GrayImag
   cv::goodFeaturesToTrack(view(left), points, kMostPoints, kQuality, kDistance);
   const cv::Rect picture(0, 0, left.width, left.height);
   MatchedRows result;
-  RowErrors errors;
+  std::vector<double> errors;
   for (const cv::Point2f& point : points) {
     const int column = cvRound(point.x);
     const int row = cvRound(point.y);
@@ -260,10 +252,9 @@ MatchedRows matched_rows(const kernels::GrayImage& left, const kernels::GrayImag
     if (!(largest >= kLeastCorrelation) || at.y == 0 || at.y == likeness.rows - 1) continue;
     const double rest =
         between(likeness.at<float>(at.y - 1, at.x), largest, likeness.at<float>(at.y + 1, at.x));
-    const double found = inside.y + at.y + rest;
-    errors.add({0, window.y}, {0, found});
+    errors.push_back(window.y - (inside.y + at.y + rest));
   }
-  result.error = errors.result();
+  result.error = row_error(errors);
   return result;
 }
 

@@ -224,15 +224,14 @@ GridPair rectified(const Rig& rig, const Rectification& rectification, const Gri
   return result;
 }
 
-void RowErrors::add(const Eigen::Vector2d& left, const Eigen::Vector2d& right) {
-  const double error = std::abs(left.y() - right.y());
-  sum_ += error;
-  max_ = std::max(max_, error);
-  ++count_;
-}
-
-RowError RowErrors::result() const {
-  return {count_ > 0 ? sum_ / static_cast<double>(count_) : 0, max_, count_};
+RowError row_error(const std::vector<double>& distances) {
+  RowError error{0, 0, distances.size()};
+  for (const double distance : distances) {
+    error.mean_px += std::abs(distance);
+    error.max_px = std::max(error.max_px, std::abs(distance));
+  }
+  if (!distances.empty()) error.mean_px /= static_cast<double>(distances.size());
+  return error;
 }
 
 int DisparityRange::needed() const {

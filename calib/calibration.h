@@ -20,17 +20,8 @@ struct RowError {
   std::size_t corners = 0;
 };
 
-// Computes a RowError, corner by corner.
-class RowErrors {
- public:
-  void add(const Eigen::Vector2d& left, const Eigen::Vector2d& right);
-  RowError result() const;
-
- private:
-  double sum_ = 0;
-  double max_ = 0;
-  std::size_t count_ = 0;
-};
+// Of these distances, whose signs do not matter.
+RowError row_error(const std::vector<double>& distances);
 
 // Disparities x_left - x_right that the rig has to cover.
 struct DisparityRange {

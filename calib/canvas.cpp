@@ -29,17 +29,8 @@ int fixed_point(double pixels) {
 
 cv::Point fixed_point(const cv::Point2d& point) { return {fixed_point(point.x), fixed_point(point.y)}; }
 
-struct DestroySurface {
-  void operator()(cairo_surface_t* surface) const { cairo_surface_destroy(surface); }
-};
-struct DestroyContext {
-  void operator()(cairo_t* context) const { cairo_destroy(context); }
-};
-struct DestroyOptions {
-  void operator()(cairo_font_options_t* options) const { cairo_font_options_destroy(options); }
-};
-using Surface = std::unique_ptr<cairo_surface_t, DestroySurface>;
-using Context = std::unique_ptr<cairo_t, DestroyContext>;
+using Surface = std::unique_ptr<cairo_surface_t, decltype(&cairo_surface_destroy)>;
+using Context = std::unique_ptr<cairo_t, decltype(&cairo_destroy)>;
 
 // The letters of the font of figures, or Cairo's own where its file is missing. The file is read directly:
 // a search for fonts takes longer than a drawing. The font stays until the process ends.
@@ -55,17 +46,18 @@ cairo_font_face_t* letters() {
 }
 
 Surface mask_of(int width, int height) {
-  return Surface(cairo_image_surface_create(CAIRO_FORMAT_A8, width, height));
+  return {cairo_image_surface_create(CAIRO_FORMAT_A8, width, height), cairo_surface_destroy};
 }
 
 // A context with the font. The letters do not depend on settings of the user.
-Context context_on(cairo_surface_t* surface, double scale) {
-  Context context(cairo_create(surface));
-  const std::unique_ptr<cairo_font_options_t, DestroyOptions> options(cairo_font_options_create());
-  cairo_font_options_set_antialias(options.get(), CAIRO_ANTIALIAS_GRAY);
-  cairo_font_options_set_hint_style(options.get(), CAIRO_HINT_STYLE_NONE);
-  cairo_font_options_set_hint_metrics(options.get(), CAIRO_HINT_METRICS_OFF);
-  cairo_set_font_options(context.get(), options.get());
+Context context_on(const Surface& surface, double scale) {
+  Context context(cairo_create(surface.get()), cairo_destroy);
+  cairo_font_options_t* const options = cairo_font_options_create();
+  cairo_font_options_set_antialias(options, CAIRO_ANTIALIAS_GRAY);
+  cairo_font_options_set_hint_style(options, CAIRO_HINT_STYLE_NONE);
+  cairo_font_options_set_hint_metrics(options, CAIRO_HINT_METRICS_OFF);
+  cairo_set_font_options(context.get(), options);
+  cairo_font_options_destroy(options);
   cairo_set_font_face(context.get(), letters());
   cairo_set_font_size(context.get(), scale * kFontSize);
   return context;
@@ -74,7 +66,7 @@ Context context_on(cairo_surface_t* surface, double scale) {
 // Returns nullopt if the text is not UTF-8.
 std::optional<double> advance_of(const std::string& text, double scale) {
   const Surface surface = mask_of(1, 1);
-  const Context context = context_on(surface.get(), scale);
+  const Context context = context_on(surface, scale);
   cairo_text_extents_t extents;
   cairo_text_extents(context.get(), text.c_str(), &extents);
   if (cairo_status(context.get()) != CAIRO_STATUS_SUCCESS) return std::nullopt;
@@ -88,17 +80,6 @@ std::string drawable(std::string text) {
         text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) > 127; }, '?');
   }
   return text;
-}
-
-// The beginning of a text that is not wider than `width`.
-std::string cut_off(const std::string& text, double scale, int width) {
-  std::string begin = drawable(text);
-  while (!begin.empty() && text_width(begin, scale) > width) {
-    const auto continues = [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U; };
-    while (begin.size() > 1 && continues(begin.back())) begin.pop_back();
-    begin.pop_back();
-  }
-  return begin;
 }
 
 }  // namespace
@@ -138,7 +119,7 @@ void draw_text(cv::Mat& canvas, const std::string& text, cv::Point left_bottom, 
   const cv::Size size(text_width(words, scale) + 2, ascent + cvCeil(0.4 * scale * kFontSize));
   const Surface surface = mask_of(size.width, size.height);
   {
-    const Context context = context_on(surface.get(), scale);
+    const Context context = context_on(surface, scale);
     cairo_move_to(context.get(), 0, ascent);
     cairo_show_text(context.get(), words.c_str());
   }
@@ -185,8 +166,8 @@ void draw_color_scale(cv::Mat& canvas, cv::Point left_bottom, int width, const s
 
 void draw_caption(cv::Mat& canvas, const std::string& caption, const cv::Rect& picture) {
   const double fits = static_cast<double>(picture.width) / std::max(text_width(caption), 1);
-  const double scale = std::clamp(fits, kSmallestScale, 1.0);
-  draw_text(canvas, cut_off(caption, scale, picture.width), {picture.x, picture.y - 8}, scale);
+  cv::Mat strip = canvas({picture.x, picture.y - kCaptionHeight, picture.width, kCaptionHeight});
+  draw_text(strip, caption, {0, kCaptionHeight - 8}, std::clamp(fits, kSmallestScale, 1.0));
 }
 
 void draw_line(cv::Mat& canvas, const cv::Point2d& from, const cv::Point2d& to, const cv::Scalar& color,

@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <iterator>
 #include <limits>
 #include <stdexcept>
@@ -24,11 +23,10 @@ void for_each_point(const DepthGeometry& geometry, const kernels::GrayImage& dis
   }
 }
 
+// Little endian, as in memory.
 void append(std::string& bytes, double value) {
   const auto single = static_cast<float>(value);
-  std::uint32_t bits = 0;
-  std::memcpy(&bits, &single, sizeof bits);
-  for (unsigned shift = 0; shift < 32; shift += 8) bytes.push_back(static_cast<char>(bits >> shift & 0xFFU));
+  bytes.append(reinterpret_cast<const char*>(&single), sizeof single);
 }
 
 }  // namespace

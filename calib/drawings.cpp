@@ -29,35 +29,31 @@ cv::Scalar row_color(int row) {
   return colors[static_cast<std::size_t>(row) % colors.size()];
 }
 
-void draw_cross(cv::Mat& picture, const cv::Point2d& middle) {
-  constexpr double kReach = 5;
-  const cv::Scalar red(0, 0, 255);
-  draw_line(picture, middle - cv::Point2d(kReach, kReach), middle + cv::Point2d(kReach, kReach), red, 2);
-  draw_line(picture, middle - cv::Point2d(kReach, -kReach), middle + cv::Point2d(kReach, -kReach), red, 2);
-}
-
-void draw_square(cv::Mat& picture, const cv::Point2d& middle, const cv::Scalar& color) {
-  constexpr double kReach = 8;
-  const cv::Point2d down(kReach, kReach);
-  const cv::Point2d up(kReach, -kReach);
-  draw_polygon(picture, {middle - down, middle + up, middle + down, middle - up}, color, 2);
-}
-
 cv::Mat with_corners(const GridShape& shape, const kernels::GrayImage& image, const MarkedCorners& marked) {
   constexpr double kRadius = 4;
+  constexpr double kCross = 5;   // from the middle to its ends, across and down
+  constexpr double kSquare = 8;  // from the middle to its sides
+  const cv::Scalar red(0, 0, 255);
   cv::Mat picture = in_grey(image);
   std::vector<cv::Point2d> middles;
   for (const Eigen::Vector2d& corner : marked.corners) middles.emplace_back(corner.x(), corner.y());
   const auto color = [&shape](std::size_t i) { return row_color(static_cast<int>(i) / shape.columns); };
-  for (std::size_t i = 1; i < middles.size(); ++i) {
-    draw_line(picture, middles[i - 1], middles[i], color(i));
-  }
+  for (std::size_t i = 1; i < middles.size(); ++i) draw_line(picture, middles[i - 1], middles[i], color(i));
   for (std::size_t i = 0; i < middles.size(); ++i) {
-    if (i == 0) draw_square(picture, middles[i], color(i));
+    const cv::Point2d down(1, 1);
+    const cv::Point2d up(1, -1);
+    const cv::Point2d& middle = middles[i];
+    if (i == 0) {
+      draw_polygon(
+          picture,
+          {middle - kSquare * down, middle + kSquare * up, middle + kSquare * down, middle - kSquare * up},
+          color(i), 2);
+    }
     if (!marked.left_out.empty() && marked.left_out[i]) {
-      draw_cross(picture, middles[i]);
+      for (const cv::Point2d& end : {kCross * down, kCross * up})
+        draw_line(picture, middle - end, middle + end, red, 2);
     } else {
-      draw_circle(picture, middles[i], kRadius, color(i));
+      draw_circle(picture, middle, kRadius, color(i));
     }
   }
   return picture;
@@ -83,25 +79,25 @@ struct Moves {
 
 Moves moves_of(const kernels::RectificationTable& table) {
   Moves moves;
-  int count = 0;
-  const auto for_each = [&table](const auto& visit) {
-    for (int row = 0; row < table.height; ++row) {
-      for (int column = 0; column < table.width; ++column) {
-        if (const auto moved = displacement(table, column, row)) visit(column, row, *moved);
-      }
+  cv::Mat_<cv::Point2d> moved(table.height, table.width);
+  cv::Mat1b is_valid(table.height, table.width, std::uint8_t{0});
+  for (int row = 0; row < table.height; ++row) {
+    for (int column = 0; column < table.width; ++column) {
+      const auto found = displacement(table, column, row);
+      is_valid(row, column) = found ? 255 : 0;
+      moved(row, column) = found.value_or(cv::Point2d());
+      moves.offset += moved(row, column);
     }
-  };
-  for_each([&](int /*column*/, int /*row*/, const cv::Point2d& moved) {
-    moves.offset += moved;
-    ++count;
-  });
-  moves.offset /= std::max(count, 1);
+  }
+  moves.offset /= std::max(cv::countNonZero(is_valid), 1);
   moves.lengths = cv::Mat1f(table.height, table.width, std::numeric_limits<float>::quiet_NaN());
-  for_each([&](int column, int row, const cv::Point2d& moved) {
-    const auto length = static_cast<float>(cv::norm(moved - moves.offset));
-    moves.lengths(row, column) = length;
-    moves.largest = std::max(moves.largest, static_cast<double>(length));
-  });
+  for (int row = 0; row < table.height; ++row) {
+    for (int column = 0; column < table.width; ++column) {
+      if (is_valid(row, column) == 0) continue;
+      moves.lengths(row, column) = static_cast<float>(cv::norm(moved(row, column) - moves.offset));
+      moves.largest = std::max<double>(moves.largest, moves.lengths(row, column));
+    }
+  }
   return moves;
 }
 
@@ -161,13 +157,11 @@ const cv::Size kChartSize(800, 500);
 const cv::Rect kPlot(52, 68, 724, 372);  // inside the axes
 const cv::Scalar kGridColor(221, 221, 221);
 
-enum class Mark { kNone, kRing, kDisc };
-
 struct Curve {
   std::string name;
   cv::Scalar color;
-  int thickness = 1;  // pixels
-  Mark mark = Mark::kNone;
+  int thickness = 1;           // pixels
+  double mark = 0;             // radius of its marks, pixels: a ring if it is large; 0: none
   std::vector<double> values;  // [i]: for lines_of(i)
 };
 
@@ -175,7 +169,7 @@ int lines_of(std::size_t index) { return 1 + 2 * static_cast<int>(index); }
 
 // Two curves of source_lines(): the largest number in the picture, and the mean.
 std::vector<Curve> curves_of(const kernels::RectificationTable& table, const std::string& side,
-                             const cv::Scalar& color, Mark mark) {
+                             const cv::Scalar& color, double mark) {
   Curve largest{side + ", maximum", color, 2, mark, {}};
   Curve mean{side + ", mean", color, 1, mark, {}};
   const int most = std::min(kMostLines, table.height);
@@ -188,21 +182,15 @@ std::vector<Curve> curves_of(const kernels::RectificationTable& table, const std
   return {largest, mean};
 }
 
-// The vertical axis: from 0 to a multiple of the step, which is 1, 2 or 5 times a power of ten.
+// The vertical axis: from 0 to a multiple of the step, in ten steps at most.
 struct Axis {
   int step = 1;
   int end = 1;
 };
 
 Axis axis_to(double most) {
-  constexpr int kMostSteps = 10;
-  for (int power = 1;; power *= 10) {
-    for (const int digit : {1, 2, 5}) {
-      const int step = digit * power;
-      const int steps = std::max(1, cvCeil(most / step));
-      if (steps <= kMostSteps) return {step, steps * step};
-    }
-  }
+  const int step = std::max(1, cvCeil(most / 10));
+  return {step, std::max(1, cvCeil(most / step)) * step};
 }
 
 cv::Point2d place(const Axis& axis, double lines, double y) {
@@ -225,12 +213,9 @@ void draw_axes(cv::Mat& chart, const Axis& axis) {
     draw_text(chart, label,
               {cvRound(tick.x) - text_width(label) / 2, kPlot.br().y + kTickLength + 6 + kTextHeight});
   }
-  const cv::Point origin(kPlot.x, kPlot.br().y);
-  cv::line(chart, {kPlot.x, kPlot.y}, origin, kBlack);
-  cv::line(chart, origin, {kPlot.br().x, origin.y}, kBlack);
-}
-
-void draw_titles(cv::Mat& chart) {
+  draw_polygon(
+      chart, {place(axis, 0, axis.end), place(axis, 0, 0), place(axis, kMostLines + 1, 0), place(axis, 0, 0)},
+      kBlack);
   draw_text(chart,
             "Lines of the camera's picture, from first to last, that n rows of the rectified picture take "
             "pixels from",
@@ -240,8 +225,9 @@ void draw_titles(cv::Mat& chart) {
 }
 
 void draw_mark(cv::Mat& chart, const cv::Point2d& middle, const Curve& curve) {
-  if (curve.mark == Mark::kRing) draw_circle(chart, middle, 5, curve.color);
-  if (curve.mark == Mark::kDisc) draw_circle(chart, middle, 2.5, curve.color, cv::FILLED);
+  constexpr double kLargestDisc = 3;
+  if (curve.mark > 0)
+    draw_circle(chart, middle, curve.mark, curve.color, curve.mark > kLargestDisc ? 1 : cv::FILLED);
 }
 
 void draw_curve(cv::Mat& chart, const Axis& axis, const Curve& curve) {
@@ -322,9 +308,9 @@ std::vector<std::uint8_t> encode_displacement_png(const kernels::RectificationTa
 
 std::vector<std::uint8_t> encode_source_lines_png(const kernels::RectificationTable& left,
                                                   const kernels::RectificationTable& right) {
-  std::vector<Curve> curves = {{"n", kGray, 1, Mark::kNone, {}}};
-  for (const Curve& curve : curves_of(left, "left", kBlue, Mark::kRing)) curves.push_back(curve);
-  for (const Curve& curve : curves_of(right, "right", kVermilion, Mark::kDisc)) curves.push_back(curve);
+  std::vector<Curve> curves = {{"n", kGray, 1, 0, {}}};
+  for (const Curve& curve : curves_of(left, "left", kBlue, 5)) curves.push_back(curve);
+  for (const Curve& curve : curves_of(right, "right", kVermilion, 2.5)) curves.push_back(curve);
   for (std::size_t i = 0; i < curves.back().values.size(); ++i) curves.front().values.push_back(lines_of(i));
   double most = 0;
   for (const Curve& curve : curves) {
@@ -334,7 +320,6 @@ std::vector<std::uint8_t> encode_source_lines_png(const kernels::RectificationTa
   const Axis axis = axis_to(most);
   cv::Mat chart(kChartSize, CV_8UC3, kWhite);
   draw_axes(chart, axis);
-  draw_titles(chart);
   draw_legend(chart, curves);
   for (const Curve& curve : curves) draw_curve(chart, axis, curve);
   return encode_png(chart);

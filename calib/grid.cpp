@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <iterator>
 #include <limits>
 #include <opencv2/calib3d.hpp>
@@ -23,14 +24,14 @@ std::size_t index_of(const GridShape& shape, int column, int row) {
 
 double smallest_spacing(const GridShape& shape, const Corners& corners) {
   double smallest = std::numeric_limits<double>::infinity();
-  const auto compare = [&](std::size_t a, std::size_t b) {
-    smallest = std::min(smallest, (corners[a] - corners[b]).norm());
-  };
   for (int row = 0; row < shape.rows; ++row) {
     for (int column = 0; column < shape.columns; ++column) {
-      const std::size_t here = index_of(shape, column, row);
-      if (column + 1 < shape.columns) compare(here, index_of(shape, column + 1, row));
-      if (row + 1 < shape.rows) compare(here, index_of(shape, column, row + 1));
+      const Eigen::Vector2d& here = corners[index_of(shape, column, row)];
+      const Eigen::Vector2d& right = corners[index_of(shape, std::min(column + 1, shape.columns - 1), row)];
+      const Eigen::Vector2d& below = corners[index_of(shape, column, std::min(row + 1, shape.rows - 1))];
+      for (const double distance : {(right - here).norm(), (below - here).norm()}) {
+        if (distance > 0) smallest = std::min(smallest, distance);
+      }
     }
   }
   return smallest;
@@ -98,12 +99,10 @@ class BoardCheck {
       : picture_(picture), shape_(shape), corners_(corners) {
     std::vector<cv::Point2d> on_board;
     std::vector<cv::Point2d> seen;
-    for (int row = 0; row < shape.rows; ++row) {
-      for (int column = 0; column < shape.columns; ++column) {
-        const Eigen::Vector2d& corner = corners[index_of(shape, column, row)];
-        on_board.emplace_back(column, row);
-        seen.emplace_back(corner.x(), corner.y());
-      }
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      const auto [row, column] = std::div(static_cast<int>(i), shape.columns);
+      on_board.emplace_back(column, row);
+      seen.emplace_back(corners[i].x(), corners[i].y());
     }
     without_lens_ = to_eigen<Eigen::Matrix3d>(cv::findHomography(on_board, seen));
   }
@@ -162,17 +161,16 @@ class BoardCheck {
     return contrast(picture_, here, right, down);
   }
 
+  // Of a line of corners. The signs of its corners alternate.
   double contrast_of_column(int column) const {
     double sum = 0;
     for (int row = 0; row < shape_.rows; ++row) sum += (row % 2 == 0 ? 1 : -1) * contrast_at(column, row);
     return sum;
   }
-
   double contrast_of_row(int row) const {
     double sum = 0;
-    for (int column = 0; column < shape_.columns; ++column) {
+    for (int column = 0; column < shape_.columns; ++column)
       sum += (column % 2 == 0 ? 1 : -1) * contrast_at(column, row);
-    }
     return sum;
   }
 

@@ -29,14 +29,8 @@ constexpr std::array<std::pair<double, double>, 4> kPages = {
     {{297, 210}, {210, 297}, {420, 297}, {297, 420}}};
 constexpr double kNarrowestPageMm = 210;
 
-struct DestroySurface {
-  void operator()(cairo_surface_t* surface) const { cairo_surface_destroy(surface); }
-};
-struct DestroyContext {
-  void operator()(cairo_t* context) const { cairo_destroy(context); }
-};
-using Surface = std::unique_ptr<cairo_surface_t, DestroySurface>;
-using Context = std::unique_ptr<cairo_t, DestroyContext>;
+using Surface = std::unique_ptr<cairo_surface_t, decltype(&cairo_surface_destroy)>;
+using Context = std::unique_ptr<cairo_t, decltype(&cairo_destroy)>;
 
 double board_width(const GridShape& shape) { return (shape.columns + 1) * shape.square_mm; }
 double board_height(const GridShape& shape) { return (shape.rows + 1) * shape.square_mm; }
@@ -47,12 +41,9 @@ GridSheet with_board(const GridShape& shape, double width_mm, double height_mm) 
           (height_mm - kPrintHeightMm - board_height(shape)) / 2};
 }
 
+// A square, or a line from one end to the other.
 struct Box {
   double left, top, right, bottom;  // mm
-};
-
-struct Line {
-  double x1, y1, x2, y2;  // mm
 };
 
 struct Text {
@@ -65,46 +56,38 @@ struct Text {
 struct Drawing {
   GridSheet sheet;
   std::vector<Box> squares;
-  std::vector<Line> lines;
+  std::vector<Box> lines;
   std::vector<Text> texts;
 };
-
-std::vector<Box> squares_of(const GridShape& shape, const GridSheet& sheet) {
-  std::vector<Box> squares;
-  for (int row = 0; row <= shape.rows; ++row) {
-    for (int column = row % 2; column <= shape.columns; column += 2) {
-      squares.push_back({sheet.board_left_mm + column * shape.square_mm,
-                         sheet.board_top_mm + row * shape.square_mm,
-                         sheet.board_left_mm + (column + 1) * shape.square_mm,
-                         sheet.board_top_mm + (row + 1) * shape.square_mm});
-    }
-  }
-  return squares;
-}
-
-// A ruler with a tick every 10 mm, upwards from `bottom`.
-std::vector<Line> ruler_at(double left, double bottom) {
-  std::vector<Line> lines = {{left, bottom, left + kRulerMm, bottom}};
-  for (int mm = 0; mm <= kRulerMm; mm += 10) {
-    const double height = mm % 50 == 0 ? kFontSizeMm : kFontSizeMm / 2;
-    lines.push_back({left + mm, bottom + kLineMm / 2, left + mm, bottom - height});
-  }
-  return lines;
-}
 
 std::string small_print(const GridShape& shape) {
   return fmt::format("{}x{} inner corners, squares of {:.6g} mm: print at 100 %", shape.columns, shape.rows,
                      shape.square_mm);
 }
 
+// With a ruler that has a tick every 10 mm, upwards from its bottom.
 Drawing drawing_of(const GridShape& shape) {
   constexpr double kPrintWidthMm = 198;  // from the beginning of the ruler to the end of the text
-  const GridSheet sheet = grid_sheet(shape);
+  Drawing drawing{grid_sheet(shape), {}, {}, {}};
+  const GridSheet& sheet = drawing.sheet;
+  for (int row = 0; row <= shape.rows; ++row) {
+    for (int column = row % 2; column <= shape.columns; column += 2) {
+      drawing.squares.push_back({sheet.board_left_mm + column * shape.square_mm,
+                                 sheet.board_top_mm + row * shape.square_mm,
+                                 sheet.board_left_mm + (column + 1) * shape.square_mm,
+                                 sheet.board_top_mm + (row + 1) * shape.square_mm});
+    }
+  }
   const double left = (sheet.width_mm - kPrintWidthMm) / 2;
   const double bottom = sheet.height_mm - kPrintHeightMm / 2;
-  const std::vector<Text> texts = {{fmt::format("{} mm", kRulerMm), left + kRulerMm + 1, bottom, false},
-                                   {small_print(shape), left + kPrintWidthMm, bottom, true}};
-  return {sheet, squares_of(shape, sheet), ruler_at(left, bottom), texts};
+  drawing.lines = {{left, bottom, left + kRulerMm, bottom}};
+  for (int mm = 0; mm <= kRulerMm; mm += 10) {
+    const double height = mm % 50 == 0 ? kFontSizeMm : kFontSizeMm / 2;
+    drawing.lines.push_back({left + mm, bottom + kLineMm / 2, left + mm, bottom - height});
+  }
+  drawing.texts = {{fmt::format("{} mm", kRulerMm), left + kRulerMm + 1, bottom, false},
+                   {small_print(shape), left + kPrintWidthMm, bottom, true}};
+  return drawing;
 }
 
 void draw(cairo_t* context, const Drawing& drawing) {
@@ -119,9 +102,9 @@ void draw(cairo_t* context, const Drawing& drawing) {
     cairo_close_path(context);
   }
   cairo_fill(context);
-  for (const Line& line : drawing.lines) {
-    cairo_move_to(context, line.x1, line.y1);
-    cairo_line_to(context, line.x2, line.y2);
+  for (const Box& line : drawing.lines) {
+    cairo_move_to(context, line.left, line.top);
+    cairo_line_to(context, line.right, line.bottom);
   }
   cairo_set_line_width(context, kLineMm);
   cairo_stroke(context);
@@ -133,20 +116,6 @@ void draw(cairo_t* context, const Drawing& drawing) {
     cairo_text_extents(context, text.words.c_str(), &extents);
     cairo_move_to(context, text.ends_at_x ? text.x - extents.x_advance : text.x, text.bottom);
     cairo_show_text(context, text.words.c_str());
-  }
-}
-
-// Draws on the surface of a PDF, and finishes it.
-void draw(cairo_surface_t* surface, const Drawing& drawing) {
-  const Context context(cairo_create(surface));
-  cairo_scale(context.get(), kPointsPerMm, kPointsPerMm);
-  draw(context.get(), drawing);
-  cairo_surface_finish(surface);
-  for (const cairo_status_t status : {cairo_status(context.get()), cairo_surface_status(surface)}) {
-    if (status != CAIRO_STATUS_SUCCESS) {
-      throw std::runtime_error(
-          fmt::format("the sheet could not be drawn: {}", cairo_status_to_string(status)));
-    }
   }
 }
 
@@ -190,11 +159,21 @@ GridSheet grid_sheet(const GridShape& shape) {
 std::string grid_sheet_pdf(const GridShape& shape) {
   const Drawing drawing = drawing_of(shape);
   std::string bytes;
-  const Surface surface(cairo_pdf_surface_create_for_stream(
-      append, &bytes, drawing.sheet.width_mm * kPointsPerMm, drawing.sheet.height_mm * kPointsPerMm));
+  const Surface surface(
+      cairo_pdf_surface_create_for_stream(append, &bytes, drawing.sheet.width_mm * kPointsPerMm,
+                                          drawing.sheet.height_mm * kPointsPerMm),
+      cairo_surface_destroy);
   cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_TITLE, small_print(shape).c_str());
   cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_CREATE_DATE, "");
-  draw(surface.get(), drawing);
+  const Context context(cairo_create(surface.get()), cairo_destroy);
+  cairo_scale(context.get(), kPointsPerMm, kPointsPerMm);
+  draw(context.get(), drawing);
+  cairo_surface_finish(surface.get());
+  for (const cairo_status_t status : {cairo_status(context.get()), cairo_surface_status(surface.get())}) {
+    if (status != CAIRO_STATUS_SUCCESS)
+      throw std::runtime_error(
+          fmt::format("the sheet could not be drawn: {}", cairo_status_to_string(status)));
+  }
   return bytes;
 }
 
@@ -215,10 +194,10 @@ std::string grid_sheet_svg(const GridShape& shape) {
     svg += fmt::format("<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/>\n", left, top,
                        rounded(square.right - left), rounded(square.bottom - top));
   }
-  for (const Line& line : drawing.lines) {
-    svg +=
-        fmt::format("<line x1=\"{}\" y1=\"{}\" x2=\"{}\" y2=\"{}\" stroke=\"black\" stroke-width=\"{}\"/>\n",
-                    rounded(line.x1), rounded(line.y1), rounded(line.x2), rounded(line.y2), kLineMm);
+  for (const Box& line : drawing.lines) {
+    svg += fmt::format(
+        "<line x1=\"{}\" y1=\"{}\" x2=\"{}\" y2=\"{}\" stroke=\"black\" stroke-width=\"{}\"/>\n",
+        rounded(line.left), rounded(line.top), rounded(line.right), rounded(line.bottom), kLineMm);
   }
   for (const Text& text : drawing.texts) {
     svg += fmt::format(

@@ -3,7 +3,6 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <opencv2/calib3d.hpp>
 #include <stdexcept>
@@ -109,23 +108,22 @@ double median(std::vector<double> values) {
 // pictures would spoil the fit to all pairs.
 Used pairs_that_agree(const SingleFit& left, const SingleFit& right, std::size_t corners) {
   constexpr double kMostShare = 0.02;  // of the distance of the grid
-  std::array<std::vector<double>, 3> places;
+  std::vector<Eigen::Vector3d> places;
   std::vector<double> distances;
   for (std::size_t pair = 0; pair < left.rotations.size(); ++pair) {
     const Eigen::Isometry3d from_grid = to_pose(left.rotations[pair], left.translations[pair]);
-    const Eigen::Isometry3d to_right =
-        to_pose(right.rotations[pair], right.translations[pair]) * from_grid.inverse();
-    for (int axis = 0; axis < 3; ++axis) {
-      places[static_cast<std::size_t>(axis)].push_back(to_right.translation()[axis]);
-    }
+    places.push_back(
+        (to_pose(right.rotations[pair], right.translations[pair]) * from_grid.inverse()).translation());
     distances.push_back(from_grid.translation().norm());
   }
-  const Eigen::Vector3d middle(median(places[0]), median(places[1]), median(places[2]));
-  std::vector<double> errors;
-  for (std::size_t pair = 0; pair < distances.size(); ++pair) {
-    const Eigen::Vector3d place(places[0][pair], places[1][pair], places[2][pair]);
-    errors.push_back((place - middle).norm());
+  Eigen::Vector3d middle;
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<double> along;
+    for (const Eigen::Vector3d& place : places) along.push_back(place[axis]);
+    middle[axis] = median(along);
   }
+  std::vector<double> errors;
+  for (const Eigen::Vector3d& place : places) errors.push_back((place - middle).norm());
   const double usual = kMostMedians * median(errors);
   Used used;
   for (std::size_t pair = 0; pair < distances.size(); ++pair) {
@@ -135,18 +133,13 @@ Used pairs_that_agree(const SingleFit& left, const SingleFit& right, std::size_t
   return used;
 }
 
-template <typename Visit>
-void for_each_corner(const Used& used, const Visit& visit) {
-  for (std::size_t pair = 0; pair < used.size(); ++pair) {
-    for (std::size_t corner = 0; corner < used[pair].size(); ++corner) visit(pair, corner);
-  }
-}
-
 Used corners_that_fit(const RigFit& fit) {
   std::vector<double> of_used;
-  for_each_corner(fit.used, [&](std::size_t pair, std::size_t corner) {
-    if (fit.used[pair][corner]) of_used.push_back(fit.misfits[pair].of_corner(corner));
-  });
+  for (std::size_t pair = 0; pair < fit.used.size(); ++pair) {
+    for (std::size_t corner = 0; corner < fit.used[pair].size(); ++corner) {
+      if (fit.used[pair][corner]) of_used.push_back(fit.misfits[pair].of_corner(corner));
+    }
+  }
   const double most = std::max(kAlwaysFits, kMostMedians * median(std::move(of_used)));
   Used result = fit.used;
   for (std::size_t pair = 0; pair < result.size(); ++pair) {
@@ -187,16 +180,18 @@ void add_figures(RigFit& fit) {
   double left = 0;
   double right = 0;
   std::size_t count = 0;
-  for_each_corner(fit.used, [&](std::size_t pair, std::size_t corner) {
+  for (std::size_t pair = 0; pair < fit.used.size(); ++pair) {
     const Misfit& its = fit.misfits[pair];
-    if (!fit.used[pair][corner]) {
-      fit.left_out.push_back({pair, corner, its.of_corner(corner)});
-      return;
+    for (std::size_t corner = 0; corner < fit.used[pair].size(); ++corner) {
+      if (!fit.used[pair][corner]) {
+        fit.left_out.push_back({pair, corner, its.of_corner(corner)});
+        continue;
+      }
+      left += its.left[corner] * its.left[corner];
+      right += its.right[corner] * its.right[corner];
+      ++count;
     }
-    left += its.left[corner] * its.left[corner];
-    right += its.right[corner] * its.right[corner];
-    ++count;
-  });
+  }
   const auto corners = static_cast<double>(count);
   fit.left_rms_px = std::sqrt(left / corners);
   fit.right_rms_px = std::sqrt(right / corners);
@@ -235,57 +230,42 @@ Eigen::Isometry3d moved(const Eigen::Isometry3d& pose, const Step& step) {
 // The pose of the grid, which maps grid coordinates to camera coordinates of the left camera. It minimises
 // the squared distances, in the pictures of both cameras, between the used corners as found and their
 // positions under this pose (Gauss-Newton).
-class PoseFit {
- public:
-  PoseFit(const Rig& rig, const GridShape& shape, const GridPair& pair, const std::vector<bool>& used)
-      : rig_(rig) {
-    const std::vector<Eigen::Vector3d> points = corner_points(shape);
-    for (std::size_t corner = 0; corner < points.size(); ++corner) {
-      if (!used[corner]) continue;
-      points_.push_back(points[corner]);
-      left_.push_back(pair.left[corner]);
-      right_.push_back(pair.right[corner]);
-    }
+Eigen::Isometry3d fitted_pose(const Rig& rig, const std::vector<Eigen::Vector3d>& all_points,
+                              const GridPair& pair, const std::vector<bool>& used) {
+  constexpr int kMostSteps = 30;
+  constexpr double kCloseEnough = 1e-10;  // radians and millimetres
+  constexpr double kDifference = 1e-6;
+  std::vector<Eigen::Vector3d> points;
+  Corners left;
+  Corners right;
+  for (std::size_t corner = 0; corner < all_points.size(); ++corner) {
+    if (!used[corner]) continue;
+    points.push_back(all_points[corner]);
+    left.push_back(pair.left[corner]);
+    right.push_back(pair.right[corner]);
   }
-
-  Eigen::Isometry3d solve() const {
-    constexpr int kMostSteps = 30;
-    constexpr double kCloseEnough = 1e-10;  // radians and millimetres
-    Eigen::Isometry3d pose = pose_from_left(rig_, points_, left_);
-    for (int i = 0; i < kMostSteps; ++i) {
-      const Eigen::MatrixXd slope = derivative(pose);
-      const Step step = (slope.transpose() * slope).ldlt().solve(-slope.transpose() * errors(pose));
-      pose = moved(pose, step);
-      if (step.norm() < kCloseEnough) break;
-    }
-    return pose;
-  }
-
- private:
-  Eigen::VectorXd errors(const Eigen::Isometry3d& pose) const {
-    Eigen::VectorXd result(static_cast<Eigen::Index>(4 * points_.size()));
-    for (std::size_t i = 0; i < points_.size(); ++i) {
-      const SeenPoint seen = seen_by(rig_, pose * points_[i]);
-      result.segment<4>(static_cast<Eigen::Index>(4 * i)) << seen.left - left_[i], seen.right - right_[i];
+  const auto size = static_cast<Eigen::Index>(4 * points.size());
+  const auto errors = [&](const Eigen::Isometry3d& pose) {
+    Eigen::VectorXd result(size);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const SeenPoint seen = seen_by(rig, pose * points[i]);
+      result.segment<4>(static_cast<Eigen::Index>(4 * i)) << seen.left - left[i], seen.right - right[i];
     }
     return result;
-  }
-
-  Eigen::MatrixXd derivative(const Eigen::Isometry3d& pose) const {
-    constexpr double kDifference = 1e-6;
-    Eigen::MatrixXd result(static_cast<Eigen::Index>(4 * points_.size()), 6);
-    for (int i = 0; i < 6; ++i) {
-      const Step step = Step::Unit(i) * kDifference;
-      result.col(i) = (errors(moved(pose, step)) - errors(moved(pose, -step))) / (2 * kDifference);
+  };
+  Eigen::Isometry3d pose = pose_from_left(rig, points, left);
+  for (int i = 0; i < kMostSteps; ++i) {
+    Eigen::MatrixXd slope(size, 6);
+    for (int axis = 0; axis < 6; ++axis) {
+      const Step part = Step::Unit(axis) * kDifference;
+      slope.col(axis) = (errors(moved(pose, part)) - errors(moved(pose, -part))) / (2 * kDifference);
     }
-    return result;
+    const Step step = (slope.transpose() * slope).ldlt().solve(-slope.transpose() * errors(pose));
+    pose = moved(pose, step);
+    if (step.norm() < kCloseEnough) break;
   }
-
-  const Rig& rig_;
-  std::vector<Eigen::Vector3d> points_;
-  Corners left_;
-  Corners right_;
-};
+  return pose;
+}
 
 }  // namespace
 
@@ -314,8 +294,8 @@ Rig solve_rig(const GridShape& shape, const std::vector<GridPair>& pairs, const 
 }
 
 Misfit misfit(const Rig& rig, const GridShape& shape, const GridPair& pair, const std::vector<bool>& used) {
-  const Eigen::Isometry3d pose = PoseFit(rig, shape, pair, used).solve();
   const std::vector<Eigen::Vector3d> points = corner_points(shape);
+  const Eigen::Isometry3d pose = fitted_pose(rig, points, pair, used);
   Misfit result;
   for (std::size_t corner = 0; corner < points.size(); ++corner) {
     const SeenPoint seen = seen_by(rig, pose * points[corner]);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -16,6 +17,132 @@ using Eigen::AngleAxisd;
 using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
+using kernels::GrayImage;
+
+constexpr double kNowhere = std::numeric_limits<double>::infinity();
+
+// The floor of a value; std::floor would be a function call.
+std::int64_t below(double value) {
+  const auto towards_zero = static_cast<std::int64_t>(value);
+  return towards_zero - (value < static_cast<double>(towards_zero) ? 1 : 0);
+}
+
+// A random value of 0..1 at a point of a lattice.
+double lattice(std::uint64_t seed, std::int64_t column, std::int64_t row) {
+  const std::uint64_t position = static_cast<std::uint64_t>(row) << 32U ^ static_cast<std::uint64_t>(column);
+  return unit(mixed(seed + position * kSplitMixStep));
+}
+
+double smooth(double part) { return part * part * (3 - 2 * part); }
+
+// A value of 0..1, interpolated between the points of a lattice.
+double value_noise(std::uint64_t seed, double x, double y) {
+  const std::int64_t column = below(x);
+  const std::int64_t row = below(y);
+  const double right = smooth(x - static_cast<double>(column));
+  const double down = smooth(y - static_cast<double>(row));
+  const double above = lattice(seed, column, row) * (1 - right) + lattice(seed, column + 1, row) * right;
+  const double under =
+      lattice(seed, column, row + 1) * (1 - right) + lattice(seed, column + 1, row + 1) * right;
+  return above * (1 - down) + under * down;
+}
+
+// Levels before they are rounded, row by row.
+using Levels = std::vector<float>;
+
+// Mixes each of `count` levels, which are `step` apart, with its two neighbours. Beyond the ends, the first
+// and the last level repeat.
+void mix(const float* in, float* out, std::size_t count, std::size_t step) {
+  constexpr float kNeighbour = 0.15F;
+  for (std::size_t i = 0; i < count; ++i) {
+    const float before = in[(i > 0 ? i - 1 : 0) * step];
+    const float after = in[std::min(i + 1, count - 1) * step];
+    out[i * step] = (1 - 2 * kNeighbour) * in[i * step] + kNeighbour * (before + after);
+  }
+}
+
+GrayImage through_lens(const Levels& levels, int width, int height) {
+  const auto columns = static_cast<std::size_t>(width);
+  const auto rows = static_cast<std::size_t>(height);
+  Levels in_rows(levels.size());
+  Levels result(levels.size());
+  for (std::size_t y = 0; y < rows; ++y) mix(&levels[y * columns], &in_rows[y * columns], columns, 1);
+  for (std::size_t x = 0; x < columns; ++x) mix(&in_rows[x], &result[x], rows, columns);
+  GrayImage image(width, height);
+  std::transform(result.begin(), result.end(), image.pixels.begin(),
+                 [](float level) { return static_cast<std::uint8_t>(std::lround(level)); });
+  return image;
+}
+
+// A grey level, 0..255, for every position on a surface. The surface defines the unit of length.
+using Texture = std::function<double(const Vector2d& position)>;
+
+// Smooth noise around a level, with details of one, two, four and eight units. It is flat nowhere.
+Texture noise(std::uint64_t seed, double level) {
+  return [seed, level](const Vector2d& position) {
+    constexpr int kSizes = 4;
+    constexpr double kContrast = 100;  // a standard deviation of about 40
+    double sum = 0;
+    double scale = 1;
+    for (int size = 0; size < kSizes; ++size, scale /= 2) {
+      const std::uint64_t own_seed = seed + static_cast<std::uint64_t>(size);
+      sum += value_noise(own_seed, position.x() * scale, position.y() * scale) - 0.5;
+    }
+    return std::clamp(level + kContrast * sum, 0.0, 255.0);
+  };
+}
+
+// A chessboard on white. The unit is a square and the first inner corner is the origin; the square above and
+// to the left of it is black.
+Texture chessboard(const GridShape& shape) {
+  return [columns = shape.columns, rows = shape.rows](const Vector2d& position) {
+    constexpr double kBlack = 30;
+    constexpr double kWhite = 220;
+    const std::int64_t column = below(position.x());
+    const std::int64_t row = below(position.y());
+    const bool on_squares = column >= -1 && column < columns && row >= -1 && row < rows;
+    return on_squares && (column + row) % 2 == 0 ? kBlack : kWhite;
+  };
+}
+
+// A textured rectangle. `origin` is the origin of its texture. The vectors `across` and `down`, at right
+// angles, are one unit of the texture each. `extent` is the rectangle in these units. Both sides look the
+// same.
+Surface plane(const Vector3d& origin, const Vector3d& across, const Vector3d& down,
+              const Eigen::AlignedBox2d& extent, Texture texture) {
+  const Vector3d normal = across.cross(down).normalized();
+  const auto position = [origin, to_across = Vector3d(across / across.squaredNorm()),
+                         to_down = Vector3d(down / down.squaredNorm())](const Vector3d& point) -> Vector2d {
+    const Vector3d from_origin = point - origin;
+    return {to_across.dot(from_origin), to_down.dot(from_origin)};
+  };
+  return {
+      [=](const Ray& ray) {
+        const double t = normal.dot(origin - ray.origin) / normal.dot(ray.direction);
+        // A ray that is parallel to the plane or lies in it misses it too.
+        if (!(t > 0) || !std::isfinite(t)) return kNowhere;
+        return extent.contains(position(ray.at(t))) ? t : kNowhere;
+      },
+      [position, texture = std::move(texture)](const Vector3d& point) { return texture(position(point)); }};
+}
+
+// A sphere whose texture is projected from far away along the z axis, so that it looks as fine at the rim as
+// in the middle. A unit of the texture is `unit_mm`.
+Surface sphere(const Vector3d& centre, double radius, double unit_mm, Texture texture) {
+  return {[=](const Ray& ray) {
+            const Vector3d to_centre = centre - ray.origin;
+            const double square = ray.direction.squaredNorm();
+            const double middle = ray.direction.dot(to_centre) / square;
+            const double half_squared =
+                middle * middle - (to_centre.squaredNorm() - radius * radius) / square;
+            if (!(half_squared >= 0)) return kNowhere;
+            const double t = middle - std::sqrt(half_squared);
+            return t > 0 ? t : kNowhere;
+          },
+          [=, texture = std::move(texture)](const Vector3d& point) {
+            return texture((point - centre).head<2>() / unit_mm);
+          }};
+}
 
 constexpr double kGridBackground = 115;
 constexpr double kPi = 3.14159265358979323846;
@@ -81,7 +208,7 @@ struct Rectangle {
 // are not.
 SceneSurfaces random_scene(std::uint64_t seed, const Rig& rig) {
   SplitMix random = random_for(seed, Part::scene);
-  std::vector<std::variant<Plane, Sphere>> surfaces;
+  std::vector<Surface> surfaces;
   const auto add_plane = [&](const Rectangle& shape) {
     const Matrix3d axes = (AngleAxisd(radians(shape.turn), Vector3d::UnitY()) *
                            AngleAxisd(radians(shape.tilt), Vector3d::UnitX()))
@@ -89,14 +216,13 @@ SceneSurfaces random_scene(std::uint64_t seed, const Rig& rig) {
     const double unit = unit_at(shape.middle.z(), rig);
     const Vector2d units(unit, unit * shape.foreshortened);
     const Vector2d corner = shape.size.cwiseQuotient(2 * units);
-    surfaces.emplace_back(Plane(shape.middle, axes.col(0) * units.x(), axes.col(1) * units.y(),
-                                {-corner, corner}, noise(random.next(), shape.level)));
+    surfaces.push_back(plane(shape.middle, axes.col(0) * units.x(), axes.col(1) * units.y(),
+                             {-corner, corner}, noise(random.next(), shape.level)));
   };
   const auto add_sphere = [&](const Vector3d& centre, double radius, double level) {
     const Vector3d moved{centre.x() + random.between(-60, 60), centre.y() + random.between(-40, 40),
                          centre.z()};
-    surfaces.emplace_back(
-        Sphere(moved, radius, unit_at(centre.z() - radius, rig), noise(random.next(), level)));
+    surfaces.push_back(sphere(moved, radius, unit_at(centre.z() - radius, rig), noise(random.next(), level)));
   };
   // A wall, a floor and a panel in front of the wall.
   add_plane({{0, 0, 2050}, random.between(-3, 3), 0, {8000, 8000}, 1, 110});
@@ -137,6 +263,98 @@ std::optional<Vector2d> pixel_of(const CameraModel& camera, const Vector3d& poin
 
 }  // namespace
 
+SceneSurfaces::Nearest SceneSurfaces::nearest(const Ray& ray) const {
+  Nearest result = {nullptr, kNowhere};
+  for (const Surface& surface : surfaces_) {
+    const double t = surface.meets(ray);
+    if (t < result.t) result = {&surface, t};
+  }
+  return result;
+}
+
+std::optional<Vector3d> SceneSurfaces::first(const Ray& ray) const {
+  const Nearest found = nearest(ray);
+  if (found.surface == nullptr) return std::nullopt;
+  return ray.at(found.t);
+}
+
+bool SceneSurfaces::visible(const Vector3d& eye, const Vector3d& point) const {
+  constexpr double kRounding = 1e-6;
+  return nearest({eye, point - eye}).t >= 1 - kRounding;
+}
+
+double SceneSurfaces::level(const Ray& ray) const {
+  const Nearest found = nearest(ray);
+  if (found.surface == nullptr) return background_;
+  return found.surface->level(ray.at(found.t));
+}
+
+struct SceneCamera::Corner {
+  Vector3d direction;
+  double level;
+};
+
+SceneCamera::SceneCamera(const CameraModel& model, const Vector3d& place, const Matrix3d& to_scene, int width,
+                         int height)
+    : width_(width), height_(height), place_(place), to_scene_(to_scene) {
+  directions_.reserve((static_cast<std::size_t>(width) + 1) * (static_cast<std::size_t>(height) + 1));
+  for (int y = 0; y <= height; ++y) {
+    for (int x = 0; x <= width; ++x) {
+      directions_.emplace_back(model.direction({x - 0.5, y - 0.5}).cast<float>());
+    }
+  }
+}
+
+std::vector<SceneCamera::Corner> SceneCamera::corners_above(int row, const SceneSurfaces& surfaces) const {
+  std::vector<Corner> result;
+  const std::size_t count = static_cast<std::size_t>(width_) + 1;
+  result.reserve(count);
+  for (std::size_t x = 0; x < count; ++x) {
+    const Vector2d seen = directions_[static_cast<std::size_t>(row) * count + x].cast<double>();
+    const Vector3d direction = to_scene_ * seen.homogeneous();
+    result.push_back({direction, surfaces.level({place_, direction})});
+  }
+  return result;
+}
+
+// Samples the middle of the pixel and its corners, which neighbouring pixels share. If their levels show that
+// an edge crosses the pixel, takes 64 samples instead.
+double SceneCamera::level(const SceneSurfaces& surfaces, const Corner& a, const Corner& b, const Corner& c,
+                          const Corner& d) const {
+  constexpr double kEdge = 95;
+  constexpr int kSamplesOfAnEdge = 8;  // in each direction
+  const auto [least, most] = std::minmax({a.level, b.level, c.level, d.level});
+  if (most - least < kEdge) {
+    const Vector3d middle = (a.direction + b.direction + c.direction + d.direction) / 4;
+    return (a.level + b.level + c.level + d.level) / 8 + surfaces.level({place_, middle}) / 2;
+  }
+  double sum = 0;
+  for (int j = 0; j < kSamplesOfAnEdge; ++j) {
+    const double down = (j + 0.5) / kSamplesOfAnEdge;
+    const Vector3d first = a.direction + down * (c.direction - a.direction);
+    const Vector3d last = b.direction + down * (d.direction - b.direction);
+    for (int i = 0; i < kSamplesOfAnEdge; ++i) {
+      const double across = (i + 0.5) / kSamplesOfAnEdge;
+      sum += surfaces.level({place_, first + across * (last - first)});
+    }
+  }
+  return sum / (kSamplesOfAnEdge * kSamplesOfAnEdge);
+}
+
+GrayImage SceneCamera::picture(const SceneSurfaces& surfaces) const {
+  Levels levels;
+  levels.reserve(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
+  std::vector<Corner> above = corners_above(0, surfaces);
+  for (int y = 0; y < height_; ++y) {
+    std::vector<Corner> under = corners_above(y + 1, surfaces);
+    for (std::size_t x = 0; x < static_cast<std::size_t>(width_); ++x) {
+      levels.push_back(static_cast<float>(level(surfaces, above[x], above[x + 1], under[x], under[x + 1])));
+    }
+    above = std::move(under);
+  }
+  return through_lens(levels, width_, height_);
+}
+
 SyntheticRig::SyntheticRig(std::uint64_t seed, int width, int height)
     : seed_(seed),
       rig_(random_rig(seed, width, height)),
@@ -150,8 +368,8 @@ SyntheticRig::Pair SyntheticRig::grid_view(const GridShape& shape, int number) c
   const Vector2d border(2, 2);
   const Eigen::AlignedBox2d extent(-border, Vector2d(shape.columns - 1, shape.rows - 1) + border);
   const Matrix3d axes = pose.linear() * shape.square_mm;
-  const Plane board(pose.translation(), axes.col(0), axes.col(1), extent, chessboard(shape));
-  const SceneSurfaces surfaces({board}, kGridBackground);
+  const SceneSurfaces surfaces(
+      {plane(pose.translation(), axes.col(0), axes.col(1), extent, chessboard(shape))}, kGridBackground);
   return {left_.picture(surfaces), right_.picture(surfaces)};
 }
 

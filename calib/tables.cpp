@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
+#include <cstring>
 #include <stdexcept>
 #include <string>
 
@@ -22,32 +22,6 @@ kernels::RectificationTable table(const Rig& rig, const SourcePixels& sources, i
     throw std::invalid_argument(found.front());
   }
   return result;
-}
-
-// Rows of the source picture, both ends included; none if last < first.
-struct SourceRows {
-  int first = std::numeric_limits<int>::max();
-  int last = -1;
-
-  void include(const SourceRows& other) {
-    first = std::min(first, other.first);
-    last = std::max(last, other.last);
-  }
-  int count() const { return last < first ? 0 : last - first + 1; }
-};
-
-// The source rows of each row of the rectified picture.
-std::vector<SourceRows> rows_of(const kernels::RectificationTable& table) {
-  std::vector<SourceRows> rows(static_cast<std::size_t>(table.height));
-  auto entry = table.entries.begin();
-  for (SourceRows& row : rows) {
-    for (const auto end = entry + table.width; entry != end; ++entry) {
-      if (kernels::entry_is_valid(*entry)) {
-        row.include({kernels::entry_row(*entry), kernels::entry_row(*entry)});
-      }
-    }
-  }
-  return rows;
 }
 
 }  // namespace
@@ -86,14 +60,9 @@ bool are_tables_of(const TablePair& tables, const Rig& rig, const Rectification&
   return different <= tables.left.entries.size() / kStep / 1000;
 }
 
+// Entries are little endian, as in memory.
 std::string lut_bytes(const kernels::RectificationTable& table) {
-  std::string bytes;
-  bytes.reserve(4 * table.entries.size());
-  for (const std::uint32_t entry : table.entries) {
-    for (unsigned shift = 0; shift < 32; shift += 8)
-      bytes.push_back(static_cast<char>(entry >> shift & 0xFFU));
-  }
-  return bytes;
+  return {reinterpret_cast<const char*>(table.entries.data()), 4 * table.entries.size()};
 }
 
 std::size_t lut_byte_count(int width, int height) {
@@ -106,12 +75,8 @@ kernels::RectificationTable parse_lut(std::string_view bytes, int width, int hei
     throw std::runtime_error(std::to_string(bytes.size()) + " bytes: a table for " + std::to_string(width) +
                              "x" + std::to_string(height) + " pixels has " + std::to_string(expected));
   }
-  kernels::RectificationTable table{width, height, {}};
-  for (std::size_t at = 0; at < bytes.size(); at += 4) {
-    std::uint32_t entry = 0;
-    for (std::size_t byte = 4; byte-- > 0;) entry = entry << 8U | static_cast<std::uint8_t>(bytes[at + byte]);
-    table.entries.push_back(entry);
-  }
+  kernels::RectificationTable table{width, height, std::vector<std::uint32_t>(bytes.size() / 4)};
+  std::memcpy(table.entries.data(), bytes.data(), bytes.size());
   if (const auto found = kernels::problems(table); !found.empty()) throw std::runtime_error(found.front());
   return table;
 }
@@ -122,12 +87,20 @@ std::vector<int> source_lines(const kernels::RectificationTable& table, int line
     throw std::invalid_argument("lines = " + std::to_string(lines) + ": must be 1.." +
                                 std::to_string(table.height) + ", the height of the table");
   }
-  const std::vector<SourceRows> rows = rows_of(table);
+  std::vector<int> first(static_cast<std::size_t>(table.height), table.height);  // [row]: its source rows
+  std::vector<int> last(first.size(), -1);
+  auto entry = table.entries.begin();
+  for (std::size_t row = 0; row < first.size(); ++row) {
+    for (const auto end = entry + table.width; entry != end; ++entry) {
+      if (!kernels::entry_is_valid(*entry)) continue;
+      first[row] = std::min(first[row], kernels::entry_row(*entry));
+      last[row] = std::max(last[row], kernels::entry_row(*entry));
+    }
+  }
   std::vector<int> counts;
-  for (auto top = rows.begin(); top + lines <= rows.end(); ++top) {
-    SourceRows strip;
-    std::for_each(top, top + lines, [&strip](const SourceRows& row) { strip.include(row); });
-    counts.push_back(strip.count());
+  for (std::ptrdiff_t top = 0; top + lines <= table.height; ++top) {
+    counts.push_back(std::max(0, *std::max_element(last.begin() + top, last.begin() + top + lines) + 1 -
+                                     *std::min_element(first.begin() + top, first.begin() + top + lines)));
   }
   return counts;
 }

@@ -8,72 +8,15 @@
 
 namespace stereotlm::capture {
 
-bool CaptureRegisterFile::write(std::uint64_t time_ps, std::uint64_t address, std::uint32_t value) {
-  switch (address) {
-    case registers::kBufferAddress:
-      buffer_address_ = value;
-      return false;
-    case registers::kStatus:
-      clear(value);
-      return false;
-    default:
-      if ((value & registers::kControlArm) != 0) arm(time_ps);
-      return (value & registers::kControlTrigger) != 0;
-  }
-}
+namespace {
 
-bool CaptureRegisterFile::allows(bool write, std::uint64_t address) {
+// Whether there is a register at this byte address, and whether it has this direction.
+bool allows(bool write, std::uint64_t address) {
   return write ? address < registers::kFrameNumberLow
                : address != registers::kControl && address < registers::kEnd;
 }
 
-std::uint32_t CaptureRegisterFile::read(std::uint64_t address) const {
-  const Capture last = last_capture_.value_or(Capture{});
-  switch (address) {
-    case registers::kStatus:
-      return (armed_ ? registers::kStatusArmed : 0U) | (capturing_ ? registers::kStatusCapturing : 0U) |
-             (done_ ? registers::kStatusDone : 0U) | (words_lost_ ? registers::kStatusWordsLost : 0U) |
-             (arm_refused_ ? registers::kStatusArmRefused : 0U);
-    case registers::kBufferAddress:
-      return buffer_address_;
-    case registers::kFrameNumberLow:
-      return static_cast<std::uint32_t>(last.frame);
-    case registers::kFrameNumberHigh:
-      return static_cast<std::uint32_t>(last.frame >> 32U);
-    case registers::kDroppedPixels:
-      return static_cast<std::uint32_t>(last.dropped_pixels);
-    default:
-      return static_cast<std::uint32_t>(last.lost_words);
-  }
-}
-
-void CaptureRegisterFile::arm(std::uint64_t time_ps) {
-  if (armed_ || buffer_address_ % 4 != 0) {
-    arm_refused_ = true;
-    return;
-  }
-  armed_ = true;
-  armed_ps_ = time_ps;
-  armed_address_ = buffer_address_;
-}
-
-void CaptureRegisterFile::clear(std::uint32_t status_bits) {
-  done_ = done_ && (status_bits & registers::kStatusDone) == 0;
-  words_lost_ = words_lost_ && (status_bits & registers::kStatusWordsLost) == 0;
-  arm_refused_ = arm_refused_ && (status_bits & registers::kStatusArmRefused) == 0;
-}
-
-std::uint32_t CaptureRegisterFile::start() {
-  armed_ = false;
-  capturing_ = true;
-  return armed_address_;
-}
-
-void CaptureRegisterFile::finish(const Capture& capture) {
-  capturing_ = false;
-  done_ = true;
-  last_capture_ = capture;
-}
+}  // namespace
 
 CaptureControl::CaptureControl(const CaptureBoardConfig& config) : fifo_(config) {
   burst_words_.reserve(static_cast<std::size_t>(config.fifo_words));
@@ -99,29 +42,71 @@ void CaptureControl::step(std::uint64_t now_ps) {
 
 pci::PciAnswer CaptureControl::access(std::uint64_t /*now_ps*/, const pci::PciAccess& access,
                                       std::uint64_t at_ps) {
-  if (access.count != 1 || !CaptureRegisterFile::allows(access.write, access.address)) {
+  if (access.count != 1 || !allows(access.write, access.address)) {
     ++stats_.refused_accesses;
     return {at_ps, false};
   }
   if (access.write) {
-    write(at_ps, access.address, *access.words);
+    write_register(at_ps, access.address, *access.words);
   } else {
-    *access.words = register_file_.read(access.address);
+    *access.words = read_register(access.address);
   }
   return {at_ps, true};
 }
 
 std::optional<std::uint32_t> CaptureControl::value_at(std::uint64_t address) const {
-  if (!CaptureRegisterFile::allows(false, address)) return std::nullopt;
-  return register_file_.read(address);
+  if (!allows(false, address)) return std::nullopt;
+  return read_register(address);
 }
 
-void CaptureControl::write(std::uint64_t time_ps, std::uint64_t address, std::uint32_t value) {
-  const bool interrupted = interrupt();
-  const bool triggers = register_file_.write(time_ps, address, value);
-  if (observer_ != nullptr && interrupted && !interrupt()) observer_->interrupt_cleared(time_ps);
-  if (!triggers) return;
-  for (FrameCamera* const camera : triggered_) camera->trigger(time_ps);
+std::uint32_t CaptureControl::read_register(std::uint64_t address) const {
+  const Capture last = last_capture_.value_or(Capture{});
+  switch (address) {
+    case registers::kStatus:
+      return (armed_ ? registers::kStatusArmed : 0U) | (capturing_ ? registers::kStatusCapturing : 0U) |
+             (done_ ? registers::kStatusDone : 0U) | (words_lost_ ? registers::kStatusWordsLost : 0U) |
+             (arm_refused_ ? registers::kStatusArmRefused : 0U);
+    case registers::kBufferAddress:
+      return buffer_address_;
+    case registers::kFrameNumberLow:
+      return static_cast<std::uint32_t>(last.frame);
+    case registers::kFrameNumberHigh:
+      return static_cast<std::uint32_t>(last.frame >> 32U);
+    case registers::kDroppedPixels:
+      return static_cast<std::uint32_t>(last.dropped_pixels);
+    default:
+      return static_cast<std::uint32_t>(last.lost_words);
+  }
+}
+
+void CaptureControl::write_register(std::uint64_t time_ps, std::uint64_t address, std::uint32_t value) {
+  switch (address) {
+    case registers::kBufferAddress:
+      buffer_address_ = value;
+      return;
+    case registers::kStatus: {
+      const bool interrupted = interrupt();
+      done_ = done_ && (value & registers::kStatusDone) == 0;
+      words_lost_ = words_lost_ && (value & registers::kStatusWordsLost) == 0;
+      arm_refused_ = arm_refused_ && (value & registers::kStatusArmRefused) == 0;
+      if (observer_ != nullptr && interrupted && !interrupt()) observer_->interrupt_cleared(time_ps);
+      return;
+    }
+    default:
+      if ((value & registers::kControlArm) != 0) arm(time_ps);
+      if ((value & registers::kControlTrigger) == 0) return;
+      for (FrameCamera* const camera : triggered_) camera->trigger(time_ps);
+  }
+}
+
+void CaptureControl::arm(std::uint64_t time_ps) {
+  if (armed_ || buffer_address_ % 4 != 0) {
+    arm_refused_ = true;
+    return;
+  }
+  armed_ = true;
+  armed_ps_ = time_ps;
+  armed_address_ = buffer_address_;
 }
 
 void CaptureControl::begin_frame(const VideoFrame& frame) {
@@ -135,7 +120,7 @@ void CaptureControl::begin_frame(const VideoFrame& frame) {
 CaptureControl::Readiness CaptureControl::readiness() {
   if (readiness_ == Readiness::kNotEvaluated) {
     const std::uint64_t begin_ps = frame_.begin_ps;
-    if (!register_file_.armed_at(begin_ps)) {
+    if (!armed_ || armed_ps_ > begin_ps) {
       readiness_ = Readiness::kNotArmed;
     } else if (capturing() || (last_capture() && last_capture()->end_ps > begin_ps)) {
       readiness_ = Readiness::kBusy;
@@ -178,7 +163,9 @@ void CaptureControl::drop(DropReason reason) {
 
 void CaptureControl::start(std::uint64_t now_ps) {
   ++stats_.started_frames;
-  address_ = register_file_.start();
+  armed_ = false;
+  capturing_ = true;
+  address_ = armed_address_;
   capture_ = {frame_.number, frame_.begin_ps, 0, fifo_.dropped_pixels(), 0, stats_.words};
   if (observer_ != nullptr) observer_->capture_begun(frame_.number, frame_.begin_ps);
   fifo_.begin_frame(*frame_.timing, frame_.begin_ps);
@@ -208,7 +195,9 @@ void CaptureControl::finish(std::uint64_t now_ps) {
   capture_.end_ps = now_ps;
   capture_.dropped_pixels = fifo_.dropped_pixels() - capture_.dropped_pixels;
   capture_.words = stats_.words - capture_.words;
-  register_file_.finish(capture_);
+  capturing_ = false;
+  done_ = true;
+  last_capture_ = capture_;
   if (observer_ != nullptr) observer_->capture_ended(capture_);
 }
 
@@ -253,7 +242,7 @@ void CaptureControl::end_burst(const pci::BurstResult& result) {
     ++stats_.bus_errors;
     stats_.lost_words += burst_words_.size();
     capture_.lost_words += burst_words_.size();
-    register_file_.lose_words();
+    words_lost_ = true;
   } else {
     fifo_.transfer(result.end_ps, result, slot_->clock());
     stats_.words += result.words;

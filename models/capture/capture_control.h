@@ -13,46 +13,6 @@
 
 namespace stereotlm::capture {
 
-// The registers of a capture board (capture_registers.h): the armed capture, the status and the level of the
-// interrupt. Plain C++.
-class CaptureRegisterFile {
- public:
-  // Whether there is a register at this byte address, and whether it has this direction.
-  static bool allows(bool write, std::uint64_t address);
-  // `address`: of a register that can be read.
-  std::uint32_t read(std::uint64_t address) const;
-  // `address`: of a register that can be written. Returns whether the write triggers the cameras.
-  bool write(std::uint64_t time_ps, std::uint64_t address, std::uint32_t value);
-
-  // Whether a capture is armed, and was armed at `time_ps` already.
-  bool armed_at(std::uint64_t time_ps) const { return armed_ && armed_ps_ <= time_ps; }
-  bool capturing() const { return capturing_; }
-  // Starts the armed capture, and returns its buffer address.
-  std::uint32_t start();
-  // To be called when words of the running capture are lost, because the bus did not take them.
-  void lose_words() { words_lost_ = true; }
-  // Ends the running capture.
-  void finish(const Capture& capture);
-  // The last capture that has ended; none before the first one ends.
-  const std::optional<Capture>& last_capture() const { return last_capture_; }
-
-  bool interrupt() const { return done_ || words_lost_; }
-
- private:
-  void arm(std::uint64_t time_ps);
-  void clear(std::uint32_t status_bits);
-
-  std::uint32_t buffer_address_ = 0;
-  bool armed_ = false;
-  std::uint64_t armed_ps_ = 0;
-  std::uint32_t armed_address_ = 0;
-  bool capturing_ = false;
-  bool done_ = false;
-  bool words_lost_ = false;
-  bool arm_refused_ = false;
-  std::optional<Capture> last_capture_;
-};
-
 // The other board of a pair. Both boards take a camera frame, or neither does.
 class CapturePartner {
  public:
@@ -120,7 +80,7 @@ class CaptureControl : public FrameReceiver,
   // The value of a register, without effect; none if there is no register that can be read.
   std::optional<std::uint32_t> value_at(std::uint64_t address) const;
   // The level of the interrupt. Writes, steps and ends of bursts change it.
-  bool interrupt() const { return register_file_.interrupt(); }
+  bool interrupt() const { return done_ || words_lost_; }
 
   void begin_frame(const VideoFrame& frame) override;
   bool can_start(std::uint64_t frame, std::uint64_t begin_ps) override;
@@ -144,11 +104,11 @@ class CaptureControl : public FrameReceiver,
   // The next line has been captured, in this number of bursts, of which the last one ended at `now_ps`.
   void skip_line(std::uint64_t now_ps, std::uint64_t bursts);
 
-  bool capturing() const { return register_file_.capturing(); }
+  bool capturing() const { return capturing_; }
   // Whether a frame has begun in this very ps, and is neither started nor dropped yet.
   bool undecided() const { return decision_ps_ != kNever; }
   // The last capture that has ended; none before the first one ends.
-  const std::optional<Capture>& last_capture() const { return register_file_.last_capture(); }
+  const std::optional<Capture>& last_capture() const { return last_capture_; }
   // Counts up to `now_ps`.
   Stats stats(std::uint64_t now_ps) const;
 
@@ -156,7 +116,10 @@ class CaptureControl : public FrameReceiver,
   enum class Readiness : std::uint8_t { kNotEvaluated, kReady, kNotArmed, kBusy };
   enum class BusState : std::uint8_t { kIdle, kRequested, kBurst };
 
-  void write(std::uint64_t time_ps, std::uint64_t address, std::uint32_t value);
+  // `address`: of a register that can be read, or written.
+  std::uint32_t read_register(std::uint64_t address) const;
+  void write_register(std::uint64_t time_ps, std::uint64_t address, std::uint32_t value);
+  void arm(std::uint64_t time_ps);
 
   // These decide whether this board takes the frame that has begun.
   Readiness readiness();
@@ -171,7 +134,17 @@ class CaptureControl : public FrameReceiver,
   CaptureFifo fifo_at(std::uint64_t now_ps) const;
   int next_line_word() const { return fifo_.next_row() * fifo_.words_per_line(); }
 
-  CaptureRegisterFile register_file_;
+  // The registers (capture_registers.h).
+  std::uint32_t buffer_address_ = 0;
+  bool armed_ = false;
+  std::uint64_t armed_ps_ = 0;
+  std::uint32_t armed_address_ = 0;
+  bool capturing_ = false;
+  bool done_ = false;
+  bool words_lost_ = false;
+  bool arm_refused_ = false;
+  std::optional<Capture> last_capture_;
+
   CaptureFifo fifo_;
   pci::PciSlot* slot_ = nullptr;
   FrameCamera* camera_ = nullptr;

@@ -5,7 +5,116 @@
 
 namespace stereotlm::pci {
 
-BridgeRegisterFile::Decoded BridgeRegisterFile::decode(std::uint64_t offset) {
+namespace {
+
+unsigned char* data_of(std::uint32_t* words) { return reinterpret_cast<unsigned char*>(words); }
+
+}  // namespace
+
+BridgeControl::BridgeControl(const PciBridgeConfig& config, PciSlot& slot, LocalBusIf& local_bus, Host& host)
+    : config_(config),
+      slot_(slot),
+      local_bus_(local_bus),
+      host_(host),
+      channels_{{{0, static_cast<std::size_t>(config.dma_burst_words)},
+                 {1, static_cast<std::size_t>(config.dma_burst_words)}}},
+      posted_(static_cast<std::size_t>(config.posted_words)),
+      words_taken_(config.buffers) {}
+
+void BridgeControl::observe(BridgeObserver& observer) {
+  observer_ = &observer;
+  for (DmaChannel& channel : channels_) channel.observe(observer);
+}
+
+std::size_t BridgeControl::postable_words(std::uint64_t now_ps, std::size_t words) const {
+  return std::min(words, free_places(now_ps));
+}
+
+std::uint64_t BridgeControl::local_address_of(std::uint64_t offset) const {
+  if (offset >= bridge::kCoreRegisters) return config_.core_registers + (offset - bridge::kCoreRegisters);
+  const std::uint32_t page = pages_[static_cast<std::size_t>(offset / bridge::kApertureBytes)];
+  return bridge::local_address(page) + offset % bridge::kApertureBytes;
+}
+
+// A burst may cross from one aperture into the next, which has a page of its own.
+bool BridgeControl::write(std::uint64_t now_ps, std::uint64_t offset, const unsigned char* data,
+                          std::size_t words) {
+  if (words > free_places(now_ps)) {
+    count_error();
+    return false;
+  }
+  settle(now_ps);
+  for (const std::uint64_t end = offset + 4 * words; offset < end;) {
+    const std::uint64_t border = offset < bridge::kCoreRegisters
+                                     ? (offset / bridge::kApertureBytes + 1) * bridge::kApertureBytes
+                                     : end;
+    const std::uint64_t here = std::min(border, end) - offset;
+    const std::uint64_t address = local_address_of(offset);
+    posted_.push(address, data, here / 4);
+    count_for_banks(words_taken_, address, here / 4);
+    offset += here;
+    data += here;
+  }
+  stats_.posted_words += words;
+  stats_.most_posted_words = std::max<std::uint64_t>(stats_.most_posted_words, posted_.words());
+  if (local_observer_ != nullptr) local_observer_->words_posted(now_ps, words);
+  if (busy_) {
+    plan();
+  } else {
+    serve(now_ps);  // posted writes are served first
+  }
+  return true;
+}
+
+void BridgeControl::read(std::uint64_t now_ps, std::uint64_t offset, unsigned char* data, std::size_t words) {
+  read_data_ = data;
+  read_.address = local_address_of(offset);
+  read_.words.resize(words);
+  start_on_local_bus(now_ps, read_);
+}
+
+// Words for the core's registers are not counted.
+void BridgeControl::count_for_banks(WordsByRange& counts, std::uint64_t address, std::size_t words) const {
+  if (address >= config_.core_registers) return;
+  counts.add(address, std::min<std::uint64_t>(words, (config_.core_registers - address) / 4));
+}
+
+WordsByRange BridgeControl::words_held() const {
+  WordsByRange held(config_.buffers);
+  for (const PostedWrites::Run& run : posted_.waiting()) count_for_banks(held, run.address, run.words);
+  for (const DmaChannel& channel : channels_) {
+    const BridgeTransfer& to = channel.on_local_bus();
+    if (to.under_way && to.write && &to != running_) held.add(to.address, to.words.size());
+  }
+  return held;
+}
+
+bool BridgeControl::is_idle() const {
+  return pci_queue_.front() == nullptr && !busy_ && !posted_.waits() && !read_.under_way &&
+         std::none_of(channels_.begin(), channels_.end(),
+                      [](const DmaChannel& channel) { return channel.busy(); });
+}
+
+std::optional<std::uint64_t> BridgeControl::bank_address(std::uint64_t offset, std::uint64_t bytes) const {
+  const std::uint64_t last = offset + bytes - 4;
+  if (last >= bridge::kCoreRegisters || offset / bridge::kApertureBytes != last / bridge::kApertureBytes)
+    return std::nullopt;
+  const std::uint64_t address = local_address_of(offset);
+  if (address / bridge::kBankBytes != (address + bytes - 4) / bridge::kBankBytes) return std::nullopt;
+  return address;
+}
+
+void BridgeControl::skip_posted(std::size_t turn, std::uint64_t most_posted) {
+  turn_ = turn;
+  stats_.most_posted_words = std::max(stats_.most_posted_words, most_posted);
+}
+
+void BridgeControl::count_skipped(std::uint64_t address, std::uint64_t words) {
+  stats_.posted_words += words;
+  count_for_banks(words_taken_, address, words);
+}
+
+BridgeControl::Register BridgeControl::decode(std::uint64_t offset) {
   if (offset < bridge::kInterruptStatus)
     return {bridge::kPage, static_cast<std::size_t>((offset - bridge::kPage) / 4)};
   if (offset < bridge::kDmaDescriptor) return {offset, 0};
@@ -14,7 +123,7 @@ BridgeRegisterFile::Decoded BridgeRegisterFile::decode(std::uint64_t offset) {
           static_cast<std::size_t>(in_channels / bridge::kChannelStride)};
 }
 
-bool BridgeRegisterFile::allows(bool write, std::uint64_t offset) {
+bool BridgeControl::allows(bool write, std::uint64_t offset) {
   if (offset >= bridge::kRegisterWindowBytes) return false;
   switch (decode(offset).name) {
     case bridge::kPage:
@@ -31,162 +140,50 @@ bool BridgeRegisterFile::allows(bool write, std::uint64_t offset) {
   }
 }
 
-std::uint32_t BridgeRegisterFile::read(std::uint64_t offset) const {
-  const auto [name, index] = decode(offset);
-  switch (name) {
+std::uint32_t BridgeControl::read_register(const Register& its) const {
+  switch (its.name) {
     case bridge::kPage:
-      return pages_[index];
+      return pages_[its.index];
     case bridge::kInterruptStatus:
       return interrupt_status_;
     case bridge::kInterruptEnable:
       return interrupt_enable_;
     case bridge::kDmaDescriptor:
-      return channels_[index].descriptor();
+      return channels_[its.index].descriptor();
     default:
-      return std::uint32_t{channels_[index].busy()};
+      return std::uint32_t{channels_[its.index].busy()};
   }
 }
 
-DmaChannel* BridgeRegisterFile::write(std::uint64_t offset, std::uint32_t value) {
-  const auto [name, index] = decode(offset);
-  switch (name) {
+void BridgeControl::write_register(std::uint64_t now_ps, const Register& its, std::uint32_t value) {
+  switch (its.name) {
     case bridge::kPage:
-      pages_[index] = value;
-      break;
+      pages_[its.index] = value;
+      return;
     case bridge::kInterruptStatus:
       interrupt_status_ &= ~value;
-      break;
+      drive_interrupts(now_ps);
+      if (observer_ != nullptr) observer_->interrupts_cleared(now_ps, value);
+      return;
     case bridge::kInterruptEnable:
       interrupt_enable_ = value & bridge::kAllInterrupts;
-      break;
+      return drive_interrupts(now_ps);
     case bridge::kDmaDescriptor:
-      channels_[index].set_descriptor(value);
-      break;
+      return channels_[its.index].set_descriptor(value);
     default:
-      if ((value & 1U) != 0) return &channels_[index];
+      if ((value & 1U) != 0) run(now_ps, channels_[its.index].start(now_ps));
   }
-  return nullptr;
-}
-
-BridgeControl::BridgeControl(const PciBridgeConfig& config, PciSlot& slot, LocalBusIf& local_bus, Host& host)
-    : config_(config),
-      slot_(slot),
-      host_(host),
-      channels_{{{0, static_cast<std::size_t>(config.dma_burst_words)},
-                 {1, static_cast<std::size_t>(config.dma_burst_words)}}},
-      local_bus_(config_, channels_, local_bus, *this),
-      words_taken_(config.buffers) {}
-
-void BridgeControl::observe(BridgeObserver& observer) {
-  observer_ = &observer;
-  for (DmaChannel& channel : channels_) channel.observe(observer);
-}
-
-std::size_t BridgeControl::postable_words(std::uint64_t now_ps, std::size_t words) const {
-  return std::min(words, local_bus_.free_places(now_ps));
-}
-
-std::uint64_t BridgeControl::local_address_of(std::uint64_t offset) const {
-  if (offset >= bridge::kCoreRegisters) return config_.core_registers + (offset - bridge::kCoreRegisters);
-  const std::uint32_t page = register_file_.page(static_cast<std::size_t>(offset / bridge::kApertureBytes));
-  return bridge::local_address(page) + offset % bridge::kApertureBytes;
-}
-
-// A burst may cross from one aperture into the next, which has a page of its own.
-bool BridgeControl::write(std::uint64_t now_ps, std::uint64_t offset, const unsigned char* data,
-                          std::size_t words) {
-  if (words > local_bus_.free_places(now_ps)) {
-    count_error();
-    return false;
-  }
-  local_bus_.settle(now_ps);
-  for (const std::uint64_t end = offset + 4 * words; offset < end;) {
-    const std::uint64_t border = offset < bridge::kCoreRegisters
-                                     ? (offset / bridge::kApertureBytes + 1) * bridge::kApertureBytes
-                                     : end;
-    const std::uint64_t here = std::min(border, end) - offset;
-    const std::uint64_t address = local_address_of(offset);
-    local_bus_.post(address, data, here / 4);
-    count_for_banks(words_taken_, address, here / 4);
-    offset += here;
-    data += here;
-  }
-  stats_.posted_words += words;
-  stats_.most_posted_words = std::max<std::uint64_t>(stats_.most_posted_words, local_bus_.posted().words());
-  local_bus_.send_posted(now_ps, words);
-  return true;
-}
-
-void BridgeControl::read(std::uint64_t now_ps, std::uint64_t offset, unsigned char* data, std::size_t words) {
-  read_data_ = data;
-  local_bus_.read(now_ps, local_address_of(offset), words);
-}
-
-void BridgeControl::slave_read_ended(std::uint64_t now_ps, const BridgeTransfer& read) {
-  if (read.failed) {
-    count_error();
-  } else {
-    stats_.slave_reads += read.words.size();
-    std::memcpy(read_data_, read.words.data(), 4 * read.words.size());
-  }
-  host_.slave_read_ended(now_ps, !read.failed);
-}
-
-// Words for the core's registers are not counted.
-void BridgeControl::count_for_banks(WordsByRange& counts, std::uint64_t address, std::size_t words) const {
-  if (address >= config_.core_registers) return;
-  counts.add(address, std::min<std::uint64_t>(words, (config_.core_registers - address) / 4));
-}
-
-WordsByRange BridgeControl::words_held() const {
-  WordsByRange held(config_.buffers);
-  for (const PostedWrites::Run& run : local_bus_.posted().waiting())
-    count_for_banks(held, run.address, run.words);
-  for (const DmaChannel& channel : channels_) {
-    const BridgeTransfer& to = channel.on_local_bus();
-    if (to.under_way && to.write && !local_bus_.runs(to)) held.add(to.address, to.words.size());
-  }
-  return held;
-}
-
-bool BridgeControl::is_idle() const {
-  return pci_queue_.front() == nullptr && local_bus_.is_idle() &&
-         std::none_of(channels_.begin(), channels_.end(),
-                      [](const DmaChannel& channel) { return channel.busy(); });
-}
-
-std::optional<std::uint64_t> BridgeControl::bank_address(std::uint64_t offset, std::uint64_t bytes) const {
-  const std::uint64_t last = offset + bytes - 4;
-  if (last >= bridge::kCoreRegisters || offset / bridge::kApertureBytes != last / bridge::kApertureBytes)
-    return std::nullopt;
-  const std::uint64_t address = local_address_of(offset);
-  if (address / bridge::kBankBytes != (address + bytes - 4) / bridge::kBankBytes) return std::nullopt;
-  return address;
-}
-
-void BridgeControl::skip_posted(std::size_t turn, std::uint64_t most_posted) {
-  local_bus_.set_turn(turn);
-  stats_.most_posted_words = std::max(stats_.most_posted_words, most_posted);
-}
-
-void BridgeControl::count_skipped(std::uint64_t address, std::uint64_t words) {
-  stats_.posted_words += words;
-  count_for_banks(words_taken_, address, words);
 }
 
 PciAnswer BridgeControl::access(std::uint64_t now_ps, const PciAccess& access, std::uint64_t at_ps) {
-  if (access.count != 1 || !BridgeRegisterFile::allows(access.write, access.address)) {
+  if (access.count != 1 || !allows(access.write, access.address)) {
     count_error();
     return {at_ps, false};
   }
   if (access.write) {
-    DmaChannel* const started = register_file_.write(access.address, *access.words);
-    drive_interrupts(now_ps);
-    if (observer_ != nullptr && access.address == bridge::kInterruptStatus)
-      observer_->interrupts_cleared(now_ps, *access.words);
-    if (started != nullptr) run(now_ps, started->start(now_ps));
+    write_register(now_ps, decode(access.address), *access.words);
   } else {
-    *access.words = register_file_.read(access.address);
+    *access.words = read_register(decode(access.address));
   }
   return {at_ps, true};
 }
@@ -194,13 +191,13 @@ PciAnswer BridgeControl::access(std::uint64_t now_ps, const PciAccess& access, s
 void BridgeControl::raise(std::uint64_t now_ps, std::uint32_t interrupts) {
   constexpr std::uint32_t kNoErrors = bridge::kDoorbell | bridge::kDmaDone | bridge::kDmaDone << 1U;
   if ((interrupts & ~kNoErrors) != 0) count_error();
-  register_file_.raise(interrupts);
+  interrupt_status_ |= interrupts;
   if (observer_ != nullptr) observer_->interrupts_raised(now_ps, interrupts);
   drive_interrupts(now_ps);
 }
 
 void BridgeControl::drive_interrupts(std::uint64_t now_ps) {
-  if (interrupts_ == register_file_.interrupts()) return;
+  if (interrupts_ == ((interrupt_status_ & interrupt_enable_) != 0)) return;
   interrupts_ = !interrupts_;
   host_.interrupt_changed(now_ps);
 }
@@ -213,14 +210,14 @@ void BridgeControl::run(std::uint64_t now_ps, const DmaChannel::Step& step) {
       stats_.dma_words += transfer->words.size();
       if (!on_pci) words_taken_.add(transfer->address, transfer->words.size());
     }
-    on_pci ? start_on_pci(now_ps, *transfer) : local_bus_.start(now_ps, *transfer);
+    on_pci ? start_on_pci(now_ps, *transfer) : start_on_local_bus(now_ps, *transfer);
   }
   if (step.interrupts != 0) raise(now_ps, step.interrupts);
 }
 
 void BridgeControl::advance(std::uint64_t now_ps, DmaChannel& channel) {
-  local_bus_.settle(now_ps);
-  if (channel.waits_for_local_bus()) local_bus_.await_end();
+  settle(now_ps);
+  if (channel.waits_for_local_bus() && busy_) plan();
   run(now_ps, channel.next_step(now_ps));
 }
 
@@ -257,6 +254,115 @@ void BridgeControl::end_burst(const BurstResult& result) {
   }
   if (pci_queue_.front() != nullptr) slot_.request(*this, result.end_ps);
   if (ended) advance(result.end_ps, *transfer.channel);
+}
+
+std::size_t BridgeControl::free_places(std::uint64_t now_ps) const {
+  const std::size_t sent = has_ended(now_ps) ? posted_.words_being_sent() : 0;
+  return posted_.places() - (posted_.words() - sent);
+}
+
+void BridgeControl::start_on_local_bus(std::uint64_t now_ps, BridgeTransfer& transfer) {
+  settle(now_ps);
+  transfer.under_way = true;
+  transfer.failed = false;
+  if (local_observer_ != nullptr) local_observer_->transfer_waits(now_ps, source_of(&transfer));
+  if (busy_) {
+    plan();
+  } else {
+    next_ps_ = now_ps;  // other transfers may start at this time, before the bus chooses
+  }
+}
+
+void BridgeControl::step(std::uint64_t now_ps) {
+  next_ps_ = kNever;
+  if (busy_) {
+    settle(now_ps);
+  } else {
+    serve(now_ps);
+  }
+}
+
+// Begins the next burst. Returns false if nothing waits. A transfer that starts later at the current time is
+// not considered.
+bool BridgeControl::serve(std::uint64_t now_ps) {
+  if (posted_.waits()) {
+    const PostedWrites::Burst burst = posted_.send(static_cast<std::size_t>(config_.dma_burst_words));
+    begin(now_ps, nullptr, {true, burst.address, data_of(burst.words), burst.count});
+    return true;
+  }
+  if (serve(now_ps, read_)) return true;
+  for (std::size_t tried = 0; tried < channels_.size(); ++tried) {
+    const std::size_t channel = (turn_ + tried) % channels_.size();
+    if (!serve(now_ps, channels_[channel].on_local_bus())) continue;
+    turn_ = (channel + 1) % channels_.size();
+    return true;
+  }
+  return false;
+}
+
+bool BridgeControl::serve(std::uint64_t now_ps, BridgeTransfer& transfer) {
+  if (!transfer.under_way) return false;
+  begin(now_ps, &transfer,
+        {transfer.write, transfer.address, data_of(transfer.words.data()), transfer.words.size()});
+  return true;
+}
+
+void BridgeControl::begin(std::uint64_t now_ps, BridgeTransfer* transfer, const LocalBurst& burst) {
+  busy_ = true;
+  running_ = transfer;
+  ok_ = true;
+  end_ps_ = kNever;
+  next_ps_ = kNever;
+  if (local_observer_ != nullptr) local_observer_->burst_begins(now_ps, source_of(running_), burst.words);
+  if (!local_bus_.begin_burst(now_ps, burst)) end_burst_at(now_ps, false);
+}
+
+LocalBusSource BridgeControl::source_of(const BridgeTransfer* transfer) const {
+  if (transfer == nullptr) return LocalBusSource::kPosted;
+  if (transfer == &read_) return LocalBusSource::kRead;
+  return transfer->channel->number() == 0 ? LocalBusSource::kDma0 : LocalBusSource::kDma1;
+}
+
+void BridgeControl::end_burst_at(std::uint64_t end_ps, bool ok) {
+  end_ps_ = end_ps;
+  ok_ = ok;
+  if (local_observer_ != nullptr && running_ == nullptr)
+    local_observer_->posted_words_leave(end_ps_, posted_.words_being_sent());
+  plan();
+}
+
+bool BridgeControl::end_is_awaited() const {
+  if (!ok_ || posted_.waits() || read_.under_way) return true;
+  return std::any_of(channels_.begin(), channels_.end(), [this](const DmaChannel& channel) {
+    const BridgeTransfer& transfer = channel.on_local_bus();
+    return &transfer == running_ ? channel.waits_for_local_bus() : transfer.under_way;
+  });
+}
+
+void BridgeControl::end_local(std::uint64_t now_ps) {
+  BridgeTransfer* const transfer = running_;
+  busy_ = false;
+  running_ = nullptr;
+  next_ps_ = kNever;
+  if (transfer == nullptr) {
+    posted_.sent();
+    if (!ok_) raise(now_ps, bridge::kPostedError);
+  } else {
+    transfer->under_way = false;
+    transfer->failed = !ok_;
+  }
+  if (!serve(now_ps)) turn_ = (turn_ + 1) % channels_.size();
+  if (transfer == &read_) {
+    if (read_.failed) {
+      count_error();
+    } else {
+      stats_.slave_reads += read_.words.size();
+      std::memcpy(read_data_, read_.words.data(), 4 * read_.words.size());
+    }
+    host_.slave_read_ended(now_ps, !read_.failed);
+  } else if (transfer != nullptr) {
+    advance(now_ps, *transfer->channel);
+  }
 }
 
 }  // namespace stereotlm::pci

@@ -12,58 +12,25 @@
 #include "models/pci/local_bus_master.h"
 #include "models/pci/pci_config.h"
 #include "models/pci/pci_slot.h"
+#include "models/pci/posted_writes.h"
+#include "models/time_ps.h"
 #include "models/words_by_range.h"
 
 namespace stereotlm::pci {
 
-// The registers of the bridge (bridge_registers.h): keeps the pages of the apertures and the interrupt
-// registers. Registers of a DMA channel are kept by the channel. Plain C++.
-//
-// `offset`: a multiple of 4.
-class BridgeRegisterFile {
- public:
-  // `channels` outlives this object.
-  explicit BridgeRegisterFile(DmaChannels& channels) : channels_(channels) {}
-
-  // Whether the register exists and can be accessed in this direction.
-  static bool allows(bool write, std::uint64_t offset);
-  // These need allows().
-  std::uint32_t read(std::uint64_t offset) const;
-  // Returns the channel whose start bit has been written, or null.
-  DmaChannel* write(std::uint64_t offset, std::uint32_t value);
-
-  // The first word on the board that an aperture leads to, as kPage names it.
-  std::uint32_t page(std::size_t aperture) const { return pages_[aperture]; }
-  // Sets bits of kInterruptStatus.
-  void raise(std::uint32_t bits) { interrupt_status_ |= bits; }
-  // The level of INTA#.
-  bool interrupts() const { return (interrupt_status_ & interrupt_enable_) != 0; }
-
- private:
-  struct Decoded {
-    std::uint64_t name = 0;  // offset of the register; of page or channel 0 if it exists for each
-    std::size_t index = 0;   // number of the page or channel
-  };
-
-  static Decoded decode(std::uint64_t offset);
-
-  DmaChannels& channels_;
-  std::array<std::uint32_t, bridge::kApertures> pages_{};
-  std::uint32_t interrupt_status_ = 0;
-  std::uint32_t interrupt_enable_ = 0;
-};
-
 // The timing of PciBridge (contract section 3, "Bridge"), its registers and its counters. Plain C++.
 //
-// - Writes to the slave window are posted: their words wait in the bridge, in order, for the local bus. A
-// word
+// - Writes to the slave window are posted: their words wait in the bridge, in order, for the local bus. A word
 //   frees its place when its burst on the local bus ends. A read waits until all writes before it have left.
 // - A DMA channel fetches a descriptor, then moves its words in bursts (dma_channel.h). Both channels share
 //   one PCI master, which serves their transfers in the order in which they start.
-// - LocalBusMaster arbitrates the local bus.
+// - The bridge is the only master of the local bus, and runs one burst at a time: posted writes first, then the
+//   read of the slave window, then the DMA channels in turn. Channel 1 has the first turn; a burst that ends
+//   while nothing waits passes the turn on. The end of a burst costs a step only if the burst was refused or
+//   something waits for its end. Otherwise it takes effect in the next call of settle().
 //
 // Errors of posted writes and of DMA set bits of kInterruptStatus.
-class BridgeControl final : public PciMasterIf, public PciTarget, private LocalBusMaster::Listener {
+class BridgeControl final : public PciMasterIf, public PciTarget, public LocalBusMasterIf {
  public:
   struct Stats {
     std::uint64_t posted_words = 0;       // words of writes that the slave window took
@@ -89,10 +56,11 @@ class BridgeControl final : public PciMasterIf, public PciTarget, private LocalB
 
   // `observer` outlives the bridge.
   void observe(BridgeObserver& observer);
-  void observe(LocalBusMasterObserver& observer) { local_bus_.observe(observer); }
+  void observe(LocalBusMasterObserver& observer) { local_observer_ = &observer; }
 
   // The receiver of the local bus's answers.
-  LocalBusMaster& local_bus_master() { return local_bus_; }
+  LocalBusMasterIf& local_bus_master() { return *this; }
+  void end_burst_at(std::uint64_t end_ps, bool ok) override;
 
   // The slave window. `offset`: a multiple of 4; the words are inside the window.
   //
@@ -116,9 +84,10 @@ class BridgeControl final : public PciMasterIf, public PciTarget, private LocalB
   bool interrupts() const { return interrupts_; }
 
   // When step() is to be called: the local bus ends a burst that something waits for, or chooses a burst.
-  std::uint64_t next_ps() const { return local_bus_.next_ps(); }
-  bool ends_next() const { return local_bus_.ends_next(); }
-  void step(std::uint64_t now_ps) { local_bus_.step(now_ps); }
+  std::uint64_t next_ps() const { return next_ps_; }
+  // Whether step() ends a burst; else it chooses one.
+  bool ends_next() const { return busy_; }
+  void step(std::uint64_t now_ps);
 
   PciBurst begin_burst(std::uint64_t address_clock_ps) override;
   void end_burst(const BurstResult& result) override;
@@ -126,7 +95,9 @@ class BridgeControl final : public PciMasterIf, public PciTarget, private LocalB
   // To skip posted writes that repeat:
   //
   // If the end of a burst on the local bus has come, ends the burst and begins the next one.
-  void settle(std::uint64_t now_ps) { local_bus_.settle(now_ps); }
+  void settle(std::uint64_t now_ps) {
+    if (has_ended(now_ps)) end_local(now_ps);
+  }
   // Whether nothing is under way in the bridge or on the local bus, or waits there. To be called after
   // settle().
   bool is_idle() const;
@@ -134,8 +105,8 @@ class BridgeControl final : public PciMasterIf, public PciTarget, private LocalB
   // bank at contiguous addresses.
   std::optional<std::uint64_t> bank_address(std::uint64_t offset, std::uint64_t bytes) const;
   // The state while it is idle: the channel that has the next turn on the local bus.
-  std::size_t turn() const { return local_bus_.turn(); }
-  std::size_t posted_words() const { return local_bus_.posted().words(); }
+  std::size_t turn() const { return turn_; }
+  std::size_t posted_words() const { return posted_.words(); }
   // Writes have been posted and sent, at most `most_posted` words at one time: the turn after them, and for
   // each range of addresses on the local bus their words.
   void skip_posted(std::size_t turn, std::uint64_t most_posted);
@@ -148,6 +119,18 @@ class BridgeControl final : public PciMasterIf, public PciTarget, private LocalB
   WordsByRange words_held() const;
 
  private:
+  // A register: its offset, which is that of page or channel 0 if it exists for each, and the number of the
+  // page or channel.
+  struct Register {
+    std::uint64_t name = 0;
+    std::size_t index = 0;
+  };
+  static Register decode(std::uint64_t offset);
+  // Whether the register exists and can be accessed in this direction.
+  static bool allows(bool write, std::uint64_t offset);
+  std::uint32_t read_register(const Register& its) const;
+  void write_register(std::uint64_t now_ps, const Register& its, std::uint32_t value);
+
   std::uint64_t local_address_of(std::uint64_t offset) const;
   void count_for_banks(WordsByRange& counts, std::uint64_t address, std::size_t words) const;
   void raise(std::uint64_t now_ps, std::uint32_t interrupts);
@@ -158,24 +141,46 @@ class BridgeControl final : public PciMasterIf, public PciTarget, private LocalB
   void advance(std::uint64_t now_ps, DmaChannel& channel);
   void start_on_pci(std::uint64_t now_ps, BridgeTransfer& transfer);
 
-  void posted_write_refused(std::uint64_t now_ps) override { raise(now_ps, bridge::kPostedError); }
-  void slave_read_ended(std::uint64_t now_ps, const BridgeTransfer& read) override;
-  void local_transfer_ended(std::uint64_t now_ps, DmaChannel& channel) override { advance(now_ps, channel); }
+  // These are the master of the local bus.
+  std::size_t free_places(std::uint64_t now_ps) const;
+  void start_on_local_bus(std::uint64_t now_ps, BridgeTransfer& transfer);
+  bool serve(std::uint64_t now_ps);
+  bool serve(std::uint64_t now_ps, BridgeTransfer& transfer);
+  void begin(std::uint64_t now_ps, BridgeTransfer* transfer, const LocalBurst& burst);
+  void end_local(std::uint64_t now_ps);
+  // Names the time of the next step while a burst runs.
+  void plan() { next_ps_ = end_is_awaited() ? end_ps_ : kNever; }
+  bool end_is_awaited() const;
+  bool has_ended(std::uint64_t now_ps) const { return busy_ && end_ps_ <= now_ps; }
+  LocalBusSource source_of(const BridgeTransfer* transfer) const;
 
   PciBridgeConfig config_;
   PciSlot& slot_;
+  LocalBusIf& local_bus_;
   Host& host_;
   DmaChannels channels_;
-  BridgeRegisterFile register_file_{channels_};
-  LocalBusMaster local_bus_;
-  bool interrupts_ = false;
-  unsigned char* read_data_ = nullptr;  // of the read of the slave window
+  std::array<std::uint32_t, bridge::kApertures> pages_{};  // as kPage names them
+  std::uint32_t interrupt_status_ = 0;
+  std::uint32_t interrupt_enable_ = 0;
+  bool interrupts_ = false;  // the level of INTA#
+  PostedWrites posted_;
+  BridgeTransfer read_;                 // the read of the slave window
+  unsigned char* read_data_ = nullptr;  // and its destination
   // The DMA transfers on PCI, null behind the last one; the first one runs. A channel has one at most.
   std::array<BridgeTransfer*, bridge::kChannels> pci_queue_{};
   std::size_t pci_done_ = 0;              // words of the running transfer that have been transferred
   std::vector<std::uint32_t> pci_words_;  // words of its burst
+
+  bool busy_ = false;                  // a burst runs on the local bus
+  BridgeTransfer* running_ = nullptr;  // the transfer of that burst; null: posted writes
+  bool ok_ = true;                     // that burst was not refused, as far as is known
+  std::uint64_t end_ps_ = kNever;      // end of that burst's idle clock; kNever until it is known
+  std::size_t turn_ = 1;               // the channel whose turn is next
+  std::uint64_t next_ps_ = kNever;
+
   WordsByRange words_taken_;
   BridgeObserver* observer_ = nullptr;
+  LocalBusMasterObserver* local_observer_ = nullptr;
   Stats stats_;
 };
 

@@ -1,8 +1,12 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <vector>
+
+#include "models/pci/bridge_registers.h"
 
 namespace stereotlm::pci {
 
@@ -23,41 +27,62 @@ class PostedWrites {
     std::size_t words = 0;
   };
 
-  explicit PostedWrites(std::size_t places);
+  explicit PostedWrites(std::size_t places) : places_(places) {
+    words_.reserve(2 * places);
+    runs_.reserve(places);
+  }
 
   std::size_t places() const { return places_; }
-  std::size_t words() const { return count_; }
+  std::size_t words() const { return words_.size() - first_; }
   std::size_t words_being_sent() const { return sending_; }
   // Whether there are words that are not being sent.
-  bool waits() const { return count_ > sending_; }
+  bool waits() const { return words() > sending_; }
   // The words that wait and are not being sent.
-  std::vector<Run> waiting() const;
+  std::vector<Run> waiting() const {
+    std::vector<Run> runs = runs_;
+    if (!runs.empty()) take(runs.front());
+    return runs;
+  }
 
   // Appends words, at most as many as there are free places.
-  void push(std::uint64_t address, const void* words, std::size_t count);
+  void push(std::uint64_t address, const void* words, std::size_t count) {
+    words_.resize(words_.size() + count);
+    std::memcpy(words_.data() + words_.size() - count, words, 4 * count);
+    if (!runs_.empty() && runs_.back().address + 4 * runs_.back().words == address) {
+      runs_.back().words += count;
+    } else {
+      runs_.push_back({address, count});
+    }
+  }
   // Begins a burst of 1..most words. To be called if waits(), and no burst is being sent. The words stay in
   // place until sent().
-  Burst send(std::size_t most);
+  Burst send(std::size_t most) {
+    const Run& run = runs_.front();
+    const std::size_t in_bank = (bridge::kBankBytes - run.address % bridge::kBankBytes) / 4;
+    sending_ = std::min({run.words, most, in_bank});
+    return {run.address, words_.data() + first_, sending_};
+  }
   // Ends the burst: its words leave the queue.
-  void sent();
+  void sent() {
+    take(runs_.front());
+    if (runs_.front().words == 0) runs_.erase(runs_.begin());
+    first_ += sending_;
+    sending_ = 0;
+    if (first_ < places_) return;
+    words_.erase(words_.begin(), words_.begin() + static_cast<std::ptrdiff_t>(first_));
+    first_ = 0;
+  }
 
  private:
-  // The place that is `count` places behind `place`.
-  std::size_t behind(std::size_t place, std::size_t count) const {
-    const std::size_t next = place + count;
-    return next < places_ ? next : next - places_;
+  void take(Run& run) const {
+    run.address += 4 * sending_;
+    run.words -= sending_;
   }
-  Run& last_run() { return runs_[behind(first_run_, run_count_ - 1)]; }
 
   std::size_t places_;
-  // A ring of places_ words. Behind it are as many places for copies of its first words: a burst that begins
-  // before the end of the ring is contiguous.
   std::vector<std::uint32_t> words_;
-  std::size_t first_ = 0;  // place of the oldest word
-  std::size_t count_ = 0;
-  std::vector<Run> runs_;  // a ring of places_ runs: addresses of words_; contiguous words are one run
-  std::size_t first_run_ = 0;
-  std::size_t run_count_ = 0;
+  std::size_t first_ = 0;    // index of the oldest word
+  std::vector<Run> runs_;    // the addresses of the words; contiguous words are one run
   std::size_t sending_ = 0;  // words of the burst that is being sent
 };
 

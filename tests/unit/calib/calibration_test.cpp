@@ -185,14 +185,13 @@ TEST(DisparityOffset, NamesTheDisparitiesNeededIfTheyDoNotFit) {
             "for a part of them");
 }
 
-TEST(RowErrors, AverageAbsoluteValues) {
-  RowErrors errors;
-  EXPECT_EQ(errors.result().corners, 0U);
-  errors.add({3, 10}, {9, 10.5});
-  errors.add({3, 10}, {9, 8.5});
-  EXPECT_DOUBLE_EQ(errors.result().mean_px, 1);
-  EXPECT_DOUBLE_EQ(errors.result().max_px, 1.5);
-  EXPECT_EQ(errors.result().corners, 2U);
+TEST(RowError, IsTheAverageOfAbsoluteValues) {
+  EXPECT_EQ(row_error({}).corners, 0U);
+  EXPECT_EQ(row_error({}).mean_px, 0);
+  const RowError error = row_error({0.5, -1.5});
+  EXPECT_DOUBLE_EQ(error.mean_px, 1);
+  EXPECT_DOUBLE_EQ(error.max_px, 1.5);
+  EXPECT_EQ(error.corners, 2U);
 }
 
 }  // namespace
