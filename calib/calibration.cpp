@@ -49,15 +49,15 @@ class Reader {
 
   Reader map(const std::string& key) const { return Reader(at(key), path_ + key + "."); }
 
+  static constexpr int kMost = std::numeric_limits<int>::max();
+
   int integer(const std::string& key, int least, int most) const {
     const std::string rule = fmt::format("must be an integer, {}..{}", least, most);
     const int value = as<int>(key, "no integer", rule);
     if (value < least || value > most) refuse(key, std::to_string(value), rule);
     return value;
   }
-  std::size_t count(const std::string& key) const {
-    return static_cast<std::size_t>(integer(key, 0, std::numeric_limits<int>::max()));
-  }
+  std::size_t count(const std::string& key) const { return static_cast<std::size_t>(integer(key, 0, kMost)); }
 
   double number(const std::string& key) const {
     const auto value = as<double>(key, "no number", "must be a number");
@@ -77,8 +77,8 @@ class Reader {
     const auto rows = static_cast<int>(result.rows());
     const auto columns = static_cast<int>(result.cols());
     const Reader its = map(key);
-    const int found_rows = its.integer("rows", 1, std::numeric_limits<int>::max());
-    const int found_columns = its.integer("cols", 1, std::numeric_limits<int>::max());
+    const int found_rows = its.integer("rows", 1, kMost);
+    const int found_columns = its.integer("cols", 1, kMost);
     if (its.text("dt") != "d" || found_rows != rows || found_columns != columns) {
       refuse(key, fmt::format("{}x{} of {}", found_rows, found_columns, its.text("dt")),
              fmt::format("must be {}x{} of d, doubles", rows, columns));
@@ -215,12 +215,10 @@ Calibration calibration_of(const Reader& file) {
 
 GridPair rectified(const Rig& rig, const Rectification& rectification, const GridPair& pair) {
   GridPair result;
-  for (const Eigen::Vector2d& corner : pair.left) {
+  for (const Eigen::Vector2d& corner : pair.left)
     result.left.push_back(rectified_pixel(rig.left, rectification.r1, rectification.p1, corner));
-  }
-  for (const Eigen::Vector2d& corner : pair.right) {
+  for (const Eigen::Vector2d& corner : pair.right)
     result.right.push_back(rectified_pixel(rig.right, rectification.r2, rectification.p2, corner));
-  }
   return result;
 }
 

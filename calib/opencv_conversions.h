@@ -2,21 +2,18 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <opencv2/core/eigen.hpp>  // needs Eigen before it
 #include <opencv2/core/mat.hpp>
-#include <stdexcept>
 
 #include "models/kernels/gray_image.h"
 
-// Conversions to and from cv::Mat. OpenCV's own header for Eigen is not used, because it depends on the order
-// of includes.
+// Conversions to and from cv::Mat.
 namespace stereotlm::calib {
 
-template <typename Derived>
-cv::Mat to_mat(const Eigen::MatrixBase<Derived>& matrix) {
-  cv::Mat result(static_cast<int>(matrix.rows()), static_cast<int>(matrix.cols()), CV_64F);
-  for (int row = 0; row < result.rows; ++row) {
-    for (int column = 0; column < result.cols; ++column) result.at<double>(row, column) = matrix(row, column);
-  }
+template <typename Matrix>
+cv::Mat to_mat(const Matrix& matrix) {
+  cv::Mat result;
+  cv::eigen2cv(matrix, result);
   return result;
 }
 
@@ -25,18 +22,11 @@ inline cv::Mat to_mat(const std::array<double, 5>& coefficients) {
   return cv::Mat(1, 5, CV_64F, const_cast<double*>(coefficients.data())).clone();
 }
 
-// Throws std::invalid_argument unless the matrix has the size of `Matrix` and holds doubles.
+// `matrix` has the size of `Matrix` and holds doubles.
 template <typename Matrix>
 Matrix to_eigen(const cv::Mat& matrix) {
   Matrix result;
-  if (matrix.type() != CV_64FC1 || matrix.rows != result.rows() || matrix.cols != result.cols()) {
-    throw std::invalid_argument("matrix = " + std::to_string(matrix.rows) + "x" +
-                                std::to_string(matrix.cols) + ": must be " + std::to_string(result.rows()) +
-                                "x" + std::to_string(result.cols()) + " doubles");
-  }
-  for (int row = 0; row < matrix.rows; ++row) {
-    for (int column = 0; column < matrix.cols; ++column) result(row, column) = matrix.at<double>(row, column);
-  }
+  cv::cv2eigen(matrix, result);
   return result;
 }
 

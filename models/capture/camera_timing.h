@@ -1,8 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include "models/capture/capture_config.h"
+#include "models/checked.h"
 #include "models/period.h"
 
 namespace stereotlm::capture {
@@ -16,7 +18,8 @@ namespace stereotlm::capture {
 class CameraTiming {
  public:
   // Throws std::invalid_argument if the configuration has problems.
-  explicit CameraTiming(const CameraConfig& config);
+  explicit CameraTiming(const CameraConfig& config)
+      : CameraTiming(config, decimal_of(checked("camera", config).frame_rate_hz)) {}
 
   int width() const { return width_; }
   int height() const { return height_; }
@@ -32,7 +35,17 @@ class CameraTiming {
   std::uint64_t last_pixel_ps() const { return pixel_ps(width_ - 1, height_ - 1); }
   // Returns how many pixels of a row have arrived when `since_begin_ps` have passed since the beginning of
   // the frame. A pixel that arrives at that very time counts.
-  int pixels_by(int row, std::uint64_t since_begin_ps) const;
+  // Rounding moves the beginning of the row and the arrival of a pixel by at most half a ps each.
+  int pixels_by(int row, std::uint64_t since_begin_ps) const {
+    const std::uint64_t begin_ps = row_ps(row);
+    if (since_begin_ps < begin_ps) return 0;
+    const auto [periods, certain] = pixels_.in(since_begin_ps - begin_ps);
+    int pixels = static_cast<int>(std::min(periods + 1, static_cast<std::uint64_t>(width_)));
+    if (certain) return pixels;
+    while (pixel_ps(pixels - 1, row) > since_begin_ps) --pixels;
+    while (pixels < width_ && pixel_ps(pixels, row) <= since_begin_ps) ++pixels;
+    return pixels;
+  }
 
   // Pixels per second within a line.
   static double peak_pixels_per_second(const CameraConfig& config) {
@@ -41,7 +54,17 @@ class CameraTiming {
   }
 
  private:
-  CameraTiming(const CameraConfig& config, const DecimalNumber& rate_hz);
+  // A frame has 525/480 = 35/32 line times per row. With a frame rate of 17 digits the step is a fraction of
+  // numbers below 2^102, and a time has fewer than 2^36 steps.
+  CameraTiming(const CameraConfig& config, const DecimalNumber& rate_hz)
+      : width_(config.width),
+        height_(config.height),
+        row_steps_(kLineSteps * static_cast<std::uint64_t>(config.width)),
+        frame_(Wide{1'000'000'000'000} * rate_hz.denominator, rate_hz.numerator),
+        step_(Wide{32'000'000'000'000} * rate_hz.denominator,
+              Wide{35} * row_steps_ * static_cast<std::uint64_t>(config.height) * rate_hz.numerator),
+        pixels_(Wide{32'000'000'000'000} * kPixelSteps * rate_hz.denominator,
+                Wide{35} * row_steps_ * static_cast<std::uint64_t>(config.height) * rate_hz.numerator) {}
 
   // Times are counted in steps. A step divides both a line time and the time between two pixels, for every
   // width: the pixels fill 52.15/63.56 = 745/908 of a line time.

@@ -22,7 +22,7 @@ CaptureBoard::CaptureBoard(const sc_core::sc_module_name& name, const CaptureBoa
 }
 
 void CaptureBoard::end_of_elaboration() {
-  control_.bind(*this, *camera.operator->());
+  control_.bind(pci, *camera.operator->());
   for (int number = 0; number < triggered.size(); ++number) control_.bind_triggered(*triggered[number]);
   if (partner.size() > 0) control_.bind_partner(*partner.operator->());
 }
@@ -62,24 +62,6 @@ unsigned CaptureBoard::debug_registers(tlm::tlm_generic_payload& access) {
 
 void CaptureBoard::take_frame(const VideoFrame& frame) {
   control_.begin_frame(frame);
-  follow();
-}
-
-pci::PciBurst CaptureBoard::begin_burst(std::uint64_t address_clock_ps) {
-  try {
-    return control_.begin_burst(address_clock_ps);
-  } catch (const std::logic_error& error) {
-    report(error.what());
-    return {};
-  }
-}
-
-void CaptureBoard::end_burst(const pci::BurstResult& result) {
-  try {
-    control_.end_burst(result);
-  } catch (const std::logic_error& error) {
-    report(error.what());
-  }
   follow();
 }
 

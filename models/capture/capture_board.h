@@ -31,16 +31,13 @@ class CapturePartnerIf : public virtual sc_core::sc_interface, public CapturePar
 //
 // SC_REPORT_ERROR (type /stereotlm/capture_board) reports: a grant that the board has not requested, or for a
 // time before its request; the end of a burst that does not run; a result that the burst cannot have.
-class CaptureBoard : public sc_core::sc_module,
-                     private pci::PciMasterIf,
-                     private pci::PciSlot,
-                     private CapturePartnerIf,
-                     private InterruptIf {
+class CaptureBoard : public sc_core::sc_module, private CapturePartnerIf, private InterruptIf {
  public:
   using Stats = CaptureControl::Stats;
 
   tlm_utils::simple_target_socket<CaptureBoard> registers{"registers"};
-  pci::PciMasterPort pci{"pci"};
+  pci::PciMasterPort pci{"pci", [this] { follow(); },
+                         [this](const std::exception& error) { report(error.what()); }};
   InterruptOut interrupt{"interrupt"};
   sc_core::sc_port<FrameCameraIf> camera{"camera"};  // whose frames come in at frames_in
   // The cameras that the board triggers: any number, or none.
@@ -74,9 +71,6 @@ class CaptureBoard : public sc_core::sc_module,
   // To be called after each call of the control that may change its next step or the interrupt.
   void follow();
 
-  // The bus calls these.
-  pci::PciBurst begin_burst(std::uint64_t address_clock_ps) override;
-  void end_burst(const pci::BurstResult& result) override;
   // The partner board calls this.
   bool can_start(std::uint64_t frame, std::uint64_t begin_ps) override {
     return control_.can_start(frame, begin_ps);
@@ -84,13 +78,6 @@ class CaptureBoard : public sc_core::sc_module,
   // The receiver of the interrupt calls these.
   bool is_asserted() const override { return control_.interrupt(); }
   const sc_core::sc_event& changed_event() const override { return interrupt_changed_; }
-
-  // The control calls these.
-  void request(pci::PciMasterIf& /*control*/, std::uint64_t from_ps) override {
-    pci->request(*this, from_ps);
-  }
-  pci::BurstResult transferred(std::uint64_t now_ps) const override { return pci->transferred(now_ps); }
-  const Clock& clock() const override { return pci->clock(); }
 
   CaptureControl control_;
   StepEvent step_due_{"step_due"};

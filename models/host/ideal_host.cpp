@@ -17,12 +17,6 @@ std::uint32_t in_turn(const std::vector<std::uint32_t>& list, std::uint64_t fram
   return list[frame % list.size()];
 }
 
-std::string with_value(const char* base, std::uint32_t value) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%s 0x%08x", base, value);
-  return text;
-}
-
 const kernels::RectificationTable* checked(const kernels::RectificationTable* table, bool expected,
                                            const char* side) {
   if ((table != nullptr) != expected) {
@@ -77,7 +71,7 @@ void IdealHost::load_tables() {
 
 void IdealHost::load_table(std::uint32_t base, const std::vector<std::uint32_t>& words,
                            std::uint64_t base_register) {
-  preload(base, words.data(), words.size() * sizeof(std::uint32_t));
+  debug(tlm::TLM_WRITE_COMMAND, base, words.data(), words.size() * sizeof(std::uint32_t));
   write_register(base_register, base);
 }
 
@@ -90,8 +84,8 @@ bool IdealHost::load_pictures(std::uint32_t left, std::uint32_t right) {
            std::to_string(config_.height));
     return false;
   }
-  preload(left, pair.left.pixels.data(), pair.left.pixels.size());
-  preload(right, pair.right.pixels.data(), pair.right.pixels.size());
+  debug(tlm::TLM_WRITE_COMMAND, left, pair.left.pixels.data(), pair.left.pixels.size());
+  debug(tlm::TLM_WRITE_COMMAND, right, pair.right.pixels.data(), pair.right.pixels.size());
   return true;
 }
 
@@ -105,10 +99,18 @@ bool IdealHost::start_frame() {
   write_register(registers_of::kDisparityBase, disparity);
   write_register(registers_of::kControl, registers_of::kControlAcknowledge | registers_of::kControlStart);
   if ((read_status() & registers_of::kStatusBusy) != 0) return true;
-  std::string bases = with_value("left_image", left) + with_value(", right_image", right) +
-                      with_value(", disparity", disparity);
-  if (config_.buffers.left_lut) bases += with_value(", left_lut", *config_.buffers.left_lut);
-  if (config_.buffers.right_lut) bases += with_value(", right_lut", *config_.buffers.right_lut);
+  std::string bases;
+  const auto add = [&bases](const char* name, const std::optional<std::uint32_t>& value) {
+    if (!value) return;
+    char text[40];
+    std::snprintf(text, sizeof text, "%s%s 0x%08x", bases.empty() ? "" : ", ", name, *value);
+    bases += text;
+  };
+  add("left_image", left);
+  add("right_image", right);
+  add("disparity", disparity);
+  add("left_lut", config_.buffers.left_lut);
+  add("right_lut", config_.buffers.right_lut);
   report("frame " + std::to_string(frames_done_) + ": the core refuses to start with the bases " + bases);
   return false;
 }
@@ -142,15 +144,11 @@ std::uint32_t IdealHost::read_status() {
   return access_.word();
 }
 
-void IdealHost::preload(std::uint32_t base, const void* bytes, std::size_t size) {
-  debug(tlm::TLM_WRITE_COMMAND, base, const_cast<void*>(bytes), size);  // which does not change them
-}
-
-void IdealHost::debug(tlm::tlm_command command, std::uint32_t base, void* bytes, std::size_t size) {
+void IdealHost::debug(tlm::tlm_command command, std::uint32_t base, const void* bytes, std::size_t size) {
   tlm::tlm_generic_payload access;
   access.set_command(command);
   access.set_address(registers_of::base_address(base));
-  access.set_data_ptr(static_cast<unsigned char*>(bytes));
+  access.set_data_ptr(static_cast<unsigned char*>(const_cast<void*>(bytes)));
   access.set_data_length(static_cast<unsigned>(size));
   access.set_streaming_width(static_cast<unsigned>(size));
   const unsigned moved = memory->transport_dbg(access);

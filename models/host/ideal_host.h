@@ -59,9 +59,9 @@ class IdealHost : public sc_core::sc_module {
   bool end_frame();
   void write_register(std::uint64_t address, std::uint32_t value);
   std::uint32_t read_status();
-  // These move a whole buffer, and report an error if the memory refuses a part of it.
-  void preload(std::uint32_t base, const void* bytes, std::size_t size);
-  void debug(tlm::tlm_command command, std::uint32_t base, void* bytes, std::size_t size);
+  // Moves a whole buffer, and reports an error if the memory refuses a part of it. A write does not change
+  // `bytes`.
+  void debug(tlm::tlm_command command, std::uint32_t base, const void* bytes, std::size_t size);
 
   IdealHostConfig config_;
   const kernels::RectificationTable* left_table_;

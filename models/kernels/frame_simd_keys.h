@@ -85,22 +85,14 @@ struct WideKeys {
 
 // WideGroupKeys are for larger sums: a key is sum * 4 + disparity % 2. The first disparity of the group of 2
 // is kept beside the best key.
-struct WideGroupKeys {
-  static constexpr int kGroup = 2;
+struct WideGroupKeys : WideKeys {
   static constexpr int kSumScale = 4;
-  using Key = Int32Pair;
-  using Kept = Key;
   struct Best {
     Key key;
     Int16s group;
   };
 
   static Key without_sum(int disparity) { return WideKeys::without_sum(disparity % kGroup); }
-  static void add(Key& key, const Int32Pair& column_sum) { WideKeys::add(key, column_sum); }
-  static Key none() { return WideKeys::none(); }
-  static Kept only(const Key& key) { return key; }
-  static Kept best_of(const Kept& a, const Key& b) { return WideKeys::best_of(a, b); }
-  static Key unless(Int16s outside, const Key& key) { return WideKeys::unless(outside, key); }
   static Best best_of_none() { return {none(), Int16s{}}; }
   // The smaller sum wins. Of equal sums `best` wins, whose disparity is smaller.
   static Best better(const Best& best, const Best& other) {

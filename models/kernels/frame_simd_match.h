@@ -142,20 +142,6 @@ void match_group(const MatchPlan& plan, const MatchMemory& memory, int first, st
   group.leave();
 }
 
-template <class Cost, int kCount>
-void add_group(const MatchPlan& plan, const MatchMemory& memory, int first, std::int16_t* column_sums) {
-  const Cost cost(plan, memory, first);
-  ColumnSums<Cost, kCount> columns{Cost::pixels(memory.right),
-                                   Cost::pixels(memory.left) + std::ptrdiff_t{first} * Cost::kPixelLanes,
-                                   column_sums};
-  const int positions = plan.columns + plan.window - 1;
-  for (std::ptrdiff_t u = 0; u < positions; ++u) {
-    const auto right = cost.right(columns.right);
-    for (std::ptrdiff_t j = 0; j < kCount; ++j) columns.add(cost, right, j);
-    columns.next();
-  }
-}
-
 template <int kCount>
 struct Count {
   static constexpr int value = kCount;
@@ -187,18 +173,13 @@ void visit_groups(const MatchPlan& plan, const MatchMemory& memory, const Visit&
   visit_rest<Cost::kGroup - 1>(rest, first, column_sums + rest * Cost::kSumLanes, visit);
 }
 
-template <class Keys>
-void store_disparities(const typename Keys::Best* best, int count, std::int16_t* out) {
-  // Works in place: `out` points to the keys, which are longer than the disparities.
-  for (std::ptrdiff_t p = 0; p < count; ++p) store(Keys::disparity(best[p]), out + p * kLanes);
-}
-
 // MatchLoops::add_row and match_row.
 template <class Cost>
 void add_row_with(const MatchPlan& plan, const MatchMemory& memory) {
   Cost::prepare(plan, memory, false);
   visit_groups<Cost>(plan, memory, [&](auto count, int first, std::int16_t* column_sums) {
-    add_group<Cost, decltype(count)::value>(plan, memory, first, column_sums);
+    Group<Cost, decltype(count)::value>(plan, memory, first, column_sums)
+        .enter_first(plan.columns + plan.window - 1);
   });
 }
 
@@ -225,8 +206,11 @@ void match_row_with(const MatchPlan& plan, const MatchMemory& memory) {
     auto& own = left[p - plan.columns];
     own = Keys::better(own, Keys::load_moved(left + p, band_begins));
   }
-  store_disparities<Keys>(left, plan.columns, memory.left.best);
-  if (plan.right_based) store_disparities<Keys>(right, plan.columns, memory.right.best);
+  // In place: the keys are longer than the disparities.
+  for (std::ptrdiff_t p = 0; p < plan.columns; ++p)
+    store(Keys::disparity(left[p]), memory.left.best + p * kLanes);
+  for (std::ptrdiff_t p = 0; plan.right_based && p < plan.columns; ++p)
+    store(Keys::disparity(right[p]), memory.right.best + p * kLanes);
 }
 
 template <class Cost>

@@ -1,21 +1,27 @@
 #include "models/kernels/joint_table.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <limits>
 #include <stdexcept>
 
 namespace stereotlm::kernels {
 namespace {
 
-// The least and the greatest of some displacements. Both are 0 if there is none.
+// The least and the greatest of some displacements.
 struct Range {
-  int least = 0;
-  int greatest = 0;
+  int least = std::numeric_limits<int>::max();
+  int greatest = std::numeric_limits<int>::min();
 
-  int size() const { return greatest - least + 1; }
-  int middle() const {  // rounded down
-    const int sum = least + greatest + 1;
-    return (sum - (sum < 0 && sum % 2 != 0 ? 1 : 0)) / 2;
+  void widen(int value) {
+    least = std::min(least, value);
+    greatest = std::max(greatest, value);
+  }
+  bool is_empty() const { return least > greatest; }
+  int size() const { return is_empty() ? 1 : greatest - least + 1; }
+  int middle() const {  // rounded down; 0 without any
+    return is_empty() ? 0 : static_cast<int>(std::floor((least + greatest + 1) / 2.0));
   }
 };
 
@@ -35,16 +41,10 @@ void for_each_entry(const RectificationTable& table, const Visit& visit) {
 
 Ranges ranges_of(const RectificationTable& table) {
   Ranges ranges;
-  bool is_first = true;
-  const auto widen = [&is_first](Range& range, int value) {
-    range.least = is_first ? value : std::min(range.least, value);
-    range.greatest = is_first ? value : std::max(range.greatest, value);
-  };
   for_each_entry(table, [&](std::uint32_t entry, int column, int row) {
     if (!entry_is_valid(entry)) return;
-    widen(ranges.columns, entry_column(entry) - column);
-    widen(ranges.rows, entry_row(entry) - row);
-    is_first = false;
+    ranges.columns.widen(entry_column(entry) - column);
+    ranges.rows.widen(entry_row(entry) - row);
   });
   return ranges;
 }
@@ -60,13 +60,6 @@ void check(const char* side, const Ranges& ranges, std::vector<std::string>& fou
   };
   check_range("x", ranges.columns, kJointColumns);
   check_range("y", ranges.rows, kJointRows);
-}
-
-std::vector<std::string> problems_of(const Ranges& left, const Ranges& right) {
-  std::vector<std::string> found;
-  check("left", left, found);
-  check("right", right, found);
-  return found;
 }
 
 void add_halves(const RectificationTable& table, const JointOffset& offset, unsigned lowest_bit,
@@ -85,16 +78,17 @@ void add_halves(const RectificationTable& table, const JointOffset& offset, unsi
 }  // namespace
 
 std::vector<std::string> joint_problems(const RectificationTable& left, const RectificationTable& right) {
-  return problems_of(ranges_of(left), ranges_of(right));
+  std::vector<std::string> found;
+  check("left", ranges_of(left), found);
+  check("right", ranges_of(right), found);
+  return found;
 }
 
 JointTable join_tables(const RectificationTable& left, const RectificationTable& right) {
-  const Ranges of_left = ranges_of(left);
-  const Ranges of_right = ranges_of(right);
-  if (const auto found = problems_of(of_left, of_right); !found.empty())
+  if (const auto found = joint_problems(left, right); !found.empty())
     throw std::invalid_argument(found.front());
   JointTable joint{std::vector<std::uint32_t>(left.entries.size()),
-                   {offset_of(of_left), offset_of(of_right)}};
+                   {offset_of(ranges_of(left)), offset_of(ranges_of(right))}};
   add_halves(left, joint.offsets[0], 16, joint.words);
   add_halves(right, joint.offsets[1], 0, joint.words);
   return joint;

@@ -12,10 +12,6 @@ namespace {
 
 constexpr std::size_t kMostProblems = 10;
 
-std::size_t pixel_count(int width, int height) {
-  return static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-}
-
 std::string entry_name(const RectificationTable& table, std::size_t index) {
   const auto width = static_cast<std::size_t>(table.width);
   char text[64];
@@ -28,7 +24,6 @@ std::string entry_name(const RectificationTable& table, std::size_t index) {
 
 RectificationTable identity_table(int width, int height) {
   RectificationTable table{width, height, {}};
-  table.entries.reserve(pixel_count(width, height));
   for (int row = 0; row < height; ++row) {
     for (int column = 0; column < width; ++column) table.entries.push_back(make_entry(column, row));
   }
@@ -48,33 +43,21 @@ bool entries_point_inside(const std::uint32_t* entries, std::size_t count, int w
   return (outside & kEntryValid) == 0;
 }
 
-namespace {
-
-// Works row by row, so that entries_point_inside() finds the row in the cache.
-bool is_valid(const RectificationTable& table) {
-  const auto width = static_cast<std::size_t>(table.width);
-  std::uint32_t bits = 0;
-  bool inside = true;
-  for (std::size_t first = 0; first < table.entries.size(); first += width) {
-    const std::uint32_t* const row = table.entries.data() + first;
-    for (std::size_t column = 0; column < width; ++column) bits |= row[column];
-    inside = entries_point_inside(row, width, table.width, table.height) && inside;
-  }
-  return inside && (bits & kEntryUnusedBits) == 0;
-}
-
-}  // namespace
-
 std::vector<std::string> problems(const RectificationTable& table) {
   if (table.width < 1 || table.width > 2048 || table.height < 1 || table.height > 2048) {
     return {"table size = " + std::to_string(table.width) + " x " + std::to_string(table.height) +
             ": must be 1..2048 each"};
   }
-  if (table.entries.size() != pixel_count(table.width, table.height)) {
+  const int pixels = table.width * table.height;
+  if (table.entries.size() != static_cast<std::size_t>(pixels)) {
     return {"table entries = " + std::to_string(table.entries.size()) +
-            ": must be width * height = " + std::to_string(pixel_count(table.width, table.height))};
+            ": must be width * height = " + std::to_string(pixels)};
   }
-  if (is_valid(table)) return {};
+  std::uint32_t bits = 0;
+  for (const std::uint32_t entry : table.entries) bits |= entry;
+  if ((bits & kEntryUnusedBits) == 0 &&
+      entries_point_inside(table.entries.data(), table.entries.size(), table.width, table.height))
+    return {};
   std::vector<std::string> found;
   for (std::size_t index = 0; index < table.entries.size() && found.size() < kMostProblems; ++index) {
     const std::uint32_t entry = table.entries[index];

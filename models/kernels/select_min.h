@@ -1,6 +1,9 @@
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "models/kernels/column_scores.h"
@@ -9,17 +12,26 @@
 
 namespace stereotlm::kernels {
 
-// The select-min units compare keys: a window sum in the upper bits and a disparity in the lowest 8. The
-// smallest key is the smallest sum, and among equal sums the smallest disparity. This is the largest sum that
-// fits. Other scores are compared as exact fractions.
-inline constexpr std::int32_t kLargestKeySum = 0x7FFFFF;
+inline constexpr std::int32_t kNoCandidate = std::numeric_limits<std::int32_t>::max();  // a key
+constexpr std::uint8_t disparity_of(std::int32_t key) {
+  return key == kNoCandidate ? kInvalidDisparity : static_cast<std::uint8_t>(key & 0xFF);
+}
 
 // Select-min unit B (paper section 3.3): a tree of comparators. Returns the disparity of the smallest of the
 // first `candidates` window sums, and of equal sums the smaller disparity; kInvalidDisparity without
 // candidates. The sums of one column belong to one left pixel: left-based matching.
-std::uint8_t select_min_tree(const std::int32_t* window_sums, int candidates, int lanes,
-                             const Simd& simd = best_simd());
-std::uint8_t select_min_tree(const ColumnScores& scores, int candidates);
+inline std::uint8_t select_min_tree(const std::int32_t* window_sums, int candidates, int lanes,
+                                    const Simd& simd = best_simd()) {
+  return disparity_of(simd.smallest_key(window_sums, candidates, lanes));
+}
+inline std::uint8_t select_min_tree(const ColumnScores& scores, int candidates) {
+  if (candidates == 0) return kInvalidDisparity;
+  int best = 0;
+  for (int d = 1; d < candidates; ++d) {
+    if (is_greater(scores.of_left_pixel(d), scores.of_left_pixel(best))) best = d;
+  }
+  return static_cast<std::uint8_t>(best);
+}
 
 // Select-min unit A: a chain of `disparities` compare-and-shift modules. In each column, module d compares
 // the sum that module d-1 held a column ago with the sum of candidate d, and keeps the smaller sum. If they
@@ -27,14 +39,31 @@ std::uint8_t select_min_tree(const ColumnScores& scores, int candidates);
 // disparities-1 columns back: right-based matching.
 class SelectMinChain {
  public:
-  explicit SelectMinChain(int disparities, const Simd& simd = best_simd());
+  explicit SelectMinChain(int disparities, const Simd& simd = best_simd())
+      : simd_(simd),
+        disparities_(disparities),
+        lanes_(padded_lanes(disparities)),
+        held_(kBefore + disparities),
+        next_(kBefore + disparities) {
+    start_frame();
+  }
 
-  void start_frame();
+  void start_frame() {
+    held_.fill(kNoCandidate);
+    next_.fill(kNoCandidate);
+  }
   // One column: the first `candidates` window sums take part. Returns the disparity for the right pixel
   // disparities-1 columns back, kInvalidDisparity if it had no candidate.
-  std::uint8_t step(const std::int32_t* window_sums, int candidates);
+  std::uint8_t step(const std::int32_t* window_sums, int candidates) {
+    simd_.step_chain(window_sums, candidates, lanes_, held_.data() + kBefore, next_.data() + kBefore);
+    held_.swap(next_);
+    return disparity_of(held_.data()[kBefore + disparities_ - 1]);
+  }
 
  private:
+  // Number of values before the value of module 0. Module 0 reads the last of them as the value of module -1.
+  static constexpr int kBefore = kLanePadding;
+
   const Simd& simd_;
   int disparities_;
   int lanes_;
@@ -45,10 +74,20 @@ class SelectMinChain {
 // The same chain for scores. If two scores are equal, module d keeps the score of module d-1 here too.
 class ScoreChain {
  public:
-  explicit ScoreChain(int disparities);
+  explicit ScoreChain(int disparities) : held_(static_cast<std::size_t>(disparities)) {}
 
-  void start_frame();
-  std::uint8_t step(const ColumnScores& scores, int candidates);
+  void start_frame() { std::fill(held_.begin(), held_.end(), Held{}); }
+  std::uint8_t step(const ColumnScores& scores, int candidates) {
+    for (std::size_t d = held_.size(); d-- > 0;) {
+      const Held before = d > 0 ? held_[d - 1] : Held{};
+      held_[d] = before;
+      if (static_cast<int>(d) >= candidates) continue;
+      const Correlation score = scores.of_right_pixel(static_cast<int>(d));
+      if (before.disparity == kInvalidDisparity || is_greater(score, before.score))
+        held_[d] = {score, static_cast<std::uint8_t>(d)};
+    }
+    return held_.back().disparity;
+  }
 
  private:
   struct Held {

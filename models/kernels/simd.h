@@ -46,8 +46,8 @@ struct MatchPlan {
 };
 
 // The arrays of one side. They are aligned to kMostFrameVectorBytes. The comment of an array gives the number
-// of its positions: pixels or windows. There are columns right windows, columns + disparities - 1 left windows,
-// and window - 1 more pixels. Each position has one vector, unless the comment gives another number.
+// of its positions: pixels or windows. There are columns right windows, columns + disparities - 1 left
+// windows, and window - 1 more pixels. Each position has one vector, unless the comment gives another number.
 struct MatchSide {
   // [pixels]: in each lane the byte that enters the window is the lower one, the byte that leaves the window
   // the upper one. Pixels of more than one byte have a plane for each byte; the planes are `stride` apart.
@@ -59,8 +59,8 @@ struct MatchSide {
   std::int16_t* best = nullptr;
   // [pixels], with MatchLoops::unpacks: the pixels as numbers of 16 bits, in two vectors.
   std::int16_t* unpacked = nullptr;
-  // [pixels] and [windows], with MatchLoops::has_statistics: kColumnStatisticsVectors vectors, all 0 before the
-  // first row; kWindowStatisticsVectors vectors.
+  // [pixels] and [windows], with MatchLoops::has_statistics: kColumnStatisticsVectors vectors, all 0 before
+  // the first row; kWindowStatisticsVectors vectors.
   std::int16_t* columns = nullptr;
   std::int16_t* windows = nullptr;
 };
@@ -148,8 +148,8 @@ struct Simd {
   MatchLoops (*zncc_loops)(int window);
   MatchLoops (*census_loops)(int bytes, int window);  // `bytes` of a pixel: 1, 3 or 6
 
-  // The loops over one column of the matcher. Arrays over the disparities d hold `lanes` values, a multiple of
-  // kLanePadding; arrays with values of more than 8 bits must be SimdArrays.
+  // The loops over one column of the matcher. Arrays over the disparities d hold `lanes` values, a multiple
+  // of kLanePadding; arrays with values of more than 8 bits must be SimdArrays.
   //
   // Steps all column and window modules by one column. For each d: adds the sum over the `rows` of
   // |histories[row][d] - left[row]| to windows[d], subtracts leaving[d], and stores the sum in leaving[d].

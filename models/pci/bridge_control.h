@@ -20,14 +20,15 @@ namespace stereotlm::pci {
 
 // The timing of PciBridge (contract section 3, "Bridge"), its registers and its counters. Plain C++.
 //
-// - Writes to the slave window are posted: their words wait in the bridge, in order, for the local bus. A word
-//   frees its place when its burst on the local bus ends. A read waits until all writes before it have left.
+// - Writes to the slave window are posted: their words wait in the bridge, in order, for the local bus. A
+//   word frees its place when its burst on the local bus ends. A read waits until all writes before it have
+//   left.
 // - A DMA channel fetches a descriptor, then moves its words in bursts (dma_channel.h). Both channels share
 //   one PCI master, which serves their transfers in the order in which they start.
-// - The bridge is the only master of the local bus, and runs one burst at a time: posted writes first, then the
-//   read of the slave window, then the DMA channels in turn. Channel 1 has the first turn; a burst that ends
-//   while nothing waits passes the turn on. The end of a burst costs a step only if the burst was refused or
-//   something waits for its end. Otherwise it takes effect in the next call of settle().
+// - The bridge is the only master of the local bus, and runs one burst at a time: posted writes first, then
+//   the read of the slave window, then the DMA channels in turn. Channel 1 has the first turn; a burst that
+//   ends while nothing waits passes the turn on. The end of a burst costs a step only if the burst was
+//   refused or something waits for its end. Otherwise it takes effect in the next call of settle().
 //
 // Errors of posted writes and of DMA set bits of kInterruptStatus.
 class BridgeControl final : public PciMasterIf, public PciTarget, public LocalBusMasterIf {

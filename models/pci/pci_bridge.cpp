@@ -6,7 +6,7 @@
 namespace stereotlm::pci {
 
 PciBridge::PciBridge(const sc_core::sc_module_name& name, const PciBridgeConfig& config)
-    : sc_module(name), control_(checked(this->name(), config), *this, *this, *this) {
+    : sc_module(name), control_(checked(this->name(), config), pci, *this, *this) {
   SC_HAS_PROCESS(PciBridge);
   kernel_time::check_resolution();
   slave.register_b_transport(this, &PciBridge::access_slave);
@@ -75,11 +75,6 @@ void PciBridge::access_registers(tlm::tlm_generic_payload& access, sc_core::sc_t
 
 void PciBridge::ring() {
   control_.ring(kernel_time::now_ps());
-  await_step();
-}
-
-void PciBridge::end_burst(const BurstResult& result) {
-  control_.end_burst(result);
   await_step();
 }
 

@@ -27,8 +27,6 @@ namespace stereotlm::pci {
 // the wrong direction, a slave access outside the window, and a posted write of more words than there are
 // free places.
 class PciBridge : public sc_core::sc_module,
-                  private PciSlot,
-                  private PciMasterIf,
                   private PciStopIf,
                   private InterruptIf,
                   private LocalBusIf,
@@ -39,7 +37,7 @@ class PciBridge : public sc_core::sc_module,
   tlm_utils::simple_target_socket<PciBridge> slave{"slave"};
   tlm_utils::simple_target_socket<PciBridge> registers{"registers"};
   sc_core::sc_export<PciStopIf> stop{"stop"};                    // STOP# of the slave window
-  PciMasterPort pci{"pci"};                                      // bus mastering of the DMA channels
+  PciMasterPort pci{"pci", [this] { await_step(); }};            // bus mastering of the DMA channels
   tlm_utils::simple_initiator_socket<PciBridge> local{"local"};  // to fpga/local_bus.h
   sc_core::sc_in<bool> doorbell{"doorbell"};  // from the FPGA; its rising edge raises kDoorbell
   InterruptOut interrupt{"interrupt"};        // INTA#
@@ -67,15 +65,6 @@ class PciBridge : public sc_core::sc_module,
     interrupt_changed_.notify(sc_core::SC_ZERO_TIME);
   }
   void ring();
-
-  // These are the two ends of the slot of the PCI bus.
-  void request(PciMasterIf& /*control*/, std::uint64_t from_ps) override { pci->request(*this, from_ps); }
-  BurstResult transferred(std::uint64_t now_ps) const override { return pci->transferred(now_ps); }
-  const Clock& clock() const override { return pci->clock(); }
-  PciBurst begin_burst(std::uint64_t address_clock_ps) override {
-    return control_.begin_burst(address_clock_ps);
-  }
-  void end_burst(const BurstResult& result) override;
 
   // These are the two ends of the local bus.
   bool begin_burst(std::uint64_t now_ps, const LocalBurst& burst) override;

@@ -1,5 +1,6 @@
 #include "models/pci/pci_bus.h"
 
+#include <stdexcept>
 #include <utility>
 
 #include "models/checked.h"
@@ -60,21 +61,6 @@ PciBus::PciBus(const sc_core::sc_module_name& name, const PciBusConfig& config)
   SC_THREAD(run_transports);
 }
 
-void PciBus::Slot::request(PciMasterIf& master, std::uint64_t from_ps) {
-  master_ = &master;
-  slot_.request(*this, from_ps);
-  bus_.await_step();
-}
-
-PciBurst PciBus::Slot::begin_burst(std::uint64_t address_clock_ps) {
-  const PciBurst burst = master_->begin_burst(address_clock_ps);
-  if (burst.address % 4 != 0) {
-    SC_REPORT_ERROR(kPciBusReport,
-                    ("address = " + std::to_string(burst.address) + ": must be a multiple of 4").c_str());
-  }
-  return burst;
-}
-
 std::size_t PciBus::Target::writable_words(std::uint64_t /*now_ps*/, std::uint64_t address,
                                            std::size_t words) {
   const PciStopPort& stop = bus_.stops[window_];
@@ -107,7 +93,11 @@ void PciBus::step() {
 
 void PciBus::decide() {
   decides_ = false;
-  control_.decide(kernel_time::now_ps());
+  try {
+    control_.decide(kernel_time::now_ps());
+  } catch (const std::logic_error& error) {
+    SC_REPORT_ERROR(kPciBusReport, error.what());
+  }
   await_step();
 }
 

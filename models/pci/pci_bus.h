@@ -92,22 +92,21 @@ class PciBus : public sc_core::sc_module {
   Stats stats() const { return control_.stats(kernel_time::now_ps()); }
 
  private:
-  // A slot, between the control and the master in it.
-  class Slot : public PciSlotIf, private PciMasterIf {
+  // A slot of the control, for the master in it.
+  class Slot : public PciSlotIf {
    public:
     Slot(PciBus& bus, std::size_t master) : bus_(bus), slot_(bus.control_.slot(master)) {}
     using PciSlotIf::request;
-    void request(PciMasterIf& master, std::uint64_t from_ps) override;
+    void request(PciMasterIf& master, std::uint64_t from_ps) override {
+      slot_.request(master, from_ps);
+      bus_.await_step();
+    }
     BurstResult transferred(std::uint64_t now_ps) const override { return slot_.transferred(now_ps); }
     const Clock& clock() const override { return slot_.clock(); }
 
    private:
-    PciBurst begin_burst(std::uint64_t address_clock_ps) override;
-    void end_burst(const BurstResult& result) override { master_->end_burst(result); }
-
     PciBus& bus_;
     PciSlot& slot_;
-    PciMasterIf* master_ = nullptr;
   };
   // A target, between the control and the sockets of its window.
   class Target : public PciTarget {

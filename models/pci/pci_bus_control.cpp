@@ -1,6 +1,7 @@
 #include "models/pci/pci_bus_control.h"
 
 #include <algorithm>
+#include <stdexcept>
 #include <utility>
 
 namespace stereotlm::pci {
@@ -118,6 +119,8 @@ void PciBusControl::decide(std::uint64_t now_ps) {
     last_granted_ = master;
     const PciBurst burst = request.from->begin_burst(now_ps);
     if (burst.words == nullptr || burst.words->empty()) continue;
+    if (burst.address % 4 != 0)
+      throw std::logic_error("address = " + std::to_string(burst.address) + ": must be a multiple of 4");
     master_stats_[master].wait_clocks += clock - request_clock;
     begin(now_ps, master, burst, request_clock, clock);
     return;
@@ -292,7 +295,6 @@ PciBusControl::Stats PciBusControl::stats(std::uint64_t now_ps) const {
 
 // Null if no window holds the burst.
 PciBusControl::Window* PciBusControl::window_of(const PciBurst& burst) {
-  if (burst.address % 4 != 0) return nullptr;
   for (Window& window : windows_) {
     const std::uint64_t offset = burst.address - window.config.base;  // huge below the window
     if (offset < window.config.bytes && burst.words->size() <= (window.config.bytes - offset) / 4)

@@ -75,7 +75,7 @@ class PciBusControl {
   // Which of them: decide() grants the bus, from the state after everything else that happens at this time.
   bool decides_next() const { return state_ == State::kFree; }
   void step(std::uint64_t now_ps);
-  void decide(std::uint64_t now_ps);
+  void decide(std::uint64_t now_ps);  // throws std::logic_error for an address that is no multiple of 4
   // Whether the next step() calls a target with a write. If not, it calls none.
   bool writes_next() const;
   // The target answers the access that it has not answered yet.

@@ -3,8 +3,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <functional>
+#include <stdexcept>
 #include <systemc>
 #include <tlm>
+#include <utility>
 
 #include "models/access_rules.h"
 #include "models/kernel_time.h"
@@ -20,8 +23,45 @@ class PciSlotIf : public virtual sc_core::sc_interface, public PciSlot {
   void request(PciMasterIf& master) { request(master, kernel_time::now_ps()); }
 };
 
-// Sockets of the slot: `capture.pci.bind(bus.slots[0])`.
-using PciMasterPort = sc_core::sc_port<PciSlotIf>;
+// Sockets of the slot: `capture.pci.bind(bus.slots[0])`. The port is also the slot of a module's control: it
+// passes the calls of the control to the bus, and those of the bus to the control. A std::logic_error or
+// std::runtime_error of the control goes to `report`. `then` is called after the end of a burst.
+class PciMasterPort : public sc_core::sc_port<PciSlotIf>, public PciSlot, private PciMasterIf {
+ public:
+  explicit PciMasterPort(const char* name, std::function<void()> then = {},
+                         std::function<void(const std::exception&)> report = {})
+      : sc_port(name), then_(std::move(then)), report_(std::move(report)) {}
+
+  void request(PciMasterIf& control, std::uint64_t from_ps) override {
+    control_ = &control;
+    (*this)->request(*this, from_ps);
+  }
+  BurstResult transferred(std::uint64_t now_ps) const override { return (*this)->transferred(now_ps); }
+  const Clock& clock() const override { return (*this)->clock(); }
+
+ private:
+  PciBurst begin_burst(std::uint64_t address_clock_ps) override {
+    PciBurst burst;
+    guard([&] { burst = control_->begin_burst(address_clock_ps); });
+    return burst;
+  }
+  void end_burst(const BurstResult& result) override {
+    guard([&] { control_->end_burst(result); });
+    if (then_) then_();
+  }
+  template <class Call>
+  void guard(const Call& call) const try {
+    call();
+  } catch (const std::logic_error& error) {
+    report_(error);
+  } catch (const std::runtime_error& error) {
+    report_(error);
+  }
+
+  std::function<void()> then_;
+  std::function<void(const std::exception&)> report_;
+  PciMasterIf* control_ = nullptr;
+};
 using PciSlotExport = sc_core::sc_export<PciSlotIf>;
 
 // STOP#, which the base protocol has no phase for. A target without it takes bursts of any length.

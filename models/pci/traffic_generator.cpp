@@ -1,8 +1,6 @@
 #include "models/pci/traffic_generator.h"
 
 #include <cstring>
-#include <stdexcept>
-#include <string>
 
 #include "models/checked.h"
 #include "models/kernel_time.h"
@@ -12,14 +10,6 @@ namespace stereotlm::pci {
 TrafficGenerator::TrafficGenerator(const sc_core::sc_module_name& name, const TrafficGeneratorConfig& config)
     : sc_module(name), control_(checked(this->name(), config)), access_ps_(config.access_ps) {
   device.register_b_transport(this, &TrafficGenerator::respond);
-}
-
-void TrafficGenerator::end_burst(const BurstResult& result) {
-  try {
-    control_.end_burst(result);
-  } catch (const std::runtime_error& error) {
-    SC_REPORT_ERROR("/stereotlm/traffic_generator", (std::string(name()) + ": " + error.what()).c_str());
-  }
 }
 
 void TrafficGenerator::respond(tlm::tlm_generic_payload& access, sc_core::sc_time& delay) {

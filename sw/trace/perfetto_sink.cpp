@@ -2,20 +2,297 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <deque>
+#include <initializer_list>
+#include <list>
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <tuple>
+#include <unordered_map>
+#include <utility>
 #include <vector>
 
-#include "sw/trace/perfetto_file.h"
 #include "sw/trace/trace_board.h"
 #include "sw/trace/trace_sink.h"
 
 namespace stereotlm::trace {
 namespace {
+
+// A message of Protocol Buffers in its wire format: fields, each with its number, in the order of the calls.
+class ProtoMessage {
+ public:
+  ProtoMessage& integer(std::uint32_t field, std::uint64_t value) {
+    return varint(field << 3U).varint(value);
+  }
+  ProtoMessage& fixed(std::uint32_t field, std::uint64_t value) {
+    varint(field << 3U | 1U);
+    for (unsigned byte = 0; byte < 8; ++byte) bytes_ += static_cast<char>(value >> (8U * byte));
+    return *this;
+  }
+  // A text or another message.
+  ProtoMessage& text(std::uint32_t field, std::string_view text) {
+    varint(field << 3U | 2U).varint(text.size()).bytes_ += text;
+    return *this;
+  }
+  operator std::string_view() const { return bytes_; }
+  void clear() { bytes_.clear(); }
+
+ private:
+  ProtoMessage& varint(std::uint64_t value) {
+    constexpr std::uint64_t kMore = 0x80;
+    for (; value >= kMore; value >>= 7U) bytes_ += static_cast<char>(value | kMore);
+    bytes_ += static_cast<char>(value);
+    return *this;
+  }
+
+  std::string bytes_;
+};
+
+// Numbers of fields and values in google/perfetto, protos/perfetto/trace.
+constexpr std::uint32_t kPacket = 1;  // in Trace
+namespace packet {
+constexpr std::uint32_t kClockSnapshot = 6, kTimestamp = 8, kSequence = 10, kTrackEvent = 11,
+                        kInternedData = 12, kSequenceFlags = 13, kDefaults = 59, kTrackDescriptor = 60,
+                        kForTesting = 900;
+constexpr std::uint32_t kDefaultClock = 58;  // in TracePacketDefaults
+constexpr std::uint64_t kStateCleared = 1, kNeedsState = 2;
+}  // namespace packet
+namespace descriptor {
+constexpr std::uint32_t kUuid = 1, kName = 2, kProcess = 3, kParent = 5, kCounter = 8, kChildOrder = 11,
+                        kRank = 12;
+constexpr std::uint64_t kByRank = 3;
+constexpr std::uint32_t kPid = 1, kProcessName = 6;  // in ProcessDescriptor
+constexpr std::uint32_t kUnitName = 6;               // in CounterDescriptor
+}  // namespace descriptor
+namespace event {
+constexpr std::uint32_t kArgument = 4, kType = 9, kName = 10, kTrack = 11, kCounter = 30, kDoubleCounter = 44,
+                        kFlow = 47;
+constexpr std::uint64_t kBegin = 1, kEnd = 2, kInstant = 3, kCount = 4;
+constexpr std::uint32_t kArgumentName = 1, kNumber = 3;  // in DebugAnnotation
+}  // namespace event
+namespace interned {
+constexpr std::uint32_t kEventNames = 2, kArgumentNames = 3;
+constexpr std::uint32_t kNumber = 1, kName = 2;  // in EventName and DebugAnnotationName
+}  // namespace interned
+namespace clocks {
+constexpr std::uint32_t kClock = 1, kPrimary = 2;
+constexpr std::uint32_t kId = 1, kTimestamp = 2, kIsIncremental = 3;  // in Clock
+constexpr std::uint64_t kBootTime = 6, kOfSequence = 64;
+}  // namespace clocks
+
+constexpr std::uint64_t kProcessUuid = 1;
+
+// The descriptor of a track or of a group.
+ProtoMessage described(std::uint64_t uuid, std::uint64_t parent, std::size_t rank, const std::string& name) {
+  return ProtoMessage()
+      .integer(descriptor::kUuid, uuid)
+      .text(descriptor::kName, name)
+      .integer(descriptor::kParent, parent)
+      .integer(descriptor::kRank, rank);
+}
+
+// The first packet of every file, by which the file is known: a text that viewers ignore.
+std::string perfetto_mark() {
+  const ProtoMessage event = ProtoMessage().text(1, "trace of stereotlm");  // TestEvent.str
+  const ProtoMessage packet = ProtoMessage().text(packet::kForTesting, event);
+  return std::string(ProtoMessage().text(kPacket, packet));
+}
+
+// The groups of tracks, from top to bottom.
+enum class TrackGroup : std::uint8_t { kCore, kPorts, kBanks, kQueues, kBuses, kCapture, kSoftware };
+constexpr std::array<const char*, 7> kTrackGroupNames = {"core",  "ports",   "banks",   "queues",
+                                                         "buses", "capture", "software"};
+
+// A trace of Perfetto: a process, and below it groups of tracks. A group is written with its first track.
+class PerfettoFile {
+ public:
+  PerfettoFile(files::OutputFile& file, const std::string& process) : file_(file), last_uuid_(kProcessUuid) {
+    file_.write(perfetto_mark());
+    const ProtoMessage of_process =
+        ProtoMessage().integer(descriptor::kPid, 1).text(descriptor::kProcessName, process);
+    const ProtoMessage track =
+        ProtoMessage().integer(descriptor::kUuid, kProcessUuid).text(descriptor::kProcess, of_process);
+    write(ProtoMessage().text(packet::kTrackDescriptor, track));
+  }
+
+ private:
+  friend class PerfettoTrack;
+
+  // Describes a track, and its group if that is new. Returns the uuid of the track.
+  std::uint64_t add(TrackGroup group, std::size_t rank, const std::string& name, const std::string& unit) {
+    const auto place = static_cast<std::size_t>(group);
+    if (groups_[place] == 0) {
+      groups_[place] = ++last_uuid_;
+      ProtoMessage message = described(groups_[place], kProcessUuid, place, kTrackGroupNames[place]);
+      message.integer(descriptor::kChildOrder, descriptor::kByRank);
+      write(ProtoMessage().text(packet::kTrackDescriptor, message));
+    }
+    ProtoMessage track = described(++last_uuid_, groups_[place], rank, name);
+    if (!unit.empty()) track.text(descriptor::kCounter, ProtoMessage().text(descriptor::kUnitName, unit));
+    write(ProtoMessage().text(packet::kTrackDescriptor, track));
+    return last_uuid_;
+  }
+  void write(std::string_view packet) {
+    packet_.clear();
+    file_.write(packet_.text(kPacket, packet));
+  }
+
+  files::OutputFile& file_;
+  ProtoMessage packet_;
+  std::uint64_t last_uuid_;
+  std::array<std::uint64_t, kTrackGroupNames.size()> groups_{};  // uuid; 0: not written
+};
+
+// A track, which is written when its first event comes. Each track is a packet sequence of its own, with its
+// own table of names, and with times that are differences to the packet before. The times of a track
+// therefore never decrease; those of different tracks are independent.
+class PerfettoTrack {
+ public:
+  // An argument of a slice, which is left out if it has no value.
+  struct Argument {
+    const char* name;
+    std::optional<std::uint64_t> value;
+  };
+  using Arguments = std::initializer_list<Argument>;
+  using Flows = std::vector<std::uint64_t>;
+
+  // `rank` orders the tracks of a group. `unit`: of a counter; empty for a track of slices.
+  PerfettoTrack(PerfettoFile& file, TrackGroup group, std::size_t rank, std::string name,
+                std::string unit = {})
+      : file_(file), group_(group), rank_(rank), name_(std::move(name)), unit_(std::move(unit)) {}
+
+  // Times are in ns. An arrow leads from each slice to the next one with the same flow.
+  void begin(std::uint64_t time_ns, std::string_view name, Arguments arguments, const Flows& flows = {}) {
+    write_event(time_ns, event::kBegin, name, arguments, flows);
+  }
+  void end(std::uint64_t time_ns) { write_event(time_ns, event::kEnd); }
+  void slice(std::uint64_t begin_ns, std::uint64_t end_ns, std::string_view name, Arguments arguments,
+             const Flows& flows = {}) {
+    begin(begin_ns, name, arguments, flows);
+    end(end_ns);
+  }
+  void instant(std::uint64_t time_ns, std::string_view name, Arguments arguments) {
+    write_event(time_ns, event::kInstant, name, arguments);
+  }
+  // Writes the value if it differs from the last one.
+  void count(std::uint64_t time_ns, double value) {
+    if (value == last_value_) return;
+    last_value_ = value;
+    const auto whole = static_cast<std::uint64_t>(value);
+    std::uint64_t bits = 0;
+    std::memcpy(&bits, &value, sizeof bits);
+    static_cast<double>(whole) == value ? event_.integer(event::kCounter, whole)
+                                        : event_.fixed(event::kDoubleCounter, bits);
+    write_event(time_ns, event::kCount);
+  }
+
+  std::uint64_t last_ns() const { return last_ns_; }
+  bool is_written() const { return uuid_ != 0; }
+
+ private:
+  // A table that has become larger is begun anew, so that memory does not grow with the run.
+  static constexpr std::size_t kMostNames = 4096;
+
+  // Begins with empty tables of names. The uuid of the track serves as the number of the sequence. Both
+  // clocks show 0: the first time of a sequence counts from power-up, the next ones from the packet before.
+  void start_sequence() {
+    names_ = {};
+    last_ns_ = 0;
+    const auto clock = [](std::uint64_t id) {
+      return ProtoMessage().integer(clocks::kId, id).integer(clocks::kTimestamp, 0);
+    };
+    const ProtoMessage snapshot =
+        ProtoMessage()
+            .text(clocks::kClock, clock(clocks::kBootTime))
+            .text(clocks::kClock, clock(clocks::kOfSequence).integer(clocks::kIsIncremental, 1))
+            .integer(clocks::kPrimary, clocks::kBootTime);
+    const ProtoMessage defaults =
+        ProtoMessage()
+            .integer(packet::kDefaultClock, clocks::kOfSequence)
+            .text(packet::kTrackEvent, ProtoMessage().integer(event::kTrack, uuid_));
+    file_.write(ProtoMessage()
+                    .integer(packet::kSequence, uuid_)
+                    .integer(packet::kSequenceFlags, packet::kStateCleared)
+                    .text(packet::kClockSnapshot, snapshot)
+                    .text(packet::kDefaults, defaults));
+  }
+  // The number of a name in its table, which is a field of the interned data. A new name goes into the
+  // packet.
+  std::uint64_t number_of(std::uint32_t table, std::string_view name) {
+    auto& names = names_[table - interned::kEventNames];
+    const auto [entry, is_new] = names.try_emplace(std::string(name), names.size() + 1);
+    if (is_new) {
+      interned_.text(table,
+                     ProtoMessage().integer(interned::kNumber, entry->second).text(interned::kName, name));
+    }
+    return entry->second;
+  }
+  // Writes the event with these fields too, and clears it.
+  void write_event(std::uint64_t time_ns, std::uint64_t type, std::string_view name = {},
+                   Arguments arguments = {}, const Flows& flows = {}) {},
+                   Arguments arguments = {}) {
+    const bool is_new = !is_written();
+    if (is_new) uuid_ = file_.add(group_, rank_, name_, unit_);
+    if (is_new || (!name.empty() && names_[0].size() >= kMostNames)) start_sequence();
+    if (!name.empty()) event_.integer(event::kName, number_of(interned::kEventNames, name));
+    for (const Argument& argument : arguments) {
+      if (!argument.value) continue;
+      event_.text(event::kArgument,
+                  ProtoMessage()
+                      .integer(event::kArgumentName, number_of(interned::kArgumentNames, argument.name))
+                      .integer(event::kNumber, *argument.value));
+    }
+    for (const std::uint64_t flow : flows) event_.fixed(event::kFlow, flow);
+    event_.integer(event::kType, type);
+    packet_.integer(packet::kTimestamp, time_ns - last_ns_)
+        .integer(packet::kSequence, uuid_)
+        .integer(packet::kSequenceFlags, packet::kNeedsState);
+    const std::string_view names = interned_;
+    if (!names.empty()) packet_.text(packet::kInternedData, names);
+    file_.write(packet_.text(packet::kTrackEvent, event_));
+    last_ns_ = time_ns;
+    for (ProtoMessage* const message : {&interned_, &event_, &packet_}) message->clear();
+  }
+
+  PerfettoFile& file_;
+  TrackGroup group_;
+  std::size_t rank_;
+  std::string name_;
+  std::string unit_;
+  std::uint64_t uuid_ = 0;  // 0: not written
+  std::uint64_t last_ns_ = 0;
+  double last_value_ = -1;  // of a counter, whose values are not negative
+  std::array<std::unordered_map<std::string, std::uint64_t>, 2> names_;  // of events, of arguments
+  // Parts of the packet that is made.
+  ProtoMessage interned_;
+  ProtoMessage event_;
+  ProtoMessage packet_;
+};
+
+// Tracks of one name, which Perfetto shows as one. Slices that overlap without being nested need several. The
+// slices come by their ends.
+class OverlappingTracks {
+ public:
+  OverlappingTracks(PerfettoFile& file, TrackGroup group, std::size_t rank, const std::string& name)
+      : first_(file, group, rank, name), tracks_({first_}) {}
+
+  // A track whose last slice has ended by then.
+  PerfettoTrack& free_at(std::uint64_t begin_ns) {
+    for (PerfettoTrack& track : tracks_) {
+      if (track.last_ns() <= begin_ns) return track;
+    }
+    return tracks_.emplace_back(first_);
+  }
+
+ private:
+  PerfettoTrack first_;  // never written
+  std::list<PerfettoTrack> tracks_;
+};
 
 using fpga::CoreCycle;
 using fpga::Intent;

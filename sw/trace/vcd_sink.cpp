@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <deque>
+#include <initializer_list>
 #include <iterator>
 #include <optional>
 #include <set>
@@ -72,18 +73,34 @@ struct Signal {
 // The signals of a board, and the words that they show.
 struct Signals {
   explicit Signals(const TraceBoard& board) {
-    add_banks(board);
-    add_ports(board);
+    for (std::size_t bank = 0; bank < board.banks.size(); ++bank) {
+      const std::string& name = board.bank_name(bank);
+      banks.push_back(add(Group::kBanks, name, "requests", kRequestBits, 0));
+      const bool is_separate = board.has_separate_ports(bank);
+      add_words(Group::kBanks, name, {{is_separate ? "read_owner" : "owner", "-"}});
+      if (is_separate) add_words(Group::kBanks, name, {{"write_owner", "-"}});
+    }
+    unsigned address_bits = 1;  // of a byte address in the largest bank
+    for (const platform::BankConfig& bank : board.banks) {
+      while (std::uint64_t{1} << address_bits < 4 * static_cast<std::uint64_t>(bank.words)) ++address_bits;
+    }
+    for (std::size_t port = 0; port < fpga::kPortCount; ++port) {
+      ports[port] = kNoSignal;
+      if (!fpga::has_port(board.core, port)) continue;
+      const std::string name = fpga::kPorts[port].name;
+      ports[port] = add_words(Group::kPorts, name, {{"state", "idle"}, {"bank", "-"}});
+      add(Group::kPorts, name, "address", address_bits, kUnknown);
+      add_words(Group::kPorts, name, {{"waits_for", "-"}});
+    }
+    host_traffic = add_words(Group::kPorts, "host", {{"traffic", "-"}});
     queues = add(Group::kQueues, "left_lane", "slots", kCountBits, 0);
     add(Group::kQueues, "right_lane", "slots", kCountBits, 0);
     add(Group::kQueues, "results", "words", kCountBits, 0);
     add(Group::kQueues, "matcher", "works", 1, 0);
     core_size = all.size();
     for (std::size_t bus = 0; bus < buses.size(); ++bus) {
-      buses[bus] = add_words(Group::kBuses, kBusNames[bus], "owner", "-");
-      add_words(Group::kBuses, kBusNames[bus], "phase", "idle");
-      add_words(Group::kBuses, kBusNames[bus], "direction", "-");
-      add_words(Group::kBuses, kBusNames[bus], "target", "-");
+      buses[bus] = add_words(Group::kBuses, kBusNames[bus],
+                             {{"owner", "-"}, {"phase", "idle"}, {"direction", "-"}, {"target", "-"}});
       add(Group::kBuses, kBusNames[bus], "address", kBusAddressBits, kNoNumber);
     }
     levels = all.size();
@@ -124,39 +141,12 @@ struct Signals {
     all.push_back({group, scope, name, bits, idle, code});
     return all.size() - 1;
   }
-  std::size_t add_words(Group group, const std::string& scope, const std::string& name,
-                        std::string_view idle) {
-    return add(group, scope, name, 0, word(idle));
-  }
-
-  void add_banks(const TraceBoard& board) {
-    for (std::size_t bank = 0; bank < board.banks.size(); ++bank) {
-      const std::string& name = board.bank_name(bank);
-      banks.push_back(add(Group::kBanks, name, "requests", kRequestBits, 0));
-      if (board.has_separate_ports(bank)) {
-        add_words(Group::kBanks, name, "read_owner", "-");
-        add_words(Group::kBanks, name, "write_owner", "-");
-      } else {
-        add_words(Group::kBanks, name, "owner", "-");
-      }
-    }
-  }
-
-  void add_ports(const TraceBoard& board) {
-    unsigned address_bits = 1;  // of a byte address in the largest bank
-    for (const platform::BankConfig& bank : board.banks) {
-      while (std::uint64_t{1} << address_bits < 4 * static_cast<std::uint64_t>(bank.words)) ++address_bits;
-    }
-    for (std::size_t port = 0; port < fpga::kPortCount; ++port) {
-      ports[port] = kNoSignal;
-      if (!fpga::has_port(board.core, port)) continue;
-      const std::string name = fpga::kPorts[port].name;
-      ports[port] = add_words(Group::kPorts, name, "state", "idle");
-      add_words(Group::kPorts, name, "bank", "-");
-      add(Group::kPorts, name, "address", address_bits, kUnknown);
-      add_words(Group::kPorts, name, "waits_for", "-");
-    }
-    host_traffic = add_words(Group::kPorts, "host", "traffic", "-");
+  // Signals of words: their names and idle values. Returns the first of them.
+  std::size_t add_words(Group group, const std::string& scope,
+                        std::initializer_list<std::array<const char*, 2>> signals) {
+    const std::size_t first = all.size();
+    for (const auto& [name, idle] : signals) add(group, scope, name, 0, word(idle));
+    return first;
   }
 };
 
