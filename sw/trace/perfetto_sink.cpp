@@ -234,8 +234,7 @@ class PerfettoTrack {
   }
   // Writes the event with these fields too, and clears it.
   void write_event(std::uint64_t time_ns, std::uint64_t type, std::string_view name = {},
-                   Arguments arguments = {}, const Flows& flows = {}) {},
-                   Arguments arguments = {}) {
+                   Arguments arguments = {}, const Flows& flows = {}) {
     const bool is_new = !is_written();
     if (is_new) uuid_ = file_.add(group_, rank_, name_, unit_);
     if (is_new || (!name.empty() && names_[0].size() >= kMostNames)) start_sequence();
