@@ -1,6 +1,6 @@
 // Who waits for whom, by cause and from top to bottom of the picture.
 import {drawBars} from './bars.js';
-import {addChart, legend} from './card.js';
+import {addChart, addLeftOut, legend} from './card.js';
 import {commandLine, h, note, s} from './dom.js';
 import {blamesInDetail, blamesOf, blameText, settingOf, waitingRows, waitsOf, waitText} from './findings.js';
 
@@ -146,14 +146,7 @@ function traceCommand(run, recorded, {from, to}) {
 // to look closer.
 export function addRows(page, run) {
   const recorded = linesOf(run);
-  if (!recorded) {
-    addChart(page, {
-      id: 'rows',
-      title: 'What happens in each row',
-      note: 'Left out by --quick, because the run was not recorded.'
-    });
-    return;
-  }
+  if (!recorded) return addLeftOut(page, 'rows', 'What happens in each row');
   const {cycles, lines, height: rowsOfLine, frames} = recorded;
   const imageHeight = settingOf(run, 'image.height');
   const columns = columnsOf(run, recorded);
