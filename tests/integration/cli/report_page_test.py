@@ -530,7 +530,7 @@ class Tools(PageTest):
     """Zoom, sliders and search."""
 
     def picture(self):
-        return self.browser.run("return document.querySelector('#picture canvas').toDataURL()")
+        return self.browser.all("#picture .picture")[0].screenshot_as_base64
 
     def test_rows_are_zoomed_by_brush_and_buttons(self):
         self.browser.open(page_of(core()))
@@ -599,7 +599,7 @@ class Tools(PageTest):
             self.browser.choose(f"picture-{slider}", value)
             states.append(self.picture())
         self.assertEqual(len(set(states)), 5)
-        self.browser.run("document.querySelector('#picture canvas').focus()")
+        self.browser.run("document.querySelector('#picture .picture').focus()")
         self.browser.keys(Keys.ARROW_DOWN)
         self.assertIn("row 13", self.browser.text("#tooltip"))
 
