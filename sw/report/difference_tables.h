@@ -31,11 +31,12 @@ std::uint64_t cycles_of_frames(const nlohmann::ordered_json& stats);
 
 using Values = std::vector<platform::BoardValue>;
 
-// The values that differ, in the order of A; values that only B has follow: a list of `path`, `a` and `b`. What a
-// run does not have is left out.
+// The values that differ, in the order of A; values that only B has follow: a list of `path`, `a` and `b`.
+// What a run does not have is left out.
 nlohmann::ordered_json differing_values(const Values& a, const Values& b);
 
-// The waits that differ, the largest difference first: a list of `port`, `bank`, `by`, and the cycles `a` and `b`.
+// The waits that differ, the largest difference first: a list of `port`, `bank`, `by`, and the cycles `a` and
+// `b`.
 nlohmann::ordered_json differing_waits(const std::vector<platform::BlameRow>& a,
                                        const std::vector<platform::BlameRow>& b);
 

@@ -528,8 +528,8 @@ class Chart {
     return ends;
   }
 
-  // Whether no edge of another port, on its way from its bank, could lie on one of this port. Those of the host
-  // have the rightmost tracks, which no edge from a bank passes.
+  // Whether no edge of another port, on its way from its bank, could lie on one of this port. Those of the
+  // host have the rightmost tracks, which no edge from a bank passes.
   bool is_clear(const Port& port) const {
     const std::vector<double> ends = port_ends(port);
     for (const Bank& bank : banks_) {
@@ -556,8 +556,8 @@ class Chart {
     return y - kBetweenPorts;
   }
 
-  // Chooses the ways of the edges between banks and ports: from the bank to the track of the edge, there up or
-  // down, and on to the port. Tracks from left to right: those of ports whose edges go up, the lowest port
+  // Chooses the ways of the edges between banks and ports: from the bank to the track of the edge, there up
+  // or down, and on to the port. Tracks from left to right: those of ports whose edges go up, the lowest port
   // first; of those whose edges go down, the highest first; of the host.
   void route() {
     const auto order = [this](const Port& port) {

@@ -143,8 +143,8 @@ double real(std::uint64_t number) { return static_cast<double>(number); }
 
 }  // namespace
 
-// Where in the picture the ports stall: sums over all frames of rows.csv and conflicts.csv. A line is a line of
-// tiles; [0] is the fill, before the first one.
+// Where in the picture the ports stall: sums over all frames of rows.csv and conflicts.csv. A line is a line
+// of tiles; [0] is the fill, before the first one.
 class ConflictData {
  public:
   ConflictData(const platform::BoardConfig& board, const std::filesystem::path& folder)

@@ -130,8 +130,8 @@ def stacked(points, options, rows, heading, ports, parts, cycles, unit):
 
 
 def states(points, options):
-    """What each port does in the cycles of a frame, point by point: granted, passed, waiting, blocked, starved or
-    idle."""
+    """What each port does in the cycles of a frame, point by point: granted, passed, waiting, blocked,
+    starved or idle."""
     rows = Rows(points, options)
     points.need_numbers([f"ports.{port}.{count}" for port in PORTS for count in ("grants", "stall_cycles")])
     ports = [port for port in PORTS  # those that are granted or stall in one of these points

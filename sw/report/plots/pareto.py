@@ -69,7 +69,7 @@ def front_of(columns, senses, uncertainties):
 
 
 def draw(points, options):
-    """Any two columns against each other, and their Pareto front: the points that no other point dominates."""
+    """Two columns against each other, and their Pareto front: the points that no other point dominates."""
     axes_of = parse(options.pareto or DEFAULT)
     (x, x_sense), (y, y_sense) = axes_of
     if options.pareto is None:

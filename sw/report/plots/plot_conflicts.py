@@ -82,7 +82,8 @@ def bank_rows(recorded, options):
     sheet.note("Of the cycles of each row of results: accesses of the bank, or waits of the port. " +
                recorded.note)
     (axes,) = sheet.grid([4.2], 1, 0.7, 0.3, bottom=1.5)
-    shown = axes.pcolormesh(range(len(columns) + 1), [*first, recorded.about["height"]], values, cmap=style.SCALE, vmin=0, vmax=100,
+    edges = [*first, recorded.about["height"]]
+    shown = axes.pcolormesh(range(len(columns) + 1), edges, values, cmap=style.SCALE, vmin=0, vmax=100,
                             rasterized=True)
     axes.invert_yaxis()
     axes.grid(False)
@@ -141,7 +142,8 @@ def time_line(recorded, options):
                "is the time before the first results. " + recorded.note)
     panels = sheet.grid([2.0, 1.4] if waiting else [2.0], left=0.8)
     for number, (bank, color) in enumerate(colors.items()):
-        panels[0].stairs(shares[bank], times, color=color, baseline=None, linewidth=1.2, linestyle=style.DASHES[number // len(BANK_COLORS) % 4])
+        panels[0].stairs(shares[bank], times, color=color, baseline=None, linewidth=1.2,
+                         linestyle=style.DASHES[number // len(BANK_COLORS) % 4])
     panels[0].set_ylabel("bank busy, %")
     panels[0].set_ylim(0, 105)
     if waiting:

@@ -265,14 +265,6 @@ class Numbers(PageTest):
             self.assertEqual(f"{number(row['frames_per_second']):.3f}", rate)
             self.assertEqual(row["changes_disparities"], str(" *:" in step).lower())
 
-    def test_of_the_csv_are_those_of_the_table(self):
-        self.browser.open(page_of(core()))
-        for chart in ("ports", "bounds", "area"):
-            rows = list(csv.DictReader(io.StringIO(self.browser.csv(chart))))
-            table = self.browser.table(chart)
-            self.assertEqual([[cell.replace(",", "") for cell in row.values()] for row in table],
-                             [[cell.replace(",", "") for cell in row.values()] for row in rows])
-
     def test_of_a_database_equal_the_database(self):
         page = page_of(database())
         self.browser.open(page)
@@ -598,14 +590,29 @@ class Tools(PageTest):
         for slider, value in (("split", 0), ("split", 100), ("overlay", 100), ("overlay", 0)):
             self.browser.choose(f"picture-{slider}", value)
             states.append(self.picture())
+            if slider == "split":
+                self.assertEqual(self.browser.run(
+                    "const box = document.querySelector('#picture .picture').getBoundingClientRect();"
+                    "return document.elementsFromPoint(box.x + box.width / 2, box.y + box.height / 2)"
+                    ".filter(each => each.matches('.picture canvas:not(.overlay)')).length"), 2 - value // 100)
         self.assertEqual(len(set(states)), 5)
         self.browser.run("document.querySelector('#picture .picture').focus()")
         self.browser.keys(Keys.ARROW_DOWN)
         self.assertIn("row 13", self.browser.text("#tooltip"))
 
     def test_waits_are_shown_without_pixels_too(self):
-        self.opened(page_of(computer()), lambda data: data["run"].pop("pictures"))
+        def change(data):
+            del data["run"]["pictures"]
+            recording = data["run"]["recording"]
+            recording["tiles"] = {"columns": 10, "rows": 10, "width": 4, "height": 3}
+            for each in recording["stalls"]:
+                each["tiles"] = [1] * 100
+
+        self.opened(page_of(computer()), change)
         self.browser.drawn()
+        wide = self.browser.run("return [...document.querySelectorAll('#picture canvas')]"
+                                ".filter(each => !each.hidden).map(each => each.offsetWidth)")
+        self.assertEqual([round(width / wide[0], 1) for width in wide], [1, round(40 / 32, 1)])
         states = [self.picture()]
         self.browser.choose("picture-overlay", 100)
         self.assertNotEqual(self.picture(), states[0])

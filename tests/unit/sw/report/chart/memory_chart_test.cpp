@@ -218,7 +218,8 @@ void expect_room_for_everything(const Drawn& chart) {
   }
 }
 
-// Each edge goes from its block to the other, through nothing. Edges of different ports cross at right angles.
+// Each edge goes from its block to the other, through nothing. Edges of different ports cross at right
+// angles.
 // Those of a port, in a run, go up and down side by side.
 void expect_edges_clear(const Drawn& chart, bool is_run) {
   // Whether the end of an edge touches the block, but for the head of its arrow.
