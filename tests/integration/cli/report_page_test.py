@@ -591,10 +591,11 @@ class Tools(PageTest):
             self.browser.choose(f"picture-{slider}", value)
             states.append(self.picture())
             if slider == "split":
-                self.assertEqual(self.browser.run(
+                there = self.browser.run(
                     "const box = document.querySelector('#picture .picture').getBoundingClientRect();"
                     "return document.elementsFromPoint(box.x + box.width / 2, box.y + box.height / 2)"
-                    ".filter(each => each.matches('.picture canvas:not(.overlay)')).length"), 2 - value // 100)
+                    ".filter(each => each.matches('.picture canvas:not(.overlay)')).length")
+                self.assertEqual(there, 2 - value // 100)
         self.assertEqual(len(set(states)), 5)
         self.browser.run("document.querySelector('#picture .picture').focus()")
         self.browser.keys(Keys.ARROW_DOWN)
