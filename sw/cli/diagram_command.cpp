@@ -51,14 +51,13 @@ struct DiagramOptions : Options {
 std::string chart_of_run(const std::string& folder, process::Problems& problems) {
   const auto run = runs::read_recorded_run(
       "RUN", folder, "BOARD must be a board, or a folder that run --out has written: ", problems);
-  return run ? report::memory_chart_svg(run->board, report::chart_traffic(run->board, run->statistics)) : "";
+  if (!run) return "";
+  return report::memory_chart_svg({run->board, run->statistics.computer.has_value(), &run->statistics});
 }
 
 std::string chart_of_board(const DiagramOptions& options, process::Problems& problems) {
   const LoadedBoard loaded = options.board.load(problems);
-  const auto extent =
-      options.source.is_camera() ? report::ChartExtent::kComputer : report::ChartExtent::kBoard;
-  return loaded.board ? report::memory_chart_svg(*loaded.board, extent) : "";
+  return loaded.board ? report::memory_chart_svg({*loaded.board, options.source.is_camera()}) : "";
 }
 
 int diagram(const DiagramOptions& options) {

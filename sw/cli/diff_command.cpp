@@ -58,29 +58,31 @@ struct RunFigures {
     }
   }
 
-  // The figures whose paths begin with one of `keys`. If there is only one key, the paths in the result omit
-  // it.
-  Values below(const std::vector<std::string>& keys) const {
-    Values found;
-    for (platform::BoardValue value : values) {
-      const std::size_t dot = value.path.find('.');
-      if (std::find(keys.begin(), keys.end(), value.path.substr(0, dot)) == keys.end()) continue;
-      if (keys.size() == 1) {
-        value.path.erase(0, dot + 1);
-        std::replace(value.path.begin(), value.path.end(), '.', ' ');
-      }
-      found.push_back(std::move(value));
-    }
-    return found;
-  }
-
   const platform::Statistics& statistics;
   Json document;
   Values values;
 };
 
-std::string figures_text(const std::string& head, const RunFigures& a, const RunFigures& b) {
-  return report::figures_table(head, a.below({head}), b.below({head}));
+// The rows of differing_values() whose paths begin with one of `keys`.
+Json below(const Json& figures, const std::vector<std::string>& keys) {
+  Json found = Json::array();
+  for (const Json& row : figures) {
+    const auto path = row["path"].get<std::string>();
+    if (std::find(keys.begin(), keys.end(), path.substr(0, path.find('.'))) != keys.end())
+      found.push_back(row);
+  }
+  return found;
+}
+
+// The table of the figures below a key, which their paths there omit.
+std::string figures_text(const std::string& key, const Json& figures) {
+  Json rows = below(figures, {key});
+  for (Json& row : rows) {
+    std::string path = row["path"].get<std::string>().erase(0, key.size() + 1);
+    std::replace(path.begin(), path.end(), '.', ' ');
+    row["path"] = path;
+  }
+  return report::figures_table(key, rows);
 }
 
 // Joins the texts that are not empty, with an empty line between them.
@@ -92,9 +94,9 @@ std::string in_sections(const std::vector<std::string>& texts) {
   return all;
 }
 
-std::string totals_text(const RunFigures& a, const RunFigures& b) {
-  const std::vector<std::string> keys = {"frames", "cycles", "frames_per_second", "bound", "accuracy"};
-  std::string text = report::figures_table("totals", a.below(keys), b.below(keys));
+std::string totals_text(const RunFigures& a, const RunFigures& b, const Json& figures) {
+  std::string text = report::figures_table(
+      "totals", below(figures, {"frames", "cycles", "frames_per_second", "bound", "accuracy"}));
   const std::size_t of_a = a.statistics.frame_cycles.size();
   const std::size_t of_b = b.statistics.frame_cycles.size();
   if (of_a != of_b) {
@@ -105,12 +107,12 @@ std::string totals_text(const RunFigures& a, const RunFigures& b) {
   return text;
 }
 
-std::string computer_text(const RunFigures& a, const RunFigures& b) {
+std::string computer_text(const RunFigures& a, const RunFigures& b, const Json& figures) {
   const bool a_has_computer = a.statistics.computer.has_value();
   if (a_has_computer != b.statistics.computer.has_value())
     return fmt::format("pci, bridge, cameras and latency: only in {}\n", a_has_computer ? "A" : "B");
-  return in_sections({figures_text("pci", a, b), figures_text("bridge", a, b), figures_text("cameras", a, b),
-                      figures_text("latency_ms", a, b)});
+  return in_sections({figures_text("pci", figures), figures_text("bridge", figures),
+                      figures_text("cameras", figures), figures_text("latency_ms", figures)});
 }
 
 std::string verdict_of(const runs::RecordedRun& run_a, const runs::RecordedRun& run_b, const RunFigures& a,
@@ -121,34 +123,11 @@ std::string verdict_of(const runs::RecordedRun& run_a, const runs::RecordedRun& 
                               limits.pixels.empty() ? &aligned.pixels() : nullptr);
 }
 
-Json differing_json(const Values& a, const Values& b) {
-  Json list = Json::array();
-  for (const report::Differing& each : report::differing(a, b)) {
-    Json json = {{"path", each.path}};
-    for (const auto& [name, value] : {std::pair("a", each.a), std::pair("b", each.b)}) {
-      if (value != nullptr) std::visit([&json, key = name](const auto& its) { json[key] = its; }, *value);
-    }
-    list.push_back(std::move(json));
-  }
-  return list;
-}
-
 Json frames_json(const std::vector<std::uint64_t>& a, const std::vector<std::uint64_t>& b) {
   Json list = Json::array();
   for (std::size_t frame = 0; frame < std::min(a.size(), b.size()); ++frame) {
     if (a[frame] != b[frame]) list.push_back({{"frame", frame}, {"a", a[frame]}, {"b", b[frame]}});
   }
-  return list;
-}
-
-Json waits_json(const std::vector<platform::BlameRow>& a, const std::vector<platform::BlameRow>& b) {
-  Json list = Json::array();
-  for (const report::DifferingWait& wait : report::differing_waits(a, b))
-    list.push_back({{"port", wait.row.port},
-                    {"bank", wait.row.bank},
-                    {"by", wait.row.by},
-                    {"a", wait.a},
-                    {"b", wait.b}});
   return list;
 }
 
@@ -172,43 +151,43 @@ Json json_of(const stats::PixelComparison& pixels) {
           {"pixels_that_differ", pixels.pixels()}};
 }
 
+Json diff_document(const runs::RecordedRun& run_a, const runs::RecordedRun& run_b, const RunFigures& a,
+                   const RunFigures& b, const runs::FrameAlignment& aligned, const runs::DiffLimits& limits) {
+  return {{"schema", 1},
+          {"a", run_a.folder},
+          {"b", run_b.folder},
+          {"settings",
+           report::differing_values(platform::values_of(run_a.board), platform::values_of(run_b.board))},
+          {"options", report::differing_values(options_of(run_a), options_of(run_b))},
+          {"figures", report::differing_values(a.values, b.values)},
+          {"frames", frames_json(a.statistics.frame_cycles, b.statistics.frame_cycles)},
+          {"waits", report::differing_waits(a.statistics.blame, b.statistics.blame)},
+          {"rows", limits.rows.empty() ? json_of(aligned.rows()) : Json{{"not_compared", limits.rows}}},
+          {"disparities",
+           limits.pixels.empty() ? json_of(aligned.pixels()) : Json{{"not_compared", limits.pixels}}},
+          {"verdict", verdict_of(run_a, run_b, a, b, aligned, limits)}};
+}
+
 std::string diff_text(const runs::RecordedRun& run_a, const runs::RecordedRun& run_b,
                       const runs::FrameAlignment& aligned, const runs::DiffLimits& limits) {
   const RunFigures a(run_a);
   const RunFigures b(run_b);
-  const std::string settings = in_sections(
-      {report::settings_table("board", platform::values_of(run_a.board), platform::values_of(run_b.board)),
-       report::settings_table("run options", options_of(run_a), options_of(run_b))});
+  const Json document = diff_document(run_a, run_b, a, b, aligned, limits);
+  const std::string settings = in_sections({report::settings_table("board", document["settings"]),
+                                            report::settings_table("run options", document["options"])});
+  const Json& all = document["figures"];
   const std::string rows = limits.rows.empty() ? report::rows_table(aligned.rows())
                                                : fmt::format("rows: not compared: {}\n", limits.rows);
   std::string figures = in_sections(
-      {totals_text(a, b), report::frames_table(a.statistics.frame_cycles, b.statistics.frame_cycles), rows,
-       report::blame_table(a.statistics.blame, b.statistics.blame), figures_text("ports", a, b),
-       figures_text("banks", a, b), computer_text(a, b), figures_text("area", a, b)});
+      {totals_text(a, b, all), report::frames_table(a.statistics.frame_cycles, b.statistics.frame_cycles),
+       rows, report::blame_table(document["waits"]), figures_text("ports", all), figures_text("banks", all),
+       computer_text(a, b, all), figures_text("area", all)});
   if (figures.empty()) figures = settings.empty() ? "no difference\n" : "no figure and no row differs\n";
   const std::string pixels = limits.pixels.empty()
                                  ? report::pixels_line(aligned.pixels())
                                  : fmt::format("disparities: not compared: {}\n", limits.pixels);
   return in_sections({fmt::format("A: {}\nB: {}\n", run_a.folder, run_b.folder), settings, figures, pixels,
-                      paragraph("", 0, verdict_of(run_a, run_b, a, b, aligned, limits))});
-}
-
-Json diff_document(const runs::RecordedRun& run_a, const runs::RecordedRun& run_b,
-                   const runs::FrameAlignment& aligned, const runs::DiffLimits& limits) {
-  const RunFigures a(run_a);
-  const RunFigures b(run_b);
-  return {{"schema", 1},
-          {"a", run_a.folder},
-          {"b", run_b.folder},
-          {"settings", differing_json(platform::values_of(run_a.board), platform::values_of(run_b.board))},
-          {"options", differing_json(options_of(run_a), options_of(run_b))},
-          {"figures", differing_json(a.values, b.values)},
-          {"frames", frames_json(a.statistics.frame_cycles, b.statistics.frame_cycles)},
-          {"waits", waits_json(a.statistics.blame, b.statistics.blame)},
-          {"rows", limits.rows.empty() ? json_of(aligned.rows()) : Json{{"not_compared", limits.rows}}},
-          {"disparities",
-           limits.pixels.empty() ? json_of(aligned.pixels()) : Json{{"not_compared", limits.pixels}}},
-          {"verdict", verdict_of(run_a, run_b, a, b, aligned, limits)}};
+                      paragraph("", 0, document["verdict"])});
 }
 
 constexpr const char* kRunFolder = "a folder that run --out has written";
@@ -248,7 +227,7 @@ int diff(const DiffOptions& options) {
   if (!aligned.run()) return interrupted("nothing is compared");
   if (csv) csv->commit();
   if (options.json.is_given()) {
-    print_json(diff_document(*a, *b, aligned, limits));
+    print_json(diff_document(*a, *b, RunFigures(*a), RunFigures(*b), aligned, limits));
   } else {
     const std::string text = diff_text(*a, *b, aligned, limits);
     process::print(with_coloured_words(text, text.rfind("\n\n"),

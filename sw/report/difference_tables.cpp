@@ -86,31 +86,28 @@ std::string pixels_text(const stats::PixelComparison* pixels) {
   return pixels->first() ? "the disparities differ" : "the disparities are the same";
 }
 
-using Value = decltype(platform::BoardValue::value);
-
 constexpr std::size_t kLabelColumns = 42;
 constexpr std::size_t kSettingColumns = 26;
 
-std::string text_of(const Value* value) {
-  if (value == nullptr) return "-";
-  if (const auto* integer = std::get_if<std::int64_t>(value)) return fmt::format("{}", *integer);
-  if (const auto* number = std::get_if<double>(value)) return fmt::format("{:.6g}", *number);
-  return std::get<std::string>(*value);
+// The value of one run in a row of differing_values().
+std::string text_of(const Json& row, const char* run) {
+  if (!row.contains(run)) return "-";
+  const Json& value = row[run];
+  if (value.is_string()) return value.get<std::string>();
+  return value.is_number_integer() ? value.dump() : fmt::format("{:.6g}", value.get<double>());
 }
 
 std::string signed_text(std::int64_t value) { return value == 0 ? "0" : fmt::format("{:+}", value); }
 
 // B - A as text; empty if a value is no number or is missing in one run.
-std::string difference_text(const Value* a, const Value* b) {
-  if (a == nullptr || b == nullptr) return "";
-  const auto number = [](const Value& value) {
-    const auto* integer = std::get_if<std::int64_t>(&value);
-    return integer != nullptr ? static_cast<double>(*integer) : std::get<double>(value);
-  };
-  if (std::holds_alternative<std::string>(*a) || std::holds_alternative<std::string>(*b)) return "";
-  if (std::holds_alternative<std::int64_t>(*a) && std::holds_alternative<std::int64_t>(*b))
-    return signed_text(std::get<std::int64_t>(*b) - std::get<std::int64_t>(*a));
-  return fmt::format("{:+.6g}", number(*b) - number(*a));
+std::string difference_text(const Json& row) {
+  if (!row.contains("a") || !row.contains("b")) return "";
+  const Json& a = row["a"];
+  const Json& b = row["b"];
+  if (!a.is_number() || !b.is_number()) return "";
+  if (a.is_number_integer() && b.is_number_integer())
+    return signed_text(b.get<std::int64_t>() - a.get<std::int64_t>());
+  return fmt::format("{:+.6g}", b.get<double>() - a.get<double>());
 }
 
 std::string line(const std::string& label, const std::string& a, const std::string& b,
@@ -170,44 +167,52 @@ std::string diff_verdict(const JudgedRun& a, const JudgedRun& b, const stats::Pi
                      100 * gain / std::min(rates.a, rates.b), rates.kind, why);
 }
 
-std::vector<Differing> differing(const Values& a, const Values& b) {
-  const auto find = [](const Values& values, const std::string& path) -> const Value* {
+Json differing_values(const Values& a, const Values& b) {
+  Json rows = Json::array();
+  const auto add = [&rows](const platform::BoardValue* in_a, const platform::BoardValue* in_b) {
+    Json row = {{"path", in_a == nullptr ? in_b->path : in_a->path}};
+    for (const auto& [run, value] : {std::pair("a", in_a), std::pair("b", in_b)}) {
+      if (value != nullptr) std::visit([&row, key = run](const auto& its) { row[key] = its; }, value->value);
+    }
+    rows.push_back(std::move(row));
+  };
+  const auto find = [](const Values& values, const std::string& path) -> const platform::BoardValue* {
     const auto found = std::find_if(values.begin(), values.end(),
                                     [&](const platform::BoardValue& value) { return value.path == path; });
-    return found == values.end() ? nullptr : &found->value;
+    return found == values.end() ? nullptr : &*found;
   };
-  std::vector<Differing> rows;
   for (const platform::BoardValue& value : a) {
-    const Value* const other = find(b, value.path);
-    if (other == nullptr || *other != value.value) rows.push_back({value.path, &value.value, other});
+    const platform::BoardValue* const other = find(b, value.path);
+    if (other == nullptr || other->value != value.value) add(&value, other);
   }
   for (const platform::BoardValue& value : b) {
-    if (find(a, value.path) == nullptr) rows.push_back({value.path, nullptr, &value.value});
+    if (find(a, value.path) == nullptr) add(nullptr, &value);
   }
   return rows;
 }
 
-std::string settings_table(const std::string& head, const Values& a, const Values& b) {
-  const std::vector<Differing> rows = differing(a, b);
+std::string settings_table(const std::string& head, const Json& rows) {
   if (rows.empty()) return "";
   std::string text = fmt::format("{:<{}} {:<{}} {}\n", head, kLabelColumns, "A", kSettingColumns, "B");
   for (std::size_t i = 0; i < std::min(rows.size(), kMostSettings); ++i) {
-    const Differing& row = rows[i];
-    const std::string of_a = text_of(row.a);
-    const std::string of_b = text_of(row.b);
+    const auto path = rows[i]["path"].get<std::string>();
+    const std::string of_a = text_of(rows[i], "a");
+    const std::string of_b = text_of(rows[i], "b");
     if (std::max(of_a.size(), of_b.size()) <= kSettingColumns) {
-      text += fmt::format("  {:<{}} {:<{}} {}\n", row.path, kLabelColumns - 2, of_a, kSettingColumns, of_b);
+      text += fmt::format("  {:<{}} {:<{}} {}\n", path, kLabelColumns - 2, of_a, kSettingColumns, of_b);
     } else {
-      text += fmt::format("  {}\n    A  {}\n    B  {}\n", row.path, of_a, of_b);
+      text += fmt::format("  {}\n    A  {}\n    B  {}\n", path, of_a, of_b);
     }
   }
   return rows.size() <= kMostSettings ? text : text + fmt::format("  {} more\n", rows.size() - kMostSettings);
 }
 
-std::string figures_table(const std::string& head, const Values& a, const Values& b) {
+std::string figures_table(const std::string& head, const Json& rows) {
   std::string text;
-  for (const Differing& row : differing(a, b))
-    text += line("  " + row.path, text_of(row.a), text_of(row.b), difference_text(row.a, row.b));
+  for (const Json& row : rows) {
+    text += line("  " + row["path"].get<std::string>(), text_of(row, "a"), text_of(row, "b"),
+                 difference_text(row));
+  }
   return text.empty() ? text : head_line(head) + text;
 }
 
@@ -269,27 +274,31 @@ std::string rows_table(const stats::RowComparison& rows) {
   return text;
 }
 
-std::vector<DifferingWait> differing_waits(const std::vector<platform::BlameRow>& a,
-                                           const std::vector<platform::BlameRow>& b) {
-  std::map<std::tuple<std::string, std::string, std::string>, std::pair<std::uint64_t, std::uint64_t>> all;
-  for (const platform::BlameRow& row : a) all[{row.port, row.bank, row.by}].first = row.cycles;
-  for (const platform::BlameRow& row : b) all[{row.port, row.bank, row.by}].second = row.cycles;
-  std::vector<DifferingWait> waits;
-  for (const auto& [row, cycles] : all) {
-    const auto& [port, bank, by] = row;
-    if (cycles.first != cycles.second) waits.push_back({{port, bank, by, 0}, cycles.first, cycles.second});
+Json differing_waits(const std::vector<platform::BlameRow>& a, const std::vector<platform::BlameRow>& b) {
+  std::map<Wait, std::pair<std::int64_t, std::int64_t>> all;
+  for (const platform::BlameRow& row : a)
+    all[{row.port, row.bank, row.by}].first = static_cast<std::int64_t>(row.cycles);
+  for (const platform::BlameRow& row : b)
+    all[{row.port, row.bank, row.by}].second = static_cast<std::int64_t>(row.cycles);
+  std::vector<Json> waits;
+  for (const auto& [wait, cycles] : all) {
+    const auto& [port, bank, by] = wait;
+    if (cycles.first == cycles.second) continue;
+    waits.push_back({{"port", port}, {"bank", bank}, {"by", by}, {"a", cycles.first}, {"b", cycles.second}});
   }
-  std::stable_sort(waits.begin(), waits.end(), [](const DifferingWait& x, const DifferingWait& y) {
-    return magnitude(x.difference()) > magnitude(y.difference());
-  });
+  const auto size = [](const Json& wait) {
+    return magnitude(wait["b"].get<std::int64_t>() - wait["a"].get<std::int64_t>());
+  };
+  std::stable_sort(waits.begin(), waits.end(),
+                   [&](const Json& x, const Json& y) { return size(x) > size(y); });
   return waits;
 }
 
-std::string blame_table(const std::vector<platform::BlameRow>& a, const std::vector<platform::BlameRow>& b) {
+std::string blame_table(const Json& waits) {
   std::string text;
-  for (const DifferingWait& wait : differing_waits(a, b))
-    text += line("  " + stats::wait_text(wait.row.port, wait.row.bank, wait.row.by),
-                 fmt::format("{}", wait.a), fmt::format("{}", wait.b), signed_text(wait.difference()));
+  for (const Json& wait : waits)
+    text += line("  " + stats::wait_text(wait["port"], wait["bank"], wait["by"]), text_of(wait, "a"),
+                 text_of(wait, "b"), difference_text(wait));
   return text.empty() ? text : head_line("waits, cycles") + text;
 }
 

@@ -29,36 +29,24 @@ std::uint64_t cycles_of_frames(const nlohmann::ordered_json& stats);
 // The tables that `diff` prints for two runs, A and B. A table shows only what differs; without differences
 // it is an empty string. Differences are B - A. Text is ASCII except names and values.
 
-// Values with their paths. A value that one run does not have is "-" there.
 using Values = std::vector<platform::BoardValue>;
 
-// The values that differ, in the order of A; values that only B has follow. The pointers are into `a` and
+// The values that differ, in the order of A; values that only B has follow: a list of `path`, `a` and `b`.
+// What a run does not have is left out.
+nlohmann::ordered_json differing_values(const Values& a, const Values& b);
+
+// The waits that differ, the largest difference first: a list of `port`, `bank`, `by`, and the cycles `a` and
 // `b`.
-struct Differing {
-  std::string path;
-  const decltype(platform::BoardValue::value)* a;  // null: missing
-  const decltype(platform::BoardValue::value)* b;
-};
-std::vector<Differing> differing(const Values& a, const Values& b);
+nlohmann::ordered_json differing_waits(const std::vector<platform::BlameRow>& a,
+                                       const std::vector<platform::BlameRow>& b);
 
-// The waits that differ, the largest difference first. The cycles of `row` are 0.
-struct DifferingWait {
-  platform::BlameRow row;
-  std::uint64_t a = 0;
-  std::uint64_t b = 0;
-
-  std::int64_t difference() const { return static_cast<std::int64_t>(b - a); }
-};
-std::vector<DifferingWait> differing_waits(const std::vector<platform::BlameRow>& a,
-                                           const std::vector<platform::BlameRow>& b);
-
-// The table of settings. It shows at most kMostSettings. A value too long for its column has lines of its
-// own.
+// The table of settings, from differing_values(): "-" for what a run does not have. It shows at most
+// kMostSettings. A value too long for its column has lines of its own.
 inline constexpr std::size_t kMostSettings = 30;
-std::string settings_table(const std::string& head, const Values& a, const Values& b);
+std::string settings_table(const std::string& head, const nlohmann::ordered_json& rows);
 
-// The table of figures. Beside two numbers it shows their difference.
-std::string figures_table(const std::string& head, const Values& a, const Values& b);
+// The table of figures, from differing_values(). Beside two numbers it shows their difference.
+std::string figures_table(const std::string& head, const nlohmann::ordered_json& rows);
 
 // The table of cycles of frames with the same number in both runs. Frames with the same cycles share a line.
 // It shows the kMostLines largest differences, and the sum of the others.
@@ -71,7 +59,7 @@ std::string frames_table(const std::vector<std::uint64_t>& cycles_a,
 std::string rows_table(const stats::RowComparison& rows);
 
 // The table of differing_waits().
-std::string blame_table(const std::vector<platform::BlameRow>& a, const std::vector<platform::BlameRow>& b);
+std::string blame_table(const nlohmann::ordered_json& waits);
 
 // The pixels that differ, in one line, which is not empty even if no frame was compared.
 std::string pixels_line(const stats::PixelComparison& pixels);

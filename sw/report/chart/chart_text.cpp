@@ -5,11 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <utility>
 #include <vector>
-
-#include "platform/config/board_keys.h"
-#include "platform/config/buffer_layout.h"
 
 namespace stereotlm::report {
 namespace {
@@ -48,90 +44,6 @@ double width_of(std::string_view character, bool bold) {
   const char letter = character.front();
   if (letter < ' ' || letter > '~') return kOtherWidth;
   return (bold ? kBold : kRegular)[static_cast<std::size_t>(letter - ' ')] / 1000.0;
-}
-
-using platform::BoardConfig;
-
-// "512K", "2M", "307,200".
-std::string count_text(std::uint64_t count) {
-  constexpr std::uint64_t kKilo = 1024;
-  if (count > 0 && count % (kKilo * kKilo) == 0) return fmt::format("{}M", count / (kKilo * kKilo));
-  if (count > 0 && count % kKilo == 0) return fmt::format("{}K", count / kKilo);
-  return grouped(count);
-}
-
-// "1 word", "2 words".
-std::string count_of(int count, const char* noun) {
-  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
-}
-
-std::string busy_text(const ChartTraffic* traffic, const std::string& block) {
-  return traffic == nullptr ? "" : fmt::format(", busy {} %", measured(traffic->busy_percent.at(block)));
-}
-
-ChartLines port_lines(const BoardConfig& board, const std::string& port, const ChartTraffic* traffic) {
-  const bool has_cache = board.fpga.pixel_cache == fpga::PixelCache::kWord;
-  const std::string table = board.fpga.joint_tables ? "table of both sides" : "rectification table";
-  const std::string pixels = has_cache ? "pixels, word cache" : "pixels";
-  ChartLines lines = {port, port == "host"                           ? "from the local bus"
-                            : port == "result"                       ? "disparities"
-                            : port.find("_lut") != std::string::npos ? table
-                                                                     : pixels};
-  if (traffic == nullptr) return lines;
-  const double waits = traffic->waits_percent.at("port-" + port);
-  lines.push_back(waits == 0 ? "never waits" : fmt::format("waits {} %", measured(waits)));
-  return lines;
-}
-
-ChartLines lane_lines(const BoardConfig& board, const std::string& side) {
-  const platform::MatcherConfig& matcher = board.matcher;
-  ChartLines lines = {side + " lane", count_of(board.fpga.lane_fifo_slots, "slot")};
-  if (matcher.filter) lines.push_back(fmt::format("filter {0}x{0}", matcher.filter->size));
-  if (matcher.cost.kind == kernels::CostKind::kCensus)
-    lines.push_back(fmt::format("census {0}x{0}", matcher.cost.census_size));
-  if (matcher.fetch == fpga::Fetch::kLineBuffer) lines.emplace_back("line buffer");
-  return lines;
-}
-
-ChartLines matcher_lines(const BoardConfig& board) {
-  const platform::MatcherConfig& matcher = board.matcher;
-  const int units = matcher.units.value_or(matcher.disparities);
-  ChartLines lines = {"matcher",
-                      fmt::format("{0} {1}x{1}", kernels::name_of(matcher.cost.kind), matcher.window),
-                      fmt::format("{} disparities", matcher.disparities), fmt::format("{} modules", units)};
-  const int passes = fpga::passes_of(matcher.disparities, units);
-  if (passes > 1) lines.push_back(fmt::format("{} passes", passes));
-  if (matcher.rows > 1) lines.push_back(fmt::format("{} rows at once", matcher.rows));
-  return lines;
-}
-
-void add_parts(const BoardConfig& board, const ChartTraffic* traffic,
-               std::map<std::string, ChartLines>& lines) {
-  const bool is_free = board.cameras.trigger == platform::CameraTrigger::kFreeRunning;
-  for (const std::string side : {"left", "right"}) {
-    lines["part-" + side + "_camera"] = {
-        side + " camera", fmt::format("{}x{}", board.image.width, board.image.height),
-        fmt::format("{} Hz", board.cameras.frame_rate_hz), is_free ? "free running" : "on demand"};
-    lines["part-" + side + "_capture"] = {side + " capture",
-                                          fmt::format("FIFO {} words", board.capture.fifo_words),
-                                          fmt::format("request at {}", board.capture.fifo_trigger_words)};
-  }
-  lines["part-cpu"] = {"host CPU", "runs the driver"};
-  ChartLines& memory = lines["part-host_memory"] = {"host memory", "tables, results"};
-  if (board.capture.destination == platform::CaptureDestination::kHostMemory)
-    memory.push_back("ring: " + count_of(board.capture.host_frames, "pair"));
-  if (const auto& load = board.pci.load) {
-    lines["part-load"] = {
-        "PCI load", fmt::format("{} words", load->burst_words),
-        load->interval_us > 0 ? fmt::format("every {} us", load->interval_us) : "at once again"};
-  }
-  lines["part-bridge"] = {"PCI bridge", fmt::format("{} posted words", board.bridge.posted_words),
-                          fmt::format("2 DMA channels, bursts of {}", board.bridge.dma_burst_words)};
-  lines["part-pci"] = {fmt::format(
-      "PCI bus: {} bit, {} MHz, {} MB/s{}", board.pci.width_bits, board.pci.clock_mhz,
-      short_number(board.pci.clock_mhz * board.pci.width_bits / 8), busy_text(traffic, "part-pci"))};
-  lines["part-local_bus"] = {"local bus", fmt::format("32 bit, {} MHz{}", board.bridge.local_clock_mhz,
-                                                      busy_text(traffic, "part-local_bus"))};
 }
 
 }  // namespace
@@ -200,98 +112,6 @@ std::string grouped(std::uint64_t count) {
   for (std::size_t place = text.size() - 3; place > 0; place -= std::min<std::size_t>(place, 3))
     text.insert(place, ",");
   return text;
-}
-
-BankLines bank_lines(const BoardConfig& board, const platform::BankConfig& bank,
-                     const ChartTraffic* traffic) {
-  BankLines lines;
-  lines.words = static_cast<std::uint64_t>(bank.words);
-  std::uint64_t used = 0;
-  for (const platform::PlacedBuffer& buffer : platform::buffers(board)) {
-    if (buffer.bank != bank.name) continue;
-    const std::uint64_t words = platform::buffer_words(buffer, board.image);
-    const bool is_joint = board.fpga.joint_tables && buffer.buffer == platform::Buffer::kLeftLut;
-    const auto port =
-        std::find_if(fpga::kPorts.begin(), fpga::kPorts.end(), [&buffer](const fpga::CorePort& each) {
-          return std::string(platform::name_of(buffer.buffer)) == each.buffer;
-        });
-    lines.buffers.push_back({is_joint ? "left_lut, right_lut" : buffer.label(), port->name, words});
-    used += words;
-  }
-  const memory::BankTraits& traits = memory::traits_of(bank.kind);
-  lines.size = fmt::format("{} of {} words", grouped(used), count_text(lines.words));
-  lines.kind = traits.name;
-  if (traits.has_turnaround) lines.kind += fmt::format(", {} lost", bank.turnaround_cycles);
-  lines.bandwidth = short_number(4 * traits.ports * board.fpga.clock_mhz) + " MB/s";
-  if (traffic == nullptr) return lines;
-  lines.busy_percent = traffic->busy_percent.at("bank-" + bank.name);
-  double sum = 0;
-  for (const ChartLink& link : chart_links(board, traffic->extent)) {
-    if (link.to == "bank-" + bank.name) sum += traffic->megabytes_per_second.at(link.id());
-  }
-  lines.bandwidth = fmt::format("{} of {}", measured(sum), lines.bandwidth);
-  return lines;
-}
-
-std::vector<std::string> ports_from_top(const BoardConfig& board, ChartExtent extent) {
-  std::vector<std::string> order = {"host", "left_lut", "left_pixel", "right_pixel", "right_lut", "result"};
-  if (board.fpga.joint_tables) order = {"host", "left_pixel", "left_lut", "right_pixel", "result"};
-  const auto is_missing = [&](const std::string& name) {
-    if (name == fpga::kPorts[fpga::kHostPort].name) return extent == ChartExtent::kBoard;
-    return std::none_of(fpga::kPorts.begin(), fpga::kPorts.end(), [&](const fpga::CorePort& port) {
-      return port.name == name && !banks_of(board, port).empty();
-    });
-  };
-  order.erase(std::remove_if(order.begin(), order.end(), is_missing), order.end());
-  return order;
-}
-
-std::map<std::string, ChartLines> block_lines(const BoardConfig& board, ChartExtent extent,
-                                              const ChartTraffic* traffic) {
-  std::map<std::string, ChartLines> lines;
-  for (const std::string& port : ports_from_top(board, extent))
-    lines["port-" + port] = port_lines(board, port, traffic);
-  for (const std::string side : {"left", "right"}) lines["stage-" + side + "_lane"] = lane_lines(board, side);
-  lines["stage-matcher"] = matcher_lines(board);
-  const std::optional<int>& tolerance = board.matcher.lr_tolerance;
-  lines["stage-lr_check"] = {"L-R check", tolerance ? fmt::format("tolerance {}", *tolerance) : "off"};
-  lines["stage-result_queue"] = {"result queue", count_of(board.fpga.result_fifo_words, "word")};
-  if (extent == ChartExtent::kComputer) add_parts(board, traffic, lines);
-  return lines;
-}
-
-std::string fpga_line(const BoardConfig& board) {
-  return fmt::format("FPGA {}: {} MHz", board.fpga.device, board.fpga.clock_mhz);
-}
-
-ChartLines arbitration_lines(const BoardConfig& board) {
-  std::vector<std::string> names;
-  for (const memory::Port port : board.fpga.arbiter.priority) names.emplace_back(fpga::kPorts[port].name);
-  return {"each bank: " + board.fpga.arbiter.policy, fmt::format("{}", fmt::join(names, ", "))};
-}
-
-ChartLines subtitle_lines(const BoardConfig& board, ChartExtent extent, const ChartTraffic* traffic) {
-  ChartLines lines = {fmt::format("{0}x{1}, window {2}x{2}, {3} disparities, {4}", board.image.width,
-                                  board.image.height, board.matcher.window, board.matcher.disparities,
-                                  count_of(static_cast<int>(board.banks.size()), "bank"))};
-  if (extent == ChartExtent::kBoard) lines.front() += "; pictures, tables and results move in no time";
-  if (traffic != nullptr) lines.insert(lines.end(), traffic->summary.begin(), traffic->summary.end());
-  return lines;
-}
-
-ChartLines legend_lines(ChartExtent extent, const ChartTraffic* traffic) {
-  if (traffic == nullptr) return {"Numbers at the links: peak MB/s (million bytes/s)"};
-  ChartLines lines = {"Links: MB/s (million bytes/s), width by MB/s",
-                      "Bars of a bank: % of cycles busy; words of buffers",
-                      "Colour: % of the peak of a link, % busy of a bank", "No number: nothing was moved",
-                      "Thick outline: sets the bound of the frame rate"};
-  if (extent == ChartExtent::kBoard) {
-    lines.emplace_back("While the core works on a frame");
-  } else {
-    lines.insert(lines.end(),
-                 {"Banks, ports: while the core works on a frame", "Buses, captures: since power-up"});
-  }
-  return lines;
 }
 
 }  // namespace stereotlm::report

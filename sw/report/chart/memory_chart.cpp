@@ -5,12 +5,26 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <tuple>
+#include <utility>
+#include <vector>
 
-#include "sw/report/chart/chart_layout.h"
+#include "platform/config/board_keys.h"
+#include "platform/config/buffer_layout.h"
 #include "sw/report/chart/chart_text.h"
+#include "sw/stats/console_table.h"
 
+// Lengths are in pixels, y grows downwards. Colours are names of kColors.
 namespace stereotlm::report {
 namespace {
+
+using platform::BoardConfig;
+using platform::Statistics;
 
 struct Color {
   const char* name;  // of the CSS variable: --mc-NAME
@@ -27,36 +41,133 @@ constexpr std::array kColors = {
     Color{"load1", "#86b6dd", "#3d74a8"},    Color{"load2", "#2f7fc1", "#5aa5e6"},
     Color{"load3", "#e08a1e", "#e8a33d"},    Color{"load4", "#c4302b", "#ff6b5e"},
 };
+constexpr std::array<double, 4> kLoadSteps = {1, 25, 50, 90};  // % of the peak, where load1 to load4 begin
 
-constexpr double kHalo = 2;  // on each side of a line, where it crosses another
+struct Style {
+  double size;
+  bool bold;
+  const char* color;
+};
+constexpr Style kNote = {11, false, "faint"};
+constexpr Style kPlain = {11, false, "ink"};
+constexpr Style kName = {13, true, "ink"};
+constexpr Style kHeading = {18, true, "ink"};
+constexpr double kNameStep = 16;  // from a name to the line below it
+constexpr double kNoteStep = 14;
 
-const Color& color(const std::string& name) {
-  return *std::find_if(kColors.begin(), kColors.end(),
-                       [&name](const Color& each) { return each.name == name; });
-}
+constexpr double kMargin = 16;
+constexpr double kPadding = 7;  // in a block, above and below its text
+constexpr double kThinEdge = 1.5;
+constexpr double kWidestEdge = 12;
+constexpr double kShortEdge = 36;  // length of an edge between blocks that stand one above the other
+constexpr double kHalo = 2;        // on each side of an edge, where it crosses another
+constexpr double kBetweenTracks = 10;
+constexpr double kClearance = 3;  // between edges of different ports
 
-// A coordinate: at most two decimals.
-std::string px(double value) {
-  const std::string text = fmt::format("{:.2f}", std::round(value * 100) / 100 + 0.0);
-  const std::size_t end = text.find_last_not_of('0');
-  return text.substr(0, text[end] == '.' ? end : end + 1);
-}
+constexpr double kBankWidth = 256;
+constexpr double kBankRight = kMargin + kBankWidth;
+constexpr double kBetweenBanks = 10;
+constexpr double kLabelHeight = kNote.size * kLetterHeight;
+constexpr double kLabelFromBank = 18;
+constexpr double kTracksFromBank = 70;
+
+constexpr double kPortWidth = 128;
+constexpr double kBetweenPorts = 22;
+constexpr double kFpgaPadding = 14;
+constexpr double kFpgaTitle = 32;
+constexpr double kFpgaFoot = 20 + 2 * kNoteStep;
+constexpr double kLaneWidth = 112;
+constexpr double kMatcherWidth = 120;
+constexpr double kCheckWidth = 112;
+constexpr double kBetweenStages = 28;
+constexpr double kFpgaWidth =
+    2 * kFpgaPadding + kPortWidth + kLaneWidth + kMatcherWidth + kCheckWidth + 3 * kBetweenStages;
+
+constexpr double kBetweenParts = 14;
+constexpr double kBusHeight = 26;
+constexpr double kBridgeWidth = 232;
+
+struct Point {
+  double x = 0;
+  double y = 0;
+};
+
+struct Box {
+  double x = 0;
+  double y = 0;
+  double width = 0;
+  double height = 0;
+
+  double right() const { return x + width; }
+  double bottom() const { return y + height; }
+  double middle_x() const { return x + width / 2; }
+  double middle_y() const { return y + height / 2; }
+};
+
+// A length: at most two decimals.
+double px(double value) { return std::round(value * 100) / 100 + 0.0; }
 
 // The class and, for viewers without CSS variables, the attribute.
-std::string paint(const std::string& fill, const std::string& stroke) {
-  std::string classes;
-  std::string attributes;
-  const auto add = [&](const char* property, const std::string& name) {
-    if (name == "none") {
-      attributes += fmt::format(" {}=\"none\"", property);
-    } else if (!name.empty()) {
-      classes += fmt::format("{}{}-{}", classes.empty() ? "" : " ", property, name);
-      attributes += fmt::format(" {}=\"{}\"", property, color(name).light);
-    }
-  };
-  add("fill", fill);
-  add("stroke", stroke);
-  return fmt::format(" class=\"{}\"{}", classes, attributes);
+std::string paint(const std::string& property, const std::string& name) {
+  const auto* const color =
+      std::find_if(kColors.begin(), kColors.end(), [&name](const Color& each) { return each.name == name; });
+  return fmt::format(" class=\"{0}-{1}\" {0}=\"{2}\"", property, name, color->light);
+}
+
+std::string rect_element(const Box& box, double radius, const std::string& paints) {
+  return fmt::format("<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" rx=\"{}\"{}/>\n", px(box.x),
+                     px(box.y), px(box.width), px(box.height), radius, paints);
+}
+
+// The frame of a box, which covers nothing.
+std::string frame_element(const Box& box, double radius, const std::string& color, double width) {
+  return rect_element(box, radius,
+                      paint("stroke", color) + fmt::format(" fill=\"none\" stroke-width=\"{}\"", width));
+}
+
+// A line of text, cut to this width. `x`: of its `anchor`: start, middle or end.
+std::string text_element(const std::string& text, const Style& style, double x, double y, double width,
+                         const char* anchor = "start") {
+  constexpr double kBaseline = 0.93;  // below the top of the line, in font sizes
+  return fmt::format("<text x=\"{}\" y=\"{}\" font-size=\"{}\" text-anchor=\"{}\"{}{}>{}</text>\n", px(x),
+                     px(y + kBaseline * style.size), style.size, anchor,
+                     style.bold ? " font-weight=\"bold\"" : "", paint("fill", style.color),
+                     xml_text(fitted(text, style.size, style.bold, width)));
+}
+
+std::string title_element(const std::string& text) { return "<title>" + xml_text(text) + "</title>\n"; }
+
+// A way of horizontal and vertical pieces.
+std::string line_element(const std::vector<Point>& way, double width, const std::string& color) {
+  std::string text;
+  for (const Point& point : way)
+    text += fmt::format("{}{} {}", text.empty() ? "M" : " L", px(point.x), px(point.y));
+  return fmt::format("<path d=\"{}\" stroke-width=\"{}\" fill=\"none\" stroke-linejoin=\"round\"{}/>\n", text,
+                     px(width), paint("stroke", color));
+}
+
+// The tip at the end of a way, which is made shorter by it.
+std::string tip_element(std::vector<Point>& way, double width, const std::string& color) {
+  const double length = 6.5 + width / 3;
+  const double half = 3 + width / 2;  // of its width
+  const Point end = way.back();
+  const Point before = way[way.size() - 2];
+  const double whole = std::abs(end.x - before.x) + std::abs(end.y - before.y);
+  const Point along{(end.x - before.x) / whole, (end.y - before.y) / whole};
+  const Point foot{end.x - length * along.x, end.y - length * along.y};
+  way.back() = {foot.x + along.x, foot.y + along.y};
+  return fmt::format("<path d=\"M{} {} L{} {} L{} {} z\"{}/>\n", px(end.x), px(end.y),
+                     px(foot.x - half * along.y), px(foot.y + half * along.x), px(foot.x + half * along.y),
+                     px(foot.y - half * along.x), paint("fill", color));
+}
+
+std::string arrow_element(std::vector<Point> way, bool there, bool back, double width,
+                          const std::string& color) {
+  std::string tips;
+  if (there) tips += tip_element(way, width, color);
+  std::reverse(way.begin(), way.end());
+  if (back) tips += tip_element(way, width, color);
+  return line_element(way, width, color) + tips;
 }
 
 std::string colors_css(const char* Color::*theme) {
@@ -67,7 +178,7 @@ std::string colors_css(const char* Color::*theme) {
 
 // Viewers that do not know CSS variables ignore all of it, and take the attributes. A page forces a theme by
 // the class `light` or `dark` on the chart.
-std::string style() {
+std::string style_element() {
   const std::string dark = colors_css(&Color::dark);
   std::string text =
       "<style>\n@supports (color: var(--mc-ink)) {\n.memory-chart {" + colors_css(&Color::light) + " }\n";
@@ -81,140 +192,684 @@ std::string style() {
   return text + "}\n</style>\n";
 }
 
-std::string rect_element(const ChartRect& rect) {
-  const auto attribute = [](const char* name, double value, double usual) {
-    return value == usual ? "" : fmt::format(" {}=\"{}\"", name, value);
+// "1 word", "2 words".
+std::string count_of(int count, const char* noun) {
+  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+}
+
+double percent(std::uint64_t part, std::uint64_t whole) {
+  return whole == 0 ? 0 : 100 * static_cast<double>(part) / static_cast<double>(whole);
+}
+
+// The lines of text in a block; the first one is its name.
+using Lines = std::vector<std::string>;
+
+Lines lane_lines(const BoardConfig& board, const std::string& side) {
+  const platform::MatcherConfig& matcher = board.matcher;
+  Lines lines = {side + " lane", count_of(board.fpga.lane_fifo_slots, "slot")};
+  if (matcher.filter) lines.push_back(fmt::format("filter {0}x{0}", matcher.filter->size));
+  if (matcher.cost.kind == kernels::CostKind::kCensus)
+    lines.push_back(fmt::format("census {0}x{0}", matcher.cost.census_size));
+  if (matcher.fetch == fpga::Fetch::kLineBuffer) lines.emplace_back("line buffer");
+  return lines;
+}
+
+Lines matcher_lines(const BoardConfig& board) {
+  const platform::MatcherConfig& matcher = board.matcher;
+  const int units = matcher.units.value_or(matcher.disparities);
+  Lines lines = {"matcher", fmt::format("{0} {1}x{1}", kernels::name_of(matcher.cost.kind), matcher.window),
+                 fmt::format("{} disparities", matcher.disparities), fmt::format("{} modules", units)};
+  const int passes = fpga::passes_of(matcher.disparities, units);
+  if (passes > 1) lines.push_back(fmt::format("{} passes", passes));
+  if (matcher.rows > 1) lines.push_back(fmt::format("{} rows at once", matcher.rows));
+  return lines;
+}
+
+void add_core(const BoardConfig& board, const Statistics* run, std::map<std::string, Lines>& lines) {
+  const bool has_cache = board.fpga.pixel_cache == fpga::PixelCache::kWord;
+  const std::string table = board.fpga.joint_tables ? "table of both sides" : "rectification table";
+  const std::string pixels = has_cache ? "pixels, word cache" : "pixels";
+  for (std::size_t port = 0; port < fpga::kPortCount; ++port) {
+    const std::string name = fpga::kPorts[port].name;
+    const bool is_lut = fpga::kPorts[port].stage == fpga::PortStage::kLutReader;
+    Lines& its = lines["port-" + name] = {name, name == "host"     ? "from the local bus"
+                                                : name == "result" ? "disparities"
+                                                                   : (is_lut ? table : pixels)};
+    if (run == nullptr) continue;
+    const std::uint64_t stalls = run->ports[port].stall_cycles;
+    its.push_back(stalls == 0 ? "never waits"
+                              : fmt::format("waits {} %", measured(percent(stalls, run->cycles))));
+  }
+  for (const std::string side : {"left", "right"}) lines["stage-" + side + "_lane"] = lane_lines(board, side);
+  lines["stage-matcher"] = matcher_lines(board);
+  const std::optional<int>& tolerance = board.matcher.lr_tolerance;
+  lines["stage-lr_check"] = {"L-R check", tolerance ? fmt::format("tolerance {}", *tolerance) : "off"};
+  lines["stage-result_queue"] = {"result queue", count_of(board.fpga.result_fifo_words, "word")};
+}
+
+void add_parts(const BoardConfig& board, const Statistics* run, std::map<std::string, Lines>& lines) {
+  const auto busy = [run](std::uint64_t busy_clocks, std::uint64_t clocks) {
+    return run == nullptr ? "" : fmt::format(", busy {} %", measured(percent(busy_clocks, clocks)));
   };
-  return fmt::format("<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" rx=\"{}\"{}{}{}/>\n", px(rect.box.x),
-                     px(rect.box.y), px(rect.box.width), px(rect.box.height), px(rect.radius),
-                     paint(rect.fill, rect.stroke), attribute("stroke-width", rect.stroke_width, 0),
-                     attribute("fill-opacity", rect.opacity, 1));
+  const auto around = run == nullptr ? platform::ComputerStatistics() : *run->computer;
+  const bool is_free = board.cameras.trigger == platform::CameraTrigger::kFreeRunning;
+  for (const std::string side : {"left", "right"}) {
+    lines["part-" + side + "_camera"] = {
+        side + " camera", fmt::format("{}x{}", board.image.width, board.image.height),
+        fmt::format("{} Hz", board.cameras.frame_rate_hz), is_free ? "free running" : "on demand"};
+    lines["part-" + side + "_capture"] = {side + " capture",
+                                          fmt::format("FIFO {} words", board.capture.fifo_words),
+                                          fmt::format("request at {}", board.capture.fifo_trigger_words)};
+  }
+  lines["part-cpu"] = {"host CPU", "runs the driver"};
+  Lines& memory = lines["part-host_memory"] = {"host memory", "tables, results"};
+  if (board.capture.destination == platform::CaptureDestination::kHostMemory)
+    memory.push_back("ring: " + count_of(board.capture.host_frames, "pair"));
+  if (const auto& load = board.pci.load) {
+    lines["part-load"] = {
+        "PCI load", fmt::format("{} words", load->burst_words),
+        load->interval_us > 0 ? fmt::format("every {} us", load->interval_us) : "at once again"};
+  }
+  lines["part-bridge"] = {"PCI bridge", fmt::format("{} posted words", board.bridge.posted_words),
+                          fmt::format("2 DMA channels, bursts of {}", board.bridge.dma_burst_words)};
+  lines["part-pci"] = {fmt::format("PCI bus: {} bit, {} MHz, {} MB/s{}", board.pci.width_bits,
+                                   board.pci.clock_mhz,
+                                   short_number(board.pci.clock_mhz * board.pci.width_bits / 8),
+                                   busy(around.pci_busy_clocks, around.pci_clocks))};
+  lines["part-local_bus"] = {"local bus", fmt::format("32 bit, {} MHz{}", board.bridge.local_clock_mhz,
+                                                      busy(around.local_busy_clocks, around.local_clocks))};
 }
 
-std::string text_element(const ChartText& text) {
-  constexpr double kBaseline = 0.93;  // below the top of the box, in font sizes
-  const bool is_start = text.anchor == ChartAnchor::kStart;
-  const bool is_middle = text.anchor == ChartAnchor::kMiddle;
-  const double x = is_start ? text.box.x : is_middle ? text.box.middle_x() : text.box.right();
-  return fmt::format("<text x=\"{}\" y=\"{}\" font-size=\"{}\"{}{}{}>{}</text>\n", px(x),
-                     px(text.box.y + kBaseline * text.size), px(text.size),
-                     is_start    ? ""
-                     : is_middle ? " text-anchor=\"middle\""
-                                 : " text-anchor=\"end\"",
-                     text.bold ? " font-weight=\"bold\"" : "", paint(text.faint ? "faint" : "ink", ""),
-                     xml_text(text.text));
+// Below the name of the board.
+Lines subtitle_of(const ChartView& view) {
+  const BoardConfig& board = view.board;
+  Lines lines = {fmt::format("{0}x{1}, window {2}x{2}, {3} disparities, {4}", board.image.width,
+                             board.image.height, board.matcher.window, board.matcher.disparities,
+                             count_of(static_cast<int>(board.banks.size()), "bank"))};
+  if (!view.in_computer) lines.front() += "; pictures, tables and results move in no time";
+  if (view.run == nullptr) return lines;
+  const platform::FramesPerSecond& rates = view.run->frames_per_second;
+  const platform::Bound& bound = view.run->bound;
+  std::string text = rate_text(rates.core) + " frames/s, core only";
+  if (rates.system) text = rate_text(*rates.system) + " frames/s, from power-up";
+  if (rates.steady) {
+    text = fmt::format("{} frames/s, steady; {} from power-up", rate_text(rates.steady->frames_per_second),
+                       rate_text(*rates.system));
+  }
+  lines.push_back(fmt::format("{}; {}", text, count_of(static_cast<int>(view.run->frames), "frame")));
+  lines.push_back(
+      fmt::format("bound {} frames/s, set by {}", rate_text(bound.system.value_or(bound.core)),
+                  stats::resource_words(bound.system ? bound.system_limited_by : bound.core_limited_by)));
+  return lines;
 }
 
-std::string title_element(const std::string& text) { return "<title>" + xml_text(text) + "</title>\n"; }
-
-std::string way_text(const std::vector<ChartPoint>& way) {
-  std::string text;
-  for (const ChartPoint& point : way)
-    text += fmt::format("{}{} {}", text.empty() ? "M" : " L", px(point.x), px(point.y));
-  return text;
+// What the numbers mean.
+Lines legend_of(const ChartView& view) {
+  if (view.run == nullptr) return {"Numbers at the links: peak MB/s (million bytes/s)"};
+  Lines lines = {"Links: MB/s (million bytes/s), width by MB/s",
+                 "Bars of a bank: % of cycles busy; words of buffers",
+                 "Colour: % of the peak of a link, % busy of a bank", "No number: nothing was moved",
+                 "Thick outline: sets the bound of the frame rate"};
+  if (!view.in_computer) {
+    lines.emplace_back("While the core works on a frame");
+  } else {
+    lines.insert(lines.end(),
+                 {"Banks, ports: while the core works on a frame", "Buses, captures: since power-up"});
+  }
+  return lines;
 }
 
-std::string line_element(const std::vector<ChartPoint>& way, double width, const std::string& color_name) {
-  return fmt::format("<path d=\"{}\" stroke-width=\"{}\" stroke-linejoin=\"round\"{}/>\n", way_text(way),
-                     px(width), paint("none", color_name));
+// The ids of the blocks that set the bound of the rate.
+std::set<std::string> limiting_blocks(const ChartView& view) {
+  if (view.run == nullptr) return {};
+  const platform::Bound& bound = view.run->bound;
+  const std::string& resource = view.in_computer ? bound.system_limited_by : bound.core_limited_by;
+  const std::string kind = resource.substr(0, 5);
+  if (resource == "camera") return {"part-left_camera", "part-right_camera"};
+  if (kind == "bank " || kind == "port ") return {kind.substr(0, 4) + "-" + resource.substr(5)};
+  return {(resource == "matcher" ? "stage-" : "part-") + resource};
 }
 
-struct Tip {
-  double length;
-  double half;  // of its width
+// "512K", "2M", "307,200".
+std::string words_text(std::uint64_t count) {
+  constexpr std::uint64_t kKilo = 1024;
+  if (count > 0 && count % (kKilo * kKilo) == 0) return fmt::format("{}M", count / (kKilo * kKilo));
+  if (count > 0 && count % kKilo == 0) return fmt::format("{}K", count / kKilo);
+  return grouped(count);
+}
+
+class Chart {
+ public:
+  explicit Chart(const ChartView& view)
+      : view_(view), board_(view.board), run_(view.run), limiting_(limiting_blocks(view)) {
+    add_core(board_, run_, lines_);
+    if (view.in_computer) add_parts(board_, run_, lines_);
+    make_edges();
+    measure_banks();
+    measure_ports();
+  }
+
+  std::string svg() {
+    const double top = draw_heading();
+    fpga_.y = view_.in_computer ? draw_computer(top) : top;
+    place_banks(top);
+    const double bottom = place_ports();
+    route();
+    for (const Bank& bank : banks_) draw_bank(bank);
+    draw_core(bottom);
+    if (!view_.in_computer) draw_legend({fpga_.x, fpga_.bottom() + 12});
+    const double height = std::max({legend_bottom_, fpga_.bottom(), banks_.back().box.bottom()}) + kMargin;
+    const Box page{0, 0, fpga_.right() + kMargin, height};
+    return fmt::format(
+               "{2} class=\"memory-chart\" role=\"img\" width=\"{0}\" height=\"{1}\" "
+               "viewBox=\"0 0 {0} {1}\"\n font-family=\"system-ui, -apple-system, 'Segoe UI', "
+               "Helvetica, Arial, sans-serif\">\n",
+               px(page.width), px(page.height), kChartMark) +
+           title_element("Memory chart of " + board_.name) + style_element() +
+           rect_element(page, 0, paint("fill", "page")) + frame_element(fpga_, 8, "frame", 1) + flows_ +
+           edge_elements() + blocks_ + "</svg>\n";
+  }
+
+ private:
+  struct Edge {
+    ChartLink link;
+    double width = kThinEdge;
+    std::string color = "line";
+    std::string label;
+    std::string title;
+    std::vector<Point> way;  // from link.from to link.to
+  };
+  struct Held {  // a buffer in a bank
+    std::string label;
+    std::string port;  // that accesses it
+    std::uint64_t words = 0;
+    double y = 0;  // of its line, below the top of the bank
+  };
+  struct Bank {
+    std::string name;
+    std::vector<Held> buffers;                         // those of one port follow each other
+    std::vector<std::pair<std::size_t, double>> ends;  // edges, and where they leave the bank, below its top
+    Box box;
+  };
+  struct Port {
+    std::string name;
+    std::vector<std::size_t> edges;  // in the order of the banks
+    double bundle = 0;               // width of its edges side by side
+    Box box;
+  };
+
+  void make_edges() {
+    const std::vector<ChartLink> links = chart_links(view_);
+    double most = 0;
+    for (const ChartLink& link : links) most = std::max(most, link.peak);
+    for (const ChartLink& link : links) {
+      Edge edge;
+      edge.link = link;
+      const std::string ends = fmt::format("{} - {}", name_of_block(link.from), name_of_block(link.to));
+      edge.label = short_number(link.peak);
+      edge.title = fmt::format("{}: peak {} MB/s", ends, edge.label);
+      if (run_ != nullptr) {
+        edge.width = std::max(1.0, kWidestEdge * link.rate / most);
+        edge.color = load_colour(link.rate, link.peak);
+        const bool is_around = link.from.compare(0, 5, "part-") == 0;
+        edge.title = fmt::format("{}: {} of {} MB/s ({} %)\n{}", ends, measured(link.rate), edge.label,
+                                 measured(100 * link.rate / link.peak),
+                                 is_around ? "mean since power-up" : "mean while the core works on a frame");
+        edge.label = link.rate == 0 ? "" : measured(link.rate);
+      }
+      edges_.push_back(std::move(edge));
+    }
+  }
+
+  double height_of(const std::string& block) const {
+    return 2 * kPadding + kNameStep + kNoteStep * static_cast<double>(lines_.at(block).size() - 1);
+  }
+
+  // A link leaves a bank at the buffers that it carries, that of the host, which carries all, at its name.
+  // The lines of the buffers are as far apart as the links need.
+  void measure_banks() {
+    for (const platform::BankConfig& config : board_.banks) {
+      Bank bank;
+      bank.name = config.name;
+      for (const platform::PlacedBuffer& buffer : platform::buffers(board_)) {
+        if (buffer.bank != bank.name) continue;
+        const bool is_joint = board_.fpga.joint_tables && buffer.buffer == platform::Buffer::kLeftLut;
+        for (const fpga::CorePort& port : fpga::kPorts) {
+          if (port.buffer != std::string(platform::name_of(buffer.buffer))) continue;
+          bank.buffers.push_back({is_joint ? "left_lut, right_lut" : buffer.label(), port.name,
+                                  platform::buffer_words(buffer, board_.image)});
+        }
+      }
+      leave(bank, "host", kPadding + kNameStep / 2);
+      double y = kPadding + kNameStep + (run_ == nullptr ? 1 : 2) * kNoteStep + 10;
+      for (std::size_t i = 0; i < bank.buffers.size(); ++i, y += kNoteStep) {
+        if (i == 0 || bank.buffers[i].port != bank.buffers[i - 1].port)
+          y = leave(bank, bank.buffers[i].port, y + kNoteStep / 2) - kNoteStep / 2;
+        bank.buffers[i].y = y;
+      }
+      bank.box = {kMargin, 0, kBankWidth, y + (bank.buffers.empty() ? kNoteStep : 0) + kPadding};
+      banks_.push_back(std::move(bank));
+    }
+  }
+
+  // Lets the link of the port leave the bank, at `y` below its top or as far below as the link above needs:
+  // the label of a link stands on it. Returns where.
+  double leave(Bank& bank, const std::string& port, double y) {
+    for (std::size_t i = 0; i < edges_.size(); ++i) {
+      if (edges_[i].link.from != "port-" + port || edges_[i].link.to != "bank-" + bank.name) continue;
+      if (!bank.ends.empty()) {
+        const auto& [above, above_y] = bank.ends.back();
+        y = std::max(y, above_y + (edges_[above].width + edges_[i].width) / 2 + kLabelHeight + 8);
+      }
+      bank.ends.emplace_back(i, y);
+    }
+    return y;
+  }
+
+  // The ports that exist, from top to bottom: the tables beside the pixel ports that they serve.
+  void measure_ports() {
+    Lines names = {"host", "left_lut", "left_pixel", "right_pixel", "right_lut", "result"};
+    if (board_.fpga.joint_tables) names = {"host", "left_pixel", "left_lut", "right_pixel", "result"};
+    double x = kBankRight + kTracksFromBank;
+    for (const std::string& name : names) {
+      Port port;
+      port.name = name;
+      for (const Bank& bank : banks_) {
+        for (const auto& [edge, y] : bank.ends) {
+          if (edges_[edge].link.from != "port-" + name) continue;
+          port.edges.push_back(edge);
+          port.bundle = run_ == nullptr ? kThinEdge : port.bundle + edges_[edge].width + 1;
+        }
+      }
+      if (port.edges.empty()) continue;
+      const bool is_pixel = name == "left_pixel" || name == "right_pixel";
+      const double lane = is_pixel ? height_of("stage-" + name.substr(0, name.find('_')) + "_lane") : 0;
+      port.box = {0, 0, kPortWidth, std::max({height_of("port-" + name), port.bundle + 12, lane})};
+      x += port.bundle + kBetweenTracks;
+      ports_.push_back(std::move(port));
+    }
+    fpga_ = {x + 4, 0, kFpgaWidth, 0};
+    for (Port& port : ports_) port.box.x = fpga_.x + kFpgaPadding;
+  }
+
+  const Port* port(const std::string& name) const {
+    const auto found =
+        std::find_if(ports_.begin(), ports_.end(), [&name](const Port& each) { return each.name == name; });
+    return found == ports_.end() ? nullptr : &*found;
+  }
+
+  // As low as the ports, unless they need more room.
+  void place_banks(double top) {
+    double ports = -kBetweenPorts;
+    for (const Port& port : ports_) ports += port.box.height + kBetweenPorts;
+    double banks = -kBetweenBanks;
+    for (const Bank& bank : banks_) banks += bank.box.height + kBetweenBanks;
+    double y = std::max(top + kNameStep + 4, fpga_.y + kFpgaTitle + ports + kFpgaFoot - banks);
+    blocks_ += text_element(fmt::format("SSRAM: {} MHz, one access a cycle", board_.fpga.clock_mhz), kNote,
+                            kMargin, y - kNameStep - 4, kBankWidth);
+    for (Bank& bank : banks_) {
+      bank.box.y = y;
+      for (const auto& [edge, end] : bank.ends) edges_[edge].way = {{kBankRight, y + end}};
+      y = bank.box.bottom() + kBetweenBanks;
+    }
+  }
+
+  // Where the edge ends at its bank, until it is routed.
+  double bank_y(std::size_t edge) const { return edges_[edge].way.front().y; }
+
+  // Where the edges of a port end, if it is at this y.
+  std::vector<double> port_ends(const Port& port) const {
+    std::vector<double> ends;
+    double y = port.box.middle_y() - port.bundle / 2;
+    for (const std::size_t edge : port.edges) {
+      ends.push_back(y + edges_[edge].width / 2);
+      if (run_ != nullptr) y += edges_[edge].width + 1;
+    }
+    return ends;
+  }
+
+  // Whether no edge of another port, on its way from its bank, could lie on one of this port. Those of the
+  // host have the rightmost tracks, which no edge from a bank passes.
+  bool is_clear(const Port& port) const {
+    const std::vector<double> ends = port_ends(port);
+    for (const Bank& bank : banks_) {
+      for (const auto& [other, end] : bank.ends) {
+        for (std::size_t i = 0; i < ends.size(); ++i) {
+          const double needed = (edges_[other].width + edges_[port.edges[i]].width) / 2 + kClearance;
+          if (edges_[other].link.from != "port-" + port.name && std::abs(bank_y(other) - ends[i]) < needed)
+            return false;
+        }
+      }
+    }
+    return true;
+  }
+
+  // Puts the ports one below the other, each where its edges are clear. Returns the bottom of the last one.
+  double place_ports() {
+    double y = fpga_.y + kFpgaTitle;
+    for (Port& port : ports_) {
+      port.box.y = y;
+      while (port.name != "host" && !is_clear(port)) port.box.y += 1;
+      y = port.box.bottom() + kBetweenPorts;
+    }
+    fpga_.height = y - kBetweenPorts + kFpgaFoot - fpga_.y;
+    return y - kBetweenPorts;
+  }
+
+  // Chooses the ways of the edges between banks and ports: from the bank to the track of the edge, there up
+  // or down, and on to the port. Tracks from left to right: those of ports whose edges go up, the lowest port
+  // first; of those whose edges go down, the highest first; of the host.
+  void route() {
+    const auto order = [this](const Port& port) {
+      double down = 0;
+      for (const std::size_t edge : port.edges) down += bank_y(edge) - port.box.middle_y();
+      return std::tuple(port.name == "host", down > 0, down > 0 ? port.box.y : -port.box.y);
+    };
+    std::vector<const Port*> ports;
+    for (const Port& port : ports_) ports.push_back(&port);
+    std::sort(ports.begin(), ports.end(),
+              [&](const Port* a, const Port* b) { return order(*a) < order(*b); });
+    double left = kBankRight + kTracksFromBank;
+    for (const Port* port : ports) {
+      const std::vector<double> ends = port_ends(*port);
+      // Of those that go up the highest, and of those that go down the lowest, are on the right.
+      double up = left;
+      for (std::size_t i = ends.size(); i-- > 0;) up = take_track(*port, i, ends[i], up, true);
+      double down = left;
+      for (std::size_t i = 0; i < ends.size(); ++i) down = take_track(*port, i, ends[i], down, false);
+      left += port->bundle + kBetweenTracks;
+    }
+  }
+
+  // Routes the edge if it goes in this direction. Returns where the next track begins.
+  double take_track(const Port& port, std::size_t number, double port_y, double left, bool goes_up) {
+    Edge& edge = edges_[port.edges[number]];
+    const Point at_bank = edge.way.back();
+    if (edge.way.size() > 1 || (at_bank.y <= port_y) != goes_up) return left;
+    const double x = left + edge.width / 2;
+    edge.way = {{port.box.x, port_y}, {x, port_y}, {x, at_bank.y}, at_bank};
+    if (at_bank.y == port_y) edge.way = {{port.box.x, port_y}, at_bank};
+    return run_ == nullptr ? left : left + edge.width + 1;
+  }
+
+  // Opens the group of a block, and draws its box.
+  void open_block(const std::string& id, const std::string& title, const Box& box, const std::string& fill) {
+    const bool limits = limiting_.count(id) > 0;
+    blocks_ += fmt::format("<g id=\"{}\" class=\"block{}\">\n", xml_text(id), limits ? " limits" : "") +
+               title_element(title) + rect_element(box, 4, paint("fill", fill)) +
+               frame_element(box, 4, limits ? "ink" : "line", limits ? 3 : 1);
+  }
+
+  void draw_bank(const Bank& bank) {
+    const auto index = static_cast<std::size_t>(&bank - banks_.data());
+    const platform::BankConfig& config = board_.banks[index];
+    const memory::BankTraits& traits = memory::traits_of(config.kind);
+    const auto all_words = static_cast<std::uint64_t>(config.words);
+    std::uint64_t used = 0;
+    std::string held;
+    for (const Held& buffer : bank.buffers) {
+      used += buffer.words;
+      held += fmt::format("\n{}: {} words", buffer.label, grouped(buffer.words));
+    }
+    const std::string size = fmt::format("{} of {} words", grouped(used), words_text(all_words));
+    std::string kind = traits.name;
+    if (traits.has_turnaround) kind += fmt::format(", {} lost", config.turnaround_cycles);
+    std::string rate = short_number(4 * traits.ports * board_.fpga.clock_mhz) + " MB/s";
+    const double left = bank.box.x + 9;
+    const double right = bank.box.right() - 9;
+    const double width = right - left;
+    double y = bank.box.y + kPadding;
+    std::string busy;
+    double busy_percent = 0;
+    if (run_ != nullptr) {
+      rate = fmt::format("{} of {}", measured(run_->banks[index].megabytes_per_second), rate);
+      busy_percent = 100 * run_->banks[index].utilization;
+      busy = fmt::format("busy {} %", measured(busy_percent));
+    }
+    open_block("bank-" + bank.name,
+               fmt::format("{}: {}\n{}, {}{}{}", bank.name, rate, size, kind,
+                           busy.empty() ? "" : "\n" + busy + " of the cycles", held),
+               bank.box, busy.empty() ? "memory" : "free");
+    const std::string load = load_colour(busy_percent, 100);
+    if (!busy.empty()) blocks_ += rect_element(bank.box, 4, paint("fill", load) + " fill-opacity=\"0.2\"");
+    const double rate_width = text_width(rate, kNote.size, kNote.bold);
+    blocks_ += text_element(bank.name, kName, left, y, width - rate_width - 8) +
+               text_element(rate, kNote, right, y + 1.5, width, "end");
+    y += kNameStep;
+    if (!busy.empty()) {
+      const Box bar = {left + 90, y + 2.5, width - 90, 8};
+      blocks_ += text_element(busy, kNote, left, y, 90) + rect_element(bar, 2, paint("fill", "free")) +
+                 rect_element({bar.x, bar.y, bar.width * busy_percent / 100, 8}, 2, paint("fill", load)) +
+                 frame_element(bar, 2, "line", 0.75);
+      y += kNoteStep;
+    }
+    const double size_width = text_width(size, kNote.size, kNote.bold);
+    blocks_ += text_element(size, kNote, left, y, width) +
+               text_element(kind, kNote, right, y, width - size_width - 8, "end");
+    y += kNoteStep + 2;
+    const Box bar = {left, y, width, 6};
+    blocks_ += rect_element(bar, 2, paint("fill", "free"));
+    double x = left;
+    for (const Held& buffer : bank.buffers) {
+      const double share = static_cast<double>(buffer.words) / static_cast<double>(all_words);
+      const Box part{x, y, width * share, 6};
+      blocks_ += rect_element(part, 0, paint("fill", "used")) + frame_element(part, 0, "memory", 1) +
+                 text_element(buffer.label, kPlain, left, bank.box.y + buffer.y, width - 70) +
+                 text_element(grouped(buffer.words), kNote, right, bank.box.y + buffer.y, 66, "end");
+      x += part.width;
+    }
+    if (bank.buffers.empty()) blocks_ += text_element("no buffer", kNote, left, y + 8, width);
+    blocks_ += frame_element(bar, 2, "line", 0.75) + "</g>\n";
+  }
+
+  // A block with its lines in its middle.
+  void draw_block(const std::string& id, const Box& box, const std::string& fill = "logic") {
+    const Lines& lines = lines_.at(id);
+    open_block(id, fmt::format("{}", fmt::join(lines, "\n")), box, fill);
+    double y = box.middle_y() - height_of(id) / 2 + kPadding;
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      blocks_ += text_element(lines[i], i == 0 ? kName : kNote, box.middle_x(), y, box.width - 8, "middle");
+      y += i == 0 ? kNameStep : kNoteStep;
+    }
+    blocks_ += "</g>\n";
+  }
+
+  // A block of the height of its lines.
+  Box draw_stage(const std::string& id, double x, double middle_y, double width) {
+    const Box box{x, middle_y - height_of(id) / 2, width, height_of(id)};
+    draw_block(id, box);
+    return box;
+  }
+
+  // The way of pixels and results inside the FPGA. It carries no words of the memories.
+  void draw_flow(const std::string& name, const Point& from, const Point& to) {
+    flows_ += fmt::format("<g id=\"flow-{}\" class=\"flow\">\n{}</g>\n", name,
+                          arrow_element({from, to}, true, false, 1, "line"));
+  }
+
+  void draw_core(double ports_bottom) {
+    for (const Port& port : ports_) draw_block("port-" + port.name, port.box);
+    const double lane_x = fpga_.x + kFpgaPadding + kPortWidth + kBetweenStages;
+    const double matcher_x = lane_x + kLaneWidth + kBetweenStages;
+    const double check_x = matcher_x + kMatcherWidth + kBetweenStages;
+    Box matcher{matcher_x, port("left_pixel")->box.y, kMatcherWidth, 0};
+    for (const std::string side : {"left", "right"}) {
+      const Box& pixels = port(side + "_pixel")->box;
+      const Box lane = draw_stage("stage-" + side + "_lane", lane_x, pixels.middle_y(), kLaneWidth);
+      const double y = lane.middle_y();
+      draw_flow(side + "_pixel-" + side + "_lane", {pixels.right(), y}, {lane.x, y});
+      draw_flow(side + "_lane-matcher", {lane.right(), y}, {matcher_x, y});
+      matcher.height = std::max(pixels.bottom() - matcher.y, height_of("stage-matcher"));
+      // From the port of the side's table to its pixel port, which is the next one above or below.
+      const Port* const table = port(board_.fpga.joint_tables ? "left_lut" : side + "_lut");
+      if (table == nullptr) continue;
+      const double x = pixels.middle_x();
+      const bool is_above = table->box.y < pixels.y;
+      draw_flow(table->name + "-" + side + "_pixel", {x, is_above ? table->box.bottom() : table->box.y},
+                {x, is_above ? pixels.y : pixels.bottom()});
+    }
+    draw_block("stage-matcher", matcher);
+    const Box check = draw_stage("stage-lr_check", check_x, matcher.middle_y(), kCheckWidth);
+    draw_flow("matcher-lr_check", {matcher.right(), check.middle_y()}, {check.x, check.middle_y()});
+    const Box& result = port("result")->box;
+    const Box queue = draw_stage("stage-result_queue", check_x, result.middle_y(), kCheckWidth);
+    draw_flow("lr_check-result_queue", {check.middle_x(), check.bottom()}, {check.middle_x(), queue.y});
+    draw_flow("result_queue-result", {queue.x, queue.middle_y()}, {result.right(), queue.middle_y()});
+
+    const double width = kFpgaWidth - 2 * kFpgaPadding;
+    blocks_ += text_element(fmt::format("FPGA {}: {} MHz", board_.fpga.device, board_.fpga.clock_mhz), kName,
+                            fpga_.right() - kFpgaPadding, fpga_.y + 7, kFpgaWidth / 2, "end");
+    Lines priority;
+    for (const memory::Port each : board_.fpga.arbiter.priority)
+      priority.emplace_back(fpga::kPorts[each].name);
+    blocks_ += text_element("each bank: " + board_.fpga.arbiter.policy, kNote, fpga_.x + kFpgaPadding,
+                            ports_bottom + 10, width) +
+               text_element(fmt::format("{}", fmt::join(priority, ", ")), kNote, fpga_.x + kFpgaPadding,
+                            ports_bottom + 10 + kNoteStep, width);
+  }
+
+  // An edge straight down, or up, between two blocks.
+  void connect(const std::string& id, double x, double from_y, double to_y) {
+    for (Edge& edge : edges_) {
+      if (edge.link.id() == id) edge.way = {{x, from_y}, {x, to_y}};
+    }
+  }
+
+  // Draws what is around the board, above the FPGA. Returns where the FPGA begins.
+  double draw_computer(double top) {
+    // The parts at the PCI bus, with their links. None has more lines than the capture boards.
+    std::vector<std::pair<std::string, std::string>> parts = {
+        {"part-left_capture", "edge-left_capture-pci"},
+        {"part-right_capture", "edge-right_capture-pci"},
+        {"part-cpu", "edge-cpu-pci"},
+        {"part-host_memory", "edge-pci-host_memory"}};
+    if (board_.pci.load) parts.emplace_back("part-load", "edge-load-pci");
+    const double left = fpga_.x;
+    const auto count = static_cast<double>(parts.size());
+    const double width = (kFpgaWidth - (count - 1) * kBetweenParts) / count;
+    const double camera_height = height_of("part-left_camera");
+    const double parts_y = top + camera_height + kShortEdge;
+    const double parts_height = height_of("part-left_capture");
+    const Box pci{left, parts_y + parts_height + kShortEdge, kFpgaWidth, kBusHeight};
+    double x = left;
+    for (const auto& [part, link] : parts) {
+      const Box box{x, parts_y, width, parts_height};
+      const bool from_bus = part == "part-host_memory";
+      draw_block(part, box, from_bus ? "memory" : "computer");
+      connect(link, box.middle_x(), from_bus ? pci.y : box.bottom(), from_bus ? box.bottom() : pci.y);
+      x = box.right() + kBetweenParts;
+    }
+    x = left;
+    for (const std::string side : {"left", "right"}) {
+      const Box box{x, top, width, camera_height};
+      draw_block("part-" + side + "_camera", box, "computer");
+      connect("edge-" + side + "_camera-" + side + "_capture", box.middle_x(), box.bottom(), parts_y);
+      x = box.right() + kBetweenParts;
+    }
+    draw_block("part-pci", pci, "bus");
+    const Box bridge{left, pci.bottom() + kShortEdge, kBridgeWidth, height_of("part-bridge")};
+    draw_block("part-bridge", bridge, "computer");
+    connect("edge-pci-bridge", left + 56, pci.bottom(), bridge.y);
+    connect("edge-bridge-pci", left + 150, bridge.y, pci.bottom());
+    const Box local{left, bridge.bottom() + kShortEdge, kBridgeWidth, height_of("part-local_bus")};
+    draw_block("part-local_bus", local, "bus");
+    const double host_x = port("host")->box.middle_x();
+    const double end = local.bottom() + kShortEdge;
+    connect("edge-bridge-local_bus", host_x, bridge.bottom(), local.y);
+    connect("edge-local_bus-host", host_x, local.bottom(), end + kFpgaTitle);
+    draw_legend({left + kBridgeWidth + 24, pci.bottom() + 14});
+    return end;
+  }
+
+  // Returns its bottom.
+  double draw_heading() {
+    const double width = fpga_.right() - kMargin;
+    blocks_ += text_element(board_.name, kHeading, kMargin, kMargin, width);
+    double y = kMargin + 24;
+    for (const std::string& line : subtitle_of(view_)) {
+      blocks_ += text_element(line, kNote, kMargin, y, width);
+      y += kNoteStep;
+    }
+    return y + 12;
+  }
+
+  void draw_legend(const Point& at) {
+    double y = at.y;
+    for (const std::string& line : legend_of(view_)) {
+      blocks_ += text_element(line, kNote, at.x, y, fpga_.right() - at.x);
+      y += kNoteStep;
+      if (line.find("Colour") == std::string::npos) continue;
+      constexpr double kSwatch = 56;
+      for (std::size_t step = 0; step <= kLoadSteps.size(); ++step) {
+        const double x = at.x + kSwatch * static_cast<double>(step);
+        const std::string text = step == 0 ? fmt::format("below {}", kLoadSteps.front())
+                                           : fmt::format("from {}", kLoadSteps[step - 1]);
+        blocks_ += rect_element({x, y + 2, kSwatch - 4, 8}, 1, paint("fill", fmt::format("load{}", step))) +
+                   text_element(text, kNote, x, y + 12, kSwatch - 4);
+      }
+      y += 15 + kNoteStep;
+    }
+    legend_bottom_ = y;
+  }
+
+  // The label of an edge: beside it, or on it where it leaves a bank.
+  static std::string label_element(const Edge& edge) {
+    const Point& begin = edge.way.front();
+    const Point& end = edge.way.back();
+    if (edge.label.empty()) return "";
+    Point at{end.x + kLabelFromBank, end.y - edge.width / 2 - 1 - kLabelHeight};
+    if (begin.x == end.x) {
+      // That to the host ends inside the FPGA; its label is outside.
+      const double middle = edge.link.to == "port-host" ? begin.y + kShortEdge / 2 : (begin.y + end.y) / 2;
+      at = {end.x + std::max(edge.width / 2, 4.5) + 4, middle - kLabelHeight / 2};
+    }
+    return text_element(edge.label, kPlain, at.x, at.y, 100);
+  }
+
+  // Edges of one port follow each other, and lie side by side: a halo must not cover its neighbours.
+  std::string edge_elements() const {
+    std::string text;
+    for (auto first = edges_.begin(); first != edges_.end();) {
+      const auto end = std::find_if(
+          first, edges_.end(), [&first](const Edge& edge) { return edge.link.from != first->link.from; });
+      for (auto edge = first; edge != end; ++edge)
+        text += line_element(edge->way, edge->width + 2 * kHalo, "page");
+      for (; first != end; ++first) {
+        const ChartLink& link = first->link;
+        text +=
+            fmt::format("<g id=\"{}\" class=\"edge\" data-from=\"{}\" data-to=\"{}\" data-peak=\"{}\"{}>\n",
+                        xml_text(link.id()), xml_text(link.from), xml_text(link.to), link.peak,
+                        run_ == nullptr ? "" : fmt::format(" data-mbps=\"{}\"", link.rate)) +
+            title_element(first->title) +
+            arrow_element(first->way, link.there, link.back, first->width, first->color) +
+            label_element(*first) + "</g>\n";
+      }
+    }
+    return text;
+  }
+
+  const ChartView& view_;
+  const BoardConfig& board_;
+  const Statistics* run_;
+  std::set<std::string> limiting_;
+  std::map<std::string, Lines> lines_;  // of each block but the banks, by its id
+  std::vector<Edge> edges_;             // in the order of chart_links()
+  std::vector<Bank> banks_;             // in the order of the board
+  std::vector<Port> ports_;             // from top to bottom
+  Box fpga_;
+  double legend_bottom_ = 0;
+  std::string flows_;  // SVG
+  std::string blocks_;
 };
-Tip tip_of(double width) { return {6.5 + width / 3, 3 + width / 2}; }
-
-// The unit vector from `from` to `to`; the piece is horizontal or vertical.
-ChartPoint direction(const ChartPoint& from, const ChartPoint& to) {
-  const double length = std::abs(to.x - from.x) + std::abs(to.y - from.y);
-  return length == 0 ? ChartPoint{} : ChartPoint{(to.x - from.x) / length, (to.y - from.y) / length};
-}
-
-// The tip at the end of a way, which is made shorter by it.
-std::string tip_element(std::vector<ChartPoint>& way, double width, const std::string& color_name) {
-  const Tip tip = tip_of(width);
-  const ChartPoint end = way.back();
-  const ChartPoint along = direction(way[way.size() - 2], end);
-  const ChartPoint foot{end.x - tip.length * along.x, end.y - tip.length * along.y};
-  way.back() = {end.x - (tip.length - 1) * along.x, end.y - (tip.length - 1) * along.y};
-  return fmt::format("<path d=\"M{} {} L{} {} L{} {} z\"{}/>\n", px(end.x), px(end.y),
-                     px(foot.x - tip.half * along.y), px(foot.y + tip.half * along.x),
-                     px(foot.x + tip.half * along.y), px(foot.y - tip.half * along.x), paint(color_name, ""));
-}
-
-std::string arrow_elements(std::vector<ChartPoint> way, bool there, bool back, double width,
-                           const std::string& color_name) {
-  std::string tips;
-  if (there) tips += tip_element(way, width, color_name);
-  if (back) {
-    std::reverse(way.begin(), way.end());
-    tips += tip_element(way, width, color_name);
-    std::reverse(way.begin(), way.end());
-  }
-  return line_element(way, width, color_name) + tips;
-}
-
-std::string edge_element(const ChartEdge& edge) {
-  const std::string data =
-      edge.megabytes_per_second ? fmt::format(" data-mbps=\"{}\"", *edge.megabytes_per_second) : "";
-  return fmt::format("<g id=\"{}\" class=\"edge\" data-from=\"{}\" data-to=\"{}\" data-peak=\"{}\"{}>\n",
-                     xml_text(edge.link.id()), xml_text(edge.link.from), xml_text(edge.link.to),
-                     edge.link.peak, data) +
-         title_element(edge.title) +
-         arrow_elements(edge.way, edge.link.there, edge.link.back, edge.width, edge.colour) +
-         (edge.label.text.empty() ? "" : text_element(edge.label)) + "</g>\n";
-}
-
-// Edges of one port follow each other, and lie side by side: a halo must not cover its neighbours.
-std::string edge_elements(const std::vector<ChartEdge>& edges) {
-  std::string text;
-  for (std::size_t first = 0; first < edges.size();) {
-    std::size_t end = first;
-    for (; end < edges.size() && edges[end].link.from == edges[first].link.from; ++end)
-      text += line_element(edges[end].way, edges[end].width + 2 * kHalo, "page");
-    for (; first < end; ++first) text += edge_element(edges[first]);
-  }
-  return text;
-}
-
-std::string block_element(const ChartBlock& block) {
-  std::string text =
-      fmt::format("<g id=\"{}\" class=\"block{}\">\n", xml_text(block.id), block.limits ? " limits" : "");
-  text += title_element(block.title);
-  for (const ChartRect& rect : block.rects) text += rect_element(rect);
-  for (const ChartText& line : block.texts) text += text_element(line);
-  return text + "</g>\n";
-}
-
-std::string svg_of(const MemoryChart& chart) {
-  std::string text = fmt::format(
-      "{2} class=\"memory-chart\" role=\"img\" width=\"{0}\" height=\"{1}\" "
-      "viewBox=\"0 0 {0} {1}\"\n font-family=\"system-ui, -apple-system, 'Segoe UI', Helvetica, Arial, "
-      "sans-serif\">\n",
-      px(chart.width), px(chart.height), kChartMark);
-  text += title_element(chart.title) + style();
-  text += rect_element({{0, 0, chart.width, chart.height}, 0, "page"});
-  text += rect_element({chart.fpga, 8, "none", "frame"});
-  for (const ChartFlow& flow : chart.flows) {
-    text += fmt::format("<g id=\"{}\" class=\"flow\">\n{}</g>\n", xml_text(flow.id),
-                        arrow_elements(flow.way, true, false, 1, "line"));
-  }
-  text += edge_elements(chart.edges);
-  for (const ChartBlock& block : chart.blocks) text += block_element(block);
-  for (const ChartRect& swatch : chart.swatches) text += rect_element(swatch);
-  for (const ChartText& line : chart.texts) text += text_element(line);
-  return text + "</svg>\n";
-}
 
 }  // namespace
 
-std::string memory_chart_svg(const platform::BoardConfig& board, ChartExtent extent) {
-  return svg_of(layout_memory_chart(board, extent));
+std::string load_colour(double load, double peak) {
+  const auto steps = std::count_if(kLoadSteps.begin(), kLoadSteps.end(),
+                                   [&](double percent) { return 100 * load >= percent * peak; });
+  return fmt::format("load{}", steps);
 }
 
-std::string memory_chart_svg(const platform::BoardConfig& board, const ChartTraffic& traffic) {
-  return svg_of(layout_memory_chart(board, traffic));
-}
+std::string memory_chart_svg(const ChartView& view) { return Chart(view).svg(); }
 
 }  // namespace stereotlm::report

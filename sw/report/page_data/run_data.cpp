@@ -196,19 +196,19 @@ std::string picture_url(const kernels::GrayImage& picture) {
 
 Json run_data(const runs::RecordedRun& run, const platform::Tables& tables) {
   const BoardConfig& board = run.board;
-  const ChartTraffic traffic = chart_traffic(board, run.statistics);
   const auto read = [&run](const char* name) {
     return files::read_whole_file(std::filesystem::path(run.folder) / name);
   };
-  Json data = {{"folder", run.folder},
-               {"command", command_of(run)},
-               {"stats", Json::parse(run.stats_json)},
-               {"config_yaml", read("config.yaml")},
-               {"settings", settings_of(board)},
-               {"banks", banks_of(board)},
-               {"bounds", bounds_of(board, tables, run.options.source == "camera")},
-               {"area", area_data(board)},
-               {"memory_chart", memory_chart_svg(board, traffic)}};
+  Json data = {
+      {"folder", run.folder},
+      {"command", command_of(run)},
+      {"stats", Json::parse(run.stats_json)},
+      {"config_yaml", read("config.yaml")},
+      {"settings", settings_of(board)},
+      {"banks", banks_of(board)},
+      {"bounds", bounds_of(board, tables, run.options.source == "camera")},
+      {"area", area_data(board)},
+      {"memory_chart", memory_chart_svg({board, run.statistics.computer.has_value(), &run.statistics})}};
   if (!run.options.timing_only) {
     data["pictures"] = {{"disparity", png_url(read("disparity.png"))},
                         {"disparities", board.matcher.disparities}};

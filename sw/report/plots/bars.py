@@ -1,9 +1,9 @@
-"""Figures that have a row for each point: selects and names the points, and draws stacked bars."""
+"""Figures that have a row for each point: selects and names the points, and draws bars or cells."""
 
 import style
-from drawing import HEAD, WIDTH, Sheet, in_words, ticks_of_columns
+from drawing import HEAD, WIDTH, Drawing, Sheet, in_words, length_of, ticks_of_columns
 from matplotlib.patches import Patch
-from points import natural, short_names, text_of
+from points import PORTS, TURNAROUND, Unusable, counted, natural, short_names, text_of
 from style import SMALL_SIZE
 
 MOST = 16
@@ -11,6 +11,21 @@ ROW = 0.2  # inches
 LINE = 0.12
 CLOSEST = 0.112  # from line to line
 NAMES = 0.38  # share of the width that names may take
+LEAST_HEIGHT = 0.3  # inches
+TEXT_CHANGES = 55  # percent; above it white text is easier to read than black
+
+STATES = {
+    "grants": ("granted", style.BLUE),
+    "passed_cycles": ("passed without access", style.SKY),
+    "stall_cycles": ("waiting", style.VERMILION),
+    "blocked_cycles": ("blocked", style.ORANGE),
+    "starved_cycles": ("starved", "#999999"),
+    "idle_cycles": ("idle", "#DDDDDD"),
+}
+CAUSES = {by: (by if by == TURNAROUND else f"for {by}", color)
+          for by, color in zip([*PORTS, TURNAROUND],
+                               [style.ORANGE, style.SKY, style.BLUE, style.GREEN, style.PINK,
+                                                      "#999999", style.BLACK])}
 
 
 class Rows:
@@ -112,3 +127,94 @@ def stacked(points, options, rows, heading, ports, parts, cycles, unit):
     ticks_of_columns(panels, most / factor)
     sheet.below(f"{word}{unit}")
     return sheet
+
+
+def states(points, options):
+    """What each port does in the cycles of a frame, point by point: granted, passed, waiting, blocked,
+    starved or idle."""
+    rows = Rows(points, options)
+    points.need_numbers([f"ports.{port}.{count}" for port in PORTS for count in ("grants", "stall_cycles")])
+    ports = [port for port in PORTS  # those that are granted or stall in one of these points
+             if any(points.column(f"ports.{port}.{count}")[place]
+                    for place in rows.places for count in ("grants", "stall_cycles"))]
+    points.need_numbers([f"ports.{port}.{count}" for port in ports for count in STATES])
+
+    def cycles(place, port, count):
+        return points.column(f"ports.{port}.{count}")[place]
+
+    sheet = stacked(points, options, rows, "What each port does in the cycles of a frame", ports, STATES,
+                         cycles,
+                         "cycles a frame")
+    header = ["hash", *points.varied, "frames", "port", *STATES]
+    table = [[*(points.column(each)[place] for each in header[: len(points.varied) + 2]), port,
+              *(cycles(place, port, count) for count in STATES)]
+             for place in rows.places for port in ports]
+    return Drawing(sheet, header, table,
+                   f"{counted(len(rows.places), 'point')}, {counted(len(ports), 'port')}")
+
+
+def stalls(points, options):
+    """The cycles in which each port waits in a frame, point by point, by cause: the port that was granted, or
+    turnaround."""
+    if not any(points.stall_cycles()):
+        raise Unusable("no port waits in any point")
+    rows = Rows(points, options, most_stalled=True)
+    blame = {place: points.blame(place) for place in rows.places}
+    stalled = [port for port in PORTS if any(row[0] == port for each in blame.values() for row in each)]
+
+    def cycles(place, port, by):
+        return sum(row[3] for row in blame[place] if (row[0], row[2]) == (port, by))
+
+    sheet = stacked(points, options, rows, "Which port waits, and for whom", stalled, CAUSES, cycles,
+                         "cycles a frame in which the port waits")
+    header = ["hash", *points.varied, "frames", "port", "bank", "by", "cycles"]
+    table = [[*(points.column(each)[place] for each in header[:-4]), *row]
+             for place in rows.places for row in blame[place]]
+    said = f"{counted(len(rows.places), 'point')}, {counted(len(stalled), 'port')} with waits"
+    return Drawing(sheet, header, table, said)
+
+
+def use(points, options):
+    """How busy each bank is while the core works on a frame, point by point."""
+    rows = Rows(points, options)
+    columns = sorted((name
+                      for name in points.names
+                      if name.startswith("banks.") and name.endswith(".utilization")),
+                     key=natural)
+    banks = [name.split(".", 1)[1].rpartition(".")[0] for name in columns]
+    for name in columns:
+        points.need_numbers([name], points.places_with(name))
+    sheet = Sheet("How busy each bank is", options.size, options.format)
+    percent = [[None if (use := points.column(name)[place]) is None else 100 * use for name in columns]
+               for place in rows.places]
+    if any(None in row for row in percent):
+        sheet.legend([(Patch(color=style.MISSING), "the board has no such bank")])
+    rows.note_below(sheet, "Of the cycles in which the core works on a frame, those in which the bank serves "
+                           "an access.")
+    height, least = (max(each, LEAST_HEIGHT) for each in (rows.height, rows.least))
+    (axes,) = sheet.grid([height], 1, rows.left(), 0.3, bottom=0.95, least=least)
+    numbers = [[float("nan") if use is None else use for use in row] for row in percent]
+    axes.set_facecolor(style.MISSING)
+    shown = axes.pcolormesh(range(len(banks) + 1), rows.edges, numbers, cmap=style.SHARES, vmin=0, vmax=100,
+                            edgecolors="white", linewidth=1)
+    cell = length_of(axes, "x") / len(banks)
+    size = style.SMALL_SIZE * min(1, cell / style.text_width(" 100 ", style.SMALL_SIZE))
+    for row, center in zip(percent, rows.centers):
+        for number, use in enumerate(row):
+            if use is not None:
+                text = f"{use:.0f}" if use == 0 or use >= 0.5 else "<1"
+                axes.text(number + 0.5, center, text, ha="center", va="center_baseline", fontsize=size,
+                          color="white" if use > TEXT_CHANGES else "black")
+    widest = max(style.text_width(bank, style.SIZE) for bank in banks)
+    axes.set_xticks([number + 0.5 for number in range(len(banks))], banks,
+                    fontsize=style.SIZE * min(1, max(0.5, 0.92 * cell / widest)))
+    axes.tick_params(axis="x", length=0)
+    rows.label(axes)
+    axes.grid(False)
+    for side in axes.spines.values():
+        side.set_visible(False)
+    sheet.color_bar(shown, "use of the bank, % of cycles", 0.42)
+    header = ["hash", *points.varied, *columns]
+    table = [[points.column(each)[place] for each in header] for place in rows.places]
+    return Drawing(sheet, header, table,
+                   f"{counted(len(rows.places), 'point')}, {counted(len(banks), 'bank')}")

@@ -145,18 +145,11 @@ class Families:
         `told`."""
         if len(combinations) == 1:
             return {combinations[0]: Look()}, []
-        if len(combinations) > MOST_LINES:
-            return None, []
+        by_color = [[key] for key in sorted(self.told, key=lambda each: -len(self._values(each)))]
         if len(combinations) <= MOST_SINGLE or len(self.told) == 1:
-            colors = colors_of(combinations)
-            if colors is None:
-                return None, []
-            looks = {each: Look(color, MARKERS[number % len(MARKERS)])
-                     for number, (each, color) in enumerate(zip(combinations, colors))}
-            texts = named(self.told, combinations)
-            return looks, [[(text, looks[each]) for text, each in zip(texts, combinations)]]
-        for key in sorted(self.told, key=lambda each: -len(self._values(each))):
-            looks, legend = self._looks_by(key, combinations)
+            by_color = [self.told]
+        for keys in by_color if len(combinations) <= MOST_LINES else []:
+            looks, legend = self._looks_by(keys, combinations)
             if looks:
                 return looks, legend
         return None, []
@@ -165,23 +158,28 @@ class Families:
         at = self.keys.index(key)
         return sorted({family.values[at] for family in self.all}, key=natural)
 
-    def _looks_by(self, key, combinations):
-        """The same, with the key `key` shown by color, and the others by marker and dashes."""
-        at = self.told.index(key)
-        values = sorted({(each[at],) for each in combinations}, key=order)
-        colors = colors_of(values)
-        others = sorted({without(each, at) for each in combinations}, key=order)
-        if colors is None or len(others) > MOST_MARKERS:
+    def _looks_by(self, keys, combinations):
+        """The same, with these keys shown by color, and the others by marker and dashes."""
+        others = [key for key in self.told if key not in keys]
+
+        def part(combination, wanted):
+            return tuple(value for key, value in zip(self.told, combination) if key in wanted)
+
+        colored = sorted({part(each, keys) for each in combinations}, key=order)
+        marked = sorted({part(each, others) for each in combinations}, key=order)
+        colors = colors_of(colored)
+        if colors is None or len(marked) > MOST_MARKERS:
             return None, []
-        color_of = dict(zip(values, colors))
-        place_of = {each: place for place, each in enumerate(others)}
         looks = {}
         for each in combinations:
-            place = place_of[without(each, at)]
-            looks[each] = Look(color_of[(each[at],)], MARKERS[place], DASHES[place])
-        by_color = [(text, Look(color, None)) for text, color in zip(named([key], values), colors)]
-        texts = named(without(self.told, at), others)
-        by_marker = [(text, Look(GRAY, MARKERS[place], DASHES[place])) for place, text in enumerate(texts)]
+            number, place = colored.index(part(each, keys)), marked.index(part(each, others))
+            marker = MARKERS[place if others else number % len(MARKERS)]
+            looks[each] = Look(colors[number], marker, DASHES[place])
+        if not others:
+            return looks, [list(zip(named(keys, colored), looks.values()))]
+        by_color = [(text, Look(color, None)) for text, color in zip(named(keys, colored), colors)]
+        by_marker = [(text, Look(GRAY, MARKERS[place], DASHES[place]))
+                     for place, text in enumerate(named(others, marked))]
         return looks, [by_color, by_marker]
 
 
@@ -196,10 +194,6 @@ def left_range(places, xs, values):
         if values[place] is not None:
             by_x.setdefault(xs[place], []).append(values[place])
     return sum((max(each) - min(each)) / (max(map(abs, each)) or 1) for each in by_x.values())
-
-
-def without(values, at):
-    return (*values[:at], *values[at + 1 :])
 
 
 def named(keys, combinations):

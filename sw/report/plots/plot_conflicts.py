@@ -7,6 +7,7 @@ import json
 import os
 
 import command
+import numpy
 import style
 from drawing import Drawing, Sheet, in_words, ticks_of_columns
 from matplotlib.colors import LinearSegmentedColormap
@@ -24,41 +25,37 @@ def read(folder, name):
 
 
 class Recorded:
-    """What a run has recorded. tiles: rows of conflicts.csv; sums, frame: rows of rows.csv, the fill
+    """What a run has recorded. tiles: rows of conflicts.csv; sums, frame: columns of rows.csv, the fill
     first."""
 
     def __init__(self, folder):
         with open(os.path.join(folder, "about.json"), encoding="utf-8") as file:
             self.about = json.load(file)
         self.tiles = read(folder, "conflicts.csv")
-        self.sums = read(folder, "sums.csv")
-        self.frame = read(folder, "frame.csv")
-        self.picture = None
+        self.sums, self.frame = (self._columns(read(folder, name)) for name in ("sums.csv", "frame.csv"))
         path = os.path.join(folder, "picture.raw")
-        if os.path.exists(path):
-            with open(path, "rb") as file:
-                pixels = file.read()
-            width = self.about["width"]
-            self.picture = [list(pixels[at : at + width]) for at in range(0, len(pixels), width)]
-        names = list(self.sums[0])
-        self.banks = [name[: -len("_core_accesses")] for name in names if name.endswith("_core_accesses")]
-        self.banks = [bank for bank in self.banks if sum(map(lambda row: self.accesses(row, bank),
-                                                             self.sums))]
-        self.waiting = [name
-                        for name in names
-                        if name.endswith(STALLS) and any(int(row[name]) for row in self.sums)]
+        self.picture = (numpy.fromfile(path, numpy.uint8).reshape(-1, self.about["width"])
+                        if os.path.exists(path) else None)
+        shares = self.shares(self.sums)
+        self.banks = [name for name in shares if not name.endswith(STALLS) and shares[name].any()]
+        self.waiting = [name for name in shares if name.endswith(STALLS) and shares[name].any()]
         frames = self.about["frames"]
         self.note = f"Board {self.about['board']}; {frames} frame{'s' if frames > 1 else ''}."
 
     @staticmethod
-    def accesses(row, bank):
-        return sum(int(row[f"{bank}_{kind}_accesses"]) for kind in KINDS)
+    def _columns(rows):
+        return {name: numpy.array([int(row[name] or -1) for row in rows]) for name in rows[0]}
 
-    def share(self, row, name):
-        """In percent of the cycles of these rows. name: of a bank, or of a column of stalls."""
-        cycles = int(row["cycles"])
-        part = int(row[name]) if name.endswith(STALLS) else self.accesses(row, name)
-        return 100 * part / cycles if cycles else 0
+    @staticmethod
+    def shares(columns):
+        """{bank, or column of stalls: percent of the cycles of each row}."""
+        amounts = {name: column for name, column in columns.items() if name.endswith(STALLS)}
+        for name, column in columns.items():
+            for kind in KINDS:
+                bank = name.removesuffix(f"_{kind}_accesses")
+                if bank != name:
+                    amounts[bank] = amounts.get(bank, 0) + column
+        return {name: 100 * amount / numpy.maximum(columns["cycles"], 1) for name, amount in amounts.items()}
 
     def causes(self):
         """{(port, bank, by): cycles}"""
@@ -76,15 +73,16 @@ def name_of(column):
 def bank_rows(recorded, options):
     """The use of the banks, and the stalls, row by row."""
     columns = [*recorded.banks, *recorded.waiting]
-    rows = recorded.sums[1:]
+    first, last, cycles = (recorded.sums[name][1:] for name in ("first_row", "last_row", "cycles"))
+    shares = recorded.shares(recorded.sums)
+    values = numpy.array([shares[name][1:] for name in columns]).T
     sheet = Sheet("How busy banks are, and who waits, from the top of the picture to its bottom",
                   options.size,
                   options.format)
     sheet.note("Of the cycles of each row of results: accesses of the bank, or waits of the port. " +
                recorded.note)
     (axes,) = sheet.grid([4.2], 1, 0.7, 0.3, bottom=1.5)
-    edges = [int(row["first_row"]) for row in rows] + [recorded.about["height"]]
-    values = [[recorded.share(row, name) for name in columns] for row in rows]
+    edges = [*first, recorded.about["height"]]
     shown = axes.pcolormesh(range(len(columns) + 1), edges, values, cmap=style.SCALE, vmin=0, vmax=100,
                             rasterized=True)
     axes.invert_yaxis()
@@ -95,7 +93,7 @@ def bank_rows(recorded, options):
     for number in range(1, len(columns)):
         axes.axvline(number, color="white", linewidth=1 if number != len(recorded.banks) else 4)
     sheet.color_bar(shown, "% of the cycles", 0.95)
-    table = [[row["first_row"], row["last_row"], row["cycles"], *each] for row, each in zip(rows, values)]
+    table = [[*row, *each] for *row, each in zip(first, last, cycles, values.tolist())]
     return Drawing(sheet, ["first_row", "last_row", "cycles", *columns], table, "")
 
 
@@ -108,21 +106,18 @@ def picture(recorded, options):
             lost, cycles = tiles.get(place, (0, int(row["tile_cycles"])))
             tiles[place] = lost + int(row["cycles"]), cycles
     width, height = recorded.about["width"], recorded.about["height"]
-    paint = [[0.0] * ((width + 3) // 4) for _ in range(height)]
+    paint = numpy.zeros((height, (width + 3) // 4))
     for (first_row, last_row, first_column, last_column), (lost, cycles) in tiles.items():
-        for row in range(first_row, last_row + 1):
-            for group in range(first_column // 4, last_column // 4 + 1):
-                paint[row][group] = 100 * lost / cycles
-    most = max((max(row) for row in paint), default=0)
+        paint[first_row : last_row + 1, first_column // 4 : last_column // 4 + 1] = 100 * lost / cycles
     sheet = Sheet("Where in the picture ports wait", options.size, options.format)
     sheet.note("Waits of all ports, of the cycles after which the results of this place leave. "
                "The ports read ahead of the results. " + recorded.note)
     left, right = 0.6, 0.25
     (axes,) = sheet.grid([(sheet.width - left - right) * height / width], 1, left, right, bottom=0.95)
     extent = (0, width, height, 0)
-    if recorded.picture:
+    if recorded.picture is not None:
         axes.imshow(recorded.picture, cmap="gray", vmin=0, vmax=255, extent=extent, aspect="auto")
-    shown = axes.imshow(paint, cmap=PAINT, vmin=0, vmax=most or 1, extent=extent, aspect="auto",
+    shown = axes.imshow(paint, cmap=PAINT, vmin=0, vmax=paint.max() or 1, extent=extent, aspect="auto",
                         interpolation="nearest")
     axes.grid(False)
     axes.set_ylabel("row")
@@ -133,9 +128,8 @@ def picture(recorded, options):
 
 def time_line(recorded, options):
     """One frame: the use of the banks, and the stalls, over its time."""
-    times = [0]
-    for row in recorded.frame:
-        times.append(times[-1] + int(row["cycles"]) / recorded.about["clock_mhz"] / 1000)
+    times = numpy.cumsum([0, *recorded.frame["cycles"] / recorded.about["clock_mhz"] / 1000])
+    shares = recorded.shares(recorded.frame)
     sheet = Sheet("A frame of the core: how busy banks are, and who waits, over its time", options.size,
                   options.format)
     colors = {bank: BANK_COLORS[number % len(BANK_COLORS)] for number, bank in enumerate(recorded.banks)}
@@ -148,24 +142,23 @@ def time_line(recorded, options):
                "is the time before the first results. " + recorded.note)
     panels = sheet.grid([2.0, 1.4] if waiting else [2.0], left=0.8)
     for number, (bank, color) in enumerate(colors.items()):
-        panels[0].stairs([recorded.share(row, bank) for row in recorded.frame], times, color=color,
-                         baseline=None,
-                         linewidth=1.2, linestyle=style.DASHES[number // len(BANK_COLORS) % 4])
+        panels[0].stairs(shares[bank], times, color=color, baseline=None, linewidth=1.2,
+                         linestyle=style.DASHES[number // len(BANK_COLORS) % 4])
     panels[0].set_ylabel("bank busy, %")
     panels[0].set_ylim(0, 105)
     if waiting:
-        bottom = [0.0] * len(recorded.frame)
+        bottom = numpy.zeros(len(times) - 1)
         for name, color in waiting.items():
-            top = [low + recorded.share(row, name) for low, row in zip(bottom, recorded.frame)]
-            panels[1].stairs(top, times, baseline=bottom, fill=True, color=color, linewidth=0)
-            bottom = top
+            panels[1].stairs(bottom + shares[name], times, baseline=bottom, fill=True, color=color,
+                             linewidth=0)
+            bottom = bottom + shares[name]
         panels[1].set_ylabel("ports wait, %")
         panels[1].set_ylim(0, 1.05 * max(*bottom, 1e-9))
     panels[-1].set_xlabel("time since the frame began, ms")
     panels[-1].set_xlim(0, times[-1])
     columns = [*recorded.banks, *recorded.waiting]
-    table = [[begin, end, row["first_row"], row["last_row"], *(recorded.share(row, name) for name in columns)]
-             for begin, end, row in zip(times, times[1:], recorded.frame)]
+    rows = [["" if row < 0 else row for row in recorded.frame[name]] for name in ("first_row", "last_row")]
+    table = list(zip(times, times[1:], *rows, *(shares[name] for name in columns)))
     return Drawing(sheet, ["begin_ms", "end_ms", "first_row", "last_row", *columns], table, "")
 
 

@@ -1,15 +1,4 @@
 #!/usr/bin/python3
-"""Frames per second and area against the disparities, a line for each combination of the other keys that
-vary."""
+import figures
 
-import command
-import lines
-
-
-def draw(points, options):
-    return lines.of_key(points, options, "matcher.disparities", "Frame rate and area against the disparities",
-                        with_area=True)
-
-
-if __name__ == "__main__":
-    command.main(__doc__, {"disparities": draw})
+figures.main("Frames per second and area against the disparities.", "disparities")

@@ -295,15 +295,7 @@ class Points:
                           "GROUP BY status, reason ORDER BY 3 DESC, 1, 2 LIMIT 3")
 
     def _varied(self):
-        counts = []
-        for start in range(0, len(self.keys), 400):  # SQLite limits the columns of a result
-            asked = ", ".join(f"count(DISTINCT {name}), count({name})"
-                              for name in map(quoted, self.keys[start : start + 400]))
-            counts += self._rows(f"SELECT {asked} FROM points WHERE {self._condition}", *self._values)[0]
-        points = len(self.hashes)
-        varied = [key for key, distinct, there in zip(self.keys, counts[::2], counts[1::2])
-                  if distinct > 1 or (distinct == 1 and there < points)]
-        return self._without_frames(self._one_for_all_banks(varied))
+        return self._without_frames(self._one_for_all_banks(list(filter(self.varies, self.keys))))
 
     def _without_frames(self, varied):
         """Removes run.frames from `varied` if its value follows from the allocation."""

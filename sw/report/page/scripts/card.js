@@ -87,6 +87,15 @@ export function addChart(page, {id, title, note, wide, body, foot, draw, numbers
   return {element, redraw};
 }
 
+// A chart that --quick leaves out.
+export const addLeftOut = (page, id, title) => addChart(page, {
+  id,
+  title,
+  note: id === 'knobs' ?
+      'Left out by --quick. `stereotlm report` without it tries single changes of the board.' :
+      'Left out by --quick, because the run was not recorded.'
+});
+
 // The names of colours, in a line: [[name, css colour], ..].
 export const legend = entries =>
     h('ul', {class: 'legend'},

@@ -1,7 +1,7 @@
 // What each single change of the board gains, and what the core takes of its FPGA.
 import {adviceOf, newPartsOf, priceOf, priceText, shortStepText, stepText} from './advice.js';
 import {drawBars} from './bars.js';
-import {addChart} from './card.js';
+import {addChart, addLeftOut} from './card.js';
 import {button, checkBox, folded, h, note} from './dom.js';
 import {kindOfSteps} from './findings.js';
 import {count, fixed, gainText, most, percent, rate, signed, sum, whole} from './format.js';
@@ -11,14 +11,7 @@ const kFolded = 0.001;
 const kWide = 760;  // pixels; narrower, the names stand above the bars, and prices are in the tooltips
 
 export function addKnobs(page, run) {
-  if (!run.knobs) {
-    addChart(page, {
-      id: 'knobs',
-      title: 'What to change first',
-      note: 'Left out by --quick. `stereotlm report` without it tries single changes of the board.'
-    });
-    return;
-  }
+  if (!run.knobs) return addLeftOut(page, 'knobs', 'What to change first');
   const {board, steps, forbidden, failed} = run.knobs;
   const impossible = [...forbidden, ...failed];
   const advice = adviceOf(run);
@@ -151,8 +144,7 @@ export function addArea(page, run) {
     }),
     title: `${fixed(total.slices_percent, 1)} % of the ${device.name}: ${whole(total.slices)} slices${
         total.fits ? '' : ', which does not fit'}`,
-    note:
-        'An estimate: nothing is placed or routed. Bars: share of the logic, by the larger of a part\'s ' +
+    note: 'An estimate: nothing is placed or routed. Bars: share of the logic, by the larger of a part\'s ' +
         'LUTs and flip-flops.',
     body:
         h('div', {class: 'uses'}, use('slices', total.slices, device.slices),

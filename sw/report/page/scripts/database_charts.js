@@ -118,18 +118,17 @@ export function addScatter(page, points, choose) {
       frontText.textContent = `${count(points.count, 'point')} of ${whole(points.size)} selected; ${
           whole(front.length)} of them on the front.${ties ? ' What lies within the uncertainty ties.' : ''}`;
     };
-    repaint = final => {
+    repaint = () => {
       clear();
       for (const rows of groups.values()) paint(rows, styleColour('--faint'), 0);
       for (const [colour, rows] of groups) paint(rows, colour, 1);
-      if (final) drawFront();
+      drawFront();
     };
-    const select = (box, final) => points.filter(
-        'scatter', box && (row => {
-                     const [px, py] = spot(row);
-                     return px >= box.x0 && px <= box.x1 && py >= box.y0 && py <= box.y1;
-                   }),
-        final);
+    const select = box =>
+        points.filter('scatter', box && (row => {
+                                   const [px, py] = spot(row);
+                                   return px >= box.x0 && px <= box.x1 && py >= box.y0 && py <= box.y1;
+                                 }));
     const nearest = place => {
       let found = -1;
       let best = kReach * kReach;
@@ -146,13 +145,13 @@ export function addScatter(page, points, choose) {
       axis: 'xy',
       width: inner,
       height,
-      change: box => select(box, false),
+      change: select,
       end: (box, place) => {
         const row = box ? -1 : nearest(place);
         if (row >= 0)
           choose(row);
         else if (box || points.filters.has('scatter'))
-          select(box, true);
+          select(box);
       },
       tip: place => {
         const row = nearest(place);
@@ -160,7 +159,7 @@ export function addScatter(page, points, choose) {
       }
     });
     plot.append(frontLayer);
-    repaint(true);
+    repaint();
   };
   const pick = (id, label, chosen, names, change) =>
       h('label', null, `${label} `,
@@ -194,8 +193,8 @@ export function addScatter(page, points, choose) {
         'Drag to select points, click one for its board. Arrow keys go along the front, Enter opens a point.',
     numbers: () => points.numbers([...new Set([x.name, y.name, ...points.keys])], points.front(x, y))
   });
-  points.whenSelected(final => repaint(final));
-  return {redraw: () => repaint(true)};
+  points.whenSelected(() => repaint());
+  return {redraw: () => repaint()};
 }
 
 const kMostAxes = 9;
@@ -203,7 +202,6 @@ const kParallelHeight = 330;
 const kMostWords = 12;  // an axis of a column with at most so many values has each of them
 // Lines of the points that are not selected and of those that are.
 const kMostLines = [800, 4000];
-const kMostLinesWhileBrushing = [100, 400];
 
 // Rows in an order in which each first part is a fair sample.
 function shuffledRows(size) {
@@ -242,9 +240,9 @@ export function addParallel(page, points) {
       }
       context.stroke();
     };
-    repaint = final => {
+    repaint = () => {
       clear();
-      const [others, selected] = final ? kMostLines : kMostLinesWhileBrushing;
+      const [others, selected] = kMostLines;
       lines(styleColour('--faint'), 0.25, others, 0);
       lines(
           styleColour('--blue'), Math.max(0.06, Math.min(0.7, 60 / Math.max(1, points.count))), selected, 1);
@@ -274,17 +272,16 @@ export function addParallel(page, points) {
         group.append(
             s('text', {...place, class: 'tick halo'}, cut(isNumeric ? brief(tick) : tick, step * 0.8)));
       }
-      const set = (box, final) =>
-          points.filter(`axis ${name}`, box && (row => at[row] >= box.y0 && at[row] <= box.y1), final);
+      const set = box =>
+          points.filter(`axis ${name}`, box && (row => at[row] >= box.y0 && at[row] <= box.y1));
       const strip = s('g', {transform: 'translate(-14 0)'});
-      addBrush(
-          strip, {axis: 'y', width: 28, height, change: box => set(box, false), end: box => set(box, true)});
+      addBrush(strip, {axis: 'y', width: 28, height, change: set, end: set});
       group.append(strip);
       plot.append(group);
     });
     for (const name of [...points.filters.keys()].filter(each => each.startsWith('axis ')))
       points.filters.delete(name);
-    repaint(true);
+    repaint();
   };
   const options =
       points.names.map(name => h('option', {value: name, selected: defaults.includes(name)}, name));
@@ -304,16 +301,5 @@ export function addParallel(page, points) {
         h('select', {id: 'parallel-axes', multiple: true, size: 6, change}, options)),
     numbers: () => points.numbers(state.names, points.selectedRows())
   });
-  // In one frame of the screen at most one picture, whatever moves the brush.
-  let waiting = false;
-  let lastFinal = true;
-  points.whenSelected(final => {
-    lastFinal = final;
-    if (waiting) return;
-    waiting = true;
-    requestAnimationFrame(() => {
-      waiting = false;
-      repaint(lastFinal);
-    });
-  });
+  points.whenSelected(() => repaint());
 }

@@ -51,65 +51,60 @@ function openAtHighest(body, svg) {
   body.scrollLeft += highest.left - body.getBoundingClientRect().left - kMargin;
 }
 
-export function addMemory(page, run) {
-  const svg = parsedSvg(run.memory_chart);
-  const links = linksOf(svg);
-  useInPage(svg, links);
-  const clock = settingOf(run, 'fpga.clock_mhz');
-  const banks = run.stats.banks.map(({name, megabytes_per_second: rate}, i) => {
-    const peak = kBytesPerWord * clock * run.banks[i].accesses_per_cycle;
-    return {name, rate, share: rate / peak};
-  });
-  const fullest = [...banks].sort((a, b) => b.share - a.share)[0];
-  const body = h('div', {class: 'memory'}, svg);
-  linkMarks(body);
-  addChart(page, {
-    id: 'memory',
-    wide: true,
-    title: `${fullest.name} carries ${fixed(fullest.rate, 1)} MB/s, ${percent(fullest.share)} of its peak`,
-    note: `The board as it was run, with the traffic of each link. ${kHowTo}`,
-    body,
-    numbers: () => [
-        ['from', 'to', 'megabytes_per_second', 'peak', 'percent'],
-        links.map(({from, to, rate, peak}) => [from, to, rate, peak, 100 * rate / peak])]
-  });
-  openAtHighest(body, svg);
-}
-
-// Both boards at the same place, one shown at a time.
-export function addMemoryOfTwo(page, a, b) {
-  const svgs = [a, b].map(run => parsedSvg(run.memory_chart));
+// The chart of a run, or those of two at the same place, one shown at a time.
+export function addMemory(page, runs) {
+  const svgs = runs.map(run => parsedSvg(run.memory_chart));
   const links = svgs.map(linksOf);
-  const rates = new Map();  // of each link, in A and in B
-  for (const {name} of links.flat())
-    rates.set(name, links.map(some => some.find(link => link.name === name)?.rate));
-  const linesOf = ({name}) => {
-    const [inA, inB] = rates.get(name);
-    return inA === undefined ? ['not in A'] :
-        inB === undefined    ? ['not in B'] :
-                               [`B − A: ${signed(inB - inA, rate => fixed(rate, 1))} MB/s`];
+  const ratesOf = ({name}) => links.map(some => some.find(link => link.name === name)?.rate);
+  const differenceOf = link => {
+    const [inA, inB] = ratesOf(link);
+    return [
+      inA === undefined     ? 'not in A' :
+          inB === undefined ? 'not in B' :
+                              `B − A: ${signed(inB - inA, rate => fixed(rate, 1))} MB/s`
+    ];
   };
-  svgs.forEach((svg, i) => useInPage(svg, links[i], linesOf));
+  svgs.forEach((svg, i) => useInPage(svg, links[i], runs.length > 1 ? differenceOf : () => []));
   const body = h('div', {class: 'memory'}, svgs);
   const show = number => {
     svgs.forEach((svg, i) => svg.toggleAttribute('hidden', i !== Number(number)));
     linkMarks(body);
   };
-  const differences = [...rates].map(([key, [inA = 0, inB = 0]]) => [key, inA, inB, inB - inA]);
-  const [[name, inA, inB]] = [...differences].sort((x, y) => Math.abs(y[3]) - Math.abs(x[3]));
+  const chosen = runs.length > 1 &&
+      controls(h('label', null, 'run ', choice('memory-run', [[0, 'A'], [1, 'B']], 0, show)));
   addChart(page, {
     id: 'memory',
     wide: true,
-    title: inA === inB ?
-        'Each link carries the same' :
-        `${name}: ${
-                [inA, inB]
-                    .map((rate, i) => `${rate ? `${fixed(rate, 1)} MB/s` : 'nothing'} in ${'AB'[i]}`)
-                    .join(', ')}`,
-    note: `The board with the traffic of each link. ${kHowTo}`,
-    body: [controls(h('label', null, 'run ', choice('memory-run', [[0, 'A'], [1, 'B']], 0, show))), body],
-    numbers: () => [['link', 'megabytes_per_second_a', 'megabytes_per_second_b', 'difference'], differences]
+    ...runs.length > 1 ? differenceText(links, ratesOf) : trafficText(runs[0], links[0]),
+    note: `The board as it was run, with the traffic of each link. ${kHowTo}`,
+    body: [chosen, body]
   });
   show(0);
   openAtHighest(body, svgs[0]);
+}
+
+// The title and the numbers of a chart.
+function trafficText(run, links) {
+  const clock = settingOf(run, 'fpga.clock_mhz');
+  const shares = run.stats.banks.map(
+      ({megabytes_per_second: rate}, i) => rate / (kBytesPerWord * clock * run.banks[i].accesses_per_cycle));
+  const fullest = shares.indexOf(Math.max(...shares));
+  const {name, megabytes_per_second: rate} = run.stats.banks[fullest];
+  return {
+    title: `${name} carries ${fixed(rate, 1)} MB/s, ${percent(shares[fullest])} of its peak`,
+    numbers: () => [
+        ['from', 'to', 'megabytes_per_second', 'peak', 'percent'],
+        links.map(({from, to, rate: its, peak}) => [from, to, its, peak, 100 * its / peak])]
+  };
+}
+
+function differenceText(links, ratesOf) {
+  const all = [...new Map(links.flat().map(link => [link.name, ratesOf(link)]))].map(
+      ([name, [inA = 0, inB = 0]]) => [name, inA, inB, inB - inA]);
+  const [[name, ...rates]] = [...all].sort((x, y) => Math.abs(y[3]) - Math.abs(x[3]));
+  const inRun = i => `${rates[i] ? `${fixed(rates[i], 1)} MB/s` : 'nothing'} in ${'AB'[i]}`;
+  return {
+    title: rates[2] === 0 ? 'Each link carries the same' : `${name}: ${inRun(0)}, ${inRun(1)}`,
+    numbers: () => [['link', 'megabytes_per_second_a', 'megabytes_per_second_b', 'difference'], all]
+  };
 }

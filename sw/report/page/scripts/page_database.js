@@ -77,7 +77,7 @@ function addTable(page, points, first, choose) {
                 `The first ${kRowsShown} of ${whole(rows.length)} points; the CSV has all.` :
                 `${count(rows.length, 'point')}.`));
   };
-  points.whenSelected(final => final && show());
+  points.whenSelected(show);
   show();
   addChart(page, {
     id: 'points',

@@ -144,7 +144,7 @@ export function showRun(page, {run}) {
   });
   addAnswers(page, answersOf(run));
 
-  addMemory(addGroup(page, 'The board and its traffic'), run);
+  addMemory(addGroup(page, 'The board and its traffic'), [run]);
   const limits = addGroup(page, 'What limits');
   addBounds(limits, run);
   addRoofline(limits, run);

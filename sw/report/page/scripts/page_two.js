@@ -4,7 +4,7 @@ import {commandLine} from './dom.js';
 import {kindOfRate, rateOf, resourceText, settingOf, waitsOf, waitText} from './findings.js';
 import {count, gainText, grouped, rate, rateWith, shortened, whole} from './format.js';
 import {addFrames, addPortStates} from './limits.js';
-import {addMemoryOfTwo} from './memory.js';
+import {addMemory} from './memory.js';
 import {addPicture} from './picture.js';
 import {addBlameDifference, addRowDifference} from './waits.js';
 
@@ -129,7 +129,7 @@ export function showTwoRuns(page, {runs: [a, b], difference}) {
       where, [['A', a.stats.frame_cycles, '--blue'], ['B', b.stats.frame_cycles, '--vermilion']],
       settingOf(a, 'fpga.clock_mhz'));
   addBlameDifference(where, a, b);
-  addMemoryOfTwo(where, a, b);
+  addMemory(where, [a, b]);
 
   const ports = addGroup(page, 'The ports');
   addPortStates(ports, a, 'A');

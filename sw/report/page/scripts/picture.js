@@ -3,7 +3,6 @@
 import {addChart} from './card.js';
 import {choice, controls, h} from './dom.js';
 import {count, most, whole} from './format.js';
-import {canvasOf} from './plot.js';
 import {viridis} from './theme.js';
 import {hideTooltip, showTooltip} from './tooltip.js';
 
@@ -36,7 +35,7 @@ async function pixelsOf({url, width, height, disparities}) {
 
 // The amounts as a picture of their own, transparent where there is none.
 function overlayOf({values, columns, rows}) {
-  const canvas = h('canvas', {width: columns, height: rows});
+  const canvas = h('canvas', {width: columns, height: rows, class: 'overlay'});
   const context = canvas.getContext('2d');
   const data = context.createImageData(columns, rows);
   const highest = most(values);
@@ -48,59 +47,67 @@ function overlayOf({values, columns, rows}) {
 }
 
 // pictures: one or two of {url, disparities}, the latter of a picture of disparities, or of {width, height}
-// without picture; names: of the pictures.
-// layers: maps of amounts as those of tilesOf(), sums over `frames` frames.
+// without picture; names: of the pictures. The second lies on the first, to the right of the slider.
+// layers: maps of amounts as those of tilesOf(), sums over `frames` frames. One lies on the pictures.
 export function addPicture(page, {title, note, pictures, layers, frames, names}) {
-  const state = {split: 0.5, overlay: 0.4, layer: 0};
   const overlays = layers.map(overlayOf);
-  let loaded = null;
-  let paint = () => {};
+  const stack = h('div', {
+    class: 'picture hovers',
+    tabindex: '0',
+    'aria-label': `${title}. Arrow keys read the picture.`,
+    style: '--split:50%;--overlay:40%'
+  });
   const slider = (name, label) => {
-    const input = event => {
-      state[name] = event.target.value / 100;
-      paint();
-    };
-    const value = 100 * state[name];
+    const input = event => stack.style.setProperty(`--${name}`, `${event.target.value}%`);
+    const value = parseInt(stack.style.getPropertyValue(`--${name}`), 10);
     return h(
         'label', null, `${label} `,
         h('input', {type: 'range', min: 0, max: 100, value, id: `picture-${name}`, input}));
   };
-  const choose = choice('picture-layer', layers.map((layer, i) => [i, layer.name]), 0, layer => {
-    state.layer = Number(layer);
-    paint();
-  });
+  let layer = null;
   const strongest = h('span', {class: 'note'});
-  const draw = (host, width) => {
-    if (!loaded) return;
-    const [first, second] = loaded.map(({canvas}) => canvas);
+  const choose = number => {
+    layer = layers[number];
+    overlays.forEach((overlay, i) => overlay.toggleAttribute('hidden', i !== Number(number)));
+    strongest.textContent = layer &&
+        `strongest colour: ${whole(most(layer.values))} cycles in a block of ${layer.width} × ${
+                                layer.height} pixels, over ${count(frames, 'frame')}`;
+  };
+  addChart(page, {
+    id: 'picture',
+    title,
+    note,
+    body: [
+      controls(
+          names[1] && slider('split', `${names[0]} | ${names[1]}`),
+          layers.length > 0 &&
+              [
+                slider('overlay', 'overlay strength'),
+                h('label', null, 'shown ',
+                  choice('picture-layer', layers.map((each, i) => [i, each.name]), 0, choose)),
+                strongest
+              ]),
+      stack
+    ],
+    numbers: () => {
+      const {values, columns, width, height} = layer ?? {values: []};
+      const rows =
+          [...values].map((value, i) => [Math.floor(i / columns) * height, i % columns * width, value]);
+      return [['first_row', 'first_column', 'cycles'], rows.filter(row => row[2] !== 0)];
+    }
+  });
+  choose(0);
+  Promise.all(pictures.map(pixelsOf)).then(loaded => {
+    const [{canvas: {width: columns, height: rows}}] = loaded;
     const grey = loaded.find(each => each.grey)?.grey;
-    const {width: columns, height: rows} = first;
-    const scale = Math.min(width / columns, kMostHeight / rows);
-    const [wide, high] = [columns * scale, rows * scale];
-    const {canvas, context} = canvasOf(Math.round(wide), Math.round(high));
-    canvas.classList.add('picture', 'hovers');
-    canvas.setAttribute('tabindex', '0');
-    canvas.setAttribute('aria-label', `${title}. Arrow keys read the picture.`);
-    paint = () => {
-      context.imageSmoothingEnabled = scale < 1;
-      context.globalAlpha = 1;
-      context.drawImage(first, 0, 0, wide, high);
-      if (second && state.split < 1) {
-        const left = state.split * columns;
-        context.drawImage(second, left, 0, columns - left, rows, left * scale, 0, wide - left * scale, high);
-        context.fillStyle = '#fff';
-        context.fillRect(left * scale - 1, 0, 2, high);
-      }
-      const layer = layers[state.layer];
-      if (!layer) return;
-      context.imageSmoothingEnabled = false;
-      context.globalAlpha = state.overlay;
-      context.drawImage(
-          overlays[state.layer], 0, 0, layer.columns * layer.width * scale,
-          layer.rows * layer.height * scale);
-      strongest.textContent = `strongest colour: ${whole(most(layer.values))} cycles in a block of ` +
-          `${layer.width} × ${layer.height} pixels, over ${count(frames, 'frame')}`;
-    };
+    stack.style.maxWidth = `${kMostHeight * columns / rows}px`;
+    stack.style.aspectRatio = `${columns} / ${rows}`;
+    overlays.forEach((overlay, i) => {
+      const {columns: across, rows: down, width, height} = layers[i];
+      overlay.style.width = `${100 * across * width / columns}%`;
+      overlay.style.height = `${100 * down * height / rows}%`;
+    });
+    stack.append(...loaded.map(({canvas}) => canvas), ...overlays);
     let at = [Math.round(columns / 2), Math.round(rows / 2)];
     // Shows the tooltip of a pixel beside it, or beside the pointer.
     const read = (x, y, pointer) => {
@@ -109,10 +116,11 @@ export function addPicture(page, {title, note, pictures, layers, frames, names})
       const waits = layers.map(
           ({name,
             values,
-            columns: tiles,
-            width: wide,
-            height: high}) => [name, values[Math.floor(at[1] / high) * tiles + Math.floor(at[0] / wide)]]);
-      const box = canvas.getBoundingClientRect();
+            columns: across,
+            width,
+            height}) => [name, values[Math.floor(at[1] / height) * across + Math.floor(at[0] / width)]]);
+      const box = stack.getBoundingClientRect();
+      const scale = box.width / columns;
       const {clientX, clientY} =
           pointer ?? {clientX: box.left + at[0] * scale, clientY: box.top + at[1] * scale};
       showTooltip(
@@ -124,41 +132,20 @@ export function addPicture(page, {title, note, pictures, layers, frames, names})
           ],
           clientX, clientY);
     };
-    canvas.addEventListener('pointermove', event => {
-      const box = canvas.getBoundingClientRect();
+    stack.addEventListener('pointermove', event => {
+      const box = stack.getBoundingClientRect();
+      const scale = columns / box.width;
       read(
-          Math.floor((event.clientX - box.left) / scale), Math.floor((event.clientY - box.top) / scale),
+          Math.floor((event.clientX - box.left) * scale), Math.floor((event.clientY - box.top) * scale),
           event);
     });
-    canvas.addEventListener('pointerleave', hideTooltip);
-    canvas.addEventListener('keydown', event => {
+    stack.addEventListener('pointerleave', hideTooltip);
+    stack.addEventListener('keydown', event => {
       const [x, y] =
           {ArrowLeft: [-4, 0], ArrowRight: [4, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]}[event.key] ?? [];
       if (x === undefined) return;
       event.preventDefault();
       read(at[0] + x, at[1] + y);
     });
-    host.append(canvas);
-    paint();
-  };
-  const chart = addChart(page, {
-    id: 'picture',
-    title,
-    note,
-    draw,
-    body: controls(
-        names[1] && slider('split', `${names[0]} | ${names[1]}`),
-        layers.length > 0 &&
-            [slider('overlay', 'overlay strength'), h('label', null, 'shown ', choose), strongest]),
-    numbers: () => {
-      const {values, columns, width, height} = layers[state.layer] ?? {values: []};
-      const rows =
-          [...values].map((value, i) => [Math.floor(i / columns) * height, i % columns * width, value]);
-      return [['first_row', 'first_column', 'cycles'], rows.filter(row => row[2] !== 0)];
-    }
-  });
-  Promise.all(pictures.map(pixelsOf)).then(all => {
-    loaded = all;
-    chart.redraw();
   });
 }

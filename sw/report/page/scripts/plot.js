@@ -92,25 +92,17 @@ export function drawing(host, width, height, {left = 0, right = 0, top = 0, bott
   return {svg, plot, width: width - left - right, height: height - top - bottom};
 }
 
-// A canvas as sharp as the screen, and its context in pixels of the style sheet.
-export function canvasOf(width, height) {
+// A drawing above a canvas as sharp as the screen. The zero of `context`, whose pixels are those of the style
+// sheet, is that of the plot; `clear()` empties the canvas.
+export function layeredDrawing(host, width, height, margins, label) {
   const density = window.devicePixelRatio || 1;
-  const canvas = h('canvas', {
-    width: Math.round(width * density),
-    height: Math.round(height * density),
-    style: `width:${width}px;height:${height}px`
-  });
+  const size = {width: Math.round(width * density), height: Math.round(height * density)};
+  const canvas = h('canvas', {...size, style: `width:${width}px;height:${height}px`});
   const context = canvas.getContext('2d');
   context.scale(density, density);
-  return {canvas, context};
-}
-
-// A drawing above a canvas. The zero of `context` is that of the plot; `clear()` empties the canvas.
-export function layeredDrawing(host, width, height, margins, label) {
-  const {canvas, context} = canvasOf(width, height);
+  context.translate(margins.left, margins.top);
   host.classList.add('layered');
   host.append(canvas);
-  context.translate(margins.left, margins.top);
   const clear = () => context.clearRect(-margins.left, -margins.top, width, height);
   return {...drawing(host, width, height, margins, label), context, clear};
 }
@@ -120,7 +112,7 @@ export function layeredDrawing(host, width, height, margins, label) {
 // clears the brush; place: {x, y}. `tip(place)`: the lines of a tooltip of the place, or null.
 export function addBrush(plot, {axis, width, height, change, end, tip}) {
   const area = s('rect', {x: 0, y: 0, width, height, class: `brush brush-${axis}${tip ? ' hovers' : ''}`});
-  const shown = s('rect', {class: 'brushed', visibility: 'hidden'});
+  const shown = s('rect', {class: 'brushed'});
   plot.append(area, shown);
   let from = null;
   const placeOf = event => {
@@ -131,9 +123,9 @@ export function addBrush(plot, {axis, width, height, change, end, tip}) {
     };
   };
   const show = box => {
-    shown.setAttribute('visibility', box ? 'visible' : 'hidden');
-    if (!box) return;
-    fillRect(shown, box.x0, box.y0, box.x1 - box.x0, box.y1 - box.y0);
+    const {x0, x1, y0, y1} = box ?? {x0: 0, x1: 0, y0: 0, y1: 0};
+    for (const [name, value] of Object.entries({x: x0, y: y0, width: x1 - x0, height: y1 - y0}))
+      shown.setAttribute(name, value);
   };
   const boxTo = to => {
     if ([...axis].every(name => Math.abs(to[name] - from[name]) < 4)) return null;
@@ -172,10 +164,6 @@ export function addBrush(plot, {axis, width, height, change, end, tip}) {
     from = null;
   });
   if (tip) area.addEventListener('pointerleave', hideTooltip);
-}
-
-function fillRect(element, x, y, width, height) {
-  for (const [name, value] of Object.entries({x, y, width, height})) element.setAttribute(name, value);
 }
 
 // A range of 0 to `last` that is shown, of `least` at least, and its buttons. `step`: by how much of it the

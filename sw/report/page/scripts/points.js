@@ -74,8 +74,8 @@ export class Points {
     this.listeners.add(listener);
   }
 
-  // Sets or (with null) takes away the filter of a name. `final`: false while a brush moves.
-  filter(name, passes, final = true) {
+  // Sets or (with null) takes away the filter of a name.
+  filter(name, passes) {
     if (passes)
       this.filters.set(name, passes);
     else
@@ -84,7 +84,7 @@ export class Points {
     for (const each of this.filters.values()) {
       for (let row = 0; row < this.size; ++row) this.selected[row] &= each(row) ? 1 : 0;
     }
-    for (const listener of this.listeners) listener(final);
+    for (const listener of this.listeners) listener();
   }
   get count() {
     return this.selected.reduce((sum, is) => sum + is, 0);

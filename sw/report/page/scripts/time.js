@@ -1,7 +1,7 @@
 // When things happen in the computer: the time line of captures, transfers, frames of the core, waits and
 // drops, and how long a frame takes from its first pixel to its results on the host.
-import {drawBars, drawColumns} from './bars.js';
-import {addChart, legend} from './card.js';
+import {drawColumns} from './bars.js';
+import {addChart, addLeftOut, htmlTable, legend} from './card.js';
 import {objectsOf} from './data.js';
 import {s} from './dom.js';
 import {droppedText, settingOf} from './findings.js';
@@ -60,31 +60,22 @@ const kWhy = {
 const whyText = (who, why) => kWhy[`${who} ${why}`] ?? 'the driver works: register accesses and interrupts';
 
 const kHardly = 0.001;  // of the time of a run that the core waits: not worth its reasons
-const kFewLater = 0.1;  // of its waits that are after the beginning of its first frame
 
 // How long the core waits and why, in words: {title, note}. `early`: what of it is before its first frame, in
 // ps.
 function coreWaits(run, span, early) {
   const waits = run.recording.waits.filter(wait => wait.class === 'core').sort((a, b) => b.ps - a.ps);
   const all = sum(waits.map(wait => wait.ps));
-  const reasons = textOf => waits.filter((wait, i) => i === 0 || wait.ps > kHardly * span)
-                                .slice(0, 3)
-                                .map(wait => `${textOf(wait.ps)} because ${whyText('core', wait.why)}`);
-  const ms = ps => inMs(ps, ps < 0.1 * kPsOfMs ? 2 : 1);
   if (all <= kHardly * span) return {title: ', and hardly waits', note: null};
-  if (all - early <= kFewLater * all) {
-    const later = all === early       ? 'then never' :
-        all - early < 0.005 * kPsOfMs ? 'then hardly ever' :
-                                        `later ${ms(all - early)} in all`;
-    return {
-      title: `; it waits ${ms(early)} before its first frame, ${later}`,
-      note: `All in all the core waits ${reasons(ms).join(', ')}.`
-    };
-  }
-  const [most, ...others] = reasons(ps => percent(ps / span));
+  const [most, ...others] =
+      waits.filter((wait, i) => i === 0 || wait.ps > kHardly * span)
+          .slice(0, 3)
+          .map(wait => `${percent(wait.ps / span)} because ${whyText('core', wait.why)}`);
+  const ms = ps => inMs(ps, ps < 0.1 * kPsOfMs ? 2 : 1);
   return {
-    title: most ? `, and waits ${most}` : '',
-    note: others.length ? `It also waits ${others.join(', and ')}.` : null
+    title: `, and waits ${most}`,
+    note: `The core waits ${ms(early)} before its first frame, and ${ms(all - early)} later${
+        others.length ? `; ${others.join(', and ')}` : ''}.`
   };
 }
 
@@ -130,14 +121,7 @@ function shapesOf(event, x0, x1, y) {
 
 // The time line, in a window that is chosen in an overview of the whole run.
 export function addTimeLine(page, run) {
-  if (!run.recording) {
-    addChart(page, {
-      id: 'time',
-      title: 'Time line of captures, core and read-backs',
-      note: 'Left out by --quick, because the run was not recorded.'
-    });
-    return;
-  }
+  if (!run.recording) return addLeftOut(page, 'time', 'Time line of captures, core and read-backs');
   const {events: recorded, overview} = run.recording;
   const events = objectsOf(recorded).map(event => ({...event, lane: laneOf(event.kind, event.class)}));
   const lanes = kLanes.filter(lane => events.some(event => event.lane === lane));
@@ -282,23 +266,17 @@ const kParts = [
 const kWaitParts = ['wait_copy_ps', 'wait_core_ps', 'wait_read_back_ps'];
 
 function addPercentiles(page, latency) {
-  const names = ['min', 'p50', 'p95', 'p99', 'max'];
-  const rowOf = name => ({
-    name,
-    bars:
-        [{to: latency[name], dot: true, colour: '--blue', lines: [`${name}: ${fixed(latency[name], 3)} ms`]}],
-    texts: [`${fixed(latency[name], 3)} ms`]
-  });
+  const table =
+      [['percentile', 'ms'], ['min', 'p50', 'p95', 'p99', 'max'].map(name => [name, latency[name]])];
   addChart(page, {
     id: 'latency',
-    wide: true,
-    draw: host => drawBars(host, {rows: names.map(rowOf), domain: [0, latency.max * 1.05], axis: 'ms'}),
     title: `Half of the results are ${fixed(latency.p50, 1)} ms old when they arrive, the oldest ${
         fixed(latency.max, 1)} ms`,
+    body: htmlTable(...table),
     note:
         'From the first pixel of a capture to the results on the host. What of it is waiting was left out ' +
         'by --quick, because the run was not recorded.',
-    numbers: () => [['percentile', 'ms'], names.map(name => [name, latency[name]])]
+    numbers: () => table
   });
 }
 

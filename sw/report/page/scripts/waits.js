@@ -1,6 +1,6 @@
 // Who waits for whom, by cause and from top to bottom of the picture.
 import {drawBars} from './bars.js';
-import {addChart, legend} from './card.js';
+import {addChart, addLeftOut, legend} from './card.js';
 import {commandLine, h, note, s} from './dom.js';
 import {blamesInDetail, blamesOf, blameText, settingOf, waitingRows, waitsOf, waitText} from './findings.js';
 
@@ -146,14 +146,7 @@ function traceCommand(run, recorded, {from, to}) {
 // to look closer.
 export function addRows(page, run) {
   const recorded = linesOf(run);
-  if (!recorded) {
-    addChart(page, {
-      id: 'rows',
-      title: 'What happens in each row',
-      note: 'Left out by --quick, because the run was not recorded.'
-    });
-    return;
-  }
+  if (!recorded) return addLeftOut(page, 'rows', 'What happens in each row');
   const {cycles, lines, height: rowsOfLine, frames} = recorded;
   const imageHeight = settingOf(run, 'image.height');
   const columns = columnsOf(run, recorded);
@@ -170,10 +163,10 @@ export function addRows(page, run) {
                                         .map(part => `${part.by}: ${whole(part.values[line])}`) :
                                     []];
   const draw = (host, width) => {
-    const wordsOf = name => name.split(/(?<=_)| · | /);
-    const upright = columns.some(  // names from bottom to top
-        ({name}) => wordsOf(name).some(word => textWidth(word) + 6 > (width - 48) / columns.length));
-    const top = upright ? Math.min(200, 16 + Math.max(...columns.map(({name}) => textWidth(name)))) : 60;
+    // Names from bottom to top, unless each has room.
+    const widest = Math.max(...columns.map(({name}) => textWidth(name)));
+    const upright = widest + 6 > (width - 48) / columns.length;
+    const top = upright ? Math.min(200, 16 + widest) : 24;
     const {plot, width: inner, height, context} = layeredDrawing(
         host, width, kRowsHeight + top + 8, {left: 44, right: 4, top, bottom: 8}, 'Rows of the picture');
     const y = numeric([zoom.from * rowsOfLine, zoom.to * rowsOfLine], [0, height]);
@@ -188,15 +181,12 @@ export function addRows(page, run) {
         context.fillStyle = css(heat(column.waits && mostWaits > 0 ? share / mostWaits : share));
         context.fillRect(i * step + 1, pixel, Math.max(1, step - 2), 1.5);
       }
-      const words = upright || textWidth(column.name) + 6 < step ? [column.name] : wordsOf(column.name);
-      const textAt = (word, line) => upright ?
-          s('text', {transform: `translate(${(i + 0.5) * step + 4} -6) rotate(-90)`}, cut(word, top - 10)) :
-          s('text', {x: (i + 0.5) * step, y: -6 - 13 * (words.length - 1 - line), 'text-anchor': 'middle'},
-            word);
+      const place = upright ? {transform: `translate(${(i + 0.5) * step + 4} -6) rotate(-90)`} :
+                              {x: (i + 0.5) * step, y: -6, 'text-anchor': 'middle'};
       const some = column.values.filter(each => each !== 0).length;
       const reach =
           {x: i * step + 1, y: 4 - top, width: Math.max(1, step - 2), height: top - 6, class: 'reach'};
-      plot.append(...words.map(textAt), mark(s('rect', reach), [
+      plot.append(s('text', place, cut(column.name, upright ? top - 10 : step)), mark(s('rect', reach), [
                     `${column.name} ${column.what}`, `${whole(sum(column.values) + column.fill)} in all`,
                     `in ${some} of ${count(lines, rowsOfLine > 1 ? 'strip' : 'row')}`
                   ]));

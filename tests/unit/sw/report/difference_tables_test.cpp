@@ -24,6 +24,14 @@ std::size_t lines_of(const std::string& text) {
   return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
 }
 
+std::string settings(const Values& a, const Values& b) {
+  return settings_table("board", differing_values(a, b));
+}
+
+std::string figures(const Values& a, const Values& b) {
+  return figures_table("totals", differing_values(a, b));
+}
+
 // The words of each line with one space between them.
 std::string words(const std::string& text) {
   std::string words;
@@ -54,10 +62,9 @@ TEST(DiffVerdict, TakesNoDifferenceWithinTheUncertaintyForAGain) {
 }
 
 TEST(SettingsTable, ListsTheValuesThatDiffer) {
-  EXPECT_EQ(settings_table("board", {integer("a", 1)}, {integer("a", 1)}), "");
+  EXPECT_EQ(settings({integer("a", 1)}, {integer("a", 1)}), "");
   EXPECT_EQ(
-      words(settings_table(
-          "board",
+      words(settings(
           {{"name", std::string("x")}, integer("same", 1), integer("image.width", 640), integer("load", 5)},
           {{"name", std::string("y")}, integer("same", 1), integer("image.width", 320), {"new", 2.5}})),
       "board A B\nname x y\nimage.width 640 320\nload 5 -\nnew - 2.5\n");
@@ -65,19 +72,19 @@ TEST(SettingsTable, ListsTheValuesThatDiffer) {
 
 TEST(SettingsTable, GivesAValueThatDoesNotFitItsColumnLinesOfItsOwn) {
   const std::string value(200, 'k');
-  EXPECT_THAT(settings_table("board", {{"filter", value}}, {{"filter", std::string("none")}}),
+  EXPECT_THAT(settings({{"filter", value}}, {{"filter", std::string("none")}}),
               EndsWith("\n  filter\n    A  " + value + "\n    B  none\n"));
   const std::string fits(26, 'k');
-  EXPECT_EQ(lines_of(settings_table("board", {{"filter", fits}}, {integer("filter", 1)})), 2U);
-  EXPECT_EQ(lines_of(settings_table("board", {{"filter", fits}}, {{"filter", fits + "k"}})), 4U);
+  EXPECT_EQ(lines_of(settings({{"filter", fits}}, {integer("filter", 1)})), 2U);
+  EXPECT_EQ(lines_of(settings({{"filter", fits}}, {{"filter", fits + "k"}})), 4U);
 }
 
 TEST(SettingsTable, CountsTheSettingsBeyondTheMost) {
   Values a;
   for (std::size_t i = 0; i < kMostSettings; ++i) a.push_back(integer("file" + std::to_string(i), 1));
-  EXPECT_THAT(settings_table("run", a, {}), Not(HasSubstr("more")));
+  EXPECT_THAT(settings(a, {}), Not(HasSubstr("more")));
   a.push_back(integer("last", 1));
-  const std::string table = settings_table("run", a, {});
+  const std::string table = settings(a, {});
   EXPECT_EQ(lines_of(table), kMostSettings + 2);
   EXPECT_THAT(table, EndsWith("\n  1 more\n"));
 }
@@ -85,13 +92,12 @@ TEST(SettingsTable, CountsTheSettingsBeyondTheMost) {
 TEST(FiguresTable, GivesTheDifferencesOfNumbers) {
   const std::string a = "matcher";
   const std::string b = "bank";
-  EXPECT_EQ(words(figures_table(
-                "totals",
+  EXPECT_EQ(words(figures(
                 {integer("cycles", 100), {"rate", 18.5}, {"by", a}, integer("whole", 40), integer("same", 1)},
                 {integer("cycles", 250), {"rate", 9.25}, {"by", b}, {"whole", 40.5}, integer("same", 1)})),
             "totals A B difference\ncycles 100 250 +150\nrate 18.5 9.25 -9.25\nby matcher bank\n"
             "whole 40 40.5 +0.5\n");
-  EXPECT_EQ(figures_table("totals", {integer("same", 1)}, {integer("same", 1)}), "");
+  EXPECT_EQ(figures({integer("same", 1)}, {integer("same", 1)}), "");
 }
 
 TEST(FramesTable, GroupsFramesWithTheSameCycles) {
@@ -175,12 +181,12 @@ TEST(BlameTable, IsSortedByTheDifference) {
   const std::vector<platform::BlameRow> b = {{"left_lut", "bank0", "host", 15},
                                              {"result", "bank1", "host", 5},
                                              {"result", "bank1", "turnaround", 90}};
-  EXPECT_EQ(words(blame_table(a, b)),
+  EXPECT_EQ(words(blame_table(differing_waits(a, b))),
             "waits, cycles A B difference\n"
             "result on bank1 for the turnaround 0 90 +90\n"
             "left_lut on bank0 for host 10 15 +5\n");
-  EXPECT_THAT(blame_table(b, a), HasSubstr("-90\n"));
-  EXPECT_EQ(blame_table(a, a), "");
+  EXPECT_THAT(blame_table(differing_waits(b, a)), HasSubstr("-90\n"));
+  EXPECT_EQ(blame_table(differing_waits(a, a)), "");
 }
 
 TEST(PixelsLine, CountsThePixelsThatDifferAndNamesTheFirst) {

@@ -40,10 +40,10 @@ TEST(RecordingData, MapsOfManyCausesHaveLargerTilesWithTheSameSums) {
     const Json json = data.json();
     const Json& tiles = json["tiles"];
     const std::size_t size = tiles["columns"].get<std::size_t>() * tiles["rows"].get<std::size_t>();
-    EXPECT_LE(size, ConflictData::kMostTiles);
-    EXPECT_LE(size * static_cast<std::size_t>(causes), ConflictData::kMostValues);
+    EXPECT_LE(size, RecordingData::kMostTiles);
+    EXPECT_LE(size * static_cast<std::size_t>(causes), RecordingData::kMostValues);
     EXPECT_GT(4 * size * static_cast<std::size_t>(causes),
-              std::min(causes * ConflictData::kMostTiles, ConflictData::kMostValues));
+              std::min(causes * RecordingData::kMostTiles, RecordingData::kMostValues));
     EXPECT_EQ(tiles["width"].get<int>() * tiles["columns"].get<int>(), 640);
     EXPECT_EQ(tiles["height"].get<int>() * tiles["rows"].get<int>(), 480);
     ASSERT_EQ(json["stalls"].size(), static_cast<std::size_t>(causes));
@@ -100,7 +100,7 @@ TEST(RecordingData, ALongRunHasThreePeriodsOfEventsAndAllSums) {
   const Json& lanes = json["overview"]["lanes"];
   ASSERT_EQ(lanes.size(), 1U);
   const std::uint64_t percent = sum(lanes[0]["amounts"]);
-  EXPECT_NEAR(static_cast<double>(percent), 50.0 * TimelineData::kBins, TimelineData::kBins);
+  EXPECT_NEAR(static_cast<double>(percent), 50.0 * RecordingData::kBins, RecordingData::kBins);
 }
 
 TEST(RecordingData, ALongRunHasItsQuickestAndSlowestLatenciesAndTheMeanOfAll) {

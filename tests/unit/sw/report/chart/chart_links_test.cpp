@@ -23,7 +23,6 @@ using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
-using ::testing::UnorderedElementsAre;
 
 std::vector<std::string> ids(const std::vector<ChartLink>& links) {
   std::vector<std::string> all;
@@ -32,7 +31,7 @@ std::vector<std::string> ids(const std::vector<ChartLink>& links) {
 }
 
 ChartLink link_of(const platform::BoardConfig& board, const std::string& id) {
-  for (const ChartLink& link : chart_links(board, ChartExtent::kComputer)) {
+  for (const ChartLink& link : chart_links({board, true})) {
     if (link.id() == id) return link;
   }
   ADD_FAILURE() << id;
@@ -40,7 +39,7 @@ ChartLink link_of(const platform::BoardConfig& board, const std::string& id) {
 }
 
 TEST(ChartLinks, OfABoardAloneAreThoseOfItsPorts) {
-  EXPECT_THAT(ids(chart_links(load_board("fpl2003"), ChartExtent::kBoard)),
+  EXPECT_THAT(ids(chart_links({load_board("fpl2003")})),
               ElementsAre("edge-left_lut-bank6", "edge-right_lut-bank7", "edge-left_pixel-bank0",
                           "edge-left_pixel-bank1", "edge-right_pixel-bank2", "edge-right_pixel-bank3",
                           "edge-result-bank4", "edge-result-bank5"));
@@ -48,7 +47,7 @@ TEST(ChartLinks, OfABoardAloneAreThoseOfItsPorts) {
 
 TEST(ChartLinks, OfAComputerHaveItsPartsAndTheHostsPortToo) {
   EXPECT_THAT(
-      ids(chart_links(load_board("two-banks"), ChartExtent::kComputer)),
+      ids(chart_links({load_board("two-banks"), true})),
       ElementsAre("edge-left_camera-left_capture", "edge-right_camera-right_capture", "edge-left_capture-pci",
                   "edge-right_capture-pci", "edge-cpu-pci", "edge-pci-host_memory", "edge-pci-bridge",
                   "edge-bridge-pci", "edge-bridge-local_bus", "edge-local_bus-host", "edge-left_lut-bank0",
@@ -58,7 +57,7 @@ TEST(ChartLinks, OfAComputerHaveItsPartsAndTheHostsPortToo) {
 
 TEST(ChartLinks, LeaveOutWhatABoardDoesNotHave) {
   const auto board = load_board("fpl2003-no-calibration", {"pci.load={burst_words: 8, interval_us: 1}"});
-  const std::vector<std::string> all = ids(chart_links(board, ChartExtent::kComputer));
+  const std::vector<std::string> all = ids(chart_links({board, true}));
   EXPECT_THAT(all, Contains("edge-load-pci"));
   EXPECT_THAT(all, Not(Contains(HasSubstr("_lut"))));
   EXPECT_THAT(all, Not(Contains(HasSubstr("bank6")))) << "a bank without buffers";
@@ -91,12 +90,18 @@ TEST(ChartLinks, HaveThePeaksOfTheirClocks) {
 }
 
 // The sum over the links with this end.
-double sum_of(const ChartTraffic& traffic, const BoardConfig& board, const std::string& block) {
+double sum_of(const std::vector<ChartLink>& links, const std::string& block) {
   double sum = 0;
-  for (const ChartLink& link : chart_links(board, traffic.extent)) {
-    if (link.from == block || link.to == block) sum += traffic.megabytes_per_second.at(link.id());
-  }
+  for (const ChartLink& link : links) sum += link.from == block || link.to == block ? link.rate : 0;
   return sum;
+}
+
+double rate_of(const std::vector<ChartLink>& links, const std::string& id) {
+  for (const ChartLink& link : links) {
+    if (link.id() == id) return link.rate;
+  }
+  ADD_FAILURE() << id;
+  return 0;
 }
 
 void expect_close(double found, double expected, const std::string& what) {
@@ -112,44 +117,39 @@ void expect_to_read(const Statistics& statistics, const BoardConfig& board) {
       text);
 }
 
-// Every link has its MB/s, and those of each bank, port and PCI master have the sums of the statistics.
+// The links of each bank, port and PCI master have the sums of the statistics.
 void expect_sums_of(const Statistics& statistics, const BoardConfig& board) {
   expect_to_read(statistics, board);
-  const ChartTraffic traffic = chart_traffic(board, statistics);
-  EXPECT_EQ(traffic.megabytes_per_second.size(), chart_links(board, traffic.extent).size());
+  const std::vector<ChartLink> links = chart_links({board, statistics.computer.has_value(), &statistics});
   for (const platform::BankStatistics& bank : statistics.banks) {
-    expect_close(sum_of(traffic, board, "bank-" + bank.name), bank.megabytes_per_second, bank.name);
-    EXPECT_EQ(traffic.busy_percent.at("bank-" + bank.name), 100 * bank.utilization);
+    expect_close(sum_of(links, "bank-" + bank.name), bank.megabytes_per_second, bank.name);
   }
   const double cycles = static_cast<double>(statistics.cycles);
   for (const platform::PortStatistics& port : statistics.ports) {
-    double sum = sum_of(traffic, board, "port-" + port.name);
-    if (statistics.computer && port.name == "host")
-      sum -= traffic.megabytes_per_second.at("edge-local_bus-host");
+    double sum = sum_of(links, "port-" + port.name);
+    if (statistics.computer && port.name == "host") sum -= rate_of(links, "edge-local_bus-host");
     expect_close(sum, 4 * static_cast<double>(port.grants) * board.fpga.clock_mhz / cycles, port.name);
-    expect_close(traffic.waits_percent.at("port-" + port.name),
-                 100 * static_cast<double>(port.stall_cycles) / cycles, port.name);
   }
   if (!statistics.computer) return;
   const platform::ComputerStatistics& around = *statistics.computer;
   const double us = static_cast<double>(around.pci_clocks) / board.pci.clock_mhz;
   const bool to_host = board.capture.destination == platform::CaptureDestination::kHostMemory;
   std::uint64_t of_host_memory = 0;
-  const std::map<std::string, std::string> links = {{"host", "edge-cpu-pci"},
-                                                    {"left_capture", "edge-left_capture-pci"},
-                                                    {"right_capture", "edge-right_capture-pci"},
-                                                    {"bridge", "edge-bridge-pci"},
-                                                    {"load", "edge-load-pci"}};
+  const std::map<std::string, std::string> ids = {{"host", "edge-cpu-pci"},
+                                                  {"left_capture", "edge-left_capture-pci"},
+                                                  {"right_capture", "edge-right_capture-pci"},
+                                                  {"bridge", "edge-bridge-pci"},
+                                                  {"load", "edge-load-pci"}};
   for (const platform::PciMasterStatistics& master : around.pci_masters) {
-    expect_close(traffic.megabytes_per_second.at(links.at(master.name)),
-                 4 * static_cast<double>(master.words) / us, master.name);
+    expect_close(rate_of(links, ids.at(master.name)), 4 * static_cast<double>(master.words) / us,
+                 master.name);
     const bool is_capture = master.name == "left_capture" || master.name == "right_capture";
     if (master.name == "bridge" || (to_host && is_capture)) of_host_memory += master.words;
   }
-  expect_close(traffic.megabytes_per_second.at("edge-pci-host_memory"),
-               4 * static_cast<double>(of_host_memory) / us, "host memory");
-  expect_close(traffic.megabytes_per_second.at("edge-pci-bridge"),
-               4 * static_cast<double>(around.posted_words) / us, "posted");
+  expect_close(rate_of(links, "edge-pci-host_memory"), 4 * static_cast<double>(of_host_memory) / us,
+               "host memory");
+  expect_close(rate_of(links, "edge-pci-bridge"), 4 * static_cast<double>(around.posted_words) / us,
+               "posted");
 }
 
 TEST(ChartTraffic, OfRandomBoardsHasTheSumsOfTheirStatistics) {
@@ -185,39 +185,6 @@ TEST(ChartTraffic, OfRandomComputersHasTheSumsOfTheirStatistics) {
   }
   for (const test::ChildResult& result : test::run_in_children(jobs, 2))
     EXPECT_TRUE(result.ok()) << result.text;
-}
-
-// A run without accesses.
-Statistics idle_run() {
-  Statistics run;
-  run.frames = 3;
-  run.cycles = 400;
-  run.bound.core_limited_by = "bank bank0";
-  for (const fpga::CorePort& port : fpga::kPorts) run.ports.push_back({port.name});
-  for (const platform::BankConfig& bank : BoardConfig().banks) run.banks.push_back({bank.name});
-  return run;
-}
-
-TEST(ChartTraffic, NamesTheKindOfEachRate) {
-  Statistics run = idle_run();
-  run.frames_per_second.core = 12.345;
-  run.bound.core = 123.45;
-  EXPECT_THAT(chart_traffic({}, run).summary,
-              ElementsAre("12.35 frames/s, core only; 3 frames", "bound 123.5 frames/s, set by bank0"));
-}
-
-TEST(ChartTraffic, MarksWhatLimitsTheRate) {
-  const auto limiting = [](const std::string& resource) {
-    Statistics run = idle_run();
-    run.bound.core_limited_by = resource;
-    return chart_traffic({}, run).limiting;
-  };
-  EXPECT_THAT(limiting("bank bank0"), UnorderedElementsAre("bank-bank0"));
-  EXPECT_THAT(limiting("matcher"), UnorderedElementsAre("stage-matcher"));
-  EXPECT_THAT(limiting("port left_lut"), UnorderedElementsAre("port-left_lut"));
-  EXPECT_THAT(limiting("camera"), UnorderedElementsAre("part-left_camera", "part-right_camera"));
-  EXPECT_THAT(limiting("pci"), UnorderedElementsAre("part-pci"));
-  EXPECT_THAT(limiting("bridge"), UnorderedElementsAre("part-bridge"));
 }
 
 }  // namespace
