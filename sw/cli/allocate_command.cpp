@@ -17,7 +17,6 @@
 #include "sw/cli/command.h"
 #include "sw/explore/search/allocation_search.h"
 #include "sw/explore/store/store.h"
-#include "sw/explore/store/store_lock.h"
 #include "sw/explore/sweep/sweep.h"
 #include "sw/files/output_file.h"
 #include "sw/files/whole_file.h"

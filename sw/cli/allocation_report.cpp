@@ -15,7 +15,7 @@
 #include "platform/config/buffer_layout.h"
 #include "sw/explore/plan/points.h"
 #include "sw/explore/search/allocations.h"
-#include "sw/files/shell_word.h"
+#include "sw/files/text_forms.h"
 
 namespace stereotlm::cli {
 namespace {

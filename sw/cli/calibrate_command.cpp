@@ -23,7 +23,7 @@
 #include "sw/cli/calibration_files.h"
 #include "sw/cli/command.h"
 #include "sw/files/output_file.h"
-#include "sw/files/sha256.h"
+#include "sw/files/text_forms.h"
 #include "sw/files/whole_file.h"
 #include "sw/media/encode.h"
 #include "sw/process/interrupt.h"

@@ -16,7 +16,7 @@
 
 #include "calib/calibration.h"
 #include "models/fpga/core_config.h"
-#include "sw/files/sha256.h"
+#include "sw/files/text_forms.h"
 #include "sw/files/whole_file.h"
 #include "sw/media/load.h"
 #include "sw/process/interrupt.h"

@@ -15,7 +15,7 @@
 #include "sw/cli/board_options.h"
 #include "sw/cli/command.h"
 #include "sw/explore/store/store.h"
-#include "sw/files/shell_word.h"
+#include "sw/files/text_forms.h"
 #include "sw/process/interrupt.h"
 #include "sw/process/streams.h"
 #include "sw/runs/explanation.h"

@@ -16,7 +16,7 @@
 #include "calib/calibration.h"
 #include "platform/config/board_keys.h"
 #include "platform/config/board_yaml.h"
-#include "sw/files/sha256.h"
+#include "sw/files/text_forms.h"
 #include "sw/process/installation.h"
 #include "sw/process/interrupt.h"
 #include "sw/process/streams.h"

@@ -15,7 +15,7 @@
 #include "platform/config/buffer_layout.h"
 #include "sw/explore/plan/points.h"
 #include "sw/explore/search/allocation_search.h"
-#include "sw/files/shell_word.h"
+#include "sw/files/text_forms.h"
 #include "sw/files/temporary_folder.h"
 #include "sw/stats/accuracy.h"
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "platform/config/board_yaml.h"
-#include "sw/files/sha256.h"
+#include "sw/files/text_forms.h"
 #include "sw/files/whole_file.h"
 #include "sw/media/load.h"
 #include "sw/process/installation.h"

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "platform/yaml/yaml_tree.h"
-#include "sw/files/sha256.h"
+#include "sw/files/text_forms.h"
 
 namespace stereotlm::explore {
 

@@ -14,7 +14,7 @@
 #include "platform/core_run.h"
 #include "platform/figures.h"
 #include "sw/explore/sweep/sweep.h"
-#include "sw/files/sha256.h"
+#include "sw/files/text_forms.h"
 #include "sw/process/child.h"
 #include "sw/runs/simulation/camera_simulation.h"
 #include "sw/runs/simulation/simulation.h"

@@ -7,7 +7,7 @@
 
 #include "calib/calibration.h"
 #include "calib/tables.h"
-#include "sw/files/sha256.h"
+#include "sw/files/text_forms.h"
 #include "sw/files/whole_file.h"
 #include "sw/process/installation.h"
 #include "sw/runs/sources/calibration_library.h"

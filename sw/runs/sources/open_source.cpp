@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "platform/config/board_config.h"
-#include "sw/files/sha256.h"
+#include "sw/files/text_forms.h"
 #include "sw/media/load.h"
 #include "sw/media/synthetic_scene.h"
 #include "sw/media/video.h"

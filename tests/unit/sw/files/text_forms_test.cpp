@@ -4,8 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "sw/files/sha256.h"
-#include "sw/files/shell_word.h"
+#include "sw/files/text_forms.h"
 #include "sw/process/command.h"
 #include "tests/support/scratch_folder.h"
 

@@ -1,4 +1,4 @@
-#include "sw/explore/store/store_lock.h"
+#include "sw/explore/store/store.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

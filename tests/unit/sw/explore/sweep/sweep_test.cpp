@@ -22,7 +22,7 @@
 #include "platform/config/board_yaml.h"
 #include "sw/explore/plan/conditions.h"
 #include "sw/explore/plan/plan.h"
-#include "sw/explore/store/store_lock.h"
+#include "sw/explore/store/store.h"
 #include "sw/process/child.h"
 #include "tests/unit/sw/explore/store_files.h"
 

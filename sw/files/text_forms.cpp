@@ -1,4 +1,4 @@
-#include "sw/files/sha256.h"
+#include "sw/files/text_forms.h"
 
 #include <fmt/format.h>
 #include <openssl/evp.h>
@@ -24,9 +24,7 @@ class Sha256 {
     unsigned char digest[EVP_MAX_MD_SIZE];
     unsigned size = 0;
     check(EVP_DigestFinal_ex(context_.get(), digest, &size) == 1);
-    std::string text;
-    for (unsigned i = 0; i < size; ++i) text += fmt::format("{:02x}", digest[i]);
-    return text;
+    return fmt::format("{:02x}", fmt::join(digest, digest + size, ""));
   }
 
  private:
@@ -47,15 +45,35 @@ std::string sha256_hex(const void* bytes, std::size_t count) {
 
 std::string sha256_file(const std::string& path) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
-  if (!file) throw std::runtime_error(fmt::format("'{}': cannot be read: {}", path, std::strerror(errno)));
   Sha256 sum;
   unsigned char buffer[1 << 16];
   std::size_t count = 0;
-  while ((count = std::fread(buffer, 1, sizeof buffer, file.get())) > 0) sum.add(buffer, count);
-  if (std::ferror(file.get()) != 0) {
+  while (file && (count = std::fread(buffer, 1, sizeof buffer, file.get())) > 0) sum.add(buffer, count);
+  if (!file || std::ferror(file.get()) != 0)
     throw std::runtime_error(fmt::format("'{}': cannot be read: {}", path, std::strerror(errno)));
-  }
   return sum.hex();
+}
+
+std::string base64(const void* bytes, std::size_t size) {
+  std::string text(4 * ((size + 2) / 3) + 1, '\0');  // EVP_EncodeBlock() also writes a terminating zero
+  const int length = EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()),
+                                     static_cast<const unsigned char*>(bytes), static_cast<int>(size));
+  text.resize(static_cast<std::size_t>(length));
+  return text;
+}
+
+std::string shell_word(const std::string& word) {
+  constexpr const char* kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=:,./@%";
+  if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
+  std::string text = "'";
+  for (const char each : word) text += each == '\'' ? std::string("'\\''") : std::string(1, each);
+  return text + '\'';
+}
+
+std::string shell_command(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : " ") + shell_word(word);
+  return text;
 }
 
 }  // namespace stereotlm::files
