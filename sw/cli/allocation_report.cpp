@@ -14,7 +14,7 @@
 #include "platform/config/board_yaml.h"
 #include "platform/config/buffer_layout.h"
 #include "sw/explore/plan/points.h"
-#include "sw/explore/search/allocations.h"
+#include "sw/explore/search/allocation_search.h"
 #include "sw/files/text_forms.h"
 
 namespace stereotlm::cli {

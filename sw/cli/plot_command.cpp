@@ -13,7 +13,6 @@
 
 #include "sw/cli/command.h"
 #include "sw/files/output_folder.h"
-#include "sw/files/temporary_folder.h"
 #include "sw/files/whole_file.h"
 #include "sw/process/command.h"
 #include "sw/process/interrupt.h"

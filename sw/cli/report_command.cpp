@@ -17,7 +17,6 @@
 #include "sw/report/page_data/page_data.h"
 #include "sw/runs/explanation.h"
 #include "sw/runs/recorded_run.h"
-#include "sw/runs/rerun.h"
 #include "sw/stats/console_table.h"
 
 namespace stereotlm::cli {

@@ -126,11 +126,10 @@ struct SweepCommandOptions : Options {
                            {one_of({"local", "slurm"})});
   Option shards = Option(this, "--shards", "N", "With slurm: the tasks of the job array (default 16)",
                          {is_within<std::uint64_t>(kMostShards)});
-  Option sbatch =
-      Option(this, "--sbatch", "NAME=VALUE",
-             "With slurm: an option of sbatch for all jobs, such as partition=long or time=8:00:00; again "
-             "for further ones",
-             {}, Takes::kRepeated);
+  Option sbatch = Option(this, "--sbatch", "NAME=VALUE",
+                         "With slurm: an option of sbatch for all jobs, such as partition=long or "
+                         "time=8:00:00; again for further ones",
+                         {}, Takes::kRepeated);
 
  private:
   static constexpr std::uint64_t kMostJobs = 1024;

@@ -76,4 +76,16 @@ std::string shell_command(const std::vector<std::string>& words) {
   return text;
 }
 
+std::string ranges_text(const std::vector<std::uint64_t>& numbers, const std::string& separator) {
+  std::string text;
+  for (std::size_t first = 0; first < numbers.size();) {
+    std::size_t last = first;
+    while (last + 1 < numbers.size() && numbers[last + 1] == numbers[last] + 1) ++last;
+    text += (first > 0 ? separator : "") + std::to_string(numbers[first]);
+    if (last > first) text += fmt::format("-{}", numbers[last]);
+    first = last + 1;
+  }
+  return text;
+}
+
 }  // namespace stereotlm::files

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -22,5 +23,8 @@ std::string shell_word(const std::string& word);
 
 // The words as a command of a POSIX shell.
 std::string shell_command(const std::vector<std::string>& words);
+
+// Ascending numbers with runs of them as ranges: "0, 2-5, 9" with the separator ", ".
+std::string ranges_text(const std::vector<std::uint64_t>& numbers, const std::string& separator);
 
 }  // namespace stereotlm::files

@@ -143,21 +143,8 @@ std::vector<Task> tasks_of(const std::string& name) {
   return tasks;
 }
 
-// The value of sbatch's option --array for these shards, such as "0,3,5-9".
-std::string array_text(const std::vector<std::uint64_t>& shards) {
-  std::string text;
-  for (std::size_t first = 0; first < shards.size();) {
-    std::size_t last = first;
-    while (last + 1 < shards.size() && shards[last + 1] == shards[last] + 1) ++last;
-    text += (text.empty() ? "" : ",") + std::to_string(shards[first]);
-    if (last > first) text += fmt::format("-{}", shards[last]);
-    first = last + 1;
-  }
-  return text;
-}
-
 std::string shards_text(const std::vector<std::uint64_t>& shards) {
-  return (shards.size() == 1 ? "shard " : "shards ") + array_text(shards);
+  return (shards.size() == 1 ? "shard " : "shards ") + files::ranges_text(shards, ",");
 }
 
 // A text that is different for each sweep.
@@ -339,7 +326,8 @@ void SlurmSweep::submit_round() {
   if (!jobs_.empty()) end_round(missing);
   Words behind;
   if (!missing.empty()) {
-    const std::string job = submit("task.sh", "shard_%a.log", {"--array=" + array_text(missing)});
+    const std::string job =
+        submit("task.sh", "shard_%a.log", {"--array=" + files::ranges_text(missing, ",")});
     progress_.waiting += missing.size();
     say_(fmt::format("job {}: {} of {}", job, shards_text(missing), sweep_.shards));
     behind = {"--dependency=afterany:" + job};

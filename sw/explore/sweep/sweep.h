@@ -11,7 +11,7 @@
 
 #include "sw/explore/plan/points.h"
 #include "sw/explore/store/store.h"
-#include "sw/files/temporary_folder.h"
+#include "sw/files/whole_file.h"
 #include "sw/sqlite/database.h"
 
 namespace stereotlm::explore {
