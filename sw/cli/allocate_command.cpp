@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -20,7 +19,7 @@
 #include "sw/explore/sweep/sweep.h"
 #include "sw/files/output_file.h"
 #include "sw/files/whole_file.h"
-#include "sw/process/installation.h"
+#include "sw/process/command.h"
 #include "sw/process/interrupt.h"
 #include "sw/process/streams.h"
 #include "sw/runs/progress.h"
@@ -222,8 +221,6 @@ int allocate(const AllocateOptions& options) {
   problems.check();
   explore::SweepOptions sweep;
   sweep.store = options.out.text();
-  sweep.version = process::kVersion;
-  sweep.jobs = std::max(1U, std::thread::hardware_concurrency());
   const platform::Tables tables = loaded.tables();
   const bool camera = options.source.is_camera();
   const int banks = options.most_banks();

@@ -4,11 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <string_view>
 #include <tuple>
-#include <utility>
 #include <variant>
 
 #include "platform/config/board_yaml.h"

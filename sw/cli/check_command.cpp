@@ -3,7 +3,6 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <string>
-#include <utility>
 
 #include "platform/config/board_area.h"
 #include "sw/cli/board_options.h"

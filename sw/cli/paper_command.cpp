@@ -1,13 +1,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <map>
 #include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -17,10 +14,10 @@
 #include "sw/cli/command.h"
 #include "sw/cli/run_options.h"
 #include "sw/files/output_folder.h"
-#include "sw/media/truth.h"
+#include "sw/media/load.h"
 #include "sw/paper/document.h"
 #include "sw/paper/study.h"
-#include "sw/process/installation.h"
+#include "sw/process/command.h"
 #include "sw/process/interrupt.h"
 #include "sw/process/problems.h"
 #include "sw/process/streams.h"
@@ -137,8 +134,6 @@ std::optional<paper::Findings> study(const std::optional<LoadedPair>& given) {
     return scene.synthetic ? quality(board, synthetic_pictures(board, *scene.synthetic))
                            : quality(board, given.value().pictures);
   };
-  means.version = process::kVersion;
-  means.jobs = std::max(1U, std::thread::hardware_concurrency());
   means.keep_going = [&progress](std::uint64_t done, std::uint64_t most_left) {
     progress.show(
         [&](double) { return fmt::format("{} boards simulated, {} left at most", done, most_left); });

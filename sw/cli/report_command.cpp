@@ -4,13 +4,12 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <stdexcept>
 #include <string>
 
 #include "sw/cli/command.h"
 #include "sw/explore/store/store.h"
 #include "sw/files/output_file.h"
-#include "sw/process/installation.h"
+#include "sw/process/command.h"
 #include "sw/process/interrupt.h"
 #include "sw/process/streams.h"
 #include "sw/report/html_page.h"

@@ -3,9 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
-#include <functional>
 #include <iterator>
 #include <regex>
 #include <set>
@@ -17,7 +15,7 @@
 #include "platform/config/board_keys.h"
 #include "platform/config/board_yaml.h"
 #include "sw/files/text_forms.h"
-#include "sw/process/installation.h"
+#include "sw/process/command.h"
 #include "sw/process/interrupt.h"
 #include "sw/process/streams.h"
 #include "sw/runs/run_json.h"

@@ -7,8 +7,6 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
-#include <system_error>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -16,15 +14,15 @@
 #include "platform/config/board_draft.h"
 #include "sw/cli/command.h"
 #include "sw/cli/options.h"
-#include "sw/explore/plan/conditions.h"
 #include "sw/explore/plan/plan.h"
+#include "sw/explore/plan/points.h"
 #include "sw/explore/slurm/slurm.h"
 #include "sw/explore/store/store.h"
 #include "sw/explore/sweep/sweep.h"
 #include "sw/files/output_file.h"
 #include "sw/files/text_forms.h"
 #include "sw/files/whole_file.h"
-#include "sw/process/installation.h"
+#include "sw/process/command.h"
 #include "sw/process/interrupt.h"
 #include "sw/process/streams.h"
 #include "sw/runs/progress.h"
@@ -82,9 +80,8 @@ struct SweepCommandOptions : Options {
   explore::SweepOptions sweep() const {
     explore::SweepOptions options;
     options.store = out.text();
-    options.version = process::kVersion;
     options.known = known.text();
-    options.jobs = jobs.number<unsigned>().value_or(std::max(1U, std::thread::hardware_concurrency()));
+    options.jobs = jobs.number<unsigned>().value_or(options.jobs);
     std::tie(options.shard, options.shards) = shard_of(shard.text()).value_or(std::pair(0, 1));
     return options;
   }

@@ -22,7 +22,6 @@
 #include "sw/files/whole_file.h"
 #include "sw/media/encode.h"
 #include "sw/media/load.h"
-#include "sw/media/truth.h"
 
 namespace stereotlm::demo {
 namespace {

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cstddef>
-#include <cstdio>
+#include <cstdio>  // before jpeglib.h, which needs it
 
 namespace stereotlm::media {
 namespace {

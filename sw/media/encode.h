@@ -1,11 +1,10 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
 #include <vector>
 
 #include "models/kernels/gray_image.h"
-#include "sw/media/truth.h"
+#include "sw/media/load.h"
 
 namespace stereotlm::media {
 

@@ -66,7 +66,6 @@ class Boards {
   // Returns false if `keep_going` has ended the simulations.
   bool simulate(const Means& means, const std::function<bool(std::uint64_t done)>& keep_going) {
     return batch_.run({runs_.size(), [this](std::uint64_t number) { return point(number); }}, means.evaluate,
-                      means.version, means.jobs,
                       [&](const explore::SweepCounts& counts) { return keep_going(counts.done()); });
   }
 
@@ -75,8 +74,7 @@ class Boards {
     const std::size_t number = numbers_.at({run.camera, words_of(run)});
     const explore::Point one = point(number);
     const explore::StoredRow& row = batch_.row_of(one);
-    if (run.camera &&
-        row.integer("cameras.left.dropped_pixels") + row.integer("cameras.right.dropped_pixels") > 0)
+    if (run.camera && row.lost_pixels() > 0)
       throw std::runtime_error(fmt::format("{}: captures lose pixels", command_of(run)));
     const std::string bound = run.camera ? "bound.system" : "bound.core";
     Measured measured;
@@ -256,8 +254,6 @@ std::optional<Findings> study(const std::vector<Claim>& claims, const Means& mea
     const files::TemporaryFolder folder;
     explore::SweepOptions sweep;
     sweep.store = (folder.path() / "allocations.db").string();
-    sweep.version = means.version;
-    sweep.jobs = means.jobs;
     std::uint64_t simulated = 0;
     const auto keep_going = part(searched.most);
     const bool is_whole = explore::simulate(searched.search, means.evaluate, sweep,

@@ -10,14 +10,13 @@
 #include <optional>
 #include <set>
 #include <stdexcept>
-#include <thread>
 #include <utility>
 #include <vector>
 
 #include "models/fpga/core_ports.h"
 #include "models/fpga/frame_geometry.h"
 #include "platform/figures.h"
-#include "sw/process/installation.h"
+#include "sw/process/command.h"
 #include "sw/process/interrupt.h"
 #include "sw/runs/progress.h"
 #include "sw/stats/console_table.h"
@@ -94,11 +93,9 @@ std::string bound_text(const Explanation& explanation) {
 
 std::string lost_pixels_text(const Explanation& explanation) {
   const explore::StoredRow& row = explanation.figures();
-  const std::int64_t lost =
-      row.integer("cameras.left.dropped_pixels") + row.integer("cameras.right.dropped_pixels");
   const std::string text =
-      fmt::format(": captures lose {} pixels while {} frames are delivered, so pictures are torn", lost,
-                  explanation.frames());
+      fmt::format(": captures lose {} pixels while {} frames are delivered, so pictures are torn",
+                  row.lost_pixels(), explanation.frames());
   for (const explore::StoredBlame& wait : explanation.blames()) {
     if (wait.port == kHost && percent_of_cycles(explanation, wait.cycles) > 100 * kVisibleLoss)
       return wait.bank + text + "; " + wait_of(explanation, wait);
@@ -183,8 +180,7 @@ Explanation::Explanation(const platform::BoardConfig& board, const platform::Tab
 bool Explanation::simulate(PointSimulator simulator) {
   ProgressLine progress;
   const bool is_whole = batch_.run(
-      points_, [&simulator](const explore::Point& point) { return simulator(point); }, process::kVersion,
-      std::max(1U, std::thread::hardware_concurrency()),
+      points_, [&simulator](const explore::Point& point) { return simulator(point); },
       [&](const explore::SweepCounts& done) {
         progress.show([&](double) { return fmt::format("{}/{} boards simulated", done.done(), done.total); });
         return !process::interrupted();
@@ -213,10 +209,8 @@ Explanation::Rate Explanation::rate_of(std::uint64_t number) {
   try {
     const explore::StoredRow& row = batch_.row_of(points_.point(number));
     if (!run_.camera) return {row.real("frames_per_second.core"), 0, false, ""};
-    const auto lost =
-        row.integer("cameras.left.dropped_pixels") + row.integer("cameras.right.dropped_pixels");
-    return {row.real("frames_per_second.steady"), row.real("frames_per_second.steady_uncertainty"), lost > 0,
-            ""};
+    return {row.real("frames_per_second.steady"), row.real("frames_per_second.steady_uncertainty"),
+            row.lost_pixels() > 0, ""};
   } catch (const explore::PointFailed& failed) {
     return {0, 0, false, failed.what()};
   }

@@ -17,7 +17,7 @@
 #include "sw/files/text_forms.h"
 #include "sw/files/whole_file.h"
 #include "sw/media/load.h"
-#include "sw/process/installation.h"
+#include "sw/process/command.h"
 #include "sw/process/interrupt.h"
 #include "sw/runs/run_results.h"
 #include "sw/runs/sources/calibration_input.h"

@@ -18,7 +18,7 @@
 #include "platform/config/tables.h"
 #include "platform/yaml/words.h"
 #include "platform/yaml/yaml_tree.h"
-#include "sw/explore/plan/conditions.h"
+#include "sw/explore/plan/points.h"
 #include "sw/explore/store/store.h"
 
 namespace stereotlm::explore {

@@ -128,8 +128,7 @@ void record_outcomes(const std::vector<std::size_t>& numbers, const std::string&
     outcome.frames_per_second =
         row.real(search.run().camera ? "frames_per_second.steady" : "frames_per_second.core");
     outcome.uncertainty = row.real("frames_per_second.steady_uncertainty");
-    outcome.loses_pixels =
-        row.integer("cameras.left.dropped_pixels") + row.integer("cameras.right.dropped_pixels") > 0;
+    outcome.loses_pixels = row.lost_pixels() > 0;
     search.record(number, outcome);
   }
 }

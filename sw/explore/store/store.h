@@ -119,6 +119,10 @@ class StoredRow {
   std::string text(const std::string& column) const;
   std::int64_t integer(const std::string& column) const;
   double real(const std::string& column) const;
+  // The pixels that the captures of a computer have lost.
+  std::int64_t lost_pixels() const {
+    return integer("cameras.left.dropped_pixels") + integer("cameras.right.dropped_pixels");
+  }
 
  private:
   sqlite::Database database_;

@@ -19,10 +19,9 @@
 #include <stdexcept>
 #include <string>
 #include <system_error>
-#include <utility>
 #include <vector>
 
-#include "sw/explore/plan/conditions.h"
+#include "sw/explore/plan/points.h"
 #include "sw/explore/store/store.h"
 #include "sw/process/child.h"
 
@@ -367,12 +366,10 @@ std::uint64_t workers_with_files(std::uint64_t workers) {
   return files.size() < kOwnFiles ? 0 : files.size() - kOwnFiles;
 }
 
-bool Batch::run(const Points& points, const Evaluate& evaluate, const std::string& version, unsigned jobs,
+bool Batch::run(const Points& points, const Evaluate& evaluate,
                 const std::function<bool(const SweepCounts& counts)>& keep_going) {
   SweepOptions options;
   options.store = path_;
-  options.version = version;
-  options.jobs = jobs;
   row_.reset();
   const SweepCounts counts = sweep(points, evaluate, options, keep_going);
   return counts.done() == counts.total;

@@ -10,7 +10,7 @@
 #include "calib/tables.h"
 #include "sw/files/text_forms.h"
 #include "sw/files/whole_file.h"
-#include "sw/process/installation.h"
+#include "sw/process/command.h"
 #include "sw/runs/sources/calibration_library.h"
 
 namespace stereotlm::runs {

@@ -14,7 +14,7 @@
 #include "models/host/frame_source.h"
 #include "platform/config/board_config.h"
 #include "sw/files/output_file.h"
-#include "sw/media/truth.h"
+#include "sw/media/load.h"
 #include "sw/process/problems.h"
 #include "sw/runs/run_json.h"
 
