@@ -114,13 +114,16 @@ void write_side_by_side(const fs::path& path, const std::vector<Panel>& panels) 
 }
 
 void prepare(const fs::path& source, const fs::path& out) {
+  const auto picture = [&source](const char* name) {
+    return middle_at_half_size(media::load_gray((source / name).string()).image);
+  };
+  const GrayImage left = picture("aloeL.jpg");
+  const GrayImage right = picture("aloeR.jpg");
   const GrayImage truth =
       middle_at_half_size(media::load_truth((source / "aloeGT.png").string(), 1).grey, true);
   fs::create_directories(out);
-  for (const auto& [from, to] : {std::pair("aloeL.jpg", "left.png"), std::pair("aloeR.jpg", "right.png")}) {
-    const GrayImage full = media::load_gray((source / from).string()).image;
-    write_file(out / to, media::encode_png_gray(middle_at_half_size(full)));
-  }
+  write_file(out / "left.png", media::encode_png_gray(left));
+  write_file(out / "right.png", media::encode_png_gray(right));
   write_file(out / "truth.png", media::encode_png_gray(truth));
   std::printf("%.0f\n", media::disparities_needed({truth, kTruthScale}));
 }
