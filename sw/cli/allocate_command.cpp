@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -17,16 +16,15 @@
 #include "sw/cli/command.h"
 #include "sw/explore/search/allocation_search.h"
 #include "sw/explore/store/store.h"
-#include "sw/explore/store/store_lock.h"
 #include "sw/explore/sweep/sweep.h"
 #include "sw/files/output_file.h"
 #include "sw/files/whole_file.h"
-#include "sw/media/synthetic_scene.h"
-#include "sw/process/installation.h"
+#include "sw/process/command.h"
 #include "sw/process/interrupt.h"
 #include "sw/process/streams.h"
 #include "sw/runs/progress.h"
 #include "sw/runs/simulation/simulate_point.h"
+#include "sw/runs/sources/open_source.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -42,12 +40,9 @@ struct AllocateOptions : Options {
   using Options::Options;
 
   BoardOptions board{this};
-  Option banks{
-      this,
-      "--banks",
-      "N",
-      "Banks to use at most: 1 to those of the board",
-      {required("the most banks to use"), number<int>("1 or more", [](int most) { return most > 0; })}};
+  Option banks = Option(
+      this, "--banks", "N", "Banks to use at most: 1 to those of the board",
+      {required("the most banks to use"), number<int>("1 or more", [](int most) { return most > 0; })});
   SourceOption source{this};
   Option frames = Option(this, "--frames", "N",
                          "Frames of a run, whole turns of the lists of buffers: more frames make the steady "
@@ -69,22 +64,6 @@ struct AllocateOptions : Options {
   int most_banks() const { return banks.number<int>().value_or(0); }
 };
 
-// A different synthetic pair for each frame.
-class ScenePairs : public host::FrameSource {
- public:
-  explicit ScenePairs(const BoardConfig& board)
-      : scene_(1, board.image.width, board.image.height, board.matcher.disparities) {}
-  const host::StereoPair& pair(std::uint64_t frame) override {
-    auto pictures = scene_.frame(frame);
-    pair_ = {std::move(pictures.left), std::move(pictures.right)};
-    return pair_;
-  }
-
- private:
-  media::SyntheticScene scene_;
-  host::StereoPair pair_;
-};
-
 // The placement as text: "left_image bank0 bank1, .., right_lut bank0".
 std::string text_of(const BoardConfig& board, const Placement& placement) {
   return explore::allocation_text(explore::placed(board, placement));
@@ -97,7 +76,10 @@ std::string text_of(const BoardConfig& board, const Placement& placement) {
 std::optional<ComparedPixels> compare_pixels(const BoardConfig& board, const platform::Tables& tables,
                                              const explore::PointRun& search,
                                              const std::vector<BestPlacement>& all) {
-  ScenePairs pairs(board);
+  process::Problems none;
+  runs::InputPictures scene;
+  scene.synthetic = 1;
+  const auto pairs = runs::open_source(scene, &board, none).pairs;  // a different pair for each frame
   ComparedPixels compared = {
       0, search.camera ? platform::allocation_period_frames(board) : explore::frames_of(search, board)};
   std::string first;
@@ -106,7 +88,7 @@ std::optional<ComparedPixels> compare_pixels(const BoardConfig& board, const pla
     if (process::interrupted()) return std::nullopt;
     if (best.tied == 0) continue;
     const auto run =
-        runs::simulate_pixels(explore::placed(board, best.witness), tables, pairs, compared.frames);
+        runs::simulate_pixels(explore::placed(board, best.witness), tables, *pairs, compared.frames);
     if (compared.allocations++ == 0) {
       first = run.disparities_sha256;
       first_witness = &best.witness;
@@ -166,7 +148,7 @@ std::unique_ptr<files::OutputFile> open_written(const AllocateOptions& options, 
   const files::FileKind kind = {
       "file of this board with another allocation",
       [&board](const std::filesystem::path& path) { return is_written_board(path, board); }};
-  const std::vector<files::NamedFile> others = {{"BOARD", options.board.name()},
+  const std::vector<files::NamedFile> others = {{"BOARD", options.board.argument.text()},
                                                 {"--out", options.out.text()}};
   std::unique_ptr<files::OutputFile> file;
   problems.attempt("--write ",
@@ -221,12 +203,11 @@ void check_frames(const AllocateOptions& options, const BoardConfig& board, proc
 
 void check_banks(const AllocateOptions& options, const BoardConfig& board, process::Problems& problems) {
   if (const auto problem = explore::bank_names_problem(board))
-    problems.add(fmt::format("{}: {}", options.board.name(), *problem));
+    problems.add(fmt::format("{}: {}", options.board.argument.text(), *problem));
   if (options.most_banks() > static_cast<int>(board.banks.size())) {
-    problems.add(
-        fmt::format("--banks = {}: must be 1..{}, the banks of the board; --set 'ssram.banks.NEW={{}}' "
-                    "gives it one more",
-                    options.most_banks(), board.banks.size()));
+    problems.add(fmt::format(
+        "--banks = {}: must be 1..{}, the banks of the board; --set 'ssram.banks.NEW={{}}' gives it one more",
+        options.most_banks(), board.banks.size()));
   }
 }
 
@@ -240,8 +221,6 @@ int allocate(const AllocateOptions& options) {
   problems.check();
   explore::SweepOptions sweep;
   sweep.store = options.out.text();
-  sweep.version = process::kVersion;
-  sweep.jobs = std::max(1U, std::thread::hardware_concurrency());
   const platform::Tables tables = loaded.tables();
   const bool camera = options.source.is_camera();
   const int banks = options.most_banks();

@@ -4,18 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <string_view>
 #include <tuple>
-#include <utility>
 #include <variant>
 
 #include "platform/config/board_yaml.h"
 #include "platform/config/buffer_layout.h"
 #include "sw/explore/plan/points.h"
-#include "sw/explore/search/allocations.h"
-#include "sw/files/shell_word.h"
+#include "sw/explore/search/allocation_search.h"
+#include "sw/files/text_forms.h"
 
 namespace stereotlm::cli {
 namespace {

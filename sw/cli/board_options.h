@@ -27,27 +27,27 @@ struct LoadedBoard {
 };
 
 // The argument BOARD and the options --set and --calibration, which all commands that take a board share.
-class BoardOptions {
- public:
-  // `beside_board`: what BOARD may be beside a board.
-  explicit BoardOptions(Options* of, const std::string& beside_board = "");
-
+struct BoardOptions {
   // Whether --set or --calibration is given.
-  bool changes_board() const { return sets_.is_given() || calibration_.is_given(); }
-  bool is_given() const { return board_.is_given(); }
-  // BOARD as typed.
-  const std::string& name() const { return board_.text(); }
-
+  bool changes_board() const { return sets.is_given() || calibration.is_given(); }
   // BOARD and the options as typed, as words of a command line, without --set of an allocation.
   std::vector<std::string> words_without_allocation() const;
-
   // Loads the board and the calibration, and checks that they fit. Reports all problems.
   LoadedBoard load(process::Problems& problems) const;
 
- private:
-  Option board_;
-  Option sets_;
-  Option calibration_;
+  Options* of;
+  std::string beside_board = "";  // what BOARD may be beside a board
+  Option argument = Option(
+      of, "BOARD", " ",
+      "A preset (see stereotlm boards), or the path of a board file: has a / or ends in .yaml" + beside_board,
+      {required("a preset or the path of a board file")});
+  Option sets = Option(of, "--set", "KEY=VALUE",
+                       "Give a key of the board another value, a YAML flow value; again for further keys "
+                       "(see stereotlm keys)",
+                       {}, Takes::kRepeated);
+  Option calibration = Option(
+      of, "--calibration", "F",
+      "Tables from the calibration of a rig, as written by stereotlm calibrate, in place of the identity");
 };
 
 }  // namespace stereotlm::cli

@@ -13,6 +13,7 @@
 #include "platform/config/tables.h"
 #include "sw/cli/board_options.h"
 #include "sw/cli/command.h"
+#include "sw/files/text_forms.h"
 #include "sw/process/streams.h"
 #include "sw/stats/console_table.h"
 #include "sw/stats/stats_json.h"
@@ -34,10 +35,6 @@ struct BoundsOptions : Options {
   JsonOption json{this};
 };
 
-void add_new(Names& names, const std::string& name) {
-  if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
-}
-
 // A resource and its bound.
 struct Row {
   std::string role;  // "port left_lut"; for a bank its buffers, "bank of left_image left_lut"
@@ -47,18 +44,18 @@ struct Row {
   std::string label() const { return banks.empty() ? role : fmt::format("{}", fmt::join(banks, ", ")); }
 };
 
-// A list of buffers in the allocation, such as left_image, and banks in it.
-struct List {
-  std::string name;  // "left_image"
-  Names banks;       // banks that the frames of the group use
-};
-
 // Frames whose bounds differ only in the names of banks.
 struct Group {
   std::vector<std::uint64_t> frames;
-  std::vector<List> lists;
+  std::vector<std::pair<std::string, Names>> lists;  // of buffers, such as left_image, and the banks used
   std::vector<Row> rows;
 };
+
+void add_new(Names& names, const Names& others) {
+  for (const std::string& name : others) {
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  }
+}
 
 // The buffers that a frame uses.
 std::vector<PlacedBuffer> buffers_of(const BoardConfig& board, std::uint64_t frame) {
@@ -77,7 +74,7 @@ Group group_of(const BoardConfig& board, const platform::FrameAccesses& accesses
   group.frames = {frame};
   const std::vector<PlacedBuffer> buffers = buffers_of(board, frame);
   for (const PlacedBuffer& buffer : buffers) {
-    if (buffer.index >= 0) group.lists.push_back({platform::name_of(buffer.buffer), {buffer.bank}});
+    if (buffer.index >= 0) group.lists.emplace_back(platform::name_of(buffer.buffer), Names{buffer.bank});
   }
   for (const ResourceBound& bound : platform::frame_bounds(board, accesses, frame)) {
     Row row{bound.resource, bound.cycles, {}};
@@ -103,29 +100,12 @@ bool take_in(Group& group, const Group& other) {
   group.frames.insert(group.frames.end(), other.frames.begin(), other.frames.end());
   for (Row& row : group.rows) {
     for (const Row& its : other.rows) {
-      for (const std::string& name : its.banks) {
-        if (its.role == row.role) add_new(row.banks, name);
-      }
+      if (its.role == row.role) add_new(row.banks, its.banks);
     }
   }
-  for (std::size_t list = 0; list < group.lists.size(); ++list) {
-    add_new(group.lists[list].banks, other.lists[list].banks.front());
-  }
+  for (std::size_t list = 0; list < group.lists.size(); ++list)
+    add_new(group.lists[list].second, other.lists[list].second);
   return true;
-}
-
-// The numbers of frames as text: "frame 0", "frames 0-5", "frames 0, 2-3".
-std::string frames_text(const std::vector<std::uint64_t>& frames) {
-  std::string text = frames.size() == 1 ? "frame " : "frames ";
-  for (std::size_t first = 0; first < frames.size();) {
-    std::size_t last = first;
-    while (last + 1 < frames.size() && frames[last + 1] == frames[last] + 1) ++last;
-    if (first > 0) text += ", ";
-    text += std::to_string(frames[first]);
-    if (last > first) text += fmt::format("-{}", frames[last]);
-    first = last + 1;
-  }
-  return text;
 }
 
 // The share of the time of the slowest resource that a resource does not need, in percent.
@@ -166,10 +146,11 @@ BoardBounds bounds_of(const BoardConfig& board, const platform::Tables& tables) 
 std::string lines_of(const Group& group, const BoardBounds& all) {
   std::size_t width = 16;
   for (const Row& row : group.rows) width = std::max(width, row.label().size());
-  std::string text = frames_text(group.frames);
+  std::string text =
+      (group.frames.size() == 1 ? "frame " : "frames ") + files::ranges_text(group.frames, ", ");
   const char* separator = ": ";
-  for (const List& list : group.lists) {
-    text += fmt::format("{}{} in {}", separator, list.name, fmt::join(list.banks, ", "));
+  for (const auto& [name, banks] : group.lists) {
+    text += fmt::format("{}{} in {}", separator, name, fmt::join(banks, ", "));
     separator = "; ";
   }
   text +=
@@ -215,7 +196,7 @@ std::string text_of(const BoardBounds& all) {
 
 Json json_of(const Group& group, const BoardBounds& all) {
   Json buffers = Json::array();
-  for (const List& list : group.lists) buffers.push_back({{"name", list.name}, {"banks", list.banks}});
+  for (const auto& [name, banks] : group.lists) buffers.push_back({{"name", name}, {"banks", banks}});
   Json resources = Json::array();
   for (const Row& row : group.rows) {
     Json resource = {{"resource", row.banks.empty() ? row.role : "bank"}};

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <glob.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -8,26 +9,32 @@
 #include <filesystem>
 #include <functional>
 #include <future>
+#include <map>
 #include <memory>
 #include <numeric>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <system_error>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "calib/depth.h"
 #include "calib/synthetic_rig.h"
 #include "calib/tables.h"
+#include "models/fpga/core_config.h"
 #include "models/kernels/limits.h"
-#include "sw/cli/calibration_files.h"
 #include "sw/cli/command.h"
 #include "sw/files/output_file.h"
-#include "sw/files/sha256.h"
+#include "sw/files/output_folder.h"
+#include "sw/files/text_forms.h"
 #include "sw/files/whole_file.h"
 #include "sw/media/encode.h"
+#include "sw/media/load.h"
 #include "sw/process/interrupt.h"
 #include "sw/process/streams.h"
+#include "sw/runs/sources/calibration_input.h"
 #include "sw/runs/sources/calibration_library.h"
 
 namespace stereotlm::cli {
@@ -256,6 +263,125 @@ struct CalibrateOptions : Options {
              {required("the calibration, F.yaml, or the sheet of --print-grid, F.pdf or F.svg")});
 };
 
+using Names = std::vector<std::string>;
+
+// The files that match a pattern, sorted by name. A file whose name equals the pattern is taken literally.
+Names files_of(const std::string& option, const Names& patterns, process::Problems& problems) {
+  Names files;
+  for (const std::string& pattern : patterns) {
+    std::error_code none;
+    if (std::filesystem::exists(pattern, none)) {
+      files.push_back(pattern);
+      continue;
+    }
+    glob_t found = {};
+    const int status = glob(pattern.c_str(), 0, nullptr, &found);
+    if (status == GLOB_NOMATCH) {
+      problems.add(
+          fmt::format("{} '{}': no such file: must be a file's name, or a pattern of some", option, pattern));
+    } else if (status != 0) {
+      problems.add(fmt::format("{} '{}': a folder of this pattern cannot be read", option, pattern));
+    }
+    for (std::size_t i = 0; i < found.gl_pathc; ++i) files.emplace_back(found.gl_pathv[i]);
+    globfree(&found);
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+// The names without their common beginning.
+Names without_beginning(Names names) {
+  const auto [least, most] = std::minmax_element(names.begin(), names.end());
+  const auto length =
+      std::mismatch(least->begin(), least->end(), most->begin(), most->end()).first - least->begin();
+  for (std::string& name : names) name.erase(0, static_cast<std::size_t>(length));
+  return names;
+}
+
+// The names of the files, backwards, without what all have in common at their ends.
+Names own_parts(const Names& files) {
+  Names names;
+  for (const std::string& file : files) names.push_back(fs::path(file).stem());
+  names = without_beginning(names);
+  for (std::string& name : names) std::reverse(name.begin(), name.end());
+  return without_beginning(names);
+}
+
+// Prints a note about the first pair whose names differ: if each side lacks a different picture, all pairs
+// between these two are wrong.
+void compare_names(const Names& left, const Names& right) {
+  const Names left_parts = own_parts(left);
+  const Names right_parts = own_parts(right);
+  const auto differ = std::mismatch(left_parts.begin(), left_parts.end(), right_parts.begin());
+  if (differ.first == left_parts.end()) return;
+  const auto at = static_cast<std::size_t>(differ.first - left_parts.begin());
+  process::say(
+      "note",
+      fmt::format("pictures are paired in the order of their names, '{}' with '{}': do they belong together?",
+                  left[at], right[at]));
+}
+
+// Loads the pictures of the calibration grid that match the patterns. Sorts both sides by name, and pairs
+// them in this order. Reports problems: a pattern without files, different counts, a file that is no picture,
+// a picture that appears twice, different sizes. Prints notes on standard error: how many pictures were
+// converted to grey, and the first pair whose names differ after the prefix and suffix that all names of a
+// side share are removed. Returns early when interrupted().
+std::vector<calib::PicturePair> load_grid_pictures(const Names& left, const Names& right,
+                                                   process::Problems& problems) {
+  const Names left_files = files_of("--left", left, problems);
+  const Names right_files = files_of("--right", right, problems);
+  if (left_files.empty() || right_files.empty()) return {};
+  if (left_files.size() != right_files.size()) {
+    problems.add(fmt::format(
+        "--left, --right: {} left pictures ('{}' .. '{}') and {} right ones ('{}' .. '{}'): must be as many",
+        left_files.size(), left_files.front(), left_files.back(), right_files.size(), right_files.front(),
+        right_files.back()));
+    return {};
+  }
+  std::map<std::string, std::string> paths;  // paths by SHA-256 of the pixels
+  std::string first;
+  int width = 0;  // of the first picture
+  int height = 0;
+  int converted = 0;
+  const auto load = [&](const std::string& option, const std::string& path) {
+    kernels::GrayImage image;
+    problems.attempt(option + ' ', [&] {
+      media::LoadedGray loaded = media::load_gray(path);
+      converted += loaded.converted_from_colour ? 1 : 0;
+      image = std::move(loaded.image);
+      const auto refuse = [&path](const std::string& rule) {
+        throw std::runtime_error(fmt::format("'{}': {}", path, rule));
+      };
+      const std::string size = fmt::format("{}x{} pixels: ", image.width, image.height);
+      const bool is_first = paths.empty();
+      // The same picture twice would count twice without new information.
+      const auto [known, is_new] =
+          paths.emplace(files::sha256_hex(image.pixels.data(), image.pixels.size()), path);
+      if (!is_new) refuse(fmt::format("the same picture as '{}': must be another one", known->second));
+      if (is_first) std::tie(first, width, height) = std::tuple(path, image.width, image.height);
+      const kernels::IntegerRule& widths = fpga::kWidthWithTableRule;
+      const kernels::IntegerRule& heights = fpga::kHeightWithTableRule;
+      if (is_first && !(widths.allows(width) && heights.allows(height)))
+        refuse(size + fmt::format("a board's images with a look-up table are {} wide and {} high",
+                                  widths.text(), heights.text()));
+      if (image.width != width || image.height != height)
+        refuse(size + fmt::format("must be as large as '{}', {}x{}", first, width, height));
+    });
+    return image;
+  };
+  std::vector<calib::PicturePair> pairs;
+  for (std::size_t i = 0; i < left_files.size(); ++i) {
+    if (process::interrupted()) return {};
+    pairs.push_back(
+        {left_files[i], right_files[i], load("--left", left_files[i]), load("--right", right_files[i])});
+  }
+  if (converted > 0)
+    process::say("note", fmt::format("{} of {} pictures: colour, converted to grey", converted,
+                                     2 * left_files.size()));
+  compare_names(left_files, right_files);
+  return pairs;
+}
+
 int leave_unwritten() { return interrupted("nothing was written"); }
 
 int print_grid(const CalibrateOptions& options) {
@@ -267,18 +393,10 @@ int print_grid(const CalibrateOptions& options) {
     const runs::CalibrationFunctions& functions = runs::calibration_functions();
     sheet = is_pdf ? functions.grid_sheet_pdf(grid) : functions.grid_sheet_svg(grid);
   });
-  bool is_written = false;
-  process::attempt_or_refuse("--out ", [&] {
-    files::OutputFile file(options.out.text(), {"sheet of the same grid", [&sheet](const fs::path& earlier) {
-                                                  return files::read_whole_file(earlier) == sheet;
-                                                }});
-    file.write(sheet);
-    file.complete();
-    if (process::interrupted()) return;
-    file.commit();
-    is_written = true;
-  });
-  if (!is_written) return leave_unwritten();
+  const files::FileKind kind = {"sheet of the same grid", [&sheet](const fs::path& earlier) {
+                                  return files::read_whole_file(earlier) == sheet;
+                                }};
+  if (!write_out(options.out.text(), kind, sheet)) return leave_unwritten();
   process::print(fmt::format("{}: {}x{} squares of {} mm, {}x{} inner corners; print it at 100 %\n",
                              options.out.text(), grid.columns + 1, grid.rows + 1, grid.square_mm,
                              grid.columns, grid.rows));
@@ -328,8 +446,8 @@ class Calibrator {
         throw std::runtime_error(fmt::format("'{}': {}", folder.string(),
                                              fs::status_known(status) ? "no such folder" : error.message()));
       }
-      output_ =
-          std::make_unique<files::OutputFolder>(folder, calibration_content(files_, is_synthetic, inputs));
+      output_ = std::make_unique<files::OutputFolder>(
+          folder, runs::calibration_content(files_, is_synthetic, inputs));
     });
     if (process::interrupted()) return leave_unwritten();
     problems.check();
@@ -475,14 +593,13 @@ int calibrate(const CalibrateOptions& options) {
 }  // namespace
 
 void add_calibrate(CLI::App& program, Action& action) {
-  add_command(
-      program, action, "calibrate", "Make a board's tables from pictures of a grid, or draw the grid",
-      calibrate,
-      "Pictures in which the grid is not found whole are named and skipped, with their partners; corners "
-      "that\n"
-      "do not fit are left out and listed. The grid should be seen in a dozen places, near and far, tilted, "
-      "and\n"
-      "also at the border of the pictures. An earlier calibration of the same name is replaced.");
+  add_command(program, action, "calibrate", "Make a board's tables from pictures of a grid, or draw the grid",
+              calibrate,
+              "Pictures in which the grid is not found whole are named and skipped, with their partners; "
+              "corners that\n"
+              "do not fit are left out and listed. The grid should be seen in a dozen places, near and far, "
+              "tilted, and\n"
+              "also at the border of the pictures. An earlier calibration of the same name is replaced.");
 }
 
 }  // namespace stereotlm::cli

@@ -1,11 +1,8 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cctype>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <string>
-#include <string_view>
-#include <utility>
 
 #include "platform/config/board_area.h"
 #include "sw/cli/board_options.h"
@@ -31,64 +28,18 @@ std::string summary(const std::string& name, const platform::BoardConfig& board)
                      platform::device_text(board));
 }
 
-// The parts of the text of a platform::Diagnostic. `key = value: rule` has all three, `key: missing: rule`
-// has no value, and a rule alone has neither. A part that is absent is empty.
-struct ProblemParts {
-  std::string key;
-  std::string value;
-  std::string rule;
-};
-
-// The first colon with a blank behind it that is outside of brackets and quotes; npos if there is none.
-std::size_t end_of_value(std::string_view text) {
-  int depth = 0;
-  char quote = 0;
-  for (std::size_t at = 0; at < text.size(); ++at) {
-    const char letter = text[at];
-    if (quote != 0) {
-      if (letter == quote) quote = 0;
-    } else if (letter == '"' || letter == '\'') {
-      quote = letter;
-    } else if (letter == '[' || letter == '{') {
-      ++depth;
-    } else if (letter == ']' || letter == '}') {
-      --depth;
-    } else if (depth == 0 && text.substr(at, 2) == ": ") {
-      return at;
-    }
-  }
-  return std::string_view::npos;
-}
-
-bool is_key(std::string_view text) {
-  return !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char letter) {
-    return std::isalnum(letter) != 0 || letter == '_' || letter == '-' || letter == '.';
-  });
-}
-
-ProblemParts parts_of(std::string_view text) {
-  constexpr std::string_view kMissing = ": missing: ";
-  const std::size_t missing = text.find(kMissing);
-  if (missing != std::string_view::npos && is_key(text.substr(0, missing)))
-    return {std::string(text.substr(0, missing)), "",
-            "missing: " + std::string(text.substr(missing + kMissing.size()))};
-  const std::size_t equals = text.find(" = ");
-  if (equals != std::string_view::npos && is_key(text.substr(0, equals))) {
-    const std::string_view rest = text.substr(equals + 3);
-    const std::size_t end = end_of_value(rest);
-    if (end != std::string_view::npos)
-      return {std::string(text.substr(0, equals)), std::string(rest.substr(0, end)),
-              std::string(rest.substr(end + 2))};
-  }
-  return {"", "", std::string(text)};
-}
-
+// The text of a platform::Diagnostic is `key = value: rule`, `key: missing: rule`, or a rule alone. The value
+// ends at the first colon with a blank behind it that is outside of brackets and quotes.
 Json json_of(const platform::Diagnostic& problem) {
-  const ProblemParts parts = parts_of(problem.text);
+  static const std::regex form(
+      R"(([\w.-]+)(?:: (missing: .*)| = ((?:"[^"]*"|'[^']*'|\[[^\]]*\]|\{(?:[^{}]|\{[^{}]*\})*\}|)"
+      R"([^"'\[\]{}:]|:(?! ))*): (.*)))");
   Json json = {{"place", problem.place}};
-  if (!parts.key.empty()) json["key"] = parts.key;
-  if (!parts.value.empty()) json["value"] = parts.value;
-  json["rule"] = parts.rule;
+  std::smatch parts;
+  const bool has_key = std::regex_match(problem.text, parts, form);
+  if (has_key) json["key"] = parts.str(1);
+  if (has_key && parts.length(3) > 0) json["value"] = parts.str(3);
+  json["rule"] = has_key ? parts.str(2) + parts.str(4) : problem.text;
   json["message"] = problem.text;
   return json;
 }
@@ -118,11 +69,11 @@ int check(const CheckOptions& options) {
   const LoadedBoard loaded = options.board.load(problems);
   if (problems.empty()) loaded.say_clock_remark();
   if (options.json.is_given()) {
-    print_json(document_of(options.board.name(), loaded.board ? &*loaded.board : nullptr, problems));
+    print_json(document_of(options.board.argument.text(), loaded.board ? &*loaded.board : nullptr, problems));
     return problems.empty() ? kDone : kRefused;
   }
   problems.check();
-  process::print(summary(options.board.name(), *loaded.board));
+  process::print(summary(options.board.argument.text(), *loaded.board));
   return kDone;
 }
 

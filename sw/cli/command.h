@@ -2,13 +2,16 @@
 
 #include <cstddef>
 #include <functional>
+#include <map>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "sw/cli/options.h"
+#include "sw/files/output_file.h"
 #include "sw/process/streams.h"
 
 namespace stereotlm::cli {
@@ -80,6 +83,16 @@ void print_json(const nlohmann::ordered_json& document);
 
 // Prints a note that the command was interrupted, and returns kInterrupted. `what`: what that means.
 int interrupted(const std::string& what);
+
+// Writes the file of --out. Returns false, and writes nothing, if interrupted. Refuses the command if the
+// file cannot be written.
+bool write_out(const std::string& path, const files::FileKind& kind, const std::string& bytes);
+
+// Runs a script that draws figures from these files, by name, in a folder, and returns the files that it has
+// added there. Returns nullopt if interrupted. Throws std::runtime_error if the script fails.
+using NamedBytes = std::map<std::string, std::string>;
+std::optional<NamedBytes> drawn(const std::string& script, const NamedBytes& files,
+                                std::vector<std::string> options = {});
 
 // Reports now if no folder for temporary files can be made, which the command will need.
 void check_temporary_folder(process::Problems& problems);

@@ -8,7 +8,7 @@
 
 #include "platform/config/board_keys.h"
 #include "sw/cli/command.h"
-#include "sw/process/installation.h"
+#include "sw/process/command.h"
 #include "sw/process/problems.h"
 #include "sw/process/streams.h"
 

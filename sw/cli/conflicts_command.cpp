@@ -3,10 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <system_error>
 #include <vector>
@@ -16,15 +14,12 @@
 #include "sw/cli/run_options.h"
 #include "sw/files/output_file.h"
 #include "sw/files/output_folder.h"
-#include "sw/files/temporary_folder.h"
-#include "sw/files/whole_file.h"
 #include "sw/process/command.h"
 #include "sw/process/interrupt.h"
 #include "sw/process/streams.h"
 #include "sw/report/conflicts_text.h"
 #include "sw/runs/progress.h"
 #include "sw/runs/recorded_run.h"
-#include "sw/runs/rerun.h"
 #include "sw/runs/run_results.h"
 #include "sw/stats/record_csv.h"
 
@@ -54,25 +49,24 @@ struct ConflictsOptions : Options {
 
   bool is_of_run() const {
     std::error_code none;
-    return fs::is_regular_file(fs::path(run.board.name()) / files::kResultMark, none);
+    return fs::is_regular_file(fs::path(run.board.argument.text()) / files::kResultMark, none);
   }
 
   void check_together(process::Problems& problems) override {
     if (!is_of_run()) {
       run.check_together("conflicts", problems);
     } else if (!run.has_board_only()) {
-      problems.add(
-          fmt::format("'{}': a run is repeated as it was: no option of run goes with it", run.board.name()));
+      problems.add(fmt::format("'{}': a run is repeated as it was: no option of run goes with it",
+                               run.board.argument.text()));
     }
   }
 
-  // The arguments of the script. Without a folder it only checks them.
-  std::vector<std::string> arguments(const fs::path& folder = {}) const {
+  // The options of the script.
+  std::vector<std::string> looks() const {
     std::vector<std::string> words;
     for (const Option* option : {&format, &size}) {
       if (option->is_given()) words.push_back(option->name() + "=" + option->text());
     }
-    if (!folder.empty()) words.insert(words.end(), {"--", folder.string()});
     return words;
   }
 
@@ -119,7 +113,7 @@ Subject load(const ConflictsOptions& options) {
     subject.input = options.run.load();
   } else {
     process::Problems problems;
-    subject.recorded = runs::load_recorded_run("RUN", options.run.board.name(), problems);
+    subject.recorded = runs::load_recorded_run("RUN", options.run.board.argument.text(), problems);
     problems.check();
     subject.input = runs::open_again(*subject.recorded, problems);
     problems.check();
@@ -171,47 +165,33 @@ bool simulate(runs::Simulation& simulation, const runs::RunInput& input, files::
   return !process::interrupted();
 }
 
-// Draws the figures and adds them to the folder. Returns false if interrupted.
-bool draw(const ConflictsOptions& options, const runs::RunInput& input, const runs::Simulation& simulation,
-          const Shown& shown, const std::string& conflicts_csv, files::OutputFolder& folder) {
-  const files::TemporaryFolder drawings;
-  const fs::path& path = drawings.path();
+// The figures, drawn. Returns nullopt if interrupted.
+std::optional<NamedBytes> figures_of(const ConflictsOptions& options, const runs::RunInput& input,
+                                     const runs::Simulation& simulation, const Shown& shown,
+                                     const std::string& conflicts_csv) {
   const platform::BoardConfig& board = input.board;
   const std::string head = stats::rows_csv_head(board);
-  files::write_whole_file(path / kMark, conflicts_csv);
-  files::write_whole_file(path / "sums.csv", head + stats::rows_csv(board, 0, shown.sums));
-  files::write_whole_file(path / "frame.csv",
-                          head + stats::rows_csv(board, shown.longest, shown.longest_frame));
   const nlohmann::ordered_json about = {{"board", board.name},          {"width", board.image.width},
                                         {"height", board.image.height}, {"clock_mhz", board.fpga.clock_mhz},
                                         {"frames", shown.frames},       {"frame", shown.longest}};
-  files::write_whole_file(path / "about.json", about.dump());
+  NamedBytes files = {
+      {kMark, conflicts_csv},
+      {"sums.csv", head + stats::rows_csv(board, 0, shown.sums)},
+      {"frame.csv", head + stats::rows_csv(board, shown.longest, shown.longest_frame)},
+      {"about.json", about.dump()},
+  };
   if (!input.timing_only) {
     const kernels::GrayImage& left = input.pairs->pair(simulation.last().number).left;
-    const kernels::GrayImage shown_left =
-        input.tables.left ? kernels::rectify(left, *input.tables.left) : left;
-    files::write_whole_file(path / "picture.raw",
-                            std::string(shown_left.pixels.begin(), shown_left.pixels.end()));
+    const auto pixels = input.tables.left ? kernels::rectify(left, *input.tables.left).pixels : left.pixels;
+    files["picture.raw"] = std::string(pixels.begin(), pixels.end());
   }
-  const auto end = process::run_script(kConflictsScript, options.arguments(path));
-  if (process::interrupted()) return false;
-  if (end.status != 0) {
-    throw std::runtime_error(fmt::format("the figures cannot be drawn: {} has ended with {}: {}",
-                                         kConflictsScript, end.status, end.errors));
-  }
-  for (const std::string figure : kConflictFigures) {
-    for (const char* ending : kEndings) {
-      const fs::path file = path / (figure + ending);
-      if (fs::exists(file)) folder.add(figure + ending, files::read_whole_file(file));
-    }
-  }
-  return true;
+  return drawn(kConflictsScript, files, options.looks());
 }
 
 // Refuses --format or --size if they are wrong, before anything is simulated.
 void check_looks(const ConflictsOptions& options) {
-  if (options.arguments().empty()) return;
-  const auto end = process::run_script(kConflictsScript, options.arguments());
+  if (options.looks().empty()) return;
+  const auto end = process::run_script(kConflictsScript, options.looks());
   if (end.status != 0) process::refuse(end.errors.substr(0, end.errors.find_last_not_of('\n') + 1));
 }
 
@@ -238,7 +218,9 @@ int conflicts(const ConflictsOptions& options) {
     runs::check_repeated(*subject.recorded, runs::figures_of(statistics, simulation->last(), input));
   if (folder) {
     const std::string csv = stats::conflicts_csv(input.board, *simulation->conflicts());
-    if (!draw(options, input, *simulation, shown, csv, *folder)) return interrupted("nothing is written");
+    const auto figures = figures_of(options, input, *simulation, shown, csv);
+    if (!figures) return interrupted("nothing is written");
+    for (const auto& [name, bytes] : *figures) folder->add(name, bytes);
     folder->add(kMark, csv);
     folder->commit();
   }

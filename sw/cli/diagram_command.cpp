@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -29,23 +28,24 @@ struct DiagramOptions : Options {
 
   void check_together(process::Problems& problems) override {
     if (is_run() && (source.is_given() || board.changes_board()))
-      problems.add(fmt::format(
-          "'{}': a run has its board: --source, --set and --calibration do not go with it", board.name()));
+      problems.add(
+          fmt::format("'{}': a run has its board: --source, --set and --calibration do not go with it",
+                      board.argument.text()));
   }
 
   // A preset comes before a folder of its name.
   bool is_run() const {
     const std::vector<std::string> presets = platform::preset_names();
     std::error_code error;
-    return std::find(presets.begin(), presets.end(), board.name()) == presets.end() &&
-           std::filesystem::is_directory(board.name(), error);
+    return std::find(presets.begin(), presets.end(), board.argument.text()) == presets.end() &&
+           std::filesystem::is_directory(board.argument.text(), error);
   }
 
   BoardOptions board{this};
   SourceOption source{
       this, "camera (the default): the whole computer; preloaded: the board alone. A run has its own"};
-  Option out{
-      this, "--out", "F.svg", "The file to write", {required("the file to write, F.svg"), ends_in(".svg")}};
+  Option out = Option(this, "--out", "F.svg", "The file to write",
+                      {required("the file to write, F.svg"), ends_in(".svg")});
 };
 
 std::string chart_of_run(const std::string& folder, process::Problems& problems) {
@@ -63,21 +63,13 @@ std::string chart_of_board(const DiagramOptions& options, process::Problems& pro
 int diagram(const DiagramOptions& options) {
   process::catch_interrupts();
   process::Problems problems;
-  const std::string chart =
-      options.is_run() ? chart_of_run(options.board.name(), problems) : chart_of_board(options, problems);
+  const std::string chart = options.is_run() ? chart_of_run(options.board.argument.text(), problems)
+                                             : chart_of_board(options, problems);
   problems.check();
-  bool is_written = false;
-  process::attempt_or_refuse("--out ", [&] {
-    files::OutputFile file(options.out.text(),
-                           files::marked_kind("chart of stereotlm diagram", {{0, report::kChartMark}}));
-    file.write(chart);
-    file.complete();
-    if (process::interrupted()) return;
-    file.commit();
-    is_written = true;
-  });
-  if (!is_written) return interrupted("no chart is written");
-  process::print(fmt::format("{}: the memory chart of {}\n", options.out.text(), options.board.name()));
+  const auto kind = files::marked_kind("chart of stereotlm diagram", {{0, report::kChartMark}});
+  if (!write_out(options.out.text(), kind, chart)) return interrupted("no chart is written");
+  process::print(
+      fmt::format("{}: the memory chart of {}\n", options.out.text(), options.board.argument.text()));
   return kDone;
 }
 

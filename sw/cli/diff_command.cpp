@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
@@ -20,7 +18,6 @@
 #include "sw/process/streams.h"
 #include "sw/report/difference_tables.h"
 #include "sw/runs/recorded_run.h"
-#include "sw/runs/rerun.h"
 #include "sw/stats/run_comparison.h"
 
 namespace stereotlm::cli {
@@ -204,8 +201,8 @@ struct DiffOptions : Options {
 
   Option a = Option(this, "A", " ", "A folder that run --out has written", {required(kRunFolder)});
   Option b = Option(this, "B", " ", "Another one", {required(kRunFolder)});
-  Option csv{
-      this, "--csv", "F.csv", "Write the cycles and waits of every frame and row of both", {ends_in(".csv")}};
+  Option csv = Option(this, "--csv", "F.csv", "Write the cycles and waits of every frame and row of both",
+                      {ends_in(".csv")});
   JsonOption json{this};
 };
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <utility>
@@ -15,7 +14,7 @@
 #include "sw/cli/board_options.h"
 #include "sw/cli/command.h"
 #include "sw/explore/store/store.h"
-#include "sw/files/shell_word.h"
+#include "sw/files/text_forms.h"
 #include "sw/process/interrupt.h"
 #include "sw/process/streams.h"
 #include "sw/runs/explanation.h"
@@ -29,216 +28,155 @@ using Json = nlohmann::ordered_json;
 using platform::BoardConfig;
 using runs::Explanation;
 
-constexpr int kMostBlames = 5;
+constexpr std::size_t kMostBlames = 5;
 constexpr double kLeastGainPercent = 0.1;  // a change that gains or loses less is not in the table
 constexpr double kLeastSavedPercent = 1;   // of the FPGA: a change that saves as much is in the table anyway
 
 constexpr const char* kBankLess = "a bank less";
 
-// What a change takes of the FPGA beside the board as it is.
-struct Price {
-  std::int64_t slices = 0;
-  double slices_percent = 0;
-  std::int64_t block_rams = 0;
-  double block_rams_percent = 0;
-  std::int64_t multipliers = 0;
-  double multipliers_percent = 0;
-  bool fits = true;
-
-  bool saves() const {
-    return std::min({slices_percent, block_rams_percent, multipliers_percent}) <= -kLeastSavedPercent;
-  }
-};
-
-Price price_of(const BoardConfig& changed, const BoardConfig& board) {
-  const area::Area its = platform::area_of(changed);
-  const area::Area now = platform::area_of(board);
-  return {its.slices - now.slices,
-          its.slices_percent - now.slices_percent,
-          its.block_rams - now.block_rams,
-          its.block_rams_percent - now.block_rams_percent,
-          its.multipliers - now.multipliers,
-          its.multipliers_percent - now.multipliers_percent,
-          its.fits()};
-}
-
 std::string signed_text(std::int64_t number) { return number == 0 ? "0" : fmt::format("{:+}", number); }
 
-class ExplanationText {
- public:
-  ExplanationText(const BoardConfig& board, Explanation& explanation)
-      : board_(board), explanation_(explanation), now_(explanation.now()), steps_(explanation.steps()) {}
+// A pointer to the search where several buffers share the bank at which ports wait.
+std::string shared_bank_text(const BoardConfig& board, const Explanation& explanation) {
+  const auto wait = runs::longest_wait(explanation);
+  if (!wait) return "";
+  const std::vector<platform::PlacedBuffer> all = platform::buffers(board);
+  const auto in_bank =
+      std::count_if(all.begin(), all.end(), [&](const auto& buffer) { return buffer.bank == wait->bank; });
+  if (in_bank < 2) return "";
+  return fmt::format("{} holds {} buffers: `stereotlm allocate` searches all their placements\n", wait->bank,
+                     in_bank);
+}
 
-  std::string text() {
-    const std::string table = changes();  // notes the changes for without_effect()
-    return head() + resources() + blames() + table + without_effect() + forbidden() + failures();
+std::string head_text(const BoardConfig& board, const Explanation& explanation) {
+  const explore::StoredRow& row = explanation.figures();
+  const bool camera = explanation.camera();
+  const std::string of = camera ? "bound.system" : "bound.core";
+  const Explanation::Rate& now = explanation.now();
+  return paragraph(fmt::format("{}, {}: ", board.name, camera ? "the whole computer" : "the core alone"), 2,
+                   fmt::format("{:.3f}{} frames/s, limited by {}", now.frames_per_second,
+                               camera ? fmt::format(" ± {:.3f}", now.uncertainty) : "",
+                               runs::limiter_text(explanation))) +
+         paragraph("the time of a frame: ", 2, runs::budget_text(explanation)) +
+         fmt::format("bound {:.3f} frames/s: {}; {} frames simulated{}\n", row.real(of),
+                     stats::resource_words(row.text(of + "_limited_by")), explanation.frames(),
+                     now.loses_pixels ? "; captures lose pixels" : "") +
+         platform::device_text(board) + '\n' + shared_bank_text(board, explanation);
+}
+
+// The table of resources. Resources of one kind with the same values share a line.
+std::string resources_text(const BoardConfig& board, const Explanation& explanation) {
+  const std::vector<Explanation::Resource>& all = explanation.resources();
+  const auto values_of = [](const Explanation::Resource& resource) {
+    return std::tuple(resource.name.substr(0, resource.name.find(' ') + 1), resource.headroom_percent,
+                      resource.busy_percent, resource.varies, resource.varies ? resource.frame : 0);
+  };
+  std::string text =
+      fmt::format("  {:>12} {:>8} {:>14}  {}\n", "headroom %", "busy %", "bound frames/s", "resource");
+  for (auto first = all.begin(), next = first; first != all.end(); first = next) {
+    const std::string kind = std::get<0>(values_of(*first));
+    std::string label = stats::resource_text(first->name);
+    for (++next; next != all.end() && !kind.empty() && values_of(*next) == values_of(*first); ++next)
+      label += ", " + next->name.substr(kind.size());
+    if (first->varies)
+      label += fmt::format(", in frame {} of {}", first->frame, platform::allocation_period_frames(board));
+    text += fmt::format("  {:>12.2f} {:>8.2f} {:>14.3f}  {}\n", first->headroom_percent, first->busy_percent,
+                        first->frames_per_second, label);
   }
+  return text;
+}
 
- private:
-  std::string head() {
-    const explore::StoredRow& row = explanation_.figures();
-    const bool camera = explanation_.camera();
-    const std::string of = camera ? "bound.system" : "bound.core";
-    const std::string rate = camera ? fmt::format("{:.3f} ± {:.3f}", now_.frames_per_second, now_.uncertainty)
-                                    : fmt::format("{:.3f}", now_.frames_per_second);
-    return paragraph(fmt::format("{}, {}: ", board_.name, camera ? "the whole computer" : "the core alone"),
-                     2, fmt::format("{} frames/s, limited by {}", rate, runs::limiter_text(explanation_))) +
-           paragraph("the time of a frame: ", 2, runs::budget_text(explanation_)) +
-           fmt::format("bound {:.3f} frames/s: {}; {} frames simulated{}\n", row.real(of),
-                       stats::resource_words(row.text(of + "_limited_by")), explanation_.frames(),
-                       now_.loses_pixels ? "; captures lose pixels" : "") +
-           platform::device_text(board_) + '\n' + shared_bank();
+double percent_of_cycles(const explore::StoredBlame& blame, const Explanation& explanation) {
+  return 100 * static_cast<double>(blame.cycles) /
+         static_cast<double>(explanation.figures().integer("cycles"));
+}
+
+std::string blames_text(const Explanation& explanation) {
+  const std::vector<explore::StoredBlame>& blames = explanation.blames();
+  std::string text = "who waits for whom, % of the cycles of the frames\n";
+  for (std::size_t row = 0; row < blames.size(); ++row) {
+    if (row == kMostBlames) return text + "  and others, less\n";
+    text += fmt::format("  {:<12} on {:<12} for {:<14} {:>8.3f}\n", blames[row].port, blames[row].bank,
+                        stats::cause_text(blames[row].by), percent_of_cycles(blames[row], explanation));
   }
+  return blames.empty() ? "no port waits for another\n" : text;
+}
 
-  // A pointer to the search where several buffers share the bank at which ports wait.
-  std::string shared_bank() const {
-    const auto wait = runs::longest_wait(explanation_);
-    if (!wait) return "";
-    const std::vector<platform::PlacedBuffer> all = platform::buffers(board_);
-    const auto in_bank = std::count_if(
-        all.begin(), all.end(), [&](const platform::PlacedBuffer& each) { return each.bank == wait->bank; });
-    return in_bank < 2
-               ? ""
-               : fmt::format("{} holds {} buffers: `stereotlm allocate` searches all their placements\n",
-                             wait->bank, in_bank);
-  }
+double gained_percent(const Explanation::Step& step, const Explanation& explanation) {
+  return 100 * (step.rate.frames_per_second / explanation.now().frames_per_second - 1);
+}
 
-  // The table of resources. Resources of one kind with the same values share a line.
-  std::string resources() {
-    const std::vector<Explanation::Resource> all = explanation_.resources();
-    const std::uint64_t turn = platform::allocation_period_frames(board_);
-    std::string text =
-        fmt::format("  {:>12} {:>8} {:>14}  {}\n", "headroom %", "busy %", "bound frames/s", "resource");
-    for (auto first = all.begin(); first != all.end();) {
-      const std::string kind = first->name.substr(0, first->name.find(' ') + 1);
-      std::string label = stats::resource_text(first->name);
-      auto next = first + 1;
-      for (; next != all.end() && next->headroom_percent == first->headroom_percent && !kind.empty() &&
-             next->busy_percent == first->busy_percent && next->name.rfind(kind, 0) == 0 &&
-             next->varies == first->varies && (!first->varies || next->frame == first->frame);
-           ++next) {
-        label += ", " + next->name.substr(kind.size());
-      }
-      if (first->varies) label += fmt::format(", in frame {} of {}", first->frame, turn);
-      text += fmt::format("  {:>12.2f} {:>8.2f} {:>14.3f}  {}\n", first->headroom_percent,
-                          first->busy_percent, first->frames_per_second, label);
-      first = next;
-    }
-    return text;
-  }
+// The line of a change; empty if it has none: it changes neither the rate nor whether pixels are lost, and
+// saves neither a part of the FPGA nor a bank.
+std::string line_of(const Explanation::Step& found, const BoardConfig& board,
+                    const Explanation& explanation) {
+  const explore::KnobStep& step = *found.step;
+  const Explanation::Rate& now = explanation.now();
+  const area::Area its = platform::area_of(step.board);
+  const area::Area before = platform::area_of(board);
+  const double slices_percent = its.slices_percent - before.slices_percent;
+  const double saved = std::min({slices_percent, its.block_rams_percent - before.block_rams_percent,
+                                 its.multipliers_percent - before.multipliers_percent});
+  const bool changes_loss = found.rate.loses_pixels != now.loses_pixels;
+  if (std::abs(gained_percent(found, explanation)) < kLeastGainPercent && !changes_loss &&
+      saved > -kLeastSavedPercent && step.knob != kBankLess)
+    return "";
+  const double gained = found.rate.frames_per_second - now.frames_per_second;
+  std::string text = fmt::format("  {:>8.3f} {:>+8.3f} {:>+8.2f} {:>6} {:>4}  {}{}: {} -> {}",
+                                 found.rate.frames_per_second, gained, gained_percent(found, explanation),
+                                 its.slices == before.slices ? "0" : fmt::format("{:+.2f}", slices_percent),
+                                 signed_text(its.block_rams - before.block_rams), step.knob,
+                                 step.changes_disparities ? " *" : "", step.from, step.to);
+  if (its.multipliers != before.multipliers)
+    text += fmt::format(", {:+} multipliers", its.multipliers - before.multipliers);
+  if (!its.fits()) text += "  does not fit";
+  if (changes_loss) text += now.loses_pixels ? "  loses no pixels" : "  loses pixels";
+  if (gained != 0 && std::abs(gained) <= found.rate.uncertainty + now.uncertainty) text += "  ~";
+  text += '\n';
+  if (step.sets == std::vector<std::string>{step.knob + "=" + step.to}) return text;
+  for (const std::string& set : step.sets) text += fmt::format("{:41}--set {}\n", "", files::shell_word(set));
+  return text;
+}
 
-  std::string blames() {
-    const auto cycles = static_cast<double>(explanation_.figures().integer("cycles"));
-    std::string text = "who waits for whom, % of the cycles of the frames\n";
-    int rows = 0;
-    for (const explore::StoredBlame& blame : explanation_.blames()) {
-      if (rows == kMostBlames) return text + "  and others, less\n";
-      text += fmt::format("  {:<12} on {:<12} for {:<14} {:>8.3f}\n", blame.port, blame.bank,
-                          stats::cause_text(blame.by), 100 * static_cast<double>(blame.cycles) / cycles);
-      ++rows;
-    }
-    return rows > 0 ? text : "no port waits for another\n";
-  }
-
-  double gained_percent(const Explanation::Step& step) const {
-    return 100 * (step.rate.frames_per_second / now_.frames_per_second - 1);
-  }
-
-  // Whether the gain lies within the uncertainty of both steady rates.
-  bool is_uncertain(const Explanation::Step& step) const {
-    const double gained = std::abs(step.rate.frames_per_second - now_.frames_per_second);
-    return gained > 0 && gained <= step.rate.uncertainty + now_.uncertainty;
-  }
-
-  // Whether a change has a line of its own in the table: it changes the rate, or whether pixels are lost, or
-  // it saves a part of the FPGA or a bank.
-  bool is_listed(const Explanation::Step& step, const Price& price) const {
-    return std::abs(gained_percent(step)) >= kLeastGainPercent ||
-           step.rate.loses_pixels != now_.loses_pixels || price.saves() || step.step->knob == kBankLess;
-  }
-
-  // The table of the changes, the best first. Fills listed_ and small_.
-  std::string changes() {
-    std::string text = fmt::format(
-        "one change at a time: {} boards simulated; *: the disparities change too{}\n"
-        "to try a change, append --set KEY=TO, and drop an earlier --set of the same key\n",
-        explanation_.knobs().possible.size(), explanation_.camera() ? "; ~: within the uncertainty" : "");
-    text += fmt::format("  {:>8} {:>8} {:>8} {:>6} {:>4}  change: from -> to\n", "frames/s", "gained", "%",
-                        "FPGA %", "RAMs");
-    for (const Explanation::Step& found : steps_) {
-      const explore::KnobStep& step = *found.step;
-      if (!found.rate.failure.empty()) continue;
-      const Price price = price_of(step.board, board_);
-      if (!is_listed(found, price)) {
-        small_.insert(&step);
-        continue;
-      }
-      listed_.insert(step.knob);
-      text += line_of(found, price);
-    }
-    return text;
-  }
-
-  std::string line_of(const Explanation::Step& found, const Price& price) const {
+// The table of the changes, the best first, and what is said of those without a line: they are named in the
+// order of the keys, by the key, or by its new value if other values of the key have a line.
+std::string changes_text(const BoardConfig& board, const Explanation& explanation) {
+  std::string text = fmt::format(
+      "one change at a time: {} boards simulated; *: the disparities change too{}\n"
+      "to try a change, append --set KEY=TO, and drop an earlier --set of the same key\n"
+      "  {:>8} {:>8} {:>8} {:>6} {:>4}  change: from -> to\n",
+      explanation.knobs().possible.size(), explanation.camera() ? "; ~: within the uncertainty" : "",
+      "frames/s", "gained", "%", "FPGA %", "RAMs");
+  std::set<std::string> listed;              // keys with a line
+  std::set<const explore::KnobStep*> small;  // changes without a line
+  std::string failures;
+  for (const Explanation::Step& found : explanation.steps()) {
     const explore::KnobStep& step = *found.step;
-    std::string text = fmt::format(
-        "  {:>8.3f} {:>+8.3f} {:>+8.2f} {:>6} {:>4}  {}{}: {} -> {}", found.rate.frames_per_second,
-        found.rate.frames_per_second - now_.frames_per_second, gained_percent(found),
-        price.slices == 0 ? "0" : fmt::format("{:+.2f}", price.slices_percent), signed_text(price.block_rams),
-        step.knob, step.changes_disparities ? " *" : "", step.from, step.to);
-    if (price.multipliers != 0) text += fmt::format(", {:+} multipliers", price.multipliers);
-    if (!price.fits) text += "  does not fit";
-    if (found.rate.loses_pixels && !now_.loses_pixels) text += "  loses pixels";
-    if (!found.rate.loses_pixels && now_.loses_pixels) text += "  loses no pixels";
-    if (is_uncertain(found)) text += "  ~";
-    text += '\n';
-    if (step.sets == std::vector<std::string>{step.knob + "=" + step.to}) return text;
-    for (const std::string& set : step.sets)
-      text += fmt::format("{:41}--set {}\n", "", files::shell_word(set));
-    return text;
-  }
-
-  // A paragraph that names the changes without a line, in the order of the keys: by the key, or by its new
-  // value if other values of the key have a line.
-  std::string without_effect() const {
-    std::vector<std::string> names;
-    for (const explore::KnobStep& step : explanation_.knobs().possible) {
-      if (small_.count(&step) == 0) continue;
-      const std::string name = listed_.count(step.knob) == 0 ? step.knob : step.knob + " -> " + step.to;
-      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    if (!found.rate.failure.empty()) {
+      failures +=
+          fmt::format("failed: {}: {} -> {}: {}\n", step.knob, step.from, step.to, found.rate.failure);
+    } else if (const std::string line = line_of(found, board, explanation); !line.empty()) {
+      listed.insert(step.knob);
+      text += line;
+    } else {
+      small.insert(&step);
     }
-    return names.empty()
-               ? ""
-               : paragraph("no effect, or less than 0.1 %: ", 2, fmt::format("{}", fmt::join(names, "; ")));
   }
-
-  std::string forbidden() const {
-    std::string text;
-    for (const explore::KnobStep& step : explanation_.knobs().forbidden)
-      text += paragraph("not possible here: ", 2,
-                        fmt::format("{}: {} -> {}, because {}", step.knob, step.from, step.to, step.reason));
-    return text;
+  std::vector<std::string> names;
+  for (const explore::KnobStep& step : explanation.knobs().possible) {
+    const std::string name = listed.count(step.knob) == 0 ? step.knob : step.knob + " -> " + step.to;
+    if (small.count(&step) > 0 && std::find(names.begin(), names.end(), name) == names.end())
+      names.push_back(name);
   }
+  if (!names.empty())
+    text += paragraph("no effect, or less than 0.1 %: ", 2, fmt::format("{}", fmt::join(names, "; ")));
+  for (const explore::KnobStep& step : explanation.knobs().forbidden)
+    text += paragraph("not possible here: ", 2,
+                      fmt::format("{}: {} -> {}, because {}", step.knob, step.from, step.to, step.reason));
+  return text + failures;
+}
 
-  std::string failures() const {
-    std::string text;
-    for (const Explanation::Step& found : steps_) {
-      if (found.rate.failure.empty()) continue;
-      text += fmt::format("failed: {}: {} -> {}: {}\n", found.step->knob, found.step->from, found.step->to,
-                          found.rate.failure);
-    }
-    return text;
-  }
-
-  const BoardConfig& board_;
-  Explanation& explanation_;
-  Explanation::Rate now_;
-  std::vector<Explanation::Step> steps_;
-  std::set<std::string> listed_;              // keys with a line in the table
-  std::set<const explore::KnobStep*> small_;  // changes without a line
-};
-
-Json resources_json(Explanation& explanation) {
+Json resources_json(const Explanation& explanation) {
   Json all = Json::array();
   for (const Explanation::Resource& resource : explanation.resources()) {
     Json row = {{"resource", resource.name},
@@ -251,15 +189,14 @@ Json resources_json(Explanation& explanation) {
   return all;
 }
 
-Json blame_json(Explanation& explanation) {
-  const auto cycles = static_cast<double>(explanation.figures().integer("cycles"));
+Json blame_json(const Explanation& explanation) {
   Json all = Json::array();
   for (const explore::StoredBlame& blame : explanation.blames()) {
     all.push_back({{"port", blame.port},
                    {"bank", blame.bank},
                    {"by", blame.by},
                    {"cycles", blame.cycles},
-                   {"cycles_percent", 100 * static_cast<double>(blame.cycles) / cycles}});
+                   {"cycles_percent", percent_of_cycles(blame, explanation)}});
   }
   return all;
 }
@@ -271,13 +208,12 @@ Json area_json(const BoardConfig& board) {
   return json;
 }
 
-template <typename Step>
-Json change_json(const Step& step) {
+Json change_json(const explore::KnobStep& step) {
   return {{"key", step.knob}, {"from", step.from}, {"to", step.to}};
 }
 
 // Adds `changes`, the best first, `failed` and `impossible`.
-void add_changes(Explanation& explanation, Json& document) {
+void add_changes(const Explanation& explanation, Json& document) {
   const double now = explanation.now().frames_per_second;
   Json changes = Json::array();
   Json failed = Json::array();
@@ -292,7 +228,7 @@ void add_changes(Explanation& explanation, Json& document) {
     const double rate = found.rate.frames_per_second;
     change["frames_per_second"] = rate;
     change["gained_frames_per_second"] = rate - now;
-    change["gained_percent"] = 100 * (rate / now - 1);
+    change["gained_percent"] = gained_percent(found, explanation);
     change["changes_disparities"] = step.changes_disparities;
     change["loses_pixels"] = found.rate.loses_pixels;
     change["sets"] = step.sets;
@@ -308,12 +244,8 @@ void add_changes(Explanation& explanation, Json& document) {
   document["failed"] = std::move(failed);
 }
 
-std::string explanation_text(const BoardConfig& board, Explanation& explanation) {
-  return ExplanationText(board, explanation).text();
-}
-
-Json explanation_document(const BoardConfig& board, Explanation& explanation) {
-  const Explanation::Rate now = explanation.now();
+Json explanation_document(const BoardConfig& board, const Explanation& explanation) {
+  const Explanation::Rate& now = explanation.now();
   const explore::StoredRow& row = explanation.figures();
   const std::string of = explanation.camera() ? "bound.system" : "bound.core";
   Json document = {
@@ -368,7 +300,7 @@ int explain(const ExplainOptions& options) {
   const auto& board = loaded.board;
   check_temporary_folder(problems);
   if (const auto problem = board ? explore::bank_names_problem(*board) : std::nullopt)
-    problems.add(fmt::format("{}: {}", options.board.name(), *problem));
+    problems.add(fmt::format("{}: {}", options.board.argument.text(), *problem));
   problems.check();
   loaded.say_clock_remark();
   const platform::Tables tables = loaded.tables();
@@ -379,7 +311,8 @@ int explain(const ExplainOptions& options) {
   if (options.json.is_given()) {
     print_json(explanation_document(*board, explanation));
   } else {
-    process::print(explanation_text(*board, explanation));
+    process::print(head_text(*board, explanation) + resources_text(*board, explanation) +
+                   blames_text(explanation) + changes_text(*board, explanation));
   }
   return kDone;
 }

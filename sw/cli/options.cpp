@@ -7,11 +7,14 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <stdexcept>
 
 #include "platform/config/board_keys.h"
 #include "sw/cli/command.h"
 #include "sw/files/json_text.h"
-#include "sw/files/temporary_folder.h"
+#include "sw/files/whole_file.h"
+#include "sw/process/command.h"
+#include "sw/process/interrupt.h"
 #include "sw/process/streams.h"
 
 // Implements options.h and command.h. The commands include these instead of CLI11, which takes long to
@@ -124,6 +127,35 @@ void print_json(const nlohmann::ordered_json& document) {
 int interrupted(const std::string& what) {
   process::say("note", "interrupted: " + what);
   return kInterrupted;
+}
+
+bool write_out(const std::string& path, const files::FileKind& kind, const std::string& bytes) {
+  process::attempt_or_refuse("--out ", [&] {
+    files::OutputFile file(path, kind);
+    file.write(bytes);
+    file.complete();
+    if (!process::interrupted()) file.commit();
+  });
+  return !process::interrupted();
+}
+
+std::optional<NamedBytes> drawn(const std::string& script, const NamedBytes& files,
+                                std::vector<std::string> options) {
+  const files::TemporaryFolder temporary;
+  const std::filesystem::path& folder = temporary.path();
+  for (const auto& [name, bytes] : files) files::write_whole_file(folder / name, bytes);
+  options.insert(options.end(), {"--", folder.string()});
+  const auto end = process::run_script(script, options);
+  if (process::interrupted()) return std::nullopt;
+  if (end.status != 0) {
+    throw std::runtime_error(
+        fmt::format("the figures cannot be drawn: {} has ended with {}: {}", script, end.status, end.errors));
+  }
+  NamedBytes figures;
+  for (const std::filesystem::path& name : files::entries(folder)) {
+    if (files.count(name) == 0) figures[name] = files::read_whole_file(folder / name);
+  }
+  return figures;
 }
 
 void check_temporary_folder(process::Problems& problems) {

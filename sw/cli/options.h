@@ -94,7 +94,6 @@ class Option {
   const std::string& text() const { return text_; }
   // The values of an option that takes more.
   const std::vector<std::string>& texts() const { return texts_; }
-  std::optional<std::string> if_given() const { return is_given_ ? std::optional(text_) : std::nullopt; }
   // nullopt if the option is not given, or its value is no such number.
   template <typename Number>
   std::optional<Number> number() const {

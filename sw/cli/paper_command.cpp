@@ -1,13 +1,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <map>
 #include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -17,13 +14,10 @@
 #include "sw/cli/command.h"
 #include "sw/cli/run_options.h"
 #include "sw/files/output_folder.h"
-#include "sw/files/temporary_folder.h"
-#include "sw/files/whole_file.h"
-#include "sw/media/truth.h"
+#include "sw/media/load.h"
 #include "sw/paper/document.h"
 #include "sw/paper/study.h"
 #include "sw/process/command.h"
-#include "sw/process/installation.h"
 #include "sw/process/interrupt.h"
 #include "sw/process/problems.h"
 #include "sw/process/streams.h"
@@ -36,7 +30,6 @@
 namespace stereotlm::cli {
 namespace {
 
-constexpr const char* kPaperScript = "plot_paper.py";
 constexpr const char* kPaperFooter =
     "Written are paper.md, every claim with paper value, model value, bound, rule, verdict and the commands\n"
     "that give the numbers again; claims.csv with a row for each case; table1.csv, table2.csv, banks.csv\n"
@@ -53,20 +46,20 @@ struct PaperOptions : Options {
   void check_together(process::Problems& problems) override {
     for (const auto& [name, is_given] : {std::pair("--left", left.is_given()),
                                          {"--right", right.is_given()},
-                                         {"--truth", truth.file().has_value()}}) {
+                                         {"--truth", truth.file.is_given()}}) {
       if (has_pair() && !is_given)
         problems.add(fmt::format("{}: missing: a pair has --left F, --right F and --truth F", name));
     }
   }
-  bool has_pair() const { return left.is_given() || right.is_given() || truth.file(); }
+  bool has_pair() const { return left.is_given() || right.is_given() || truth.file.is_given(); }
 
-  Option out{
-      this, "--out", "DIR", "The folder to write, created if missing", {required("the folder to write")}};
-  Option left =
-      Option(this, "--left", "F",
-             fmt::format("The left picture of a rectified pair with ground truth, 8-bit, as large as the "
-                         "images of {}",
-                         paper::kBoard));
+  Option out = Option(this, "--out", "DIR", "The folder to write, created if missing",
+                      {required("the folder to write")});
+  Option left = Option(
+      this, "--left", "F",
+      fmt::format(
+          "The left picture of a rectified pair with ground truth, 8-bit, as large as the images of {}",
+          paper::kBoard));
   Option right = Option(this, "--right", "F", "The right picture");
   TruthOptions truth{this, "the left picture"};
 };
@@ -88,11 +81,11 @@ struct LoadedPair {
 std::optional<LoadedPair> load_pair(const PaperOptions& options, process::Problems& problems) {
   if (!options.has_pair()) return std::nullopt;
   const platform::BoardConfig board = platform::load_board(paper::kBoard);
-  runs::PictureSource source;
-  source.pair = {options.left.text(), options.right.text()};
-  runs::RecordedOptions described;
-  runs::OpenedSource opened = runs::open_source(source, &board, described, problems);
-  const runs::NamedFile file = {"--truth", *options.truth.file()};
+  runs::InputPictures source;
+  source.left = {options.left.text(), ""};
+  source.right = {options.right.text(), ""};
+  runs::OpenedSource opened = runs::open_source(source, &board, problems);
+  const runs::NamedFile file = {"--truth", options.truth.file.text()};
   auto truth = runs::open_truth(file, options.truth.scale(), &board, problems);
   if (!opened.pairs || !truth) return std::nullopt;
   const kernels::GrayImage blank(board.image.width, board.image.height);
@@ -105,18 +98,17 @@ std::optional<LoadedPair> load_pair(const PaperOptions& options, process::Proble
                              options.truth.scale(), disparities, rule.text()));
     return std::nullopt;
   }
-  return LoadedPair{{options.left.text(), options.right.text(), *options.truth.file(), options.truth.scale(),
-                     static_cast<int>(disparities)},
+  return LoadedPair{{options.left.text(), options.right.text(), options.truth.file.text(),
+                     options.truth.scale(), static_cast<int>(disparities)},
                     {std::move(opened.pairs), std::move(*truth)},
                     opened.notes};
 }
 
 Pictures synthetic_pictures(const platform::BoardConfig& board, std::uint64_t seed) {
   process::Problems none;
-  runs::PictureSource source;
+  runs::InputPictures source;
   source.synthetic = seed;
-  runs::RecordedOptions described;
-  auto pairs = runs::open_source(source, &board, described, none).pairs;
+  auto pairs = runs::open_source(source, &board, none).pairs;
   media::Truth truth = pairs->truth(0).value();
   return {std::move(pairs), std::move(truth)};
 }
@@ -142,8 +134,6 @@ std::optional<paper::Findings> study(const std::optional<LoadedPair>& given) {
     return scene.synthetic ? quality(board, synthetic_pictures(board, *scene.synthetic))
                            : quality(board, given.value().pictures);
   };
-  means.version = process::kVersion;
-  means.jobs = std::max(1U, std::thread::hardware_concurrency());
   means.keep_going = [&progress](std::uint64_t done, std::uint64_t most_left) {
     progress.show(
         [&](double) { return fmt::format("{} boards simulated, {} left at most", done, most_left); });
@@ -151,27 +141,6 @@ std::optional<paper::Findings> study(const std::optional<LoadedPair>& given) {
   };
   const auto claims = paper::claims(given ? std::optional(given->files) : std::nullopt);
   return paper::study(claims, means);
-}
-
-// Draws figures from the tables in `files`, which has contents by name, and adds the figures to it. Returns
-// false if interrupted.
-bool draw(std::map<std::string, std::string>& files) {
-  const files::TemporaryFolder temporary;
-  const std::filesystem::path& folder = temporary.path();
-  for (const auto& [name, bytes] : files) files::write_whole_file(folder / name, bytes);
-  const auto end = process::run_script(kPaperScript, {"--", folder.string()});
-  if (process::interrupted()) return false;
-  if (end.status != 0) {
-    throw std::runtime_error(fmt::format("the figures cannot be drawn: {} has ended with {}: {}",
-                                         kPaperScript, end.status, end.errors));
-  }
-  for (const char* figure : paper::kFigures) {
-    for (const char* ending : {".png", ".svg"}) {
-      const std::string name = std::string(figure) + ending;
-      files[name] = files::read_whole_file(folder / name);
-    }
-  }
-  return true;
 }
 
 files::OutputContent content_of(const PaperOptions& options) {
@@ -186,7 +155,7 @@ files::OutputContent content_of(const PaperOptions& options) {
   content.others_stay = true;
   content.inputs = {{"--left", options.left.text()},
                     {"--right", options.right.text()},
-                    {"--truth", options.truth.file().value_or("")}};
+                    {"--truth", options.truth.file.text()}};
   return content;
 }
 
@@ -204,8 +173,10 @@ int compare_with_paper(const PaperOptions& options) {
     for (const std::string& note : given->notes) process::say("note", note);
   }
   const auto findings = study(given);
-  auto files = findings ? paper::tables(*findings) : std::map<std::string, std::string>();
-  if (!findings || !draw(files)) return interrupted("nothing was written");
+  NamedBytes files = findings ? paper::tables(*findings) : NamedBytes();
+  auto figures = findings ? drawn("plot_paper.py", files) : std::nullopt;
+  if (!figures) return interrupted("nothing was written");
+  files.merge(*figures);
   files[paper::kDocument] = paper::document(*findings);
   for (const auto& [name, bytes] : files) folder->add(name, bytes);
   folder->commit();

@@ -4,7 +4,6 @@
 #include <array>
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -13,7 +12,6 @@
 
 #include "sw/cli/command.h"
 #include "sw/files/output_folder.h"
-#include "sw/files/temporary_folder.h"
 #include "sw/files/whole_file.h"
 #include "sw/process/command.h"
 #include "sw/process/interrupt.h"

@@ -4,20 +4,18 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <stdexcept>
 #include <string>
 
 #include "sw/cli/command.h"
 #include "sw/explore/store/store.h"
 #include "sw/files/output_file.h"
-#include "sw/process/installation.h"
+#include "sw/process/command.h"
 #include "sw/process/interrupt.h"
 #include "sw/process/streams.h"
 #include "sw/report/html_page.h"
 #include "sw/report/page_data/page_data.h"
 #include "sw/runs/explanation.h"
 #include "sw/runs/recorded_run.h"
-#include "sw/runs/rerun.h"
 #include "sw/stats/console_table.h"
 
 namespace stereotlm::cli {

@@ -87,7 +87,7 @@ struct RunCommandOptions : Options {
 int run(const RunCommandOptions& options) {
   runs::RunInput input = options.run.load();
   std::optional<runs::Verification> verification;
-  if (options.run.verify.is_given()) verification.emplace(input, options.run.pictures.source());
+  if (options.run.verify.is_given()) verification.emplace(input);
   Binder binder;
   runs::BlankPairs blank(input.board);
   host::FrameSource& pairs = input.timing_only ? static_cast<host::FrameSource&>(blank) : *input.pairs;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -15,74 +16,76 @@
 
 namespace stereotlm::cli {
 
-// The options --trace and --trace-window.
-class TraceOptions {
- public:
-  explicit TraceOptions(Options* of);
+// Groups of options. `of`: the options of which they are a part; null: they are never given.
 
+struct TraceOptions {
   // Reports a trace that is none, or whose files another trace writes too, and a vcd without a window.
   void check_together(process::Problems& problems) const;
   // Reports a window outside the images of the board, or after the last of `frames` frames.
   void check_window(const platform::BoardConfig& board, std::uint64_t frames,
                     process::Problems& problems) const;
-
   // The traces, without those that are none.
-  std::vector<trace::TraceFile> files() const;
+  std::vector<trace::TraceFile> traces() const;
   // nullopt if there is no window.
   std::optional<trace::TraceWindow> window() const;
 
- private:
-  Option files_;
-  Option window_;
+  static std::string meaning();
+  static void is_window(const Option& option, process::Problems& problems);
+
+  Options* of;
+  Option files = Option(of, "--trace", "FORMAT:FILE", meaning(), {}, Takes::kRepeated);
+  Option window_text =
+      Option(of, "--trace-window", "WINDOW",
+             "Trace each cycle of a part of the run: frame=F[,rows=A..B | ,cycles=A..B] or cycles=A..B, the "
+             "limits included; frames and rows count from 0, cycles from the frame's first or from power-up; "
+             "with ,longest-wait only the cycles around the longest wait in it; vcd needs a window",
+             {is_window, goes_with(files, "FORMAT:FILE")});
 };
 
-// The options --truth and --truth-scale.
-class TruthOptions {
- public:
-  // `picture`: the picture whose truth it is, for the help.
-  TruthOptions(Options* of, const std::string& picture);
+struct TruthOptions {
+  // Grey levels of the truth per disparity.
+  double scale() const { return scale_text.number<double>().value_or(1); }
 
-  std::optional<std::string> file() const { return file_.if_given(); }
-  double scale() const { return scale_.number<double>().value_or(1); }  // grey levels per disparity
-
- private:
-  Option file_;
-  Option scale_;
+  Options* of;
+  std::string picture;  // whose truth it is, for the help
+  Option file = Option(of, "--truth", "F", "Ground truth of " + picture + ", 8-bit grey, 0 = unknown");
+  Option scale_text = Option(
+      of, "--truth-scale", "S", "Grey levels of the truth per disparity (default 1)",
+      {number<double>("a number above 0", [](double scale) { return std::isfinite(scale) && scale > 0; }),
+       goes_with(file, "F")});
 };
 
 // The options that select the pictures of a run.
-class PictureOptions {
- public:
-  explicit PictureOptions(Options* of);
-
-  bool is_given() const { return !sources_given().empty() || video_layout_.is_given(); }
-  // Reports a missing source of pictures, unless `may_be_missing`, and a pair with one side. Returns whether
-  // nothing is missing.
-  bool check_given(process::Problems& problems, bool may_be_missing) const;
-  // Reports several sources, and a video without its layout.
-  void check_together(process::Problems& problems) const;
-
-  // If there are no problems, exactly one member is set, or none if pictures may be missing.
-  runs::PictureSource source() const;
-
- private:
+struct PictureOptions {
+  bool is_given() const { return !sources_given().empty() || video_layout.is_given(); }
+  // Reports a missing source of pictures, unless `may_be_missing`, several of them, a pair with one side, and
+  // a video without its layout. Returns whether nothing is missing.
+  bool check_together(process::Problems& problems, bool may_be_missing) const;
+  // The source as named: if there are no problems, exactly one, or none if pictures may be missing.
+  runs::InputPictures named() const;
   std::vector<std::string> sources_given() const;
 
-  Option left_;
-  Option right_;
-  Option sequence_;
-  Option video_;
-  Option video_layout_;
-  Option synthetic_;
+  Options* of;
+  Option left = Option(of, "--left", "F",
+                       "The left picture of one pair for every frame, 8-bit, as large as the board's images");
+  Option right = Option(of, "--right", "F", "The right picture");
+  Option sequence = Option(of, "--sequence", "DIR",
+                           "A folder of pairs left_*.png and right_*.png, shown in the order of their names");
+  Option video = Option(of, "--video", "F [F2]", "A video of pairs, or two videos, the left one first", {},
+                        Takes::kOneOrTwo);
+  Option video_layout =
+      Option(of, "--video-layout", "LAYOUT",
+             "Where --video has the pictures of a pair: two (files), side_by_side or top_bottom (in one "
+             "file, the left one in the left or upper half of each frame)",
+             {goes_with(video, "F [F2]"), one_of(runs::kVideoLayoutNames)});
+  Option synthetic =
+      Option(of, "--synthetic", "SEED",
+             "A synthetic moving scene with known disparities; another one for each SEED, 0 or more",
+             {number<std::uint64_t>(kSeedRule)});
 };
 
 // The options of `run`. Those that say what is simulated are options of `conflicts` too.
-class RunOptions {
- public:
-  // `more`: where the options that do not say what is simulated are added; null: nowhere. `beside_board`:
-  // what BOARD may be beside a board.
-  RunOptions(Options* of, Options* more, const std::string& beside_board = "");
-
+struct RunOptions {
   // Whether no option that says what is simulated is given but BOARD.
   bool has_board_only() const;
   // Reports problems of several options together, and then also those of the files of the board. `command`:
@@ -94,21 +97,50 @@ class RunOptions {
   // process, which has not changed anything yet. Afterwards interrupts are caught (catch_interrupts()).
   runs::RunInput load() const;
 
-  bool is_fast() const { return fidelity.text() != "cycle"; }
-
-  BoardOptions board;
-  PictureOptions pictures;
-  Option frames;
-  SourceOption source;
-  Option fidelity;
-  Option timing_only;
-  Option verify;
-  TruthOptions truth;
-  Option out;
-  Option save_frames;
-  Option record;
-  TraceOptions trace;
-  JsonOption json;
+  Options* of;
+  Options* more;                  // of the options that do not say what is simulated
+  std::string beside_board = "";  // what BOARD may be beside a board
+  BoardOptions board{of, beside_board};
+  PictureOptions pictures{of};
+  Option frames = Option(
+      of, "--frames", "N",
+      "Frames to deliver, 1 or more; frame f of the cameras, or of the board if preloaded, shows pair f "
+      "modulo "
+      "the number of pairs (default 1; with --sequence and --video as many as there are pairs)",
+      {number<std::uint64_t>("an integer, 1 or more", [](std::uint64_t count) { return count > 0; })});
+  SourceOption source{
+      of,
+      "camera (the default): cameras of a whole computer; preloaded: pictures appear in their buffers in no "
+      "time"};
+  Option fidelity =
+      Option(of, "--fidelity", "fast|cycle",
+             "How the simulation works; the results are the same to the bit and to the cycle: fast (the "
+             "default), or cycle by cycle, every access a transaction",
+             {one_of({"fast", "cycle"})});
+  Option timing_only =
+      Option(of, "--timing-only", "",
+             "Leave out all pixels: the times and counts are the same, and no picture is needed; writes no "
+             "disparities");
+  Option verify =
+      Option(more, "--verify", "",
+             "Run at the other fidelity too, in a second process, and compare every figure, time and pixel");
+  TruthOptions truth{more, "the left picture that the last frame shows"};
+  Option out =
+      Option(more, "--out", "DIR",
+             "Folder for the result files: created if missing, else empty or an earlier result, which is "
+             "replaced (default: no files)");
+  Option save_frames =
+      Option(more, "--save-frames", "",
+             "Write the disparities of every frame too: frames/000000.png and so on in the folder of --out, "
+             "numbered by camera frame",
+             {goes_with(out, "DIR")});
+  Option record = Option(
+      more, "--record,--conflicts", "",
+      "Write where and when ports wait: rows.csv and conflicts.csv in the folder of --out; with cameras "
+      "also what happened when, and why it waited: timeline.csv and latency.csv",
+      {goes_with(out, "DIR")});
+  TraceOptions trace{more};
+  JsonOption json{more};
 };
 
 }  // namespace stereotlm::cli

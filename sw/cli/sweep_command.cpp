@@ -7,8 +7,6 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
-#include <system_error>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -16,17 +14,15 @@
 #include "platform/config/board_draft.h"
 #include "sw/cli/command.h"
 #include "sw/cli/options.h"
-#include "sw/explore/plan/conditions.h"
 #include "sw/explore/plan/plan.h"
-#include "sw/explore/slurm/shard_folder.h"
-#include "sw/explore/slurm/slurm_sweep.h"
+#include "sw/explore/plan/points.h"
+#include "sw/explore/slurm/slurm.h"
 #include "sw/explore/store/store.h"
-#include "sw/explore/store/store_lock.h"
 #include "sw/explore/sweep/sweep.h"
 #include "sw/files/output_file.h"
-#include "sw/files/shell_word.h"
+#include "sw/files/text_forms.h"
 #include "sw/files/whole_file.h"
-#include "sw/process/installation.h"
+#include "sw/process/command.h"
 #include "sw/process/interrupt.h"
 #include "sw/process/streams.h"
 #include "sw/runs/progress.h"
@@ -84,9 +80,8 @@ struct SweepCommandOptions : Options {
   explore::SweepOptions sweep() const {
     explore::SweepOptions options;
     options.store = out.text();
-    options.version = process::kVersion;
     options.known = known.text();
-    options.jobs = jobs.number<unsigned>().value_or(std::max(1U, std::thread::hardware_concurrency()));
+    options.jobs = jobs.number<unsigned>().value_or(options.jobs);
     std::tie(options.shard, options.shards) = shard_of(shard.text()).value_or(std::pair(0, 1));
     return options;
   }
@@ -128,11 +123,10 @@ struct SweepCommandOptions : Options {
                            {one_of({"local", "slurm"})});
   Option shards = Option(this, "--shards", "N", "With slurm: the tasks of the job array (default 16)",
                          {is_within<std::uint64_t>(kMostShards)});
-  Option sbatch =
-      Option(this, "--sbatch", "NAME=VALUE",
-             "With slurm: an option of sbatch for all jobs, such as partition=long or time=8:00:00; again "
-             "for further ones",
-             {}, Takes::kRepeated);
+  Option sbatch = Option(this, "--sbatch", "NAME=VALUE",
+                         "With slurm: an option of sbatch for all jobs, such as partition=long or "
+                         "time=8:00:00; again for further ones",
+                         {}, Takes::kRepeated);
 
  private:
   static constexpr std::uint64_t kMostJobs = 1024;
@@ -209,13 +203,6 @@ constexpr const char* kSweepFooter =
     "--launcher slurm submits a job array, a shard a task, and a last job that merges the shards into\n"
     "DB; it waits, and submits lost shards again. The machines share the file system of DB and of this\n"
     "program. A task uses the processors that its job has: --sbatch cpus-per-task=8.";
-
-explore::Plan load_plan(const SweepCommandOptions& options) {
-  std::optional<explore::Plan> plan;
-  process::attempt_or_refuse("",
-                             [&] { plan = explore::Plan::load(options.plan.text(), options.board.text()); });
-  return std::move(*plan);
-}
 
 // Loads the calibration that --calibration or the plan names, and gives its tables to the plan. Returns
 // nullopt if neither names one. Throws Refused if the calibration cannot be loaded or fits no point.
@@ -300,97 +287,81 @@ std::string kept_text(const std::string& store, const std::string& advice) {
   }
 }
 
-// Writes the counts of the sweep to the file of --progress: show() at most once in kBetweenCounts, write()
-// always. Does nothing without --progress.
-class ProgressFile {
- public:
-  explicit ProgressFile(const SweepCommandOptions& options) : options_(options) {}
-  void show(const explore::SweepCounts& counts) {
-    const auto now = std::chrono::steady_clock::now();
-    if (now >= next_) write(counts);
-  }
-  void write(const explore::SweepCounts& counts) {
-    if (options_.progress.text().empty()) return;
-    files::OutputFile file = options_.progress_file();
-    file.write(explore::counts_text(counts));
-    file.commit();
-    next_ = std::chrono::steady_clock::now() + kBetweenCounts;
-  }
+// Writes the counts of the sweep to the file of --progress, if it is given.
+void write_progress(const explore::SweepCounts& counts, const SweepCommandOptions& options) {
+  if (!options.progress.is_given()) return;
+  files::OutputFile file = options.progress_file();
+  file.write(explore::counts_text(counts));
+  file.commit();
+}
 
- private:
-  const SweepCommandOptions& options_;
-  std::chrono::steady_clock::time_point next_;
-};
-
-void check_open_files(std::uint64_t jobs, std::uint64_t points) {
-  const std::uint64_t workers = std::min(jobs, points);
-  const std::uint64_t most = explore::workers_with_files(workers);
-  if (most == workers) return;
-  const std::string rule =
-      fmt::format("--jobs = {}: too many for the limit on open files (ulimit -n): ", jobs);
-  process::refuse(rule +
-                  (most == 0 ? "raise it" : fmt::format("lower --jobs to {}, or raise the limit", most)));
+// Checks that the sweep can begin, and makes its database.
+void prepare(const SweepCommandOptions& options, const explore::SweepOptions& sweep,
+             const explore::Plan& plan) {
+  const std::uint64_t workers = std::min<std::uint64_t>(sweep.jobs, plan.size());
+  if (const std::uint64_t most = explore::workers_with_files(workers); most < workers) {
+    process::refuse(
+        fmt::format("--jobs = {}: too many for the limit on open files (ulimit -n): {}", sweep.jobs,
+                    most == 0 ? "raise it" : fmt::format("lower --jobs to {}, or raise the limit", most)));
+  }
+  process::attempt_or_refuse("--known ", [&] {
+    if (options.known.is_given()) const explore::StoredRow known(sweep.known, sweep.version);
+  });
+  try {
+    const explore::StoreLock lock(sweep.store);
+    const auto open_store = [&] { explore::Store(sweep.store, sweep.version).check_banks(plan.banks()); };
+    if (std::filesystem::file_size(sweep.store) > 0) open_store();
+    process::catch_interrupts();
+    process::attempt_or_refuse("--progress ", [&] { write_progress({}, options); });
+    open_store();  // creates a new store only after all other checks
+  } catch (const sqlite::DatabaseError& error) {
+    process::refuse(fmt::format("--out {}", error.what()));
+  }
 }
 
 explore::SweepCounts sweep_here(const SweepCommandOptions& options, const explore::Plan& plan,
                                 const std::optional<runs::CalibrationInput>& calibration) {
   const explore::SweepOptions sweep = options.sweep();
-  check_open_files(sweep.jobs, plan.size());
-  ProgressFile file(options);
-  process::attempt_or_refuse("--known ", [&] {
-    if (options.known.is_given()) const explore::StoredRow known(sweep.known, sweep.version);
-  });
-  try {
-    const explore::StoreLock lock(options.out.text());
-    const auto open_store = [&] {
-      explore::Store(options.out.text(), sweep.version).check_banks(plan.banks());
-    };
-    if (std::filesystem::file_size(options.out.text()) > 0) open_store();
-    process::catch_interrupts();
-    file.write({});
-    open_store();  // creates a new store only after all other checks
-  } catch (const sqlite::DatabaseError& error) {
-    process::refuse(fmt::format("--out {}", error.what()));
-  } catch (const std::runtime_error& error) {
-    process::refuse(fmt::format("--progress {}", error.what()));
-  }
+  prepare(options, sweep, plan);
   runs::PointSimulator simulator =
       calibration ? runs::PointSimulator(calibration->tables) : runs::PointSimulator();
   runs::ProgressLine progress;
-  explore::SweepCounts counts;
+  auto next_write = std::chrono::steady_clock::now() + kBetweenCounts;
+  const auto show = [&](const explore::SweepCounts& done) {
+    progress.show([&done](double seconds) { return runs::progress_text(done, 0, seconds); });
+    if (std::chrono::steady_clock::now() >= next_write) {
+      write_progress(done, options);
+      next_write = std::chrono::steady_clock::now() + kBetweenCounts;
+    }
+    return !process::interrupted();
+  };
   try {
-    counts = explore::sweep(
-        plan.points(), [&simulator](const explore::Point& point) { return simulator(point); }, sweep,
-        [&progress, &file](const explore::SweepCounts& done) {
-          progress.show([&done](double seconds) { return runs::progress_text(done, 0, seconds); });
-          file.show(done);
-          return !process::interrupted();
-        });
-    progress.erase();
-    file.write(counts);
+    const explore::SweepCounts counts = explore::sweep(
+        plan.points(), [&simulator](const explore::Point& point) { return simulator(point); }, sweep, show);
+    write_progress(counts, options);
+    return counts;
   } catch (const explore::StoreGone&) {
-    progress.erase();
     throw;
-  } catch (const explore::ConditionError& error) {
-    progress.erase();
-    throw std::runtime_error(error.what() + kept_text(options.out.text(), "correct the plan"));
   } catch (const std::exception& error) {
-    progress.erase();
-    throw std::runtime_error(error.what() + kept_text(options.out.text(), "run the same command to resume"));
+    const bool is_of_plan = dynamic_cast<const explore::ConditionError*>(&error) != nullptr;
+    throw std::runtime_error(
+        error.what() +
+        kept_text(options.out.text(), is_of_plan ? "correct the plan" : "run the same command to resume"));
   }
-  return counts;
 }
 
 // The sweep for Slurm, with the contents of all files that its tasks need.
 explore::ShardedSweep sharded(const SweepCommandOptions& options, const explore::Plan& plan,
                               const std::optional<runs::CalibrationInput>& calibration) {
   explore::ShardedSweep sweep;
-  sweep.plan = files::read_whole_file(plan.path());
-  if (platform::is_board_file(plan.board())) sweep.board = files::read_whole_file(plan.board());
+  sweep.files["plan.yaml"] = files::read_whole_file(plan.path());
+  if (platform::is_board_file(plan.board())) sweep.files["board.yaml"] = files::read_whole_file(plan.board());
   if (calibration) {
-    const runs::InputCalibration& files = calibration->described;
-    sweep.calibration = {files::read_whole_file(files.file.path), files::read_whole_file(files.left_lut.path),
-                         files::read_whole_file(files.right_lut.path)};
+    const runs::InputCalibration& described = calibration->described;
+    for (const auto& [name, file] : {std::pair("calibration.yaml", described.file),
+                                     std::pair("calibration_left.lut", described.left_lut),
+                                     std::pair("calibration_right.lut", described.right_lut)})
+      sweep.files[name] = files::read_whole_file(file.path);
   }
   sweep.banks = plan.banks();
   sweep.version = process::kVersion;
@@ -417,37 +388,28 @@ explore::SweepCounts sweep_on_slurm(const SweepCommandOptions& options, const ex
     progress.erase();
     process::say("note", note);
   };
-  const auto opened = [&] {
-    try {
-      return explore::SlurmSweep(sharded(options, plan, calibration), options.out.text(),
-                                 options.sbatch_options(), say_note);
-    } catch (const sqlite::DatabaseError& error) {
-      process::refuse(fmt::format("--out {}", error.what()));
-    } catch (const std::system_error& error) {
-      process::refuse(fmt::format("--out {}: {}", options.out.text(), error.code().message()));
-    }
-  };
-  explore::SlurmSweep sweep = opened();
+  explore::SlurmSweep sweep(sharded(options, plan, calibration), options.sbatch_options(), say_note);
   process::catch_interrupts();
   try {
-    sweep.begin();
+    sweep.begin(options.out.text());
   } catch (const sqlite::DatabaseError& error) {
     process::refuse(fmt::format("--out {}", error.what()));
   } catch (const std::exception& error) {
     process::refuse(fmt::format("--launcher slurm: {}", error.what()));
   }
   std::optional<std::uint64_t> before;
-  const auto counts = sweep.wait([&](const explore::SlurmProgress& now) {
+  return sweep.wait([&](const explore::SlurmProgress& now) {
     if (!before) before = now.counts.done();
     progress.show([&](double seconds) { return line_of(now, *before, seconds); });
     return !process::interrupted();
   });
-  progress.erase();
-  return counts;
 }
 
 int sweep(const SweepCommandOptions& options) {
-  explore::Plan plan = load_plan(options);
+  std::optional<explore::Plan> loaded;
+  process::attempt_or_refuse(
+      "", [&] { loaded = explore::Plan::load(options.plan.text(), options.board.text()); });
+  explore::Plan& plan = *loaded;
   const auto calibration = calibration_of(options, plan);
   const explore::SweepCounts counts = options.is_slurm() ? sweep_on_slurm(options, plan, calibration)
                                                          : sweep_here(options, plan, calibration);

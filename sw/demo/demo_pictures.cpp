@@ -1,96 +1,185 @@
-#include "sw/demo/demo_pictures.h"
+// stereotlm-demo-pictures: makes the inputs and montages of ./demo.
+#include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
 #include <limits>
 #include <opencv2/core.hpp>
-#include <stdexcept>
 #include <string>
+#include <vector>
 
+#include "calib/calibration.h"
 #include "calib/canvas.h"
+#include "calib/depth.h"
+#include "calib/tables.h"
 #include "models/kernels/lr_check.h"
+#include "models/kernels/stereo.h"
+#include "sw/demo/half_size.h"
+#include "sw/files/output_file.h"
+#include "sw/files/whole_file.h"
+#include "sw/media/encode.h"
+#include "sw/media/load.h"
 
 namespace stereotlm::demo {
 namespace {
 
+namespace fs = std::filesystem;
+using calib::kMargin;
 using kernels::GrayImage;
+using Words = std::vector<std::string>;
 
-std::string size_of(const GrayImage& image) {
-  return std::to_string(image.width) + "x" + std::to_string(image.height);
+constexpr int kTruthScale = 2;  // grey levels per disparity of the truth at half size
+constexpr const char* kUsage =
+    "usage: stereotlm-demo-pictures prepare SRC_DIR OUT_DIR\n"
+    "         from aloeL.jpg, aloeR.jpg, aloeGT.png make left.png, right.png, truth.png (640x480, truth "
+    "scale 2);\n"
+    "         print the number of disparities that the truth needs\n"
+    "       stereotlm-demo-pictures depth-montage OUT.png LEFT RIG.yaml RESULT\n"
+    "         show a picture, its rectified one, and the disparities and depths of RESULT side by side\n"
+    "       stereotlm-demo-pictures montage OUT.png LEFT DISPARITY DISPARITIES [TRUTH]\n"
+    "         show the picture, the disparities (0..DISPARITIES-1, 255 = invalid) and the truth side by "
+    "side\n";
+
+void write_file(const fs::path& path, const std::vector<std::uint8_t>& bytes) {
+  files::OutputFile file(path, {"picture", [](const fs::path& /*file*/) { return true; }});
+  file.write({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  file.commit();
 }
 
-std::uint8_t mean_of_four(const GrayImage& image, int column, int row) {
-  const int sum = image.at(column, row) + image.at(column + 1, row) + image.at(column, row + 1) +
-                  image.at(column + 1, row + 1);
-  return static_cast<std::uint8_t>((sum + 2) / 4);
+// A picture below its caption, and what the scale of its colours says below it: of the first level, of the
+// last, and where there is none. A picture in grey has no scale.
+struct Panel {
+  std::string caption;
+  cv::Mat picture;
+  Words scale = {};
+};
+
+Panel grey_panel(const std::string& caption, const GrayImage& image) {
+  return {caption, calib::in_grey(image)};
 }
 
-std::uint8_t top_left(const GrayImage& image, int column, int row) { return image.at(column, row); }
+// Levels 0 .. `levels` - 1 in colours, 255 in light grey.
+Panel coloured_panel(const std::string& caption, const GrayImage& image, int levels, const Words& scale) {
+  cv::Mat1f values(image.height, image.width);
+  std::transform(image.pixels.begin(), image.pixels.end(), values.begin(), [](std::uint8_t level) {
+    return level == kernels::kInvalidDisparity ? std::numeric_limits<float>::quiet_NaN()
+                                               : static_cast<float>(level);
+  });
+  return {caption, calib::in_colors(values, 0, levels - 1), scale};
+}
 
-GrayImage middle_at_half_size(const GrayImage& full, std::uint8_t (*pixel)(const GrayImage&, int, int)) {
-  const int first_column = (full.width / 2 - kWidth) / 2;
-  const int first_row = (full.height / 2 - kHeight) / 2;
-  GrayImage half(kWidth, kHeight);
-  for (int row = 0; row < kHeight; ++row) {
-    for (int column = 0; column < kWidth; ++column) {
-      half.at(column, row) = pixel(full, 2 * (first_column + column), 2 * (first_row + row));
-    }
+Panel disparity_panel(const std::string& caption, const GrayImage& image, int disparities,
+                      const std::string& missing) {
+  return coloured_panel(caption, image, disparities, {"0", std::to_string(disparities - 1), missing});
+}
+
+// Far depths have level 0.
+Panel depth_panel(const std::vector<std::uint16_t>& millimetres, int width, int height) {
+  constexpr int kLevels = 254;
+  GrayImage image(width, height, kernels::kInvalidDisparity);
+  const auto [near, far] = calib::depth_range(millimetres).value();
+  for (std::size_t i = 0; i < millimetres.size(); ++i) {
+    if (millimetres[i] == 0) continue;
+    const int depth = std::clamp<int>(millimetres[i], near, far);
+    image.pixels[i] = static_cast<std::uint8_t>((kLevels - 1) * (far - depth) / (far - near));
   }
-  return half;
+  return coloured_panel("depth", image, kLevels,
+                        {fmt::format("{} mm", far), fmt::format("{} mm", near), "no answer"});
 }
 
-cv::Mat shown(const Panel& panel) {
-  if (panel.levels == 0) return calib::in_grey(panel.image);
-  cv::Mat1f values(panel.image.height, panel.image.width);
-  std::transform(panel.image.pixels.begin(), panel.image.pixels.end(), values.begin(),
-                 [](std::uint8_t level) {
-                   return level == kernels::kInvalidDisparity ? std::numeric_limits<float>::quiet_NaN()
-                                                              : static_cast<float>(level);
-                 });
-  return calib::in_colors(values, 0, panel.levels - 1);
-}
-
-}  // namespace
-
-std::vector<std::uint8_t> encode_side_by_side_png(const std::vector<Panel>& panels) {
-  using calib::kMargin;
-  if (panels.empty()) throw std::invalid_argument("panels = 0: at least one picture is needed");
-  std::vector<cv::Mat> pictures;
+// Writes the panels side by side on white, aligned at the top.
+void write_side_by_side(const fs::path& path, const std::vector<Panel>& panels) {
+  const int top = kMargin + calib::kCaptionHeight;
   int width = kMargin;
   int height = 0;
   for (const Panel& panel : panels) {
-    pictures.push_back(shown(panel));
-    width += panel.image.width + kMargin;
-    height = std::max(height, panel.image.height + (panel.levels == 0 ? 0 : calib::kScaleHeight));
+    width += panel.picture.cols + kMargin;
+    height = std::max(height, panel.picture.rows + (panel.scale.empty() ? 0 : calib::kScaleHeight));
   }
-  const int top = kMargin + calib::kCaptionHeight;
   cv::Mat canvas(top + height + kMargin, width, CV_8UC3, calib::kWhite);
   int left = kMargin;
-  for (std::size_t i = 0; i < panels.size(); ++i) {
-    const cv::Rect place({left, top}, pictures[i].size());
-    pictures[i].copyTo(canvas(place));
-    calib::draw_caption(canvas, panels[i].caption, place);
-    if (panels[i].levels != 0) {
+  for (const Panel& panel : panels) {
+    const cv::Rect place({left, top}, panel.picture.size());
+    panel.picture.copyTo(canvas(place));
+    calib::draw_caption(canvas, panel.caption, place);
+    if (!panel.scale.empty())
       calib::draw_color_scale(canvas, {left, place.br().y + calib::kScaleHeight - kMargin}, place.width,
-                              panels[i].first, panels[i].last, panels[i].missing);
-    }
+                              panel.scale[0], panel.scale[1], panel.scale[2]);
     left += place.width + kMargin;
   }
-  return calib::encode_png(canvas);
+  write_file(path, calib::encode_png(canvas));
 }
 
-DemoPair make_demo_pair(const GrayImage& left, const GrayImage& right, const GrayImage& truth) {
-  for (const GrayImage* other : {&right, &truth}) {
-    if (other->width != left.width || other->height != left.height) {
-      throw std::invalid_argument(std::string(other == &right ? "right" : "truth") + " picture = " +
-                                  size_of(*other) + ": must be as large as the left one, " + size_of(left));
-    }
-  }
-  if (left.width < 2 * kWidth || left.height < 2 * kHeight) {
-    throw std::invalid_argument("left picture = " + size_of(left) + ": must be at least " +
-                                size_of(GrayImage(2 * kWidth, 2 * kHeight)));
-  }
-  return {middle_at_half_size(left, mean_of_four), middle_at_half_size(right, mean_of_four),
-          middle_at_half_size(truth, top_left)};
+void prepare(const fs::path& source, const fs::path& out) {
+  const auto picture = [&source](const char* name) {
+    return middle_at_half_size(media::load_gray((source / name).string()).image);
+  };
+  const GrayImage left = picture("aloeL.jpg");
+  const GrayImage right = picture("aloeR.jpg");
+  const GrayImage truth =
+      middle_at_half_size(media::load_truth((source / "aloeGT.png").string(), 1).grey, true);
+  fs::create_directories(out);
+  write_file(out / "left.png", media::encode_png_gray(left));
+  write_file(out / "right.png", media::encode_png_gray(right));
+  write_file(out / "truth.png", media::encode_png_gray(truth));
+  std::printf("%.0f\n", media::disparities_needed({truth, kTruthScale}));
 }
 
+void montage(const Words& words) {
+  const int disparities = kernels::kDisparitiesRule.required("DISPARITIES", std::stoi(words[3]));
+  std::vector<Panel> panels = {
+      grey_panel("left picture", media::load_gray(words[1]).image),
+      disparity_panel("disparity, pixels", media::load_gray(words[2]).image, disparities, "no answer")};
+  if (words.size() == 5) {
+    const auto truth = media::nearest_disparity(media::load_truth(words[4], kTruthScale), disparities);
+    panels.push_back(disparity_panel("ground truth, pixels", truth, disparities, "unknown"));
+  }
+  write_side_by_side(words[0], panels);
+}
+
+void depth_montage(const Words& words) {
+  const auto picture = media::load_gray(words[1]).image;
+  const fs::path rig = words[2];
+  const calib::Calibration calibration = calib::parse_calibration(files::read_whole_file(rig));
+  const fs::path lut = rig.parent_path() / (rig.stem().string() + "_left.lut");
+  const auto table = calib::parse_lut(files::read_whole_file(lut), picture.width, picture.height);
+  const auto disparity = media::load_gray((fs::path(words[3]) / "disparity.png").string()).image;
+  const calib::DepthGeometry geometry = {calibration.rectification.q, calibration.disparity_offset};
+  write_side_by_side(
+      words[0],
+      {grey_panel("left picture", picture),
+       grey_panel("rectified by the left table", kernels::rectify(picture, table)),
+       disparity_panel("disparity, pixels", disparity, calibration.disparities, "no answer"),
+       depth_panel(calib::depth_millimetres(geometry, disparity), disparity.width, disparity.height)});
+}
+
+int run(const Words& words) {
+  const std::string command = words.empty() ? "" : words[0];
+  const Words rest(words.begin() + (words.empty() ? 0 : 1), words.end());
+  if (command == "prepare" && rest.size() == 2) {
+    prepare(rest[0], rest[1]);
+  } else if (command == "depth-montage" && rest.size() == 4) {
+    depth_montage(rest);
+  } else if (command == "montage" && (rest.size() == 4 || rest.size() == 5)) {
+    montage(rest);
+  } else {
+    std::fputs(kUsage, stderr);
+    return 2;
+  }
+  return 0;
+}
+
+}  // namespace
 }  // namespace stereotlm::demo
+
+int main(int argc, char** argv) {
+  try {
+    return stereotlm::demo::run({argv + 1, argv + argc});
+  } catch (const std::exception& exception) {
+    std::fprintf(stderr, "stereotlm-demo-pictures: %s\n", exception.what());
+    return 1;
+  }
+}

@@ -7,13 +7,24 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
+#include <string>
 #include <system_error>
+#include <tuple>
+#include <utility>
 
 namespace stereotlm::files {
+namespace {
+
+[[noreturn]] void refuse(const std::filesystem::path& path, const std::string& cause) {
+  throw std::runtime_error("'" + path.string() + "': " + cause);
+}
+
+}  // namespace
 
 NewFile::NewFile(const std::filesystem::path& path)
     : path_(path), descriptor_(open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666)) {
@@ -51,14 +62,6 @@ void write_whole_file(const std::filesystem::path& path, std::string_view bytes)
   file.write(bytes);
   file.close();
 }
-
-namespace {
-
-[[noreturn]] void refuse(const std::filesystem::path& path, const std::string& cause) {
-  throw std::runtime_error("'" + path.string() + "': " + cause);
-}
-
-}  // namespace
 
 void check_regular_file(const std::filesystem::path& path) {
   namespace fs = std::filesystem;
@@ -116,6 +119,29 @@ bool is_file(const std::filesystem::path& path) {
 }
 bool is_folder(const std::filesystem::path& path) {
   return std::filesystem::is_directory(std::filesystem::symlink_status(path));
+}
+
+TemporaryFolder::TemporaryFolder() {
+  std::string variable = "TMPDIR";
+  std::string folder = "/tmp";
+  for (const char* name : {"TEMPDIR", "TEMP", "TMP", "TMPDIR"}) {  // the last counts
+    const char* const value = std::getenv(name);
+    if (value != nullptr && *value != '\0') std::tie(variable, folder) = std::pair(name, value);
+  }
+  const auto fail = [&](const std::string& rule) {
+    throw std::runtime_error(fmt::format("{} = {}: {}", variable, folder, rule));
+  };
+  std::error_code error;
+  if (!std::filesystem::is_directory(folder, error)) fail("must be a folder");
+  std::string path = (std::filesystem::path(folder) / "stereotlm_XXXXXX").string();
+  if (mkdtemp(path.data()) == nullptr)
+    fail(fmt::format("must be a folder that takes temporary files: {}", std::strerror(errno)));
+  path_ = path;
+}
+
+TemporaryFolder::~TemporaryFolder() {
+  std::error_code ignored;
+  std::filesystem::remove_all(path_, ignored);
 }
 
 }  // namespace stereotlm::files

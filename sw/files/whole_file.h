@@ -57,4 +57,19 @@ bool is_there(const std::filesystem::path& path);
 bool is_file(const std::filesystem::path& path);
 bool is_folder(const std::filesystem::path& path);
 
+// A new folder for temporary files, in the folder that the first of the environment variables TMPDIR, TMP,
+// TEMP and TEMPDIR names that is set; if none is set, in /tmp. The destructor removes it.
+class TemporaryFolder {
+ public:
+  TemporaryFolder();  // throws std::runtime_error with the place if it cannot be created
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
 }  // namespace stereotlm::files

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <stdexcept>
 
 #include "calib/png.h"
 #include "models/kernels/stereo.h"
@@ -45,58 +44,28 @@ constexpr std::array<std::uint32_t, 256> kTurbo = {
     0x8B0902, 0x880802, 0x850702, 0x810602, 0x7E0502, 0x7A0403,
 };
 
-// `count`: the number of pixels that there are.
-void check_whole(int width, int height, std::size_t count) {
-  const auto pixels = static_cast<long long>(width) * height;
-  if (width > 0 && height > 0 && pixels == static_cast<long long>(count)) return;
-  throw std::invalid_argument(
-      fmt::format("image = {}x{} with {} pixels: must be whole and not empty", width, height, count));
-}
-
-void check_whole(const kernels::GrayImage& image) {
-  check_whole(image.width, image.height, image.pixels.size());
-}
-
-void check_levels(const kernels::GrayImage& disparity, int disparities) {
-  kernels::kDisparitiesRule.required("disparities", disparities);
-  check_whole(disparity);
-  for (int y = 0; y < disparity.height; ++y) {
-    for (int x = 0; x < disparity.width; ++x) {
-      const int d = disparity.at(x, y);
-      if (d != kernels::kInvalidDisparity && d >= disparities) {
-        throw std::invalid_argument(fmt::format("disparity ({}, {}) = {}: must be {} or less than {}", x, y,
-                                                d, kernels::kInvalidDisparity, disparities));
-      }
-    }
-  }
-}
-
 }  // namespace
 
 std::vector<std::uint8_t> encode_png_gray(const kernels::GrayImage& image) {
-  check_whole(image);
   return calib::encode_png(image.width, image.height, calib::PngPixel::kGrey, image.pixels.data());
 }
 
 std::vector<std::uint8_t> encode_png_16(int width, int height, const std::vector<std::uint16_t>& values) {
-  check_whole(width, height, values.size());
   return calib::encode_png(width, height, calib::PngPixel::kGrey16, values.data());
 }
 
 std::vector<std::uint8_t> encode_disparity_color_png(const kernels::GrayImage& disparity, int disparities) {
-  check_levels(disparity, disparities);
   std::vector<std::uint8_t> colours;
   for (const std::uint8_t d : disparity.pixels) {
     const bool is_valid = d != kernels::kInvalidDisparity;
     const double level = is_valid && disparities > 1 ? 255.0 * d / (disparities - 1) : 0;
-    const std::uint32_t colour = is_valid ? kTurbo[static_cast<std::size_t>(std::lround(level))] : 0;
+    const std::uint32_t colour = is_valid ? kTurbo.at(static_cast<std::size_t>(std::lround(level))) : 0;
     for (const unsigned shift : {0U, 8U, 16U}) colours.push_back(static_cast<std::uint8_t>(colour >> shift));
   }
   return calib::encode_png(disparity.width, disparity.height, calib::PngPixel::kColour, colours.data());
 }
 
 std::vector<std::uint8_t> encode_pfm(const kernels::GrayImage& disparity) {
-  check_whole(disparity);
   const std::string header = fmt::format("Pf\n{} {}\n-1.0\n", disparity.width, disparity.height);
   std::vector<std::uint8_t> bytes(header.begin(), header.end());
   bytes.reserve(bytes.size() + 4 * disparity.pixels.size());

@@ -1,24 +1,23 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
 #include <vector>
 
 #include "models/kernels/gray_image.h"
-#include "sw/media/truth.h"
+#include "sw/media/load.h"
 
 namespace stereotlm::media {
 
 // Encodes images to the bytes of a file. In a disparity image kernels::kInvalidDisparity marks invalid
-// pixels. Equal images give equal bytes. All throw std::invalid_argument for an empty image.
+// pixels. Equal images give equal bytes. An image is whole, and not empty.
 
 std::vector<std::uint8_t> encode_png_gray(const kernels::GrayImage& image);
 
-// 16-bit grey, row by row. Throws std::invalid_argument if there are not width * height values.
+// 16-bit grey, row by row.
 std::vector<std::uint8_t> encode_png_16(int width, int height, const std::vector<std::uint16_t>& values);
 
-// Disparities 0 .. disparities-1 from dark blue to dark red (Turbo), invalid pixels black. Throws
-// std::invalid_argument for any other value. disparities: kernels::kDisparitiesRule.
+// Disparities 0 .. disparities-1 from dark blue to dark red (Turbo), invalid pixels black.
+// disparities: kernels::kDisparitiesRule.
 std::vector<std::uint8_t> encode_disparity_color_png(const kernels::GrayImage& disparity, int disparities);
 
 // Portable float map: one channel, little endian (scale -1.0), rows bottom to top, invalid = +infinity.

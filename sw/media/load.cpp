@@ -10,7 +10,7 @@
 
 #include "sw/files/whole_file.h"
 #include "sw/media/decode.h"
-#include "sw/process/installation.h"
+#include "sw/process/command.h"
 
 namespace stereotlm::media {
 namespace {

@@ -15,8 +15,8 @@
 #include "platform/config/buffer_layout.h"
 #include "sw/explore/plan/points.h"
 #include "sw/explore/search/allocation_search.h"
-#include "sw/files/shell_word.h"
-#include "sw/files/temporary_folder.h"
+#include "sw/files/text_forms.h"
+#include "sw/files/whole_file.h"
 #include "sw/stats/accuracy.h"
 
 namespace stereotlm::paper {
@@ -52,47 +52,49 @@ void for_each_run(const std::vector<Claim>& claims, const Visit& visit) {
   }
 }
 
-// All different boards of the claims: with `camera` the computers, else the cores alone.
+// All different boards of the claims, cores alone and computers.
 class Boards {
  public:
-  Boards(const std::vector<Claim>& claims, bool camera) : run_{camera, 0, ""} {
+  explicit Boards(const std::vector<Claim>& claims) {
     for_each_run(claims, [&](const BoardRun& run) {
-      if (run.camera == camera && numbers_.emplace(words_of(run), boards_.size()).second)
-        boards_.push_back(board_of(run));
+      if (numbers_.emplace(std::pair(run.camera, words_of(run)), runs_.size()).second) runs_.push_back(run);
     });
   }
 
-  std::size_t size() const { return boards_.size(); }
+  std::size_t size() const { return runs_.size(); }
 
   // Returns false if `keep_going` has ended the simulations.
   bool simulate(const Means& means, const std::function<bool(std::uint64_t done)>& keep_going) {
-    return batch_.run(explore::board_points(boards_, run_), means.evaluate, means.version, means.jobs,
+    return batch_.run({runs_.size(), [this](std::uint64_t number) { return point(number); }}, means.evaluate,
                       [&](const explore::SweepCounts& counts) { return keep_going(counts.done()); });
   }
 
   // To be called after simulate().
   Measured of(const BoardRun& run) {
-    const std::size_t number = numbers_.at(words_of(run));
-    const explore::StoredRow& row = batch_.row_of(explore::make_point(number, boards_[number], run_));
-    const bool camera = run_.camera;
-    if (camera &&
-        row.integer("cameras.left.dropped_pixels") + row.integer("cameras.right.dropped_pixels") > 0)
+    const std::size_t number = numbers_.at({run.camera, words_of(run)});
+    const explore::Point one = point(number);
+    const explore::StoredRow& row = batch_.row_of(one);
+    if (run.camera && row.lost_pixels() > 0)
       throw std::runtime_error(fmt::format("{}: captures lose pixels", command_of(run)));
-    const std::string bound = camera ? "bound.system" : "bound.core";
+    const std::string bound = run.camera ? "bound.system" : "bound.core";
     Measured measured;
-    measured.rate = row.real(camera ? "frames_per_second.steady" : "frames_per_second.core");
-    if (camera) measured.delivered = row.real("frames_per_second.system");
+    measured.rate = row.real(run.camera ? "frames_per_second.steady" : "frames_per_second.core");
+    if (run.camera) measured.delivered = row.real("frames_per_second.system");
     measured.bound = row.real(bound);
     measured.limited_by = row.text(bound + "_limited_by");
     measured.slices_percent = row.real("area.slices_percent");
-    measured.banks = banks_of(boards_[number]);
+    measured.banks = banks_of(*one.board);
     return measured;
   }
 
  private:
-  explore::PointRun run_;
-  std::vector<BoardConfig> boards_;
-  std::map<std::string, std::size_t> numbers_;
+  explore::Point point(std::uint64_t number) const {
+    const BoardRun& run = runs_.at(number);
+    return explore::make_point(number, board_of(run), {run.camera, 0, ""});
+  }
+
+  std::vector<BoardRun> runs_;
+  std::map<std::pair<bool, std::string>, std::size_t> numbers_;
   explore::Batch batch_;
 };
 
@@ -228,12 +230,12 @@ const ClaimFinding& Findings::of(const std::string& claim) const {
 BoardConfig board_of(const BoardRun& run) { return platform::load_board(run.preset, run.sets); }
 
 std::optional<Findings> study(const std::vector<Claim>& claims, const Means& means) {
-  Boards boards[] = {{claims, false}, {claims, true}};
+  Boards boards(claims);
   std::map<std::string, std::pair<BoardRun, Quality>> scenes;  // by command
   for_each_run(claims, [&](const BoardRun& run) {
     if (run.scene) scenes[command_of(run)].first = run;
   });
-  std::uint64_t after = boards[0].size() + boards[1].size() + scenes.size();  // of later parts, at most
+  std::uint64_t after = boards.size() + scenes.size();  // of later parts, at most
   std::list<BankSearch> searches;
   for (const Claim& claim : claims) {
     if (claim.quantity == Quantity::kBanksProved) after += searches.emplace_back(claim, means).most;
@@ -252,8 +254,6 @@ std::optional<Findings> study(const std::vector<Claim>& claims, const Means& mea
     const files::TemporaryFolder folder;
     explore::SweepOptions sweep;
     sweep.store = (folder.path() / "allocations.db").string();
-    sweep.version = means.version;
-    sweep.jobs = means.jobs;
     std::uint64_t simulated = 0;
     const auto keep_going = part(searched.most);
     const bool is_whole = explore::simulate(searched.search, means.evaluate, sweep,
@@ -265,12 +265,11 @@ std::optional<Findings> study(const std::vector<Claim>& claims, const Means& mea
     before += simulated;
     add_best(searched, means, findings.banks);
   }
-  for (Boards& its : boards) {
-    const auto keep_going = part(its.size());
-    const auto report = [&](std::uint64_t done) { return keep_going(done, its.size() - done); };
-    if (!its.simulate(means, report)) return std::nullopt;
-    before += its.size();
-  }
+  const auto keep_simulating = part(boards.size());
+  if (!boards.simulate(means,
+                       [&](std::uint64_t done) { return keep_simulating(done, boards.size() - done); }))
+    return std::nullopt;
+  before += boards.size();
   const auto keep_going = part(scenes.size());
   std::uint64_t done = 0;
   for (auto& [command, scene] : scenes) {
@@ -287,7 +286,7 @@ std::optional<Findings> study(const std::vector<Claim>& claims, const Means& mea
       finding.of = one;
       for (const BoardRun& run : one.runs) {
         if (claim.quantity == Quantity::kBanksProved) continue;
-        finding.runs.push_back(boards[run.camera ? 1 : 0].of(run));
+        finding.runs.push_back(boards.of(run));
         if (run.scene) finding.runs.back().quality = scenes.at(command_of(run)).second;
       }
       finding.modelled = modelled_value(claim, finding.runs, findings.banks);

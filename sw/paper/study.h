@@ -75,8 +75,6 @@ struct Means {
   // Simulates one frame of the core alone, without calibration, that shows the scene. Throws
   // std::runtime_error if a share has no pixels.
   std::function<Quality(const platform::BoardConfig& board, const Scene& scene)> quality;
-  std::string version;
-  unsigned jobs = 1;
   // Called several times a second with the number of boards that are done, and an upper limit for the number
   // of boards that are left. study() ends if it returns false.
   std::function<bool(std::uint64_t done, std::uint64_t most_left)> keep_going;

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "sw/files/base64.h"
+#include "sw/files/text_forms.h"
 
 extern "C" {
 // Of page/page_text.S.

@@ -10,22 +10,19 @@
 #include <optional>
 #include <set>
 #include <stdexcept>
-#include <thread>
 #include <utility>
 #include <vector>
 
 #include "models/fpga/core_ports.h"
 #include "models/fpga/frame_geometry.h"
 #include "platform/figures.h"
-#include "sw/process/installation.h"
+#include "sw/process/command.h"
 #include "sw/process/interrupt.h"
 #include "sw/runs/progress.h"
 #include "sw/stats/console_table.h"
 
 namespace stereotlm::runs {
 namespace {
-
-using Limiter = Explanation::Limiter;
 
 // A rate that is below its bound by less than this share is that of the bound.
 constexpr double kAtBound = 0.005;
@@ -63,18 +60,18 @@ const Reason& reason_of(const std::string& why) {
   throw std::logic_error(why + ": not a reason for which the core waits");
 }
 
-double percent_of_cycles(Explanation& explanation, std::int64_t cycles) {
+double percent_of_cycles(const Explanation& explanation, std::int64_t cycles) {
   return 100 * static_cast<double>(cycles) / static_cast<double>(explanation.figures().integer("cycles"));
 }
 
 // "left_lut waits there for left_pixel in 33.14 % of the cycles"
-std::string wait_of(Explanation& explanation, const explore::StoredBlame& wait) {
+std::string wait_of(const Explanation& explanation, const explore::StoredBlame& wait) {
   return fmt::format("{} waits there for {} in {:.2f} % of the cycles", wait.port, stats::cause_text(wait.by),
                      percent_of_cycles(explanation, wait.cycles));
 }
 
 // The PCI bus or the local bus, where it has little headroom.
-std::string busy_bus_text(Explanation& explanation) {
+std::string busy_bus_text(const Explanation& explanation) {
   std::string text;
   for (const Explanation::Resource& resource : explanation.resources()) {
     if ((resource.name == "pci" || resource.name == "bridge") && resource.headroom_percent < kLeastHeadroom)
@@ -84,7 +81,7 @@ std::string busy_bus_text(Explanation& explanation) {
   return text;
 }
 
-std::string bound_text(Explanation& explanation) {
+std::string bound_text(const Explanation& explanation) {
   const explore::StoredRow& row = explanation.figures();
   const std::string bound = explanation.camera() ? "bound.system" : "bound.core";
   const std::string owner = row.text(bound + "_limited_by");
@@ -94,18 +91,16 @@ std::string bound_text(Explanation& explanation) {
   return wait ? text + "; " + wait_of(explanation, *wait) : text;
 }
 
-std::string lost_pixels_text(Explanation& explanation) {
+std::string lost_pixels_text(const Explanation& explanation) {
   const explore::StoredRow& row = explanation.figures();
-  const std::int64_t lost =
-      row.integer("cameras.left.dropped_pixels") + row.integer("cameras.right.dropped_pixels");
   const std::string text =
-      fmt::format(": captures lose {} pixels while {} frames are delivered, so pictures are torn", lost,
-                  explanation.frames());
+      fmt::format(": captures lose {} pixels while {} frames are delivered, so pictures are torn",
+                  row.lost_pixels(), explanation.frames());
   for (const explore::StoredBlame& wait : explanation.blames()) {
     if (wait.port == kHost && percent_of_cycles(explanation, wait.cycles) > 100 * kVisibleLoss)
       return wait.bank + text + "; " + wait_of(explanation, wait);
   }
-  const std::vector<Explanation::Resource> all = explanation.resources();
+  const std::vector<Explanation::Resource>& all = explanation.resources();
   const auto busy_of = [&all](const char* name) {
     return std::find_if(all.begin(), all.end(), [name](const auto& each) { return each.name == name; })
         ->busy_percent;
@@ -122,14 +117,14 @@ std::string lost_pixels_text(Explanation& explanation) {
           : fmt::format(", and pci.load makes {} of its {} transactions", of_load, all_transactions));
 }
 
-std::string waits_text(Explanation& explanation) {
+std::string waits_text(const Explanation& explanation) {
   const std::string cost = fmt::format("all waits cost {:.2f} % of the time", explanation.budget().waits);
   const auto wait = longest_wait(explanation);
   return wait ? fmt::format("waits at {}: {}; {}", wait->bank, wait_of(explanation, *wait), cost)
               : "waits for banks: " + cost;
 }
 
-std::string queues_text(Explanation& explanation) {
+std::string queues_text(const Explanation& explanation) {
   const double percent = result_queue_percent(explanation);
   if (percent > 0) {
     return fmt::format(
@@ -141,7 +136,7 @@ std::string queues_text(Explanation& explanation) {
                      explanation.budget().queues);
 }
 
-std::string core_waits_text(Explanation& explanation) {
+std::string core_waits_text(const Explanation& explanation) {
   double sum = 0;
   std::vector<std::pair<double, std::string>> shares;
   for (const auto& [why, share] : explanation.budget().core_waits) {
@@ -184,13 +179,24 @@ Explanation::Explanation(const platform::BoardConfig& board, const platform::Tab
 
 bool Explanation::simulate(PointSimulator simulator) {
   ProgressLine progress;
-  return batch_.run(
-      points_, [&simulator](const explore::Point& point) { return simulator(point); }, process::kVersion,
-      std::max(1U, std::thread::hardware_concurrency()),
+  const bool is_whole = batch_.run(
+      points_, [&simulator](const explore::Point& point) { return simulator(point); },
       [&](const explore::SweepCounts& done) {
         progress.show([&](double) { return fmt::format("{}/{} boards simulated", done.done(), done.total); });
         return !process::interrupted();
       });
+  if (!is_whole) return false;
+  now_ = rate_of(0);
+  if (!now_.failure.empty()) throw std::runtime_error(now_.failure);
+  figures_ = std::make_unique<explore::StoredRow>(batch_.path());
+  figures_->find(points_.point(0).hash);
+  busiest_ = busiest_bank_of(0, board_);
+  read_blames();
+  read_steps();
+  const auto cycles = nlohmann::json::parse(figures_->text("frame_cycles")).get<std::vector<double>>();
+  compare_resources(cycles);
+  share_time(cycles);
+  return true;
 }
 
 std::vector<platform::BoardConfig> Explanation::boards() const {
@@ -203,19 +209,11 @@ Explanation::Rate Explanation::rate_of(std::uint64_t number) {
   try {
     const explore::StoredRow& row = batch_.row_of(points_.point(number));
     if (!run_.camera) return {row.real("frames_per_second.core"), 0, false, ""};
-    const auto lost =
-        row.integer("cameras.left.dropped_pixels") + row.integer("cameras.right.dropped_pixels");
-    return {row.real("frames_per_second.steady"), row.real("frames_per_second.steady_uncertainty"), lost > 0,
-            ""};
+    return {row.real("frames_per_second.steady"), row.real("frames_per_second.steady_uncertainty"),
+            row.lost_pixels() > 0, ""};
   } catch (const explore::PointFailed& failed) {
     return {0, 0, false, failed.what()};
   }
-}
-
-Explanation::Rate Explanation::now() {
-  Rate rate = rate_of(0);
-  if (!rate.failure.empty()) throw std::runtime_error(rate.failure);
-  return rate;
 }
 
 Explanation::BusiestBank Explanation::busiest_bank_of(std::uint64_t number,
@@ -237,23 +235,28 @@ Explanation::BusiestBank Explanation::busiest_bank_of(std::uint64_t number,
   return busiest;
 }
 
-Explanation::BusiestBank Explanation::busiest_bank() { return busiest_bank_of(0, board_); }
+void Explanation::read_blames() {
+  sqlite::Database store(batch_.path(), sqlite::Database::Access::kRead);
+  sqlite::Statement find(
+      store, "SELECT port, bank, by, cycles FROM blame WHERE hash = ? ORDER BY cycles DESC, port, bank, by");
+  find.bind(1, points_.point(0).hash);
+  while (find.step()) blames_.push_back({find.text(0), find.text(1), find.text(2), find.integer(3)});
+}
 
-std::vector<Explanation::Step> Explanation::steps() {
-  std::vector<Step> all;
+void Explanation::read_steps() {
   for (std::size_t i = 0; i < knobs_.possible.size(); ++i) {
     const explore::KnobStep& knob = knobs_.possible[i];
     Step step{&knob, rate_of(i + 1), {}};
     if (step.rate.failure.empty()) step.busiest = busiest_bank_of(i + 1, knob.board);
-    all.push_back(std::move(step));
+    steps_.push_back(std::move(step));
   }
-  std::stable_sort(all.begin(), all.end(), [](const Step& a, const Step& b) {
+  std::stable_sort(steps_.begin(), steps_.end(), [](const Step& a, const Step& b) {
     if (a.rate.failure.empty() != b.rate.failure.empty()) return a.rate.failure.empty();
     return a.rate.frames_per_second > b.rate.frames_per_second;
   });
   std::set<std::string> groups;
   std::set<std::string> whole;  // groups with an alternative that loses no pixels
-  for (const Step& step : all) {
+  for (const Step& step : steps_) {
     if (step.rate.failure.empty() && !step.rate.loses_pixels) whole.insert(step.step->group);
   }
   const auto is_alternative = [&](const Step& step) {
@@ -261,15 +264,10 @@ std::vector<Explanation::Step> Explanation::steps() {
     if (group.empty() || !step.rate.failure.empty()) return false;
     return (step.rate.loses_pixels && whole.count(group) > 0) || !groups.insert(group).second;
   };
-  all.erase(std::remove_if(all.begin(), all.end(), is_alternative), all.end());
-  return all;
+  steps_.erase(std::remove_if(steps_.begin(), steps_.end(), is_alternative), steps_.end());
 }
 
-std::vector<double> Explanation::frame_cycles() {
-  return nlohmann::json::parse(figures().text("frame_cycles")).get<std::vector<double>>();
-}
-
-double Explanation::busy_percent(const std::string& resource) {
+double Explanation::busy_percent(const std::string& resource) const {
   const explore::StoredRow& row = figures();
   const auto number = [&row](const std::string& path) { return static_cast<double>(row.integer(path)); };
   const std::size_t space = resource.find(' ');
@@ -290,103 +288,67 @@ double Explanation::busy_percent(const std::string& resource) {
   return 100 * (number(port + ".grants") + number(port + ".passed_cycles")) / number("cycles");
 }
 
-std::vector<Explanation::Resource> Explanation::resources() {
-  const Rate base = now();
-  const std::vector<double> cycles = frame_cycles();
-  const double mean = mean_of(cycles);
+void Explanation::add_resource(const Resource& found) {
+  const auto known = std::find_if(resources_.begin(), resources_.end(),
+                                  [&](const auto& other) { return other.name == found.name; });
+  if (known == resources_.end()) {
+    resources_.push_back(found);
+  } else if (found.headroom_percent != known->headroom_percent) {
+    if (found.headroom_percent < known->headroom_percent) *known = found;
+    known->varies = true;
+  }
+}
+
+void Explanation::compare_resources(const std::vector<double>& frame_cycles) {
   const double clock_hz = board_.fpga.clock_mhz * 1e6;
-  const double stretch = clock_hz / mean / base.frames_per_second;
-  std::vector<Resource> all;
-  const auto add = [&all](const Resource& found) {
-    const auto known =
-        std::find_if(all.begin(), all.end(), [&](const auto& other) { return other.name == found.name; });
-    if (known == all.end()) {
-      all.push_back(found);
-    } else if (found.headroom_percent != known->headroom_percent) {
-      if (found.headroom_percent < known->headroom_percent) *known = found;
-      known->varies = true;
-    }
-  };
-  for (std::size_t frame = 0; frame < std::min(bounds_.size(), cycles.size()); ++frame) {
+  const double stretch = clock_hz / mean_of(frame_cycles) / now_.frames_per_second;
+  for (std::size_t frame = 0; frame < std::min(bounds_.size(), frame_cycles.size()); ++frame) {
     for (const platform::ResourceBound& bound : bounds_[frame]) {
       if (run_.camera && platform::bank_of_resource(bound.resource))
         continue;  // below, with the accesses of the host
       const auto needed = static_cast<double>(bound.cycles);
-      add({bound.resource, clock_hz / needed, 100 * (1 - needed / (stretch * cycles[frame])),
-           busy_percent(bound.resource), frame});
+      add_resource({bound.resource, clock_hz / needed, 100 * (1 - needed / (stretch * frame_cycles[frame])),
+                    busy_percent(bound.resource), frame});
     }
   }
   if (run_.camera) {
-    for (const platform::RateBound& part : platform::computer_bounds(board_, accesses_, !base.loses_pixels)) {
-      add({part.resource, part.frames_per_second, 100 * (1 - base.frames_per_second / part.frames_per_second),
-           busy_percent(part.resource), 0});
+    for (const platform::RateBound& part : platform::computer_bounds(board_, accesses_, !now_.loses_pixels)) {
+      add_resource({part.resource, part.frames_per_second,
+                    100 * (1 - now_.frames_per_second / part.frames_per_second), busy_percent(part.resource),
+                    0});
     }
   }
-  std::stable_sort(all.begin(), all.end(), [](const Resource& a, const Resource& b) {
+  std::stable_sort(resources_.begin(), resources_.end(), [](const Resource& a, const Resource& b) {
     return a.headroom_percent < b.headroom_percent;
   });
-  return all;
 }
 
-const Budget& Explanation::budget() {
-  if (budget_) return *budget_;
-  budget_.emplace();
+void Explanation::share_time(std::vector<double> frame_cycles) {
+  const std::uint64_t turn = bounds_.size();
   double frames_share = 100;
   if (run_.camera) {
-    for (const auto& [why, share] : core_time(board_, tables_, run_.frames)) {
-      if (why.empty()) {
-        frames_share = 100 * share;
-      } else {
-        budget_->core_waits[why] = 100 * share;
-      }
-    }
-  }
-  const std::uint64_t turn = bounds_.size();
-  std::vector<double> cycles = frame_cycles();
-  if (run_.camera) {
+    for (const auto& [why, share] : core_time(board_, tables_, run_.frames))
+      (why.empty() ? frames_share : budget_.core_waits[why]) = 100 * share;
     const std::uint64_t window = platform::steady_frames(run_.frames, turn);
-    cycles.erase(cycles.begin(), cycles.end() - static_cast<std::ptrdiff_t>(window));
+    frame_cycles.erase(frame_cycles.begin(), frame_cycles.end() - static_cast<std::ptrdiff_t>(window));
   }
-  const double mean = mean_of(cycles);
+  const double mean = mean_of(frame_cycles);
   double needed = 0;  // by matcher and ports
   for (const std::vector<platform::ResourceBound>& of_frame : bounds_) {
-    double most = 0;
+    std::uint64_t most = 0;
     for (const platform::ResourceBound& bound : of_frame) {
-      if (!platform::bank_of_resource(bound.resource))
-        most = std::max(most, static_cast<double>(bound.cycles));
+      if (!platform::bank_of_resource(bound.resource)) most = std::max(most, bound.cycles);
     }
-    needed += most / static_cast<double>(turn);
+    needed += static_cast<double>(most) / static_cast<double>(turn);
   }
   const double waitless = board_.fpga.clock_mhz * 1e6 / waitless_frames_per_second(board_, tables_, turn);
-  budget_->bound = frames_share * needed / mean;
-  budget_->queues = frames_share * (waitless - needed) / mean;
-  budget_->waits = frames_share * (mean - waitless) / mean;
-  return *budget_;
+  budget_.bound = frames_share * needed / mean;
+  budget_.queues = frames_share * (waitless - needed) / mean;
+  budget_.waits = frames_share * (mean - waitless) / mean;
 }
 
-Explanation::Limiter Explanation::limiter() {
-  const Rate rate = now();
-  if (rate.loses_pixels) return Limiter::kLostPixels;
-  const double bound = figures().real(run_.camera ? "bound.system" : "bound.core");
-  if (rate.frames_per_second >= bound * (1 - kAtBound)) return Limiter::kBound;
-  double core_waits = 0;
-  for (const auto& [why, share] : budget().core_waits) core_waits += share;
-  const double others = std::max(budget().queues, 0.0);
-  if (budget().waits > std::max(core_waits, others)) return Limiter::kWaits;
-  return core_waits > others ? Limiter::kCoreWaits : Limiter::kQueues;
-}
-
-std::vector<explore::StoredBlame> Explanation::blames() {
-  sqlite::Database store(batch_.path(), sqlite::Database::Access::kRead);
-  sqlite::Statement find(
-      store, "SELECT port, bank, by, cycles FROM blame WHERE hash = ? ORDER BY cycles DESC, port, bank, by");
-  find.bind(1, points_.point(0).hash);
-  std::vector<explore::StoredBlame> all;
-  while (find.step()) all.push_back({find.text(0), find.text(1), find.text(2), find.integer(3)});
-  return all;
-}
-
-std::optional<explore::StoredBlame> longest_wait(Explanation& explanation, const std::string& resource) {
+std::optional<explore::StoredBlame> longest_wait(const Explanation& explanation,
+                                                 const std::string& resource) {
   for (const explore::StoredBlame& wait : explanation.blames()) {
     if (wait.port != kHost && (resource.empty() || platform::resource_of_bank(wait.bank) == resource))
       return wait;
@@ -394,23 +356,19 @@ std::optional<explore::StoredBlame> longest_wait(Explanation& explanation, const
   return std::nullopt;
 }
 
-std::string limiter_text(Explanation& explanation) {
-  switch (explanation.limiter()) {
-    case Limiter::kLostPixels:
-      return lost_pixels_text(explanation);
-    case Limiter::kBound:
-      return bound_text(explanation);
-    case Limiter::kWaits:
-      return waits_text(explanation);
-    case Limiter::kQueues:
-      return queues_text(explanation);
-    case Limiter::kCoreWaits:
-      return core_waits_text(explanation);
-  }
-  return "";
+std::string limiter_text(const Explanation& explanation) {
+  if (explanation.now().loses_pixels) return lost_pixels_text(explanation);
+  const double bound = explanation.figures().real(explanation.camera() ? "bound.system" : "bound.core");
+  if (explanation.now().frames_per_second >= bound * (1 - kAtBound)) return bound_text(explanation);
+  const Budget& budget = explanation.budget();
+  double core_waits = 0;
+  for (const auto& [why, share] : budget.core_waits) core_waits += share;
+  const double queues = std::max(budget.queues, 0.0);
+  if (budget.waits > std::max(core_waits, queues)) return waits_text(explanation);
+  return core_waits > queues ? core_waits_text(explanation) : queues_text(explanation);
 }
 
-std::string budget_text(Explanation& explanation) {
+std::string budget_text(const Explanation& explanation) {
   const Budget& budget = explanation.budget();
   std::string text = fmt::format("{:.2f} % the matcher and the ports", budget.bound);
   if (budget.queues >= kVisiblePercent) text += fmt::format(", {:.2f} % queues and latencies", budget.queues);
@@ -422,7 +380,7 @@ std::string budget_text(Explanation& explanation) {
   return text;
 }
 
-double result_queue_percent(Explanation& explanation) {
+double result_queue_percent(const Explanation& explanation) {
   const explore::StoredRow& row = explanation.figures();
   const double cycles = static_cast<double>(row.integer("cycles"));
   const double lost = cycles * (1 - row.real("frames_per_second.core") / row.real("bound.core"));

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -42,7 +42,8 @@ class Explanation {
   Explanation(const platform::BoardConfig& board, const platform::Tables& tables, bool camera,
               std::uint64_t frames = 0);
 
-  // Returns false if interrupted. Everything below needs a call that has returned true.
+  // Returns false if interrupted. Throws std::runtime_error if the run of the board itself has failed.
+  // Everything below needs a call that has returned true.
   bool simulate(PointSimulator simulator);
 
   // The result of the simulation of one board.
@@ -52,10 +53,9 @@ class Explanation {
     bool loses_pixels = false;
     std::string failure;  // the reason if the run has failed; else empty
   };
-  // The board itself. Throws std::runtime_error if its run has failed.
-  Rate now();
-  // The figures of the board itself, valid until the next call of a member function.
-  const explore::StoredRow& figures() { return batch_.row_of(points_.point(0)); }
+  const Rate& now() const { return now_; }  // of the board itself
+  // The figures of the board itself.
+  const explore::StoredRow& figures() const { return *figures_; }
   std::uint64_t frames() const { return explore::frames_of(run_, board_); }
   bool camera() const { return run_.camera; }
 
@@ -71,8 +71,8 @@ class Explanation {
     BusiestBank busiest;  // without meaning if the run has failed
   };
   // All steps, the best first; those that have failed last. Of a group only the best.
-  std::vector<Step> steps();
-  BusiestBank busiest_bank();
+  const std::vector<Step>& steps() const { return steps_; }
+  const BusiestBank& busiest_bank() const { return busiest_; }
   const explore::KnobSteps& knobs() const { return knobs_; }
 
   // A resource of the board and its bound.
@@ -90,31 +90,22 @@ class Explanation {
   // All resources, the least headroom first. For ports and matcher, and for the banks of the core alone, the
   // headroom is the least over the frames of one turn of the lists. The time of a frame is its cycles and,
   // for a whole computer, its share of the time between frames.
-  std::vector<Resource> resources();
+  const std::vector<Resource>& resources() const { return resources_; }
 
-  // See Budget.
-  const Budget& budget();
-
-  // Why the board is not faster.
-  enum class Limiter {
-    kLostPixels,  // captures lose pixels: PCI or bridge are too slow for the cameras
-    kBound,       // the rate is that of the bound: its resource
-    kWaits,       // ports wait for banks
-    kQueues,      // queues or latencies of the core
-    kCoreWaits,   // the core waits for its next start
-  };
-  Limiter limiter();
-
+  const Budget& budget() const { return budget_; }
   // Who stalls for whom, the most cycles first.
-  std::vector<explore::StoredBlame> blames();
+  const std::vector<explore::StoredBlame>& blames() const { return blames_; }
 
  private:
   std::vector<platform::BoardConfig> boards() const;
   Rate rate_of(std::uint64_t number);
   BusiestBank busiest_bank_of(std::uint64_t number, const platform::BoardConfig& board);
-
-  std::vector<double> frame_cycles();
-  double busy_percent(const std::string& resource);
+  double busy_percent(const std::string& resource) const;
+  void read_blames();
+  void read_steps();
+  void add_resource(const Resource& found);
+  void compare_resources(const std::vector<double>& frame_cycles);
+  void share_time(std::vector<double> frame_cycles);
 
   const platform::BoardConfig& board_;
   const platform::Tables& tables_;
@@ -124,21 +115,28 @@ class Explanation {
   explore::Batch batch_;
   platform::FrameAccesses accesses_;
   std::vector<std::vector<platform::ResourceBound>> bounds_;  // [frame of one turn of the lists]
-  std::optional<Budget> budget_;
+  std::unique_ptr<explore::StoredRow> figures_;
+  Rate now_;
+  BusiestBank busiest_;
+  std::vector<Step> steps_;
+  std::vector<Resource> resources_;
+  Budget budget_;
+  std::vector<explore::StoredBlame> blames_;
 };
 
 // The longest wait of a port of the core, at this resource ("bank bank0") or at any bank. Waits of the host
 // do not count: they cost the core nothing.
-std::optional<explore::StoredBlame> longest_wait(Explanation& explanation, const std::string& resource = "");
+std::optional<explore::StoredBlame> longest_wait(const Explanation& explanation,
+                                                 const std::string& resource = "");
 
 // Why a board is not faster, after "limited by": "the matcher, at its bound of 18.596 frames/s".
-std::string limiter_text(Explanation& explanation);
+std::string limiter_text(const Explanation& explanation);
 
 // What the time of a frame goes to: "96.69 % the matcher and the ports, 3.31 % the core waits for ..".
-std::string budget_text(Explanation& explanation);
+std::string budget_text(const Explanation& explanation);
 
 // The share of the cycles in which the matcher waits because the result queue is too short, in percent; 0 if
 // it does not limit the board.
-double result_queue_percent(Explanation& explanation);
+double result_queue_percent(const Explanation& explanation);
 
 }  // namespace stereotlm::runs

@@ -1,13 +1,25 @@
 #pragma once
 
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
+#include "models/fpga/row_profile.h"
+#include "models/kernels/gray_image.h"
 #include "platform/config/board_config.h"
 #include "platform/statistics.h"
+#include "sw/process/child.h"
 #include "sw/process/problems.h"
+#include "sw/runs/progress.h"
 #include "sw/runs/run_input.h"
 #include "sw/runs/run_json.h"
+#include "sw/runs/simulation/simulation.h"
+#include "sw/stats/run_comparison.h"
 
 namespace stereotlm::runs {
 
@@ -42,5 +54,96 @@ std::string name_of(const RecordedRun& run);
 // Loads the input to repeat the run, and opens its pictures. Reports problems; if there are any, the result
 // must not be used.
 RunInput open_again(const RecordedRun& run, process::Problems& problems);
+
+// The figures of a repeated run, as text for check_repeated(). `input`: see open_again().
+std::string figures_of(platform::Statistics statistics, const Result& last, const RunInput& input);
+// Throws std::runtime_error if these figures of the repetition differ from those of the run.
+void check_repeated(const RecordedRun& run, const std::string& figures);
+
+// Repeats a recorded run in a child process and records the rows of its frames, and what `run --record` does.
+// The repetition is always at fidelity fast, because the figures do not depend on the fidelity.
+class Rerun {
+ public:
+  // Takes text for the end of a file of `run --record`.
+  using Record = std::function<void(const std::string& name, const std::string& text)>;
+  // Starts the child. `run` outlives the object. With `record`, next() hands all files to it.
+  explicit Rerun(const RecordedRun& run, Record record = nullptr);
+
+  // A finished frame of the repeated run.
+  struct Frame {
+    std::uint64_t number = 0;  // number of the camera frame
+    fpga::RowProfile rows;
+    kernels::GrayImage disparity;  // empty without pixels
+  };
+  // Waits until next() would return without waiting, a signal has been caught, or the time is over. Returns
+  // true in the first case.
+  bool has_news(std::chrono::milliseconds wait) { return child_->has_news(wait); }
+  // Waits for the next frame; nullopt after the last. Throws std::runtime_error if the run fails, or if its
+  // figures differ from the recorded ones.
+  std::optional<Frame> next();
+
+ private:
+  const RecordedRun& run_;
+  Record record_;
+  std::unique_ptr<process::Child> child_;
+};
+
+// The reasons why the rows and the pixels of two runs, A and B, cannot be compared. A reason is empty if they
+// can.
+struct DiffLimits {
+  DiffLimits(const RecordedRun& a, const RecordedRun& b);
+
+  std::string rows;
+  std::string pixels;
+};
+
+// Repeats two recorded runs side by side and compares them: the rows of frames with the same number in the
+// core, and the disparities of frames that show the same camera frame.
+class FrameAlignment {
+ public:
+  // Starts both runs. All arguments outlive the object. `csv`: gets the compared rows; may be null.
+  // `record_a` and `record_b`: what Rerun hands to a record; may be null.
+  FrameAlignment(const RecordedRun& a, const RecordedRun& b, const DiffLimits& limits, stats::RowsCsv* csv,
+                 Rerun::Record record_a = nullptr, Rerun::Record record_b = nullptr);
+
+  // Returns true when both runs have ended, and false at the first interrupt. Throws what Rerun::next()
+  // throws.
+  bool run();
+
+  const stats::RowComparison& rows() const { return rows_; }
+  const stats::PixelComparison& pixels() const { return pixels_; }
+
+  // The last camera frame that both runs computed, and its disparities.
+  struct CommonFrame {
+    std::uint64_t number = 0;
+    kernels::GrayImage a;
+    kernels::GrayImage b;
+  };
+  const std::optional<CommonFrame>& last_common() const { return last_common_; }
+
+ private:
+  // One of the two runs, and the frames of it that are still to be compared.
+  struct Side {
+    Side(const RecordedRun& run, Rerun::Record record) : rerun(run, std::move(record)) {}
+
+    Rerun rerun;
+    std::optional<Rerun::Frame> ahead;  // next frame of the run; nullopt after the last
+    std::deque<fpga::RowProfile> rows;  // rows of frames that the other run has not reached
+  };
+
+  bool read(Side& side);
+  bool advance(Side& side, const Side& other);
+  void compare_rows();
+
+  const DiffLimits& limits_;
+  stats::RowsCsv* csv_;
+  std::uint64_t frames_;  // frames of the longer run
+  stats::RowComparison rows_;
+  stats::PixelComparison pixels_;
+  std::optional<CommonFrame> last_common_;
+  Side a_;
+  Side b_;
+  ProgressLine progress_;
+};
 
 }  // namespace stereotlm::runs

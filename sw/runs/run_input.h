@@ -10,7 +10,7 @@
 #include "platform/config/board_config.h"
 #include "platform/config/tables.h"
 #include "sw/files/output_file.h"
-#include "sw/media/truth.h"
+#include "sw/media/load.h"
 #include "sw/runs/result_folder.h"
 #include "sw/runs/run_json.h"
 #include "sw/runs/simulation/simulation.h"

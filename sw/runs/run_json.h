@@ -25,21 +25,25 @@ struct InputFolder {
   std::vector<InputFile> files;  // `path` of each: its name in the folder
 };
 
+// The pictures of a run. At most one source is there: a pair, a sequence, a video or a synthetic scene.
+struct InputPictures {
+  std::optional<InputFile> left;
+  std::optional<InputFile> right;
+  std::optional<InputFolder> sequence;
+  std::vector<InputFile> video;
+  std::string video_layout;                // only with a video
+  std::optional<std::uint64_t> synthetic;  // the seed
+};
+
 // The options of a `run`, as run.json records them, without the board, which config.yaml holds in full. A
 // `run` with the recorded options and board writes the same bytes again.
-struct RecordedOptions {
+struct RecordedOptions : InputPictures {
   std::string program_version;
   std::string source;    // "preloaded"
   std::string fidelity;  // "fast"
   bool timing_only = false;
   bool verify = false;  // also false if the comparison was interrupted
   std::uint64_t frames = 1;
-  std::optional<InputFile> left;
-  std::optional<InputFile> right;
-  std::optional<InputFolder> sequence;
-  std::vector<InputFile> video;
-  std::string video_layout;  // only with a video
-  std::optional<std::uint64_t> synthetic;
   std::optional<InputCalibration> calibration;
   std::optional<InputFile> truth;
   double truth_scale = 1;  // only with a truth

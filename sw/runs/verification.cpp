@@ -39,18 +39,12 @@ std::string stats_text(platform::Statistics statistics) {
 
 std::string name_of_other(const RunInput& input) { return input.fast ? "cycle" : "fast"; }
 
-// Opens `pictures` in this process.
-std::unique_ptr<PairSource> open_pairs(const RunInput& input, const PictureSource& pictures) {
+void run_other(const RunInput& input, const process::Child::Tell& tell) {
   process::Problems problems;
-  RecordedOptions described;
-  OpenedSource source = open_source(pictures, &input.board, described, problems);
+  InputPictures pictures = input.described;
+  const std::unique_ptr<PairSource> pairs = open_source(pictures, &input.board, problems).pairs;
   if (!problems.empty())
     throw std::runtime_error("the pictures cannot be read any more: " + problems.in_one_line());
-  return std::move(source.pairs);
-}
-
-void run_other(const RunInput& input, const PictureSource& pictures, const process::Child::Tell& tell) {
-  const std::unique_ptr<PairSource> pairs = open_pairs(input, pictures);
   BlankPairs blank(input.board);
   host::FrameSource& source = pairs ? static_cast<host::FrameSource&>(*pairs) : blank;
   Binder binder;
@@ -66,10 +60,10 @@ void run_other(const RunInput& input, const PictureSource& pictures, const proce
 
 }  // namespace
 
-Verification::Verification(const RunInput& input, const PictureSource& pictures)
-    : input_(input),
-      other_(std::make_unique<process::Child>(
-          [&input, &pictures](const process::Child::Tell& tell) { run_other(input, pictures, tell); })) {}
+Verification::Verification(const RunInput& input)
+    : input_(input), other_(std::make_unique<process::Child>([&input](const process::Child::Tell& tell) {
+        run_other(input, tell);
+      })) {}
 
 void Verification::add(const Result& result) { results_.push_back(line_of(result, !input_.timing_only)); }
 

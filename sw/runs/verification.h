@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -11,7 +10,6 @@
 #include "sw/runs/progress.h"
 #include "sw/runs/run_input.h"
 #include "sw/runs/simulation/simulation.h"
-#include "sw/runs/sources/open_source.h"
 
 namespace stereotlm::runs {
 
@@ -19,8 +17,8 @@ namespace stereotlm::runs {
 class Verification {
  public:
   // Starts the other run. To be called before this process elaborates its own simulation. The child opens the
-  // pictures itself. `input` and `pictures` outlive the object.
-  Verification(const RunInput& input, const PictureSource& pictures);
+  // pictures itself. `input` outlives the object.
+  explicit Verification(const RunInput& input);
 
   // Adds the next result of this process's run.
   void add(const Result& result);

@@ -112,6 +112,13 @@ std::int64_t Database::number(const std::string& sql) {
   return statement.step() ? statement.integer(0) : 0;
 }
 
+std::vector<std::string> Database::texts(const std::string& sql) const {
+  std::vector<std::string> texts;
+  Statement statement(*this, sql);
+  while (statement.step()) texts.push_back(statement.text(0));
+  return texts;
+}
+
 Statement::Statement(const Database& database, const std::string& sql) : database_(database) {
   const char* rest = nullptr;
   const int code = sqlite3_prepare_v2(database.handle(), sql.c_str(), -1, &handle_, &rest);

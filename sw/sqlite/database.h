@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 #include <variant>
+#include <vector>
 
 struct sqlite3;
 struct sqlite3_stmt;
@@ -42,6 +43,8 @@ class Database {
   void attach(const std::string& path, const std::string& name);
   // The first column of the first row of a query; 0 if there is no row.
   std::int64_t number(const std::string& sql);
+  // The first column of each row of a query.
+  std::vector<std::string> texts(const std::string& sql) const;
   const std::string& path() const { return path_; }  // its name in messages
   sqlite3* handle() const { return handle_; }
   // Throws the DatabaseError for a result code of SQLite.

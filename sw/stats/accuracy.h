@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "models/kernels/gray_image.h"
-#include "sw/media/truth.h"
+#include "sw/media/load.h"
 
 namespace stereotlm::stats {
 

@@ -2,7 +2,10 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
+#include <set>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -10,6 +13,7 @@
 #include "platform/config/board_keys.h"
 #include "platform/config/board_yaml.h"
 #include "platform/yaml/yaml_tree.h"
+#include "sw/sqlite/database.h"
 
 namespace stereotlm::explore {
 
@@ -83,5 +87,50 @@ struct Points {
 
 // A list of boards as points, in the order of the list.
 Points board_points(std::vector<platform::BoardConfig> boards, const PointRun& run);
+
+// A condition cannot be computed for a point. what() has the place of the condition, its name and the reason;
+// `reason` is the reason alone.
+class ConditionError : public std::runtime_error {
+ public:
+  ConditionError(const std::string& what, const std::string& its_reason)
+      : std::runtime_error(what), reason(its_reason) {}
+  std::string reason;
+};
+
+// The conditions of a plan, computed for one point after another. A condition is an SQL expression of SQLite
+// over the keys of the board, such as `image.width * image.height <= 307200`. The value of a list or a filter
+// is its text. `ssram.banks` is the number of banks, `board.name` the name of the board; `run.source` and
+// `run.frames` are also defined. An absent value is NULL. A condition depends only on the point: it cannot
+// use other tables, parameters, or functions of time or chance. Its texts and its steps are limited. Must
+// not be used across fork().
+class Conditions {
+ public:
+  // Throws std::invalid_argument with the reason if a text is not such an expression.
+  explicit Conditions(const std::vector<Condition>& conditions);
+
+  // Whether all conditions are true. Throws ConditionError.
+  bool hold(const std::vector<platform::BoardValue>& values);
+
+ private:
+  struct Compiled {
+    Condition condition;
+    std::unique_ptr<sqlite::Statement> statement;
+  };
+
+  // SQLite's authorizer: SQLite calls it for each function and table that a text names. `conditions` is this
+  // object.
+  static int authorize(void* conditions, int action, const char* first, const char* second,
+                       const char* database, const char* trigger);
+  // SQLite's progress handler. Returns 1, which ends the computation, if it has too many steps.
+  static int exceeds_steps(void* conditions);
+  std::unique_ptr<sqlite::Statement> compile(const std::string& sql);
+  std::string reason_of(const sqlite::DatabaseError& error) const;
+
+  sqlite::Database database_;
+  std::set<std::string> functions_;  // names of the functions that a text may call
+  std::string refusal_;              // the reason for which authorize() refused the text being compiled
+  std::vector<Compiled> compiled_;
+  int portions_ = 0;  // of the steps of this computation
+};
 
 }  // namespace stereotlm::explore

@@ -1,19 +1,108 @@
 #include "sw/explore/store/store.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <sqlite3.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <stdexcept>
+#include <system_error>
+#include <thread>
 #include <utility>
 
 #include "platform/config/board_keys.h"
-#include "sw/explore/store/store_layout.h"
+#include "sw/files/output_file.h"
+#include "sw/files/whole_file.h"
 
 namespace stereotlm::explore {
 namespace {
 
+namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
+using Names = std::vector<std::string>;
+
+constexpr int kApplicationId = 0x53544C4D;  // "STLM"
+constexpr int kLayout = 2;
+
+// The first columns of `points`, which every store has.
+constexpr std::array kFirstColumns = {"hash", "status", "reason", "version", "config"};
+constexpr const char* kBlameColumns = "hash, port, bank, by, cycles";
+constexpr const char* kSizeOfSchema = "SELECT count(*) FROM sqlite_schema";
+
+// The columns as a list of SQL, each with this in front of it.
+std::string listed(const Names& columns, const std::string& table = "") {
+  std::string names;
+  for (const std::string& column : columns)
+    names += (names.empty() ? "" : ", ") + table + sqlite::quoted_name(column);
+  return names;
+}
+
+Names with_first(const Names& further) {
+  Names columns(kFirstColumns.begin(), kFirstColumns.end());
+  columns.insert(columns.end(), further.begin(), further.end());
+  return columns;
+}
+
+Names without_first(Names columns) {
+  const auto is_first = [](const std::string& column) {
+    return std::find(kFirstColumns.begin(), kFirstColumns.end(), column) != kFirstColumns.end();
+  };
+  columns.erase(std::remove_if(columns.begin(), columns.end(), is_first), columns.end());
+  return columns;
+}
+
+// Creates table `points` in an empty database. `schema`: the name under which it is attached.
+void create_points(sqlite::Database& database, const Names& further_columns,
+                   const std::string& schema = "main") {
+  std::string columns =
+      "hash TEXT PRIMARY KEY NOT NULL, status TEXT NOT NULL, reason TEXT NOT NULL, "
+      "version TEXT NOT NULL, config TEXT NOT NULL";
+  if (!further_columns.empty()) columns += ", " + listed(further_columns);
+  database.execute(fmt::format("CREATE TABLE {}.points({})", schema, columns));
+}
+
+void create_tables(sqlite::Database& database, const Names& further_columns,
+                   const std::string& schema = "main") {
+  create_points(database, further_columns, schema);
+  database.execute(fmt::format(
+      "PRAGMA {0}.application_id = {1}; PRAGMA {0}.user_version = {2};"
+      "CREATE TABLE {0}.blame(hash TEXT NOT NULL, port TEXT NOT NULL, bank TEXT NOT NULL, by TEXT NOT NULL, "
+      "cycles INTEGER NOT NULL, PRIMARY KEY(hash, port, bank, by)) WITHOUT ROWID;"
+      "CREATE TABLE {0}.keys(name TEXT PRIMARY KEY NOT NULL) WITHOUT ROWID",
+      schema, kApplicationId, kLayout));
+}
+
+// How a file that is a store begins.
+files::FileKind store_kind() {
+  using namespace std::string_literals;
+  return files::marked_kind("database of stereotlm sweep", {{0, "SQLite format 3\0"s}, {68, "STLM"}});
+}
+
+// Throws if the store holds points of another version of the program.
+void check_version(sqlite::Database& database, const std::string& version) {
+  sqlite::Statement other(database, "SELECT version FROM points WHERE version <> ? LIMIT 1");
+  other.bind(1, version);
+  if (!other.step()) return;
+  throw sqlite::DatabaseError(
+      fmt::format("{}: holds points of version {}; this is version {}: give another file", database.path(),
+                  other.text(0), version));
+}
+
+// Notes that this column of `points` is a key of the board, not a figure.
+void insert_board_key(const sqlite::Database& database, const std::string& name) {
+  sqlite::Statement insert(database, "INSERT INTO keys(name) VALUES(?)");
+  insert.bind(1, name);
+  insert.run();
+}
 
 bool is_list_of_named(const Json& value) {
   return value.is_array() && !value.empty() && value.front().is_object() && value.front().contains("name");
@@ -38,11 +127,6 @@ void append(const std::string& path, const Json& value, std::vector<platform::Bo
 // Waits until no other process writes. SQLite itself does not wait before it changes the kind of its journal.
 void wait_for_writers(sqlite::Database& database) { database.execute("BEGIN IMMEDIATE; COMMIT"); }
 
-std::string journal_of(const sqlite::Database& database) {
-  sqlite::Statement statement(database, "PRAGMA journal_mode");
-  return statement.step() ? statement.text(0) : "";
-}
-
 // The values of a point, except those of kFirstColumns.
 std::vector<const platform::BoardValue*> further_values(const StoredPoint& point) {
   std::vector<const platform::BoardValue*> values;
@@ -52,18 +136,118 @@ std::vector<const platform::BoardValue*> further_values(const StoredPoint& point
   return values;
 }
 
-// SQL that inserts a point with these columns, unless the table has the point.
-std::string insert_point_sql(const std::vector<std::string>& columns) {
-  std::string names;
-  std::string places;
-  for (const std::string& name : columns) {
-    names += (names.empty() ? "" : ", ") + sqlite::quoted_name(name);
-    places += places.empty() ? "?" : ", ?";
+// The offset of the byte that is locked, far behind the bytes that SQLite itself locks.
+constexpr off_t kPlace = off_t{1} << 61;
+constexpr std::chrono::milliseconds kBetweenTries{20};
+
+struct IsLessWithoutCase {
+  bool operator()(const std::string& a, const std::string& b) const {
+    return sqlite3_stricmp(a.c_str(), b.c_str()) < 0;
   }
-  return fmt::format("INSERT OR IGNORE INTO points({}) VALUES({})", names, places);
+};
+
+// The columns and keys of the stores that are merged.
+struct Inputs {
+  std::map<std::string, std::string, IsLessWithoutCase> columns;  // [name]: the first store that has it
+  std::set<std::string> keys;
+  std::string version;
+  std::string path_of_version;
+
+  // Throws if the file is no store, if its points have another version than those before, or if a column
+  // differs from one before only in case.
+  void add(const std::string& path) {
+    sqlite::Database input(path, sqlite::Database::Access::kRead);
+    for (const std::string& column : store_columns(input)) {
+      const auto& [name, first] = *columns.emplace(column, path).first;
+      if (name == column) continue;
+      throw sqlite::DatabaseError(
+          fmt::format("{}: its column {} differs from {} of {} only in case: they do not mix", path, column,
+                      name, first));
+    }
+    for (const std::string& key : input.texts("SELECT name FROM keys")) keys.insert(key);
+    for (const std::string& its : input.texts("SELECT DISTINCT version FROM points")) {
+      if (version.empty()) std::tie(version, path_of_version) = std::pair(its, path);
+      if (its == version) continue;
+      throw sqlite::DatabaseError(
+          fmt::format("{}: holds points of version {}, and {} of version {}: they do not mix", path, its,
+                      path_of_version, version));
+    }
+  }
+
+  // The columns without kFirstColumns. Numbers inside names compare as numbers: bank2 comes before bank10.
+  Names further_columns() const {
+    Names names;
+    for (const auto& [name, path] : columns) names.push_back(name);
+    std::sort(names.begin(), names.end(), [](const std::string& a, const std::string& b) {
+      return strverscmp(a.c_str(), b.c_str()) < 0;
+    });
+    return without_first(names);
+  }
+};
+
+// Throws if the attached stores `input` and `gathered` hold different results of a point. A column that
+// `input` lacks is NULL. `own`: the columns of `input`; `columns`: those of `gathered`.
+void check_same_points(const sqlite::Database& database, const Names& own, const Names& columns,
+                       const Names& paths, const std::string& path) {
+  std::string values;
+  for (const std::string& column : columns) {
+    const bool is_there = std::find(own.begin(), own.end(), column) != own.end();
+    values += (values.empty() ? "" : ", ") + (is_there ? "i." + sqlite::quoted_name(column) : "NULL");
+  }
+  const char* blame =
+      "SELECT hash FROM (SELECT {0} FROM {1}.blame WHERE hash IN (SELECT hash FROM {2}.points)"
+      " EXCEPT SELECT {0} FROM {2}.blame)";
+  const Names hashes = database.texts(
+      fmt::format("SELECT i.hash FROM input.points AS i JOIN gathered.points AS g ON g.hash = i.hash "
+                  "WHERE ({}) IS NOT ({}) UNION ALL {} UNION ALL {} LIMIT 1",
+                  values, listed(columns, "g."), fmt::format(blame, kBlameColumns, "input", "gathered"),
+                  fmt::format(blame, kBlameColumns, "gathered", "input")));
+  if (hashes.empty()) return;
+  const auto first = std::find_if(paths.begin(), paths.end(), [&](const std::string& other) {
+    return StoredRow(other).find(hashes.front());
+  });
+  throw sqlite::DatabaseError(
+      fmt::format("{}: holds another result of point {} than {}", path, hashes.front(), *first));
+}
+
+// Puts the points of all inputs into the attached store `gathered`, which is empty. Throws if two inputs hold
+// different results of the same point. `columns`: of `gathered`.
+void gather(const Names& paths, sqlite::Database& database, const Names& columns) {
+  for (const std::string& path : paths) {
+    database.attach(path, "input");
+    database.execute("BEGIN");
+    const Names own = database.texts("SELECT name FROM pragma_table_info('points', 'input')");
+    check_same_points(database, own, columns, paths, path);
+    database.execute(
+        fmt::format("INSERT OR IGNORE INTO gathered.points({0}) SELECT {0} FROM input.points;"
+                    "INSERT OR IGNORE INTO gathered.blame({1}) SELECT {1} FROM input.blame;"
+                    "COMMIT; DETACH input",
+                    listed(own), kBlameColumns));
+  }
+}
+
+// Moves the contents of the journal of a store into its file, so that the journal can be removed.
+void empty_journal(const std::string& path) {
+  sqlite::Database database(path, sqlite::Database::Access::kWrite);
+  store_columns(database);
+  sqlite::Statement checkpoint(database, "PRAGMA wal_checkpoint(TRUNCATE)");
+  if (checkpoint.step() && checkpoint.integer(0) != 0) database.fail(SQLITE_BUSY);
 }
 
 }  // namespace
+
+Names store_columns(sqlite::Database& database) {
+  if (database.number("PRAGMA application_id") != kApplicationId) {
+    throw sqlite::DatabaseError(database.path() + ": not a database of stereotlm sweep");
+  }
+  const std::int64_t layout = database.number("PRAGMA user_version");
+  if (layout != kLayout) {
+    throw sqlite::DatabaseError(
+        fmt::format("{}: its layout is {}, of another version; this version writes {}", database.path(),
+                    layout, kLayout));
+  }
+  return database.texts("SELECT name FROM pragma_table_info('points') ORDER BY cid");
+}
 
 Figures figures_of(const Json& document) {
   Figures figures;
@@ -110,7 +294,6 @@ Store::Store(const std::string& path, const std::string& version, std::chrono::m
     : database_(path, sqlite::Database::Access::kCreate, busy_timeout), version_(version) {
   create();
   check_version(database_, version);
-  read_columns();
   find_ = std::make_unique<sqlite::Statement>(database_, "SELECT 1 FROM points WHERE hash = ?");
   insert_blame_ = std::make_unique<sqlite::Statement>(
       database_, fmt::format("INSERT INTO blame({}) VALUES(?, ?, ?, ?, ?)", kBlameColumns));
@@ -118,7 +301,7 @@ Store::Store(const std::string& path, const std::string& version, std::chrono::m
 
 // The first process to open the file creates the tables.
 void Store::create() {
-  if (database_.number("SELECT count(*) FROM sqlite_schema") == 0) {
+  if (database_.number(kSizeOfSchema) == 0) {
     database_.execute("PRAGMA synchronous = OFF");  // an empty store has nothing that could be lost
     // Small pages: a point changes some pages, and each changed page is written to the journal as a whole.
     // Not smaller: a row that does not fit into its page makes every column that the merge reads slow.
@@ -128,21 +311,21 @@ void Store::create() {
     // ends it.
     database_.execute("PRAGMA journal_mode = WAL");
     database_.execute("BEGIN IMMEDIATE");
-    if (database_.number("SELECT count(*) FROM sqlite_schema") == 0) create_tables(database_, {});
+    if (database_.number(kSizeOfSchema) == 0) create_tables(database_, {});
     database_.execute("COMMIT");
   }
-  check_layout(database_);
-  if (journal_of(database_) != "wal") wait_for_writers(database_);
+  read_columns();
+  if (database_.texts("PRAGMA journal_mode").front() != "wal") wait_for_writers(database_);
   database_.execute(
       "PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL; PRAGMA wal_autocheckpoint = 16384");
 }
 
 void Store::read_columns() {
-  const std::vector<std::string> names = columns_of(database_);
+  const Names names = store_columns(database_);
   columns_ = {names.begin(), names.end()};
 }
 
-void Store::check_banks(const std::vector<std::string>& banks) const {
+void Store::check_banks(const Names& banks) const {
   for (const std::string& bank : banks) {
     const std::string words = fmt::format("ssram.banks.{}.words", bank);
     for (const std::string& column : columns_) {
@@ -202,9 +385,10 @@ sqlite::Statement& Store::insertion(const StoredPoint& point,
   add_columns(point);
   Insertion made;
   for (const platform::BoardValue* value : values) made.paths.push_back(value->path);
-  std::vector<std::string> columns(kFirstColumns.begin(), kFirstColumns.end());
-  columns.insert(columns.end(), made.paths.begin(), made.paths.end());
-  made.statement = std::make_unique<sqlite::Statement>(database_, insert_point_sql(columns));
+  const Names columns = with_first(made.paths);
+  made.statement = std::make_unique<sqlite::Statement>(
+      database_, fmt::format("INSERT OR IGNORE INTO points({}) VALUES({})", listed(columns),
+                             fmt::join(Names(columns.size(), "?"), ", ")));
   insertions_.push_back(std::move(made));
   return *insertions_.back().statement;
 }
@@ -223,13 +407,8 @@ void Store::add_columns(const StoredPoint& point) {
   // SQLite reads the whole schema again for each column that is added. A table without points is made anew
   // instead, with all columns at once.
   if (database_.number("SELECT EXISTS(SELECT 1 FROM points)") == 0) {
-    std::vector<std::string> columns(columns_.begin(), columns_.end());
-    const auto is_first = [](const std::string& column) {
-      return std::find(kFirstColumns.begin(), kFirstColumns.end(), column) != kFirstColumns.end();
-    };
-    columns.erase(std::remove_if(columns.begin(), columns.end(), is_first), columns.end());
     database_.execute("DROP TABLE points");
-    create_points(database_, columns);
+    create_points(database_, without_first({columns_.begin(), columns_.end()}));
     return;
   }
   for (const std::string& column : missing)
@@ -238,7 +417,7 @@ void Store::add_columns(const StoredPoint& point) {
 
 StoredRow::StoredRow(const std::string& path, const std::string& version)
     : database_(path, sqlite::Database::Access::kRead) {
-  check_layout(database_);
+  store_columns(database_);
   if (!version.empty()) check_version(database_, version);
   find_.emplace(database_, "SELECT * FROM points WHERE hash = ?");
   for (int column = 0; column < find_->columns(); ++column) columns_[find_->name(column)] = column;
@@ -263,6 +442,103 @@ std::int64_t StoredRow::integer(const std::string& column) const {
 double StoredRow::real(const std::string& column) const {
   const auto found = columns_.find(column);
   return found == columns_.end() ? 0 : find_->real(found->second);
+}
+
+std::string behind_links(const std::string& store) {
+  try {
+    return files::linked_file(store).string();
+  } catch (const std::system_error& error) {
+    throw sqlite::DatabaseError(fmt::format("{}: cannot be opened: {}", store, error.code().message()));
+  }
+}
+
+// Uses a lock of the open file description. A lock of the process would end as soon as the process closed any
+// descriptor of the file.
+StoreLock::StoreLock(const std::string& store, std::chrono::milliseconds busy_timeout)
+    : store_(store), path_(behind_links(store)) {
+  const auto end = std::chrono::steady_clock::now() + busy_timeout;
+  for (;; std::this_thread::sleep_for(kBetweenTries)) {
+    open_store();
+    struct flock range = {};
+    range.l_type = F_WRLCK;
+    range.l_whence = SEEK_SET;
+    range.l_start = kPlace;
+    range.l_len = 1;
+    const bool is_locked = fcntl(file_, F_OFD_SETLK, &range) == 0;
+    const int error = is_locked ? EAGAIN : errno;
+    if (is_locked && files::is_open_at(file_, path_)) return;  // else the file was replaced meanwhile
+    close(file_);
+    if (error != EAGAIN && error != EACCES)
+      throw sqlite::DatabaseError(fmt::format("{}: cannot be locked: {}", store, std::strerror(error)));
+    if (std::chrono::steady_clock::now() >= end)
+      throw sqlite::DatabaseError(
+          store + ": another process is at work on it: wait for its end, or give another file");
+  }
+}
+
+void StoreLock::open_store() {
+  constexpr mode_t kMode = 0644;
+  file_ = open(path_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, kMode);
+  is_made_ = file_ >= 0;
+  if (file_ < 0 && errno == EEXIST) file_ = open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, kMode);
+  if (file_ < 0)
+    throw sqlite::DatabaseError(
+        fmt::format("{}: cannot be opened to write: {}", store_, std::strerror(errno)));
+}
+
+void StoreLock::check() const {
+  if (!files::is_open_at(file_, path_)) throw StoreGone(store_);
+}
+
+StoreLock::~StoreLock() {
+  struct stat opened = {};
+  const bool is_empty = fstat(file_, &opened) == 0 && opened.st_size == 0;
+  if (is_made_ && is_empty && files::is_open_at(file_, path_)) unlink(path_.c_str());
+  close(file_);
+}
+
+void merge_stores(const Names& inputs, const std::string& store, bool (*is_interrupted)()) try {
+  const std::string out = behind_links(store);
+  std::error_code none;
+  if (fs::file_size(out, none) > 0 && !none) empty_journal(out);
+  Inputs all;
+  for (const std::string& path : inputs) all.add(path);
+  const Names further = all.further_columns();
+  const Names columns = with_first(further);
+  files::OutputFile file(out, store_kind());
+  {
+    sqlite::Database database(file.aside().path().string(), sqlite::Database::Access::kWrite,
+                              sqlite::Database::kBusyTimeout, out);
+    if (is_interrupted != nullptr) database.interrupt_if(is_interrupted);
+    database.execute(
+        "PRAGMA journal_mode = OFF; PRAGMA synchronous = NORMAL; PRAGMA main.locking_mode = EXCLUSIVE");
+    const bool is_single = inputs.size() == 1;
+    if (is_single) {
+      database.attach(inputs.front(), "input");
+      database.execute("PRAGMA input.mmap_size = 0x40000000");  // pages are read without a system call
+    } else {
+      database.execute("ATTACH '' AS gathered");  // SQLite removes the file of this database itself
+      database.execute("PRAGMA gathered.journal_mode = OFF; PRAGMA gathered.synchronous = OFF");
+      create_tables(database, further, "gathered");
+      gather(inputs, database, columns);
+    }
+    database.execute("BEGIN");
+    create_tables(database, further);
+    for (const std::string& key : all.keys) insert_board_key(database, key);
+    // In an order in which the bytes depend only on the points.
+    database.execute(
+        fmt::format("INSERT INTO main.points({0}) SELECT {0} FROM {2}.points ORDER BY hash;"
+                    "INSERT INTO main.blame({1}) SELECT {1} FROM {2}.blame ORDER BY hash, port, bank, by;"
+                    "COMMIT",
+                    listed(columns), kBlameColumns, is_single ? "input" : "gathered"));
+  }
+  file.complete();
+  for (const char* ending : {"-wal", "-shm"}) fs::remove(out + ending, none);
+  file.commit();
+} catch (const sqlite::DatabaseError&) {
+  throw;
+} catch (const std::runtime_error& error) {  // of the file
+  throw sqlite::DatabaseError(error.what());
 }
 
 }  // namespace stereotlm::explore

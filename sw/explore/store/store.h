@@ -100,6 +100,10 @@ class Store {
   std::vector<Insertion> insertions_;
 };
 
+// The columns of table `points`, in their order. Throws DatabaseError if the file is not a store, or has
+// another layout.
+std::vector<std::string> store_columns(sqlite::Database& database);
+
 // Reads one point at a time from the file of a Store, which it finds by its hash. Member functions throw
 // DatabaseError. Must not be used across fork(). Once merge_stores() has written the file, any number of
 // machines may read it at the same time.
@@ -115,6 +119,10 @@ class StoredRow {
   std::string text(const std::string& column) const;
   std::int64_t integer(const std::string& column) const;
   double real(const std::string& column) const;
+  // The pixels that the captures of a computer have lost.
+  std::int64_t lost_pixels() const {
+    return integer("cameras.left.dropped_pixels") + integer("cameras.right.dropped_pixels");
+  }
 
  private:
   sqlite::Database database_;
@@ -131,5 +139,42 @@ class StoredRow {
 // is neither empty nor a file of a Store, or as soon as `is_interrupted`, unless null, returns true.
 void merge_stores(const std::vector<std::string>& inputs, const std::string& store,
                   bool (*is_interrupted)() = nullptr);
+
+// Follows the symbolic links in the path of a store, and returns the path of the file. Throws DatabaseError.
+std::string behind_links(const std::string& store);
+
+// The file of a store was removed or replaced while it was in use. The points that were added to it are lost.
+class StoreGone : public sqlite::DatabaseError {
+ public:
+  explicit StoreGone(const std::string& store)
+      : sqlite::DatabaseError(store + ": was removed or replaced while in use: its points are lost") {}
+};
+
+// Reserves a store for one writer. The merge at the end of a sweep replaces the file, and would lose points
+// that another process added during the sweep. The operating system holds the lock: it is released when this
+// object is destroyed, or when this process and all its forks have ended. It does not stop readers.
+class StoreLock {
+ public:
+  // How long the constructor waits: the processes of a sweep that was killed take a moment to end.
+  static constexpr std::chrono::milliseconds kBusyTimeout{3000};
+
+  // Makes an empty file if there is none. The destructor removes this file if it is still empty. Throws
+  // DatabaseError, also if another process holds the lock.
+  explicit StoreLock(const std::string& store, std::chrono::milliseconds busy_timeout = kBusyTimeout);
+  ~StoreLock();
+  StoreLock(const StoreLock&) = delete;
+  StoreLock& operator=(const StoreLock&) = delete;
+
+  // Throws StoreGone unless the path still leads to the locked file.
+  void check() const;
+
+ private:
+  void open_store();
+
+  std::string store_;
+  std::string path_;  // of the file behind all symbolic links
+  int file_ = -1;
+  bool is_made_ = false;  // this lock has made the file
+};
 
 }  // namespace stereotlm::explore

@@ -3,9 +3,12 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <map>
@@ -16,13 +19,10 @@
 #include <stdexcept>
 #include <string>
 #include <system_error>
-#include <utility>
 #include <vector>
 
-#include "sw/explore/plan/conditions.h"
+#include "sw/explore/plan/points.h"
 #include "sw/explore/store/store.h"
-#include "sw/explore/store/store_lock.h"
-#include "sw/explore/sweep/claims.h"
 #include "sw/process/child.h"
 
 namespace stereotlm::explore {
@@ -50,13 +50,114 @@ Figures beside_keys(Figures figures, const std::vector<platform::BoardValue>& ke
   return figures;
 }
 
+// The way in which a point has ended: an index in kCounts.
+enum class PointEnd : std::uint8_t { kExcluded = 1, kKnown, kOk, kImpossible, kFailed, kGivenUp };
+
+// A lock for the processes that share it after fork(). It is free once the process that holds it has died.
+class SharedLock {
+ public:
+  SharedLock() : file_(memfd_create("lock", MFD_CLOEXEC)) {
+    if (file_ < 0) throw std::system_error(errno, std::generic_category(), "memfd_create");
+  }
+  ~SharedLock() { close(file_); }
+  SharedLock(const SharedLock&) = delete;
+  SharedLock& operator=(const SharedLock&) = delete;
+
+  // Calls `action` while this process holds the lock, for which it waits.
+  template <typename Action>
+  auto hold(const Action& action) const {
+    while (lockf(file_, F_LOCK, 0) != 0) {
+      if (errno != EINTR) throw std::system_error(errno, std::generic_category(), "lockf");
+    }
+    const struct Unlock {
+      ~Unlock() { static_cast<void>(lockf(file, F_ULOCK, 0)); }
+      int file;
+    } unlock{file_};
+    return action();
+  }
+
+ private:
+  int file_;
+};
+
+// The points that the workers of a sweep have begun and ended, in memory that all its processes share. A
+// point is a number from 0. Each worker has a place; when it dies, its successor takes the place over. One
+// store to memory begins a point, and one store ends it: a place is thus valid at whatever moment its worker
+// dies.
+class Claims {
+ public:
+  Claims(std::size_t places, std::uint64_t points)
+      : points_(points),
+        size_(places),
+        memory_(mmap(nullptr, (1 + places) * sizeof(Place), PROT_READ | PROT_WRITE,
+                     MAP_SHARED | MAP_ANONYMOUS, -1, 0)) {
+    if (memory_ == MAP_FAILED) throw std::system_error(errno, std::generic_category(), "mmap");
+    stopped_ = new (memory_) std::atomic<bool>(false);
+    places_ = static_cast<Place*>(memory_) + 1;
+    std::uninitialized_value_construct_n(places_, places);
+  }
+  ~Claims() { munmap(memory_, (1 + size_) * sizeof(Place)); }
+  Claims(const Claims&) = delete;
+  Claims& operator=(const Claims&) = delete;
+
+  // Begins a point: the one that the place has begun and not ended, else the first that no place has begun.
+  // Returns nullopt if all have been begun, and after stop().
+  std::optional<std::uint64_t> begin(std::size_t place) {
+    if (*stopped_) return std::nullopt;
+    if (const auto left = unfinished(place)) return left;
+    return lock_.hold([&]() -> std::optional<std::uint64_t> {
+      std::uint64_t next = 0;  // all points before it have been begun
+      for (std::size_t i = 0; i < size_; ++i) next += places_[i].begun;
+      if (next == points_) return std::nullopt;
+      places_[place].last = next;
+      ++places_[place].begun;
+      return next;
+    });
+  }
+  // Ends the point that the place has begun.
+  void end(std::size_t place, PointEnd end) { ++places_[place].ended[static_cast<std::size_t>(end)]; }
+  // The point that the place has begun and not ended.
+  std::optional<std::uint64_t> unfinished(std::size_t place) const {
+    std::uint64_t ended = 0;
+    for (const auto& number : places_[place].ended) ended += number;
+    return ended == places_[place].begun ? std::nullopt : std::optional<std::uint64_t>(places_[place].last);
+  }
+  // Keeps every process from beginning another point.
+  void stop() { *stopped_ = true; }
+  // How all points have ended that have. `total` is the number of points.
+  SweepCounts counts() const {
+    SweepCounts counts;
+    counts.total = points_;
+    for (std::size_t place = 0; place < size_; ++place) {
+      for (std::size_t end = 1; end < kCounts.size(); ++end)
+        counts.*kCounts[end].second += places_[place].ended[end];
+    }
+    return counts;
+  }
+
+ private:
+  // A cache line for each place, because each is written by another processor.
+  struct alignas(64) Place {
+    std::atomic<std::uint64_t> last;                               // the point that was begun last
+    std::atomic<std::uint64_t> begun;                              // number of points
+    std::array<std::atomic<std::uint64_t>, kCounts.size()> ended;  // [PointEnd]: number of points
+  };
+
+  std::uint64_t points_;
+  std::size_t size_;
+  void* memory_;  // a cache line for stopped_, then the places
+  std::atomic<bool>* stopped_;
+  Place* places_;    // [size_]
+  SharedLock lock_;  // of begin()
+};
+
 // What the processes of a sweep have in common.
 struct SweepState {
   const Points& points;
   const Evaluate& evaluate;
   const SweepOptions& options;
-  Claims claims;                // number i is point number shard + i * shards
-  process::SharedLock writing;  // of the store, because SQLite's own wait polls every few milliseconds
+  Claims claims;       // number i is point number shard + i * shards
+  SharedLock writing;  // of the store, because SQLite's own wait polls every few milliseconds
 
   Point point(std::uint64_t claim) const { return points.point(options.shard + claim * options.shards); }
 };
@@ -77,8 +178,7 @@ class PointRunner {
     StoredPoint row = row_of(point, "impossible", point.reason);
     const PointEnd end = point.board ? simulate(point, row) : PointEnd::kImpossible;
     if (end == PointEnd::kGivenUp) return end;
-    const process::SharedLock::Turn turn(state_.writing);
-    return store_.add(row) ? end : PointEnd::kKnown;
+    return state_.writing.hold([&] { return store_.add(row); }) ? end : PointEnd::kKnown;
   }
 
  private:
@@ -266,12 +366,10 @@ std::uint64_t workers_with_files(std::uint64_t workers) {
   return files.size() < kOwnFiles ? 0 : files.size() - kOwnFiles;
 }
 
-bool Batch::run(const Points& points, const Evaluate& evaluate, const std::string& version, unsigned jobs,
+bool Batch::run(const Points& points, const Evaluate& evaluate,
                 const std::function<bool(const SweepCounts& counts)>& keep_going) {
   SweepOptions options;
   options.store = path_;
-  options.version = version;
-  options.jobs = jobs;
   row_.reset();
   const SweepCounts counts = sweep(points, evaluate, options, keep_going);
   return counts.done() == counts.total;

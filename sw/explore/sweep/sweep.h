@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstdint>
@@ -7,11 +8,13 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <utility>
 
 #include "sw/explore/plan/points.h"
 #include "sw/explore/store/store.h"
-#include "sw/files/temporary_folder.h"
+#include "sw/files/whole_file.h"
+#include "sw/process/command.h"
 #include "sw/sqlite/database.h"
 
 namespace stereotlm::explore {
@@ -56,10 +59,10 @@ struct GivenUp {};
 using Evaluate = std::function<Figures(const Point& point)>;
 
 struct SweepOptions {
-  std::string store;        // path; an existing store is continued
-  std::string version;      // of the program
-  std::string known;        // path of a store that is only read; its points are not simulated; empty: none
-  unsigned jobs = 1;        // worker processes
+  std::string store;  // path; an existing store is continued
+  std::string version = process::kVersion;
+  std::string known;  // path of a store that is only read; its points are not simulated; empty: none
+  unsigned jobs = std::max(1U, std::thread::hardware_concurrency());  // worker processes
   std::uint64_t shard = 0;  // 0..shards-1: only the points whose number modulo `shards` is this
   std::uint64_t shards = 1;
   std::chrono::milliseconds busy_timeout =
@@ -73,8 +76,8 @@ inline constexpr int kMostDeaths = 3;
 // progress; after it has returned false no further point is begun. At the end merge_stores() gives the store
 // its final form, whose bytes depend only on its points. A point whose worker dies is begun again,
 // until it counts as failed after kMostDeaths deaths; the reason in its row then says how to try it again.
-// Throws DatabaseError, also if another sweep uses the store; StoreGone (store_lock.h) once the file of the
-// store is gone; ConditionError (conditions.h) if a condition cannot be computed for a point;
+// Throws DatabaseError, also if another sweep uses the store; StoreGone (store.h) once the file of the
+// store is gone; ConditionError (points.h) if a condition cannot be computed for a point;
 // std::runtime_error, also if the limit on open files is too low for the workers (see workers_with_files()).
 // Except after StoreGone, all finished points are in the store.
 SweepCounts sweep(const Points& points, const Evaluate& evaluate, const SweepOptions& options,
@@ -97,7 +100,7 @@ class Batch {
   Batch() : path_((folder_.path() / "points.db").string()) {}
 
   // Runs sweep(). Returns false if `keep_going` has ended the sweep. May be called again with further points.
-  bool run(const Points& points, const Evaluate& evaluate, const std::string& version, unsigned jobs,
+  bool run(const Points& points, const Evaluate& evaluate,
            const std::function<bool(const SweepCounts& counts)>& keep_going);
 
   // The path of the database, which exists after run().

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "sw/explore/store/store_layout.h"
+#include "sw/explore/store/store.h"
 #include "sw/process/interrupt.h"
 #include "sw/report/page_data/page_data.h"
 #include "sw/sqlite/database.h"
@@ -85,8 +85,7 @@ struct BoardTexts {
 
 Json database_data(const std::string& path) {
   sqlite::Database database(path, sqlite::Database::Access::kRead);
-  explore::check_layout(database);
-  const std::vector<std::string> names = explore::columns_of(database);
+  const std::vector<std::string> names = explore::store_columns(database);
   std::vector<Column> columns(names.size());
   std::vector<bool> shown_columns;
   for (const std::string& name : names) shown_columns.push_back(is_shown(name));
@@ -117,7 +116,7 @@ Json database_data(const std::string& path) {
   }
   return {{"path", path},
           {"points", size},
-          {"keys", explore::first_column_of(database, "SELECT name FROM keys ORDER BY name")},
+          {"keys", database.texts("SELECT name FROM keys ORDER BY name")},
           {"columns", std::move(shown)},
           {"left_out", std::move(left_out)},
           {"boards", {{"lines", std::move(boards.lines)}, {"points", std::move(boards.texts)}}}};

@@ -8,7 +8,6 @@
 #include "sw/report/page_data/recording_data.h"
 #include "sw/runs/explanation.h"
 #include "sw/runs/recorded_run.h"
-#include "sw/runs/rerun.h"
 
 namespace stereotlm::report {
 

@@ -1,6 +1,7 @@
 #include "sw/runs/simulation/simulate_point.h"
 
 #include <algorithm>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <optional>
@@ -14,7 +15,7 @@
 #include "platform/core_run.h"
 #include "platform/figures.h"
 #include "sw/explore/sweep/sweep.h"
-#include "sw/files/sha256.h"
+#include "sw/files/text_forms.h"
 #include "sw/process/child.h"
 #include "sw/runs/simulation/camera_simulation.h"
 #include "sw/runs/simulation/simulation.h"
@@ -38,10 +39,21 @@ Json document_of(const platform::Statistics& statistics) {
   return stats::stats_document(statistics, std::nullopt);
 }
 
+// Does the work in a child process, because SystemC is elaborated once in a process. Returns its document.
+Json in_child(const std::function<Json()>& work) {
+  process::Child child([&work](const process::Child::Tell& tell) {
+    const auto bytes = Json::to_cbor(work());
+    tell(std::string(bytes.begin(), bytes.end()));
+  });
+  const std::string bytes = child.next().value();
+  child.next();
+  return Json::from_cbor(bytes);
+}
+
 // Simulates the whole computer. To be called in a child process that ends afterwards: the simulation is never
-// destroyed. Returns nullopt if the simulation was given up.
-std::optional<Json> simulate_computer(const explore::Point& point, const platform::Tables& tables,
-                                      const PointSimulator::Hopeless& hopeless) {
+// destroyed. Returns null if the simulation was given up.
+Json simulate_computer(const explore::Point& point, const platform::Tables& tables,
+                       const PointSimulator::Hopeless& hopeless) {
   const platform::BoardConfig& board = *point.board;
   auto* const binder = new Binder;
   auto* const blank = new BlankPairs(board);
@@ -51,7 +63,7 @@ std::optional<Json> simulate_computer(const explore::Point& point, const platfor
     simulation->advance();
     if (!hopeless) continue;
     const std::optional<platform::SteadyRate> so_far = simulation->steady_rate();
-    if (so_far && hopeless(*so_far)) return std::nullopt;
+    if (so_far && hopeless(*so_far)) return nullptr;
   }
   return document_of(simulation->statistics());
 }
@@ -81,21 +93,14 @@ explore::Figures PointSimulator::operator()(const explore::Point& point, const H
   if (!point.run.camera) {
     return explore::figures_of(document_of(platform::run_core(board, tables_, point.run.frames)));
   }
-  process::Child child([&](const process::Child::Tell& tell) {
-    const std::optional<Json> document = simulate_computer(point, tables_, hopeless);
-    if (!document) return;
-    const auto bytes = Json::to_cbor(*document);
-    tell(std::string(bytes.begin(), bytes.end()));
-  });
-  const std::optional<std::string> document = child.next();
-  if (!document) throw explore::GivenUp();
-  child.next();
-  return explore::figures_of(Json::from_cbor(*document));
+  const Json document = in_child([&] { return simulate_computer(point, tables_, hopeless); });
+  if (document.is_null()) throw explore::GivenUp();
+  return explore::figures_of(document);
 }
 
 std::map<std::string, double> core_time(const platform::BoardConfig& board, const platform::Tables& tables,
                                         std::uint64_t frames) {
-  process::Child child([&](const process::Child::Tell& tell) {
+  const Json document = in_child([&]() -> Json {
     Binder binder;
     BlankPairs blank(board);
     CameraSimulation simulation(board, tables, blank, frames, binder, fpga::Fidelity::kTiming);
@@ -116,10 +121,9 @@ std::map<std::string, double> core_time(const platform::BoardConfig& board, cons
     }
     document_of(simulation.statistics());  // its identities hold
     take();
-    tell(Json(times_ps).dump());
+    return times_ps;
   });
-  auto times = Json::parse(child.next().value()).get<std::map<std::string, double>>();
-  child.next();
+  auto times = document.get<std::map<std::string, double>>();
   double whole = 0;
   for (const auto& [why, time] : times) whole += time;
   for (auto& [why, time] : times) time /= whole;
@@ -128,31 +132,24 @@ std::map<std::string, double> core_time(const platform::BoardConfig& board, cons
 
 PixelRun simulate_pixels(const platform::BoardConfig& board, const platform::Tables& tables,
                          host::FrameSource& pairs, std::uint64_t frames) {
-  process::Child child([&](const process::Child::Tell& tell) {
+  const Json document = in_child([&]() -> Json {
     Binder binder;
     const auto simulation =
         make_simulation(board, tables, pairs, {false, fpga::Fidelity::kFast, frames}, binder);
     std::string pixels;
     while (!simulation->finished()) {
-      for (const Result& result : simulation->advance()) {
+      for (const Result& result : simulation->advance())
         pixels.append(result.disparity.pixels.begin(), result.disparity.pixels.end());
-      }
     }
     const platform::Statistics statistics = simulation->statistics();
-    if (!statistics.failed.empty()) throw std::runtime_error(statistics.failed.front());
-    tell(files::sha256_hex(pixels.data(), pixels.size()));
+    document_of(statistics);  // its identities hold
     const auto& cycles = statistics.frame_cycles;
-    tell(std::to_string(std::accumulate(cycles.begin(), cycles.end(), std::uint64_t{0})));
-    const std::vector<std::uint8_t>& last = simulation->last().disparity.pixels;
-    tell(std::string(last.begin(), last.end()));
+    return {{"sha256", files::sha256_hex(pixels.data(), pixels.size())},
+            {"cycles", std::accumulate(cycles.begin(), cycles.end(), std::uint64_t{0})},
+            {"last", Json::binary(simulation->last().disparity.pixels)}};
   });
-  PixelRun run;
-  run.disparities_sha256 = child.next().value();
-  run.cycles = std::stoull(child.next().value());
-  const std::string last = child.next().value();
-  run.last = kernels::GrayImage(board.image.width, board.image.height);
-  run.last.pixels.assign(last.begin(), last.end());
-  child.next();
+  PixelRun run = {document.at("sha256"), document.at("cycles"), {board.image.width, board.image.height}};
+  run.last.pixels = document.at("last").get_binary();
   return run;
 }
 

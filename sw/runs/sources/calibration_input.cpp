@@ -1,15 +1,16 @@
 #include "sw/runs/sources/calibration_input.h"
 
 #include <fmt/format.h>
+#include <fnmatch.h>
 
 #include <filesystem>
 #include <stdexcept>
 
 #include "calib/calibration.h"
 #include "calib/tables.h"
-#include "sw/files/sha256.h"
+#include "sw/files/text_forms.h"
 #include "sw/files/whole_file.h"
-#include "sw/process/installation.h"
+#include "sw/process/command.h"
 #include "sw/runs/sources/calibration_library.h"
 
 namespace stereotlm::runs {
@@ -43,6 +44,28 @@ kernels::RectificationTable load_table(const fs::path& path, const calib::Rig& r
   }
 }
 
+// Patterns for fnmatch() of what follows F in the names of the files.
+constexpr std::array kEndings = {".yaml",
+                                 "_left.lut",
+                                 "_right.lut",
+                                 "_drawings/",
+                                 "_drawings/corners_+([0-9]).png",
+                                 "_drawings/rectified_+([0-9]).png",
+                                 "_drawings/displacement.png",
+                                 "_drawings/source_lines.png",
+                                 "_pictures/",
+                                 "_pictures/@(left|right)_+([0-9]).png",
+                                 "_pictures/scene_@(left|right|truth).png"};
+
+bool is_calibration(const fs::path& file) {
+  try {
+    calib::parse_calibration(files::read_whole_file(file, calib::kMostCalibrationBytes));
+    return true;
+  } catch (const std::exception& /*error*/) {
+    return false;
+  }
+}
+
 }  // namespace
 
 const CalibrationFunctions& calibration_functions() {
@@ -60,6 +83,27 @@ RigFiles rig_files(const std::string& calibration) {
     return path.parent_path() / (path.stem().string() + ending);
   };
   return {path, beside("_left.lut"), beside("_right.lut"), beside("_drawings"), beside("_pictures")};
+}
+
+files::OutputContent calibration_content(const RigFiles& files, bool makes_pictures,
+                                         const std::vector<files::NamedFile>& inputs) {
+  const std::string stem = files.calibration.stem();
+  files::OutputContent content;
+  content.called = "folder";
+  content.mark = files.calibration.filename();
+  content.kind = {"calibration", is_calibration};
+  content.rule =
+      "only files that calibrate has made, with their calibration, are replaced: must be moved away";
+  content.is_ours = [stem](const std::string& name) {
+    return name.rfind(stem, 0) == 0 && std::any_of(kEndings.begin(), kEndings.end(), [&](const char* ending) {
+             return fnmatch(ending, name.c_str() + stem.size(), FNM_EXTMATCH | FNM_PATHNAME) == 0;
+           });
+  };
+  content.others_stay = true;
+  if (!makes_pictures) content.kept = files.pictures.filename();
+  content.aside = stem + ".partial";
+  content.inputs = inputs;
+  return content;
 }
 
 std::optional<CalibrationInput> load_calibration(const std::string& path, const platform::BoardConfig* board,

@@ -8,6 +8,7 @@
 
 #include "platform/config/board_config.h"
 #include "platform/config/tables.h"
+#include "sw/files/output_folder.h"
 #include "sw/process/problems.h"
 #include "sw/runs/run_json.h"
 #include "sw/runs/sources/open_source.h"
@@ -29,6 +30,12 @@ struct RigFiles {
 
 // Throws std::runtime_error if the name does not end in .yaml.
 RigFiles rig_files(const std::string& calibration);
+
+// The files of `calibrate` in the folder of the calibration F.yaml: its mark F.yaml, the tables, the
+// drawings, and the pictures if it `makes_pictures`; otherwise an existing F_pictures/ stays. Other files in
+// the folder stay. New files are first written to the folder F.partial beside F.yaml.
+files::OutputContent calibration_content(const RigFiles& files, bool makes_pictures,
+                                         const std::vector<files::NamedFile>& inputs = {});
 
 // A calibration that a command has loaded: the file of --calibration and the tables beside it.
 struct CalibrationInput {

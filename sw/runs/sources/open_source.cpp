@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "platform/config/board_config.h"
-#include "sw/files/sha256.h"
+#include "sw/files/text_forms.h"
 #include "sw/media/load.h"
 #include "sw/media/synthetic_scene.h"
 #include "sw/media/video.h"
@@ -74,17 +74,16 @@ void check_partners(const fs::path& folder, const char* beginning, const std::ve
                                        (folder / name(beginning)).string(), more, name(other_beginning)));
 }
 
-void check_video_size(const std::string& file, int video_width, int video_height,
-                      const PictureSource::Video& options, const platform::BoardConfig& board) {
-  if (options.layout == VideoLayout::kTwo) return check_size(file, video_width, video_height, &board);
-  const int width = board.image.width * (options.layout == VideoLayout::kSideBySide ? 2 : 1);
-  const int height = board.image.height * (options.layout == VideoLayout::kTopBottom ? 2 : 1);
+void check_video_size(const std::string& file, int video_width, int video_height, const std::string& layout,
+                      const platform::BoardConfig& board) {
+  if (layout == "two") return check_size(file, video_width, video_height, &board);
+  const int width = board.image.width * (layout == "side_by_side" ? 2 : 1);
+  const int height = board.image.height * (layout == "top_bottom" ? 2 : 1);
   if (video_width == width && video_height == height) return;
-  throw std::runtime_error(
-      fmt::format("'{}': {}x{} pixels: must be as large as two of the board's images, {}x{}, with "
-                  "--video-layout {}: {}x{}",
-                  file, video_width, video_height, board.image.width, board.image.height,
-                  options.layout_name(), width, height));
+  throw std::runtime_error(fmt::format(
+      "'{}': {}x{} pixels: must be as large as two of the board's images, {}x{}, with "
+      "--video-layout {}: {}x{}",
+      file, video_width, video_height, board.image.width, board.image.height, layout, width, height));
 }
 
 // The part of `image` that has this size and its top left pixel at (column, row).
@@ -98,152 +97,108 @@ GrayImage part_of(const GrayImage& image, int column, int row, int width, int he
   return part;
 }
 
-// The pairs of `--sequence DIR`: left_*.png and right_*.png with the same `*`, sorted by the bytes of their
-// names. Other files in the folder are ignored. The first pictures are kept in memory, up to 128 MB. The
-// others are decoded again at each use.
-class SequencePairs : public PairSource {
- public:
-  // Reads every picture once, and adds them to `opened` and `described`. Throws std::runtime_error, without
-  // the name of the option, if the folder cannot be read, holds no pair or a picture without partner, or
-  // holds a picture that cannot be read or does not fit the board.
-  SequencePairs(const std::string& folder, const platform::BoardConfig* board, OpenedSource& opened,
-                RecordedOptions& described)
-      : PairSource("--sequence", 0) {
-    const std::vector<std::string> names = names_in(folder);
-    const std::vector<std::string> left = stems(names, kLeft);
-    const std::vector<std::string> right = stems(names, kRight);
-    check_partners(folder, kLeft, left, kRight, right);
-    check_partners(folder, kRight, right, kLeft, left);
-    if (left.empty()) {
-      throw std::runtime_error(
-          fmt::format("'{}': no pictures: a sequence must have pairs left_*.png and right_*.png", folder));
-    }
-    std::size_t kept_bytes = 0;
-    std::size_t converted = 0;
-    input_.path = fs::absolute(folder).string();
-    for (const std::string& stem : left) {
-      for (const char* beginning : {kLeft, kRight}) {
-        const std::string name = beginning + stem + kSuffix;
-        const std::string path = (fs::path(folder) / name).string();
-        media::LoadedGray picture = media::load_gray(path);
-        check_size(path, picture.image.width, picture.image.height, board);
-        converted += picture.converted_from_colour ? 1U : 0U;
-        input_.files.push_back({name, files::sha256_file(path)});
-        opened.files.push_back({"--sequence", path});
-        kept_bytes += picture.image.pixels.size();
-        if (kept_bytes <= kMostKeptBytes) kept_.push_back(std::move(picture.image));
-      }
-    }
-    if (converted > 0) {
-      opened.notes.push_back(fmt::format("--sequence '{}': {} of {} pictures: colour, converted to grey",
-                                         folder, converted, input_.files.size()));
-    }
-    described.sequence = input_;
-    set_length(left.size());
-  }
-
- private:
-  host::StereoPair load(std::uint64_t index) override {
-    const auto left = static_cast<std::size_t>(2 * index);
-    return {load_picture(left), load_picture(left + 1)};
-  }
-  GrayImage load_picture(std::size_t number) const {
-    const InputFile& file = input_.files[number];
-    const std::string path = (fs::path(input_.path) / file.path).string();
-    if (files::sha256_file(path) != file.sha256) {
-      throw std::runtime_error(fmt::format("'{}': changed: a picture must not change during a run", path));
-    }
-    return number < kept_.size() ? kept_[number] : media::load_gray(path).image;
-  }
-
-  InputFolder input_;            // its files are left and right in turn
-  std::vector<GrayImage> kept_;  // pictures of the first files
-};
-
-// The pairs of `--video F [F2] --video-layout L`.
-class VideoPairs : public PairSource {
- public:
-  // Decodes each video once. Adds a note to `opened` for a video with fewer frames than its header states.
-  // Throws std::runtime_error, without the name of the option, if a video cannot be decoded, if its frames
-  // have another size than the layout needs, or if two videos differ in their number of frames. `board`: null
-  // if unknown; no pair may then be requested.
-  VideoPairs(const PictureSource::Video& options, const platform::BoardConfig* board, OpenedSource& opened)
-      : PairSource("--video", 0), layout_(options.layout) {
-    for (const std::string& file : options.files) {
-      const auto check = [&](int width, int height) {
-        if (board != nullptr) check_video_size(file, width, height, options, *board);
-      };
-      videos_.push_back(media::open_video(file, check));
-      const media::Video& video = *videos_.back();
-      if (video.frames() < video.stated_frames()) {
-        opened.notes.push_back(fmt::format("--video '{}': {} frames can be decoded; its header says {}", file,
-                                           video.frames(), video.stated_frames()));
-      }
-    }
-    const media::Video& first = *videos_.front();
-    const media::Video& last = *videos_.back();
-    if (first.frames() != last.frames()) {
-      throw std::runtime_error(fmt::format("'{}': {} frames: must have as many as '{}', {}",
-                                           options.files.back(), last.frames(), options.files.front(),
-                                           first.frames()));
-    }
-    set_length(first.frames());
-  }
-
- private:
-  host::StereoPair load(std::uint64_t index) override {
-    const GrayImage& first = videos_.front()->frame(index);
-    switch (layout_) {
-      case VideoLayout::kSideBySide: {
-        const int width = first.width / 2;
-        return {part_of(first, 0, 0, width, first.height), part_of(first, width, 0, width, first.height)};
-      }
-      case VideoLayout::kTopBottom: {
-        const int height = first.height / 2;
-        return {part_of(first, 0, 0, first.width, height), part_of(first, 0, height, first.width, height)};
-      }
-      case VideoLayout::kTwo:
-        break;
-    }
-    return {first, videos_.back()->frame(index)};
-  }
-
-  std::vector<std::unique_ptr<media::Video>> videos_;
-  VideoLayout layout_;
-};
-
-// A source that shows one pair in every frame.
-class SinglePair : public PairSource {
- public:
-  explicit SinglePair(host::StereoPair pair) : PairSource("--left", 1), pair_(std::move(pair)) {}
-
- private:
-  host::StereoPair load(std::uint64_t /*index*/) override { return std::move(pair_); }
-
-  host::StereoPair pair_;  // moved to the held pairs at its first use
-};
-
-class SyntheticPairs : public PairSource {
- public:
-  SyntheticPairs(std::uint64_t seed, const platform::BoardConfig& board)
-      : PairSource("--synthetic", kEndless),
-        scene_(seed, board.image.width, board.image.height, board.matcher.disparities) {}
-
-  std::optional<media::Truth> truth(std::uint64_t frame) const override {
-    return media::Truth{scene_.frame(frame % length()).disparity, 1};
-  }
-
- private:
-  host::StereoPair load(std::uint64_t index) override {
-    media::SyntheticScene::Frame frame = scene_.frame(index);
-    return {std::move(frame.left), std::move(frame.right)};
-  }
-
-  media::SyntheticScene scene_;
-};
-
 InputFile described_file(const std::string& path) {
   return {fs::absolute(path).string(), files::sha256_file(path)};
+}
+
+// The following functions open a source. They throw std::runtime_error, without the name of the option.
+
+// The pairs of `--sequence DIR`: left_*.png and right_*.png with the same `*`, sorted by the bytes of their
+// names. Other files in the folder are ignored. Every picture is read once. The first pictures are kept in
+// memory, up to 128 MB. The others are decoded again at each use.
+std::unique_ptr<PairSource> open_sequence(InputFolder& sequence, const platform::BoardConfig* board,
+                                          OpenedSource& opened) {
+  const std::string folder = sequence.path;
+  const std::vector<std::string> names = names_in(folder);
+  const std::vector<std::string> left = stems(names, kLeft);
+  const std::vector<std::string> right = stems(names, kRight);
+  check_partners(folder, kLeft, left, kRight, right);
+  check_partners(folder, kRight, right, kLeft, left);
+  if (left.empty()) {
+    throw std::runtime_error(
+        fmt::format("'{}': no pictures: a sequence must have pairs left_*.png and right_*.png", folder));
+  }
+  std::vector<GrayImage> kept;  // pictures of the first files
+  std::size_t kept_bytes = 0;
+  std::size_t converted = 0;
+  sequence = {fs::absolute(folder).string(), {}};
+  for (const std::string& stem : left) {
+    for (const char* beginning : {kLeft, kRight}) {
+      const std::string name = beginning + stem + kSuffix;
+      const std::string path = (fs::path(folder) / name).string();
+      media::LoadedGray picture = media::load_gray(path);
+      check_size(path, picture.image.width, picture.image.height, board);
+      converted += picture.converted_from_colour ? 1U : 0U;
+      sequence.files.push_back({name, files::sha256_file(path)});
+      opened.files.push_back({"--sequence", path});
+      kept_bytes += picture.image.pixels.size();
+      if (kept_bytes <= kMostKeptBytes) kept.push_back(std::move(picture.image));
+    }
+  }
+  if (converted > 0) {
+    opened.notes.push_back(fmt::format("--sequence '{}': {} of {} pictures: colour, converted to grey",
+                                       folder, converted, sequence.files.size()));
+  }
+  return std::make_unique<PairSource>(
+      "--sequence", left.size(), [sequence, kept = std::move(kept)](std::uint64_t index) {
+        const auto load = [&](std::size_t number) {
+          const InputFile& file = sequence.files[number];
+          const std::string path = (fs::path(sequence.path) / file.path).string();
+          if (files::sha256_file(path) != file.sha256)
+            throw std::runtime_error(
+                fmt::format("'{}': changed: a picture must not change during a run", path));
+          return number < kept.size() ? kept[number] : media::load_gray(path).image;
+        };
+        const auto first = static_cast<std::size_t>(2 * index);  // left and right in turn
+        return host::StereoPair{load(first), load(first + 1)};
+      });
+}
+
+// The pairs of `--video F [F2] --video-layout L`. Decodes each video once. Adds a note to `opened` for a
+// video with fewer frames than its header states. Without a board no pair may be requested.
+std::unique_ptr<PairSource> open_videos(const InputPictures& pictures, const platform::BoardConfig* board,
+                                        OpenedSource& opened) {
+  const std::string& layout = pictures.video_layout;
+  std::vector<std::shared_ptr<media::Video>> videos;
+  for (const InputFile& input : pictures.video) {
+    const std::string& file = input.path;
+    videos.push_back(media::open_video(file, [&](int width, int height) {
+      if (board != nullptr) check_video_size(file, width, height, layout, *board);
+    }));
+    const media::Video& video = *videos.back();
+    if (video.frames() < video.stated_frames()) {
+      opened.notes.push_back(fmt::format("--video '{}': {} frames can be decoded; its header says {}", file,
+                                         video.frames(), video.stated_frames()));
+    }
+  }
+  const std::uint64_t frames = videos.front()->frames();
+  if (frames != videos.back()->frames()) {
+    throw std::runtime_error(fmt::format("'{}': {} frames: must have as many as '{}', {}",
+                                         pictures.video.back().path, videos.back()->frames(),
+                                         pictures.video.front().path, frames));
+  }
+  return std::make_unique<PairSource>("--video", frames, [videos, layout](std::uint64_t index) {
+    const GrayImage& first = videos.front()->frame(index);
+    const bool is_beside = layout == "side_by_side";
+    if (layout == "two") return host::StereoPair{first, videos.back()->frame(index)};
+    const int width = is_beside ? first.width / 2 : first.width;
+    const int height = is_beside ? first.height : first.height / 2;
+    return host::StereoPair{part_of(first, 0, 0, width, height),
+                            part_of(first, is_beside ? width : 0, is_beside ? 0 : height, width, height)};
+  });
+}
+
+std::unique_ptr<PairSource> open_synthetic(std::uint64_t seed, const platform::BoardConfig& board) {
+  const media::SyntheticScene scene(seed, board.image.width, board.image.height, board.matcher.disparities);
+  return std::make_unique<PairSource>(
+      "--synthetic", PairSource::kEndless,
+      [scene](std::uint64_t index) {
+        media::SyntheticScene::Frame frame = scene.frame(index);
+        return host::StereoPair{std::move(frame.left), std::move(frame.right)};
+      },
+      [scene](std::uint64_t index) {
+        return media::Truth{scene.frame(index).disparity, 1};
+      });
 }
 
 }  // namespace
@@ -258,7 +213,7 @@ const host::StereoPair& PairSource::pair(std::uint64_t frame) {
   }
   try {
     // Loads on a separate thread: the caller may be a SystemC process, whose stack is too small for decoders.
-    held_.push_front({index, std::async(std::launch::async, [&] { return load(index); }).get()});
+    held_.push_front({index, std::async(std::launch::async, [&] { return load_(index); }).get()});
   } catch (const std::exception& error) {
     throw std::runtime_error(option_ + ' ' + error.what());
   }
@@ -266,43 +221,42 @@ const host::StereoPair& PairSource::pair(std::uint64_t frame) {
   return held_.front().pair;
 }
 
-OpenedSource open_source(const PictureSource& options, const platform::BoardConfig* board,
-                         RecordedOptions& described, process::Problems& problems) {
+OpenedSource open_source(InputPictures& pictures, const platform::BoardConfig* board,
+                         process::Problems& problems) {
   OpenedSource opened;
-  const auto load_side = [&](const NamedFile& file, GrayImage& image, std::optional<InputFile>& input) {
+  const auto load_side = [&](const std::string& option, InputFile& input) {
+    const NamedFile file = {option, input.path};
     opened.files.push_back(file);
-    problems.attempt(file.option + ' ', [&] {
+    GrayImage image;
+    problems.attempt(option + ' ', [&] {
       media::LoadedGray loaded = media::load_gray(file.path);
       if (loaded.converted_from_colour) opened.notes.push_back(file.text() + ": colour, converted to grey");
       check_size(file.path, loaded.image.width, loaded.image.height, board);
-      image = std::move(loaded.image);
       input = described_file(file.path);
+      image = std::move(loaded.image);
     });
+    return image;
   };
-  if (options.pair) {
-    host::StereoPair pictures;
-    load_side({"--left", options.pair->left}, pictures.left, described.left);
-    load_side({"--right", options.pair->right}, pictures.right, described.right);
-    if (described.left && described.right) opened.pairs = std::make_unique<SinglePair>(std::move(pictures));
+  if (pictures.left && pictures.right) {
+    host::StereoPair pair;
+    pair.left = load_side("--left", *pictures.left);
+    pair.right = load_side("--right", *pictures.right);
+    if (!pair.left.pixels.empty() && !pair.right.pixels.empty())
+      opened.pairs = std::make_unique<PairSource>(
+          "--left", 1, [pair = std::move(pair)](std::uint64_t /*index*/) { return pair; });
   }
-  if (options.sequence) {
-    problems.attempt("--sequence ", [&] {
-      opened.pairs = std::make_unique<SequencePairs>(*options.sequence, board, opened, described);
-    });
+  if (pictures.sequence) {
+    problems.attempt("--sequence ", [&] { opened.pairs = open_sequence(*pictures.sequence, board, opened); });
   }
-  if (options.video) {
-    for (const std::string& file : options.video->files) opened.files.push_back({"--video", file});
+  if (!pictures.video.empty()) {
+    for (const InputFile& file : pictures.video) opened.files.push_back({"--video", file.path});
     problems.attempt("--video ", [&] {
-      auto pairs = std::make_unique<VideoPairs>(*options.video, board, opened);
-      for (const std::string& file : options.video->files) described.video.push_back(described_file(file));
-      described.video_layout = options.video->layout_name();
+      auto pairs = open_videos(pictures, board, opened);
+      for (InputFile& file : pictures.video) file = described_file(file.path);
       opened.pairs = std::move(pairs);
     });
   }
-  if (options.synthetic) {
-    described.synthetic = options.synthetic;
-    if (board != nullptr) opened.pairs = std::make_unique<SyntheticPairs>(*options.synthetic, *board);
-  }
+  if (pictures.synthetic && board != nullptr) opened.pairs = open_synthetic(*pictures.synthetic, *board);
   return opened;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <list>
 #include <memory>
@@ -13,70 +14,52 @@
 #include "models/host/frame_source.h"
 #include "platform/config/board_config.h"
 #include "sw/files/output_file.h"
-#include "sw/media/truth.h"
+#include "sw/media/load.h"
 #include "sw/process/problems.h"
 #include "sw/runs/run_json.h"
 
 namespace stereotlm::runs {
 
-// Where a video has the two pictures of a pair.
-enum class VideoLayout : std::uint8_t { kTwo, kSideBySide, kTopBottom };
-
-// Names of the layouts on the command line, in the order of VideoLayout.
+// Where a video has the two pictures of a pair: names of the layouts on the command line.
 inline const std::vector<std::string> kVideoLayoutNames = {"two", "side_by_side", "top_bottom"};
 
-// nullopt for an unknown name.
-inline std::optional<VideoLayout> video_layout_of(const std::string& name) {
-  const auto found = std::find(kVideoLayoutNames.begin(), kVideoLayoutNames.end(), name);
-  if (found == kVideoLayoutNames.end()) return std::nullopt;
-  return static_cast<VideoLayout>(found - kVideoLayoutNames.begin());
+// The number of files of a video with this layout; 0 if there is no such layout.
+inline std::size_t video_files(const std::string& layout) {
+  const bool is_known =
+      std::find(kVideoLayoutNames.begin(), kVideoLayoutNames.end(), layout) != kVideoLayoutNames.end();
+  return layout == "two" ? 2 : is_known ? 1 : 0;
 }
-
-// The source of a run's pictures as the user names it. At most one member is set.
-struct PictureSource {
-  struct Pair {
-    std::string left;
-    std::string right;
-  };
-  struct Video {
-    std::vector<std::string> files;  // two for kTwo, the left one first, else one
-    VideoLayout layout = VideoLayout::kTwo;
-
-    const std::string& layout_name() const { return kVideoLayoutNames[static_cast<std::size_t>(layout)]; }
-  };
-  std::optional<Pair> pair;
-  std::optional<std::string> sequence;  // a folder
-  std::optional<Video> video;
-  std::optional<std::uint64_t> synthetic;  // the seed of a synthetic scene
-};
 
 // Supplies the pairs of a run: frame f shows pair f mod length(). A pair is loaded when it is requested. Only
 // the kHeld pairs that were requested last are kept, so that memory does not grow with the length.
 class PairSource : public host::FrameSource {
  public:
   static constexpr std::uint64_t kEndless = std::numeric_limits<std::uint64_t>::max();
+  // Loads pair `index`, 0 .. length()-1, and its truth.
+  using Load = std::function<host::StereoPair(std::uint64_t index)>;
+  using LoadTruth = std::function<media::Truth(std::uint64_t index)>;
 
-  // The number of pairs, 1 or more.
+  // `option`: its name in error messages. `length`: the number of pairs, 1 or more.
+  PairSource(std::string option, std::uint64_t length, Load load, LoadTruth load_truth = nullptr)
+      : option_(std::move(option)),
+        length_(length),
+        load_(std::move(load)),
+        load_truth_(std::move(load_truth)) {}
+
   std::uint64_t length() const { return length_; }
 
   // The reference is valid until kHeld other pairs have been requested. Throws std::runtime_error with option
   // and path if a file has changed since the source was opened.
   static constexpr std::size_t kHeld = 4;
-  const host::StereoPair& pair(std::uint64_t frame) final;
+  const host::StereoPair& pair(std::uint64_t frame) override;
 
   // The truth of the pair that a frame shows; nullopt if unknown. It holds only for a run without
   // calibration.
-  virtual std::optional<media::Truth> truth(std::uint64_t /*frame*/) const { return std::nullopt; }
-
- protected:
-  // `option`: its name in error messages. `length`: 0 if set_length() follows.
-  PairSource(std::string option, std::uint64_t length) : option_(std::move(option)), length_(length) {}
-  void set_length(std::uint64_t length) { length_ = length; }
+  std::optional<media::Truth> truth(std::uint64_t frame) const {
+    return load_truth_ ? std::optional(load_truth_(frame % length_)) : std::nullopt;
+  }
 
  private:
-  // Loads pair `index`, 0 .. length()-1.
-  virtual host::StereoPair load(std::uint64_t index) = 0;
-
   struct Held {
     std::uint64_t index = 0;
     host::StereoPair pair;
@@ -84,6 +67,8 @@ class PairSource : public host::FrameSource {
 
   std::string option_;
   std::uint64_t length_;
+  Load load_;
+  LoadTruth load_truth_;
   std::list<Held> held_;  // most recently requested first
 };
 
@@ -96,10 +81,11 @@ struct OpenedSource {
   std::vector<std::string> notes;     // for standard error
 };
 
-// Opens the source of pictures and checks all its pictures. Reports problems. Fills the fields of `described`
-// that concern the pictures. `board`: null if unknown; the sizes of the pictures are then not checked.
-OpenedSource open_source(const PictureSource& options, const platform::BoardConfig* board,
-                         RecordedOptions& described, process::Problems& problems);
+// Opens the source of pictures and checks all its pictures. Reports problems. Of `pictures`, at most one
+// source is named, by its paths; the function makes them absolute, and adds the checksums of the files.
+// `board`: null if unknown; the sizes of the pictures are then not checked.
+OpenedSource open_source(InputPictures& pictures, const platform::BoardConfig* board,
+                         process::Problems& problems);
 
 // Loads the ground truth and checks its size. Reports problems and returns nullopt if there are any. `board`:
 // null if unknown; the size is then not checked.

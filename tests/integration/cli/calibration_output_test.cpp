@@ -17,9 +17,9 @@
 
 #include "calib/calibration.h"
 #include "calib/synthetic_rig.h"
-#include "sw/cli/calibration_files.h"
 #include "sw/files/output_folder.h"
 #include "sw/files/whole_file.h"
+#include "sw/runs/sources/calibration_input.h"
 #include "tests/support/fork.h"
 #include "tests/support/scratch_folder.h"
 
@@ -116,7 +116,7 @@ Files calibration(const std::string& what, bool has_pictures) {
 
 struct CalibrationOutput : files::OutputFolder {
   CalibrationOutput(const fs::path& folder, bool makes_pictures, const std::string& name = "rig.yaml")
-      : OutputFolder(folder, calibration_content(runs::rig_files(folder / name), makes_pictures)) {}
+      : OutputFolder(folder, runs::calibration_content(runs::rig_files(folder / name), makes_pictures)) {}
 };
 
 class CalibrationOutputTest : public ::testing::Test {

@@ -18,19 +18,16 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 // Pair i is of grey level i. Counts what is loaded.
-class Levels : public PairSource {
- public:
-  explicit Levels(std::uint64_t length) : PairSource("--levels", length) {}
+struct Levels : PairSource {
+  explicit Levels(std::uint64_t length)
+      : PairSource("--levels", length, [this](std::uint64_t index) {
+          if (is_broken) throw std::runtime_error("'x': broken");
+          loaded.push_back(index);
+          const GrayImage image(4, 1, static_cast<std::uint8_t>(index));
+          return host::StereoPair{image, image};
+        }) {}
   std::vector<std::uint64_t> loaded;
   bool is_broken = false;
-
- private:
-  host::StereoPair load(std::uint64_t index) override {
-    if (is_broken) throw std::runtime_error("'x': broken");
-    loaded.push_back(index);
-    const GrayImage image(4, 1, static_cast<std::uint8_t>(index));
-    return {image, image};
-  }
 };
 
 int level(PairSource& pairs, std::uint64_t frame) { return pairs.pair(frame).right.at(0, 0); }
@@ -73,9 +70,10 @@ TEST(PairSource, NamesItsOptionInAnErrorAndCanLoadAgain) {
 
 class OpenSourceTest : public ::testing::Test {
  protected:
-  OpenedSource opened(const PictureSource& options) {
+  OpenedSource opened(const InputPictures& options) {
     process::Problems problems;
-    OpenedSource source = open_source(options, &board_, described_, problems);
+    described_ = options;
+    OpenedSource source = open_source(described_, &board_, problems);
     problems.check();
     return source;
   }
@@ -87,14 +85,15 @@ class OpenSourceTest : public ::testing::Test {
   const platform::BoardConfig board_ =
       platform::load_board("fpl2003", {"image.width=32", "image.height=24", "matcher.disparities=8"});
   test::ScratchFolder folder_;
-  RecordedOptions described_;
+  InputPictures described_;
 };
 
 TEST_F(OpenSourceTest, OnePairIsReadOnce) {
-  PictureSource options;
-  options.pair = {picture("l.png", 1), picture("r.png", 2)};
+  InputPictures options;
+  options.left = InputFile{picture("l.png", 1), ""};
+  options.right = InputFile{picture("r.png", 2), ""};
   const OpenedSource source = opened(options);
-  std::filesystem::remove(options.pair->left);
+  std::filesystem::remove(options.left->path);
   EXPECT_EQ(source.pairs->length(), 1U);
   for (const std::uint64_t frame : {0U, 1U, 100U}) {
     EXPECT_EQ(source.pairs->pair(frame).left, GrayImage(32, 24, 1));
@@ -107,8 +106,8 @@ TEST_F(OpenSourceTest, ASequenceFollowsItsNamesAndRefusesAPictureThatHasChanged)
     picture("left_" + std::to_string(number) + ".png", number);
     picture("right_" + std::to_string(number) + ".png", 100 + number);
   }
-  PictureSource options;
-  options.sequence = folder_.path().string();
+  InputPictures options;
+  options.sequence = InputFolder{folder_.path().string(), {}};
   const OpenedSource source = opened(options);
   EXPECT_EQ(source.pairs->length(), 6U);
   EXPECT_EQ(source.files.size(), 12U);
@@ -129,7 +128,7 @@ TEST_F(OpenSourceTest, ASequenceFollowsItsNamesAndRefusesAPictureThatHasChanged)
 }
 
 TEST_F(OpenSourceTest, ASyntheticSceneIsThatOfItsSeed) {
-  PictureSource options;
+  InputPictures options;
   options.synthetic = 7;
   const OpenedSource source = opened(options);
   EXPECT_EQ(source.pairs->length(), PairSource::kEndless);
@@ -143,12 +142,13 @@ TEST_F(OpenSourceTest, ASyntheticSceneIsThatOfItsSeed) {
 }
 
 TEST_F(OpenSourceTest, WithoutABoardSizesAreNotChecked) {
-  PictureSource options;
-  options.pair = {picture("l.png", 1, 16), picture("r.png", 2)};
+  InputPictures options;
+  options.left = InputFile{picture("l.png", 1, 16), ""};
+  options.right = InputFile{picture("r.png", 2), ""};
   process::Problems problems;
-  open_source(options, nullptr, described_, problems);
+  open_source(options, nullptr, problems);
   EXPECT_TRUE(problems.empty());
-  open_source(options, &board_, described_, problems);
+  open_source(options, &board_, problems);
   EXPECT_FALSE(problems.empty());
 }
 

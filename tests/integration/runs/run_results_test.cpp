@@ -53,19 +53,11 @@ TEST(Deliver, ReportsEachIdentityThatDoesNotHoldAndEachDifferenceOfTheFidelities
   EXPECT_FALSE(delivery_of({}, {"the fidelities differ: frame 0"}).all_hold);
 }
 
-class EmptyPairs : public PairSource {
- public:
-  explicit EmptyPairs(std::uint64_t length) : PairSource("--empty", length) {}
-
- private:
-  host::StereoPair load(std::uint64_t /*index*/) override { return {}; }
-};
-
 // Whether a run of `frames` frames keeps its truth when it ends after `done` of them, and the note it prints.
 std::pair<bool, std::string> truth_after(std::uint64_t done, std::uint64_t frames, std::uint64_t pairs) {
   RunInput input;
   input.frames = frames;
-  input.pairs = std::make_unique<EmptyPairs>(pairs);
+  input.pairs = std::make_unique<PairSource>("--empty", pairs, [](auto) { return host::StereoPair{}; });
   input.truth = media::Truth{};
   input.described.truth = InputFile{"/t.png", "aa"};
   ::testing::internal::CaptureStderr();

@@ -30,7 +30,7 @@ class VerificationTest : public testing::Test {
   }
   // Verifies a run with these made-up results. Returns what fails, one line each.
   std::string failed_of(const std::vector<Result>& results, const platform::Statistics& statistics) {
-    Verification verification(input, pictures);
+    Verification verification(input);
     for (const Result& result : results) verification.add(result);
     const Verification::Outcome outcome = verification.compare(statistics);
     EXPECT_FALSE(outcome.interrupted);
@@ -40,7 +40,6 @@ class VerificationTest : public testing::Test {
   }
 
   RunInput input;
-  PictureSource pictures;
 };
 
 TEST_F(VerificationTest, NamesTheFramesAndFiguresThatDiffer) {
@@ -63,7 +62,8 @@ TEST_F(VerificationTest, NamesThePicturesThatCannotBeReadAnyMoreAndWhy) {
   const test::ScratchFolder empty;
   const std::string left = empty.path() / "left.png";
   const std::string right = empty.path() / "right.png";
-  pictures.pair = {left, right};
+  input.described.left = InputFile{left, ""};
+  input.described.right = InputFile{right, ""};
   EXPECT_EQ(failed_of({{0, {}, 123}}, {}),
             "--verify: the run at fidelity cycle: the pictures cannot be read any more: --left '" + left +
                 "': no such file; --right '" + right + "': no such file\n");

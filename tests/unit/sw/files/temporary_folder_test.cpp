@@ -1,11 +1,11 @@
-#include "sw/files/temporary_folder.h"
-
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <climits>
 #include <cstdlib>
 #include <string>
 
+#include "sw/files/whole_file.h"
 #include "tests/support/scratch_folder.h"
 
 namespace stereotlm::files {
@@ -30,14 +30,14 @@ class TemporaryFolderTest : public ::testing::Test {
 };
 
 TEST_F(TemporaryFolderTest, LiesInTheFolderThatTheEnvironmentNames) {
-  EXPECT_EQ(temporary_place().folder, "/tmp");
+  EXPECT_EQ(TemporaryFolder().path().parent_path(), "/tmp");
   for (const char* variable : {"TEMPDIR", "TEMP", "TMP", "TMPDIR"}) {
-    set(variable, scratch_.path() / variable);
-    EXPECT_EQ(temporary_place().variable, variable);
-    EXPECT_EQ(temporary_place().folder, scratch_.path() / variable);
+    const fs::path folder = scratch_.path() / variable;
+    set(variable, folder);
+    EXPECT_EQ(refusal(), variable + (" = " + folder.string()) + ": must be a folder");
   }
   set("TMPDIR", "");
-  EXPECT_EQ(temporary_place().variable, "TMP");
+  EXPECT_THAT(refusal(), testing::StartsWith("TMP = "));
 }
 
 TEST_F(TemporaryFolderTest, IsRemovedWithItsFiles) {

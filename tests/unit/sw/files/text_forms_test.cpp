@@ -1,11 +1,11 @@
+#include "sw/files/text_forms.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <string>
 #include <vector>
 
-#include "sw/files/sha256.h"
-#include "sw/files/shell_word.h"
 #include "sw/process/command.h"
 #include "tests/support/scratch_folder.h"
 
@@ -48,6 +48,12 @@ TEST(Sha256, RefusesAFileThatCannotBeRead) {
   EXPECT_EQ(test::message_of([&] { sha256_file(missing); }),
             "'" + missing + "': cannot be read: No such file or directory");
   EXPECT_THAT(test::message_of([&] { sha256_file(scratch.path()); }), HasSubstr("Is a directory"));
+}
+
+TEST(RangesText, JoinsSuccessiveNumbers) {
+  EXPECT_EQ(ranges_text({0}, ","), "0");
+  EXPECT_EQ(ranges_text({0, 1, 2, 3}, ","), "0-3");
+  EXPECT_EQ(ranges_text({0, 3, 5, 6, 9}, ", "), "0, 3, 5-6, 9");
 }
 
 }  // namespace

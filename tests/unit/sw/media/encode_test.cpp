@@ -6,7 +6,6 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
-#include <stdexcept>
 #include <string>
 
 #include "models/kernels/words.h"
@@ -52,15 +51,6 @@ TEST(EncodeDisparityColorPng, SpreadsTurboOverTheDisparities) {
             cv::Vec3b(0, 0, 0));
 }
 
-TEST(EncodeDisparityColorPng, TakesDisparitiesBelowTheirNumberOnly) {
-  EXPECT_NO_THROW(encode_disparity_color_png(kernels::GrayImage(1, 1, 0), 1));
-  EXPECT_NO_THROW(encode_disparity_color_png(kernels::GrayImage(1, 1, 253), 254));
-  EXPECT_THROW(encode_disparity_color_png(kernels::GrayImage(1, 1, 1), 1), std::invalid_argument);
-  EXPECT_THROW(encode_disparity_color_png(kernels::GrayImage(1, 1, 254), 254), std::invalid_argument);
-  EXPECT_THROW(encode_disparity_color_png(kernels::GrayImage(1, 1, 0), 0), std::invalid_argument);
-  EXPECT_THROW(encode_disparity_color_png(kernels::GrayImage(1, 1, 0), 255), std::invalid_argument);
-}
-
 TEST(EncodePfm, HasRowsBottomToTopAndInfinityForInvalid) {
   kernels::GrayImage disparity(2, 2);
   disparity.pixels = {0, 1, kernels::kInvalidDisparity, 79};
@@ -68,16 +58,6 @@ TEST(EncodePfm, HasRowsBottomToTopAndInfinityForInvalid) {
   const std::string expected(
       "Pf\n2 2\n-1.0\n\x00\x00\x80\x7F\x00\x00\x9E\x42\x00\x00\x00\x00\x00\x00\x80\x3F", 28);
   EXPECT_EQ(std::string(bytes.begin(), bytes.end()), expected);
-}
-
-TEST(Encoders, RefuseAnImageThatIsEmptyOrNotWhole) {
-  kernels::GrayImage broken(2, 2);
-  broken.pixels.pop_back();
-  for (const kernels::GrayImage& image : {kernels::GrayImage(), broken}) {
-    EXPECT_THROW(encode_png_gray(image), std::invalid_argument);
-    EXPECT_THROW(encode_disparity_color_png(image, 80), std::invalid_argument);
-    EXPECT_THROW(encode_pfm(image), std::invalid_argument);
-  }
 }
 
 TEST(NearestDisparity, RoundsTheTruthAndLeavesOutWhatCannotBeSearched) {

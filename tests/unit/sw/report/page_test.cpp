@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "sw/files/base64.h"
+#include "sw/files/text_forms.h"
 #include "sw/report/html_page.h"
 
 namespace stereotlm::report {

@@ -1,5 +1,3 @@
-#include "sw/explore/plan/conditions.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -9,6 +7,7 @@
 #include <vector>
 
 #include "platform/config/board_yaml.h"
+#include "sw/explore/plan/points.h"
 #include "tests/support/scratch_folder.h"
 
 namespace stereotlm::explore {

@@ -1,4 +1,3 @@
-#include "sw/explore/search/allocations.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,3 @@
-#include "sw/explore/store/store_lock.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -9,6 +7,7 @@
 #include <string>
 #include <thread>
 
+#include "sw/explore/store/store.h"
 #include "tests/unit/sw/explore/store_files.h"
 
 namespace stereotlm::explore {

@@ -20,9 +20,9 @@
 #include <vector>
 
 #include "platform/config/board_yaml.h"
-#include "sw/explore/plan/conditions.h"
 #include "sw/explore/plan/plan.h"
-#include "sw/explore/store/store_lock.h"
+#include "sw/explore/plan/points.h"
+#include "sw/explore/store/store.h"
 #include "sw/process/child.h"
 #include "tests/unit/sw/explore/store_files.h"
 
@@ -343,7 +343,7 @@ TEST(Batch, ReportsWhyAPointHasNoFigures) {
   const Points points = board_points({platform::load_board("fpl2003")}, {});
   const auto fails = [](const Point& /*point*/) -> Figures { throw std::runtime_error("too large"); };
   Batch batch;
-  ASSERT_TRUE(batch.run(points, fails, "1", 1, [](const SweepCounts&) { return true; }));
+  ASSERT_TRUE(batch.run(points, fails, [](const SweepCounts&) { return true; }));
   EXPECT_THROW(batch.row_of(points.point(0)), PointFailed);
   EXPECT_EQ(test::message_of([&] { batch.row_of(points.point(0)); }), "fpl2003: too large");
 }

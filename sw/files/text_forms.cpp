@@ -1,0 +1,91 @@
+#include "sw/files/text_forms.h"
+
+#include <fmt/format.h>
+#include <openssl/evp.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <stdexcept>
+
+namespace stereotlm::files {
+namespace {
+
+class Sha256 {
+ public:
+  Sha256() : context_(EVP_MD_CTX_new(), &EVP_MD_CTX_free) {
+    check(context_ != nullptr && EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr) == 1);
+  }
+  void add(const void* bytes, std::size_t count) {
+    check(EVP_DigestUpdate(context_.get(), bytes, count) == 1);
+  }
+  std::string hex() {
+    unsigned char digest[EVP_MAX_MD_SIZE];
+    unsigned size = 0;
+    check(EVP_DigestFinal_ex(context_.get(), digest, &size) == 1);
+    return fmt::format("{:02x}", fmt::join(digest, digest + size, ""));
+  }
+
+ private:
+  static void check(bool done) {
+    if (!done) throw std::runtime_error("SHA-256: the OpenSSL library refuses to compute it");
+  }
+
+  std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context_;
+};
+
+}  // namespace
+
+std::string sha256_hex(const void* bytes, std::size_t count) {
+  Sha256 sum;
+  sum.add(bytes, count);
+  return sum.hex();
+}
+
+std::string sha256_file(const std::string& path) {
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
+  Sha256 sum;
+  unsigned char buffer[1 << 16];
+  std::size_t count = 0;
+  while (file && (count = std::fread(buffer, 1, sizeof buffer, file.get())) > 0) sum.add(buffer, count);
+  if (!file || std::ferror(file.get()) != 0)
+    throw std::runtime_error(fmt::format("'{}': cannot be read: {}", path, std::strerror(errno)));
+  return sum.hex();
+}
+
+std::string base64(const void* bytes, std::size_t size) {
+  std::string text(4 * ((size + 2) / 3) + 1, '\0');  // EVP_EncodeBlock() also writes a terminating zero
+  const int length = EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()),
+                                     static_cast<const unsigned char*>(bytes), static_cast<int>(size));
+  text.resize(static_cast<std::size_t>(length));
+  return text;
+}
+
+std::string shell_word(const std::string& word) {
+  constexpr const char* kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=:,./@%";
+  if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
+  std::string text = "'";
+  for (const char each : word) text += each == '\'' ? std::string("'\\''") : std::string(1, each);
+  return text + '\'';
+}
+
+std::string shell_command(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : " ") + shell_word(word);
+  return text;
+}
+
+std::string ranges_text(const std::vector<std::uint64_t>& numbers, const std::string& separator) {
+  std::string text;
+  for (std::size_t first = 0; first < numbers.size();) {
+    std::size_t last = first;
+    while (last + 1 < numbers.size() && numbers[last + 1] == numbers[last] + 1) ++last;
+    text += (first > 0 ? separator : "") + std::to_string(numbers[first]);
+    if (last > first) text += fmt::format("-{}", numbers[last]);
+    first = last + 1;
+  }
+  return text;
+}
+
+}  // namespace stereotlm::files

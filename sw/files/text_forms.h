@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+// Forms of bytes and words as text.
+namespace stereotlm::files {
+
+// SHA-256 as 64 lower-case hexadecimal digits.
+std::string sha256_hex(const void* bytes, std::size_t count);
+
+// The SHA-256 of the content of a file, which is read in pieces. Throws std::runtime_error with path and
+// cause if the file cannot be read.
+std::string sha256_file(const std::string& path);
+
+// The bytes in base64 (RFC 4648), padded, without line breaks.
+std::string base64(const void* bytes, std::size_t size);
+
+// The word as a POSIX shell reads it: in quotes if it needs them.
+std::string shell_word(const std::string& word);
+
+// The words as a command of a POSIX shell.
+std::string shell_command(const std::vector<std::string>& words);
+
+// Ascending numbers with runs of them as ranges: "0, 2-5, 9" with the separator ", ".
+std::string ranges_text(const std::vector<std::uint64_t>& numbers, const std::string& separator);
+
+}  // namespace stereotlm::files

@@ -1,0 +1,238 @@
+#include "sw/media/decode.h"
+
+#include <fmt/format.h>
+#include <jpeglib.h>
+#include <png.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cstddef>
+#include <cstdio>  // before jpeglib.h, which needs it
+
+namespace stereotlm::media {
+namespace {
+
+// Debian builds libpng with the tables that an exception needs to pass through its functions.
+[[noreturn]] void fail_png(png_structp /*png*/, const char* /*message*/) { refuse_damaged(); }
+void ignore_png_warning(png_structp /*png*/, const char* /*message*/) {}
+
+void read_png(png_structp png, png_bytep bytes, std::size_t count) {
+  auto& rest = *static_cast<std::string_view*>(png_get_io_ptr(png));
+  if (count > rest.size()) refuse_damaged();
+  std::copy_n(rest.begin(), count, bytes);
+  rest.remove_prefix(count);
+}
+
+struct PngReader {
+  PngReader() : png(png_create_read_struct(PNG_LIBPNG_VER_STRING, nullptr, fail_png, ignore_png_warning)) {
+    info = png_create_info_struct(png);
+  }
+  ~PngReader() { png_destroy_read_struct(&png, &info, nullptr); }
+  PngReader(const PngReader&) = delete;
+  PngReader& operator=(const PngReader&) = delete;
+
+  png_structp png;
+  png_infop info = nullptr;
+};
+
+// Limit for the scans of a progressive JPEG. Encoders make about a dozen. Decoding a scan takes a pass over
+// all pixels, even if the scan is empty.
+constexpr int kMostScans = 100;
+
+[[noreturn]] void fail_jpeg(j_common_ptr /*info*/) { refuse_damaged(); }
+
+// libjpeg fills damaged parts with grey, and continues with a warning. The first warning counts: a scan that
+// repeats an earlier one is unusual, but not damaged, and leads to more warnings.
+void check_jpeg_warning(j_common_ptr info, int level) {
+  if (level >= 0) return;
+  char text[JMSG_LENGTH_MAX];
+  info->err->format_message(info, text);
+  const std::string_view message = text;
+  if (message.rfind("Premature end", 0) == 0) refuse_damaged();
+  if (info->err->num_warnings++ == 0 && message.rfind("Corrupt JPEG data", 0) == 0)
+    refuse_picture("a damaged JPEG", "a picture must be complete");
+}
+
+void check_scans(j_common_ptr info) {
+  const int scans = reinterpret_cast<j_decompress_ptr>(info)->input_scan_number;
+  if (scans > kMostScans)
+    refuse_picture(fmt::format("{} scans", scans), fmt::format("a JPEG must have {} at most", kMostScans));
+}
+
+struct JpegReader {
+  JpegReader() {
+    info.err = jpeg_std_error(&errors);
+    errors.error_exit = fail_jpeg;
+    errors.emit_message = check_jpeg_warning;
+    jpeg_create_decompress(&info);
+    progress.progress_monitor = check_scans;
+    info.progress = &progress;
+  }
+  ~JpegReader() { jpeg_destroy_decompress(&info); }
+  JpegReader(const JpegReader&) = delete;
+  JpegReader& operator=(const JpegReader&) = delete;
+
+  jpeg_decompress_struct info = {};
+  jpeg_error_mgr errors = {};
+  jpeg_progress_mgr progress = {};
+};
+
+// As OpenCV 4.6 converts a pixel of cyan, magenta, yellow and black, which are stored inverted.
+void append_of_cmyk(std::vector<std::uint8_t>& samples, const std::uint8_t* cmyk) {
+  for (const int channel : {2, 1, 0})
+    samples.push_back(static_cast<std::uint8_t>(cmyk[3] - ((255 - cmyk[channel]) * cmyk[3] >> 8)));
+}
+
+bool is_space(char c) { return std::isspace(static_cast<unsigned char>(c)) != 0; }
+
+// Reads words from the header of a file.
+class Words {
+ public:
+  explicit Words(std::string_view bytes) : rest_(bytes) {}
+
+  // The next word, without comments before it. Takes the one byte of white space behind it.
+  std::string_view next() {
+    while (!rest_.empty() && (is_space(rest_[0]) || rest_[0] == '#')) {
+      const bool is_comment = rest_[0] == '#';
+      rest_.remove_prefix(is_comment ? std::min(rest_.find_first_of("\r\n"), rest_.size()) : 1);
+    }
+    const auto end = std::find_if(rest_.begin(), rest_.end(), is_space);
+    if (end == rest_.end()) refuse_damaged();
+    const std::string_view word = rest_.substr(0, static_cast<std::size_t>(end - rest_.begin()));
+    rest_.remove_prefix(word.size() + 1);
+    return word;
+  }
+  // The next word as a number, at most 1,000,000,000.
+  std::uint64_t number() {
+    constexpr std::uint64_t kMost = 1'000'000'000;
+    std::uint64_t number = 0;
+    for (const char digit : next()) {
+      if (digit < '0' || digit > '9') refuse_damaged();
+      number = std::min(kMost, number * 10 + static_cast<std::uint64_t>(digit - '0'));
+    }
+    return number;
+  }
+  std::string_view rest() const { return rest_; }
+
+ private:
+  std::string_view rest_;
+};
+
+struct PnmHeader {
+  std::uint64_t width = 0;
+  std::uint64_t height = 0;
+  std::uint64_t channels = 0;
+  std::uint64_t maximum = 0;
+};
+
+PnmHeader pam_header(Words& words) {
+  PnmHeader header;
+  for (std::string_view field = words.next(); field != "ENDHDR"; field = words.next()) {
+    if (field == "WIDTH") {
+      header.width = words.number();
+    } else if (field == "HEIGHT") {
+      header.height = words.number();
+    } else if (field == "DEPTH") {
+      header.channels = words.number();
+    } else if (field == "MAXVAL") {
+      header.maximum = words.number();
+    } else {
+      words.next();  // the kind of pixels, which DEPTH says too
+    }
+  }
+  return header;
+}
+
+}  // namespace
+
+Picture decode_png(std::string_view bytes) {
+  PngReader reader;
+  png_set_read_fn(reader.png, &bytes, read_png);
+  png_set_user_limits(reader.png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);  // new_picture() has the limits
+  png_read_info(reader.png, reader.info);
+  const int type = png_get_color_type(reader.png, reader.info);
+  const int bits = png_get_bit_depth(reader.png, reader.info);
+  const bool is_colour = (type & PNG_COLOR_MASK_COLOR) != 0;
+  Picture picture = new_picture(png_get_image_width(reader.png, reader.info),
+                                png_get_image_height(reader.png, reader.info), is_colour ? 3 : 1);
+  if (png_get_valid(reader.png, reader.info, PNG_INFO_tRNS) != 0)
+    refuse_picture("a PNG with transparency (tRNS)", kPixelRule);
+  const bool has_alpha = (type & PNG_COLOR_MASK_ALPHA) != 0;
+  const bool is_palette = type == PNG_COLOR_TYPE_PALETTE;
+  if (has_alpha || (bits != 8 && !is_palette)) {
+    refuse_picture(
+        fmt::format("{}-bit {}{}", bits, is_colour ? "colour" : "grey", has_alpha ? " with alpha" : ""),
+        kPixelRule);
+  }
+  if (is_palette) png_set_palette_to_rgb(reader.png);
+  png_set_bgr(reader.png);
+  png_set_interlace_handling(reader.png);
+  png_read_update_info(reader.png, reader.info);
+  std::vector<png_bytep> rows;
+  const std::size_t row_bytes = picture.samples.size() / static_cast<std::size_t>(picture.height);
+  for (std::size_t at = 0; at < picture.samples.size(); at += row_bytes) rows.push_back(&picture.samples[at]);
+  png_read_image(reader.png, rows.data());
+  png_read_end(reader.png, nullptr);
+  return picture;
+}
+
+Picture decode_jpeg(std::string_view bytes) {
+  JpegReader reader;
+  jpeg_decompress_struct& info = reader.info;
+  jpeg_mem_src(&info, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size());
+  jpeg_read_header(&info, TRUE);
+  Picture picture = new_picture(info.image_width, info.image_height, info.num_components == 1 ? 1 : 3);
+  const bool is_cmyk = info.num_components == 4;
+  if (info.num_components == 1) {
+    info.out_color_space = JCS_GRAYSCALE;
+  } else {
+    info.out_color_space = is_cmyk ? JCS_CMYK : JCS_EXT_BGR;
+  }
+  jpeg_start_decompress(&info);
+  const std::size_t row_bytes = info.output_width * static_cast<std::size_t>(info.output_components);
+  std::vector<std::uint8_t> row(row_bytes);
+  picture.samples.clear();
+  while (info.output_scanline < info.output_height) {
+    JSAMPROW rows = row.data();
+    jpeg_read_scanlines(&info, &rows, 1);
+    if (!is_cmyk) picture.samples.insert(picture.samples.end(), row.begin(), row.end());
+    for (std::size_t at = 0; is_cmyk && at < row_bytes; at += 4) append_of_cmyk(picture.samples, &row[at]);
+  }
+  jpeg_finish_decompress(&info);
+  return picture;
+}
+
+Picture decode_pnm(std::string_view bytes) {
+  const char kind = bytes[1];
+  if (kind == '1' || kind == '4') refuse_picture("1-bit black and white", kPixelRule);
+  if (kind == 'f' || kind == 'F') refuse_picture(kind == 'f' ? "float grey" : "float colour", kPixelRule);
+  Words words(bytes.substr(2));
+  PnmHeader header;
+  if (kind == '7') {
+    header = pam_header(words);
+  } else {
+    header.width = words.number();
+    header.height = words.number();
+    header.maximum = words.number();
+    header.channels = kind == '2' || kind == '5' ? 1 : 3;
+  }
+  if (header.channels != 1 && header.channels != 3)
+    refuse_picture(fmt::format("a PAM of depth {}", header.channels), kPixelRule);
+  Picture picture = new_picture(header.width, header.height, static_cast<int>(header.channels));
+  if (header.maximum != 255) {
+    refuse_picture(fmt::format("a maximum level of {}", header.maximum), "a PGM, PPM or PAM must state 255");
+  }
+  if (kind == '2' || kind == '3') {
+    for (std::uint8_t& sample : picture.samples)
+      sample = static_cast<std::uint8_t>(std::min<std::uint64_t>(255, words.number()));
+  } else {
+    if (words.rest().size() < picture.samples.size()) refuse_damaged();
+    std::copy_n(words.rest().begin(), picture.samples.size(), picture.samples.begin());
+  }
+  // The file has red first.
+  for (std::size_t at = 0; picture.channels == 3 && at < picture.samples.size(); at += 3)
+    std::swap(picture.samples[at], picture.samples[at + 2]);
+  return picture;
+}
+
+}  // namespace stereotlm::media
