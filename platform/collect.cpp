@@ -184,10 +184,10 @@ BoardCounters counters_of(const Board& board) {
     counters.banks[bank].accesses +=
         stats.reads + stats.writes + stats.errors + core.crossbar().direct_accesses(bank);
   }
-  counters.left.issued += datapath.sequencer().stats(fpga::Side::kLeft).slots;
-  counters.right.issued += datapath.sequencer().stats(fpga::Side::kRight).slots;
-  counters.packed_words += datapath.result_packer().stats().words;
-  counters.written_words += datapath.result_writer().stats().writes;
+  counters.left.issued += datapath.sequencer().slots(fpga::Side::kLeft);
+  counters.right.issued += datapath.sequencer().slots(fpga::Side::kRight);
+  counters.packed_words += datapath.result_packer().words();
+  counters.written_words += datapath.result_writer().writes();
   return counters;
 }
 

@@ -134,10 +134,10 @@ PixelNeeds CoreDatapath::move(const CoreControl& control, const CoreControl::Dec
 }
 
 std::uint64_t CoreDatapath::errors() const {
-  std::uint64_t errors = result_writer_.stats().errors;
+  std::uint64_t errors = result_writer_.errors();
   for (const Lane& lane : lanes_) {
-    errors += lane.pixel_reader.stats().errors;
-    if (lane.lut_reader) errors += lane.lut_reader->stats().errors;
+    errors += lane.pixel_reader.errors();
+    if (lane.lut_reader) errors += lane.lut_reader->errors();
   }
   return errors;
 }

@@ -66,10 +66,6 @@ class CoreDatapath {
   // The stages, for their statistics.
   const Sequencer& sequencer() const { return sequencer_; }
   const Lane& lane(Side side) const { return lanes_[index_of(side)]; }
-  const CostArray& cost_array() const { return cost_array_; }
-  const SelectMinChain& select_min_chain() const { return select_min_chain_; }
-  const SelectMinTree& select_min_tree() const { return select_min_tree_; }
-  const LrCheck& lr_check() const { return lr_check_; }
   const ResultPacker& result_packer() const { return result_packer_; }
   const ResultWriter& result_writer() const { return result_writer_; }
 

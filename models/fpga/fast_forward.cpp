@@ -22,17 +22,12 @@ std::uint64_t empty_slots(const FrameGeometry& geometry, int strip) {
 
 static_assert(2 * memory::kBankCountRule.max - 1 <= HostRequests::kMostRoute);
 
-std::size_t most_slots_of_group(const FrameGeometry& geometry, int lane_fifo_slots) {
-  return static_cast<std::size_t>(4 * geometry.slots_per_column + lane_fifo_slots);
-}
-
 }  // namespace
 
-FastForward::FastForward(CoreStepper& stepper, int lane_fifo_slots, std::size_t most_groups)
+FastForward::FastForward(CoreStepper& stepper, int lane_fifo_slots)
     : stepper_(stepper),
       lane_fifo_slots_(static_cast<std::uint64_t>(lane_fifo_slots)),
-      accesses_(stepper),
-      known_(most_slots_of_group(control().geometry(), lane_fifo_slots), most_groups) {
+      known_(static_cast<std::size_t>(4 * control().geometry().slots_per_column + lane_fifo_slots)) {
   const FrameGeometry& geometry = control().geometry();
   for (int strip = 0; strip < geometry.strips; ++strip) {
     const std::uint64_t empty = empty_slots(geometry, strip);
@@ -44,22 +39,23 @@ FastForward::FastForward(CoreStepper& stepper, int lane_fifo_slots, std::size_t 
 
 void FastForward::start_direct_frame(const AccessPatterns& patterns, std::uint64_t routes) {
   start_frame();
-  accesses_.start_direct_frame(patterns);
-  tell_assumed();
   routes_ = routes;
   strips_ = 0;
-  for (const Side side : kSides) varying_[index_of(side)] = accesses_.varying(side);
-}
-
-void FastForward::start_stepped_frame() {
-  start_frame();
-  accesses_.start_stepped_frame();
+  for (const Side side : kSides) {
+    const AccessPattern* const pattern = &patterns[index_of(side)];
+    if (!control().lane(side).has_table() || pattern->needs_all_pixels()) continue;
+    const bool is_assumed = stepper_.arbitration().is_alone(pixel_port(side));
+    (is_assumed ? assumed_ : varying_)[index_of(side)] = pattern;
+  }
+  tell_assumed();
 }
 
 void FastForward::start_frame() {
   if (ahead_.cycles != 0) throw std::logic_error("a frame starts before the last one was settled");
   stepped_.reset();
   is_walking_ = false;
+  varying_ = {};
+  assumed_ = {};
 }
 
 void FastForward::settle(std::uint64_t cycle) {
@@ -70,15 +66,31 @@ void FastForward::settle(std::uint64_t cycle) {
   is_host_routed_ = false;
 }
 
-void FastForward::resolve_accesses(Side side) {
-  accesses_.resolve(side);
-  varying_[index_of(side)] = accesses_.varying(side);
-  tell_assumed();
+// LaneControl::correct_marks() of a side.
+std::uint64_t FastForward::marks(Side side) const {
+  const LaneControl& lane = control().lane(side);
+  if (!lane.has_table() || lane.handled() == lane.taken()) return 0;
+  std::uint64_t marks = 0;
+  SlotCursor slot(control().geometry());
+  slot.advance(lane.handled());
+  for (std::uint64_t mark = 1, left = lane.taken() - lane.handled(); left > 0; --left, mark <<= 1U) {
+    if (!slot.empty() && accesses_pixel(side, slot)) marks |= mark;
+    slot.advance();
+  }
+  return marks;
 }
 
-void FastForward::tell_assumed() {
-  if (ConflictRecorder* const conflicts = stepper_.conflicts())
-    conflicts->assume_accesses({accesses_.assumed(Side::kLeft), accesses_.assumed(Side::kRight)});
+// To be called before the pixel port of a side ceases to be alone on its bank, and after the last cycle of a
+// frame. Corrects the counts. From now on the pattern determines which slots need their pixels.
+void FastForward::resolve_accesses(Side side) {
+  const AccessPattern* const pattern = std::exchange(assumed_[index_of(side)], nullptr);
+  if (pattern == nullptr) return;
+  varying_[index_of(side)] = pattern;
+  const std::uint64_t passed = pattern->passes_before(control().lane(side).handled());
+  stepper_.control().correct_passes(side, passed);
+  stepper_.control().correct_marks(side, marks(side));
+  stepper_.arbitration().retract_grants(pixel_port(side), passed);
+  tell_assumed();
 }
 
 // `kMayRequest`: false where the host requests in no cycle, which is most of them and costs less.
@@ -86,7 +98,7 @@ template <bool kMayRequest>
 memory::PortMask FastForward::step_core(std::uint64_t cycle, bool host_requests) {
   return stepper_.step(cycle, kMayRequest && host_requests,
                        [this](const CoreControl::Decision& /*decision*/, memory::PortMask granted) {
-                         return accesses_.needs_pixel(granted);
+                         return needs_pixel(granted);
                        });
 }
 
@@ -334,7 +346,7 @@ void FastForward::catch_up(std::uint64_t cycle) {
   control.count_host(true, false, host_ahead_.requests - host_ahead_.words);
   control.count_host(true, true, host_ahead_.words);
   control.skip_to(known_.state(state_).control, ahead_.consumed, ahead_.words);
-  for (const Side side : kSides) control.correct_marks(side, accesses_.marks(side));
+  for (const Side side : kSides) control.correct_marks(side, marks(side));
   arbitration.skip_to(known_.state(state_).arbitration, cycle, ahead_.cycles);
   ahead_ = {};
   host_ahead_ = {};
@@ -432,11 +444,10 @@ TransitionCache::Accesses FastForward::accesses_from(std::uint64_t consumed, std
 
 // The number of slots from slot `consumed` on over which accesses_from() stays the same, group after group.
 std::uint64_t FastForward::uniform_slots(std::uint64_t consumed) const {
-  const std::uint64_t slots_per_column = slots_of_group() / 4;
   std::uint64_t uniform = UINT64_MAX;
   for (const AccessPattern* pattern : varying_) {
     if (pattern == nullptr) continue;
-    const std::uint64_t end = pattern->uniform_until(consumed / slots_per_column) * slots_per_column;
+    const std::uint64_t end = pattern->uniform_until(consumed);
     const std::uint64_t last = consumed + lane_fifo_slots_;
     uniform = std::min(uniform, end < last ? 0 : end - last);
   }
@@ -493,7 +504,7 @@ FastForward::StateNumber FastForward::state(std::uint64_t cycle) {
           : 0;
   return known_.number_of({control().state(), arbitration.state(cycle),
                            control().match().draining() ? 0 : all_strips_[strips_].empty,
-                           routes_ << 32U | host << 2U | varies, arbitration.visited()});
+                           routes_ << 32U | host << 2U | varies, arbitration.shared()});
 }
 
 }  // namespace stereotlm::fpga

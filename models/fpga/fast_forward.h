@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "models/fpga/assumed_accesses.h"
+#include "models/fpga/access_pattern.h"
 #include "models/fpga/core_stepper.h"
 #include "models/fpga/transition_cache.h"
 
@@ -18,19 +18,23 @@ namespace stereotlm::fpga {
 //
 // A walk only follows recorded transitions: the core and the arbiters keep their old state until catch_up().
 // The last grant of a burst of the host ends a transition, so that a group may hold several bursts.
+//
+// While a frame is skipped, every slot of a side with table whose pixel port is uncontended is assumed to
+// access its pixel. Such a port takes one cycle for a slot, whether it is granted or passes. Only the counts
+// differ: a pass counts as a grant until resolve_accesses() corrects them. So the transitions repeat far more
+// often with the tables of a rig: a frame of the paper's board takes a thirtieth of the time.
 class FastForward {
  public:
-  // `stepper` outlives this object. `most_groups`: cap of the transition cache.
-  FastForward(CoreStepper& stepper, int lane_fifo_slots, std::size_t most_groups);
+  // `stepper` outlives this object.
+  FastForward(CoreStepper& stepper, int lane_fifo_slots);
 
-  // These two throw std::logic_error if settle() has not been called since the last frame.
-  //
   // To be called when a frame with these accesses is to be fast-forwarded, after its ports have been routed
   // and the stepper has started it. The patterns must outlive the frame. `routes`: frames with the same
-  // number have the same routes and latencies.
+  // number have the same routes and latencies. This and the next function throw std::logic_error if settle()
+  // has not been called since the last frame.
   void start_direct_frame(const AccessPatterns& patterns, std::uint64_t routes);
   // To be called when a frame starts that the owner steps itself.
-  void start_stepped_frame();
+  void start_frame();
   // To be called before the owner changes the route of the host within a frame, and after the last cycle of a
   // frame. `cycle`: the next cycle. Corrects the counts that are provisional until then.
   void settle(std::uint64_t cycle);
@@ -92,9 +96,21 @@ class FastForward {
   void begin_walk(std::uint64_t cycle);
   void leave_walk(std::uint64_t cycle);
   void end_walk(std::uint64_t cycle);
-  void start_frame();
   std::uint64_t walk(std::uint64_t cycle, std::uint64_t end);
   void route_host(std::uint64_t& cycle, const Route& route, std::uint64_t first);
+  PixelNeeds needs_pixel(memory::PortMask granted) const {
+    return {needs_pixel(Side::kLeft, granted), needs_pixel(Side::kRight, granted)};
+  }
+  bool needs_pixel(Side side, memory::PortMask granted) const {
+    const bool is_read = (granted & memory::mask_of(control().table_port(side))) != 0;
+    return is_read && accesses_pixel(side, control().lane(side).next_slot());
+  }
+  // Whether a slot that is not empty accesses its pixel, or is assumed to.
+  bool accesses_pixel(Side side, const SlotCursor& slot) const {
+    const AccessPattern* const varying = varying_[index_of(side)];
+    return varying == nullptr || varying->needs_pixel(slot.column(), slot.row());
+  }
+  std::uint64_t marks(Side side) const;
   void resolve_accesses(Side side);
   std::optional<TransitionCache::Transition> find_host(std::uint64_t cycle) const;
   bool fits_host(const TransitionCache::Transition& transition) const;
@@ -108,7 +124,9 @@ class FastForward {
     return stepper_.conflicts() != nullptr && hand_over(*stepper_.conflicts(), cycle, left_of_group);
   }
   bool hand_over(ConflictRecorder& conflicts, std::uint64_t cycle, std::uint64_t left_of_group);
-  void tell_assumed();
+  void tell_assumed() {
+    if (ConflictRecorder* const conflicts = stepper_.conflicts()) conflicts->assume_accesses(assumed_);
+  }
   void catch_up(std::uint64_t cycle);
   StateNumber walk_known(StateNumber state, Progress& room);
   StateNumber walk_varying(StateNumber state, Progress& room);
@@ -138,7 +156,6 @@ class FastForward {
   CoreStepper& stepper_;
   std::uint64_t lane_fifo_slots_;
   std::vector<Strips> all_strips_;  // all strips of a frame, in order
-  AssumedAccesses accesses_;
   TransitionCache known_;
   std::optional<Stepped> stepped_;
   std::vector<const GroupConflicts*> repeated_;  // of record_skipped()
@@ -156,8 +173,11 @@ class FastForward {
   bool is_host_routed_ = false;      // by serve_host()
   std::uint64_t routes_ = 0;
   std::size_t strips_ = 0;  // index in all_strips_: the run in which the lanes take their next slots
-  // [side]: the pattern by which the accesses of the side vary, or null.
+  // [side]: the pattern by which the accesses of the side vary. Null if all its slots inside the image access
+  // their pixels, or are assumed to, or if its port itself finds them in the cache (a side without table).
   std::array<const AccessPattern*, 2> varying_{};
+  // [side]: the pattern of a side whose passes are counted as grants; null if there are none.
+  std::array<const AccessPattern*, 2> assumed_{};
 };
 
 }  // namespace stereotlm::fpga

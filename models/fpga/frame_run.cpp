@@ -3,14 +3,58 @@
 #include <algorithm>
 
 namespace stereotlm::fpga {
+namespace {
+
+std::string text_of(Intent intent) {
+  switch (intent) {
+    case Intent::kRequest:
+      return "asks for bank number ";
+    case Intent::kPass:
+      return "passes a slot";
+    case Intent::kBlocked:
+      return "is blocked: its lane is full";
+    case Intent::kStarved:
+      return "is starved";
+    case Intent::kIdle:
+      break;
+  }
+  return "is idle";
+}
+
+std::string losses_of(std::size_t port, const memory::ArbiterStats& arbiter) {
+  const auto& blame = arbiter.blame[port];
+  const auto most = std::max_element(blame.begin(), blame.end());
+  if (*most == 0) return {};
+  const auto by = static_cast<std::size_t>(most - blame.begin());
+  return ", lost " + std::to_string(*most) + " cycles to " +
+         (by == memory::ArbiterStats::kTurnaround ? "turnaround" : kPorts[by].name);
+}
+
+// What each port does in the next cycle of a frame. For a port that requests a bank, the text also names the
+// port to which it has lost that bank most often.
+std::string waits_of_ports(const CoreControl& control, const memory::Arbitration& arbitration,
+                           bool host_requests) {
+  const CoreControl::Decision decision = control.decide();
+  std::string text;
+  for (std::size_t port = 0; port < kPortCount; ++port) {
+    const Intent host = host_requests ? Intent::kRequest : Intent::kIdle;
+    const Intent intent = port < kCorePortCount ? decision.intents[port] : host;
+    text += std::string(port == 0 ? "" : "; ") + kPorts[port].name + ' ' + text_of(intent);
+    if (intent != Intent::kRequest) continue;
+    const std::size_t bank = arbitration.bank_of(port);
+    text += std::to_string(bank) + losses_of(port, arbitration.arbiters()[bank].stats());
+  }
+  return text;
+}
+
+}  // namespace
 
 FrameRun::FrameRun(const CoreConfig& config, const std::vector<memory::SsramBankConfig>& banks,
-                   memory::Arbitration& arbitration, std::uint64_t stall_timeout_cycles,
-                   std::size_t most_groups)
+                   memory::Arbitration& arbitration, std::uint64_t stall_timeout_cycles)
     : config_(config),
       stepper_(config, arbitration),
-      fast_forward_(stepper_, config.lane_fifo_slots, most_groups),
-      watchdog_(stall_timeout_cycles) {
+      fast_forward_(stepper_, config.lane_fifo_slots),
+      stall_timeout_cycles_(stall_timeout_cycles) {
   for (const memory::SsramBankConfig& bank : banks)
     latencies_.push_back(memory::read_latency_cycles(bank.kind));
   direct_counts_.accesses.resize(banks.size());
@@ -19,7 +63,7 @@ FrameRun::FrameRun(const CoreConfig& config, const std::vector<memory::SsramBank
 void FrameRun::start_stepped(std::uint64_t cycle, const FrameBases& bases) {
   patterns_ = nullptr;
   begin(cycle, bases);
-  fast_forward_.start_stepped_frame();
+  fast_forward_.start_frame();
 }
 
 void FrameRun::start_direct(std::uint64_t cycle, const FrameBases& bases, const AccessPatterns& patterns) {
@@ -33,7 +77,8 @@ void FrameRun::begin(std::uint64_t cycle, const FrameBases& bases) {
   cycle_ = std::max(cycle_, cycle);
   first_cycle_ = cycle_;
   writes_before_ = all_writes();
-  watchdog_.start_frame(cycle_, control().work());
+  work_ = control().work();
+  work_cycle_ = cycle_;
   stepper_.start_frame(route_ports(bases));
   stepper_.arbitration().begin_counting(first_cycle_);
   is_settled_ = false;
@@ -82,7 +127,12 @@ std::uint64_t FrameRun::index_of_routes(const FrameBases& bases) {
 
 std::uint64_t FrameRun::stalled_cycles() {
   const Progress& ahead = fast_forward_.ahead();
-  return watchdog_.stalled_cycles(cycle_, control().work() + ahead.consumed + ahead.words);
+  const std::uint64_t work = control().work() + ahead.consumed + ahead.words;
+  const std::uint64_t cycles = work == work_ ? cycle_ - work_cycle_ : 0;
+  if (work == work_ && cycles < stall_timeout_cycles_) return 0;
+  work_ = work;
+  work_cycle_ = cycle_;
+  return cycles;
 }
 
 void FrameRun::finish() {

@@ -12,8 +12,7 @@
 #include "models/fpga/cycle_recorder.h"
 #include "models/fpga/fast_forward.h"
 #include "models/fpga/frame_observer.h"
-#include "models/fpga/row_profile.h"
-#include "models/fpga/stall_watchdog.h"
+#include "models/fpga/row_recorder.h"
 
 namespace stereotlm::fpga {
 
@@ -32,11 +31,9 @@ struct DirectCounts {
 // A frame runs up to its last write. Then it is finishing, and ends pipeline_latency_cycles later.
 class FrameRun {
  public:
-  // `arbitration` outlives this object. `most_groups`: cap of the transition cache. Throws
-  // std::invalid_argument if the configuration has problems.
+  // `arbitration` outlives this object. Throws std::invalid_argument if the configuration has problems.
   FrameRun(const CoreConfig& config, const std::vector<memory::SsramBankConfig>& banks,
-           memory::Arbitration& arbitration, std::uint64_t stall_timeout_cycles,
-           std::size_t most_groups = TransitionCache::kMost);
+           memory::Arbitration& arbitration, std::uint64_t stall_timeout_cycles);
 
   // Adds an observer, which outlives this object. Whoever observes frames names the strobe of each, by
   // strobe().
@@ -108,7 +105,9 @@ class FrameRun {
   const DirectCounts& direct_counts() const { return direct_counts_; }
   // See FastForward.
   std::uint64_t skipped_cycles() const { return fast_forward_.skipped_cycles(); }
-  // See StallWatchdog.
+  // To be called regularly while a frame runs. Returns the number of cycles without progress if it has reached
+  // stall_timeout_cycles, else 0: the matcher does not work and no result is written, because the arbiters
+  // never grant one of the core's ports. After a timeout it is counted anew.
   std::uint64_t stalled_cycles();
   // Text for messages: the frame that runs, and what its ports wait for.
   std::string waits();
@@ -154,7 +153,9 @@ class FrameRun {
   std::vector<int> latencies_;  // [bank]: read latency, cycles
   CoreStepper stepper_;
   FastForward fast_forward_;
-  StallWatchdog watchdog_;
+  std::uint64_t stall_timeout_cycles_;
+  std::uint64_t work_ = 0;        // CoreControl::work() in the last call of stalled_cycles()
+  std::uint64_t work_cycle_ = 0;  // cycle of the last call that found progress, or of the last timeout
   // The distinct combinations of banks that direct frames have used: [index][port].
   std::vector<std::array<std::uint32_t, kCorePortCount>> routes_;
   State state_ = State::kIdle;

@@ -40,7 +40,7 @@ std::size_t TransitionCache::StateHash::operator()(const State& state) const {
   for (const std::uint64_t word : state.arbitration) hash.mix(word);
   hash.mix(state.empty);
   hash.mix(state.frame);
-  hash.mix(state.visited);
+  hash.mix(state.shared);
   return hash.value();
 }
 
@@ -55,18 +55,14 @@ std::size_t TransitionCache::EffectHash::operator()(const Effect& effect) const 
     hash.mix(port.passed() << 32U | port.starved());
   }
   hash.mix(effect.host.words << 48U | effect.host.cycles << 24U | effect.host.requests);
-  for (const auto& shared : effect.decided.shared) hash.mix(shared.outcome * shared.cycles);
-  for (const auto& alone : effect.decided.alone) hash.mix(alone.ports * alone.cycles);
+  for (const auto& [decision, cycles] : effect.decided) hash.mix(decision * cycles);
   return hash.value();
 }
 
 static_assert(4 * kernels::kMostRows + kLaneFifoRule.max <= 64 * TransitionCache::kMostWordsOfSide,
               "Accesses does not hold the slots of a group");
 
-TransitionCache::TransitionCache(std::size_t slots, std::size_t most)
-    : words_(2 * ((slots + 63) / 64)), most_(most) {
-  clear();
-}
+TransitionCache::TransitionCache(std::size_t slots) : words_(2 * ((slots + 63) / 64)) { clear(); }
 
 void TransitionCache::clear() {
   states_.clear();

@@ -86,13 +86,13 @@ class TransitionCache {
   struct State {
     CoreControl::State control;
     memory::Arbitration::State arbitration{};
-    std::uint64_t empty = 0;    // bit k: slot k of each column is empty
-    std::uint64_t frame = 0;    // set by FastForward: the routes, and the sides whose accesses vary
-    std::uint64_t visited = 0;  // memory::Arbitration::visited()
+    std::uint64_t empty = 0;   // bit k: slot k of each column is empty
+    std::uint64_t frame = 0;   // set by FastForward: the routes, and the sides whose accesses vary
+    std::uint64_t shared = 0;  // memory::Arbitration::shared()
 
     friend bool operator==(const State& a, const State& b) {
       return a.control == b.control && a.arbitration == b.arbitration && a.empty == b.empty &&
-             a.frame == b.frame && a.visited == b.visited;
+             a.frame == b.frame && a.shared == b.shared;
     }
   };
   using StateNumber = std::uint32_t;
@@ -128,7 +128,7 @@ class TransitionCache {
   using Log = std::vector<Followed>;
 
   // `slots`: the most slots that are in a lane during a group.
-  TransitionCache(std::size_t slots, std::size_t most);
+  explicit TransitionCache(std::size_t slots);
   TransitionCache(const TransitionCache&) = delete;  // effects are referred to
   TransitionCache& operator=(const TransitionCache&) = delete;
 
@@ -139,7 +139,7 @@ class TransitionCache {
   void record(StateNumber from, const Accesses& accesses, HostRequests host, StateNumber next,
               const Effect& effect);
   void clear();
-  bool is_full() const { return transitions_ >= most_ || states_.size() >= kMostStates; }
+  bool is_full() const { return transitions_ >= kMost || states_.size() >= kMostStates; }
 
   const Progress& progress(std::uint32_t effect) const { return effects_[effect]->progress; }
   const Progress& progress(const Transition& transition) const { return progress(transition.effect); }
@@ -193,7 +193,6 @@ class TransitionCache {
   void double_buckets();
 
   std::size_t words_;  // of the accesses
-  std::size_t most_;
   std::unordered_map<State, StateNumber, StateHash> state_numbers_;
   std::vector<const State*> states_;  // [number]
   std::vector<Accesses> unhandled_;   // [number of the state]: bits of the slots that are not handled before

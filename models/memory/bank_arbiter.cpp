@@ -121,18 +121,8 @@ void BankArbiter::skip_to(std::uint64_t state, std::uint64_t cycle, std::uint64_
   } else {
     ready_cycle_ = {cycle + (state >> 32U & 0xffffU), cycle + (state >> 48U)};
   }
-  if (!counting_) return;
   next_uncounted_cycle_ += cycles;
   idle_cycles_ += cycles;
-}
-
-void BankArbiter::count_skipped(Outcome outcome, std::uint64_t cycles) {
-  if (counting_) {
-    add(outcome, cycles);
-    idle_cycles_ -= cycles;
-  } else {
-    add_uncounted(outcome, cycles);
-  }
 }
 
 void BankArbiter::begin_counting(std::uint64_t first_cycle) {

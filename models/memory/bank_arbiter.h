@@ -121,10 +121,13 @@ class BankArbiter {
   // bits each for the cycles until a read and until a write can be granted. For a bank with separate ports:
   // the policy's state for reads in the lower 32 bits, and its state for writes in the upper 32 bits.
   std::uint64_t state(std::uint64_t cycle) const;
-  // Skips the `cycles` cycles before `cycle`, after which the state is `state`. count_skipped() counts the
-  // outcomes of the skipped cycles.
+  // Skips the `cycles` cycles before `cycle`, which are counted by stats(). After them the state is `state`.
+  // count_skipped() counts the outcomes of skipped cycles.
   void skip_to(std::uint64_t state, std::uint64_t cycle, std::uint64_t cycles);
-  void count_skipped(Outcome outcome, std::uint64_t cycles);
+  void count_skipped(Outcome outcome, std::uint64_t cycles) {
+    add(outcome, cycles);
+    idle_cycles_ -= cycles;
+  }
 
   // stats() counts only the cycles from `first_cycle` up to `end_cycle`, `end_cycle` not included. In all
   // other cycles only the accesses are counted, in uncounted_accesses().
