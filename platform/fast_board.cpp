@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "models/fpga/core_ports.h"
-#include "models/memory/crossbar_address.h"
+#include "models/memory/memory_config.h"
 #include "models/time_ps.h"
 #include "platform/config/buffer_layout.h"
 

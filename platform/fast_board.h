@@ -8,14 +8,13 @@
 #include <vector>
 
 #include "models/clock.h"
+#include "models/fpga/core_config.h"
 #include "models/fpga/core_registers.h"
 #include "models/fpga/fast_core.h"
-#include "models/fpga/fidelity.h"
 #include "models/fpga/frame_run.h"
 #include "models/fpga/host_port.h"
 #include "models/fpga/local_bus_control.h"
 #include "models/memory/arbitration.h"
-#include "models/memory/change_watch.h"
 #include "models/memory/direct_banks.h"
 #include "models/memory/ram.h"
 #include "platform/collect.h"

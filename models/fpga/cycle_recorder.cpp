@@ -2,10 +2,9 @@
 
 #include <algorithm>
 
-#include "models/fpga/buffer_words.h"
-#include "models/fpga/register_map.h"
+#include "models/fpga/core_ports.h"
 #include "models/kernels/rectification_table.h"
-#include "models/memory/crossbar_address.h"
+#include "models/memory/memory_config.h"
 
 namespace stereotlm::fpga {
 namespace {

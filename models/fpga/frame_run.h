@@ -11,10 +11,26 @@
 #include "models/fpga/core_stepper.h"
 #include "models/fpga/cycle_recorder.h"
 #include "models/fpga/fast_forward.h"
-#include "models/fpga/frame_observer.h"
 #include "models/fpga/row_recorder.h"
 
 namespace stereotlm::fpga {
+
+// The times of a frame of the core.
+struct FrameTimes {
+  std::uint64_t strobe_ps = 0;    // end of the start strobe
+  std::uint64_t first_cycle = 0;  // the first cycle of the frame
+  std::uint64_t end_cycle = 0;    // the first cycle after its last write
+  std::uint64_t done_cycle = 0;   // the first cycle after the frame; `done` rises as it begins
+  std::uint64_t words = 0;        // words written
+};
+
+// Receives the frames of a core, for recordings. Plain C++.
+class FrameObserver {
+ public:
+  virtual ~FrameObserver() = default;
+  virtual void frame_begun(std::uint64_t strobe_ps) = 0;
+  virtual void frame_ended(const FrameTimes& times) = 0;
+};
 
 // What frames that work directly on memory do there, over all frames. Their data moves through no stage, so
 // no stage counts it.

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
-#include "models/fpga/buffer_words.h"
+#include "models/fpga/core_ports.h"
 #include "models/kernels/rectification_table.h"
 #include "models/kernels/words.h"
-#include "models/memory/direct_memory.h"
+#include "models/memory/word_access.h"
 
 namespace stereotlm::fpga {
 

@@ -1,7 +1,7 @@
 #include "models/fpga/result_writer.h"
 
-#include "models/fpga/buffer_words.h"
-#include "models/memory/direct_memory.h"
+#include "models/fpga/core_ports.h"
+#include "models/memory/word_access.h"
 
 namespace stereotlm::fpga {
 

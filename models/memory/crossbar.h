@@ -11,8 +11,6 @@
 #include <vector>
 
 #include "models/memory/arbitration.h"
-#include "models/memory/change_watch.h"
-#include "models/memory/crossbar_address.h"
 #include "models/memory/direct_banks.h"
 #include "models/memory/memory_config.h"
 

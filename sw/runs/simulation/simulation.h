@@ -6,9 +6,9 @@
 #include <optional>
 #include <vector>
 
+#include "models/fpga/core_config.h"
 #include "models/fpga/core_cycle.h"
 #include "models/fpga/cycle_recorder.h"
-#include "models/fpga/fidelity.h"
 #include "models/fpga/frame_run.h"
 #include "models/host/frame_source.h"
 #include "models/kernels/gray_image.h"
