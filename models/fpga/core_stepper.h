@@ -39,8 +39,8 @@ class CoreStepper {
     control_.count_host(host_requests, (granted & host) != 0);
     if (control_.result().words_written() == rows_.next_words()) rows_.note(cycle, control_);
     if (conflicts_ != nullptr) {
-      if (requests != granted || (granted & host) != 0) conflicts_->step(requests, granted, arbitration_);
-      if (completed_group_) conflicts_->end_group(cycle + 1, control_);
+      if (requests != granted || (granted & host) != 0) conflicts_->step(requests, granted);
+      if (completed_group_) conflicts_->end_group(cycle + 1);
     }
     return granted;
   }

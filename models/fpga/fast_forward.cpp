@@ -314,11 +314,10 @@ void FastForward::skip(const Progress& progress) {
 // See record_skipped().
 bool FastForward::hand_over(ConflictRecorder& conflicts, std::uint64_t cycle, std::uint64_t left_of_group) {
   if (in_order_.empty()) return false;
-  const memory::Arbitration& arbitration = stepper_.arbitration();
   for (auto next = in_order_.begin(); next != in_order_.end(); next += next->length) {
     const std::uint64_t consumed = known_.progress(next->effect).consumed;
     if (next->length == 1 && consumed < left_of_group) {
-      conflicts.add_part(known_.conflicts(next->effect), arbitration);
+      conflicts.add_part(known_.conflicts(next->effect));
       left_of_group -= consumed;
       continue;
     }
@@ -326,13 +325,13 @@ bool FastForward::hand_over(ConflictRecorder& conflicts, std::uint64_t cycle, st
     repeated_.clear();
     for (std::uint32_t step = 0; step < next->length; ++step)
       repeated_.push_back(&known_.conflicts((next + step)->effect));
-    conflicts.repeat(repeated_.data(), repeated_.size(), next->times, arbitration);
+    conflicts.repeat(repeated_.data(), repeated_.size(), next->times);
     left_of_group = slots_of_group();
   }
   in_order_.clear();
   if (!conflicts.is_at_strip_end()) return false;
   catch_up(cycle);
-  conflicts.end_strip(control());
+  conflicts.end_strip();
   return true;
 }
 

@@ -142,7 +142,7 @@ void FrameRun::finish() {
   stepper_.arbitration().end_counting(cycle_);
   if (patterns_ != nullptr) count_direct();
   if (stepper_.conflicts() == nullptr) return;
-  conflicts_->end_frame(cycle_, control());
+  conflicts_->end_frame(cycle_);
   if (cycles_ != nullptr) cycles_->end_frame(cycle_);
   stepper_.record(static_cast<ConflictRecorder*>(nullptr));
 }
