@@ -77,11 +77,7 @@ bool FastBoard::access_register(std::uint64_t now_ps, bool write, std::uint64_t 
 }
 
 void FastBoard::start_frame(const fpga::FrameStart& start) {
-  for (std::size_t port = 0; port < fpga::kCorePortCount; ++port) {
-    if (!fpga::has_port(config_, port) || frames_.has_bank(start.bases[port])) continue;
-    registers_.refuse_start();
-    return;
-  }
+  if (!frames_.has_banks(start.bases)) return registers_.refuse_start();
   if (!fast_core_.start_frame(clock_.edge_at_or_after(start.time_ps), start))
     failed("a frame that does not work directly on memory needs fidelity cycle");
   frames_.strobe(start.time_ps);

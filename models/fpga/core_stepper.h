@@ -51,11 +51,12 @@ class CoreStepper {
   const CoreControl& control() const { return control_; }
   RowRecorder& rows() { return rows_; }
   const RowRecorder& rows() const { return rows_; }
-  // The recorder of the running frame; null if it is not recorded.
-  void record(ConflictRecorder* conflicts) { conflicts_ = conflicts; }
+  // The recorders of the running frame, or null. The second one receives each stepped cycle.
+  void record(ConflictRecorder* conflicts, CycleRecorder* cycles) {
+    conflicts_ = conflicts;
+    cycles_ = cycles;
+  }
   ConflictRecorder* conflicts() const { return conflicts_; }
-  // Receives each stepped cycle; null: none does.
-  void record(CycleRecorder* cycles) { cycles_ = cycles; }
   memory::Arbitration& arbitration() { return arbitration_; }
   const memory::Arbitration& arbitration() const { return arbitration_; }
 

@@ -70,8 +70,12 @@ void CycleRecorder::record(std::uint64_t cycle, const CoreControl::Decision& dec
   for (memory::Port port = 0; port < kCorePortCount; ++port) {
     PortCycle& of_port = out.ports[port];
     of_port.intent = decision.intents[port];
-    if (of_port.intent == Intent::kRequest || of_port.intent == Intent::kPass)
-      set_item(of_port, port, control);
+    const LaneControl& lane = control.lane(kPorts[port].side);
+    if (of_port.intent == Intent::kRequest || of_port.intent == Intent::kPass) {
+      of_port.item = port == kResultPort                           ? control.result().words_written()
+                     : kPorts[port].stage == PortStage::kLutReader ? lane.taken()
+                                                                   : lane.handled();
+    }
     if (of_port.intent != Intent::kRequest) continue;
     of_port.granted = (granted & memory::mask_of(port)) != 0;
     of_port.bank = arbitration.bank_of(port);
@@ -93,23 +97,6 @@ void CycleRecorder::record(std::uint64_t cycle, const CoreControl::Decision& dec
   out.result_words = static_cast<std::uint32_t>(control.result().queued());
   out.works = decision.work;
   observer_.cycle(out);
-}
-
-void CycleRecorder::set_item(PortCycle& port, memory::Port number, const CoreControl& control) const {
-  const CorePort& description = kPorts[number];
-  switch (description.stage) {
-    case PortStage::kLutReader:
-      port.item = control.lane(description.side).taken();
-      return;
-    case PortStage::kPixelReader:
-      port.item = control.lane(description.side).handled();
-      return;
-    case PortStage::kResultWriter:
-      port.item = control.result().words_written();
-      return;
-    case PortStage::kLocalBus:
-      return;
-  }
 }
 
 std::uint64_t CycleRecorder::address_of(memory::Port port, std::uint64_t item) {

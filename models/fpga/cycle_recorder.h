@@ -79,7 +79,6 @@ class CycleRecorder {
   bool is_inside(std::uint64_t cycle) const;
   void record(std::uint64_t cycle, const CoreControl::Decision& decision, bool host_requests,
               memory::PortMask granted, const CoreControl& control, const memory::Arbitration& arbitration);
-  void set_item(PortCycle& port, memory::Port number, const CoreControl& control) const;
   std::uint64_t address_of(memory::Port port, std::uint64_t item);
   std::uint64_t pixel_of_slot(memory::Port port, std::uint64_t slot);
   static void set_host(CoreCycle& cycle, const HostWords::Word& word, bool granted, std::size_t by);

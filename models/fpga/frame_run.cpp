@@ -60,6 +60,13 @@ FrameRun::FrameRun(const CoreConfig& config, const std::vector<memory::SsramBank
   direct_counts_.accesses.resize(banks.size());
 }
 
+bool FrameRun::has_banks(const FrameBases& bases) const {
+  for (std::size_t port = 0; port < kCorePortCount; ++port) {
+    if (has_port(config_, port) && registers::bank_of(bases[port]) >= latencies_.size()) return false;
+  }
+  return true;
+}
+
 void FrameRun::start_stepped(std::uint64_t cycle, const FrameBases& bases) {
   patterns_ = nullptr;
   begin(cycle, bases);
@@ -84,9 +91,8 @@ void FrameRun::begin(std::uint64_t cycle, const FrameBases& bases) {
   is_settled_ = false;
   const bool is_recorded =
       conflicts_ != nullptr && conflicts_->start_frame(first_cycle_, control(), stepper_.arbitration());
-  stepper_.record(is_recorded ? conflicts_ : nullptr);
   if (cycles_ != nullptr && is_recorded) cycles_->start_frame(frame_cycles_.size(), first_cycle_, bases);
-  stepper_.record(is_recorded ? cycles_ : nullptr);
+  stepper_.record(is_recorded ? conflicts_ : nullptr, is_recorded ? cycles_ : nullptr);
 }
 
 // As run_ahead(), but steps the cycles that CycleRecorder needs.
@@ -144,7 +150,7 @@ void FrameRun::finish() {
   if (stepper_.conflicts() == nullptr) return;
   conflicts_->end_frame(cycle_);
   if (cycles_ != nullptr) cycles_->end_frame(cycle_);
-  stepper_.record(static_cast<ConflictRecorder*>(nullptr));
+  stepper_.record(nullptr, nullptr);
 }
 
 // The slots and words are those of the control, so that an audit can compare them with the geometry. The

@@ -60,8 +60,8 @@ class FrameRun {
     for (FrameObserver* const observer : observers_) observer->frame_begun(time_ps);
   }
 
-  // Whether the bank in the value of a base register exists.
-  bool has_bank(std::uint32_t base) const { return registers::bank_of(base) < latencies_.size(); }
+  // Whether the banks of all buffers exist.
+  bool has_banks(const FrameBases& bases) const;
   int read_latency_cycles(std::size_t bank) const { return latencies_[bank]; }
 
   // Starts a frame in `cycle`, or in cycle() if that is later. The banks of the bases must exist. The caller

@@ -53,11 +53,7 @@ StereoCore::StereoCore(const sc_core::sc_module_name& name, const StereoCoreConf
 }
 
 void StereoCore::start_frame(const FrameStart& start) {
-  for (std::size_t port = 0; port < kCorePortCount; ++port) {
-    if (!has_port(config_.core, port) || frames_.has_bank(start.bases[port])) continue;
-    register_file_.refuse_start();
-    return;
-  }
+  if (!frames_.has_banks(start.bases)) return register_file_.refuse_start();
   datapath_.start_frame(start.bases, start.joint_offsets);
   errors_before_ = datapath_.errors();
   // Cycle 0 is the first that begins at or after the strobe.
