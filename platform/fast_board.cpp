@@ -14,16 +14,17 @@
 namespace stereotlm::platform {
 FastBoard::FastBoard(const BoardConfig& config, fpga::Fidelity fidelity,
                      std::function<void(std::uint64_t)> ring, std::uint64_t stall_timeout_cycles)
-    : config_(core_config(require_valid(config))),
+    : DirectBanks(config.banks.size()),
+      config_(core_config(require_valid(config))),
       bank_configs_(ssram_configs(config)),
       ring_(std::move(ring)),
       clock_(config_.clock_mhz),
       arbitration_(config.fpga.arbiter, bank_configs_),
       frames_(config_, bank_configs_, arbitration_, stall_timeout_cycles),
       local_bus_({config.bridge.local_clock_mhz, buffer_ranges(config)}, bank_configs_.size(), *this),
-      fast_core_(config_, fidelity == fpga::Fidelity::kFast, frames_, host_port_, local_bus_, clock_, *this),
-      next_ps_(kNever),
-      host_accesses_(bank_configs_.size()) {
+      fast_core_(config_, fidelity == fpga::Fidelity::kFast, frames_, host_port_, local_bus_, *this, clock_,
+                 *this),
+      next_ps_(kNever) {
   host_port_.set_only_master(true);
   for (const memory::SsramBankConfig& bank : bank_configs_) banks_.emplace_back(4 * bank.words);
 }
@@ -84,30 +85,6 @@ void FastBoard::start_frame(const fpga::FrameStart& start) {
   next_ps_ = start.time_ps;
 }
 
-fpga::DirectFrame::Memory FastBoard::direct_memory(const fpga::DirectFrame::Buffers& buffers,
-                                                   const kernels::JointOffsets& offsets) {
-  fpga::DirectFrame::Memory memory;
-  memory.joint_offsets = offsets;
-  for (const fpga::Side side : fpga::kSides) {
-    const std::size_t index = fpga::index_of(side);
-    memory.images[index] = buffer(buffers[fpga::pixel_port(side)]);
-    const std::size_t port = fpga::lut_port(side);
-    if (!fpga::has_port(config_, port)) continue;
-    const AddressRange& range = buffers[port];
-    fpga::DirectFrame::Table& table = memory.tables[index];
-    table.entries = reinterpret_cast<const std::uint32_t*>(buffer(range));
-    table.may_have_changed =
-        table.entries != nullptr && watch_.may_have_changed(port, range.first, range.end);
-  }
-  disparities_ = buffer(buffers[fpga::kResultPort]);
-  memory.disparities = disparities_;
-  return memory;
-}
-
-unsigned char* FastBoard::buffer(const AddressRange& range) {
-  return direct(range.first, range.end - range.first);
-}
-
 unsigned char* FastBoard::direct(std::uint64_t address, std::uint64_t bytes) {
   const std::size_t bank = memory::bank_of_address(address);
   const std::uint64_t first = address - memory::crossbar_address(bank, 0);
@@ -128,8 +105,8 @@ void FastBoard::stalled(std::uint64_t cycles) {
 
 BoardCounters FastBoard::counters() const {
   BoardCounters counters = counters_of(frames_, arbitration_.arbiters());
-  for (std::size_t bank = 0; bank < host_accesses_.size(); ++bank)
-    counters.banks[bank].accesses += host_accesses_[bank];
+  for (std::size_t bank = 0; bank < banks_.size(); ++bank)
+    counters.banks[bank].accesses += direct_accesses(bank);
   return counters;
 }
 

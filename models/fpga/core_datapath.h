@@ -12,7 +12,6 @@
 #include "models/fpga/core_control.h"
 #include "models/fpga/core_ports.h"
 #include "models/fpga/cost_array.h"
-#include "models/fpga/direct_frame.h"
 #include "models/fpga/log_filter.h"
 #include "models/fpga/lr_check.h"
 #include "models/fpga/lut_reader.h"
@@ -57,12 +56,6 @@ class CoreDatapath {
   // The number of accesses that memory has refused, over all frames.
   std::uint64_t errors() const;
 
-  // Requests direct access to the frame's buffers.
-  DirectFrame::Memory direct_memory(const DirectFrame::Buffers& buffers,
-                                    const kernels::JointOffsets& offsets);
-  // The disparity buffer of the frame; null if memory does not grant direct access.
-  std::uint8_t* direct_disparities() { return result_writer_.buffer(geometry_.result_words); }
-
   // The stages, for their statistics.
   const Sequencer& sequencer() const { return sequencer_; }
   const Lane& lane(Side side) const { return lanes_[index_of(side)]; }
@@ -78,7 +71,6 @@ class CoreDatapath {
   }
 
   CoreConfig config_;
-  FrameGeometry geometry_{config_};
   memory::Crossbar& crossbar_;
   Sequencer sequencer_{"sequencer"};
   std::array<Lane, 2> lanes_{Lane(config_, Side::kLeft), Lane(config_, Side::kRight)};  // [side]

@@ -13,10 +13,11 @@ constexpr std::uint64_t kMostCyclesAhead = std::uint64_t{1} << 22U;
 }  // namespace
 
 FastCore::FastCore(const CoreConfig& config, bool has_pixels, FrameRun& frames, HostPort& host_port,
-                   LocalBusControl& local_bus, const Clock& clock, Board& board)
+                   LocalBusControl& local_bus, memory::DirectBanks& banks, const Clock& clock, Board& board)
     : frames_(frames),
       host_port_(host_port),
       local_bus_(local_bus),
+      banks_(banks),
       clock_(clock),
       board_(board),
       direct_frame_(config, has_pixels) {}
@@ -34,8 +35,23 @@ bool FastCore::works_directly(const FrameStart& start) {
   direct_frame_.set_buffers(start.bases);
   const HostRoute& burst = host_port_.burst();
   if (burst.bank && direct_frame_.hazard_with(host_port_.words_left(), burst.write)) return false;
-  return direct_frame_.disparities_are_apart() &&
-         direct_frame_.read(board_.direct_memory(direct_frame_.buffers(), start.joint_offsets));
+  return direct_frame_.disparities_are_apart() && direct_frame_.read(direct_memory(start.joint_offsets));
+}
+
+DirectFrame::Memory FastCore::direct_memory(const kernels::JointOffsets& offsets) {
+  DirectFrame::Memory memory;
+  memory.joint_offsets = offsets;
+  for (const Side side : kSides) {
+    memory.images[index_of(side)] = buffer(pixel_port(side));
+    const AddressRange& range = direct_frame_.buffers()[lut_port(side)];
+    if (range.first == range.end) continue;  // there is no such port
+    DirectFrame::Table& table = memory.tables[index_of(side)];
+    table.entries = reinterpret_cast<const std::uint32_t*>(buffer(lut_port(side)));
+    table.may_have_changed =
+        table.entries != nullptr && banks_.may_have_changed(lut_port(side), range.first, range.end);
+  }
+  memory.disparities = buffer(kResultPort);
+  return memory;
 }
 
 void FastCore::route(const HostRoute& route) {
@@ -108,7 +124,7 @@ void FastCore::finish_frame() {
 // Called with the last write of the frame. The disparities cannot change a table: disparities_are_apart().
 void FastCore::write_disparities() {
   if (!direct_frame_.has_pixels()) return;
-  std::uint8_t* const disparities = board_.direct_disparities();
+  std::uint8_t* const disparities = buffer(kResultPort);
   if (disparities == nullptr) {
     fail("direct access to the disparities was taken back within a frame");
   } else {

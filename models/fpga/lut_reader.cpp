@@ -1,7 +1,6 @@
 #include "models/fpga/lut_reader.h"
 
 #include "models/fpga/core_ports.h"
-#include "models/memory/word_access.h"
 
 namespace stereotlm::fpga {
 
@@ -30,11 +29,6 @@ void LutReader::take(const Slot& slot) {
 void LutReader::push(const TableEntry& left, const TableEntry& right) {
   entries_out->push(left);
   if (has_joint_tables_) right_entries_out->push(right);
-}
-
-const std::uint32_t* LutReader::table(int height) {
-  return reinterpret_cast<const std::uint32_t*>(memory::direct_memory(
-      port, tlm::TLM_READ_COMMAND, table_address_, width_ * static_cast<std::uint64_t>(height) * 4));
 }
 
 }  // namespace stereotlm::fpga

@@ -37,8 +37,6 @@ class LutReader : public sc_core::sc_module {
     table_address_ = table_address;
     offsets_ = offsets;
   }
-  // The table of width * height words, for immediate use only; null if memory does not grant direct access.
-  const std::uint32_t* table(int height);
   // The number of refused accesses. Their entries are not valid.
   std::uint64_t errors() const { return errors_; }
 

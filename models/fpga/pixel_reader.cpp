@@ -5,7 +5,6 @@
 #include "models/fpga/core_ports.h"
 #include "models/kernels/rectification_table.h"
 #include "models/kernels/words.h"
-#include "models/memory/word_access.h"
 
 namespace stereotlm::fpga {
 
@@ -76,11 +75,6 @@ void PixelReader::deliver(std::uint64_t pixel, bool needs_access, const sc_core:
     word = access_.word();
   }
   pixels_[pixels_stored_++ % kRing] = {kernels::pixel_of_word(word, pixel), true};
-}
-
-const std::uint8_t* PixelReader::image(int height) {
-  return memory::direct_memory(port, tlm::TLM_READ_COMMAND, image_address_,
-                               width_ * static_cast<std::uint64_t>(height));
 }
 
 }  // namespace stereotlm::fpga

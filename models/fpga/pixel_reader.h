@@ -53,8 +53,6 @@ class PixelReader : public sc_core::sc_module {
   }
   // Passes on a pixel that no result depends on. To be called in each cycle of the drain.
   void release_blank() { pixels_out->push(MaskedPixel{}); }
-  // The image of width * height pixels, for immediate use only; null if memory does not grant direct access.
-  const std::uint8_t* image(int height);
   // The number of refused accesses. Their pixels are 0.
   std::uint64_t errors() const { return errors_; }
 

@@ -1,7 +1,6 @@
 #include "models/fpga/result_writer.h"
 
 #include "models/fpga/core_ports.h"
-#include "models/memory/word_access.h"
 
 namespace stereotlm::fpga {
 
@@ -32,10 +31,6 @@ void ResultWriter::write(const sc_core::sc_time& at) {
   const ResultWord& word = words_[written_++ % kRing];
   if (!access_.write(disparity_address_ + result_word_offset(word.place), word.word, delay)) ++errors_;
   ++writes_;
-}
-
-std::uint8_t* ResultWriter::buffer(std::uint64_t words) {
-  return memory::direct_memory(port, tlm::TLM_WRITE_COMMAND, disparity_address_, words * 4);
 }
 
 }  // namespace stereotlm::fpga

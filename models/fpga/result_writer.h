@@ -32,9 +32,6 @@ class ResultWriter : public sc_core::sc_module {
   void start_frame(std::uint64_t disparity_address);
   // Writes the oldest word, in the cycle that is `at` from now.
   void write(const sc_core::sc_time& at);
-  // The disparity buffer of `words` words, for immediate use only; null if memory does not grant direct
-  // access.
-  std::uint8_t* buffer(std::uint64_t words);
   // The number of words written, over all frames, and of refused accesses among them, whose words are lost.
   std::uint64_t writes() const { return writes_; }
   std::uint64_t errors() const { return errors_; }

@@ -95,11 +95,6 @@ class StereoCore : public sc_core::sc_module, private FastCore::Board {
   void route_host(const HostRoute& route);
 
   std::uint64_t horizon_ps() const override;
-  DirectFrame::Memory direct_memory(const DirectFrame::Buffers& buffers,
-                                    const kernels::JointOffsets& offsets) override {
-    return datapath_.direct_memory(buffers, offsets);
-  }
-  std::uint8_t* direct_disparities() override { return datapath_.direct_disparities(); }
   void frame_ended(bool failed) override;
   void failed(const std::string& why) override;
   void stalled(std::uint64_t cycles) override;
@@ -121,9 +116,14 @@ class StereoCore : public sc_core::sc_module, private FastCore::Board {
   LocalBus local_bus_{"local_bus_port", config_.local_bus, config_.memory.banks.size()};
   CoreDatapath datapath_;
   HostPort host_port_{local_bus_.control(), crossbar_, crossbar_.arbitration(), frames_, clock_};
-  FastCore fast_core_{
-      config_.core, config_.fidelity == Fidelity::kFast, frames_, host_port_, local_bus_.control(), clock_,
-      *this};
+  FastCore fast_core_{config_.core,
+                      config_.fidelity == Fidelity::kFast,
+                      frames_,
+                      host_port_,
+                      local_bus_.control(),
+                      crossbar_,
+                      clock_,
+                      *this};
   StreamIn<FrameStart, StereoCore, &StereoCore::start_frame> start_in_{"start_in", this};
   StreamIn<HostRoute, StereoCore, &StereoCore::route_host> route_in_{"route_in", this};
 
