@@ -20,7 +20,8 @@ std::uint64_t empty_slots(const FrameGeometry& geometry, int strip) {
   return empty;
 }
 
-static_assert(2 * memory::kBankCountRule.max - 1 <= HostRequests::kMostRoute);
+static_assert(memory::kBankCountRule.max <= 1 << 6U &&
+              2 * memory::kBankCountRule.max - 1 <= HostRequests::kMostRoute);
 
 }  // namespace
 
@@ -37,9 +38,10 @@ FastForward::FastForward(CoreStepper& stepper, int lane_fifo_slots)
   }
 }
 
-void FastForward::start_direct_frame(const AccessPatterns& patterns, std::uint64_t routes) {
+void FastForward::start_direct_frame(const AccessPatterns& patterns, const FrameBases& bases) {
   start_frame();
-  routes_ = routes;
+  banks_ = 0;
+  for (const std::uint32_t base : bases) banks_ = banks_ << 6U | registers::bank_of(base);
   strips_ = 0;
   for (const Side side : kSides) {
     const AccessPattern* const pattern = &patterns[index_of(side)];
@@ -321,7 +323,6 @@ bool FastForward::hand_over(ConflictRecorder& conflicts, std::uint64_t cycle, st
       left_of_group -= consumed;
       continue;
     }
-    for (std::uint32_t step = 0; step < next->length; ++step) known_.conflicts((next + step)->effect);
     repeated_.clear();
     for (std::uint32_t step = 0; step < next->length; ++step)
       repeated_.push_back(&known_.conflicts((next + step)->effect));
@@ -503,7 +504,7 @@ FastForward::StateNumber FastForward::state(std::uint64_t cycle) {
           : 0;
   return known_.number_of({control().state(), arbitration.state(cycle),
                            control().match().draining() ? 0 : all_strips_[strips_].empty,
-                           routes_ << 32U | host << 2U | varies, arbitration.shared()});
+                           banks_ << 32U | host << 2U | varies, arbitration.shared()});
 }
 
 }  // namespace stereotlm::fpga

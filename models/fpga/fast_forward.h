@@ -29,10 +29,10 @@ class FastForward {
   FastForward(CoreStepper& stepper, int lane_fifo_slots);
 
   // To be called when a frame with these accesses is to be fast-forwarded, after its ports have been routed
-  // and the stepper has started it. The patterns must outlive the frame. `routes`: frames with the same
-  // number have the same routes and latencies. This and the next function throw std::logic_error if settle()
-  // has not been called since the last frame.
-  void start_direct_frame(const AccessPatterns& patterns, std::uint64_t routes);
+  // and the stepper has started it. The patterns must outlive the frame. Frames with buffers in the same banks
+  // have the same routes and latencies. This and the next function throw std::logic_error if settle() has not
+  // been called since the last frame.
+  void start_direct_frame(const AccessPatterns& patterns, const FrameBases& bases);
   // To be called when a frame starts that the owner steps itself.
   void start_frame();
   // To be called before the owner changes the route of the host within a frame, and after the last cycle of a
@@ -171,8 +171,8 @@ class FastForward {
   HostWords host_;                   // words that are granted from the next cycle on
   TransitionCache::Log in_order_;    // what has been followed and is not yet handed to the recorder
   bool is_host_routed_ = false;      // by serve_host()
-  std::uint64_t routes_ = 0;
-  std::size_t strips_ = 0;  // index in all_strips_: the run in which the lanes take their next slots
+  std::uint64_t banks_ = 0;          // of the frame's buffers, 6 bits for each port
+  std::size_t strips_ = 0;           // index in all_strips_: the run in which the lanes take their next slots
   // [side]: the pattern by which the accesses of the side vary. Null if all its slots inside the image access
   // their pixels, or are assumed to, or if its port itself finds them in the cache (a side without table).
   std::array<const AccessPattern*, 2> varying_{};

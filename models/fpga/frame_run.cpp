@@ -76,7 +76,7 @@ void FrameRun::start_stepped(std::uint64_t cycle, const FrameBases& bases) {
 void FrameRun::start_direct(std::uint64_t cycle, const FrameBases& bases, const AccessPatterns& patterns) {
   patterns_ = &patterns;
   begin(cycle, bases);
-  fast_forward_.start_direct_frame(patterns, index_of_routes(bases));
+  fast_forward_.start_direct_frame(patterns, bases);
 }
 
 void FrameRun::begin(std::uint64_t cycle, const FrameBases& bases) {
@@ -119,16 +119,6 @@ FrameLatencies FrameRun::route_ports(const FrameBases& bases) {
     latencies[port] = latencies_[bank];
   }
   return latencies;
-}
-
-// Returns the index of a frame's banks in routes_; adds them if they are new.
-std::uint64_t FrameRun::index_of_routes(const FrameBases& bases) {
-  std::array<std::uint32_t, kCorePortCount> banks{};
-  std::transform(bases.begin(), bases.end(), banks.begin(), registers::bank_of);
-  const auto known = std::find(routes_.begin(), routes_.end(), banks);
-  const auto index = static_cast<std::uint64_t>(known - routes_.begin());
-  if (known == routes_.end()) routes_.push_back(banks);
-  return index;
 }
 
 std::uint64_t FrameRun::stalled_cycles() {

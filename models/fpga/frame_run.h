@@ -159,7 +159,6 @@ class FrameRun {
   enum class State { kIdle, kRunning, kFinishing };
 
   FrameLatencies route_ports(const FrameBases& bases);
-  std::uint64_t index_of_routes(const FrameBases& bases);
   void begin(std::uint64_t cycle, const FrameBases& bases);
   void run_ahead_recorded(std::uint64_t end);
   void count_direct();
@@ -172,8 +171,6 @@ class FrameRun {
   std::uint64_t stall_timeout_cycles_;
   std::uint64_t work_ = 0;        // CoreControl::work() in the last call of stalled_cycles()
   std::uint64_t work_cycle_ = 0;  // cycle of the last call that found progress, or of the last timeout
-  // The distinct combinations of banks that direct frames have used: [index][port].
-  std::vector<std::array<std::uint32_t, kCorePortCount>> routes_;
   State state_ = State::kIdle;
   std::uint64_t cycle_ = 0;
   std::uint64_t first_cycle_ = 0;

@@ -100,6 +100,8 @@ std::uint32_t TransitionCache::number_of_effect(const Effect& effect) {
   if (is_new) {
     effects_.push_back(&entry->first);
     followed_.push_back(0);
+    conflicts_.push_back(
+        {effect.progress.cycles, effect.host.words, memory::Arbitration::stalls_of(effect.decided)});
   }
   return entry->second;
 }
@@ -205,13 +207,6 @@ TransitionCache::StateNumber TransitionCache::walk(StateNumber first, const Acce
     }
   }
   return state;
-}
-
-const GroupConflicts& TransitionCache::find_conflicts(std::uint32_t effect) {
-  if (effect >= conflicts_.size()) conflicts_.resize(effects_.size());
-  const Effect& found = *effects_[effect];
-  return conflicts_[effect] = {found.progress.cycles, found.host.words,
-                               memory::Arbitration::stalls_of(found.decided)};
 }
 
 void TransitionCache::count_followed(CoreControl& control, memory::Arbitration& arbitration) {

@@ -144,11 +144,7 @@ class TransitionCache {
   const Progress& progress(std::uint32_t effect) const { return effects_[effect]->progress; }
   const Progress& progress(const Transition& transition) const { return progress(transition.effect); }
   const HostGrants& host(const Transition& transition) const { return effects_[transition.effect]->host; }
-  // Valid until the next call for an effect that has not been asked for.
-  const GroupConflicts& conflicts(std::uint32_t effect) {
-    const bool is_known = effect < conflicts_.size() && conflicts_[effect].cycles != 0;
-    return is_known ? conflicts_[effect] : find_conflicts(effect);
-  }
+  const GroupConflicts& conflicts(std::uint32_t effect) const { return conflicts_[effect]; }
   // Counts a transition as followed. Adds it to `log`, unless that is null.
   void follow(const Transition& transition, std::uint64_t times = 1, Log* log = nullptr) {
     if (log != nullptr) log->push_back({transition.effect, 1, times});
@@ -189,7 +185,6 @@ class TransitionCache {
   }
   std::size_t bucket_of(std::uint64_t first_word, const Accesses& key) const;
   std::uint32_t number_of_effect(const Effect& effect);
-  const GroupConflicts& find_conflicts(std::uint32_t effect);
   void double_buckets();
 
   std::size_t words_;  // of the accesses
@@ -200,7 +195,7 @@ class TransitionCache {
   std::vector<const Effect*> effects_;   // [number]
   std::vector<std::uint64_t> followed_;  // [number of the effect]: times not counted yet
   std::vector<std::uint32_t> effects_followed_;
-  std::vector<GroupConflicts> conflicts_;  // [number of the effect]; without cycles: not asked for yet
+  std::vector<GroupConflicts> conflicts_;  // [number of the effect]
   std::vector<std::uint64_t> buckets_;
   std::size_t mask_ = 0;  // number of buckets - 1; they are a power of two
   std::size_t transitions_ = 0;
