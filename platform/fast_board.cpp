@@ -46,12 +46,9 @@ bool FastBoard::serves_one_word_per_cycle(std::uint64_t address, std::uint64_t b
 
 std::uint32_t* FastBoard::skip_writes(std::uint64_t address, std::uint64_t words, std::uint64_t cycle,
                                       const std::vector<fpga::HostPort::ServedWords>& bursts) {
-  const std::size_t bank = memory::bank_of_address(address);
   local_bus_.count_words(true, address, words);
-  host_port_.count_skipped(bank, true, cycle + bursts.front().first_cycle,
-                           cycle + bursts.back().first_cycle + bursts.back().words, words);
-  if (frames_.is_recorded()) host_port_.record_skipped(true, address, cycle, bursts);
-  count_direct(bank, words);
+  host_port_.skip_writes(address, words, cycle, bursts);
+  count_direct(memory::bank_of_address(address), words);
   changes(address, 4 * words);
   return reinterpret_cast<std::uint32_t*>(direct(address, 4 * words));
 }

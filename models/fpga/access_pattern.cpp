@@ -16,15 +16,15 @@ AccessPattern::AccessPattern(const FrameGeometry& geometry, PixelCache cache)
       needs_all_pixels_(!has_cache_),
       passes_before_strip_(static_cast<std::size_t>(geometry.strips)) {
   std::vector<std::uint64_t> row_bits(words_);
-  RowCounts row_counts;
+  std::uint64_t row_count = 0;
   for (int column = 0; column < geometry.width; ++column) {
     if (has_cache_ && !begins_word(column)) continue;
     row_bits[static_cast<std::size_t>(column) / 64] |= std::uint64_t{1} << column % 64;
-    ++row_counts.accesses;
+    ++row_count;
   }
   for (int row = 0; row < geometry.height; ++row) {
     std::copy(row_bits.begin(), row_bits.end(), pixels_.begin() + static_cast<std::ptrdiff_t>(words_) * row);
-    counts_[static_cast<std::size_t>(row)] = row_counts;
+    counts_[static_cast<std::size_t>(row)] = row_count;
   }
   count();
 }
@@ -48,34 +48,33 @@ void AccessPattern::set_entries(const std::uint32_t* entries) {
 // Returns whether all pixels of the row are accessed.
 bool AccessPattern::set_row(int row, const std::uint32_t* entries) {
   std::uint64_t* const bits = pixels_.data() + static_cast<std::size_t>(row) * words_;
-  RowCounts& counts = counts_[static_cast<std::size_t>(row)];
+  std::uint64_t& count = counts_[static_cast<std::size_t>(row)];
   std::uint32_t common = ~std::uint32_t{0};
   for (int column = 0; column < geometry_.width; ++column) common &= entries[column];
   if (kernels::entry_is_valid(common)) {
     set_all(bits);
-    counts = {geometry_.columns_per_strip(), 0};
+    count = geometry_.columns_per_strip();
     return true;
   }
-  counts = {};
+  count = 0;
   for (std::size_t word = 0; word < words_; ++word) {
-    const int count = std::min(64, geometry_.width - static_cast<int>(word) * 64);
+    const int columns = std::min(64, geometry_.width - static_cast<int>(word) * 64);
     common = ~std::uint32_t{0};
     std::uint32_t any = 0;
-    for (int i = 0; i < count; ++i) {
+    for (int i = 0; i < columns; ++i) {
       common &= entries[i];
       any |= entries[i];
     }
     std::uint64_t found = 0;
     if (kernels::entry_is_valid(common)) {
-      found = ~std::uint64_t{0} >> (64 - count);
+      found = ~std::uint64_t{0} >> (64 - columns);
     } else if (kernels::entry_is_valid(any)) {
-      for (int i = 0; i < count; ++i) found |= std::uint64_t{kernels::entry_is_valid(entries[i])} << i;
+      for (int i = 0; i < columns; ++i) found |= std::uint64_t{kernels::entry_is_valid(entries[i])} << i;
     }
     bits[word] = found;
-    counts.accesses += static_cast<std::uint64_t>(__builtin_popcountll(found));
-    entries += count;
+    count += static_cast<std::uint64_t>(__builtin_popcountll(found));
+    entries += columns;
   }
-  counts.invalid = geometry_.columns_per_strip() - counts.accesses;
   return false;
 }
 
@@ -83,30 +82,26 @@ bool AccessPattern::set_row_cached(int row, const std::uint32_t* entries) {
   constexpr std::uint32_t kNoWord = UINT32_MAX;
   const auto width = static_cast<std::uint32_t>(geometry_.width);
   std::uint64_t* const bits = pixels_.data() + static_cast<std::size_t>(row) * words_;
-  RowCounts& counts = counts_[static_cast<std::size_t>(row)];
+  std::uint64_t& count = counts_[static_cast<std::size_t>(row)];
   std::fill_n(bits, words_, std::uint64_t{0});
-  counts = {};
+  count = 0;
   std::uint32_t cached = kNoWord;
   for (std::uint32_t column = 0; column < width; ++column) {
     const std::uint32_t entry = entries[column];
-    if (!kernels::entry_is_valid(entry)) {
-      ++counts.invalid;
-      continue;
-    }
+    if (!kernels::entry_is_valid(entry)) continue;
     const std::uint32_t word = (static_cast<std::uint32_t>(kernels::entry_row(entry)) * width +
                                 static_cast<std::uint32_t>(kernels::entry_column(entry))) /
                                kernels::kPixelsPerWord;
     if (word == cached) continue;
     cached = word;
     bits[column / 64] |= std::uint64_t{1} << column % 64;
-    ++counts.accesses;
+    ++count;
   }
-  return counts.accesses == width;
+  return count == width;
 }
 
 void AccessPattern::count() {
   empty_slots_ = 0;
-  invalid_slots_ = 0;
   pixel_accesses_ = 0;
   for (int strip = 0; strip < geometry_.strips; ++strip) {
     const std::uint64_t slots_before = static_cast<std::uint64_t>(strip) * geometry_.columns_per_strip() *
@@ -118,8 +113,7 @@ void AccessPattern::count() {
         empty_slots_ += geometry_.columns_per_strip();
         continue;
       }
-      pixel_accesses_ += counts_[static_cast<std::size_t>(row)].accesses;
-      invalid_slots_ += counts_[static_cast<std::size_t>(row)].invalid;
+      pixel_accesses_ += counts_[static_cast<std::size_t>(row)];
     }
   }
 }

@@ -43,20 +43,14 @@ class AccessPattern {
 
   // The number of slots inside the image that do not access it, among the first `slots` slots of a frame.
   std::uint64_t passes_before(std::uint64_t slots) const;
-  // Numbers of slots of a frame that are empty, that have an invalid entry, and that access their pixel.
+  // Numbers of slots of a frame that are empty, and that access their pixel.
   std::uint64_t empty_slots() const { return empty_slots_; }
-  std::uint64_t invalid_slots() const { return invalid_slots_; }
   std::uint64_t pixel_accesses() const { return pixel_accesses_; }
 
  private:
   const std::uint64_t* pixels_of_row(int row) const {
     return pixels_.data() + static_cast<std::size_t>(row) * words_;
   }
-  // Numbers of pixels of a row.
-  struct RowCounts {
-    std::uint64_t accesses = 0;
-    std::uint64_t invalid = 0;
-  };
   std::uint64_t accesses_of_row(int row, std::uint64_t columns) const;
   void set_all(std::uint64_t* row_bits) const;
   bool set_row(int row, const std::uint32_t* entries);
@@ -69,14 +63,13 @@ class AccessPattern {
   bool has_cache_;
   std::size_t words_;                  // words of 64 bits for a row of the image
   std::vector<std::uint64_t> pixels_;  // [row][word]: pixels that are accessed
-  std::vector<RowCounts> counts_;      // [row]
+  std::vector<std::uint64_t> counts_;  // [row]: their number
   bool needs_all_pixels_ = false;
   std::vector<std::uint64_t> passes_before_strip_;  // [strip]: slots inside the image that do not access it
   // Both are empty until the first query: few frames need them.
   mutable std::vector<std::uint64_t> slots_;    // bit i of the sequence: slot i accesses its pixel
   mutable std::vector<std::uint64_t> changes_;  // the slots that differ from the one four columns before
   std::uint64_t empty_slots_ = 0;
-  std::uint64_t invalid_slots_ = 0;
   std::uint64_t pixel_accesses_ = 0;
 };
 

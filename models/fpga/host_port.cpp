@@ -155,22 +155,20 @@ bool HostPort::serves_one_word_per_cycle(std::size_t bank) const {
 
 // As in serve_in_step(), the words behind the first one change the state of the policy as cycles without
 // request do, which is what lies between two bursts.
-void HostPort::count_skipped(std::size_t bank, bool write, std::uint64_t first_cycle, std::uint64_t end_cycle,
-                             std::uint64_t words) {
+void HostPort::skip_writes(std::uint64_t address, std::uint64_t words, std::uint64_t cycle,
+                           const std::vector<ServedWords>& bursts) {
   const bool in_frame = frames_.is_running();
   count_served(UINT64_MAX, in_frame);
-  served_bank_ = bank;
-  count({end_cycle - words, words, arbitration_.decide_unrouted(bank, first_cycle, kHostPort, write)},
+  served_bank_ = memory::bank_of_address(address);
+  const std::uint64_t end_cycle = cycle + bursts.back().first_cycle + bursts.back().words;
+  count({end_cycle - words, words,
+         arbitration_.decide_unrouted(served_bank_, cycle + bursts.front().first_cycle, kHostPort, true)},
         in_frame);
-}
-
-void HostPort::record_skipped(bool write, std::uint64_t address, std::uint64_t cycle,
-                              const std::vector<ServedWords>& bursts) {
+  if (!frames_.is_recorded()) return;
   ConflictRecorder& conflicts = *frames_.conflicts();
-  const HostTraffic traffic = conflicts.traffic_of(write, address);
-  const std::size_t bank = memory::bank_of_address(address);
+  const HostTraffic traffic = conflicts.traffic_of(true, address);
   for (const ServedWords& burst : bursts)
-    conflicts.add_served(traffic, bank, cycle + burst.first_cycle, burst.words, true);
+    conflicts.add_served(traffic, served_bank_, cycle + burst.first_cycle, burst.words, true);
 }
 
 // What the burst is for; without meaning unless conflicts are recorded.

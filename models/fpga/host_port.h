@@ -72,19 +72,15 @@ class HostPort : private HostWords {
   //
   // Whether bursts to this bank are served one word a cycle, and independently of the frame.
   bool serves_one_word_per_cycle(std::size_t bank) const;
-  // Counts `words` words of skipped bursts of one direction to such a bank. The first is served in
-  // `first_cycle`, the last in the cycle before `end_cycle`, and the running frame cannot have ended by then.
-  void count_skipped(std::size_t bank, bool write, std::uint64_t first_cycle, std::uint64_t end_cycle,
-                     std::uint64_t words);
   // Words that are served one a cycle, from this cycle on.
   struct ServedWords {
     std::uint64_t first_cycle;
     std::uint64_t words;
   };
-  // Gives the recorder of the running frame, which FrameRun::is_recorded(), skipped bursts of one direction
-  // to such a bank, from byte address `address` on. Their cycles are counted from `cycle` on.
-  void record_skipped(bool write, std::uint64_t address, std::uint64_t cycle,
-                      const std::vector<ServedWords>& bursts);
+  // Counts skipped bursts that have written `words` words to such a bank, from byte address `address` on.
+  // Their cycles are counted from `cycle` on; the running frame cannot have ended by the last one.
+  void skip_writes(std::uint64_t address, std::uint64_t words, std::uint64_t cycle,
+                   const std::vector<ServedWords>& bursts);
 
   // Counts the words that were served before the frame's cycle(), as words in the frame.
   void count_words_in_frame() { count_served(frames_.cycle(), true); }

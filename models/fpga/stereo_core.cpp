@@ -147,9 +147,9 @@ void StereoCore::run_cycles() {
     std::uint64_t next = frames_.cycle();
     if (!frames_.is_running()) {
       // No cycle matters before the next request. (A frame may begin before it.)
-      const bool pending = local_bus_.word_waits();
-      if (pending && local_bus_.request_ps() > clock_.edge_ps(next))
-        next = clock_.edge_at_or_after(local_bus_.request_ps());
+      const bool pending = local_bus_.control().word_waits();
+      if (pending && local_bus_.control().request_ps() > clock_.edge_ps(next))
+        next = clock_.edge_at_or_after(local_bus_.control().request_ps());
       if (frames_.is_finishing() && (!pending || next >= frames_.done_cycle())) {
         const std::uint64_t end_ps = clock_.edge_ps(frames_.done_cycle());
         if (end_ps > now) {
@@ -181,7 +181,7 @@ void StereoCore::run_cycles() {
 // Runs the next cycle. Returns true if a burst of the local bus has ended in it.
 bool StereoCore::step(std::uint64_t edge_ps, const sc_core::sc_time& at) {
   const std::uint64_t cycle = frames_.cycle();
-  const bool host_requests = local_bus_.requests(edge_ps);
+  const bool host_requests = local_bus_.control().requests(edge_ps);
   PortMask granted = 0;
   bool host_is_served = false;
   bool burst_has_ended = false;
