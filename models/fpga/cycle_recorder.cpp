@@ -85,7 +85,7 @@ void CycleRecorder::record(std::uint64_t cycle, const CoreControl::Decision& dec
   }
   if (host_requests) {
     const bool is_granted = (granted & memory::mask_of(kHostPort)) != 0;
-    set_host(out, host_->next_word(), is_granted, is_granted ? 0 : blamed(kHostPort));
+    set_host(out, *host_(), is_granted, is_granted ? 0 : blamed(kHostPort));
   } else {
     drop_accesses(cycle);
     set_access(out);
@@ -127,7 +127,7 @@ std::uint64_t CycleRecorder::pixel_of_slot(memory::Port port, std::uint64_t slot
          static_cast<std::uint64_t>(place.cursor.column());
 }
 
-void CycleRecorder::set_host(CoreCycle& cycle, const HostWords::Word& word, bool granted, std::size_t by) {
+void CycleRecorder::set_host(CoreCycle& cycle, const HostWord& word, bool granted, std::size_t by) {
   cycle.ports[kHostPort] = {Intent::kRequest, granted, word.bank, word.address, by, 0};
   cycle.host_traffic = word.traffic;
 }

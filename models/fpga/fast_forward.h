@@ -23,10 +23,10 @@ namespace stereotlm::fpga {
 // access its pixel. Such a port takes one cycle for a slot, whether it is granted or passes. Only the counts
 // differ: a pass counts as a grant until resolve_accesses() corrects them. So the transitions repeat far more
 // often with the tables of a rig: a frame of the paper's board takes a thirtieth of the time.
-class FastForward {
+class FastForward : public CoreStepper {
  public:
-  // `stepper` outlives this object.
-  FastForward(CoreStepper& stepper, int lane_fifo_slots);
+  // `arbitration` outlives this object. Throws std::invalid_argument if the configuration has problems.
+  FastForward(const CoreConfig& config, memory::Arbitration& arbitration);
 
   // To be called when a frame with these accesses is to be fast-forwarded, after its ports have been routed
   // and the stepper has started it. The patterns must outlive the frame. Frames with buffers in the same banks
@@ -34,11 +34,12 @@ class FastForward {
   // been called since the last frame.
   void start_direct_frame(const AccessPatterns& patterns, const FrameBases& bases);
   // To be called when a frame starts that the owner steps itself.
-  void start_frame();
+  void start_stepped_frame();
   // To be called before the owner changes the route of the host within a frame, and after the last cycle of a
   // frame. `cycle`: the next cycle. Corrects the counts that are provisional until then.
   void settle(std::uint64_t cycle);
 
+  using CoreStepper::step;
   // Runs one cycle. `host_requests`: whether the host port requests in it. Returns the ports granted.
   memory::PortMask step(std::uint64_t cycle, bool host_requests);
   // Runs the cycles from `cycle` up to `end`, `end` not included, or until the frame is done. Returns the
@@ -116,16 +117,16 @@ class FastForward {
   bool fits_host(const TransitionCache::Transition& transition) const;
   void follow(const TransitionCache::Transition& transition, std::uint64_t cycle);
   // Where the recorder of the frame finds the transitions that were followed; null without recorder.
-  TransitionCache::Log* log() { return stepper_.conflicts() != nullptr ? &in_order_ : nullptr; }
+  TransitionCache::Log* log() { return conflicts() != nullptr ? &in_order_ : nullptr; }
   void skip(const Progress& progress);
   // Hands what has been skipped to the recorder of the frame, if there is one. `left_of_group`: as it was
   // before. Returns true at the end of a strip, where more may be skipped.
   bool record_skipped(std::uint64_t cycle, std::uint64_t left_of_group) {
-    return stepper_.conflicts() != nullptr && hand_over(*stepper_.conflicts(), cycle, left_of_group);
+    return conflicts() != nullptr && hand_over(*conflicts(), cycle, left_of_group);
   }
   bool hand_over(ConflictRecorder& conflicts, std::uint64_t cycle, std::uint64_t left_of_group);
   void tell_assumed() {
-    if (ConflictRecorder* const conflicts = stepper_.conflicts()) conflicts->assume_accesses(assumed_);
+    if (conflicts() != nullptr) conflicts()->assume_accesses(assumed_);
   }
   void catch_up(std::uint64_t cycle);
   StateNumber walk_known(StateNumber state, Progress& room);
@@ -151,9 +152,7 @@ class FastForward {
   }
   // The number of slots up to this column, from the state of the walk on.
   std::uint64_t slots_to(std::uint64_t column) const { return column * slots_of_group() / 4 - consumed_; }
-  const CoreControl& control() const { return stepper_.control(); }
 
-  CoreStepper& stepper_;
   std::uint64_t lane_fifo_slots_;
   std::vector<Strips> all_strips_;  // all strips of a frame, in order
   TransitionCache known_;

@@ -8,7 +8,6 @@
 
 #include "models/fpga/conflict_recorder.h"
 #include "models/fpga/core_ports.h"
-#include "models/fpga/core_stepper.h"
 #include "models/fpga/cycle_recorder.h"
 #include "models/fpga/fast_forward.h"
 #include "models/fpga/row_recorder.h"
@@ -74,14 +73,14 @@ class FrameRun {
   // Runs cycle() of a stepped frame. `host_requests` and `move`: see CoreStepper::step().
   template <class Move>
   memory::PortMask step(bool host_requests, const Move& move) {
-    return stepper_.step(cycle_++, host_requests, move);
+    return core_.step(cycle_++, host_requests, move);
   }
   // Runs cycle() of a direct frame.
-  memory::PortMask step(bool host_requests) { return fast_forward_.step(cycle_++, host_requests); }
+  memory::PortMask step(bool host_requests) { return core_.step(cycle_++, host_requests); }
   // Runs the cycles of a direct frame up to `end`, `end` not included, or until the frame is done.
   void run_ahead(std::uint64_t end) {
     if (cycles_ == nullptr) {
-      cycle_ = fast_forward_.run_ahead(cycle_, end);
+      cycle_ = core_.run_ahead(cycle_, end);
     } else {
       run_ahead_recorded(end);
     }
@@ -90,10 +89,10 @@ class FrameRun {
   void skip_to(std::uint64_t cycle) { cycle_ = cycle; }
   // Serves words of the host in a direct frame, see FastForward.
   FastForward::Served serve_host(const FastForward::Route& route, std::uint64_t first, std::size_t words) {
-    return fast_forward_.serve_host(cycle_, route, first, words);
+    return core_.serve_host(cycle_, route, first, words);
   }
   // To be called before the route of the host changes.
-  void host_route_changes() { fast_forward_.settle(cycle_); }
+  void host_route_changes() { core_.settle(cycle_); }
   // To be called when control().frame_done() becomes true.
   void finish();
   // To be called in done_cycle().
@@ -109,18 +108,18 @@ class FrameRun {
   std::uint64_t done_cycle() const { return done_cycle_; }
   // After serve_host() its state and counts may be of an earlier cycle, up to the next other call that runs
   // cycles.
-  CoreControl& control() { return stepper_.control(); }
-  const CoreControl& control() const { return stepper_.control(); }
+  CoreControl& control() { return core_.control(); }
+  const CoreControl& control() const { return core_.control(); }
   // A lower bound of the cycle in which the last write of the frame is granted.
   std::uint64_t earliest_last_write() const {
-    return control().earliest_last_write(cycle_ - fast_forward_.ahead().cycles);
+    return control().earliest_last_write(cycle_ - core_.ahead().cycles);
   }
   // Words written by the frame that was started last.
   std::uint64_t writes() const { return all_writes() - writes_before_; }
   // The finished frames among those of start_direct().
   const DirectCounts& direct_counts() const { return direct_counts_; }
   // See FastForward.
-  std::uint64_t skipped_cycles() const { return fast_forward_.skipped_cycles(); }
+  std::uint64_t skipped_cycles() const { return core_.skipped_cycles(); }
   // To be called regularly while a frame runs. Returns the number of cycles without progress if it has reached
   // stall_timeout_cycles, else 0: the matcher does not work and no result is written, because the arbiters
   // never grant one of the core's ports. After a timeout it is counted anew.
@@ -133,11 +132,11 @@ class FrameRun {
   const std::vector<std::uint64_t>& frame_cycles() const { return frame_cycles_; }
   // From the next frame on, records when each row of results is complete. take_rows() returns the rows of the
   // frames that have ended since its last call. It must be called regularly, because the rows fill memory.
-  void record_rows() { stepper_.rows().turn_on(); }
+  void record_rows() { core_.rows().turn_on(); }
   std::vector<RowProfile> take_rows() { return std::exchange(row_profiles_, {}); }
 
-  // What serves the host port beside the frames; to be called once. `host` outlives this object.
-  void set_host(const HostWords& host) { host_ = &host; }
+  // The words of the host port, which is served beside the frames; to be called once.
+  void set_host(NextHostWord host) { host_ = std::move(host); }
   // Records all frames from the next one on. `conflicts` outlives this object.
   void record(ConflictRecorder& conflicts) { conflicts_ = &conflicts; }
   ConflictRecorder* conflicts() { return conflicts_; }
@@ -145,7 +144,7 @@ class FrameRun {
   // been called. `cycles` outlives this object.
   void record(CycleRecorder& cycles) {
     cycles_ = &cycles;
-    cycles.set_host(*host_);
+    cycles.set_host(host_);
   }
   CycleRecorder* cycles() { return cycles_; }
   // Whether a cycle of the running frame before `end` must be stepped.
@@ -153,7 +152,7 @@ class FrameRun {
     return cycles_ != nullptr && cycles_->next_stepped(cycle_) < end;
   }
   // Whether a frame is running that is recorded.
-  bool is_recorded() const { return stepper_.conflicts() != nullptr; }
+  bool is_recorded() const { return core_.conflicts() != nullptr; }
 
  private:
   enum class State { kIdle, kRunning, kFinishing };
@@ -166,8 +165,7 @@ class FrameRun {
 
   CoreConfig config_;
   std::vector<int> latencies_;  // [bank]: read latency, cycles
-  CoreStepper stepper_;
-  FastForward fast_forward_;
+  FastForward core_;
   std::uint64_t stall_timeout_cycles_;
   std::uint64_t work_ = 0;        // CoreControl::work() in the last call of stalled_cycles()
   std::uint64_t work_cycle_ = 0;  // cycle of the last call that found progress, or of the last timeout
@@ -179,10 +177,10 @@ class FrameRun {
   const AccessPatterns* patterns_ = nullptr;  // of the running frame; null if its stages read the tables
   DirectCounts direct_counts_;
   std::vector<FrameObserver*> observers_;
-  const HostWords* host_ = nullptr;  // null: nothing uses the host port
+  NextHostWord host_;  // empty: nothing uses the host port
   ConflictRecorder* conflicts_ = nullptr;
   CycleRecorder* cycles_ = nullptr;
-  bool is_settled_ = false;          // run_ahead_recorded() has settled fast_forward_
+  bool is_settled_ = false;          // run_ahead_recorded() has settled core_
   std::uint64_t writes_before_ = 0;  // words written before the frame that was started last
   std::vector<std::uint64_t> frame_cycles_;
   std::vector<RowProfile> row_profiles_;  // not yet taken

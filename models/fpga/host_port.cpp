@@ -36,8 +36,9 @@ bool HostPort::access(std::uint64_t cycle, std::uint64_t edge_ps) {
   return !bus_.word_waits();
 }
 
-HostWords::Word HostPort::next_word() const {
-  return {*burst_.bank, words_left().first - memory::crossbar_address(*burst_.bank, 0), traffic()};
+std::optional<HostWord> HostPort::next_word() const {
+  if (!bus_.word_waits()) return std::nullopt;
+  return HostWord{*burst_.bank, words_left().first - memory::crossbar_address(*burst_.bank, 0), traffic()};
 }
 
 bool HostPort::is_contended() const { return is_contended(*burst_.bank); }

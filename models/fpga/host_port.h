@@ -19,7 +19,7 @@ namespace stereotlm::fpga {
 // A burst is contended if it goes to a bank of the running frame: then each word is arbitrated in its cycle.
 // An uncontended burst is served independently of the frame. Its words are counted later, when it is known
 // whether their cycles belong to the frame. Plain C++.
-class HostPort : private HostWords {
+class HostPort {
  public:
   // All of these outlive this object.
   HostPort(LocalBusControl& bus, memory::DirectBanks& banks, memory::Arbitration& arbitration,
@@ -30,7 +30,7 @@ class HostPort : private HostWords {
         frames_(frames),
         clock_(clock),
         is_in_step_(bus.is_in_step_with(clock)) {
-    frames.set_host(*this);
+    frames.set_host([this] { return next_word(); });
   }
   HostPort(const HostPort&) = delete;
   HostPort& operator=(const HostPort&) = delete;
@@ -95,10 +95,9 @@ class HostPort : private HostWords {
     memory::BankArbiter::Outcome outcome;
   };
 
-  bool word_waits() const override { return bus_.word_waits(); }
-  Word next_word() const override;
+  std::optional<HostWord> next_word() const;
   void record_served(std::uint64_t cycle, std::uint64_t cycles, bool granted) {
-    if (frames_.cycles() != nullptr) frames_.cycles()->host_accesses(next_word(), cycle, cycles, granted);
+    if (frames_.cycles() != nullptr) frames_.cycles()->host_accesses(*next_word(), cycle, cycles, granted);
   }
   bool is_contended(std::size_t bank) const;
   void move_burst();
