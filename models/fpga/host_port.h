@@ -104,7 +104,7 @@ class HostPort {
   void step_contended(std::uint64_t first_cycle);
   void serve_word(std::uint64_t cycle, std::uint64_t edge_ps);
   void serve_in_step(std::uint64_t first_cycle);
-  memory::BankArbiter::Outcome decide(std::uint64_t cycle);
+  memory::BankArbiter::Outcome decide(std::size_t bank, std::uint64_t cycle, bool write);
   HostTraffic traffic() const;
   void count_served(std::uint64_t end_cycle, bool in_frame);
   void count(const Served& served, bool in_frame);

@@ -103,11 +103,6 @@ std::vector<Stall> Arbitration::stalls_of(const Decided& decided) {
   return stalls;
 }
 
-BankArbiter::Outcome Arbitration::decide_unrouted(std::size_t bank, std::uint64_t cycle, Port port,
-                                                  bool write) {
-  return arbiters_[bank].decide(cycle, mask_of(port), write ? mask_of(port) : PortMask{0});
-}
-
 // Finds the uncontended ports, and the shared banks in the order of their first ports. A bank that was shared
 // stays so as long as it has a port.
 void Arbitration::share_banks() {

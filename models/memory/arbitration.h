@@ -68,17 +68,9 @@ class Arbitration {
   // grants move the state of the bank's policy.
   void retract_grants(Port port, std::uint64_t grants) { retracted_grants_[port] += grants; }
 
-  // Decides one request for a bank that no routed port requests. `port` needs no route; `write` is the
-  // direction. The outcome is counted only when it is passed to count_unrouted().
-  BankArbiter::Outcome decide_unrouted(std::size_t bank, std::uint64_t cycle, Port port, bool write);
-  void count_unrouted(std::size_t bank, std::uint64_t cycle, BankArbiter::Outcome outcome,
-                      std::uint64_t cycles) {
-    arbiters_[bank].count(cycle, outcome, cycles);
-  }
-  bool needs_turnaround(std::size_t bank) const { return arbiters_[bank].needs_turnaround(); }
-  bool grants(std::size_t bank, BankArbiter::Outcome outcome) const {
-    return arbiters_[bank].granted_in(outcome) != 0;
-  }
+  // The arbiter of a bank that no routed port requests, for requests of a port without route.
+  BankArbiter& arbiter(std::size_t bank) { return arbiters_[bank]; }
+  const BankArbiter& arbiter(std::size_t bank) const { return arbiters_[bank]; }
 
   // The state that determines all arbitration from `cycle` on, as long as no route changes: one word for each
   // shared bank, then zeros.
