@@ -17,10 +17,9 @@ FastCore::FastCore(const CoreConfig& config, bool has_pixels, FrameRun& frames, 
     : frames_(frames),
       host_port_(host_port),
       local_bus_(local_bus),
-      banks_(banks),
       clock_(clock),
       board_(board),
-      direct_frame_(config, has_pixels) {}
+      direct_frame_(config, has_pixels, banks) {}
 
 bool FastCore::start_frame(std::uint64_t cycle, const FrameStart& start) {
   failed_ = false;
@@ -35,23 +34,7 @@ bool FastCore::works_directly(const FrameStart& start) {
   direct_frame_.set_buffers(start.bases);
   const HostRoute& burst = host_port_.burst();
   if (burst.bank && direct_frame_.hazard_with(host_port_.words_left(), burst.write)) return false;
-  return direct_frame_.disparities_are_apart() && direct_frame_.read(direct_memory(start.joint_offsets));
-}
-
-DirectFrame::Memory FastCore::direct_memory(const kernels::JointOffsets& offsets) {
-  DirectFrame::Memory memory;
-  memory.joint_offsets = offsets;
-  for (const Side side : kSides) {
-    memory.images[index_of(side)] = buffer(pixel_port(side));
-    const AddressRange& range = direct_frame_.buffers()[lut_port(side)];
-    if (range.first == range.end) continue;  // there is no such port
-    DirectFrame::Table& table = memory.tables[index_of(side)];
-    table.entries = reinterpret_cast<const std::uint32_t*>(buffer(lut_port(side)));
-    table.may_have_changed =
-        table.entries != nullptr && banks_.may_have_changed(lut_port(side), range.first, range.end);
-  }
-  memory.disparities = buffer(kResultPort);
-  return memory;
+  return direct_frame_.disparities_are_apart() && direct_frame_.read(start.joint_offsets);
 }
 
 void FastCore::route(const HostRoute& route) {
@@ -113,23 +96,13 @@ std::uint64_t FastCore::advance(std::uint64_t now_ps) {
   }
 }
 
-// Called after the cycle in which the last write of the frame was granted.
+// Called after the cycle in which the last write of the frame was granted. The disparities cannot change a
+// table: disparities_are_apart().
 void FastCore::finish_frame() {
   host_port_.count_words_in_frame();
   frames_.finish();
   host_port_.count_words_outside();
-  write_disparities();
-}
-
-// Called with the last write of the frame. The disparities cannot change a table: disparities_are_apart().
-void FastCore::write_disparities() {
-  if (!direct_frame_.has_pixels()) return;
-  std::uint8_t* const disparities = buffer(kResultPort);
-  if (disparities == nullptr) {
-    fail("direct access to the disparities was taken back within a frame");
-  } else {
-    direct_frame_.write(disparities);
-  }
+  if (!direct_frame_.write()) fail("direct access to the disparities was taken back within a frame");
 }
 
 void FastCore::end_frame() {

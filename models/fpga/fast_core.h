@@ -57,14 +57,7 @@ class FastCore {
 
  private:
   bool works_directly(const FrameStart& start);
-  DirectFrame::Memory direct_memory(const kernels::JointOffsets& offsets);
-  // The buffer of a port; null if direct access is not granted.
-  unsigned char* buffer(memory::Port port) {
-    const AddressRange& range = direct_frame_.buffers()[port];
-    return banks_.direct(range.first, range.end - range.first);
-  }
   void finish_frame();
-  void write_disparities();
   void end_frame();
   void report_hazard(const HostRoute& burst, memory::Port port);
   void fail(const std::string& why);
@@ -72,7 +65,6 @@ class FastCore {
   FrameRun& frames_;
   HostPort& host_port_;
   LocalBusControl& local_bus_;
-  memory::DirectBanks& banks_;
   const Clock& clock_;
   Board& board_;
   DirectFrame direct_frame_;
