@@ -10,7 +10,7 @@
 #include "models/clock.h"
 #include "models/fpga/core_config.h"
 #include "models/fpga/core_registers.h"
-#include "models/fpga/fast_core.h"
+#include "models/fpga/fast/fast_core.h"
 #include "models/fpga/frame_run.h"
 #include "models/fpga/host_port.h"
 #include "models/fpga/local_bus_control.h"

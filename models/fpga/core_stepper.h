@@ -2,11 +2,11 @@
 
 #include <cstdint>
 
-#include "models/fpga/conflict_recorder.h"
 #include "models/fpga/core_config.h"
 #include "models/fpga/core_control.h"
-#include "models/fpga/cycle_recorder.h"
-#include "models/fpga/row_recorder.h"
+#include "models/fpga/record/conflict_recorder.h"
+#include "models/fpga/record/cycle_recorder.h"
+#include "models/fpga/record/row_recorder.h"
 #include "models/memory/arbitration.h"
 
 namespace stereotlm::fpga {

@@ -6,11 +6,11 @@
 #include <utility>
 #include <vector>
 
-#include "models/fpga/conflict_recorder.h"
 #include "models/fpga/core_ports.h"
-#include "models/fpga/cycle_recorder.h"
-#include "models/fpga/fast_forward.h"
-#include "models/fpga/row_recorder.h"
+#include "models/fpga/fast/fast_forward.h"
+#include "models/fpga/record/conflict_recorder.h"
+#include "models/fpga/record/cycle_recorder.h"
+#include "models/fpga/record/row_recorder.h"
 
 namespace stereotlm::fpga {
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-#include "models/fpga/row_recorder.h"
+#include "models/fpga/record/row_recorder.h"
 #include "models/kernels/gray_image.h"
 #include "sw/process/child.h"
 #include "sw/runs/progress.h"

@@ -1,4 +1,4 @@
-#include "models/fpga/direct_frame.h"
+#include "models/fpga/fast/direct_frame.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "models/fpga/fast_forward.h"
+#include "models/fpga/fast/fast_forward.h"
 
 #include <algorithm>
 #include <stdexcept>

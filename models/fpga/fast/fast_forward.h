@@ -8,7 +8,7 @@
 
 #include "models/fpga/access_pattern.h"
 #include "models/fpga/core_stepper.h"
-#include "models/fpga/transition_cache.h"
+#include "models/fpga/fast/transition_cache.h"
 
 namespace stereotlm::fpga {
 

@@ -11,7 +11,7 @@
 #include "models/fpga/access_pattern.h"
 #include "models/fpga/core_control.h"
 #include "models/fpga/core_ports.h"
-#include "models/fpga/requesters.h"
+#include "models/fpga/record/requesters.h"
 #include "models/memory/arbitration.h"
 #include "models/words_by_range.h"
 

@@ -1,4 +1,4 @@
-#include "models/fpga/row_recorder.h"
+#include "models/fpga/record/row_recorder.h"
 
 namespace stereotlm::fpga {
 

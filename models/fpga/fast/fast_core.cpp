@@ -1,4 +1,4 @@
-#include "models/fpga/fast_core.h"
+#include "models/fpga/fast/fast_core.h"
 
 #include <algorithm>
 

@@ -8,10 +8,10 @@
 #include <optional>
 #include <utility>
 
-#include "models/fpga/conflict_recorder.h"
 #include "models/fpga/core_control.h"
-#include "models/fpga/core_cycle.h"
 #include "models/fpga/core_ports.h"
+#include "models/fpga/record/conflict_recorder.h"
+#include "models/fpga/record/core_cycle.h"
 #include "models/memory/arbitration.h"
 
 namespace stereotlm::fpga {

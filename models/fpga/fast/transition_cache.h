@@ -7,8 +7,8 @@
 #include <unordered_map>
 #include <vector>
 
-#include "models/fpga/conflict_recorder.h"
 #include "models/fpga/core_control.h"
+#include "models/fpga/record/conflict_recorder.h"
 #include "models/memory/arbitration.h"
 
 namespace stereotlm::fpga {

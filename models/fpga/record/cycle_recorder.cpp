@@ -1,4 +1,4 @@
-#include "models/fpga/cycle_recorder.h"
+#include "models/fpga/record/cycle_recorder.h"
 
 #include <algorithm>
 

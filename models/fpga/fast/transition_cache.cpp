@@ -1,4 +1,4 @@
-#include "models/fpga/transition_cache.h"
+#include "models/fpga/fast/transition_cache.h"
 
 #include <algorithm>
 

@@ -5,7 +5,7 @@
 
 #include "models/clock.h"
 #include "models/fpga/core_registers.h"
-#include "models/fpga/direct_frame.h"
+#include "models/fpga/fast/direct_frame.h"
 #include "models/fpga/frame_run.h"
 #include "models/fpga/host_port.h"
 #include "models/fpga/local_bus_control.h"
