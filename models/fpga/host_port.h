@@ -82,10 +82,13 @@ class HostPort {
   void skip_writes(std::uint64_t address, std::uint64_t words, std::uint64_t cycle,
                    const std::vector<ServedWords>& bursts);
 
-  // Counts the words that were served before the frame's cycle(), as words in the frame.
-  void count_words_in_frame() { count_served(frames_.cycle(), true); }
-  // Counts all words that were served and are not counted yet, as words outside a frame.
-  void count_words_outside() { count_served(UINT64_MAX, false); }
+  // Finishes the frame, after the cycle in which its last write was granted: the words that were served before
+  // the frame's cycle() are in it, all others that are not counted yet are outside.
+  void finish_frame() {
+    count_served(frames_.cycle(), true);
+    frames_.finish();
+    count_words_outside();
+  }
 
  private:
   // Words that were served in an uncontended bank, and are not counted yet.
@@ -107,6 +110,7 @@ class HostPort {
   memory::BankArbiter::Outcome decide(std::size_t bank, std::uint64_t cycle, bool write);
   HostTraffic traffic() const;
   void count_served(std::uint64_t end_cycle, bool in_frame);
+  void count_words_outside() { count_served(UINT64_MAX, false); }
   void count(const Served& served, bool in_frame);
   std::uint64_t usable_ps(std::uint64_t cycle) const {
     return clock_.edge_ps(cycle + static_cast<std::uint64_t>(read_latency_cycles_));

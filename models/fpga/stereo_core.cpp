@@ -68,13 +68,6 @@ void StereoCore::start_frame(const FrameStart& start) {
   start_event_.notify(sc_core::SC_ZERO_TIME);
 }
 
-// Called after the cycle in which the last write of a stepped frame was granted.
-void StereoCore::finish_frame() {
-  host_port_.count_words_in_frame();
-  frames_.finish();
-  host_port_.count_words_outside();
-}
-
 void StereoCore::frame_ended(bool failed) {
   register_file_.finish_frame(frames_.frame_cycles().back(), failed || datapath_.errors() != errors_before_);
 }
@@ -195,7 +188,7 @@ bool StereoCore::step(std::uint64_t edge_ps, const sc_core::sc_time& at) {
       if (host_reads_where_core_writes(grants)) serve_host();
       return datapath_.move(control(), decision, grants, at);
     });
-    if (control().frame_done()) finish_frame();
+    if (control().frame_done()) host_port_.finish_frame();
   } else {
     granted = crossbar_.arbitrate(cycle, host_requests ? memory::mask_of(kHostPort) : PortMask{0});
     if (host_requests) host_port_.record_cycle(cycle, has_host(granted));

@@ -91,7 +91,6 @@ class StereoCore : public sc_core::sc_module, private FastCore::Board {
   void end_of_elaboration() override { host_port_.set_only_master(registers.size() == 0); }
 
   void start_frame(const FrameStart& start);
-  void finish_frame();
   void route_host(const HostRoute& route);
 
   std::uint64_t horizon_ps() const override;

@@ -89,20 +89,13 @@ std::uint64_t FastCore::advance(std::uint64_t now_ps) {
       frames_.run_ahead(clock_.edge_at_or_after(std::min(board_.horizon_ps(), most_ps)));
     }
     if (frames_.control().frame_done()) {
-      finish_frame();
+      host_port_.finish_frame();
+      // The disparities cannot change a table: disparities_are_apart().
+      if (!direct_frame_.write()) fail("direct access to the disparities was taken back within a frame");
     } else {
       next_check_ps_ = clock_.edge_ps(frames_.earliest_last_write()) + 1;
     }
   }
-}
-
-// Called after the cycle in which the last write of the frame was granted. The disparities cannot change a
-// table: disparities_are_apart().
-void FastCore::finish_frame() {
-  host_port_.count_words_in_frame();
-  frames_.finish();
-  host_port_.count_words_outside();
-  if (!direct_frame_.write()) fail("direct access to the disparities was taken back within a frame");
 }
 
 void FastCore::end_frame() {

@@ -57,7 +57,6 @@ class FastCore {
 
  private:
   bool works_directly(const FrameStart& start);
-  void finish_frame();
   void end_frame();
   void report_hazard(const HostRoute& burst, memory::Port port);
   void fail(const std::string& why);

@@ -251,7 +251,7 @@ std::uint64_t FastForward::walk(std::uint64_t cycle, std::uint64_t end) {
     if (const ConflictRecorder* const conflicts = this->conflicts())
       room.consumed = std::min(room.consumed, slots_to(conflicts->strip_end_column()));
     Progress skipped = room;
-    state_ = walk_known(state_, room);
+    state_ = varies() ? walk_varying(state_, room) : known_.walk(state_, {}, room, log());
     skipped.subtract(room);
     skip(skipped);
     cycle += skipped.cycles;
@@ -353,10 +353,6 @@ void FastForward::catch_up(std::uint64_t cycle) {
 }
 
 // Follows recorded transitions as far as there is room, which it reduces. Returns the state that comes next.
-FastForward::StateNumber FastForward::walk_known(StateNumber state, Progress& room) {
-  return varies() ? walk_varying(state, room) : known_.walk(state, {}, room, log());
-}
-
 FastForward::StateNumber FastForward::walk_varying(StateNumber state, Progress& room) {
   const std::uint64_t slots = slots_of_group();
   int alike = 0;  // groups with the accesses of the group before

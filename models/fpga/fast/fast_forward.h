@@ -129,7 +129,6 @@ class FastForward : public CoreStepper {
     if (conflicts() != nullptr) conflicts()->assume_accesses(assumed_);
   }
   void catch_up(std::uint64_t cycle);
-  StateNumber walk_known(StateNumber state, Progress& room);
   StateNumber walk_varying(StateNumber state, Progress& room);
   StateNumber walk_uniform(StateNumber state, std::uint64_t consumed, Progress& room);
   bool find_strips();
