@@ -36,29 +36,59 @@ class RowRecorder {
   void turn_on() { is_on_ = true; }  // from the next frame on
   bool is_on() const { return is_on_; }
 
-  void start_frame(const CoreControl& control);
+  void start_frame(const CoreControl& control) {
+    if (!is_on_) return;
+    next_words_ = words_up_to(0);
+    rows_complete_ = 0;
+    before_ = stalls_of(control);
+  }
   // The number of words written in the frame with which the next row is complete. While the recorder is off,
   // this number is never reached.
   std::uint64_t next_words() const { return next_words_; }
   // To be called after `cycle` if next_words() words have been written. `control` has been stepped in that
   // cycle.
-  void note(std::uint64_t cycle, const CoreControl& control);
+  void note(std::uint64_t cycle, const CoreControl& control) {
+    rows_[rows_complete_++] = {cycle + 1, stalls_of(control)};
+    next_words_ = rows_complete_ == rows_.size() ? kNever : words_up_to(rows_complete_);
+  }
 
   // The complete rows of the frame that was started last, in `first_cycle`.
-  RowProfile profile(std::uint64_t first_cycle) const;
+  RowProfile profile(std::uint64_t first_cycle) const {
+    RowProfile profile(rows_.begin(), rows_.begin() + static_cast<std::ptrdiff_t>(rows_complete_));
+    for (RowEnd& row : profile) {
+      row.cycles -= first_cycle;
+      for (std::size_t port = 0; port < kCorePortCount; ++port) row.stalls[port] -= before_[port];
+    }
+    return profile;
+  }
 
  private:
   static constexpr std::uint64_t kNever = UINT64_MAX;
   using Stalls = std::array<std::uint64_t, kCorePortCount>;
-  static Stalls stalls_of(const CoreControl& control);
-  std::uint64_t words_up_to(std::size_t row) const;
+
+  static Stalls stalls_of(const CoreControl& control) {
+    Stalls stalls{};
+    for (std::size_t port = 0; port < kCorePortCount; ++port)
+      stalls[port] = control.port_cycles(port).stalled();
+    return stalls;
+  }
+  // The number of words of a frame up to the last one of a row, this one included. The words of a strip leave
+  // in groups, which have a word for each row of the strip that lies inside the image.
+  std::uint64_t words_up_to(std::size_t row) const {
+    const auto rows = static_cast<std::size_t>(geometry_.rows);
+    const std::size_t strip_row = row / rows * rows;
+    const std::uint64_t row_words = geometry_.columns_per_strip() / 4;
+    const bool is_last_strip = strip_row + rows >= rows_.size();
+    const auto rows_inside = static_cast<std::size_t>(is_last_strip ? geometry_.last_rows : geometry_.rows);
+    return strip_row * row_words + (row_words - 1) * rows_inside + (row - strip_row) + 1;
+  }
 
   FrameGeometry geometry_;
   bool is_on_ = false;
   std::uint64_t next_words_ = kNever;
-  Stalls stalls_before_{};  // [port]: stalls before the frame
+  Stalls before_{};  // [port]: stalls before the frame
   std::size_t rows_complete_ = 0;
-  RowProfile rows_;  // `cycles` here counts from cycle 0 of the clock
+  RowProfile rows_;  // counted from cycle 0 of the clock
 };
 
 }  // namespace stereotlm::fpga
