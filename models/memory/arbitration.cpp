@@ -136,11 +136,15 @@ void Arbitration::count_alone() const {
     alone_before_recording_[ports] -= alone_cycles_[ports];
   alone_cycles_ = {};
   for (std::size_t port = 0; port < kMostPorts; ++port) {
-    const std::uint64_t grants = cycles[port] - retracted_grants_[port];
-    arbiters_[routes_[port].bank].count_alone(mask_of(port), routes_[port].write, grants);
-    alone_grants_[port] += grants;
+    arbiters_[routes_[port].bank].count_alone(mask_of(port), routes_[port].write, cycles[port]);
+    alone_grants_[port] += cycles[port];
   }
-  retracted_grants_ = {};
+}
+
+// Counts modulo 2^64.
+void Arbitration::retract_grants(Port port, std::uint64_t grants) {
+  arbiters_[routes_[port].bank].count_alone(mask_of(port), routes_[port].write, 0 - grants);
+  alone_grants_[port] -= grants;
 }
 
 // To be called when no grant of these ports can be retracted any more: counts as count_alone() does, and

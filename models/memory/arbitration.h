@@ -66,7 +66,7 @@ class Arbitration {
   // before it knows which table entries are valid, and then subtracts the grants of the slots that passed. To
   // be called before the bank is visited, another route changes, or counting ends: at that time the remaining
   // grants move the state of the bank's policy.
-  void retract_grants(Port port, std::uint64_t grants) { retracted_grants_[port] += grants; }
+  void retract_grants(Port port, std::uint64_t grants);
 
   // The arbiter of a bank that no routed port requests, for requests of a port without route.
   BankArbiter& arbiter(std::size_t bank) { return arbiters_[bank]; }
@@ -138,8 +138,6 @@ class Arbitration {
   mutable AloneCycles alone_cycles_{};
   mutable AloneCycles
       alone_before_recording_{};  // modulo 2^64: its difference to alone_cycles_ is the record
-  mutable std::array<std::uint64_t, kMostPorts>
-      retracted_grants_{};  // [port]: to be subtracted from alone_cycles_
   mutable std::array<std::uint64_t, kMostPorts> alone_grants_{};  // [port]: counted since settle()
   std::array<SharedBank, kMostPorts> shared_banks_{};
   std::size_t shared_bank_count_ = 0;

@@ -54,9 +54,6 @@ class Crossbar : public sc_core::sc_module, public DirectBanks {
   // Directs the accesses of the port to this bank without routing it: the port takes no part in arbitrate(),
   // and each of its accesses needs a grant().
   void aim(Port port, std::size_t bank, bool write);
-  void unroute(Port port) {
-    if (can_route(port, 0)) arbitration_.unroute(port);
-  }
   std::size_t bank_of(Port port) const { return arbitration_.bank_of(port); }  // bank of its last route
   // Decides the requests of one cycle, and returns the ports granted.
   PortMask arbitrate(std::uint64_t cycle, PortMask requests) {
@@ -72,8 +69,6 @@ class Crossbar : public sc_core::sc_module, public DirectBanks {
   unsigned char* direct(std::uint64_t address, std::uint64_t bytes) override;
   void allow_access(Port port) override { grant(mask_of(port)); }
 
-  void begin_counting(std::uint64_t first_cycle) { arbitration_.begin_counting(first_cycle); }
-  void end_counting(std::uint64_t end_cycle) { arbitration_.end_counting(end_cycle); }
   const std::vector<BankArbiter>& arbiters() const { return arbitration_.arbiters(); }
 
  private:
