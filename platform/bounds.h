@@ -13,8 +13,8 @@
 
 namespace stereotlm::platform {
 
-// Numbers of reads that the ports make in a frame. They depend on the geometry of the frame and on the tables,
-// not on the allocation of the buffers.
+// Numbers of reads that the ports make in a frame. They depend on the geometry of the frame and on the
+// tables, not on the allocation of the buffers.
 struct FrameAccesses {
   std::array<std::uint64_t, fpga::kCorePortCount> reads{};  // [port]
 };

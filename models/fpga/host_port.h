@@ -82,8 +82,8 @@ class HostPort {
   void skip_writes(std::uint64_t address, std::uint64_t words, std::uint64_t cycle,
                    const std::vector<ServedWords>& bursts);
 
-  // Finishes the frame, after the cycle in which its last write was granted: the words that were served before
-  // the frame's cycle() are in it, all others that are not counted yet are outside.
+  // Finishes the frame, after the cycle in which its last write was granted. The words that were served
+  // before the frame's cycle() are in it, all others that are not counted yet are outside.
   void finish_frame() {
     count_served(frames_.cycle(), true);
     frames_.finish();

@@ -77,8 +77,8 @@ class Arbitration {
   using State = std::array<std::uint64_t, kMostPorts>;
   State state(std::uint64_t cycle) const;
   // The decisions of several cycles, valid as long as no route changes: pairs of a decision and the number of
-  // its cycles. A decision is the mask of the uncontended ports granted; or an outcome of a shared bank, with 1
-  // + the index of the bank in the upper half.
+  // its cycles. A decision is the mask of the uncontended ports granted; or an outcome of a shared bank, with
+  // 1 + the index of the bank in the upper half.
   using Decided = std::vector<std::pair<std::uint64_t, std::uint64_t>>;
   // The stalls among them, without zero cycles, sorted by port and cause.
   static std::vector<Stall> stalls_of(const Decided& decided);

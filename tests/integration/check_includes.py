@@ -63,7 +63,7 @@ FREE_OF = [
     (re.compile(r"models/fpga/(fast|record)/"), SYSTEMC, "SystemC"),
     (re.compile(r"models/fpga/(access_pattern|core_registers|core_stepper|frame_run|host_port)\."), SYSTEMC,
      "SystemC"),
-    (re.compile(r"models/fpga/(record/|(core_(control|datapath|stepper)|(lane|match|result)_control)\.)"), FAST,
+    (re.compile(r"models/fpga/(record/|core_(datapath|stepper)\.|(core|lane|match|result)_control\.)"), FAST,
      "what makes frames fast"),
     (re.compile(r"models/memory/(arbitration|bank_arbiter|direct_banks)\."), SYSTEMC, "SystemC"),
     (re.compile(r"models/pci/(bridge_register_file|dma_channel|local_bus_master)\."), SYSTEMC, "SystemC"),
