@@ -168,7 +168,8 @@ PortMask Arbitration::arbitrate_shared(std::uint64_t cycle, PortMask requests) {
     BankArbiter& arbiter = *shared->arbiter;
     const BankArbiter::Outcome outcome = arbiter.decide(cycle, asking, writes_);
     arbiter.count(cycle, outcome);
-    if (recording_) recorded_.push_back(std::uint64_t(shared - shared_banks_.data() + 1) << 32U | outcome);
+    if (recording_)
+      recorded_.push_back(static_cast<std::uint64_t>(shared - shared_banks_.data() + 1) << 32U | outcome);
     granted = static_cast<PortMask>(granted | arbiter.granted_in(outcome));
   }
   return granted;
