@@ -16,15 +16,6 @@
 namespace stereotlm::platform {
 namespace {
 
-using kernels::RectificationTable;
-
-PortAccesses accesses_of(const fpga::CoreConfig& core, const std::optional<RectificationTable>& table) {
-  const fpga::FrameGeometry geometry(core);
-  fpga::AccessPattern pattern(geometry, core.pixel_cache);
-  if (table) pattern.set_entries(table->entries.data());
-  return {table ? geometry.slots - pattern.empty_slots() : 0, pattern.pixel_accesses()};
-}
-
 // The fewest bursts of at most `burst_words` words that hold `words` words.
 std::uint64_t bursts_of(std::uint64_t words, int burst_words) {
   const auto burst = static_cast<std::uint64_t>(burst_words);
@@ -45,15 +36,6 @@ double camera_rate(const BoardConfig& board) {
   const capture::CameraTiming timing({board.image.width, board.image.height, board.cameras.frame_rate_hz,
                                       capture::CameraTrigger::kOnDemand});
   return 1e12 / static_cast<double>(timing.last_pixel_ps());
-}
-
-bool has_separate_ports(const BoardConfig& board, int bank) {
-  return memory::has_separate_ports(board.banks[static_cast<std::size_t>(bank)].kind);
-}
-
-int bank_of(std::uint32_t base) { return static_cast<int>(fpga::registers::bank_of(base)); }
-int bank_in_turn(const std::vector<std::uint32_t>& bases, std::uint64_t frame) {
-  return bank_of(bases[frame % bases.size()]);
 }
 
 // Equal transfers over the PCI bus that a frame needs.
@@ -152,32 +134,24 @@ double bridge_rate(const BoardConfig& board, bool whole_pictures) {
 // larger of the reads and the writes.
 std::vector<std::uint64_t> bank_accesses(const BoardConfig& board, const FrameAccesses& accesses,
                                          bool pairs_are_written, std::uint64_t frames) {
-  const fpga::BufferBases bases = buffer_bases(board);
+  const fpga::BufferBases buffers = buffer_bases(board);
   // A picture has as many words as a result.
   const std::uint64_t words = fpga::FrameGeometry(core_config(board)).result_words;
   std::vector<std::uint64_t> reads(board.banks.size());
   std::vector<std::uint64_t> writes(board.banks.size());
-  const auto read = [&reads](int bank, std::uint64_t count) {
-    reads[static_cast<std::size_t>(bank)] += count;
-  };
-  const auto write = [&](int bank) { writes[static_cast<std::size_t>(bank)] += words; };
   for (std::uint64_t frame = 0; frame < frames; ++frame) {
-    const int left = bank_in_turn(bases.left_images, frame);
-    const int right = bank_in_turn(bases.right_images, frame);
-    read(left, accesses.left.pixel);
-    read(right, accesses.right.pixel);
-    if (bases.left_lut) read(bank_of(*bases.left_lut), accesses.left.lut);
-    if (bases.right_lut) read(bank_of(*bases.right_lut), accesses.right.lut);
-    if (pairs_are_written) {
-      write(left);
-      write(right);
+    const fpga::FrameBases bases = buffers.of_frame(frame);
+    for (std::size_t port = 0; port < bases.size(); ++port)
+      reads[fpga::registers::bank_of(bases[port])] += accesses.reads[port];
+    for (const fpga::Side side : fpga::kSides) {
+      if (pairs_are_written) writes[fpga::registers::bank_of(bases[fpga::pixel_port(side)])] += words;
     }
-    const int disparity = bank_in_turn(bases.disparities, frame);
-    write(disparity);
-    read(disparity, words);  // by the host
+    const std::size_t disparity = fpga::registers::bank_of(bases[fpga::kResultPort]);
+    writes[disparity] += words;
+    reads[disparity] += words;  // by the host
   }
   for (std::size_t bank = 0; bank < reads.size(); ++bank) {
-    const bool is_beside = has_separate_ports(board, static_cast<int>(bank));
+    const bool is_beside = memory::has_separate_ports(board.banks[bank].kind);
     reads[bank] = is_beside ? std::max(reads[bank], writes[bank]) : reads[bank] + writes[bank];
   }
   return reads;
@@ -187,82 +161,80 @@ std::vector<std::uint64_t> bank_accesses(const BoardConfig& board, const FrameAc
 
 FrameAccesses frame_accesses(const BoardConfig& board, const Tables& tables) {
   const fpga::CoreConfig core = core_config(board);
-  FrameAccesses accesses = {accesses_of(core, tables.left), accesses_of(core, tables.right)};
-  if (core.joint_tables) accesses.right.lut = 0;  // the left LUT port reads for both sides
+  const fpga::FrameGeometry geometry(core);
+  FrameAccesses accesses;
+  for (const fpga::Side side : fpga::kSides) {
+    const auto& table = side == fpga::Side::kLeft ? tables.left : tables.right;
+    fpga::AccessPattern pattern(geometry, core.pixel_cache);
+    if (table) pattern.set_entries(table->entries.data());
+    if (table && has_port(core, fpga::lut_port(side)))  // with joint tables the left one reads for both sides
+      accesses.reads[fpga::lut_port(side)] = geometry.slots - pattern.empty_slots();
+    accesses.reads[fpga::pixel_port(side)] = pattern.pixel_accesses();
+  }
   return accesses;
 }
 
 std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const FrameAccesses& accesses,
                                         std::uint64_t frame) {
-  const fpga::FrameGeometry geometry(core_config(board));
-  const fpga::BufferBases bases = buffer_bases(board);
-  const auto latency = [&board](int bank) {
-    return static_cast<std::uint64_t>(
-        memory::read_latency_cycles(board.banks[static_cast<std::size_t>(bank)].kind));
+  const fpga::CoreConfig core = core_config(board);
+  const fpga::FrameGeometry geometry(core);
+  const fpga::FrameBases bases = buffer_bases(board).of_frame(frame);
+  const auto bank_of = [&](memory::Port port) { return fpga::registers::bank_of(bases[port]); };
+  const auto latency = [&](memory::Port port) {
+    return static_cast<std::uint64_t>(memory::read_latency_cycles(board.banks[bank_of(port)].kind));
   };
-  struct SideOfFrame {
-    const char* name;
-    int image;
-    std::optional<int> lut;  // bank of its table
-    PortAccesses accesses;
-  };
-  const auto lut_bank = [](const std::optional<std::uint32_t>& base) {
-    return base ? std::optional<int>(bank_of(*base)) : std::nullopt;
-  };
-  const std::array<SideOfFrame, 2> sides = {
-      SideOfFrame{"left", bank_in_turn(bases.left_images, frame), lut_bank(bases.left_lut), accesses.left},
-      SideOfFrame{"right", bank_in_turn(bases.right_images, frame),
-                  lut_bank(board.fpga.joint_tables ? bases.left_lut : bases.right_lut), accesses.right}};
-  const int disparity = bank_in_turn(bases.disparities, frame);
   const auto pipeline = static_cast<std::uint64_t>(board.fpga.pipeline_latency_cycles);
   const auto passes = static_cast<std::uint64_t>(geometry.passes);
+  const auto places = static_cast<std::uint64_t>(board.fpga.lane_fifo_slots);
+  const std::uint64_t slot_a_cycle = geometry.slots + pipeline;
   const std::uint64_t after_last_slot =
       geometry.drain_cycles * passes + static_cast<std::uint64_t>(geometry.last_rows) + pipeline;
 
   struct BankDemand {
     std::uint64_t reads = 0;
     std::uint64_t writes = 0;
-    std::uint64_t after_last_read = 0;  // least number of cycles from a read to the matcher
+    std::uint64_t after_last_read = UINT64_MAX;  // least number of cycles from a read to the matcher
   };
-  std::map<int, BankDemand> demands;
-  const auto read = [&demands](int bank, std::uint64_t count, std::uint64_t cycles_to_matcher) {
-    BankDemand& demand = demands[bank];
-    demand.after_last_read =
-        demand.reads == 0 ? cycles_to_matcher : std::min(demand.after_last_read, cycles_to_matcher);
-    demand.reads += count;
+  std::map<std::size_t, BankDemand> demands;
+  const auto read = [&](memory::Port port, std::uint64_t cycles_to_matcher) {
+    if (accesses.reads[port] == 0) return;
+    BankDemand& demand = demands[bank_of(port)];
+    demand.after_last_read = std::min(demand.after_last_read, cycles_to_matcher);
+    demand.reads += accesses.reads[port];
+  };
+  const auto port_bound = [](memory::Port port, std::uint64_t cycles) {
+    return ResourceBound{std::string("port ") + fpga::kPorts[port].name, cycles};
   };
   std::uint64_t first_slot = 0;
-  std::vector<ResourceBound> luts;
+  std::vector<ResourceBound> bounds;  // first those of the LUT ports
   std::vector<ResourceBound> pixels;
-  for (const SideOfFrame& side : sides) {
-    const std::uint64_t image_latency = latency(side.image);
-    const std::uint64_t lane_latency = image_latency + (side.lut ? latency(*side.lut) : 0);
-    first_slot = std::max(first_slot, lane_latency);
-    if (side.lut && side.accesses.lut > 0) read(*side.lut, side.accesses.lut, lane_latency);
-    if (side.accesses.pixel > 0) read(side.image, side.accesses.pixel, image_latency);
-    const auto places = static_cast<std::uint64_t>(board.fpga.lane_fifo_slots);
-    const std::uint64_t slot_a_cycle = geometry.slots + pipeline;
-    const std::uint64_t in_lane = lane_latency + passes;
+  for (const fpga::Side side : fpga::kSides) {
+    const memory::Port lut = fpga::lut_port(side);
+    const memory::Port pixel = fpga::pixel_port(side);
+    const bool has_table = fpga::has_table(core, side);
+    const memory::Port table_port = core.joint_tables ? fpga::lut_port(fpga::Side::kLeft) : lut;
+    const std::uint64_t in_lane = latency(pixel) + (has_table ? latency(table_port) : 0);
+    first_slot = std::max(first_slot, in_lane);
+    read(lut, in_lane);
+    read(pixel, latency(pixel));
     const std::uint64_t taking =
-        std::max(slot_a_cycle, (geometry.slots - 1) / places * in_lane + in_lane + after_last_slot);
-    if (side.lut && side.accesses.lut > 0)
-      luts.push_back({std::string("port ") + side.name + "_lut", taking});
-    pixels.push_back({std::string("port ") + side.name + "_pixel", side.lut ? slot_a_cycle : taking});
+        std::max(slot_a_cycle, ((geometry.slots - 1) / places + 1) * (in_lane + passes) + after_last_slot);
+    if (accesses.reads[lut] > 0) bounds.push_back(port_bound(lut, taking));
+    pixels.push_back(port_bound(pixel, has_table ? slot_a_cycle : taking));
   }
-  demands[disparity].writes += geometry.result_words;
+  demands[bank_of(fpga::kResultPort)].writes += geometry.result_words;
 
-  std::vector<ResourceBound> bounds = std::move(luts);
   bounds.insert(bounds.end(), pixels.begin(), pixels.end());
-  bounds.push_back({"port result", geometry.result_words + pipeline});
+  bounds.push_back(port_bound(fpga::kResultPort, geometry.result_words + pipeline));
   for (const auto& [bank, demand] : demands) {
     // With separate ports the writes are made beside the reads.
-    const bool is_beside = has_separate_ports(board, bank);
+    const bool is_beside = memory::has_separate_ports(board.banks[bank].kind);
     std::uint64_t cycles = (is_beside ? 0 : demand.reads) + demand.writes + pipeline;
     // The last read is granted after `reads` - 1 other cycles at the earliest. The matcher begins to work on
     // its slot at least `after_last_read` cycles later.
     if (demand.reads > 0)
       cycles = std::max(cycles, demand.reads - 1 + demand.after_last_read + passes + after_last_slot);
-    bounds.push_back({resource_of_bank(board.banks[static_cast<std::size_t>(bank)].name), cycles});
+    bounds.push_back({resource_of_bank(board.banks[bank].name), cycles});
   }
   bounds.push_back({"matcher", first_slot + geometry.slots * passes + after_last_slot});
   return bounds;

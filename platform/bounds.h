@@ -1,25 +1,22 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "models/fpga/core_ports.h"
 #include "platform/config/board_config.h"
 #include "platform/config/tables.h"
 #include "platform/statistics.h"
 
 namespace stereotlm::platform {
 
-// Numbers of memory accesses that the ports of one side make in a frame. They depend on the geometry of the
-// frame and on the tables, not on the allocation of the buffers.
-struct PortAccesses {
-  std::uint64_t lut = 0;
-  std::uint64_t pixel = 0;
-};
+// Numbers of reads that the ports make in a frame. They depend on the geometry of the frame and on the
+// tables, not on the allocation of the buffers.
 struct FrameAccesses {
-  PortAccesses left;
-  PortAccesses right;
+  std::array<std::uint64_t, fpga::kCorePortCount> reads{};  // [port]
 };
 
 FrameAccesses frame_accesses(const BoardConfig& board, const Tables& tables);

@@ -6,7 +6,7 @@
 #include <tuple>
 
 #include "models/fpga/local_bus_control.h"
-#include "models/memory/crossbar_address.h"
+#include "models/memory/memory_config.h"
 #include "platform/computer_parts.h"
 
 namespace stereotlm::platform {

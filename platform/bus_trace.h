@@ -12,9 +12,9 @@
 
 #include "models/capture/capture_observer.h"
 #include "models/clock.h"
-#include "models/fpga/core_cycle.h"
-#include "models/fpga/frame_observer.h"
-#include "models/fpga/local_bus_observer.h"
+#include "models/fpga/frame_run.h"
+#include "models/fpga/local_bus_control.h"
+#include "models/fpga/record/core_cycle.h"
 #include "models/pci/local_bus_master.h"
 #include "models/pci/pci_bus_control.h"
 #include "models/time_ps.h"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "models/memory/crossbar_address.h"
+#include "models/memory/memory_config.h"
 #include "models/time_ps.h"
 #include "platform/device_map.h"
 

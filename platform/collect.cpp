@@ -13,15 +13,15 @@ namespace {
 using fpga::kPortCount;
 using memory::ArbiterStats;
 
+// Their names and shares follow from derive_figures().
 BankStatistics bank_statistics(const ArbiterStats& arbiter) {
-  BankStatistics bank;
-  bank.reads = arbiter.reads;
-  bank.writes = arbiter.writes;
-  bank.busy_cycles = arbiter.busy_cycles;
-  bank.turnaround_cycles = arbiter.turnaround_cycles;
-  bank.idle_cycles = arbiter.idle_cycles;
-  bank.contended_cycles = arbiter.contended_cycles;
-  return bank;
+  return {"",
+          arbiter.reads,
+          arbiter.writes,
+          arbiter.busy_cycles,
+          arbiter.turnaround_cycles,
+          arbiter.idle_cycles,
+          arbiter.contended_cycles};
 }
 
 PortStatistics port_statistics(const fpga::PortCycles& cycles) {
@@ -89,17 +89,15 @@ void audit_frames(const std::vector<std::uint64_t>& frame_cycles, const std::vec
 // A frame that begins just when the run ends counts as dropped (not armed), because no capture has taken it.
 CameraStatistics camera_statistics(const char* name, const ComputerCounters::Camera& camera) {
   const capture::CaptureControl::Stats& capture = camera.capture;
-  CameraStatistics statistics;
-  statistics.name = name;
-  statistics.frames = camera.frames;
-  statistics.captured_frames = capture.started_frames;
-  statistics.dropped_not_armed = capture.dropped_not_armed + std::uint64_t{camera.undecided};
-  statistics.dropped_busy = capture.dropped_busy;
-  statistics.dropped_by_partner = capture.dropped_by_partner;
-  statistics.dropped_frames =
-      statistics.dropped_not_armed + statistics.dropped_busy + statistics.dropped_by_partner;
-  statistics.dropped_pixels = capture.dropped_pixels;
-  return statistics;
+  const std::uint64_t not_armed = capture.dropped_not_armed + std::uint64_t{camera.undecided};
+  return {name,
+          camera.frames,
+          capture.started_frames,
+          not_armed + capture.dropped_busy + capture.dropped_by_partner,
+          capture.dropped_pixels,
+          not_armed,
+          capture.dropped_busy,
+          capture.dropped_by_partner};
 }
 
 void audit_words(const BoardConfig& config, const ComputerCounters::Words& words, Audit& audit) {
@@ -184,10 +182,10 @@ BoardCounters counters_of(const Board& board) {
     counters.banks[bank].accesses +=
         stats.reads + stats.writes + stats.errors + core.crossbar().direct_accesses(bank);
   }
-  counters.left.issued += datapath.sequencer().stats(fpga::Side::kLeft).slots;
-  counters.right.issued += datapath.sequencer().stats(fpga::Side::kRight).slots;
-  counters.packed_words += datapath.result_packer().stats().words;
-  counters.written_words += datapath.result_writer().stats().writes;
+  counters.left.issued += datapath.sequencer().slots(fpga::Side::kLeft);
+  counters.right.issued += datapath.sequencer().slots(fpga::Side::kRight);
+  counters.packed_words += datapath.result_packer().words();
+  counters.written_words += datapath.result_writer().writes();
   return counters;
 }
 

@@ -7,7 +7,7 @@
 
 #include "models/capture/camera_control.h"
 #include "models/capture/capture_control.h"
-#include "models/fpga/fidelity.h"
+#include "models/fpga/core_config.h"
 #include "models/pci/bridge_control.h"
 #include "models/pci/pci_bus_control.h"
 #include "models/pci/traffic_control.h"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "models/fpga/conflict_recorder.h"
+#include "models/fpga/record/conflict_recorder.h"
 #include "platform/audit.h"
 #include "platform/config/board_config.h"
 #include "platform/statistics.h"

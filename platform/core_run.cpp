@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "models/fpga/access_pattern.h"
-#include "models/fpga/buffer_bases.h"
+#include "models/fpga/core_ports.h"
 #include "models/fpga/frame_run.h"
 #include "models/memory/arbitration.h"
 #include "platform/collect.h"

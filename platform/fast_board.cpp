@@ -7,23 +7,24 @@
 #include <utility>
 
 #include "models/fpga/core_ports.h"
-#include "models/memory/crossbar_address.h"
+#include "models/memory/memory_config.h"
 #include "models/time_ps.h"
 #include "platform/config/buffer_layout.h"
 
 namespace stereotlm::platform {
 FastBoard::FastBoard(const BoardConfig& config, fpga::Fidelity fidelity,
                      std::function<void(std::uint64_t)> ring, std::uint64_t stall_timeout_cycles)
-    : config_(core_config(require_valid(config))),
+    : DirectBanks(config.banks.size()),
+      config_(core_config(require_valid(config))),
       bank_configs_(ssram_configs(config)),
       ring_(std::move(ring)),
       clock_(config_.clock_mhz),
       arbitration_(config.fpga.arbiter, bank_configs_),
       frames_(config_, bank_configs_, arbitration_, stall_timeout_cycles),
       local_bus_({config.bridge.local_clock_mhz, buffer_ranges(config)}, bank_configs_.size(), *this),
-      fast_core_(config_, fidelity == fpga::Fidelity::kFast, frames_, host_port_, local_bus_, clock_, *this),
-      next_ps_(kNever),
-      host_accesses_(bank_configs_.size()) {
+      fast_core_(config_, fidelity == fpga::Fidelity::kFast, frames_, host_port_, local_bus_, *this, clock_,
+                 *this),
+      next_ps_(kNever) {
   host_port_.set_only_master(true);
   for (const memory::SsramBankConfig& bank : bank_configs_) banks_.emplace_back(4 * bank.words);
 }
@@ -45,12 +46,9 @@ bool FastBoard::serves_one_word_per_cycle(std::uint64_t address, std::uint64_t b
 
 std::uint32_t* FastBoard::skip_writes(std::uint64_t address, std::uint64_t words, std::uint64_t cycle,
                                       const std::vector<fpga::HostPort::ServedWords>& bursts) {
-  const std::size_t bank = memory::bank_of_address(address);
   local_bus_.count_words(true, address, words);
-  host_port_.count_skipped(bank, true, cycle + bursts.front().first_cycle,
-                           cycle + bursts.back().first_cycle + bursts.back().words, words);
-  if (frames_.is_recorded()) host_port_.record_skipped(true, address, cycle, bursts);
-  count_direct(bank, words);
+  host_port_.skip_writes(address, words, cycle, bursts);
+  count_direct(memory::bank_of_address(address), words);
   changes(address, 4 * words);
   return reinterpret_cast<std::uint32_t*>(direct(address, 4 * words));
 }
@@ -77,39 +75,11 @@ bool FastBoard::access_register(std::uint64_t now_ps, bool write, std::uint64_t 
 }
 
 void FastBoard::start_frame(const fpga::FrameStart& start) {
-  for (std::size_t port = 0; port < fpga::kCorePortCount; ++port) {
-    if (!fpga::has_port(config_, port) || frames_.has_bank(start.bases[port])) continue;
-    registers_.refuse_start();
-    return;
-  }
+  if (!frames_.has_banks(start.bases)) return registers_.refuse_start();
   if (!fast_core_.start_frame(clock_.edge_at_or_after(start.time_ps), start))
     failed("a frame that does not work directly on memory needs fidelity cycle");
   frames_.strobe(start.time_ps);
   next_ps_ = start.time_ps;
-}
-
-fpga::DirectFrame::Memory FastBoard::direct_memory(const fpga::DirectFrame::Buffers& buffers,
-                                                   const kernels::JointOffsets& offsets) {
-  fpga::DirectFrame::Memory memory;
-  memory.joint_offsets = offsets;
-  for (const fpga::Side side : fpga::kSides) {
-    const std::size_t index = fpga::index_of(side);
-    memory.images[index] = buffer(buffers[fpga::pixel_port(side)]);
-    const std::size_t port = fpga::lut_port(side);
-    if (!fpga::has_port(config_, port)) continue;
-    const AddressRange& range = buffers[port];
-    fpga::DirectFrame::Table& table = memory.tables[index];
-    table.entries = reinterpret_cast<const std::uint32_t*>(buffer(range));
-    table.may_have_changed =
-        table.entries != nullptr && watch_.may_have_changed(port, range.first, range.end);
-  }
-  disparities_ = buffer(buffers[fpga::kResultPort]);
-  memory.disparities = disparities_;
-  return memory;
-}
-
-unsigned char* FastBoard::buffer(const AddressRange& range) {
-  return direct(range.first, range.end - range.first);
 }
 
 unsigned char* FastBoard::direct(std::uint64_t address, std::uint64_t bytes) {
@@ -132,8 +102,8 @@ void FastBoard::stalled(std::uint64_t cycles) {
 
 BoardCounters FastBoard::counters() const {
   BoardCounters counters = counters_of(frames_, arbitration_.arbiters());
-  for (std::size_t bank = 0; bank < host_accesses_.size(); ++bank)
-    counters.banks[bank].accesses += host_accesses_[bank];
+  for (std::size_t bank = 0; bank < banks_.size(); ++bank)
+    counters.banks[bank].accesses += direct_accesses(bank);
   return counters;
 }
 

@@ -8,14 +8,13 @@
 #include <vector>
 
 #include "models/clock.h"
+#include "models/fpga/core_config.h"
 #include "models/fpga/core_registers.h"
-#include "models/fpga/fast_core.h"
-#include "models/fpga/fidelity.h"
+#include "models/fpga/fast/fast_core.h"
 #include "models/fpga/frame_run.h"
 #include "models/fpga/host_port.h"
 #include "models/fpga/local_bus_control.h"
 #include "models/memory/arbitration.h"
-#include "models/memory/change_watch.h"
 #include "models/memory/direct_banks.h"
 #include "models/memory/ram.h"
 #include "platform/collect.h"
@@ -57,8 +56,8 @@ class FastBoard : private fpga::LocalBusControl::Core,
   //
   // Whether bursts to these bytes are served one word a cycle, independently of the running frame.
   bool serves_one_word_per_cycle(std::uint64_t address, std::uint64_t bytes) const;
-  // Such bursts have written `words` words from `address` on. The cycles of `bursts` count from `cycle`. See
-  // HostPort::count_skipped() and record_skipped(). Returns the place of the words, which the caller writes.
+  // Such bursts have written `words` words from `address` on, see HostPort::skip_writes(). Returns the place
+  // of the words, which the caller writes.
   std::uint32_t* skip_writes(std::uint64_t address, std::uint64_t words, std::uint64_t cycle,
                              const std::vector<fpga::HostPort::ServedWords>& bursts);
 
@@ -77,19 +76,12 @@ class FastBoard : private fpga::LocalBusControl::Core,
 
   // Other events may follow at any time.
   std::uint64_t horizon_ps() const override { return now_ps_; }
-  fpga::DirectFrame::Memory direct_memory(const fpga::DirectFrame::Buffers& buffers,
-                                          const kernels::JointOffsets& offsets) override;
-  std::uint8_t* direct_disparities() override { return disparities_; }
   void frame_ended(bool failed) override;
   [[noreturn]] void failed(const std::string& why) override;
   void stalled(std::uint64_t cycles) override;
 
   unsigned char* direct(std::uint64_t address, std::uint64_t bytes) override;
-  void changes(std::uint64_t first, std::uint64_t bytes) override { watch_.changes(first, bytes); }
-  void count_direct(std::size_t bank, std::uint64_t accesses) override { host_accesses_[bank] += accesses; }
   void allow_access(memory::Port /*port*/) override {}
-
-  unsigned char* buffer(const AddressRange& range);
 
   fpga::CoreConfig config_;
   std::vector<memory::SsramBankConfig> bank_configs_;
@@ -97,16 +89,13 @@ class FastBoard : private fpga::LocalBusControl::Core,
   Clock clock_;
   std::deque<memory::Ram> banks_;
   memory::Arbitration arbitration_;
-  memory::ChangeWatch watch_;
   fpga::FrameRun frames_;
   fpga::CoreRegisters registers_{*this};
   fpga::LocalBusControl local_bus_;
   fpga::HostPort host_port_{local_bus_, *this, arbitration_, frames_, clock_};
   fpga::FastCore fast_core_;
-  std::uint8_t* disparities_ = nullptr;  // of the running frame
-  std::uint64_t now_ps_ = 0;             // time of the last step
+  std::uint64_t now_ps_ = 0;  // time of the last step
   std::uint64_t next_ps_;
-  std::vector<std::uint64_t> host_accesses_;  // [bank]
 };
 
 }  // namespace stereotlm::platform

@@ -8,7 +8,7 @@
 
 #include "models/binder.h"
 #include "models/capture/camera_control.h"
-#include "models/fpga/fidelity.h"
+#include "models/fpga/core_config.h"
 #include "models/host/cpu.h"
 #include "models/host/host_bridge.h"
 #include "models/host/host_memory.h"

@@ -52,20 +52,21 @@ void Timeline::CaptureSide::capture_begun(std::uint64_t frame, std::uint64_t beg
   }
 }
 
-TimelineEvent Timeline::CaptureSide::capture_of(std::uint64_t number) const {
-  const Pair& pair = timeline_.pair(number);
+TimelineEvent Timeline::event_of(EventKind kind, const char* what, std::optional<std::uint64_t> frame,
+                                 std::uint64_t begin_ps) const {
   TimelineEvent event;
-  event.kind = EventKind::kCapture;
-  event.what = kSideNames[side_];
-  event.frame = number;
-  event.camera_frame = pair.camera_frame;
-  event.begin_ps = pair.begin_ps;
+  event.kind = kind;
+  event.what = what;
+  event.frame = frame;
+  if (frame) event.camera_frame = pair(*frame).camera_frame;
+  event.begin_ps = begin_ps;
   return event;
 }
 
 void Timeline::CaptureSide::capture_ended(const capture::Capture& capture) {
   const std::uint64_t number = ended_++;
-  TimelineEvent event = capture_of(number);
+  TimelineEvent event =
+      timeline_.event_of(EventKind::kCapture, kSideNames[side_], number, timeline_.pair(number).begin_ps);
   event.end_ps = capture.end_ps;
   event.words = capture.words;
   event.dropped_pixels = capture.dropped_pixels;
@@ -79,11 +80,9 @@ void Timeline::CaptureSide::capture_ended(const capture::Capture& capture) {
 
 TimelineEvent Timeline::CaptureSide::drop(std::uint64_t frame, std::uint64_t begin_ps,
                                           capture::DropReason reason) const {
-  TimelineEvent event;
-  event.kind = EventKind::kDrop;
-  event.what = kSideNames[side_];
+  TimelineEvent event = timeline_.event_of(EventKind::kDrop, kSideNames[side_], std::nullopt, begin_ps);
   event.camera_frame = frame;
-  event.begin_ps = event.end_ps = begin_ps;
+  event.end_ps = begin_ps;
   event.why = kDropReasons[static_cast<std::size_t>(reason)];
   return event;
 }
@@ -103,7 +102,8 @@ void Timeline::CaptureSide::end_now(const capture::CaptureControl::Stats& stats,
   if (undecided_)
     events.push_back(drop(undecided_->first, undecided_->second, capture::DropReason::kNotArmed));
   if (begun_ == ended_) return;
-  TimelineEvent event = capture_of(ended_);
+  TimelineEvent event =
+      timeline_.event_of(EventKind::kCapture, kSideNames[side_], ended_, timeline_.pair(ended_).begin_ps);
   event.end_ps = now_ps;
   event.words = stats.words - words_;
   event.dropped_pixels = stats.dropped_pixels - dropped_pixels_;
@@ -112,14 +112,8 @@ void Timeline::CaptureSide::end_now(const capture::CaptureControl::Stats& stats,
 
 void Timeline::begin_interrupt(std::size_t interrupt, std::optional<std::uint64_t> frame,
                                std::uint64_t now_ps) {
-  if (interrupts_[interrupt]) return;
-  TimelineEvent event;
-  event.kind = EventKind::kInterrupt;
-  event.what = kInterruptNames[interrupt];
-  event.frame = frame;
-  if (frame) event.camera_frame = pair(*frame).camera_frame;
-  event.begin_ps = now_ps;
-  interrupts_[interrupt] = event;
+  if (!interrupts_[interrupt])
+    interrupts_[interrupt] = event_of(EventKind::kInterrupt, kInterruptNames[interrupt], frame, now_ps);
 }
 
 void Timeline::end_interrupt(std::size_t interrupt, std::uint64_t now_ps) {
@@ -183,13 +177,7 @@ void Timeline::dma_started(unsigned channel, std::uint64_t now_ps) {
 
 // The DMA begins to fetch the descriptor of a picture of the pair that is copied.
 void Timeline::fetch(Buffer picture, std::uint64_t now_ps) {
-  TimelineEvent event;
-  event.kind = EventKind::kUpload;
-  event.what = platform::name_of(picture);
-  event.frame = copies_begun_ - 1;
-  event.camera_frame = pair(*event.frame).camera_frame;
-  event.begin_ps = now_ps;
-  transfers_[kToBoard] = event;
+  transfers_[kToBoard] = event_of(EventKind::kUpload, platform::name_of(picture), copies_begun_ - 1, now_ps);
 }
 
 void Timeline::dma_done(unsigned channel, std::uint64_t now_ps) {
@@ -207,16 +195,10 @@ void Timeline::dma_done(unsigned channel, std::uint64_t now_ps) {
 }
 
 void Timeline::transfer_begun(const pci::DmaTransfer& transfer) {
-  TimelineEvent event;
-  event.kind = transfer.to_pci ? EventKind::kReadBack : EventKind::kUpload;
-  event.what = buffer_at(transfer.local_address);
-  if (transfer.to_pci) {
-    event.frame = read_backs_begun_ - 1;
-  } else if (copies_begun_ != 0) {
-    event.frame = copies_begun_ - 1;
-  }
-  if (event.frame) event.camera_frame = pair(*event.frame).camera_frame;
-  event.begin_ps = transfer.begin_ps;
+  const std::uint64_t begun = transfer.to_pci ? read_backs_begun_ : copies_begun_;
+  TimelineEvent event =
+      event_of(transfer.to_pci ? EventKind::kReadBack : EventKind::kUpload, buffer_at(transfer.local_address),
+               begun != 0 ? std::optional(begun - 1) : std::nullopt, transfer.begin_ps);
   event.words = transfer.words;
   transfers_[transfer.channel] = event;
 }
@@ -246,11 +228,7 @@ void Timeline::frame_begun(std::uint64_t strobe_ps) {
 
 void Timeline::frame_ended(const fpga::FrameTimes& times) {
   const std::uint64_t number = frames_ended_++;
-  TimelineEvent event;
-  event.kind = EventKind::kFrame;
-  event.frame = number;
-  event.camera_frame = pair(number).camera_frame;
-  event.begin_ps = times.strobe_ps;
+  TimelineEvent event = event_of(EventKind::kFrame, "", number, times.strobe_ps);
   const auto add = [this, &event](const char* what, std::uint64_t end_cycle, std::uint64_t words) {
     event.what = what;
     event.end_ps = clock_.edge_ps(end_cycle);
@@ -268,12 +246,7 @@ void Timeline::frame_ended(const fpga::FrameTimes& times) {
 // rest nothing is busy: the driver's accesses take the time.
 void Timeline::wait(const char* who, std::uint64_t frame, std::uint64_t from_ps, std::uint64_t to_ps,
                     const Reasons& reasons) {
-  TimelineEvent event;
-  event.kind = EventKind::kWait;
-  event.what = who;
-  event.frame = frame;
-  event.camera_frame = pair(frame).camera_frame;
-  event.begin_ps = from_ps;
+  TimelineEvent event = event_of(EventKind::kWait, who, frame, from_ps);
   const auto add = [this, &event, to_ps](const Reason& reason) {
     event.end_ps = std::min(reason.until_ps, to_ps);
     event.why = reason.why;

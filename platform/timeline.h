@@ -12,7 +12,7 @@
 
 #include "models/capture/capture_observer.h"
 #include "models/clock.h"
-#include "models/fpga/frame_observer.h"
+#include "models/fpga/frame_run.h"
 #include "models/pci/dma_channel.h"
 #include "platform/collect.h"
 #include "platform/config/board_config.h"
@@ -94,7 +94,6 @@ class Timeline : private pci::BridgeObserver, private fpga::FrameObserver, priva
 
    private:
     TimelineEvent drop(std::uint64_t frame, std::uint64_t begin_ps, capture::DropReason reason) const;
-    TimelineEvent capture_of(std::uint64_t number) const;
 
     Timeline& timeline_;
     std::size_t side_;
@@ -114,6 +113,9 @@ class Timeline : private pci::BridgeObserver, private fpga::FrameObserver, priva
   void frame_begun(std::uint64_t strobe_ps) override;
   void frame_ended(const fpga::FrameTimes& times) override;
 
+  // An event of a pair, if there is a pair.
+  TimelineEvent event_of(EventKind kind, const char* what, std::optional<std::uint64_t> frame,
+                         std::uint64_t begin_ps) const;
   void begin_interrupt(std::size_t interrupt, std::optional<std::uint64_t> frame, std::uint64_t now_ps);
   void end_interrupt(std::size_t interrupt, std::uint64_t now_ps);
   void fetch(Buffer picture, std::uint64_t now_ps);

@@ -16,15 +16,15 @@ AccessPattern::AccessPattern(const FrameGeometry& geometry, PixelCache cache)
       needs_all_pixels_(!has_cache_),
       passes_before_strip_(static_cast<std::size_t>(geometry.strips)) {
   std::vector<std::uint64_t> row_bits(words_);
-  RowCounts row_counts;
+  std::uint64_t row_count = 0;
   for (int column = 0; column < geometry.width; ++column) {
     if (has_cache_ && !begins_word(column)) continue;
     row_bits[static_cast<std::size_t>(column) / 64] |= std::uint64_t{1} << column % 64;
-    ++row_counts.accesses;
+    ++row_count;
   }
   for (int row = 0; row < geometry.height; ++row) {
     std::copy(row_bits.begin(), row_bits.end(), pixels_.begin() + static_cast<std::ptrdiff_t>(words_) * row);
-    counts_[static_cast<std::size_t>(row)] = row_counts;
+    counts_[static_cast<std::size_t>(row)] = row_count;
   }
   count();
 }
@@ -42,41 +42,39 @@ void AccessPattern::set_entries(const std::uint32_t* entries) {
   }
   if (needs_all_pixels_ && needed_all_pixels) return;
   slots_.clear();
-  changes_.clear();
   count();
 }
 
 // Returns whether all pixels of the row are accessed.
 bool AccessPattern::set_row(int row, const std::uint32_t* entries) {
   std::uint64_t* const bits = pixels_.data() + static_cast<std::size_t>(row) * words_;
-  RowCounts& counts = counts_[static_cast<std::size_t>(row)];
+  std::uint64_t& count = counts_[static_cast<std::size_t>(row)];
   std::uint32_t common = ~std::uint32_t{0};
   for (int column = 0; column < geometry_.width; ++column) common &= entries[column];
   if (kernels::entry_is_valid(common)) {
     set_all(bits);
-    counts = {geometry_.columns_per_strip(), 0};
+    count = geometry_.columns_per_strip();
     return true;
   }
-  counts = {};
+  count = 0;
   for (std::size_t word = 0; word < words_; ++word) {
-    const int count = std::min(64, geometry_.width - static_cast<int>(word) * 64);
+    const int columns = std::min(64, geometry_.width - static_cast<int>(word) * 64);
     common = ~std::uint32_t{0};
     std::uint32_t any = 0;
-    for (int i = 0; i < count; ++i) {
+    for (int i = 0; i < columns; ++i) {
       common &= entries[i];
       any |= entries[i];
     }
     std::uint64_t found = 0;
     if (kernels::entry_is_valid(common)) {
-      found = ~std::uint64_t{0} >> (64 - count);
+      found = ~std::uint64_t{0} >> (64 - columns);
     } else if (kernels::entry_is_valid(any)) {
-      for (int i = 0; i < count; ++i) found |= std::uint64_t{kernels::entry_is_valid(entries[i])} << i;
+      for (int i = 0; i < columns; ++i) found |= std::uint64_t{kernels::entry_is_valid(entries[i])} << i;
     }
     bits[word] = found;
-    counts.accesses += static_cast<std::uint64_t>(__builtin_popcountll(found));
-    entries += count;
+    count += static_cast<std::uint64_t>(__builtin_popcountll(found));
+    entries += columns;
   }
-  counts.invalid = geometry_.columns_per_strip() - counts.accesses;
   return false;
 }
 
@@ -84,30 +82,26 @@ bool AccessPattern::set_row_cached(int row, const std::uint32_t* entries) {
   constexpr std::uint32_t kNoWord = UINT32_MAX;
   const auto width = static_cast<std::uint32_t>(geometry_.width);
   std::uint64_t* const bits = pixels_.data() + static_cast<std::size_t>(row) * words_;
-  RowCounts& counts = counts_[static_cast<std::size_t>(row)];
+  std::uint64_t& count = counts_[static_cast<std::size_t>(row)];
   std::fill_n(bits, words_, std::uint64_t{0});
-  counts = {};
+  count = 0;
   std::uint32_t cached = kNoWord;
   for (std::uint32_t column = 0; column < width; ++column) {
     const std::uint32_t entry = entries[column];
-    if (!kernels::entry_is_valid(entry)) {
-      ++counts.invalid;
-      continue;
-    }
+    if (!kernels::entry_is_valid(entry)) continue;
     const std::uint32_t word = (static_cast<std::uint32_t>(kernels::entry_row(entry)) * width +
                                 static_cast<std::uint32_t>(kernels::entry_column(entry))) /
                                kernels::kPixelsPerWord;
     if (word == cached) continue;
     cached = word;
     bits[column / 64] |= std::uint64_t{1} << column % 64;
-    ++counts.accesses;
+    ++count;
   }
-  return counts.accesses == width;
+  return count == width;
 }
 
 void AccessPattern::count() {
   empty_slots_ = 0;
-  invalid_slots_ = 0;
   pixel_accesses_ = 0;
   for (int strip = 0; strip < geometry_.strips; ++strip) {
     const std::uint64_t slots_before = static_cast<std::uint64_t>(strip) * geometry_.columns_per_strip() *
@@ -119,8 +113,7 @@ void AccessPattern::count() {
         empty_slots_ += geometry_.columns_per_strip();
         continue;
       }
-      pixel_accesses_ += counts_[static_cast<std::size_t>(row)].accesses;
-      invalid_slots_ += counts_[static_cast<std::size_t>(row)].invalid;
+      pixel_accesses_ += counts_[static_cast<std::size_t>(row)];
     }
   }
 }
@@ -146,55 +139,12 @@ void AccessPattern::set_slots() const {
       }
     }
   }
-}
-
-void AccessPattern::find_changes() const {
-  changes_.assign(words_ * static_cast<std::size_t>(geometry_.strips), 0);
-  next_change_.resize(static_cast<std::size_t>(geometry_.strips));
-  for (int strip = 0; strip < geometry_.strips; ++strip) find_changes_of_strip(strip);
-  find_strips_with_changes();
-}
-
-void AccessPattern::find_changes_of_strip(int strip) const {
-  std::uint64_t* const changes = changes_.data() + static_cast<std::size_t>(strip) * words_;
-  for (int k = 0; k < geometry_.slots_per_column; ++k) {
-    const int row = geometry_.first_row_of(strip) + k;
-    if (!geometry_.is_inside(row)) continue;
-    const std::uint64_t* const bits = pixels_of_row(row);
-    std::uint64_t before = bits[0] & 0xfU;  // see below for the first four columns
-    for (std::size_t word = 0; word < words_; ++word) {
-      changes[word] |= bits[word] ^ (bits[word] << 4U | before);
-      before = bits[word] >> 60U;
-    }
+  changes_.clear();
+  for (std::uint64_t first = slots_of_group(); first < geometry_.slots; first += 64) {
+    std::uint64_t differing = pixels_of_slots(first) ^ pixels_of_slots(first - slots_of_group());
+    for (; differing != 0; differing &= differing - 1)
+      changes_.push_back(first + static_cast<std::uint64_t>(__builtin_ctzll(differing)));
   }
-  if (geometry_.width % 64 != 0) changes[words_ - 1] &= (std::uint64_t{1} << geometry_.width % 64) - 1;
-  for (int column = 0; strip > 0 && column < 4; ++column)
-    changes[0] |= std::uint64_t{!begins_alike(strip, column)} << column;
-}
-
-void AccessPattern::find_strips_with_changes() const {
-  auto next = static_cast<std::uint32_t>(geometry_.strips);
-  for (int strip = geometry_.strips - 1; strip >= 0; --strip) {
-    const auto first = changes_.begin() + static_cast<std::ptrdiff_t>(words_) * strip;
-    const auto last = first + static_cast<std::ptrdiff_t>(words_);
-    if (std::any_of(first, last, [](std::uint64_t word) { return word != 0; }))
-      next = static_cast<std::uint32_t>(strip);
-    next_change_[static_cast<std::size_t>(strip)] = next;
-  }
-}
-
-// Whether one of the first four columns of a strip makes the same accesses as the fourth column before it,
-// which is in the strip before.
-bool AccessPattern::begins_alike(int strip, int column) const {
-  const int column_before = geometry_.width - 4 + column;
-  for (int k = 0; k < geometry_.slots_per_column; ++k) {
-    const int row = geometry_.first_row_of(strip) + k;
-    const int row_before = geometry_.first_row_of(strip - 1) + k;
-    if (geometry_.is_inside(row) != geometry_.is_inside(row_before)) return false;
-    if (geometry_.is_inside(row) && needs_pixel(column, row) != needs_pixel(column_before, row_before))
-      return false;
-  }
-  return true;
 }
 
 std::uint64_t AccessPattern::passes_before(std::uint64_t slots) const {
@@ -226,24 +176,10 @@ std::uint64_t AccessPattern::accesses_of_row(int row, std::uint64_t columns) con
   return accesses + static_cast<std::uint64_t>(__builtin_popcountll(rest));
 }
 
-std::uint64_t AccessPattern::uniform_until(std::uint64_t frame_column) const {
-  if (changes_.empty()) find_changes();
-  const std::uint64_t width = geometry_.columns_per_strip();
-  const auto strips = static_cast<std::size_t>(geometry_.strips);
-  const std::uint64_t next = frame_column + 4;
-  auto strip = static_cast<std::size_t>(next / width);
-  std::size_t place = next % width;  // column in the strip
-  while (strip < strips) {
-    const std::uint64_t* const changes = changes_.data() + strip * words_;
-    std::uint64_t mask = ~std::uint64_t{0} << place % 64;
-    for (std::size_t word = place / 64; word < words_; ++word, mask = ~std::uint64_t{0}) {
-      const std::uint64_t found = changes[word] & mask;
-      if (found != 0) return strip * width + word * 64 + static_cast<std::uint64_t>(__builtin_ctzll(found));
-    }
-    place = 0;
-    if (++strip < strips) strip = next_change_[strip];
-  }
-  return strips * width;
+std::uint64_t AccessPattern::uniform_until(std::uint64_t slot) const {
+  if (slots_.empty()) set_slots();
+  const auto change = std::lower_bound(changes_.begin(), changes_.end(), slot + slots_of_group());
+  return change == changes_.end() ? geometry_.slots : std::min(*change, geometry_.slots);
 }
 
 }  // namespace stereotlm::fpga

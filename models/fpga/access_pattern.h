@@ -12,9 +12,7 @@ namespace stereotlm::fpga {
 
 // Computes, before a frame that works directly on memory, which accesses each slot of one side makes: none if
 // the slot lies outside the image, else one for its table entry, and one for its pixel if the entry is valid
-// and the word cache does not have its word. Columns are uniform if each makes the same accesses as the
-// fourth column before it, slot for slot: with a word cache the accesses repeat every four columns at best.
-// Uniform columns, and the bits of pixels_of_slots(), are computed at the first query: few frames need them.
+// and the word cache does not have its word.
 class AccessPattern {
  public:
   // At first every entry is its own source, as on a side without table.
@@ -30,10 +28,10 @@ class AccessPattern {
   }
   // Whether every slot inside the image accesses it.
   bool needs_all_pixels() const { return needs_all_pixels_; }
-  // The end of the run of uniform columns that begins with the four columns from `frame_column` on: the next
-  // column that differs from the fourth column before it, or the number of columns. Columns are counted over
-  // the whole frame, strip after strip.
-  std::uint64_t uniform_until(std::uint64_t frame_column) const;
+  // The next slot, from four columns behind `slot` on, whose pixel is accessed while that of the slot four
+  // columns before it is not, or the other way round; or the number of slots. (With a word cache the accesses
+  // repeat every four columns at best.)
+  std::uint64_t uniform_until(std::uint64_t slot) const;
   // Whether slots access their pixels: bit i for slot `slot` + i of the frame, for 64 slots. 0 beyond the
   // end of the frame. `slot` is at most 256 slots beyond it.
   std::uint64_t pixels_of_slots(std::uint64_t slot) const {
@@ -45,46 +43,33 @@ class AccessPattern {
 
   // The number of slots inside the image that do not access it, among the first `slots` slots of a frame.
   std::uint64_t passes_before(std::uint64_t slots) const;
-  // Numbers of slots of a frame that are empty, that have an invalid entry, and that access their pixel.
+  // Numbers of slots of a frame that are empty, and that access their pixel.
   std::uint64_t empty_slots() const { return empty_slots_; }
-  std::uint64_t invalid_slots() const { return invalid_slots_; }
   std::uint64_t pixel_accesses() const { return pixel_accesses_; }
 
  private:
   const std::uint64_t* pixels_of_row(int row) const {
     return pixels_.data() + static_cast<std::size_t>(row) * words_;
   }
-  // Numbers of pixels of a row.
-  struct RowCounts {
-    std::uint64_t accesses = 0;
-    std::uint64_t invalid = 0;
-  };
   std::uint64_t accesses_of_row(int row, std::uint64_t columns) const;
   void set_all(std::uint64_t* row_bits) const;
   bool set_row(int row, const std::uint32_t* entries);
   bool set_row_cached(int row, const std::uint32_t* entries);
   void count();
   void set_slots() const;
-  void find_changes() const;
-  void find_changes_of_strip(int strip) const;
-  void find_strips_with_changes() const;
-  bool begins_alike(int strip, int column) const;
+  std::uint64_t slots_of_group() const { return 4 * static_cast<std::uint64_t>(geometry_.slots_per_column); }
 
   FrameGeometry geometry_;
   bool has_cache_;
   std::size_t words_;                  // words of 64 bits for a row of the image
   std::vector<std::uint64_t> pixels_;  // [row][word]: pixels that are accessed
-  std::vector<RowCounts> counts_;      // [row]
+  std::vector<std::uint64_t> counts_;  // [row]: their number
   bool needs_all_pixels_ = false;
   std::vector<std::uint64_t> passes_before_strip_;  // [strip]: slots inside the image that do not access it
-  // These are empty until the first query.
-  mutable std::vector<std::uint64_t> slots_;  // bit i of the sequence: slot i accesses its pixel
-  mutable std::vector<std::uint64_t>
-      changes_;  // [strip][word]: columns that differ from the fourth one before
-  // [strip]: the first strip, from this one on, in which changes_ has a bit set; or the number of strips.
-  mutable std::vector<std::uint32_t> next_change_;
+  // Both are empty until the first query: few frames need them.
+  mutable std::vector<std::uint64_t> slots_;    // bit i of the sequence: slot i accesses its pixel
+  mutable std::vector<std::uint64_t> changes_;  // the slots that differ from the one four columns before
   std::uint64_t empty_slots_ = 0;
-  std::uint64_t invalid_slots_ = 0;
   std::uint64_t pixel_accesses_ = 0;
 };
 

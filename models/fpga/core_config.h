@@ -11,6 +11,13 @@
 
 namespace stereotlm::fpga {
 
+// How the core simulates a frame. Results and times are the same at every fidelity.
+enum class Fidelity : std::uint8_t {
+  kCycle,   // cycle by cycle, every access a transaction
+  kFast,    // data in one step, by direct access; cycles fast-forwarded (FastForward)
+  kTiming,  // as kFast, but without pictures and disparities; a frame that is stepped has both
+};
+
 enum class Fetch : std::uint8_t {
   kColumn,      // n pixels of a column, one per cycle (paper section 3.2)
   kLineBuffer,  // one pixel per cycle, older rows from block RAM

@@ -134,30 +134,12 @@ PixelNeeds CoreDatapath::move(const CoreControl& control, const CoreControl::Dec
 }
 
 std::uint64_t CoreDatapath::errors() const {
-  std::uint64_t errors = result_writer_.stats().errors;
+  std::uint64_t errors = result_writer_.errors();
   for (const Lane& lane : lanes_) {
-    errors += lane.pixel_reader.stats().errors;
-    if (lane.lut_reader) errors += lane.lut_reader->stats().errors;
+    errors += lane.pixel_reader.errors();
+    if (lane.lut_reader) errors += lane.lut_reader->errors();
   }
   return errors;
-}
-
-DirectFrame::Memory CoreDatapath::direct_memory(const DirectFrame::Buffers& buffers,
-                                                const kernels::JointOffsets& offsets) {
-  DirectFrame::Memory memory;
-  memory.joint_offsets = offsets;
-  for (const Side side : kSides) {
-    Lane& lane = lanes_[index_of(side)];
-    memory.images[index_of(side)] = lane.pixel_reader.image(config_.height);
-    if (!lane.lut_reader) continue;
-    DirectFrame::Table& table = memory.tables[index_of(side)];
-    table.entries = lane.lut_reader->table(config_.height);
-    const AddressRange& range = buffers[lut_port(side)];
-    table.may_have_changed =
-        table.entries != nullptr && crossbar_.may_have_changed(lut_port(side), range.first, range.end);
-  }
-  memory.disparities = direct_disparities();
-  return memory;
 }
 
 }  // namespace stereotlm::fpga

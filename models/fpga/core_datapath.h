@@ -12,7 +12,6 @@
 #include "models/fpga/core_control.h"
 #include "models/fpga/core_ports.h"
 #include "models/fpga/cost_array.h"
-#include "models/fpga/direct_frame.h"
 #include "models/fpga/log_filter.h"
 #include "models/fpga/lr_check.h"
 #include "models/fpga/lut_reader.h"
@@ -57,19 +56,9 @@ class CoreDatapath {
   // The number of accesses that memory has refused, over all frames.
   std::uint64_t errors() const;
 
-  // Requests direct access to the frame's buffers.
-  DirectFrame::Memory direct_memory(const DirectFrame::Buffers& buffers,
-                                    const kernels::JointOffsets& offsets);
-  // The disparity buffer of the frame; null if memory does not grant direct access.
-  std::uint8_t* direct_disparities() { return result_writer_.buffer(geometry_.result_words); }
-
   // The stages, for their statistics.
   const Sequencer& sequencer() const { return sequencer_; }
   const Lane& lane(Side side) const { return lanes_[index_of(side)]; }
-  const CostArray& cost_array() const { return cost_array_; }
-  const SelectMinChain& select_min_chain() const { return select_min_chain_; }
-  const SelectMinTree& select_min_tree() const { return select_min_tree_; }
-  const LrCheck& lr_check() const { return lr_check_; }
   const ResultPacker& result_packer() const { return result_packer_; }
   const ResultWriter& result_writer() const { return result_writer_; }
 
@@ -82,7 +71,6 @@ class CoreDatapath {
   }
 
   CoreConfig config_;
-  FrameGeometry geometry_{config_};
   memory::Crossbar& crossbar_;
   Sequencer sequencer_{"sequencer"};
   std::array<Lane, 2> lanes_{Lane(config_, Side::kLeft), Lane(config_, Side::kRight)};  // [side]

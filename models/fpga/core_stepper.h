@@ -2,11 +2,11 @@
 
 #include <cstdint>
 
-#include "models/fpga/conflict_recorder.h"
 #include "models/fpga/core_config.h"
 #include "models/fpga/core_control.h"
-#include "models/fpga/cycle_recorder.h"
-#include "models/fpga/row_recorder.h"
+#include "models/fpga/record/conflict_recorder.h"
+#include "models/fpga/record/cycle_recorder.h"
+#include "models/fpga/record/row_recorder.h"
 #include "models/memory/arbitration.h"
 
 namespace stereotlm::fpga {
@@ -39,8 +39,8 @@ class CoreStepper {
     control_.count_host(host_requests, (granted & host) != 0);
     if (control_.result().words_written() == rows_.next_words()) rows_.note(cycle, control_);
     if (conflicts_ != nullptr) {
-      if (requests != granted || (granted & host) != 0) conflicts_->step(requests, granted, arbitration_);
-      if (completed_group_) conflicts_->end_group(cycle + 1, control_);
+      if (requests != granted || (granted & host) != 0) conflicts_->step(requests, granted);
+      if (completed_group_) conflicts_->end_group(cycle + 1);
     }
     return granted;
   }
@@ -51,11 +51,12 @@ class CoreStepper {
   const CoreControl& control() const { return control_; }
   RowRecorder& rows() { return rows_; }
   const RowRecorder& rows() const { return rows_; }
-  // The recorder of the running frame; null if it is not recorded.
-  void record(ConflictRecorder* conflicts) { conflicts_ = conflicts; }
+  // The recorders of the running frame, or null. The second one receives each stepped cycle.
+  void record(ConflictRecorder* conflicts, CycleRecorder* cycles) {
+    conflicts_ = conflicts;
+    cycles_ = cycles;
+  }
   ConflictRecorder* conflicts() const { return conflicts_; }
-  // Receives each stepped cycle; null: none does.
-  void record(CycleRecorder* cycles) { cycles_ = cycles; }
   memory::Arbitration& arbitration() { return arbitration_; }
   const memory::Arbitration& arbitration() const { return arbitration_; }
 

@@ -7,7 +7,6 @@ CostArray::CostArray(const sc_core::sc_module_name& name, const CoreConfig& conf
       geometry_(config),
       window_(config.window),
       disparities_(config.disparities),
-      column_rows_(config.window + config.rows - 1),
       pixel_bytes_(config.cost.pixel_bytes()) {
   for (int row = 0; row < config.rows; ++row) {
     Row& windows = rows_.emplace_back(Row{kernels::CostColumns(window_, disparities_, config.cost), {}});
@@ -44,8 +43,6 @@ void CostArray::take_right(const PixelColumn& column) {
 void CostArray::finish_column() {
   have_left_ = false;
   have_right_ = false;
-  ++stats_.columns;
-  stats_.pixel_costs += static_cast<std::uint64_t>(column_rows_) * static_cast<std::uint64_t>(disparities_);
   const bool has_windows = columns_before_window_ == 0;
   for (int index = 0; index < geometry_.rows; ++index) {
     Row& row = rows_[static_cast<std::size_t>(index)];
@@ -75,7 +72,6 @@ void CostArray::pass_on(int index, const Row& row) {
   window.candidates = kernels::candidate_count(column_, first_row_ + index, geometry_.width, geometry_.height,
                                                window_, disparities_);
   window.left_valid = (row.left_valid >> geometry_.radius & 1U) != 0;
-  stats_.candidates += static_cast<std::uint64_t>(window.candidates);
   chain_out->push(window);
   tree_out->push(window);
 }

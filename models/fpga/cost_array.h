@@ -20,12 +20,6 @@ namespace stereotlm::fpga {
 // number of modules has no effect here: all candidates are computed when the last pass ends.
 class CostArray : public sc_core::sc_module {
  public:
-  struct Stats {
-    std::uint64_t columns = 0;
-    std::uint64_t pixel_costs = 0;  // costs of pairs of pixels, which the rows have in common
-    std::uint64_t candidates = 0;   // candidates whose windows lie inside both images
-  };
-
   StreamOut<WindowSums> chain_out{"chain_out"};
   StreamOut<WindowSums> tree_out{"tree_out"};
 
@@ -40,7 +34,6 @@ class CostArray : public sc_core::sc_module {
   CostArray(const sc_core::sc_module_name& name, const CoreConfig& config);
 
   void start_frame();
-  const Stats& stats() const { return stats_; }
 
  private:
   struct Row {
@@ -55,7 +48,6 @@ class CostArray : public sc_core::sc_module {
   FrameGeometry geometry_;
   int window_;
   int disparities_;
-  int column_rows_;  // n + R - 1
   int pixel_bytes_;
   std::vector<Row> rows_;
   PixelColumn left_;
@@ -65,7 +57,6 @@ class CostArray : public sc_core::sc_module {
   int columns_before_window_ = 0;  // still to come before the first windows are complete
   int column_ = 0;                 // position of the middle of the next windows
   int first_row_ = 0;              // row of the middle of the first of the R windows
-  Stats stats_;
 };
 
 }  // namespace stereotlm::fpga

@@ -96,11 +96,6 @@ class SlotCursor {
   bool done() const { return left_ == 0; }
   int column() const { return column_; }
   int row() const { return strip_row_ + k_; }  // may lie outside the image
-  // The column, counted over the whole frame, strip after strip.
-  std::uint64_t frame_column() const {
-    return static_cast<std::uint64_t>(strip_) * static_cast<std::uint64_t>(width_) +
-           static_cast<std::uint64_t>(column_);
-  }
   // See FrameGeometry::is_inside().
   bool empty() const { return !is_row_of_image(row(), height_); }
 
@@ -110,7 +105,6 @@ class SlotCursor {
     k_ = 0;
     if (++column_ < width_) return;
     column_ = 0;
-    ++strip_;
     strip_row_ += rows_;
   }
   void advance(std::uint64_t slots) {
@@ -121,7 +115,6 @@ class SlotCursor {
     k_ = static_cast<int>(slot % static_cast<std::uint64_t>(slots_per_column_));
     column_ = static_cast<int>(column % static_cast<std::uint64_t>(width_));
     const auto strips = static_cast<int>(column / static_cast<std::uint64_t>(width_));
-    strip_ += strips;
     strip_row_ += strips * rows_;
   }
 
@@ -130,7 +123,6 @@ class SlotCursor {
   int height_ = 0;
   int slots_per_column_ = 1;
   int rows_ = 1;
-  int strip_ = 0;
   int strip_row_ = 0;  // row of the first slot of each column of the strip
   int column_ = 0;
   int k_ = 0;               // slot within the column

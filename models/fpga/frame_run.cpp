@@ -3,29 +3,77 @@
 #include <algorithm>
 
 namespace stereotlm::fpga {
+namespace {
+
+std::string text_of(Intent intent) {
+  switch (intent) {
+    case Intent::kRequest:
+      return "asks for bank number ";
+    case Intent::kPass:
+      return "passes a slot";
+    case Intent::kBlocked:
+      return "is blocked: its lane is full";
+    case Intent::kStarved:
+      return "is starved";
+    case Intent::kIdle:
+      break;
+  }
+  return "is idle";
+}
+
+std::string losses_of(std::size_t port, const memory::ArbiterStats& arbiter) {
+  const auto& blame = arbiter.blame[port];
+  const auto most = std::max_element(blame.begin(), blame.end());
+  if (*most == 0) return {};
+  const auto by = static_cast<std::size_t>(most - blame.begin());
+  return ", lost " + std::to_string(*most) + " cycles to " +
+         (by == memory::ArbiterStats::kTurnaround ? "turnaround" : kPorts[by].name);
+}
+
+// What each port does in the next cycle of a frame. For a port that requests a bank, the text also names the
+// port to which it has lost that bank most often.
+std::string waits_of_ports(const CoreControl& control, const memory::Arbitration& arbitration,
+                           bool host_requests) {
+  const CoreControl::Decision decision = control.decide();
+  std::string text;
+  for (std::size_t port = 0; port < kPortCount; ++port) {
+    const Intent host = host_requests ? Intent::kRequest : Intent::kIdle;
+    const Intent intent = port < kCorePortCount ? decision.intents[port] : host;
+    text += std::string(port == 0 ? "" : "; ") + kPorts[port].name + ' ' + text_of(intent);
+    if (intent != Intent::kRequest) continue;
+    const std::size_t bank = arbitration.bank_of(port);
+    text += std::to_string(bank) + losses_of(port, arbitration.arbiters()[bank].stats());
+  }
+  return text;
+}
+
+}  // namespace
 
 FrameRun::FrameRun(const CoreConfig& config, const std::vector<memory::SsramBankConfig>& banks,
-                   memory::Arbitration& arbitration, std::uint64_t stall_timeout_cycles,
-                   std::size_t most_groups)
-    : config_(config),
-      stepper_(config, arbitration),
-      fast_forward_(stepper_, config.lane_fifo_slots, most_groups),
-      watchdog_(stall_timeout_cycles) {
+                   memory::Arbitration& arbitration, std::uint64_t stall_timeout_cycles)
+    : config_(config), core_(config, arbitration), stall_timeout_cycles_(stall_timeout_cycles) {
   for (const memory::SsramBankConfig& bank : banks)
     latencies_.push_back(memory::read_latency_cycles(bank.kind));
   direct_counts_.accesses.resize(banks.size());
 }
 
+bool FrameRun::has_banks(const FrameBases& bases) const {
+  for (std::size_t port = 0; port < kCorePortCount; ++port) {
+    if (has_port(config_, port) && registers::bank_of(bases[port]) >= latencies_.size()) return false;
+  }
+  return true;
+}
+
 void FrameRun::start_stepped(std::uint64_t cycle, const FrameBases& bases) {
   patterns_ = nullptr;
   begin(cycle, bases);
-  fast_forward_.start_stepped_frame();
+  core_.start_stepped_frame();
 }
 
 void FrameRun::start_direct(std::uint64_t cycle, const FrameBases& bases, const AccessPatterns& patterns) {
   patterns_ = &patterns;
   begin(cycle, bases);
-  fast_forward_.start_direct_frame(patterns, index_of_routes(bases));
+  core_.start_direct_frame(patterns, bases);
 }
 
 void FrameRun::begin(std::uint64_t cycle, const FrameBases& bases) {
@@ -33,15 +81,15 @@ void FrameRun::begin(std::uint64_t cycle, const FrameBases& bases) {
   cycle_ = std::max(cycle_, cycle);
   first_cycle_ = cycle_;
   writes_before_ = all_writes();
-  watchdog_.start_frame(cycle_, control().work());
-  stepper_.start_frame(route_ports(bases));
-  stepper_.arbitration().begin_counting(first_cycle_);
+  work_ = control().work();
+  work_cycle_ = cycle_;
+  core_.start_frame(route_ports(bases));
+  core_.arbitration().begin_counting(first_cycle_);
   is_settled_ = false;
   const bool is_recorded =
-      conflicts_ != nullptr && conflicts_->start_frame(first_cycle_, control(), stepper_.arbitration());
-  stepper_.record(is_recorded ? conflicts_ : nullptr);
+      conflicts_ != nullptr && conflicts_->start_frame(first_cycle_, control(), core_.arbitration());
   if (cycles_ != nullptr && is_recorded) cycles_->start_frame(frame_cycles_.size(), first_cycle_, bases);
-  stepper_.record(is_recorded ? cycles_ : nullptr);
+  core_.record(is_recorded ? conflicts_ : nullptr, is_recorded ? cycles_ : nullptr);
 }
 
 // As run_ahead(), but steps the cycles that CycleRecorder needs.
@@ -49,11 +97,11 @@ void FrameRun::run_ahead_recorded(std::uint64_t end) {
   while (cycle_ < end && !control().frame_done()) {
     const std::uint64_t stepped = is_recorded() ? cycles_->next_stepped(cycle_) : UINT64_MAX;
     if (stepped != cycle_) {
-      cycle_ = fast_forward_.run_ahead(cycle_, std::min(end, stepped));
+      cycle_ = core_.run_ahead(cycle_, std::min(end, stepped));
       is_settled_ = false;
       continue;
     }
-    if (!is_settled_) fast_forward_.settle(cycle_);
+    if (!is_settled_) core_.settle(cycle_);
     is_settled_ = true;
     step(false);
   }
@@ -64,37 +112,32 @@ FrameLatencies FrameRun::route_ports(const FrameBases& bases) {
   for (std::size_t port = 0; port < kCorePortCount; ++port) {
     if (!has_port(config_, port)) continue;
     const std::size_t bank = registers::bank_of(bases[port]);
-    stepper_.arbitration().route(port, bank, kPorts[port].write);
+    core_.arbitration().route(port, bank, kPorts[port].write);
     latencies[port] = latencies_[bank];
   }
   return latencies;
 }
 
-// Returns the index of a frame's banks in routes_; adds them if they are new.
-std::uint64_t FrameRun::index_of_routes(const FrameBases& bases) {
-  std::array<std::uint32_t, kCorePortCount> banks{};
-  std::transform(bases.begin(), bases.end(), banks.begin(), registers::bank_of);
-  const auto known = std::find(routes_.begin(), routes_.end(), banks);
-  const auto index = static_cast<std::uint64_t>(known - routes_.begin());
-  if (known == routes_.end()) routes_.push_back(banks);
-  return index;
-}
-
 std::uint64_t FrameRun::stalled_cycles() {
-  const Progress& ahead = fast_forward_.ahead();
-  return watchdog_.stalled_cycles(cycle_, control().work() + ahead.consumed + ahead.words);
+  const Progress& ahead = core_.ahead();
+  const std::uint64_t work = control().work() + ahead.consumed + ahead.words;
+  const std::uint64_t cycles = work == work_ ? cycle_ - work_cycle_ : 0;
+  if (work == work_ && cycles < stall_timeout_cycles_) return 0;
+  work_ = work;
+  work_cycle_ = cycle_;
+  return cycles;
 }
 
 void FrameRun::finish() {
   state_ = State::kFinishing;
   done_cycle_ = cycle_ + static_cast<std::uint64_t>(config_.pipeline_latency_cycles);
-  fast_forward_.settle(cycle_);
-  stepper_.arbitration().end_counting(cycle_);
+  core_.settle(cycle_);
+  core_.arbitration().end_counting(cycle_);
   if (patterns_ != nullptr) count_direct();
-  if (stepper_.conflicts() == nullptr) return;
-  conflicts_->end_frame(cycle_, control());
+  if (core_.conflicts() == nullptr) return;
+  conflicts_->end_frame(cycle_);
   if (cycles_ != nullptr) cycles_->end_frame(cycle_);
-  stepper_.record(static_cast<ConflictRecorder*>(nullptr));
+  core_.record(nullptr, nullptr);
 }
 
 // The slots and words are those of the control, so that an audit can compare them with the geometry. The
@@ -102,7 +145,7 @@ void FrameRun::finish() {
 void FrameRun::count_direct() {
   const FrameGeometry& geometry = control().geometry();
   const auto count = [this](std::size_t port, std::uint64_t accesses) {
-    direct_counts_.accesses[stepper_.arbitration().bank_of(port)] += accesses;
+    direct_counts_.accesses[core_.arbitration().bank_of(port)] += accesses;
   };
   for (const Side side : kSides) {
     const AccessPattern& pattern = (*patterns_)[index_of(side)];
@@ -121,7 +164,7 @@ void FrameRun::end() {
   const auto pipeline = static_cast<std::uint64_t>(config_.pipeline_latency_cycles);
   for (FrameObserver* const observer : observers_)
     observer->frame_ended({strobe_ps_, first_cycle_, done_cycle_ - pipeline, done_cycle_, writes()});
-  if (stepper_.rows().is_on()) row_profiles_.push_back(stepper_.rows().profile(first_cycle_));
+  if (core_.rows().is_on()) row_profiles_.push_back(core_.rows().profile(first_cycle_));
 }
 
 std::string FrameRun::waits() {
@@ -129,7 +172,7 @@ std::string FrameRun::waits() {
   run_ahead(cycle_);  // after serve_host() the core has an older state
   return "frame " + std::to_string(frame_cycles_.size()) + " of the core, cycle " +
          std::to_string(cycle_ - first_cycle_) + "; " +
-         waits_of_ports(control(), stepper_.arbitration(), host_ != nullptr && host_->word_waits());
+         waits_of_ports(control(), core_.arbitration(), host_ && host_());
 }
 
 }  // namespace stereotlm::fpga

@@ -6,16 +6,30 @@
 #include <utility>
 #include <vector>
 
-#include "models/fpga/conflict_recorder.h"
 #include "models/fpga/core_ports.h"
-#include "models/fpga/core_stepper.h"
-#include "models/fpga/cycle_recorder.h"
-#include "models/fpga/fast_forward.h"
-#include "models/fpga/frame_observer.h"
-#include "models/fpga/row_profile.h"
-#include "models/fpga/stall_watchdog.h"
+#include "models/fpga/fast/fast_forward.h"
+#include "models/fpga/record/conflict_recorder.h"
+#include "models/fpga/record/cycle_recorder.h"
+#include "models/fpga/record/row_recorder.h"
 
 namespace stereotlm::fpga {
+
+// The times of a frame of the core.
+struct FrameTimes {
+  std::uint64_t strobe_ps = 0;    // end of the start strobe
+  std::uint64_t first_cycle = 0;  // the first cycle of the frame
+  std::uint64_t end_cycle = 0;    // the first cycle after its last write
+  std::uint64_t done_cycle = 0;   // the first cycle after the frame; `done` rises as it begins
+  std::uint64_t words = 0;        // words written
+};
+
+// Receives the frames of a core, for recordings. Plain C++.
+class FrameObserver {
+ public:
+  virtual ~FrameObserver() = default;
+  virtual void frame_begun(std::uint64_t strobe_ps) = 0;
+  virtual void frame_ended(const FrameTimes& times) = 0;
+};
 
 // What frames that work directly on memory do there, over all frames. Their data moves through no stage, so
 // no stage counts it.
@@ -32,11 +46,9 @@ struct DirectCounts {
 // A frame runs up to its last write. Then it is finishing, and ends pipeline_latency_cycles later.
 class FrameRun {
  public:
-  // `arbitration` outlives this object. `most_groups`: cap of the transition cache. Throws
-  // std::invalid_argument if the configuration has problems.
+  // `arbitration` outlives this object. Throws std::invalid_argument if the configuration has problems.
   FrameRun(const CoreConfig& config, const std::vector<memory::SsramBankConfig>& banks,
-           memory::Arbitration& arbitration, std::uint64_t stall_timeout_cycles,
-           std::size_t most_groups = TransitionCache::kMost);
+           memory::Arbitration& arbitration, std::uint64_t stall_timeout_cycles);
 
   // Adds an observer, which outlives this object. Whoever observes frames names the strobe of each, by
   // strobe().
@@ -47,8 +59,8 @@ class FrameRun {
     for (FrameObserver* const observer : observers_) observer->frame_begun(time_ps);
   }
 
-  // Whether the bank in the value of a base register exists.
-  bool has_bank(std::uint32_t base) const { return registers::bank_of(base) < latencies_.size(); }
+  // Whether the banks of all buffers exist.
+  bool has_banks(const FrameBases& bases) const;
   int read_latency_cycles(std::size_t bank) const { return latencies_[bank]; }
 
   // Starts a frame in `cycle`, or in cycle() if that is later. The banks of the bases must exist. The caller
@@ -61,14 +73,14 @@ class FrameRun {
   // Runs cycle() of a stepped frame. `host_requests` and `move`: see CoreStepper::step().
   template <class Move>
   memory::PortMask step(bool host_requests, const Move& move) {
-    return stepper_.step(cycle_++, host_requests, move);
+    return core_.step(cycle_++, host_requests, move);
   }
   // Runs cycle() of a direct frame.
-  memory::PortMask step(bool host_requests) { return fast_forward_.step(cycle_++, host_requests); }
+  memory::PortMask step(bool host_requests) { return core_.step(cycle_++, host_requests); }
   // Runs the cycles of a direct frame up to `end`, `end` not included, or until the frame is done.
   void run_ahead(std::uint64_t end) {
     if (cycles_ == nullptr) {
-      cycle_ = fast_forward_.run_ahead(cycle_, end);
+      cycle_ = core_.run_ahead(cycle_, end);
     } else {
       run_ahead_recorded(end);
     }
@@ -77,10 +89,10 @@ class FrameRun {
   void skip_to(std::uint64_t cycle) { cycle_ = cycle; }
   // Serves words of the host in a direct frame, see FastForward.
   FastForward::Served serve_host(const FastForward::Route& route, std::uint64_t first, std::size_t words) {
-    return fast_forward_.serve_host(cycle_, route, first, words);
+    return core_.serve_host(cycle_, route, first, words);
   }
   // To be called before the route of the host changes.
-  void host_route_changes() { fast_forward_.settle(cycle_); }
+  void host_route_changes() { core_.settle(cycle_); }
   // To be called when control().frame_done() becomes true.
   void finish();
   // To be called in done_cycle().
@@ -96,19 +108,21 @@ class FrameRun {
   std::uint64_t done_cycle() const { return done_cycle_; }
   // After serve_host() its state and counts may be of an earlier cycle, up to the next other call that runs
   // cycles.
-  CoreControl& control() { return stepper_.control(); }
-  const CoreControl& control() const { return stepper_.control(); }
+  CoreControl& control() { return core_.control(); }
+  const CoreControl& control() const { return core_.control(); }
   // A lower bound of the cycle in which the last write of the frame is granted.
   std::uint64_t earliest_last_write() const {
-    return control().earliest_last_write(cycle_ - fast_forward_.ahead().cycles);
+    return control().earliest_last_write(cycle_ - core_.ahead().cycles);
   }
   // Words written by the frame that was started last.
   std::uint64_t writes() const { return all_writes() - writes_before_; }
   // The finished frames among those of start_direct().
   const DirectCounts& direct_counts() const { return direct_counts_; }
   // See FastForward.
-  std::uint64_t skipped_cycles() const { return fast_forward_.skipped_cycles(); }
-  // See StallWatchdog.
+  std::uint64_t skipped_cycles() const { return core_.skipped_cycles(); }
+  // To be called regularly while a frame runs. Returns the number of cycles without progress if it has
+  // reached stall_timeout_cycles, else 0: the matcher does not work and no result is written, because the
+  // arbiters never grant one of the core's ports. After a timeout it is counted anew.
   std::uint64_t stalled_cycles();
   // Text for messages: the frame that runs, and what its ports wait for.
   std::string waits();
@@ -118,11 +132,11 @@ class FrameRun {
   const std::vector<std::uint64_t>& frame_cycles() const { return frame_cycles_; }
   // From the next frame on, records when each row of results is complete. take_rows() returns the rows of the
   // frames that have ended since its last call. It must be called regularly, because the rows fill memory.
-  void record_rows() { stepper_.rows().turn_on(); }
+  void record_rows() { core_.rows().turn_on(); }
   std::vector<RowProfile> take_rows() { return std::exchange(row_profiles_, {}); }
 
-  // What serves the host port beside the frames; to be called once. `host` outlives this object.
-  void set_host(const HostWords& host) { host_ = &host; }
+  // The words of the host port, which is served beside the frames; to be called once.
+  void set_host(NextHostWord host) { host_ = std::move(host); }
   // Records all frames from the next one on. `conflicts` outlives this object.
   void record(ConflictRecorder& conflicts) { conflicts_ = &conflicts; }
   ConflictRecorder* conflicts() { return conflicts_; }
@@ -130,7 +144,7 @@ class FrameRun {
   // been called. `cycles` outlives this object.
   void record(CycleRecorder& cycles) {
     cycles_ = &cycles;
-    cycles.set_host(*host_);
+    cycles.set_host(host_);
   }
   CycleRecorder* cycles() { return cycles_; }
   // Whether a cycle of the running frame before `end` must be stepped.
@@ -138,13 +152,12 @@ class FrameRun {
     return cycles_ != nullptr && cycles_->next_stepped(cycle_) < end;
   }
   // Whether a frame is running that is recorded.
-  bool is_recorded() const { return stepper_.conflicts() != nullptr; }
+  bool is_recorded() const { return core_.conflicts() != nullptr; }
 
  private:
   enum class State { kIdle, kRunning, kFinishing };
 
   FrameLatencies route_ports(const FrameBases& bases);
-  std::uint64_t index_of_routes(const FrameBases& bases);
   void begin(std::uint64_t cycle, const FrameBases& bases);
   void run_ahead_recorded(std::uint64_t end);
   void count_direct();
@@ -152,11 +165,10 @@ class FrameRun {
 
   CoreConfig config_;
   std::vector<int> latencies_;  // [bank]: read latency, cycles
-  CoreStepper stepper_;
-  FastForward fast_forward_;
-  StallWatchdog watchdog_;
-  // The distinct combinations of banks that direct frames have used: [index][port].
-  std::vector<std::array<std::uint32_t, kCorePortCount>> routes_;
+  FastForward core_;
+  std::uint64_t stall_timeout_cycles_;
+  std::uint64_t work_ = 0;        // CoreControl::work() in the last call of stalled_cycles()
+  std::uint64_t work_cycle_ = 0;  // cycle of the last call that found progress, or of the last timeout
   State state_ = State::kIdle;
   std::uint64_t cycle_ = 0;
   std::uint64_t first_cycle_ = 0;
@@ -165,10 +177,10 @@ class FrameRun {
   const AccessPatterns* patterns_ = nullptr;  // of the running frame; null if its stages read the tables
   DirectCounts direct_counts_;
   std::vector<FrameObserver*> observers_;
-  const HostWords* host_ = nullptr;  // null: nothing uses the host port
+  NextHostWord host_;  // empty: nothing uses the host port
   ConflictRecorder* conflicts_ = nullptr;
   CycleRecorder* cycles_ = nullptr;
-  bool is_settled_ = false;          // run_ahead_recorded() has settled fast_forward_
+  bool is_settled_ = false;          // run_ahead_recorded() has settled core_
   std::uint64_t writes_before_ = 0;  // words written before the frame that was started last
   std::vector<std::uint64_t> frame_cycles_;
   std::vector<RowProfile> row_profiles_;  // not yet taken

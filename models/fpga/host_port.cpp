@@ -2,12 +2,14 @@
 
 #include <algorithm>
 
-#include "models/memory/crossbar_address.h"
+#include "models/memory/memory_config.h"
 
 namespace stereotlm::fpga {
 namespace {
 
 constexpr memory::PortMask kHostMask = memory::mask_of(kHostPort);
+
+bool grants(memory::BankArbiter::Outcome outcome) { return memory::BankArbiter::granted_in(outcome) != 0; }
 
 }  // namespace
 
@@ -36,8 +38,9 @@ bool HostPort::access(std::uint64_t cycle, std::uint64_t edge_ps) {
   return !bus_.word_waits();
 }
 
-HostWords::Word HostPort::next_word() const {
-  return {*burst_.bank, words_left().first - memory::crossbar_address(*burst_.bank, 0), traffic()};
+std::optional<HostWord> HostPort::next_word() const {
+  if (!bus_.word_waits()) return std::nullopt;
+  return HostWord{*burst_.bank, words_left().first - memory::crossbar_address(*burst_.bank, 0), traffic()};
 }
 
 bool HostPort::is_contended() const { return is_contended(*burst_.bank); }
@@ -86,7 +89,7 @@ std::optional<std::uint64_t> HostPort::serve_uncontended(std::uint64_t horizon_p
   // this cycle.
   std::uint64_t cycle = frames_.is_running() ? 0 : frames_.cycle();
   move_burst();
-  if (is_moved_ && !arbitration_.needs_turnaround(bank) && is_in_step_) serve_in_step(cycle);
+  if (is_moved_ && !arbitration_.arbiter(bank).needs_turnaround() && is_in_step_) serve_in_step(cycle);
   while (bus_.word_waits()) {
     cycle = std::max(cycle, clock_.edge_at_or_after(bus_.request_ps()));
     const std::uint64_t edge_ps = clock_.edge_ps(cycle);
@@ -100,18 +103,19 @@ std::optional<std::uint64_t> HostPort::serve_uncontended(std::uint64_t horizon_p
       count_words_outside();
       return edge_ps + 1;
     }
-    const memory::BankArbiter::Outcome outcome = decide(cycle);
+    const memory::BankArbiter::Outcome outcome = decide(bank, cycle, burst_.write);
     served_.push_back({cycle, 1, outcome});
-    record_served(cycle, 1, arbitration_.grants(bank, outcome));
-    if (arbitration_.grants(bank, outcome)) serve_word(cycle, edge_ps);
+    record_served(cycle, 1, grants(outcome));
+    if (grants(outcome)) serve_word(cycle, edge_ps);
     ++cycle;
   }
   if (!frames_.is_running()) count_words_outside();
   return std::nullopt;
 }
 
-memory::BankArbiter::Outcome HostPort::decide(std::uint64_t cycle) {
-  return arbitration_.decide_unrouted(*burst_.bank, cycle, kHostPort, burst_.write);
+// The outcome is counted only by count().
+memory::BankArbiter::Outcome HostPort::decide(std::size_t bank, std::uint64_t cycle, bool write) {
+  return arbitration_.arbiter(bank).decide(cycle, kHostMask, write ? kHostMask : memory::PortMask{0});
 }
 
 // Moves all data of a burst that has just begun, if no frame can start within the burst and its bank grants
@@ -143,34 +147,31 @@ void HostPort::serve_word(std::uint64_t cycle, std::uint64_t edge_ps) {
 void HostPort::serve_in_step(std::uint64_t first_cycle) {
   const std::uint64_t first = std::max(first_cycle, bus_.request_clock());
   const std::size_t words = bus_.words_left();
-  served_.push_back({first, words, decide(first)});
+  served_.push_back({first, words, decide(*burst_.bank, first, burst_.write)});
   record_served(first, words, true);
   const std::uint64_t last = first + words - 1;
   bus_.count_granted(words, clock_.edge_ps(last), usable_ps(last));
 }
 
 bool HostPort::serves_one_word_per_cycle(std::size_t bank) const {
-  return is_in_step_ && is_only_master_ && !is_contended(bank) && !arbitration_.needs_turnaround(bank);
+  return is_in_step_ && is_only_master_ && !is_contended(bank) &&
+         !arbitration_.arbiter(bank).needs_turnaround();
 }
 
 // As in serve_in_step(), the words behind the first one change the state of the policy as cycles without
 // request do, which is what lies between two bursts.
-void HostPort::count_skipped(std::size_t bank, bool write, std::uint64_t first_cycle, std::uint64_t end_cycle,
-                             std::uint64_t words) {
+void HostPort::skip_writes(std::uint64_t address, std::uint64_t words, std::uint64_t cycle,
+                           const std::vector<ServedWords>& bursts) {
   const bool in_frame = frames_.is_running();
   count_served(UINT64_MAX, in_frame);
-  served_bank_ = bank;
-  count({end_cycle - words, words, arbitration_.decide_unrouted(bank, first_cycle, kHostPort, write)},
-        in_frame);
-}
-
-void HostPort::record_skipped(bool write, std::uint64_t address, std::uint64_t cycle,
-                              const std::vector<ServedWords>& bursts) {
+  served_bank_ = memory::bank_of_address(address);
+  const std::uint64_t end_cycle = cycle + bursts.back().first_cycle + bursts.back().words;
+  count({end_cycle - words, words, decide(served_bank_, cycle + bursts.front().first_cycle, true)}, in_frame);
+  if (!frames_.is_recorded()) return;
   ConflictRecorder& conflicts = *frames_.conflicts();
-  const HostTraffic traffic = conflicts.traffic_of(write, address);
-  const std::size_t bank = memory::bank_of_address(address);
+  const HostTraffic traffic = conflicts.traffic_of(true, address);
   for (const ServedWords& burst : bursts)
-    conflicts.add_served(traffic, bank, cycle + burst.first_cycle, burst.words, true);
+    conflicts.add_served(traffic, served_bank_, cycle + burst.first_cycle, burst.words, true);
 }
 
 // What the burst is for; without meaning unless conflicts are recorded.
@@ -180,9 +181,8 @@ HostTraffic HostPort::traffic() const {
 }
 
 void HostPort::count(const Served& served, bool in_frame) {
-  arbitration_.count_unrouted(served_bank_, served.cycle, served.outcome, served.cycles);
-  if (in_frame)
-    frames_.control().host_was_busy(arbitration_.grants(served_bank_, served.outcome), served.cycles);
+  arbitration_.arbiter(served_bank_).count(served.cycle, served.outcome, served.cycles);
+  if (in_frame) frames_.control().host_was_busy(grants(served.outcome), served.cycles);
 }
 
 void HostPort::count_served(std::uint64_t end_cycle, bool in_frame) {
@@ -192,8 +192,7 @@ void HostPort::count_served(std::uint64_t end_cycle, bool in_frame) {
     const std::uint64_t cycles = std::min(next->cycles, end_cycle - next->cycle);
     count({next->cycle, cycles, next->outcome}, in_frame);
     if (conflicts != nullptr) {
-      conflicts->add_served(served_traffic_, served_bank_, next->cycle, cycles,
-                            arbitration_.grants(served_bank_, next->outcome));
+      conflicts->add_served(served_traffic_, served_bank_, next->cycle, cycles, grants(next->outcome));
     }
     next->cycle += cycles;
     next->cycles -= cycles;

@@ -19,7 +19,7 @@ namespace stereotlm::fpga {
 // A burst is contended if it goes to a bank of the running frame: then each word is arbitrated in its cycle.
 // An uncontended burst is served independently of the frame. Its words are counted later, when it is known
 // whether their cycles belong to the frame. Plain C++.
-class HostPort : private HostWords {
+class HostPort {
  public:
   // All of these outlive this object.
   HostPort(LocalBusControl& bus, memory::DirectBanks& banks, memory::Arbitration& arbitration,
@@ -30,7 +30,7 @@ class HostPort : private HostWords {
         frames_(frames),
         clock_(clock),
         is_in_step_(bus.is_in_step_with(clock)) {
-    frames.set_host(*this);
+    frames.set_host([this] { return next_word(); });
   }
   HostPort(const HostPort&) = delete;
   HostPort& operator=(const HostPort&) = delete;
@@ -72,24 +72,23 @@ class HostPort : private HostWords {
   //
   // Whether bursts to this bank are served one word a cycle, and independently of the frame.
   bool serves_one_word_per_cycle(std::size_t bank) const;
-  // Counts `words` words of skipped bursts of one direction to such a bank. The first is served in
-  // `first_cycle`, the last in the cycle before `end_cycle`, and the running frame cannot have ended by then.
-  void count_skipped(std::size_t bank, bool write, std::uint64_t first_cycle, std::uint64_t end_cycle,
-                     std::uint64_t words);
   // Words that are served one a cycle, from this cycle on.
   struct ServedWords {
     std::uint64_t first_cycle;
     std::uint64_t words;
   };
-  // Gives the recorder of the running frame, which FrameRun::is_recorded(), skipped bursts of one direction
-  // to such a bank, from byte address `address` on. Their cycles are counted from `cycle` on.
-  void record_skipped(bool write, std::uint64_t address, std::uint64_t cycle,
-                      const std::vector<ServedWords>& bursts);
+  // Counts skipped bursts that have written `words` words to such a bank, from byte address `address` on.
+  // Their cycles are counted from `cycle` on; the running frame cannot have ended by the last one.
+  void skip_writes(std::uint64_t address, std::uint64_t words, std::uint64_t cycle,
+                   const std::vector<ServedWords>& bursts);
 
-  // Counts the words that were served before the frame's cycle(), as words in the frame.
-  void count_words_in_frame() { count_served(frames_.cycle(), true); }
-  // Counts all words that were served and are not counted yet, as words outside a frame.
-  void count_words_outside() { count_served(UINT64_MAX, false); }
+  // Finishes the frame, after the cycle in which its last write was granted. The words that were served
+  // before the frame's cycle() are in it, all others that are not counted yet are outside.
+  void finish_frame() {
+    count_served(frames_.cycle(), true);
+    frames_.finish();
+    count_words_outside();
+  }
 
  private:
   // Words that were served in an uncontended bank, and are not counted yet.
@@ -99,19 +98,19 @@ class HostPort : private HostWords {
     memory::BankArbiter::Outcome outcome;
   };
 
-  bool word_waits() const override { return bus_.word_waits(); }
-  Word next_word() const override;
+  std::optional<HostWord> next_word() const;
   void record_served(std::uint64_t cycle, std::uint64_t cycles, bool granted) {
-    if (frames_.cycles() != nullptr) frames_.cycles()->host_accesses(next_word(), cycle, cycles, granted);
+    if (frames_.cycles() != nullptr) frames_.cycles()->host_accesses(*next_word(), cycle, cycles, granted);
   }
   bool is_contended(std::size_t bank) const;
   void move_burst();
   void step_contended(std::uint64_t first_cycle);
   void serve_word(std::uint64_t cycle, std::uint64_t edge_ps);
   void serve_in_step(std::uint64_t first_cycle);
-  memory::BankArbiter::Outcome decide(std::uint64_t cycle);
+  memory::BankArbiter::Outcome decide(std::size_t bank, std::uint64_t cycle, bool write);
   HostTraffic traffic() const;
   void count_served(std::uint64_t end_cycle, bool in_frame);
+  void count_words_outside() { count_served(UINT64_MAX, false); }
   void count(const Served& served, bool in_frame);
   std::uint64_t usable_ps(std::uint64_t cycle) const {
     return clock_.edge_ps(cycle + static_cast<std::uint64_t>(read_latency_cycles_));

@@ -53,9 +53,6 @@ class LocalBus : public sc_core::sc_module,
 
   LocalBusControl& control() { return control_; }
   const LocalBusControl& control() const { return control_; }
-  bool word_waits() const { return control_.word_waits(); }
-  std::uint64_t request_ps() const { return control_.request_ps(); }
-  bool requests(std::uint64_t edge_ps) const { return control_.requests(edge_ps); }
   // Notified when the first word of a burst begins to request.
   const sc_core::sc_event& request_event() const { return request_event_; }
   // Counts up to the current time.

@@ -5,7 +5,6 @@
 #include <stdexcept>
 #include <string>
 
-#include "models/memory/crossbar_address.h"
 #include "models/memory/memory_config.h"
 
 namespace stereotlm::fpga {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdint>
 #include <systemc>
 
 #include "models/fpga/beats.h"
@@ -15,28 +14,27 @@ namespace stereotlm::fpga {
 // of the slots, and passes on filtered columns. Without a filter it only collects the columns.
 class LogFilter : public sc_core::sc_module {
  public:
-  struct Stats {
-    std::uint64_t pixels = 0;   // taken, also in the drain
-    std::uint64_t columns = 0;  // passed on
-  };
-
   StreamOut<PixelColumn> columns_out{"columns_out"};
 
  private:
-  void take(const MaskedPixel& pixel);
+  void take(const MaskedPixel& pixel) {
+    if (filter_.push(pixel)) columns_out->push(filter_.output());
+  }
 
  public:
   StreamIn<MaskedPixel, LogFilter, &LogFilter::take> pixels_in{"pixels_in", this};
 
-  LogFilter(const sc_core::sc_module_name& name, const CoreConfig& config);
+  LogFilter(const sc_core::sc_module_name& name, const CoreConfig& config)
+      : sc_module(name),
+        first_row_(FrameGeometry(config).first_row),
+        filter_(config.width, config.height, FrameGeometry(config).slots_per_column, config.rows,
+                config.filter) {}
 
   void start_frame() { filter_.start_frame(first_row_); }
-  const Stats& stats() const { return stats_; }
 
  private:
   int first_row_;
   kernels::ColumnFilter filter_;
-  Stats stats_;
 };
 
 }  // namespace stereotlm::fpga

@@ -1,7 +1,5 @@
 #include "models/fpga/lr_check.h"
 
-#include "models/kernels/words.h"
-
 namespace stereotlm::fpga {
 
 LrCheck::LrCheck(const sc_core::sc_module_name& name, const CoreConfig& config)
@@ -44,10 +42,7 @@ void LrCheck::finish_column(Row& row) {
   const int index = row.left.row;
   const Disparity checked{index,
                           row.check.step(row.left.disparity, row.left.left_valid, row.right.disparity)};
-  if (columns_to_skip_ == 0 && geometry_.is_inside(first_row_ + index)) {
-    ++(checked.value == kernels::kInvalidDisparity ? stats_.invalid : stats_.answered);
-    disparities_out->push(checked);
-  }
+  if (columns_to_skip_ == 0 && geometry_.is_inside(first_row_ + index)) disparities_out->push(checked);
   if (index + 1 == geometry_.rows) next_column();
 }
 

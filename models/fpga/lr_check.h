@@ -17,11 +17,6 @@ namespace stereotlm::fpga {
 // first pixel of the frame on. Each of the R rows has a check of its own; rows outside the image end here.
 class LrCheck : public sc_core::sc_module {
  public:
-  struct Stats {
-    std::uint64_t answered = 0;  // pixels that keep their disparity
-    std::uint64_t invalid = 0;   // no match, inconsistent, or no table entry
-  };
-
   StreamOut<Disparity> disparities_out{"disparities_out"};
 
  private:
@@ -35,7 +30,6 @@ class LrCheck : public sc_core::sc_module {
   LrCheck(const sc_core::sc_module_name& name, const CoreConfig& config);
 
   void start_frame();
-  const Stats& stats() const { return stats_; }
 
  private:
   struct Row {
@@ -54,7 +48,6 @@ class LrCheck : public sc_core::sc_module {
   std::uint64_t columns_to_skip_ = 0;
   int column_ = 0;     // column of the next results
   int first_row_ = 0;  // first row of the next results
-  Stats stats_;
 };
 
 }  // namespace stereotlm::fpga

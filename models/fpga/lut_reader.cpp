@@ -1,8 +1,6 @@
 #include "models/fpga/lut_reader.h"
 
-#include "models/fpga/buffer_words.h"
-#include "models/kernels/rectification_table.h"
-#include "models/memory/direct_memory.h"
+#include "models/fpga/core_ports.h"
 
 namespace stereotlm::fpga {
 
@@ -11,35 +9,26 @@ LutReader::LutReader(const sc_core::sc_module_name& name, int width, bool has_jo
 
 void LutReader::take(const Slot& slot) {
   if (slot.empty) {
-    ++stats_.empty_slots;
     push({}, {});
     return;
   }
   const std::uint64_t pixel =
       static_cast<std::uint64_t>(slot.row) * width_ + static_cast<std::uint64_t>(slot.column);
   sc_core::sc_time delay = slot.at;
-  if (!access_.read(table_address_ + entry_offset(pixel), delay)) ++stats_.errors;
-  ++stats_.reads;
+  if (!access_.read(table_address_ + entry_offset(pixel), delay)) ++errors_;
   const std::uint32_t word = access_.word();
   TableEntry left{word};
   TableEntry right;
   if (has_joint_tables_) {
     left.entry = kernels::left_entry(word, slot.column, slot.row, offsets_);
     right.entry = kernels::right_entry(word, slot.column, slot.row, offsets_);
-    stats_.invalid_entries += std::uint64_t{!kernels::entry_is_valid(right.entry)};
   }
-  stats_.invalid_entries += std::uint64_t{!kernels::entry_is_valid(left.entry)};
   push(left, right);
 }
 
 void LutReader::push(const TableEntry& left, const TableEntry& right) {
   entries_out->push(left);
   if (has_joint_tables_) right_entries_out->push(right);
-}
-
-const std::uint32_t* LutReader::table(int height) {
-  return reinterpret_cast<const std::uint32_t*>(memory::direct_memory(
-      port, tlm::TLM_READ_COMMAND, table_address_, width_ * static_cast<std::uint64_t>(height) * 4));
 }
 
 }  // namespace stereotlm::fpga

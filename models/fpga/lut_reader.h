@@ -17,13 +17,6 @@ namespace stereotlm::fpga {
 // slot comes: one that is not empty comes in the cycle in which its access is granted.
 class LutReader : public sc_core::sc_module {
  public:
-  struct Stats {
-    std::uint64_t reads = 0;
-    std::uint64_t invalid_entries = 0;  // among the entries read; joint tables: entries of both sides
-    std::uint64_t empty_slots = 0;
-    std::uint64_t errors = 0;  // refused accesses; the entries then count as not valid
-  };
-
   tlm_utils::simple_initiator_socket<LutReader> port{"port"};
   StreamOut<TableEntry> entries_out{"entries_out"};
   // With joint tables: the entries of the right side. Else unbound.
@@ -44,9 +37,8 @@ class LutReader : public sc_core::sc_module {
     table_address_ = table_address;
     offsets_ = offsets;
   }
-  // The table of width * height words, for immediate use only; null if memory does not grant direct access.
-  const std::uint32_t* table(int height);
-  const Stats& stats() const { return stats_; }
+  // The number of refused accesses. Their entries are not valid.
+  std::uint64_t errors() const { return errors_; }
 
  private:
   void push(const TableEntry& left, const TableEntry& right);
@@ -56,7 +48,7 @@ class LutReader : public sc_core::sc_module {
   std::uint64_t table_address_ = 0;
   kernels::JointOffsets offsets_{};
   memory::WordAccess access_{port};
-  Stats stats_;
+  std::uint64_t errors_ = 0;
 };
 
 }  // namespace stereotlm::fpga

@@ -2,10 +2,9 @@
 
 #include <algorithm>
 
-#include "models/fpga/buffer_words.h"
+#include "models/fpga/core_ports.h"
 #include "models/kernels/rectification_table.h"
 #include "models/kernels/words.h"
-#include "models/memory/direct_memory.h"
 
 namespace stereotlm::fpga {
 
@@ -72,23 +71,10 @@ void PixelReader::deliver(std::uint64_t pixel, bool needs_access, const sc_core:
   std::uint32_t& word = words_[has_cache_ ? pixels_stored_ % slots_per_column_ : 0];
   if (needs_access) {
     sc_core::sc_time delay = at;
-    if (!access_.read(image_address_ + pixel_word_offset(pixel), delay)) ++stats_.errors;
-    ++stats_.reads;
+    if (!access_.read(image_address_ + pixel_word_offset(pixel), delay)) ++errors_;
     word = access_.word();
-  } else {
-    ++stats_.passed_slots;
   }
   pixels_[pixels_stored_++ % kRing] = {kernels::pixel_of_word(word, pixel), true};
-}
-
-void PixelReader::pass() {
-  ++stats_.passed_slots;
-  pixels_[pixels_stored_++ % kRing] = MaskedPixel{};
-}
-
-const std::uint8_t* PixelReader::image(int height) {
-  return memory::direct_memory(port, tlm::TLM_READ_COMMAND, image_address_,
-                               width_ * static_cast<std::uint64_t>(height));
 }
 
 }  // namespace stereotlm::fpga

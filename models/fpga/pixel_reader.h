@@ -24,12 +24,6 @@ namespace stereotlm::fpga {
 // word needs no access. All words are forgotten where a strip begins.
 class PixelReader : public sc_core::sc_module {
  public:
-  struct Stats {
-    std::uint64_t reads = 0;
-    std::uint64_t passed_slots = 0;  // slots without access: empty, without valid entry, or a cache hit
-    std::uint64_t errors = 0;        // refused accesses; the pixel is then 0
-  };
-
   tlm_utils::simple_initiator_socket<PixelReader> port{"port"};
   StreamOut<MaskedPixel> pixels_out{"pixels_out"};
 
@@ -59,9 +53,8 @@ class PixelReader : public sc_core::sc_module {
   }
   // Passes on a pixel that no result depends on. To be called in each cycle of the drain.
   void release_blank() { pixels_out->push(MaskedPixel{}); }
-  // The image of width * height pixels, for immediate use only; null if memory does not grant direct access.
-  const std::uint8_t* image(int height);
-  const Stats& stats() const { return stats_; }
+  // The number of refused accesses. Their pixels are 0.
+  std::uint64_t errors() const { return errors_; }
 
  private:
   static constexpr std::size_t kRing = kLaneFifoRule.max;
@@ -77,7 +70,7 @@ class PixelReader : public sc_core::sc_module {
   bool next_needs_access(bool is_valid, std::uint64_t pixel);
   // The next slot is handled.
   void deliver(std::uint64_t pixel, bool needs_access, const sc_core::sc_time& at);
-  void pass();
+  void pass() { pixels_[pixels_stored_++ % kRing] = MaskedPixel{}; }
   std::uint64_t pixel_of(int column, int row) const {
     return static_cast<std::uint64_t>(row) * width_ + static_cast<std::uint64_t>(column);
   }
@@ -98,7 +91,7 @@ class PixelReader : public sc_core::sc_module {
   std::size_t slots_arrived_ = 0;
   std::size_t pixels_stored_ = 0;
   std::size_t pixels_released_ = 0;
-  Stats stats_;
+  std::uint64_t errors_ = 0;
 };
 
 }  // namespace stereotlm::fpga

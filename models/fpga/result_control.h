@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 
 #include "models/fpga/core_config.h"
@@ -29,7 +28,6 @@ class ResultControl {
   void commit(bool granted, int words_entering) {
     queued_ += words_entering - int{granted};
     written_ += std::uint64_t{granted};
-    most_queued_ = std::max(most_queued_, queued_);
   }
 
   std::uint64_t state() const {
@@ -47,15 +45,12 @@ class ResultControl {
   // Numbers of words of the frame.
   std::uint64_t words_written() const { return written_; }
   std::uint64_t words_left() const { return words_per_frame_ - written_; }
-  // The largest number of words queued at one time, over all frames.
-  int most_queued() const { return most_queued_; }
 
  private:
   std::uint64_t words_per_frame_;
   int most_before_work_;  // words in the queue beside which there is room
   int queued_ = 0;
   std::uint64_t written_ = 0;
-  int most_queued_ = 0;
 };
 
 }  // namespace stereotlm::fpga

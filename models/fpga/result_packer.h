@@ -6,6 +6,7 @@
 
 #include "models/fpga/beats.h"
 #include "models/fpga/core_config.h"
+#include "models/kernels/words.h"
 #include "models/stream.h"
 
 namespace stereotlm::fpga {
@@ -13,22 +14,33 @@ namespace stereotlm::fpga {
 // Packs four disparities of a row to a word, the lowest column in the lowest byte (contract 1.5).
 class ResultPacker : public sc_core::sc_module {
  public:
-  struct Stats {
-    std::uint64_t words = 0;
-  };
-
   StreamOut<ResultWord> words_out{"words_out"};
 
  private:
-  void take(const Disparity& disparity);
+  void take(const Disparity& disparity) {
+    Row& row = rows_[static_cast<std::size_t>(disparity.row)];
+    row.word = kernels::insert_pixel(row.word, row.next, disparity.value);
+    if (++row.next < kernels::kPixelsPerWord) return;
+    row.next = 0;
+    ++words_;
+    words_out->push({row.word, row.place});
+    // The other rows of the strip lie between the last word of the row and its first word in the next strip.
+    if (++row.place % words_of_row_ == 0) row.place += (rows_.size() - 1) * words_of_row_;
+  }
 
  public:
   StreamIn<Disparity, ResultPacker, &ResultPacker::take> disparities_in{"disparities_in", this};
 
-  ResultPacker(const sc_core::sc_module_name& name, const CoreConfig& config);
+  ResultPacker(const sc_core::sc_module_name& name, const CoreConfig& config)
+      : sc_module(name),
+        words_of_row_(static_cast<std::uint64_t>(config.width / kernels::kPixelsPerWord)),
+        rows_(static_cast<std::size_t>(config.rows)) {}
 
-  void start_frame();
-  const Stats& stats() const { return stats_; }
+  void start_frame() {
+    for (std::size_t row = 0; row < rows_.size(); ++row) rows_[row] = {0, 0, row * words_of_row_};
+  }
+  // The number of words, over all frames.
+  std::uint64_t words() const { return words_; }
 
  private:
   struct Row {
@@ -39,7 +51,7 @@ class ResultPacker : public sc_core::sc_module {
 
   std::uint64_t words_of_row_;
   std::vector<Row> rows_;  // [row] of the R rows of a strip
-  Stats stats_;
+  std::uint64_t words_ = 0;
 };
 
 }  // namespace stereotlm::fpga

@@ -1,9 +1,6 @@
 #include "models/fpga/result_writer.h"
 
-#include <algorithm>
-
-#include "models/fpga/buffer_words.h"
-#include "models/memory/direct_memory.h"
+#include "models/fpga/core_ports.h"
 
 namespace stereotlm::fpga {
 
@@ -23,7 +20,6 @@ void ResultWriter::store(const ResultWord& word) {
     return;
   }
   words_[stored_++ % kRing] = word;
-  stats_.most_queued_words = std::max<std::uint64_t>(stats_.most_queued_words, stored_ - written_);
 }
 
 void ResultWriter::write(const sc_core::sc_time& at) {
@@ -33,12 +29,8 @@ void ResultWriter::write(const sc_core::sc_time& at) {
   }
   sc_core::sc_time delay = at;
   const ResultWord& word = words_[written_++ % kRing];
-  if (!access_.write(disparity_address_ + result_word_offset(word.place), word.word, delay)) ++stats_.errors;
-  ++stats_.writes;
-}
-
-std::uint8_t* ResultWriter::buffer(std::uint64_t words) {
-  return memory::direct_memory(port, tlm::TLM_WRITE_COMMAND, disparity_address_, words * 4);
+  if (!access_.write(disparity_address_ + result_word_offset(word.place), word.word, delay)) ++errors_;
+  ++writes_;
 }
 
 }  // namespace stereotlm::fpga

@@ -17,12 +17,6 @@ namespace stereotlm::fpga {
 // CoreControl decides in which cycle a word is written.
 class ResultWriter : public sc_core::sc_module {
  public:
-  struct Stats {
-    std::uint64_t writes = 0;
-    std::uint64_t most_queued_words = 0;  // largest number at one time
-    std::uint64_t errors = 0;             // refused accesses; their words are lost
-  };
-
   tlm_utils::simple_initiator_socket<ResultWriter> port{"port"};
 
  private:
@@ -38,10 +32,9 @@ class ResultWriter : public sc_core::sc_module {
   void start_frame(std::uint64_t disparity_address);
   // Writes the oldest word, in the cycle that is `at` from now.
   void write(const sc_core::sc_time& at);
-  // The disparity buffer of `words` words, for immediate use only; null if memory does not grant direct
-  // access.
-  std::uint8_t* buffer(std::uint64_t words);
-  const Stats& stats() const { return stats_; }
+  // The number of words written, over all frames, and of refused accesses among them, whose words are lost.
+  std::uint64_t writes() const { return writes_; }
+  std::uint64_t errors() const { return errors_; }
 
  private:
   static constexpr std::size_t kRing = kResultFifoRule.max;
@@ -52,7 +45,8 @@ class ResultWriter : public sc_core::sc_module {
   std::array<ResultWord, kRing> words_{};
   std::size_t stored_ = 0;  // words since the start of the frame
   std::size_t written_ = 0;
-  Stats stats_;
+  std::uint64_t writes_ = 0;
+  std::uint64_t errors_ = 0;
 };
 
 }  // namespace stereotlm::fpga

@@ -29,7 +29,6 @@ void RowBuffer::take(const PixelColumn& pixel) {
   std::uint64_t& valid = valid_[column_];
   valid = valid >> 1U | (pixel.valid & 1U) << newest_row_;
   column_ = column_ + 1 == valid_.size() ? 0 : column_ + 1;
-  ++stats_.columns;
   columns_out->push({values, valid});
 }
 

@@ -14,10 +14,6 @@ namespace stereotlm::fpga {
 // frames.
 class RowBuffer : public sc_core::sc_module {
  public:
-  struct Stats {
-    std::uint64_t columns = 0;
-  };
-
   StreamOut<PixelColumn> columns_out{"columns_out"};
 
  private:
@@ -31,7 +27,6 @@ class RowBuffer : public sc_core::sc_module {
   RowBuffer(const sc_core::sc_module_name& name, int width, int window, int pixel_bytes);
 
   void start_frame() { column_ = 0; }
-  const Stats& stats() const { return stats_; }
 
  private:
   std::size_t newest_row_;  // n - 1
@@ -39,7 +34,6 @@ class RowBuffer : public sc_core::sc_module {
   std::size_t column_ = 0;
   std::vector<std::uint8_t> values_;  // [image column]: the last n pixels, of pixel_bytes_ bytes each
   std::vector<std::uint64_t> valid_;  // [image column]: the valid bits of these pixels
-  Stats stats_;
 };
 
 }  // namespace stereotlm::fpga

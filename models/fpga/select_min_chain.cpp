@@ -1,7 +1,6 @@
 #include "models/fpga/select_min_chain.h"
 
 #include "models/kernels/column_scores.h"
-#include "models/kernels/words.h"
 
 namespace stereotlm::fpga {
 
@@ -24,12 +23,8 @@ void SelectMinChain::start_frame() {
 
 void SelectMinChain::take(const WindowSums& window) {
   const auto row = static_cast<std::size_t>(window.row);
-  const RightMatch match{window.row, window.scores
-                                         ? score_chains_[row].step(*window.scores, window.candidates)
-                                         : chains_[row].step(window.sums, window.candidates)};
-  ++stats_.columns;
-  stats_.matches += std::uint64_t{match.disparity != kernels::kInvalidDisparity};
-  matches_out->push(match);
+  matches_out->push({window.row, window.scores ? score_chains_[row].step(*window.scores, window.candidates)
+                                               : chains_[row].step(window.sums, window.candidates)});
 }
 
 }  // namespace stereotlm::fpga

@@ -15,11 +15,6 @@ namespace stereotlm::fpga {
 // each of the R rows. With each column of window sums the match of the right pixel D-1 columns back leaves.
 class SelectMinChain : public sc_core::sc_module {
  public:
-  struct Stats {
-    std::uint64_t columns = 0;
-    std::uint64_t matches = 0;  // right pixels that had a candidate
-  };
-
   StreamOut<RightMatch> matches_out{"matches_out"};
 
  private:
@@ -31,13 +26,11 @@ class SelectMinChain : public sc_core::sc_module {
   SelectMinChain(const sc_core::sc_module_name& name, const CoreConfig& config);
 
   void start_frame();
-  const Stats& stats() const { return stats_; }
 
  private:
   // [row]; one of them is empty.
   std::vector<kernels::SelectMinChain> chains_;
   std::vector<kernels::ScoreChain> score_chains_;  // if the beats have scores
-  Stats stats_;
 };
 
 }  // namespace stereotlm::fpga

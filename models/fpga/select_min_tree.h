@@ -1,9 +1,9 @@
 #pragma once
 
-#include <cstdint>
 #include <systemc>
 
 #include "models/fpga/beats.h"
+#include "models/kernels/select_min.h"
 #include "models/stream.h"
 
 namespace stereotlm::fpga {
@@ -12,25 +12,20 @@ namespace stereotlm::fpga {
 // of window sums the match of its left pixel leaves.
 class SelectMinTree : public sc_core::sc_module {
  public:
-  struct Stats {
-    std::uint64_t columns = 0;
-    std::uint64_t matches = 0;  // left pixels that had a candidate
-  };
-
   StreamOut<LeftMatch> matches_out{"matches_out"};
 
  private:
-  void take(const WindowSums& window);
+  void take(const WindowSums& window) {
+    const std::uint8_t disparity =
+        window.scores ? kernels::select_min_tree(*window.scores, window.candidates)
+                      : kernels::select_min_tree(window.sums, window.candidates, window.lanes);
+    matches_out->push({window.row, disparity, window.left_valid});
+  }
 
  public:
   StreamIn<WindowSums, SelectMinTree, &SelectMinTree::take> sums_in{"sums_in", this};
 
   explicit SelectMinTree(const sc_core::sc_module_name& name) : sc_module(name) {}
-
-  const Stats& stats() const { return stats_; }
-
- private:
-  Stats stats_;
 };
 
 }  // namespace stereotlm::fpga

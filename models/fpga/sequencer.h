@@ -14,11 +14,6 @@ namespace stereotlm::fpga {
 // takes its next slot.
 class Sequencer : public sc_core::sc_module {
  public:
-  struct Stats {
-    std::uint64_t slots = 0;
-    std::uint64_t empty_slots = 0;  // also counted in `slots`
-  };
-
   StreamOut<Slot> left_out{"left_out"};
   // Unbound with joint tables: their reader takes the slots of both sides from left_out.
   sc_core::sc_port<StreamIf<Slot>, 1, sc_core::SC_ZERO_OR_MORE_BOUND> right_out{"right_out"};
@@ -27,27 +22,20 @@ class Sequencer : public sc_core::sc_module {
 
   // Sends the slot at this place of the sequence to one side, in the cycle that is `at` from now.
   void issue(Side side, const SlotCursor& place, const sc_core::sc_time& at) {
-    Stats& stats = stats_[static_cast<std::size_t>(side)];
-    ++stats.slots;
-    stats.empty_slots += std::uint64_t{place.empty()};
+    ++slots_[index_of(side)];
     const Slot slot = {place.column(), place.row(), place.empty(), at};
     side == Side::kLeft ? left_out->push(slot) : right_out->push(slot);
   }
   // Sends it to the reader of joint tables, for both sides.
   void issue_to_both(const SlotCursor& place, const sc_core::sc_time& at) {
     issue(Side::kLeft, place, at);
-    count(Side::kRight, {1, std::uint64_t{place.empty()}});
+    ++slots_[index_of(Side::kRight)];
   }
-  // Adds the counts of a frame whose slots were not sent.
-  void count(Side side, const Stats& frame) {
-    Stats& stats = stats_[static_cast<std::size_t>(side)];
-    stats.slots += frame.slots;
-    stats.empty_slots += frame.empty_slots;
-  }
-  const Stats& stats(Side side) const { return stats_[static_cast<std::size_t>(side)]; }
+  // The number of slots that were sent to a side, the empty ones too.
+  std::uint64_t slots(Side side) const { return slots_[index_of(side)]; }
 
  private:
-  std::array<Stats, 2> stats_{};
+  std::array<std::uint64_t, 2> slots_{};  // [side]
 };
 
 }  // namespace stereotlm::fpga

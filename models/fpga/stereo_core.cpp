@@ -53,11 +53,7 @@ StereoCore::StereoCore(const sc_core::sc_module_name& name, const StereoCoreConf
 }
 
 void StereoCore::start_frame(const FrameStart& start) {
-  for (std::size_t port = 0; port < kCorePortCount; ++port) {
-    if (!has_port(config_.core, port) || frames_.has_bank(start.bases[port])) continue;
-    register_file_.refuse_start();
-    return;
-  }
+  if (!frames_.has_banks(start.bases)) return register_file_.refuse_start();
   datapath_.start_frame(start.bases, start.joint_offsets);
   errors_before_ = datapath_.errors();
   // Cycle 0 is the first that begins at or after the strobe.
@@ -70,13 +66,6 @@ void StereoCore::start_frame(const FrameStart& start) {
   }
   frames_.strobe(start.time_ps);
   start_event_.notify(sc_core::SC_ZERO_TIME);
-}
-
-// Called after the cycle in which the last write of a stepped frame was granted.
-void StereoCore::finish_frame() {
-  host_port_.count_words_in_frame();
-  frames_.finish();
-  host_port_.count_words_outside();
 }
 
 void StereoCore::frame_ended(bool failed) {
@@ -151,9 +140,9 @@ void StereoCore::run_cycles() {
     std::uint64_t next = frames_.cycle();
     if (!frames_.is_running()) {
       // No cycle matters before the next request. (A frame may begin before it.)
-      const bool pending = local_bus_.word_waits();
-      if (pending && local_bus_.request_ps() > clock_.edge_ps(next))
-        next = clock_.edge_at_or_after(local_bus_.request_ps());
+      const bool pending = local_bus_.control().word_waits();
+      if (pending && local_bus_.control().request_ps() > clock_.edge_ps(next))
+        next = clock_.edge_at_or_after(local_bus_.control().request_ps());
       if (frames_.is_finishing() && (!pending || next >= frames_.done_cycle())) {
         const std::uint64_t end_ps = clock_.edge_ps(frames_.done_cycle());
         if (end_ps > now) {
@@ -185,7 +174,7 @@ void StereoCore::run_cycles() {
 // Runs the next cycle. Returns true if a burst of the local bus has ended in it.
 bool StereoCore::step(std::uint64_t edge_ps, const sc_core::sc_time& at) {
   const std::uint64_t cycle = frames_.cycle();
-  const bool host_requests = local_bus_.requests(edge_ps);
+  const bool host_requests = local_bus_.control().requests(edge_ps);
   PortMask granted = 0;
   bool host_is_served = false;
   bool burst_has_ended = false;
@@ -199,7 +188,7 @@ bool StereoCore::step(std::uint64_t edge_ps, const sc_core::sc_time& at) {
       if (host_reads_where_core_writes(grants)) serve_host();
       return datapath_.move(control(), decision, grants, at);
     });
-    if (control().frame_done()) finish_frame();
+    if (control().frame_done()) host_port_.finish_frame();
   } else {
     granted = crossbar_.arbitrate(cycle, host_requests ? memory::mask_of(kHostPort) : PortMask{0});
     if (host_requests) host_port_.record_cycle(cycle, has_host(granted));

@@ -10,8 +10,7 @@
 #include "models/clock.h"
 #include "models/fpga/core_config.h"
 #include "models/fpga/core_datapath.h"
-#include "models/fpga/fast_core.h"
-#include "models/fpga/fidelity.h"
+#include "models/fpga/fast/fast_core.h"
 #include "models/fpga/frame_run.h"
 #include "models/fpga/host_port.h"
 #include "models/fpga/local_bus.h"
@@ -92,15 +91,9 @@ class StereoCore : public sc_core::sc_module, private FastCore::Board {
   void end_of_elaboration() override { host_port_.set_only_master(registers.size() == 0); }
 
   void start_frame(const FrameStart& start);
-  void finish_frame();
   void route_host(const HostRoute& route);
 
   std::uint64_t horizon_ps() const override;
-  DirectFrame::Memory direct_memory(const DirectFrame::Buffers& buffers,
-                                    const kernels::JointOffsets& offsets) override {
-    return datapath_.direct_memory(buffers, offsets);
-  }
-  std::uint8_t* direct_disparities() override { return datapath_.direct_disparities(); }
   void frame_ended(bool failed) override;
   void failed(const std::string& why) override;
   void stalled(std::uint64_t cycles) override;
@@ -122,9 +115,14 @@ class StereoCore : public sc_core::sc_module, private FastCore::Board {
   LocalBus local_bus_{"local_bus_port", config_.local_bus, config_.memory.banks.size()};
   CoreDatapath datapath_;
   HostPort host_port_{local_bus_.control(), crossbar_, crossbar_.arbitration(), frames_, clock_};
-  FastCore fast_core_{
-      config_.core, config_.fidelity == Fidelity::kFast, frames_, host_port_, local_bus_.control(), clock_,
-      *this};
+  FastCore fast_core_{config_.core,
+                      config_.fidelity == Fidelity::kFast,
+                      frames_,
+                      host_port_,
+                      local_bus_.control(),
+                      crossbar_,
+                      clock_,
+                      *this};
   StreamIn<FrameStart, StereoCore, &StereoCore::start_frame> start_in_{"start_in", this};
   StreamIn<HostRoute, StereoCore, &StereoCore::route_host> route_in_{"route_in", this};
 

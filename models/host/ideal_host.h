@@ -7,7 +7,7 @@
 #include <systemc>
 #include <vector>
 
-#include "models/fpga/buffer_bases.h"
+#include "models/fpga/core_ports.h"
 #include "models/host/frame_source.h"
 #include "models/kernels/gray_image.h"
 #include "models/kernels/joint_table.h"

@@ -5,7 +5,7 @@
 
 namespace stereotlm::memory {
 
-static_assert(kBankCountRule.max <= 64, "visited() has a bit for each bank");
+static_assert(kBankCountRule.max <= 64, "shared() has a bit for each bank");
 
 Arbitration::Arbitration(const ArbiterConfig& arbiter, const std::vector<SsramBankConfig>& banks)
     : port_count_(arbiter.priority.size()) {
@@ -29,7 +29,7 @@ void Arbitration::check_route(Port port, std::size_t bank) const {
 void Arbitration::route(Port port, std::size_t bank, bool write) {
   check_route(port, bank);
   settle();
-  visited_ = 0;
+  shared_ = 0;
   set_route(port, bank, write);
   share_banks();
 }
@@ -37,32 +37,24 @@ void Arbitration::route(Port port, std::size_t bank, bool write) {
 void Arbitration::unroute(Port port) {
   check_route(port, 0);
   settle();
-  visited_ = 0;
+  shared_ = 0;
   routed_ = static_cast<PortMask>(routed_ & ~mask_of(port));
   share_banks();
 }
 
 void Arbitration::visit(Port port, std::size_t bank, bool write) {
   check_route(port, bank);
-  const std::size_t index = index_of_shared(bank);
-  if (index == shared_bank_count_ || is_alone(port)) {
-    PortMask ports = mask_of(port);
-    for (std::size_t other = 0; other < kMostPorts; ++other) {
-      if (is_routed(other) && routes_[other].bank == bank)
-        ports = static_cast<PortMask>(ports | mask_of(other));
-    }
-    settle(ports);
-    visited_ |= std::uint64_t{1} << bank;
+  if (!is_shared(bank) || is_alone(port)) {
+    settle(static_cast<PortMask>(ports_on(bank) | mask_of(port)));
+    shared_ |= std::uint64_t{1} << bank;
     set_route(port, bank, write);
     share_banks();
     return;
   }
-  if (is_routed(port)) {
-    const std::size_t left = index_of_shared(routes_[port].bank);
-    if (left != shared_bank_count_)
-      shared_banks_[left].ports = static_cast<PortMask>(shared_banks_[left].ports & ~mask_of(port));
-  }
-  shared_banks_[index].ports = static_cast<PortMask>(shared_banks_[index].ports | mask_of(port));
+  for (SharedBank& shared : shared_banks_)
+    shared.ports = static_cast<PortMask>(shared.ports & ~mask_of(port));
+  SharedBank& shared = *find_shared(bank);
+  shared.ports = static_cast<PortMask>(shared.ports | mask_of(port));
   set_route(port, bank, write);
 }
 
@@ -72,18 +64,16 @@ void Arbitration::set_route(Port port, std::size_t bank, bool write) {
   writes_ = static_cast<PortMask>((writes_ & ~mask_of(port)) | (write ? mask_of(port) : 0U));
 }
 
-// The index of a bank in shared_banks_, or their number.
-std::size_t Arbitration::index_of_shared(std::size_t bank) const {
-  std::size_t index = 0;
-  while (index < shared_bank_count_ && shared_banks_[index].bank != bank) ++index;
-  return index;
+Arbitration::SharedBank* Arbitration::find_shared(std::size_t bank) {
+  return std::find_if(shared_banks_.begin(), shared_banks_.end(),
+                      [bank](const SharedBank& shared) { return shared.bank == bank; });
 }
 
-bool Arbitration::is_used_beside(Port port, std::size_t bank) const {
-  for (std::size_t other = 0; other < kMostPorts; ++other) {
-    if (other != port && is_routed(other) && routes_[other].bank == bank) return true;
-  }
-  return false;
+PortMask Arbitration::ports_on(std::size_t bank) const {
+  unsigned ports = 0;
+  for (std::size_t port = 0; port < kMostPorts; ++port)
+    ports |= unsigned{is_routed(port) && routes_[port].bank == bank} << port;
+  return static_cast<PortMask>(ports);
 }
 
 std::size_t Arbitration::cause_of(Port port, PortMask granted) const {
@@ -98,9 +88,11 @@ std::size_t Arbitration::cause_of(Port port, PortMask granted) const {
 
 std::vector<Stall> Arbitration::stalls_of(const Decided& decided) {
   std::array<std::array<std::uint64_t, kMostPorts + 1>, kMostPorts> sums{};  // [port][by]
-  for (const Decided::Shared& shared : decided.shared) {
-    BankArbiter::visit_stalls(shared.outcome,
-                              [&](Port port, std::size_t by) { sums[port][by] += shared.cycles; });
+  for (const auto& [decision, cycles] : decided) {
+    if (decision >> 32U == 0) continue;
+    BankArbiter::visit_stalls(
+        static_cast<BankArbiter::Outcome>(decision),
+        [&sums, count = cycles](Port port, std::size_t by) { sums[port][by] += count; });
   }
   std::vector<Stall> stalls;
   for (Port port = 0; port < kMostPorts; ++port) {
@@ -111,42 +103,25 @@ std::vector<Stall> Arbitration::stalls_of(const Decided& decided) {
   return stalls;
 }
 
-BankArbiter::Outcome Arbitration::decide_unrouted(std::size_t bank, std::uint64_t cycle, Port port,
-                                                  bool write) {
-  return arbiters_[bank].decide(cycle, mask_of(port), write ? mask_of(port) : PortMask{0});
-}
-
-// Finds the uncontended ports and the shared banks. Visited banks without a port are forgotten.
+// Finds the uncontended ports, and the shared banks in the order of their first ports. A bank that was shared
+// stays so as long as it has a port.
 void Arbitration::share_banks() {
+  const std::uint64_t were_shared = std::exchange(shared_, 0);
   recording_ = false;
   alone_ = 0;
   shared_bank_count_ = 0;
-  std::uint64_t visited = 0;
-  std::array<PortMask, kMostPorts> together{};  // [port]: the ports on its bank
-  for (std::size_t i = 0; i < kMostPorts; ++i) {
-    if (!is_routed(i)) continue;
-    for (std::size_t other = 0; other < kMostPorts; ++other) {
-      const bool same_bank = is_routed(other) && routes_[other].bank == routes_[i].bank;
-      together[i] = static_cast<PortMask>(together[i] | unsigned{same_bank} << other);
-    }
-  }
-  for (std::size_t i = 0; i < kMostPorts; ++i) {
-    const auto port_mask = static_cast<PortMask>(1U << i);
-    if (together[i] == 0 || lowest_port(together[i]) != i) continue;
-    const std::size_t bank = routes_[i].bank;
-    BankArbiter& arbiter = arbiters_[bank];
-    const std::uint64_t visit = visited_ & std::uint64_t{1} << bank;
-    visited |= visit;
-    if (together[i] == port_mask && !arbiter.needs_turnaround() && visit == 0) {
-      alone_ = static_cast<PortMask>(alone_ | port_mask);
+  for (std::size_t port = 0; port < kMostPorts; ++port) {
+    if (!is_routed(port)) continue;
+    const std::size_t bank = routes_[port].bank;
+    const PortMask together = ports_on(bank);
+    if (lowest_port(together) != port) continue;
+    if (together == mask_of(port) && (were_shared >> bank & 1U) == 0 && !arbiters_[bank].needs_turnaround()) {
+      alone_ = static_cast<PortMask>(alone_ | mask_of(port));
     } else {
-      SharedBank& shared = shared_banks_[shared_bank_count_++];
-      shared.bank = bank;
-      shared.arbiter = &arbiter;
-      shared.ports = together[i];
+      shared_ |= std::uint64_t{1} << bank;
+      shared_banks_[shared_bank_count_++] = {bank, &arbiters_[bank], together};
     }
   }
-  visited_ = visited;
 }
 
 // Adds the grants of uncontended ports to the counts of the arbiters.
@@ -161,11 +136,15 @@ void Arbitration::count_alone() const {
     alone_before_recording_[ports] -= alone_cycles_[ports];
   alone_cycles_ = {};
   for (std::size_t port = 0; port < kMostPorts; ++port) {
-    const std::uint64_t grants = cycles[port] - retracted_grants_[port];
-    arbiters_[routes_[port].bank].count_alone(mask_of(port), routes_[port].write, grants);
-    alone_grants_[port] += grants;
+    arbiters_[routes_[port].bank].count_alone(mask_of(port), routes_[port].write, cycles[port]);
+    alone_grants_[port] += cycles[port];
   }
-  retracted_grants_ = {};
+}
+
+// Counts modulo 2^64.
+void Arbitration::retract_grants(Port port, std::uint64_t grants) {
+  arbiters_[routes_[port].bank].count_alone(mask_of(port), routes_[port].write, 0 - grants);
+  alone_grants_[port] -= grants;
 }
 
 // To be called when no grant of these ports can be retracted any more: counts as count_alone() does, and
@@ -189,7 +168,8 @@ PortMask Arbitration::arbitrate_shared(std::uint64_t cycle, PortMask requests) {
     BankArbiter& arbiter = *shared->arbiter;
     const BankArbiter::Outcome outcome = arbiter.decide(cycle, asking, writes_);
     arbiter.count(cycle, outcome);
-    if (recording_) shared->recorded.push_back(outcome);
+    if (recording_)
+      recorded_.push_back(static_cast<std::uint64_t>(shared - shared_banks_.data() + 1) << 32U | outcome);
     granted = static_cast<PortMask>(granted | arbiter.granted_in(outcome));
   }
   return granted;
@@ -204,7 +184,7 @@ Arbitration::State Arbitration::state(std::uint64_t cycle) const {
 void Arbitration::begin_recording() {
   recording_ = true;
   alone_before_recording_ = alone_cycles_;
-  for (std::size_t i = 0; i < shared_bank_count_; ++i) shared_banks_[i].recorded.clear();
+  recorded_.clear();
 }
 
 Arbitration::Decided Arbitration::take_recorded() {
@@ -212,16 +192,12 @@ Arbitration::Decided Arbitration::take_recorded() {
   Decided decided;
   for (std::size_t ports = 1; ports < alone_cycles_.size(); ++ports) {
     const std::uint64_t cycles = alone_cycles_[ports] - alone_before_recording_[ports];
-    if (cycles != 0) decided.alone.push_back({ports, cycles});
+    if (cycles != 0) decided.emplace_back(ports, cycles);
   }
-  for (std::size_t bank = 0; bank < shared_bank_count_; ++bank) {
-    std::vector<BankArbiter::Outcome>& recorded = shared_banks_[bank].recorded;
-    std::sort(recorded.begin(), recorded.end());
-    for (auto first = recorded.begin(); first != recorded.end();) {
-      const auto last = std::upper_bound(first, recorded.end(), *first);
-      decided.shared.push_back({bank, *first, static_cast<std::uint64_t>(last - first)});
-      first = last;
-    }
+  std::sort(recorded_.begin(), recorded_.end());
+  for (const std::uint64_t decision : recorded_) {
+    if (decided.empty() || decided.back().first != decision) decided.emplace_back(decision, 0);
+    ++decided.back().second;
   }
   return decided;
 }
@@ -232,9 +208,14 @@ void Arbitration::skip_to(const State& state, std::uint64_t cycle, std::uint64_t
 }
 
 void Arbitration::count_skipped(const Decided& decided, std::uint64_t times) {
-  for (const auto& [ports, cycles] : decided.alone) alone_cycles_[ports] += cycles * times;
-  for (const auto& [bank, outcome, cycles] : decided.shared)
-    shared_banks_[bank].arbiter->count_skipped(outcome, cycles * times);
+  for (const auto& [decision, cycles] : decided) {
+    if (decision >> 32U == 0) {
+      alone_cycles_[decision] += cycles * times;
+    } else {
+      const auto outcome = static_cast<BankArbiter::Outcome>(decision);
+      shared_banks_[(decision >> 32U) - 1].arbiter->count_skipped(outcome, cycles * times);
+    }
+  }
 }
 
 void Arbitration::begin_counting(std::uint64_t first_cycle) {

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "models/memory/bank_arbiter.h"
@@ -37,14 +38,14 @@ class Arbitration {
   // record of decisions is continued.
   void visit(Port port, std::size_t bank, bool write);
   // Whether the bank has several ports, or turnaround, or was visited.
-  bool is_shared(std::size_t bank) const { return index_of_shared(bank) != shared_bank_count_; }
-  // The banks that were visited: bit b for bank b.
-  std::uint64_t visited() const { return visited_; }
+  bool is_shared(std::size_t bank) const { return (shared_ >> bank & 1U) != 0; }
+  // All such banks: bit b for bank b.
+  std::uint64_t shared() const { return shared_; }
   std::size_t bank_of(Port port) const { return routes_[port].bank; }  // bank of its last route
   bool writes(Port port) const { return routes_[port].write; }         // direction of its last route
   bool is_routed(Port port) const { return (routed_ >> port & 1U) != 0; }
   // Whether a port other than this one is routed to the bank.
-  bool is_used_beside(Port port, std::size_t bank) const;
+  bool is_used_beside(Port port, std::size_t bank) const { return (ports_on(bank) & ~mask_of(port)) != 0; }
 
   // Decides the requests of one cycle, and returns the ports granted. `cycle` must increase from call to
   // call; a cycle that is left out has no request.
@@ -65,50 +66,20 @@ class Arbitration {
   // before it knows which table entries are valid, and then subtracts the grants of the slots that passed. To
   // be called before the bank is visited, another route changes, or counting ends: at that time the remaining
   // grants move the state of the bank's policy.
-  void retract_grants(Port port, std::uint64_t grants) { retracted_grants_[port] += grants; }
+  void retract_grants(Port port, std::uint64_t grants);
 
-  // Decides one request for a bank that no routed port requests. `port` needs no route; `write` is the
-  // direction. The outcome is counted only when it is passed to count_unrouted().
-  BankArbiter::Outcome decide_unrouted(std::size_t bank, std::uint64_t cycle, Port port, bool write);
-  void count_unrouted(std::size_t bank, std::uint64_t cycle, BankArbiter::Outcome outcome,
-                      std::uint64_t cycles) {
-    arbiters_[bank].count(cycle, outcome, cycles);
-  }
-  bool needs_turnaround(std::size_t bank) const { return arbiters_[bank].needs_turnaround(); }
-  bool grants(std::size_t bank, BankArbiter::Outcome outcome) const {
-    return arbiters_[bank].granted_in(outcome) != 0;
-  }
+  // The arbiter of a bank that no routed port requests, for requests of a port without route.
+  BankArbiter& arbiter(std::size_t bank) { return arbiters_[bank]; }
+  const BankArbiter& arbiter(std::size_t bank) const { return arbiters_[bank]; }
 
   // The state that determines all arbitration from `cycle` on, as long as no route changes: one word for each
   // shared bank, then zeros.
   using State = std::array<std::uint64_t, kMostPorts>;
   State state(std::uint64_t cycle) const;
-  // The decisions of several cycles, by outcome. Valid as long as no route changes.
-  struct Decided {
-    struct Shared {
-      std::size_t bank;  // index in shared_banks_
-      BankArbiter::Outcome outcome;
-      std::uint64_t cycles;  // number of cycles with this outcome
-
-      friend bool operator==(const Shared& a, const Shared& b) {
-        return a.bank == b.bank && a.outcome == b.outcome && a.cycles == b.cycles;
-      }
-    };
-    struct Alone {
-      std::size_t ports;     // mask of the uncontended ports granted
-      std::uint64_t cycles;  // number of cycles with exactly these grants
-
-      friend bool operator==(const Alone& a, const Alone& b) {
-        return a.ports == b.ports && a.cycles == b.cycles;
-      }
-    };
-    std::vector<Shared> shared;
-    std::vector<Alone> alone;
-
-    friend bool operator==(const Decided& a, const Decided& b) {
-      return a.shared == b.shared && a.alone == b.alone;
-    }
-  };
+  // The decisions of several cycles, valid as long as no route changes: pairs of a decision and the number of
+  // its cycles. A decision is the mask of the uncontended ports granted; or an outcome of a shared bank, with
+  // 1 + the index of the bank in the upper half.
+  using Decided = std::vector<std::pair<std::uint64_t, std::uint64_t>>;
   // The stalls among them, without zero cycles, sorted by port and cause.
   static std::vector<Stall> stalls_of(const Decided& decided);
   // For FastForward, which steps a group of columns, records its decisions, and skips the groups that repeat
@@ -142,12 +113,12 @@ class Arbitration {
     std::size_t bank = 0;
     BankArbiter* arbiter = nullptr;
     PortMask ports = 0;
-    std::vector<BankArbiter::Outcome> recorded;
   };
 
   void check_route(Port port, std::size_t bank) const;
   void set_route(Port port, std::size_t bank, bool write);
-  std::size_t index_of_shared(std::size_t bank) const;
+  SharedBank* find_shared(std::size_t bank);
+  PortMask ports_on(std::size_t bank) const;
   void share_banks();
   void count_alone() const;
   void settle(PortMask ports = kAllPorts);
@@ -157,8 +128,8 @@ class Arbitration {
   mutable std::vector<BankArbiter> arbiters_;
   std::array<Route, kMostPorts> routes_{};
   PortMask routed_ = 0;
-  PortMask writes_ = 0;        // ports whose route writes
-  std::uint64_t visited_ = 0;  // see visited()
+  PortMask writes_ = 0;       // ports whose route writes
+  std::uint64_t shared_ = 0;  // see shared()
   // Uncontended ports: each is alone on a bank that is not shared. They need no arbitration; their grants are
   // added to the counts of the arbiters later, at the latest when the arbiters are queried.
   PortMask alone_ = 0;
@@ -167,12 +138,11 @@ class Arbitration {
   mutable AloneCycles alone_cycles_{};
   mutable AloneCycles
       alone_before_recording_{};  // modulo 2^64: its difference to alone_cycles_ is the record
-  mutable std::array<std::uint64_t, kMostPorts>
-      retracted_grants_{};  // [port]: to be subtracted from alone_cycles_
   mutable std::array<std::uint64_t, kMostPorts> alone_grants_{};  // [port]: counted since settle()
   std::array<SharedBank, kMostPorts> shared_banks_{};
   std::size_t shared_bank_count_ = 0;
   bool recording_ = false;
+  std::vector<std::uint64_t> recorded_;  // the decisions of shared banks, as in Decided
 };
 
 }  // namespace stereotlm::memory

@@ -12,16 +12,16 @@ constexpr bool contend(std::size_t requests) { return (requests & (requests - 1)
 
 }  // namespace
 
-DecisionTable::DecisionTable(const ArbiterConfig& config)
-    : policy_(find_arbitration_policy(checked(config).policy)), list_(config.priority) {}
+// With separate ports an access never delays one in the other direction: both may be granted in one cycle.
+BankArbiter::BankArbiter(const ArbiterConfig& config, const SsramBankConfig& bank)
+    : policy_(find_arbitration_policy(checked(config).policy)),
+      list_(config.priority),
+      has_separate_ports_(has_separate_ports(checked(bank).kind)),
+      positions_{PolicyPosition{&row_of(0)}, PolicyPosition{&row_of(0)}},
+      other_direction_cycles_(has_separate_ports_ ? 0
+                                                  : static_cast<std::uint64_t>(bank.turnaround_cycles) + 1) {}
 
-DecisionTable::Row& DecisionTable::Row::after_idle_cycles(std::uint64_t cycles) {
-  Row* row = this;
-  for (; cycles > 0 && row->after_idle != row; --cycles) row = row->after_idle;
-  return *row;
-}
-
-DecisionTable::Row& DecisionTable::row_of(ArbitrationPolicy::State state) {
+BankArbiter::Row& BankArbiter::row_of(ArbitrationPolicy::State state) {
   const auto [entry, is_new] = rows_.try_emplace(state);
   Row& row = entry->second;
   if (is_new) {
@@ -31,40 +31,27 @@ DecisionTable::Row& DecisionTable::row_of(ArbitrationPolicy::State state) {
   return row;
 }
 
-void DecisionTable::fill(Row& row, PortMask requests) {
-  Decision& decision = row.decisions[requests];
-  if (decision.is_known()) return;
-  const Port winner = policy_->winner(list_, row.state, requests);
-  decision.if_granted = &row_of(policy_->next(list_, row.state, requests, mask_of(winner)));
-  decision.if_refused = &row_of(policy_->next(list_, row.state, requests, 0));
-  decision.winner = winner;
-}
-
-// With separate ports an access never delays one in the other direction: both may be granted in one cycle.
-BankArbiter::BankArbiter(const ArbiterConfig& config, const SsramBankConfig& bank)
-    : table_(config),
-      port_count_(config.priority.size()),
-      has_separate_ports_(has_separate_ports(checked(bank).kind)),
-      positions_{PolicyPosition{&table_.row_of(0)}, PolicyPosition{&table_.row_of(0)}},
-      other_direction_cycles_(has_separate_ports_ ? 0
-                                                  : static_cast<std::uint64_t>(bank.turnaround_cycles) + 1) {}
-
-// Computes a decision of the row. Every decision is computed before it is used, so its requests are checked
-// here, and not in each cycle.
-void BankArbiter::fill(DecisionTable::Row& row, PortMask requests) {
-  if (requests == 0 || (requests >> port_count_) != 0) {
+// Computes a decision of the row if it is not known. Every decision is computed before it is used, so its
+// requests are checked here, and not in each cycle.
+const BankArbiter::Decision& BankArbiter::decision_of(Row& row, PortMask requests) {
+  if (requests == 0 || (requests >> list_.size()) != 0) {
     throw std::invalid_argument("requests = " + std::to_string(unsigned{requests}) +
                                 ": must be a mask of one or more of the ports 0.." +
-                                std::to_string(port_count_ - 1));
+                                std::to_string(list_.size() - 1));
   }
-  table_.fill(row, requests);
+  Decision& decision = row.decisions[requests];
+  if (decision.is_known()) return decision;
+  decision.winner = policy_->winner(list_, row.state, requests);
+  decision.if_granted = &row_of(policy_->next(list_, row.state, requests, mask_of(decision.winner)));
+  decision.if_refused = &row_of(policy_->next(list_, row.state, requests, 0));
+  return decision;
 }
 
 // Fills a missing row or decision, then decides. Seldom called, and out of line so that decide() stays small.
 BankArbiter::Outcome BankArbiter::prepare_and_decide(PolicyPosition& position, std::uint64_t cycle,
                                                      PortMask requests, PortMask writes) {
   position = {&position.at(cycle), cycle};
-  fill(*position.row, requests);
+  decision_of(*position.row, requests);
   return decide_at(position, cycle, requests, writes);
 }
 
@@ -101,8 +88,7 @@ void BankArbiter::count_alone(PortMask port, bool write, std::uint64_t cycles) {
 // ArbitrationPolicy).
 void BankArbiter::grant_alone(PortMask port, bool write) {
   PolicyPosition& position = position_of(write);
-  fill(*position.row, port);
-  position.row = position.row->decisions[port].if_granted;
+  position.row = decision_of(*position.row, port).if_granted;
   ++position.next_cycle;
 }
 
@@ -115,24 +101,14 @@ std::uint64_t BankArbiter::state(std::uint64_t cycle) const {
 
 void BankArbiter::skip_to(std::uint64_t state, std::uint64_t cycle, std::uint64_t cycles) {
   static_assert(kTurnaroundRule.max < 0xffff);
-  positions_[0] = {&table_.row_of(static_cast<ArbitrationPolicy::State>(state)), cycle};
+  positions_[0] = {&row_of(static_cast<ArbitrationPolicy::State>(state)), cycle};
   if (has_separate_ports_) {
-    positions_[1] = {&table_.row_of(static_cast<ArbitrationPolicy::State>(state >> 32U)), cycle};
+    positions_[1] = {&row_of(static_cast<ArbitrationPolicy::State>(state >> 32U)), cycle};
   } else {
     ready_cycle_ = {cycle + (state >> 32U & 0xffffU), cycle + (state >> 48U)};
   }
-  if (!counting_) return;
   next_uncounted_cycle_ += cycles;
   idle_cycles_ += cycles;
-}
-
-void BankArbiter::count_skipped(Outcome outcome, std::uint64_t cycles) {
-  if (counting_) {
-    add(outcome, cycles);
-    idle_cycles_ -= cycles;
-  } else {
-    add_uncounted(outcome, cycles);
-  }
 }
 
 void BankArbiter::begin_counting(std::uint64_t first_cycle) {

@@ -26,40 +26,6 @@ struct ArbiterStats {
       blame{};  // [stalled port][port granted, or kTurnaround]: stall cycles
 };
 
-// Memo of an arbitration policy for BankArbiter: one row for each state that was reached.
-class DecisionTable {
- public:
-  struct Row;
-  struct Decision {
-    Row* if_granted = nullptr;  // the next state if the winner is granted
-    Row* if_refused = nullptr;  // the next state if the bank is turning round
-    std::size_t winner = 0;     // index of the port
-
-    bool is_known() const { return if_granted != nullptr; }
-  };
-  struct Row {
-    ArbitrationPolicy::State state = 0;
-    Row* after_idle = nullptr;  // the next state after a cycle without request
-    std::array<Decision, std::size_t{1} << kMostPorts> decisions;  // [mask of requests]; see fill()
-
-    // The row after some cycles without request.
-    Row& after_idle_cycles(std::uint64_t cycles);
-  };
-
-  // Throws std::invalid_argument if the configuration has problems.
-  explicit DecisionTable(const ArbiterConfig& config);
-
-  // Returns the row of a state, which is added if there is none. Rows are never moved or removed.
-  Row& row_of(ArbitrationPolicy::State state);
-  // Computes row.decisions[requests] if it is not known. `requests` has at least one port.
-  void fill(Row& row, PortMask requests);
-
- private:
-  const ArbitrationPolicy* policy_;
-  PriorityList list_;
-  std::unordered_map<ArbitrationPolicy::State, Row> rows_;
-};
-
 // Decides in each cycle which port may access one bank (contract section 2). The policy chooses the winner
 // first. If the bank is still turning round for the winner's direction, no port is granted. A bank with
 // separate ports grants one read and one write in a cycle: each direction has a state of the policy, and only
@@ -121,10 +87,13 @@ class BankArbiter {
   // bits each for the cycles until a read and until a write can be granted. For a bank with separate ports:
   // the policy's state for reads in the lower 32 bits, and its state for writes in the upper 32 bits.
   std::uint64_t state(std::uint64_t cycle) const;
-  // Skips the `cycles` cycles before `cycle`, after which the state is `state`. count_skipped() counts the
-  // outcomes of the skipped cycles.
+  // Skips the `cycles` cycles before `cycle`, which are counted by stats(). After them the state is `state`.
+  // count_skipped() counts the outcomes of skipped cycles.
   void skip_to(std::uint64_t state, std::uint64_t cycle, std::uint64_t cycles);
-  void count_skipped(Outcome outcome, std::uint64_t cycles);
+  void count_skipped(Outcome outcome, std::uint64_t cycles) {
+    add(outcome, cycles);
+    idle_cycles_ -= cycles;
+  }
 
   // stats() counts only the cycles from `first_cycle` up to `end_cycle`, `end_cycle` not included. In all
   // other cycles only the accesses are counted, in uncounted_accesses().
@@ -139,13 +108,32 @@ class BankArbiter {
  private:
   static constexpr std::size_t kMasks = std::size_t{1} << kMostPorts;
 
+  // The memo of the policy: one row for each state that was reached. Rows are never moved or removed.
+  struct Row;
+  struct Decision {
+    Row* if_granted = nullptr;  // the next state if the winner is granted
+    Row* if_refused = nullptr;  // the next state if the bank is turning round
+    std::size_t winner = 0;     // index of the port
+
+    bool is_known() const { return if_granted != nullptr; }
+  };
+  struct Row {
+    ArbitrationPolicy::State state = 0;
+    Row* after_idle = nullptr;               // the next state after a cycle without request
+    std::array<Decision, kMasks> decisions;  // [mask of requests]; see decision_of()
+  };
   // A state of the policy.
   struct PolicyPosition {
-    DecisionTable::Row* row;       // row of the state in next_cycle
+    Row* row;                      // row of the state in next_cycle
     std::uint64_t next_cycle = 0;  // first cycle that is not decided
 
     // The row of the state in `cycle`, after cycles without request since next_cycle.
-    DecisionTable::Row& at(std::uint64_t cycle) const { return row->after_idle_cycles(cycle - next_cycle); }
+    Row& at(std::uint64_t cycle) const {
+      Row* reached = row;
+      for (std::uint64_t idle = cycle - next_cycle; idle > 0 && reached->after_idle != reached; --idle)
+        reached = reached->after_idle;
+      return *reached;
+    }
   };
 
   // Half of an outcome. `by`: index of the port that was granted, or ArbiterStats::kTurnaround. `write`: 1
@@ -163,7 +151,7 @@ class BankArbiter {
 
   Outcome decide_at(PolicyPosition& position, std::uint64_t cycle, PortMask requests, PortMask writes) {
     const bool is_idle_over = cycle == position.next_cycle || position.row->after_idle == position.row;
-    const DecisionTable::Decision& decision = position.row->decisions[requests];
+    const Decision& decision = position.row->decisions[requests];
     if (!is_idle_over || !decision.is_known()) return prepare_and_decide(position, cycle, requests, writes);
     position.next_cycle = cycle + 1;
     const std::size_t write = writes >> decision.winner & 1U;
@@ -188,10 +176,13 @@ class BankArbiter {
     uncounted_accesses_ += static_cast<unsigned>(__builtin_popcount(granted_in(outcome))) * cycles;
   }
 
-  void fill(DecisionTable::Row& row, PortMask requests);
+  // Returns the row of a state, which is added if there is none.
+  Row& row_of(ArbitrationPolicy::State state);
+  const Decision& decision_of(Row& row, PortMask requests);
 
-  DecisionTable table_;
-  std::size_t port_count_;
+  const ArbitrationPolicy* policy_;
+  PriorityList list_;
+  std::unordered_map<ArbitrationPolicy::State, Row> rows_;
   bool has_separate_ports_;
   // Of [0] reads, [1] writes. Without separate ports [0] is of both.
   std::array<PolicyPosition, 2> positions_;

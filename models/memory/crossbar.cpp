@@ -27,11 +27,11 @@ std::vector<std::string> problems(const CrossbarConfig& config) {
 
 Crossbar::Crossbar(const sc_core::sc_module_name& name, const CrossbarConfig& config)
     : sc_module(name),
+      DirectBanks(config.banks.size()),
       ports("port", config.arbiter.priority.size()),
       banks("bank", config.banks.size()),
       arbitration_(checked(this->name(), config).arbiter, config.banks),
       silent_ports_(config.silent_ports),
-      direct_accesses_(config.banks.size()),
       direct_banks_(config.banks.size()) {
   for (Port port = 0; port < ports.size(); ++port) {
     targets_.emplace_back(*this, port);
@@ -81,7 +81,7 @@ void Crossbar::PortTarget::b_transport(tlm::tlm_generic_payload& access, sc_core
 
 bool Crossbar::may_have_changed(Port port, std::uint64_t first, std::uint64_t end) {
   const bool is_open = (open_banks_ >> bank_of_address(first) & 1U) != 0;
-  return watch_.may_have_changed(port, first, end) || is_open;
+  return DirectBanks::may_have_changed(port, first, end) || is_open;
 }
 
 unsigned char* Crossbar::direct(std::uint64_t address, std::uint64_t bytes) {
@@ -99,8 +99,6 @@ unsigned char* Crossbar::direct(std::uint64_t address, std::uint64_t bytes) {
   if (!dmi || first < dmi->get_start_address() || first + bytes - 1 > dmi->get_end_address()) return nullptr;
   return dmi->get_dmi_ptr() + (first - dmi->get_start_address());
 }
-
-void Crossbar::changes(std::uint64_t first, std::uint64_t bytes) { watch_.changes(first, bytes); }
 
 void Crossbar::refuse(tlm::tlm_generic_payload& access) const {
   access.set_response_status(has_bank(access.get_address()) ? tlm::TLM_GENERIC_ERROR_RESPONSE

@@ -11,8 +11,6 @@
 #include <vector>
 
 #include "models/memory/arbitration.h"
-#include "models/memory/change_watch.h"
-#include "models/memory/crossbar_address.h"
 #include "models/memory/direct_banks.h"
 #include "models/memory/memory_config.h"
 
@@ -56,9 +54,6 @@ class Crossbar : public sc_core::sc_module, public DirectBanks {
   // Directs the accesses of the port to this bank without routing it: the port takes no part in arbitrate(),
   // and each of its accesses needs a grant().
   void aim(Port port, std::size_t bank, bool write);
-  void unroute(Port port) {
-    if (can_route(port, 0)) arbitration_.unroute(port);
-  }
   std::size_t bank_of(Port port) const { return arbitration_.bank_of(port); }  // bank of its last route
   // Decides the requests of one cycle, and returns the ports granted.
   PortMask arbitrate(std::uint64_t cycle, PortMask requests) {
@@ -69,18 +64,11 @@ class Crossbar : public sc_core::sc_module, public DirectBanks {
   Arbitration& arbitration() { return arbitration_; }
   const Arbitration& arbitration() const { return arbitration_; }
 
-  // Whether the words at byte addresses first .. end - 1 on the crossbar may have changed since the last call
-  // for this port. True in the first call, and if the last call was for other addresses.
-  bool may_have_changed(Port port, std::uint64_t first, std::uint64_t end);
-  void changes(std::uint64_t first, std::uint64_t bytes) override;
+  // True also if a silent port may have written them.
+  bool may_have_changed(Port port, std::uint64_t first, std::uint64_t end) override;
   unsigned char* direct(std::uint64_t address, std::uint64_t bytes) override;
-  // Adds to direct_accesses().
-  void count_direct(std::size_t bank, std::uint64_t accesses) override { direct_accesses_[bank] += accesses; }
   void allow_access(Port port) override { grant(mask_of(port)); }
-  std::uint64_t direct_accesses(std::size_t bank) const { return direct_accesses_[bank]; }
 
-  void begin_counting(std::uint64_t first_cycle) { arbitration_.begin_counting(first_cycle); }
-  void end_counting(std::uint64_t end_cycle) { arbitration_.end_counting(end_cycle); }
   const std::vector<BankArbiter>& arbiters() const { return arbitration_.arbiters(); }
 
  private:
@@ -116,10 +104,8 @@ class Crossbar : public sc_core::sc_module, public DirectBanks {
 
   Arbitration arbitration_;
   std::deque<PortTarget> targets_;
-  ChangeWatch watch_;
   PortMask silent_ports_;
   std::uint64_t open_banks_ = 0;  // bit `bank`: a silent port has direct access to the bank
-  std::vector<std::uint64_t> direct_accesses_;
   std::vector<std::optional<tlm::tlm_dmi>> direct_banks_;  // [bank]: direct access that is not revoked
   PortMask granted_ = 0;  // grants of the current cycle that are not yet used
 };

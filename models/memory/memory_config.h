@@ -14,6 +14,16 @@ namespace stereotlm::memory {
 inline constexpr kernels::IntegerRule kBankWordsRule{1, std::int64_t{1} << 26};
 inline constexpr kernels::IntegerRule kBankCountRule{1, 64};
 
+// A byte address on the crossbar: bits 28 and up are the bank, the lower bits the byte in that bank.
+inline constexpr unsigned kBankAddressBits = 28;
+constexpr std::uint64_t crossbar_address(std::uint64_t bank, std::uint64_t word) {
+  return bank << kBankAddressBits | word << 2U;
+}
+constexpr std::uint64_t address_in_bank(std::uint64_t address) {
+  return address & ((std::uint64_t{1} << kBankAddressBits) - 1);
+}
+constexpr std::uint64_t bank_of_address(std::uint64_t address) { return address >> kBankAddressBits; }
+
 // The index of a port on the banks: 0 .. n-1. The module that owns the ports names them (fpga/core_ports.h).
 using Port = std::size_t;
 // The largest number of ports. The tables of the arbiters grow with 2^kMostPorts.

@@ -25,19 +25,60 @@ using Entry = YamlNode::Entry;
 
 constexpr std::size_t kMaximumBuffers = 3;  // entries of an image or disparity list
 
-Key integer(const char* path, int* (*field)(BoardConfig&), std::string meaning, const char* unit,
-            const IntegerRule& rule) {
-  return {path, std::move(meaning), unit, IntegerKey{field}, rule.text(), rule};
+// The value of a key's field. The accessors need a board that is not const.
+template <typename Field>
+auto value_of(Field field, const BoardConfig& board) {
+  return *field(const_cast<BoardConfig&>(board));
 }
 
+Key integer(const char* path, int* (*field)(BoardConfig&), std::string meaning, const char* unit,
+            const IntegerRule& rule) {
+  Key made = {path, std::move(meaning), unit, IntegerKey{field}, rule.text(), rule};
+  made.write = [field](const BoardConfig& board) {
+    return YamlNode::plain(std::to_string(value_of(field, board)));
+  };
+  made.read = [field](ValueReader& values, const Key& key, const Entry& entry, BoardConfig& board) {
+    if (const auto value = values.read_integer(key, entry.value)) *field(board) = *value;
+  };
+  return made;
+}
+
+// An integer, or a word that stands for no value.
 Key integer_or(const char* none, const char* path, std::optional<int>* (*field)(BoardConfig&),
                const char* meaning, const char* unit, const IntegerRule& rule) {
-  return {path, meaning, unit, OptionalIntegerKey{none, field}, rule.text() + " or " + none, rule};
+  Key made = {path, meaning, unit, {}, rule.text() + " or " + none, rule};
+  made.write = [none, field](const BoardConfig& board) {
+    const std::optional<int> number = value_of(field, board);
+    return number ? YamlNode::plain(std::to_string(*number)) : YamlNode::word(none);
+  };
+  made.read = [none, field](ValueReader& values, const Key& key, const Entry& entry, BoardConfig& board) {
+    if (entry.value.is(none)) {
+      values.accept(key.path, entry.value.place);
+      *field(board) = std::nullopt;
+    } else if (const auto value = values.read_integer(key, entry.value)) {
+      *field(board) = *value;
+    }
+  };
+  return made;
 }
 
 Key decimal(const char* path, double* (*field)(BoardConfig&), const char* meaning, const char* unit,
             double min, double max) {
-  return {path, meaning, unit, DecimalKey{min, max, field}, fmt::format("{}..{}", min, max), std::nullopt};
+  const DecimalKey kind = {min, max, field};
+  Key made = {path, meaning, unit, kind, fmt::format("{}..{}", min, max), std::nullopt};
+  made.write = [field](const BoardConfig& board) {
+    return YamlNode::plain(decimal_text(value_of(field, board)));
+  };
+  made.read = [kind](ValueReader& values, const Key& key, const Entry& entry, BoardConfig& board) {
+    const auto value = decimal_of(entry.value);
+    if (!value || !kind.allows(*value)) {
+      const char* const type = value ? "" : "not a decimal number (such as 29.97, not in quotes); ";
+      return values.report(key.path, entry.value, type + key.rule_text);
+    }
+    values.accept(key.path, entry.value.place);
+    *kind.field(board) = *value;
+  };
+  return made;
 }
 
 // A key of one of a few words. The field is an enumeration, whose values are in the order of the words, or
@@ -45,31 +86,38 @@ Key decimal(const char* path, double* (*field)(BoardConfig&), const char* meanin
 template <typename Field>
 Key word(const char* path, Field field, const char* meaning, const std::vector<std::string>& words) {
   using Value = std::remove_pointer_t<decltype(field(std::declval<BoardConfig&>()))>;
-  WordKey key;
-  key.words = words;
+  WordKey kind;
+  kind.words = words;
   if constexpr (std::is_same_v<Value, std::string>) {
-    key.get = [field](const BoardConfig& board) { return *field(const_cast<BoardConfig&>(board)); };
-    key.set = [field, words](BoardConfig& board, int index) {
+    kind.get = [field](const BoardConfig& board) { return value_of(field, board); };
+    kind.set = [field, words](BoardConfig& board, int index) {
       *field(board) = words[static_cast<std::size_t>(index)];
     };
   } else {
-    key.get = [field, words](const BoardConfig& board) {
-      const auto index = static_cast<std::size_t>(*field(const_cast<BoardConfig&>(board)));
+    kind.get = [field, words](const BoardConfig& board) {
+      const auto index = static_cast<std::size_t>(value_of(field, board));
       return index < words.size() ? words[index] : std::to_string(index);
     };
-    key.set = [field](BoardConfig& board, int index) { *field(board) = static_cast<Value>(index); };
+    kind.set = [field](BoardConfig& board, int index) { *field(board) = static_cast<Value>(index); };
   }
-  return {path, meaning, "", std::move(key), listed(words), std::nullopt};
+  Key made = {path, meaning, "", kind, listed(words), std::nullopt};
+  made.write = [kind](const BoardConfig& board) { return YamlNode::word(kind.get(board)); };
+  made.read = [kind](ValueReader& values, const Key& key, const Entry& entry, BoardConfig& board) {
+    if (const auto index = values.read_word(key.path, entry.value, kind.words)) kind.set(board, *index);
+  };
+  return made;
 }
 
+// A value with code of its own.
 template <typename Read, typename Write>
 Key coded(const char* path, Read read, Write write, std::string meaning, std::string rule) {
-  return {path, std::move(meaning), "", CodedKey{read, write}, std::move(rule), std::nullopt};
+  return {path, std::move(meaning), "", {}, std::move(rule), std::nullopt, false, write, read};
 }
 
+// A part of the value of another key, whose code reads and writes it; or a key of a bank.
 Key part(const char* path, std::string meaning, const char* unit, std::string rule,
          const std::optional<IntegerRule>& numbers = std::nullopt) {
-  return {path, std::move(meaning), unit, PartKey{}, std::move(rule), numbers};
+  return {path, std::move(meaning), unit, {}, std::move(rule), numbers};
 }
 
 Key optional(Key key) {
@@ -350,8 +398,11 @@ std::vector<Key> make_keys() {
       optional(integer(
           "pci.width_bits", [](B& b) { return &b.pci.width_bits; },
           "width of the PCI bus; optional, without it 32", "bits", pci::kWidthRule)),
-      optional({"pci.load", "a third-party master that loads the PCI bus; optional, without it none", "",
-                SectionKey{}, "none or a map of burst_words, interval_us, first_us, access_us",
+      optional({"pci.load",
+                "a third-party master that loads the PCI bus; optional, without it none",
+                "",
+                {},
+                "none or a map of burst_words, interval_us, first_us, access_us",
                 std::nullopt}),
       integer(
           "pci.load.burst_words", [](B& b) { return &b.pci.load.value().burst_words; },
@@ -458,12 +509,6 @@ std::vector<Key> make_keys() {
   };
 }
 
-// The value of a key's field. The accessors need a board that is not const.
-template <typename FieldKey>
-auto field(const FieldKey& key, const BoardConfig& board) {
-  return *key.field(const_cast<BoardConfig&>(board));
-}
-
 }  // namespace
 
 const std::vector<Key>& board_keys() {
@@ -488,78 +533,6 @@ const Key& board_key(std::string_view path) {
 
 bool has_key(const BoardConfig& board, const Key& key) {
   return board.pci.load.has_value() || !is_below(key.path, "pci.load");
-}
-
-namespace {
-
-// Overloads for each kind of key.
-struct ToNode {
-  const BoardConfig& board;
-
-  YamlNode operator()(const IntegerKey& key) const {
-    return YamlNode::plain(std::to_string(field(key, board)));
-  }
-  YamlNode operator()(const OptionalIntegerKey& key) const {
-    const std::optional<int> number = field(key, board);
-    return number ? YamlNode::plain(std::to_string(*number)) : YamlNode::word(key.none);
-  }
-  YamlNode operator()(const DecimalKey& key) const {
-    return YamlNode::plain(decimal_text(field(key, board)));
-  }
-  YamlNode operator()(const WordKey& key) const { return YamlNode::word(key.get(board)); }
-  YamlNode operator()(const CodedKey& key) const { return key.write(board); }
-  template <typename Other>
-  YamlNode operator()(const Other& /*key*/) const {
-    throw std::logic_error("a key without a value of its own");
-  }
-};
-
-struct FromNode {
-  ValueReader& values;
-  const Key& key;
-  const Entry& entry;
-  BoardConfig& board;
-
-  void operator()(const IntegerKey& kind) const {
-    if (const auto value = values.read_integer(key, entry.value)) *kind.field(board) = *value;
-  }
-  void operator()(const OptionalIntegerKey& kind) const {
-    if (entry.value.is(kind.none)) {
-      values.accept(key.path, entry.value.place);
-      *kind.field(board) = std::nullopt;
-    } else if (const auto value = values.read_integer(key, entry.value)) {
-      *kind.field(board) = *value;
-    }
-  }
-  void operator()(const DecimalKey& kind) const {
-    const auto value = decimal_of(entry.value);
-    if (!value || !kind.allows(*value)) {
-      const char* const type = value ? "" : "not a decimal number (such as 29.97, not in quotes); ";
-      return values.report(key.path, entry.value, type + key.rule_text);
-    }
-    values.accept(key.path, entry.value.place);
-    *kind.field(board) = *value;
-  }
-  void operator()(const WordKey& kind) const {
-    if (const auto index = values.read_word(key.path, entry.value, kind.words)) kind.set(board, *index);
-  }
-  void operator()(const CodedKey& kind) const { kind.read(values, key, entry, board); }
-  template <typename Other>
-  void operator()(const Other& /*kind*/) const {
-    throw std::logic_error(key.path + ": a key without a value of its own");
-  }
-};
-
-}  // namespace
-
-bool has_value(const Key& key) {
-  return !std::holds_alternative<SectionKey>(key.kind) && !std::holds_alternative<PartKey>(key.kind);
-}
-
-YamlNode value_node(const Key& key, const BoardConfig& board) { return std::visit(ToNode{board}, key.kind); }
-
-void read_value(ValueReader& values, const Key& key, const Entry& entry, BoardConfig& board) {
-  if (values.check_use(key.path, entry.value)) std::visit(FromNode{values, key, entry, board}, key.kind);
 }
 
 bool allows_number(const Key& key, const YamlNode& number) {

@@ -28,12 +28,6 @@ struct IntegerKey {
   int* (*field)(BoardConfig&);
 };
 
-// An integer, or a word that stands for no value.
-struct OptionalIntegerKey {
-  const char* none;
-  std::optional<int>* (*field)(BoardConfig&);
-};
-
 struct DecimalKey {
   double min;
   double max;
@@ -50,26 +44,18 @@ struct WordKey {
   std::function<void(BoardConfig&, int)> set;
 };
 
-// `pci.load`: `none`, or a map of the keys below it.
-struct SectionKey {};
-
-// A value with code of its own. `read` reports what is wrong with the value of `entry`, or sets the board.
-struct CodedKey {
-  std::function<void(ValueReader&, const Key&, const YamlNode::Entry& entry, BoardConfig&)> read;
-  std::function<YamlNode(const BoardConfig&)> write;
-};
-
-// A part of the value of another key, whose code reads and writes it; or a key of a bank.
-struct PartKey {};
-
 struct Key {
   std::string path;     // dotted; NAME stands for a bank's name
   std::string meaning;  // one line
   std::string unit;     // empty: none
-  std::variant<IntegerKey, OptionalIntegerKey, DecimalKey, WordKey, SectionKey, CodedKey, PartKey> kind;
-  std::string rule_text;               // the range or the allowed values
+  std::variant<std::monostate, IntegerKey, DecimalKey, WordKey> kind;  // monostate: any other
+  std::string rule_text;                                               // the range or the allowed values
   std::optional<IntegerRule> numbers;  // the rule for integers; nullopt: takes none
   bool is_optional = false;            // may be missing from its map
+  // The value as YAML; and its reader, which reports what is wrong with the value of `entry`, or sets the
+  // board. Empty for `pci.load`, for a part of the value of another key, and for a key of a bank.
+  std::function<YamlNode(const BoardConfig&)> write = nullptr;
+  std::function<void(ValueReader&, const Key&, const YamlNode::Entry& entry, BoardConfig&)> read = nullptr;
 };
 
 // All keys, in the order in which the writer of board files writes them.
@@ -78,12 +64,10 @@ const Key* find_key(std::string_view path);    // nullptr if there is no such ke
 const Key& board_key(std::string_view path);   // throws std::out_of_range
 bool has_key(const BoardConfig&, const Key&);  // false for a key below a `pci.load` that is not given
 
-// Whether boards have a value of this key: it is neither a SectionKey nor a PartKey.
-bool has_value(const Key& key);
-// The value of a key that has_value().
-YamlNode value_node(const Key& key, const BoardConfig& board);
-// Sets the value of a key that has_value(), or reports its problems.
-void read_value(ValueReader& values, const Key& key, const YamlNode::Entry& entry, BoardConfig& board);
+// Whether boards have a value of this key.
+inline bool has_value(const Key& key) { return key.write != nullptr; }
+// `pci.load`: `none`, or a map of the keys below it.
+inline bool is_section(const Key& key) { return key.path == "pci.load"; }
 // Whether the key allows a number. True for a key without a rule for numbers.
 bool allows_number(const Key& key, const YamlNode& number);
 

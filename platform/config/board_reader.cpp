@@ -7,7 +7,6 @@
 #include <set>
 #include <stdexcept>
 #include <utility>
-#include <variant>
 
 #include "platform/config/board_keys.h"
 
@@ -70,10 +69,10 @@ class BoardReader {
       const Key* const known = find_key(full);
       if (known == nullptr) {
         read_section(full, entry->value, entry->key.place);
-      } else if (std::holds_alternative<SectionKey>(known->kind)) {
+      } else if (is_section(*known)) {
         read_load(*known, *entry);
-      } else {
-        read_value(values_, *known, *entry, board_);
+      } else if (values_.check_use(known->path, entry->value)) {
+        known->read(values_, *known, *entry, board_);
       }
     }
   }

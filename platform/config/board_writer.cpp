@@ -34,8 +34,7 @@ YamlNode bank_node(const BankConfig& bank, const BankConfig* base) {
 // before there was the key. A section that may be absent is written in full.
 bool is_left_out(const Key& key, const YamlNode& value) {
   static const BoardConfig kDefaults;
-  return key.is_optional && has_key(kDefaults, key) &&
-         flow_text(value) == flow_text(value_node(key, kDefaults));
+  return key.is_optional && has_key(kDefaults, key) && flow_text(value) == flow_text(key.write(kDefaults));
 }
 
 // The section of a board file at this path: "" is the whole board.
@@ -51,11 +50,11 @@ YamlNode section_node(const std::string& path, const BoardConfig& board) {
       value = YamlNode::map();
       for (const BankConfig& bank : board.banks)
         value.add(YamlNode::word(bank.name), bank_node(bank, &board.banks.front()));
-    } else if (key == nullptr || std::holds_alternative<SectionKey>(key->kind)) {
+    } else if (key == nullptr || is_section(*key)) {
       if (key != nullptr && !board.pci.load) continue;
       value = section_node(full, board);
     } else {
-      value = value_node(*key, board);
+      value = key->write(board);
       if (is_left_out(*key, value)) continue;
     }
     map.add(YamlNode::plain(name), std::move(value));
@@ -96,7 +95,7 @@ std::vector<BoardValue> values_of(const BoardConfig& board) {
   std::vector<BoardValue> values;
   for (const Key& key : board_keys()) {
     if (has_value(key) && has_key(board, key))
-      values.push_back({key.path, plain_value(key, value_node(key, board))});
+      values.push_back({key.path, plain_value(key, key.write(board))});
   }
   for (const BankConfig& bank : board.banks) {
     const std::string path = below("ssram.banks", bank.name);

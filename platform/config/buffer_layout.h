@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "models/fpga/buffer_bases.h"
+#include "models/fpga/core_ports.h"
 #include "models/words_by_range.h"
 #include "platform/config/board_config.h"
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "models/fpga/buffer_bases.h"
+#include "models/fpga/core_ports.h"
 #include "models/host/program.h"
 #include "models/kernels/joint_table.h"
 #include "platform/config/board_config.h"

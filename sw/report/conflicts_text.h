@@ -3,7 +3,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "models/fpga/conflict_recorder.h"
+#include "models/fpga/record/conflict_recorder.h"
 #include "platform/config/board_config.h"
 
 namespace stereotlm::report {

@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-#include "models/fpga/row_profile.h"
+#include "models/fpga/record/row_recorder.h"
 #include "models/kernels/gray_image.h"
 #include "platform/config/board_config.h"
 #include "platform/statistics.h"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "models/fpga/core_cycle.h"
+#include "models/fpga/record/core_cycle.h"
 #include "platform/config/board_config.h"
 #include "platform/config/tables.h"
 #include "sw/files/output_file.h"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "models/fpga/conflict_recorder.h"
+#include "models/fpga/record/conflict_recorder.h"
 #include "platform/config/board_config.h"
 #include "platform/timeline_records.h"
 

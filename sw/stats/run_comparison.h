@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "models/fpga/row_profile.h"
+#include "models/fpga/record/row_recorder.h"
 #include "models/kernels/gray_image.h"
 #include "sw/files/output_file.h"
 

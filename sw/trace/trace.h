@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "models/clock.h"
-#include "models/fpga/core_cycle.h"
+#include "models/fpga/record/core_cycle.h"
 #include "platform/config/board_config.h"
 #include "sw/trace/trace_sink.h"
 

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "models/clock.h"
-#include "models/fpga/conflict_recorder.h"
 #include "models/fpga/core_ports.h"
 #include "models/fpga/frame_geometry.h"
+#include "models/fpga/record/conflict_recorder.h"
 #include "platform/config/board_config.h"
 
 namespace stereotlm::trace {

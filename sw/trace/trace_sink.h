@@ -6,7 +6,7 @@
 #include <memory>
 #include <optional>
 
-#include "models/fpga/core_cycle.h"
+#include "models/fpga/record/core_cycle.h"
 #include "platform/config/board_config.h"
 #include "platform/timeline_records.h"
 #include "platform/trace_records.h"

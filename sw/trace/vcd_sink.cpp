@@ -15,7 +15,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "models/memory/crossbar_address.h"
+#include "models/memory/memory_config.h"
 #include "sw/process/command.h"
 #include "sw/trace/change_stream.h"
 #include "sw/trace/trace_board.h"

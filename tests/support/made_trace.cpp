@@ -8,8 +8,8 @@
 #include <tuple>
 
 #include "models/clock.h"
-#include "models/fpga/conflict_recorder.h"
 #include "models/fpga/frame_geometry.h"
+#include "models/fpga/record/conflict_recorder.h"
 
 namespace stereotlm::test {
 namespace {

@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-#include "models/fpga/conflict_recorder.h"
+#include "models/fpga/record/conflict_recorder.h"
 #include "models/fpga/frame_geometry.h"
 #include "platform/audit.h"
 #include "platform/bounds.h"

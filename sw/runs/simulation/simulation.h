@@ -6,10 +6,10 @@
 #include <optional>
 #include <vector>
 
-#include "models/fpga/core_cycle.h"
-#include "models/fpga/cycle_recorder.h"
-#include "models/fpga/fidelity.h"
+#include "models/fpga/core_config.h"
 #include "models/fpga/frame_run.h"
+#include "models/fpga/record/core_cycle.h"
+#include "models/fpga/record/cycle_recorder.h"
 #include "models/host/frame_source.h"
 #include "models/kernels/gray_image.h"
 #include "platform/bus_trace.h"

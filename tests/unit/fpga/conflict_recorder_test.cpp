@@ -1,4 +1,4 @@
-#include "models/fpga/conflict_recorder.h"
+#include "models/fpga/record/conflict_recorder.h"
 
 #include <gtest/gtest.h>
 

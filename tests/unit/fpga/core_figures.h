@@ -21,7 +21,6 @@ class CoreFigures {
     }
     for (const memory::BankArbiter& arbiter : arbiters) add(arbiter);
     for (const Side side : kSides) line("consumed", {frames.control().lane(side).consumed()});
-    line("most queued", {static_cast<std::uint64_t>(frames.control().result().most_queued())});
   }
   explicit CoreFigures(const StereoCore& core) : CoreFigures(core.frames(), core.crossbar().arbiters()) {
     const LocalBus::Stats bus = core.local_bus_port().stats();

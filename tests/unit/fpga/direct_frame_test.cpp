@@ -1,4 +1,4 @@
-#include "models/fpga/direct_frame.h"
+#include "models/fpga/fast/direct_frame.h"
 
 #include <gtest/gtest.h>
 
@@ -9,6 +9,23 @@
 
 namespace stereotlm::fpga {
 namespace {
+
+// Banks that hold a buffer each.
+struct Buffers : memory::DirectBanks {
+  Buffers() : DirectBanks(kCorePortCount) {}
+  unsigned char* direct(std::uint64_t address, std::uint64_t /*bytes*/) override {
+    return of_port[memory::bank_of_address(address)];
+  }
+  void allow_access(memory::Port /*port*/) override {}
+  bool may_have_changed(memory::Port, std::uint64_t, std::uint64_t) override { return have_changed; }
+
+  std::array<unsigned char*, kCorePortCount> of_port{};
+  bool have_changed = true;
+};
+
+unsigned char* bytes_of(std::vector<std::uint32_t>& words) {
+  return reinterpret_cast<unsigned char*>(words.data());
+}
 
 // A frame with joint tables, whose sides need different offsets, and the same frame with separate tables.
 class DirectFrameJointTables : public testing::Test {
@@ -25,15 +42,11 @@ class DirectFrameJointTables : public testing::Test {
     }
     tables[1][9] = 0;
     joint = kernels::join_tables({8, 6, tables[0]}, {8, 6, tables[1]});
-    for (std::size_t side = 0; side < 2; ++side) {
-      memory.tables[side].entries = tables[side].data();
-      memory.images[side] = image.data();
-    }
-    memory.disparities = disparities.data();
-    joint_memory = memory;
-    joint_memory.tables = {};
-    joint_memory.tables[0].entries = joint.words.data();
-    joint_memory.joint_offsets = joint.offsets;
+    separate_buffers.of_port = {bytes_of(tables[0]), bytes_of(tables[1]), image.data(), image.data(),
+                                separate_disparities.data()};
+    joint_buffers.of_port = {bytes_of(joint.words), nullptr, image.data(), image.data(), disparities.data()};
+    for (std::uint32_t port = 0; port < kCorePortCount; ++port) bases[port] = registers::base(port, 0);
+    joint_frame.set_buffers(bases);
   }
   static CoreConfig config(bool has_joint_tables) {
     CoreConfig core = small_core(8, 6);
@@ -43,42 +56,43 @@ class DirectFrameJointTables : public testing::Test {
   }
   // Expects the accesses and disparities of the separate tables.
   void expect_separate() {
-    DirectFrame separate(config(false), true);
-    ASSERT_TRUE(separate.read(memory));
-    std::array<std::vector<std::uint8_t>, 2> written{disparities, disparities};
-    separate.write(written[0].data());
-    joint_frame.write(written[1].data());
-    EXPECT_EQ(written[1], written[0]);
+    DirectFrame separate(config(false), true, separate_buffers);
+    separate.set_buffers(bases);
+    ASSERT_TRUE(separate.read({}));
+    EXPECT_TRUE(separate.write());
+    EXPECT_TRUE(joint_frame.write());
+    EXPECT_EQ(disparities, separate_disparities);
     for (const std::size_t side : {0U, 1U}) {
       const AccessPattern& found = joint_frame.patterns()[side];
-      EXPECT_EQ(found.invalid_slots(), separate.patterns()[side].invalid_slots()) << side;
       EXPECT_EQ(found.pixel_accesses(), separate.patterns()[side].pixel_accesses()) << side;
     }
   }
   bool reads(std::size_t pixel, std::uint32_t word, bool may_have_changed = true) {
     joint.words[pixel] = word;
-    joint_memory.tables[0].may_have_changed = may_have_changed;
-    return joint_frame.read(joint_memory);
+    joint_buffers.have_changed = may_have_changed;
+    return joint_frame.read(joint.offsets);
   }
 
   std::array<std::vector<std::uint32_t>, 2> tables{kernels::identity_table(8, 6).entries,
                                                    kernels::identity_table(8, 6).entries};
   std::vector<std::uint8_t> image = std::vector<std::uint8_t>(8 * 6);
   std::vector<std::uint8_t> disparities = image;
-  DirectFrame::Memory memory;
+  std::vector<std::uint8_t> separate_disparities = image;
   kernels::JointTable joint;
-  DirectFrame::Memory joint_memory;
-  DirectFrame joint_frame{config(true), true};
+  FrameBases bases{};
+  Buffers separate_buffers;
+  Buffers joint_buffers;
+  DirectFrame joint_frame{config(true), true, joint_buffers};
 };
 
 TEST_F(DirectFrameJointTables, AreDecodedInTheFirstFrameAlsoIfTheyHaveNotChanged) {
-  joint_memory.tables[0].may_have_changed = false;
-  ASSERT_TRUE(joint_frame.read(joint_memory));
+  joint_buffers.have_changed = false;
+  ASSERT_TRUE(joint_frame.read(joint.offsets));
   expect_separate();
 }
 
 TEST_F(DirectFrameJointTables, AreDecodedAgainOnlyIfTheyOrARegisterMayHaveChanged) {
-  ASSERT_TRUE(joint_frame.read(joint_memory));
+  ASSERT_TRUE(joint_frame.read(joint.offsets));
   EXPECT_TRUE(reads(0, 0, false));
   expect_separate();
   EXPECT_TRUE(reads(0, 0));
@@ -87,13 +101,13 @@ TEST_F(DirectFrameJointTables, AreDecodedAgainOnlyIfTheyOrARegisterMayHaveChange
   // One pixel to the right, in place of one to the left.
   for (std::uint32_t& word : joint.words)
     if ((word >> 31U) != 0) word -= 1U << 16U;
-  ++joint_memory.joint_offsets[0].columns;
+  ++joint.offsets[0].columns;
   ASSERT_TRUE(reads(0, 0, false));
   expect_separate();
 }
 
 TEST_F(DirectFrameJointTables, AreNotReadIfAnEntryOfEitherSidePointsOutsideTheImage) {
-  ASSERT_TRUE(joint_frame.read(joint_memory));
+  ASSERT_TRUE(joint_frame.read(joint.offsets));
   constexpr std::uint32_t kNowhere = 0x7FFF;  // the largest displacements
   const std::uint32_t word = joint.words[0];
   for (const unsigned side : {16U, 0U}) {
@@ -104,14 +118,14 @@ TEST_F(DirectFrameJointTables, AreNotReadIfAnEntryOfEitherSidePointsOutsideTheIm
     EXPECT_TRUE(reads(0, word));
   }
   // A register moves all sources of a side.
-  for (kernels::JointOffset& offset : joint_memory.joint_offsets) {
+  for (kernels::JointOffset& offset : joint.offsets) {
     offset.rows += 6;
     EXPECT_FALSE(reads(0, word, false));
     offset.rows -= 6;
     EXPECT_TRUE(reads(0, word, false));
   }
-  joint_memory.tables[0].entries = nullptr;
-  EXPECT_FALSE(joint_frame.read(joint_memory));
+  joint_buffers.of_port[0] = nullptr;
+  EXPECT_FALSE(joint_frame.read(joint.offsets));
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // How few cycles are stepped. The random cores, boards and computers compare what is counted with frames that
 // are stepped and with the plain loops.
-#include "models/fpga/fast_forward.h"
+#include "models/fpga/fast/fast_forward.h"
 
 #include <gtest/gtest.h>
 

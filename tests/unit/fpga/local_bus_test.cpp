@@ -48,7 +48,7 @@ class LocalBusTest : public testing::Test {
   static void run_until(std::uint64_t edge) { sc_core::sc_start(local(edge) - sc_core::sc_time_stamp()); }
   // Grants a word in the cycle of the core that begins at `grant_ps`; usable two cycles later.
   void grant(std::uint64_t grant_ps) {
-    ASSERT_TRUE(bus.requests(grant_ps));
+    ASSERT_TRUE(bus.control().requests(grant_ps));
     bus.control().access(grant_ps, grant_ps + 2 * kCorePs);
   }
   // Reports that do not throw: the address sanitizer cannot follow an exception through the processes.
@@ -74,13 +74,13 @@ class LocalBusTest : public testing::Test {
 
 TEST_F(LocalBusTest, BeginsTheNextWordsClockAtOrAfterTheGrant) {
   host.request(TLM_WRITE_COMMAND, 0, Words{5, 6, 7});
-  EXPECT_EQ(bus.request_ps(), 3 * kLocalPs);
+  EXPECT_EQ(bus.control().request_ps(), 3 * kLocalPs);
   grant(3 * kLocalPs);  // at a local edge: the next word's clock begins there
-  EXPECT_EQ(bus.request_ps(), 4 * kLocalPs);
+  EXPECT_EQ(bus.control().request_ps(), 4 * kLocalPs);
   grant(4 * kLocalPs + 1);  // after an edge: it begins at the next
-  EXPECT_EQ(bus.request_ps(), 6 * kLocalPs);
+  EXPECT_EQ(bus.control().request_ps(), 6 * kLocalPs);
   grant(6 * kLocalPs);
-  EXPECT_FALSE(bus.word_waits());
+  EXPECT_FALSE(bus.control().word_waits());
   run_until(20);
   ASSERT_EQ(host.answers.size(), 1U);
   EXPECT_EQ(host.answers[0].status, tlm::TLM_OK_RESPONSE);
@@ -129,7 +129,8 @@ TEST_F(LocalBusTest, EndsAReadWhenItsLastWordIsUsable) {
   host.debug_write(8, {41, 42});
   host.request(TLM_READ_COMMAND, 8, Words(2));
   grant(3 * kLocalPs);
-  EXPECT_EQ(bus.request_ps(), 4 * kLocalPs);  // the next word is requested while the first is on its way
+  EXPECT_EQ(bus.control().request_ps(),
+            4 * kLocalPs);  // the next word is requested while the first is on its way
   grant(4 * kLocalPs);
   run_until(20);
   ASSERT_EQ(host.answers.size(), 1U);
@@ -179,7 +180,7 @@ TEST_F(LocalBusTest, RefusesAtOnceAccessesThatAreNoBurst) {
   binder.take_violations();
   EXPECT_EQ(bus.stats().errors, 3U);
   EXPECT_EQ(bus.stats().bursts, 0U);
-  EXPECT_FALSE(bus.word_waits());
+  EXPECT_FALSE(bus.control().word_waits());
   EXPECT_EQ(host.request(TLM_READ_COMMAND, crossbar_address(1, 0) - 4, 0), tlm::TLM_ACCEPTED);
   grant(3 * kLocalPs);
   EXPECT_EQ(host.read(0).status, tlm::TLM_GENERIC_ERROR_RESPONSE);  // blocking transport
@@ -213,7 +214,7 @@ TEST_P(LocalBusEndings, MakeRoomForTheNextBurst) {
   host.ending = GetParam();
   for (std::uint64_t burst = 0; burst < 3; ++burst) {
     host.request(TLM_WRITE_COMMAND, burst * 4, 1);
-    grant(bus.request_ps());
+    grant(bus.control().request_ps());
     sc_core::sc_start(host.answers.back().at - sc_core::sc_time_stamp());
     if (host.ending == TestHost::Ending::kAccepted) host.end_response();
   }

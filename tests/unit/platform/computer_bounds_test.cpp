@@ -96,7 +96,7 @@ TEST_F(ComputerBounds, CountTheAccessesOfTheCoreAndOfTheHostToABank) {
   EXPECT_DOUBLE_EQ(bound_of("bank bank4"), 40e6 * 2 / (2 * kPicture));  // written, and read back
   EXPECT_EQ(bound_of("bank bank6"), 0) << "no access";
   EXPECT_EQ(bound_of("bank bank0", false), 0);
-  accesses = {{500, 1000}, {700, 2000}};
+  accesses.reads = {500, 700, 1000, 2000};
   EXPECT_DOUBLE_EQ(bound_of("bank bank0"), 40e6 * 2 / (kPicture + 1000));
   EXPECT_DOUBLE_EQ(bound_of("bank bank3"), 40e6 * 2 / (kPicture + 2000));
   EXPECT_DOUBLE_EQ(bound_of("bank bank6"), 40e6 / 500);

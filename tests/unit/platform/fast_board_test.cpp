@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "models/fpga/register_map.h"
-#include "models/memory/crossbar_address.h"
+#include "models/memory/memory_config.h"
 #include "tests/support/scratch_folder.h"
 #include "tests/unit/platform/computer_registers.h"
 #include "tests/unit/platform/preloaded_run.h"

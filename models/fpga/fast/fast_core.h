@@ -5,10 +5,11 @@
 
 #include "models/clock.h"
 #include "models/fpga/core_registers.h"
-#include "models/fpga/direct_frame.h"
+#include "models/fpga/fast/direct_frame.h"
 #include "models/fpga/frame_run.h"
 #include "models/fpga/host_port.h"
 #include "models/fpga/local_bus_control.h"
+#include "models/memory/direct_banks.h"
 #include "models/time_ps.h"
 
 namespace stereotlm::fpga {
@@ -30,11 +31,6 @@ class FastCore {
     virtual ~Board() = default;
     // Nothing else can happen before this time, which is not before the present.
     virtual std::uint64_t horizon_ps() const = 0;
-    // Direct access to the buffers of a frame.
-    virtual DirectFrame::Memory direct_memory(const DirectFrame::Buffers& buffers,
-                                              const kernels::JointOffsets& offsets) = 0;
-    // The disparity buffer of the running frame; null if direct access is not granted any more.
-    virtual std::uint8_t* direct_disparities() = 0;
     // The frame has ended, now. `failed`: its result may differ from that at Fidelity::kCycle.
     virtual void frame_ended(bool failed) = 0;
     // The result of the running frame may differ from that at Fidelity::kCycle.
@@ -45,7 +41,7 @@ class FastCore {
 
   // `has_pixels`: whether disparities are computed. The other arguments outlive this object.
   FastCore(const CoreConfig& config, bool has_pixels, FrameRun& frames, HostPort& host_port,
-           LocalBusControl& local_bus, const Clock& clock, Board& board);
+           LocalBusControl& local_bus, memory::DirectBanks& banks, const Clock& clock, Board& board);
 
   // Starts the frame of a strobe in `cycle`, the first that begins at or after the strobe. Returns false if
   // the frame must be stepped, and starts none: memory grants no direct access, buffers overlap, tables
@@ -61,8 +57,6 @@ class FastCore {
 
  private:
   bool works_directly(const FrameStart& start);
-  void finish_frame();
-  void write_disparities();
   void end_frame();
   void report_hazard(const HostRoute& burst, memory::Port port);
   void fail(const std::string& why);

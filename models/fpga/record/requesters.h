@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
@@ -20,7 +21,11 @@ constexpr std::size_t requester_of(HostTraffic traffic) {
   return kCorePortCount + static_cast<std::size_t>(traffic);
 }
 // "left_lut", "host capture", "turnaround".
-const char* requester_name(std::size_t requester);
+constexpr const char* requester_name(std::size_t requester) {
+  constexpr std::array<const char*, kHostTraffics + 1> kOthers = {"host capture", "host upload",
+                                                                  "host read-back", "turnaround"};
+  return requester < kCorePortCount ? kPorts[requester].name : kOthers[requester - kCorePortCount];
+}
 // The port of a requester.
 constexpr memory::Port port_of_requester(std::size_t requester) {
   return requester < kCorePortCount ? requester : kHostPort;

@@ -11,7 +11,7 @@
 #include "models/fpga/access_pattern.h"
 #include "models/fpga/core_control.h"
 #include "models/fpga/core_ports.h"
-#include "models/fpga/requesters.h"
+#include "models/fpga/record/requesters.h"
 #include "models/memory/arbitration.h"
 #include "models/words_by_range.h"
 
@@ -98,19 +98,20 @@ class ConflictRecorder {
   void record_only(std::uint64_t frames) { frames_wanted_ = frames; }
 
   // For FrameRun. A frame whose start returns false is not recorded: nothing else may be called for it.
+  // `control` and `arbitration` are those of the core.
   bool start_frame(std::uint64_t cycle, const CoreControl& control, const memory::Arbitration& arbitration);
-  void end_frame(std::uint64_t end_cycle, const CoreControl& control);
+  void end_frame(std::uint64_t end_cycle);
 
   // For CoreStepper: these ports requested and were granted in a cycle. May be left out for a cycle in which
   // the host was not granted and nobody was refused.
-  void step(memory::PortMask requests, memory::PortMask granted, const memory::Arbitration& arbitration);
+  void step(memory::PortMask requests, memory::PortMask granted);
   // The group has been completed in the cycle before `next_cycle`.
-  void end_group(std::uint64_t next_cycle, const CoreControl& control);
+  void end_group(std::uint64_t next_cycle);
 
   // For FastForward, which skips groups and parts of groups, from this cycle on.
   void skip_from(std::uint64_t cycle) { cycle_ = cycle; }
   // A part of a group, but not its end.
-  void add_part(const GroupConflicts& part, const memory::Arbitration& arbitration);
+  void add_part(const GroupConflicts& part);
   // The number of columns up to the end of the strip: there the core must be in the state after them when
   // end_strip() is called.
   std::uint64_t strip_end_column() const {
@@ -118,10 +119,9 @@ class ConflictRecorder {
   }
   // These groups follow each other, and this `times` times. They end at the end of the strip at the latest.
   // The first one may be the rest of a group.
-  void repeat(const GroupConflicts* const* groups, std::size_t size, std::uint64_t times,
-              const memory::Arbitration& arbitration);
+  void repeat(const GroupConflicts* const* groups, std::size_t size, std::uint64_t times);
   bool is_at_strip_end() const { return group_ == (strip_ == 0 ? groups_of_fill_ : groups_of_strip_); }
-  void end_strip(const CoreControl& control);
+  void end_strip();
   // [side]: the passes of the pixel port are counted as grants until this is called with null.
   void assume_accesses(const std::array<const AccessPattern*, 2>& assumed) { assumed_ = assumed; }
 
@@ -151,7 +151,7 @@ class ConflictRecorder {
   std::uint64_t frames() const { return frames_; }
   const TileGrid& grid() const { return grid_; }
   // [tile]: [0] is the fill; then the tiles, row by row.
-  std::vector<std::uint64_t> tile_cycles() const;
+  const std::vector<std::uint64_t>& tile_cycles() const { return tile_cycles_; }
   // The stall cycles of one cause.
   struct Stalls : StallCause {
     std::vector<std::uint64_t> cycles;  // [tile]
@@ -180,6 +180,8 @@ class ConflictRecorder {
   std::size_t place_of(std::size_t strip, std::size_t group) const {
     return strip == 0 ? 0 : 1 + (strip - 1) * grid_.columns + (group >> group_shift_);
   }
+  // The first cycle after a strip that has ended.
+  std::uint64_t end_of(std::size_t strip) const { return ends_[place_of(strip, groups_of_strip_ - 1)]; }
   // The index in stalls_.
   std::size_t cause_of(std::size_t requester, std::size_t bank, std::size_t by) {
     const std::size_t index = indices_[(requester * banks_ + bank) * (kRequesters + 1) + by];
@@ -192,23 +194,10 @@ class ConflictRecorder {
   std::uint64_t& host_accesses(std::size_t strip, std::size_t bank, HostTraffic traffic) {
     return accesses_of(strip, bank)[1 + static_cast<std::size_t>(traffic)];
   }
-  void count_host_words(const GroupConflicts& group, std::uint64_t times,
-                        const memory::Arbitration& arbitration);
-  void add_stalls(const GroupConflicts& group, std::size_t first, std::size_t count, std::size_t step,
-                  const memory::Arbitration& arbitration);
-  void count_strip(const CoreControl& control);
+  void count_host_words(const GroupConflicts& group, std::uint64_t times);
+  void add_stalls(const GroupConflicts& group, std::size_t first, std::size_t count, std::size_t step);
+  void count_strip();
   std::size_t tiles() const { return 1 + grid_.columns * grid_.rows; }
-  // The group ends before cycle_.
-  void end_group_of_strip() {
-    const std::size_t group = group_++;
-    if (strip_ == 0) return;
-    const bool ends_place = (group_ & (grid_.groups_of_tile - 1)) == 0 || group_ == groups_of_strip_;
-    if (ends_place) end_place(place_of(strip_, group));
-  }
-  void end_place(std::size_t place) {
-    cycles_up_to_[place] += cycle_ - first_cycle_;
-    if (!ends_.empty()) ends_[place] = cycle_;
-  }
   void count_served();
 
   FrameGeometry geometry_;
@@ -223,6 +212,8 @@ class ConflictRecorder {
   HostTraffic traffic_ = HostTraffic::kCapture;
 
   // The running frame.
+  const CoreControl* control_ = nullptr;
+  const memory::Arbitration* arbitration_ = nullptr;
   bool is_recording_ = false;
   std::uint64_t first_cycle_ = 0;
   std::uint64_t cycle_ = 0;     // the first one after the last group, and the transitions skipped since then
@@ -231,19 +222,15 @@ class ConflictRecorder {
   std::size_t strip_tile_ = 0;  // the first tile of this strip
   std::array<std::uint64_t, kCorePortCount> grants_{};  // [port]: up to the end of the strip before
   std::array<const AccessPattern*, 2> assumed_{};
-  // [place_of()]: the first cycle after the part of a tile in its strip. Only if the host may be refused in
-  // an uncontended bank: then its stalls are brought to their tiles when the frame has ended.
+  // [place_of()]: the first cycle after the part of a tile in its strip.
   std::vector<std::uint64_t> ends_;
-  std::vector<std::uint64_t> strip_ends_;  // [strip]: the first cycle after it
   std::vector<Served> served_;
   FrameConflicts frame_;
 
   std::uint64_t frames_begun_ = 0;
   std::uint64_t frames_ = 0;
   std::vector<FrameConflicts> ended_;
-  // [place_of()]: cycles of the frames up to the end of the part of a tile in its strip. Sums, because one
-  // addition for each group and frame is the main cost of recording.
-  std::vector<std::uint64_t> cycles_up_to_;
+  std::vector<std::uint64_t> tile_cycles_;
   std::vector<Stalls> stalls_;           // in the order of their first cycles
   std::vector<std::uint64_t> of_strip_;  // [index in stalls_]: cycles in the strip of the next group
   std::vector<std::size_t> indices_;     // [requester][bank][by]: 1 + the index in stalls_; 0: none yet

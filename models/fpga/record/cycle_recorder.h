@@ -4,30 +4,26 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <optional>
+#include <utility>
 
-#include "models/fpga/conflict_recorder.h"
 #include "models/fpga/core_control.h"
-#include "models/fpga/core_cycle.h"
 #include "models/fpga/core_ports.h"
+#include "models/fpga/record/conflict_recorder.h"
+#include "models/fpga/record/core_cycle.h"
 #include "models/memory/arbitration.h"
 
 namespace stereotlm::fpga {
 
-// The words that the host port has to serve.
-class HostWords {
- public:
-  struct Word {
-    std::size_t bank = 0;
-    std::uint64_t address = 0;  // byte address in the bank
-    HostTraffic traffic = HostTraffic::kCapture;
-  };
-  virtual ~HostWords() = default;
-  // Whether a word requests, or will do so.
-  virtual bool word_waits() const = 0;
-  // The word that requests next. To be called if word_waits().
-  virtual Word next_word() const = 0;
+// A word of the host that requests, or will do so.
+struct HostWord {
+  std::size_t bank = 0;
+  std::uint64_t address = 0;  // byte address in the bank
+  HostTraffic traffic = HostTraffic::kCapture;
 };
+// The word that requests next, if there is one.
+using NextHostWord = std::function<std::optional<HostWord>()>;
 
 // Reports to an observer what every port does in each cycle of a window. FastForward must not skip these
 // cycles. Addresses follow from the slots and from the look-up tables, so that memory need not hold them.
@@ -39,7 +35,7 @@ class CycleRecorder {
                 CycleObserver& observer);
   // The entries of the table of a side, row by row. To be called for each side with table.
   void set_entries(Side side, const std::uint32_t* entries) { entries_[index_of(side)] = entries; }
-  void set_host(const HostWords& host) { host_ = &host; }
+  void set_host(NextHostWord host) { host_ = std::move(host); }
 
   // For FrameRun.
   void start_frame(std::uint64_t number, std::uint64_t first_cycle, const FrameBases& bases);
@@ -58,7 +54,7 @@ class CycleRecorder {
   // `granted`, consecutive words are granted in `cycles` cycles from `cycle` on. Otherwise the first word
   // waits in these cycles because of the turnaround. To be called in the order of the cycles, and before the
   // frame is stepped there.
-  void host_accesses(const HostWords::Word& first, std::uint64_t cycle, std::uint64_t cycles, bool granted) {
+  void host_accesses(const HostWord& first, std::uint64_t cycle, std::uint64_t cycles, bool granted) {
     accesses_.push_back({first, cycle, cycles, granted});
   }
 
@@ -70,7 +66,7 @@ class CycleRecorder {
 
  private:
   struct Accesses {
-    HostWords::Word word;
+    HostWord word;
     std::uint64_t cycle;
     std::uint64_t cycles;
     bool granted;
@@ -79,10 +75,9 @@ class CycleRecorder {
   bool is_inside(std::uint64_t cycle) const;
   void record(std::uint64_t cycle, const CoreControl::Decision& decision, bool host_requests,
               memory::PortMask granted, const CoreControl& control, const memory::Arbitration& arbitration);
-  void set_item(PortCycle& port, memory::Port number, const CoreControl& control) const;
   std::uint64_t address_of(memory::Port port, std::uint64_t item);
   std::uint64_t pixel_of_slot(memory::Port port, std::uint64_t slot);
-  static void set_host(CoreCycle& cycle, const HostWords::Word& word, bool granted, std::size_t by);
+  static void set_host(CoreCycle& cycle, const HostWord& word, bool granted, std::size_t by);
   void set_access(CoreCycle& cycle) const;
   void drop_accesses(std::uint64_t end_cycle);
   void report_accesses(std::uint64_t end_cycle);
@@ -93,7 +88,7 @@ class CycleRecorder {
   CycleWindow window_;
   CycleObserver& observer_;
   std::array<const std::uint32_t*, 2> entries_{};  // [side]
-  const HostWords* host_ = nullptr;
+  NextHostWord host_;
 
   std::optional<std::uint64_t> frame_;  // that runs
   std::uint64_t first_cycle_ = 0;       // of the frame

@@ -1,4 +1,4 @@
-#include "models/fpga/fast_forward.h"
+#include "models/fpga/fast/fast_forward.h"
 
 #include <algorithm>
 #include <stdexcept>
@@ -20,19 +20,15 @@ std::uint64_t empty_slots(const FrameGeometry& geometry, int strip) {
   return empty;
 }
 
-static_assert(2 * memory::kBankCountRule.max - 1 <= HostRequests::kMostRoute);
-
-std::size_t most_slots_of_group(const FrameGeometry& geometry, int lane_fifo_slots) {
-  return static_cast<std::size_t>(4 * geometry.slots_per_column + lane_fifo_slots);
-}
+static_assert(memory::kBankCountRule.max <= 1 << 6U &&
+              2 * memory::kBankCountRule.max - 1 <= HostRequests::kMostRoute);
 
 }  // namespace
 
-FastForward::FastForward(CoreStepper& stepper, int lane_fifo_slots, std::size_t most_groups)
-    : stepper_(stepper),
-      lane_fifo_slots_(static_cast<std::uint64_t>(lane_fifo_slots)),
-      accesses_(stepper),
-      known_(most_slots_of_group(control().geometry(), lane_fifo_slots), most_groups) {
+FastForward::FastForward(const CoreConfig& config, memory::Arbitration& arbitration)
+    : CoreStepper(config, arbitration),
+      lane_fifo_slots_(static_cast<std::uint64_t>(config.lane_fifo_slots)),
+      known_(static_cast<std::size_t>(4 * control().geometry().slots_per_column + config.lane_fifo_slots)) {
   const FrameGeometry& geometry = control().geometry();
   for (int strip = 0; strip < geometry.strips; ++strip) {
     const std::uint64_t empty = empty_slots(geometry, strip);
@@ -42,52 +38,70 @@ FastForward::FastForward(CoreStepper& stepper, int lane_fifo_slots, std::size_t 
   }
 }
 
-void FastForward::start_direct_frame(const AccessPatterns& patterns, std::uint64_t routes) {
-  start_frame();
-  accesses_.start_direct_frame(patterns);
-  tell_assumed();
-  routes_ = routes;
+void FastForward::start_direct_frame(const AccessPatterns& patterns, const FrameBases& bases) {
+  start_stepped_frame();
+  banks_ = 0;
+  for (const std::uint32_t base : bases) banks_ = banks_ << 6U | registers::bank_of(base);
   strips_ = 0;
-  for (const Side side : kSides) varying_[index_of(side)] = accesses_.varying(side);
+  for (const Side side : kSides) {
+    const AccessPattern* const pattern = &patterns[index_of(side)];
+    if (!control().lane(side).has_table() || pattern->needs_all_pixels()) continue;
+    const bool is_assumed = arbitration().is_alone(pixel_port(side));
+    (is_assumed ? assumed_ : varying_)[index_of(side)] = pattern;
+  }
+  tell_assumed();
 }
 
 void FastForward::start_stepped_frame() {
-  start_frame();
-  accesses_.start_stepped_frame();
-}
-
-void FastForward::start_frame() {
   if (ahead_.cycles != 0) throw std::logic_error("a frame starts before the last one was settled");
   stepped_.reset();
   is_walking_ = false;
+  varying_ = {};
+  assumed_ = {};
 }
 
 void FastForward::settle(std::uint64_t cycle) {
   stepped_.reset();
   leave_walk(cycle);
   for (const Side side : kSides) resolve_accesses(side);
-  if (is_host_routed_) stepper_.arbitration().unroute(kHostPort);
+  if (is_host_routed_) arbitration().unroute(kHostPort);
   is_host_routed_ = false;
 }
 
-void FastForward::resolve_accesses(Side side) {
-  accesses_.resolve(side);
-  varying_[index_of(side)] = accesses_.varying(side);
-  tell_assumed();
+// LaneControl::correct_marks() of a side.
+std::uint64_t FastForward::marks(Side side) const {
+  const LaneControl& lane = control().lane(side);
+  if (!lane.has_table() || lane.handled() == lane.taken()) return 0;
+  std::uint64_t marks = 0;
+  SlotCursor slot(control().geometry());
+  slot.advance(lane.handled());
+  for (std::uint64_t mark = 1, left = lane.taken() - lane.handled(); left > 0; --left, mark <<= 1U) {
+    if (!slot.empty() && accesses_pixel(side, slot)) marks |= mark;
+    slot.advance();
+  }
+  return marks;
 }
 
-void FastForward::tell_assumed() {
-  if (ConflictRecorder* const conflicts = stepper_.conflicts())
-    conflicts->assume_accesses({accesses_.assumed(Side::kLeft), accesses_.assumed(Side::kRight)});
+// To be called before the pixel port of a side ceases to be alone on its bank, and after the last cycle of a
+// frame. Corrects the counts. From now on the pattern determines which slots need their pixels.
+void FastForward::resolve_accesses(Side side) {
+  const AccessPattern* const pattern = std::exchange(assumed_[index_of(side)], nullptr);
+  if (pattern == nullptr) return;
+  varying_[index_of(side)] = pattern;
+  const std::uint64_t passed = pattern->passes_before(control().lane(side).handled());
+  control().correct_passes(side, passed);
+  control().correct_marks(side, marks(side));
+  arbitration().retract_grants(pixel_port(side), passed);
+  tell_assumed();
 }
 
 // `kMayRequest`: false where the host requests in no cycle, which is most of them and costs less.
 template <bool kMayRequest>
 memory::PortMask FastForward::step_core(std::uint64_t cycle, bool host_requests) {
-  return stepper_.step(cycle, kMayRequest && host_requests,
-                       [this](const CoreControl::Decision& /*decision*/, memory::PortMask granted) {
-                         return accesses_.needs_pixel(granted);
-                       });
+  return step(cycle, kMayRequest && host_requests,
+              [this](const CoreControl::Decision& /*decision*/, memory::PortMask granted) {
+                return needs_pixel(granted);
+              });
 }
 
 memory::PortMask FastForward::step(std::uint64_t cycle, bool host_requests) {
@@ -109,7 +123,7 @@ FastForward::Served FastForward::serve_host(std::uint64_t& cycle, const Route& r
                                             std::size_t words) {
   if (!is_walking_) stepped_.reset();  // a group that is begun without the burst is not recorded
   route_host(cycle, route, first);
-  if (ConflictRecorder* const conflicts = stepper_.conflicts()) conflicts->set_host_traffic(route.traffic);
+  if (ConflictRecorder* const conflicts = this->conflicts()) conflicts->set_host_traffic(route.traffic);
   host_ = {first, words, static_cast<std::uint8_t>(route.bank << 1U | std::size_t{route.write})};
   Served served;
   const std::uint64_t end = std::max(cycle, first) + kMostHostCycles;
@@ -138,7 +152,7 @@ FastForward::Served FastForward::serve_host(std::uint64_t& cycle, const Route& r
 
 // Routes the host to the bank. If a port is alone there, and ceases to be, runs up to `first` before.
 void FastForward::route_host(std::uint64_t& cycle, const Route& route, std::uint64_t first) {
-  memory::Arbitration& arbitration = stepper_.arbitration();
+  memory::Arbitration& arbitration = this->arbitration();
   const bool is_new = !arbitration.is_shared(route.bank);
   if (is_new) {
     cycle = run_ahead(cycle, std::max(cycle, first));
@@ -156,7 +170,7 @@ void FastForward::route_host(std::uint64_t& cycle, const Route& route, std::uint
 // Steps to the end of the group, or of the burst of the host, at most up to `end` or the end of the frame.
 std::uint64_t FastForward::step_group(std::uint64_t cycle, std::uint64_t end) {
   if (is_walking_) end_walk(cycle);
-  const auto is_over = [&] { return cycle >= end || stepper_.completed_group() || control().frame_done(); };
+  const auto is_over = [&] { return cycle >= end || completed_group() || control().frame_done(); };
   bool burst_ends = false;
   if (host_.words == 0) {
     do {
@@ -174,7 +188,7 @@ std::uint64_t FastForward::step_group(std::uint64_t cycle, std::uint64_t end) {
       cycle = skip_waiting(cycle, std::min(end, host_.first));
     } while (!burst_ends && !is_over());
   }
-  if (burst_ends || stepper_.completed_group()) begin_walk(cycle);
+  if (burst_ends || completed_group()) begin_walk(cycle);
   return cycle;
 }
 
@@ -182,7 +196,7 @@ std::uint64_t FastForward::step_group(std::uint64_t cycle, std::uint64_t end) {
 std::uint64_t FastForward::skip_waiting(std::uint64_t cycle, std::uint64_t end) {
   if (end <= cycle) return cycle;
   const std::uint64_t cycles = std::min(end - cycle, control().waiting_cycles());
-  if (cycles != 0) stepper_.control().skip_waiting(cycles);
+  if (cycles != 0) control().skip_waiting(cycles);
   skipped_cycles_ += cycles;
   return cycle + cycles;
 }
@@ -198,7 +212,7 @@ void FastForward::begin_walk(std::uint64_t cycle) {
   consumed_ = control().match().consumed();
   left_of_group_ = control().match().slots_of_group_left();
   is_walking_ = true;
-  if (ConflictRecorder* const conflicts = stepper_.conflicts()) conflicts->skip_from(cycle);
+  if (ConflictRecorder* const conflicts = this->conflicts()) conflicts->skip_from(cycle);
 }
 
 // Takes the core to the end of the walk.
@@ -215,7 +229,7 @@ void FastForward::end_walk(std::uint64_t cycle) {
   const TransitionCache::Accesses accesses = this->accesses();
   if (host_.words == 0 && known_.find(state_, accesses)) return;
   stepped_ = {state_, accesses, host_, progress(cycle), control().counts(), control().match().part()};
-  stepper_.arbitration().begin_recording();
+  arbitration().begin_recording();
 }
 
 // Follows the transitions to the ends of groups that are over before `end`.
@@ -234,10 +248,10 @@ std::uint64_t FastForward::walk(std::uint64_t cycle, std::uint64_t end) {
   do {
     Progress room = room_;
     room.cycles = end - cycle;
-    if (const ConflictRecorder* const conflicts = stepper_.conflicts())
+    if (const ConflictRecorder* const conflicts = this->conflicts())
       room.consumed = std::min(room.consumed, slots_to(conflicts->strip_end_column()));
     Progress skipped = room;
-    state_ = walk_known(state_, room);
+    state_ = varies() ? walk_varying(state_, room) : known_.walk(state_, {}, room, log());
     skipped.subtract(room);
     skip(skipped);
     cycle += skipped.cycles;
@@ -302,49 +316,43 @@ void FastForward::skip(const Progress& progress) {
 // See record_skipped().
 bool FastForward::hand_over(ConflictRecorder& conflicts, std::uint64_t cycle, std::uint64_t left_of_group) {
   if (in_order_.empty()) return false;
-  const memory::Arbitration& arbitration = stepper_.arbitration();
   for (auto next = in_order_.begin(); next != in_order_.end(); next += next->length) {
     const std::uint64_t consumed = known_.progress(next->effect).consumed;
     if (next->length == 1 && consumed < left_of_group) {
-      conflicts.add_part(known_.conflicts(next->effect), arbitration);
+      conflicts.add_part(known_.conflicts(next->effect));
       left_of_group -= consumed;
       continue;
     }
-    for (std::uint32_t step = 0; step < next->length; ++step) known_.conflicts((next + step)->effect);
     repeated_.clear();
     for (std::uint32_t step = 0; step < next->length; ++step)
       repeated_.push_back(&known_.conflicts((next + step)->effect));
-    conflicts.repeat(repeated_.data(), repeated_.size(), next->times, arbitration);
+    conflicts.repeat(repeated_.data(), repeated_.size(), next->times);
     left_of_group = slots_of_group();
   }
   in_order_.clear();
   if (!conflicts.is_at_strip_end()) return false;
   catch_up(cycle);
-  conflicts.end_strip(control());
+  conflicts.end_strip();
   return true;
 }
 
 // Takes the core and the arbiters to the state that the walk has reached.
 void FastForward::catch_up(std::uint64_t cycle) {
   if (ahead_.cycles == 0) return;
-  CoreControl& control = stepper_.control();
-  memory::Arbitration& arbitration = stepper_.arbitration();
+  CoreControl& control = this->control();
+  memory::Arbitration& arbitration = this->arbitration();
   known_.count_followed(control, arbitration);
   control.count_host(false, false, ahead_.cycles - host_ahead_.requests);
   control.count_host(true, false, host_ahead_.requests - host_ahead_.words);
   control.count_host(true, true, host_ahead_.words);
   control.skip_to(known_.state(state_).control, ahead_.consumed, ahead_.words);
-  for (const Side side : kSides) control.correct_marks(side, accesses_.marks(side));
+  for (const Side side : kSides) control.correct_marks(side, marks(side));
   arbitration.skip_to(known_.state(state_).arbitration, cycle, ahead_.cycles);
   ahead_ = {};
   host_ahead_ = {};
 }
 
 // Follows recorded transitions as far as there is room, which it reduces. Returns the state that comes next.
-FastForward::StateNumber FastForward::walk_known(StateNumber state, Progress& room) {
-  return varies() ? walk_varying(state, room) : known_.walk(state, {}, room, log());
-}
-
 FastForward::StateNumber FastForward::walk_varying(StateNumber state, Progress& room) {
   const std::uint64_t slots = slots_of_group();
   int alike = 0;  // groups with the accesses of the group before
@@ -404,7 +412,7 @@ Progress FastForward::room() const {
     return drains ? 0 : all_strips_[strips_].end - 1 - control().lane(side).taken();
   };
   return {UINT64_MAX, control().match().uniform_slots(), slots(Side::kLeft), slots(Side::kRight),
-          stepper_.rows().next_words() - control().result().words_written() - 1};
+          rows().next_words() - control().result().words_written() - 1};
 }
 
 // Whether a whole group fits into `room`. If not, nothing may be recorded: after a walk up to the last
@@ -432,11 +440,10 @@ TransitionCache::Accesses FastForward::accesses_from(std::uint64_t consumed, std
 
 // The number of slots from slot `consumed` on over which accesses_from() stays the same, group after group.
 std::uint64_t FastForward::uniform_slots(std::uint64_t consumed) const {
-  const std::uint64_t slots_per_column = slots_of_group() / 4;
   std::uint64_t uniform = UINT64_MAX;
   for (const AccessPattern* pattern : varying_) {
     if (pattern == nullptr) continue;
-    const std::uint64_t end = pattern->uniform_until(consumed / slots_per_column) * slots_per_column;
+    const std::uint64_t end = pattern->uniform_until(consumed);
     const std::uint64_t last = consumed + lane_fifo_slots_;
     uniform = std::min(uniform, end < last ? 0 : end - last);
   }
@@ -456,7 +463,7 @@ void FastForward::end_stepped(std::uint64_t cycle) {
   stepped_.reset();
   TransitionCache::Effect effect{progress(cycle),
                                  CoreControl::difference(control().counts(), stepped.counts),
-                                 stepper_.arbitration().take_recorded(),
+                                 arbitration().take_recorded(),
                                  {}};
   effect.progress.subtract(stepped.begin);
   HostRequests requests;
@@ -486,14 +493,14 @@ Progress FastForward::progress(std::uint64_t cycle) const {
 FastForward::StateNumber FastForward::state(std::uint64_t cycle) {
   const std::uint64_t varies = std::uint64_t{varying_[0] != nullptr} | std::uint64_t{varying_[1] != nullptr}
                                                                            << 1U;
-  const memory::Arbitration& arbitration = stepper_.arbitration();
+  const memory::Arbitration& arbitration = this->arbitration();
   const std::uint64_t host =
       arbitration.is_routed(kHostPort) && !is_host_routed_
           ? arbitration.bank_of(kHostPort) << 2U | std::uint64_t{arbitration.writes(kHostPort)} << 1U | 1U
           : 0;
   return known_.number_of({control().state(), arbitration.state(cycle),
                            control().match().draining() ? 0 : all_strips_[strips_].empty,
-                           routes_ << 32U | host << 2U | varies, arbitration.visited()});
+                           banks_ << 32U | host << 2U | varies, arbitration.shared()});
 }
 
 }  // namespace stereotlm::fpga

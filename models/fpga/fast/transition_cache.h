@@ -7,8 +7,8 @@
 #include <unordered_map>
 #include <vector>
 
-#include "models/fpga/conflict_recorder.h"
 #include "models/fpga/core_control.h"
+#include "models/fpga/record/conflict_recorder.h"
 #include "models/memory/arbitration.h"
 
 namespace stereotlm::fpga {
@@ -86,13 +86,13 @@ class TransitionCache {
   struct State {
     CoreControl::State control;
     memory::Arbitration::State arbitration{};
-    std::uint64_t empty = 0;    // bit k: slot k of each column is empty
-    std::uint64_t frame = 0;    // set by FastForward: the routes, and the sides whose accesses vary
-    std::uint64_t visited = 0;  // memory::Arbitration::visited()
+    std::uint64_t empty = 0;   // bit k: slot k of each column is empty
+    std::uint64_t frame = 0;   // set by FastForward: the routes, and the sides whose accesses vary
+    std::uint64_t shared = 0;  // memory::Arbitration::shared()
 
     friend bool operator==(const State& a, const State& b) {
       return a.control == b.control && a.arbitration == b.arbitration && a.empty == b.empty &&
-             a.frame == b.frame && a.visited == b.visited;
+             a.frame == b.frame && a.shared == b.shared;
     }
   };
   using StateNumber = std::uint32_t;
@@ -128,7 +128,7 @@ class TransitionCache {
   using Log = std::vector<Followed>;
 
   // `slots`: the most slots that are in a lane during a group.
-  TransitionCache(std::size_t slots, std::size_t most);
+  explicit TransitionCache(std::size_t slots);
   TransitionCache(const TransitionCache&) = delete;  // effects are referred to
   TransitionCache& operator=(const TransitionCache&) = delete;
 
@@ -139,16 +139,12 @@ class TransitionCache {
   void record(StateNumber from, const Accesses& accesses, HostRequests host, StateNumber next,
               const Effect& effect);
   void clear();
-  bool is_full() const { return transitions_ >= most_ || states_.size() >= kMostStates; }
+  bool is_full() const { return transitions_ >= kMost || states_.size() >= kMostStates; }
 
   const Progress& progress(std::uint32_t effect) const { return effects_[effect]->progress; }
   const Progress& progress(const Transition& transition) const { return progress(transition.effect); }
   const HostGrants& host(const Transition& transition) const { return effects_[transition.effect]->host; }
-  // Valid until the next call for an effect that has not been asked for.
-  const GroupConflicts& conflicts(std::uint32_t effect) {
-    const bool is_known = effect < conflicts_.size() && conflicts_[effect].cycles != 0;
-    return is_known ? conflicts_[effect] : find_conflicts(effect);
-  }
+  const GroupConflicts& conflicts(std::uint32_t effect) const { return conflicts_[effect]; }
   // Counts a transition as followed. Adds it to `log`, unless that is null.
   void follow(const Transition& transition, std::uint64_t times = 1, Log* log = nullptr) {
     if (log != nullptr) log->push_back({transition.effect, 1, times});
@@ -189,11 +185,9 @@ class TransitionCache {
   }
   std::size_t bucket_of(std::uint64_t first_word, const Accesses& key) const;
   std::uint32_t number_of_effect(const Effect& effect);
-  const GroupConflicts& find_conflicts(std::uint32_t effect);
   void double_buckets();
 
   std::size_t words_;  // of the accesses
-  std::size_t most_;
   std::unordered_map<State, StateNumber, StateHash> state_numbers_;
   std::vector<const State*> states_;  // [number]
   std::vector<Accesses> unhandled_;   // [number of the state]: bits of the slots that are not handled before
@@ -201,7 +195,7 @@ class TransitionCache {
   std::vector<const Effect*> effects_;   // [number]
   std::vector<std::uint64_t> followed_;  // [number of the effect]: times not counted yet
   std::vector<std::uint32_t> effects_followed_;
-  std::vector<GroupConflicts> conflicts_;  // [number of the effect]; without cycles: not asked for yet
+  std::vector<GroupConflicts> conflicts_;  // [number of the effect]
   std::vector<std::uint64_t> buckets_;
   std::size_t mask_ = 0;  // number of buckets - 1; they are a power of two
   std::size_t transitions_ = 0;

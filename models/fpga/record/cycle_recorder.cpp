@@ -1,11 +1,10 @@
-#include "models/fpga/cycle_recorder.h"
+#include "models/fpga/record/cycle_recorder.h"
 
 #include <algorithm>
 
-#include "models/fpga/buffer_words.h"
-#include "models/fpga/register_map.h"
+#include "models/fpga/core_ports.h"
 #include "models/kernels/rectification_table.h"
-#include "models/memory/crossbar_address.h"
+#include "models/memory/memory_config.h"
 
 namespace stereotlm::fpga {
 namespace {
@@ -71,8 +70,12 @@ void CycleRecorder::record(std::uint64_t cycle, const CoreControl::Decision& dec
   for (memory::Port port = 0; port < kCorePortCount; ++port) {
     PortCycle& of_port = out.ports[port];
     of_port.intent = decision.intents[port];
-    if (of_port.intent == Intent::kRequest || of_port.intent == Intent::kPass)
-      set_item(of_port, port, control);
+    const LaneControl& lane = control.lane(kPorts[port].side);
+    if (of_port.intent == Intent::kRequest || of_port.intent == Intent::kPass) {
+      of_port.item = port == kResultPort                           ? control.result().words_written()
+                     : kPorts[port].stage == PortStage::kLutReader ? lane.taken()
+                                                                   : lane.handled();
+    }
     if (of_port.intent != Intent::kRequest) continue;
     of_port.granted = (granted & memory::mask_of(port)) != 0;
     of_port.bank = arbitration.bank_of(port);
@@ -82,7 +85,7 @@ void CycleRecorder::record(std::uint64_t cycle, const CoreControl::Decision& dec
   }
   if (host_requests) {
     const bool is_granted = (granted & memory::mask_of(kHostPort)) != 0;
-    set_host(out, host_->next_word(), is_granted, is_granted ? 0 : blamed(kHostPort));
+    set_host(out, *host_(), is_granted, is_granted ? 0 : blamed(kHostPort));
   } else {
     drop_accesses(cycle);
     set_access(out);
@@ -94,23 +97,6 @@ void CycleRecorder::record(std::uint64_t cycle, const CoreControl::Decision& dec
   out.result_words = static_cast<std::uint32_t>(control.result().queued());
   out.works = decision.work;
   observer_.cycle(out);
-}
-
-void CycleRecorder::set_item(PortCycle& port, memory::Port number, const CoreControl& control) const {
-  const CorePort& description = kPorts[number];
-  switch (description.stage) {
-    case PortStage::kLutReader:
-      port.item = control.lane(description.side).taken();
-      return;
-    case PortStage::kPixelReader:
-      port.item = control.lane(description.side).handled();
-      return;
-    case PortStage::kResultWriter:
-      port.item = control.result().words_written();
-      return;
-    case PortStage::kLocalBus:
-      return;
-  }
 }
 
 std::uint64_t CycleRecorder::address_of(memory::Port port, std::uint64_t item) {
@@ -141,7 +127,7 @@ std::uint64_t CycleRecorder::pixel_of_slot(memory::Port port, std::uint64_t slot
          static_cast<std::uint64_t>(place.cursor.column());
 }
 
-void CycleRecorder::set_host(CoreCycle& cycle, const HostWords::Word& word, bool granted, std::size_t by) {
+void CycleRecorder::set_host(CoreCycle& cycle, const HostWord& word, bool granted, std::size_t by) {
   cycle.ports[kHostPort] = {Intent::kRequest, granted, word.bank, word.address, by, 0};
   cycle.host_traffic = word.traffic;
 }

@@ -1,4 +1,4 @@
-#include "models/fpga/transition_cache.h"
+#include "models/fpga/fast/transition_cache.h"
 
 #include <algorithm>
 
@@ -40,7 +40,7 @@ std::size_t TransitionCache::StateHash::operator()(const State& state) const {
   for (const std::uint64_t word : state.arbitration) hash.mix(word);
   hash.mix(state.empty);
   hash.mix(state.frame);
-  hash.mix(state.visited);
+  hash.mix(state.shared);
   return hash.value();
 }
 
@@ -55,18 +55,14 @@ std::size_t TransitionCache::EffectHash::operator()(const Effect& effect) const 
     hash.mix(port.passed() << 32U | port.starved());
   }
   hash.mix(effect.host.words << 48U | effect.host.cycles << 24U | effect.host.requests);
-  for (const auto& shared : effect.decided.shared) hash.mix(shared.outcome * shared.cycles);
-  for (const auto& alone : effect.decided.alone) hash.mix(alone.ports * alone.cycles);
+  for (const auto& [decision, cycles] : effect.decided) hash.mix(decision * cycles);
   return hash.value();
 }
 
 static_assert(4 * kernels::kMostRows + kLaneFifoRule.max <= 64 * TransitionCache::kMostWordsOfSide,
               "Accesses does not hold the slots of a group");
 
-TransitionCache::TransitionCache(std::size_t slots, std::size_t most)
-    : words_(2 * ((slots + 63) / 64)), most_(most) {
-  clear();
-}
+TransitionCache::TransitionCache(std::size_t slots) : words_(2 * ((slots + 63) / 64)) { clear(); }
 
 void TransitionCache::clear() {
   states_.clear();
@@ -104,6 +100,8 @@ std::uint32_t TransitionCache::number_of_effect(const Effect& effect) {
   if (is_new) {
     effects_.push_back(&entry->first);
     followed_.push_back(0);
+    conflicts_.push_back(
+        {effect.progress.cycles, effect.host.words, memory::Arbitration::stalls_of(effect.decided)});
   }
   return entry->second;
 }
@@ -209,13 +207,6 @@ TransitionCache::StateNumber TransitionCache::walk(StateNumber first, const Acce
     }
   }
   return state;
-}
-
-const GroupConflicts& TransitionCache::find_conflicts(std::uint32_t effect) {
-  if (effect >= conflicts_.size()) conflicts_.resize(effects_.size());
-  const Effect& found = *effects_[effect];
-  return conflicts_[effect] = {found.progress.cycles, found.host.words,
-                               memory::Arbitration::stalls_of(found.decided)};
 }
 
 void TransitionCache::count_followed(CoreControl& control, memory::Arbitration& arbitration) {

@@ -1,4 +1,4 @@
-#include "models/fpga/direct_frame.h"
+#include "models/fpga/fast/direct_frame.h"
 
 #include <algorithm>
 
@@ -14,8 +14,9 @@ std::size_t pixels_of(const CoreConfig& config) {
 
 }  // namespace
 
-DirectFrame::DirectFrame(const CoreConfig& config, bool has_pixels)
+DirectFrame::DirectFrame(const CoreConfig& config, bool has_pixels, memory::DirectBanks& banks)
     : config_(checked(config)),
+      banks_(banks),
       patterns_{AccessPattern(FrameGeometry(config), config.pixel_cache),
                 AccessPattern(FrameGeometry(config), config.pixel_cache)} {
   if (!has_pixels) return;
@@ -41,41 +42,42 @@ bool DirectFrame::disparities_are_apart() const {
          }) == 1;  // itself
 }
 
-bool DirectFrame::read(const Memory& memory) {
-  bool is_readable = read_tables(memory) && memory.disparities != nullptr;
-  for (const std::uint8_t* image : memory.images) {
-    if (image == nullptr) is_readable = false;
-  }
-  if (is_readable && pipeline_) {
-    pipeline_->run(memory.images[0], memory.images[1], entries_[0], entries_[1], disparities_.data());
-  }
+bool DirectFrame::read(const kernels::JointOffsets& offsets) {
+  const unsigned char* const left = buffer(pixel_port(Side::kLeft));
+  const unsigned char* const right = buffer(pixel_port(Side::kRight));
+  const bool is_readable =
+      read_tables(offsets) && left != nullptr && right != nullptr && buffer(kResultPort) != nullptr;
+  if (is_readable && pipeline_) pipeline_->run(left, right, entries_[0], entries_[1], disparities_.data());
   return is_readable;
 }
 
-// Reads both tables in any case: may_have_changed is not repeated in the next frame.
-bool DirectFrame::read_tables(const Memory& memory) {
-  if (config_.joint_tables) return read_joint_table(memory.tables[0], memory.joint_offsets);
+// Reads both tables in any case: may_have_changed() is not repeated in the next frame.
+bool DirectFrame::read_tables(const kernels::JointOffsets& offsets) {
   bool is_readable = true;
   for (const Side side : kSides) {
-    const Table& table = memory.tables[index_of(side)];
-    if (has_table(config_, side) && !read_table(side, table.entries, table.may_have_changed))
-      is_readable = false;
+    const memory::Port port = lut_port(side);
+    if (!has_port(config_, port)) continue;
+    const auto* const entries = reinterpret_cast<const std::uint32_t*>(buffer(port));
+    const bool may_have_changed =
+        entries != nullptr && banks_.may_have_changed(port, buffers_[port].first, buffers_[port].end);
+    if (config_.joint_tables) return decode_joint_table(entries, may_have_changed, offsets);
+    if (!read_table(side, entries, may_have_changed)) is_readable = false;
   }
   return is_readable;
 }
 
-bool DirectFrame::read_joint_table(const Table& table, const kernels::JointOffsets& offsets) {
-  if (table.entries == nullptr) return false;
-  const bool may_have_changed =
-      table.may_have_changed || offsets != joint_offsets_ || joint_entries_[0].empty();
+bool DirectFrame::decode_joint_table(const std::uint32_t* words, bool may_have_changed,
+                                     const kernels::JointOffsets& offsets) {
+  if (words == nullptr) return false;
+  may_have_changed = may_have_changed || offsets != joint_offsets_ || joint_entries_[0].empty();
   if (may_have_changed) {
     joint_offsets_ = offsets;
     for (std::vector<std::uint32_t>& entries : joint_entries_) entries.resize(pixels_of(config_));
     std::size_t pixel = 0;
     for (int row = 0; row < config_.height; ++row) {
       for (int column = 0; column < config_.width; ++column, ++pixel) {
-        joint_entries_[0][pixel] = kernels::left_entry(table.entries[pixel], column, row, offsets);
-        joint_entries_[1][pixel] = kernels::right_entry(table.entries[pixel], column, row, offsets);
+        joint_entries_[0][pixel] = kernels::left_entry(words[pixel], column, row, offsets);
+        joint_entries_[1][pixel] = kernels::right_entry(words[pixel], column, row, offsets);
       }
     }
   }
@@ -103,8 +105,12 @@ std::optional<memory::Port> DirectFrame::hazard_with(const AddressRange& words, 
   return std::nullopt;
 }
 
-void DirectFrame::write(std::uint8_t* disparities) const {
+bool DirectFrame::write() const {
+  if (pipeline_ == nullptr) return true;
+  unsigned char* const disparities = buffer(kResultPort);
+  if (disparities == nullptr) return false;
   std::copy(disparities_.begin(), disparities_.end(), disparities);
+  return true;
 }
 
 }  // namespace stereotlm::fpga

@@ -1,8 +1,8 @@
-#include "models/fpga/fast_core.h"
+#include "models/fpga/fast/fast_core.h"
 
 #include <algorithm>
 
-#include "models/memory/crossbar_address.h"
+#include "models/memory/memory_config.h"
 
 namespace stereotlm::fpga {
 namespace {
@@ -13,13 +13,13 @@ constexpr std::uint64_t kMostCyclesAhead = std::uint64_t{1} << 22U;
 }  // namespace
 
 FastCore::FastCore(const CoreConfig& config, bool has_pixels, FrameRun& frames, HostPort& host_port,
-                   LocalBusControl& local_bus, const Clock& clock, Board& board)
+                   LocalBusControl& local_bus, memory::DirectBanks& banks, const Clock& clock, Board& board)
     : frames_(frames),
       host_port_(host_port),
       local_bus_(local_bus),
       clock_(clock),
       board_(board),
-      direct_frame_(config, has_pixels) {}
+      direct_frame_(config, has_pixels, banks) {}
 
 bool FastCore::start_frame(std::uint64_t cycle, const FrameStart& start) {
   failed_ = false;
@@ -34,8 +34,7 @@ bool FastCore::works_directly(const FrameStart& start) {
   direct_frame_.set_buffers(start.bases);
   const HostRoute& burst = host_port_.burst();
   if (burst.bank && direct_frame_.hazard_with(host_port_.words_left(), burst.write)) return false;
-  return direct_frame_.disparities_are_apart() &&
-         direct_frame_.read(board_.direct_memory(direct_frame_.buffers(), start.joint_offsets));
+  return direct_frame_.disparities_are_apart() && direct_frame_.read(start.joint_offsets);
 }
 
 void FastCore::route(const HostRoute& route) {
@@ -90,29 +89,12 @@ std::uint64_t FastCore::advance(std::uint64_t now_ps) {
       frames_.run_ahead(clock_.edge_at_or_after(std::min(board_.horizon_ps(), most_ps)));
     }
     if (frames_.control().frame_done()) {
-      finish_frame();
+      host_port_.finish_frame();
+      // The disparities cannot change a table: disparities_are_apart().
+      if (!direct_frame_.write()) fail("direct access to the disparities was taken back within a frame");
     } else {
       next_check_ps_ = clock_.edge_ps(frames_.earliest_last_write()) + 1;
     }
-  }
-}
-
-// Called after the cycle in which the last write of the frame was granted.
-void FastCore::finish_frame() {
-  host_port_.count_words_in_frame();
-  frames_.finish();
-  host_port_.count_words_outside();
-  write_disparities();
-}
-
-// Called with the last write of the frame. The disparities cannot change a table: disparities_are_apart().
-void FastCore::write_disparities() {
-  if (!direct_frame_.has_pixels()) return;
-  std::uint8_t* const disparities = board_.direct_disparities();
-  if (disparities == nullptr) {
-    fail("direct access to the disparities was taken back within a frame");
-  } else {
-    direct_frame_.write(disparities);
   }
 }
 

@@ -7,7 +7,7 @@
 
 #include "models/fpga/core_ports.h"
 #include "models/fpga/port_cycles.h"
-#include "models/fpga/requesters.h"
+#include "models/fpga/record/requesters.h"
 
 namespace stereotlm::fpga {
 

@@ -6,9 +6,9 @@
 #include <optional>
 #include <vector>
 
-#include "models/fpga/assumed_accesses.h"
+#include "models/fpga/access_pattern.h"
 #include "models/fpga/core_stepper.h"
-#include "models/fpga/transition_cache.h"
+#include "models/fpga/fast/transition_cache.h"
 
 namespace stereotlm::fpga {
 
@@ -18,23 +18,28 @@ namespace stereotlm::fpga {
 //
 // A walk only follows recorded transitions: the core and the arbiters keep their old state until catch_up().
 // The last grant of a burst of the host ends a transition, so that a group may hold several bursts.
-class FastForward {
+//
+// While a frame is skipped, every slot of a side with table whose pixel port is uncontended is assumed to
+// access its pixel. Such a port takes one cycle for a slot, whether it is granted or passes. Only the counts
+// differ: a pass counts as a grant until resolve_accesses() corrects them. So the transitions repeat far more
+// often with the tables of a rig: a frame of the paper's board takes a thirtieth of the time.
+class FastForward : public CoreStepper {
  public:
-  // `stepper` outlives this object. `most_groups`: cap of the transition cache.
-  FastForward(CoreStepper& stepper, int lane_fifo_slots, std::size_t most_groups);
+  // `arbitration` outlives this object. Throws std::invalid_argument if the configuration has problems.
+  FastForward(const CoreConfig& config, memory::Arbitration& arbitration);
 
-  // These two throw std::logic_error if settle() has not been called since the last frame.
-  //
   // To be called when a frame with these accesses is to be fast-forwarded, after its ports have been routed
-  // and the stepper has started it. The patterns must outlive the frame. `routes`: frames with the same
-  // number have the same routes and latencies.
-  void start_direct_frame(const AccessPatterns& patterns, std::uint64_t routes);
+  // and start_frame() has been called. The patterns must outlive the frame. Frames with buffers in the same
+  // banks have the same routes and latencies. This and the next function throw std::logic_error if settle()
+  // has not been called since the last frame.
+  void start_direct_frame(const AccessPatterns& patterns, const FrameBases& bases);
   // To be called when a frame starts that the owner steps itself.
   void start_stepped_frame();
   // To be called before the owner changes the route of the host within a frame, and after the last cycle of a
   // frame. `cycle`: the next cycle. Corrects the counts that are provisional until then.
   void settle(std::uint64_t cycle);
 
+  using CoreStepper::step;
   // Runs one cycle. `host_requests`: whether the host port requests in it. Returns the ports granted.
   memory::PortMask step(std::uint64_t cycle, bool host_requests);
   // Runs the cycles from `cycle` up to `end`, `end` not included, or until the frame is done. Returns the
@@ -92,25 +97,38 @@ class FastForward {
   void begin_walk(std::uint64_t cycle);
   void leave_walk(std::uint64_t cycle);
   void end_walk(std::uint64_t cycle);
-  void start_frame();
   std::uint64_t walk(std::uint64_t cycle, std::uint64_t end);
   void route_host(std::uint64_t& cycle, const Route& route, std::uint64_t first);
+  PixelNeeds needs_pixel(memory::PortMask granted) const {
+    return {needs_pixel(Side::kLeft, granted), needs_pixel(Side::kRight, granted)};
+  }
+  bool needs_pixel(Side side, memory::PortMask granted) const {
+    const bool is_read = (granted & memory::mask_of(control().table_port(side))) != 0;
+    return is_read && accesses_pixel(side, control().lane(side).next_slot());
+  }
+  // Whether a slot that is not empty accesses its pixel, or is assumed to.
+  bool accesses_pixel(Side side, const SlotCursor& slot) const {
+    const AccessPattern* const varying = varying_[index_of(side)];
+    return varying == nullptr || varying->needs_pixel(slot.column(), slot.row());
+  }
+  std::uint64_t marks(Side side) const;
   void resolve_accesses(Side side);
   std::optional<TransitionCache::Transition> find_host(std::uint64_t cycle) const;
   bool fits_host(const TransitionCache::Transition& transition) const;
   void follow(const TransitionCache::Transition& transition, std::uint64_t cycle);
   // Where the recorder of the frame finds the transitions that were followed; null without recorder.
-  TransitionCache::Log* log() { return stepper_.conflicts() != nullptr ? &in_order_ : nullptr; }
+  TransitionCache::Log* log() { return conflicts() != nullptr ? &in_order_ : nullptr; }
   void skip(const Progress& progress);
   // Hands what has been skipped to the recorder of the frame, if there is one. `left_of_group`: as it was
   // before. Returns true at the end of a strip, where more may be skipped.
   bool record_skipped(std::uint64_t cycle, std::uint64_t left_of_group) {
-    return stepper_.conflicts() != nullptr && hand_over(*stepper_.conflicts(), cycle, left_of_group);
+    return conflicts() != nullptr && hand_over(*conflicts(), cycle, left_of_group);
   }
   bool hand_over(ConflictRecorder& conflicts, std::uint64_t cycle, std::uint64_t left_of_group);
-  void tell_assumed();
+  void tell_assumed() {
+    if (conflicts() != nullptr) conflicts()->assume_accesses(assumed_);
+  }
   void catch_up(std::uint64_t cycle);
-  StateNumber walk_known(StateNumber state, Progress& room);
   StateNumber walk_varying(StateNumber state, Progress& room);
   StateNumber walk_uniform(StateNumber state, std::uint64_t consumed, Progress& room);
   bool find_strips();
@@ -133,12 +151,9 @@ class FastForward {
   }
   // The number of slots up to this column, from the state of the walk on.
   std::uint64_t slots_to(std::uint64_t column) const { return column * slots_of_group() / 4 - consumed_; }
-  const CoreControl& control() const { return stepper_.control(); }
 
-  CoreStepper& stepper_;
   std::uint64_t lane_fifo_slots_;
   std::vector<Strips> all_strips_;  // all strips of a frame, in order
-  AssumedAccesses accesses_;
   TransitionCache known_;
   std::optional<Stepped> stepped_;
   std::vector<const GroupConflicts*> repeated_;  // of record_skipped()
@@ -154,10 +169,13 @@ class FastForward {
   HostWords host_;                   // words that are granted from the next cycle on
   TransitionCache::Log in_order_;    // what has been followed and is not yet handed to the recorder
   bool is_host_routed_ = false;      // by serve_host()
-  std::uint64_t routes_ = 0;
-  std::size_t strips_ = 0;  // index in all_strips_: the run in which the lanes take their next slots
-  // [side]: the pattern by which the accesses of the side vary, or null.
+  std::uint64_t banks_ = 0;          // of the frame's buffers, 6 bits for each port
+  std::size_t strips_ = 0;           // index in all_strips_: the run in which the lanes take their next slots
+  // [side]: the pattern by which the accesses of the side vary. Null if all its slots inside the image access
+  // their pixels, or are assumed to, or if its port itself finds them in the cache (a side without table).
   std::array<const AccessPattern*, 2> varying_{};
+  // [side]: the pattern of a side whose passes are counted as grants; null if there are none.
+  std::array<const AccessPattern*, 2> assumed_{};
 };
 
 }  // namespace stereotlm::fpga

@@ -11,43 +11,27 @@
 #include "models/fpga/core_ports.h"
 #include "models/kernels/joint_table.h"
 #include "models/kernels/stereo_pipeline.h"
+#include "models/memory/direct_banks.h"
 #include "models/words_by_range.h"
 
 namespace stereotlm::fpga {
 
 // The data of a frame that works directly on memory: tables and pictures are read when the frame starts, and
-// disparities are written back with its last write. Plain C++; the caller requests direct access to memory.
+// disparities are written back with its last write. Plain C++.
 class DirectFrame {
  public:
-  using Buffers =
-      std::array<AddressRange,
-                 kCorePortCount>;  // [port]: the buffer that the port accesses; empty if there is none
-
-  // Direct access to the buffers, in which words are in the byte order of the simulating machine. Null
-  // pointers: no direct access is granted.
-  struct Table {
-    const std::uint32_t* entries = nullptr;
-    bool may_have_changed = true;  // since the last frame
-  };
-  struct Memory {
-    std::array<Table, 2> tables;  // [side]; without meaning for a side without table; [left]: joint tables
-    kernels::JointOffsets joint_offsets{};
-    std::array<const std::uint8_t*, 2> images{};  // [side]
-    std::uint8_t* disparities = nullptr;
-  };
-
-  // `has_pixels`: whether disparities are computed. Throws std::invalid_argument if the configuration has
-  // problems.
-  DirectFrame(const CoreConfig& config, bool has_pixels);
+  // `has_pixels`: whether disparities are computed. `banks` outlives this object. Throws
+  // std::invalid_argument if the configuration has problems.
+  DirectFrame(const CoreConfig& config, bool has_pixels, memory::DirectBanks& banks);
 
   // To be called when a frame starts: sets its buffers.
   void set_buffers(const FrameBases& bases);
-  const Buffers& buffers() const { return buffers_; }
   // Whether the buffer of the disparities overlaps no other buffer.
   bool disparities_are_apart() const;
   // Reads tables and pictures, and computes the disparities. Returns false if that cannot be done: direct
-  // access is not granted, or an entry of a table points outside the image.
-  bool read(const Memory& memory);
+  // access is not granted, or an entry of a table points outside the image. `offsets`: without effect unless
+  // the tables are joint.
+  bool read(const kernels::JointOffsets& offsets);
 
   // Checks an access of another master to `words` while the frame runs. It is a hazard if it would observe
   // when the frame reads or writes its data. Returns the port whose buffer it accesses if it is a hazard,
@@ -56,17 +40,24 @@ class DirectFrame {
 
   // The accesses of the frame's slots.
   const AccessPatterns& patterns() const { return patterns_; }
-  bool has_pixels() const { return pipeline_ != nullptr; }
-  // Writes the disparities of the frame to this buffer.
-  void write(std::uint8_t* disparities) const;
+  // Writes the disparities of the frame to their buffer. Returns false if direct access is not granted any
+  // more.
+  bool write() const;
 
  private:
-  bool read_tables(const Memory& memory);
-  bool read_joint_table(const Table& table, const kernels::JointOffsets& offsets);
+  // The buffer of a port; null if direct access is not granted.
+  unsigned char* buffer(memory::Port port) const {
+    return banks_.direct(buffers_[port].first, buffers_[port].end - buffers_[port].first);
+  }
+  bool read_tables(const kernels::JointOffsets& offsets);
+  bool decode_joint_table(const std::uint32_t* words, bool may_have_changed,
+                          const kernels::JointOffsets& offsets);
   bool read_table(Side side, const std::uint32_t* entries, bool may_have_changed);
 
   CoreConfig config_;
-  Buffers buffers_{};
+  memory::DirectBanks& banks_;
+  // [port]: the buffer that the port accesses; empty if there is none.
+  std::array<AddressRange, kCorePortCount> buffers_{};
   AccessPatterns patterns_;
   // [side]: the entries of the frame; null if the side has no table.
   std::array<const std::uint32_t*, 2> entries_{};

@@ -1,4 +1,4 @@
-#include "models/fpga/conflict_recorder.h"
+#include "models/fpga/record/conflict_recorder.h"
 
 #include <algorithm>
 #include <map>
@@ -45,24 +45,21 @@ ConflictRecorder::ConflictRecorder(const CoreConfig& config,
       groups_of_fill_(static_cast<std::size_t>(geometry_.result_delay_columns + 3) / 4),
       groups_of_strip_(groups_of_strip(geometry_)),
       strips_(1 + strips_of_results(geometry_)),
-      strip_ends_(strips_),
-      cycles_up_to_(1 + (strips_ - 1) * grid_.columns),
-      indices_(kRequesters * banks_ * (kRequesters + 1)) {
-  const bool may_refuse = std::any_of(banks.begin(), banks.end(), [](const memory::SsramBankConfig& bank) {
-    return bank.turnaround_cycles != 0;
-  });
-  if (may_refuse) ends_.resize(cycles_up_to_.size());
-}
+      ends_(1 + (strips_ - 1) * grid_.columns),
+      tile_cycles_(tiles()),
+      indices_(kRequesters * banks_ * (kRequesters + 1)) {}
 
 bool ConflictRecorder::start_frame(std::uint64_t cycle, const CoreControl& control,
                                    const memory::Arbitration& arbitration) {
+  control_ = &control;
+  arbitration_ = &arbitration;
   is_recording_ = frames_begun_++ < frames_wanted_;
   if (!is_recording_) return false;
   first_cycle_ = cycle_ = cycle;
   strip_ = group_ = strip_tile_ = 0;
   for (std::size_t port = 0; port < kCorePortCount; ++port) {
     grants_[port] = control.port_cycles(port).granted();
-    frame_.bank_of_port[port] = arbitration.bank_of(port);
+    frame_.bank_of_port[port] = arbitration_->bank_of(port);
   }
   assumed_ = {};
   served_.clear();
@@ -82,76 +79,67 @@ std::size_t ConflictRecorder::first_cause(std::size_t requester, std::size_t ban
   return stalls_.size() - 1;
 }
 
-void ConflictRecorder::step(memory::PortMask requests, memory::PortMask granted,
-                            const memory::Arbitration& arbitration) {
+void ConflictRecorder::step(memory::PortMask requests, memory::PortMask granted) {
   if ((granted & memory::mask_of(kHostPort)) != 0)
-    ++host_accesses(strip_, arbitration.bank_of(kHostPort), traffic_);
+    ++host_accesses(strip_, arbitration_->bank_of(kHostPort), traffic_);
   for (auto stalled = static_cast<unsigned>(requests & ~granted); stalled != 0; stalled &= stalled - 1) {
     const memory::Port port = memory::lowest_port(static_cast<memory::PortMask>(stalled));
-    const std::size_t by = requester_of_port(arbitration.cause_of(port, granted));
-    const std::size_t cause = cause_of(requester_of_port(port), arbitration.bank_of(port), by);
+    const std::size_t by = requester_of_port(arbitration_->cause_of(port, granted));
+    const std::size_t cause = cause_of(requester_of_port(port), arbitration_->bank_of(port), by);
     ++stalls_[cause].cycles[tile()];
     ++of_strip_[cause];
   }
 }
 
-void ConflictRecorder::end_group(std::uint64_t next_cycle, const CoreControl& control) {
+void ConflictRecorder::end_group(std::uint64_t next_cycle) {
   cycle_ = next_cycle;
-  end_group_of_strip();
-  if (is_at_strip_end()) end_strip(control);
+  if (strip_ != 0) ends_[place_of(strip_, group_)] = cycle_;
+  ++group_;
+  if (is_at_strip_end()) end_strip();
 }
 
-void ConflictRecorder::add_part(const GroupConflicts& part, const memory::Arbitration& arbitration) {
-  count_host_words(part, 1, arbitration);
-  add_stalls(part, 0, 1, 1, arbitration);
+void ConflictRecorder::add_part(const GroupConflicts& part) {
+  count_host_words(part, 1);
+  add_stalls(part, 0, 1, 1);
   cycle_ += part.cycles;
 }
 
-void ConflictRecorder::count_host_words(const GroupConflicts& group, std::uint64_t times,
-                                        const memory::Arbitration& arbitration) {
+void ConflictRecorder::count_host_words(const GroupConflicts& group, std::uint64_t times) {
   if (group.host_words != 0)
-    host_accesses(strip_, arbitration.bank_of(kHostPort), traffic_) += group.host_words * times;
+    host_accesses(strip_, arbitration_->bank_of(kHostPort), traffic_) += group.host_words * times;
 }
 
-void ConflictRecorder::repeat(const GroupConflicts* const* groups, std::size_t size, std::uint64_t times,
-                              const memory::Arbitration& arbitration) {
+void ConflictRecorder::repeat(const GroupConflicts* const* groups, std::size_t size, std::uint64_t times) {
   for (std::size_t first = 0; first < size; ++first) {
     const GroupConflicts& group = *groups[first];
-    count_host_words(group, times, arbitration);
-    if (!group.stalls.empty()) add_stalls(group, first, static_cast<std::size_t>(times), size, arbitration);
+    count_host_words(group, times);
+    if (!group.stalls.empty()) add_stalls(group, first, static_cast<std::size_t>(times), size);
   }
   if (strip_ == 0) {
     group_ += size * static_cast<std::size_t>(times);
     for (std::size_t group = 0; group < size; ++group) cycle_ += groups[group]->cycles * times;
     return;
   }
-  if (size == 1 && group_shift_ == 0 && ends_.empty()) {  // mostly, and faster
-    std::uint64_t* const up_to = cycles_up_to_.data() + place_of(strip_, group_);
-    const std::uint64_t of_group = groups[0]->cycles;
-    std::uint64_t end = cycle_ - first_cycle_;
-    for (std::uint64_t time = 0; time < times; ++time) {
-      end += of_group;
-      up_to[time] += end;
-    }
-    cycle_ += of_group * times;
-    group_ += static_cast<std::size_t>(times);
-    return;
-  }
+  std::uint64_t* const ends = ends_.data() + place_of(strip_, 0);
+  std::uint64_t cycle = cycle_;
+  std::size_t next = group_;
   for (std::uint64_t time = 0; time < times; ++time) {
     for (std::size_t group = 0; group < size; ++group) {
-      cycle_ += groups[group]->cycles;
-      end_group_of_strip();
+      cycle += groups[group]->cycles;
+      ends[next++ >> group_shift_] = cycle;
     }
   }
+  cycle_ = cycle;
+  group_ = next;
 }
 
 // Adds the stalls of a group that comes `count` times, every `step` groups, `first` groups after the next
 // one.
 void ConflictRecorder::add_stalls(const GroupConflicts& group, std::size_t first, std::size_t count,
-                                  std::size_t step, const memory::Arbitration& arbitration) {
+                                  std::size_t step) {
   for (const memory::Stall& stall : group.stalls) {
-    const std::size_t cause =
-        cause_of(requester_of_port(stall.port), arbitration.bank_of(stall.port), requester_of_port(stall.by));
+    const std::size_t cause = cause_of(requester_of_port(stall.port), arbitration_->bank_of(stall.port),
+                                       requester_of_port(stall.by));
     std::uint64_t* const cycles = stalls_[cause].cycles.data();
     of_strip_[cause] += stall.cycles * count;
     if (strip_ == 0) {
@@ -169,24 +157,23 @@ void ConflictRecorder::add_stalls(const GroupConflicts& group, std::size_t first
   }
 }
 
-void ConflictRecorder::end_strip(const CoreControl& control) {
+void ConflictRecorder::end_strip() {
   if (strip_ + 1 == strips_) return;  // the last strip ends with the frame
-  if (strip_ == 0) end_place(0);
-  strip_ends_[strip_] = cycle_;
-  count_strip(control);
+  if (strip_ == 0) ends_[0] = cycle_;
+  count_strip();
   ++strip_;
   group_ = 0;
   strip_tile_ = tile_of(strip_);
 }
 
 // Counts the grants of the core and all stalls since the end of the strip before.
-void ConflictRecorder::count_strip(const CoreControl& control) {
+void ConflictRecorder::count_strip() {
   for (std::size_t port = 0; port < kCorePortCount; ++port) {
-    std::uint64_t grants = control.port_cycles(port).granted();
+    std::uint64_t grants = control_->port_cycles(port).granted();
     for (const Side side : kSides) {
       const AccessPattern* const assumed = assumed_[index_of(side)];
       if (assumed != nullptr && port == pixel_port(side))
-        grants -= assumed->passes_before(control.lane(side).handled());
+        grants -= assumed->passes_before(control_->lane(side).handled());
     }
     const std::uint64_t of_strip = grants - std::exchange(grants_[port], grants);
     frame_.strips[strip_].grants[port] = of_strip;
@@ -218,17 +205,18 @@ void ConflictRecorder::add_served(HostTraffic traffic, std::size_t bank, std::ui
   served_.push_back({cycle, cycles, bank, traffic, granted});
 }
 
-void ConflictRecorder::end_frame(std::uint64_t end_cycle, const CoreControl& control) {
+void ConflictRecorder::end_frame(std::uint64_t end_cycle) {
   is_recording_ = false;
-  count_strip(control);
-  // The last group has ended in cycle_.
-  cycles_up_to_.back() += end_cycle - cycle_;
-  if (!ends_.empty()) ends_.back() = end_cycle;
-  strip_ends_.back() = end_cycle;
+  count_strip();
+  ends_.back() = end_cycle;
   std::uint64_t begin = first_cycle_;
   for (std::size_t strip = 0; strip < strips_; ++strip) {
-    frame_.strips[strip].cycles = strip_ends_[strip] - begin;
-    begin = strip_ends_[strip];
+    frame_.strips[strip].cycles = end_of(strip) - begin;
+    std::uint64_t* tile = tile_cycles_.data() + tile_of(strip);
+    for (std::size_t place = place_of(strip, 0); place <= place_of(strip, groups_of_strip_ - 1); ++place) {
+      *tile++ += ends_[place] - begin;
+      begin = ends_[place];
+    }
   }
   count_served();
   for (const FrameConflicts::Stalls& stalls : frame_.stalls)
@@ -241,8 +229,8 @@ void ConflictRecorder::end_frame(std::uint64_t end_cycle, const CoreControl& con
 // Distributes the words of uncontended bursts over the strips, and their stalls over the tiles and the
 // strips.
 void ConflictRecorder::count_served() {
-  const auto first_behind = [](const std::vector<std::uint64_t>& ends, std::uint64_t cycle) {
-    return static_cast<std::size_t>(std::upper_bound(ends.begin(), ends.end(), cycle) - ends.begin());
+  const auto place_at = [this](std::uint64_t cycle) {
+    return static_cast<std::size_t>(std::upper_bound(ends_.begin(), ends_.end(), cycle) - ends_.begin());
   };
   std::map<std::pair<std::size_t, std::size_t>, std::uint64_t> stalls;  // [strip, cause]
   std::size_t strip = 0;                                                // mostly that of the words before
@@ -250,13 +238,13 @@ void ConflictRecorder::count_served() {
     const std::size_t requester = requester_of(served.traffic);
     const std::uint64_t end = served.cycle + served.cycles;
     for (std::uint64_t cycle = served.cycle; cycle < end;) {
-      if (cycle >= strip_ends_[strip] || (strip != 0 && cycle < strip_ends_[strip - 1]))
-        strip = first_behind(strip_ends_, cycle);
-      std::uint64_t until = std::min(end, strip_ends_[strip]);
+      if (cycle >= end_of(strip) || (strip != 0 && cycle < end_of(strip - 1)))
+        strip = (place_at(cycle) + grid_.columns - 1) / grid_.columns;
+      std::uint64_t until = std::min(end, end_of(strip));
       if (served.granted) {
         host_accesses(strip, served.bank, served.traffic) += until - cycle;
       } else {
-        const std::size_t place = first_behind(ends_, cycle);
+        const std::size_t place = place_at(cycle);
         until = std::min(until, ends_[place]);
         const std::size_t tile = tile_of(strip) + place - place_of(strip, 0);
         const std::size_t cause = cause_of(requester, served.bank, kTurnaroundToBlame);
@@ -270,19 +258,6 @@ void ConflictRecorder::count_served() {
   for (const FrameConflicts::Stalls& each : frame_.stalls) stalls[{each.strip, each.cause}] += each.cycles;
   frame_.stalls.clear();
   for (const auto& [place, cycles] : stalls) frame_.stalls.push_back({place.first, place.second, cycles});
-}
-
-std::vector<std::uint64_t> ConflictRecorder::tile_cycles() const {
-  std::vector<std::uint64_t> cycles(tiles());
-  std::uint64_t before = 0;
-  for (std::size_t strip = 0; strip < strips_; ++strip) {
-    std::size_t tile = tile_of(strip);
-    for (std::size_t place = place_of(strip, 0); place <= place_of(strip, groups_of_strip_ - 1); ++place) {
-      cycles[tile++] += cycles_up_to_[place] - before;
-      before = cycles_up_to_[place];
-    }
-  }
-  return cycles;
 }
 
 std::vector<const ConflictRecorder::Stalls*> ConflictRecorder::stalls() const {
