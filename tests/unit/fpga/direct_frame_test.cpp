@@ -10,108 +10,37 @@
 namespace stereotlm::fpga {
 namespace {
 
-// A frame with joint tables, whose sides need different offsets, and the same frame with separate tables.
-class DirectFrameJointTables : public testing::Test {
- protected:
-  DirectFrameJointTables() {
-    test::SplitMix64 random(1);
-    for (std::uint8_t& pixel : image) pixel = static_cast<std::uint8_t>(random.between(0, 255));
-    for (int row = 0; row < 5; ++row) {
-      for (int column = 0; column < 7; ++column) {
-        const std::size_t pixel = static_cast<std::size_t>(8 * row + column);
-        tables[0][pixel] = kernels::make_entry(column + 1, row);
-        tables[1][pixel] = kernels::make_entry(column, row + 1);
-      }
-    }
-    tables[1][9] = 0;
-    joint = kernels::join_tables({8, 6, tables[0]}, {8, 6, tables[1]});
-    for (std::size_t side = 0; side < 2; ++side) {
-      memory.tables[side].entries = tables[side].data();
-      memory.images[side] = image.data();
-    }
-    memory.disparities = disparities.data();
-    joint_memory = memory;
-    joint_memory.tables = {};
-    joint_memory.tables[0].entries = joint.words.data();
-    joint_memory.joint_offsets = joint.offsets;
-  }
-  static CoreConfig config(bool has_joint_tables) {
-    CoreConfig core = small_core(8, 6);
-    core.joint_tables = has_joint_tables;
-    core.pixel_cache = PixelCache::kWord;
-    return core;
-  }
-  // Expects the accesses and disparities of the separate tables.
-  void expect_separate() {
-    DirectFrame separate(config(false), true);
-    ASSERT_TRUE(separate.read(memory));
-    std::array<std::vector<std::uint8_t>, 2> written{disparities, disparities};
-    separate.write(written[0].data());
-    joint_frame.write(written[1].data());
-    EXPECT_EQ(written[1], written[0]);
-    for (const std::size_t side : {0U, 1U}) {
-      const AccessPattern& found = joint_frame.patterns()[side];
-      EXPECT_EQ(found.invalid_slots(), separate.patterns()[side].invalid_slots()) << side;
-      EXPECT_EQ(found.pixel_accesses(), separate.patterns()[side].pixel_accesses()) << side;
-    }
-  }
-  bool reads(std::size_t pixel, std::uint32_t word, bool may_have_changed = true) {
-    joint.words[pixel] = word;
-    joint_memory.tables[0].may_have_changed = may_have_changed;
-    return joint_frame.read(joint_memory);
-  }
-
-  std::array<std::vector<std::uint32_t>, 2> tables{kernels::identity_table(8, 6).entries,
-                                                   kernels::identity_table(8, 6).entries};
-  std::vector<std::uint8_t> image = std::vector<std::uint8_t>(8 * 6);
-  std::vector<std::uint8_t> disparities = image;
+TEST(DirectFrame, DecodesJointTablesAgainOnlyIfTheyOrARegisterMayHaveChanged) {
+  CoreConfig core = small_core(8, 6);
+  core.joint_tables = true;
+  core.pixel_cache = PixelCache::kWord;
+  DirectFrame frame(core, true);
+  const kernels::RectificationTable table = kernels::identity_table(8, 6);
+  kernels::JointTable joint = kernels::join_tables({8, 6, table.entries}, {8, 6, table.entries});
+  const std::vector<std::uint8_t> image(8 * 6);
+  std::vector<std::uint8_t> disparities(8 * 6);
   DirectFrame::Memory memory;
-  kernels::JointTable joint;
-  DirectFrame::Memory joint_memory;
-  DirectFrame joint_frame{config(true), true};
-};
-
-TEST_F(DirectFrameJointTables, AreDecodedInTheFirstFrameAlsoIfTheyHaveNotChanged) {
-  joint_memory.tables[0].may_have_changed = false;
-  ASSERT_TRUE(joint_frame.read(joint_memory));
-  expect_separate();
-}
-
-TEST_F(DirectFrameJointTables, AreDecodedAgainOnlyIfTheyOrARegisterMayHaveChanged) {
-  ASSERT_TRUE(joint_frame.read(joint_memory));
-  EXPECT_TRUE(reads(0, 0, false));
-  expect_separate();
-  EXPECT_TRUE(reads(0, 0));
-  tables[0][0] = tables[1][0] = 0;
-  expect_separate();
-  // One pixel to the right, in place of one to the left.
-  for (std::uint32_t& word : joint.words)
-    if ((word >> 31U) != 0) word -= 1U << 16U;
-  ++joint_memory.joint_offsets[0].columns;
-  ASSERT_TRUE(reads(0, 0, false));
-  expect_separate();
-}
-
-TEST_F(DirectFrameJointTables, AreNotReadIfAnEntryOfEitherSidePointsOutsideTheImage) {
-  ASSERT_TRUE(joint_frame.read(joint_memory));
-  constexpr std::uint32_t kNowhere = 0x7FFF;  // the largest displacements
-  const std::uint32_t word = joint.words[0];
-  for (const unsigned side : {16U, 0U}) {
-    const std::uint32_t other = word & ~(0xFFFFU << side);
-    EXPECT_TRUE(reads(0, other | kNowhere << side)) << "not valid";
-    EXPECT_FALSE(reads(0, other | (0x8000U | kNowhere) << side));
-    EXPECT_FALSE(reads(0, other | (0x8000U | kNowhere) << side, false));
-    EXPECT_TRUE(reads(0, word));
-  }
-  // A register moves all sources of a side.
-  for (kernels::JointOffset& offset : joint_memory.joint_offsets) {
+  memory.images = {image.data(), image.data()};
+  memory.disparities = disparities.data();
+  memory.tables[0].entries = joint.words.data();
+  memory.joint_offsets = joint.offsets;
+  const auto reads = [&](bool may_have_changed) {
+    memory.tables[0].may_have_changed = may_have_changed;
+    return frame.read(memory);
+  };
+  EXPECT_TRUE(reads(false));  // for the first time
+  joint.words[0] |= 0x7FFFU;  // the largest displacements: outside the image
+  EXPECT_TRUE(reads(false));
+  EXPECT_FALSE(reads(true));
+  EXPECT_FALSE(reads(false));
+  joint.words[0] = 0;
+  EXPECT_TRUE(reads(true));
+  for (kernels::JointOffset& offset : memory.joint_offsets) {  // a register moves all sources of a side
     offset.rows += 6;
-    EXPECT_FALSE(reads(0, word, false));
+    EXPECT_FALSE(reads(false));
     offset.rows -= 6;
-    EXPECT_TRUE(reads(0, word, false));
+    EXPECT_TRUE(reads(false));
   }
-  joint_memory.tables[0].entries = nullptr;
-  EXPECT_FALSE(joint_frame.read(joint_memory));
 }
 
 }  // namespace

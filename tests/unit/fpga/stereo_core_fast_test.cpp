@@ -100,45 +100,6 @@ TEST_F(StereoCoreFast, TransportsOnlyTheWordsOfAFrameThatCannotWorkDirectly) {
   EXPECT_EQ(core->stepped_frames(), 1U);
 }
 
-// Ways to change the left table between two frames. The second frame has no valid entry, and so no
-// disparities and no reads of the image.
-class StereoCoreTables : public StereoCoreFast, public testing::WithParamInterface<const char*> {
- protected:
-  void change_left_table() {
-    const std::string how = GetParam();
-    const std::uint64_t table = crossbar_address(kLeftTable, 0);
-    if (how == "ByTheLocalBus") {
-      at(sc_core::sc_time_stamp(),
-         [this, table] { memory.access(TLM_WRITE_COMMAND, table, Words(kTableWords)); });
-      finish();
-    } else if (how == "ByDebugTransport") {
-      memory.debug_write(table, Words(kTableWords));
-    } else if (how == "Directly") {
-      tlm::tlm_dmi dmi;
-      ASSERT_TRUE(memory.dmi(table, dmi));
-      std::fill_n(dmi.get_dmi_ptr(), kTableWords * 4, std::uint8_t{0});
-    } else {
-      set_base(registers::kLeftLutBase, kSpare);  // another table
-    }
-  }
-};
-
-TEST_P(StereoCoreTables, ChangedBetweenTwoFramesAreReadAgain) {
-  build(small_board());
-  run_frame();
-  const std::uint64_t reads = port(pixel_port(Side::kLeft)).granted();
-  ASSERT_GT(reads, 0U);
-  ASSERT_NE(result_words(), Words(kImageWords, 0xFFFF'FFFF));
-  change_left_table();
-  run_frame();
-  EXPECT_EQ(result_words(), Words(kImageWords, 0xFFFF'FFFF));
-  EXPECT_EQ(port(pixel_port(Side::kLeft)).granted(), reads);
-}
-
-INSTANTIATE_TEST_SUITE_P(Changed, StereoCoreTables,
-                         testing::Values("ByTheLocalBus", "ByDebugTransport", "Directly", "ByAnotherBase"),
-                         [](const auto& change) { return std::string(change.param); });
-
 TEST_F(StereoCoreFast, ReadsATableAgainThatAFrameHasOverwritten) {
   build(small_board());
   run_frame();
