@@ -199,11 +199,6 @@ class Frames(DiffTest):
 
 
 class Disparities(DiffTest):
-    def test_a_run_without_disparities_is_not_compared(self):
-        a, b = shared_run(*SCENE), shared_run(*SMALL, "--timing-only")
-        self.assertIn("disparities: not compared: there are none in B", self.lines(a, b))
-        self.assertIn("disparities: not compared: there are none in A", self.lines(b, a))
-
     def test_pixels_that_differ_are_counted(self):
         other = self.file("other.pgm", pgm(WIDTH, HEIGHT, noise(WIDTH, HEIGHT, 3)))
         self.succeeds(self.run_small("--out", self.a))

@@ -108,18 +108,6 @@ class FullDisk(RobustnessTest):
 
 
 class LockedDatabase(RobustnessTest):
-    def test_a_lock_is_waited_for(self):
-        self.succeeds(self.sweep())
-        for begin in ("BEGIN IMMEDIATE", "BEGIN EXCLUSIVE"):
-            connection = self.lock(begin)
-            process = self.start("sweep", self.plan, "--out", self.store)
-            with self.assertRaises(subprocess.TimeoutExpired):
-                process.wait(timeout=1)
-            connection.execute("ROLLBACK")
-            connection.close()
-            with self.unchanged(self.store):
-                _, errors = process.communicate(timeout=60)
-                self.assertEqual(process.returncode, 0, errors)
 
     def test_a_database_that_a_merge_writes_is_refused_at_once(self):
         """Also where the merge is the first to write to it. It waits for the database that it reads."""

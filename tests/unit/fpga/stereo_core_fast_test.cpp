@@ -203,48 +203,6 @@ TEST_F(StereoCoreDirectAccess, TakenBackWithinAFrameIsReportedAndRaisesError) {
   EXPECT_EQ(core->stepped_frames(), 1U);
 }
 
-// Brings control() up to the present while a frame runs.
-class StereoCoreCatchUp : public StereoCoreFidelities {};
-
-TEST_P(StereoCoreCatchUp, ShowsTheSlotsOfThePresent) {
-  build(small_board());
-  at(edge(0), [this] { start(); });
-  memory.debug_write(crossbar_address(kLeftTable, 8), Words(4));  // entries that are not valid
-  std::vector<std::uint64_t> consumed;
-  std::vector<std::uint64_t> handled;
-  for (const std::uint64_t cycle : {3U, 4U, 5U, 30U, 90U}) {
-    at(edge(cycle) + sc_core::sc_time::from_value(2), [this, &consumed, &handled] {
-      core->catch_up();
-      consumed.push_back(core->control().lane(Side::kLeft).consumed());
-      handled.push_back(port(pixel_port(Side::kLeft)).granted() + port(pixel_port(Side::kLeft)).passed());
-    });
-  }
-  finish();
-  // With tables the matcher consumes one slot per cycle from cycle 4 on. A cycle counts once it has begun.
-  EXPECT_EQ(consumed, (std::vector<std::uint64_t>{0, 1, 2, 27, 87}));
-  EXPECT_EQ(handled, (std::vector<std::uint64_t>{2, 3, 4, 29, 89}));
-  EXPECT_EQ(frame_cycles(), std::vector<std::uint64_t>{frame_cycles_alone(4)});
-}
-
-INSTANTIATE_TEST_SUITE_P(Fidelities, StereoCoreCatchUp, testing::Values(Fidelity::kCycle, Fidelity::kFast),
-                         name_of_fidelity);
-
-// Without pixels.
-class StereoCoreTiming : public StereoCoreBench {
- protected:
-  Fidelity fidelity() const override { return Fidelity::kTiming; }
-};
-
-TEST_F(StereoCoreTiming, WritesNoDisparitiesAndTakesAsLong) {
-  build(small_board());
-  memory.debug_write(crossbar_address(kResult, 0), Words(kImageWords, 77));
-  at(edge(3), [this] { start(); });
-  finish();
-  EXPECT_EQ(memory.debug_read(crossbar_address(kResult, 0), kImageWords), Words(kImageWords, 77));
-  EXPECT_EQ(done_at, std::vector<sc_core::sc_time>{edge(3 + frame_cycles_alone(4))});
-  EXPECT_EQ(accesses(kResult), kImageWords);
-}
-
 // What is special about a frame on the small board.
 struct SpecialFrame {
   const char* name;

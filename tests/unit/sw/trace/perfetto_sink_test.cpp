@@ -66,34 +66,6 @@ TEST_F(PerfettoSinkTest, EachRunIsASliceAsLongAsItsCycles) {
   }
 }
 
-TEST_F(PerfettoSinkTest, CyclesOfAWindowHaveTheSumsOfTheRuns) {
-  const test::MadeTrace trace = test::make_trace(board_, 2);
-  const PerfettoFile file = written(trace);
-  std::map<std::string, std::uint64_t> grants;
-  std::map<std::pair<std::string, std::string>, std::uint64_t> waits;
-  std::map<std::string, std::uint64_t> owned;
-  for (const platform::FrameRuns& frame : trace.frames) {
-    for (const platform::TraceRun& run : frame.runs) {
-      const std::string requester = fpga::requester_name(run.requester);
-      const std::string bank = board_.banks[run.bank].name;
-      if (run.by)
-        waits[{requester, fmt::format("for {} on {}", fpga::requester_name(*run.by), bank)}] += run.count;
-      else
-        grants[requester] += run.count, owned[bank + " cycles"] += run.count;
-    }
-  }
-  EXPECT_GT(waits.size(), 5);
-  for (const auto& [key, cycles] : waits)
-    EXPECT_EQ(cycles_of(file.slices_of(key.first + " cycles"), key.second), cycles) << key.first;
-  for (const auto& [requester, count] : grants) {
-    std::uint64_t found = 0;
-    for (const PerfettoFile::Slice& slice : file.slices_of(requester + " cycles"))
-      found += slice.arguments.count("address");
-    EXPECT_EQ(found, count) << requester;
-  }
-  for (const auto& [track, cycles] : owned) EXPECT_EQ(cycles_of(file.slices_of(track), ""), cycles) << track;
-}
-
 TEST_F(PerfettoSinkTest, SlicesOfATrackNeverCross) {
   board_.fpga.clock_mhz = 333.3;  // its cycles are no whole ns
   const PerfettoFile file = written(test::make_trace(board_, 1));

@@ -98,23 +98,6 @@ TEST_F(SqliteSinkTest, ALastStripWithFewerRowsIsARunOfItsOwn) {
   }
 }
 
-TEST_F(SqliteSinkTest, TransactionsHaveEachAccessAndTheWaitsBeforeIt) {
-  const test::MadeTrace trace = test::make_trace(board_, 2);
-  write(trace);
-  for (std::size_t port = 0; port < fpga::kPortCount; ++port) {
-    std::int64_t grants = 0;
-    std::int64_t waits = 0;
-    for (const fpga::CoreCycle& cycle : trace.cycles) {
-      if (cycle.ports[port].intent == fpga::Intent::kRequest) ++(cycle.ports[port].granted ? grants : waits);
-    }
-    const std::string name = port == fpga::kHostPort ? "host capture" : fpga::kPorts[port].name;
-    const std::string of_port = fmt::format("FROM transactions WHERE port = '{}'", name);
-    EXPECT_EQ(number("SELECT count(*) " + of_port), grants) << name;
-    EXPECT_EQ(number("SELECT sum(waited) " + of_port), waits) << name;
-    EXPECT_EQ(number("SELECT count(*) " + of_port + " AND (waited = 0) != (by IS NULL)"), 0) << name;
-  }
-}
-
 TEST_F(SqliteSinkTest, BurstsLevelsAndEventsAreThere) {
   const test::MadeTrace trace = test::make_trace(board_, 1);
   write(trace);
