@@ -7,8 +7,8 @@ namespace {
 
 class CaptureOverflow : public CaptureBench, public testing::WithParamInterface<bool> {};
 
-// The paper's board: a FIFO of 140 words that requests the bus with 32. The first burst begins at once, but its
-// first word leaves when pixel 600 arrives.
+// The paper's board: a FIFO of 140 words that requests the bus with 32. The first burst begins at once, but
+// its first word leaves when pixel 600 arrives.
 TEST_F(CaptureOverflow, CountsEachPixelAsItIsDroppedAlsoWhileABurstRuns) {
   camera = CameraConfig{};
   board = CaptureBoardConfig{};
@@ -22,8 +22,8 @@ TEST_F(CaptureOverflow, CountsEachPixelAsItIsDroppedAlsoWhileABurstRuns) {
   }
 }
 
-// A FIFO of one word, and pixel 4 arrives at the edge of the bus clock at which the only word of the first burst
-// leaves, or is lost.
+// A FIFO of one word, and pixel 4 arrives at the edge of the bus clock at which the only word of the first
+// burst leaves, or is lost.
 TEST_P(CaptureOverflow, HasRoomForAPixelThatArrivesWhenAWordLeaves) {
   camera = {16, 1, 29.97, CameraTrigger::kFreeRunning};
   board = {1, 1};

@@ -1,6 +1,6 @@
-// The host port beside the ports of the core. The local bus has the core's clock: a burst that begins at edge c
-// requests one word per cycle from cycle c + kFirst on. The random boards of stereo_core_random_test.cpp and the
-// random computers compare bursts before, in and after frames.
+// The host port beside the ports of the core. The local bus has the core's clock: a burst that begins at
+// edge c requests one word per cycle from cycle c + kFirst on. The random boards of
+// stereo_core_random_test.cpp and the random computers compare bursts before, in and after frames.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-// The trace of buses and queues, with hand-made reports of the blocks. Random computers compare traces with the
-// plain loop over events, which has no targets.
+// The trace of buses and queues, with hand-made reports of the blocks. Random computers compare traces with
+// the plain loop over events, which has no targets.
 #include "platform/bus_trace.h"
 
 #include <fmt/format.h>

@@ -1,5 +1,6 @@
-// What makes a test fail: a SystemC report that it did not announce, a broken rule of the protocol that it did
-// not expect, and a child process that fails. No test of the models would notice that these fail no more.
+// What makes a test fail: a SystemC report that it did not announce, a broken rule of the protocol that it
+// did not expect, and a child process that fails. No test of the models would notice that these fail no
+// more.
 #include <gtest/gtest-spi.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
