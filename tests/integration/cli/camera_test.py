@@ -1,6 +1,5 @@
 """run --source camera: the whole computer around a small board."""
 
-import csv
 import os
 import signal
 
@@ -57,11 +56,7 @@ class Results(CameraTest):
 class Recording(CameraTest):
     """timeline.csv and latency.csv of a run with --record."""
 
-    def table(self, name, folder=None):
-        with open((folder or self.out) / name, encoding="utf-8", newline="") as file:
-            return list(csv.DictReader(file))
-
-    def test_its_sums_are_the_figures_of_the_run_at_both_fidelities(self):
+    def test_it_is_the_same_at_both_fidelities(self):
         for destination in ("board", "host_memory"):
             options = ["--frames", "12", "--record", *sets(f"capture.destination={destination}")]
             cycle = self.folder / f"cycle {destination}"
@@ -69,34 +64,7 @@ class Recording(CameraTest):
             self.camera(*options)
             for name in ("timeline.csv", "latency.csv"):
                 self.assertEqual((self.out / name).read_bytes(), (cycle / name).read_bytes())
-            self.check_sums()
-
-    def check_sums(self):
-        stats, events = self.stats(), self.table("timeline.csv")
-        self.assertNotIn("failed", stats)
-        self.assertTrue(self.run_json()["record"])
-        self.assertEqual(events, sorted(events, key=lambda event: int(event["end_ps"])))
-        of = lambda kind, *what: [event for event in events if event["kind"] == kind and
-                                  (not what or event["class"] in what)]
-        for camera in stats["cameras"]:
-            captures, drops = of("capture", camera["name"]), of("drop", camera["name"])
-            self.assertEqual(len(captures), camera["captured_frames"])
-            self.assertEqual(sum(int(event["dropped_pixels"]) for event in captures),
-                             camera["dropped_pixels"])
-            for why in ("not_armed", "busy", "partner"):
-                dropped = camera["dropped_by_partner" if why == "partner" else f"dropped_{why}"]
-                self.assertEqual(sum(event["why"] == why for event in drops), dropped)
-        self.assertEqual(sum(int(event["words"]) for event in of("upload") + of("read_back")),
-                         stats["bridge"]["dma_words"])
-        self.assertEqual([event["frame"] for event in of("frame", "cycles")], [str(f) for f in range(12)])
-        latencies = self.table("latency.csv")
-        parts = [name for name in latencies[0] if name.endswith("_ps") and name not in
-                 ("captured_ps", "latency_ps")]
-        for frame in latencies:
-            self.assertEqual(sum(int(frame[part]) for part in parts), int(frame["latency_ps"]))
-        sums = [int(frame["latency_ps"]) / 1e9 for frame in latencies]
-        expected = stats["latency_ms"]["capture_to_host"]
-        self.assertEqual([min(sums), max(sums)], [expected["min"], expected["max"]])
+            self.assertNotIn("failed", self.stats())
 
     def test_it_changes_no_other_figure(self):
         self.camera("--frames", "5")
@@ -154,54 +122,6 @@ class Truth(CameraTest):
     def test_the_synthetic_scene_has_the_truth_of_the_camera_frame(self):
         table = self.camera("--synthetic", "1", *sets("matcher.lr_tolerance=1"), "--frames", "4")
         self.assertRegex(table, "accuracy     off by more than 1: ")
-
-
-# Computers at which a simulation of the whole computer has gone wrong before. Their figures are those of the
-# plain loop over events (tests/support/plain_computer.h).
-SLOW_BUS = [
-    "cameras.trigger=on_demand",
-    "bridge.local_clock_mhz=10",
-    "bridge.posted_words=2",
-    "allocation.left_lut=none",
-    "allocation.right_lut=none",
-]
-FULL_FIFO = [
-    *SLOW_BUS,
-    "matcher={window: 3, disparities: 1, filter: none, fetch: column, lr_tolerance: 253}",
-    "image={width: 32, height: 4}",
-    "cameras.frame_rate_hz=777.7",
-    "allocation.left_image=[bank1, bank1, bank2]",
-    "allocation.right_image=[bank0, bank1, bank2]",
-]
-FIFO = "host_frames: 3, fifo_words: 3, fifo_trigger_words: 3"
-PCI = "clock_mhz: 1, latency_timer_clocks: 64, memory_wait_clocks: 8"
-
-
-class KnownFigures(ProgramTest):
-    def stats_of(self, frames, *assignments):
-        options = ["--timing-only", "--frames", frames, "--out", self.out]
-        self.succeeds(run("run", "fpl2003", *options, *sets(*assignments)))
-        return self.stats()
-
-    def test_an_interrupt_that_the_last_access_has_cleared_is_not_polled_again(self):
-        stats = self.stats_of("10", "capture.destination=host_memory")
-        self.assertEqual(stats["pci"]["masters"][0]["transactions"], 387)
-
-    def test_pixels_are_dropped_one_by_one_to_the_end_of_the_run(self):
-        for destination, bridge_wait_clocks, dropped in (
-            ("host_memory", 0, [100, 100]),
-            ("host_memory", 8, [110, 110]),  # half of the last line has come at the end
-            ("board", 0, [0, 2]),
-        ):
-            capture = f"capture={{destination: {destination}, {FIFO}}}"
-            pci = f"pci={{{PCI}, bridge_wait_clocks: {bridge_wait_clocks}}}"
-            stats = self.stats_of("1", *FULL_FIFO, capture, pci)
-            self.assertEqual([camera["dropped_pixels"] for camera in stats["cameras"]], dropped)
-
-    def test_clocks_are_the_decimal_numbers_that_are_written(self):
-        slow_clocks = ["image={width: 4, height: 1}", "cameras.frame_rate_hz=0.17", "pci.clock_mhz=13.7047"]
-        stats = self.stats_of("40", *SLOW_BUS, *slow_clocks)
-        self.assertEqual(stats["latency_ms"]["capture_to_host"]["min"], 3309.549205746)
 
 
 if __name__ == "__main__":

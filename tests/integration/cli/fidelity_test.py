@@ -14,13 +14,6 @@ SLOW = ["--timing-only", *sets("image.width=2048", "image.height=2048", "matcher
                                "ssram.default.words=4194304")]
 CAMERA = ["--source", "camera", *CAMERA_RATES]
 SOURCES = {"preloaded": PRELOADED, "camera": CAMERA}
-BOARDS = {
-    "alone": [],
-    "shared": ["allocation.left_image=[bank0, bank0]", "allocation.left_lut=bank0"],
-    "line_buffer": ["matcher.fetch=line_buffer", "fpga.arbitration=round_robin"],
-    "turnaround": ["ssram.default.kind=sync_burst", "ssram.default.turnaround_cycles=3",
-                   "allocation.disparity=[bank0, bank0]"],
-}
 
 
 class FidelityTest(ProgramTest):
@@ -42,15 +35,6 @@ class FidelityTest(ProgramTest):
         self.assertIn(b'"fidelity": "fast"', fast["stats.json"])
         fast["stats.json"] = fast["stats.json"].replace(b'"fidelity": "fast"', b'"fidelity": "cycle"')
         self.assertTrue(fast == cycle)
-
-
-class Fidelities(FidelityTest):
-    def test_both_write_and_print_the_same_but_for_their_names(self):
-        sequence = ["--sequence", self.sequence(3), "--frames", "5", "--save-frames"]
-        for name, source in SOURCES.items():
-            for board, assignments in BOARDS.items():
-                with self.subTest(source=name, board=board):
-                    self.same_at_both(*source, *sets(*assignments), *sequence)
 
 
 class TimingOnly(FidelityTest):

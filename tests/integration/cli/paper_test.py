@@ -103,53 +103,6 @@ class Numbers(PaperTest):
             self.assertEqual(row["model_frames_per_second"], rate["model"])
             self.assertEqual(size["case"], f"{row['disparities']} disparities")
 
-    def test_areas_are_those_of_bounds(self):
-        for row in self.table("table2"):
-            said = self.succeeds(run(*shlex.split(row["size_command"])[1:]))
-            self.assertIn(f"({float(row['model_slices_percent']):.2f} %)", said)
-
-    def test_accuracies_are_those_of_the_commands(self):
-        rows = self.table("costs")
-        scenes = ["synthetic 1", "synthetic 2", "synthetic 3", "the given pair"]
-        costs = ["sad", "ssd", "zncc", "census 5"]
-        expected = [(scene, cost) for scene in scenes for cost in costs]
-        self.assertEqual([(row["scene"], row["cost"]) for row in rows], expected)
-        for row in [rows[0], rows[6]]:
-            said = self.succeeds(run(*shlex.split(row["command"])[1:]))
-            wrong, answered = float(row["wrong_percent"]), float(row["answered_percent"])
-            pattern = rf"\naccuracy +off by more than 1: {wrong:.2f} %, .* answered: {answered:.2f} %\n"
-            self.assertRegex(said, pattern)
-        for row in rows[12:]:
-            accuracy = self.rates(row["command"])["accuracy"]
-            self.assertEqual(float(row["wrong_percent"]), accuracy["bad_1_percent"])
-            self.assertEqual(float(row["answered_percent"]), accuracy["answered_percent"])
-            self.assertIn("--set matcher.disparities=3 ", row["command"])
-            self.assertGreater(float(row["answered_percent"]), 90)
-
-    @program.slow
-    def test_banks_are_those_of_allocate(self):
-        for claim in ("banks", "banks_of_matching"):
-            rows = [row for row in self.table("banks") if row["claim"] == claim]
-            words = shlex.split(rows[0]["command"])
-            self.assertEqual(words[:2] + words[-2:], ["stereotlm", "allocate", "--out", "banks.db"])
-            said = self.succeeds(run(*words[1:-1], self.folder / f"{claim}.db"))
-            for row in rows:
-                rates = (rf"{float(row['frames_per_second']):.3f} +[\d.]+ "
-                         rf"+{float(row['bound_frames_per_second']):.3f}")
-                numbers = rf"{row['banks']} +{row['allocations']} +\d+ +{rates} +{row['reached_by']}"
-                self.assertRegex(said, rf"\n +{numbers}  {row['allocation']}\n")
-
-    @program.slow
-    def test_runs_of_the_computer_use_the_banks_of_their_row(self):
-        rows = [row for row in self.table("banks") if row["claim"] == "banks_of_computer"]
-        self.assertEqual([row["banks"] for row in rows], ["5", "6", "7", "8"])
-        row = rows[1]
-        stats = self.rates(row["command"])
-        self.assertEqual(float(row["frames_per_second"]), stats["frames_per_second"]["steady"])
-        self.assertEqual(float(row["delivered_frames_per_second"]), stats["frames_per_second"]["system"])
-        used = [bank for bank in stats["banks"] if bank["reads"] + bank["writes"] > 0]
-        self.assertEqual(len(used), int(row["banks"]))
-
 
 class Verdicts(PaperTest):
     def test_table_1_without_a_filter_is_confirmed_but_for_7x7(self):

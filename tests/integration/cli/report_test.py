@@ -1,8 +1,6 @@
 """report: the page's data, and what is refused. The page itself: report_page_test.py."""
 
 import base64
-import csv
-import json
 import os
 import re
 import shutil
@@ -47,34 +45,6 @@ class Run(ReportTest):
         chart = self.folder / "chart.svg"
         self.succeeds(run("diagram", folder, "--out", chart))
         self.assertEqual(data["memory_chart"], chart.read_text())
-
-    def test_holds_where_ports_stall_as_the_repetition_records_it(self):
-        folder = self.run_of("a", *PRELOADED, *SHARED, "--set", "matcher.rows=5", "--frames", "3", "--record")
-        stats = self.stats(folder)
-        recording = self.data(folder)["run"]["recording"]
-        self.assertEqual(recording["frames"], 3)
-        lines = recording["rows"]["lines"]
-        self.assertEqual((lines, recording["rows"]["height"]), (5, 5))
-        self.assertEqual(sum(recording["rows"]["cycles"]), stats["cycles"])
-        stalls = {(each["port"], each["bank"], each["by"]): each for each in recording["stalls"]}
-        blame = {(row["port"], row["bank"], row["by"]): row["cycles"] for row in stats["blame"]}
-        self.assertEqual({cause: sum(each["rows"]) for cause, each in stalls.items()}, blame)
-        tiles = recording["tiles"]
-        with open(folder / "conflicts.csv", newline="") as file:
-            recorded = [row for row in csv.DictReader(file) if row["first_row"]]
-        for cause, each in stalls.items():
-            expected = [0] * (tiles["columns"] * tiles["rows"])
-            for row in recorded:
-                if (row["port"], row["bank"], row["by"]) == cause:
-                    line = int(row["first_row"]) // tiles["height"]
-                    column = int(row["first_column"]) // tiles["width"]
-                    expected[line * tiles["columns"] + column] += int(row["cycles"])
-            self.assertEqual(each["tiles"], expected)
-            self.assertEqual(sum(expected), sum(each["rows"][1:]))
-        accesses = {bank["name"]: 0 for bank in stats["banks"]}
-        for each in recording["rows"]["accesses"]:
-            accesses[each["bank"]] += sum(each["accesses"])
-        self.assertEqual(accesses, {bank["name"]: bank["reads"] + bank["writes"] for bank in stats["banks"]})
 
     def test_a_change_takes_a_bank_that_holds_nothing_if_it_is_deep_enough(self):
         for more, idle, lacking in (((), ["bank6"], 0),

@@ -188,21 +188,6 @@ class Interrupted(ProgramTest):
         self.assertEqual(status, 130)
         return terminal, out
 
-    def test_an_interrupted_run_equals_a_whole_one_of_the_finished_frames(self):
-        terminal, out = self.interrupt("--out", self.out)
-        self.is_in(self.out, *RESULT_FILES)
-        stats = self.stats()
-        frames = stats["frames"]
-        self.assertGreater(frames, 0)
-        self.assertEqual(len(stats["frame_cycles"]), frames)
-        self.assertNotIn("failed", stats)
-        self.assertIn(f"{frames} frame", out)
-        note = f"stereotlm: note: interrupted after {frames} of {MOST} frames"
-        self.assertIn(note, terminal.shown()[0])
-        whole = self.folder / "whole"
-        self.succeeds(self.run_small("--out", whole, "--frames", frames))
-        self.assertTrue(self.result() == self.result(whole))
-
     def test_the_table_is_printed_without_out_too(self):
         self.assertIn("waits", self.interrupt(number=signal.SIGTERM)[1])
 

@@ -1,7 +1,6 @@
 """Where the pictures of a run come from: sequences, videos, the synthetic scene."""
 
 import os
-import re
 import shutil
 import signal
 import subprocess
@@ -98,15 +97,6 @@ class Sequence(SourceTest):
             (folder / f"left_00{number}.png").unlink()
         refused("right_01.png", "left_01.png")
 
-    def test_the_first_picture_that_cannot_be_used_is_refused(self):
-        folder = self.sequence(3)
-        self.file("sequence/left_002.png")
-        self.refused_sequence(folder, f"'{folder}/left_002.png': an empty file: a picture must be")
-        high = HEIGHT + 1
-        self.file("sequence/right_001.png", pgm(WIDTH, high, bytes(WIDTH * high)))
-        size = f"{WIDTH}x{high} pixels: must be as large as the board's images, {WIDTH}x{HEIGHT}"
-        self.refused_sequence(folder, f"'{folder}/right_001.png': {size}")
-
     def test_an_interrupt_while_it_is_checked_leaves_nothing(self):
         picture = self.file("large.pgm", pgm(1024, 1024, bytes(1024 * 1024)))
         folder = self.folder / "long"
@@ -169,17 +159,6 @@ class Video(SourceTest):
         note = f"--video '{video}': 2 frames can be decoded; its header says 4"
         self.assertEqual(process.stderr, f"stereotlm: note: {note}\n")
         self.assertEqual(self.stats()["frames"], 2)
-
-
-class Synthetic(SourceTest):
-    def test_its_accuracy_is_printed_and_kept_out_of_the_figures(self):
-        board = sets("image.width=160", "image.height=120", "matcher.fetch=line_buffer")
-        source = ["--synthetic", "3", "--frames", "2", "--out", self.out]
-        table = self.succeeds(run("run", "fpl2003", *PRELOADED, *board, *source))
-        found = re.search(r"off by more than 1: (\S+) %, by more than 2: \S+ %, answered: (\S+) %", table)
-        self.assertLess(float(found[1]), 5)
-        self.assertGreater(float(found[2]), 75)
-        self.assertNotIn("accuracy", self.stats())
 
 
 class Truth(SourceTest):

@@ -8,7 +8,7 @@ import subprocess
 import sys
 
 import program
-from program import HEIGHT, WIDTH, of_plain_user, run, wait_until
+from program import HEIGHT, WIDTH, of_plain_user, run
 from sweep_test import SweepTest
 
 FULL_DISK = os.path.abspath(sys.argv.pop(1))  # a library, see tests/support/full_disk.cpp
@@ -105,37 +105,6 @@ class FullDisk(RobustnessTest):
         process = self.on_disk_of(0, "sweep", self.plan, "--out", store, "--progress", progress)
         self.refused_in_one_line(process,
                                  f"--progress '{progress}': cannot be written: No space left on device")
-
-
-class LockedDatabase(RobustnessTest):
-    def test_a_lock_is_waited_for(self):
-        self.succeeds(self.sweep())
-        for begin in ("BEGIN IMMEDIATE", "BEGIN EXCLUSIVE"):
-            connection = self.lock(begin)
-            process = self.start("sweep", self.plan, "--out", self.store)
-            with self.assertRaises(subprocess.TimeoutExpired):
-                process.wait(timeout=1)
-            connection.execute("ROLLBACK")
-            connection.close()
-            with self.unchanged(self.store):
-                _, errors = process.communicate(timeout=60)
-                self.assertEqual(process.returncode, 0, errors)
-
-    def test_a_database_that_a_merge_writes_is_refused_at_once(self):
-        """Also where the merge is the first to write to it. It waits for the database that it reads."""
-        self.succeeds(self.sweep())
-        connection = self.lock("BEGIN EXCLUSIVE")
-        merged = self.folder / "merged.db"
-        process = self.start("merge", merged, self.store)
-        wait_until(merged.exists)
-        others = [self.start("merge", merged, self.left), self.start("sweep", self.plan, "--out", merged)]
-        for other, option in zip(others, ("", "--out ")):
-            self.ends(other, 2, errors=f"stereotlm: error: {option}{merged}: {AT_WORK}\n")
-        connection.execute("ROLLBACK")
-        connection.close()
-        _, errors = process.communicate(timeout=60)
-        self.assertEqual(process.returncode, 0, errors)
-        self.assertTrue(merged.read_bytes() == self.store.read_bytes())
 
 
 class OpenFiles(RobustnessTest):

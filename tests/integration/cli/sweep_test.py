@@ -106,19 +106,6 @@ class Sweep(SweepTest):
             lines = self.refused(run("run", board, "--timing-only"))
             self.assertEqual([line.split(": ", 1)[1] for line in lines], [reason])
 
-    def test_shards_give_the_same_bytes(self):
-        self.succeeds(self.sweep("--jobs", 1))
-        expected = self.store.read_bytes()
-        shards = [self.folder / f"shard{number}.db" for number in range(3)]
-        for number, store in enumerate(shards):
-            said = self.succeeds(self.sweep("--shard", f"{number}/3", store=store))
-            self.assertIn(f"4 points in shard {number}/3: ", said)
-        merged = self.folder / "merged.db"
-        said = self.succeeds(run("merge", merged, *reversed(shards)))
-        self.assertEqual(said, f"{merged}: {POINTS} points of 3 databases\n")
-        self.assertEqual(merged.read_bytes(), expected)
-        self.assertEqual(list(self.folder.glob("*wal*")), [])
-
     def test_known_points_are_left_out(self):
         more = self.file("more.yaml", MORE)
         other = self.folder / "other.db"
@@ -203,14 +190,6 @@ vary:
             stats = self.run_point(config, *options)
             (grants,) = (port["grants"] for port in stats["ports"] if port["name"] == "left_pixel")
             self.assertEqual(figures, [stats["cycles"], stats["banks"][0]["reads"], grants])
-        text = "board: fpl2003\nrun: {source: camera, frames: 2, calibration: RIG}\n"
-        plan = self.plan_of(self.rig, "camera.yaml", text)
-        store = self.folder / "camera.db"
-        self.succeeds(self.sweep(plan=plan, store=store))
-        columns = 'config, "frames_per_second.system", "pci.busy_clocks"'
-        ((config, *figures),) = self.query(f"SELECT {columns} FROM points", store)
-        stats = self.run_point(config, "--frames", 2, "--calibration", self.rig)
-        self.assertEqual(figures, [stats["frames_per_second"]["system"], stats["pci"]["busy_clocks"]])
 
     def test_the_calibration_is_found_from_the_working_directory_and_replaced_by_the_option(self):
         self.succeeds(self.sweep())
@@ -224,20 +203,6 @@ vary:
             self.assertEqual(store.read_bytes(), self.store.read_bytes())
         process = self.sweep(plan=relative)
         self.refused_in_one_line(process, f"{relative}:3:39: run.calibration 'rig.yaml': no such file")
-
-    def test_the_calibration_is_for_images_of_its_size(self):
-        rule = "image size = 640x480: must be that of the board's images, 320x240"
-        small = ["--board", "fpl2003-qvga"]
-        process = self.sweep(*small)
-        self.refused_in_one_line(process, f"{self.plan}:3:39: run.calibration '{self.rig}': {rule}")
-        process = self.sweep(*small, "--calibration", self.rig)
-        self.refused_in_one_line(process, f"--calibration '{self.rig}': {rule}")
-        table = self.folder / "rig_left.lut"
-        table.write_bytes(bytes(4) + table.read_bytes()[4:])
-        texts = (f"{self.plan}:3:39: run.calibration '{table}': SHA-256 ", "must be the table that")
-        self.refused_in_one_line(self.sweep(), *texts)
-        self.refused_in_one_line(self.sweep("--calibration", ""), "--calibration: empty")
-        self.assertFalse(self.store.exists())
 
 
 class Refusals(SweepTest):
@@ -284,38 +249,6 @@ class Refusals(SweepTest):
             self.refused(empty, *(f"{option}: empty" for option in options))
             self.refused(run("sweep"), "PLAN: missing", "--out: missing")
             self.refused(run("merge"), "OUT: missing", "DB: missing")
-
-    def test_banks_whose_names_differ_only_in_case_are_refused(self):
-        buffers = "left_image: A, right_image: a, disparity: A, left_lut: a, right_lut: A"
-        board = f"extends: fpl2003\nssram: {{banks: {{A: {{}}, a: {{}}}}}}\nallocation: {{{buffers}}}\n"
-        twins = self.file("twins.yaml", board + f"image: {{width: {WIDTH}, height: {HEIGHT}}}\n")
-        self.succeeds(run("check", twins))
-        rule = "ssram.banks = A, a: the names differ only in case"
-        plan = self.file("plan.yaml", f"board: {twins}\nrun: {{source: preloaded}}\n")
-        self.refused(self.sweep(plan=plan), f"{plan}:1:8: {rule}")
-        allocate = ["allocate", twins, "--source", "preloaded", "--banks", 2, "--out", self.store]
-        self.refused_in_one_line(run(*allocate), f"{twins}: {rule}")
-        self.refused_in_one_line(run("explain", twins, "--source", "preloaded"), f"{twins}: {rule}")
-        self.assertFalse(self.store.exists())
-
-    def test_files_that_the_progress_would_replace_are_refused(self):
-        (self.folder / "link").symlink_to(self.plan)
-        (self.folder / "sub").mkdir()
-        self.succeeds(self.sweep(store=self.folder / "known.db"))
-        known, notes = self.folder / "known.db", self.file("notes", "ok 3\nand more\n")
-        other = "exists, and is not known as a file of --progress, which alone is replaced: "
-        with self.unchanged(self.folder):
-            for path, rule in (
-                (self.store, "is the file of --out"),
-                (self.folder / "sub" / ".." / "points.db", "is the file of --out"),
-                (self.plan, "is the file of PLAN"),
-                (self.folder / "link", "is the file of PLAN"),
-                (known, "is the file of --known"),
-                *((path, other) for path in (notes, self.left)),
-                *((path, "is no file") for path in (self.folder, "/dev/null")),
-            ):
-                process = self.sweep("--known", known, "--progress", path)
-                self.refused_in_one_line(process, f"--progress '{path}': {rule}")
 
 
 class Meanwhile(SweepTest):

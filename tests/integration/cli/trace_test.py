@@ -1,16 +1,12 @@
 """run --trace: what the files hold, and what is refused."""
 
-import collections
 import contextlib
 import os
-import re
-import resource
 import signal
 import sqlite3
 
 import program
-from program import (CAMERA_RATES, CYCLE, PRELOADED, PROGRESS, SMALL, ProgramTest, Terminal, run, sets,
-                     wait_until)
+from program import (CAMERA_RATES, PRELOADED, PROGRESS, SMALL, ProgramTest, Terminal, run, sets, wait_until)
 
 CONTENDED = sets("allocation.left_lut=bank0", "allocation.left_image=[bank0, bank0]")
 TIMING = ["--timing-only", *CONTENDED]
@@ -26,32 +22,9 @@ class TraceTest(ProgramTest):
         """The output of a small run that has written traces into self.folder."""
         return self.succeeds(run("run", board, *SMALL, *source, *TIMING, *more, cwd=self.folder))
 
-    @contextlib.contextmanager
-    def database(self, name="run.sqlite"):
-        with contextlib.closing(sqlite3.connect(self.folder / name)) as connection:
-            yield connection
-
     def rows_of(self, query, name="run.sqlite"):
-        with self.database(name) as connection:
+        with contextlib.closing(sqlite3.connect(self.folder / name)) as connection:
             return connection.execute(query).fetchall()
-
-    def changes(self, name="run.vcd"):
-        """The signals of a VCD file, by their names: lists of (time, value)."""
-        names, scopes, time, values = {}, [], None, collections.defaultdict(list)
-        for line in (self.folder / name).read_text().splitlines():
-            words = line.split()
-            if words[:1] == ["$scope"]:
-                scopes.append(words[2])
-            elif words[:1] == ["$upscope"]:
-                scopes.pop()
-            elif words[:1] == ["$var"]:
-                names[words[3]] = ".".join([*scopes, words[4]])
-            elif line.startswith("#"):
-                time = int(line[1:])
-            elif time is not None and (change := re.fullmatch(r"(?:([01xz])|[bs](\S*) )(\S+)", line)):
-                one, many, code = change.groups()
-                values[names[code]].append((time, one if one is not None else many))
-        return values
 
 
 class Files(TraceTest):
@@ -74,53 +47,6 @@ class Files(TraceTest):
             self.assertTrue(before[name] != after[name], name)
         self.assertEqual(self.rows_of("SELECT DISTINCT frame FROM runs"), [(0,)])
 
-    def test_of_a_database_add_up_to_the_counters(self):
-        self.traced("--frames", 3, *trace("sqlite"), "--out", self.out)
-        stats = self.stats()
-        grants = dict(self.rows_of("SELECT port, sum(count) FROM runs WHERE kind = 'grant' GROUP BY port"))
-        self.assertEqual(grants, {port["name"]: port["grants"] for port in stats["ports"] if port["grants"]})
-        waits = self.rows_of("SELECT port, bank, by, sum(count) FROM runs WHERE kind = 'wait' GROUP BY 1, 2, "
-                             "3")
-        self.assertGreater(len(waits), 0)
-        self.assertEqual(sorted(waits), sorted((row["port"], row["bank"], row["by"], row["cycles"])
-                                               for row in stats["blame"]))
-
-    def test_of_a_window_of_a_whole_frame_have_each_state_of_each_port(self):
-        self.traced(*trace("vcd"), "--trace-window", "frame=0", "--out", self.out)
-        changes, stats = self.changes(), self.stats()
-        period = 1e6 / 40  # ps
-        for port in stats["ports"]:
-            states = changes[f"{port['name']}.state"]
-            cycles = collections.Counter()
-            for (begin, state), (end, _) in zip(states, states[1:]):
-                cycles[state] += (end - begin) / period
-            for state, name in (("waits", "stall_cycles"), ("passes", "passed_cycles"),
-                                ("blocked", "blocked_cycles"), ("starved", "starved_cycles")):
-                self.assertEqual(cycles[state], port[name], (port["name"], state))
-            self.assertEqual(cycles["reads"] + cycles["writes"], port["grants"], port["name"])
-
-    def test_of_a_window_have_its_accesses(self):
-        self.traced(*trace("sqlite", "vcd"), "--trace-window", "cycles=5000..5999")
-        accesses = self.rows_of("SELECT cycle, port, address FROM transactions")
-        self.assertGreater(len(accesses), 1000)
-        self.assertTrue(all(5000 <= cycle <= 5999 for cycle, _, _ in accesses))
-        addresses = {port: dict(self.changes()[f"{port}.address"])
-                     for port in {port for _, port, _ in accesses}}
-        for cycle, port, address in accesses:
-            at = [value for time, value in addresses[port].items() if time <= cycle * 25000]
-            self.assertEqual(int(at[-1], 2), address, (cycle, port))
-
-    def test_are_the_same_at_each_fidelity(self):
-        for source in (PRELOADED, CAMERA_RATES):
-            for window in ("frame=1", "frame=1,rows=3..4", "frame=1,cycles=100..900", "cycles=90000..91000"):
-                contents = []
-                for fidelity in ([], CYCLE):
-                    self.traced("--frames", 3, *trace("sqlite", "vcd"), "--trace-window", window, *fidelity,
-                                source=source)
-                    with self.database() as connection:
-                        contents.append(([*connection.iterdump()], (self.folder / "run.vcd").read_text()))
-                self.assertTrue(contents[0] == contents[1], (source, window))
-
     def test_of_a_computer_have_its_buses_and_events(self):
         self.traced("--frames", 3, *trace("sqlite"), "--trace-window", "cycles=0..100000", "--out", self.out,
                     source=CAMERA_RATES)
@@ -140,22 +66,6 @@ class Files(TraceTest):
             self.succeeds(run("run", "fpl2003", *tiny, f"cycles={first}..{last}", cwd=self.folder))
             times = self.times()
             self.assertEqual((times[0], times[-1]), (first * 25000, (last + 1) * 25000))
-
-    def test_around_the_longest_wait_have_sixty_cycles_and_the_marker(self):
-        rows = "frame=0,rows=3..4"
-        self.traced(*trace("sqlite"), "--trace-window", rows)
-        (begin, waited), = self.rows_of(
-            "SELECT cycle - waited, waited FROM transactions, (SELECT min(cycle) AS first FROM transactions) "
-            "ORDER BY waited DESC, cycle - waited < first + 30, cycle LIMIT 1")
-        self.traced(*trace("sqlite", "vcd"), "--trace-window", f"{rows},longest-wait")
-        shown = begin - 30
-        times = self.times()
-        self.assertEqual((times[0], times[-1]), (shown * 25000, (shown + 60 + waited) * 25000))
-        accesses = self.rows_of("SELECT min(cycle), max(cycle) FROM transactions")[0]
-        self.assertLessEqual(shown, accesses[0])
-        self.assertLess(accesses[1], shown + 60 + waited)
-        layout = (self.folder / "run.gtkw").read_text()
-        self.assertRegex(layout, rf"\n\*-[0-9.]+ {begin * 25000} -1")
 
     def test_of_a_window_in_which_nothing_happens_say_so(self):
         process = run("run", "fpl2003", *SMALL, *PRELOADED, *TIMING, *trace("sqlite"), "--trace-window",
@@ -186,16 +96,6 @@ class Files(TraceTest):
         self.assertEqual((self.folder / "run.sqlite").read_bytes(), earlier)
         self.traced(*trace("perfetto", "sqlite"))  # removes what the killed run has left
         self.is_in(self.folder, "left.pgm", "right.pgm", "run.perfetto", "run.sqlite")
-
-    def test_of_a_full_disk_are_not_there(self):
-        limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (20000, 20000))
-        for form in ("perfetto", "sqlite", "vcd"):
-            process = run("run", "fpl2003", *SMALL, *PRELOADED, *TIMING, "--frames", 20, *trace(form),
-                          "--trace-window", "frame=0", cwd=self.folder, preexec_fn=limit)
-            self.assertIn(f"run.{form}", process.stderr)
-            self.assertNotIn("model", process.stderr)
-            self.fails(process)
-            self.is_in(self.folder, "left.pgm", "right.pgm")
 
 
 class Refusals(TraceTest):

@@ -115,15 +115,6 @@ class CaptureBench : public testing::Test {
   void plan(std::size_t request, const test::BusTurn& turn) {
     side->bus.plan = [=](std::size_t number) { return number == request ? turn : test::BusTurn{}; };
   }
-  // Others hold the bus until the address clock of one request is clock `clock`.
-  void grant_in(std::size_t request, std::uint64_t clock) {
-    side->bus.plan = [=](std::size_t number) {
-      test::BusTurn turn;
-      if (number == request)
-        turn.busy_clocks = clock - side->bus.clock().edge_at_or_after(kernel_time::now_ps());
-      return turn;
-    };
-  }
   std::uint64_t edge_at_or_after(std::uint64_t time_ps) const {
     return side->bus.clock().edge_at_or_after(time_ps);
   }

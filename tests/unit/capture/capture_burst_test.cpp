@@ -22,38 +22,6 @@ class CaptureBurst : public CaptureBench {
   }
 };
 
-TEST_F(CaptureBurst, WritesTheFrameRowByRowWithTheLowestColumnInTheLowestByte) {
-  build_and_arm();
-  run_frame();
-  EXPECT_EQ(captured(), sent());
-  EXPECT_EQ(burst(0).words.at(0),
-            sent()[0] | unsigned{sent()[1]} << 8U | unsigned{sent()[2]} << 16U | unsigned{sent()[3]} << 24U);
-  EXPECT_EQ(side->bus.memory.size(), 12U);
-  EXPECT_EQ(stats().words, 12U);
-  EXPECT_EQ(stats().bursts, side->bus.bursts.size());
-  EXPECT_EQ(stats().dropped_pixels, 0U);
-  EXPECT_EQ(stats().captured_frames, 1U);
-}
-
-// Edges are at whole ns. The frame rate is one at which word 1 is complete some ps after an edge.
-class CaptureGrantEdge : public CaptureBurst, public testing::WithParamInterface<std::uint64_t> {};
-
-TEST_P(CaptureGrantEdge, TakesAWordThatIsCompleteAtTheEdgeButNotAPsLater) {
-  const std::uint64_t late_ps = GetParam();
-  board = {4, 1};
-  clock_mhz = 1000;
-  for (int i = 0; i < 100'000 && CameraTiming(camera).pixel_ps(7, 0) % 1000 != late_ps; ++i)
-    camera.frame_rate_hz = (10'000 + i) / 100.0;
-  build_and_arm();
-  grant_in(0, word_ps(1, 0) / 1000);
-  run_frame();
-  EXPECT_EQ(burst(0).address_clock_ps, word_ps(1, 0) - late_ps);
-  EXPECT_EQ(burst(0).words.size(), 2 - late_ps);
-  EXPECT_EQ(captured(), sent());
-}
-
-INSTANTIATE_TEST_SUITE_P(LatePs, CaptureGrantEdge, testing::Values(0U, 1U));
-
 class CaptureBusError : public CaptureBurst, public testing::WithParamInterface<BurstEnd> {};
 
 TEST_P(CaptureBusError, LosesTheWordsOfTheBurstAndContinuesTheCapture) {

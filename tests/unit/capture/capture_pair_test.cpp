@@ -29,49 +29,6 @@ class CapturePair : public testing::TestWithParam<bool> {
   std::unique_ptr<CaptureSide> right;
 };
 
-TEST_P(CapturePair, DropsAFrameThatFindsASideNotArmed) {
-  build();
-  run_to(1);  // frame 0 finds neither armed
-  left->arm(kAddress);
-  run_to(frame_ps(1) + 1);
-  right->arm(kAddress);  // a ps too late for frame 1
-  run_to(frame_ps(2) - 1);
-  expect_started(0);
-  EXPECT_EQ(left->board.stats().dropped_not_armed, 1U);
-  EXPECT_EQ(left->board.stats().dropped_by_partner, 1U);
-  EXPECT_EQ(left->board.stats().dropped_frames(), 2U);
-  EXPECT_EQ(right->board.stats().dropped_not_armed, 2U);
-  EXPECT_EQ(right->board.stats().dropped_frames(), 2U);
-  EXPECT_TRUE(left->source.asked.empty());
-  EXPECT_EQ(left->status(), registers::kStatusArmed);
-  run_to(frame_ps(3) - 1);
-  expect_started(1);
-  EXPECT_EQ(left->board.last_capture()->frame, 2U);
-  EXPECT_EQ(right->board.last_capture()->frame, 2U);
-}
-
-TEST_P(CapturePair, DropsAFrameThatFindsOneSideBusy) {
-  build();
-  left->bus.plan = [this](std::size_t request) {
-    test::BusTurn turn;
-    if (request == 0) turn.busy_clocks = left->bus.clock().edge_at_or_after(frame_ps(1)) + 10;
-    return turn;
-  };
-  left->arm(kAddress);
-  right->arm(kAddress);
-  run_to(frame_ps(1) - 1);
-  EXPECT_EQ(right->board.stats().captured_frames, 1U);
-  left->arm(kAddress);
-  right->arm(kAddress);
-  run_to(frame_ps(2) - 1);
-  expect_started(1);
-  EXPECT_EQ(left->board.stats().dropped_busy, 1U);
-  EXPECT_EQ(right->board.stats().dropped_by_partner, 1U);
-  run_to(frame_ps(3) - 1);
-  expect_started(2);
-  EXPECT_EQ(right->board.last_capture()->frame, 2U);
-}
-
 TEST_P(CapturePair, DropsFramesThatDoNotBeginTogether) {
   build(29.96);
   left->arm(kAddress);

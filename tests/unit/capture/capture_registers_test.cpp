@@ -147,21 +147,6 @@ INSTANTIATE_TEST_SUITE_P(Times, CaptureArming,
                                          Arming{"delayed_to_a_ps_later", -50, 51, 2}),
                          [](const auto& tested) { return tested.param.name; });
 
-TEST_F(CaptureRegisters, ArmTheNextCaptureWhileOneRuns) {
-  build_and_arm();
-  run_to(word_ps(1, 1));
-  side->arm(kAddress + 0x100);
-  EXPECT_EQ(side->status(), kStatusArmed | kStatusCapturing);
-  run_to(frame_ps(1) - 1);
-  EXPECT_EQ(side->status(), kStatusArmed | kStatusDone);
-  EXPECT_EQ(side->buffer(kAddress, 0), side->source.picture(0).pixels);
-  run_to(frame_ps(2) - 1);
-  EXPECT_EQ(side->buffer(kAddress, 0), side->source.picture(0).pixels);
-  EXPECT_EQ(side->buffer(kAddress + 0x100, 0), side->source.picture(1).pixels);
-  EXPECT_EQ(stats().captured_frames, 2U);
-  EXPECT_EQ(stats().dropped_frames(), 0U);
-}
-
 TEST_F(CaptureRegisters, TriggerTheCamera) {
   camera.trigger = CameraTrigger::kOnDemand;
   build();
@@ -188,23 +173,6 @@ TEST_F(CaptureRegisters, TriggerNothingWithoutCameraOnDemand) {
   run_frame();
   EXPECT_EQ(side->camera.stats().frames, 1U);
   EXPECT_EQ(side->camera.stats().ignored_triggers, 0U);
-}
-
-TEST_F(CaptureRegisters, CountTheDroppedPixelsOfTheLastCapture) {
-  build_and_arm();
-  test::BusTurn turn;
-  turn.busy_clocks = 400'000;  // 12 ms, more than a line
-  plan(0, turn);
-  run_frame();
-  const std::uint64_t dropped = stats().dropped_pixels;
-  EXPECT_GT(dropped, 0U);
-  EXPECT_EQ(reg(registers::kDroppedPixels), dropped);
-  EXPECT_EQ(side->board.last_capture()->dropped_pixels, dropped);
-  side->write(kStatus, kStatusDone);
-  side->arm(kAddress);
-  run_to(frame_ps(2) - 1);
-  EXPECT_EQ(reg(registers::kDroppedPixels), 0U);
-  EXPECT_EQ(stats().dropped_pixels, dropped);
 }
 
 TEST_F(CaptureRegisters, StartAFrameThatBeginsWhenTheLastCaptureEndsButNotEarlier) {

@@ -1,14 +1,18 @@
-// How few cycles are stepped. The random cores, boards and computers compare what is counted with frames that
-// are stepped and with the plain loops.
+// Bursts of the host in frames that run ahead, compared with frames that are stepped; and how few cycles are
+// stepped. The random cores, boards and computers compare what is counted with the plain loops.
 #include "models/fpga/fast/fast_forward.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "models/fpga/frame_run.h"
+#include "tests/unit/fpga/core_figures.h"
 #include "tests/unit/fpga/random_core.h"
 
 namespace stereotlm::fpga {
@@ -85,6 +89,123 @@ TEST_F(FastForwardTest, StepsFewCyclesBesideBurstsOnceTheirGroupsAreRecorded) {
   const std::vector<std::uint64_t> stepped = stepped_cycles(901);
   EXPECT_LT(stepped[0], 50'000U);
   EXPECT_LT(stepped[2], 4000U);
+}
+
+// A core with random entries whose frames run ahead, or are stepped.
+class Core {
+ public:
+  Core(test::SplitMix64 random, bool steps) : steps_(steps) {
+    CoreConfig config = random_core(random, 64);
+    draw_units(random, config);
+    draw_rows(random, config);
+    const memory::ArbiterConfig arbiter = random_arbiter(random);
+    std::vector<memory::SsramBankConfig> banks;
+    for (int left = random.between(1, 6); left > 0; --left) banks.push_back(random_bank(random));
+    for (std::uint32_t& base : bases_)
+      base = registers::base(static_cast<std::uint32_t>(random.between(0, int(banks.size()) - 1)), 0);
+    for (AccessPattern& pattern : patterns_) pattern = {FrameGeometry(config), config.pixel_cache};
+    for (const Side side : kSides) {
+      entries_[index_of(side)] = random_entries(random, config);
+      if (side == Side::kLeft ? config.left_table : config.right_table)
+        patterns_[index_of(side)].set_entries(entries_[index_of(side)].data());
+    }
+    arbitration_.emplace(arbiter, banks);
+    run_.emplace(config, banks, *arbitration_, UINT64_MAX);
+    if (random.chance(30)) run_->record_rows();
+  }
+  void start() { run_->start_direct(run_->cycle(), bases_, patterns_); }
+  void advance(std::uint64_t end) {
+    if (!steps_) run_->run_ahead(end);
+    while (run_->cycle() < end && !done()) step(false);
+  }
+  // Returns the cycle of the last grant. Each word requests in the cycle after a grant.
+  std::uint64_t serve(std::uint64_t first, FastForward::Route route, std::size_t words) {
+    if (steps_) return serve_stepped(first, route, words, 0);
+    std::uint64_t last = first;
+    while (words > 0 && !done()) {
+      const FastForward::Served served = run_->serve_host(route, first, words);
+      words -= served.words;
+      if (served.words != 0) first = 1 + (last = served.last_cycle);
+    }
+    return last;
+  }
+  // Word by word. The first requests `waits` cycles after it has been routed.
+  std::uint64_t serve_stepped(std::uint64_t first, FastForward::Route route, std::size_t words,
+                              std::uint64_t waits) {
+    advance(first);
+    if (done()) return first;
+    run_->host_route_changes();
+    arbitration_->route(kHostPort, route.bank, route.write);
+    advance(cycle() + waits);
+    while (words > 0 && !done()) {
+      if (!step(true)) continue;
+      --words;
+      first = run_->cycle() - 1;
+    }
+    run_->host_route_changes();
+    arbitration_->unroute(kHostPort);
+    return first;
+  }
+  bool step(bool requests) { return (run_->step(requests) & memory::mask_of(kHostPort)) != 0; }
+  void finish() {
+    advance(UINT64_MAX);
+    run_->finish();
+    run_->end();
+  }
+  bool done() const { return run_->control().frame_done(); }
+  std::uint64_t cycle() const { return run_->cycle(); }
+  std::size_t banks() const { return arbitration_->arbiters().size(); }
+  std::string figures() {
+    CoreFigures figures(*run_, arbitration_->arbiters());
+    for (const RowProfile& frame : run_->take_rows()) figures.add(frame);
+    return figures.text();
+  }
+
+ private:
+  bool steps_;
+  FrameBases bases_{};
+  std::array<std::vector<std::uint32_t>, 2> entries_;
+  AccessPatterns patterns_{AccessPattern(FrameGeometry(CoreConfig()), PixelCache::kWord),
+                           AccessPattern(FrameGeometry(CoreConfig()), PixelCache::kWord)};
+  std::optional<memory::Arbitration> arbitration_;
+  std::optional<FrameRun> run_;
+};
+
+// Most bursts are like each other, so that they are soon known.
+TEST(FastForward, GrantsBurstsInTheCyclesOfItsSteps) {
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Core stepped(test::SplitMix64(seed), true);
+    Core ahead(test::SplitMix64(seed), false);
+    test::SplitMix64 random(seed);
+    const int words = random.mostly_small(1, 40, 300);
+    const int pause = random.mostly_small(1, 200, 1000);
+    const int others = random.chance(50) ? 0 : random.between(1, 30);  // percent
+    for (int frame = 0; frame < 3; ++frame) {
+      stepped.start();
+      ahead.start();
+      for (std::uint64_t first = stepped.cycle() + 50; !stepped.done();) {
+        const bool is_other = random.chance(others);
+        const FastForward::Route route{is_other ? random.next() % stepped.banks() : 0, !is_other};
+        const int count = is_other ? random.between(1, 40) : words;
+        const std::uint64_t waits = random.chance(others / 4) ? random.next() % 500 : 0;
+        const auto serve = [&](Core& core) {
+          const auto size = static_cast<std::size_t>(count);
+          const std::uint64_t last =
+              waits == 0 ? core.serve(first, route, size) : core.serve_stepped(first, route, size, waits);
+          if (pause % 2 == 0) core.advance(last + static_cast<std::uint64_t>(pause / 2));
+          return last;
+        };
+        const std::uint64_t last = serve(stepped);
+        ASSERT_EQ(serve(ahead), last);
+        ASSERT_EQ(ahead.cycle(), stepped.cycle());
+        first = std::max(last, stepped.cycle()) + static_cast<std::uint64_t>(pause);
+      }
+      stepped.finish();
+      ahead.finish();
+      ASSERT_EQ(ahead.figures(), stepped.figures()) << "frame " << frame;
+    }
+  }
 }
 
 }  // namespace

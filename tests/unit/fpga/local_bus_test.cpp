@@ -48,7 +48,7 @@ class LocalBusTest : public testing::Test {
   static void run_until(std::uint64_t edge) { sc_core::sc_start(local(edge) - sc_core::sc_time_stamp()); }
   // Grants a word in the cycle of the core that begins at `grant_ps`; usable two cycles later.
   void grant(std::uint64_t grant_ps) {
-    ASSERT_TRUE(bus.control().requests(grant_ps));
+    ASSERT_TRUE(bus.requests(grant_ps));
     bus.control().access(grant_ps, grant_ps + 2 * kCorePs);
   }
   // Reports that do not throw: the address sanitizer cannot follow an exception through the processes.
@@ -72,41 +72,6 @@ class LocalBusTest : public testing::Test {
   sc_core::sc_signal<bool> done{"done"};
 };
 
-TEST_F(LocalBusTest, BeginsTheNextWordsClockAtOrAfterTheGrant) {
-  host.request(TLM_WRITE_COMMAND, 0, Words{5, 6, 7});
-  EXPECT_EQ(bus.control().request_ps(), 3 * kLocalPs);
-  grant(3 * kLocalPs);  // at a local edge: the next word's clock begins there
-  EXPECT_EQ(bus.control().request_ps(), 4 * kLocalPs);
-  grant(4 * kLocalPs + 1);  // after an edge: it begins at the next
-  EXPECT_EQ(bus.control().request_ps(), 6 * kLocalPs);
-  grant(6 * kLocalPs);
-  EXPECT_FALSE(bus.control().word_waits());
-  run_until(20);
-  ASSERT_EQ(host.answers.size(), 1U);
-  EXPECT_EQ(host.answers[0].status, tlm::TLM_OK_RESPONSE);
-  EXPECT_EQ(host.answers[0].at, local(7));  // the idle clock is 6
-  EXPECT_EQ(Words(bank.words(), bank.words() + 3), (Words{5, 6, 7}));
-  EXPECT_EQ(bus.stats().words_written, 3U);
-  EXPECT_EQ(bus.stats().bursts, 1U);
-  EXPECT_EQ(bus.stats().busy_clocks, 6U);  // without the idle clock
-  EXPECT_EQ(bus.stats().clocks, 20U);
-}
-
-TEST_F(LocalBusTest, CountsClocksUpToNow) {
-  run_until(10);
-  host.request(TLM_WRITE_COMMAND, 0, 5);
-  EXPECT_EQ(bus.stats().busy_clocks, 0U);
-  run_until(12);
-  EXPECT_EQ(bus.stats().clocks, 12U);
-  EXPECT_EQ(bus.stats().busy_clocks, 2U);
-  grant(13 * kLocalPs);  // ahead of time
-  EXPECT_EQ(bus.stats().busy_clocks, 2U);
-  for (const std::uint64_t edge : {13U, 14U}) {
-    run_until(edge);
-    EXPECT_EQ(bus.stats().busy_clocks, 3U);
-  }
-}
-
 TEST_F(LocalBusTest, CountsTheWordsWrittenToEachBuffer) {
   using Counts = std::vector<std::uint64_t>;
   const auto expect_words = [this](const Counts& granted, const Counts& to_grant) {
@@ -123,21 +88,6 @@ TEST_F(LocalBusTest, CountsTheWordsWrittenToEachBuffer) {
   run_until(20);
   host.request(TLM_READ_COMMAND, 4, Words(2));
   expect_words({1, 2}, {0, 0});
-}
-
-TEST_F(LocalBusTest, EndsAReadWhenItsLastWordIsUsable) {
-  host.debug_write(8, {41, 42});
-  host.request(TLM_READ_COMMAND, 8, Words(2));
-  grant(3 * kLocalPs);
-  EXPECT_EQ(bus.control().request_ps(),
-            4 * kLocalPs);  // the next word is requested while the first is on its way
-  grant(4 * kLocalPs);
-  run_until(20);
-  ASSERT_EQ(host.answers.size(), 1U);
-  EXPECT_EQ(host.answers[0].words, (Words{41, 42}));
-  // Usable at 4 * 30 + 50 ns: on the bus at edge 6, then the idle clock.
-  EXPECT_EQ(host.answers[0].at, local(7));
-  EXPECT_EQ(bus.stats().words_read, 2U);
 }
 
 TEST_F(LocalBusTest, TransfersTheOtherWordsBesideOneThatIsRefused) {

@@ -100,45 +100,6 @@ TEST_F(StereoCoreFast, TransportsOnlyTheWordsOfAFrameThatCannotWorkDirectly) {
   EXPECT_EQ(core->stepped_frames(), 1U);
 }
 
-// Ways to change the left table between two frames. The second frame has no valid entry, and so no
-// disparities and no reads of the image.
-class StereoCoreTables : public StereoCoreFast, public testing::WithParamInterface<const char*> {
- protected:
-  void change_left_table() {
-    const std::string how = GetParam();
-    const std::uint64_t table = crossbar_address(kLeftTable, 0);
-    if (how == "ByTheLocalBus") {
-      at(sc_core::sc_time_stamp(),
-         [this, table] { memory.access(TLM_WRITE_COMMAND, table, Words(kTableWords)); });
-      finish();
-    } else if (how == "ByDebugTransport") {
-      memory.debug_write(table, Words(kTableWords));
-    } else if (how == "Directly") {
-      tlm::tlm_dmi dmi;
-      ASSERT_TRUE(memory.dmi(table, dmi));
-      std::fill_n(dmi.get_dmi_ptr(), kTableWords * 4, std::uint8_t{0});
-    } else {
-      set_base(registers::kLeftLutBase, kSpare);  // another table
-    }
-  }
-};
-
-TEST_P(StereoCoreTables, ChangedBetweenTwoFramesAreReadAgain) {
-  build(small_board());
-  run_frame();
-  const std::uint64_t reads = port(pixel_port(Side::kLeft)).granted();
-  ASSERT_GT(reads, 0U);
-  ASSERT_NE(result_words(), Words(kImageWords, 0xFFFF'FFFF));
-  change_left_table();
-  run_frame();
-  EXPECT_EQ(result_words(), Words(kImageWords, 0xFFFF'FFFF));
-  EXPECT_EQ(port(pixel_port(Side::kLeft)).granted(), reads);
-}
-
-INSTANTIATE_TEST_SUITE_P(Changed, StereoCoreTables,
-                         testing::Values("ByTheLocalBus", "ByDebugTransport", "Directly", "ByAnotherBase"),
-                         [](const auto& change) { return std::string(change.param); });
-
 TEST_F(StereoCoreFast, ReadsATableAgainThatAFrameHasOverwritten) {
   build(small_board());
   run_frame();
@@ -240,48 +201,6 @@ TEST_F(StereoCoreDirectAccess, TakenBackWithinAFrameIsReportedAndRaisesError) {
   finish();
   EXPECT_EQ(status(), registers::kStatusDone);
   EXPECT_EQ(core->stepped_frames(), 1U);
-}
-
-// Brings control() up to the present while a frame runs.
-class StereoCoreCatchUp : public StereoCoreFidelities {};
-
-TEST_P(StereoCoreCatchUp, ShowsTheSlotsOfThePresent) {
-  build(small_board());
-  at(edge(0), [this] { start(); });
-  memory.debug_write(crossbar_address(kLeftTable, 8), Words(4));  // entries that are not valid
-  std::vector<std::uint64_t> consumed;
-  std::vector<std::uint64_t> handled;
-  for (const std::uint64_t cycle : {3U, 4U, 5U, 30U, 90U}) {
-    at(edge(cycle) + sc_core::sc_time::from_value(2), [this, &consumed, &handled] {
-      core->catch_up();
-      consumed.push_back(core->control().lane(Side::kLeft).consumed());
-      handled.push_back(port(pixel_port(Side::kLeft)).granted() + port(pixel_port(Side::kLeft)).passed());
-    });
-  }
-  finish();
-  // With tables the matcher consumes one slot per cycle from cycle 4 on. A cycle counts once it has begun.
-  EXPECT_EQ(consumed, (std::vector<std::uint64_t>{0, 1, 2, 27, 87}));
-  EXPECT_EQ(handled, (std::vector<std::uint64_t>{2, 3, 4, 29, 89}));
-  EXPECT_EQ(frame_cycles(), std::vector<std::uint64_t>{frame_cycles_alone(4)});
-}
-
-INSTANTIATE_TEST_SUITE_P(Fidelities, StereoCoreCatchUp, testing::Values(Fidelity::kCycle, Fidelity::kFast),
-                         name_of_fidelity);
-
-// Without pixels.
-class StereoCoreTiming : public StereoCoreBench {
- protected:
-  Fidelity fidelity() const override { return Fidelity::kTiming; }
-};
-
-TEST_F(StereoCoreTiming, WritesNoDisparitiesAndTakesAsLong) {
-  build(small_board());
-  memory.debug_write(crossbar_address(kResult, 0), Words(kImageWords, 77));
-  at(edge(3), [this] { start(); });
-  finish();
-  EXPECT_EQ(memory.debug_read(crossbar_address(kResult, 0), kImageWords), Words(kImageWords, 77));
-  EXPECT_EQ(done_at, std::vector<sc_core::sc_time>{edge(3 + frame_cycles_alone(4))});
-  EXPECT_EQ(accesses(kResult), kImageWords);
 }
 
 // What is special about a frame on the small board.

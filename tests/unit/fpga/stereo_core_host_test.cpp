@@ -1,5 +1,6 @@
-// The host port beside the ports of the core: bursts of the local bus before, in and after a frame. The bus
-// has the core's clock: a burst that begins at edge c requests one word per cycle from cycle c + kFirst on.
+// The host port beside the ports of the core. The local bus has the core's clock: a burst that begins at
+// edge c requests one word per cycle from cycle c + kFirst on. The random boards of
+// stereo_core_random_test.cpp and the random computers compare bursts before, in and after frames.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -21,96 +22,6 @@ using Words = std::vector<std::uint32_t>;
 constexpr std::uint64_t kFirst = 3;     // address, decode and word clock
 constexpr std::uint64_t kReadEnd = 3;   // read latency and idle clock, from the cycle of the last grant
 constexpr std::uint64_t kWriteEnd = 1;  // idle clock
-
-class StereoCoreHost : public StereoCoreFidelities {
- protected:
-  // Runs a frame from cycle 0 to its end. Beside it the host accesses one word, which requests from `cycle`
-  // on.
-  void run_frame_with(std::uint64_t cycle, tlm::tlm_command command, std::uint64_t address) {
-    at(edge(0), [this] { start(); });
-    at(edge(cycle - kFirst), [this, command, address] { memory.access(command, address, 5); });
-    finish();
-    ASSERT_EQ(memory.answers.size(), 1U);
-  }
-  std::uint64_t uncounted() const {
-    std::uint64_t accesses = 0;
-    for (const memory::BankArbiter& arbiter : core->crossbar().arbiters())
-      accesses += arbiter.uncounted_accesses();
-    return accesses;
-  }
-};
-
-TEST_P(StereoCoreHost, ReachesTheBanksWhileNoFrameRunsAndIsNotCounted) {
-  build(small_board());
-  at(edge(1), [this] {
-    memory.access(TLM_WRITE_COMMAND, crossbar_address(kSpare, 7), Words{1, 2, 3, 4});
-    memory.access(TLM_READ_COMMAND, crossbar_address(kSpare, 8), Words(3));
-  });
-  at(edge(50) + kPicosecond, [this] { memory.access(TLM_READ_COMMAND, crossbar_address(kSpare, 7)); });
-  finish();
-  ASSERT_EQ(memory.answers.size(), 3U);
-  const std::uint64_t written = 1 + kFirst + 3 + kWriteEnd;
-  EXPECT_EQ(memory.answers[0].at, edge(written));
-  EXPECT_EQ(memory.answers[1].at, edge(written + kFirst + 2 + kReadEnd));
-  EXPECT_EQ(memory.answers[1].words, (Words{2, 3, 4}));
-  EXPECT_EQ(memory.answers[2].at, edge(51 + kFirst + kReadEnd));
-  EXPECT_EQ(memory.answers[2].word, 1U);
-  for (const memory::BankArbiter& arbiter : core->crossbar().arbiters())
-    EXPECT_EQ(arbiter.stats().grants[kHostPort], 0U);
-  EXPECT_EQ(uncounted(), 8U);
-  EXPECT_EQ(port(kHostPort).sum(), 0U);
-}
-
-TEST_P(StereoCoreHost, StartsAFrameAtTheEndOfTheClockThatCarriesTheStrobe) {
-  build(small_board());
-  at(edge(2), [this] {
-    memory.access(TLM_WRITE_COMMAND, kLocalRegisters + registers::kControl, registers::kControlStart);
-  });
-  finish();
-  EXPECT_EQ(done_at, std::vector<sc_time>{edge(2 + kFirst + frame_cycles_alone(4))});
-}
-
-TEST_P(StereoCoreHost, TakesPartFromTheFirstCycleAtOrAfterItsRequest) {
-  build(small_board());
-  at(edge(0), [this] { start(); });
-  at(edge(20), [this] { memory.access(TLM_READ_COMMAND, crossbar_address(kSpare, 0)); });
-  at(edge(30) + kPicosecond, [this] { memory.access(TLM_READ_COMMAND, crossbar_address(kSpare, 0)); });
-  at(edge(40),
-     [this] { memory.request(TLM_READ_COMMAND, crossbar_address(kSpare, 0), 0, edge(3) - kPicosecond); });
-  finish();
-  ASSERT_EQ(memory.answers.size(), 3U);
-  EXPECT_EQ(memory.answers[0].at, edge(20 + kFirst + kReadEnd));
-  EXPECT_EQ(memory.answers[1].at, edge(31 + kFirst + kReadEnd));
-  EXPECT_EQ(memory.answers[2].at, edge(43 + kFirst + kReadEnd));
-}
-
-TEST_P(StereoCoreHost, IsServedWhileTheFrameRunsOutAndNotCounted) {
-  StereoCoreConfig board = small_board();
-  board.core.pipeline_latency_cycles = 20;
-  build(board);
-  at(edge(0), [this] { start(); });
-  const std::uint64_t last_write = frame_cycles_alone(4) - pipeline() - 1;
-  at(edge(last_write - kFirst), [this] { memory.access(TLM_READ_COMMAND, crossbar_address(kSpare, 0)); });
-  at(edge(last_write + 3), [this] { memory.access(TLM_READ_COMMAND, crossbar_address(kResult, 11)); });
-  finish();
-  ASSERT_EQ(memory.answers.size(), 2U);
-  EXPECT_EQ(memory.answers[0].at, edge(last_write + kReadEnd));
-  EXPECT_EQ(memory.answers[1].at, edge(last_write + 3 + kFirst + kReadEnd));
-  EXPECT_EQ(memory.answers[1].word, banks[kResult]->words()[11]);
-  EXPECT_EQ(port(kHostPort).granted(), 1U);  // in the cycle of the last write, and no later
-  EXPECT_EQ(uncounted(), 1U);
-  EXPECT_EQ(frame_cycles(), std::vector<std::uint64_t>{frame_cycles_alone(4)});
-  EXPECT_EQ(done_at, std::vector<sc_time>{edge(frame_cycles_alone(4))});
-}
-
-TEST_P(StereoCoreHost, IsRefusedABlockingAccessAndGrantedDirectAccess) {
-  build(small_board());
-  EXPECT_EQ(memory.read(crossbar_address(kSpare, 0)).status, tlm::TLM_GENERIC_ERROR_RESPONSE);
-  tlm::tlm_dmi dmi;
-  ASSERT_TRUE(memory.dmi(crossbar_address(kResult, 0), dmi));
-  EXPECT_EQ(dmi.get_start_address(), crossbar_address(kResult, 0));
-  EXPECT_EQ(dmi.get_end_address(), crossbar_address(kResult, kWords) - 1);
-}
 
 class StereoCoreQdr : public StereoCoreBench {};
 
@@ -170,42 +81,29 @@ TEST_F(StereoCoreQdr, GivesTheCoreTheOldWordInTheCycleOfTheHostsWrite) {
   EXPECT_EQ(Words(words.begin() + 4, words.end()), Words(after.begin() + 4, after.end()));
 }
 
-// A host that writes a word in every cycle, and is served first, keeps a reader of that bank waiting.
-class StereoCoreStarved : public StereoCoreHost {
- protected:
-  static constexpr std::uint64_t kTimeout = 10'000;
-
-  void write_for(std::uint64_t cycles, std::uint64_t timeout = kTimeout) {
-    StereoCoreConfig board = small_board();
-    board.memory.banks.assign(kBankCount, {65'536});
-    board.stall_timeout_cycles = timeout;
-    build(board);
-    start();
-    at(edge(1),
-       [this, cycles] { memory.access(TLM_WRITE_COMMAND, crossbar_address(kLeft, 1000), Words(cycles)); });
-  }
-};
-
-TEST_P(StereoCoreStarved, IsNotReportedBeforeItsTimeout) {
-  write_for(kTimeout - 10);
-  run_until(edge(30'000));
-  EXPECT_EQ(done_at.size(), 1U);
-}
+class StereoCoreStarved : public StereoCoreFidelities {};
 
 TEST_P(StereoCoreStarved, IsNotReportedOfAFrameThatBeginsLate) {
   StereoCoreConfig board = small_board();
-  board.stall_timeout_cycles = kTimeout;
+  board.stall_timeout_cycles = 10'000;
   build(board);
-  for (const std::uint64_t cycle : {2 * kTimeout, 5 * kTimeout}) at(edge(cycle), [this] { start(); });
-  run_until(edge(6 * kTimeout));
+  for (const std::uint64_t cycle : {std::uint64_t{20'000}, std::uint64_t{50'000}})
+    at(edge(cycle), [this] { start(); });
+  run_until(edge(60'000));
   EXPECT_EQ(done_at.size(), 2U);
 }
 
+// A host that writes a word in every cycle, and is served first, keeps a reader of that bank waiting.
 TEST_P(StereoCoreStarved, IsReportedWithItsWaitsAsSoonAsItsTimeoutHasPassed) {
   // Not thrown: the address sanitizer cannot follow an exception through SystemC's stacks.
   sc_core::sc_report_handler::set_actions("/stereotlm/core", sc_core::SC_ERROR, sc_core::SC_DO_NOTHING);
   const test::ExpectedReport expected("/stereotlm/core");
-  write_for(40'000, 2 * 8192);  // checked every 8192 cycles
+  StereoCoreConfig board = small_board();
+  board.memory.banks.assign(kBankCount, {65'536});
+  board.stall_timeout_cycles = 2 * 8192;  // checked every 8192 cycles
+  build(board);
+  start();
+  at(edge(1), [this] { memory.access(TLM_WRITE_COMMAND, crossbar_address(kLeft, 1000), Words(40'000)); });
   run_until(edge(30'000));
   EXPECT_THAT(expected.text(),
               testing::ContainsRegex("core: no slot consumed and no result written for 16384 cycles; "
@@ -215,8 +113,6 @@ TEST_P(StereoCoreStarved, IsReportedWithItsWaitsAsSoonAsItsTimeoutHasPassed) {
                                      "right_pixel is starved; result is idle; host asks for bank number 0"));
 }
 
-INSTANTIATE_TEST_SUITE_P(Fidelities, StereoCoreHost, testing::Values(Fidelity::kCycle, Fidelity::kFast),
-                         name_of_fidelity);
 INSTANTIATE_TEST_SUITE_P(Fidelities, StereoCoreStarved, testing::Values(Fidelity::kCycle, Fidelity::kFast),
                          name_of_fidelity);
 

@@ -76,37 +76,6 @@ TEST_P(StereoCoreTest, IsBusyUntilTheLastPicosecondOfTheFrame) {
   EXPECT_EQ(registers.read(registers::kFrameCyclesHigh).word, 0U);
 }
 
-TEST_P(StereoCoreTest, ComputesThemWithoutTables) {
-  StereoCoreConfig board = small_board();
-  board.core.left_table = false;
-  board.core.right_table = false;
-  build(board);
-  // Nobody looks at the tables' bases.
-  set_base(registers::kLeftLutBase, kBankCount);
-  set_base(registers::kRightLutBase, kBankCount);
-  start();
-  finish();
-  EXPECT_EQ(result_words(), expected_words());
-  EXPECT_EQ(frame_cycles(), std::vector<std::uint64_t>{frame_cycles_alone(2)});
-  EXPECT_EQ(core->datapath().lane(Side::kLeft).lut_reader, nullptr);
-  EXPECT_EQ(core->datapath().lane(Side::kRight).row_buffer, nullptr);
-  EXPECT_EQ(port(lut_port(Side::kLeft)).idle(), frame_cycles_alone(2) - pipeline());
-}
-
-TEST_P(StereoCoreTest, RunsTheNextFrameDirectlyAfterTheLast) {
-  build(small_board());
-  int frames = 1;
-  on_done = [&] {
-    if (++frames <= 3) start();
-  };
-  at(edge(2), [this] { start(); });
-  finish();
-  const std::uint64_t cycles = frame_cycles_alone(4);
-  EXPECT_EQ(frame_cycles(), std::vector<std::uint64_t>(3, cycles));
-  EXPECT_EQ(done_at, (std::vector<sc_time>{edge(2 + cycles), edge(2 + 2 * cycles), edge(2 + 3 * cycles)}));
-  EXPECT_EQ(result_words(), expected_words());
-}
-
 TEST_P(StereoCoreTest, LeavesTheRunningFrameAloneWhenAnotherStrobeComes) {
   build(small_board());
   start();

@@ -21,12 +21,6 @@ using State = ArbitrationPolicy::State;
 const PriorityList kList = {port::kRightLut, port::kResult,    port::kLeftLut,
                             port::kHost,     port::kLeftPixel, port::kRightPixel};
 
-// The first of the list, from `place` on, that requests.
-Port first_requesting(std::size_t place, PortMask requests) {
-  while ((requests & mask_of(kList[place % kPortCount])) == 0) ++place;
-  return kList[place % kPortCount];
-}
-
 // The rules that each policy must keep in every state that it can reach (ArbitrationPolicy).
 class EveryPolicy : public testing::TestWithParam<ArbitrationPolicy> {
  protected:
@@ -84,30 +78,6 @@ TEST(ArbitrationPolicies, AreFoundByTheirNames) {
   for (const ArbitrationPolicy& policy : arbitration_policies())
     EXPECT_EQ(find_arbitration_policy(policy.name), &policy);
   EXPECT_EQ(find_arbitration_policy("lottery"), nullptr);
-}
-
-TEST(FixedPriorityPolicy, LetsTheFirstOfTheListWinForEverySetOfRequests) {
-  const auto* const policy = find_arbitration_policy("fixed_priority");
-  for (unsigned requests = 1; requests <= kAll; ++requests) {
-    const auto mask = static_cast<PortMask>(requests);
-    EXPECT_EQ(policy->winner(kList, 0, mask), first_requesting(0, mask)) << requests;
-    EXPECT_EQ(policy->next(kList, 0, mask, mask_of(first_requesting(0, mask))), 0U);
-  }
-}
-
-TEST(RoundRobinPolicy, SearchesFromTheHeadOfTheListAtFirstAndThenFromAfterTheLastPortGranted) {
-  const auto* const policy = find_arbitration_policy("round_robin");
-  for (std::size_t granted = 0; granted <= kPortCount; ++granted) {  // so many ports of the list, in turn
-    State state = 0;
-    for (std::size_t place = 0; place < granted; ++place)
-      state = policy->next(kList, state, kAll, mask_of(kList[place]));
-    for (unsigned requests = 1; requests <= kAll; ++requests) {
-      const auto mask = static_cast<PortMask>(requests);
-      EXPECT_EQ(policy->winner(kList, state, mask), first_requesting(granted, mask))
-          << granted << ' ' << requests;
-      EXPECT_EQ(policy->next(kList, state, mask, 0), state);
-    }
-  }
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "models/memory/bank_arbiter.h"
 #include "tests/unit/memory/ports.h"
 
 namespace stereotlm::memory {
@@ -50,6 +51,30 @@ TEST(Arbitration, GrantsNothingToAPortThatIsUnrouted) {
   arbitration.route(port::kRightPixel, 0, false);
   arbitration.unroute(port::kLeftPixel);
   EXPECT_EQ(arbitration.arbitrate(0, kLeft | kRight), kRight);
+}
+
+TEST(BankArbiter, RefusesARequestOfAPortThatIsNotInThePriorityList) {
+  for (const char* policy : {"fixed_priority", "round_robin", "age"}) {
+    BankArbiter arbiter({policy, {1, 0}}, {16});
+    EXPECT_EQ(BankArbiter::granted_in(arbiter.decide(0, 0b01, 0)), 0b01);
+    EXPECT_THROW(arbiter.decide(1, 0b100, 0), std::invalid_argument);
+    EXPECT_THROW(arbiter.decide(1, 0b101, 0), std::invalid_argument);
+    EXPECT_THROW(arbiter.decide(1, 0, 0), std::invalid_argument);
+    EXPECT_EQ(BankArbiter::granted_in(arbiter.decide(1, 0b10, 0)), 0b10);
+  }
+}
+
+TEST(BankArbiter, RefusesAConfigurationWithProblems) {
+  EXPECT_THROW(BankArbiter(arbiter_of("lottery"), {}), std::invalid_argument);
+  EXPECT_THROW(BankArbiter(kFixedPriority, {16, BankKind::kQdr, 1}), std::invalid_argument);
+}
+
+TEST(BankArbiter, CountsACycleThatIsContendedInBothDirectionsOnce) {
+  BankArbiter arbiter({"fixed_priority", {0, 1, 2, 3}}, {16, BankKind::kQdr});
+  arbiter.begin_counting(0);
+  arbiter.count(0, arbiter.decide(0, 0b1111, 0b0011));
+  arbiter.end_counting(1);
+  EXPECT_EQ(arbiter.stats().contended_cycles, 1U);
 }
 
 }  // namespace

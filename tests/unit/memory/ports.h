@@ -30,6 +30,5 @@ inline ArbiterConfig arbiter_of(const std::string& policy) {
           {port::kHost, port::kResult, port::kLeftPixel, port::kRightPixel, port::kLeftLut, port::kRightLut}};
 }
 inline const ArbiterConfig kFixedPriority = arbiter_of("fixed_priority");
-inline const ArbiterConfig kRoundRobin = arbiter_of("round_robin");
 
 }  // namespace stereotlm::memory

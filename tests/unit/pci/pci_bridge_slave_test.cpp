@@ -1,4 +1,5 @@
 // The bridge as a target: posted writes, reads, registers, interrupts.
+#include "models/pci/posted_writes.h"
 #include "tests/unit/pci/pci_bridge_bench.h"
 
 namespace stereotlm::pci {
@@ -135,6 +136,15 @@ TEST_F(PciBridgeSlave, RefusesRegisterAccessesThatDoNotExist) {
     EXPECT_EQ(burst(write, kRegisters + offset, words).result.end, BurstEnd::kTargetError) << offset;
   EXPECT_EQ(dut->stats().errors, std::size(refused));
   EXPECT_EQ(burst(false, kRegisters + bridge::kDmaStatus, 1).result.end, BurstEnd::kComplete);
+}
+
+TEST(PostedWrites, SendABurstUpToTheEndOfABank) {
+  PostedWrites posted(8);
+  const std::uint32_t words[4] = {1, 2, 3, 4};
+  posted.push(bridge::kBankBytes - 4, words, 4);
+  EXPECT_EQ(posted.send(8).count, 1U);
+  posted.sent();
+  EXPECT_EQ(posted.send(8).count, 3U);
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// The effect of targets and addresses on a burst.
+// The effect of targets and addresses on a burst. The random boards of pci_bus_random_test.cpp have several
+// masters, and their times.
 #include <gtest/gtest.h>
 
 #include <ostream>
@@ -89,44 +90,6 @@ TEST_F(PciBusTarget, IsReportedIfItAcceptsMoreWordsThanAsked) {
   expect_report(write_of(8), "bus.stop_0: 9 of 8 words can be written");
 }
 
-// The time that a read takes, from the end of the address clock on.
-struct ReadTime {
-  const char* name;
-  std::uint64_t blocked_clocks;
-  std::uint64_t blocked_ps;
-  std::uint64_t delay_clocks;
-  std::uint64_t delay_ps;
-  std::uint64_t first_word;  // expected clock
-};
-void PrintTo(const ReadTime& time, std::ostream* out) { *out << time.name; }
-
-class PciBusReadTime : public PciBusTarget, public testing::WithParamInterface<ReadTime> {};
-
-TEST_P(PciBusReadTime, DelaysTheFirstWordOnlyBeyondTheWaitClocks) {
-  const ReadTime& time = GetParam();
-  const std::uint64_t blocked_ps = bench.edge(1 + time.blocked_clocks) - bench.edge(1) + time.blocked_ps;
-  const std::uint64_t all_ps = bench.edge(1 + time.blocked_clocks + time.delay_clocks) - bench.edge(1) +
-                               time.blocked_ps + time.delay_ps;
-  target.read_waits = kernel_time::to_time(blocked_ps);
-  target.read_delays = kernel_time::to_time(all_ps - blocked_ps);
-  target.writable = [](auto, auto words) {
-    EXPECT_EQ(words, 1U) << "only writes ask for room";
-    return words;
-  };
-  simulate(read_of(3));
-  EXPECT_EQ(burst().result.end, BurstEnd::kComplete);
-  EXPECT_EQ(burst().result.first_data_clock, time.first_word);
-  expect_end_clock(time.first_word + 3);
-  EXPECT_EQ(bench.bus->stats().busy_clocks, time.first_word + 3 + 1 + kWait + 1);
-}
-
-INSTANTIATE_TEST_SUITE_P(PciBus, PciBusReadTime,
-                         testing::Values(ReadTime{"as_long_as_the_wait_clocks", 0, 0, kWait, 0, 1 + kWait},
-                                         ReadTime{"a_ps_longer", 0, 0, kWait, 1, 2 + kWait},
-                                         ReadTime{"blocked", kWait + 6, 1, 0, 0, 1 + kWait + 7},
-                                         ReadTime{"blocked_and_delayed", kWait, 0, 2, 0, 1 + kWait + 2}),
-                         [](const auto& tested) { return tested.param.name; });
-
 TEST_F(PciBusTarget, OccupiesTheBusForTheTimeThatAWriteTakes) {
   constexpr std::uint64_t kEnd = 1 + kWait + 3;
   target.write_delays = kernel_time::to_time(bench.edge(kEnd + 2) - bench.edge(kEnd) + 1);
@@ -180,6 +143,32 @@ TEST_F(PciBusTarget, LeavesABurstThatIsNotInsideItsWindowToAMasterAbortAfterFour
 
 TEST_F(PciBusTarget, IsNotReachedAtAnAddressThatIsNotAMultipleOfFour) {
   expect_report(write_of(1, 2), "address = 65538: must be a multiple of 4");
+}
+
+// Windows in any order, up to the end of the address space, and the rate of a real bus with their wait
+// clocks: bursts of 32 words, 33.33 MHz.
+TEST(PciBus, ReachesEachWindowWithinOnePercentOfTheRateOfARealBus) {
+  constexpr std::size_t kBursts = 1000;
+  constexpr std::size_t kWords = 32;
+  const std::vector<double> megabytes_per_second = {122, 115, 107, 89};
+  PciBusConfig config;
+  config.windows = {{0x8000, 0x1000, 1}, {0x1000, 0x1000, 3}, {0xFFFF'F000, 0x1000, 6}, {0x3000, 0x1000, 14}};
+  PciBusBench bench(config);
+  TestMaster& master = *bench.masters[0];
+  for (const PciWindow& window : config.windows) {
+    for (std::size_t i = 0; i < kBursts; ++i) master.bursts.push_back({i % 2 == 0, window.base + 8U, kWords});
+  }
+  bench.request_at(0);
+  sc_core::sc_start();
+  ASSERT_EQ(master.ended.size(), kBursts * config.windows.size());
+  for (std::size_t window = 0; window < config.windows.size(); ++window) {
+    ASSERT_EQ(bench.targets[window]->accesses.size(), kBursts);
+    EXPECT_EQ(bench.targets[window]->accesses[0].address, 8U);
+    const auto first_ps = master.ended[window * kBursts].address_ps;
+    const auto end_ps = master.ended[(window + 1) * kBursts - 1].end_ps;
+    const double rate = 4e6 * kBursts * kWords / static_cast<double>(end_ps - first_ps);
+    EXPECT_NEAR(rate, megabytes_per_second[window], 0.01 * megabytes_per_second[window]);
+  }
 }
 
 }  // namespace

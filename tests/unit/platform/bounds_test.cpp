@@ -65,17 +65,6 @@ TEST_F(FrameBounds, GiveAPortOneSlotOrWordACycle) {
   EXPECT_EQ(bound_of("port result"), kWords + kPipeline);
 }
 
-TEST_F(FrameBounds, GiveABankItsReadsAndTheCyclesAfterTheLast) {
-  EXPECT_EQ(bound_of("bank bank0"), kReads + 2 + kAfter);
-  EXPECT_EQ(bound_of("bank bank6"), kReads + 4 + kAfter);
-  EXPECT_EQ(bound_of("bank bank4"), kWords + kPipeline);
-  EXPECT_EQ(bound_of("bank bank1"), std::nullopt);  // of the other half
-  EXPECT_EQ(bound_of("bank bank1", 1), kReads + 2 + kAfter);
-  board.banks[0].kind = memory::BankKind::kZbtFlowThrough;
-  EXPECT_EQ(bound_of("bank bank0"), kReads + 1 + kAfter);
-  EXPECT_EQ(bound_of("bank bank6"), kReads + 3 + kAfter);
-}
-
 TEST_F(FrameBounds, AddUpTheAccessesThatShareABank) {
   board.allocation.left_lut = "bank0";
   EXPECT_EQ(bound_of("bank bank0"), 2 * kReads + 2 + kAfter);
@@ -136,30 +125,6 @@ TEST_F(FrameBounds, ReadJointTablesOnce) {
   EXPECT_EQ(bound_of("matcher"), 4 + kSlots + kAfter);
 }
 
-TEST_F(FrameBounds, LeaveOutATableThatDoesNotExist) {
-  board.allocation.left_lut.reset();
-  EXPECT_EQ(bound_of("port left_lut"), std::nullopt);
-  EXPECT_EQ(bound_of("bank bank6"), std::nullopt);
-  EXPECT_EQ(bound_of("bank bank0"), kReads + 2 + kAfter);
-  EXPECT_EQ(bound_of("matcher"), 4 + kSlots + kAfter);
-  board.allocation.right_lut.reset();
-  EXPECT_EQ(bound_of("matcher"), 2 + kSlots + kAfter);
-}
-
-// A slot keeps its place in the lane for both latencies and the cycle in which it is consumed. With a table
-// these are 2 + 2 + 1 cycles.
-TEST_F(FrameBounds, CountTheRoundsOfATablePortThroughTheLane) {
-  for (const int places : {1, 2, 4, 5, 6, 64}) {
-    board.fpga.lane_fifo_slots = places;
-    const uint64_t rounds = (kSlots - 1) / static_cast<uint64_t>(places);
-    const uint64_t expected = std::max(kSlots + kPipeline, rounds * 5 + 5 + kAfter);
-    EXPECT_EQ(expected > kSlots + kPipeline, places < 6) << "both sides of the gate";
-    EXPECT_EQ(bound_of("port left_lut"), expected) << places;
-    EXPECT_EQ(bound_of("port right_lut"), expected) << places;
-    EXPECT_EQ(bound_of("port left_pixel"), kSlots + kPipeline) << places;
-  }
-}
-
 TEST_F(FrameBounds, CountTheRoundsOfAPixelPortWithoutTable) {
   board.allocation.left_lut.reset();
   board.fpga.lane_fifo_slots = 2;
@@ -177,17 +142,6 @@ TEST_F(FrameBounds, CountThePassesOnEachSlot) {
   EXPECT_EQ(bound_of("port left_lut"), kSlots + kPipeline);
   board.fpga.lane_fifo_slots = 2;
   EXPECT_EQ(bound_of("port left_lut"), (kSlots - 1) / 2 * 7 + 7 + after);
-}
-
-// The strips of four rows begin at rows -1 and 3, and have columns of six slots. Two rows of the last strip
-// are inside.
-TEST_F(FrameBounds, CountTheSlotsOfSeveralRowsAndTheWordsOfTheLastColumn) {
-  board.matcher.rows = 4;
-  const uint64_t after = 6 * (3 - 1 + 1) + 2 + kPipeline;
-  EXPECT_EQ(bound_of("matcher"), 4 + uint64_t{16} * 2 * 6 + after);
-  EXPECT_EQ(bound_of("port left_lut"), uint64_t{16} * 2 * 6 + kPipeline);
-  EXPECT_EQ(bound_of("bank bank0"), uint64_t{16} * (5 + 3) + 2 + after);
-  EXPECT_EQ(bound_of("bank bank4"), kWords + kPipeline);
 }
 
 TEST_F(FrameBounds, AreWhatUncontendedRowsTake) {

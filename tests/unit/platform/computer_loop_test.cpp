@@ -1,19 +1,31 @@
-// The event loop of the computer, without the kernel: where it stops, and the order of the events of one
-// time. Random computers compare its figures with the plain loop over events.
+// The event loop of the computer, without the kernel: where it stops, the order of the events of one time,
+// and that it skips lines of the cameras. Random computers compare its figures with the plain loop over
+// events.
 #include "platform/computer_loop.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdint>
+#include <deque>
+#include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "models/capture/camera_timing.h"
 #include "models/capture/capture_registers.h"
+#include "models/fpga/register_map.h"
+#include "models/kernels/gray_image.h"
 #include "models/pci/bridge_registers.h"
 #include "platform/computer_parts.h"
-#include "tests/unit/platform/loop_run.h"
+#include "platform/config/board_yaml.h"
+#include "tests/support/random_computer.h"
+#include "tests/unit/platform/computer_registers.h"
 #include "tests/unit/platform/preloaded_run.h"
 
 namespace stereotlm::platform {
@@ -22,40 +34,128 @@ namespace {
 namespace capture_map = capture::registers;
 using testing::kCaptures;
 using testing::kDevices;
-using testing::Words;
+
+using Words = std::vector<std::uint32_t>;
 
 constexpr std::uint64_t kEdgePs = 25'000;  // a clock of PCI, of the local bus and of the core
 constexpr std::uint64_t kFar = 1'000'000'000'000;
 
-// The small board, with another clock of the PCI bus and faster cameras.
-class LoopWithProcessor : public testing::LoopProcessor {
+// All pictures are the same.
+class GreySource : public capture::CameraSource {
  public:
-  LoopWithProcessor() : LoopProcessor(testing::small_board()) {
-    config.pci.clock_mhz = 40;
-    config.cameras.frame_rate_hz = 1000;
+  explicit GreySource(const BoardConfig& board) : picture_(board.image.width, board.image.height, 99) {}
+  const kernels::GrayImage& frame(std::uint64_t /*number*/, std::uint64_t /*begin_ps*/) override {
+    return picture_;
   }
-  // Arms both captures, into banks 1 and 3.
-  void arm() {
+
+ private:
+  kernels::GrayImage picture_;
+};
+
+// A processor for ComputerLoop on the small board, with another clock of the PCI bus and faster cameras. Its
+// bursts follow each other. The configuration may be changed before the first call of loop().
+class LoopProcessor : public pci::PciMasterIf {
+ public:
+  struct Burst {
+    bool write = false;
+    std::uint64_t address = 0;
+    Words words;
+    std::size_t moved = 0;  // words
+  };
+
+  ComputerLoop& loop() {
+    if (loop_ == nullptr) {
+      picture_.emplace(config);
+      loop_ = std::make_unique<ComputerLoop>(config, memory.data(), memory.size(), *picture_, *picture_,
+                                             fpga::Fidelity::kFast);
+    }
+    return *loop_;
+  }
+  // To be called while the core runs no frame.
+  ComputerCounters computer_counters() {
+    return loop().controls().counters(loop().board().counters(), loop().now_ps());
+  }
+
+  pci::PciBurst begin_burst(std::uint64_t address_clock_ps) override {
+    granted_ps.push_back(address_clock_ps);
+    const Burst& burst = bursts.front();
+    left_words_.assign(burst.words.begin() + static_cast<std::ptrdiff_t>(burst.moved), burst.words.end());
+    return {burst.write, burst.address + 4 * burst.moved, &left_words_};
+  }
+  // A burst that was cut continues with its next word.
+  void end_burst(const pci::BurstResult& result) override {
+    results.push_back(result);
+    Burst& burst = bursts.front();
+    std::copy_n(left_words_.begin(), result.words,
+                burst.words.begin() + static_cast<std::ptrdiff_t>(burst.moved));
+    burst.moved += result.words;
+    if (is_error(result.end) || burst.moved == burst.words.size()) {
+      done = std::move(burst);
+      bursts.pop_front();
+    }
+    if (bursts.empty()) {
+      loop().notice();
+    } else {
+      request(result.end_ps);
+    }
+  }
+  void request(std::uint64_t from_ps) { loop().host_slot().request(*this, from_ps); }
+  // Runs one burst to its end.
+  pci::BurstEnd access(bool write, std::uint64_t address, Words words) {
+    bursts.push_back({write, address, std::move(words)});
+    request(loop().now_ps());
+    while (!bursts.empty()) loop().run(loop().now_ps() + kFar);
+    return results.back().end;
+  }
+  void write(std::uint64_t address, std::uint32_t word) {
+    EXPECT_EQ(access(true, address, {word}), pci::BurstEnd::kComplete);
+  }
+  std::uint32_t read(std::uint64_t address) {
+    EXPECT_EQ(access(false, address, {0}), pci::BurstEnd::kComplete);
+    return done.words.front();
+  }
+  // Arms both captures.
+  void arm(std::uint32_t left_bank = 1, std::uint32_t right_bank = 3) {
     for (const std::uint32_t side : {0U, 1U}) {
-      write(testing::page_register(1 + side), (1 + 2 * side) << 26U);
+      write(testing::page_register(1 + side), (side == 0 ? left_bank : right_bank) << 26U);
       write(kCaptures[side] + capture_map::kBufferAddress,
             static_cast<std::uint32_t>(testing::aperture(1 + side)));
       write(kCaptures[side] + capture_map::kControl, capture_map::kControlArm);
     }
   }
-  // A frame whose end raises the interrupt.
+  // A frame whose end raises the interrupt. Its tables have no valid entry.
   void start_core() {
     write(kDevices.bridge_registers + pci::bridge::kInterruptEnable, pci::bridge::kDoorbell);
-    start_frame(0, 0);
+    std::uint32_t bank = 0;
+    for (const std::uint64_t base : testing::kBaseRegisters)
+      write(testing::core_register(base), fpga::registers::base(bank++, 0));
+    write(testing::core_register(fpga::registers::kControl), fpga::registers::kControlStart);
   }
+
+  BoardConfig config = [] {
+    BoardConfig board = testing::small_board();
+    board.pci.clock_mhz = 40;
+    board.cameras.frame_rate_hz = 1000;
+    return board;
+  }();
+  std::vector<unsigned char> memory = std::vector<unsigned char>(1U << 20U);
+  std::deque<Burst> bursts;
+  Burst done;  // the last one that has ended
+  std::vector<std::uint64_t> granted_ps;
+  std::vector<pci::BurstResult> results;
+
+ private:
+  std::optional<GreySource> picture_;
+  std::unique_ptr<ComputerLoop> loop_;
+  Words left_words_;  // of the burst
 };
 
-class ComputerLoopTest : public ::testing::Test, public LoopWithProcessor {};
+class ComputerLoopTest : public ::testing::Test, public LoopProcessor {};
 
 // The load requests the bus for the clock that begins with the interrupt, and was the last to have it. What
 // the processor requests at that time comes before the decision.
 TEST_F(ComputerLoopTest, LetsTheProcessorTakePartInTheDecisionsOfTheTimeOfAnInterrupt) {
-  LoopWithProcessor first;
+  LoopProcessor first;
   first.start_core();
   const std::uint64_t started_ps = first.loop().now_ps();
   first.loop().run(kFar);
@@ -136,7 +236,7 @@ INSTANTIATE_TEST_SUITE_P(ComputerLoop, ComputerLoopPixels, ::testing::Bool(), []
 TEST_F(ComputerLoopTest, TakesAFrameWhoseCapturesAreArmedAsItBegins) {
   for (const std::uint64_t late_ps : {std::uint64_t{0}, kEdgePs}) {
     SCOPED_TRACE(late_ps);
-    LoopWithProcessor other;
+    LoopProcessor other;
     ComputerLoop& computer = other.loop();
     other.write(kDevices.left_capture + capture_map::kBufferAddress, 0);
     other.write(kDevices.right_capture + capture_map::kBufferAddress, 0);
@@ -148,6 +248,97 @@ TEST_F(ComputerLoopTest, TakesAFrameWhoseCapturesAreArmedAsItBegins) {
     EXPECT_EQ(computer.now_ps(), frame_ps + late_ps);
     computer.run(frame_ps + 2 * kEdgePs);
     EXPECT_EQ(other.computer_counters().cameras[0].capture.started_frames, late_ps == 0 ? 1U : 0U);
+  }
+}
+
+// Of four pictures of 48 lines. Some clocks have few phases against the local bus.
+TEST(ComputerLoop, SkipsMostLinesOfUndisturbedPictures) {
+  for (const double pci_mhz : {33.333, 20.0, 40.0, 66.0}) {
+    LoopProcessor processor;
+    processor.config = load_board("fpl2003", {"image.width=160", "image.height=48"});
+    processor.config.cameras.frame_rate_hz = 297.3;
+    processor.config.pci.clock_mhz = pci_mhz;
+    for (int picture = 0; picture < 4; ++picture) {
+      processor.arm();
+      const std::uint64_t end_ps = processor.loop().now_ps() + 7'000'000'000;  // more than two frames
+      while (processor.loop().now_ps() < end_ps) processor.loop().run(end_ps);
+      for (const std::uint64_t board : kCaptures)
+        processor.write(board + capture_map::kStatus, capture_map::kStatusDone);
+    }
+    EXPECT_GT(processor.loop().skipped_lines(), 4U * 48 / 2) << pci_mhz;
+  }
+}
+
+// Lines fill the buses more or less, and lie differently against their clocks.
+BoardConfig board_of_lines(test::SplitMix64 random) {
+  const int words = random.between(4, 40);
+  const int fifo = random.mostly_small(4, 140, 4096);
+  const double pci_mhz = random.between(60'000, 1'000'000) / 1e4;
+  const double local_mhz = random.chance(40) ? 40 : random.between(120'000, 1'200'000) / 1e4;
+  const double line_us =
+      random.between(10'000, 60'000) / 1e4 * std::max(2 * (words + 8) / pci_mhz, 2.2 * words / local_mhz);
+  const int height = std::clamp(static_cast<int>(920 / line_us) + 1, random.between(12, 64), 300);
+  std::vector<std::string> keys = {
+      fmt::format("image={{width: {}, height: {}}}", 4 * words, height),
+      fmt::format("cameras.frame_rate_hz={:.4f}", std::min(1e3, 1e6 / (line_us * height * 35 / 32))),
+      fmt::format("capture.fifo_words={}", fifo),
+      fmt::format("capture.fifo_trigger_words={}", random.between(1, std::min(fifo, 32))),
+      fmt::format("pci.clock_mhz={}", pci_mhz),
+      fmt::format("pci.latency_timer_clocks={}", random.mostly_small(0, 64, 255)),
+      fmt::format("bridge.local_clock_mhz={}", local_mhz),
+      fmt::format("fpga.clock_mhz={}", local_mhz),
+      fmt::format("bridge.posted_words={}", random.mostly_small(3, 64, 4096)),
+      fmt::format("bridge.dma_burst_words={}", random.mostly_small(1, 32, 256))};
+  if (random.chance(25))
+    keys.push_back(fmt::format("pci.load={{burst_words: 32, interval_us: {}}}", random.between(20, 400)));
+  return load_board("fpl2003", keys);
+}
+
+// What two pictures do on a board. Nothing can be skipped that does not end within a step. Every fourth
+// program writes to the board and reads a register now and then. In some, both pictures go to one bank.
+std::string figures_of_lines(std::uint64_t seed, bool steps, std::uint64_t& skipped) {
+  LoopProcessor processor;
+  processor.config = board_of_lines(test::SplitMix64(seed));
+  // The bus moves at most two words in a clock.
+  const std::uint64_t short_ps =
+      static_cast<std::uint64_t>(processor.config.image.width * 1e6 / (4 * processor.config.pci.clock_mhz));
+  ComputerLoop& loop = processor.loop();
+  for (int picture = 0; picture < 2; ++picture) {
+    processor.arm(1, seed % 8 == 2 ? 1 : 3);
+    const std::uint64_t begin_ps = loop.now_ps();
+    const std::uint64_t pause_ps = seed % 4 == 1 ? 17'000'000 + 1'234'567 * (seed % 100) : kFar;
+    const auto end_ps =
+        begin_ps + static_cast<std::uint64_t>(2.1e12 / processor.config.cameras.frame_rate_hz);
+    for (std::uint64_t next_ps = begin_ps; loop.now_ps() < end_ps;) {
+      next_ps = std::min(end_ps, next_ps + pause_ps);
+      while (loop.now_ps() < next_ps) loop.run(steps ? std::min(next_ps, loop.now_ps() + short_ps) : next_ps);
+      processor.access(true, testing::aperture(0), Words(8));
+      processor.read(kCaptures[0] + capture_map::kStatus);
+    }
+    for (const std::uint64_t board : kCaptures)
+      processor.write(board + capture_map::kStatus, capture_map::kStatusDone);
+  }
+  skipped += loop.skipped_lines();
+  const ComputerCounters counters = processor.computer_counters();
+  std::string text =
+      fmt::format("{} {} {} {} {} {}\n", fmt::join(processor.granted_ps, " "), counters.pci.busy_clocks,
+                  counters.bridge.most_posted_words, counters.local_bus.bursts,
+                  counters.local_bus.busy_clocks, fmt::join(counters.words.granted, " "));
+  for (const pci::PciBusControl::MasterStats& master : counters.pci.masters)
+    text +=
+        fmt::format("{} {} {} {}\n", master.transactions, master.words, master.wait_clocks, master.retries);
+  for (const ComputerCounters::Camera& camera : counters.cameras)
+    text +=
+        fmt::format("{} {} {}\n", camera.capture.dropped_pixels, camera.capture.bursts, camera.capture.words);
+  return text;
+}
+
+TEST(ComputerLoop, GivesTheSameFiguresWithSkippedAsWithSteppedLines) {
+  for (std::uint64_t seed = 0; seed < test::random_computers(200); ++seed) {
+    std::uint64_t stepped = 0;
+    std::uint64_t skipped = 0;
+    ASSERT_EQ(figures_of_lines(seed, false, skipped), figures_of_lines(seed, true, stepped)) << seed;
+    EXPECT_EQ(stepped, 0U);
   }
 }
 

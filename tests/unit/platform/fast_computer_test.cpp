@@ -330,17 +330,6 @@ TEST(FastComputer, RunsBesideOtherProcesses) {
   EXPECT_EQ(log(Fidelity::kFast), log(Fidelity::kCycle));
 }
 
-TEST(FastComputer, IsMadeAtAllFidelitiesButCycle) {
-  for (const Fidelity fidelity : {Fidelity::kCycle, Fidelity::kFast, Fidelity::kTiming}) {
-    EXPECT_EQ(test::run_for_text([fidelity] {
-                RunningComputer running(fidelity, [](LoggedBus&) {});
-                const bool is_fast = dynamic_cast<FastComputer*>(running.computer.get()) != nullptr;
-                return std::string(is_fast ? "fast" : "cycle");
-              }),
-              fidelity == Fidelity::kCycle ? "cycle" : "fast");
-  }
-}
-
 // Errors end the simulation with a report of the kernel.
 class FastComputerErrors : public ::testing::Test {
  protected:
@@ -373,37 +362,30 @@ class FastComputerErrors : public ::testing::Test {
   }
 };
 
-TEST_F(FastComputerErrors, OfTheLoopReachTheReport) {
-  const std::string text = report(Fidelity::kFast, [](LoggedBus& bus) {
-    start_core(bus, 0);  // over the left image
-    wait_forever(bus);
-  });
-  EXPECT_NE(text.find("core: a frame that does not work directly on memory needs fidelity cycle"),
-            std::string::npos);
-}
-
-TEST_F(FastComputerErrors, OfABurstBesideAFrameReachTheReport) {
-  const std::string text = report(Fidelity::kTiming, [](LoggedBus& bus) {
-    bus.write(testing::page_register(3), core::base(4, 5));
-    start_core(bus, 4);
-    bus.write(kWindow, 0);
-    wait_forever(bus);
-  });
-  EXPECT_NE(text.find("writes words 5..5 of bank number 4, where the running frame has its "
-                      "disparity: needs fidelity cycle"),
-            std::string::npos);
-}
-
-TEST_F(FastComputerErrors, OfACameraSourceReachTheReport) {
-  const std::string text =
-      report(Fidelity::kFast, capture, [](RunningComputer& running) { running.right.fails = true; });
-  EXPECT_NE(text.find("the disk is gone"), std::string::npos);
-}
-
-TEST_F(FastComputerErrors, OfAPictureOfAnotherSizeReachTheReport) {
-  const std::string text =
-      report(Fidelity::kFast, capture, [](RunningComputer& running) { running.left = CountedPictures(5); });
-  EXPECT_NE(text.find("picture of frame 1 = 16 x 5: must be 16 x 6"), std::string::npos);
+TEST_F(FastComputerErrors, ReachTheReport) {
+  const auto expect = [](const std::string& text, const std::string& part) {
+    EXPECT_NE(text.find(part), std::string::npos) << text;
+  };
+  expect(report(Fidelity::kFast,
+                [](LoggedBus& bus) {
+                  start_core(bus, 0);  // over the left image
+                  wait_forever(bus);
+                }),
+         "core: a frame that does not work directly on memory needs fidelity cycle");
+  expect(
+      report(Fidelity::kTiming,
+             [](LoggedBus& bus) {
+               bus.write(testing::page_register(3), core::base(4, 5));
+               start_core(bus, 4);
+               bus.write(kWindow, 0);
+               wait_forever(bus);
+             }),
+      "writes words 5..5 of bank number 4, where the running frame has its disparity: needs fidelity cycle");
+  expect(report(Fidelity::kFast, capture, [](RunningComputer& running) { running.right.fails = true; }),
+         "the disk is gone");
+  expect(
+      report(Fidelity::kFast, capture, [](RunningComputer& running) { running.left = CountedPictures(5); }),
+      "picture of frame 1 = 16 x 5: must be 16 x 6");
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
-// What makes a test fail: a SystemC report that it did not announce, and a child process that fails. No test
-// of the models would notice that these fail no more.
+// What makes a test fail: a SystemC report that it did not announce, a broken rule of the protocol that it
+// did not expect, and a child process that fails. No test of the models would notice that these fail no
+// more.
 #include <gtest/gtest-spi.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -14,6 +15,9 @@
 
 #include "tests/support/expected_report.h"
 #include "tests/support/fork.h"
+#include "tests/support/monitoring_binder.h"
+#include "tests/support/scripted_ends.h"
+#include "tests/support/test_host.h"
 
 namespace stereotlm::test {
 namespace {
@@ -35,6 +39,17 @@ TEST(ExpectedReport, CoversAsManyReportsOfItsTypeAsItAnnouncesAndFailsWithFewer)
   EXPECT_EQ(expected->text(), "too hot");
   EXPECT_NONFATAL_FAILURE(expected.reset(), "did not come: 1 missing");
   EXPECT_NONFATAL_FAILURE(warn(), "did not announce");
+}
+
+// The tests of the modules expect violations, and show that correct calls have none.
+TEST(MonitoringBinder, FailsTheTestWithAViolationThatNobodyTook) {
+  auto binder = std::make_unique<MonitoringBinder>();
+  TestHost host("host");
+  ScriptedTarget target("target");
+  binder->bind(host.socket, target.socket, "link");
+  sc_core::sc_start(sc_core::SC_ZERO_TIME);
+  host.read(0x42);
+  EXPECT_NONFATAL_FAILURE(binder.reset(), "link_monitor at 0 s: b_transport: address = 0x42");
 }
 
 TEST(RunInChild, GivesTheStatusAndTheTextOfEachEnding) {

@@ -5,9 +5,9 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
-#include <map>
 #include <optional>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "models/capture/capture_registers.h"
@@ -15,69 +15,55 @@
 #include "models/host/program.h"
 #include "models/pci/bridge_registers.h"
 #include "platform/device_map.h"
-#include "tests/support/random_board.h"
 
 namespace stereotlm::driver {
 
-// A computer without time for pictures of one word: whatever is under way ends, one thing after the other and
-// in an order without pattern, when the program waits for an interrupt. It checks that nobody touches a
-// buffer that somebody else works on. Capture k writes pair_word(k, side); the core writes result_word() of
-// what it finds.
+// A computer without time and without pixels: what has been under way for longest ends when the program waits
+// for an interrupt. The random computers show which buffers the driver uses, and when.
 class FakeMachine : public host::HostBus {
  public:
-  explicit FakeMachine(std::uint64_t seed, std::uint64_t memory_bytes = 1U << 16U)
-      : random_(seed), memory_(memory_bytes) {}
+  explicit FakeMachine(std::uint64_t memory_bytes = 1U << 16U) : memory_(memory_bytes) {}
 
-  static std::uint32_t pair_word(std::uint64_t capture, std::size_t side) {
-    return static_cast<std::uint32_t>(capture * 2 + side + 1);
-  }
-  static std::uint64_t camera_frame(std::uint64_t capture) { return capture << 32U | capture * 3; }
-  static std::uint32_t result_word(std::uint32_t left, std::uint32_t right) { return left * 100'000 + right; }
-
-  std::map<std::uint32_t, std::uint32_t> board;  // by board word
   std::uint64_t core_starts = 0;
-  std::uint64_t captures = 0;                      // pairs armed
   std::optional<std::uint64_t> failing_capture;    // loses words
   std::optional<std::uint64_t> diverging_capture;  // its sides take different frames
   bool failing_write = false;                      // the board refuses one that was posted
   bool failing_core = false;
-  std::optional<std::uint32_t> failing_channel;
+  std::optional<unsigned> failing_channel;
 
   std::uint32_t read(std::uint64_t address) override {
     if (address == map_.bridge_registers + pci::bridge::kInterruptStatus) return interrupts_;
-    if (address == core_register(fpga::registers::kStatus)) {
-      return (core_busy_ ? fpga::registers::kStatusBusy : 0U) |
-             (core_done_ ? fpga::registers::kStatusDone : 0U) |
-             (failing_core ? fpga::registers::kStatusError : 0U);
-    }
+    if (address == core_register(fpga::registers::kStatus))
+      return failing_core ? fpga::registers::kStatusError : 0U;
     for (std::size_t side = 0; side < 2; ++side) {
-      const std::uint64_t base = capture_base(side);
-      if (address == base + capture::registers::kStatus) return capture_[side].status;
-      const std::uint64_t frame = camera_frame(capture_[side].frame) +
-                                  (side == 1 && diverging_capture == capture_[side].frame ? 1 : 0);
-      if (address == base + capture::registers::kFrameNumberLow) return static_cast<std::uint32_t>(frame);
-      if (address == base + capture::registers::kFrameNumberHigh)
-        return static_cast<std::uint32_t>(frame >> 32U);
+      const std::uint64_t base = side == 0 ? map_.left_capture : map_.right_capture;
+      const std::uint64_t frame = captures_[side] - 1;
+      if (address == base + capture::registers::kStatus) return capture_status_[side];
+      if (address == base + capture::registers::kFrameNumberLow)
+        return static_cast<std::uint32_t>(frame) + (side == 1 && diverging_capture == frame ? 1 : 0);
+      if (address == base + capture::registers::kFrameNumberHigh) return 0;
     }
     throw host::BusError("read of " + std::to_string(address));
   }
 
   void write(std::uint64_t address, std::uint32_t value) override {
-    if (address >= map_.left_capture) return write_capture(address, value);
-    if (address >= map_.bridge_registers) return write_bridge(address - map_.bridge_registers, value);
-    if (address >= core_register(0)) return write_core(address - core_register(0), value);
-    throw host::BusError("write of " + std::to_string(address));
+    if (address >= map_.left_capture) {
+      write_capture(address >= map_.right_capture ? 1 : 0, address, value);
+    } else if (address >= map_.bridge_registers) {
+      write_bridge(address - map_.bridge_registers, value);
+    } else if (address == core_register(fpga::registers::kControl) &&
+               (value & fpga::registers::kControlStart) != 0) {
+      ++core_starts;
+      under_way_.push_back(kCore);
+    }
   }
 
   void wait_for_interrupt() override {
-    while (!asserted()) {
-      std::vector<int> under_way;
-      for (const int thing : {0, 1, 2, 3, 4}) {
-        if (is_under_way(thing)) under_way.push_back(thing);
-      }
-      if (under_way.empty()) throw std::logic_error("nothing is under way");
-      const auto last = static_cast<int>(under_way.size()) - 1;
-      end(under_way[static_cast<std::size_t>(random_.between(0, last))]);
+    while ((interrupts_ & enabled_) == 0 && capture_status_[0] == 0 && capture_status_[1] == 0) {
+      if (under_way_.empty()) throw std::logic_error("nothing is under way");
+      const int ended = under_way_.front();
+      under_way_.erase(under_way_.begin());
+      end(ended);
     }
   }
 
@@ -87,178 +73,44 @@ class FakeMachine : public host::HostBus {
   }
 
  private:
-  using Descriptor = std::array<std::uint32_t, 4>;
-  struct Capture {
-    bool under_way = false;
-    std::uint32_t status = 0;
-    std::uint32_t address = 0;
-    std::optional<std::uint32_t> board_word;  // the board word that it fills; nullopt for host memory
-    std::uint64_t frame = 0;
-  };
-  std::uint64_t capture_base(std::size_t side) const {
-    return side == 0 ? map_.left_capture : map_.right_capture;
-  }
+  enum Activity { kLeft, kRight, kCore, kToBoard, kToHost };
+
   std::uint64_t core_register(std::uint64_t offset) const {
     return map_.bridge_slave + pci::bridge::kCoreRegisters + offset;
   }
-  bool asserted() const {
-    bool captured = false;
-    for (const Capture& side : capture_) captured |= (side.status & ~capture::registers::kStatusArmed) != 0;
-    return (interrupts_ & enabled_) != 0 || captured;
-  }
-  // 0, 1: captures; 2: the core; 3, 4: DMA channels.
-  bool is_under_way(int thing) const {
-    if (thing < 2) return capture_[static_cast<std::size_t>(thing)].under_way;
-    return thing == 2 ? core_busy_ : dma_[static_cast<std::size_t>(thing - 3)].has_value();
-  }
-  void end(int thing) {
-    if (thing < 2) {
-      end_capture(static_cast<std::size_t>(thing));
-    } else if (thing == 2) {
-      end_core();
+  void end(int ended) {
+    if (ended == kCore) {
+      interrupts_ |= pci::bridge::kDoorbell | (failing_write ? pci::bridge::kPostedError : 0U);
+    } else if (ended >= kToBoard) {
+      const auto channel = static_cast<unsigned>(ended - kToBoard);
+      interrupts_ |= (failing_channel == channel ? pci::bridge::kDmaError : pci::bridge::kDmaDone) << channel;
     } else {
-      end_dma(static_cast<std::size_t>(thing - 3));
+      const auto side = static_cast<std::size_t>(ended);
+      capture_status_[side] = capture::registers::kStatusDone;
+      if (failing_capture == captures_[side]++) capture_status_[side] |= capture::registers::kStatusWordsLost;
     }
   }
-
-  void write_capture(std::uint64_t address, std::uint32_t value) {
-    const std::size_t side = address >= map_.right_capture ? 1 : 0;
-    Capture& grabber = capture_[side];
-    const std::uint64_t offset = address - capture_base(side);
-    if (offset == capture::registers::kBufferAddress) {
-      grabber.address = value;
-    } else if (offset == capture::registers::kStatus) {
-      grabber.status &= ~value;
-    } else if (offset == capture::registers::kControl) {
-      EXPECT_FALSE(grabber.under_way) << "armed while it captures";
-      EXPECT_NE(value & capture::registers::kControlArm, 0U);
-      grabber.board_word = board_word(grabber.address);
-      if (grabber.board_word) expect_free(*grabber.board_word);
-      grabber.under_way = true;
-      grabber.frame = armed_++ / 2;
-    } else {
-      throw host::BusError("write of a capture board");
-    }
+  void write_capture(std::size_t side, std::uint64_t address, std::uint32_t value) {
+    const std::uint64_t offset = address - (side == 0 ? map_.left_capture : map_.right_capture);
+    if (offset == capture::registers::kStatus) capture_status_[side] &= ~value;
+    if (offset == capture::registers::kControl) under_way_.push_back(static_cast<int>(side));
   }
-  // Of an address in the bridge's window; none in host memory.
-  std::optional<std::uint32_t> board_word(std::uint32_t address) const {
-    if (address < map_.bridge_slave) return std::nullopt;
-    const std::uint64_t offset = address - map_.bridge_slave;
-    EXPECT_EQ(offset % pci::bridge::kApertureBytes, 0U);
-    return pages_.at(static_cast<std::size_t>(offset / pci::bridge::kApertureBytes));
-  }
-  void end_capture(std::size_t side) {
-    Capture& grabber = capture_[side];
-    grabber.under_way = false;
-    grabber.status |= capture::registers::kStatusDone;
-    if (failing_capture == grabber.frame) grabber.status |= capture::registers::kStatusWordsLost;
-    const std::uint32_t word = pair_word(grabber.frame, side);
-    if (grabber.board_word) {
-      board[*grabber.board_word] = word;
-    } else {
-      std::memcpy(memory(grabber.address, 4), &word, 4);
-    }
-  }
-
-  void write_core(std::uint64_t offset, std::uint32_t value) {
-    namespace regs = fpga::registers;
-    if (offset != regs::kControl) {
-      bases_[offset] = value;
-      return;
-    }
-    if ((value & regs::kControlAcknowledge) != 0) {
-      EXPECT_TRUE(core_done_) << "nothing is to be acknowledged";
-      core_done_ = false;
-    }
-    if ((value & regs::kControlStart) == 0) return;
-    EXPECT_FALSE(core_busy_);
-    EXPECT_FALSE(core_done_) << "not acknowledged: the doorbell would not ring again";
-    for (const auto base : {regs::kLeftImageBase, regs::kRightImageBase, regs::kDisparityBase})
-      expect_free(bases_.at(base));
-    core_busy_ = true;
-    running_ = {bases_.at(regs::kLeftImageBase), bases_.at(regs::kRightImageBase),
-                bases_.at(regs::kDisparityBase)};
-    ++core_starts;
-  }
-  void end_core() {
-    core_busy_ = false;
-    core_done_ = true;
-    interrupts_ |= pci::bridge::kDoorbell;
-    if (failing_write) interrupts_ |= pci::bridge::kPostedError;
-    board[running_[2]] = result_word(board.at(running_[0]), board.at(running_[1]));
-  }
-
   void write_bridge(std::uint64_t offset, std::uint32_t value) {
-    namespace regs = pci::bridge;
-    if (offset < regs::kPage + 16) {
-      pages_[static_cast<std::size_t>(offset / 4)] = value;
-    } else if (offset == regs::kInterruptStatus) {
-      interrupts_ &= ~value;
-    } else if (offset == regs::kInterruptEnable) {
-      enabled_ = value;
-    } else {
-      const auto channel = static_cast<std::size_t>((offset - regs::kDmaDescriptor) / regs::kChannelStride);
-      if (offset % regs::kChannelStride == 0) {
-        descriptors_.at(channel) = value;
-      } else {
-        EXPECT_FALSE(dma_.at(channel).has_value()) << "started while it is busy";
-        for (const Descriptor& piece : chain(descriptors_[channel])) expect_free(piece[1]);
-        dma_[channel] = chain(descriptors_[channel]);
-      }
-    }
-  }
-  std::vector<Descriptor> chain(std::uint32_t first) {
-    std::vector<Descriptor> pieces;
-    for (std::uint32_t next = first;;) {
-      std::memcpy(pieces.emplace_back().data(), memory(next, 16), 16);
-      next = pieces.back()[3];
-      if (next == 0) return pieces;
-    }
-  }
-  void end_dma(std::size_t channel) {
-    const std::vector<Descriptor> pieces = *dma_[channel];
-    dma_[channel].reset();
-    interrupts_ |= (failing_channel == channel ? pci::bridge::kDmaError : pci::bridge::kDmaDone) << channel;
-    for (const Descriptor& piece : pieces) {
-      const bool to_pci = (piece[2] & pci::bridge::kToPci) != 0;
-      const std::uint32_t words = piece[2] & ~pci::bridge::kToPci;
-      for (std::uint32_t word = 0; word < words; ++word) {
-        if (to_pci) {
-          std::memcpy(memory(piece[0] + word * 4, 4), &board.at(piece[1] + word), 4);
-        } else {
-          std::memcpy(&board[piece[1] + word], memory(piece[0] + word * 4, 4), 4);
-        }
-      }
-    }
-  }
-
-  // Nobody works on the buffer that begins at this board word.
-  void expect_free(std::uint32_t word) {
-    for (const Capture& grabber : capture_) {
-      EXPECT_FALSE(grabber.under_way && grabber.board_word == word) << "a capture fills it";
-    }
-    EXPECT_FALSE(core_busy_ && (word == running_[0] || word == running_[1] || word == running_[2]))
-        << "the core works on it";
-    for (const auto& pieces : dma_) {
-      if (!pieces) continue;
-      for (const Descriptor& piece : *pieces) EXPECT_NE(piece[1], word) << "a DMA channel works on it";
+    if (offset == pci::bridge::kInterruptStatus) interrupts_ &= ~value;
+    if (offset == pci::bridge::kInterruptEnable) enabled_ = value;
+    for (unsigned channel = 0; channel < pci::bridge::kChannels; ++channel) {
+      if (offset == pci::bridge::kDmaControl + channel * pci::bridge::kChannelStride)
+        under_way_.push_back(static_cast<int>(kToBoard + channel));
     }
   }
 
   platform::DeviceMap map_;
-  test::SplitMix64 random_;
   std::vector<std::uint8_t> memory_;
-  std::array<Capture, 2> capture_{};
-  std::uint64_t armed_ = 0;  // both sides together
-  std::array<std::uint32_t, 4> pages_{};
+  std::vector<int> under_way_;  // the one that was begun first is the first
+  std::array<std::uint32_t, 2> capture_status_{};
+  std::array<std::uint64_t, 2> captures_{};  // ended
   std::uint32_t interrupts_ = 0;
   std::uint32_t enabled_ = 0;
-  std::map<std::uint64_t, std::uint32_t> bases_;
-  std::array<std::uint32_t, 3> running_{};
-  bool core_busy_ = false;
-  bool core_done_ = false;
-  std::array<std::uint32_t, 2> descriptors_{};
-  std::array<std::optional<std::vector<Descriptor>>, 2> dma_;
 };
 
 }  // namespace stereotlm::driver

@@ -71,14 +71,14 @@ class MadeConflicts {
     recorder.start_frame(0, control, arbitration);
     std::uint64_t cycle = 0;
     const auto end_group = [&](std::uint64_t waits) {
-      for (; waits != 0; --waits) recorder.step(kLut | kPixel, kPixel, arbitration);
-      recorder.end_group(cycle += 10, control);
+      for (; waits != 0; --waits) recorder.step(kLut | kPixel, kPixel);
+      recorder.end_group(cycle += 10);
     };
     for (; recorder.strip() == 0; in_fill = 0) end_group(in_fill);
     for (const std::uint64_t strip : strips) {
       for (const std::uint64_t group : groups) end_group(strip * group);
     }
-    recorder.end_frame(cycle, control);
+    recorder.end_frame(cycle);
     add_frame(conflicts_.take_frames().front(), sums_);
   }
 

@@ -43,57 +43,6 @@ class PerfettoSinkTest : public ::testing::Test {
   std::string bytes_;
 };
 
-TEST_F(PerfettoSinkTest, EachRunIsASliceAsLongAsItsCycles) {
-  const test::MadeTrace trace = test::make_trace(board_, 2);
-  const PerfettoFile file = written(trace);
-  for (const platform::FrameRuns& frame : trace.frames) {
-    for (const platform::TraceRun& run : frame.runs) {
-      const std::string requester = fpga::requester_name(run.requester);
-      const std::string bank = board_.banks[run.bank].name;
-      const std::string name =
-          run.by ? fmt::format("{} waits {} {} for {} on {}", requester, run.count,
-                               run.count == 1 ? "cycle" : "cycles", fpga::requester_name(*run.by), bank)
-                 : fmt::format("{} {} x{}", writes(run.requester) ? "writes" : "reads", bank, run.count);
-      std::size_t found = 0;
-      for (const PerfettoFile::Slice& slice : file.slices_of(requester)) {
-        const bool is_in_strip = slice.begin_ns >= ns(run.first_cycle) && slice.end_ns <= ns(run.end_cycle);
-        if (slice.name != name || !is_in_strip) continue;
-        ++found;
-        EXPECT_EQ(slice.end_ns - slice.begin_ns, ns(run.count));
-      }
-      EXPECT_EQ(found, 1) << name;
-    }
-  }
-}
-
-TEST_F(PerfettoSinkTest, CyclesOfAWindowHaveTheSumsOfTheRuns) {
-  const test::MadeTrace trace = test::make_trace(board_, 2);
-  const PerfettoFile file = written(trace);
-  std::map<std::string, std::uint64_t> grants;
-  std::map<std::pair<std::string, std::string>, std::uint64_t> waits;
-  std::map<std::string, std::uint64_t> owned;
-  for (const platform::FrameRuns& frame : trace.frames) {
-    for (const platform::TraceRun& run : frame.runs) {
-      const std::string requester = fpga::requester_name(run.requester);
-      const std::string bank = board_.banks[run.bank].name;
-      if (run.by)
-        waits[{requester, fmt::format("for {} on {}", fpga::requester_name(*run.by), bank)}] += run.count;
-      else
-        grants[requester] += run.count, owned[bank + " cycles"] += run.count;
-    }
-  }
-  EXPECT_GT(waits.size(), 5);
-  for (const auto& [key, cycles] : waits)
-    EXPECT_EQ(cycles_of(file.slices_of(key.first + " cycles"), key.second), cycles) << key.first;
-  for (const auto& [requester, count] : grants) {
-    std::uint64_t found = 0;
-    for (const PerfettoFile::Slice& slice : file.slices_of(requester + " cycles"))
-      found += slice.arguments.count("address");
-    EXPECT_EQ(found, count) << requester;
-  }
-  for (const auto& [track, cycles] : owned) EXPECT_EQ(cycles_of(file.slices_of(track), ""), cycles) << track;
-}
-
 TEST_F(PerfettoSinkTest, SlicesOfATrackNeverCross) {
   board_.fpga.clock_mhz = 333.3;  // its cycles are no whole ns
   const PerfettoFile file = written(test::make_trace(board_, 1));

@@ -53,28 +53,6 @@ TEST_F(SqliteSinkTest, EachQueryOfTheGuideGivesRows) {
   }
 }
 
-TEST_F(SqliteSinkTest, RunsHaveTheCyclesOfTheFrames) {
-  const test::MadeTrace trace = test::make_trace(board_, 2);
-  write(trace);
-  std::size_t waits = 0;
-  for (const platform::FrameRuns& frame : trace.frames) {
-    for (const platform::TraceRun& run : frame.runs) {
-      waits += run.by ? 1 : 0;
-      const std::string row =
-          run.strip == 0 ? "row IS NULL" : fmt::format("row <= {0} AND {0} < row + rows", run.strip - 1);
-      EXPECT_EQ(
-          number(fmt::format(
-              "SELECT count / max(rows, 1) FROM runs WHERE frame = {} AND {} AND port = '{}' AND bank = '{}' "
-              "AND by IS {} AND kind = '{}' AND start <= {} AND \"end\" >= {}",
-              frame.frame, row, fpga::requester_name(run.requester), board_.banks[run.bank].name,
-              run.by ? fmt::format("'{}'", fpga::requester_name(*run.by)) : "NULL", run.by ? "wait" : "grant",
-              run.first_cycle, run.end_cycle)),
-          run.count);
-    }
-  }
-  EXPECT_GT(waits, 20);
-}
-
 // With 5 rows in strips of 2 the last strip has one row: a count of its own, because `count / rows` is the
 // mean of a row.
 TEST_F(SqliteSinkTest, ALastStripWithFewerRowsIsARunOfItsOwn) {
@@ -95,23 +73,6 @@ TEST_F(SqliteSinkTest, ALastStripWithFewerRowsIsARunOfItsOwn) {
                             "WHERE row IS NOT NULL");
     ASSERT_TRUE(found.step());
     EXPECT_EQ(found.text(0), runs);
-  }
-}
-
-TEST_F(SqliteSinkTest, TransactionsHaveEachAccessAndTheWaitsBeforeIt) {
-  const test::MadeTrace trace = test::make_trace(board_, 2);
-  write(trace);
-  for (std::size_t port = 0; port < fpga::kPortCount; ++port) {
-    std::int64_t grants = 0;
-    std::int64_t waits = 0;
-    for (const fpga::CoreCycle& cycle : trace.cycles) {
-      if (cycle.ports[port].intent == fpga::Intent::kRequest) ++(cycle.ports[port].granted ? grants : waits);
-    }
-    const std::string name = port == fpga::kHostPort ? "host capture" : fpga::kPorts[port].name;
-    const std::string of_port = fmt::format("FROM transactions WHERE port = '{}'", name);
-    EXPECT_EQ(number("SELECT count(*) " + of_port), grants) << name;
-    EXPECT_EQ(number("SELECT sum(waited) " + of_port), waits) << name;
-    EXPECT_EQ(number("SELECT count(*) " + of_port + " AND (waited = 0) != (by IS NULL)"), 0) << name;
   }
 }
 
