@@ -16,8 +16,8 @@
 #include <utility>
 #include <vector>
 
-#include "models/fpga/record/conflict_recorder.h"
 #include "models/fpga/frame_geometry.h"
+#include "models/fpga/record/conflict_recorder.h"
 #include "platform/audit.h"
 #include "platform/bounds.h"
 #include "platform/conflicts.h"

@@ -48,7 +48,7 @@ class LocalBusTest : public testing::Test {
   static void run_until(std::uint64_t edge) { sc_core::sc_start(local(edge) - sc_core::sc_time_stamp()); }
   // Grants a word in the cycle of the core that begins at `grant_ps`; usable two cycles later.
   void grant(std::uint64_t grant_ps) {
-    ASSERT_TRUE(bus.requests(grant_ps));
+    ASSERT_TRUE(bus.control().requests(grant_ps));
     bus.control().access(grant_ps, grant_ps + 2 * kCorePs);
   }
   // Reports that do not throw: the address sanitizer cannot follow an exception through the processes.
