@@ -29,10 +29,10 @@ class TestHost : public sc_core::sc_module, public tlm::tlm_bw_transport_if<> {
   explicit TestHost(const sc_core::sc_module_name& name) : sc_module(name) { socket.bind(*this); }
 
   // One word by b_transport, at now + delay.
-  Answer read(std::uint64_t address, sc_core::sc_time delay = {}) {
+  Answer read(std::uint64_t address, const sc_core::sc_time& delay = {}) {
     return block(tlm::TLM_READ_COMMAND, address, 0, delay);
   }
-  Answer write(std::uint64_t address, std::uint32_t word, sc_core::sc_time delay = {}) {
+  Answer write(std::uint64_t address, std::uint32_t word, const sc_core::sc_time& delay = {}) {
     return block(tlm::TLM_WRITE_COMMAND, address, word, delay);
   }
   // Words by b_transport.
@@ -45,7 +45,7 @@ class TestHost : public sc_core::sc_module, public tlm::tlm_bw_transport_if<> {
 
   // Words by nb_transport, from now + delay on. Does not wait. Returns the target's return value.
   tlm::tlm_sync_enum request(tlm::tlm_command command, std::uint64_t address, std::uint32_t word = 0,
-                             sc_core::sc_time delay = {}) {
+                             const sc_core::sc_time& delay = {}) {
     return request(command, address, std::vector<std::uint32_t>{word}, delay);
   }
   tlm::tlm_sync_enum request(tlm::tlm_command command, std::uint64_t address,
@@ -133,7 +133,8 @@ class TestHost : public sc_core::sc_module, public tlm::tlm_bw_transport_if<> {
     transaction.payload.set_streaming_width(bytes);
     return transaction;
   }
-  Answer block(tlm::tlm_command command, std::uint64_t address, std::uint32_t word, sc_core::sc_time delay) {
+  Answer block(tlm::tlm_command command, std::uint64_t address, std::uint32_t word,
+               const sc_core::sc_time& delay) {
     return block(command, address, std::vector<std::uint32_t>{word}, delay);
   }
   Answer block(tlm::tlm_command command, std::uint64_t address, std::vector<std::uint32_t> words,
@@ -142,11 +143,11 @@ class TestHost : public sc_core::sc_module, public tlm::tlm_bw_transport_if<> {
     socket->b_transport(transaction.payload, delay);
     return answer_of(transaction, delay);
   }
-  static Answer answer_of(const Transaction& transaction, sc_core::sc_time delay) {
+  static Answer answer_of(const Transaction& transaction, const sc_core::sc_time& delay) {
     return {transaction.payload.get_response_status(), transaction.words.front(),
             sc_core::sc_time_stamp() + delay, transaction.words};
   }
-  void record(const Transaction& transaction, sc_core::sc_time delay) {
+  void record(const Transaction& transaction, const sc_core::sc_time& delay) {
     answers.push_back(answer_of(transaction, delay));
   }
   unsigned debug(tlm::tlm_command command, std::uint64_t address, std::vector<std::uint32_t>& words) {

@@ -242,18 +242,21 @@ std::optional<std::string> death_of(process::Child& worker) {
   }
 }
 
+// The number of workers. Throws std::runtime_error if the limit on open files is too low for them.
+std::uint64_t with_files(std::uint64_t workers) {
+  const std::uint64_t most = workers_with_files(workers);
+  if (most == workers) return workers;
+  throw std::runtime_error(fmt::format(
+      "{} worker processes: the limit on open files (ulimit -n) is enough for {}", workers, most));
+}
+
 class Sweep {
  public:
   Sweep(const Points& points, const Evaluate& evaluate, const SweepOptions& options)
-      : workers_(std::min<std::uint64_t>(options.jobs, points_of(points, options))),
+      : workers_(with_files(std::min<std::uint64_t>(options.jobs, points_of(points, options)))),
         state_{points, evaluate, options, {workers_.size(), points_of(points, options)}, {}} {}
 
   SweepCounts run(const std::function<bool(const SweepCounts&)>& keep_going) {
-    if (const std::uint64_t most = workers_with_files(workers_.size()); most < workers_.size()) {
-      throw std::runtime_error(
-          fmt::format("{} worker processes: the limit on open files (ulimit -n) is enough for {}",
-                      workers_.size(), most));
-    }
     const SweepOptions& options = state_.options;
     const StoreLock lock(options.store);
     {  // One message for an unusable file, instead of one from each worker.
@@ -352,10 +355,10 @@ SweepCounts sweep(const Points& points, const Evaluate& evaluate, const SweepOpt
 }
 
 // Opens, for a moment, as many files as the last worker will have open. A worker inherits the end of a pipe
-// for each worker before it, and opens its stores with their journals and a pipe to the process that
-// simulates.
+// for each worker before it and the file of SharedLock. It opens its stores with their journals, and a pipe
+// to the process that simulates.
 std::uint64_t workers_with_files(std::uint64_t workers) {
-  constexpr std::uint64_t kOwnFiles = 16;
+  constexpr std::uint64_t kOwnFiles = 17;
   std::vector<int> files;
   while (files.size() < workers + kOwnFiles) {
     const int file = open("/dev/null", O_RDONLY | O_CLOEXEC);
