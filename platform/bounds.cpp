@@ -184,11 +184,11 @@ std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const FrameAcc
     return static_cast<std::uint64_t>(memory::read_latency_cycles(board.banks[bank_of(port)].kind));
   };
   const auto pipeline = static_cast<std::uint64_t>(board.fpga.pipeline_latency_cycles);
-  const auto passes = static_cast<std::uint64_t>(geometry.passes);
+  const auto folds = static_cast<std::uint64_t>(geometry.folds);
   const auto places = static_cast<std::uint64_t>(board.fpga.lane_fifo_slots);
   const std::uint64_t slot_a_cycle = geometry.slots + pipeline;
   const std::uint64_t after_last_slot =
-      geometry.drain_cycles * passes + static_cast<std::uint64_t>(geometry.last_rows) + pipeline;
+      geometry.drain_cycles * folds + static_cast<std::uint64_t>(geometry.last_rows) + pipeline;
 
   struct BankDemand {
     std::uint64_t reads = 0;
@@ -218,7 +218,7 @@ std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const FrameAcc
     read(lut, in_lane);
     read(pixel, latency(pixel));
     const std::uint64_t taking =
-        std::max(slot_a_cycle, ((geometry.slots - 1) / places + 1) * (in_lane + passes) + after_last_slot);
+        std::max(slot_a_cycle, ((geometry.slots - 1) / places + 1) * (in_lane + folds) + after_last_slot);
     if (accesses.reads[lut] > 0) bounds.push_back(port_bound(lut, taking));
     pixels.push_back(port_bound(pixel, has_table ? slot_a_cycle : taking));
   }
@@ -233,10 +233,10 @@ std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const FrameAcc
     // The last read is granted after `reads` - 1 other cycles at the earliest. The matcher begins to work on
     // its slot at least `after_last_read` cycles later.
     if (demand.reads > 0)
-      cycles = std::max(cycles, demand.reads - 1 + demand.after_last_read + passes + after_last_slot);
+      cycles = std::max(cycles, demand.reads - 1 + demand.after_last_read + folds + after_last_slot);
     bounds.push_back({resource_of_bank(board.banks[bank].name), cycles});
   }
-  bounds.push_back({"matcher", first_slot + geometry.slots * passes + after_last_slot});
+  bounds.push_back({"matcher", first_slot + geometry.slots * folds + after_last_slot});
   return bounds;
 }
 

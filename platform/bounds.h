@@ -29,12 +29,12 @@ FrameAccesses frame_accesses(const BoardConfig& board, const Tables& tables);
 // | port P   | A LUT or pixel port: one cycle per slot. The result port: one cycle per word. The first    |
 // |          | port of a lane (LUT, or pixel if the side has no table) also waits for a place in the      |
 // |          | lane, which holds F slots (fpga.lane_fifo_slots). Slot s+F is taken only after slot s is   |
-// |          | consumed. Slot s is consumed no earlier than the read latencies of the lane and the passes |
+// |          | consumed. Slot s is consumed no earlier than the read latencies of the lane and the folds  |
 // |          | of the matcher after it was taken.                                                         |
 // | bank B   | One cycle per access, no turnaround; with separate ports one cycle per read or one per     |
 // |          | write, whichever are more. After the last read: the latencies of its slot up to the        |
-// |          | matcher, the passes on it, the drain and the last writes.                                  |
-// | matcher  | The read latencies of the first slot, the passes on each slot, the drain, the last writes. |
+// |          | matcher, the folds on it, the drain and the last  writes.                                  |
+// | matcher  | The read latencies of the first slot, the folds on each slot, the drain, the last writes.  |
 //
 // The last writes store the words that the last column completes, one for each row of the last strip.
 struct ResourceBound {

@@ -109,7 +109,7 @@ struct Core {
       : config(core_config),
         geometry(config),
         columns_of_pixels(config.fetch == Fetch::kLineBuffer),
-        passes(fpga::passes_of(config)),
+        folds(fpga::folds_of(config)),
         units(fpga::units_of(config)),
         pair(pair_arithmetic(config.cost)),
         disparity_bits(bits_of(config.disparities - 1)) {}
@@ -122,7 +122,7 @@ struct Core {
   const CoreConfig& config;
   fpga::FrameGeometry geometry;
   bool columns_of_pixels;  // the matcher takes a whole column per cycle, not one pixel
-  int passes;              // S
+  int folds;               // S
   int units;               // U
   PairArithmetic pair;
   int disparity_bits;  // bits of a disparity, 0..D-1
@@ -217,42 +217,42 @@ void add_row_buffers(const Core& core, Items& items) {
   add("row buffers", 2, rows, items);
 }
 
-// Contract 7.1: a module does the candidates u, u + U, u + 2U, .. in S passes. What it keeps of one candidate
+// Contract 7.1: a module does the candidates u, u + U, u + 2U, .. in S folds. What it keeps of one candidate
 // from column to column is a shift register with a place for each pass (S = 1: registers).
 
 // Sums the results of n pixel pairs: of one pair per cycle, or of n pairs in one cycle. With one row of
 // results the sum begins anew with each column. With several rows (contract 7.2) it slides down the column:
 // the result of the new pair is added, and the result of n slots before is subtracted. The last R values of
 // the sum belong to the R rows.
-Resources column_sum(const Core& core, const Resources& pair, std::int64_t most, int passes) {
+Resources column_sum(const Core& core, const Resources& pair, std::int64_t most, int folds) {
   const int n = core.config.window;
   const int bits = core.column_sum_bits(most);
   if (core.columns_of_pixels) return n * pair + adder_tree(n, most) + registers(bits);
-  Resources column = pair + adder(bits) + shift_register(passes, bits);
-  if (core.config.rows > 1) column += shift_register(n * passes, bits_of(most)) + adder(bits_of(most) + 1);
+  Resources column = pair + adder(bits) + shift_register(folds, bits);
+  if (core.config.rows > 1) column += shift_register(n * folds, bits_of(most)) + adder(bits_of(most) + 1);
   return column;
 }
 
 // Sums the last n column sums: adds the new column sum, and subtracts the column sum of n columns before.
-Resources window_sum(const Core& core, std::int64_t most, int passes) {
+Resources window_sum(const Core& core, std::int64_t most, int folds) {
   const int column_bits = core.column_sum_bits(most);
   const int bits = core.window_sum_bits(most);
   const Resources new_less_old = adder(column_bits + 1);  // signed
-  return shift_register(core.config.window * passes, column_bits) + new_less_old + adder(bits) +
-         shift_register(passes, bits);
+  return shift_register(core.config.window * folds, column_bits) + new_less_old + adder(bits) +
+         shift_register(folds, bits);
 }
 
 // Delays a number of the right side from module to module, by `places` clock enables each: U - 1 delays. With
-// several passes the last module's number comes back to the first one, a pass later.
+// several folds the last module's number comes back to the first one, a fold later.
 struct Delays {
   std::int64_t count;
   Resources all;
 };
 Delays delays(const Core& core, int places, int bits) {
-  Delays chain{core.units - 1, (core.units - 1) * shift_register(places * core.passes, bits)};
-  if (core.passes > 1) {
+  Delays chain{core.units - 1, (core.units - 1) * shift_register(places * core.folds, bits)};
+  if (core.folds > 1) {
     ++chain.count;
-    chain.all += shift_register(places * core.passes + 1, bits) + selector(bits);
+    chain.all += shift_register(places * core.folds + 1, bits) + selector(bits);
   }
   return chain;
 }
@@ -269,10 +269,10 @@ void add_modules(const Core& core, Items& items) {
                             : delays(core, core.geometry.slots_per_column, pair.pixel_bits);
   add("right pixel delays", pixels.count, pixels.all, items);
   const std::int64_t units = core.units;
-  add("column modules", units, units * column_sum(core, pair.resources, pair.most, core.passes), items);
+  add("column modules", units, units * column_sum(core, pair.resources, pair.most, core.folds), items);
   const std::int64_t windows = units * core.config.rows;
-  add("window modules", windows, windows * window_sum(core, pair.most, core.passes), items);
-  add("candidate marks", units, units * shift_register(core.passes, 1), items);
+  add("window modules", windows, windows * window_sum(core, pair.most, core.folds), items);
+  add("candidate marks", units, units * shift_register(core.folds, 1), items);
 }
 
 // Contract 7.6, zncc. Each side has the sums of its pixels and of their squares, and the variance, for each
@@ -313,16 +313,16 @@ Resources select_min(const Rank& rank, int disparity_bits) {
   return rank.select + Resources{1} + selector(disparity_bits);
 }
 
-// With several passes a disparity is held as its pass and its module, and is put together at the end.
-int split_disparity_bits(const Core& core) { return bits_of(core.passes - 1) + bits_of(core.units - 1); }
+// With several folds a disparity is held as its fold and its module, and is put together at the end.
+int split_disparity_bits(const Core& core) { return bits_of(core.folds - 1) + bits_of(core.units - 1); }
 
 // Paper section 3.3, figure 6: a chain. Module d keeps the smaller of its own sum and the sum that module d-1
-// held a column ago, whose disparity is at most d-1. Module 0 only holds its own sum. With several passes it
+// held a column ago, whose disparity is at most d-1. Module 0 only holds its own sum. With several folds it
 // continues with what the last module held a pass and a column ago.
 void add_select_min_chain(const Core& core, Items& items) {
   const Rank rank = rank_of(core);
   Resources chain;
-  if (core.passes == 1) {
+  if (core.folds == 1) {
     chain += registers(rank.bits + kValidBit);
     for (int d = 1; d < core.units; ++d) {
       const int disparity_bits = bits_of(d);
@@ -331,7 +331,7 @@ void add_select_min_chain(const Core& core, Items& items) {
   } else {
     const int disparity_bits = split_disparity_bits(core);
     const int held_bits = rank.bits + disparity_bits + kValidBit;
-    chain += core.units * (select_min(rank, disparity_bits) + shift_register(core.passes, held_bits)) +
+    chain += core.units * (select_min(rank, disparity_bits) + shift_register(core.folds, held_bits)) +
              registers(held_bits) + digits(core.units, core.disparity_bits);
   }
   const std::int64_t rows = core.config.rows;
@@ -340,8 +340,8 @@ void add_select_min_chain(const Core& core, Items& items) {
 
 // Paper section 3.3: a tree of U-1 comparators, registered at every level. The result of a comparison is the
 // highest bit of the pair's disparity; the lower bits are the disparity of the smaller sum. A sum without a
-// partner at its level waits in registers. With several passes a last comparator keeps the smallest sum of
-// the passes so far.
+// partner at its level waits in registers. With several folds a last comparator keeps the smallest sum of
+// the folds so far.
 void add_select_min_tree(const Core& core, Items& items) {
   const Rank rank = rank_of(core);
   std::int64_t comparators = core.units - 1;
@@ -355,7 +355,7 @@ void add_select_min_tree(const Core& core, Items& items) {
     tree += left_over * registers(rank.bits + disparity_bits + kValidBit);
     at_level = pairs + left_over;
   }
-  if (core.passes > 1) {
+  if (core.folds > 1) {
     ++comparators;
     const int split_bits = split_disparity_bits(core);
     tree += select_min(rank, split_bits) + registers(rank.bits + split_bits + kValidBit) +

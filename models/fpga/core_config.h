@@ -65,8 +65,8 @@ struct CoreConfig {
 // U, the number of window modules, and S, the number of cycles in which the matcher works on a slot (contract
 // 7.1).
 inline int units_of(const CoreConfig& config) { return config.units.value_or(config.disparities); }
-inline int passes_of(int disparities, int units) { return (disparities + units - 1) / units; }
-inline int passes_of(const CoreConfig& config) { return passes_of(config.disparities, units_of(config)); }
+inline int folds_of(int disparities, int units) { return (disparities + units - 1) / units; }
+inline int folds_of(const CoreConfig& config) { return folds_of(config.disparities, units_of(config)); }
 
 // The rules between parameters (contract 7.1, 7.2).
 inline bool has_units_for(std::optional<int> units, int disparities) {

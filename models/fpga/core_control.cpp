@@ -25,7 +25,7 @@ void CoreControl::skip_waiting(std::uint64_t cycles) {
   for (std::size_t port = 0; port < kCorePortCount; ++port)
     cycles_[port].add(decision.intents[port], false, cycles);
   count_host(false, false, cycles);
-  match_.skip_passes(cycles);
+  match_.skip_folds(cycles);
 }
 
 void CoreControl::correct_passes(Side side, std::uint64_t cycles) {

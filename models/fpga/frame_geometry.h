@@ -27,7 +27,7 @@ struct FrameGeometry {
         half((config.filter ? config.filter->half() : 0) + config.cost.half()),
         rows(config.rows),
         last_rows((height - 1) % rows + 1),
-        passes(passes_of(config)),
+        folds(folds_of(config)),
         slots_per_column(config.fetch == Fetch::kColumn ? config.window + rows - 1 : 1),
         lead_strips(config.fetch == Fetch::kColumn ? (std::max(0, half - radius) + rows - 1) / rows
                                                    : radius + half),
@@ -50,14 +50,14 @@ struct FrameGeometry {
   int half;              // h: half width of the filter and the cost together
   int rows;              // R: rows of results of a strip
   int last_rows;         // rows of results of the last strip that lie inside the image
-  int passes;            // S: cycles of the matcher for a slot, or for a consume-cycle of the drain
+  int folds;             // S: cycles of the matcher for a slot, or for a consume-cycle of the drain
   int slots_per_column;  // also the number of consume-cycles of a column of the drain
   int lead_strips;       // strips before the first row of results can begin
   int strips;
   int first_row;      // first row of strip 0; may lie above the image. Each strip begins `rows` further down
   int drain_columns;  // C_d of the contract
   std::uint64_t slots;
-  std::uint64_t drain_cycles;  // consume-cycles, each of `passes` cycles
+  std::uint64_t drain_cycles;  // consume-cycles, each of `folds` cycles
   // C of the contract: the results of column i leave with column i + C, both counted over all strips.
   std::uint64_t result_delay_columns;
   std::uint64_t last_strip_column;  // the column with which the first results of the last strip leave

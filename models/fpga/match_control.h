@@ -9,7 +9,7 @@
 namespace stereotlm::fpga {
 
 // Decides when the matcher works, and which of its cycles complete words of results. It works on a slot, or
-// on a consume-cycle of the drain, for `passes` cycles, and consumes it in the last of them (contract 7.1).
+// on a consume-cycle of the drain, for `folds` cycles, and consumes it in the last of them (contract 7.1).
 class MatchControl {
  public:
   explicit MatchControl(const FrameGeometry& geometry) : geometry_(geometry) {}
@@ -18,7 +18,7 @@ class MatchControl {
     worked_before_frame_ = worked();
     slots_left_ = geometry_.slots;
     drain_left_ = geometry_.drain_cycles;
-    pass_ = 0;
+    fold_ = 0;
     k_ = 0;
     columns_ = 0;
   }
@@ -27,15 +27,15 @@ class MatchControl {
   // Whether the matcher works in this cycle. The arguments matter only for the first cycle of a slot, or of a
   // consume-cycle of the drain.
   bool decide(bool slots_ready, bool result_queue_has_room) const {
-    return pass_ != 0 || (result_queue_has_room && (draining() ? drain_left_ > 0 : slots_ready));
+    return fold_ != 0 || (result_queue_has_room && (draining() ? drain_left_ > 0 : slots_ready));
   }
   // Whether the matcher consumes in this cycle. To be called only if it works.
-  bool consumes() const { return pass_ + 1 == geometry_.passes; }
+  bool consumes() const { return fold_ + 1 == geometry_.folds; }
   // Works for a cycle. Returns true if this completes a group of four columns. Groups are counted from column
   // result_delay_columns % 4 on.
   bool work() {
-    if (++pass_ < geometry_.passes) return false;
-    pass_ = 0;
+    if (++fold_ < geometry_.folds) return false;
+    fold_ = 0;
     --(draining() ? drain_left_ : slots_left_);
     if (++k_ < geometry_.slots_per_column) return false;
     k_ = 0;
@@ -51,10 +51,10 @@ class MatchControl {
   }
 
   // The matcher's part of the state that determines the next cycles: bits 0..2 the part of the frame, bits 3
-  // and 4 the columns of the group that are consumed, bits 5..10 the slots of the column, bits 11..18 pass_.
+  // and 4 the columns of the group that are consumed, bits 5..10 the slots of the column, bits 11..18 fold_.
   std::uint64_t state() const {
     return part() | (columns_ - geometry_.result_delay_columns) % 4 << 3U |
-           static_cast<std::uint64_t>(k_) << 5U | static_cast<std::uint64_t>(pass_) << kPassBit;
+           static_cast<std::uint64_t>(k_) << 5U | static_cast<std::uint64_t>(fold_) << kFoldBit;
   }
   // The part of the frame: before or after the first results, the last strip, the drain.
   std::uint64_t part() const {
@@ -73,10 +73,10 @@ class MatchControl {
   // The number of cycles in which it still works on the slot, or the consume-cycle, that it has begun, before
   // it consumes it.
   std::uint64_t cycles_to_consume() const {
-    return pass_ == 0 ? 0 : static_cast<std::uint64_t>(geometry_.passes - 1 - pass_);
+    return fold_ == 0 ? 0 : static_cast<std::uint64_t>(geometry_.folds - 1 - fold_);
   }
   // Skips this number of them.
-  void skip_passes(std::uint64_t cycles) { pass_ += static_cast<int>(cycles); }
+  void skip_folds(std::uint64_t cycles) { fold_ += static_cast<int>(cycles); }
   // The number of slots, or of consume-cycles of the drain, that have been consumed in this frame.
   std::uint64_t consumed() const { return columns_ * slots_per_column() + static_cast<std::uint64_t>(k_); }
   // The number of slots, or of consume-cycles, up to and including the one after which part() changes.
@@ -100,22 +100,22 @@ class MatchControl {
     const std::uint64_t consumed = this->consumed() + slots;
     columns_ = consumed / slots_per_column();
     k_ = static_cast<int>(consumed % slots_per_column());
-    pass_ = static_cast<int>(state >> kPassBit);
+    fold_ = static_cast<int>(state >> kFoldBit);
   }
   // The number of cycles of the frame in which the matcher has still to work.
   std::uint64_t cycles_left() const {
-    return (slots_left_ + drain_left_) * static_cast<std::uint64_t>(geometry_.passes) -
-           static_cast<std::uint64_t>(pass_);
+    return (slots_left_ + drain_left_) * static_cast<std::uint64_t>(geometry_.folds) -
+           static_cast<std::uint64_t>(fold_);
   }
   // The number of cycles in which the matcher has worked, over all frames.
   std::uint64_t worked() const {
     return worked_before_frame_ +
-           (geometry_.slots + geometry_.drain_cycles) * static_cast<std::uint64_t>(geometry_.passes) -
+           (geometry_.slots + geometry_.drain_cycles) * static_cast<std::uint64_t>(geometry_.folds) -
            cycles_left();
   }
 
  private:
-  static constexpr unsigned kPassBit = 11;
+  static constexpr unsigned kFoldBit = 11;
   static_assert(kernels::kMostRows < 1 << 6U);
 
   std::uint64_t slots_per_column() const { return static_cast<std::uint64_t>(geometry_.slots_per_column); }
@@ -126,7 +126,7 @@ class MatchControl {
       geometry_.last_rows == geometry_.rows ? UINT64_MAX : geometry_.last_strip_column;
   std::uint64_t slots_left_ = geometry_.slots;
   std::uint64_t drain_left_ = geometry_.drain_cycles;
-  int pass_ = 0;               // cycles worked on the slot, or the consume-cycle, that is being worked on
+  int fold_ = 0;               // cycles worked on the slot, or the consume-cycle, that is being worked on
   int k_ = 0;                  // slots of the current column that have been consumed
   std::uint64_t columns_ = 0;  // columns consumed
   std::uint64_t worked_before_frame_ = 0;

@@ -182,7 +182,8 @@ void census_row(const std::int8_t* const* rows, int half, int width, std::uint8_
       for (int column = 0; column <= 2 * half; ++column) {
         if (row == half && column == half) continue;
         const auto is_less = reinterpret_cast<Bytes>(load<SignedBytes>(rows[row] + column + u) < middle);
-        set |= is_less & static_cast<std::uint8_t>(1 << bit % 8);
+        const auto mask = static_cast<std::uint8_t>(1U << static_cast<unsigned>(bit % 8));
+        set |= is_less & mask;
         if (++bit % 8 != 0) continue;
         store(set, out[bit / 8 - 1] + u);
         set = Bytes{};

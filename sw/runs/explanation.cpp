@@ -278,8 +278,8 @@ double Explanation::busy_percent(const std::string& resource) const {
   if (resource == "bridge") return 100 * number("bridge.local_busy_clocks") / number("bridge.local_clocks");
   if (resource == "matcher") {
     const fpga::FrameGeometry geometry(platform::core_config(board_));
-    const auto of_frame = static_cast<double>((geometry.slots + geometry.drain_cycles) *
-                                              static_cast<unsigned>(geometry.passes));
+    const auto of_frame =
+        static_cast<double>((geometry.slots + geometry.drain_cycles) * static_cast<unsigned>(geometry.folds));
     return 100 * number("frames") * of_frame / number("cycles");
   }
   if (const auto bank = platform::bank_of_resource(resource))

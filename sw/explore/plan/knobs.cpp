@@ -68,20 +68,20 @@ class Steps {
     add_filter(kernels::log7(), "log7");
   }
 
-  // Only the number of passes changes the time.
+  // Only the number of folds changes the time.
   void add_units() {
     const auto& now = board_.matcher.units;
     const int disparities = board_.matcher.disparities;
-    const auto fewest = [disparities](int passes) { return (disparities + passes - 1) / passes; };
+    const auto fewest = [disparities](int folds) { return (disparities + folds - 1) / folds; };
     const auto add_to = [&](const std::optional<int>& other) {
       const auto text = [](const std::optional<int>& value) {
         return value ? std::to_string(*value) : "all";
       };
       add({"matcher.units", text(now), text(other)}, [&](BoardConfig& b) { b.matcher.units = other; });
     };
-    const int passes = fpga::passes_of(disparities, now.value_or(disparities));
-    if (passes > 2) add_to(fewest(passes - 1));
-    if (fewest(passes) > 1) add_to(fewest(fpga::passes_of(disparities, fewest(passes) - 1)));
+    const int folds = fpga::folds_of(disparities, now.value_or(disparities));
+    if (folds > 2) add_to(fewest(folds - 1));
+    if (fewest(folds) > 1) add_to(fewest(fpga::folds_of(disparities, fewest(folds) - 1)));
     if (now) add_to(std::nullopt);
   }
 

@@ -32,7 +32,7 @@ struct KnobSteps {
 // One step of every knob of a board, as long as the value is in the range of its key:
 //   a number: up and down by one (the window by two); a word: each other one
 //   matcher.fetch: the line buffer takes matcher.rows back to 1 with it
-//   matcher.units: to the fewest modules that take fewer passes, to the fewest that take more, and to all
+//   matcher.units: to the fewest modules that take fewer folds, to the fewest that take more, and to all
 //   fpga.tables: to joint tables in the bank of the left table, or in the bank of the right table; to
 //   separate tables, with the right table in the first bank without buffers that can hold it, if there is one
 //   matcher.cost: each other one (census with 5 x 5 pixels); census also with the next sizes

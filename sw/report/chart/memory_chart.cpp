@@ -219,8 +219,8 @@ Lines matcher_lines(const BoardConfig& board) {
   const int units = matcher.units.value_or(matcher.disparities);
   Lines lines = {"matcher", fmt::format("{0} {1}x{1}", kernels::name_of(matcher.cost.kind), matcher.window),
                  fmt::format("{} disparities", matcher.disparities), fmt::format("{} modules", units)};
-  const int passes = fpga::passes_of(matcher.disparities, units);
-  if (passes > 1) lines.push_back(fmt::format("{} passes", passes));
+  const int folds = fpga::folds_of(matcher.disparities, units);
+  if (folds > 1) lines.push_back(fmt::format("{} folds", folds));
   if (matcher.rows > 1) lines.push_back(fmt::format("{} rows at once", matcher.rows));
   return lines;
 }

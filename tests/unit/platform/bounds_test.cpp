@@ -297,7 +297,7 @@ TEST_P(FewPlaces, TakeLessThanARoundLongerThanTheirBound) {
   const uint64_t bound = largest(board, tables, 0);
   EXPECT_EQ(core_bound(board, tables).core_limited_by, "port right_lut");
   EXPECT_GE(statistics.frame_cycles[0], bound);
-  const int round = board.fpga.lane_fifo_slots * fpga::passes_of(core_config(board));
+  const int round = board.fpga.lane_fifo_slots * fpga::folds_of(core_config(board));
   EXPECT_LT(statistics.frame_cycles[0], bound + static_cast<uint64_t>(round));
 }
 
