@@ -81,10 +81,15 @@ struct Group {
     }
   }
 
-  void enter_first(int count) {
+  // Adds the next `count` positions to the column sums, and with kToWindows these sums to the windows.
+  template <bool kToWindows>
+  void enter(int count) {
     for (std::ptrdiff_t u = 0; u < count; ++u) {
       const auto right = cost.right(columns.right);
-      for (std::ptrdiff_t j = 0; j < kCount; ++j) cost.add(windows[j], columns.add(cost, right, j));
+      for (std::ptrdiff_t j = 0; j < kCount; ++j) {
+        const auto sum = columns.add(cost, right, j);
+        if constexpr (kToWindows) cost.add(windows[j], sum);
+      }
       columns.next();
     }
   }
@@ -136,7 +141,7 @@ void match_group(const MatchPlan& plan, const MatchMemory& memory, int first, st
   const int columns = plan.columns;
   if (inside > columns || !kRightBased) inside = columns;
   Group<Cost, kCount> group(plan, memory, first, column_sums);
-  group.enter_first(plan.window - 1);
+  group.template enter<true>(plan.window - 1);
   group.template match<kRightBased, false>(inside);
   group.template match<kRightBased, true>(columns - inside);
   group.leave();
@@ -178,8 +183,8 @@ template <class Cost>
 void add_row_with(const MatchPlan& plan, const MatchMemory& memory) {
   Cost::prepare(plan, memory, false);
   visit_groups<Cost>(plan, memory, [&](auto count, int first, std::int16_t* column_sums) {
-    Group<Cost, decltype(count)::value>(plan, memory, first, column_sums)
-        .enter_first(plan.columns + plan.window - 1);
+    Group<Cost, decltype(count)::value> group(plan, memory, first, column_sums);
+    group.template enter<false>(plan.columns + plan.window - 1);
   });
 }
 

@@ -63,6 +63,7 @@ class ChangeStream {
   static constexpr std::size_t kBuffered = std::size_t{1} << 16U;
 
   void store() {
+    if (buffer_.empty()) return;
     if (std::fwrite(buffer_.data(), sizeof(Change), buffer_.size(), file_) != buffer_.size()) fail();
     buffer_.clear();
   }
