@@ -4,8 +4,10 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <chrono>
 #include <map>
 #include <stdexcept>
+#include <thread>
 #include <vector>
 
 #include "platform/config/buffer_layout.h"
@@ -312,9 +314,17 @@ TEST(Study, CountsTheBoardsOfAllSearchesAndRuns) {
 
 TEST(Study, EndsWithoutFindingsWhenStoppedAndReportsABoardThatFails) {
   const std::vector<Claim> rate = {claim_of(Quantity::kRate, 61, {run_of("matcher.window=5")})};
+  // More points, each longer than the time between two calls of keep_going, than processes.
+  std::vector<Claim> rates;
+  for (int window = 3; window <= 31; window += 2)
+    rates.push_back(claim_of(Quantity::kRate, 61, {run_of(fmt::format("matcher.window={}", window))}));
   Means ending = means();
+  ending.evaluate = [](const explore::Point& point) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    return made_up(point);
+  };
   ending.keep_going = [](std::uint64_t, std::uint64_t) { return false; };
-  EXPECT_FALSE(study(rate, ending).has_value());
+  EXPECT_FALSE(study(rates, ending).has_value());
   Means failing = means();
   failing.evaluate = [](const explore::Point&) -> explore::Figures { throw std::runtime_error("burnt"); };
   EXPECT_THAT([&] { study(rate, failing); }, ThrowsMessage<std::runtime_error>(HasSubstr("burnt")));
