@@ -16,12 +16,12 @@ using memory::ArbiterStats;
 // Their names and shares follow from derive_figures().
 BankStatistics bank_statistics(const ArbiterStats& arbiter) {
   return {"",
-          arbiter.reads,
-          arbiter.writes,
-          arbiter.busy_cycles,
-          arbiter.turnaround_cycles,
-          arbiter.idle_cycles,
-          arbiter.contended_cycles};
+          arbiter.reads(),
+          arbiter.writes(),
+          arbiter.busy_cycles(),
+          arbiter.turnaround_cycles(),
+          arbiter.idle_cycles(),
+          arbiter.contended_cycles()};
 }
 
 PortStatistics port_statistics(const fpga::PortCycles& cycles) {
@@ -40,7 +40,7 @@ std::vector<BlameRow> blame_rows(const BoardConfig& config, const BoardCounters&
   for (std::size_t victim = 0; victim < kPortCount; ++victim) {
     for (std::size_t bank = 0; bank < counters.banks.size(); ++bank) {
       for (std::size_t by = 0; by <= ArbiterStats::kTurnaround; ++by) {
-        const std::uint64_t cycles = counters.banks[bank].arbiter.blame[victim][by];
+        const std::uint64_t cycles = counters.banks[bank].arbiter.blame(victim, by);
         if (cycles == 0) continue;
         rows.push_back({fpga::kPorts[victim].name, config.banks[bank].name,
                         by == ArbiterStats::kTurnaround ? "turnaround" : fpga::kPorts[by].name, cycles});
@@ -53,14 +53,14 @@ std::vector<BlameRow> blame_rows(const BoardConfig& config, const BoardCounters&
 void audit_arbiters(const BoardConfig& config, const BoardCounters& counters, Audit& audit) {
   for (std::size_t port = 0; port < kPortCount; ++port) {
     std::uint64_t granted = 0;
-    for (const BoardCounters::Bank& bank : counters.banks) granted += bank.arbiter.grants[port];
+    for (const BoardCounters::Bank& bank : counters.banks) granted += bank.arbiter.grants(port);
     audit.equal(std::string("port ") + fpga::kPorts[port].name + ": grants", counters.ports[port].granted(),
                 "given by the arbiters", granted);
   }
   for (std::size_t index = 0; index < counters.banks.size(); ++index) {
     const BoardCounters::Bank& bank = counters.banks[index];
     audit.equal("bank " + config.banks[index].name + ": accesses", bank.accesses, "granted by its arbiter",
-                bank.arbiter.reads + bank.arbiter.writes + bank.uncounted_grants);
+                bank.arbiter.reads() + bank.arbiter.writes() + bank.arbiter.uncounted_accesses());
   }
 }
 
@@ -114,7 +114,7 @@ void audit_words(const BoardConfig& config, const ComputerCounters::Words& words
 void audit_host_port(const ComputerCounters& counters, Audit& audit) {
   std::uint64_t grants = 0;
   for (const BoardCounters::Bank& bank : counters.board.banks) {
-    grants += bank.uncounted_grants + bank.arbiter.grants[fpga::kHostPort];
+    grants += bank.arbiter.uncounted_accesses() + bank.arbiter.grants(fpga::kHostPort);
   }
   audit.equal("port host: grants in and between frames", grants, "words of the local bus",
               counters.local_bus.words_read + counters.local_bus.words_written);
@@ -153,17 +153,14 @@ void audit_rates(const BoardConfig& config, const FrameAccesses& accesses, bool 
 
 }  // namespace
 
-BoardCounters counters_of(const fpga::FrameRun& frames, const std::vector<memory::BankArbiter>& arbiters) {
+BoardCounters counters_of(const fpga::FrameRun& frames, const memory::Arbitration& arbitration) {
   BoardCounters counters;
   counters.frames = frames.frame_cycles().size();
   for (std::size_t port = 0; port < kPortCount; ++port)
     counters.ports[port] = frames.control().port_cycles(port);
-  counters.banks.reserve(arbiters.size());
   const fpga::DirectCounts& direct = frames.direct_counts();
-  for (const memory::BankArbiter& arbiter : arbiters) {
-    counters.banks.push_back(
-        {arbiter.stats(), arbiter.uncounted_accesses(), direct.accesses[counters.banks.size()]});
-  }
+  for (std::size_t bank = 0; bank < arbitration.banks(); ++bank)
+    counters.banks.push_back({arbitration.stats(bank), direct.accesses[bank]});
   counters.left.issued = direct.slots[0];
   counters.right.issued = direct.slots[1];
   counters.packed_words = direct.packed_words;
@@ -176,7 +173,7 @@ BoardCounters counters_of(const fpga::FrameRun& frames, const std::vector<memory
 BoardCounters counters_of(const Board& board) {
   const fpga::StereoCore& core = board.core;
   const fpga::CoreDatapath& datapath = core.datapath();
-  BoardCounters counters = counters_of(core.frames(), core.crossbar().arbiters());
+  BoardCounters counters = counters_of(core.frames(), core.crossbar().arbitration());
   for (std::size_t bank = 0; bank < board.banks.size(); ++bank) {
     const memory::SsramBank::Stats& stats = board.banks[bank].stats();
     counters.banks[bank].accesses +=

@@ -9,7 +9,7 @@
 #include "models/fpga/frame_run.h"
 #include "models/fpga/local_bus_control.h"
 #include "models/fpga/port_cycles.h"
-#include "models/memory/bank_arbiter.h"
+#include "models/memory/arbitration.h"
 #include "models/memory/memory_config.h"
 #include "models/pci/bridge_control.h"
 #include "models/pci/pci_bus_control.h"
@@ -27,8 +27,7 @@ namespace stereotlm::platform {
 struct BoardCounters {
   struct Bank {
     memory::ArbiterStats arbiter;
-    std::uint64_t uncounted_grants = 0;  // grants outside the counted cycles
-    std::uint64_t accesses = 0;          // accesses that reached the bank, including those that it refused
+    std::uint64_t accesses = 0;  // accesses that reached the bank, including those that it refused
   };
   struct Lane {
     std::uint64_t issued = 0;    // slots that the sequencer has issued
@@ -46,7 +45,7 @@ struct BoardCounters {
 
 BoardCounters counters_of(const Board& board);
 // The counters of a core without stages and without a host: all its frames work directly on memory.
-BoardCounters counters_of(const fpga::FrameRun& frames, const std::vector<memory::BankArbiter>& arbiters);
+BoardCounters counters_of(const fpga::FrameRun& frames, const memory::Arbitration& arbitration);
 
 // Returns the figures of the frames that `counters` cover, and the bound for these frames. Checks the
 // identities of contract section 6; Statistics::failed lists those that do not hold. `counters` were taken

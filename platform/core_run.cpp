@@ -39,7 +39,7 @@ Statistics run_core(const BoardConfig& board, const Tables& tables, std::uint64_
     core.end();
   }
   return collect_statistics(board, frame_accesses(board, tables), "fast", core.frame_cycles(),
-                            counters_of(core, arbitration.arbiters()));
+                            counters_of(core, arbitration));
 }
 
 }  // namespace stereotlm::platform

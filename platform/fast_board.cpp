@@ -101,7 +101,7 @@ void FastBoard::stalled(std::uint64_t cycles) {
 }
 
 BoardCounters FastBoard::counters() const {
-  BoardCounters counters = counters_of(frames_, arbitration_.arbiters());
+  BoardCounters counters = counters_of(frames_, arbitration_);
   for (std::size_t bank = 0; bank < banks_.size(); ++bank)
     counters.banks[bank].accesses += direct_accesses(bank);
   return counters;

@@ -51,11 +51,11 @@ void CoreControl::add(const Counts& counts, std::uint64_t times) {
   for (std::size_t port = 0; port < counts.size(); ++port) cycles_[port].add(counts[port], times);
 }
 
-void CoreControl::skip_to(const State& state, std::uint64_t slots, std::uint64_t words) {
+void CoreControl::skip_to(memory::StateReader& state, std::uint64_t slots, std::uint64_t words) {
   const std::uint64_t of_lanes = match_.draining() ? 0 : slots;
-  for (std::size_t side = 0; side < lanes_.size(); ++side) lanes_[side].skip_to(state.lanes[side], of_lanes);
-  match_.skip_to(state.rest & 0xffff'ffffU, slots);
-  result_.skip_to(state.rest >> kHalf, words);
+  for (LaneControl& lane : lanes_) lane.skip_to(*state++, of_lanes);
+  match_.skip_to(*state & 0xffff'ffffU, slots);
+  result_.skip_to(*state++ >> kHalf, words);
 }
 
 std::uint64_t CoreControl::earliest_last_write(std::uint64_t cycle) const {

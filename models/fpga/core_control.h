@@ -84,20 +84,14 @@ class CoreControl {
 
   // The state that determines the next cycles, together with the arbiters' state and the slots that the pixel
   // ports have not handled.
-  struct State {
-    std::array<LaneControl::State, 2> lanes{};  // [side]
-    std::uint64_t rest = 0;  // lower half: state of the matcher; upper half: state of the result queue
-
-    friend bool operator==(const State& a, const State& b) { return a.lanes == b.lanes && a.rest == b.rest; }
-  };
-  State state() const {
-    return {{lane(Side::kLeft).state(), lane(Side::kRight).state()},
-            match_.state() | result_.state() << kHalf};
+  void append_state(memory::StateWords& state) const {
+    for (const LaneControl& lane : lanes_) state.push_back(lane.state());
+    state.push_back(match_.state() | result_.state() << kHalf);
   }
   // Skips the cycles in which the matcher consumes `slots` slots, or consume-cycles of the drain, and `words`
   // words of results are written. The core is in `state` afterwards; the caller corrects the marks of the
   // lanes. `slots` is at most MatchControl::uniform_slots().
-  void skip_to(const State& state, std::uint64_t slots, std::uint64_t words);
+  void skip_to(memory::StateReader& state, std::uint64_t slots, std::uint64_t words);
   // Cycles of the core's own ports, over all frames.
   using Counts = std::array<PortCycles, kCorePortCount>;
   Counts counts() const;
@@ -123,7 +117,8 @@ class CoreControl {
   std::uint64_t work() const { return match_.worked() + port_cycles(kResultPort).granted(); }
 
  private:
-  static constexpr unsigned kHalf = 32;  // bits of State::rest
+  // Bits of the last word of the state: the matcher has the lower half, the result queue the upper half.
+  static constexpr unsigned kHalf = 32;
 
   PortCycles& host_cycles() { return cycles_[kHostPort]; }
 

@@ -22,11 +22,13 @@ std::string text_of(Intent intent) {
 }
 
 std::string losses_of(std::size_t port, const memory::ArbiterStats& arbiter) {
-  const auto& blame = arbiter.blame[port];
-  const auto most = std::max_element(blame.begin(), blame.end());
-  if (*most == 0) return {};
-  const auto by = static_cast<std::size_t>(most - blame.begin());
-  return ", lost " + std::to_string(*most) + " cycles to " +
+  std::size_t by = 0;
+  for (std::size_t other = 1; other <= memory::ArbiterStats::kTurnaround; ++other) {
+    if (arbiter.blame(port, other) > arbiter.blame(port, by)) by = other;
+  }
+  const std::uint64_t most = arbiter.blame(port, by);
+  if (most == 0) return {};
+  return ", lost " + std::to_string(most) + " cycles to " +
          (by == memory::ArbiterStats::kTurnaround ? "turnaround" : kPorts[by].name);
 }
 
@@ -42,7 +44,7 @@ std::string waits_of_ports(const CoreControl& control, const memory::Arbitration
     text += std::string(port == 0 ? "" : "; ") + kPorts[port].name + ' ' + text_of(intent);
     if (intent != Intent::kRequest) continue;
     const std::size_t bank = arbitration.bank_of(port);
-    text += std::to_string(bank) + losses_of(port, arbitration.arbiters()[bank].stats());
+    text += std::to_string(bank) + losses_of(port, arbitration.stats(bank));
   }
   return text;
 }

@@ -9,7 +9,7 @@ namespace {
 
 constexpr memory::PortMask kHostMask = memory::mask_of(kHostPort);
 
-bool grants(memory::BankArbiter::Outcome outcome) { return memory::BankArbiter::granted_in(outcome) != 0; }
+bool grants(const memory::BankArbiter::Outcome& outcome) { return outcome.granted != 0; }
 
 }  // namespace
 
@@ -181,7 +181,7 @@ HostTraffic HostPort::traffic() const {
 }
 
 void HostPort::count(const Served& served, bool in_frame) {
-  arbitration_.arbiter(served_bank_).count(served.cycle, served.outcome, served.cycles);
+  arbitration_.arbiter(served_bank_).count(served.outcome, served.cycles);
   if (in_frame) frames_.control().host_was_busy(grants(served.outcome), served.cycles);
 }
 

@@ -99,8 +99,6 @@ class LaneControl {
            (arrived_pixels_ - consumed_) << 24U | std::uint64_t{next_slot_.done()} << 32U |
            std::uint64_t{arrived_entries_ != 0} << 33U;
   }
-  // The number of slots in the lane in this state that are handled.
-  static std::uint64_t handled_slots(State state) { return state >> 8U & 0xffU; }
   // Skips the cycles in which the matcher consumes `slots` slots. The lane is in `state` afterwards. The
   // caller corrects the marks.
   void skip_to(State state, std::uint64_t slots) {
@@ -118,8 +116,9 @@ class LaneControl {
   // Whether everything that was read can be used. Then nothing changes in a cycle in which no port of the
   // lane moves and the matcher consumes nothing.
   bool is_settled() const { return arrived_entries_ == taken_ && arrived_pixels_ == handled_; }
-  // The number of slots in the lane.
+  // The number of slots in the lane, and of those that are handled.
   std::uint64_t slots() const { return taken_ - consumed_; }
+  std::uint64_t handled_slots() const { return handled_ - consumed_; }
   // The number of slots of the frame that the lane has taken, and the number that the pixel port has handled.
   std::uint64_t taken() const { return taken_; }
   std::uint64_t handled() const { return handled_; }

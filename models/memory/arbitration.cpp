@@ -2,14 +2,23 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <tuple>
 
 namespace stereotlm::memory {
 
 static_assert(kBankCountRule.max <= 64, "shared() has a bit for each bank");
+namespace {
+
+// A cycle in which the port alone requests and is granted.
+constexpr BankArbiter::Outcome alone_outcome(Port port, bool write) {
+  const PortMask mask = mask_of(port);
+  return {mask, write ? mask : PortMask{0}, mask};
+}
+
+}  // namespace
 
 Arbitration::Arbitration(const ArbiterConfig& arbiter, const std::vector<SsramBankConfig>& banks)
     : port_count_(arbiter.priority.size()) {
-  arbiters_.reserve(banks.size());
   for (const SsramBankConfig& bank : banks) arbiters_.emplace_back(arbiter, bank);
 }
 
@@ -28,7 +37,7 @@ void Arbitration::check_route(Port port, std::size_t bank) const {
 
 void Arbitration::route(Port port, std::size_t bank, bool write) {
   check_route(port, bank);
-  settle();
+  settle(alone_);
   shared_ = 0;
   set_route(port, bank, write);
   share_banks();
@@ -36,7 +45,7 @@ void Arbitration::route(Port port, std::size_t bank, bool write) {
 
 void Arbitration::unroute(Port port) {
   check_route(port, 0);
-  settle();
+  settle(alone_);
   shared_ = 0;
   routed_ = static_cast<PortMask>(routed_ & ~mask_of(port));
   share_banks();
@@ -65,8 +74,8 @@ void Arbitration::set_route(Port port, std::size_t bank, bool write) {
 }
 
 Arbitration::SharedBank* Arbitration::find_shared(std::size_t bank) {
-  return std::find_if(shared_banks_.begin(), shared_banks_.end(),
-                      [bank](const SharedBank& shared) { return shared.bank == bank; });
+  return &*std::find_if(shared_banks_.begin(), shared_banks_.end(),
+                        [bank](const SharedBank& shared) { return shared.bank == bank; });
 }
 
 PortMask Arbitration::ports_on(std::size_t bank) const {
@@ -86,30 +95,12 @@ std::size_t Arbitration::cause_of(Port port, PortMask granted) const {
   return ArbiterStats::kTurnaround;
 }
 
-std::vector<Stall> Arbitration::stalls_of(const Decided& decided) {
-  std::array<std::array<std::uint64_t, kMostPorts + 1>, kMostPorts> sums{};  // [port][by]
-  for (const auto& [decision, cycles] : decided) {
-    if (decision >> 32U == 0) continue;
-    BankArbiter::visit_stalls(
-        static_cast<BankArbiter::Outcome>(decision),
-        [&sums, count = cycles](Port port, std::size_t by) { sums[port][by] += count; });
-  }
-  std::vector<Stall> stalls;
-  for (Port port = 0; port < kMostPorts; ++port) {
-    for (std::size_t by = 0; by <= ArbiterStats::kTurnaround; ++by) {
-      if (sums[port][by] != 0) stalls.push_back({port, by, sums[port][by]});
-    }
-  }
-  return stalls;
-}
-
 // Finds the uncontended ports, and the shared banks in the order of their first ports. A bank that was shared
 // stays so as long as it has a port.
 void Arbitration::share_banks() {
   const std::uint64_t were_shared = std::exchange(shared_, 0);
-  recording_ = false;
   alone_ = 0;
-  shared_bank_count_ = 0;
+  shared_banks_.clear();
   for (std::size_t port = 0; port < kMostPorts; ++port) {
     if (!is_routed(port)) continue;
     const std::size_t bank = routes_[port].bank;
@@ -119,113 +110,104 @@ void Arbitration::share_banks() {
       alone_ = static_cast<PortMask>(alone_ | mask_of(port));
     } else {
       shared_ |= std::uint64_t{1} << bank;
-      shared_banks_[shared_bank_count_++] = {bank, &arbiters_[bank], together};
+      shared_banks_.push_back({bank, &arbiters_[bank], together});
     }
   }
 }
 
-// Adds the grants of uncontended ports to the counts of the arbiters.
-void Arbitration::count_alone() const {
-  std::array<std::uint64_t, kMostPorts> cycles{};
-  for (std::size_t ports_alone = 1; ports_alone < alone_cycles_.size(); ++ports_alone) {
-    if (alone_cycles_[ports_alone] == 0) continue;
-    for (std::size_t port = 0; port < kMostPorts; ++port)
-      cycles[port] += (ports_alone >> port & 1U) * alone_cycles_[ports_alone];
-  }
-  for (std::size_t ports = 0; recording_ && ports < alone_cycles_.size(); ++ports)
-    alone_before_recording_[ports] -= alone_cycles_[ports];
-  alone_cycles_ = {};
-  for (std::size_t port = 0; port < kMostPorts; ++port) {
-    arbiters_[routes_[port].bank].count_alone(mask_of(port), routes_[port].write, cycles[port]);
-    alone_grants_[port] += cycles[port];
-  }
-}
-
-// Counts modulo 2^64.
-void Arbitration::retract_grants(Port port, std::uint64_t grants) {
-  arbiters_[routes_[port].bank].count_alone(mask_of(port), routes_[port].write, 0 - grants);
-  alone_grants_[port] -= grants;
-}
-
-// To be called when no grant of these ports can be retracted any more: counts as count_alone() does, and
-// moves the states of the policies by their grants.
+// To be called when no grant of these uncontended ports can be retracted any more: adds their grants to the
+// statistics, and moves the orders of the policies by them.
 void Arbitration::settle(PortMask ports) {
-  count_alone();
-  for (std::size_t port = 0; port < kMostPorts; ++port) {
-    if ((ports & mask_of(port)) == 0 || alone_grants_[port] == 0) continue;
-    arbiters_[routes_[port].bank].grant_alone(mask_of(port), routes_[port].write);
-    alone_grants_[port] = 0;
-  }
+  for_each_port(static_cast<PortMask>(ports & alone_), [this](Port port) {
+    const std::uint64_t grants = std::exchange(alone_grants_[port], 0);
+    if (grants == 0) return;
+    const auto [bank, write] = routes_[port];
+    arbiters_[bank].count(alone_outcome(port, write), grants);
+    arbiters_[bank].grant_alone(port, write);
+  });
 }
 
 // The part of arbitrate() for requests to shared_banks_.
 PortMask Arbitration::arbitrate_shared(std::uint64_t cycle, PortMask requests) {
   PortMask granted = 0;
-  SharedBank* const end = shared_banks_.data() + shared_bank_count_;
-  for (SharedBank* shared = shared_banks_.data(); shared != end; ++shared) {
-    const auto asking = static_cast<PortMask>(requests & shared->ports);
+  for (const SharedBank& shared : shared_banks_) {
+    const auto asking = static_cast<PortMask>(requests & shared.ports);
     if (asking == 0) continue;
-    BankArbiter& arbiter = *shared->arbiter;
-    const BankArbiter::Outcome outcome = arbiter.decide(cycle, asking, writes_);
-    arbiter.count(cycle, outcome);
-    if (recording_)
-      recorded_.push_back(static_cast<std::uint64_t>(shared - shared_banks_.data() + 1) << 32U | outcome);
-    granted = static_cast<PortMask>(granted | arbiter.granted_in(outcome));
+    const BankArbiter::Outcome outcome = shared.arbiter->decide(cycle, asking, writes_);
+    shared.arbiter->count(outcome);
+    granted = static_cast<PortMask>(granted | outcome.granted);
   }
   return granted;
 }
 
-Arbitration::State Arbitration::state(std::uint64_t cycle) const {
-  State state{};
-  for (std::size_t i = 0; i < shared_bank_count_; ++i) state[i] = shared_banks_[i].arbiter->state(cycle);
-  return state;
+void Arbitration::append_state(std::uint64_t cycle, StateWords& state) const {
+  for (const SharedBank& shared : shared_banks_) shared.arbiter->append_state(cycle, state);
 }
 
-void Arbitration::begin_recording() {
-  recording_ = true;
-  alone_before_recording_ = alone_cycles_;
-  recorded_.clear();
+void Arbitration::set_state(std::uint64_t cycle, StateReader& state) {
+  for (const SharedBank& shared : shared_banks_) shared.arbiter->set_state(cycle, state);
 }
 
-Arbitration::Decided Arbitration::take_recorded() {
-  recording_ = false;
-  Decided decided;
-  for (std::size_t ports = 1; ports < alone_cycles_.size(); ++ports) {
-    const std::uint64_t cycles = alone_cycles_[ports] - alone_before_recording_[ports];
-    if (cycles != 0) decided.emplace_back(ports, cycles);
+StateWords Arbitration::counts() const {
+  StateWords counts(alone_grants_.begin(), alone_grants_.begin() + static_cast<std::ptrdiff_t>(port_count_));
+  for (const SharedBank& shared : shared_banks_) {
+    const StateWords& of_bank = shared.arbiter->stats().counts_;
+    counts.insert(counts.end(), of_bank.begin(), of_bank.end());
   }
-  std::sort(recorded_.begin(), recorded_.end());
-  for (const std::uint64_t decision : recorded_) {
-    if (decided.empty() || decided.back().first != decision) decided.emplace_back(decision, 0);
-    ++decided.back().second;
+  return counts;
+}
+
+CountChanges Arbitration::take_recorded() const {
+  CountChanges changes;
+  const StateWords now = counts();
+  for (std::size_t place = 0; place < now.size(); ++place) {
+    if (now[place] != recorded_[place])
+      changes.emplace_back(static_cast<std::uint32_t>(place), now[place] - recorded_[place]);
   }
-  return decided;
+  return changes;
 }
 
-void Arbitration::skip_to(const State& state, std::uint64_t cycle, std::uint64_t cycles) {
-  for (std::size_t i = 0; i < shared_bank_count_; ++i)
-    shared_banks_[i].arbiter->skip_to(state[i], cycle, cycles);
-}
-
-void Arbitration::count_skipped(const Decided& decided, std::uint64_t times) {
-  for (const auto& [decision, cycles] : decided) {
-    if (decision >> 32U == 0) {
-      alone_cycles_[decision] += cycles * times;
+void Arbitration::count_skipped(const CountChanges& changes, std::uint64_t times) {
+  for (const auto& [place, change] : changes) {
+    if (place < port_count_) {
+      alone_grants_[place] += change * times;
     } else {
-      const auto outcome = static_cast<BankArbiter::Outcome>(decision);
-      shared_banks_[(decision >> 32U) - 1].arbiter->count_skipped(outcome, cycles * times);
+      BankArbiter& arbiter = *shared_banks_[(place - port_count_) / counts_of_bank()].arbiter;
+      arbiter.at((place - port_count_) % counts_of_bank()) += change * times;
     }
   }
 }
 
+std::vector<Stall> Arbitration::stalls_of(const CountChanges& changes) const {
+  std::vector<Stall> stalls;
+  for (const auto& [place, change] : changes) {
+    if (place < port_count_) continue;
+    const auto stall = arbiters_.front().stats().stall_at((place - port_count_) % counts_of_bank());
+    if (stall) stalls.push_back({stall->first, stall->second, change});
+  }
+  std::sort(stalls.begin(), stalls.end(),
+            [](const Stall& a, const Stall& b) { return std::tie(a.port, a.by) < std::tie(b.port, b.by); });
+  return stalls;
+}
+
 void Arbitration::begin_counting(std::uint64_t first_cycle) {
-  settle();
+  settle(alone_);
   for (BankArbiter& arbiter : arbiters_) arbiter.begin_counting(first_cycle);
 }
 
 void Arbitration::end_counting(std::uint64_t end_cycle) {
-  settle();
+  settle(alone_);
   for (BankArbiter& arbiter : arbiters_) arbiter.end_counting(end_cycle);
+}
+
+// Between two calls of settle() all cycles are counted, or none.
+ArbiterStats Arbitration::stats(std::size_t bank) const {
+  BankArbiter arbiter = arbiters_[bank];
+  for_each_port(alone_, [&](Port port) {
+    if (routes_[port].bank == bank)
+      arbiter.count(alone_outcome(port, routes_[port].write), alone_grants_[port]);
+  });
+  return arbiter.stats();
 }
 
 }  // namespace stereotlm::memory

@@ -51,7 +51,7 @@ class Arbitration {
   // call; a cycle that is left out has no request.
   PortMask arbitrate(std::uint64_t cycle, PortMask requests) {
     const auto granted = static_cast<PortMask>(requests & alone_);
-    ++alone_cycles_[granted];
+    for_each_port(granted, [this](Port port) { ++alone_grants_[port]; });
     if (requests == granted) return granted;
     return static_cast<PortMask>(granted |
                                  arbitrate_shared(cycle, static_cast<PortMask>(requests & ~alone_)));
@@ -66,48 +66,39 @@ class Arbitration {
   // before it knows which table entries are valid, and then subtracts the grants of the slots that passed. To
   // be called before the bank is visited, another route changes, or counting ends: at that time the remaining
   // grants move the state of the bank's policy.
-  void retract_grants(Port port, std::uint64_t grants);
+  void retract_grants(Port port, std::uint64_t grants) { alone_grants_[port] -= grants; }
 
   // The arbiter of a bank that no routed port requests, for requests of a port without route.
   BankArbiter& arbiter(std::size_t bank) { return arbiters_[bank]; }
   const BankArbiter& arbiter(std::size_t bank) const { return arbiters_[bank]; }
 
-  // The state that determines all arbitration from `cycle` on, as long as no route changes: one word for each
-  // shared bank, then zeros.
-  using State = std::array<std::uint64_t, kMostPorts>;
-  State state(std::uint64_t cycle) const;
-  // The decisions of several cycles, valid as long as no route changes: pairs of a decision and the number of
-  // its cycles. A decision is the mask of the uncontended ports granted; or an outcome of a shared bank, with
-  // 1 + the index of the bank in the upper half.
-  using Decided = std::vector<std::pair<std::uint64_t, std::uint64_t>>;
-  // The stalls among them, without zero cycles, sorted by port and cause.
-  static std::vector<Stall> stalls_of(const Decided& decided);
-  // For FastForward, which steps a group of columns, records its decisions, and skips the groups that repeat
-  // it. Records decisions until take_recorded(). A change of routes drops the record.
-  void begin_recording();
-  Decided take_recorded();
-  // Skips the `cycles` cycles before `cycle`, after which the state is `state`. count_skipped() counts the
-  // decisions of the skipped cycles.
-  void skip_to(const State& state, std::uint64_t cycle, std::uint64_t cycles);
-  void count_skipped(const Decided& decided, std::uint64_t times);
+  // The state that determines all arbitration from `cycle` on, as long as no route changes.
+  void append_state(std::uint64_t cycle, StateWords& state) const;
+  // Takes over the state that determines all arbitration from `cycle` on.
+  void set_state(std::uint64_t cycle, StateReader& state);
 
-  // The arbiters' statistics count cycles first_cycle .. end_cycle - 1 only, and are complete after
-  // end_counting(). Until then grants of an uncontended port may be retracted.
-  // BankArbiter::uncounted_accesses() is complete at any time. arbiters() may be called at any time.
+  // For FastForward, which steps a group of columns, records its counts, and skips the groups that repeat it.
+  // No route may change between the two calls.
+  void begin_recording() { recorded_ = counts(); }
+  CountChanges take_recorded() const;
+  // Adds the counts of skipped cycles.
+  void count_skipped(const CountChanges& changes, std::uint64_t times);
+  // The stalls among the changes, sorted by port and cause.
+  std::vector<Stall> stalls_of(const CountChanges& changes) const;
+
+  // The statistics count cycles first_cycle .. end_cycle - 1 only, and are complete after end_counting().
+  // Until then grants of an uncontended port may be retracted. ArbiterStats::uncounted_accesses() is complete
+  // at any time.
   void begin_counting(std::uint64_t first_cycle);
   void end_counting(std::uint64_t end_cycle);
-  const std::vector<BankArbiter>& arbiters() const {
-    count_alone();
-    return arbiters_;
-  }
+  ArbiterStats stats(std::size_t bank) const;
+  std::size_t banks() const { return arbiters_.size(); }
 
  private:
   struct Route {
     std::size_t bank = 0;
     bool write = false;
   };
-  static constexpr auto kAllPorts = static_cast<PortMask>((1U << kMostPorts) - 1);
-
   // A bank with several ports, or with turnaround, or that was visited.
   struct SharedBank {
     std::size_t bank = 0;
@@ -120,29 +111,25 @@ class Arbitration {
   SharedBank* find_shared(std::size_t bank);
   PortMask ports_on(std::size_t bank) const;
   void share_banks();
-  void count_alone() const;
-  void settle(PortMask ports = kAllPorts);
+  void settle(PortMask ports);
   PortMask arbitrate_shared(std::uint64_t cycle, PortMask requests);
+  // All counters that may change as long as no route does: the grants of the uncontended ports, then the
+  // statistics of each shared bank.
+  StateWords counts() const;
+  std::size_t counts_of_bank() const { return arbiters_.front().stats().counts_.size(); }
 
+  std::vector<BankArbiter> arbiters_;
   std::size_t port_count_;
-  mutable std::vector<BankArbiter> arbiters_;
   std::array<Route, kMostPorts> routes_{};
   PortMask routed_ = 0;
   PortMask writes_ = 0;       // ports whose route writes
   std::uint64_t shared_ = 0;  // see shared()
-  // Uncontended ports: each is alone on a bank that is not shared. They need no arbitration; their grants are
-  // added to the counts of the arbiters later, at the latest when the arbiters are queried.
+  // Uncontended ports: each is alone on a bank that is not shared. They need no arbitration. Their grants are
+  // added to the statistics when they cease to be alone, and when counting begins or ends.
   PortMask alone_ = 0;
-  using AloneCycles =
-      std::array<std::uint64_t, std::size_t{1} << kMostPorts>;  // [mask of the ports granted]: cycles
-  mutable AloneCycles alone_cycles_{};
-  mutable AloneCycles
-      alone_before_recording_{};  // modulo 2^64: its difference to alone_cycles_ is the record
-  mutable std::array<std::uint64_t, kMostPorts> alone_grants_{};  // [port]: counted since settle()
-  std::array<SharedBank, kMostPorts> shared_banks_{};
-  std::size_t shared_bank_count_ = 0;
-  bool recording_ = false;
-  std::vector<std::uint64_t> recorded_;  // the decisions of shared banks, as in Decided
+  std::array<std::uint64_t, kMostPorts> alone_grants_{};  // [port]
+  std::vector<SharedBank> shared_banks_;
+  StateWords recorded_;  // the counts when the recording began
 };
 
 }  // namespace stereotlm::memory

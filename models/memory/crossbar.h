@@ -69,8 +69,6 @@ class Crossbar : public sc_core::sc_module, public DirectBanks {
   unsigned char* direct(std::uint64_t address, std::uint64_t bytes) override;
   void allow_access(Port port) override { grant(mask_of(port)); }
 
-  const std::vector<BankArbiter>& arbiters() const { return arbitration_.arbiters(); }
-
  private:
   // The target behind the socket of one port.
   class PortTarget : public tlm::tlm_fw_transport_if<> {

@@ -26,7 +26,7 @@ constexpr std::uint64_t bank_of_address(std::uint64_t address) { return address 
 
 // The index of a port on the banks: 0 .. n-1. The module that owns the ports names them (fpga/core_ports.h).
 using Port = std::size_t;
-// The largest number of ports. The tables of the arbiters grow with 2^kMostPorts.
+// The largest number of ports.
 inline constexpr std::size_t kMostPorts = 6;
 
 // A set of ports: bit number `port` is 1 if the port is in the set.
@@ -35,6 +35,11 @@ static_assert(kMostPorts <= 8);
 constexpr PortMask mask_of(Port port) { return static_cast<PortMask>(1U << port); }
 // The port with the lowest index in a set that is not empty.
 constexpr Port lowest_port(PortMask ports) { return static_cast<Port>(__builtin_ctz(ports)); }
+// Calls visit(port) for each port of a set, the lowest first.
+template <class Visit>
+void for_each_port(PortMask ports, const Visit& visit) {
+  for (unsigned left = ports; left != 0; left &= left - 1) visit(static_cast<Port>(__builtin_ctz(left)));
+}
 
 using PriorityList = std::vector<Port>;
 

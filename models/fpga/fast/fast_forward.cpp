@@ -345,9 +345,10 @@ void FastForward::catch_up(std::uint64_t cycle) {
   control.count_host(false, false, ahead_.cycles - host_ahead_.requests);
   control.count_host(true, false, host_ahead_.requests - host_ahead_.words);
   control.count_host(true, true, host_ahead_.words);
-  control.skip_to(known_.state(state_).control, ahead_.consumed, ahead_.words);
+  memory::StateReader state = known_.state(state_).begin();
+  control.skip_to(state, ahead_.consumed, ahead_.words);
   for (const Side side : kSides) control.correct_marks(side, marks(side));
-  arbitration.skip_to(known_.state(state_).arbitration, cycle, ahead_.cycles);
+  arbitration.set_state(cycle, state);
   ahead_ = {};
   host_ahead_ = {};
 }
@@ -481,7 +482,7 @@ void FastForward::end_stepped(std::uint64_t cycle) {
     return !control().match().draining() && control().lane(side).taken() >= all_strips_[strips_].end;
   };
   if (stepped.part != control().match().part() || is_beyond(Side::kLeft) || is_beyond(Side::kRight)) return;
-  known_.record(stepped.state, stepped.accesses, requests, state(cycle), effect);
+  known_.record(stepped.state, stepped.accesses, requests, state(cycle), effect, arbitration());
 }
 
 // The progress up to `cycle`. Its beginning is arbitrary: only differences have a meaning.
@@ -498,9 +499,14 @@ FastForward::StateNumber FastForward::state(std::uint64_t cycle) {
       arbitration.is_routed(kHostPort) && !is_host_routed_
           ? arbitration.bank_of(kHostPort) << 2U | std::uint64_t{arbitration.writes(kHostPort)} << 1U | 1U
           : 0;
-  return known_.number_of({control().state(), arbitration.state(cycle),
-                           control().match().draining() ? 0 : all_strips_[strips_].empty,
-                           banks_ << 32U | host << 2U | varies, arbitration.shared()});
+  state_words_.clear();
+  control().append_state(state_words_);
+  arbitration.append_state(cycle, state_words_);
+  state_words_.push_back(control().match().draining() ? 0 : all_strips_[strips_].empty);
+  state_words_.push_back(banks_ << 32U | host << 2U | varies);
+  state_words_.push_back(arbitration.shared());
+  return known_.number_of(state_words_, {control().lane(Side::kLeft).handled_slots(),
+                                         control().lane(Side::kRight).handled_slots()});
 }
 
 }  // namespace stereotlm::fpga

@@ -156,6 +156,7 @@ class FastForward : public CoreStepper {
   std::vector<Strips> all_strips_;  // all strips of a frame, in order
   TransitionCache known_;
   std::optional<Stepped> stepped_;
+  memory::StateWords state_words_;               // of state()
   std::vector<const GroupConflicts*> repeated_;  // of record_skipped()
   std::uint64_t skipped_cycles_ = 0;
   // Whether transitions are being followed. The next four are valid then.

@@ -35,12 +35,7 @@ std::uint64_t Progress::times_in(const Progress& room) const {
 
 std::size_t TransitionCache::StateHash::operator()(const State& state) const {
   Hash hash;
-  for (const LaneControl::State lane : state.control.lanes) hash.mix(lane);
-  hash.mix(state.control.rest);
-  for (const std::uint64_t word : state.arbitration) hash.mix(word);
-  hash.mix(state.empty);
-  hash.mix(state.frame);
-  hash.mix(state.shared);
+  for (const std::uint64_t word : state) hash.mix(word);
   return hash.value();
 }
 
@@ -55,7 +50,7 @@ std::size_t TransitionCache::EffectHash::operator()(const Effect& effect) const 
     hash.mix(port.passed() << 32U | port.starved());
   }
   hash.mix(effect.host.words << 48U | effect.host.cycles << 24U | effect.host.requests);
-  for (const auto& [decision, cycles] : effect.decided) hash.mix(decision * cycles);
+  for (const auto& [place, change] : effect.arbitration) hash.mix(place << 16U | change);
   return hash.value();
 }
 
@@ -78,30 +73,31 @@ void TransitionCache::clear() {
   buckets_.assign(kFirstBuckets * words_of_bucket(), 0);
 }
 
-TransitionCache::StateNumber TransitionCache::number_of(const State& state) {
+TransitionCache::StateNumber TransitionCache::number_of(const State& state,
+                                                        const std::array<std::uint64_t, 2>& handled) {
   const auto [entry, is_new] = state_numbers_.try_emplace(state, static_cast<StateNumber>(states_.size()));
   if (is_new) {
     states_.push_back(&entry->first);
     Accesses unhandled;
     unhandled.fill(~std::uint64_t{0});
     for (std::size_t side = 0; side < 2; ++side) {
-      const std::uint64_t handled = LaneControl::handled_slots(state.control.lanes[side]);
       std::uint64_t& first_word = unhandled[side * words_of_side()];
-      first_word = handled < 64 ? first_word << handled : 0;
+      first_word = handled[side] < 64 ? first_word << handled[side] : 0;
     }
     unhandled_.push_back(unhandled);
   }
   return entry->second;
 }
 
-std::uint32_t TransitionCache::number_of_effect(const Effect& effect) {
+std::uint32_t TransitionCache::number_of_effect(const Effect& effect,
+                                                const memory::Arbitration& arbitration) {
   const auto [entry, is_new] =
       effect_numbers_.try_emplace(effect, static_cast<std::uint32_t>(effects_.size()));
   if (is_new) {
     effects_.push_back(&entry->first);
     followed_.push_back(0);
     conflicts_.push_back(
-        {effect.progress.cycles, effect.host.words, memory::Arbitration::stalls_of(effect.decided)});
+        {effect.progress.cycles, effect.host.words, arbitration.stalls_of(effect.arbitration)});
   }
   return entry->second;
 }
@@ -138,7 +134,7 @@ std::optional<TransitionCache::Transition> TransitionCache::find(StateNumber fro
 }
 
 void TransitionCache::record(StateNumber from, const Accesses& accesses, HostRequests host, StateNumber next,
-                             const Effect& effect) {
+                             const Effect& effect, const memory::Arbitration& arbitration) {
   if (2 * (transitions_ + 1) > mask_) double_buckets();
   const Accesses key = key_of(from, accesses);
   const std::uint64_t first_word = first_word_of(from, host);
@@ -146,7 +142,7 @@ void TransitionCache::record(StateNumber from, const Accesses& accesses, HostReq
   if (words[0] == 0) ++transitions_;
   words[0] = first_word;
   std::copy_n(key.begin(), words_, words + 1);
-  words[1 + words_] = std::uint64_t{number_of_effect(effect)} << 32U | next;
+  words[1 + words_] = std::uint64_t{number_of_effect(effect, arbitration)} << 32U | next;
 }
 
 void TransitionCache::double_buckets() {
@@ -212,7 +208,7 @@ TransitionCache::StateNumber TransitionCache::walk(StateNumber first, const Acce
 void TransitionCache::count_followed(CoreControl& control, memory::Arbitration& arbitration) {
   for (const std::uint32_t number : effects_followed_) {
     control.add(effects_[number]->counts, followed_[number]);
-    arbitration.count_skipped(effects_[number]->decided, followed_[number]);
+    arbitration.count_skipped(effects_[number]->arbitration, followed_[number]);
     followed_[number] = 0;
   }
   effects_followed_.clear();

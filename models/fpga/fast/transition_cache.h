@@ -83,18 +83,7 @@ class TransitionCache {
   // Cap: a frame that never repeats would otherwise fill memory.
   static constexpr std::size_t kMost = std::size_t{1} << 17U;
 
-  struct State {
-    CoreControl::State control;
-    memory::Arbitration::State arbitration{};
-    std::uint64_t empty = 0;   // bit k: slot k of each column is empty
-    std::uint64_t frame = 0;   // set by FastForward: the routes, and the sides whose accesses vary
-    std::uint64_t shared = 0;  // memory::Arbitration::shared()
-
-    friend bool operator==(const State& a, const State& b) {
-      return a.control == b.control && a.arbitration == b.arbitration && a.empty == b.empty &&
-             a.frame == b.frame && a.shared == b.shared;
-    }
-  };
+  using State = memory::StateWords;
   using StateNumber = std::uint32_t;
 
   // The slots in the lanes up to the end of the group, from the first one that is not consumed before the
@@ -107,11 +96,12 @@ class TransitionCache {
   struct Effect {
     Progress progress;
     CoreControl::Counts counts{};
-    memory::Arbitration::Decided decided;
+    memory::CountChanges arbitration;
     HostGrants host;
 
     friend bool operator==(const Effect& a, const Effect& b) {
-      return a.progress == b.progress && a.counts == b.counts && a.decided == b.decided && a.host == b.host;
+      return a.progress == b.progress && a.counts == b.counts && a.arbitration == b.arbitration &&
+             a.host == b.host;
     }
   };
   struct Transition {
@@ -132,12 +122,14 @@ class TransitionCache {
   TransitionCache(const TransitionCache&) = delete;  // effects are referred to
   TransitionCache& operator=(const TransitionCache&) = delete;
 
-  StateNumber number_of(const State& state);
+  // `handled`: [side] slots in the lane that are handled.
+  StateNumber number_of(const State& state, const std::array<std::uint64_t, 2>& handled);
   const State& state(StateNumber number) const { return *states_[number]; }
   // The transition from this state with these accesses and requests of the host, if it is recorded.
   std::optional<Transition> find(StateNumber from, const Accesses& accesses, HostRequests host = {}) const;
+  // `arbitration`: the one that has counted the effect.
   void record(StateNumber from, const Accesses& accesses, HostRequests host, StateNumber next,
-              const Effect& effect);
+              const Effect& effect, const memory::Arbitration& arbitration);
   void clear();
   bool is_full() const { return transitions_ >= kMost || states_.size() >= kMostStates; }
 
@@ -184,7 +176,7 @@ class TransitionCache {
            std::uint64_t{host.route} << 24U | (from + 1);
   }
   std::size_t bucket_of(std::uint64_t first_word, const Accesses& key) const;
-  std::uint32_t number_of_effect(const Effect& effect);
+  std::uint32_t number_of_effect(const Effect& effect, const memory::Arbitration& arbitration);
   void double_buckets();
 
   std::size_t words_;  // of the accesses

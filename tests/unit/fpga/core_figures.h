@@ -12,17 +12,17 @@ namespace stereotlm::fpga {
 // only the data that moves through them.)
 class CoreFigures {
  public:
-  CoreFigures(const FrameRun& frames, const std::vector<memory::BankArbiter>& arbiters) {
+  CoreFigures(const FrameRun& frames, const memory::Arbitration& arbitration) {
     line("frame_cycles", frames.frame_cycles());
     for (std::size_t index = 0; index < kPortCount; ++index) {
       const PortCycles& port = frames.control().port_cycles(index);
       line(kPorts[index].name,
            {port.granted(), port.stalled(), port.passed(), port.idle(), port.blocked(), port.starved()});
     }
-    for (const memory::BankArbiter& arbiter : arbiters) add(arbiter);
+    for (std::size_t bank = 0; bank < arbitration.banks(); ++bank) add(arbitration.stats(bank));
     for (const Side side : kSides) line("consumed", {frames.control().lane(side).consumed()});
   }
-  explicit CoreFigures(const StereoCore& core) : CoreFigures(core.frames(), core.crossbar().arbiters()) {
+  explicit CoreFigures(const StereoCore& core) : CoreFigures(core.frames(), core.crossbar().arbitration()) {
     const LocalBus::Stats bus = core.local_bus_port().stats();
     line("local bus", {bus.bursts, bus.words_read, bus.words_written, bus.register_accesses, bus.errors,
                        bus.clocks, bus.busy_clocks});
@@ -41,12 +41,13 @@ class CoreFigures {
     for (const std::uint64_t value : values) text_ += ' ' + std::to_string(value);
     text_ += '\n';
   }
-  void add(const memory::BankArbiter& arbiter) {
-    const memory::ArbiterStats stats = arbiter.stats();
-    line("bank", {stats.reads, stats.writes, stats.turnaround_cycles, stats.idle_cycles,
-                  stats.contended_cycles, arbiter.uncounted_accesses()});
-    line("  grants", {stats.grants.begin(), stats.grants.end()});
-    for (const auto& row : stats.blame) line("  blame", {row.begin(), row.end()});
+  void add(const memory::ArbiterStats& stats) {
+    line("bank", {stats.reads(), stats.writes(), stats.turnaround_cycles(), stats.idle_cycles(),
+                  stats.contended_cycles(), stats.uncounted_accesses()});
+    for (memory::Port port = 0; port < kPortCount; ++port) {
+      line("  grants", {stats.grants(port)});
+      for (std::size_t by = 0; by <= kPortCount; ++by) line("  blame", {stats.blame(port, by)});
+    }
   }
   std::string text_;
 };

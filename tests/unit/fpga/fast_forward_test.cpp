@@ -154,9 +154,9 @@ class Core {
   }
   bool done() const { return run_->control().frame_done(); }
   std::uint64_t cycle() const { return run_->cycle(); }
-  std::size_t banks() const { return arbitration_->arbiters().size(); }
+  std::size_t banks() const { return arbitration_->banks(); }
   std::string figures() {
-    CoreFigures figures(*run_, arbitration_->arbiters());
+    CoreFigures figures(*run_, *arbitration_);
     for (const RowProfile& frame : run_->take_rows()) figures.add(frame);
     return figures.text();
   }

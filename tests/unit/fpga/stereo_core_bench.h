@@ -135,7 +135,7 @@ class StereoCoreBench : public testing::Test {
            core->frames().direct_counts().accesses[bank];
   }
   std::uint64_t blamed(std::uint32_t bank, memory::Port victim, memory::Port by) const {
-    return core->crossbar().arbiters()[bank].stats().blame[victim][by];
+    return core->crossbar().arbitration().stats(bank).blame(victim, by);
   }
 
   StereoCoreConfig config;

@@ -39,10 +39,10 @@ TEST_F(StereoCoreQdr, GivesTheHostTheOldWordInTheCycleOfItsWrite) {
   EXPECT_EQ(memory.answers[0].word, 0xAAAA'AAAAU);
   EXPECT_EQ(memory.answers[0].at, edge(last + kReadEnd));
   EXPECT_NE(banks[kResult]->words()[11], 0xAAAA'AAAAU);
-  const memory::ArbiterStats stats = core->crossbar().arbiters()[kResult].stats();
-  EXPECT_EQ(stats.reads, 1U);
-  EXPECT_EQ(stats.busy_cycles, stats.writes);
-  EXPECT_EQ(stats.contended_cycles, 0U);
+  const memory::ArbiterStats stats = core->crossbar().arbitration().stats(kResult);
+  EXPECT_EQ(stats.reads(), 1U);
+  EXPECT_EQ(stats.busy_cycles(), stats.writes());
+  EXPECT_EQ(stats.contended_cycles(), 0U);
   EXPECT_EQ(port(kHostPort).granted(), 1U);
   EXPECT_EQ(frame_cycles(), std::vector<std::uint64_t>{frame_cycles_alone(4)});
 }
@@ -75,7 +75,7 @@ TEST_F(StereoCoreQdr, GivesTheCoreTheOldWordInTheCycleOfTheHostsWrite) {
   at(edge(kCycle - kFirst), [this] { memory.access(TLM_WRITE_COMMAND, crossbar_address(kLeft, 4), kNew); });
   finish();
   EXPECT_EQ(memory.answers.at(0).at, edge(kCycle + kWriteEnd));
-  EXPECT_EQ(core->crossbar().arbiters()[kLeft].stats().contended_cycles, 0U);
+  EXPECT_EQ(core->crossbar().arbitration().stats(kLeft).contended_cycles(), 0U);
   const Words words(banks[kResult]->words(), banks[kResult]->words() + 12);
   EXPECT_EQ(Words(words.begin(), words.begin() + 4), Words(before.begin(), before.begin() + 4));
   EXPECT_EQ(Words(words.begin() + 4, words.end()), Words(after.begin() + 4, after.end()));
