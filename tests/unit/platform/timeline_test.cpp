@@ -307,7 +307,7 @@ TEST_F(TwoRecordedFrames, LeaveOutWhatComesAfterTheEndOfTheRun) {
   drop(0, 5, 450'000, capture::DropReason::kNotArmed);
   EXPECT_THAT(lines(timeline.take()), IsEmpty());
   for (std::string& line : lines(timeline.finish())) handed_out.push_back(std::move(line));
-  EXPECT_THAT(handed_out, SizeIs(22));
+  EXPECT_THAT(handed_out, SizeIs(33));
   EXPECT_EQ(handed_out.back(), "interrupt read_back 1/2 310000..310050");
   EXPECT_THAT(timeline.failed(statistics()), IsEmpty());
 }
