@@ -82,8 +82,8 @@ class LocalBusControl final : public LocalBusIf {
                                  std::uint32_t& word) = 0;
   };
 
-  // `clock_mhz`: 1..1000. `core` outlives this object. Throws std::invalid_argument if the clock or the number
-  // of banks is out of range.
+  // `clock_mhz`: 1..1000. `core` outlives this object. Throws std::invalid_argument if the clock or the
+  // number of banks is out of range.
   LocalBusControl(double clock_mhz, std::size_t banks, Core& core);
   // The master of the bus, which outlives this object. To be called before the first burst.
   void bind(LocalBusMasterIf& master) { master_ = &master; }
