@@ -38,7 +38,7 @@ std::string line_of(const TimelineEvent& event) {
 
 class TimelineSteps : public ::testing::Test {
  protected:
-  explicit TimelineSteps(std::vector<std::string> sets = {"allocation.disparity=bank4"})
+  explicit TimelineSteps(const std::vector<std::string>& sets = {"allocation.disparity=bank4"})
       : board(load_board("fpl2003", sets)), timeline(board) {}
 
   std::vector<std::string> lines(TimelineRecords records) {
