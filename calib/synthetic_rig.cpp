@@ -13,13 +13,14 @@
 #include "calib/split_mix.h"
 
 namespace stereotlm::calib {
-namespace {
 
 using Eigen::AngleAxisd;
 using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 using kernels::GrayImage;
+
+namespace made_rig {
 
 constexpr double kNowhere = std::numeric_limits<double>::infinity();
 
@@ -439,13 +440,15 @@ class Camera {
   std::vector<Eigen::Vector2f> directions_;  // (width + 1) x (height + 1) corners of pixels, row by row
 };
 
-}  // namespace
-
-struct SyntheticRig::View {
+struct View {
   Scene scene;
   Camera left;  // scene coordinates are those of the left camera
   Camera right;
 };
+
+}  // namespace made_rig
+
+using namespace made_rig;
 
 SyntheticRig::SyntheticRig(std::uint64_t seed, int width, int height)
     : seed_(seed),

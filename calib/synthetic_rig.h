@@ -11,6 +11,10 @@
 
 namespace stereotlm::calib {
 
+namespace made_rig {
+struct View;  // the scene, and the cameras
+}
+
 // A rig whose parameters are known exactly. It renders pictures of chessboards, to calibrate the cameras, and
 // of a textured scene: a wall, a floor, a slanted panel and spheres. The same seed gives the same pictures on
 // every machine, within floating-point accuracy.
@@ -62,11 +66,9 @@ class SyntheticRig {
                                int disparity_offset) const;
 
  private:
-  struct View;  // the scene, and the cameras
-
   std::uint64_t seed_;
   Rig rig_;
-  std::shared_ptr<const View> view_;
+  std::shared_ptr<const made_rig::View> view_;
 };
 
 }  // namespace stereotlm::calib

@@ -256,8 +256,9 @@ export function addRows(page, run) {
 }
 
 // Cycles that each row takes more in B, beside the waits.
-export function addRowDifference(page, {rows, no_rows: reason}) {
-  if (!rows) return addChart(page, {id: 'rows', title: 'Rows cannot be compared', note: reason});
+export function addRowDifference(page, {rows}) {
+  if (rows.not_compared)
+    return addChart(page, {id: 'rows', title: 'Rows cannot be compared', note: rows.not_compared});
   const {cycles, parting} = rows;
   const ports = Object.entries(rows.stalls).filter(([, values]) => values.some(value => value !== 0));
   const size = Math.ceil(cycles.length / kMostBands);
