@@ -90,7 +90,15 @@ export function addScatter(page, points, choose) {
     legendHost.replaceChildren(legend(entries));
     const size = points.size > 3000 ? 3 : 5;
     const frontLayer = s('g');
-    const drawFront = () => {
+    repaint = () => {
+      clear();
+      for (const wanted of [0, 1]) {
+        points.selected.forEach((is, row) => {
+          if (is !== wanted) return;
+          context.fillStyle = is ? colourOf(row) : faint;
+          context.fillRect(across.at[row] - size / 2, up.at[row] - size / 2, size, size);
+        });
+      }
       const front = points.isNumeric(x.name) && points.isNumeric(y.name) ? points.front(x, y) : [];
       const edges = [x.best === 'min' ? inner : 0, y.best === 'min' ? 0 : height];
       const dot = (row, attributes) => s('circle', {cx: across.at[row], cy: up.at[row], ...attributes});
@@ -105,17 +113,6 @@ export function addScatter(page, points, choose) {
       const ties = [x, y].some(({name}) => points.hasUncertainty(name));
       frontText.textContent = `${count(points.count, 'point')} of ${whole(points.size)} selected; ${
           whole(front.length)} of them on the front.${ties ? ' What lies within the uncertainty ties.' : ''}`;
-    };
-    repaint = () => {
-      clear();
-      for (const wanted of [0, 1]) {
-        points.selected.forEach((is, row) => {
-          if (is !== wanted) return;
-          context.fillStyle = is ? colourOf(row) : faint;
-          context.fillRect(across.at[row] - size / 2, up.at[row] - size / 2, size, size);
-        });
-      }
-      drawFront();
     };
     const select = box =>
         points.filter('scatter', box && (row => {

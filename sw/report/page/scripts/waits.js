@@ -3,11 +3,11 @@ import {drawBars} from './bars.js';
 import {addChart, addLeftOut, legend} from './card.js';
 import {commandLine, h, note, s} from './dom.js';
 import {blamesInDetail, blamesOf, blameText, settingOf, waitingRows, waitsOf, waitText} from './findings.js';
-
 import {count, least, most, percent, signed, sum, whole} from './format.js';
 import {lastRow, linesOf, rowsText} from './data.js';
-import {addBrush, axisBelow, axisLeft, drawing, layeredDrawing, numeric, Zoom} from './plot.js';
-import {cut, textWidth} from './plot.js';
+import {
+    addBrush, axisBelow, axisLeft, cut, drawing, layeredDrawing, numeric, textWidth, Zoom,
+} from './plot.js';
 import {css, heat, inkOn, namedColour} from './theme.js';
 import {mark} from './tooltip.js';
 
