@@ -792,9 +792,9 @@ class Answers(PageTest):
             run["knobs"]["frames_per_second"] = 20
             self.steps((key, "a", "b", gain, {}))(run)
 
-        for key, gain, text in (("matcher.cost", 49.85, "(+49.8 %), where the cameras limit."),
+        for key, gain, text in (("matcher.cost", 49.85, "(+49.9 %), where the cameras limit."),
                                 ("matcher.cost", 49, "(+49.0 %)."),
-                                ("cameras.trigger", 49.85, "(+49.8 %).")):
+                                ("cameras.trigger", 49.85, "(+49.9 %).")):
             self.opened(computer(), change)
             self.assertIn(f"{text}To try it: ", self.answer("What to change first?"))
 
