@@ -315,8 +315,9 @@ std::optional<GridPair> seen(const Rig& rig, const std::vector<Vector3d>& points
   return result;
 }
 
-// From chessboard coordinates to coordinates of the left camera. Size and tilt follow from the number, so that a few poses are well spread. Positions are drawn at random,
-// each a little farther away, until the squares lie inside both pictures.
+// From chessboard coordinates to coordinates of the left camera. Size and tilt follow from the number, so that
+// a few poses are well spread. Positions are drawn at random, each a little farther away, until the squares
+// lie inside both pictures.
 Eigen::Isometry3d grid_pose(std::uint64_t seed, const Rig& rig, const GridShape& shape, int number) {
   constexpr int kMostDraws = 500;
   constexpr double kFartherEachTime = 1.003;

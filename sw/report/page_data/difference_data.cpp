@@ -52,8 +52,8 @@ Values options_of(const runs::RecordedRun& run) {
   return values;
 }
 
-// The figures of a run by path in stats.json. Leaves out those that follow from others, and frame_cycles, which
-// is compared frame by frame.
+// The figures of a run by path in stats.json. Leaves out those that follow from others, and frame_cycles,
+// which is compared frame by frame.
 Values figures_of(const Json& stats) {
   Values values;
   for (platform::BoardValue& value : explore::figures_of(stats).values) {

@@ -26,7 +26,8 @@ class Recorded:
         with open(os.path.join(folder, "about.json"), encoding="utf-8") as file:
             self.about = json.load(file)
         self.tiles = command.read_table(folder, "conflicts")
-        self.sums, self.frame = (self._columns(command.read_table(folder, name)) for name in ("sums", "frame"))
+        self.sums, self.frame = (self._columns(command.read_table(folder, name))
+                                 for name in ("sums", "frame"))
         path = os.path.join(folder, "picture.raw")
         self.picture = (numpy.fromfile(path, numpy.uint8).reshape(-1, self.about["width"])
                         if os.path.exists(path) else None)
