@@ -158,8 +158,8 @@ Surface plane(const Vector3d& origin, const Vector3d& across, const Vector3d& do
       [=](const Ray& ray) {
         const double t = normal.dot(origin - ray.origin) / normal.dot(ray.direction);
         // A ray that is parallel to the plane or lies in it misses it too.
-        if (!(t > 0) || !std::isfinite(t)) return kNowhere;
-        return extent.contains(position(ray.at(t))) ? t : kNowhere;
+        if (!(t > 0) || !std::isfinite(t) || !extent.contains(position(ray.at(t)))) return kNowhere;
+        return t;
       },
       [position, texture = std::move(texture)](const Vector3d& point) { return texture(position(point)); }};
 }
@@ -175,7 +175,8 @@ Surface sphere(const Vector3d& centre, double radius, double unit_mm, Texture te
                 middle * middle - (to_centre.squaredNorm() - radius * radius) / square;
             if (!(half_squared >= 0)) return kNowhere;
             const double t = middle - std::sqrt(half_squared);
-            return t > 0 ? t : kNowhere;
+            if (!(t > 0)) return kNowhere;
+            return t;
           },
           [=, texture = std::move(texture)](const Vector3d& point) {
             return texture((point - centre).head<2>() / unit_mm);
@@ -315,9 +316,9 @@ std::optional<GridPair> seen(const Rig& rig, const std::vector<Vector3d>& points
   return result;
 }
 
-// From chessboard coordinates to coordinates of the left camera. Size and tilt follow from the number, so that
-// a few poses are well spread. Positions are drawn at random, each a little farther away, until the squares
-// lie inside both pictures.
+// From chessboard coordinates to coordinates of the left camera. Size and tilt follow from the number, so
+// that a few poses are well spread. Positions are drawn at random, each a little farther away, until the
+// squares lie inside both pictures.
 Eigen::Isometry3d grid_pose(std::uint64_t seed, const Rig& rig, const GridShape& shape, int number) {
   constexpr int kMostDraws = 500;
   constexpr double kFartherEachTime = 1.003;
