@@ -130,12 +130,13 @@ class BoardCheck {
     const auto exceeds = [](double beyond, double within) {
       return beyond * within < 0 && std::abs(beyond) > kAtLeast * std::abs(within);
     };
-    const int last_column = shape_.columns - 1;
-    const int last_row = shape_.rows - 1;
-    return exceeds(contrast_of_column(-1), contrast_of_column(0)) ||
-           exceeds(contrast_of_column(last_column + 1), contrast_of_column(last_column)) ||
-           exceeds(contrast_of_row(-1), contrast_of_row(0)) ||
-           exceeds(contrast_of_row(last_row + 1), contrast_of_row(last_row));
+    for (const bool is_row : {false, true}) {
+      const int last = (is_row ? shape_.rows : shape_.columns) - 1;
+      if (exceeds(contrast_of_line(is_row, -1), contrast_of_line(is_row, 0)) ||
+          exceeds(contrast_of_line(is_row, last + 1), contrast_of_line(is_row, last)))
+        return true;
+    }
+    return false;
   }
 
  private:
@@ -161,16 +162,11 @@ class BoardCheck {
     return contrast(picture_, here, right, down);
   }
 
-  // Of a line of corners. The signs of its corners alternate.
-  double contrast_of_column(int column) const {
+  // Of a row or a column of corners. The signs of its corners alternate.
+  double contrast_of_line(bool is_row, int line) const {
     double sum = 0;
-    for (int row = 0; row < shape_.rows; ++row) sum += (row % 2 == 0 ? 1 : -1) * contrast_at(column, row);
-    return sum;
-  }
-  double contrast_of_row(int row) const {
-    double sum = 0;
-    for (int column = 0; column < shape_.columns; ++column)
-      sum += (column % 2 == 0 ? 1 : -1) * contrast_at(column, row);
+    for (int i = 0; i < (is_row ? shape_.columns : shape_.rows); ++i)
+      sum += (i % 2 == 0 ? 1 : -1) * (is_row ? contrast_at(i, line) : contrast_at(line, i));
     return sum;
   }
 

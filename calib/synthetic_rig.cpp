@@ -1,8 +1,10 @@
 #include "calib/synthetic_rig.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -11,7 +13,6 @@
 #include "calib/split_mix.h"
 
 namespace stereotlm::calib {
-namespace {
 
 using Eigen::AngleAxisd;
 using Eigen::Matrix3d;
@@ -19,7 +20,44 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using kernels::GrayImage;
 
+namespace made_rig {
+
 constexpr double kNowhere = std::numeric_limits<double>::infinity();
+
+// The points origin + t * direction, t > 0. Lengths of the scene are in mm.
+struct Ray {
+  Vector3d origin;
+  Vector3d direction;
+
+  Vector3d at(double t) const { return origin + t * direction; }
+};
+
+// A surface in front of the cameras.
+struct Surface {
+  std::function<double(const Ray&)> meets;       // t of the first point of the ray; infinite if there is none
+  std::function<double(const Vector3d&)> level;  // the grey level of a point on it, 0..255
+};
+
+// The surfaces of a scene.
+struct Scene {
+  std::vector<Surface> surfaces;
+  double background;  // the grey level of a ray that meets no surface
+
+  // The surface that a ray meets first, and t of that point; null and infinite if it meets none.
+  std::pair<const Surface*, double> first(const Ray& ray) const {
+    std::pair<const Surface*, double> result = {nullptr, kNowhere};
+    for (const Surface& surface : surfaces) {
+      const double t = surface.meets(ray);
+      if (t < result.second) result = {&surface, t};
+    }
+    return result;
+  }
+  // The grey level that is seen along a ray.
+  double level(const Ray& ray) const {
+    const auto [surface, t] = first(ray);
+    return surface == nullptr ? background : surface->level(ray.at(t));
+  }
+};
 
 // The floor of a value; std::floor would be a function call.
 std::int64_t below(double value) {
@@ -120,8 +158,8 @@ Surface plane(const Vector3d& origin, const Vector3d& across, const Vector3d& do
       [=](const Ray& ray) {
         const double t = normal.dot(origin - ray.origin) / normal.dot(ray.direction);
         // A ray that is parallel to the plane or lies in it misses it too.
-        if (!(t > 0) || !std::isfinite(t)) return kNowhere;
-        return extent.contains(position(ray.at(t))) ? t : kNowhere;
+        if (!(t > 0) || !std::isfinite(t) || !extent.contains(position(ray.at(t)))) return kNowhere;
+        return t;
       },
       [position, texture = std::move(texture)](const Vector3d& point) { return texture(position(point)); }};
 }
@@ -137,7 +175,8 @@ Surface sphere(const Vector3d& centre, double radius, double unit_mm, Texture te
                 middle * middle - (to_centre.squaredNorm() - radius * radius) / square;
             if (!(half_squared >= 0)) return kNowhere;
             const double t = middle - std::sqrt(half_squared);
-            return t > 0 ? t : kNowhere;
+            if (!(t > 0)) return kNowhere;
+            return t;
           },
           [=, texture = std::move(texture)](const Vector3d& point) {
             return texture((point - centre).head<2>() / unit_mm);
@@ -206,7 +245,7 @@ struct Rectangle {
 
 // Draws random numbers only inside braces, whose elements are evaluated in order. Arguments in parentheses
 // are not.
-SceneSurfaces random_scene(std::uint64_t seed, const Rig& rig) {
+Scene random_scene(std::uint64_t seed, const Rig& rig) {
   SplitMix random = random_for(seed, Part::scene);
   std::vector<Surface> surfaces;
   const auto add_plane = [&](const Rectangle& shape) {
@@ -261,174 +300,15 @@ std::optional<Vector2d> pixel_of(const CameraModel& camera, const Vector3d& poin
   return pixel;
 }
 
-}  // namespace
-
-SceneSurfaces::Nearest SceneSurfaces::nearest(const Ray& ray) const {
-  Nearest result = {nullptr, kNowhere};
-  for (const Surface& surface : surfaces_) {
-    const double t = surface.meets(ray);
-    if (t < result.t) result = {&surface, t};
-  }
-  return result;
-}
-
-std::optional<Vector3d> SceneSurfaces::first(const Ray& ray) const {
-  const Nearest found = nearest(ray);
-  if (found.surface == nullptr) return std::nullopt;
-  return ray.at(found.t);
-}
-
-bool SceneSurfaces::visible(const Vector3d& eye, const Vector3d& point) const {
-  constexpr double kRounding = 1e-6;
-  return nearest({eye, point - eye}).t >= 1 - kRounding;
-}
-
-double SceneSurfaces::level(const Ray& ray) const {
-  const Nearest found = nearest(ray);
-  if (found.surface == nullptr) return background_;
-  return found.surface->level(ray.at(found.t));
-}
-
-struct SceneCamera::Corner {
-  Vector3d direction;
-  double level;
-};
-
-SceneCamera::SceneCamera(const CameraModel& model, const Vector3d& place, const Matrix3d& to_scene, int width,
-                         int height)
-    : width_(width), height_(height), place_(place), to_scene_(to_scene) {
-  directions_.reserve((static_cast<std::size_t>(width) + 1) * (static_cast<std::size_t>(height) + 1));
-  for (int y = 0; y <= height; ++y) {
-    for (int x = 0; x <= width; ++x) {
-      directions_.emplace_back(model.direction({x - 0.5, y - 0.5}).cast<float>());
-    }
-  }
-}
-
-std::vector<SceneCamera::Corner> SceneCamera::corners_above(int row, const SceneSurfaces& surfaces) const {
-  std::vector<Corner> result;
-  const std::size_t count = static_cast<std::size_t>(width_) + 1;
-  result.reserve(count);
-  for (std::size_t x = 0; x < count; ++x) {
-    const Vector2d seen = directions_[static_cast<std::size_t>(row) * count + x].cast<double>();
-    const Vector3d direction = to_scene_ * seen.homogeneous();
-    result.push_back({direction, surfaces.level({place_, direction})});
-  }
-  return result;
-}
-
-// Samples the middle of the pixel and its corners, which neighbouring pixels share. If their levels show that
-// an edge crosses the pixel, takes 64 samples instead.
-double SceneCamera::level(const SceneSurfaces& surfaces, const Corner& a, const Corner& b, const Corner& c,
-                          const Corner& d) const {
-  constexpr double kEdge = 95;
-  constexpr int kSamplesOfAnEdge = 8;  // in each direction
-  const auto [least, most] = std::minmax({a.level, b.level, c.level, d.level});
-  if (most - least < kEdge) {
-    const Vector3d middle = (a.direction + b.direction + c.direction + d.direction) / 4;
-    return (a.level + b.level + c.level + d.level) / 8 + surfaces.level({place_, middle}) / 2;
-  }
-  double sum = 0;
-  for (int j = 0; j < kSamplesOfAnEdge; ++j) {
-    const double down = (j + 0.5) / kSamplesOfAnEdge;
-    const Vector3d first = a.direction + down * (c.direction - a.direction);
-    const Vector3d last = b.direction + down * (d.direction - b.direction);
-    for (int i = 0; i < kSamplesOfAnEdge; ++i) {
-      const double across = (i + 0.5) / kSamplesOfAnEdge;
-      sum += surfaces.level({place_, first + across * (last - first)});
-    }
-  }
-  return sum / (kSamplesOfAnEdge * kSamplesOfAnEdge);
-}
-
-GrayImage SceneCamera::picture(const SceneSurfaces& surfaces) const {
-  Levels levels;
-  levels.reserve(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
-  std::vector<Corner> above = corners_above(0, surfaces);
-  for (int y = 0; y < height_; ++y) {
-    std::vector<Corner> under = corners_above(y + 1, surfaces);
-    for (std::size_t x = 0; x < static_cast<std::size_t>(width_); ++x) {
-      levels.push_back(static_cast<float>(level(surfaces, above[x], above[x + 1], under[x], under[x + 1])));
-    }
-    above = std::move(under);
-  }
-  return through_lens(levels, width_, height_);
-}
-
-SyntheticRig::SyntheticRig(std::uint64_t seed, int width, int height)
-    : seed_(seed),
-      rig_(random_rig(seed, width, height)),
-      left_(rig_.left, Vector3d::Zero(), Matrix3d::Identity(), width, height),
-      right_(rig_.right, -(rig_.rotation.transpose() * rig_.translation), rig_.rotation.transpose(), width,
-             height),
-      scene_(random_scene(seed, rig_)) {}
-
-SyntheticRig::Pair SyntheticRig::grid_view(const GridShape& shape, int number) const {
-  const Eigen::Isometry3d pose = grid_pose(shape, number);
-  const Vector2d border(2, 2);
-  const Eigen::AlignedBox2d extent(-border, Vector2d(shape.columns - 1, shape.rows - 1) + border);
-  const Matrix3d axes = pose.linear() * shape.square_mm;
-  const SceneSurfaces surfaces(
-      {plane(pose.translation(), axes.col(0), axes.col(1), extent, chessboard(shape))}, kGridBackground);
-  return {left_.picture(surfaces), right_.picture(surfaces)};
-}
-
-GridPair SyntheticRig::grid_corners(const GridShape& shape, int number) const {
-  const Eigen::Isometry3d pose = grid_pose(shape, number);
-  std::vector<Vector3d> points = corner_points(shape);
-  for (Vector3d& point : points) point = pose * point;
-  return seen(points).value();
-}
-
-// Size and tilt follow from the number, so that a few poses are well spread. Positions are drawn at random,
-// each a little farther away, until the squares lie inside both pictures.
-Eigen::Isometry3d SyntheticRig::grid_pose(const GridShape& shape, int number) const {
-  constexpr int kMostDraws = 500;
-  constexpr double kFartherEachTime = 1.003;
-  constexpr double kGoldenRatio = 1.618033988749895;
-  constexpr double kRootOfTwo = 1.4142135623730951;
-  SplitMix random(random_for(seed_, Part::poses).next() + static_cast<std::uint64_t>(number));
-
-  const Vector2d middle = Vector2d(shape.columns - 1, shape.rows - 1) * shape.square_mm / 2;
-  const Vector2d squares = Vector2d(shape.columns + 1, shape.rows + 1) * shape.square_mm;
-  const double focal = rig_.left.matrix(0, 0);
-  // The squares fill this part of a side of the picture.
-  const double part = 0.4 + 0.3 * std::fmod(number * kGoldenRatio, 1.0);
-  constexpr double kApart = 0.25;  // the largest disparity, as a part of the width
-  double distance = focal * std::max({squares.x() / rig_.width / part, squares.y() / rig_.height / part,
-                                      rig_.translation.norm() / rig_.width / kApart});
-
-  const double tilt_towards = 2 * kPi * std::fmod(number * kRootOfTwo, 1.0);
-  const Vector3d tilt_axis(std::cos(tilt_towards), std::sin(tilt_towards), 0);
-  const AngleAxisd tilt(radians(random.between(10, 35)), tilt_axis);
-  const AngleAxisd roll(radians(random.between(-20, 20)), Vector3d::UnitZ());
-
-  for (int draw = 0; draw < kMostDraws; ++draw, distance *= kFartherEachTime) {
-    const Vector2d place{random.between(0, rig_.width - 1), random.between(0, rig_.height - 1)};
-    const Vector3d sight = rig_.left.direction(place).homogeneous().normalized();
-    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-    pose.translate(distance * sight);
-    pose.rotate(Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), sight));
-    pose.rotate(tilt * roll);
-    pose.translate(Vector3d(-middle.x(), -middle.y(), 0));
-    std::vector<Vector3d> points = square_corners(shape);
-    for (Vector3d& point : points) point = pose * point;
-    if (seen(points)) return pose;
-  }
-  throw std::domain_error("grid = " + std::to_string(shape.columns) + " x " + std::to_string(shape.rows) +
-                          ": must fit into what both pictures of " + std::to_string(rig_.width) + " x " +
-                          std::to_string(rig_.height) + " pixels show");
-}
-
 // The pixels at which the cameras see points, which are in coordinates of the left camera; nullopt unless
 // both see all points.
-std::optional<GridPair> SyntheticRig::seen(const std::vector<Vector3d>& points) const {
+std::optional<GridPair> seen(const Rig& rig, const std::vector<Vector3d>& points) {
   GridPair result;
   for (const Vector3d& point : points) {
-    const auto left = pixel_of(rig_.left, point, rig_.width, rig_.height);
+    const auto left = pixel_of(rig.left, point, rig.width, rig.height);
     if (!left) return std::nullopt;
-    const Vector3d from_right = rig_.rotation * point + rig_.translation;
-    const auto right = pixel_of(rig_.right, from_right, rig_.width, rig_.height);
+    const Vector3d from_right = rig.rotation * point + rig.translation;
+    const auto right = pixel_of(rig.right, from_right, rig.width, rig.height);
     if (!right) return std::nullopt;
     result.left.push_back(*left);
     result.right.push_back(*right);
@@ -436,16 +316,185 @@ std::optional<GridPair> SyntheticRig::seen(const std::vector<Vector3d>& points) 
   return result;
 }
 
-SyntheticRig::Pair SyntheticRig::scene() const { return {left_.picture(scene_), right_.picture(scene_)}; }
+// From chessboard coordinates to coordinates of the left camera. Size and tilt follow from the number, so
+// that a few poses are well spread. Positions are drawn at random, each a little farther away, until the
+// squares lie inside both pictures.
+Eigen::Isometry3d grid_pose(std::uint64_t seed, const Rig& rig, const GridShape& shape, int number) {
+  constexpr int kMostDraws = 500;
+  constexpr double kFartherEachTime = 1.003;
+  constexpr double kGoldenRatio = 1.618033988749895;
+  constexpr double kRootOfTwo = 1.4142135623730951;
+  SplitMix random(random_for(seed, Part::poses).next() + static_cast<std::uint64_t>(number));
+
+  const Vector2d middle = Vector2d(shape.columns - 1, shape.rows - 1) * shape.square_mm / 2;
+  const Vector2d squares = Vector2d(shape.columns + 1, shape.rows + 1) * shape.square_mm;
+  const double focal = rig.left.matrix(0, 0);
+  // The squares fill this part of a side of the picture.
+  const double part = 0.4 + 0.3 * std::fmod(number * kGoldenRatio, 1.0);
+  constexpr double kApart = 0.25;  // the largest disparity, as a part of the width
+  double distance = focal * std::max({squares.x() / rig.width / part, squares.y() / rig.height / part,
+                                      rig.translation.norm() / rig.width / kApart});
+
+  const double tilt_towards = 2 * kPi * std::fmod(number * kRootOfTwo, 1.0);
+  const Vector3d tilt_axis(std::cos(tilt_towards), std::sin(tilt_towards), 0);
+  const AngleAxisd tilt(radians(random.between(10, 35)), tilt_axis);
+  const AngleAxisd roll(radians(random.between(-20, 20)), Vector3d::UnitZ());
+
+  for (int draw = 0; draw < kMostDraws; ++draw, distance *= kFartherEachTime) {
+    const Vector2d place{random.between(0, rig.width - 1), random.between(0, rig.height - 1)};
+    const Vector3d sight = rig.left.direction(place).homogeneous().normalized();
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    pose.translate(distance * sight);
+    pose.rotate(Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), sight));
+    pose.rotate(tilt * roll);
+    pose.translate(Vector3d(-middle.x(), -middle.y(), 0));
+    std::vector<Vector3d> points = square_corners(shape);
+    for (Vector3d& point : points) point = pose * point;
+    if (seen(rig, points)) return pose;
+  }
+  throw std::domain_error("grid = " + std::to_string(shape.columns) + " x " + std::to_string(shape.rows) +
+                          ": must fit into what both pictures of " + std::to_string(rig.width) + " x " +
+                          std::to_string(rig.height) + " pixels show");
+}
+
+// Renders the pictures of a camera from one place in the scene, slightly blurred. It stores the direction of
+// the ray at every corner of a pixel, because computing the directions takes longer than rendering most
+// pictures.
+class Camera {
+ public:
+  // `to_scene` turns directions in camera coordinates to scene coordinates. Throws as
+  // CameraModel::direction() does.
+  Camera(const CameraModel& model, const Vector3d& place, const Matrix3d& to_scene, int width, int height)
+      : width_(width), height_(height), place_(place), to_scene_(to_scene) {
+    directions_.reserve((static_cast<std::size_t>(width) + 1) * (static_cast<std::size_t>(height) + 1));
+    for (int y = 0; y <= height; ++y) {
+      for (int x = 0; x <= width; ++x) {
+        directions_.emplace_back(model.direction({x - 0.5, y - 0.5}).cast<float>());
+      }
+    }
+  }
+
+  const Vector3d& place() const { return place_; }
+
+  // Every pixel is a mean of samples: of 64 if an edge crosses it, else of five. The rays are exact at the
+  // corners of the pixels and interpolated between them, with an error below 0.001 pixels at 320 x 240.
+  GrayImage picture(const Scene& scene) const {
+    Levels levels;
+    levels.reserve(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
+    std::vector<Corner> above = corners_above(0, scene);
+    for (int y = 0; y < height_; ++y) {
+      std::vector<Corner> under = corners_above(y + 1, scene);
+      for (std::size_t x = 0; x < static_cast<std::size_t>(width_); ++x) {
+        levels.push_back(static_cast<float>(level(scene, above[x], above[x + 1], under[x], under[x + 1])));
+      }
+      above = std::move(under);
+    }
+    return through_lens(levels, width_, height_);
+  }
+
+ private:
+  struct Corner {
+    Vector3d direction;
+    double level;
+  };
+
+  // The corners above a row of pixels.
+  std::vector<Corner> corners_above(int row, const Scene& scene) const {
+    std::vector<Corner> result;
+    const std::size_t count = static_cast<std::size_t>(width_) + 1;
+    result.reserve(count);
+    for (std::size_t x = 0; x < count; ++x) {
+      const Vector2d seen = directions_[static_cast<std::size_t>(row) * count + x].cast<double>();
+      const Vector3d direction = to_scene_ * seen.homogeneous();
+      result.push_back({direction, scene.level({place_, direction})});
+    }
+    return result;
+  }
+
+  // The grey level of the pixel whose upper corners are a and b, and whose lower corners are c and d. Samples
+  // its middle and its corners, which neighbouring pixels share. If their levels show that an edge crosses
+  // the pixel, takes 64 samples instead.
+  double level(const Scene& scene, const Corner& a, const Corner& b, const Corner& c, const Corner& d) const {
+    constexpr double kEdge = 95;
+    constexpr int kSamplesOfAnEdge = 8;  // in each direction
+    const auto [least, most] = std::minmax({a.level, b.level, c.level, d.level});
+    if (most - least < kEdge) {
+      const Vector3d middle = (a.direction + b.direction + c.direction + d.direction) / 4;
+      return (a.level + b.level + c.level + d.level) / 8 + scene.level({place_, middle}) / 2;
+    }
+    double sum = 0;
+    for (int j = 0; j < kSamplesOfAnEdge; ++j) {
+      const double down = (j + 0.5) / kSamplesOfAnEdge;
+      const Vector3d first = a.direction + down * (c.direction - a.direction);
+      const Vector3d last = b.direction + down * (d.direction - b.direction);
+      for (int i = 0; i < kSamplesOfAnEdge; ++i) {
+        const double across = (i + 0.5) / kSamplesOfAnEdge;
+        sum += scene.level({place_, first + across * (last - first)});
+      }
+    }
+    return sum / (kSamplesOfAnEdge * kSamplesOfAnEdge);
+  }
+
+  int width_;
+  int height_;
+  Vector3d place_;
+  Matrix3d to_scene_;
+  std::vector<Eigen::Vector2f> directions_;  // (width + 1) x (height + 1) corners of pixels, row by row
+};
+
+struct View {
+  Scene scene;
+  Camera left;  // scene coordinates are those of the left camera
+  Camera right;
+};
+
+}  // namespace made_rig
+
+using namespace made_rig;
+
+SyntheticRig::SyntheticRig(std::uint64_t seed, int width, int height)
+    : seed_(seed),
+      rig_(random_rig(seed, width, height)),
+      view_(std::make_shared<View>(View{random_scene(seed, rig_),
+                                        {rig_.left, Vector3d::Zero(), Matrix3d::Identity(), width, height},
+                                        {rig_.right, -(rig_.rotation.transpose() * rig_.translation),
+                                         rig_.rotation.transpose(), width, height}})) {}
+
+SyntheticRig::Pair SyntheticRig::grid_view(const GridShape& shape, int number) const {
+  const Eigen::Isometry3d pose = grid_pose(seed_, rig_, shape, number);
+  const Vector2d border(2, 2);
+  const Eigen::AlignedBox2d extent(-border, Vector2d(shape.columns - 1, shape.rows - 1) + border);
+  const Matrix3d axes = pose.linear() * shape.square_mm;
+  const Scene scene = {{plane(pose.translation(), axes.col(0), axes.col(1), extent, chessboard(shape))},
+                       kGridBackground};
+  return {view_->left.picture(scene), view_->right.picture(scene)};
+}
+
+GridPair SyntheticRig::grid_corners(const GridShape& shape, int number) const {
+  const Eigen::Isometry3d pose = grid_pose(seed_, rig_, shape, number);
+  std::vector<Vector3d> points = corner_points(shape);
+  for (Vector3d& point : points) point = pose * point;
+  return seen(rig_, points).value();
+}
+
+SyntheticRig::Pair SyntheticRig::scene() const {
+  return {view_->left.picture(view_->scene), view_->right.picture(view_->scene)};
+}
 
 std::optional<Vector3d> SyntheticRig::point(const Vector2d& left_pixel) const {
   if (!inside(left_pixel, rig_.width, rig_.height)) return std::nullopt;
-  return scene_.first({Vector3d::Zero(), rig_.left.direction(left_pixel).homogeneous()});
+  const Ray ray = {Vector3d::Zero(), rig_.left.direction(left_pixel).homogeneous()};
+  const auto [surface, t] = view_->scene.first(ray);
+  if (surface == nullptr) return std::nullopt;
+  return ray.at(t);
 }
 
 std::optional<Vector2d> SyntheticRig::match(const Vector2d& left_pixel) const {
+  constexpr double kRounding = 1e-6;
   const std::optional<Vector3d> found = point(left_pixel);
-  if (!found || !scene_.visible(right_.place(), *found)) return std::nullopt;
+  if (!found) return std::nullopt;
+  const Vector3d& eye = view_->right.place();
+  if (view_->scene.first({eye, *found - eye}).second < 1 - kRounding) return std::nullopt;  // hidden
   return pixel_of(rig_.right, rig_.rotation * *found + rig_.translation, rig_.width, rig_.height);
 }
 

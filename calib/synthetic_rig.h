@@ -1,11 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/Geometry>
 #include <cstdint>
-#include <functional>
+#include <memory>
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include "calib/rig.h"
@@ -13,77 +11,9 @@
 
 namespace stereotlm::calib {
 
-// The points origin + t * direction, t > 0. Lengths of the scene are in mm.
-struct Ray {
-  Eigen::Vector3d origin;
-  Eigen::Vector3d direction;
-
-  Eigen::Vector3d at(double t) const { return origin + t * direction; }
-};
-
-// A surface in front of the cameras.
-struct Surface {
-  std::function<double(const Ray&)> meets;  // t of the first point of the ray; infinite if there is none
-  std::function<double(const Eigen::Vector3d&)> level;  // the grey level of a point on it, 0..255
-};
-
-// All surfaces of a scene.
-class SceneSurfaces {
- public:
-  // `background` is the grey level of a ray that meets no surface.
-  SceneSurfaces(std::vector<Surface> surfaces, double background)
-      : surfaces_(std::move(surfaces)), background_(background) {}
-
-  // The first point of a ray on a surface; nullopt if it meets none.
-  std::optional<Eigen::Vector3d> first(const Ray& ray) const;
-  // Whether no surface lies between the eye and `point`, which is on a surface.
-  bool visible(const Eigen::Vector3d& eye, const Eigen::Vector3d& point) const;
-  // The grey level that is seen along a ray.
-  double level(const Ray& ray) const;
-
- private:
-  struct Nearest {
-    const Surface* surface;  // null if there is none
-    double t;
-  };
-
-  Nearest nearest(const Ray& ray) const;
-
-  std::vector<Surface> surfaces_;
-  double background_;
-};
-
-// Renders the pictures of a camera of SyntheticRig, from one place in the scene and slightly blurred. It
-// stores the direction of the ray at every corner of a pixel, because computing the directions takes longer
-// than rendering most pictures.
-class SceneCamera {
- public:
-  // `to_scene` turns directions in camera coordinates to scene coordinates. Throws as
-  // CameraModel::direction() does.
-  SceneCamera(const CameraModel& model, const Eigen::Vector3d& place, const Eigen::Matrix3d& to_scene,
-              int width, int height);
-
-  const Eigen::Vector3d& place() const { return place_; }
-
-  // Every pixel is a mean of samples: of 64 if an edge crosses it, else of five. The rays are exact at the
-  // corners of the pixels and interpolated between them, with an error below 0.001 pixels at 320 x 240.
-  kernels::GrayImage picture(const SceneSurfaces& surfaces) const;
-
- private:
-  struct Corner;
-
-  // The corners above a row of pixels.
-  std::vector<Corner> corners_above(int row, const SceneSurfaces& surfaces) const;
-  // The grey level of the pixel whose upper corners are a and b, and whose lower corners are c and d.
-  double level(const SceneSurfaces& surfaces, const Corner& a, const Corner& b, const Corner& c,
-               const Corner& d) const;
-
-  int width_;
-  int height_;
-  Eigen::Vector3d place_;
-  Eigen::Matrix3d to_scene_;
-  std::vector<Eigen::Vector2f> directions_;  // (width + 1) x (height + 1) corners of pixels, row by row
-};
+namespace made_rig {
+struct View;  // the scene, and the cameras
+}
 
 // A rig whose parameters are known exactly. It renders pictures of chessboards, to calibrate the cameras, and
 // of a textured scene: a wall, a floor, a slanted panel and spheres. The same seed gives the same pictures on
@@ -136,15 +66,9 @@ class SyntheticRig {
                                int disparity_offset) const;
 
  private:
-  // From chessboard coordinates to coordinates of the left camera.
-  Eigen::Isometry3d grid_pose(const GridShape& shape, int number) const;
-  std::optional<GridPair> seen(const std::vector<Eigen::Vector3d>& points) const;
-
   std::uint64_t seed_;
   Rig rig_;
-  SceneCamera left_;  // scene coordinates are those of the left camera
-  SceneCamera right_;
-  SceneSurfaces scene_;
+  std::shared_ptr<const made_rig::View> view_;
 };
 
 }  // namespace stereotlm::calib

@@ -4,8 +4,6 @@ include(GoogleTest)
 
 set(STEREOTLM_TEST_OPTIONS "" CACHE STRING "Compiler options of the test programs, behind all others")
 
-option(STEREOTLM_SLOW_TESTS "Build the tests with the label slow" ON)
-
 # Precompiles the headers that take longest to compile, for all test programs of a kind. Every source still
 # includes what it uses; the preset debug, which has no unity builds, checks that if
 # CMAKE_DISABLE_PRECOMPILE_HEADERS is set.
@@ -20,7 +18,7 @@ function(stereotlm_precompile_headers name)
   set_target_properties(${name} PROPERTIES UNITY_BUILD OFF)
 endfunction()
 
-# stereotlm_add_test(NAME SOURCES file... LIBRARIES target... [LABELS label...] [TIMEOUT seconds] [SYSTEMC])
+# stereotlm_add_test(NAME SOURCES file... LIBRARIES target... [LABELS label] [TIMEOUT seconds] [SYSTEMC])
 # Adds one test program. ctest runs each of its cases in a process of its own, because SystemC elaborates once
 # per process. SYSTEMC: the cases run inside sc_main, and a SystemC warning that a case did not announce fails
 # it.
@@ -28,9 +26,6 @@ function(stereotlm_add_test name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "SYSTEMC" "TIMEOUT" "SOURCES;LIBRARIES;LABELS")
   if(NOT arg_LABELS)
     set(arg_LABELS unit)
-  endif()
-  if(arg_LABELS STREQUAL "slow" AND NOT STEREOTLM_SLOW_TESTS)
-    return()
   endif()
   if(NOT arg_TIMEOUT)
     set(arg_TIMEOUT 60)
@@ -45,13 +40,13 @@ function(stereotlm_add_test name)
     target_link_libraries(${name} PRIVATE GTest::gtest_main)
     target_precompile_headers(${name} REUSE_FROM stereotlm_test_headers)
   endif()
-  if(NOT arg_LABELS STREQUAL "slow")
-    add_dependencies(quick_tests ${name})
+  add_dependencies(quick_tests ${name})
+  if(NOT arg_LABELS STREQUAL "unit")
+    add_dependencies(program_tests ${name})
   endif()
   # ctest begins with the tests of the greatest cost, which would else be left alone at the end.
   string(REPLACE unit 1 cost "${arg_LABELS}")
   string(REPLACE integration 10 cost "${cost}")
-  string(REPLACE slow 100 cost "${cost}")
   gtest_discover_tests(${name} PROPERTIES LABELS "${arg_LABELS}" TIMEOUT ${arg_TIMEOUT} COST "${cost}"
     DISCOVERY_TIMEOUT 60)
 endfunction()

@@ -117,12 +117,11 @@ void CameraLines::apply(const Line& line, std::uint64_t now_ps, const OfSides<st
   for (std::size_t side = 0; side < kSides; ++side)
     pci_bus_.skip_bursts(kMasters[side], line.sides[side].pci);
   pci_bus_.skip_to({line.pci.last_granted, first + line.pci.free_clock}, line.buses.pci_busy);
-  bridge_.skip_posted((bridge_.turn() + line.turns) % pci::bridge::kChannels, line.most_posted);
   local_bus_.skip_bursts(line.buses.bursts, line.buses.local_busy, first_local + line.idle_clock);
   const std::uint64_t words = words_of_line();
+  bridge_.skip_posted((bridge_.turn() + line.turns) % pci::bridge::kChannels, kSides * words);
   for (std::size_t side = 0; side < kSides; ++side) {
     const Line::Side& of_side = line.sides[side];
-    bridge_.count_skipped(addresses[side], words);
     std::uint32_t* const stored = board_.skip_writes(addresses[side], words, first_local, of_side.bursts);
     if (has_pixels_) captures_[side].copy_line(stored);
     captures_[side].skip_line(pci_bus_.clock().edge_ps(first + of_side.end_clock), of_side.pci.transactions);
@@ -150,7 +149,6 @@ void CameraLines::begin_record(std::uint64_t now_ps, const Beginning& beginning,
 
 void CameraLines::stepped(std::uint64_t now_ps, bool is_of_pci_bus) {
   if (is_of_pci_bus) record_pci_step(pci_bus_.clock().edge_at_or_after(now_ps));
-  record_.line.most_posted = std::max<std::uint64_t>(record_.line.most_posted, bridge_.posted_words());
   if (local_bus_.bursts() != record_.buses.bursts + record_.line.buses.bursts) record_local_burst();
 }
 

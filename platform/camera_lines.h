@@ -107,9 +107,8 @@ class CameraLines {
     OfSides<Side> sides;
     pci::PciBusControl::Position pci;  // after the line
     BusCounts buses;
-    std::size_t turns = 0;          // how often the turn on the local bus was passed on
-    std::uint64_t most_posted = 0;  // the most words in the bridge at one time
-    std::uint64_t idle_clock = 0;   // of the last burst on the local bus
+    std::size_t turns = 0;         // how often the turn on the local bus was passed on
+    std::uint64_t idle_clock = 0;  // of the last burst on the local bus
   };
   // The line that is being recorded.
   struct Record {

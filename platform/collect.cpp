@@ -5,7 +5,6 @@
 
 #include "platform/audit.h"
 #include "platform/computer_parts.h"
-#include "platform/config/buffer_layout.h"
 
 namespace stereotlm::platform {
 namespace {
@@ -67,10 +66,10 @@ void audit_arbiters(const BoardConfig& config, const BoardCounters& counters, Au
 void audit_flow(const fpga::FrameGeometry& geometry, const BoardCounters& counters, Audit& audit) {
   const std::uint64_t slots = counters.frames * geometry.slots;
   const std::uint64_t words = counters.frames * geometry.result_words;
-  audit.equal("left lane: slots consumed", counters.left.consumed, "slots of the sequence", slots);
-  audit.equal("right lane: slots consumed", counters.right.consumed, "slots of the sequence", slots);
-  audit.equal("left lane: slots issued", counters.left.issued, "slots of the sequence", slots);
-  audit.equal("right lane: slots issued", counters.right.issued, "slots of the sequence", slots);
+  audit.equal("left lane: slots consumed", counters.consumed[0], "slots of the sequence", slots);
+  audit.equal("right lane: slots consumed", counters.consumed[1], "slots of the sequence", slots);
+  audit.equal("left lane: slots issued", counters.issued[0], "slots of the sequence", slots);
+  audit.equal("right lane: slots issued", counters.issued[1], "slots of the sequence", slots);
   audit.equal("result packer: words", counters.packed_words, "words of the images", words);
   audit.equal("result writer: words", counters.written_words, "words of the images", words);
 }
@@ -98,17 +97,6 @@ CameraStatistics camera_statistics(const char* name, const ComputerCounters::Cam
           not_armed,
           capture.dropped_busy,
           capture.dropped_by_partner};
-}
-
-void audit_words(const BoardConfig& config, const ComputerCounters::Words& words, Audit& audit) {
-  std::vector<std::string> names;
-  for (const PlacedBuffer& buffer : buffers(config)) names.push_back(buffer.path());
-  names.emplace_back("no buffer");
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    audit.equal("bytes written into the bridge for " + names[i], 4 * words.into_bridge[i],
-                "granted on the host port and still in the bridge",
-                4 * (words.granted[i] + words.on_bus[i] + words.in_bridge[i]));
-  }
 }
 
 void audit_host_port(const ComputerCounters& counters, Audit& audit) {
@@ -161,12 +149,11 @@ BoardCounters counters_of(const fpga::FrameRun& frames, const memory::Arbitratio
   const fpga::DirectCounts& direct = frames.direct_counts();
   for (std::size_t bank = 0; bank < arbitration.banks(); ++bank)
     counters.banks.push_back({arbitration.stats(bank), direct.accesses[bank]});
-  counters.left.issued = direct.slots[0];
-  counters.right.issued = direct.slots[1];
+  counters.issued = direct.slots;
   counters.packed_words = direct.packed_words;
   counters.written_words = direct.written_words;
-  counters.left.consumed = frames.control().lane(fpga::Side::kLeft).consumed();
-  counters.right.consumed = frames.control().lane(fpga::Side::kRight).consumed();
+  for (const fpga::Side side : fpga::kSides)
+    counters.consumed[fpga::index_of(side)] = frames.control().lane(side).consumed();
   return counters;
 }
 
@@ -179,8 +166,8 @@ BoardCounters counters_of(const Board& board) {
     counters.banks[bank].accesses +=
         stats.reads + stats.writes + stats.errors + core.crossbar().direct_accesses(bank);
   }
-  counters.left.issued += datapath.sequencer().slots(fpga::Side::kLeft);
-  counters.right.issued += datapath.sequencer().slots(fpga::Side::kRight);
+  for (const fpga::Side side : fpga::kSides)
+    counters.issued[fpga::index_of(side)] += datapath.sequencer().slots(side);
   counters.packed_words += datapath.result_packer().words();
   counters.written_words += datapath.result_writer().writes();
   return counters;
@@ -249,7 +236,9 @@ Statistics collect_statistics(const BoardConfig& config, const Tables& tables, c
 
   Audit audit;
   audit.equal("frames delivered", deliveries.size(), "frames of the core", statistics.frames);
-  audit_words(config, counters.words, audit);
+  audit.equal("words for the banks in the bridge", counters.bridge.bank_words,
+              "granted on the host port and still waiting",
+              counters.local_bus.words_written + counters.waiting_words);
   audit_host_port(counters, audit);
   audit_computer(around, audit);
   audit_captures(around, counters, audit);

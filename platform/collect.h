@@ -29,16 +29,11 @@ struct BoardCounters {
     memory::ArbiterStats arbiter;
     std::uint64_t accesses = 0;  // accesses that reached the bank, including those that it refused
   };
-  struct Lane {
-    std::uint64_t issued = 0;    // slots that the sequencer has issued
-    std::uint64_t consumed = 0;  // slots that the matcher has consumed
-  };
-
   std::size_t frames = 0;
   std::array<fpga::PortCycles, fpga::kPortCount> ports{};  // [port]
   std::vector<Bank> banks;                                 // in the order of the configuration
-  Lane left;
-  Lane right;
+  std::array<std::uint64_t, 2> issued{};                   // [side]: slots that the sequencer has issued
+  std::array<std::uint64_t, 2> consumed{};                 // [side]: slots that the matcher has consumed
   std::uint64_t packed_words = 0;
   std::uint64_t written_words = 0;
 };
@@ -65,14 +60,6 @@ inline Statistics collect_statistics(const BoardConfig& config, const Tables& ta
 
 // Counters of a computer's modules up to now. They must be taken while the core runs no frame.
 struct ComputerCounters {
-  // Words that are written to the board through the bridge. Each list has one entry per buffer, in the order
-  // of buffers() in buffer_layout.h, and a last entry for words outside all buffers.
-  struct Words {
-    std::vector<std::uint64_t> into_bridge;  // words that the bridge has taken
-    std::vector<std::uint64_t> in_bridge;    // words that wait in the bridge
-    std::vector<std::uint64_t> on_bus;       // words of the burst on the local bus that are not granted yet
-    std::vector<std::uint64_t> granted;      // words granted to the host port
-  };
   struct Camera {
     std::uint64_t frames = 0;  // frames that have begun
     bool undecided = false;    // the last frame began just now, and it is not decided whether it is captured
@@ -83,8 +70,8 @@ struct ComputerCounters {
   pci::PciBusControl::Stats pci;
   pci::BridgeControl::Stats bridge;
   fpga::LocalBusControl::Stats local_bus;
-  Words words;
-  std::array<Camera, 2> cameras;  // left, right
+  std::uint64_t waiting_words = 0;  // for the banks, that wait in the bridge or on the local bus
+  std::array<Camera, 2> cameras;    // left, right
 };
 
 // What the PCI masters have transferred for results. The words of the traffic generator do not count.

@@ -5,7 +5,6 @@
 #include "models/capture/capture_registers.h"
 #include "models/fpga/local_bus_control.h"
 #include "models/pci/bridge_registers.h"
-#include "platform/config/buffer_layout.h"
 #include "platform/device_map.h"
 
 namespace stereotlm::platform {
@@ -45,8 +44,7 @@ std::optional<pci::TrafficGeneratorConfig> traffic_config(const BoardConfig& boa
 }
 
 pci::PciBridgeConfig bridge_config(const BoardConfig& board) {
-  return {board.bridge.dma_burst_words, board.bridge.posted_words, fpga::kLocalRegisters,
-          buffer_ranges(board)};
+  return {board.bridge.dma_burst_words, board.bridge.posted_words, fpga::kLocalRegisters};
 }
 
 capture::CameraConfig camera_config(const BoardConfig& board) {

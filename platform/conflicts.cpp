@@ -19,11 +19,9 @@ const char* port_name(std::size_t requester) {
 std::vector<AddressRange> captured(const BoardConfig& board) {
   std::vector<AddressRange> ranges;
   if (board.capture.destination != CaptureDestination::kBoard) return ranges;
-  const std::vector<PlacedBuffer> placed = buffers(board);
-  const std::vector<AddressRange> all = buffer_ranges(board);
-  for (std::size_t index = 0; index < placed.size(); ++index) {
-    if (placed[index].buffer == Buffer::kLeftImage || placed[index].buffer == Buffer::kRightImage)
-      ranges.push_back(all[index]);
+  for (const PlacedBuffer& placed : buffers(board)) {
+    if (placed.buffer == Buffer::kLeftImage || placed.buffer == Buffer::kRightImage)
+      ranges.push_back(placed.range);
   }
   return ranges;
 }

@@ -15,18 +15,6 @@
 namespace stereotlm::platform {
 namespace {
 
-// The indices of the banks that a port accesses, in the order in which the frames use them.
-std::vector<std::size_t> banks_of(const BoardConfig& board, const fpga::CorePort& port) {
-  std::vector<std::size_t> banks;
-  for (const PlacedBuffer& buffer : buffers(board)) {
-    if (std::string(name_of(buffer.buffer)) != port.buffer) continue;
-    std::size_t bank = 0;
-    while (board.banks[bank].name != buffer.bank) ++bank;
-    banks.push_back(bank);
-  }
-  return banks;
-}
-
 std::uint64_t sum_of(const std::vector<std::uint64_t>& numbers) {
   return std::accumulate(numbers.begin(), numbers.end(), std::uint64_t{0});
 }
@@ -139,14 +127,14 @@ std::vector<std::vector<std::uint64_t>> core_accesses(const BoardConfig& board,
                                                       const Statistics& statistics) {
   std::vector<std::vector<std::uint64_t>> accesses(fpga::kCorePortCount,
                                                    std::vector<std::uint64_t>(board.banks.size()));
+  const fpga::BufferBases buffers = buffer_bases(board);
   const std::uint64_t frames = statistics.frames;
-  if (frames == 0) return accesses;
-  for (std::size_t port = 0; port < fpga::kCorePortCount; ++port) {
-    const std::vector<std::size_t> banks = banks_of(board, fpga::kPorts[port]);
-    for (std::size_t entry = 0; entry < banks.size(); ++entry) {
-      const std::uint64_t uses = frames / banks.size() + (entry < frames % banks.size() ? 1 : 0);
-      accesses[port][banks[entry]] += statistics.ports[port].grants / frames * uses;
-    }
+  const std::uint64_t turn = allocation_period_frames(board);
+  for (std::uint64_t frame = 0; frame < std::min(frames, turn); ++frame) {
+    const fpga::FrameBases bases = buffers.of_frame(frame);
+    const std::uint64_t uses = frames / turn + (frame < frames % turn ? 1 : 0);
+    for (std::size_t port = 0; port < fpga::kCorePortCount; ++port)
+      accesses[port][fpga::registers::bank_of(bases[port])] += statistics.ports[port].grants / frames * uses;
   }
   return accesses;
 }

@@ -15,6 +15,13 @@ constexpr std::array<const char*, 5> kInterruptNames = {"left", "right", "core",
 constexpr std::size_t kCoreInterrupt = 2;
 constexpr std::size_t kDmaInterrupt = 3;  // of channel 0
 constexpr unsigned kToBoard = 0;          // DMA channels of the driver
+constexpr auto kCaptureIndex = static_cast<std::size_t>(Activity::kCapture);
+constexpr auto kFrameIndex = static_cast<std::size_t>(Activity::kFrame);
+
+// The activity of a DMA channel, but for the upload of the tables.
+constexpr Activity activity_of(unsigned channel) {
+  return channel == kToBoard ? Activity::kCopy : Activity::kReadBack;
+}
 
 // Everything that can differ between two events, ends first.
 auto order_of(const TimelineEvent& event) {
@@ -28,16 +35,13 @@ Timeline::Timeline(const BoardConfig& board)
     : clock_(board.fpga.clock_mhz),
       sums_(board),
       kept_pairs_(std::max(board.allocation.left_image.size(), board.allocation.disparity.size())),
-      buffers_(buffers(board)),
-      ranges_(buffer_ranges(board)) {}
+      buffers_(buffers(board)) {}
 
 const char* Timeline::buffer_at(std::uint64_t local_address) const {
-  const auto range = std::find_if(ranges_.begin(), ranges_.end(), [local_address](const AddressRange& found) {
-    return found.contains(local_address);
-  });
-  return range == ranges_.end()
-             ? ""
-             : platform::name_of(buffers_[static_cast<std::size_t>(range - ranges_.begin())].buffer);
+  for (const PlacedBuffer& placed : buffers_) {
+    if (placed.range.contains(local_address)) return platform::name_of(placed.buffer);
+  }
+  return "";
 }
 
 // The two captures of a pair have the same number. The earlier call makes the pair.
@@ -47,7 +51,7 @@ void Timeline::CaptureSide::capture_begun(std::uint64_t frame, std::uint64_t beg
   if (number == timeline_.first_pair_ + timeline_.pairs_.size()) {
     Pair pair;
     pair.camera_frame = frame;
-    pair.begin_ps = begin_ps;
+    pair.begins_ps[kCaptureIndex] = begin_ps;
     timeline_.pairs_.push_back(pair);
   }
 }
@@ -65,15 +69,14 @@ TimelineEvent Timeline::event_of(EventKind kind, const char* what, std::optional
 
 void Timeline::CaptureSide::capture_ended(const capture::Capture& capture) {
   const std::uint64_t number = ended_++;
-  TimelineEvent event =
-      timeline_.event_of(EventKind::kCapture, kSideNames[side_], number, timeline_.pair(number).begin_ps);
+  TimelineEvent event = timeline_.event_of(EventKind::kCapture, kSideNames[side_], number, capture.begin_ps);
   event.end_ps = capture.end_ps;
   event.words = capture.words;
   event.dropped_pixels = capture.dropped_pixels;
   timeline_.ended_.push_back(event);
   words_ += capture.words;
   dropped_pixels_ += capture.dropped_pixels;
-  std::uint64_t& captured_ps = timeline_.pair(number).captured_ps;
+  std::uint64_t& captured_ps = timeline_.pair(number).ends_ps[kCaptureIndex];
   captured_ps = std::max(captured_ps, capture.end_ps);
   timeline_.begin_interrupt(side_, number, capture.end_ps);
 }
@@ -102,8 +105,8 @@ void Timeline::CaptureSide::end_now(const capture::CaptureControl::Stats& stats,
   if (undecided_)
     events.push_back(drop(undecided_->first, undecided_->second, capture::DropReason::kNotArmed));
   if (begun_ == ended_) return;
-  TimelineEvent event =
-      timeline_.event_of(EventKind::kCapture, kSideNames[side_], ended_, timeline_.pair(ended_).begin_ps);
+  TimelineEvent event = timeline_.event_of(EventKind::kCapture, kSideNames[side_], ended_,
+                                           timeline_.pair(ended_).begin_ps(Activity::kCapture));
   event.end_ps = now_ps;
   event.words = stats.words - words_;
   event.dropped_pixels = stats.dropped_pixels - dropped_pixels_;
@@ -142,65 +145,55 @@ void Timeline::starts(Activity activity, const std::vector<Awaited>& awaited) {
 }
 
 Timeline::Reasons Timeline::reasons_of(Activity activity) const {
-  const auto end_of = [](const Pair& pair, Activity awaited) {
-    switch (awaited) {
-      case Activity::kCapture:
-        return pair.captured_ps;
-      case Activity::kCopy:
-        return pair.copy_end_ps;
-      case Activity::kFrame:
-        return pair.done_ps;
-      case Activity::kReadBack:
-        break;
-    }
-    return pair.read_back_end_ps;
-  };
   Reasons reasons;
   for (const Awaited& awaited : awaited_[static_cast<std::size_t>(activity)])
-    reasons.push_back({awaited.reason, end_of(pair(awaited.number), awaited.activity)});
+    reasons.push_back({awaited.reason, pair(awaited.number).end_ps(awaited.activity)});
   return reasons;
+}
+
+std::uint64_t Timeline::begin(Activity activity, std::uint64_t now_ps) {
+  const auto index = static_cast<std::size_t>(activity);
+  const std::uint64_t number = begun_[index]++;
+  pair(number).begins_ps[index] = now_ps;
+  return number;
 }
 
 // The first DMA to the board uploads the tables, if the driver has started no copy.
 void Timeline::dma_started(unsigned channel, std::uint64_t now_ps) {
-  if (channel != kToBoard) {
-    const std::uint64_t number = read_backs_begun_++;
-    pair(number).read_back_begin_ps = now_ps;
-    wait("result", number, pair(number).done_ps, now_ps, reasons_of(Activity::kReadBack));
-  } else if (!awaited_[static_cast<std::size_t>(Activity::kCopy)].empty()) {
-    const std::uint64_t number = copies_begun_++;
-    pair(number).copy_begin_ps = now_ps;
-    wait("ring", number, pair(number).captured_ps, now_ps, reasons_of(Activity::kCopy));
-    fetch(Buffer::kLeftImage, now_ps);
-  }
+  const Activity activity = activity_of(channel);
+  if (awaited_[static_cast<std::size_t>(activity)].empty()) return;
+  const std::uint64_t number = begin(activity, now_ps);
+  const bool is_copy = activity == Activity::kCopy;
+  wait(is_copy ? "ring" : "result", number,
+       pair(number).end_ps(is_copy ? Activity::kCapture : Activity::kFrame), now_ps, reasons_of(activity));
+  if (is_copy) fetch(Buffer::kLeftImage, now_ps);
 }
 
 // The DMA begins to fetch the descriptor of a picture of the pair that is copied.
 void Timeline::fetch(Buffer picture, std::uint64_t now_ps) {
-  transfers_[kToBoard] = event_of(EventKind::kUpload, platform::name_of(picture), copies_begun_ - 1, now_ps);
+  transfers_[kToBoard] =
+      event_of(EventKind::kUpload, platform::name_of(picture), begun(Activity::kCopy) - 1, now_ps);
 }
 
 void Timeline::dma_done(unsigned channel, std::uint64_t now_ps) {
+  const Activity activity = activity_of(channel);
   std::optional<std::uint64_t> number;
-  if (channel != kToBoard) {
-    number = read_backs_begun_ - 1;
-    pair(*number).read_back_end_ps = now_ps;
-  } else if (copies_begun_ == 0) {
-    upload_end_ps_ = now_ps;
+  if (begun(activity) != 0) {
+    number = begun(activity) - 1;
+    pair(*number).ends_ps[static_cast<std::size_t>(activity)] = now_ps;
   } else {
-    number = copies_begun_ - 1;
-    pair(*number).copy_end_ps = now_ps;
+    upload_end_ps_ = now_ps;
   }
   begin_interrupt(kDmaInterrupt + channel, number, now_ps);
 }
 
-void Timeline::transfer_begun(const pci::DmaTransfer& transfer) {
-  const std::uint64_t begun = transfer.to_pci ? read_backs_begun_ : copies_begun_;
+void Timeline::transfer_begun(unsigned channel, std::uint64_t begin_ps, const pci::DmaDescriptor& moved) {
+  const std::uint64_t number = begun(activity_of(channel));
   TimelineEvent event =
-      event_of(transfer.to_pci ? EventKind::kReadBack : EventKind::kUpload, buffer_at(transfer.local_address),
-               begun != 0 ? std::optional(begun - 1) : std::nullopt, transfer.begin_ps);
-  event.words = transfer.words;
-  transfers_[transfer.channel] = event;
+      event_of(moved.to_pci ? EventKind::kReadBack : EventKind::kUpload, buffer_at(moved.local_address),
+               number != 0 ? std::optional(number - 1) : std::nullopt, begin_ps);
+  event.words = moved.words;
+  transfers_[channel] = event;
 }
 
 void Timeline::transfer_ended(unsigned channel, std::uint64_t now_ps) {
@@ -213,17 +206,17 @@ void Timeline::transfer_ended(unsigned channel, std::uint64_t now_ps) {
 }
 
 void Timeline::frame_begun(std::uint64_t strobe_ps) {
-  const std::uint64_t number = frames_begun_++;
-  Pair& times = pair(number);
-  times.strobe_ps = strobe_ps;
+  const std::uint64_t number = begin(Activity::kFrame, strobe_ps);
+  const Pair& times = pair(number);
+  const std::uint64_t ready_ps = times.end_ps(times.last_to_buffers());
   const Reasons reasons = reasons_of(Activity::kFrame);
-  wait("pair", number, times.ready_ps(), strobe_ps, reasons);
+  wait("pair", number, ready_ps, strobe_ps, reasons);
   Reasons of_core = {{"upload", number == 0 ? upload_end_ps_ : 0},
-                     {"camera", times.begin_ps},
-                     {"capture", times.captured_ps},
-                     {"copy", times.ready_ps()}};
+                     {"camera", times.begin_ps(Activity::kCapture)},
+                     {"capture", times.end_ps(Activity::kCapture)},
+                     {"copy", ready_ps}};
   of_core.insert(of_core.end(), reasons.begin(), reasons.end());
-  wait("core", number, core_free_ps(number), strobe_ps, of_core);
+  wait("core", number, number == 0 ? 0 : pair(number - 1).end_ps(Activity::kFrame), strobe_ps, of_core);
 }
 
 void Timeline::frame_ended(const fpga::FrameTimes& times) {
@@ -239,7 +232,7 @@ void Timeline::frame_ended(const fpga::FrameTimes& times) {
   add("strobe", times.first_cycle, 0);
   add("cycles", times.end_cycle, times.words);
   add("pipeline", times.done_cycle, 0);
-  pair(number).done_ps = event.end_ps;
+  pair(number).ends_ps[kFrameIndex] = event.end_ps;
 }
 
 // Adds a wait as one event for each reason, which holds until its time or the time of one before. For the
@@ -261,17 +254,23 @@ void Timeline::wait(const char* who, std::uint64_t frame, std::uint64_t from_ps,
 void Timeline::deliver(const Delivery& delivery) {
   const std::uint64_t number = delivered_++;
   const Pair& times = pair(number);
-  const std::uint64_t copy_begin_ps = times.copy_begin_ps != 0 ? times.copy_begin_ps : times.captured_ps;
-  const std::array<std::uint64_t, kLatencyParts.size() + 1> moments = {
-      times.begin_ps, times.captured_ps,        copy_begin_ps,          times.ready_ps(), times.strobe_ps,
-      times.done_ps,  times.read_back_begin_ps, times.read_back_end_ps, delivery.host_ps};
-  FrameLatency latency = {number, times.camera_frame, times.begin_ps, {}};
+  // The parts are the activities, and the waits between them.
+  static_assert(kLatencyParts.size() == 2 * kActivities);
+  std::array<std::uint64_t, kLatencyParts.size() + 1> moments{};
+  for (std::size_t activity = 0; activity < kActivities; ++activity) {
+    moments[2 * activity] = times.begins_ps[activity];
+    moments[2 * activity + 1] = times.ends_ps[activity];
+  }
+  if (times.last_to_buffers() != Activity::kCopy) moments[2] = moments[3] = moments[1];
+  moments.back() = delivery.host_ps;
+  FrameLatency latency = {number, times.camera_frame, moments.front(), {}};
   for (std::size_t part = 0; part < kLatencyParts.size(); ++part)
     latency.parts_ps[part] = moments[part + 1] - moments[part];
   latencies_.push_back(latency);
   if (!std::is_sorted(moments.begin(), moments.end())) ++disordered_;
   latencies_ps_ += delivery.host_ps - delivery.capture_ps;
   delivered_ps_ = delivery.host_ps;
+  complete_until_ps_ = moments.front();
   for (; first_pair_ + kept_pairs_ < delivered_; ++first_pair_) pairs_.pop_front();
 }
 
@@ -296,26 +295,11 @@ void Timeline::mark_end(const ComputerCounters& counters) {
   }
 }
 
-// Everything that is recorded later ends at this time or later. A wait, and a frame of the core, is recorded
-// in parts at its end. A dropped frame is recorded 1 ps after its time.
-std::uint64_t Timeline::complete_until_ps() const {
-  std::uint64_t until_ps = std::max<std::uint64_t>(delivered_ps_, 1) - 1;
-  const auto hold_back = [&until_ps](std::uint64_t begin_ps) { until_ps = std::min(until_ps, begin_ps); };
-  const bool runs = frames_begun_ != frames_ended_;
-  hold_back(runs ? pair(frames_ended_).strobe_ps : core_free_ps(frames_ended_));
-  const bool is_captured =
-      frames_begun_ < first_pair_ + pairs_.size() && pair(frames_begun_).captured_ps != 0;
-  if (is_captured) hold_back(pair(frames_begun_).captured_ps);
-  if (read_backs_begun_ != frames_ended_) hold_back(pair(read_backs_begun_).done_ps);
-  return until_ps;
-}
-
 TimelineRecords Timeline::take() {
-  const std::uint64_t until_ps = complete_until_ps();
-  const auto later = std::partition(ended_.begin(), ended_.end(), [until_ps](const TimelineEvent& event) {
-    return event.end_ps < until_ps;
+  handed_out_until_ps_ = complete_until_ps_;
+  const auto later = std::partition(ended_.begin(), ended_.end(), [this](const TimelineEvent& event) {
+    return event.end_ps < handed_out_until_ps_;
   });
-  handed_out_until_ps_ = until_ps;
   std::vector<TimelineEvent> events(ended_.begin(), later);
   ended_.erase(ended_.begin(), later);
   return hand_out(std::move(events));

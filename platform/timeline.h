@@ -26,8 +26,8 @@ namespace stereotlm::platform {
 // interrupts, and who waits for whom. The blocks say what they do, at every fidelity in the same words. The
 // driver says what each of its starts has waited for. Plain C++.
 //
-// Events are handed out in the order of their ends. It keeps only the events since the last delivery or, if
-// earlier, since the beginning of the oldest wait that still runs.
+// Events are handed out in the order of their ends. It keeps only the events since the capture of the last
+// frame that was delivered.
 class Timeline : private pci::BridgeObserver, private fpga::FrameObserver, private DriverObserver {
  public:
   explicit Timeline(const BoardConfig& board);
@@ -61,17 +61,15 @@ class Timeline : private pci::BridgeObserver, private fpga::FrameObserver, priva
   // The times of a pair and of its frame, as far as they are known.
   struct Pair {
     std::uint64_t camera_frame = 0;
-    std::uint64_t begin_ps = 0;
-    std::uint64_t captured_ps = 0;    // end of the later of its captures
-    std::uint64_t copy_begin_ps = 0;  // 0: it is not copied
-    std::uint64_t copy_end_ps = 0;
-    std::uint64_t strobe_ps = 0;
-    std::uint64_t done_ps = 0;
-    std::uint64_t read_back_begin_ps = 0;
-    std::uint64_t read_back_end_ps = 0;
+    std::array<std::uint64_t, kActivities> begins_ps{};  // [Activity]; 0: not begun
+    std::array<std::uint64_t, kActivities> ends_ps{};    // [Activity]; of a capture: of its later side
 
-    // The time at which the pictures are in their input buffers.
-    std::uint64_t ready_ps() const { return copy_begin_ps != 0 ? copy_end_ps : captured_ps; }
+    std::uint64_t begin_ps(Activity activity) const { return begins_ps[static_cast<std::size_t>(activity)]; }
+    std::uint64_t end_ps(Activity activity) const { return ends_ps[static_cast<std::size_t>(activity)]; }
+    // The activity with whose end the pictures are in their input buffers.
+    Activity last_to_buffers() const {
+      return begin_ps(Activity::kCopy) != 0 ? Activity::kCopy : Activity::kCapture;
+    }
   };
   // What holds a start back, and until when.
   struct Reason {
@@ -106,7 +104,7 @@ class Timeline : private pci::BridgeObserver, private fpga::FrameObserver, priva
 
   void starts(Activity activity, const std::vector<Awaited>& awaited) override;
   void dma_started(unsigned channel, std::uint64_t now_ps) override;
-  void transfer_begun(const pci::DmaTransfer& transfer) override;
+  void transfer_begun(unsigned channel, std::uint64_t begin_ps, const pci::DmaDescriptor& moved) override;
   void transfer_ended(unsigned channel, std::uint64_t now_ps) override;
   void interrupts_raised(std::uint64_t now_ps, std::uint32_t interrupts) override;
   void interrupts_cleared(std::uint64_t now_ps, std::uint32_t interrupts) override;
@@ -120,6 +118,9 @@ class Timeline : private pci::BridgeObserver, private fpga::FrameObserver, priva
   void end_interrupt(std::size_t interrupt, std::uint64_t now_ps);
   void fetch(Buffer picture, std::uint64_t now_ps);
   void dma_done(unsigned channel, std::uint64_t now_ps);
+  // The next one of an activity of the core or of the DMA begins. Returns its number.
+  std::uint64_t begin(Activity activity, std::uint64_t now_ps);
+  std::uint64_t begun(Activity activity) const { return begun_[static_cast<std::size_t>(activity)]; }
   void wait(const char* who, std::uint64_t frame, std::uint64_t from_ps, std::uint64_t to_ps,
             const Reasons& reasons);
 
@@ -127,13 +128,8 @@ class Timeline : private pci::BridgeObserver, private fpga::FrameObserver, priva
   const Pair& pair(std::uint64_t number) const {
     return pairs_[static_cast<std::size_t>(number - first_pair_)];
   }
-  // The end of the last frame of the core before this one; 0 if there is none.
-  std::uint64_t core_free_ps(std::uint64_t number) const {
-    return number == 0 ? 0 : pair(number - 1).done_ps;
-  }
   // What the last start of an activity has waited for, and until when.
   Reasons reasons_of(Activity activity) const;
-  std::uint64_t complete_until_ps() const;
   const char* buffer_at(std::uint64_t local_address) const;
   TimelineRecords hand_out(std::vector<TimelineEvent> events);
 
@@ -141,17 +137,14 @@ class Timeline : private pci::BridgeObserver, private fpga::FrameObserver, priva
   TimelineSums sums_;       // of what has been handed out
   std::size_t kept_pairs_;  // delivered pairs for whose buffers a start may still have waited
   std::vector<PlacedBuffer> buffers_;
-  std::vector<AddressRange> ranges_;
   std::array<CaptureSide, 2> boards_{CaptureSide(*this, 0), CaptureSide(*this, 1)};
 
   // Pairs that are under way, and those before whose times are still needed.
   std::deque<Pair> pairs_;
   std::uint64_t first_pair_ = 0;
   std::array<std::vector<Awaited>, kActivities> awaited_;  // [Activity]: of its last start
-  std::uint64_t copies_begun_ = 0;
-  std::uint64_t frames_begun_ = 0;
+  std::array<std::uint64_t, kActivities> begun_{};         // [Activity], but for captures
   std::uint64_t frames_ended_ = 0;
-  std::uint64_t read_backs_begun_ = 0;
   std::uint64_t delivered_ = 0;
   std::uint64_t upload_end_ps_ = 0;
   std::uint64_t delivered_ps_ = 0;
@@ -164,6 +157,9 @@ class Timeline : private pci::BridgeObserver, private fpga::FrameObserver, priva
 
   std::vector<TimelineEvent> ended_;  // not handed out yet
   std::vector<TimelineEvent> last_;   // the events up to the last mark_end(), some of which are handed out
+  // All events that end before are recorded: everything that is recorded later ends after the beginning of
+  // the last pair that was delivered.
+  std::uint64_t complete_until_ps_ = 0;
   std::uint64_t handed_out_until_ps_ = 0;  // all events that ended before are handed out
   std::vector<FrameLatency> latencies_;
   // Of the latencies that were handed out.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 #include "models/area/filter_arithmetic.h"
 #include "models/fpga/frame_geometry.h"
@@ -403,9 +402,7 @@ double percent(std::int64_t part, std::int64_t whole) {
 std::int64_t Item::lut_equivalents() const { return std::max(all.luts, all.flip_flops); }
 
 std::vector<Item> items(const CoreConfig& config) {
-  const std::vector<std::string> problems = fpga::problems(config);
-  if (!problems.empty()) throw std::invalid_argument(problems.front());
-  const Core core(config);
+  const Core core(checked(config));
   Items found;
   add_lanes(core, found);
   add_filter(core, found);

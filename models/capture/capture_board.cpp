@@ -1,10 +1,8 @@
 #include "models/capture/capture_board.h"
 
-#include <cstring>
 #include <stdexcept>
 #include <string>
 
-#include "models/access_rules.h"
 #include "models/kernel_time.h"
 
 namespace stereotlm::capture {
@@ -16,7 +14,6 @@ CaptureBoard::CaptureBoard(const sc_core::sc_module_name& name, const CaptureBoa
   sensitive << step_due_;
   dont_initialize();
   registers.register_b_transport(this, &CaptureBoard::access_registers);
-  registers.register_transport_dbg(this, &CaptureBoard::debug_registers);
   as_partner.bind(*this);
   interrupt.bind(*this);
 }
@@ -49,15 +46,6 @@ void CaptureBoard::step() {
 void CaptureBoard::access_registers(tlm::tlm_generic_payload& access, sc_core::sc_time& delay) {
   pci::access_registers(control_, registers::kEnd, access, delay);
   follow();
-}
-
-unsigned CaptureBoard::debug_registers(tlm::tlm_generic_payload& access) {
-  if (!access.is_read() || check_access(access, registers_below(registers::kEnd)) != tlm::TLM_OK_RESPONSE)
-    return 0;
-  const std::optional<std::uint32_t> value = control_.value_at(access.get_address());
-  if (!value) return 0;
-  std::memcpy(access.get_data_ptr(), &*value, 4);
-  return 4;
 }
 
 void CaptureBoard::take_frame(const VideoFrame& frame) {

@@ -21,8 +21,8 @@ class CapturePartnerIf : public virtual sc_core::sc_interface, public CapturePar
 
 // A PXC200 (Bt848 family; contract section 3, "Capture board"). It takes a camera's frames into its FIFO and
 // writes them by bus mastering. Its registers are described in capture_registers.h. Register accesses take no
-// time; there is no DMI. fpga/register_file.h lists what is refused. Arming and triggering take effect at the
-// annotated time of their access. Debug transport only reads.
+// time; there is no DMI and no debug transport. fpga/register_file.h lists what is refused. Arming and
+// triggering take effect at the annotated time of their access.
 //
 // The board decides 1 ps after the beginning of a frame whether it takes the frame. By then all events at the
 // time of the beginning have been processed, in whatever order. A word leaves the FIFO at the end of its data
@@ -65,7 +65,6 @@ class CaptureBoard : public sc_core::sc_module, private CapturePartnerIf, privat
  private:
   void end_of_elaboration() override;
   void access_registers(tlm::tlm_generic_payload& access, sc_core::sc_time& delay);
-  unsigned debug_registers(tlm::tlm_generic_payload& access);
   void step();
   void report(const std::string& text) const;
   // To be called after each call of the control that may change its next step or the interrupt.

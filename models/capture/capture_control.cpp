@@ -54,11 +54,6 @@ pci::PciAnswer CaptureControl::access(std::uint64_t /*now_ps*/, const pci::PciAc
   return {at_ps, true};
 }
 
-std::optional<std::uint32_t> CaptureControl::value_at(std::uint64_t address) const {
-  if (!allows(false, address)) return std::nullopt;
-  return read_register(address);
-}
-
 std::uint32_t CaptureControl::read_register(std::uint64_t address) const {
   const Capture last = last_capture_.value_or(Capture{});
   switch (address) {
@@ -140,24 +135,16 @@ void CaptureControl::decide(std::uint64_t now_ps) {
   const bool partner_can = partner_ == nullptr || partner_->can_start(frame_.number, frame_.begin_ps);
   switch (readiness()) {
     case Readiness::kNotArmed:
-      ++stats_.dropped_not_armed;
-      drop(DropReason::kNotArmed);
-      break;
+      return drop(DropReason::kNotArmed, stats_.dropped_not_armed);
     case Readiness::kBusy:
-      ++stats_.dropped_busy;
-      drop(DropReason::kBusy);
-      break;
+      return drop(DropReason::kBusy, stats_.dropped_busy);
     default:
-      if (partner_can) {
-        start(now_ps);
-      } else {
-        ++stats_.dropped_by_partner;
-        drop(DropReason::kPartner);
-      }
+      partner_can ? start(now_ps) : drop(DropReason::kPartner, stats_.dropped_by_partner);
   }
 }
 
-void CaptureControl::drop(DropReason reason) {
+void CaptureControl::drop(DropReason reason, std::uint64_t& count) {
+  ++count;
   if (observer_ != nullptr) observer_->frame_dropped(frame_.number, frame_.begin_ps, reason);
 }
 

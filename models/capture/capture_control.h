@@ -77,8 +77,6 @@ class CaptureControl : public FrameReceiver,
   // An access to the registers. Refuses, and counts, one that is not one word of a register with this
   // direction. A write takes effect at `at_ps`, now or later.
   pci::PciAnswer access(std::uint64_t now_ps, const pci::PciAccess& access, std::uint64_t at_ps) override;
-  // The value of a register, without effect; none if there is no register that can be read.
-  std::optional<std::uint32_t> value_at(std::uint64_t address) const;
   // The level of the interrupt. Writes, steps and ends of bursts change it.
   bool interrupt() const { return done_ || words_lost_; }
 
@@ -125,7 +123,7 @@ class CaptureControl : public FrameReceiver,
   Readiness readiness();
   void decide(std::uint64_t now_ps);
   void start(std::uint64_t now_ps);
-  void drop(DropReason reason);
+  void drop(DropReason reason, std::uint64_t& count);
 
   // These run the capture of a frame that was taken.
   void proceed(std::uint64_t now_ps);

@@ -37,11 +37,8 @@ struct FrameWords {
 class CaptureFifo {
  public:
   // Throws std::invalid_argument if the configuration has problems.
-  // While a burst runs, ranges for fifo_words further words may enter before its own words are removed.
   explicit CaptureFifo(const CaptureBoardConfig& config)
-      : fifo_words_(checked("capture", config).fifo_words),
-        trigger_words_(config.fifo_trigger_words),
-        ranges_(2 * static_cast<std::size_t>(fifo_words_)) {}
+      : fifo_words_(checked("capture", config).fifo_words), trigger_words_(config.fifo_trigger_words) {}
 
   // `observer` outlives the FIFO. Copies of the FIFO report to it too.
   void observe(FifoObserver& observer) { observer_ = &observer; }
@@ -62,8 +59,7 @@ class CaptureFifo {
   // addresses are contiguous. They stay in the FIFO until transfer() or lose().
   FrameWords grant() {
     owed_ = complete_words();
-    const FrameWords& range = ranges_[oldest_];
-    return {range.first, std::min(range.count, owed_)};
+    return {ranges_.front().first, std::min(ranges_.front().count, owed_)};
   }
   // The burst of the last grant ends at `now_ps`. The words transferred have left, each at the end of its
   // clock.
@@ -94,7 +90,7 @@ class CaptureFifo {
   std::uint64_t next_ps() const {
     const bool line_has_ended = line_end_ps_ <= now_ps_;
     if (occupancy_ > 0) {
-      const bool holds_ended_line = line_has_ended || ranges_[oldest_].first < first_word_;
+      const bool holds_ended_line = line_has_ended || ranges_.front().first < first_word_;
       if (owed_ > 0 || holds_ended_line || complete_words() >= trigger_words_) return now_ps_;
     } else if (line_has_ended || drops_line_) {
       // Nothing happens before the next line, which finds the FIFO empty.
@@ -191,25 +187,21 @@ class CaptureFifo {
   void append(int words) {
     if (words == 0) return;
     const int first = first_word_ + taken_;
-    if (occupancy_ == 0) {
-      ranges_[oldest_] = {first, 0};
-      newest_ = oldest_;
-    } else if (ranges_[newest_].first + ranges_[newest_].count != first) {
-      newest_ = newest_ + 1 < ranges_.size() ? newest_ + 1 : 0;
-      ranges_[newest_] = {first, 0};
-    }
-    ranges_[newest_].count += words;
+    if (ranges_.empty() || ranges_.back().first + ranges_.back().count != first)
+      ranges_.push_back({first, 0});
+    ranges_.back().count += words;
     taken_ += words;
     occupancy_ += words;
   }
   // Words of the oldest range leave.
   void remove(int words) {
-    FrameWords& range = ranges_[oldest_];
+    if (words == 0) return;
+    FrameWords& range = ranges_.front();
     range.first += words;
     range.count -= words;
     occupancy_ -= words;
     owed_ -= words;
-    if (range.count == 0 && occupancy_ > 0) oldest_ = oldest_ + 1 < ranges_.size() ? oldest_ + 1 : 0;
+    if (range.count == 0) ranges_.erase(ranges_.begin());
   }
   void begin_line(int row) {
     row_ = row;
@@ -246,10 +238,8 @@ class CaptureFifo {
   bool drops_line_ = false;           // its other words are dropped
   std::uint64_t dropped_pixels_ = 0;  // pixels dropped up to the end of the line
 
-  // The words in the FIFO, oldest first: a ring of ranges. A new range begins behind words that were dropped.
+  // The words in the FIFO, oldest first. A new range begins behind words that were dropped.
   std::vector<FrameWords> ranges_;
-  std::size_t oldest_ = 0;
-  std::size_t newest_ = 0;
   int occupancy_ = 0;  // number of words in the FIFO, complete or being filled
   std::uint64_t full_checks_ = 0;
   int owed_ = 0;  // number of the oldest words that were complete at the last grant and have not left

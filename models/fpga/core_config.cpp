@@ -1,7 +1,5 @@
 #include "models/fpga/core_config.h"
 
-#include <stdexcept>
-
 namespace stereotlm::fpga {
 
 std::vector<std::string> problems(const CoreConfig& config) {
@@ -45,11 +43,6 @@ std::vector<std::string> problems(const CoreConfig& config) {
       found.push_back("filter: " + problem);
   }
   return found;
-}
-
-const CoreConfig& checked(const CoreConfig& config) {
-  if (const auto found = problems(config); !found.empty()) throw std::invalid_argument(found.front());
-  return config;
 }
 
 }  // namespace stereotlm::fpga

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "models/checked.h"
 #include "models/kernels/filter_kernel.h"
 #include "models/kernels/limits.h"
 #include "models/kernels/matching_cost.h"
@@ -77,7 +78,5 @@ inline bool can_queue_rows(int result_fifo_words, int rows) { return result_fifo
 
 // Every broken rule as `field = value: rule`; empty if the core can be built.
 std::vector<std::string> problems(const CoreConfig& config);
-// Returns the configuration. Throws std::invalid_argument with the first of its problems if there are any.
-const CoreConfig& checked(const CoreConfig& config);
 
 }  // namespace stereotlm::fpga

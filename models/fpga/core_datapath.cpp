@@ -24,8 +24,7 @@ CoreDatapath::Lane::Lane(const CoreConfig& config, Side side)
   if (config.cost.kind == kernels::CostKind::kCensus)
     census = std::make_unique<Census>((name_of(side) + "_census").c_str(), config);
   if (config.fetch == Fetch::kLineBuffer) {
-    row_buffer = std::make_unique<RowBuffer>((name_of(side) + "_rows").c_str(), config.width, config.window,
-                                             config.cost.pixel_bytes());
+    row_buffer = std::make_unique<RowBuffer>((name_of(side) + "_rows").c_str(), config);
   }
 }
 

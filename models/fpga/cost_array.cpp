@@ -21,33 +21,17 @@ void CostArray::start_frame() {
     if (row.scorer) row.scorer->start_frame();
     row.left_valid = 0;
   }
-  have_left_ = false;
-  have_right_ = false;
   columns_before_window_ = geometry_.half + geometry_.radius;
   column_ = 0;
   first_row_ = -geometry_.lead_strips * geometry_.rows;
 }
 
-void CostArray::take_left(const PixelColumn& column) {
-  left_ = column;
-  have_left_ = true;
-  if (have_right_) finish_column();
-}
-
 void CostArray::take_right(const PixelColumn& column) {
-  right_ = column;
-  have_right_ = true;
-  if (have_left_) finish_column();
-}
-
-void CostArray::finish_column() {
-  have_left_ = false;
-  have_right_ = false;
   const bool has_windows = columns_before_window_ == 0;
   for (int index = 0; index < geometry_.rows; ++index) {
     Row& row = rows_[static_cast<std::size_t>(index)];
     const std::uint8_t* const left = left_.values + index * pixel_bytes_;
-    const std::uint8_t* const right = right_.values + index * pixel_bytes_;
+    const std::uint8_t* const right = column.values + index * pixel_bytes_;
     row.sums.push_column(left, right);
     if (row.scorer) row.scorer->push_column(left, right, row.sums.window_sums());
     row.left_valid = row.left_valid << 1U | (left_.valid >> (index + geometry_.radius) & 1U);

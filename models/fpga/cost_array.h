@@ -14,17 +14,18 @@
 
 namespace stereotlm::fpga {
 
-// The array of column and window modules (paper figures 6 and 8). It takes one column of each side, in either
-// order. For the windows that end at these columns it passes on the sum of every candidate, or its score: row
-// by row, first to select-min unit A, then to unit B. Nothing leaves before the first window is complete. The
-// number of modules has no effect here: all candidates are computed when the last pass ends.
+// The array of column and window modules (paper figures 6 and 8). It takes a column of the left side,
+// then one of the right side. For the windows that end at these columns it passes on the sum of every
+// candidate, or its score: row by row, first to select-min unit A, then to unit B. Nothing leaves before the
+// first window is complete. The number of modules has no effect here: all candidates are computed when the
+// last pass ends.
 class CostArray : public sc_core::sc_module {
  public:
   StreamOut<WindowSums> chain_out{"chain_out"};
   StreamOut<WindowSums> tree_out{"tree_out"};
 
  private:
-  void take_left(const PixelColumn& column);
+  void take_left(const PixelColumn& column) { left_ = column; }
   void take_right(const PixelColumn& column);
 
  public:
@@ -42,7 +43,6 @@ class CostArray : public sc_core::sc_module {
     std::uint32_t left_valid = 0;  // valid bits of the middle row of the window, newest column lowest
   };
 
-  void finish_column();
   void pass_on(int index, const Row& row);
 
   FrameGeometry geometry_;
@@ -51,9 +51,6 @@ class CostArray : public sc_core::sc_module {
   int pixel_bytes_;
   std::vector<Row> rows_;
   PixelColumn left_;
-  PixelColumn right_;
-  bool have_left_ = false;
-  bool have_right_ = false;
   int columns_before_window_ = 0;  // still to come before the first windows are complete
   int column_ = 0;                 // position of the middle of the next windows
   int first_row_ = 0;              // row of the middle of the first of the R windows

@@ -4,12 +4,12 @@
 #include <optional>
 #include <vector>
 
+#include "models/address_range.h"
 #include "models/clock.h"
 #include "models/fpga/frame_run.h"
 #include "models/fpga/local_bus_control.h"
 #include "models/memory/arbitration.h"
 #include "models/memory/direct_banks.h"
-#include "models/words_by_range.h"
 
 namespace stereotlm::fpga {
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <string>
 
+#include "models/access_rules.h"
+
 namespace stereotlm::fpga {
 namespace {
 
@@ -12,22 +14,18 @@ LocalBurst burst_of(const tlm::tlm_generic_payload& access) {
 
 }  // namespace
 
-LocalBus::LocalBus(const sc_core::sc_module_name& name, const LocalBusConfig& config, std::size_t banks)
-    : sc_module(name), control_(config, banks, *this) {
+LocalBus::LocalBus(const sc_core::sc_module_name& name, double clock_mhz, std::size_t banks)
+    : sc_module(name), control_(clock_mhz, banks, *this) {
   SC_HAS_PROCESS(LocalBus);
   kernel_time::check_resolution();
   control_.bind(*this);
   bus.bind(*this);
-  memory.register_invalidate_direct_mem_ptr(this, &LocalBus::invalidate_dmi);
   SC_THREAD(run_registers);
 }
 
 tlm::tlm_response_status LocalBus::check(const tlm::tlm_generic_payload& access) const {
-  const std::uint64_t bytes = access.get_data_length();
-  if (access.get_command() == tlm::TLM_IGNORE_COMMAND) return tlm::TLM_COMMAND_ERROR_RESPONSE;
-  if (access.get_byte_enable_ptr() != nullptr) return tlm::TLM_BYTE_ENABLE_ERROR_RESPONSE;
-  if (bytes == 0 || bytes % 4 != 0 || access.get_streaming_width() < bytes)
-    return tlm::TLM_BURST_ERROR_RESPONSE;
+  const tlm::tlm_response_status status = check_access(access, {});
+  if (status != tlm::TLM_OK_RESPONSE) return status;
   switch (control_.refusal_of(burst_of(access))) {
     case LocalBusControl::Refusal::kAddress:
       return tlm::TLM_ADDRESS_ERROR_RESPONSE;
@@ -36,7 +34,7 @@ tlm::tlm_response_status LocalBus::check(const tlm::tlm_generic_payload& access)
     case LocalBusControl::Refusal::kNone:
       break;
   }
-  return tlm::TLM_OK_RESPONSE;
+  return status;
 }
 
 void LocalBus::b_transport(tlm::tlm_generic_payload& access, sc_core::sc_time&) {
@@ -122,20 +120,7 @@ void LocalBus::end_burst_at(std::uint64_t end_ps, bool /*ok*/) {
 }
 
 unsigned LocalBus::transport_dbg(tlm::tlm_generic_payload& access) {
-  const std::uint64_t address = access.get_address();
-  if (address < kLocalRegisters) return memory->transport_dbg(access);
-  access.set_address(address - kLocalRegisters);
-  const unsigned length = registers->transport_dbg(access);
-  access.set_address(address);
-  return length;
-}
-
-bool LocalBus::get_direct_mem_ptr(tlm::tlm_generic_payload& access, tlm::tlm_dmi& dmi) {
-  return memory->get_direct_mem_ptr(access, dmi);
-}
-
-void LocalBus::invalidate_dmi(sc_dt::uint64 start, sc_dt::uint64 end) {
-  bus->invalidate_direct_mem_ptr(start, end);
+  return access.get_address() < kLocalRegisters ? memory->transport_dbg(access) : 0;
 }
 
 }  // namespace stereotlm::fpga

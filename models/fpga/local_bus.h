@@ -10,7 +10,6 @@
 #include "models/kernel_time.h"
 #include "models/memory/word_access.h"
 #include "models/stream.h"
-#include "models/words_by_range.h"
 
 namespace stereotlm::fpga {
 
@@ -31,8 +30,8 @@ namespace stereotlm::fpga {
 // | neither read nor write                                                            | command error      |
 //
 // If a bank or register refuses a word, the burst has the response of the first such word; the other words
-// are transferred. Debug transport reaches banks and registers without a burst, and DMI reaches banks.
-// b_transport is refused.
+// are transferred. Debug transport reaches banks without a burst. There is no DMI, and b_transport is
+// refused.
 //
 // The words of the banks need no process here: the core's process grants them.
 class LocalBus : public sc_core::sc_module,
@@ -49,7 +48,7 @@ class LocalBus : public sc_core::sc_module,
   StreamOut<HostRoute> route_out{"route_out"};
 
   // Throws std::invalid_argument if the clock or the number of banks is out of range.
-  LocalBus(const sc_core::sc_module_name& name, const LocalBusConfig& config, std::size_t banks);
+  LocalBus(const sc_core::sc_module_name& name, double clock_mhz, std::size_t banks);
 
   LocalBusControl& control() { return control_; }
   const LocalBusControl& control() const { return control_; }
@@ -63,8 +62,10 @@ class LocalBus : public sc_core::sc_module,
   tlm::tlm_sync_enum nb_transport_fw(tlm::tlm_generic_payload& access, tlm::tlm_phase& phase,
                                      sc_core::sc_time& delay) override;
   unsigned transport_dbg(tlm::tlm_generic_payload& access) override;
-  bool get_direct_mem_ptr(tlm::tlm_generic_payload& access, tlm::tlm_dmi& dmi) override;
-  void invalidate_dmi(sc_dt::uint64 start, sc_dt::uint64 end);
+  bool get_direct_mem_ptr(tlm::tlm_generic_payload& /*access*/, tlm::tlm_dmi& dmi) override {
+    dmi.allow_read_write();  // is refused, for all addresses
+    return false;
+  }
 
   tlm::tlm_response_status check(const tlm::tlm_generic_payload& access) const;
   void begin(tlm::tlm_generic_payload& access, const sc_core::sc_time& delay);

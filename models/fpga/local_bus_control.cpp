@@ -20,12 +20,8 @@ double checked(double clock_mhz) {
 
 }  // namespace
 
-LocalBusControl::LocalBusControl(const LocalBusConfig& config, std::size_t banks, Core& core)
-    : clock_(checked(config.clock_mhz)),
-      banks_(banks),
-      core_(core),
-      buffers_(config.buffers),
-      words_granted_(config.buffers) {
+LocalBusControl::LocalBusControl(double clock_mhz, std::size_t banks, Core& core)
+    : clock_(checked(clock_mhz)), banks_(banks), core_(core) {
   memory::kBankCountRule.required("banks", static_cast<int>(banks));
 }
 
@@ -72,11 +68,8 @@ void LocalBusControl::access(std::uint64_t grant_ps, std::uint64_t usable_ps) {
   if (burst_.write) std::memcpy(&word, next_data(), 4);
   if (!core_.access_bank(grant_ps, burst_.write, next_address(), word)) {
     refuse_word();
-  } else if (burst_.write) {
-    ++stats_.words_written;
-    words_granted_.add(next_address(), 1);
   } else {
-    ++stats_.words_read;
+    count_words(burst_.write, 1);
   }
   if (!burst_.write) std::memcpy(next_data(), &word, 4);
   advance(1, grant_ps, usable_ps);
@@ -87,7 +80,7 @@ void LocalBusControl::move_words(unsigned char* words) {
 }
 
 void LocalBusControl::count_granted(std::size_t words, std::uint64_t grant_ps, std::uint64_t usable_ps) {
-  count_words(burst_.write, next_address(), words);
+  count_words(burst_.write, words);
   advance(words, grant_ps, usable_ps);
 }
 
@@ -150,23 +143,12 @@ void LocalBusControl::skip_bursts(std::uint64_t bursts, std::uint64_t busy_clock
   free_ps_ = clock_.edge_ps(idle_clock_ + 1);
 }
 
-void LocalBusControl::count_words(bool write, std::uint64_t address, std::uint64_t words) {
-  (write ? stats_.words_written : stats_.words_read) += words;
-  if (write) words_granted_.add(address, words);
-}
-
 LocalBusControl::Stats LocalBusControl::stats(std::uint64_t now_ps) const {
   Stats stats = stats_;
   stats.clocks = clock_.edge_at_or_after(now_ps + 1) - 1;
   const std::uint64_t end = std::min(idle_clock_, stats.clocks);
   stats.busy_clocks += end > address_clock_ ? end - address_clock_ : 0;
   return stats;
-}
-
-WordsByRange LocalBusControl::words_to_grant() const {
-  WordsByRange words(buffers_);
-  if (words_left_ != 0 && burst_.write) words.add(next_address(), words_left_);
-  return words;
 }
 
 }  // namespace stereotlm::fpga

@@ -6,6 +6,7 @@
 #include <systemc>
 
 #include "models/fpga/beats.h"
+#include "models/fpga/core_ports.h"
 #include "models/kernels/joint_table.h"
 #include "models/memory/word_access.h"
 #include "models/stream.h"
@@ -24,13 +25,30 @@ class LutReader : public sc_core::sc_module {
       "right_entries_out"};
 
  private:
-  void take(const Slot& slot);
+  void take(const Slot& slot) {
+    TableEntry left;
+    TableEntry right;
+    if (!slot.empty) {
+      const std::uint64_t pixel =
+          static_cast<std::uint64_t>(slot.row) * width_ + static_cast<std::uint64_t>(slot.column);
+      sc_core::sc_time delay = slot.at;
+      if (!access_.read(table_address_ + entry_offset(pixel), delay)) ++errors_;
+      left.entry = access_.word();
+    }
+    if (has_joint_tables_ && !slot.empty) {
+      right.entry = kernels::right_entry(left.entry, slot.column, slot.row, offsets_);
+      left.entry = kernels::left_entry(left.entry, slot.column, slot.row, offsets_);
+    }
+    entries_out->push(left);
+    if (has_joint_tables_) right_entries_out->push(right);
+  }
 
  public:
   StreamIn<Slot, LutReader, &LutReader::take> slots_in{"slots_in", this};
 
   // `width`: pixels of a row of the image.
-  LutReader(const sc_core::sc_module_name& name, int width, bool has_joint_tables);
+  LutReader(const sc_core::sc_module_name& name, int width, bool has_joint_tables)
+      : sc_module(name), width_(static_cast<std::uint64_t>(width)), has_joint_tables_(has_joint_tables) {}
 
   // `table_address`: byte address on the port. `offsets`: without effect unless the tables are joint.
   void start_frame(std::uint64_t table_address, const kernels::JointOffsets& offsets) {
@@ -41,8 +59,6 @@ class LutReader : public sc_core::sc_module {
   std::uint64_t errors() const { return errors_; }
 
  private:
-  void push(const TableEntry& left, const TableEntry& right);
-
   std::uint64_t width_;
   bool has_joint_tables_;
   std::uint64_t table_address_ = 0;

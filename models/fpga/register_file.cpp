@@ -12,21 +12,13 @@ RegisterFile::RegisterFile(const sc_core::sc_module_name& name) : sc_module(name
   SC_METHOD(drive_done);
   sensitive << done_changed_;
   dont_initialize();
-  for (auto* socket : {&registers, &local_bus}) {
-    socket->register_b_transport(this, &RegisterFile::transport);
-    socket->register_transport_dbg(this, &RegisterFile::debug);
-  }
-}
-
-tlm::tlm_response_status RegisterFile::check(const tlm::tlm_generic_payload& access) {
-  const tlm::tlm_response_status status = check_access(access, registers_below(registers::kEnd));
-  if (status != tlm::TLM_OK_RESPONSE) return status;
-  return CoreRegisters::allows(access.is_write(), access.get_address()) ? tlm::TLM_OK_RESPONSE
-                                                                        : tlm::TLM_COMMAND_ERROR_RESPONSE;
+  for (auto* socket : {&registers, &local_bus}) socket->register_b_transport(this, &RegisterFile::transport);
 }
 
 void RegisterFile::transport(tlm::tlm_generic_payload& access, sc_core::sc_time& delay) {
-  const tlm::tlm_response_status status = check(access);
+  tlm::tlm_response_status status = check_access(access, registers_below(registers::kEnd));
+  if (status == tlm::TLM_OK_RESPONSE && !CoreRegisters::allows(access.is_write(), access.get_address()))
+    status = tlm::TLM_COMMAND_ERROR_RESPONSE;
   access.set_response_status(status);
   if (status != tlm::TLM_OK_RESPONSE) {
     ++stats_.errors;
@@ -43,13 +35,6 @@ void RegisterFile::transport(tlm::tlm_generic_payload& access, sc_core::sc_time&
     control_.write(kernel_time::now_ps() + kernel_time::to_ps(delay), access.get_address(), value);
     done_changed_.notify(sc_core::SC_ZERO_TIME);
   }
-}
-
-unsigned RegisterFile::debug(tlm::tlm_generic_payload& access) {
-  if (!access.is_read() || check(access) != tlm::TLM_OK_RESPONSE) return 0;
-  const std::uint32_t value = control_.read(access.get_address());
-  std::memcpy(access.get_data_ptr(), &value, 4);
-  return 4;
 }
 
 void RegisterFile::finish_frame(std::uint64_t frame_cycles, bool error) {

@@ -12,8 +12,8 @@
 namespace stereotlm::fpga {
 
 // The register file of register_map.h: start strobe, status, bases and offsets of a frame, done interrupt.
-// An access takes no time; there is no DMI. A start strobe takes effect at the annotated time of its access.
-// Debug transport only reads.
+// An access takes no time; there is no DMI and no debug transport. A start strobe takes effect at the
+// annotated time of its access.
 //
 // | refused, without effect                                                        | response           |
 // |--------------------------------------------------------------------------------|--------------------|
@@ -45,8 +45,6 @@ class RegisterFile : public sc_core::sc_module, private CoreRegisters::Starter {
 
  private:
   void transport(tlm::tlm_generic_payload& access, sc_core::sc_time& delay);
-  unsigned debug(tlm::tlm_generic_payload& access);
-  static tlm::tlm_response_status check(const tlm::tlm_generic_payload& access);
   void start_frame(const FrameStart& start) override { start_out->push(start); }
   void drive_done();
 

@@ -8,6 +8,7 @@
 
 #include "models/fpga/beats.h"
 #include "models/fpga/core_config.h"
+#include "models/fpga/core_ports.h"
 #include "models/memory/word_access.h"
 #include "models/stream.h"
 
@@ -20,18 +21,39 @@ class ResultWriter : public sc_core::sc_module {
   tlm_utils::simple_initiator_socket<ResultWriter> port{"port"};
 
  private:
-  void store(const ResultWord& word);
+  void store(const ResultWord& word) {
+    if (stored_ - written_ == fifo_words_) {
+      SC_REPORT_ERROR("/stereotlm/result_writer", "a word arrives at a full queue");
+      return;
+    }
+    words_[stored_++ % kRing] = word;
+  }
 
  public:
   StreamIn<ResultWord, ResultWriter, &ResultWriter::store> words_in{"words_in", this};
 
   // `fifo_words`: depth of the queue. Throws std::invalid_argument outside kResultFifoRule.
-  ResultWriter(const sc_core::sc_module_name& name, int fifo_words);
+  ResultWriter(const sc_core::sc_module_name& name, int fifo_words)
+      : sc_module(name),
+        fifo_words_(static_cast<std::size_t>(kResultFifoRule.required("result_fifo_words", fifo_words))) {}
 
   // `disparity_address`: byte address of the buffer on the port.
-  void start_frame(std::uint64_t disparity_address);
+  void start_frame(std::uint64_t disparity_address) {
+    disparity_address_ = disparity_address;
+    stored_ = 0;
+    written_ = 0;
+  }
   // Writes the oldest word, in the cycle that is `at` from now.
-  void write(const sc_core::sc_time& at);
+  void write(const sc_core::sc_time& at) {
+    if (written_ == stored_) {
+      SC_REPORT_ERROR("/stereotlm/result_writer", "write: the queue is empty");
+      return;
+    }
+    sc_core::sc_time delay = at;
+    const ResultWord& word = words_[written_++ % kRing];
+    if (!access_.write(disparity_address_ + result_word_offset(word.place), word.word, delay)) ++errors_;
+    ++writes_;
+  }
   // The number of words written, over all frames, and of refused accesses among them, whose words are lost.
   std::uint64_t writes() const { return writes_; }
   std::uint64_t errors() const { return errors_; }

@@ -1,10 +1,13 @@
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <systemc>
 #include <vector>
 
 #include "models/fpga/beats.h"
+#include "models/fpga/core_config.h"
 #include "models/stream.h"
 
 namespace stereotlm::fpga {
@@ -17,14 +20,26 @@ class RowBuffer : public sc_core::sc_module {
   StreamOut<PixelColumn> columns_out{"columns_out"};
 
  private:
-  void take(const PixelColumn& pixel);
+  void take(const PixelColumn& pixel) {
+    const std::size_t older_bytes = newest_row_ * pixel_bytes_;
+    std::uint8_t* const values = values_.data() + column_ * (older_bytes + pixel_bytes_);
+    std::copy_n(values + pixel_bytes_, older_bytes, values);
+    std::copy_n(pixel.values, pixel_bytes_, values + older_bytes);
+    std::uint64_t& valid = valid_[column_];
+    valid = valid >> 1U | (pixel.valid & 1U) << newest_row_;
+    column_ = column_ + 1 == valid_.size() ? 0 : column_ + 1;
+    columns_out->push({values, valid});
+  }
 
  public:
   StreamIn<PixelColumn, RowBuffer, &RowBuffer::take> columns_in{"columns_in", this};
 
-  // `width`: pixels of a row of the image; `window`: n; `pixel_bytes`: bytes of a pixel (PixelColumn). Throws
-  // std::invalid_argument outside kWidthRule, kWindowRule and 1..kMostPixelBytes.
-  RowBuffer(const sc_core::sc_module_name& name, int width, int window, int pixel_bytes);
+  RowBuffer(const sc_core::sc_module_name& name, const CoreConfig& config)
+      : sc_module(name),
+        newest_row_(static_cast<std::size_t>(config.window - 1)),
+        pixel_bytes_(static_cast<std::size_t>(config.cost.pixel_bytes())),
+        values_(static_cast<std::size_t>(config.width * config.window) * pixel_bytes_),
+        valid_(static_cast<std::size_t>(config.width)) {}
 
   void start_frame() { column_ = 0; }
 

@@ -6,6 +6,7 @@
 
 #include "models/fpga/beats.h"
 #include "models/fpga/core_config.h"
+#include "models/kernels/column_scores.h"
 #include "models/kernels/select_min.h"
 #include "models/stream.h"
 
@@ -18,14 +19,30 @@ class SelectMinChain : public sc_core::sc_module {
   StreamOut<RightMatch> matches_out{"matches_out"};
 
  private:
-  void take(const WindowSums& window);
+  void take(const WindowSums& window) {
+    const auto row = static_cast<std::size_t>(window.row);
+    matches_out->push({window.row, window.scores ? score_chains_[row].step(*window.scores, window.candidates)
+                                                 : chains_[row].step(window.sums, window.candidates)});
+  }
 
  public:
   StreamIn<WindowSums, SelectMinChain, &SelectMinChain::take> sums_in{"sums_in", this};
 
-  SelectMinChain(const sc_core::sc_module_name& name, const CoreConfig& config);
+  SelectMinChain(const sc_core::sc_module_name& name, const CoreConfig& config) : sc_module(name) {
+    const bool has_scores = kernels::ColumnScorer::is_needed(config.window, config.cost);
+    for (int row = 0; row < config.rows; ++row) {
+      if (has_scores) {
+        score_chains_.emplace_back(config.disparities);
+      } else {
+        chains_.emplace_back(config.disparities);
+      }
+    }
+  }
 
-  void start_frame();
+  void start_frame() {
+    for (auto& chain : chains_) chain.start_frame();
+    for (auto& chain : score_chains_) chain.start_frame();
+  }
 
  private:
   // [row]; one of them is empty.

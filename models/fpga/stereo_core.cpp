@@ -14,14 +14,12 @@ constexpr std::uint64_t kMostSteppedCycles = 8192;
 
 std::uint64_t present_ps() { return kernel_time::to_ps(sc_core::sc_time_stamp()); }
 
-memory::CrossbarConfig crossbar_config(const StereoCoreConfig& config) {
+const memory::CrossbarConfig& crossbar_config(const StereoCoreConfig& config) {
   if (const std::size_t ports = config.memory.arbiter.priority.size(); ports != kPortCount) {
     throw std::invalid_argument("memory.arbiter.priority = " + std::to_string(ports) +
                                 " ports: must name all " + std::to_string(kPortCount));
   }
-  memory::CrossbarConfig crossbar = config.memory;
-  crossbar.silent_ports = memory::mask_of(kHostPort);  // the host's program reports no write
-  return crossbar;
+  return config.memory;
 }
 
 constexpr bool has_host(PortMask mask) { return (mask & memory::mask_of(kHostPort)) != 0; }

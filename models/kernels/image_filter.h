@@ -16,7 +16,7 @@
 
 namespace stereotlm::kernels {
 
-// Filters whole images with a kernel (contract 1.2); used by filter_image() and StereoPipeline.
+// Filters whole images with a kernel (contract 1.2); used by StereoPipeline.
 class ImageFilter {
  public:
   // Bytes behind the last pixel that run() may write.

@@ -12,9 +12,9 @@
 
 namespace stereotlm::kernels {
 
-// Matches whole rectified and filtered image pairs (contract 1.3, 7.6) with SIMD; used by match() and
-// StereoPipeline. The image is cut into bands of rows, and each band into segments of columns; each lane of
-// a vector matches one segment of one band (MatchPlan).
+// Matches whole rectified and filtered image pairs (contract 1.3, 7.6) with SIMD; used by StereoPipeline. The
+// image is cut into bands of rows, and each band into segments of columns; each lane of a vector matches one
+// segment of one band (MatchPlan).
 class ImageMatcher {
  public:
   // Throws std::invalid_argument outside kWindowRule and kDisparitiesRule, or if the cost has problems.

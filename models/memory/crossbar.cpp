@@ -1,6 +1,5 @@
 #include "models/memory/crossbar.h"
 
-#include <algorithm>
 #include <string>
 
 #include "models/checked.h"
@@ -30,32 +29,18 @@ Crossbar::Crossbar(const sc_core::sc_module_name& name, const CrossbarConfig& co
       DirectBanks(config.banks.size()),
       ports("port", config.arbiter.priority.size()),
       banks("bank", config.banks.size()),
-      arbitration_(checked(this->name(), config).arbiter, config.banks),
-      silent_ports_(config.silent_ports),
-      direct_banks_(config.banks.size()) {
+      arbitration_(checked(this->name(), config).arbiter, config.banks) {
   for (Port port = 0; port < ports.size(); ++port) {
     targets_.emplace_back(*this, port);
     ports[port].bind(targets_.back());
   }
-  for (std::size_t bank = 0; bank < config.banks.size(); ++bank)
-    banks[bank].register_invalidate_direct_mem_ptr(this, &Crossbar::invalidate_dmi, static_cast<int>(bank));
-}
-
-bool Crossbar::can_route(Port port, std::size_t bank) const {
-  const std::string problem = arbitration_.route_problem(port, bank);
-  if (!problem.empty())
-    SC_REPORT_ERROR("/stereotlm/crossbar", (std::string(name()) + ": route: " + problem).c_str());
-  return problem.empty();
-}
-
-void Crossbar::route(Port port, std::size_t bank, bool write) {
-  if (!can_route(port, bank)) return;
-  arbitration_.route(port, bank, write);
-  aim(port, bank, write);
 }
 
 void Crossbar::aim(Port port, std::size_t bank, bool write) {
-  if (!can_route(port, bank)) return;
+  if (const std::string problem = arbitration_.route_problem(port, bank); !problem.empty()) {
+    SC_REPORT_ERROR("/stereotlm/crossbar", (std::string(name()) + ": aim: " + problem).c_str());
+    return;
+  }
   targets_[port].route(bank, write, *banks[bank].operator->());
 }
 
@@ -79,25 +64,17 @@ void Crossbar::PortTarget::b_transport(tlm::tlm_generic_payload& access, sc_core
   if (write_) crossbar_.changes(address, 4);
 }
 
-bool Crossbar::may_have_changed(Port port, std::uint64_t first, std::uint64_t end) {
-  const bool is_open = (open_banks_ >> bank_of_address(first) & 1U) != 0;
-  return DirectBanks::may_have_changed(port, first, end) || is_open;
-}
-
 unsigned char* Crossbar::direct(std::uint64_t address, std::uint64_t bytes) {
   if (!has_bank(address)) return nullptr;
-  const std::size_t bank = bank_of_address(address);
   const std::uint64_t first = address & kOffsetMask;
-  std::optional<tlm::tlm_dmi>& dmi = direct_banks_[bank];
-  if (!dmi || first < dmi->get_start_address() || first > dmi->get_end_address()) {
-    tlm::tlm_generic_payload access;
-    access.set_command(tlm::TLM_WRITE_COMMAND);
-    access.set_address(first);
-    dmi.emplace();
-    if (!banks[bank]->get_direct_mem_ptr(access, *dmi) || !dmi->is_read_write_allowed()) dmi.reset();
-  }
-  if (!dmi || first < dmi->get_start_address() || first + bytes - 1 > dmi->get_end_address()) return nullptr;
-  return dmi->get_dmi_ptr() + (first - dmi->get_start_address());
+  tlm::tlm_generic_payload access;
+  access.set_command(tlm::TLM_WRITE_COMMAND);
+  access.set_address(first);
+  tlm::tlm_dmi dmi;
+  if (!banks[bank_of_address(address)]->get_direct_mem_ptr(access, dmi) || !dmi.is_read_write_allowed() ||
+      first < dmi.get_start_address() || first + bytes - 1 > dmi.get_end_address())
+    return nullptr;
+  return dmi.get_dmi_ptr() + (first - dmi.get_start_address());
 }
 
 void Crossbar::refuse(tlm::tlm_generic_payload& access) const {
@@ -113,35 +90,6 @@ unsigned Crossbar::debug(tlm::tlm_generic_payload& access) {
   access.set_address(address);
   if (access.is_write()) changes(address, length);
   return length;
-}
-
-bool Crossbar::grant_dmi(PortMask port, tlm::tlm_generic_payload& access, tlm::tlm_dmi& dmi) {
-  const std::uint64_t address = access.get_address();
-  if (!has_bank(address)) {
-    dmi.allow_read_write();
-    dmi.set_start_address(crossbar_address(banks.size(), 0));
-    dmi.set_end_address(UINT64_MAX);
-    return false;
-  }
-  access.set_address(address & kOffsetMask);
-  const bool granted = banks[bank_of_address(address)]->get_direct_mem_ptr(access, dmi);
-  access.set_address(address);
-  if (granted && (port & silent_ports_) != 0) open_banks_ |= std::uint64_t{1} << bank_of_address(address);
-  // A refusal names a range too. Addresses beyond the bank's window belong to the next bank.
-  dmi.set_start_address(bank_base(address) + std::min<std::uint64_t>(dmi.get_start_address(), kOffsetMask));
-  dmi.set_end_address(bank_base(address) + std::min<std::uint64_t>(dmi.get_end_address(), kOffsetMask));
-  return granted;
-}
-
-void Crossbar::invalidate_dmi(int bank, sc_dt::uint64 start, sc_dt::uint64 end) {
-  direct_banks_[static_cast<std::size_t>(bank)].reset();
-  const std::uint64_t base = static_cast<std::uint64_t>(bank) << kBankAddressBits;
-  const std::uint64_t first = base + std::min<std::uint64_t>(start, kOffsetMask);
-  const std::uint64_t last = base + std::min<std::uint64_t>(end, kOffsetMask);
-  for (Port port = 0; port < ports.size(); ++port) {
-    if (ports[port].get_base_port().get_interface() != nullptr)
-      ports[port]->invalidate_direct_mem_ptr(first, last);
-  }
 }
 
 }  // namespace stereotlm::memory

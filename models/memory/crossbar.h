@@ -5,7 +5,6 @@
 #include <array>
 #include <cstdint>
 #include <deque>
-#include <optional>
 #include <systemc>
 #include <tlm>
 #include <vector>
@@ -19,9 +18,6 @@ namespace stereotlm::memory {
 struct CrossbarConfig {
   ArbiterConfig arbiter;
   std::vector<SsramBankConfig> banks;  // [bank]; all banks have the same clock
-  // Ports whose masters may write by DMI without reporting it. The masters of the other ports report such
-  // writes with changes().
-  PortMask silent_ports = 0;
 };
 
 // Every broken rule as `field = value: rule`; empty if the crossbar can be built.
@@ -37,22 +33,20 @@ std::vector<std::string> problems(const CrossbarConfig& config);
 //
 // TLM_GENERIC_ERROR_RESPONSE refuses an access without a grant, an access of another bank or direction than
 // the port's route, and every nb_transport. TLM_ADDRESS_ERROR_RESPONSE refuses an address of a bank that does
-// not exist. Refused accesses reach no bank; other errors are responses of the bank. Debug transport and DMI
-// reach every bank without a grant.
+// not exist. Refused accesses reach no bank; other errors are responses of the bank. Debug transport reaches
+// every bank without a grant. There is no DMI through the ports.
 class Crossbar : public sc_core::sc_module, public DirectBanks {
  public:
   sc_core::sc_vector<tlm::tlm_target_socket<32, tlm::tlm_base_protocol_types, 1,
                                             sc_core::SC_ZERO_OR_MORE_BOUND>>
       ports;  // [port]; an unused port may stay unbound
-  sc_core::sc_vector<tlm_utils::simple_initiator_socket_tagged<Crossbar>> banks;  // [bank]
+  sc_core::sc_vector<tlm_utils::simple_initiator_socket<Crossbar>> banks;  // [bank]
 
   // Throws std::invalid_argument if the configuration has problems.
   Crossbar(const sc_core::sc_module_name& name, const CrossbarConfig& config);
 
-  // Routes the port from the next arbitrate() on.
-  void route(Port port, std::size_t bank, bool write);
-  // Directs the accesses of the port to this bank without routing it: the port takes no part in arbitrate(),
-  // and each of its accesses needs a grant().
+  // Directs the accesses of the port to this bank. The port takes part in arbitrate() only where
+  // Arbitration::route() has routed it.
   void aim(Port port, std::size_t bank, bool write);
   std::size_t bank_of(Port port) const { return arbitration_.bank_of(port); }  // bank of its last route
   // Decides the requests of one cycle, and returns the ports granted.
@@ -64,8 +58,6 @@ class Crossbar : public sc_core::sc_module, public DirectBanks {
   Arbitration& arbitration() { return arbitration_; }
   const Arbitration& arbitration() const { return arbitration_; }
 
-  // True also if a silent port may have written them.
-  bool may_have_changed(Port port, std::uint64_t first, std::uint64_t end) override;
   unsigned char* direct(std::uint64_t address, std::uint64_t bytes) override;
   void allow_access(Port port) override { grant(mask_of(port)); }
 
@@ -82,8 +74,9 @@ class Crossbar : public sc_core::sc_module, public DirectBanks {
       return tlm::TLM_COMPLETED;
     }
     unsigned transport_dbg(tlm::tlm_generic_payload& access) override { return crossbar_.debug(access); }
-    bool get_direct_mem_ptr(tlm::tlm_generic_payload& access, tlm::tlm_dmi& dmi) override {
-      return crossbar_.grant_dmi(port_mask_, access, dmi);
+    bool get_direct_mem_ptr(tlm::tlm_generic_payload& /*access*/, tlm::tlm_dmi& dmi) override {
+      dmi.allow_read_write();  // is refused, for all addresses
+      return false;
     }
 
    private:
@@ -93,18 +86,12 @@ class Crossbar : public sc_core::sc_module, public DirectBanks {
     std::uint64_t bank_base_ = 0;  // first address of the bank to which the port is directed
     tlm::tlm_blocking_transport_if<>* bank_port_ = nullptr;  // looked up once, for speed
   };
-  bool can_route(Port port, std::size_t bank) const;
   void refuse(tlm::tlm_generic_payload& access) const;
   unsigned debug(tlm::tlm_generic_payload& access);
-  bool grant_dmi(PortMask port, tlm::tlm_generic_payload& access, tlm::tlm_dmi& dmi);
-  void invalidate_dmi(int bank, sc_dt::uint64 start, sc_dt::uint64 end);
   bool has_bank(std::uint64_t address) const { return bank_of_address(address) < banks.size(); }
 
   Arbitration arbitration_;
   std::deque<PortTarget> targets_;
-  PortMask silent_ports_;
-  std::uint64_t open_banks_ = 0;  // bit `bank`: a silent port has direct access to the bank
-  std::vector<std::optional<tlm::tlm_dmi>> direct_banks_;  // [bank]: direct access that is not revoked
   PortMask granted_ = 0;  // grants of the current cycle that are not yet used
 };
 

@@ -29,7 +29,7 @@ class DirectBanks {
   }
   // Whether the words at byte addresses first .. end - 1 may have changed since the last call for this port.
   // True in the first call, and if the last call was for other addresses.
-  virtual bool may_have_changed(Port port, std::uint64_t first, std::uint64_t end) {
+  bool may_have_changed(Port port, std::uint64_t first, std::uint64_t end) {
     Watch& watch = watches_[port];
     const bool is_new = watch.first != first || watch.end != end;
     const bool changed = watch.changed || is_new;

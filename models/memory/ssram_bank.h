@@ -4,6 +4,9 @@
 #include <systemc>
 #include <tlm>
 
+#include "models/checked.h"
+#include "models/clock.h"
+#include "models/kernel_time.h"
 #include "models/memory/memory_config.h"
 #include "models/memory/ram.h"
 
@@ -20,7 +23,12 @@ class SsramBank : public sc_core::sc_module {
   tlm::tlm_target_socket<32> port{"port"};
 
   // Throws std::invalid_argument if the configuration has problems.
-  SsramBank(const sc_core::sc_module_name& name, const SsramBankConfig& config);
+  SsramBank(const sc_core::sc_module_name& name, const SsramBankConfig& config)
+      : sc_module(name),
+        config_(checked(this->name(), config)),
+        target_({std::uint64_t{config.words} * 4, true, true}, read_time(config), "/stereotlm/ssram_bank") {
+    port.bind(target_);
+  }
 
   const SsramBankConfig& config() const { return config_; }
   const Stats& stats() const { return target_.stats(); }
@@ -28,6 +36,12 @@ class SsramBank : public sc_core::sc_module {
   const std::uint32_t* words() const { return reinterpret_cast<const std::uint32_t*>(target_.ram().data()); }
 
  private:
+  static sc_core::sc_time read_time(const SsramBankConfig& config) {
+    kernel_time::check_resolution();
+    const auto cycles = static_cast<std::uint64_t>(read_latency_cycles(config.kind));
+    return kernel_time::to_time(Clock(config.clock_mhz).edge_ps(cycles));
+  }
+
   SsramBankConfig config_;
   RamTarget target_;
 };

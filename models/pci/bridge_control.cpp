@@ -18,8 +18,7 @@ BridgeControl::BridgeControl(const PciBridgeConfig& config, PciSlot& slot, Local
       host_(host),
       channels_{{{0, static_cast<std::size_t>(config.dma_burst_words)},
                  {1, static_cast<std::size_t>(config.dma_burst_words)}}},
-      posted_(static_cast<std::size_t>(config.posted_words)),
-      words_taken_(config.buffers) {}
+      posted_(static_cast<std::size_t>(config.posted_words)) {}
 
 void BridgeControl::observe(BridgeObserver& observer) {
   observer_ = &observer;
@@ -51,12 +50,11 @@ bool BridgeControl::write(std::uint64_t now_ps, std::uint64_t offset, const unsi
     const std::uint64_t here = std::min(border, end) - offset;
     const std::uint64_t address = local_address_of(offset);
     posted_.push(address, data, here / 4);
-    count_for_banks(words_taken_, address, here / 4);
+    stats_.bank_words += words_for_banks(address, here / 4);
     offset += here;
     data += here;
   }
   stats_.posted_words += words;
-  stats_.most_posted_words = std::max<std::uint64_t>(stats_.most_posted_words, posted_.words());
   if (local_observer_ != nullptr) local_observer_->words_posted(now_ps, words);
   if (busy_) {
     plan();
@@ -73,18 +71,12 @@ void BridgeControl::read(std::uint64_t now_ps, std::uint64_t offset, unsigned ch
   start_on_local_bus(now_ps, read_);
 }
 
-// Words for the core's registers are not counted.
-void BridgeControl::count_for_banks(WordsByRange& counts, std::uint64_t address, std::size_t words) const {
-  if (address >= config_.core_registers) return;
-  counts.add(address, std::min<std::uint64_t>(words, (config_.core_registers - address) / 4));
-}
-
-WordsByRange BridgeControl::words_held() const {
-  WordsByRange held(config_.buffers);
-  for (const PostedWrites::Run& run : posted_.waiting()) count_for_banks(held, run.address, run.words);
+std::uint64_t BridgeControl::words_held() const {
+  std::uint64_t held = 0;
+  for (const PostedWrites::Run& run : posted_.waiting()) held += words_for_banks(run.address, run.words);
   for (const DmaChannel& channel : channels_) {
     const BridgeTransfer& to = channel.on_local_bus();
-    if (to.under_way && to.write && &to != running_) held.add(to.address, to.words.size());
+    if (to.under_way && to.write && &to != running_) held += to.words.size();
   }
   return held;
 }
@@ -102,16 +94,6 @@ std::optional<std::uint64_t> BridgeControl::bank_address(std::uint64_t offset, s
   const std::uint64_t address = local_address_of(offset);
   if (address / bridge::kBankBytes != (address + bytes - 4) / bridge::kBankBytes) return std::nullopt;
   return address;
-}
-
-void BridgeControl::skip_posted(std::size_t turn, std::uint64_t most_posted) {
-  turn_ = turn;
-  stats_.most_posted_words = std::max(stats_.most_posted_words, most_posted);
-}
-
-void BridgeControl::count_skipped(std::uint64_t address, std::uint64_t words) {
-  stats_.posted_words += words;
-  count_for_banks(words_taken_, address, words);
 }
 
 BridgeControl::Register BridgeControl::decode(std::uint64_t offset) {
@@ -208,7 +190,7 @@ void BridgeControl::run(std::uint64_t now_ps, const DmaChannel::Step& step) {
     const bool on_pci = transfer == &transfer->channel->on_pci();
     if (transfer->write) {
       stats_.dma_words += transfer->words.size();
-      if (!on_pci) words_taken_.add(transfer->address, transfer->words.size());
+      if (!on_pci) stats_.bank_words += transfer->words.size();
     }
     on_pci ? start_on_pci(now_ps, *transfer) : start_on_local_bus(now_ps, *transfer);
   }

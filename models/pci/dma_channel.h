@@ -10,13 +10,13 @@
 
 namespace stereotlm::pci {
 
-// The words of one descriptor, which a DMA channel moves.
-struct DmaTransfer {
-  unsigned channel = 0;
-  std::uint64_t begin_ps = 0;  // the fetch of the descriptor begins
+// What a descriptor tells a DMA channel to move.
+struct DmaDescriptor {
   bool to_pci = false;
-  std::uint64_t local_address = 0;  // first byte, on the local bus
-  std::uint64_t words = 0;
+  std::uint64_t pci_address = 0;    // of the first byte
+  std::uint64_t local_address = 0;  // the same, on the local bus
+  std::size_t words = 0;
+  std::uint32_t next = 0;  // PCI address of the next descriptor; 0: none
 };
 
 // Receives what a bridge does, for recordings. Plain C++.
@@ -25,8 +25,8 @@ class BridgeObserver {
   virtual ~BridgeObserver() = default;
   // The program has started a channel, which fetches its first descriptor.
   virtual void dma_started(unsigned channel, std::uint64_t now_ps) = 0;
-  // The descriptor is read.
-  virtual void transfer_begun(const DmaTransfer& transfer) = 0;
+  // The descriptor is read. Its fetch began at `begin_ps`.
+  virtual void transfer_begun(unsigned channel, std::uint64_t begin_ps, const DmaDescriptor& moved) = 0;
   // The last word of the transfer that the channel has begun is written.
   virtual void transfer_ended(unsigned channel, std::uint64_t now_ps) = 0;
   // `interrupts`: bits of kInterruptStatus.
@@ -91,9 +91,7 @@ class DmaChannel {
     if (fetching_) {
       fetching_ = false;
       if (!decode_descriptor()) return finish(bridge::kDmaError);
-      if (observer_ != nullptr) {
-        observer_->transfer_begun({number_, fetch_ps_, moving_.to_pci, moving_.local_address, moving_.words});
-      }
+      if (observer_ != nullptr) observer_->transfer_begun(number_, fetch_ps_, moving_);
       return {{&read_burst()}, 0};
     }
     if (written_ < moving_.words) {
@@ -112,15 +110,6 @@ class DmaChannel {
   bool waits_for_local_bus() const { return local_.under_way && !pci_.under_way; }
 
  private:
-  // The words that a descriptor names.
-  struct Descriptor {
-    bool to_pci = false;
-    std::uint64_t pci_address = 0;
-    std::uint64_t local_address = 0;
-    std::size_t words = 0;
-    std::uint32_t next = 0;  // PCI address of the next descriptor; 0: none
-  };
-
   Step finish(std::uint32_t interrupt) {
     busy_ = false;
     return {{}, interrupt << number_};
@@ -172,7 +161,7 @@ class DmaChannel {
   std::uint32_t descriptor_ = 0;
   bool busy_ = false;
   bool fetching_ = false;       // pci_ reads a descriptor
-  Descriptor moving_;           // the descriptor whose words are moved
+  DmaDescriptor moving_;        // whose words are moved
   std::size_t written_ = 0;     // words of moving_ whose write has begun
   std::uint64_t fetch_ps_ = 0;  // the fetch of moving_ began
   BridgeObserver* observer_ = nullptr;

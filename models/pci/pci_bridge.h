@@ -13,7 +13,6 @@
 #include "models/pci/pci_config.h"
 #include "models/pci/pci_slot_if.h"
 #include "models/step_event.h"
-#include "models/words_by_range.h"
 
 namespace stereotlm::pci {
 
@@ -47,8 +46,6 @@ class PciBridge : public sc_core::sc_module,
 
   BridgeControl& control() { return control_; }
   const Stats& stats() const { return control_.stats(); }
-  const WordsByRange& words_taken() const { return control_.words_taken(); }
-  WordsByRange words_held() const { return control_.words_held(); }
 
  private:
   // These serve the slave window and the register window.

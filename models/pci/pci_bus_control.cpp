@@ -65,22 +65,6 @@ std::uint64_t PciBusControl::transactions() const {
   return transactions;
 }
 
-void PciBusControl::MasterCounts::add(const MasterCounts& other) {
-  transactions += other.transactions;
-  words += other.words;
-  wait_clocks += other.wait_clocks;
-  retries += other.retries;
-  aborts += other.aborts;
-}
-
-void PciBusControl::MasterCounts::subtract(const MasterCounts& other) {
-  transactions -= other.transactions;
-  words -= other.words;
-  wait_clocks -= other.wait_clocks;
-  retries -= other.retries;
-  aborts -= other.aborts;
-}
-
 void PciBusControl::skip_bursts(std::size_t master, const MasterCounts& counts) {
   requests_[master].clock = kNever;
   master_stats_[master].add(counts);
@@ -212,17 +196,12 @@ void PciBusControl::end(std::uint64_t now_ps) {
 }
 
 void PciBusControl::report() const {
-  EndedPciBurst burst;
-  burst.master = running_.master;
-  if (running_.window != nullptr) burst.window = static_cast<std::size_t>(running_.window - windows_.data());
-  burst.write = running_.burst.write;
-  burst.address = running_.burst.address;
-  burst.words = running_.result.words;
-  burst.request_ps = clock_.edge_ps(running_.request_clock);
-  burst.address_ps = clock_.edge_ps(running_.address_clock);
-  burst.data_ps = clock_.edge_ps(running_.address_clock + 1);
-  burst.end_ps = clock_.edge_ps(running_.end_clock);
-  observer_->pci_burst_ended(burst);
+  std::optional<std::size_t> window;
+  if (running_.window != nullptr) window = static_cast<std::size_t>(running_.window - windows_.data());
+  observer_->pci_burst_ended(
+      {running_.master, window, running_.burst.write, running_.burst.address, running_.result.words,
+       clock_.edge_ps(running_.request_clock), clock_.edge_ps(running_.address_clock),
+       clock_.edge_ps(running_.address_clock + 1), clock_.edge_ps(running_.end_clock)});
 }
 
 // Makes the access of the running burst: of a write when its words have been transferred, of a read at the

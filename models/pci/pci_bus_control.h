@@ -45,8 +45,15 @@ class PciBusControl {
     std::uint64_t retries = 0;       // bursts that the target disconnected before the first word
     std::uint64_t aborts = 0;        // bursts that ended with kMasterAbort or kTargetError
 
-    void add(const MasterCounts& other);
-    void subtract(const MasterCounts& other);
+    static constexpr std::array kAll = {&MasterCounts::transactions, &MasterCounts::words,
+                                        &MasterCounts::wait_clocks, &MasterCounts::retries,
+                                        &MasterCounts::aborts};
+    void add(const MasterCounts& other) {
+      for (const auto count : kAll) this->*count += other.*count;
+    }
+    void subtract(const MasterCounts& other) {
+      for (const auto count : kAll) this->*count -= other.*count;
+    }
   };
   struct MasterStats : MasterCounts {
     std::string name;

@@ -3,11 +3,15 @@
 #include <tlm_utils/simple_target_socket.h>
 
 #include <cstdint>
+#include <cstring>
 #include <exception>
 #include <string>
 #include <systemc>
 #include <tlm>
 
+#include "models/access_rules.h"
+#include "models/checked.h"
+#include "models/kernel_time.h"
 #include "models/pci/pci_config.h"
 #include "models/pci/pci_slot_if.h"
 #include "models/pci/traffic_control.h"
@@ -27,14 +31,24 @@ class TrafficGenerator : public sc_core::sc_module {
   tlm_utils::simple_target_socket_optional<TrafficGenerator> device{"device"};
 
   // Throws std::invalid_argument if the configuration has problems.
-  TrafficGenerator(const sc_core::sc_module_name& name, const TrafficGeneratorConfig& config);
+  TrafficGenerator(const sc_core::sc_module_name& name, const TrafficGeneratorConfig& config)
+      : sc_module(name), control_(checked(this->name(), config)), access_ps_(config.access_ps) {
+    device.register_b_transport(this, &TrafficGenerator::respond);
+  }
 
  private:
   void report(const std::string& text) const {
     SC_REPORT_ERROR("/stereotlm/traffic_generator", (std::string(name()) + ": " + text).c_str());
   }
   void start_of_simulation() override { control_.start(pci); }
-  void respond(tlm::tlm_generic_payload& access, sc_core::sc_time& delay);
+  void respond(tlm::tlm_generic_payload& access, sc_core::sc_time& delay) {
+    tlm::tlm_response_status status = check_access(access, {});
+    if (access.is_write()) status = tlm::TLM_COMMAND_ERROR_RESPONSE;
+    access.set_response_status(status);
+    if (status != tlm::TLM_OK_RESPONSE) return;
+    std::memset(access.get_data_ptr(), 0, access.get_data_length());
+    delay += kernel_time::to_time(access_ps_);
+  }
 
   TrafficControl control_;
   std::uint64_t access_ps_;

@@ -40,6 +40,17 @@ std::vector<PlacedBuffer> buffers(const BoardConfig& board) {
     if (board.fpga.joint_tables && known.buffer == Buffer::kRightLut) continue;
     visit_buffer(board.allocation, known.buffer, [&](const auto& banks) { add(all, known.buffer, banks); });
   }
+  std::map<std::string, std::uint64_t> used;  // [bank]: words
+  for (PlacedBuffer& buffer : all) {
+    const auto bank = std::find_if(board.banks.begin(), board.banks.end(),
+                                   [&](const BankConfig& one) { return one.name == buffer.bank; });
+    const std::uint64_t words = buffer_words(buffer, board.image);
+    const std::uint64_t first = fpga::registers::base_address(
+        fpga::registers::base(static_cast<std::uint32_t>(bank - board.banks.begin()),
+                              static_cast<std::uint32_t>(used[buffer.bank])));
+    buffer.range = {first, first + 4 * words};
+    used[buffer.bank] += words;
+  }
   return all;
 }
 
@@ -53,30 +64,12 @@ std::uint64_t buffer_words(const PlacedBuffer& buffer, const ImageConfig& image)
   return buffer.index < 0 ? pixels : pixels / 4;
 }
 
-std::vector<AddressRange> buffer_ranges(const BoardConfig& board) {
-  std::vector<AddressRange> ranges;
-  std::map<std::string, std::uint64_t> used;  // [bank]: words
-  for (const PlacedBuffer& buffer : buffers(board)) {
-    const auto bank = std::find_if(board.banks.begin(), board.banks.end(),
-                                   [&](const BankConfig& one) { return one.name == buffer.bank; });
-    const std::uint64_t words = buffer_words(buffer, board.image);
-    const std::uint64_t first = fpga::registers::base_address(
-        fpga::registers::base(static_cast<std::uint32_t>(bank - board.banks.begin()),
-                              static_cast<std::uint32_t>(used[buffer.bank])));
-    ranges.push_back({first, first + 4 * words});
-    used[buffer.bank] += words;
-  }
-  return ranges;
-}
-
 fpga::BufferBases buffer_bases(const BoardConfig& board) {
   fpga::BufferBases bases;
   bases.has_joint_tables = board.fpga.joint_tables;
-  const std::vector<PlacedBuffer> placed = buffers(board);
-  const std::vector<AddressRange> ranges = buffer_ranges(board);
-  for (std::size_t i = 0; i < placed.size(); ++i) {
-    const auto base = static_cast<std::uint32_t>(ranges[i].first / 4);
-    switch (placed[i].buffer) {
+  for (const PlacedBuffer& placed : buffers(board)) {
+    const auto base = static_cast<std::uint32_t>(placed.range.first / 4);
+    switch (placed.buffer) {
       case Buffer::kLeftImage:
         bases.left_images.push_back(base);
         break;

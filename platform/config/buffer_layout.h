@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "models/address_range.h"
 #include "models/fpga/core_ports.h"
-#include "models/words_by_range.h"
 #include "platform/config/board_config.h"
 
 namespace stereotlm::platform {
@@ -63,6 +63,9 @@ struct PlacedBuffer {
   Buffer buffer;
   int index;         // index in its list; -1: a table
   std::string bank;  // name
+  // Its addresses on the local bus. Buffers that share a bank begin at word 0, and follow each other in the
+  // order of buffers() (contract 1.5). Without meaning if the board has no such bank.
+  AddressRange range = {};
 
   std::string label() const;                                    // "left_image[0]", "left_lut"
   std::string path() const { return "allocation." + label(); }  // "allocation.left_image[0]"
@@ -77,10 +80,6 @@ void move_buffer(BoardConfig& board, const PlacedBuffer& buffer, const std::stri
 
 // Size of a buffer in 32-bit words.
 std::uint64_t buffer_words(const PlacedBuffer& buffer, const ImageConfig& image);
-
-// The addresses of the buffers on the local bus, in the order of buffers(). Buffers that share a bank begin
-// at word 0, and follow each other in that order (contract 1.5).
-std::vector<AddressRange> buffer_ranges(const BoardConfig& board);
 
 // The values of the base registers for these buffers.
 fpga::BufferBases buffer_bases(const BoardConfig& board);

@@ -209,25 +209,6 @@ Json json_of(const Group& group, const BoardBounds& all) {
   return {{"frames", group.frames}, {"buffers", std::move(buffers)}, {"resources", std::move(resources)}};
 }
 
-Json area_document(const BoardConfig& board) {
-  const area::Area area = platform::area_of(board);
-  Json json = stats::area_json(area);
-  json["fits"] = area.fits();
-  json["device"] = platform::device_of(board).name;
-  if (const area::Device* const smallest = area::smallest_device(area))
-    json["smallest_device"] = smallest->name;
-  Json& parts = json["parts"] = Json::array();
-  for (const area::Item& item : platform::area_items(board)) {
-    parts.push_back({{"name", item.name},
-                     {"count", item.count},
-                     {"luts", item.all.luts},
-                     {"flip_flops", item.all.flip_flops},
-                     {"block_rams", item.all.block_rams},
-                     {"multipliers", item.all.multipliers}});
-  }
-  return json;
-}
-
 Json document_of(const BoardBounds& all) {
   Json document = {{"schema", 1}, {"board", all.board.name}};
   Json& groups = document["frames"] = Json::array();
@@ -239,7 +220,7 @@ Json document_of(const BoardBounds& all) {
                        {"core_limited_by", all.bound.core_limited_by},
                        {"system", *all.bound.system},
                        {"system_limited_by", all.bound.system_limited_by}};
-  document["area"] = area_document(all.board);
+  document["area"] = stats::area_document(all.board);
   return document;
 }
 

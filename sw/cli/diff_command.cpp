@@ -1,22 +1,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdint>
 #include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
-#include <variant>
 #include <vector>
 
-#include "models/fpga/core_ports.h"
-#include "platform/config/board_yaml.h"
 #include "sw/cli/command.h"
-#include "sw/explore/store/store.h"
 #include "sw/process/interrupt.h"
 #include "sw/process/streams.h"
 #include "sw/report/difference_tables.h"
+#include "sw/report/page_data/page_data.h"
 #include "sw/runs/recorded_run.h"
 #include "sw/stats/run_comparison.h"
 
@@ -24,41 +20,6 @@ namespace stereotlm::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using report::Values;
-
-// All values of run.json by path.
-Values options_of(const runs::RecordedRun& run) {
-  Values values;
-  const Json flat = Json::parse(run.run_json).flatten();
-  for (const auto& [path, value] : flat.items()) {
-    std::string name = path.substr(1);
-    std::replace(name.begin(), name.end(), '/', '.');
-    values.push_back({name, value.is_string() ? value.get<std::string>() : value.dump()});
-  }
-  return values;
-}
-
-// The figures of a run by path in stats.json.
-struct RunFigures {
-  explicit RunFigures(const runs::RecordedRun& run)
-      : statistics(run.statistics), document(Json::parse(run.stats_json)) {
-    for (platform::BoardValue& value : explore::figures_of(document).values) {
-      // Leaves out figures that follow from others, and frame_cycles, which is compared frame by frame.
-      const auto ends_in = [&value](const std::string& key) {
-        return value.path.size() >= key.size() &&
-               value.path.compare(value.path.size() - key.size(), key.size(), key) == 0;
-      };
-      if (ends_in(".utilization") || ends_in(".megabytes_per_second") || value.path == "frame_cycles")
-        continue;
-      if (value.path == "cycles") value.value = static_cast<std::int64_t>(report::cycles_of_frames(document));
-      values.push_back(std::move(value));
-    }
-  }
-
-  const platform::Statistics& statistics;
-  Json document;
-  Values values;
-};
 
 // The rows of differing_values() whose paths begin with one of `keys`.
 Json below(const Json& figures, const std::vector<std::string>& keys) {
@@ -91,7 +52,7 @@ std::string in_sections(const std::vector<std::string>& texts) {
   return all;
 }
 
-std::string totals_text(const RunFigures& a, const RunFigures& b, const Json& figures) {
+std::string totals_text(const runs::RecordedRun& a, const runs::RecordedRun& b, const Json& figures) {
   std::string text = report::figures_table(
       "totals", below(figures, {"frames", "cycles", "frames_per_second", "bound", "accuracy"}));
   const std::size_t of_a = a.statistics.frame_cycles.size();
@@ -104,7 +65,7 @@ std::string totals_text(const RunFigures& a, const RunFigures& b, const Json& fi
   return text;
 }
 
-std::string computer_text(const RunFigures& a, const RunFigures& b, const Json& figures) {
+std::string computer_text(const runs::RecordedRun& a, const runs::RecordedRun& b, const Json& figures) {
   const bool a_has_computer = a.statistics.computer.has_value();
   if (a_has_computer != b.statistics.computer.has_value())
     return fmt::format("pci, bridge, cameras and latency: only in {}\n", a_has_computer ? "A" : "B");
@@ -112,64 +73,9 @@ std::string computer_text(const RunFigures& a, const RunFigures& b, const Json& 
                       figures_text("cameras", figures), figures_text("latency_ms", figures)});
 }
 
-std::string verdict_of(const runs::RecordedRun& run_a, const runs::RecordedRun& run_b, const RunFigures& a,
-                       const RunFigures& b, const runs::FrameAlignment& aligned,
-                       const runs::DiffLimits& limits) {
-  return report::diff_verdict({a.document, run_a.board.fpga.clock_mhz},
-                              {b.document, run_b.board.fpga.clock_mhz},
-                              limits.pixels.empty() ? &aligned.pixels() : nullptr);
-}
-
-Json frames_json(const std::vector<std::uint64_t>& a, const std::vector<std::uint64_t>& b) {
-  Json list = Json::array();
-  for (std::size_t frame = 0; frame < std::min(a.size(), b.size()); ++frame) {
-    if (a[frame] != b[frame]) list.push_back({{"frame", frame}, {"a", a[frame]}, {"b", b[frame]}});
-  }
-  return list;
-}
-
-Json json_of(const stats::RowComparison& rows) {
-  Json ranges = Json::array();
-  for (const stats::RowComparison::Range& range : rows.ranges(report::kMostLines)) {
-    Json waits = Json::object();
-    for (std::size_t port = 0; port < fpga::kCorePortCount; ++port)
-      waits[fpga::kPorts[port].name] = range.stalls[port];
-    ranges.push_back({{"first_row", range.first_row},
-                      {"last_row", range.last_row},
-                      {"cycles", range.cycles},
-                      {"waiting_cycles", std::move(waits)}});
-  }
-  return {{"frames", rows.frames()}, {"ranges", std::move(ranges)}};
-}
-
-Json json_of(const stats::PixelComparison& pixels) {
-  return {{"frames", pixels.frames()},
-          {"frames_that_differ", pixels.frames_that_differ()},
-          {"pixels_that_differ", pixels.pixels()}};
-}
-
-Json diff_document(const runs::RecordedRun& run_a, const runs::RecordedRun& run_b, const RunFigures& a,
-                   const RunFigures& b, const runs::FrameAlignment& aligned, const runs::DiffLimits& limits) {
-  return {{"schema", 1},
-          {"a", run_a.folder},
-          {"b", run_b.folder},
-          {"settings",
-           report::differing_values(platform::values_of(run_a.board), platform::values_of(run_b.board))},
-          {"options", report::differing_values(options_of(run_a), options_of(run_b))},
-          {"figures", report::differing_values(a.values, b.values)},
-          {"frames", frames_json(a.statistics.frame_cycles, b.statistics.frame_cycles)},
-          {"waits", report::differing_waits(a.statistics.blame, b.statistics.blame)},
-          {"rows", limits.rows.empty() ? json_of(aligned.rows()) : Json{{"not_compared", limits.rows}}},
-          {"disparities",
-           limits.pixels.empty() ? json_of(aligned.pixels()) : Json{{"not_compared", limits.pixels}}},
-          {"verdict", verdict_of(run_a, run_b, a, b, aligned, limits)}};
-}
-
-std::string diff_text(const runs::RecordedRun& run_a, const runs::RecordedRun& run_b,
+std::string diff_text(const runs::RecordedRun& a, const runs::RecordedRun& b,
                       const runs::FrameAlignment& aligned, const runs::DiffLimits& limits) {
-  const RunFigures a(run_a);
-  const RunFigures b(run_b);
-  const Json document = diff_document(run_a, run_b, a, b, aligned, limits);
+  const Json document = report::diff_document(a, b, aligned, limits);
   const std::string settings = in_sections({report::settings_table("board", document["settings"]),
                                             report::settings_table("run options", document["options"])});
   const Json& all = document["figures"];
@@ -183,7 +89,7 @@ std::string diff_text(const runs::RecordedRun& run_a, const runs::RecordedRun& r
   const std::string pixels = limits.pixels.empty()
                                  ? report::pixels_line(aligned.pixels())
                                  : fmt::format("disparities: not compared: {}\n", limits.pixels);
-  return in_sections({fmt::format("A: {}\nB: {}\n", run_a.folder, run_b.folder), settings, figures, pixels,
+  return in_sections({fmt::format("A: {}\nB: {}\n", a.folder, b.folder), settings, figures, pixels,
                       paragraph("", 0, document["verdict"])});
 }
 
@@ -224,7 +130,7 @@ int diff(const DiffOptions& options) {
   if (!aligned.run()) return interrupted("nothing is compared");
   if (csv) csv->commit();
   if (options.json.is_given()) {
-    print_json(diff_document(*a, *b, RunFigures(*a), RunFigures(*b), aligned, limits));
+    print_json(report::diff_document(*a, *b, aligned, limits));
   } else {
     const std::string text = diff_text(*a, *b, aligned, limits);
     process::print(with_coloured_words(text, text.rfind("\n\n"),

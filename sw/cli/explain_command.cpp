@@ -19,12 +19,10 @@
 #include "sw/process/streams.h"
 #include "sw/runs/explanation.h"
 #include "sw/stats/console_table.h"
-#include "sw/stats/stats_json.h"
 
 namespace stereotlm::cli {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using platform::BoardConfig;
 using runs::Explanation;
 
@@ -86,24 +84,15 @@ std::string resources_text(const BoardConfig& board, const Explanation& explanat
   return text;
 }
 
-double percent_of_cycles(const explore::StoredBlame& blame, const Explanation& explanation) {
-  return 100 * static_cast<double>(blame.cycles) /
-         static_cast<double>(explanation.figures().integer("cycles"));
-}
-
 std::string blames_text(const Explanation& explanation) {
   const std::vector<explore::StoredBlame>& blames = explanation.blames();
   std::string text = "who waits for whom, % of the cycles of the frames\n";
   for (std::size_t row = 0; row < blames.size(); ++row) {
     if (row == kMostBlames) return text + "  and others, less\n";
     text += fmt::format("  {:<12} on {:<12} for {:<14} {:>8.3f}\n", blames[row].port, blames[row].bank,
-                        stats::cause_text(blames[row].by), percent_of_cycles(blames[row], explanation));
+                        stats::cause_text(blames[row].by), explanation.percent_of_cycles(blames[row].cycles));
   }
   return blames.empty() ? "no port waits for another\n" : text;
-}
-
-double gained_percent(const Explanation::Step& step, const Explanation& explanation) {
-  return 100 * (step.rate.frames_per_second / explanation.now().frames_per_second - 1);
 }
 
 // The line of a change; empty if it has none: it changes neither the rate nor whether pixels are lost, and
@@ -118,12 +107,12 @@ std::string line_of(const Explanation::Step& found, const BoardConfig& board,
   const double saved = std::min({slices_percent, its.block_rams_percent - before.block_rams_percent,
                                  its.multipliers_percent - before.multipliers_percent});
   const bool changes_loss = found.rate.loses_pixels != now.loses_pixels;
-  if (std::abs(gained_percent(found, explanation)) < kLeastGainPercent && !changes_loss &&
+  if (std::abs(explanation.gained_percent(found)) < kLeastGainPercent && !changes_loss &&
       saved > -kLeastSavedPercent && step.knob != kBankLess)
     return "";
   const double gained = found.rate.frames_per_second - now.frames_per_second;
   std::string text = fmt::format("  {:>8.3f} {:>+8.3f} {:>+8.2f} {:>6} {:>4}  {}{}: {} -> {}",
-                                 found.rate.frames_per_second, gained, gained_percent(found, explanation),
+                                 found.rate.frames_per_second, gained, explanation.gained_percent(found),
                                  its.slices == before.slices ? "0" : fmt::format("{:+.2f}", slices_percent),
                                  signed_text(its.block_rams - before.block_rams), step.knob,
                                  step.changes_disparities ? " *" : "", step.from, step.to);
@@ -176,100 +165,6 @@ std::string changes_text(const BoardConfig& board, const Explanation& explanatio
   return text + failures;
 }
 
-Json resources_json(const Explanation& explanation) {
-  Json all = Json::array();
-  for (const Explanation::Resource& resource : explanation.resources()) {
-    Json row = {{"resource", resource.name},
-                {"frames_per_second", resource.frames_per_second},
-                {"headroom_percent", resource.headroom_percent},
-                {"busy_percent", resource.busy_percent}};
-    if (resource.varies) row["frame"] = resource.frame;
-    all.push_back(std::move(row));
-  }
-  return all;
-}
-
-Json blame_json(const Explanation& explanation) {
-  Json all = Json::array();
-  for (const explore::StoredBlame& blame : explanation.blames()) {
-    all.push_back({{"port", blame.port},
-                   {"bank", blame.bank},
-                   {"by", blame.by},
-                   {"cycles", blame.cycles},
-                   {"cycles_percent", percent_of_cycles(blame, explanation)}});
-  }
-  return all;
-}
-
-Json area_json(const BoardConfig& board) {
-  const area::Area area = platform::area_of(board);
-  Json json = stats::area_json(area);
-  json["fits"] = area.fits();
-  return json;
-}
-
-Json change_json(const explore::KnobStep& step) {
-  return {{"key", step.knob}, {"from", step.from}, {"to", step.to}};
-}
-
-// Adds `changes`, the best first, `failed` and `impossible`.
-void add_changes(const Explanation& explanation, Json& document) {
-  const double now = explanation.now().frames_per_second;
-  Json changes = Json::array();
-  Json failed = Json::array();
-  for (const Explanation::Step& found : explanation.steps()) {
-    const explore::KnobStep& step = *found.step;
-    Json change = change_json(step);
-    if (!found.rate.failure.empty()) {
-      change["reason"] = found.rate.failure;
-      failed.push_back(std::move(change));
-      continue;
-    }
-    const double rate = found.rate.frames_per_second;
-    change["frames_per_second"] = rate;
-    change["gained_frames_per_second"] = rate - now;
-    change["gained_percent"] = gained_percent(found, explanation);
-    change["changes_disparities"] = step.changes_disparities;
-    change["loses_pixels"] = found.rate.loses_pixels;
-    change["sets"] = step.sets;
-    change["area"] = area_json(step.board);
-    changes.push_back(std::move(change));
-  }
-  document["changes"] = std::move(changes);
-  Json& impossible = document["impossible"] = Json::array();
-  for (const explore::KnobStep& step : explanation.knobs().forbidden) {
-    impossible.push_back(change_json(step));
-    impossible.back()["reason"] = step.reason;
-  }
-  document["failed"] = std::move(failed);
-}
-
-Json explanation_document(const BoardConfig& board, const Explanation& explanation) {
-  const Explanation::Rate& now = explanation.now();
-  const explore::StoredRow& row = explanation.figures();
-  const std::string of = explanation.camera() ? "bound.system" : "bound.core";
-  Json document = {
-      {"schema", 1},
-      {"board", board.name},
-      {"source", explanation.camera() ? "camera" : "preloaded"},
-      {"frames", explanation.frames()},
-      {"frames_per_second", now.frames_per_second},
-      {"loses_pixels", now.loses_pixels},
-      {"bound", {{"frames_per_second", row.real(of)}, {"limited_by", row.text(of + "_limited_by")}}}};
-  if (explanation.camera()) document["uncertainty_frames_per_second"] = now.uncertainty;
-  document["limited_by"] = runs::limiter_text(explanation);
-  const runs::Budget& budget = explanation.budget();
-  document["time_percent"] = {{"bound", budget.bound}, {"queues", budget.queues}, {"waits", budget.waits}};
-  for (const auto& [why, share] : budget.core_waits) document["time_percent"]["core_waits"][why] = share;
-  const double queue = runs::result_queue_percent(explanation);
-  if (queue > 0) document["result_queue_wait_percent"] = queue;
-  document["resources"] = resources_json(explanation);
-  document["blame"] = blame_json(explanation);
-  document["area"] = area_json(board);
-  add_changes(explanation, document);
-  return document;
-}
-
 struct ExplainOptions : Options {
   using Options::Options;
 
@@ -309,7 +204,7 @@ int explain(const ExplainOptions& options) {
                                 options.frames.number<std::uint64_t>().value_or(0));
   if (!explanation.simulate(loaded.simulator())) return kInterrupted;
   if (options.json.is_given()) {
-    print_json(explanation_document(*board, explanation));
+    print_json(runs::explanation_document(*board, explanation));
   } else {
     process::print(head_text(*board, explanation) + resources_text(*board, explanation) +
                    blames_text(explanation) + changes_text(*board, explanation));

@@ -20,9 +20,12 @@
 #include "sw/process/interrupt.h"
 #include "sw/runs/progress.h"
 #include "sw/stats/console_table.h"
+#include "sw/stats/stats_json.h"
 
 namespace stereotlm::runs {
 namespace {
+
+using Json = nlohmann::ordered_json;
 
 // A rate that is below its bound by less than this share is that of the bound.
 constexpr double kAtBound = 0.005;
@@ -60,14 +63,10 @@ const Reason& reason_of(const std::string& why) {
   throw std::logic_error(why + ": not a reason for which the core waits");
 }
 
-double percent_of_cycles(const Explanation& explanation, std::int64_t cycles) {
-  return 100 * static_cast<double>(cycles) / static_cast<double>(explanation.figures().integer("cycles"));
-}
-
 // "left_lut waits there for left_pixel in 33.14 % of the cycles"
 std::string wait_of(const Explanation& explanation, const explore::StoredBlame& wait) {
   return fmt::format("{} waits there for {} in {:.2f} % of the cycles", wait.port, stats::cause_text(wait.by),
-                     percent_of_cycles(explanation, wait.cycles));
+                     explanation.percent_of_cycles(wait.cycles));
 }
 
 // The PCI bus or the local bus, where it has little headroom.
@@ -97,7 +96,7 @@ std::string lost_pixels_text(const Explanation& explanation) {
       fmt::format(": captures lose {} pixels while {} frames are delivered, so pictures are torn",
                   row.lost_pixels(), explanation.frames());
   for (const explore::StoredBlame& wait : explanation.blames()) {
-    if (wait.port == kHost && percent_of_cycles(explanation, wait.cycles) > 100 * kVisibleLoss)
+    if (wait.port == kHost && explanation.percent_of_cycles(wait.cycles) > 100 * kVisibleLoss)
       return wait.bank + text + "; " + wait_of(explanation, wait);
   }
   const std::vector<Explanation::Resource>& all = explanation.resources();
@@ -156,6 +155,67 @@ std::string core_waits_text(const Explanation& explanation) {
     separator = " and ";
   }
   return text + busy_bus_text(explanation);
+}
+
+Json resources_json(const Explanation& explanation) {
+  Json all = Json::array();
+  for (const Explanation::Resource& resource : explanation.resources()) {
+    Json row = {{"resource", resource.name},
+                {"frames_per_second", resource.frames_per_second},
+                {"headroom_percent", resource.headroom_percent},
+                {"busy_percent", resource.busy_percent}};
+    if (resource.varies) row["frame"] = resource.frame;
+    all.push_back(std::move(row));
+  }
+  return all;
+}
+
+Json blame_json(const Explanation& explanation) {
+  Json all = Json::array();
+  for (const explore::StoredBlame& blame : explanation.blames()) {
+    all.push_back({{"port", blame.port},
+                   {"bank", blame.bank},
+                   {"by", blame.by},
+                   {"cycles", blame.cycles},
+                   {"cycles_percent", explanation.percent_of_cycles(blame.cycles)}});
+  }
+  return all;
+}
+
+Json change_json(const explore::KnobStep& step) {
+  return {{"key", step.knob}, {"from", step.from}, {"to", step.to}};
+}
+
+// Adds `changes`, the best first, `failed` and `impossible`.
+void add_changes(const Explanation& explanation, Json& document) {
+  const double now = explanation.now().frames_per_second;
+  Json changes = Json::array();
+  Json failed = Json::array();
+  for (const Explanation::Step& found : explanation.steps()) {
+    const explore::KnobStep& step = *found.step;
+    Json change = change_json(step);
+    if (!found.rate.failure.empty()) {
+      change["reason"] = found.rate.failure;
+      failed.push_back(std::move(change));
+      continue;
+    }
+    const double rate = found.rate.frames_per_second;
+    change["frames_per_second"] = rate;
+    change["gained_frames_per_second"] = rate - now;
+    change["gained_percent"] = explanation.gained_percent(found);
+    change["changes_disparities"] = step.changes_disparities;
+    change["loses_pixels"] = found.rate.loses_pixels;
+    change["sets"] = step.sets;
+    change["area"] = stats::area_json(step.board);
+    changes.push_back(std::move(change));
+  }
+  document["changes"] = std::move(changes);
+  Json& impossible = document["impossible"] = Json::array();
+  for (const explore::KnobStep& step : explanation.knobs().forbidden) {
+    impossible.push_back(change_json(step));
+    impossible.back()["reason"] = step.reason;
+  }
+  document["failed"] = std::move(failed);
 }
 
 }  // namespace
@@ -394,6 +454,32 @@ double result_queue_percent(const Explanation& explanation) {
   const bool is_too_short = row.text("bound.core_limited_by") == "matcher" && lost > kVisibleLoss * cycles &&
                             stalled == 0 && static_cast<double>(blocked) > lost / 2;
   return is_too_short ? 100 * lost / cycles : 0;
+}
+
+Json explanation_document(const platform::BoardConfig& board, const Explanation& explanation) {
+  const Explanation::Rate& now = explanation.now();
+  const explore::StoredRow& row = explanation.figures();
+  const std::string of = explanation.camera() ? "bound.system" : "bound.core";
+  Json document = {
+      {"schema", 1},
+      {"board", board.name},
+      {"source", explanation.camera() ? "camera" : "preloaded"},
+      {"frames", explanation.frames()},
+      {"frames_per_second", now.frames_per_second},
+      {"loses_pixels", now.loses_pixels},
+      {"bound", {{"frames_per_second", row.real(of)}, {"limited_by", row.text(of + "_limited_by")}}}};
+  if (explanation.camera()) document["uncertainty_frames_per_second"] = now.uncertainty;
+  document["limited_by"] = limiter_text(explanation);
+  const Budget& budget = explanation.budget();
+  document["time_percent"] = {{"bound", budget.bound}, {"queues", budget.queues}, {"waits", budget.waits}};
+  for (const auto& [why, share] : budget.core_waits) document["time_percent"]["core_waits"][why] = share;
+  const double queue = result_queue_percent(explanation);
+  if (queue > 0) document["result_queue_wait_percent"] = queue;
+  document["resources"] = resources_json(explanation);
+  document["blame"] = blame_json(explanation);
+  document["area"] = stats::area_json(board);
+  add_changes(explanation, document);
+  return document;
 }
 
 }  // namespace stereotlm::runs

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -93,6 +94,12 @@ class Explanation {
   const std::vector<Resource>& resources() const { return resources_; }
 
   const Budget& budget() const { return budget_; }
+  double percent_of_cycles(std::int64_t cycles) const {
+    return 100 * static_cast<double>(cycles) / static_cast<double>(figures_->integer("cycles"));
+  }
+  double gained_percent(const Step& step) const {
+    return 100 * (step.rate.frames_per_second / now_.frames_per_second - 1);
+  }
   // Who stalls for whom, the most cycles first.
   const std::vector<explore::StoredBlame>& blames() const { return blames_; }
 
@@ -138,5 +145,9 @@ std::string budget_text(const Explanation& explanation);
 // The share of the cycles in which the matcher waits because the result queue is too short, in percent; 0 if
 // it does not limit the board.
 double result_queue_percent(const Explanation& explanation);
+
+// What `explain --json` prints. Its schema is sw/cli/schemas/explain.schema.json.
+nlohmann::ordered_json explanation_document(const platform::BoardConfig& board,
+                                            const Explanation& explanation);
 
 }  // namespace stereotlm::runs

@@ -15,6 +15,7 @@
 #include "models/fpga/core_ports.h"
 #include "platform/bounds.h"
 #include "platform/computer_parts.h"
+#include "platform/config/board_area.h"
 #include "platform/figures.h"
 #include "sw/files/json_text.h"
 #include "sw/stats/console_table.h"
@@ -366,6 +367,30 @@ Json area_json(const area::Area& area) {
           {"block_rams_percent", area.block_rams_percent},
           {"multipliers", area.multipliers},
           {"multipliers_percent", area.multipliers_percent}};
+}
+
+Json area_json(const platform::BoardConfig& board) {
+  const area::Area area = platform::area_of(board);
+  Json json = area_json(area);
+  json["fits"] = area.fits();
+  return json;
+}
+
+Json area_document(const platform::BoardConfig& board) {
+  Json json = area_json(board);
+  json["device"] = platform::device_of(board).name;
+  if (const area::Device* const smallest = area::smallest_device(platform::area_of(board)))
+    json["smallest_device"] = smallest->name;
+  Json& parts = json["parts"] = Json::array();
+  for (const area::Item& item : platform::area_items(board)) {
+    parts.push_back({{"name", item.name},
+                     {"count", item.count},
+                     {"luts", item.all.luts},
+                     {"flip_flops", item.all.flip_flops},
+                     {"block_rams", item.all.block_rams},
+                     {"multipliers", item.all.multipliers}});
+  }
+  return json;
 }
 
 Json stats_document(const platform::Statistics& statistics, const std::optional<Accuracy>& accuracy) {

@@ -33,6 +33,10 @@ platform::Statistics read_stats(const std::string& text, const platform::BoardCo
 
 // The part `area` of stats.json.
 nlohmann::ordered_json area_json(const area::Area& area);
+// The same of the core of a board, and `fits`.
+nlohmann::ordered_json area_json(const platform::BoardConfig& board);
+// The same with `device`, `smallest_device` that fits, and `parts`.
+nlohmann::ordered_json area_document(const platform::BoardConfig& board);
 
 // The differences of two texts of stats.json, one line each: "/banks/0/reads: fast 5, cycle 6". A key that
 // only one text has is "absent" in the other. Throws std::runtime_error if a text is not JSON.

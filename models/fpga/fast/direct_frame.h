@@ -6,13 +6,13 @@
 #include <optional>
 #include <vector>
 
+#include "models/address_range.h"
 #include "models/fpga/access_pattern.h"
 #include "models/fpga/core_config.h"
 #include "models/fpga/core_ports.h"
 #include "models/kernels/joint_table.h"
 #include "models/kernels/stereo_pipeline.h"
 #include "models/memory/direct_banks.h"
-#include "models/words_by_range.h"
 
 namespace stereotlm::fpga {
 

@@ -8,12 +8,12 @@
 #include <utility>
 #include <vector>
 
+#include "models/address_range.h"
 #include "models/fpga/access_pattern.h"
 #include "models/fpga/core_control.h"
 #include "models/fpga/core_ports.h"
 #include "models/fpga/record/requesters.h"
 #include "models/memory/arbitration.h"
-#include "models/words_by_range.h"
 
 namespace stereotlm::fpga {
 

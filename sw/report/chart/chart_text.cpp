@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -91,10 +92,7 @@ std::string xml_text(std::string_view text) {
 
 std::string short_number(double value) {
   if (value > 0 && value < 0.005) return "<0.01";
-  std::string text = fmt::format("{:.2f}", value);
-  while (text.back() == '0') text.pop_back();
-  if (text.back() == '.') text.pop_back();
-  return text;
+  return fmt::format("{}", std::round(value * 100) / 100);
 }
 
 std::string measured(double value) {

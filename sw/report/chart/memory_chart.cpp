@@ -61,15 +61,14 @@ constexpr double kThinEdge = 1.5;
 constexpr double kWidestEdge = 12;
 constexpr double kShortEdge = 36;  // length of an edge between blocks that stand one above the other
 constexpr double kHalo = 2;        // on each side of an edge, where it crosses another
-constexpr double kBetweenTracks = 10;
-constexpr double kClearance = 3;  // between edges of different ports
 
 constexpr double kBankWidth = 256;
 constexpr double kBankRight = kMargin + kBankWidth;
 constexpr double kBetweenBanks = 10;
 constexpr double kLabelHeight = kNote.size * kLetterHeight;
 constexpr double kLabelFromBank = 18;
-constexpr double kTracksFromBank = 70;
+constexpr double kBendsFromBank = 70;  // where the edges of banks begin to bend
+constexpr double kBendWidth = 150;
 
 constexpr double kPortWidth = 128;
 constexpr double kBetweenPorts = 22;
@@ -137,11 +136,16 @@ std::string text_element(const std::string& text, const Style& style, double x, 
 
 std::string title_element(const std::string& text) { return "<title>" + xml_text(text) + "</title>\n"; }
 
-// A way of horizontal and vertical pieces.
+// A way of horizontal and vertical pieces, and of bends between horizontal ones.
 std::string line_element(const std::vector<Point>& way, double width, const std::string& color) {
-  std::string text;
-  for (const Point& point : way)
-    text += fmt::format("{}{} {}", text.empty() ? "M" : " L", px(point.x), px(point.y));
+  std::string text = fmt::format("M{} {}", px(way.front().x), px(way.front().y));
+  for (std::size_t i = 1; i < way.size(); ++i) {
+    const auto& [x, y] = way[i];
+    const double middle = px((way[i - 1].x + x) / 2);
+    text += way[i - 1].x == x || way[i - 1].y == y
+                ? fmt::format(" L{} {}", px(x), px(y))
+                : fmt::format(" C{0} {1} {0} {3} {2} {3}", middle, px(way[i - 1].y), px(x), px(y));
+  }
   return fmt::format("<path d=\"{}\" stroke-width=\"{}\" fill=\"none\" stroke-linejoin=\"round\"{}/>\n", text,
                      px(width), paint("stroke", color));
 }
@@ -354,7 +358,6 @@ class Chart {
     fpga_.y = view_.in_computer ? draw_computer(top) : top;
     place_banks(top);
     const double bottom = place_ports();
-    route();
     for (const Bank& bank : banks_) draw_bank(bank);
     draw_core(bottom);
     if (!view_.in_computer) draw_legend({fpga_.x, fpga_.bottom() + 12});
@@ -470,7 +473,7 @@ class Chart {
   void measure_ports() {
     Lines names = {"host", "left_lut", "left_pixel", "right_pixel", "right_lut", "result"};
     if (board_.fpga.joint_tables) names = {"host", "left_pixel", "left_lut", "right_pixel", "result"};
-    double x = kBankRight + kTracksFromBank;
+    fpga_ = {kBankRight + kBendsFromBank + kBendWidth, 0, kFpgaWidth, 0};
     for (const std::string& name : names) {
       Port port;
       port.name = name;
@@ -478,18 +481,16 @@ class Chart {
         for (const auto& [edge, y] : bank.ends) {
           if (edges_[edge].link.from != "port-" + name) continue;
           port.edges.push_back(edge);
-          port.bundle = run_ == nullptr ? kThinEdge : port.bundle + edges_[edge].width + 1;
+          port.bundle += edges_[edge].width + 1;
         }
       }
       if (port.edges.empty()) continue;
       const bool is_pixel = name == "left_pixel" || name == "right_pixel";
       const double lane = is_pixel ? height_of("stage-" + name.substr(0, name.find('_')) + "_lane") : 0;
-      port.box = {0, 0, kPortWidth, std::max({height_of("port-" + name), port.bundle + 12, lane})};
-      x += port.bundle + kBetweenTracks;
+      port.box = {fpga_.x + kFpgaPadding, 0, kPortWidth,
+                  std::max({height_of("port-" + name), port.bundle + 12, lane})};
       ports_.push_back(std::move(port));
     }
-    fpga_ = {x + 4, 0, kFpgaWidth, 0};
-    for (Port& port : ports_) port.box.x = fpga_.x + kFpgaPadding;
   }
 
   const Port* port(const std::string& name) const {
@@ -514,82 +515,24 @@ class Chart {
     }
   }
 
-  // Where the edge ends at its bank, until it is routed.
-  double bank_y(std::size_t edge) const { return edges_[edge].way.front().y; }
-
-  // Where the edges of a port end, if it is at this y.
-  std::vector<double> port_ends(const Port& port) const {
-    std::vector<double> ends;
-    double y = port.box.middle_y() - port.bundle / 2;
-    for (const std::size_t edge : port.edges) {
-      ends.push_back(y + edges_[edge].width / 2);
-      if (run_ != nullptr) y += edges_[edge].width + 1;
-    }
-    return ends;
-  }
-
-  // Whether no edge of another port, on its way from its bank, could lie on one of this port. Those of the
-  // host have the rightmost tracks, which no edge from a bank passes.
-  bool is_clear(const Port& port) const {
-    const std::vector<double> ends = port_ends(port);
-    for (const Bank& bank : banks_) {
-      for (const auto& [other, end] : bank.ends) {
-        for (std::size_t i = 0; i < ends.size(); ++i) {
-          const double needed = (edges_[other].width + edges_[port.edges[i]].width) / 2 + kClearance;
-          if (edges_[other].link.from != "port-" + port.name && std::abs(bank_y(other) - ends[i]) < needed)
-            return false;
-        }
-      }
-    }
-    return true;
-  }
-
-  // Puts the ports one below the other, each where its edges are clear. Returns the bottom of the last one.
+  // Puts the ports one below the other, and draws the ways of their edges: straight out of the bank, below
+  // its label, and on in a bend. Returns the bottom of the last port.
   double place_ports() {
     double y = fpga_.y + kFpgaTitle;
     for (Port& port : ports_) {
       port.box.y = y;
-      while (port.name != "host" && !is_clear(port)) port.box.y += 1;
+      double end = port.box.middle_y() - port.bundle / 2;
+      for (const std::size_t edge : port.edges) {
+        const Point at_bank = edges_[edge].way.front();
+        end += edges_[edge].width / 2;
+        edges_[edge].way = {
+            {port.box.x, end}, {fpga_.x, end}, {kBankRight + kBendsFromBank, at_bank.y}, at_bank};
+        end += edges_[edge].width / 2 + 1;
+      }
       y = port.box.bottom() + kBetweenPorts;
     }
     fpga_.height = y - kBetweenPorts + kFpgaFoot - fpga_.y;
     return y - kBetweenPorts;
-  }
-
-  // Chooses the ways of the edges between banks and ports: from the bank to the track of the edge, there up
-  // or down, and on to the port. Tracks from left to right: those of ports whose edges go up, the lowest port
-  // first; of those whose edges go down, the highest first; of the host.
-  void route() {
-    const auto order = [this](const Port& port) {
-      double down = 0;
-      for (const std::size_t edge : port.edges) down += bank_y(edge) - port.box.middle_y();
-      return std::tuple(port.name == "host", down > 0, down > 0 ? port.box.y : -port.box.y);
-    };
-    std::vector<const Port*> ports;
-    for (const Port& port : ports_) ports.push_back(&port);
-    std::sort(ports.begin(), ports.end(),
-              [&](const Port* a, const Port* b) { return order(*a) < order(*b); });
-    double left = kBankRight + kTracksFromBank;
-    for (const Port* port : ports) {
-      const std::vector<double> ends = port_ends(*port);
-      // Of those that go up the highest, and of those that go down the lowest, are on the right.
-      double up = left;
-      for (std::size_t i = ends.size(); i-- > 0;) up = take_track(*port, i, ends[i], up, true);
-      double down = left;
-      for (std::size_t i = 0; i < ends.size(); ++i) down = take_track(*port, i, ends[i], down, false);
-      left += port->bundle + kBetweenTracks;
-    }
-  }
-
-  // Routes the edge if it goes in this direction. Returns where the next track begins.
-  double take_track(const Port& port, std::size_t number, double port_y, double left, bool goes_up) {
-    Edge& edge = edges_[port.edges[number]];
-    const Point at_bank = edge.way.back();
-    if (edge.way.size() > 1 || (at_bank.y <= port_y) != goes_up) return left;
-    const double x = left + edge.width / 2;
-    edge.way = {{port.box.x, port_y}, {x, port_y}, {x, at_bank.y}, at_bank};
-    if (at_bank.y == port_y) edge.way = {{port.box.x, port_y}, at_bank};
-    return run_ == nullptr ? left : left + edge.width + 1;
   }
 
   // Opens the group of a block, and draws its box.

@@ -5,7 +5,7 @@
 #include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <set>
+#include <regex>
 #include <stdexcept>
 #include <string_view>
 #include <vector>
@@ -20,18 +20,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-bool begins(std::string_view text, std::string_view head) { return text.substr(0, head.size()) == head; }
-bool ends(std::string_view text, std::string_view tail) {
-  return text.size() >= tail.size() && text.substr(text.size() - tail.size()) == tail;
-}
-
 // Of the counters of each bank and each port the page has one: the others would make it too large.
 bool is_shown(const std::string& column) {
-  static const std::set<std::string> never = {"hash", "config", "frame_cycles"};
-  if (never.count(column) > 0) return false;
-  if (begins(column, "banks.")) return ends(column, ".busy_cycles");
-  if (begins(column, "ports.")) return ends(column, ".stall_cycles");
-  return true;
+  static const std::regex hidden(
+      "hash|config|frame_cycles|banks\\.(?!.*\\.busy_cycles$).*|ports\\.(?!.*\\.stall_cycles$).*");
+  return !std::regex_match(column, hidden);
 }
 
 Json value_of(const sqlite::Statement& row, int column) {

@@ -1,9 +1,12 @@
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <utility>
 #include <vector>
 
 #include "models/fpga/core_ports.h"
+#include "platform/config/board_yaml.h"
+#include "sw/explore/store/store.h"
 #include "sw/report/difference_tables.h"
 #include "sw/report/page_data/page_data.h"
 
@@ -37,18 +40,60 @@ Json rows_data(const stats::RowComparison& rows, std::size_t height) {
   return data;
 }
 
-Json pixels_data(const stats::PixelComparison& pixels) {
-  Json data = {{"frames", pixels.frames()},
-               {"frames_that_differ", pixels.frames_that_differ()},
-               {"pixels", pixels.pixels()}};
-  if (const auto& first = pixels.first()) {
-    data["first"] = {{"camera_frame", first->camera_frame},
-                     {"column", first->column},
-                     {"row", first->row},
-                     {"a", first->a},
-                     {"b", first->b}};
+// All values of run.json by path.
+Values options_of(const runs::RecordedRun& run) {
+  Values values;
+  const Json flat = Json::parse(run.run_json).flatten();
+  for (const auto& [path, value] : flat.items()) {
+    std::string name = path.substr(1);
+    std::replace(name.begin(), name.end(), '/', '.');
+    values.push_back({name, value.is_string() ? value.get<std::string>() : value.dump()});
   }
-  return data;
+  return values;
+}
+
+// The figures of a run by path in stats.json. Leaves out those that follow from others, and frame_cycles,
+// which is compared frame by frame.
+Values figures_of(const Json& stats) {
+  Values values;
+  for (platform::BoardValue& value : explore::figures_of(stats).values) {
+    const auto ends_in = [&value](const std::string& key) {
+      return value.path.size() >= key.size() &&
+             value.path.compare(value.path.size() - key.size(), key.size(), key) == 0;
+    };
+    if (ends_in(".utilization") || ends_in(".megabytes_per_second") || value.path == "frame_cycles") continue;
+    if (value.path == "cycles") value.value = static_cast<std::int64_t>(cycles_of_frames(stats));
+    values.push_back(std::move(value));
+  }
+  return values;
+}
+
+Json frames_json(const std::vector<std::uint64_t>& a, const std::vector<std::uint64_t>& b) {
+  Json list = Json::array();
+  for (std::size_t frame = 0; frame < std::min(a.size(), b.size()); ++frame) {
+    if (a[frame] != b[frame]) list.push_back({{"frame", frame}, {"a", a[frame]}, {"b", b[frame]}});
+  }
+  return list;
+}
+
+Json json_of(const stats::RowComparison& rows) {
+  Json ranges = Json::array();
+  for (const stats::RowComparison::Range& range : rows.ranges(kMostLines)) {
+    Json waits = Json::object();
+    for (std::size_t port = 0; port < fpga::kCorePortCount; ++port)
+      waits[fpga::kPorts[port].name] = range.stalls[port];
+    ranges.push_back({{"first_row", range.first_row},
+                      {"last_row", range.last_row},
+                      {"cycles", range.cycles},
+                      {"waiting_cycles", std::move(waits)}});
+  }
+  return {{"frames", rows.frames()}, {"ranges", std::move(ranges)}};
+}
+
+Json json_of(const stats::PixelComparison& pixels) {
+  return {{"frames", pixels.frames()},
+          {"frames_that_differ", pixels.frames_that_differ()},
+          {"pixels_that_differ", pixels.pixels()}};
 }
 
 Json run_data_of(const ComparedRun& compared) {
@@ -60,36 +105,42 @@ Json run_data_of(const ComparedRun& compared) {
   return data;
 }
 
-Json difference_data(const ComparedRun& a, const ComparedRun& b, const runs::FrameAlignment& aligned,
-                     const runs::DiffLimits& limits) {
-  const Json stats_a = Json::parse(a.run.stats_json);
-  const Json stats_b = Json::parse(b.run.stats_json);
-  Json data = {
-      {"verdict", diff_verdict({stats_a, a.run.board.fpga.clock_mhz}, {stats_b, b.run.board.fpga.clock_mhz},
-                               limits.pixels.empty() ? &aligned.pixels() : nullptr)}};
-  if (limits.rows.empty()) {
-    data["rows"] = rows_data(aligned.rows(), static_cast<std::size_t>(a.run.board.image.height));
-  } else {
-    data["no_rows"] = limits.rows;
-  }
-  if (limits.pixels.empty()) {
-    data["pixels"] = pixels_data(aligned.pixels());
-  } else {
-    data["no_pixels"] = limits.pixels;
-  }
-  return data;
-}
-
 }  // namespace
+
+Json diff_document(const runs::RecordedRun& a, const runs::RecordedRun& b,
+                   const runs::FrameAlignment& aligned, const runs::DiffLimits& limits) {
+  const Json stats_a = Json::parse(a.stats_json);
+  const Json stats_b = Json::parse(b.stats_json);
+  return {{"schema", 1},
+          {"a", a.folder},
+          {"b", b.folder},
+          {"settings", differing_values(platform::values_of(a.board), platform::values_of(b.board))},
+          {"options", differing_values(options_of(a), options_of(b))},
+          {"figures", differing_values(figures_of(stats_a), figures_of(stats_b))},
+          {"frames", frames_json(a.statistics.frame_cycles, b.statistics.frame_cycles)},
+          {"waits", differing_waits(a.statistics.blame, b.statistics.blame)},
+          {"rows", limits.rows.empty() ? json_of(aligned.rows()) : Json{{"not_compared", limits.rows}}},
+          {"disparities",
+           limits.pixels.empty() ? json_of(aligned.pixels()) : Json{{"not_compared", limits.pixels}}},
+          {"verdict", diff_verdict({stats_a, a.board.fpga.clock_mhz}, {stats_b, b.board.fpga.clock_mhz},
+                                   limits.pixels.empty() ? &aligned.pixels() : nullptr)}};
+}
 
 Json two_runs_data(const ComparedRun& a, const ComparedRun& b, const runs::FrameAlignment& aligned,
                    const runs::DiffLimits& limits) {
   Json data = {{"runs", {run_data_of(a), run_data_of(b)}},
-               {"difference", difference_data(a, b, aligned, limits)}};
+               {"difference", diff_document(a.run, b.run, aligned, limits)}};
+  Json& difference = data["difference"];
+  if (limits.rows.empty())
+    difference["rows"] = rows_data(aligned.rows(), static_cast<std::size_t>(a.run.board.image.height));
+  if (const auto& first = aligned.pixels().first()) {
+    difference["disparities"]["first"] = {
+        {"camera_frame", first->camera_frame}, {"column", first->column}, {"row", first->row}};
+  }
   if (const auto& common = aligned.last_common()) {
     data["runs"][0]["pictures"]["disparity"] = picture_url(common->a);
     data["runs"][1]["pictures"]["disparity"] = picture_url(common->b);
-    data["difference"]["camera_frame"] = common->number;
+    difference["camera_frame"] = common->number;
   }
   return data;
 }

@@ -37,7 +37,11 @@ struct ComparedRun {
   RecordingData waits;
 };
 
-// The parts `runs` and `difference`.
+// What `diff --json` prints of two runs. Its schema is sw/cli/schemas/diff.schema.json.
+nlohmann::ordered_json diff_document(const runs::RecordedRun& a, const runs::RecordedRun& b,
+                                     const runs::FrameAlignment& aligned, const runs::DiffLimits& limits);
+
+// The parts `runs` and `difference`: diff_document() with all rows.
 nlohmann::ordered_json two_runs_data(const ComparedRun& a, const ComparedRun& b,
                                      const runs::FrameAlignment& aligned, const runs::DiffLimits& limits);
 

@@ -243,23 +243,21 @@ class ConflictData {
       accesses.push_back(
           {{"bank", banks_[i / kKinds]}, {"by", kKindNames[i % kKinds]}, {"accesses", accesses_[i]}});
     }
-    // How many recorded tiles, side by side and one below the other, are one tile of the page.
     const std::size_t most = std::min(RecordingData::kMostTiles,
                                       RecordingData::kMostValues / std::max<std::size_t>(1, tiles_.size()));
-    std::size_t across = 1;
-    std::size_t down = 1;
-    while (parts_of(grid_.columns, across) * parts_of(grid_.rows, down) > most)
-      (across * grid_.columns_of_tile <= down * grid_.rows_of_tile ? across : down) *= 2;
-    const std::size_t columns = parts_of(grid_.columns, across);
-    const std::size_t rows = parts_of(grid_.rows, down);
+    // Its tiles are `across` recorded ones wide and `down` high.
+    const fpga::TileGrid shown(fpga::FrameGeometry(platform::core_config(board_)), most);
+    const std::size_t across = shown.columns_of_tile / grid_.columns_of_tile;
+    const std::size_t down = shown.rows_of_tile / grid_.rows_of_tile;
     Json stalls = Json::array();
     for (const auto& [cause, cycles] : tiles_) {
       Amounts by_line(cycles_.size());
-      Amounts by_tile(columns * rows);
+      Amounts by_tile(shown.columns * shown.rows);
       by_line[0] = cycles[0];
       for (std::size_t tile = 0; tile + 1 < cycles.size(); ++tile) {
         by_line[1 + tile / grid_.columns] += cycles[tile + 1];
-        by_tile[tile / grid_.columns / down * columns + tile % grid_.columns / across] += cycles[tile + 1];
+        by_tile[tile / grid_.columns / down * shown.columns + tile % grid_.columns / across] +=
+            cycles[tile + 1];
       }
       const std::size_t bank = cause.find(',') + 1;
       const std::size_t by = cause.rfind(',') + 1;
@@ -276,10 +274,10 @@ class ConflictData {
               {"cycles", cycles_},
               {"accesses", std::move(accesses)}}},
             {"tiles",
-             {{"columns", columns},
-              {"rows", rows},
-              {"width", across * grid_.columns_of_tile},
-              {"height", down * grid_.rows_of_tile}}},
+             {{"columns", shown.columns},
+              {"rows", shown.rows},
+              {"width", shown.columns_of_tile},
+              {"height", shown.rows_of_tile}}},
             {"stalls", std::move(stalls)}};
   }
 
@@ -418,7 +416,8 @@ class TimelineData {
     events_csv_.refuse(kClass, fmt::format("must be a class of {} with why = {}", kind, why));
   }
 
-  // All of a run with few events. Otherwise its beginning, the time around its slowest frame, and its end.
+  // All of a run with few events. Otherwise its beginning, the time around its slowest frame, and its end,
+  // which may overlap.
   std::vector<Period> periods() const {
     if (events_.size() <= RecordingData::kMostEvents) return {{0, end_ps()}};
     constexpr std::size_t kPart = RecordingData::kMostEvents / 3;
@@ -438,15 +437,7 @@ class TimelineData {
       found.emplace_back(end_of(middle - std::min(middle, kPart / 2)), end_of(middle + kPart / 2));
     }
     std::sort(found.begin(), found.end());
-    std::vector<Period> apart;
-    for (const Period& period : found) {
-      if (!apart.empty() && period.first <= apart.back().second) {
-        apart.back().second = std::max(apart.back().second, period.second);
-      } else {
-        apart.push_back(period);
-      }
-    }
-    return apart;
+    return found;
   }
 
   Json events_json() const {

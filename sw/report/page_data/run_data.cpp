@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -15,11 +14,13 @@
 
 #include "models/kernels/rectification_table.h"
 #include "models/memory/bank_traits.h"
+#include "platform/audit.h"
 #include "platform/bounds.h"
 #include "platform/config/board_area.h"
 #include "platform/config/board_keys.h"
 #include "platform/config/board_yaml.h"
 #include "platform/config/buffer_layout.h"
+#include "platform/figures.h"
 #include "sw/files/text_forms.h"
 #include "sw/files/whole_file.h"
 #include "sw/media/encode.h"
@@ -37,35 +38,26 @@ using Json = nlohmann::ordered_json;
 using platform::BoardConfig;
 
 constexpr std::chrono::milliseconds kBetweenPolls{100};
-constexpr double kVisible =
-    0.0005;  // frames per second: a change that changes the rate by less has no effect
 
-// The command that runs the run again.
+// The command that runs the run again, with the options of run.json that its figures depend on.
 std::string command_of(const runs::RecordedRun& run) {
-  const runs::RecordedOptions& options = run.options;
+  static const std::set<std::string> others = {"schema", "command",     "version",
+                                               "verify", "save_frames", "record"};
   std::string text =
       "stereotlm run " + files::shell_word((std::filesystem::path(run.folder) / "config.yaml").string());
-  const auto add = [&text](const char* name, const std::string& value) {
-    text += fmt::format(" {} {}", name, files::shell_word(value));
+  const auto add = [&text](const Json& value) {
+    text += " " + files::shell_word(value.is_string() ? value.get<std::string>() : value.dump());
   };
-  if (options.source != "camera") add("--source", options.source);
-  if (options.fidelity != "fast") add("--fidelity", options.fidelity);
-  add("--frames", std::to_string(options.frames));
-  if (options.left) add("--left", options.left->path);
-  if (options.right) add("--right", options.right->path);
-  if (options.sequence) add("--sequence", options.sequence->path);
-  if (!options.video.empty()) {
-    text += " --video";
-    for (const runs::InputFile& file : options.video) text += " " + files::shell_word(file.path);
-    add("--video-layout", options.video_layout);
+  const Json options = Json::parse(run.run_json);
+  for (const auto& [key, value] : options.items()) {
+    if (others.count(key) > 0 || value == "camera" || value == "fast") continue;
+    std::string option = key;
+    std::replace(option.begin(), option.end(), '_', '-');
+    text += " --" + option;
+    for (const Json& file : value.is_array() ? value : Json::array()) add(file.at("path"));
+    if (value.is_object()) add(value.at("path"));
+    if (value.is_string() || value.is_number()) add(value);
   }
-  if (options.synthetic) add("--synthetic", std::to_string(*options.synthetic));
-  if (options.calibration) add("--calibration", options.calibration->file.path);
-  if (options.truth) {
-    add("--truth", options.truth->path);
-    add("--truth-scale", fmt::format("{}", options.truth_scale));
-  }
-  if (options.timing_only) text += " --timing-only";
   return text + " --out DIR";
 }
 
@@ -119,31 +111,28 @@ Json bounds_of(const BoardConfig& board, const platform::Tables& tables, bool ca
   return bounds;
 }
 
-Json json_of(const area::Area& area) {
-  Json json = stats::area_json(area);
-  json["fits"] = area.fits();
-  return json;
-}
-
+// The area with all that the device has.
 Json area_data(const BoardConfig& board) {
   const area::Device& device = platform::device_of(board);
-  Json items = Json::array();
-  for (const area::Item& item : platform::area_items(board)) {
-    items.push_back({{"name", item.name},
-                     {"count", item.count},
-                     {"luts", item.all.luts},
-                     {"flip_flops", item.all.flip_flops},
-                     {"block_rams", item.all.block_rams},
-                     {"multipliers", item.all.multipliers},
-                     {"lut_equivalents", item.lut_equivalents()}});
-  }
-  return {{"device",
-           {{"name", device.name},
-            {"slices", device.slices},
-            {"block_rams", device.block_rams},
-            {"multipliers", device.multipliers}}},
-          {"items", std::move(items)},
-          {"total", json_of(platform::area_of(board))}};
+  Json data = stats::area_document(board);
+  data["device"] = {{"name", device.name},
+                    {"slices", device.slices},
+                    {"block_rams", device.block_rams},
+                    {"multipliers", device.multipliers}};
+  return data;
+}
+
+// The identities among the figures of the run, which was checked when it was loaded.
+Json identities_of(const runs::RecordedRun& run) {
+  std::vector<platform::Identity> identities;
+  platform::Audit audit(&identities);
+  platform::audit_core(run.statistics, audit);
+  platform::audit_accesses(run.board, run.statistics, audit);
+  if (run.statistics.computer) platform::audit_computer(*run.statistics.computer, audit);
+  Json all = Json::array();
+  for (const platform::Identity& each : identities)
+    all.push_back({each.what, each.left, each.as, each.right});
+  return all;
 }
 
 std::string png_url(const std::string& bytes) {
@@ -179,7 +168,6 @@ void add_banks_taken(const BoardConfig& board, const BoardConfig& changed, Json&
 // What a board costs and how hard its busiest bank works.
 void add_prices(const BoardConfig& board, const runs::Explanation::BusiestBank& busiest, Json& data) {
   const double pixels = static_cast<double>(board.image.width) * board.image.height;
-  data["area"] = json_of(platform::area_of(board));
   data["banks_used"] = banks_used(board).size();
   data["busiest_bank"] = {{"name", busiest.name},
                           {"accesses_per_pixel", busiest.accesses_per_frame / pixels}};
@@ -207,6 +195,7 @@ Json run_data(const runs::RecordedRun& run, const platform::Tables& tables) {
       {"banks", banks_of(board)},
       {"bounds", bounds_of(board, tables, run.options.source == "camera")},
       {"area", area_data(board)},
+      {"identities", identities_of(run)},
       {"memory_chart", memory_chart_svg({board, run.statistics.computer.has_value(), &run.statistics})}};
   if (!run.options.timing_only) {
     data["pictures"] = {{"disparity", png_url(read("disparity.png"))},
@@ -246,40 +235,16 @@ void add_recorded_files(const runs::RecordedRun& run, Json& data) {
 }
 
 Json knobs_data(const BoardConfig& board, runs::Explanation& explanation) {
-  using Explanation = runs::Explanation;
-  const Explanation::Rate now = explanation.now();
-  Json base = {{"frames_per_second", now.frames_per_second},
-               {"frames", explanation.frames()},
-               {"loses_pixels", now.loses_pixels},
-               {"limited_by", runs::limiter_text(explanation)}};
-  add_prices(board, explanation.busiest_bank(), base);
-  Json steps = Json::array();
-  Json failed = Json::array();
-  for (const Explanation::Step& found : explanation.steps()) {
-    const explore::KnobStep& knob = *found.step;
-    Json step = {{"knob", knob.knob}, {"from", knob.from}, {"to", knob.to}};
-    if (!found.rate.failure.empty()) {
-      step["reason"] = found.rate.failure;
-      failed.push_back(std::move(step));
-      continue;
-    }
-    step["frames_per_second"] = found.rate.frames_per_second;
-    step["has_effect"] = found.rate.loses_pixels != now.loses_pixels ||
-                         std::abs(found.rate.frames_per_second - now.frames_per_second) >= kVisible;
-    step["changes_disparities"] = knob.changes_disparities;
-    step["loses_pixels"] = found.rate.loses_pixels;
-    step["sets"] = knob.sets;
-    add_prices(knob.board, found.busiest, step);
-    add_banks_taken(board, knob.board, step);
-    steps.push_back(std::move(step));
+  Json data = runs::explanation_document(board, explanation);
+  add_prices(board, explanation.busiest_bank(), data);
+  std::size_t number = 0;
+  for (const runs::Explanation::Step& found : explanation.steps()) {
+    if (!found.rate.failure.empty()) continue;
+    Json& change = data["changes"][number++];
+    add_prices(found.step->board, found.busiest, change);
+    add_banks_taken(board, found.step->board, change);
   }
-  Json forbidden = Json::array();
-  for (const explore::KnobStep& step : explanation.knobs().forbidden)
-    forbidden.push_back({{"knob", step.knob}, {"from", step.from}, {"to", step.to}, {"reason", step.reason}});
-  return {{"board", std::move(base)},
-          {"steps", std::move(steps)},
-          {"forbidden", std::move(forbidden)},
-          {"failed", std::move(failed)}};
+  return data;
 }
 
 }  // namespace stereotlm::report

@@ -56,28 +56,21 @@ class Rows:
         self.points = points
         self.places = sorted(chosen, key=lambda place: [natural(column[place]) for column in keys])
         self.names = self._names(NAMES * (options.size or (WIDTH,))[0])
-        self.edges = self._lay_out()  # inches from the top
+        self.edges = [0]  # inches from the top
+        for name in self.names:
+            self.edges.append(self.edges[-1] + max(ROW, (name.count("\n") + 1) * LINE + 0.06))
         self.centers = [(top + bottom) / 2 for top, bottom in zip(self.edges, self.edges[1:])]
         self.height = self.edges[-1]
         self.least = CLOSEST * sum(name.count("\n") + 1.2 for name in self.names)
 
     def _names(self, width):
         short = short_names(self.points.varied)
-        names = []
-        for place in self.places:
-            parts = [f"{short[key]}={text_of(self.points.column(key)[place])}".replace(" ",
-                                                                                       "\N{NO-BREAK SPACE}")
-                     for key in self.points.varied]
-            names.append(", ".join(parts))
-        if not self.points.varied:
+        names = [", ".join(f"{short[key]}={text_of(value)}".replace(" ", "\N{NO-BREAK SPACE}")
+                           for key, value in zip(short, values))
+                 for values in self.points.rows(short, self.places)]
+        if not short:
             names = [text_of(self.points.column("name")[place]) for place in self.places]
         return ["\n".join(style.wrapped(name, SMALL_SIZE, width)) for name in names]
-
-    def _lay_out(self):
-        edges = [0]
-        for name in self.names:
-            edges.append(edges[-1] + max(ROW, (name.count("\n") + 1) * LINE + 0.06))
-        return edges
 
     def left(self):
         """The width of the names in inches."""
@@ -146,9 +139,9 @@ def states(points, options):
                          cycles,
                          "cycles a frame")
     header = ["hash", *points.varied, "frames", "port", *STATES]
-    table = [[*(points.column(each)[place] for each in header[: len(points.varied) + 2]), port,
-              *(cycles(place, port, count) for count in STATES)]
-             for place in rows.places for port in ports]
+    table = [[*of_point, port, *(cycles(place, port, count) for count in STATES)]
+             for place, of_point in zip(rows.places, points.rows(header[:-len(STATES) - 1], rows.places))
+             for port in ports]
     return Drawing(sheet, header, table,
                    f"{counted(len(rows.places), 'point')}, {counted(len(ports), 'port')}")
 
@@ -168,8 +161,8 @@ def stalls(points, options):
     sheet = stacked(points, options, rows, "Which port waits, and for whom", stalled, CAUSES, cycles,
                          "cycles a frame in which the port waits")
     header = ["hash", *points.varied, "frames", "port", "bank", "by", "cycles"]
-    table = [[*(points.column(each)[place] for each in header[:-4]), *row]
-             for place in rows.places for row in blame[place]]
+    table = [[*of_point, *row] for place, of_point in zip(rows.places, points.rows(header[:-4], rows.places))
+             for row in blame[place]]
     said = f"{counted(len(rows.places), 'point')}, {counted(len(stalled), 'port')} with waits"
     return Drawing(sheet, header, table, said)
 
@@ -215,6 +208,5 @@ def use(points, options):
         side.set_visible(False)
     sheet.color_bar(shown, "use of the bank, % of cycles", 0.42)
     header = ["hash", *points.varied, *columns]
-    table = [[points.column(each)[place] for each in header] for place in rows.places]
-    return Drawing(sheet, header, table,
+    return Drawing(sheet, header, points.rows(header, rows.places),
                    f"{counted(len(rows.places), 'point')}, {counted(len(banks), 'bank')}")

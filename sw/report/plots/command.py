@@ -6,6 +6,7 @@ Exit status: 0 done; 2 refused before anything was written; 1 failed after that;
 """
 
 import argparse
+import csv
 import errno
 import os
 import re
@@ -218,6 +219,11 @@ def main(description, figures, check=None):
     except OSError as error:
         tell("error", error)
         sys.exit(1)
+
+
+def read_table(folder, name):
+    with open(os.path.join(folder, f"{name}.csv"), newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
 
 
 def main_of_tables(description, read, figures):

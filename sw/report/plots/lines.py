@@ -101,12 +101,11 @@ def draw(points, options, heading, x, x_keys, panels, best=False):
     listed = [each for panel in panels for each in panel.listed]
     columns = list(dict.fromkeys(["hash", *points.varied, x, *drawn, *listed]))
     places.sort(key=lambda place: ([natural(points.column(key)[place]) for key in families.keys], xs[place]))
-    rows = [[points.column(each)[place] for each in columns] for place in places]
     if families.envelopes:
         lines = counted(len(families.envelopes), "envelope")
     else:
         lines = "without lines" if families.as_points else counted(len(families.all), "line")
-    return Drawing(sheet, columns, rows, f"{counted(len(places), 'point')}, {lines}")
+    return Drawing(sheet, columns, points.rows(columns, places), f"{counted(len(places), 'point')}, {lines}")
 
 
 def handles(families, panels, best, with_dots):

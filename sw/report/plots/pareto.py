@@ -134,7 +134,8 @@ def draw(points, options):
                                   *lost]))
     order = sorted(range(len(places)),
                    key=lambda at: (of_front.get(at, len(front)), points.hashes[places[at]]))
-    rows = [[*(points.column(each)[places[at]] for each in columns), int(at in of_front)] for at in order]
+    table = points.rows(columns, [places[at] for at in order])
+    rows = [[*row, int(at in of_front)] for at, row in zip(order, table)]
     said = f"{counted(len(places), 'point')}, {len(front)} of them on the front"
     return Drawing(sheet, [*columns, "front"], rows, said)
 

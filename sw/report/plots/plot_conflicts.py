@@ -2,7 +2,6 @@
 """The figures of stereotlm conflicts, from its tables: where in the picture and when in a frame ports wait
 for banks."""
 
-import csv
 import json
 import os
 
@@ -19,11 +18,6 @@ KINDS = ["core", "capture", "upload", "read_back"]
 BANK_COLORS = [style.BLUE, style.GREEN, style.SKY, style.PINK, style.ORANGE, style.BLACK, style.GRAY]
 
 
-def read(folder, name):
-    with open(os.path.join(folder, name), newline="", encoding="utf-8") as file:
-        return list(csv.DictReader(file))
-
-
 class Recorded:
     """What a run has recorded. tiles: rows of conflicts.csv; sums, frame: columns of rows.csv, the fill
     first."""
@@ -31,8 +25,9 @@ class Recorded:
     def __init__(self, folder):
         with open(os.path.join(folder, "about.json"), encoding="utf-8") as file:
             self.about = json.load(file)
-        self.tiles = read(folder, "conflicts.csv")
-        self.sums, self.frame = (self._columns(read(folder, name)) for name in ("sums.csv", "frame.csv"))
+        self.tiles = command.read_table(folder, "conflicts")
+        self.sums, self.frame = (self._columns(command.read_table(folder, name))
+                                 for name in ("sums", "frame"))
         path = os.path.join(folder, "picture.raw")
         self.picture = (numpy.fromfile(path, numpy.uint8).reshape(-1, self.about["width"])
                         if os.path.exists(path) else None)

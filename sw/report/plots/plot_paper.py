@@ -1,21 +1,16 @@
 #!/usr/bin/python3
 """The figures of stereotlm paper, from its tables: the paper's Tables 1 and 2 and its number of banks."""
 
-import csv
-import os
-
 import command
 import style
 from drawing import HEAD, Sheet, ticks_at
+from matplotlib.lines import Line2D
 from style import QUIET, bound, bound_handle, line_handle
 
 MODEL, PAPER, SECOND = style.BLUE, style.VERMILION, style.GREEN
 RULE = "#EEEEEE"  # where the rule holds
-
-
-def read(folder, name):
-    with open(os.path.join(folder, f"{name}.csv"), newline="", encoding="utf-8") as file:
-        return list(csv.DictReader(file))
+PRINTED = {"color": PAPER, "marker": "D", "linestyle": "", "markersize": 5, "markerfacecolor": "white",
+           "markeredgewidth": 1.3}
 
 
 def numbers(rows, column):
@@ -34,18 +29,8 @@ def filter_of(row):
     return "no filter" if row["matcher.filter"] == "none" else f"filter {row['matcher.filter']}"
 
 
-def paper_handle():
-    return (line_handle(PAPER, "D", "", markersize=5, markerfacecolor="white", markeredgewidth=1.3),
-            "printed in the paper")
-
-
-def paper_points(axes, xs, ys):
-    axes.plot(xs, ys, color=PAPER, marker="D", linestyle="", markersize=5, markerfacecolor="white",
-              markeredgewidth=1.3, zorder=4)
-
-
-def model_line(axes, xs, ys, color=MODEL, **look):
-    axes.plot(xs, ys, color=color, zorder=3, **style.POINT, **look)
+def model_line(axes, xs, ys):
+    axes.plot(xs, ys, color=MODEL, zorder=3, **style.POINT)
 
 
 def rule_panel(axes, tolerance, most, label, x_label, xs):
@@ -60,12 +45,12 @@ def rule_panel(axes, tolerance, most, label, x_label, xs):
 
 def table1(folder, options):
     """Draws frames per second over the window and, below, the deviation from the paper."""
-    rows = sorted(read(folder, "table1"), key=lambda row: int(row["window"]))
+    rows = sorted(command.read_table(folder, "table1"), key=lambda row: int(row["window"]))
     xs = [int(row["window"]) for row in rows]
     board, tolerance = rows[0], float(rows[0]["tolerance_percent"])
     sheet = Sheet("The paper's Table 1: frame rate against the window", options.size, options.format)
-    sheet.legend([paper_handle(), (line_handle(MODEL, "o"), "model, the core alone"),
-                  (bound_handle(MODEL), "bound")])
+    sheet.legend([(Line2D([], [], **PRINTED), "printed in the paper"),
+                  (line_handle(MODEL, "o"), "model, the core alone"), (bound_handle(MODEL), "bound")])
     sheet.note(f"Table 1: {image_of(board)}, {board['matcher.disparities']} disparities, "
                f"{filter_of(board)}, {board['fpga.clock_mhz']} MHz. Below: model less paper, with the rule "
                f"({board['rule']}) shaded; the bar is what rounding to the printed digit leaves open.")
@@ -74,7 +59,7 @@ def table1(folder, options):
     printed = numbers(rows, "paper_frames_per_second")
     rates.plot(xs, bounds, **bound(MODEL))
     model_line(rates, xs, values)
-    paper_points(rates, xs, printed)
+    rates.plot(xs, printed, zorder=4, **PRINTED)
     rates.set_ylim(0, max(printed + bounds) * 1.08)
     rates.set_ylabel("core, frames/s")
     percents = numbers(rows, "deviation_percent")
@@ -95,7 +80,7 @@ def table1(folder, options):
 def table2(folder, options):
     """Draws slices over the disparities and, below, the error. Bars: what rounding in the paper leaves
     open."""
-    rows = sorted(read(folder, "table2"), key=lambda row: int(row["disparities"]))
+    rows = sorted(command.read_table(folder, "table2"), key=lambda row: int(row["disparities"]))
     xs = [int(row["disparities"]) for row in rows]
     board, tolerance = rows[0], float(rows[0]["size_tolerance_points"])
     printed, values = numbers(rows, "paper_slices_percent"), numbers(rows, "model_slices_percent")
@@ -103,15 +88,14 @@ def table2(folder, options):
     below = [value - low for value, low in zip(printed, least)]
     above = [high - value for value, high in zip(printed, most)]
     sheet = Sheet("The paper's Table 2: area against the disparities", options.size, options.format)
-    sheet.legend([paper_handle(),
+    sheet.legend([(Line2D([], [], **PRINTED), "printed in the paper"),
                   (line_handle(MODEL, "o"), "model, counted; one constant is fitted to these rows")])
     sheet.note(f"Table 2: window {window_of(board)}, {board['fpga.device'].upper()}. Below: model less "
                f"paper, with the rule ({board['size_rule']}) shaded; the bars are what rounding to whole "
                "percents leaves open.")
     sizes, errors = sheet.grid([2.5, 1.5])
     model_line(sizes, xs, values)
-    sizes.errorbar(xs, printed, yerr=[below, above], color=PAPER, linestyle="", marker="D", markersize=5,
-                   markerfacecolor="white", markeredgewidth=1.3, capsize=3, linewidth=1, zorder=4)
+    sizes.errorbar(xs, printed, yerr=[below, above], capsize=3, linewidth=1, zorder=4, **PRINTED)
     sizes.set_ylim(0, max(most + values) * 1.08)
     sizes.set_ylabel("area, % of the slices")
     errors.errorbar(xs, numbers(rows, "error_points"), yerr=[above, below], color=MODEL, linestyle="",
@@ -124,8 +108,8 @@ def table2(folder, options):
 
 def banks(folder, options):
     """Draws frame rates over the number of banks: the best of the core, and those of runs of the computer."""
-    rows = read(folder, "banks")
-    printed = {row["claim"]: row["paper"] for row in read(folder, "claims")}
+    rows = command.read_table(folder, "banks")
+    printed = {row["claim"]: row["paper"] for row in command.read_table(folder, "claims")}
     computer = [row for row in rows if row["claim"] == "banks_of_computer"]
     board = rows[0]
     sheet = Sheet("Frame rate against the number of memory banks", options.size, options.format)

@@ -192,6 +192,11 @@ class Points:
                 self._columns[name] = [None] * len(self.hashes)
         return self._columns[name]
 
+    def rows(self, names, places):
+        """The values of these columns at these places, a list for each place."""
+        columns = [self.column(name) for name in names]
+        return [[column[place] for column in columns] for place in places]
+
     def blame(self, place):
         """The stalls of one point: rows (port, bank, by, cycles). by: the port that was granted, or
         turnaround."""

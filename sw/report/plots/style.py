@@ -104,10 +104,10 @@ def wrapped(text, size, width, indent="", bold=False):
     return [*lines, line]
 
 
-def bound(color, of_x=False, **more):
+def bound(color, of_x=False):
     """The look of the bounds of points that are drawn in this color; of_x: bounds of x, not of y."""
     return {"color": color, "linestyle": "", "marker": LID_OF_X if of_x else LID, "markersize": 11,
-            "markerfacecolor": "none", "markeredgewidth": 1.1, "zorder": 3.2, "gid": "bound", **more}
+            "markerfacecolor": "none", "markeredgewidth": 1.1, "zorder": 3.2, "gid": "bound"}
 
 
 def line_handle(color, marker, dashes="-", **look):

@@ -699,7 +699,7 @@ class Answers(PageTest):
     def test_each_resource_of_the_fpga_has_its_own_number(self):
         def change(run):
             run["area"]["device"].update(block_rams=50, multipliers=200)
-            run["area"]["total"].update(block_rams=10, multipliers=10)
+            run["area"].update(block_rams=10, multipliers=10)
 
         self.opened(core(), change)
         uses = self.browser.text("#area .uses")
@@ -717,7 +717,7 @@ class Answers(PageTest):
         answer = self.answer("What to change first?")
         (step,
          ) = [step
-              for step in data_of(page_of(core()))["run"]["knobs"]["steps"] if step["knob"] == "a bank more"]
+              for step in data_of(page_of(core()))["run"]["knobs"]["changes"] if step["key"] == "a bank more"]
         self.assertIn(f"To try it: --set '{step['sets'][0]}'.", answer)
         self.assertIn("Only changes that keep the disparities are named, and that gain 1 % or more.", answer)
 
@@ -741,18 +741,18 @@ class Answers(PageTest):
                       self.answer("What limits?"))
 
     def steps(self, *changed):
-        """Changes the steps of a run to these: (knob, from, to, gain in %, what else differs from the
+        """Changes the steps of a run to these: (key, from, to, gain in %, what else differs from the
         board)."""
 
         def change(run):
-            board = run["knobs"]["board"]
-            run["knobs"]["steps"] = [
-                {**board, "knob": knob, "from": before, "to": to, "has_effect": True,
-                 "changes_disparities": False,
-                 "frames_per_second": board["frames_per_second"] * (1 + gain / 100), "idle_banks": [],
-                 "new_banks": 0, "sets": [f"{knob}={to}"], **more,
+            board = run["knobs"]
+            board["changes"] = [
+                {**board, "key": key, "from": before, "to": to, "changes_disparities": False,
+                 "frames_per_second": board["frames_per_second"] * (1 + gain / 100),
+                 "gained_frames_per_second": 1, "gained_percent": gain, "idle_banks": [],
+                 "new_banks": 0, "sets": [f"{key}={to}"], **more,
                  "area": {**board["area"], **more.get("area", {})}}
-                for knob, before, to, gain, more in changed
+                for key, before, to, gain, more in changed
             ]
 
         return change
@@ -760,7 +760,7 @@ class Answers(PageTest):
     def test_the_first_change_needs_nothing_new(self):
         slices = lambda more, percent: {"area": {
             "slices": self.area["slices"] + more, "slices_percent": self.area["slices_percent"] + percent}}
-        self.area = data_of(page_of(core()))["run"]["knobs"]["board"]["area"]
+        self.area = data_of(page_of(core()))["run"]["knobs"]["area"]
         large = ("matcher.rows", "1", "2", 40, slices(6016, 17.8))
         largest = ("matcher.fetch", "column", "line_buffer", 40, slices(9830, 29.1))
         kind = ("ssram.banks.*.kind", "zbt_pipelined", "qdr", 6, {})
@@ -789,12 +789,12 @@ class Answers(PageTest):
     def test_a_change_that_reaches_another_limit_says_so(self):
         def change(run):
             run["bounds"]["computer"] = [{"resource": "camera", "frames_per_second": 29.97}]
-            run["knobs"]["board"]["frames_per_second"] = 20
+            run["knobs"]["frames_per_second"] = 20
             self.steps((key, "a", "b", gain, {}))(run)
 
-        for key, gain, text in (("matcher.cost", 49.85, "(+49.8 %), where the cameras limit."),
+        for key, gain, text in (("matcher.cost", 49.85, "(+49.9 %), where the cameras limit."),
                                 ("matcher.cost", 49, "(+49.0 %)."),
-                                ("cameras.trigger", 49.85, "(+49.8 %).")):
+                                ("cameras.trigger", 49.85, "(+49.9 %).")):
             self.opened(computer(), change)
             self.assertIn(f"{text}To try it: ", self.answer("What to change first?"))
 
@@ -828,9 +828,8 @@ class TwoRuns(PageTest):
     def test_lead_with_the_change_and_have_the_words_of_one_run(self):
         a, b = two_computers()
         data = data_of(page_of(a, b))
-        data["runs"][1]["settings"][0]["value"] = "another name"
+        data["difference"]["settings"].insert(0, {"path": "name", "a": "fpl2003", "b": "another name"})
         data["difference"]["verdict"] = "in B left_lut waits 123456 cycles a frame more"
-        self.assertEqual(data["runs"][1]["settings"][0]["key"], "name")
         self.browser.open(with_data(page_of(a, b), data, self.folder / "page.html"))
         (rate_a, rate_b) = (self.stats(folder)["frames_per_second"]["steady"] for folder in (a, b))
         head = self.browser.text("h1")

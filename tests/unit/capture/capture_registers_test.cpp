@@ -34,7 +34,6 @@ TEST_F(CaptureRegisters, AreZeroAtFirstAndKeepTheBufferAddress) {
     EXPECT_EQ(reg(address), 0U) << address;
   side->write(kBufferAddress, 0xFEDC'BA98);
   EXPECT_EQ(reg(kBufferAddress), 0xFEDC'BA98);
-  EXPECT_EQ(side->host.debug_read(kBufferAddress, 1), std::vector<std::uint32_t>{0xFEDC'BA98});
 }
 
 TEST_F(CaptureRegisters, RefuseIncorrectAccessesWithoutEffect) {
@@ -56,8 +55,6 @@ TEST_F(CaptureRegisters, RefuseIncorrectAccessesWithoutEffect) {
   EXPECT_EQ(stats().refused_accesses, refused.size());
   EXPECT_EQ(side->status(), 0U);
   EXPECT_EQ(reg(kBufferAddress), 0U);
-  EXPECT_EQ(side->host.debug_write(kBufferAddress, {4}), 0U);
-  EXPECT_EQ(side->host.debug_read(kControl, 1).size(), 0U);
 }
 
 // The interrupt is raised when the last word has left.

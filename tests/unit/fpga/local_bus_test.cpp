@@ -66,28 +66,27 @@ class LocalBusTest : public testing::Test {
   TestHost unused{"unused"};
   memory::SsramBank bank{"bank", {kWords, memory::BankKind::kZbtPipelined, 0, 40}};
   RegisterFile register_file{"register_file"};
-  LocalBus bus{"bus", {1e6 / static_cast<double>(kLocalPs), {{0, 8}}}, kBanks};  // one buffer of two words
+  LocalBus bus{"bus", 1e6 / static_cast<double>(kLocalPs), kBanks};
   Collected<HostRoute> routes;
   Collected<FrameStart> starts;
   sc_core::sc_signal<bool> done{"done"};
 };
 
-TEST_F(LocalBusTest, CountsTheWordsWrittenToEachBuffer) {
-  using Counts = std::vector<std::uint64_t>;
-  const auto expect_words = [this](const Counts& granted, const Counts& to_grant) {
-    EXPECT_EQ(bus.control().words_granted().words(), granted);
-    EXPECT_EQ(bus.control().words_to_grant().words(), to_grant);
+TEST_F(LocalBusTest, CountsTheWordsWrittenAndThoseThatWait) {
+  const auto expect_words = [this](std::uint64_t granted, std::uint64_t to_grant) {
+    EXPECT_EQ(bus.stats().words_written, granted);
+    EXPECT_EQ(bus.control().words_to_grant(), to_grant);
   };
   host.request(TLM_WRITE_COMMAND, 4, Words{5, 6, 7});
-  expect_words({0, 0}, {1, 2});
+  expect_words(0, 3);
   grant(3 * kLocalPs);
   grant(4 * kLocalPs);
-  expect_words({1, 1}, {0, 1});
+  expect_words(2, 1);
   grant(5 * kLocalPs);
-  expect_words({1, 2}, {0, 0});
+  expect_words(3, 0);
   run_until(20);
   host.request(TLM_READ_COMMAND, 4, Words(2));
-  expect_words({1, 2}, {0, 0});
+  expect_words(3, 0);
 }
 
 TEST_F(LocalBusTest, TransfersTheOtherWordsBesideOneThatIsRefused) {
@@ -136,13 +135,12 @@ TEST_F(LocalBusTest, RefusesAtOnceAccessesThatAreNoBurst) {
   EXPECT_EQ(host.read(0).status, tlm::TLM_GENERIC_ERROR_RESPONSE);  // blocking transport
 }
 
-TEST_F(LocalBusTest, ReachesBanksAndRegistersByDebugTransport) {
+TEST_F(LocalBusTest, ReachesBanksByDebugTransport) {
   EXPECT_EQ(host.debug_write(12, {77}), 4U);
   EXPECT_EQ(bank.words()[3], 77U);
-  EXPECT_EQ(host.debug_read(kLocalRegisters + registers::kStatus, 1), Words{0});
+  EXPECT_EQ(host.debug_read(kLocalRegisters + registers::kStatus, 1), Words());
   tlm::tlm_dmi dmi;
-  EXPECT_TRUE(host.dmi(0, dmi));
-  EXPECT_EQ(dmi.get_end_address(), kWords * 4 - 1);
+  EXPECT_FALSE(host.dmi(0, dmi));
 }
 
 TEST_F(LocalBusTest, ReportsPhasesOutOfOrder) {

@@ -118,15 +118,6 @@ TEST_F(RegisterFileTest, RefusesAccessesThatAreNotOneWordOfARegister) {
   EXPECT_EQ(host.read(registers::kEnd).status, tlm::TLM_ADDRESS_ERROR_RESPONSE);
 }
 
-TEST_F(RegisterFileTest, LetsDebugTransportReadAndNotWrite) {
-  host.write(registers::kDisparityBase, 42);
-  EXPECT_EQ(host.debug_read(registers::kDisparityBase, 1), (std::vector<std::uint32_t>{42}));
-  EXPECT_TRUE(host.debug_read(kControl, 1).empty());
-  EXPECT_TRUE(host.debug_read(registers::kEnd, 1).empty());
-  EXPECT_EQ(host.debug_write(registers::kDisparityBase, {43}), 0U);
-  EXPECT_EQ(host.read(registers::kDisparityBase).word, 42U);
-}
-
 TEST(RegisterMap, PlacesABaseInTheAddressesOfTheCrossbar) {
   EXPECT_EQ(registers::base_address(registers::base(0, 0)), 0U);
   EXPECT_EQ(registers::base_address(registers::base(1, 5)), (std::uint64_t{1} << 28U) + 20);

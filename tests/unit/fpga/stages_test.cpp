@@ -7,7 +7,6 @@
 #include "models/fpga/lut_reader.h"
 #include "models/fpga/pixel_reader.h"
 #include "models/fpga/result_writer.h"
-#include "models/fpga/row_buffer.h"
 #include "models/kernels/rectification_table.h"
 #include "models/memory/ssram_bank.h"
 #include "tests/support/expected_report.h"
@@ -101,12 +100,6 @@ TEST_F(PixelReaderTest, ReportsASlotThatItDoesNotHave) {
   const ExpectedReport report("/stereotlm/pixel_reader", 2);
   EXPECT_THROW(stage.handle(kAt), sc_core::sc_report);
   EXPECT_THROW(stage.release(), sc_core::sc_report);
-}
-
-TEST(RowBuffer, RefusesASizeOutsideItsRange) {
-  EXPECT_THROW(RowBuffer("narrow", 3, 3, 1), std::invalid_argument);
-  EXPECT_THROW(RowBuffer("even", 4, 2, 1), std::invalid_argument);
-  EXPECT_THROW(RowBuffer("empty", 4, 3, 0), std::invalid_argument);
 }
 
 class ResultWriterTest : public StageTest<ResultWriter> {

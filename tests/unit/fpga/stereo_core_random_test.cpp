@@ -44,7 +44,7 @@ StereoCoreConfig random_board(SplitMix64& random, Fidelity fidelity) {
   draw_cost(random, board.core);
   const std::vector<double> clocks = {40, 50, 80};
   board.core.clock_mhz = clocks[static_cast<std::size_t>(random.between(0, 2))];
-  board.local_bus.clock_mhz =
+  board.local_bus_clock_mhz =
       random.chance(50) ? board.core.clock_mhz : clocks[static_cast<std::size_t>(random.between(0, 2))];
   board.memory.arbiter = random_arbiter(random);
   for (int banks = random.between(1, 8); banks > 0; --banks) {
@@ -170,13 +170,8 @@ class HostedRun {
     const int how = random.between(0, 9);
     if (how < 5) {
       bus_.access(tlm::TLM_WRITE_COMMAND, address, entries);
-    } else if (how < 9) {
-      bus_.debug_write(address, entries);
     } else {
-      tlm::tlm_dmi dmi;
-      bus_.dmi(address, dmi);
-      std::copy(entries.begin(), entries.end(),
-                reinterpret_cast<std::uint32_t*>(dmi.get_dmi_ptr() + (address - dmi.get_start_address())));
+      bus_.debug_write(address, entries);
     }
   }
 

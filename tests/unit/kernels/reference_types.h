@@ -5,6 +5,8 @@
 #include <optional>
 #include <vector>
 
+#include "models/kernels/image_filter.h"
+#include "models/kernels/image_matcher.h"
 #include "models/kernels/stereo.h"
 #include "tests/support/random_board.h"
 #include "tests/support/reference_arithmetic.h"
@@ -57,6 +59,30 @@ inline ReferenceCost any_cost(int number) {
   constexpr ReferenceCost kAll[kCosts] = {{Kind::kSad, 0},    {Kind::kSsd, 0},    {Kind::kZncc, 0},
                                           {Kind::kCensus, 3}, {Kind::kCensus, 5}, {Kind::kCensus, 7}};
   return kAll[number % kCosts];
+}
+
+// The filtered image (F of contract 1.2).
+inline kernels::GrayImage filter_image(const kernels::GrayImage& image, const kernels::FilterKernel& kernel) {
+  kernels::ImageFilter filter(image.width, image.height, kernel);
+  kernels::GrayImage filtered = image;
+  filtered.pixels.resize(image.pixels.size() + kernels::ImageFilter::kPadding);
+  filter.run(image.pixels.data(), filtered.pixels.data());
+  filtered.pixels.resize(image.pixels.size());
+  return filtered;
+}
+
+// The disparities of two filtered images of one size (contract 1.3, 7.6).
+struct Matches {
+  kernels::GrayImage right_based;  // dR
+  kernels::GrayImage left_based;   // dL
+};
+inline Matches match(const kernels::GrayImage& left, const kernels::GrayImage& right, int window,
+                     int disparities, const kernels::MatchingCost& cost = {}) {
+  kernels::ImageMatcher matcher(left.width, left.height, window, disparities, true, cost);
+  Matches matches{left, left};
+  matcher.run(left.pixels.data(), right.pixels.data(), matches.left_based.pixels.data(),
+              matches.right_based.pixels.data());
+  return matches;
 }
 
 inline kernels::StereoConfig stereo_config(const RandomBoard& board) {

@@ -51,7 +51,7 @@ GrayImage filtered_by_opencv(const GrayImage& image, const FilterKernel& kernel)
 TEST(StereoAndOpenCv, HaveTheSameFilter) {
   test::SplitMix64 random(2);
   const GrayImage full_size = noise(320, 240, random);
-  EXPECT_TRUE(filter_image(full_size, log7()) == filtered_by_opencv(full_size, log7()));
+  EXPECT_TRUE(test::filter_image(full_size, log7()) == filtered_by_opencv(full_size, log7()));
   int filters = 0;
   for (std::uint64_t seed = 0; seed < 400; ++seed) {
     const test::RandomBoard board = test::make_random_board(seed);
@@ -59,7 +59,7 @@ TEST(StereoAndOpenCv, HaveTheSameFilter) {
     ++filters;
     const GrayImage image = noise(board.width, board.height, random);
     const FilterKernel kernel = *test::filter_kernel(board.filter);
-    ASSERT_TRUE(filter_image(image, kernel) == filtered_by_opencv(image, kernel)) << describe(board);
+    ASSERT_TRUE(test::filter_image(image, kernel) == filtered_by_opencv(image, kernel)) << describe(board);
   }
   EXPECT_GT(filters, 200);
 }
@@ -95,7 +95,7 @@ GrayImage matched_by_opencv(const GrayImage& left, const GrayImage& right, int w
 void expect_same_search(int width, int height, int window, int disparities, test::SplitMix64& random) {
   const GrayImage left = noise(width, height, random);
   const GrayImage right = noise(width, height, random);
-  EXPECT_TRUE(match(left, right, window, disparities).left_based ==
+  EXPECT_TRUE(test::match(left, right, window, disparities).left_based ==
               matched_by_opencv(left, right, window, disparities))
       << width << " x " << height << ", window " << window << ", disparities " << disparities;
 }

@@ -28,13 +28,14 @@ void expect_reference(const RandomBoard& board) {
   const auto expected = test::compute_reference(test::reference_input(board, 0));
   const GrayImage left = test::gray_image(board, expected.filtered_left);
   const GrayImage right = test::gray_image(board, expected.filtered_right);
-  const Matches matches =
-      match(left, right, board.window, board.disparities, test::matching_cost(board.cost));
+  const test::Matches matches =
+      test::match(left, right, board.window, board.disparities, test::matching_cost(board.cost));
   EXPECT_EQ(with_invalid_as_minus_1(matches.right_based), expected.right_based);
   EXPECT_EQ(with_invalid_as_minus_1(matches.left_based), expected.left_based);
   if (board.filter) {
     const GrayImage rectified = test::gray_image(board, expected.rectified_left);
-    EXPECT_EQ(filter_image(rectified, *test::filter_kernel(board.filter)).pixels, expected.filtered_left);
+    EXPECT_EQ(test::filter_image(rectified, *test::filter_kernel(board.filter)).pixels,
+              expected.filtered_left);
   }
   EXPECT_EQ(test::disparity_image(board).pixels, expected.disparity);
 }
@@ -116,13 +117,12 @@ TEST(Stereo, RefusesDifferentSizesAndBrokenRules) {
   EXPECT_NO_THROW(disparity_image(image, image, &table, &table, config));
   EXPECT_THROW(disparity_image(image, GrayImage(8, 4), nullptr, nullptr, config), std::invalid_argument);
   EXPECT_THROW(disparity_image(GrayImage(4, 5), image, nullptr, nullptr, config), std::invalid_argument);
-  EXPECT_NO_THROW(match(image, image, 3, 254));
-  EXPECT_THROW(match(image, GrayImage(8, 4), 3, 2), std::invalid_argument);
-  EXPECT_THROW(match(image, image, 3, 2, {CostKind::kCensus, 9}), std::invalid_argument);
-  EXPECT_THROW(match(image, image, 3, 2, {CostKind::kSsd, 3}), std::invalid_argument);
+  EXPECT_NO_THROW(test::match(image, image, 3, 254));
+  EXPECT_THROW(test::match(image, image, 3, 2, {CostKind::kCensus, 9}), std::invalid_argument);
+  EXPECT_THROW(test::match(image, image, 3, 2, {CostKind::kSsd, 3}), std::invalid_argument);
   for (const auto& [window, disparities] :
        {std::pair(1, 2), std::pair(4, 2), std::pair(33, 2), std::pair(3, 0), std::pair(3, 255)})
-    EXPECT_THROW(match(image, image, window, disparities), std::invalid_argument);
+    EXPECT_THROW(test::match(image, image, window, disparities), std::invalid_argument);
   RectificationTable broken = table;
   broken.entries[3] = make_entry(8, 0);
   for (const RectificationTable& bad : {identity_table(8, 4), broken}) {
@@ -132,9 +132,9 @@ TEST(Stereo, RefusesDifferentSizesAndBrokenRules) {
   EXPECT_THROW(disparity_image(image, image, nullptr, nullptr, {1, 80, log7(), 0}), std::invalid_argument);
   FilterKernel kernel = log7();
   kernel.size = 5;
-  EXPECT_THROW(filter_image(image, kernel), std::invalid_argument);
-  EXPECT_THROW(filter_image(GrayImage(), log7()), std::invalid_argument);
-  EXPECT_EQ(filter_image(GrayImage(1, 1, 7), log7()), GrayImage(1, 1, 128));
+  EXPECT_THROW(test::filter_image(image, kernel), std::invalid_argument);
+  EXPECT_THROW(test::filter_image(GrayImage(), log7()), std::invalid_argument);
+  EXPECT_EQ(test::filter_image(GrayImage(1, 1, 7), log7()), GrayImage(1, 1, 128));
 }
 
 }  // namespace

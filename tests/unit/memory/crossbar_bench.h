@@ -29,8 +29,7 @@ class CrossbarBench : public testing::Test {
     const CrossbarConfig config{kFixedPriority,
                                 {{kWords, BankKind::kZbtPipelined},
                                  {kWords, BankKind::kZbtFlowThrough},
-                                 {kWords, BankKind::kSyncBurst, 2}},
-                                mask_of(port::kHost)};
+                                 {kWords, BankKind::kSyncBurst, 2}}};
     crossbar = std::make_unique<Crossbar>("crossbar", config);
     for (std::size_t port = 0; port < kPortCount; ++port)
       binder.bind(hosts[port].socket, crossbar->ports[port], "port" + std::to_string(port) + "_to_crossbar");
@@ -43,6 +42,10 @@ class CrossbarBench : public testing::Test {
   }
 
   test::TestHost& at(Port port) { return hosts[port]; }
+  void route(Port port, std::size_t bank, bool write) {
+    crossbar->arbitration().route(port, bank, write);
+    crossbar->aim(port, bank, write);
+  }
   // One cycle with these requests.
   PortMask arbitrate(std::uint64_t cycle, PortMask requests = 0) {
     return crossbar->arbitrate(cycle, requests);

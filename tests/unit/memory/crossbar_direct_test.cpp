@@ -24,7 +24,7 @@ class CrossbarWatch : public CrossbarBench {
                                       crossbar_address(kPipelined, end));
   }
   void write(Port port, std::uint32_t word, std::uint64_t cycle, std::size_t bank = kPipelined) {
-    crossbar->route(port, bank, true);
+    route(port, bank, true);
     ASSERT_EQ(arbitrate(cycle, mask_of(port)), mask_of(port));
     ASSERT_EQ(at(port).write(crossbar_address(bank, word), 5).status, tlm::TLM_OK_RESPONSE);
   }
@@ -51,7 +51,7 @@ TEST_F(CrossbarWatch, ReportsAWriteToOneOfTheWordsOnce) {
 
 TEST_F(CrossbarWatch, IgnoresAWriteToAnotherBankAndReads) {
   write(port::kHost, kFirst, 0, kFlowThrough);
-  crossbar->route(port::kHost, kPipelined, false);
+  route(port::kHost, kPipelined, false);
   ASSERT_EQ(arbitrate(1, kHost), kHost);
   at(port::kHost).read(crossbar_address(kPipelined, kFirst));
   at(port::kHost).debug_read(crossbar_address(kPipelined, 0), kWords);
@@ -75,16 +75,6 @@ TEST_F(CrossbarWatch, ReportsDirectWritesThatReachTheWords) {
     crossbar->changes(address, bytes);
     EXPECT_EQ(has_changed(), expected) << address << ' ' << bytes;
   }
-}
-
-TEST_F(CrossbarWatch, AlwaysReportsAChangeOnceASilentPortHasDirectAccessToTheBank) {
-  tlm::tlm_dmi dmi;
-  ASSERT_TRUE(at(port::kHost).dmi(crossbar_address(kFlowThrough, 0), dmi));
-  ASSERT_TRUE(at(port::kResult).dmi(crossbar_address(kPipelined, 0), dmi));  // reports what it writes
-  EXPECT_FALSE(has_changed());
-  ASSERT_TRUE(at(port::kHost).dmi(crossbar_address(kPipelined, kWords - 1), dmi));
-  EXPECT_TRUE(has_changed());
-  EXPECT_TRUE(has_changed());
 }
 
 TEST_F(CrossbarWatch, ReportsEachChangeToEachPort) {
@@ -118,7 +108,6 @@ class CrossbarRevoked : public testing::Test {
   CrossbarRevoked() {
     binder.bind(crossbar.banks[0], target.socket, "bank");
     target.on_dmi = [this](tlm::tlm_generic_payload& access, tlm::tlm_dmi& dmi) {
-      ++asked;
       const std::uint64_t start = access.get_address() / 8 * 8;
       unsigned char* const granted = start == 0 ? memory : start == 8 ? memory_behind : nullptr;
       if (granted == nullptr || (reads_only && access.is_write())) return false;
@@ -135,29 +124,21 @@ class CrossbarRevoked : public testing::Test {
   unsigned char* memory = first.data();
   unsigned char* memory_behind = nullptr;
   bool reads_only = false;
-  int asked = 0;
   Crossbar crossbar{"crossbar", {kFixedPriority, {{16}}}};
   test::ScriptedTarget target{"target"};
   test::MonitoringBinder binder;
 };
 
-TEST_F(CrossbarRevoked, AsksTheBankOnce) {
-  EXPECT_EQ(crossbar.direct(0, 8), first.data());
-  EXPECT_EQ(crossbar.direct(4, 4), first.data() + 4);
-  EXPECT_EQ(asked, 1);
-}
-
-TEST_F(CrossbarRevoked, AsksAgainForWordsThatAreGrantedSeparately) {
+TEST_F(CrossbarRevoked, ReachesWordsThatAreGrantedSeparately) {
   memory_behind = second.data();
   EXPECT_EQ(crossbar.direct(0, 8), first.data());
   EXPECT_EQ(crossbar.direct(12, 4), second.data() + 4);
   EXPECT_EQ(crossbar.direct(8, 8), second.data());
   EXPECT_EQ(crossbar.direct(4, 4), first.data() + 4);
-  EXPECT_EQ(asked, 3);
   EXPECT_EQ(crossbar.direct(4, 8), nullptr);
 }
 
-TEST_F(CrossbarRevoked, AsksAgainAfterTheBankHasRevokedTheAccess) {
+TEST_F(CrossbarRevoked, ReachesWhatTheBankGrantsAfterItHasRevokedAccess) {
   ASSERT_EQ(crossbar.direct(0, 8), first.data());
   memory = second.data();
   target.socket->invalidate_direct_mem_ptr(0, 7);
@@ -194,14 +175,14 @@ TEST_F(CrossbarAim, LeadsAnAccessOnlyIfThePortIsGranted) {
 }
 
 TEST_F(CrossbarAim, TakesNoPartInTheArbitration) {
-  crossbar->route(port::kResult, kFlowThrough, true);
+  route(port::kResult, kFlowThrough, true);
   crossbar->aim(port::kHost, kFlowThrough, true);
   EXPECT_FALSE(crossbar->arbitration().is_used_beside(port::kResult, kFlowThrough));
   EXPECT_EQ(arbitrate(0, kHost | kResult), kResult);
 }
 
 TEST_F(CrossbarAim, RedirectsTheAccessesOfARoutedPortButNotItsRequests) {
-  crossbar->route(port::kHost, kPipelined, false);
+  route(port::kHost, kPipelined, false);
   crossbar->aim(port::kHost, kFlowThrough, false);
   EXPECT_EQ(crossbar->bank_of(port::kHost), kPipelined);
   ASSERT_EQ(arbitrate(0, kHost), kHost);

@@ -129,11 +129,10 @@ TEST_F(CollectStatistics, FindsEachIdentityThatDoesNotHold) {
   const auto slots = [](const std::string& what, int count) {
     return fmt::format("{} = {}, but slots of the sequence = 288", what, count);
   };
-  expect_failed(slots("left lane: slots consumed", 289), [](BoardCounters& found) { ++found.left.consumed; });
-  expect_failed(slots("right lane: slots consumed", 287),
-                [](BoardCounters& found) { --found.right.consumed; });
-  expect_failed(slots("left lane: slots issued", 289), [](BoardCounters& found) { ++found.left.issued; });
-  expect_failed(slots("right lane: slots issued", 287), [](BoardCounters& found) { --found.right.issued; });
+  expect_failed(slots("left lane: slots consumed", 289), [](BoardCounters& found) { ++found.consumed[0]; });
+  expect_failed(slots("right lane: slots consumed", 287), [](BoardCounters& found) { --found.consumed[1]; });
+  expect_failed(slots("left lane: slots issued", 289), [](BoardCounters& found) { ++found.issued[0]; });
+  expect_failed(slots("right lane: slots issued", 287), [](BoardCounters& found) { --found.issued[1]; });
   expect_failed("result packer: words = 25, but words of the images = 24",
                 [](BoardCounters& found) { ++found.packed_words; });
   expect_failed("result writer: words = 23, but words of the images = 24",

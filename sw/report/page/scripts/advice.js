@@ -4,6 +4,7 @@ import {fixed, sameWithin, signed, whole} from './format.js';
 const kWorthwhile = 0.01;  // least gain of a change worth naming, of the present rate
 const kFreeSlices = 1;     // percent of the FPGA that a change may take and still need nothing new
 const kSame = 0.9995;      // rates that differ by less are the same
+const kVisible = 0.0005;  // frames/s
 const kAtLimit = 0.003;    // a rate is at the bound of a resource around the board if it is as near as this
 
 // Keys that are no settings of the parts of the board, but need another part.
@@ -23,17 +24,24 @@ const kKeyTexts = {
   'ssram.banks.*.turnaround_cycles': 'turnaround of all banks',
 };
 
+// The gain of a change, as a share of the present rate.
+export const gainOf = step => step.gained_percent / 100;
+
+// Whether a change has a visible effect: on the loss of pixels, or on the rate.
+export const hasEffect = (step, board) => step.loses_pixels !== board.loses_pixels ||
+    Math.abs(step.gained_frames_per_second) >= kVisible;
+
 // A change in words: matcher.rows: 1 → 2.
-export function shortStepText({knob, from, to, idle_banks: idle}) {
-  const moved = knob === 'a bank more' && /^(.*) in (.*)$/.exec(from);
+export function shortStepText({key, from, to, idle_banks: idle}) {
+  const moved = key === 'a bank more' && /^(.*) in (.*)$/.exec(from);
   if (moved) return `${moved[1]}: ${moved[2]} → ${idle?.[0] ?? 'a new bank'}`;
-  return `${kKeyTexts[knob] ?? knob}: ${from} → ${to}`;
+  return `${kKeyTexts[key] ?? key}: ${from} → ${to}`;
 }
 
 // The same with the key that it changes.
 export function stepText(step) {
-  const name = kKeyTexts[step.knob];
-  return name ? `${name} (${step.knob}): ${step.from} → ${step.to}` : shortStepText(step);
+  const name = kKeyTexts[step.key];
+  return name ? `${name} (${step.key}): ${step.from} → ${step.to}` : shortStepText(step);
 }
 
 // What a change takes beside the board as it is.
@@ -48,7 +56,7 @@ export function priceOf(step, board) {
 
 // The parts that a change needs and the board does not have.
 export function newPartsOf(step) {
-  const parts = kNeeds.filter(([key]) => key.test(step.knob)).map(([, text]) => text(step));
+  const parts = kNeeds.filter(([key]) => key.test(step.key)).map(([, text]) => text(step));
   if (step.new_banks > 0) parts.push(step.new_banks === 1 ? 'a new bank' : `${step.new_banks} new banks`);
   return parts;
 }
@@ -83,7 +91,7 @@ const kMoves = {
 // The resource around the board whose bound the rate of a change reaches, such as `camera`. A resource whose
 // bound the change moves is left out.
 export function limitReached(run, step) {
-  const isConcerned = resource => kMoves[resource]?.test(step.knob) ?? false;
+  const isConcerned = resource => kMoves[resource]?.test(step.key) ?? false;
   return (run.bounds.computer ?? [])
       .find(
           ({resource, frames_per_second: bound}) =>
@@ -95,14 +103,14 @@ export function limitReached(run, step) {
 // of the disparities, boards that lose pixels and boards that do not fit are left out.
 export function adviceOf(run) {
   if (!run.knobs) return null;
-  const {board, steps} = run.knobs;
-  const gain = step => step.frames_per_second / board.frames_per_second - 1;
-  const useful = steps.filter(
-      step => gain(step) >= kWorthwhile && !step.changes_disparities && step.area.fits &&
+  const board = run.knobs;
+  const {changes} = board;
+  const useful = changes.filter(
+      step => gainOf(step) >= kWorthwhile && !step.changes_disparities && step.area.fits &&
           (!step.loses_pixels || board.loses_pixels));
   // Of a board that loses pixels, the best step that cures it comes first, whatever it gains or takes.
   const cure = board.loses_pixels &&
-      steps.find(step => !step.loses_pixels && !step.changes_disparities && step.area.fits);
+      changes.find(step => !step.loses_pixels && !step.changes_disparities && step.area.fits);
   const isFree = step => {
     const price = priceOf(step, board);
     return newPartsOf(step).length === 0 && price.slicesPercent <= kFreeSlices && price.blockRams <= 0 &&
@@ -115,7 +123,6 @@ export function adviceOf(run) {
   return {
     first: cure || (bestOf(useful.filter(isFree)) ?? largest),
     largest,
-    gain,
     board,
     cures: Boolean(cure),
   };

@@ -1,5 +1,7 @@
 // What each single change of the board gains, and what the core takes of its FPGA.
-import {adviceOf, newPartsOf, priceOf, priceText, shortStepText, stepText} from './advice.js';
+import {
+    adviceOf, gainOf, hasEffect, newPartsOf, priceOf, priceText, shortStepText, stepText,
+} from './advice.js';
 import {drawBars} from './bars.js';
 import {addChart, addLeftOut} from './card.js';
 import {button, checkBox, folded, h, note} from './dom.js';
@@ -12,21 +14,22 @@ const kWide = 760;  // pixels; narrower, the names stand above the bars, and pri
 
 export function addKnobs(page, run) {
   if (!run.knobs) return addLeftOut(page, 'knobs', 'What to change first');
-  const {board, steps, forbidden, failed} = run.knobs;
-  const impossible = [...forbidden, ...failed];
+  const board = run.knobs;
+  const impossible = [...board.impossible, ...board.failed];
   const advice = adviceOf(run);
   const now = board.frames_per_second;
   const kind = kindOfSteps(run);
   const state = {keep: false, all: false};
-  const isSmall = step => step !== advice.first && Math.abs(advice.gain(step)) < kFolded;
-  const listed = () => steps.filter(step => step.has_effect && !(state.keep && step.changes_disparities));
+  const isSmall = step => step !== advice.first && Math.abs(gainOf(step)) < kFolded;
+  const effective = board.changes.filter(step => hasEffect(step, board));
+  const listed = () => effective.filter(step => !(state.keep && step.changes_disparities));
   const fold = button('', () => {
     state.all = !state.all;
     chart.redraw();
   }, {id: 'fold-changes'});
   const rowOf = step => {
     const price = priceOf(step, board);
-    const gain = gainText(advice.gain(step));
+    const gain = gainText(gainOf(step));
     return {
       name: shortStepText(step) + (step.changes_disparities ? ' *' : '') + (step.loses_pixels ? ' †' : ''),
       strong: step === advice.first,
@@ -73,13 +76,13 @@ export function addKnobs(page, run) {
     state.keep = checked;
     chart.redraw();
   });
-  const isEffective = knob => steps.some(step => step.knob === knob && step.has_effect);
-  const without = [...new Set(steps.map(step => step.knob))].filter(knob => !isEffective(knob));
+  const without = [...new Set(board.changes.map(step => step.key))].filter(
+      key => !effective.some(step => step.key === key));
   const chart = addChart(page, {
     id: 'knobs',
     wide: true,
     draw,
-    title: advice.first ? `First: ${shortStepText(advice.first)}, ${gainText(advice.gain(advice.first))}` :
+    title: advice.first ? `First: ${shortStepText(advice.first)}, ${gainText(gainOf(advice.first))}` :
                           'No single change gains 1 % and keeps the disparities',
     note: `One setting changed at a time, simulated with ${
               count(board.frames, 'frame')} each. Right: the gain, and what the change takes in ` +
@@ -100,24 +103,21 @@ export function addKnobs(page, run) {
           'knob', 'from', 'to', 'frames_per_second', 'gain_percent', 'slices', 'block_rams', 'multipliers',
           'banks_used', 'new_banks', 'changes_disparities', 'loses_pixels', 'sets'
         ],
-        steps.map(
+        board.changes.map(
             step =>
-                [step.knob, step.from, step.to, step.frames_per_second, 100 * advice.gain(step),
+                [step.key, step.from, step.to, step.frames_per_second, step.gained_percent,
                  step.area.slices, step.area.block_rams, step.area.multipliers, step.banks_used,
                  step.new_banks, String(step.changes_disparities), String(step.loses_pixels),
                  step.sets.join(' ')])]
   });
 }
 
-// A share of 0 to 1 as a little bar.
-const shareBar = (share, label) =>
-    h('span', {class: 'bar', role: 'img', 'aria-label': label},
-      h('i', {style: `width:${Math.max(0, Math.min(100, 100 * share))}%`}));
-
 // What the core takes of its FPGA, part by part.
 export function addArea(page, run) {
-  const {items, total, device} = run.area;
-  const all = sum(items.map(item => item.lut_equivalents));
+  const {device, ...total} = run.area;
+  const parts =
+      run.area.parts.map(part => ({...part, lut_equivalents: Math.max(part.luts, part.flip_flops)}));
+  const all = sum(parts.map(part => part.lut_equivalents));
   const rowOf = part => ({
     name: part.count > 1 ? `${part.name} × ${whole(part.count)}` : part.name,
     bars: [{
@@ -132,15 +132,14 @@ export function addArea(page, run) {
     texts: [percent(part.lut_equivalents / all), part.block_rams > 0 ? `${part.block_rams} RAM` : '']
   });
   const use = (name, number, of) =>
-      h('span', null, `${name} ${whole(number)} of ${whole(of)} `, shareBar(number / of, name),
-        ` ${fixed(100 * number / of, 1)} %`);
-  const sizes = items.map(item => item.lut_equivalents);
+      h('span', null, `${name} ${whole(number)} of ${whole(of)} `,
+        h('meter', {value: number / of, 'aria-label': name}), ` ${fixed(100 * number / of, 1)} %`);
   addChart(page, {
     id: 'area',
     wide: true,
     draw: host => drawBars(host, {
-      rows: [...items].sort((a, b) => b.lut_equivalents - a.lut_equivalents).map(rowOf),
-      domain: [0, most(sizes)]
+      rows: [...parts].sort((a, b) => b.lut_equivalents - a.lut_equivalents).map(rowOf),
+      domain: [0, most(parts.map(part => part.lut_equivalents))]
     }),
     title: `${fixed(total.slices_percent, 1)} % of the ${device.name}: ${whole(total.slices)} slices${
         total.fits ? '' : ', which does not fit'}`,
@@ -152,7 +151,7 @@ export function addArea(page, run) {
           use('multipliers', total.multipliers, device.multipliers)),
     numbers: () => {
       const names = ['count', 'luts', 'flip_flops', 'block_rams', 'multipliers', 'lut_equivalents'];
-      return [['part', ...names], items.map(item => [item.name, ...names.map(name => item[name])])];
+      return [['part', ...names], parts.map(part => [part.name, ...names.map(name => part[name])])];
     }
   });
 }

@@ -86,23 +86,19 @@ export function addScatter(page, points, choose) {
         ([axis, range]) => placesOf(points, axis.name, range, {isLog: axis.log, room: 0.03}));
     const spot = row => [across.at[row], up.at[row]];
     const [colourOf, entries] = coloursOf(points, state.colour);
+    const faint = styleColour('--faint');
     legendHost.replaceChildren(legend(entries));
-    const groups = new Map();  // rows by their colours
-    for (let row = 0; row < points.size; ++row) {
-      const colour = colourOf(row);
-      if (!groups.has(colour)) groups.set(colour, []);
-      groups.get(colour).push(row);
-    }
     const size = points.size > 3000 ? 3 : 5;
-    const paint = (rows, colour, wanted) => {
-      context.fillStyle = colour;
-      for (const row of rows) {
-        if (points.selected[row] === wanted)
-          context.fillRect(across.at[row] - size / 2, up.at[row] - size / 2, size, size);
-      }
-    };
     const frontLayer = s('g');
-    const drawFront = () => {
+    repaint = () => {
+      clear();
+      for (const wanted of [0, 1]) {
+        points.selected.forEach((is, row) => {
+          if (is !== wanted) return;
+          context.fillStyle = is ? colourOf(row) : faint;
+          context.fillRect(across.at[row] - size / 2, up.at[row] - size / 2, size, size);
+        });
+      }
       const front = points.isNumeric(x.name) && points.isNumeric(y.name) ? points.front(x, y) : [];
       const edges = [x.best === 'min' ? inner : 0, y.best === 'min' ? 0 : height];
       const dot = (row, attributes) => s('circle', {cx: across.at[row], cy: up.at[row], ...attributes});
@@ -117,12 +113,6 @@ export function addScatter(page, points, choose) {
       const ties = [x, y].some(({name}) => points.hasUncertainty(name));
       frontText.textContent = `${count(points.count, 'point')} of ${whole(points.size)} selected; ${
           whole(front.length)} of them on the front.${ties ? ' What lies within the uncertainty ties.' : ''}`;
-    };
-    repaint = () => {
-      clear();
-      for (const rows of groups.values()) paint(rows, styleColour('--faint'), 0);
-      for (const [colour, rows] of groups) paint(rows, colour, 1);
-      drawFront();
     };
     const select = box =>
         points.filter('scatter', box && (row => {
@@ -203,23 +193,10 @@ const kMostWords = 12;  // an axis of a column with at most so many values has e
 // Lines of the points that are not selected and of those that are.
 const kMostLines = [800, 4000];
 
-// Rows in an order in which each first part is a fair sample.
-function shuffledRows(size) {
-  const rows = Uint32Array.from({length: size}, (_, row) => row);
-  let state = 1;
-  for (let i = size - 1; i > 0; --i) {
-    state = (Math.imul(state, 1664525) + 1013904223) >>> 0;
-    const other = state % (i + 1);
-    [rows[i], rows[other]] = [rows[other], rows[i]];
-  }
-  return rows;
-}
-
 // Parallel coordinates: one axis for each column, one line for each point. Each axis can be brushed.
 export function addParallel(page, points) {
   const defaults = [...points.keys.slice(0, kMostAxes - 2), ...points.figures.slice(0, 2)];
   const state = {names: defaults};
-  const order = shuffledRows(points.size);
   let repaint = () => {};
   const draw = (host, width) => {
     const few = state.names.slice(0, Math.max(3, Math.floor(width / 85)));
@@ -232,12 +209,10 @@ export function addParallel(page, points) {
       context.strokeStyle = colour;
       context.globalAlpha = alpha;
       context.beginPath();
-      let drawn = 0;
-      for (const row of order) {
-        if (points.selected[row] !== wanted) continue;
-        if (++drawn > most) break;
+      // The first rows are a fair sample: the points are in the order of their hashes.
+      for (const row of [...points.selected.keys()].filter(each => points.selected[each] === wanted)
+               .slice(0, most))
         axes.forEach(({x, at}, i) => i === 0 ? context.moveTo(x, at[row]) : context.lineTo(x, at[row]));
-      }
       context.stroke();
     };
     repaint = () => {

@@ -1,5 +1,5 @@
 // What a run shows, in plain words: what limits, who waits for whom, where, what to change first, its price.
-import {adviceOf, limitReached, priceText, stepText} from './advice.js';
+import {adviceOf, gainOf, limitReached, priceText, stepText} from './advice.js';
 import {linesOf, rowsText, tilesOf} from './data.js';
 import {capital, count, fixed, gainText, kRates, percent, rate, rateWith, sum, whole} from './format.js';
 
@@ -102,7 +102,7 @@ function whatLimits(run) {
     bridge: () => 'The local bus behind the bridge',
   }[kind]?.() ??
       by;
-  const limiter = run.knobs?.board.limited_by;
+  const limiter = run.knobs?.limited_by;
   return [
     limiter ? `Limited by ${limiter}.` : `Not known with --quick. The lowest bound: ${because}.`,
     `${reached}.`, computer && droppedText(run),
@@ -151,13 +151,9 @@ function whoWaits(run) {
 function mainPart(amounts) {
   const total = sum(amounts);
   const little = total / amounts.length / 2;
-  let first = 0;
-  for (let below = amounts[0]; below < 0.005 * total && amounts[first] < little; below += amounts[++first])
-    ;
-  let last = amounts.length - 1;
-  for (let above = amounts[last]; above < 0.005 * total && amounts[last] < little; above += amounts[--last])
-    ;
-  return {first, last, total};
+  const edgeOf = some => some.findIndex(
+      (amount, i) => amount >= little || sum(some.slice(0, i + 1)) >= 0.005 * total);
+  return {first: edgeOf(amounts), last: amounts.length - 1 - edgeOf([...amounts].reverse()), total};
 }
 
 // Which columns hold the waits, and whether few tiles hold many.
@@ -238,12 +234,12 @@ function whereText(run) {
 function whatFirst(run) {
   const advice = adviceOf(run);
   if (!advice) return ['Not known: this report was made with --quick.'];
-  const {first, largest, gain, board, cures} = advice;
+  const {first, largest, board, cures} = advice;
   if (!first) return ['Nothing: no single change gains 1 % or more and keeps the disparities.'];
   const text = step => {
     const limit = limitReached(run, step);
     return `${stepText(step)} gives ${rate(step.frames_per_second)} frames/s, ${kindOfSteps(run)} (${
-        gainText(gain(step))})${limit ? `, where ${withVerb(limit, 'limit')}` : ''}${
+        gainText(gainOf(step))})${limit ? `, where ${withVerb(limit, 'limit')}` : ''}${
         step.loses_pixels ? ', and loses pixels too' : ''}`;
   };
   const sets = step => step.sets.map(set => `--set '${set}'`).join(' ');
@@ -258,7 +254,7 @@ function whatFirst(run) {
 }
 
 function whatItCosts(run) {
-  const {total, device} = run.area;
+  const {device, ...total} = run.area;
   const advice = adviceOf(run);
   const now =
       `The core as it is takes ${whole(total.slices)} slices (${fixed(total.slices_percent, 1)} % of the ` +

@@ -54,6 +54,10 @@ export const inOrder = (a, b) =>
     typeof a === 'number' && typeof b === 'number' ? a - b : value(a).localeCompare(value(b));
 export const different = values => [...new Set(values)].sort(inOrder);
 
+// Objects as a table of these columns: [names, rows].
+export const tableOf = (names, objects) =>
+    [names, objects.map(each => names.map(name => each[name] ?? null))];
+
 function csvCell(any) {
   const text = value(any);
   return /[",\n\r]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;

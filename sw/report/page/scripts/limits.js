@@ -1,11 +1,11 @@
 // What limits a run: the bounds of its resources, the roofline of its busiest bank, what ports and banks do
 // in all cycles, and how long its frames take.
-import {adviceOf, shortStepText} from './advice.js';
+import {adviceOf, hasEffect, shortStepText} from './advice.js';
 import {drawBars, drawColumns} from './bars.js';
 import {addChart, legend} from './card.js';
 import {s} from './dom.js';
 import {kindOfSteps, rateOf, resourceText, settingOf, withVerb} from './findings.js';
-import {fixed, inMs, least, most, percent, rate, whole} from './format.js';
+import {fixed, inMs, least, most, percent, rate, tableOf, whole} from './format.js';
 import {axisBelow, axisLeft, cut, drawing, numeric} from './plot.js';
 import {mark} from './tooltip.js';
 
@@ -19,43 +19,44 @@ function resourcesOf(run) {
   run.bounds.core.forEach((resources, frame) => resources.forEach(({resource, cycles}) => {
     if (run.bounds.computer && resource.startsWith('bank ')) return;  // there with the accesses of the host
     const known = all.get(resource);
-    if (!known || cycles > known.cycles) all.set(resource, {resource, cycles, frame, fps: clock / cycles});
+    if (!known || cycles > known.cycles)
+      all.set(resource, {resource, cycles, frame, frames_per_second: clock / cycles});
   }));
-  const computer =
-      (run.bounds.computer ?? []).map(each => ({resource: each.resource, fps: each.frames_per_second}));
-  return [...all.values(), ...computer].sort((a, b) => a.fps - b.fps);
+  return [...all.values(), ...run.bounds.computer ?? []].sort(
+      (a, b) => a.frames_per_second - b.frames_per_second);
 }
 
 // The ladder of bounds: what each resource alone would allow, beside what the run reaches.
 export function addBounds(page, run) {
   const {now, kind, limit, by} = rateOf(run);
   const resources = resourcesOf(run);
+  const lowest = resources[0].frames_per_second;
   const turn = run.bounds.core.length;
   // The bound is a mean over frames that differ.
-  const isMean = limit > resources[0].fps * 1.001;
+  const isMean = limit > lowest * 1.001;
   const rowOf = each => ({
     name: resourceText(each.resource).replace(/^the /, ''),
     strong: each.resource === by,
     bars: [{
-      to: each.fps,
+      to: each.frames_per_second,
       dot: true,
       colour: each.resource === by ? '--vermilion' : '--blue',
       lines: [
-        `${each.resource}: at most ${rate(each.fps)} frames/s`,
+        `${each.resource}: at most ${rate(each.frames_per_second)} frames/s`,
         each.cycles &&
             `${whole(each.cycles)} cycles a frame${
                 turn > 1 ? `, in frame ${each.frame} of each ${turn}` : ''}`,
-        `the run reaches ${percent(now / each.fps)} of it`
+        `the run reaches ${percent(now / each.frames_per_second)} of it`
       ].filter(Boolean)
     }],
-    texts: [rate(each.fps)]
+    texts: [rate(each.frames_per_second)]
   });
   addChart(page, {
     id: 'bounds',
     title: `${withVerb(by, 'set')} the bound of ${rate(limit)} frames/s`.replace(/^the /, 'The '),
     draw: host => drawBars(host, {
       rows: resources.map(rowOf),
-      domain: [Math.min(now, resources[0].fps) * 0.8, Math.max(resources.at(-1).fps, now) * 1.1],
+      domain: [Math.min(now, lowest) * 0.8, Math.max(resources.at(-1).frames_per_second, now) * 1.1],
       isLog: true,
       axis: 'frames/s (logarithmic)',
       now: {value: now, text: `the run: ${rate(now)}, ${kind}`}
@@ -66,52 +67,52 @@ export function addBounds(page, run) {
              ` Frames differ: a resource has the frame in which it allows least, and the bound is the mean ${
                  turn > 1 ? `over ${turn} frames` : 'over all frames'} of the slowest resource of each.` :
                             ''),
-    numbers: () => [
-        ['resource', 'frames_per_second', 'cycles', 'frame'],
-        resources.map(each => [each.resource, each.fps, each.cycles ?? null, each.frame ?? null])]
+    numbers: () => tableOf(['resource', 'frames_per_second', 'cycles', 'frame'], resources)
   });
 }
 
 // The roofline: how often the busiest bank is accessed for a pixel, against pixels a second.
 export function addRoofline(page, run) {
   if (!run.knobs) return;
-  const {board, steps} = run.knobs;
+  const board = run.knobs;
   const {by} = rateOf(run);
   const kind = kindOfSteps(run);
   const {first, largest} = adviceOf(run);
   const pixels = settingOf(run, 'image.width') * settingOf(run, 'image.height');
   const point = (step, name) => ({
-    name,
+    ...step,
     step,
-    accesses: step.busiest_bank.accesses_per_pixel,
+    board: name,
     bank: step.busiest_bank.name,
-    speed: step.frames_per_second * pixels / 1e6,
-    fps: step.frames_per_second,
-    clock: step.clock_mhz
+    accesses_per_pixel: step.busiest_bank.accesses_per_pixel,
+    megapixels_per_second: step.frames_per_second * pixels / 1e6
   });
   const here = point(board, 'this board');
-  const all = steps.filter(step => step.has_effect)
+  const all = board.changes.filter(step => hasEffect(step, board))
                   .map(step => point(step, shortStepText(step)))
-                  .filter(each => each.accesses > 0);
-  const roofAt = here.clock / here.accesses;
-  const share = here.speed / roofAt;
+                  .filter(each => each.accesses_per_pixel > 0);
+  const roofAt = here.clock_mhz / here.accesses_per_pixel;
+  const share = here.megapixels_per_second / roofAt;
   const isNamed = ({step}) => step === first || step === largest;
   const linesOf = each =>
-      [each.name, `${fixed(each.accesses, 2)} accesses of ${each.bank} a pixel`,
-       `${fixed(each.speed, 2)} Mpixels/s, ${rate(each.fps)} frames/s, ${kind}`];
+      [each.board, `${fixed(each.accesses_per_pixel, 2)} accesses of ${each.bank} a pixel`,
+       `${fixed(each.megapixels_per_second, 2)} Mpixels/s, ` +
+           `${rate(each.frames_per_second)} frames/s, ${kind}`];
   const draw = (host, width) => {
     const {plot, width: inner, height} = drawing(
         host, width, Math.min(380, Math.max(280, width * 0.6)), {left: 46, right: 14, top: 24, bottom: 40},
         'Roofline');
-    const xs = [here, ...all].map(each => each.accesses);
-    const ys = [here, ...all].map(each => each.speed).filter(each => each > 0);
+    const xs = [here, ...all].map(each => each.accesses_per_pixel);
+    const ys = [here, ...all].map(each => each.megapixels_per_second).filter(each => each > 0);
     const x = numeric([Math.min(...xs) * 0.8, Math.max(...xs) * 1.25], [0, inner], true);
     const y = numeric([Math.min(...ys) * 0.8, Math.max(...ys, roofAt) * 1.3], [height, 0], true);
-    const roof = Array.from({length: 200}, (_, i) => x.domain[0] * (x.domain[1] / x.domain[0]) ** (i / 199))
-                     .map(each => [x(each), y(here.clock / each)])
-                     .filter(([, at]) => at >= 0 && at <= height);
-    const dot = (each, attributes, lines) =>
-        mark(s('circle', {cx: x(each.accesses), cy: y(each.speed), ...attributes}), lines);
+    const roof = [Math.max(x.domain[0], here.clock_mhz / y.domain[1]),
+                  Math.min(x.domain[1], here.clock_mhz / y.domain[0])].map(
+        each => [x(each), y(here.clock_mhz / each)]);
+    const dot = (each, attributes, lines) => {
+      const place = {cx: x(each.accesses_per_pixel), cy: y(each.megapixels_per_second)};
+      return mark(s('circle', {...place, ...attributes}), lines);
+    };
     plot.append(
         axisBelow(x, inner, height, 'accesses of the busiest bank for a pixel (logarithmic)'),
         axisLeft(y, inner, height),
@@ -125,16 +126,16 @@ export function addRoofline(page, run) {
     // The names of the large dots, each beside its dot where no other name is.
     const taken = [];
     for (const each of [here, ...all.filter(isNamed)]) {
-      const [at, isLeft] = [x(each.accesses), x(each.accesses) > inner / 2];
-      let below = y(each.speed) + 4;
+      const [at, isLeft] = [x(each.accesses_per_pixel), x(each.accesses_per_pixel) > inner / 2];
+      let below = y(each.megapixels_per_second) + 4;
       while (taken.some(other => Math.abs(other - below) < 15)) below += 15;
       taken.push(below);
       plot.append(
           s('text',
             {x: at + (isLeft ? -11 : 11), y: below, 'text-anchor': isLeft ? 'end' : 'start', class: 'halo'},
-            cut(each.name, isLeft ? at - 11 : inner - at - 11)));
+            cut(each.board, isLeft ? at - 11 : inner - at - 11)));
     }
-    const label = `roof: ${here.bank} at ${here.clock} MHz`;
+    const label = `roof: ${here.bank} at ${here.clock_mhz} MHz`;
     plot.append(
         s('text', {x: inner, y: -10, 'text-anchor': 'end', class: 'label halo'}, cut(label, inner - 150)));
   };
@@ -149,18 +150,18 @@ export function addRoofline(page, run) {
         'The line is the roof: what a bank with one access a cycle allows. Both axes are logarithmic. ' +
         'Large dots: this board (orange), the first change and the largest gain. ' +
         'Small dots: all other single changes.',
-    numbers: () => [
+    numbers: () => tableOf(
         ['board', 'bank', 'accesses_per_pixel', 'megapixels_per_second', 'frames_per_second', 'clock_mhz'],
-        [here, ...all].map(each => [each.name, each.bank, each.accesses, each.speed, each.fps, each.clock])]
+        [here, ...all])
   });
 }
 
-export const kPortStates = [
+const kPortStates = [
   ['grants', 'granted', '--blue'], ['stall_cycles', 'waits', '--vermilion'],
   ['passed_cycles', 'no access needed', '--sky'], ['blocked_cycles', 'output full', '--yellow'],
   ['starved_cycles', 'no input', '--green'], ['idle_cycles', 'idle', '--pale']
 ];
-export const kBankStates = [
+const kBankStates = [
   ['busy_cycles', 'busy', '--blue'], ['turnaround_cycles', 'turnaround', '--grey'],
   ['idle_cycles', 'idle', '--pale']
 ];
@@ -187,9 +188,7 @@ function addStates(page, {id, title, note, items, states, cycles, more = () => [
     note,
     draw: host => drawBars(host, {rows: items.map(rowOf), domain: [0, cycles]}),
     body: legend(states.map(([, name, colour]) => [name, `var(${colour})`])),
-    numbers: () => [
-        ['name', ...states.map(([key]) => key)],
-        items.map(item => [item.name, ...states.map(([key]) => item[key])])]
+    numbers: () => tableOf(['name', ...states.map(([key]) => key)], items)
   });
 }
 

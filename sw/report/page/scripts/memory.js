@@ -42,8 +42,6 @@ function useInPage(svg, links, moreLines = () => []) {
   whenThemeChanges(useTheme);
 }
 
-const kHowTo = 'Each block and link has its figures: point at it, or go there with the arrow keys.';
-
 // Where the drawing is wider than the page, begins with its highest block: there may be nothing on its left.
 function openAtHighest(body, svg) {
   const boxes = [...svg.querySelectorAll('.block')].map(block => block.getBoundingClientRect());
@@ -76,7 +74,8 @@ export function addMemory(page, runs) {
     id: 'memory',
     wide: true,
     ...runs.length > 1 ? differenceText(links, ratesOf) : trafficText(runs[0], links[0]),
-    note: `The board as it was run, with the traffic of each link. ${kHowTo}`,
+    note: 'The board as it was run, with the traffic of each link. Each block and link has its figures: ' +
+        'point at it, or go there with the arrow keys.',
     body: [chosen, body]
   });
   show(0);

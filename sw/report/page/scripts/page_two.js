@@ -9,25 +9,12 @@ import {addPicture} from './picture.js';
 import {addBlameDifference, addRowDifference} from './waits.js';
 
 // Settings that differ: [key, value in A, value in B]. The name of the board is the last.
-function settingsThatDiffer(a, b) {
-  const keys = [...new Set([...a.settings, ...b.settings].map(setting => setting.key))];
-  return keys.sort((x, y) => (x === 'name') - (y === 'name'))
-      .map(key => [key, settingOf(a, key) ?? '–', settingOf(b, key) ?? '–'])
-      .filter(([, x, y]) => x !== y);
-}
+const settingsOf = ({settings}) => settings.map(({path, a = '–', b = '–'}) => [path, a, b])
+                                       .sort(([x], [y]) => (x === 'name') - (y === 'name'));
 
-function addTotals(page, a, b) {
-  const rows = [];
-  const walk = (path, x, y) => {
-    if (typeof x === 'number' && typeof y === 'number') return x !== y && rows.push([path, x, y, y - x]);
-    if (x && y && typeof x === 'object' && typeof y === 'object') {
-      for (const key of Object.keys(x)) walk(path ? `${path}.${x[key]?.name ?? key}` : key, x[key], y[key]);
-    }
-  };
-  for (const key
-           of ['cycles', 'frames', 'frames_per_second', 'bound', 'latency_ms', 'area', 'banks', 'ports',
-               'cameras', 'pci', 'bridge'])
-    walk(key, a.stats[key], b.stats[key]);
+function addTotals(page, {figures}) {
+  const rows = figures.filter(({a, b}) => typeof a === 'number' && typeof b === 'number')
+                   .map(({path, a, b}) => [path, a, b, b - a]);
   addChart(page, {
     id: 'totals',
     title: rows.length ?
@@ -40,11 +27,12 @@ function addTotals(page, a, b) {
 }
 
 // How the disparities of the runs differ.
-function pixelText({pixels, no_pixels: reason}) {
-  if (!pixels) return `not compared: ${reason}`;
+function pixelText({disparities: {not_compared: reason, ...pixels}}) {
+  if (reason) return `not compared: ${reason}`;
   if (pixels.frames === 0) return 'not compared: no camera frame was computed by both runs';
-  if (pixels.pixels === 0) return `the same, pixel for pixel, in ${count(pixels.frames, 'frame')}`;
-  return `${whole(pixels.pixels)} differ, in ${pixels.frames_that_differ} of ${
+  if (pixels.pixels_that_differ === 0)
+    return `the same, pixel for pixel, in ${count(pixels.frames, 'frame')}`;
+  return `${whole(pixels.pixels_that_differ)} differ, in ${pixels.frames_that_differ} of ${
              count(pixels.frames, 'frame')}; the first ` +
       `in column ${pixels.first.column}, row ${pixels.first.row} of camera frame ${
              pixels.first.camera_frame}`;
@@ -72,8 +60,8 @@ const layerOf = (cycles, width) =>
 
 export function showTwoRuns(page, {runs: [a, b], difference}) {
   const [rateA, rateB] = [rateOf(a), rateOf(b)];
-  const settings = settingsThatDiffer(a, b);
-  const isSame = difference.pixels?.frames > 0 && difference.pixels.pixels === 0;
+  const settings = settingsOf(difference);
+  const isSame = difference.disparities.frames > 0 && difference.disparities.pixels_that_differ === 0;
   const blame = run => waitsOf(run).length ? `${waitText(waitsOf(run)[0])}.` : 'Nobody.';
   addHead(page, {
     kind: 'two runs',
@@ -97,7 +85,7 @@ export function showTwoRuns(page, {runs: [a, b], difference}) {
     ['Who waits for whom?', [`A: ${blame(a)}`, `B: ${blame(b)}`]],
     [
       'Where do they part?',
-      [!rows ? `Rows cannot be compared: ${difference.no_rows}.` :
+      [rows.not_compared ? `Rows cannot be compared: ${rows.not_compared}.` :
            rows.parting ? `In frame ${rows.parting.frame}, row ${rows.parting.row}.` :
                           'Nowhere.']
     ],
@@ -121,8 +109,8 @@ export function showTwoRuns(page, {runs: [a, b], difference}) {
           ' With the rows that take longer in B.',
       pictures: [a, b].map(({pictures: {disparity, disparities}}) => ({url: disparity, disparities})),
       names: ['A', 'B'],
-      frames: rows?.frames,
-      layers: rows?.cycles.some(value => value > 0) ? [layerOf(rows.cycles, settingOf(b, 'image.width'))] : []
+      frames: rows.frames,
+      layers: rows.cycles?.some(value => value > 0) ? [layerOf(rows.cycles, settingOf(b, 'image.width'))] : []
     });
   }
   addFrames(
@@ -143,5 +131,5 @@ export function showTwoRuns(page, {runs: [a, b], difference}) {
     body: settings.length > 0 && htmlTable(['key', 'A', 'B'], settings),
     numbers: () => [['key', 'a', 'b'], settings]
   });
-  addTotals(figures, a, b);
+  addTotals(figures, difference);
 }

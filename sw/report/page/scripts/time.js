@@ -199,7 +199,7 @@ export function addTimeLine(page, run) {
             s('rect', {...place, class: 'left-out'}),
             ['Events of this time are not in the page', 'run --record --out writes all to timeline.csv']));
       }
-      known = to;
+      known = Math.max(known, to);
     }
     const inWindow = events.filter(({start_ps: start, end_ps: end}) => end >= zoom.from && start <= zoom.to);
     // Of many events those are left out that would lie on others.

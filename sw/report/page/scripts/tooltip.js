@@ -5,18 +5,14 @@ import {h} from './dom.js';
 const tooltip = h('div', {id: 'tooltip', role: 'status', hidden: true});
 const tooltipTexts = new WeakMap();
 
-function moveTooltip(x, y) {
-  const {width, height} = tooltip.getBoundingClientRect();
-  const right = document.documentElement.clientWidth - width - 8;
-  tooltip.style.left = `${Math.max(8, Math.min(x + 14, right))}px`;
-  tooltip.style.top = `${y + height + 24 > innerHeight ? Math.max(4, y - height - 12) : y + 16}px`;
-}
-
 // Shows lines of text at a place of the window; the first is the heading.
 export function showTooltip(lines, x, y) {
   tooltip.replaceChildren(...lines.map((line, i) => h(i === 0 ? 'b' : 'div', null, line)));
   tooltip.hidden = false;
-  moveTooltip(x, y);
+  const {width, height} = tooltip.getBoundingClientRect();
+  const right = document.documentElement.clientWidth - width - 8;
+  tooltip.style.left = `${Math.max(8, Math.min(x + 14, right))}px`;
+  tooltip.style.top = `${y + height + 24 > innerHeight ? Math.max(4, y - height - 12) : y + 16}px`;
 }
 export const hideTooltip = () => {
   tooltip.hidden = true;

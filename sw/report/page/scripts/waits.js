@@ -3,11 +3,11 @@ import {drawBars} from './bars.js';
 import {addChart, addLeftOut, legend} from './card.js';
 import {commandLine, h, note, s} from './dom.js';
 import {blamesInDetail, blamesOf, blameText, settingOf, waitingRows, waitsOf, waitText} from './findings.js';
-
 import {count, least, most, percent, signed, sum, whole} from './format.js';
 import {lastRow, linesOf, rowsText} from './data.js';
-import {addBrush, axisBelow, axisLeft, drawing, layeredDrawing, numeric, Zoom} from './plot.js';
-import {cut, textWidth} from './plot.js';
+import {
+    addBrush, axisBelow, axisLeft, cut, drawing, layeredDrawing, numeric, textWidth, Zoom,
+} from './plot.js';
 import {css, heat, inkOn, namedColour} from './theme.js';
 import {mark} from './tooltip.js';
 
@@ -256,8 +256,9 @@ export function addRows(page, run) {
 }
 
 // Cycles that each row takes more in B, beside the waits.
-export function addRowDifference(page, {rows, no_rows: reason}) {
-  if (!rows) return addChart(page, {id: 'rows', title: 'Rows cannot be compared', note: reason});
+export function addRowDifference(page, {rows}) {
+  if (rows.not_compared)
+    return addChart(page, {id: 'rows', title: 'Rows cannot be compared', note: rows.not_compared});
   const {cycles, parting} = rows;
   const ports = Object.entries(rows.stalls).filter(([, values]) => values.some(value => value !== 0));
   const size = Math.ceil(cycles.length / kMostBands);
