@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "models/fpga/core_ports.h"
@@ -112,14 +111,6 @@ std::string computer_text(const RunFigures& a, const RunFigures& b, const Json& 
                       figures_text("cameras", figures), figures_text("latency_ms", figures)});
 }
 
-std::string verdict_of(const runs::RecordedRun& run_a, const runs::RecordedRun& run_b, const RunFigures& a,
-                       const RunFigures& b, const runs::FrameAlignment& aligned,
-                       const runs::DiffLimits& limits) {
-  return report::diff_verdict({a.document, run_a.board.fpga.clock_mhz},
-                              {b.document, run_b.board.fpga.clock_mhz},
-                              limits.pixels.empty() ? &aligned.pixels() : nullptr);
-}
-
 Json frames_json(const std::vector<std::uint64_t>& a, const std::vector<std::uint64_t>& b) {
   Json list = Json::array();
   for (std::size_t frame = 0; frame < std::min(a.size(), b.size()); ++frame) {
@@ -162,7 +153,9 @@ Json diff_document(const runs::RecordedRun& run_a, const runs::RecordedRun& run_
           {"rows", limits.rows.empty() ? json_of(aligned.rows()) : Json{{"not_compared", limits.rows}}},
           {"disparities",
            limits.pixels.empty() ? json_of(aligned.pixels()) : Json{{"not_compared", limits.pixels}}},
-          {"verdict", verdict_of(run_a, run_b, a, b, aligned, limits)}};
+          {"verdict", report::diff_verdict({a.document, run_a.board.fpga.clock_mhz},
+                                           {b.document, run_b.board.fpga.clock_mhz},
+                                           limits.pixels.empty() ? &aligned.pixels() : nullptr)}};
 }
 
 std::string diff_text(const runs::RecordedRun& run_a, const runs::RecordedRun& run_b,

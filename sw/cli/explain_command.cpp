@@ -86,18 +86,14 @@ std::string resources_text(const BoardConfig& board, const Explanation& explanat
   return text;
 }
 
-double percent_of_cycles(const explore::StoredBlame& blame, const Explanation& explanation) {
-  return 100 * static_cast<double>(blame.cycles) /
-         static_cast<double>(explanation.figures().integer("cycles"));
-}
-
 std::string blames_text(const Explanation& explanation) {
   const std::vector<explore::StoredBlame>& blames = explanation.blames();
   std::string text = "who waits for whom, % of the cycles of the frames\n";
   for (std::size_t row = 0; row < blames.size(); ++row) {
     if (row == kMostBlames) return text + "  and others, less\n";
     text += fmt::format("  {:<12} on {:<12} for {:<14} {:>8.3f}\n", blames[row].port, blames[row].bank,
-                        stats::cause_text(blames[row].by), percent_of_cycles(blames[row], explanation));
+                        stats::cause_text(blames[row].by),
+                        runs::percent_of_cycles(explanation, blames[row].cycles));
   }
   return blames.empty() ? "no port waits for another\n" : text;
 }
@@ -196,7 +192,7 @@ Json blame_json(const Explanation& explanation) {
                    {"bank", blame.bank},
                    {"by", blame.by},
                    {"cycles", blame.cycles},
-                   {"cycles_percent", percent_of_cycles(blame, explanation)}});
+                   {"cycles_percent", runs::percent_of_cycles(explanation, blame.cycles)}});
   }
   return all;
 }

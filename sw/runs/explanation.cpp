@@ -60,10 +60,6 @@ const Reason& reason_of(const std::string& why) {
   throw std::logic_error(why + ": not a reason for which the core waits");
 }
 
-double percent_of_cycles(const Explanation& explanation, std::int64_t cycles) {
-  return 100 * static_cast<double>(cycles) / static_cast<double>(explanation.figures().integer("cycles"));
-}
-
 // "left_lut waits there for left_pixel in 33.14 % of the cycles"
 std::string wait_of(const Explanation& explanation, const explore::StoredBlame& wait) {
   return fmt::format("{} waits there for {} in {:.2f} % of the cycles", wait.port, stats::cause_text(wait.by),
@@ -170,7 +166,11 @@ Explanation::Explanation(const platform::BoardConfig& board, const platform::Tab
                       : kCoreFrames,
            ""},
       knobs_(explore::knob_steps(board, camera, joint_problem(tables))),
-      points_(explore::board_points(boards(), run_)),
+      points_({1 + knobs_.possible.size(),
+               [this](std::uint64_t number) {
+                 return explore::make_point(
+                     number, number == 0 ? board_ : knobs_.possible.at(number - 1).board, run_);
+               }}),
       accesses_(platform::frame_accesses(board, tables)) {
   const std::uint64_t turn = platform::allocation_period_frames(board);
   for (std::uint64_t frame = 0; frame < turn; ++frame)
@@ -197,12 +197,6 @@ bool Explanation::simulate(PointSimulator simulator) {
   compare_resources(cycles);
   share_time(cycles);
   return true;
-}
-
-std::vector<platform::BoardConfig> Explanation::boards() const {
-  std::vector<platform::BoardConfig> all = {board_};
-  for (const explore::KnobStep& step : knobs_.possible) all.push_back(step.board);
-  return all;
 }
 
 Explanation::Rate Explanation::rate_of(std::uint64_t number) {
@@ -345,6 +339,10 @@ void Explanation::share_time(std::vector<double> frame_cycles) {
   budget_.bound = frames_share * needed / mean;
   budget_.queues = frames_share * (waitless - needed) / mean;
   budget_.waits = frames_share * (mean - waitless) / mean;
+}
+
+double percent_of_cycles(const Explanation& explanation, std::int64_t cycles) {
+  return 100 * static_cast<double>(cycles) / static_cast<double>(explanation.figures().integer("cycles"));
 }
 
 std::optional<explore::StoredBlame> longest_wait(const Explanation& explanation,

@@ -97,7 +97,6 @@ class Explanation {
   const std::vector<explore::StoredBlame>& blames() const { return blames_; }
 
  private:
-  std::vector<platform::BoardConfig> boards() const;
   Rate rate_of(std::uint64_t number);
   BusiestBank busiest_bank_of(std::uint64_t number, const platform::BoardConfig& board);
   double busy_percent(const std::string& resource) const;
@@ -111,7 +110,7 @@ class Explanation {
   const platform::Tables& tables_;
   explore::PointRun run_;
   explore::KnobSteps knobs_;
-  explore::Points points_;
+  explore::Points points_;  // the board itself, then the steps
   explore::Batch batch_;
   platform::FrameAccesses accesses_;
   std::vector<std::vector<platform::ResourceBound>> bounds_;  // [frame of one turn of the lists]
@@ -128,6 +127,9 @@ class Explanation {
 // do not count: they cost the core nothing.
 std::optional<explore::StoredBlame> longest_wait(const Explanation& explanation,
                                                  const std::string& resource = "");
+
+// The share of these cycles in those of the frames of the board itself.
+double percent_of_cycles(const Explanation& explanation, std::int64_t cycles);
 
 // Why a board is not faster, after "limited by": "the matcher, at its bound of 18.596 frames/s".
 std::string limiter_text(const Explanation& explanation);

@@ -16,7 +16,7 @@
 #include "platform/bounds.h"
 #include "platform/computer_parts.h"
 #include "platform/figures.h"
-#include "sw/files/json_text.h"
+#include "sw/files/text_forms.h"
 #include "sw/stats/console_table.h"
 
 namespace stereotlm::stats {
