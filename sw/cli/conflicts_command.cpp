@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -30,8 +28,6 @@ namespace fs = std::filesystem;
 
 constexpr const char* kConflictsScript = "plot_conflicts.py";
 constexpr const char* kMark = "conflicts.csv";  // the file that is moved into place last
-constexpr std::array kConflictFigures = {"bank_rows", "picture", "time_line", "causes"};
-constexpr std::array kEndings = {".png", ".svg", ".pdf", ".csv"};
 constexpr const char* kConflictsFooter =
     "Printed are who waits at which bank for whom, and where in the picture. Written are conflicts.csv,\n"
     "waits by tile, which is a group of four columns in the rows of results that leave at once; rows.csv,\n"
@@ -79,14 +75,6 @@ struct ConflictsOptions : Options {
   JsonOption json{this};
 };
 
-bool is_file_name(const std::string& name) {
-  if (name == kMark || name == "rows.csv") return true;
-  return std::any_of(kConflictFigures.begin(), kConflictFigures.end(), [&name](const std::string& figure) {
-    return std::any_of(kEndings.begin(), kEndings.end(),
-                       [&](const char* ending) { return name == figure + ending; });
-  });
-}
-
 files::OutputContent content_of(const runs::RunInput& input) {
   files::OutputContent content;
   content.called = "folder of conflicts";
@@ -96,7 +84,7 @@ files::OutputContent content_of(const runs::RunInput& input) {
       "must be empty or hold only files that conflicts has written, with conflicts.csv: move it away, or "
       "give "
       "another folder";
-  content.is_ours = is_file_name;
+  content.names = {kMark, "rows.csv", "@(bank_rows|picture|time_line|causes).@(png|svg|pdf|csv)"};
   content.inputs = input.inputs;
   return content;
 }
@@ -204,9 +192,8 @@ int conflicts(const ConflictsOptions& options) {
     process::attempt_or_refuse("", [&] { folder.emplace(options.out.text(), content_of(input)); });
   }
   Binder binder;
-  runs::BlankPairs blank(input.board);
-  host::FrameSource& pairs = input.timing_only ? static_cast<host::FrameSource&>(blank) : *input.pairs;
-  const auto simulation = runs::make_simulation(input.board, input.tables, pairs, input.mode(), binder);
+  const auto simulation =
+      runs::make_simulation(input.board, input.tables, *input.pairs, input.mode(), binder);
   Shown shown;
   if (!simulate(*simulation, input, folder ? &*folder : nullptr, shown))
     return interrupted("nothing is written");

@@ -11,7 +11,7 @@
 
 #include "platform/config/board_keys.h"
 #include "sw/cli/command.h"
-#include "sw/files/json_text.h"
+#include "sw/files/text_forms.h"
 #include "sw/files/whole_file.h"
 #include "sw/process/command.h"
 #include "sw/process/interrupt.h"
@@ -120,9 +120,7 @@ std::string with_coloured_words(std::string text, std::size_t from,
   return text;
 }
 
-void print_json(const nlohmann::ordered_json& document) {
-  process::print(files::json_text(document, nlohmann::ordered_json::error_handler_t::replace));
-}
+void print_json(const nlohmann::ordered_json& document) { process::print(files::json_text(document, true)); }
 
 int interrupted(const std::string& what) {
   process::say("note", "interrupted: " + what);

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -149,9 +148,7 @@ files::OutputContent content_of(const PaperOptions& options) {
   content.mark = paper::kDocument;
   content.kind = files::marked_kind("document of stereotlm paper", {{0, paper::kDocumentMark}});
   content.rule = "only files of an earlier result are replaced";
-  content.is_ours = [names = paper::file_names()](const std::string& name) {
-    return name == paper::kDocument || std::find(names.begin(), names.end(), name) != names.end();
-  };
+  content.names = {paper::kDocument, "@(table1|table2|banks).@(csv|png|svg)", "@(costs|claims).csv"};
   content.others_stay = true;
   content.inputs = {{"--left", options.left.text()},
                     {"--right", options.right.text()},

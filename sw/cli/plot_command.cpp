@@ -1,5 +1,3 @@
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <filesystem>
@@ -23,8 +21,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array kFigures = {"window", "disparities", "rows", "units", "banks",
-                                 "states", "stalls",      "use",  "pareto"};
+constexpr const char* kNames =
+    "@(window|disparities|rows|units|banks|states|stalls|use|pareto).@(png|svg|pdf|csv)";
 // The endings of pictures, and what the scripts write into each picture (METADATA in style.py).
 const std::array<std::pair<const char*, std::string>, 3> kMade = {
     {{".png", std::string("\0\0\0\x12tEXtSoftware\0stereotlm", 26)},
@@ -82,17 +80,9 @@ struct PlotOptions : Options {
   }
 };
 
-// Whether the name is one that the scripts give to a file.
-bool is_named(const fs::path& name) {
-  const bool has_ending = name.extension() == ".csv" ||
-                          std::any_of(kMade.begin(), kMade.end(),
-                                      [&](const auto& kind) { return name.extension() == kind.first; });
-  return has_ending && std::find(kFigures.begin(), kFigures.end(), name.stem()) != kFigures.end();
-}
-
-// Whether a script has written the file, or it is empty. A table is known by a picture beside it.
+// Whether a script has written the file of kNames, or it is empty. A table is known by a picture beside it.
 bool is_made(const fs::path& file) {
-  if (!is_named(file.filename()) || !files::is_file(file)) return false;
+  if (!files::is_file(file)) return false;
   if (fs::file_size(file) == 0) return true;
   return std::any_of(kMade.begin(), kMade.end(), [&file](const auto& kind) {
     const auto& [ending, made] = kind;
@@ -111,7 +101,7 @@ int plot(const PlotOptions& options) {
   std::string problem = "--out: missing: the folder of the figures";
   if (options.out.is_given() && !options.out.text().empty()) {
     try {
-      files::OutputContent content{"--out", "", {"figure of plot", is_made}, kRule, is_named};
+      files::OutputContent content{"--out", "", {"figure of plot", is_made}, kRule, {kNames}};
       content.inputs = {{"DB", options.database.text()}};
       folder = std::make_unique<files::OutputFolder>(options.out.text(), std::move(content));
       problem.clear();

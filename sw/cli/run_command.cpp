@@ -21,9 +21,9 @@ namespace {
 using runs::Simulation;
 
 // Builds the simulation. If that fails, refuses the command, because no cycle has been simulated yet.
-std::unique_ptr<Simulation> build(const runs::RunInput& input, host::FrameSource& pairs, Binder& binder) {
+std::unique_ptr<Simulation> build(const runs::RunInput& input, Binder& binder) {
   try {
-    return runs::make_simulation(input.board, input.tables, pairs, input.mode(), binder);
+    return runs::make_simulation(input.board, input.tables, *input.pairs, input.mode(), binder);
   } catch (const std::exception& error) {
     process::refuse(fmt::format("the board cannot be built: {}", error.what()));
   }
@@ -65,8 +65,9 @@ void simulate(Simulation& simulation, const runs::RunInput& input, runs::Verific
       if (verification != nullptr) verification->add(result);
     }
     records.add(simulation);
-    progress.show({simulation.frames(), simulation.frames_done(), simulation.cycles_of_done(),
-                   simulation.cycles(), frame_cycles});
+    const runs::RunState state = {simulation.frames(), simulation.frames_done(), simulation.cycles_of_done(),
+                                  simulation.cycles(), frame_cycles};
+    progress.show([&state](double seconds) { return runs::progress_text(state, seconds); });
   }
   records.finish(simulation);
 }
@@ -89,9 +90,7 @@ int run(const RunCommandOptions& options) {
   std::optional<runs::Verification> verification;
   if (options.run.verify.is_given()) verification.emplace(input);
   Binder binder;
-  runs::BlankPairs blank(input.board);
-  host::FrameSource& pairs = input.timing_only ? static_cast<host::FrameSource&>(blank) : *input.pairs;
-  const std::unique_ptr<Simulation> simulation = build(input, pairs, binder);
+  const std::unique_ptr<Simulation> simulation = build(input, binder);
   if (input.trace_window) simulation->trace(*input.trace_window, *input.trace, *input.trace);
   simulate(*simulation, input, verification ? &*verification : nullptr);
   const std::uint64_t done = simulation->frames_done();

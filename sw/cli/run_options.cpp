@@ -8,10 +8,12 @@
 #include <regex>
 #include <set>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
 #include "calib/calibration.h"
+#include "platform/config/board_area.h"
 #include "platform/config/board_keys.h"
 #include "platform/config/board_yaml.h"
 #include "sw/files/text_forms.h"
@@ -19,6 +21,7 @@
 #include "sw/process/interrupt.h"
 #include "sw/process/streams.h"
 #include "sw/runs/run_json.h"
+#include "sw/runs/run_results.h"
 #include "sw/runs/sources/calibration_library.h"
 #include "sw/runs/sources/open_source.h"
 
@@ -174,6 +177,31 @@ void describe(const RunOptions& options, std::uint64_t pairs, runs::RunInput& in
 }
 
 }  // namespace
+
+std::vector<std::string> BoardOptions::words_without_allocation() const {
+  constexpr std::string_view kSection = "allocation";
+  std::vector<std::string> words = {argument.text()};
+  if (calibration.is_given()) words.insert(words.end(), {calibration.name(), calibration.text()});
+  for (const std::string& set : sets.texts()) {
+    if (set.substr(0, set.find_first_of(".=")) != kSection) words.insert(words.end(), {"--set", set});
+  }
+  return words;
+}
+
+LoadedBoard BoardOptions::load(process::Problems& problems) const {
+  LoadedBoard loaded;
+  problems.attempt("", [&] { loaded.board = platform::load_board(argument.text(), sets.texts()); });
+  if (calibration.is_given()) {
+    loaded.calibration =
+        runs::load_calibration(calibration.text(), loaded.board ? &*loaded.board : nullptr, problems);
+  }
+  return loaded;
+}
+
+void LoadedBoard::say_clock_remark() const {
+  const std::string remark = platform::clock_remark(*board);
+  if (!remark.empty()) process::say("note", remark);
+}
 
 std::string TraceOptions::meaning() {
   return fmt::format(
@@ -331,7 +359,6 @@ runs::RunInput RunOptions::load() const {
       input.calibration = calibration->calibration;
       input.described.calibration = calibration->described;
     }
-    input.config_yaml = platform::to_yaml(input.board);
     describe(*this, opened.pairs ? opened.pairs->length() : 1, input);
   });
   trace.check_window(input.board, input.frames, problems);
@@ -342,7 +369,7 @@ runs::RunInput RunOptions::load() const {
   if (input.calibration) say_what_is_not_seen(input);
   if (input.calibration && !input.timing_only)
     process::attempt_or_refuse("", [&] { say_how_rows_agree(input, opened.pairs->pair(0)); });
-  input.pairs = std::move(opened.pairs);
+  input.pairs = input.timing_only ? runs::blank_pairs(input.board) : std::move(opened.pairs);
   return input;
 }
 

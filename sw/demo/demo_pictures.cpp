@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <exception>
@@ -128,13 +129,24 @@ void prepare(const fs::path& source, const fs::path& out) {
   std::printf("%.0f\n", media::disparities_needed({truth, kTruthScale}));
 }
 
+// The truth rounded to whole disparities (halves up). Invalid where it is unknown or not below `disparities`.
+GrayImage nearest_disparity(const media::Truth& truth, int disparities) {
+  GrayImage result(truth.grey.width, truth.grey.height, kernels::kInvalidDisparity);
+  for (std::size_t i = 0; i < truth.grey.pixels.size(); ++i) {
+    const double nearest = std::floor(truth.grey.pixels[i] / truth.scale + 0.5);
+    if (truth.grey.pixels[i] != 0 && nearest < disparities)
+      result.pixels[i] = static_cast<std::uint8_t>(nearest);
+  }
+  return result;
+}
+
 void montage(const Words& words) {
   const int disparities = kernels::kDisparitiesRule.required("DISPARITIES", std::stoi(words[3]));
   std::vector<Panel> panels = {
       grey_panel("left picture", media::load_gray(words[1]).image),
       disparity_panel("disparity, pixels", media::load_gray(words[2]).image, disparities, "no answer")};
   if (words.size() == 5) {
-    const auto truth = media::nearest_disparity(media::load_truth(words[4], kTruthScale), disparities);
+    const auto truth = nearest_disparity(media::load_truth(words[4], kTruthScale), disparities);
     panels.push_back(disparity_panel("ground truth, pixels", truth, disparities, "unknown"));
   }
   write_side_by_side(words[0], panels);

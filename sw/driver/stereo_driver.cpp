@@ -10,6 +10,7 @@
 #include "models/kernels/joint_table.h"
 #include "models/pci/bridge_registers.h"
 #include "platform/config/buffer_layout.h"
+#include "platform/device_map.h"
 
 namespace stereotlm::driver {
 namespace {
@@ -27,46 +28,59 @@ constexpr std::uint64_t kDataStart = 4096;                    // address of the 
 // A capture writes through an aperture, whose page stays as it is.
 static_assert(fpga::kWidthRule.max * fpga::kHeightRule.max <= std::int64_t{bridge_map::kApertureBytes});
 
-std::uint64_t table_bytes(const DriverConfig& config) {
-  return static_cast<std::uint64_t>(config.width) * static_cast<std::uint64_t>(config.height) * 4;
+const platform::DeviceMap kDevices;
+
+std::uint64_t image_bytes(const platform::BoardConfig& board) {
+  return static_cast<std::uint64_t>(board.image.width) * static_cast<std::uint64_t>(board.image.height);
 }
-std::uint64_t picture_bytes(const DriverConfig& config) { return table_bytes(config) / 4; }
+
+bool captures_to_host(const platform::BoardConfig& board) {
+  return board.capture.destination == platform::CaptureDestination::kHostMemory;
+}
 
 // Host memory holds, in this order: the chains of both DMA channels, the tables, the ring, the results.
-std::uint64_t ring_start(const DriverConfig& config) { return kDataStart + 2 * table_bytes(config); }
-std::uint64_t results_start(const DriverConfig& config) {
-  const std::uint64_t pairs = config.capture_to_host ? static_cast<std::uint64_t>(config.host_frames) : 0;
-  return ring_start(config) + pairs * 2 * picture_bytes(config);
+std::uint64_t ring_start(const platform::BoardConfig& board) {
+  return kDataStart + 2 * 4 * image_bytes(board);
+}
+std::uint64_t results_start(const platform::BoardConfig& board) {
+  const int pairs = captures_to_host(board) ? board.capture.host_frames : 0;
+  return ring_start(board) + static_cast<std::uint64_t>(pairs) * 2 * image_bytes(board);
 }
 
 [[noreturn]] void fail(const std::string& what) { throw std::runtime_error("stereo driver: " + what); }
 
 }  // namespace
 
-std::uint64_t host_memory_bytes(const DriverConfig& config) {
-  return results_start(config) + config.buffers.disparities.size() * picture_bytes(config);
+std::uint64_t host_memory_bytes(const platform::BoardConfig& board) {
+  return results_start(board) + board.allocation.disparity.size() * image_bytes(board);
 }
 
-StereoDriver::StereoDriver(const DriverConfig& config, const std::vector<std::uint32_t>* left_table,
-                           const std::vector<std::uint32_t>* right_table, FrameListener& listener)
-    : config_(config), left_table_(left_table), right_table_(right_table), listener_(listener) {
+StereoDriver::StereoDriver(const platform::BoardConfig& board, std::uint64_t frames,
+                           const std::vector<std::uint32_t>* left_table,
+                           const std::vector<std::uint32_t>* right_table, Deliver deliver)
+    : board_(board),
+      buffers_(platform::buffer_bases(board)),
+      captures_to_host_(captures_to_host(board)),
+      frames_(frames),
+      left_table_(left_table),
+      right_table_(right_table),
+      deliver_(std::move(deliver)) {
   const auto check = [this](const char* side, bool is_used, const std::vector<std::uint32_t>* table) {
     const std::size_t entries = table != nullptr ? table->size() : 0;
-    const std::uint64_t expected = is_used ? table_bytes(config_) / 4 : 0;
+    const std::uint64_t expected = is_used ? image_bytes(board_) : 0;
     if (entries != expected) {
       throw std::invalid_argument(std::string(side) + " table = " + std::to_string(entries) +
                                   " entries: must have " + std::to_string(expected));
     }
   };
-  const fpga::BufferBases& buffers = config.buffers;
-  check("left", buffers.left_lut.has_value(), left_table_);
-  check("right", buffers.right_lut.has_value() || buffers.has_joint_tables, right_table_);
-  if (buffers.has_joint_tables) join_tables();
+  check("left", buffers_.left_lut.has_value(), left_table_);
+  check("right", buffers_.right_lut.has_value() || buffers_.has_joint_tables, right_table_);
+  if (buffers_.has_joint_tables) join_tables();
 }
 
 void StereoDriver::join_tables() {
   const auto table = [this](const std::vector<std::uint32_t>& entries) {
-    return kernels::RectificationTable{config_.width, config_.height, entries};
+    return kernels::RectificationTable{board_.image.width, board_.image.height, entries};
   };
   kernels::JointTable joint = kernels::join_tables(table(*left_table_), table(*right_table_));
   joint_table_ = std::move(joint.words);
@@ -79,10 +93,10 @@ void StereoDriver::run(host::HostBus& bus) {
   bridge(bridge_map::kInterruptEnable, bridge_map::kAllInterrupts);
   start_what_can_be();
   const Progress& read_backs = of(Activity::kReadBack);
-  while (read_backs.ended < config_.frames) {
+  while (read_backs.ended < frames_) {
     bus.wait_for_interrupt();
     handle_interrupts();
-    if (read_backs.ended < config_.frames) start_what_can_be();
+    if (read_backs.ended < frames_) start_what_can_be();
   }
 }
 
@@ -106,16 +120,16 @@ void StereoDriver::upload_tables() {
   const auto add = [&](const std::optional<std::uint32_t>& lut, const std::vector<std::uint32_t>* table) {
     if (!lut) return;
     const std::uint64_t bytes = table->size() * 4;
-    std::memcpy(bus_->memory(config_.devices.host_memory + host, bytes), table->data(), bytes);
+    std::memcpy(bus_->memory(kDevices.host_memory + host, bytes), table->data(), bytes);
     pieces.push_back({host, *lut, table->size(), false});
     host += bytes;
   };
-  if (config_.buffers.has_joint_tables) {
+  if (buffers_.has_joint_tables) {
     for (const auto& [address, value] : core_map::joint_offsets(joint_offsets_)) core(address, value);
-    add(config_.buffers.left_lut, &joint_table_);
+    add(buffers_.left_lut, &joint_table_);
   } else {
-    add(config_.buffers.left_lut, left_table_);
-    add(config_.buffers.right_lut, right_table_);
+    add(buffers_.left_lut, left_table_);
+    add(buffers_.right_lut, right_table_);
   }
   if (pieces.empty()) return;
   const std::uint32_t done = bridge_map::kDmaDone << unsigned{kToBoard};
@@ -141,7 +155,7 @@ void StereoDriver::handle_interrupts() {
   if ((status & bridge_map::kPostedError) != 0) fail("the board has refused a write");
   if ((status & bridge_map::kDoorbell) != 0) handle_core();
   if ((status & bridge_map::kDmaDone << unsigned{kToBoard}) != 0) ++of(Activity::kCopy).ended;
-  if ((status & bridge_map::kDmaDone << unsigned{kToHost}) != 0) deliver();
+  if ((status & bridge_map::kDmaDone << unsigned{kToHost}) != 0) end_read_back();
   if (!of(Activity::kCapture).idle()) handle_captures();
 }
 
@@ -152,7 +166,7 @@ void StereoDriver::handle_core() {
 }
 
 void StereoDriver::handle_captures() {
-  const std::array<std::uint64_t, 2> boards = {config_.devices.left_capture, config_.devices.right_capture};
+  const std::array<std::uint64_t, 2> boards = {kDevices.left_capture, kDevices.right_capture};
   for (std::size_t side = 0; side < boards.size(); ++side) {
     if (side_done_[side]) continue;
     const std::uint32_t status = bus_->read(boards[side] + capture_map::kStatus);
@@ -195,18 +209,18 @@ bool StereoDriver::begin(Activity activity, std::initializer_list<Condition> con
 void StereoDriver::start_core() {
   const std::uint64_t frame = frames_started();
   const bool starts =
-      frame < config_.frames &&
+      frame < frames_ &&
       begin(Activity::kFrame, {{Activity::kFrame, 1, "core"},
-                               {config_.capture_to_host ? Activity::kCopy : Activity::kCapture, 0, "pair"},
-                               {Activity::kReadBack, config_.buffers.disparities.size(), "output_buffer"}});
+                               {captures_to_host_ ? Activity::kCopy : Activity::kCapture, 0, "pair"},
+                               {Activity::kReadBack, buffers_.disparities.size(), "output_buffer"}});
   if (starts) {
-    const auto input = static_cast<std::size_t>(frame % config_.buffers.left_images.size());
-    core(core_map::kLeftImageBase, config_.buffers.left_images[input]);
-    core(core_map::kRightImageBase, config_.buffers.right_images[input]);
+    const auto input = static_cast<std::size_t>(frame % buffers_.left_images.size());
+    core(core_map::kLeftImageBase, buffers_.left_images[input]);
+    core(core_map::kRightImageBase, buffers_.right_images[input]);
     core(core_map::kDisparityBase,
-         config_.buffers.disparities[static_cast<std::size_t>(frame % config_.buffers.disparities.size())]);
-    if (frame == 0 && config_.buffers.left_lut) core(core_map::kLeftLutBase, *config_.buffers.left_lut);
-    if (frame == 0 && config_.buffers.right_lut) core(core_map::kRightLutBase, *config_.buffers.right_lut);
+         buffers_.disparities[static_cast<std::size_t>(frame % buffers_.disparities.size())]);
+    if (frame == 0 && buffers_.left_lut) core(core_map::kLeftLutBase, *buffers_.left_lut);
+    if (frame == 0 && buffers_.right_lut) core(core_map::kRightLutBase, *buffers_.right_lut);
   }
   if (!starts && !core_to_acknowledge_) return;
   core(core_map::kControl,
@@ -216,68 +230,69 @@ void StereoDriver::start_core() {
 
 void StereoDriver::arm_capture() {
   const std::uint64_t capture = of(Activity::kCapture).begun;
-  const std::size_t inputs = config_.buffers.left_images.size();
+  const std::size_t inputs = buffers_.left_images.size();
   const Condition buffer =
-      config_.capture_to_host
-          ? Condition{Activity::kCopy, static_cast<std::uint64_t>(config_.host_frames), "ring"}
+      captures_to_host_
+          ? Condition{Activity::kCopy, static_cast<std::uint64_t>(board_.capture.host_frames), "ring"}
           : Condition{Activity::kFrame, inputs, "input_buffer"};
   if (!begin(Activity::kCapture, {{Activity::kCapture, 1, "capture"}, buffer})) return;
   std::uint64_t left = 0;
   std::uint64_t right = 0;
-  if (config_.capture_to_host) {
-    left = config_.devices.host_memory + pair_in_host(capture);
-    right = left + image_bytes();
+  if (captures_to_host_) {
+    left = kDevices.host_memory + pair_in_host(capture);
+    right = left + image_bytes(board_);
   } else {
     const auto input = static_cast<std::size_t>(capture % inputs);
-    bridge(bridge_map::kPage + 0, config_.buffers.left_images[input]);
-    bridge(bridge_map::kPage + 4, config_.buffers.right_images[input]);
-    left = config_.devices.bridge_slave;
+    bridge(bridge_map::kPage + 0, buffers_.left_images[input]);
+    bridge(bridge_map::kPage + 4, buffers_.right_images[input]);
+    left = kDevices.bridge_slave;
     right = left + bridge_map::kApertureBytes;
   }
-  bus_->write(config_.devices.left_capture + capture_map::kBufferAddress, static_cast<std::uint32_t>(left));
-  bus_->write(config_.devices.right_capture + capture_map::kBufferAddress, static_cast<std::uint32_t>(right));
-  bus_->write(config_.devices.right_capture + capture_map::kControl, capture_map::kControlArm);
-  bus_->write(config_.devices.left_capture + capture_map::kControl,
-              capture_map::kControlArm | (config_.trigger_cameras ? capture_map::kControlTrigger : 0U));
+  bus_->write(kDevices.left_capture + capture_map::kBufferAddress, static_cast<std::uint32_t>(left));
+  bus_->write(kDevices.right_capture + capture_map::kBufferAddress, static_cast<std::uint32_t>(right));
+  bus_->write(kDevices.right_capture + capture_map::kControl, capture_map::kControlArm);
+  bus_->write(
+      kDevices.left_capture + capture_map::kControl,
+      capture_map::kControlArm |
+          (board_.cameras.trigger == platform::CameraTrigger::kOnDemand ? capture_map::kControlTrigger : 0U));
 }
 
 void StereoDriver::copy_pair() {
   const std::uint64_t pair = of(Activity::kCopy).begun;
-  const std::size_t inputs = config_.buffers.left_images.size();
-  if (!config_.capture_to_host || !begin(Activity::kCopy, {{Activity::kCopy, 1, "copy"},
-                                                           {Activity::kCapture, 0, "pair"},
-                                                           {Activity::kFrame, inputs, "input_buffer"}})) {
+  const std::size_t inputs = buffers_.left_images.size();
+  if (!captures_to_host_ || !begin(Activity::kCopy, {{Activity::kCopy, 1, "copy"},
+                                                     {Activity::kCapture, 0, "pair"},
+                                                     {Activity::kFrame, inputs, "input_buffer"}})) {
     return;
   }
   const auto input = static_cast<std::size_t>(pair % inputs);
   const std::uint64_t host = pair_in_host(pair);
   start_dma(kToBoard,
-            {{host, config_.buffers.left_images[input], image_bytes() / 4, false},
-             {host + image_bytes(), config_.buffers.right_images[input], image_bytes() / 4, false}});
+            {{host, buffers_.left_images[input], image_bytes(board_) / 4, false},
+             {host + image_bytes(board_), buffers_.right_images[input], image_bytes(board_) / 4, false}});
 }
 
 void StereoDriver::read_back() {
   const std::uint64_t frame = of(Activity::kReadBack).begun;
   if (!begin(Activity::kReadBack, {{Activity::kReadBack, 1, "read_back"}, {Activity::kFrame, 0, "frame"}}))
     return;
-  const auto output = static_cast<std::size_t>(frame % config_.buffers.disparities.size());
-  start_dma(kToHost, {{result_in_host(frame), config_.buffers.disparities[output], image_bytes() / 4, true}});
+  const auto output = static_cast<std::size_t>(frame % buffers_.disparities.size());
+  start_dma(kToHost, {{result_in_host(frame), buffers_.disparities[output], image_bytes(board_) / 4, true}});
 }
 
-void StereoDriver::deliver() {
+void StereoDriver::end_read_back() {
   const std::uint64_t frame = of(Activity::kReadBack).ended++;
-  listener_.frame_delivered(
-      {frame, camera_frames_[static_cast<std::size_t>(frame)],
-       bus_->memory(config_.devices.host_memory + result_in_host(frame), image_bytes())});
+  deliver_({frame, camera_frames_[static_cast<std::size_t>(frame)],
+            bus_->memory(kDevices.host_memory + result_in_host(frame), image_bytes(board_))});
 }
 
 void StereoDriver::start_dma(int channel, const std::vector<Piece>& pieces) {
-  const std::uint64_t chain = config_.devices.host_memory + static_cast<std::uint64_t>(channel) * kChainBytes;
+  const std::uint64_t chain = kDevices.host_memory + static_cast<std::uint64_t>(channel) * kChainBytes;
   std::uint8_t* to = bus_->memory(chain, pieces.size() * kDescriptorBytes);
   for (std::size_t piece = 0; piece < pieces.size(); ++piece) {
     const bool last = piece + 1 == pieces.size();
     const std::array<std::uint32_t, 4> descriptor = {
-        static_cast<std::uint32_t>(config_.devices.host_memory + pieces[piece].host), pieces[piece].board,
+        static_cast<std::uint32_t>(kDevices.host_memory + pieces[piece].host), pieces[piece].board,
         static_cast<std::uint32_t>(pieces[piece].words) | (pieces[piece].to_host ? bridge_map::kToPci : 0U),
         last ? 0U : static_cast<std::uint32_t>(chain + (piece + 1) * kDescriptorBytes)};
     std::memcpy(to + piece * kDescriptorBytes, descriptor.data(), kDescriptorBytes);
@@ -288,38 +303,25 @@ void StereoDriver::start_dma(int channel, const std::vector<Piece>& pieces) {
 }
 
 std::uint64_t StereoDriver::pair_in_host(std::uint64_t capture) const {
-  return ring_start(config_) + capture % static_cast<std::uint64_t>(config_.host_frames) * 2 * image_bytes();
+  return ring_start(board_) +
+         capture % static_cast<std::uint64_t>(board_.capture.host_frames) * 2 * image_bytes(board_);
 }
 
 std::uint64_t StereoDriver::result_in_host(std::uint64_t frame) const {
-  return results_start(config_) + frame % config_.buffers.disparities.size() * image_bytes();
+  return results_start(board_) + frame % buffers_.disparities.size() * image_bytes(board_);
 }
-
-std::uint64_t StereoDriver::image_bytes() const { return picture_bytes(config_); }
 
 std::uint32_t StereoDriver::core(std::uint64_t offset) {
-  return bus_->read(config_.devices.bridge_slave + bridge_map::kCoreRegisters + offset);
+  return bus_->read(kDevices.bridge_slave + bridge_map::kCoreRegisters + offset);
 }
 void StereoDriver::core(std::uint64_t offset, std::uint32_t value) {
-  bus_->write(config_.devices.bridge_slave + bridge_map::kCoreRegisters + offset, value);
+  bus_->write(kDevices.bridge_slave + bridge_map::kCoreRegisters + offset, value);
 }
 std::uint32_t StereoDriver::bridge(std::uint64_t offset) {
-  return bus_->read(config_.devices.bridge_registers + offset);
+  return bus_->read(kDevices.bridge_registers + offset);
 }
 void StereoDriver::bridge(std::uint64_t offset, std::uint32_t value) {
-  bus_->write(config_.devices.bridge_registers + offset, value);
-}
-
-DriverConfig driver_config(const platform::BoardConfig& board, std::uint64_t frames) {
-  DriverConfig config;
-  config.width = board.image.width;
-  config.height = board.image.height;
-  config.frames = frames;
-  config.buffers = platform::buffer_bases(board);
-  config.capture_to_host = board.capture.destination == platform::CaptureDestination::kHostMemory;
-  config.host_frames = board.capture.host_frames;
-  config.trigger_cameras = board.cameras.trigger == platform::CameraTrigger::kOnDemand;
-  return config;
+  bus_->write(kDevices.bridge_registers + offset, value);
 }
 
 }  // namespace stereotlm::driver

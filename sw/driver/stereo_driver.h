@@ -2,8 +2,8 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <initializer_list>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,7 +11,6 @@
 #include "models/host/program.h"
 #include "models/kernels/joint_table.h"
 #include "platform/config/board_config.h"
-#include "platform/device_map.h"
 #include "platform/driver_observer.h"
 
 // The program on the host (contract section 3). It uses only host::HostBus, so that it runs on the CPU of the
@@ -19,20 +18,8 @@
 
 namespace stereotlm::driver {
 
-// The configuration of a StereoDriver.
-struct DriverConfig {
-  int width = 0;             // pixels, a multiple of 4
-  int height = 0;            // pixels
-  std::uint64_t frames = 1;  // 1 or more
-  fpga::BufferBases buffers;
-  bool capture_to_host = false;  // capture.destination: host_memory
-  int host_frames = 3;           // pairs in the ring in host memory
-  bool trigger_cameras = false;  // cameras.trigger: on_demand
-  platform::DeviceMap devices;
-};
-
-// Bytes of host memory that the driver uses, from address 0 of that memory.
-std::uint64_t host_memory_bytes(const DriverConfig& config);
+// Bytes of host memory that the driver of a board uses, from address 0 of that memory.
+std::uint64_t host_memory_bytes(const platform::BoardConfig& board);
 
 // A result that has arrived in host memory.
 struct DeliveredFrame {
@@ -42,27 +29,24 @@ struct DeliveredFrame {
 };
 
 // Receives the results of a StereoDriver.
-class FrameListener {
- public:
-  virtual ~FrameListener() = default;
-  virtual void frame_delivered(const DeliveredFrame& frame) = 0;
-};
+using Deliver = std::function<void(const DeliveredFrame& frame)>;
 
 // Uploads the tables, then schedules captures, frames and read-backs. It arms a capture when its buffer is
 // free, starts the core when a pair and an output buffer are ready, and reads results back by DMA. Each of
 // these activities counts the frames that it has begun and ended. A buffer is free when the activity that
 // reads it has ended the frame in it. README.md lists every access.
 //
-// With capture_to_host, captures go to a ring in host memory, and a DMA channel copies the oldest pair to the
-// board. run() returns after the last of `frames` deliveries. run() throws std::runtime_error if the hardware
-// reports an error, and what HostBus throws.
+// With capture.destination = host_memory, captures go to a ring in host memory, and a DMA channel copies the
+// oldest pair to the board. run() returns after the last of `frames` deliveries. run() throws
+// std::runtime_error if the hardware reports an error, and what HostBus throws.
 class StereoDriver : public host::Program {
  public:
   // Entries of the tables, row by row (contract 1.1); null for a side without table. The driver joins those
-  // of joint tables. The tables and `listener` outlive the driver. Throws std::invalid_argument if a
+  // of joint tables. The tables outlive the driver. `frames`: 1 or more. Throws std::invalid_argument if a
   // table does not have one entry per pixel, or joint tables do not fit.
-  StereoDriver(const DriverConfig& config, const std::vector<std::uint32_t>* left_table,
-               const std::vector<std::uint32_t>* right_table, FrameListener& listener);
+  StereoDriver(const platform::BoardConfig& board, std::uint64_t frames,
+               const std::vector<std::uint32_t>* left_table, const std::vector<std::uint32_t>* right_table,
+               Deliver deliver);
 
   void run(host::HostBus& bus) override;
   // `observer` outlives the driver. To be called before run().
@@ -73,7 +57,7 @@ class StereoDriver : public host::Program {
   // The number of times that the core was started.
   std::uint64_t frames_started() const { return of(Activity::kFrame).begun; }
   // The driver starts no more frames. run() returns when the frames that the core has begun are delivered.
-  void start_no_more() { config_.frames = frames_started(); }
+  void start_no_more() { frames_ = frames_started(); }
   // The operations for which run() waits, as text: "capture 4, core with frame 2".
   std::string under_way() const;
 
@@ -113,7 +97,7 @@ class StereoDriver : public host::Program {
   void arm_capture();
   void copy_pair();
   void read_back();
-  void deliver();
+  void end_read_back();
 
   void start_dma(int channel, const std::vector<Piece>& pieces);
   std::uint64_t pair_in_host(std::uint64_t capture) const;
@@ -122,25 +106,24 @@ class StereoDriver : public host::Program {
   void core(std::uint64_t offset, std::uint32_t value);
   std::uint32_t bridge(std::uint64_t offset);
   void bridge(std::uint64_t offset, std::uint32_t value);
-  std::uint64_t image_bytes() const;
 
-  DriverConfig config_;
+  platform::BoardConfig board_;
+  fpga::BufferBases buffers_;
+  bool captures_to_host_;
+  std::uint64_t frames_;
   const std::vector<std::uint32_t>* left_table_;
   const std::vector<std::uint32_t>* right_table_;
   std::vector<std::uint32_t> joint_table_;  // empty unless the tables are joint
   kernels::JointOffsets joint_offsets_{};
-  FrameListener& listener_;
+  Deliver deliver_;
   host::HostBus* bus_ = nullptr;
 
   platform::DriverObserver* observer_ = nullptr;
-  std::array<Progress, platform::kActivities> progress_{};  // [Activity]; copies only with capture_to_host
+  std::array<Progress, platform::kActivities> progress_{};  // [Activity]; copies only if captures_to_host_
   bool uploading_ = false;
   std::array<bool, 2> side_done_{};           // [left, right]: the side of the running capture is complete
   std::vector<std::uint64_t> camera_frames_;  // camera frame of each finished capture
   bool core_to_acknowledge_ = false;
 };
-
-// The configuration of a board's driver.
-DriverConfig driver_config(const platform::BoardConfig& board, std::uint64_t frames);
 
 }  // namespace stereotlm::driver

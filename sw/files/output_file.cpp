@@ -10,7 +10,6 @@
 #include <cerrno>
 #include <cstdio>
 #include <fstream>
-#include <random>
 #include <stdexcept>
 #include <system_error>
 
@@ -20,10 +19,6 @@ namespace stereotlm::files {
 namespace {
 
 namespace fs = std::filesystem;
-
-[[noreturn]] void fail(int error, const fs::path& path) {
-  throw std::system_error(error, std::generic_category(), path.string());
-}
 
 // Calls `action`. Its system errors get the name of the file that the user knows.
 template <typename Action>
@@ -46,40 +41,13 @@ void take_owner_and_mode(const fs::path& made, const struct stat& earlier) {
   if (chmod(made.c_str(), mode) != 0) fail(errno, made);
 }
 
-// The hidden file for "rows.csv" is ".rows.csv.writing-" and this number of random hexadecimal digits.
-constexpr std::size_t kDigits = 16;
-
-// The name of the hidden file without its digits.
-std::string beginning(const fs::path& file) {
-  // Limit for the part from the file's name: file systems limit names to 255 bytes.
-  constexpr std::size_t kMostBytes = 200;
-  return fmt::format(".{}.writing-", file.filename().string().substr(0, kMostBytes));
-}
-
 fs::path folder_of(const fs::path& file) { return file.has_parent_path() ? file.parent_path() : "."; }
 
-// Removes a hidden file if no process has locked it, and hence none is writing it. On a file system without
-// locks the file stays.
-void remove_if_left(const fs::path& aside) {
-  const int file = open(aside.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
-  if (file < 0) return;
-  if (flock(file, LOCK_EX | LOCK_NB) == 0) unlink(aside.c_str());
-  close(file);
-}
-
-// Removes the hidden files that killed processes have left beside the file.
-void remove_left_beside(const fs::path& file) {
-  const std::string begin = beginning(file);
-  std::error_code ignored;
-  std::vector<fs::path> left;
-  for (fs::directory_iterator entry(folder_of(file), ignored), end; !ignored && entry != end;
-       entry.increment(ignored)) {
-    const std::string name = entry->path().filename();
-    const bool is_ours = name.size() == begin.size() + kDigits && name.rfind(begin, 0) == 0 &&
-                         name.find_first_not_of("0123456789abcdef", begin.size()) == std::string::npos;
-    if (is_ours) left.push_back(entry->path());
-  }
-  for (const fs::path& aside : left) remove_if_left(aside);
+// The hidden file: that of "rows.csv" is ".rows.csv.writing".
+fs::path aside_of(const fs::path& file) {
+  // Limit for the part from the file's name: file systems limit names to 255 bytes.
+  constexpr std::size_t kMostBytes = 200;
+  return folder_of(file) / fmt::format(".{}.writing", file.filename().string().substr(0, kMostBytes));
 }
 
 // Whether both paths lead to the same file, which need not exist.
@@ -117,37 +85,22 @@ void rename_to_new(const fs::path& from, const fs::path& to) {
 }
 
 AsideFile::AsideFile(fs::path file, std::string name) : file_(std::move(file)), name_(std::move(name)) {
-  remove_left_beside(file_);
   named(name_, [this] {
-    while (!make()) {
+    const fs::path path = aside_of(file_);
+    lock_ = open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    if (lock_ >= 0) {  // another process is writing it, or was killed
+      const bool is_written = flock(lock_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+      if (!is_written) unlink(path.c_str());
+      close(std::exchange(lock_, -1));
+      if (is_written) fail(EBUSY, path);
     }
+    new_.emplace(path);
+    path_ = path;
+    lock_ = fcntl(new_->descriptor(), F_DUPFD_CLOEXEC, 0);
+    if (lock_ < 0) fail(errno, path_);
+    const bool is_locked = flock(lock_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
+    if (!is_locked || !is_open_at(lock_, path_)) fail(EBUSY, path_);
   });
-}
-
-// Creates and locks the hidden file. Returns false if its name is taken, or if another process has removed
-// the file before it was locked.
-bool AsideFile::make() {
-  std::random_device random;
-  path_ = folder_of(file_) / fmt::format("{}{:08x}{:08x}", beginning(file_), random(), random());
-  try {
-    new_.emplace(path_);
-  } catch (const std::system_error& error) {
-    if (error.code() != std::errc::file_exists) throw;
-    return false;
-  }
-  lock_ = open(path_.c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC);
-  if (lock_ < 0 && errno == ENOENT) return false;
-  if (lock_ < 0) {
-    const int error = errno;
-    unlink(path_.c_str());
-    fail(error, path_);
-  }
-  while (flock(lock_, LOCK_EX) != 0 && errno == EINTR) {
-  }
-  struct stat status = {};
-  if (fstat(lock_, &status) == 0 && status.st_nlink > 0) return true;
-  close(lock_);
-  return false;
 }
 
 AsideFile::~AsideFile() {

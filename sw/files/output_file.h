@@ -28,9 +28,10 @@ struct NamedFile {
 // std::system_error.
 std::filesystem::path linked_file(const std::filesystem::path& path);
 
-// New content for a file, in a hidden file in the same folder. The destructor removes it. The constructor
-// also removes the hidden files that killed processes have left beside the same file. All functions throw
-// std::runtime_error with the name of the file, not of the hidden one, and the cause.
+// New content for a file, in a hidden file in the same folder. The destructor removes it; if the process is
+// killed, the next one that writes the same file replaces it. All functions throw std::runtime_error with the
+// name of the file, not of the hidden one, and the cause. The constructor throws also while another process
+// writes the file.
 class AsideFile {
  public:
   // `file`: not a symbolic link (see linked_file()). `name`: the file in messages.
@@ -56,7 +57,6 @@ class AsideFile {
 
  private:
   static constexpr std::size_t kBufferBytes = std::size_t{1} << 18U;
-  bool make();
   void flush() { write_through({}); }
   void write_through(std::string_view bytes);
 

@@ -2,12 +2,14 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <fnmatch.h>
 #include <sys/file.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <stdexcept>
+#include <system_error>
 #include <utility>
 
 #include "sw/files/whole_file.h"
@@ -87,15 +89,23 @@ bool OutputFolder::try_lock() {
   return false;
 }
 
+bool OutputFolder::is_ours(const std::string& name) const {
+  const std::size_t size = content_.prefix.size();
+  return name.compare(0, size, content_.prefix) == 0 &&
+         std::any_of(content_.names.begin(), content_.names.end(), [&](const std::string& pattern) {
+           return fnmatch(pattern.c_str(), name.c_str() + size, FNM_EXTMATCH | FNM_PATHNAME) == 0;
+         });
+}
+
 // Returns the name of a file in `entry` that the command has not written; nullopt if there is none. The entry
 // is in DIR or in the folder of unfinished files.
 std::optional<std::string> OutputFolder::foreign_part(const fs::path& entry) const {
   const std::string name = entry.filename();
-  if (!is_folder(entry)) return is_file(entry) && content_.is_ours(name) ? std::nullopt : std::optional(name);
-  if (!content_.is_ours(name + '/')) return name;
+  if (!is_folder(entry)) return is_file(entry) && is_ours(name) ? std::nullopt : std::optional(name);
+  if (!is_ours(name + '/')) return name;
   for (const fs::path& inside : entries(entry)) {
     const std::string whole = name / inside;
-    if (!is_file(entry / inside) || !content_.is_ours(whole)) return whole;
+    if (!is_file(entry / inside) || !is_ours(whole)) return whole;
   }
   return std::nullopt;
 }
@@ -123,7 +133,7 @@ void OutputFolder::check_earlier() {
       needs_mark && is_file(dir_ / content_.mark) && content_.kind.is_own(dir_ / content_.mark);
   for (const fs::path& name : entries(dir_)) {
     if (name == content_.aside || name == content_.kept) continue;
-    const bool is_known = content_.is_ours(name) || content_.is_ours(name.string() + '/');
+    const bool is_known = is_ours(name) || is_ours(name.string() + '/');
     if (!is_known && content_.others_stay) continue;
     if (const auto foreign = foreign_part(dir_ / name))
       refuse(fmt::format("holds '{}': {}", *foreign, content_.rule));
@@ -161,21 +171,29 @@ void OutputFolder::start_aside() {
 
 NewFile& OutputFolder::new_file(const std::string& name) {
   const fs::path path = made() / name;
-  if (name.empty() || name.back() == '/' || !content_.is_ours(name) || is_there(path))
+  if (name.empty() || name.back() == '/' || !is_ours(name) || is_there(path))
     throw std::invalid_argument(fmt::format("file = '{}': not one of the command's, or added twice", name));
   fs::create_directory(path.parent_path());
   return growing_.try_emplace(name, path).first->second;
 }
 
-void OutputFolder::add(const std::string& name, std::string_view bytes) {
+// Calls `action`, which writes this file.
+template <typename Action>
+void OutputFolder::store(const std::string& name, const Action& action) const {
   try {
+    action();
+  } catch (const std::system_error& error) {
+    refuse(fmt::format("'{}' cannot be written: {}", name, error.code().message()));
+  }
+}
+
+void OutputFolder::add(const std::string& name, std::string_view bytes) {
+  store(name, [&] {
     NewFile& file = new_file(name);
     file.write(bytes);
     file.close();
     growing_.erase(name);
-  } catch (const std::system_error& error) {
-    refuse_file(name, error.code());
-  }
+  });
 }
 
 void OutputFolder::add(const std::string& name, const std::vector<std::uint8_t>& bytes) {
@@ -183,30 +201,16 @@ void OutputFolder::add(const std::string& name, const std::vector<std::uint8_t>&
 }
 
 void OutputFolder::append(const std::string& name, std::string_view bytes) {
-  try {
+  store(name, [&] {
     const auto found = growing_.find(name);
     (found == growing_.end() ? new_file(name) : found->second).write(bytes);
-  } catch (const std::system_error& error) {
-    refuse_file(name, error.code());
-  }
-}
-
-void OutputFolder::refuse_file(const std::string& name, const std::error_code& cause) const {
-  std::error_code ignored;
-  fs::remove(made() / name, ignored);
-  refuse(fmt::format("'{}' cannot be written: {}", name, cause.message()));
+  });
 }
 
 void OutputFolder::commit() {
   if (committed_ || (!content_.mark.empty() && !is_file(made() / content_.mark)))
     throw std::logic_error(fmt::format("commit() may be called once, after {} is added", content_.mark));
-  for (auto& [name, file] : growing_) {
-    try {
-      file.close();
-    } catch (const std::system_error& error) {
-      refuse_file(name, error.code());
-    }
-  }
+  for (auto& [name, file] : growing_) store(name, [&file = file] { file.close(); });
   for (const fs::path& name : replaced_) {
     const auto foreign = is_there(dir_ / name) ? foreign_part(dir_ / name) : std::nullopt;
     if (foreign)

@@ -2,12 +2,10 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <map>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <vector>
 
 #include "sw/files/output_file.h"
@@ -23,9 +21,10 @@ struct OutputContent {
   std::string mark;
   FileKind kind;     // of the mark; without mark, of each file that is replaced
   std::string rule;  // completes messages about files that must not be replaced: "must be empty or .."
-  // Whether the command writes files of this name in DIR: "stats.json", "frames/000000.png". The name of a
-  // folder ends in a slash.
-  std::function<bool(const std::string& name)> is_ours;
+  // The names of the files that the command writes in DIR, behind the prefix, as patterns for fnmatch() with
+  // FNM_EXTMATCH: "stats.json", "frames/+([0-9]).png". The name of a folder ends in a slash.
+  std::vector<std::string> names;
+  std::string prefix = {};
   bool others_stay = false;        // DIR may hold other files too, which stay
   std::string kept = {};           // an entry of DIR that stays, although the command may write it
   std::string aside = ".partial";  // name of the folder of unfinished files, in DIR
@@ -63,6 +62,7 @@ class OutputFolder {
   void commit();
 
  private:
+  bool is_ours(const std::string& name) const;
   std::filesystem::path aside() const { return dir_ / content_.aside; }
   std::filesystem::path made() const { return aside() / "new"; }
   std::filesystem::path complete() const { return aside() / "complete"; }
@@ -75,13 +75,14 @@ class OutputFolder {
   void check_inputs() const;
   void start_aside();
   NewFile& new_file(const std::string& name);
+  template <typename Action>
+  void store(const std::string& name, const Action& action) const;
   std::vector<std::filesystem::path> with_mark_last(const std::filesystem::path& folder) const;
   void move_into_place(const std::vector<std::filesystem::path>& names) const;
   void repair() const;
   void undo_commit(const std::vector<std::filesystem::path>& names) const;
   void discard() noexcept;
   [[noreturn]] void refuse(const std::string& found) const;
-  [[noreturn]] void refuse_file(const std::string& name, const std::error_code& cause) const;
 
   std::filesystem::path dir_;
   OutputContent content_;

@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 #include <openssl/evp.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 namespace stereotlm::files {
@@ -34,6 +37,44 @@ class Sha256 {
 
   std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context_;
 };
+
+using Json = nlohmann::ordered_json;
+
+std::string scalar_text(const Json& value, bool replaces) {
+  if (value.is_number_float()) {
+    const double number = value.get<double>();
+    if (!std::isfinite(number))
+      throw std::invalid_argument(fmt::format("{}: JSON numbers are finite", number));
+    return fmt::format("{}", number);
+  }
+  try {
+    return value.dump(-1, ' ', false,
+                      replaces ? Json::error_handler_t::replace : Json::error_handler_t::strict);
+  } catch (const Json::type_error&) {
+    throw std::invalid_argument(fmt::format("'{}': JSON strings are UTF-8", value.get<std::string>()));
+  }
+}
+
+void append(std::string& text, const Json& value, std::size_t depth, bool replaces) {
+  if (!value.is_structured()) {
+    text += scalar_text(value, replaces);
+    return;
+  }
+  const bool one_line =
+      value.empty() || (depth > 0 && std::none_of(value.begin(), value.end(),
+                                                  [](const Json& member) { return member.is_structured(); }));
+  const std::string indent = one_line ? "" : "\n" + std::string(2 * (depth + 1), ' ');
+  const char* separator = "";
+  text += value.is_object() ? '{' : '[';
+  for (const auto& [key, member] : value.items()) {
+    text += separator + indent;
+    if (value.is_object()) text += scalar_text(key, replaces) + ": ";
+    append(text, member, depth + 1, replaces);
+    separator = one_line ? ", " : ",";
+  }
+  if (!one_line) text += "\n" + std::string(2 * depth, ' ');
+  text += value.is_object() ? '}' : ']';
+}
 
 }  // namespace
 
@@ -86,6 +127,12 @@ std::string ranges_text(const std::vector<std::uint64_t>& numbers, const std::st
     first = last + 1;
   }
   return text;
+}
+
+std::string json_text(const nlohmann::ordered_json& document, bool replaces) {
+  std::string text;
+  append(text, document, 0, replaces);
+  return text + "\n";
 }
 
 }  // namespace stereotlm::files

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -26,5 +27,11 @@ std::string shell_command(const std::vector<std::string>& words);
 
 // Ascending numbers with runs of them as ranges: "0, 2-5, 9" with the separator ", ".
 std::string ranges_text(const std::vector<std::uint64_t>& numbers, const std::string& separator);
+
+// The text of a JSON document in the form of the result files: keys in insertion order, two spaces of indent,
+// a container without containers on one line, numbers as the shortest decimals that read back equal, a
+// newline at the end. Throws std::invalid_argument for a number that is not finite, and for a string that is
+// not UTF-8, unless it `replaces` what is not.
+std::string json_text(const nlohmann::ordered_json& document, bool replaces = false);
 
 }  // namespace stereotlm::files

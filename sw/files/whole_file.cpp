@@ -24,11 +24,19 @@ namespace {
   throw std::runtime_error("'" + path.string() + "': " + cause);
 }
 
+// Makes an open file or folder durable. Returns the error; 0 if there is none, or on a file system without
+// sync, which returns EINVAL or ENOTSUP.
+int sync(int descriptor) { return fsync(descriptor) == 0 || errno == EINVAL || errno == ENOTSUP ? 0 : errno; }
+
 }  // namespace
+
+void fail(int error, const std::filesystem::path& path) {
+  throw std::system_error(error, std::generic_category(), path.string());
+}
 
 NewFile::NewFile(const std::filesystem::path& path)
     : path_(path), descriptor_(open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666)) {
-  if (descriptor_ < 0) fail(errno);
+  if (descriptor_ < 0) fail(errno, path_);
 }
 
 NewFile::~NewFile() {
@@ -39,22 +47,17 @@ void NewFile::write(std::string_view bytes) {
   while (!bytes.empty()) {
     const ssize_t count = ::write(descriptor_, bytes.data(), bytes.size());
     if (count < 0 && errno == EINTR) continue;
-    if (count < 0) fail(errno);
-    if (count == 0) fail(ENOSPC);
+    if (count < 0) fail(errno, path_);
+    if (count == 0) fail(ENOSPC, path_);
     bytes.remove_prefix(static_cast<std::size_t>(count));
   }
 }
 
 void NewFile::close() {
-  // File systems without sync return EINVAL or ENOTSUP.
-  if (fsync(descriptor_) != 0 && errno != EINVAL && errno != ENOTSUP) fail(errno);
+  if (const int error = sync(descriptor_); error != 0) fail(error, path_);
   const int closed = ::close(descriptor_);
   descriptor_ = -1;
-  if (closed != 0 && errno != EINTR) fail(errno);
-}
-
-void NewFile::fail(int error) const {
-  throw std::system_error(error, std::generic_category(), path_.string());
+  if (closed != 0 && errno != EINTR) fail(errno, path_);
 }
 
 void write_whole_file(const std::filesystem::path& path, std::string_view bytes) {
@@ -85,15 +88,11 @@ std::string read_whole_file(const std::filesystem::path& path, std::uintmax_t mo
 }
 
 void sync_folder(const std::filesystem::path& folder) {
-  const auto fail = [&folder](int error) {
-    throw std::system_error(error, std::generic_category(), folder.string());
-  };
   const int descriptor = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0) fail(errno);
-  const int error = fsync(descriptor) == 0 ? 0 : errno;
+  if (descriptor < 0) fail(errno, folder);
+  const int error = sync(descriptor);
   close(descriptor);
-  // File systems without sync return EINVAL or ENOTSUP.
-  if (error != 0 && error != EINVAL && error != ENOTSUP) fail(error);
+  if (error != 0) fail(error, folder);
 }
 
 std::vector<std::filesystem::path> entries(const std::filesystem::path& folder) {

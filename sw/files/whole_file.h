@@ -9,6 +9,9 @@
 
 namespace stereotlm::files {
 
+// Throws std::system_error with this error of the system and the path.
+[[noreturn]] void fail(int error, const std::filesystem::path& path);
+
 // A new file that is written piece by piece. All functions throw std::system_error with the cause as code if
 // a byte cannot be stored. The caller then removes the file.
 class NewFile {
@@ -20,12 +23,11 @@ class NewFile {
   NewFile& operator=(const NewFile&) = delete;
 
   void write(std::string_view bytes);
+  int descriptor() const { return descriptor_; }
   // Makes the file durable, and closes it. No write() may follow.
   void close();
 
  private:
-  [[noreturn]] void fail(int error) const;
-
   std::filesystem::path path_;
   int descriptor_;
 };

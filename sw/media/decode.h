@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "models/fpga/core_config.h"
-#include "sw/media/video.h"
+#include "sw/media/load.h"
 
 namespace stereotlm::media {
 
@@ -60,7 +60,7 @@ Picture decode_pnm(std::string_view bytes);
 struct Decoders {
   // Decodes BMP, TIFF, WebP, JPEG 2000 and Sun raster.
   Picture (*decode_picture)(std::string_view bytes);
-  // See video.h.
+  // See load.h.
   std::unique_ptr<Video> (*open_video)(const std::string& path, const VideoSizeCheck& check);
 };
 

@@ -50,10 +50,6 @@ std::vector<std::uint8_t> encode_png_gray(const kernels::GrayImage& image) {
   return calib::encode_png(image.width, image.height, calib::PngPixel::kGrey, image.pixels.data());
 }
 
-std::vector<std::uint8_t> encode_png_16(int width, int height, const std::vector<std::uint16_t>& values) {
-  return calib::encode_png(width, height, calib::PngPixel::kGrey16, values.data());
-}
-
 std::vector<std::uint8_t> encode_disparity_color_png(const kernels::GrayImage& disparity, int disparities) {
   std::vector<std::uint8_t> colours;
   for (const std::uint8_t d : disparity.pixels) {
@@ -81,16 +77,6 @@ std::vector<std::uint8_t> encode_pfm(const kernels::GrayImage& disparity) {
     }
   }
   return bytes;
-}
-
-kernels::GrayImage nearest_disparity(const Truth& truth, int disparities) {
-  kernels::GrayImage result(truth.grey.width, truth.grey.height, kernels::kInvalidDisparity);
-  for (std::size_t i = 0; i < truth.grey.pixels.size(); ++i) {
-    const double nearest = std::floor(truth.grey.pixels[i] / truth.scale + 0.5);
-    if (truth.grey.pixels[i] != 0 && nearest < disparities)
-      result.pixels[i] = static_cast<std::uint8_t>(nearest);
-  }
-  return result;
 }
 
 }  // namespace stereotlm::media

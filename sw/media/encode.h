@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "models/kernels/gray_image.h"
-#include "sw/media/load.h"
 
 namespace stereotlm::media {
 
@@ -13,18 +12,11 @@ namespace stereotlm::media {
 
 std::vector<std::uint8_t> encode_png_gray(const kernels::GrayImage& image);
 
-// 16-bit grey, row by row.
-std::vector<std::uint8_t> encode_png_16(int width, int height, const std::vector<std::uint16_t>& values);
-
 // Disparities 0 .. disparities-1 from dark blue to dark red (Turbo), invalid pixels black.
 // disparities: kernels::kDisparitiesRule.
 std::vector<std::uint8_t> encode_disparity_color_png(const kernels::GrayImage& disparity, int disparities);
 
 // Portable float map: one channel, little endian (scale -1.0), rows bottom to top, invalid = +infinity.
 std::vector<std::uint8_t> encode_pfm(const kernels::GrayImage& disparity);
-
-// For display: the truth rounded to whole disparities (halves up). Invalid where the truth is unknown or
-// outside 0 .. disparities-1.
-kernels::GrayImage nearest_disparity(const Truth& truth, int disparities);
 
 }  // namespace stereotlm::media

@@ -3,9 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <functional>
 #include <limits>
-#include <optional>
 
 #include "models/area/area.h"
 #include "sw/stats/accuracy.h"

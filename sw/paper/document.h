@@ -2,7 +2,6 @@
 
 #include <map>
 #include <string>
-#include <vector>
 
 #include "sw/paper/study.h"
 
@@ -10,12 +9,6 @@ namespace stereotlm::paper {
 
 // File name of the report on the findings.
 inline constexpr const char* kDocument = "paper.md";
-// Names of the pictures of the report, which are drawn from the tables.
-inline constexpr const char* kFigures[] = {"table1", "table2", "banks"};
-
-// The names of the files beside the report: tables and pictures.
-std::vector<std::string> file_names();
-
 // The contents of the tables by file name: table1.csv, table2.csv, banks.csv, costs.csv, claims.csv. Numbers
 // are the shortest decimals that read back equal, as in stats.json.
 std::map<std::string, std::string> tables(const Findings& findings);

@@ -29,6 +29,8 @@ constexpr double kRounding = 1e-9;
 
 bool reaches(double rate, double best) { return rate >= best * (1 - kRounding); }
 
+bool has_less_rate(const Measured& a, const Measured& b) { return a.rate < b.rate; }
+
 int banks_of(const BoardConfig& board) {
   std::vector<std::string> names;
   for (const platform::PlacedBuffer& buffer : platform::buffers(board)) names.push_back(buffer.bank);
@@ -137,32 +139,26 @@ void add_best(const BankSearch& searched, const Means& means, std::vector<BankRo
   }
 }
 
-// The smallest number of banks among the rows of a claim that reach the best rate of these rows.
-int fewest_banks(const std::vector<BankRow>& rows, const std::string& claim) {
-  double best = 0;
-  int fewest = 0;
-  for (const BankRow& row : rows) {
-    if (row.of == claim) best = std::max(best, row.measured.rate);
-  }
-  for (const BankRow& row : rows) {
-    if (row.of == claim && reaches(row.measured.rate, best) && (fewest == 0 || row.banks < fewest))
-      fewest = row.banks;
+// The smallest number of banks among the runs that reach the rate of `best`, which is one of them.
+int fewest_banks(const std::vector<Measured>& runs, const Measured& best) {
+  int fewest = best.banks;
+  for (const Measured& run : runs) {
+    if (reaches(run.rate, best.rate)) fewest = std::min(fewest, run.banks);
   }
   return fewest;
 }
 
-// The smallest number of banks among the runs that reach the rate of the first run.
-int fewest_banks(const std::vector<Measured>& runs) {
-  int fewest = runs.front().banks;
-  for (const Measured& run : runs) {
-    if (reaches(run.rate, runs.front().rate)) fewest = std::min(fewest, run.banks);
+// The same for the rows of a claim: of those that reach the best rate of all.
+int fewest_banks(const std::vector<BankRow>& rows, const std::string& claim) {
+  std::vector<Measured> runs;
+  for (const BankRow& row : rows) {
+    if (row.of == claim) runs.push_back(row.measured);
   }
-  return fewest;
+  return fewest_banks(runs, *std::max_element(runs.begin(), runs.end(), has_less_rate));
 }
 
 double spread(const std::vector<Measured>& runs) {
-  const auto by_rate = [](const Measured& a, const Measured& b) { return a.rate < b.rate; };
-  const auto [least, most] = std::minmax_element(runs.begin(), runs.end(), by_rate);
+  const auto [least, most] = std::minmax_element(runs.begin(), runs.end(), has_less_rate);
   return most->rate - least->rate;
 }
 
@@ -199,7 +195,7 @@ double modelled_value(const Claim& claim, const std::vector<Measured>& runs,
     case Quantity::kBanksFound:
       break;
   }
-  return fewest_banks(runs);
+  return fewest_banks(runs, runs.front());
 }
 
 bool judges(const Quality& first) { return first.wrong_percent <= stats::kDoubtfulBad1Percent; }

@@ -30,9 +30,7 @@ std::string row(const Cells&... cells) {
 }
 
 std::string command_text(const Claim& claim, const Case& one) {
-  std::string text;
-  for (const std::string& command : commands_of(claim, one)) text += (text.empty() ? "" : " && ") + command;
-  return text;
+  return fmt::format("{}", fmt::join(commands_of(claim, one), " && "));
 }
 
 // The keys that a table has columns for, which describe its boards.
@@ -40,11 +38,7 @@ constexpr std::array kBoardKeys = {"image.width",         "image.height",   "mat
                                    "matcher.disparities", "matcher.filter", "fpga.clock_mhz",
                                    "fpga.device"};
 
-std::string board_header() {
-  std::string text;
-  for (const char* const key : kBoardKeys) text += std::string(",") + key;
-  return text + '\n';
-}
+std::string board_header() { return fmt::format(",{}\n", fmt::join(kBoardKeys, ",")); }
 
 // Appends to a row the values of kBoardKeys for the board of a run.
 std::string with_board(std::string row, const BoardRun& run) {
@@ -165,14 +159,6 @@ std::string all_claims(const Findings& findings) {
 }
 
 }  // namespace
-
-std::vector<std::string> file_names() {
-  std::vector<std::string> names = {"table1.csv", "table2.csv", "banks.csv", "costs.csv", "claims.csv"};
-  for (const char* figure : kFigures) {
-    for (const char* ending : {".png", ".svg"}) names.push_back(std::string(figure) + ending);
-  }
-  return names;
-}
 
 std::map<std::string, std::string> tables(const Findings& findings) {
   return {{"table1.csv", table1(findings)},

@@ -108,12 +108,14 @@ std::vector<char*> shown_variables(const std::vector<std::string>& hidden) {
   return shown;
 }
 
-}  // namespace
-
+// The path of a file that is installed with the program. `from_program`: its path relative to the folder of
+// the program.
 std::filesystem::path installed_path(const std::string& from_program) {
   const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe");
   return (program.parent_path() / from_program).lexically_normal();
 }
+
+}  // namespace
 
 const void* plugin_symbol(const std::string& library_name, const char* symbol, const std::string& what) {
   const std::string path = installed_path(STEREOTLM_PLUGIN_FOLDER) / library_name;

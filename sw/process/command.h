@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -8,10 +7,6 @@
 namespace stereotlm::process {
 
 inline constexpr const char* kVersion = STEREOTLM_VERSION;  // version of the project, set by CMake
-
-// The path of a file that is installed with the program. `from_program`: its path relative to the folder of
-// the program.
-std::filesystem::path installed_path(const std::string& from_program);
 
 // Returns the address of a symbol of a plugin: a library that uses OpenCV and is installed with the program.
 // The first call loads the library, and OpenCV with it; both stay loaded. Removes environment variables that

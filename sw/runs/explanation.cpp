@@ -230,7 +230,11 @@ Explanation::Explanation(const platform::BoardConfig& board, const platform::Tab
                       : kCoreFrames,
            ""},
       knobs_(explore::knob_steps(board, camera, joint_problem(tables))),
-      points_(explore::board_points(boards(), run_)),
+      points_({1 + knobs_.possible.size(),
+               [this](std::uint64_t number) {
+                 return explore::make_point(
+                     number, number == 0 ? board_ : knobs_.possible.at(number - 1).board, run_);
+               }}),
       accesses_(platform::frame_accesses(board, tables)) {
   const std::uint64_t turn = platform::allocation_period_frames(board);
   for (std::uint64_t frame = 0; frame < turn; ++frame)
@@ -257,12 +261,6 @@ bool Explanation::simulate(PointSimulator simulator) {
   compare_resources(cycles);
   share_time(cycles);
   return true;
-}
-
-std::vector<platform::BoardConfig> Explanation::boards() const {
-  std::vector<platform::BoardConfig> all = {board_};
-  for (const explore::KnobStep& step : knobs_.possible) all.push_back(step.board);
-  return all;
 }
 
 Explanation::Rate Explanation::rate_of(std::uint64_t number) {

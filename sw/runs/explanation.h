@@ -104,7 +104,6 @@ class Explanation {
   const std::vector<explore::StoredBlame>& blames() const { return blames_; }
 
  private:
-  std::vector<platform::BoardConfig> boards() const;
   Rate rate_of(std::uint64_t number);
   BusiestBank busiest_bank_of(std::uint64_t number, const platform::BoardConfig& board);
   double busy_percent(const std::string& resource) const;
@@ -118,7 +117,7 @@ class Explanation {
   const platform::Tables& tables_;
   explore::PointRun run_;
   explore::KnobSteps knobs_;
-  explore::Points points_;
+  explore::Points points_;  // the board itself, then the steps
   explore::Batch batch_;
   platform::FrameAccesses accesses_;
   std::vector<std::vector<platform::ResourceBound>> bounds_;  // [frame of one turn of the lists]

@@ -67,10 +67,6 @@ ProgressLine::ProgressLine()
       start_(std::chrono::steady_clock::now()),
       next_(start_ + kBetweenDrawings) {}
 
-void ProgressLine::show(const RunState& state) {
-  show([&state](double seconds) { return progress_text(state, seconds); });
-}
-
 void ProgressLine::show(const std::function<std::string(double seconds)>& line) {
   if (!is_shown_) return;
   const Time now = std::chrono::steady_clock::now();

@@ -43,9 +43,8 @@ class ProgressLine {
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
-  // Redraws the line, at most a few times a second.
-  void show(const RunState& state);
-  // The same, with the text that `line` returns for the seconds since construction.
+  // Redraws the line, at most a few times a second, with the text that `line` returns for the seconds since
+  // construction.
   void show(const std::function<std::string(double seconds)>& line);
   // Erases the line until the next show().
   void erase();

@@ -80,23 +80,12 @@ constexpr char kFrame = 'f';
 constexpr char kFigures = 's';
 constexpr char kRecord = 'r';
 
-// put() and take() write and read the message in which the child sends a frame to the parent: kind, number,
-// rows, pixels. Values are copied as bytes, because both processes run the same program.
-template <typename Value>
-void put(std::string& message, const Value& value) {
-  message.append(reinterpret_cast<const char*>(&value), sizeof value);
-}
-
-template <typename Value>
-void take(const char*& bytes, Value& value) {
-  std::memcpy(&value, bytes, sizeof value);
-  bytes += sizeof value;
-}
-
+// The message in which the child sends a frame to the parent: kind, number, rows, pixels. Values are copied
+// as bytes, because both processes run the same program.
 std::string message_of(const Result& result, const fpga::RowProfile& rows) {
   std::string message(1, kFrame);
-  put(message, result.number);
-  for (const fpga::RowEnd& row : rows) put(message, row);
+  message.append(reinterpret_cast<const char*>(&result.number), sizeof result.number);
+  message.append(reinterpret_cast<const char*>(rows.data()), rows.size() * sizeof rows[0]);
   const auto& pixels = result.disparity.pixels;
   return message.append(pixels.begin(), pixels.end());
 }
@@ -104,12 +93,16 @@ std::string message_of(const Result& result, const fpga::RowProfile& rows) {
 Rerun::Frame frame_of(const std::string& message, const RecordedRun& run) {
   Rerun::Frame frame;
   const char* bytes = message.data() + 1;
-  take(bytes, frame.number);
+  const auto take = [&bytes](void* to, std::size_t count) {
+    std::memcpy(to, bytes, count);
+    bytes += count;
+  };
+  take(&frame.number, sizeof frame.number);
   frame.rows.resize(static_cast<std::size_t>(run.board.image.height));
-  for (fpga::RowEnd& row : frame.rows) take(bytes, row);
+  take(frame.rows.data(), frame.rows.size() * sizeof frame.rows[0]);
   if (run.options.timing_only) return frame;
   frame.disparity = kernels::GrayImage(run.board.image.width, run.board.image.height);
-  std::memcpy(frame.disparity.pixels.data(), bytes, frame.disparity.pixels.size());
+  take(frame.disparity.pixels.data(), frame.disparity.pixels.size());
   return frame;
 }
 
@@ -119,10 +112,8 @@ void run_again(const RecordedRun& run, bool record, const process::Child::Tell& 
   if (!problems.empty()) throw std::runtime_error("cannot be run any more: " + problems.in_one_line());
   input.fast = true;
   input.record = record;
-  BlankPairs blank(input.board);
-  host::FrameSource& pairs = input.timing_only ? static_cast<host::FrameSource&>(blank) : *input.pairs;
   Binder binder;
-  const auto simulation = make_simulation(input.board, input.tables, pairs, input.mode(), binder);
+  const auto simulation = make_simulation(input.board, input.tables, *input.pairs, input.mode(), binder);
   simulation->core().record_rows();
   Records records(input, [&tell](const std::string& name, const std::string& text) {
     tell(kRecord + name + '\n' + text);
@@ -143,11 +134,12 @@ void run_again(const RecordedRun& run, bool record, const process::Child::Tell& 
 
 constexpr std::chrono::milliseconds kBetweenPolls{100};
 
-}  // namespace
-
+// Which version has written a run, if it is not this one: a part of messages.
 std::string version_note(const RecordedOptions& options) {
   return fmt::format("it was written by version {}, this is {}", options.program_version, process::kVersion);
 }
+
+}  // namespace
 
 std::string name_of(const RecordedRun& run) { return fmt::format("{} '{}'", run.argument, run.folder); }
 
@@ -221,6 +213,7 @@ RunInput open_again(const RecordedRun& run, process::Problems& problems) {
   input.pairs = open_source(pictures, &run.board, found).pairs;
   if (input.pairs && pictures.sequence)
     found.attempt("--sequence ", [&] { check_sequence(*pictures.sequence, *run.options.sequence); });
+  if (input.timing_only) input.pairs = blank_pairs(run.board);
   std::optional<CalibrationInput> calibration;
   if (run.options.calibration)
     calibration = load_calibration(run.options.calibration->file.path, &run.board, found);
@@ -251,18 +244,17 @@ void check_repeated(const RecordedRun& run, const std::string& stats_json) {
 Rerun::Rerun(const RecordedRun& run, Record record)
     : run_(run),
       record_(std::move(record)),
-      child_(std::make_unique<process::Child>(
-          [&run, records = record_ != nullptr](const process::Child::Tell& tell) {
-            run_again(run, records, tell);
-          })) {}
+      child_([&run, records = record_ != nullptr](const process::Child::Tell& tell) {
+        run_again(run, records, tell);
+      }) {}
 
 std::optional<Rerun::Frame> Rerun::next() {
   try {
-    std::optional<std::string> message = child_->next();
+    std::optional<std::string> message = child_.next();
     while (message && message->front() == kRecord) {
       const std::size_t end_of_name = message->find('\n');
       record_(message->substr(1, end_of_name - 1), message->substr(end_of_name + 1));
-      message = child_->next();
+      message = child_.next();
     }
     if (!message) throw std::runtime_error("has ended without figures");
     if (message->front() == kFrame) return frame_of(*message, run_);

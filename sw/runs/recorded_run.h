@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
-#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -45,9 +44,6 @@ std::optional<RecordedRun> read_recorded_run(const std::string& argument, const 
 std::optional<RecordedRun> load_recorded_run(const std::string& argument, const std::string& folder,
                                              process::Problems& problems);
 
-// Which version has written a run, if it is not this one: a part of messages.
-std::string version_note(const RecordedOptions& options);
-
 // The name of a run in messages: "A 'results/demo/a'".
 std::string name_of(const RecordedRun& run);
 
@@ -77,7 +73,7 @@ class Rerun {
   };
   // Waits until next() would return without waiting, a signal has been caught, or the time is over. Returns
   // true in the first case.
-  bool has_news(std::chrono::milliseconds wait) { return child_->has_news(wait); }
+  bool has_news(std::chrono::milliseconds wait) { return child_.has_news(wait); }
   // Waits for the next frame; nullopt after the last. Throws std::runtime_error if the run fails, or if its
   // figures differ from the recorded ones.
   std::optional<Frame> next();
@@ -85,7 +81,7 @@ class Rerun {
  private:
   const RecordedRun& run_;
   Record record_;
-  std::unique_ptr<process::Child> child_;
+  process::Child child_;
 };
 
 // The reasons why the rows and the pixels of two runs, A and B, cannot be compared. A reason is empty if they

@@ -3,15 +3,14 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "models/fpga/record/core_cycle.h"
 #include "platform/config/board_config.h"
 #include "platform/config/tables.h"
 #include "sw/files/output_file.h"
+#include "sw/files/output_folder.h"
 #include "sw/media/load.h"
-#include "sw/runs/result_folder.h"
 #include "sw/runs/run_json.h"
 #include "sw/runs/simulation/simulation.h"
 #include "sw/runs/sources/open_source.h"
@@ -28,7 +27,7 @@ struct RunInput {
   platform::BoardConfig board;
   std::shared_ptr<const calib::Calibration> calibration;  // null: no calibration
   platform::Tables tables;
-  std::unique_ptr<PairSource> pairs;  // null: blank pictures; only with timing_only
+  std::unique_ptr<PairSource> pairs;  // with timing_only blank_pairs()
   bool camera = true;                 // --source camera, else preloaded
   bool fast = true;                   // --fidelity fast, else cycle
   bool timing_only = false;
@@ -39,7 +38,6 @@ struct RunInput {
   std::uint64_t frames = 1;                       // frames to deliver
   std::optional<media::Truth> truth;              // ground truth of the pair that the last frame shows
   std::vector<files::NamedFile> inputs;           // the files that it is read from
-  std::string config_yaml;                        // text of the result file config.yaml
   RecordedOptions described;                      // content of run.json; `frames` as requested
   std::unique_ptr<files::OutputFolder> folder;    // null: no result files
 

@@ -4,9 +4,10 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "sw/files/json_text.h"
+#include "sw/files/text_forms.h"
 
 namespace stereotlm::runs {
 namespace {

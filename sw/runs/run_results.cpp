@@ -3,12 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "calib/calibration.h"
 #include "calib/depth.h"
+#include "calib/png.h"
 #include "platform/conflicts.h"
-#include "sw/files/json_text.h"
+#include "sw/files/text_forms.h"
 #include "sw/media/encode.h"
 #include "sw/process/streams.h"
 #include "sw/runs/simulation/simulate_point.h"
@@ -32,7 +35,8 @@ void add_pictures(const RunInput& input, const Result& last, files::OutputFolder
                                          input.calibration->disparity_offset};
   const kernels::GrayImage left = kernels::rectify(input.pairs->pair(last.number).left, *input.tables.left);
   const std::vector<std::uint16_t> depths = calib::depth_millimetres(geometry, disparity);
-  folder.add("depth.png", media::encode_png_16(disparity.width, disparity.height, depths));
+  folder.add("depth.png",
+             calib::encode_png(disparity.width, disparity.height, calib::PngPixel::kGrey16, depths.data()));
   folder.add("depth_color.png",
              calibration_functions().encode_depth_color_png(disparity.width, disparity.height, depths));
   folder.add("depth.ply", calib::point_cloud_ply(geometry, disparity, left));
@@ -45,7 +49,7 @@ void write_files(RunInput& input, platform::Statistics statistics, const Result&
   files::OutputFolder& folder = *input.folder;
   if (!input.timing_only) add_pictures(input, last, folder);
   folder.add("stats.json", stats::stats_json(statistics, accuracy));
-  folder.add("config.yaml", input.config_yaml);
+  folder.add("config.yaml", platform::to_yaml(input.board));
   // An interrupted run is recorded as a complete run of the frames that it has finished.
   input.described.frames = statistics.frames;
   folder.add("run.json", run_json(input.described));
@@ -56,7 +60,7 @@ void write_files(RunInput& input, platform::Statistics statistics, const Result&
 // without calibration. stats.json has only the accuracy against --truth.
 std::optional<stats::Accuracy> accuracy_to_show(const RunInput& input, const Result& last,
                                                 const std::optional<stats::Accuracy>& accuracy) {
-  if (accuracy || !input.pairs || input.calibration || input.timing_only) return accuracy;
+  if (accuracy || input.calibration || input.timing_only) return accuracy;
   const std::optional<media::Truth> truth = input.pairs->truth(last.number);
   if (!truth) return std::nullopt;
   return stats::accuracy(last.disparity, *truth);
@@ -92,6 +96,25 @@ void say_if_doubtful(const RunInput& input, const stats::Accuracy& accuracy) {
 
 }  // namespace
 
+std::string frame_file_name(std::uint64_t frame) { return fmt::format("frames/{:06}.png", frame); }
+
+files::OutputContent result_content(std::vector<files::NamedFile> inputs) {
+  files::OutputContent content;
+  content.called = "result folder";
+  content.mark = files::kResultMark;
+  content.kind = {"result of run", [](const std::filesystem::path& /*file*/) { return true; }};
+  content.rule = "must be empty or hold run.json and only files that run writes";
+  content.names = {"@(config.yaml|run.json|stats.json)",
+                   "@(conflicts|latency|rows|timeline).csv",
+                   "depth.@(ply|png)",
+                   "disparity.@(pfm|png)",
+                   "@(depth|disparity)_color.png",
+                   "frames/",
+                   "frames/[0-9][0-9][0-9][0-9][0-9]+([0-9]).png"};
+  content.inputs = std::move(inputs);
+  return content;
+}
+
 void save_frame(const RunInput& input, const Result& result) {
   if (!input.described.save_frames) return;
   input.folder->add(frame_file_name(result.number), media::encode_png_gray(result.disparity));
@@ -106,18 +129,16 @@ Records::Records(const RunInput& input, Append append) : input_(input), append_(
 }
 
 void Records::add(Simulation& simulation) {
-  for (const fpga::FrameConflicts& frame : simulation.take_conflicts()) add(frame);
+  for (const fpga::FrameConflicts& frame : simulation.take_conflicts()) {
+    if (input_.trace) input_.trace->frame(platform::frame_runs(frame));
+    if (input_.record) append_("rows.csv", stats::rows_csv(input_.board, frame.number, frame));
+  }
   if (!input_.camera) return;
   const platform::TimelineRecords records = simulation.take_timeline();
   if (input_.trace) input_.trace->events(records);
   if (!input_.record) return;
   append_("timeline.csv", stats::timeline_csv(records.events));
   append_("latency.csv", stats::latency_csv(records.latencies));
-}
-
-void Records::add(const fpga::FrameConflicts& frame) {
-  if (input_.trace) input_.trace->frame(platform::frame_runs(frame));
-  if (input_.record) append_("rows.csv", stats::rows_csv(input_.board, frame.number, frame));
 }
 
 void Records::finish(Simulation& simulation) {

@@ -6,10 +6,18 @@
 #include <vector>
 
 #include "platform/statistics.h"
+#include "sw/files/output_folder.h"
 #include "sw/runs/run_input.h"
 #include "sw/runs/simulation/simulation.h"
 
 namespace stereotlm::runs {
+
+// The file name of a frame's disparities in a result folder: "frames/000000.png".
+std::string frame_file_name(std::uint64_t frame);
+
+// The folder of `run --out`, which holds one result and nothing else. Its mark is run.json. `inputs`: see
+// OutputContent.
+files::OutputContent result_content(std::vector<files::NamedFile> inputs = {});
 
 // With --save-frames: adds the disparities of this frame to the result folder, which deliver() commits.
 // Throws std::runtime_error if they cannot be written.
@@ -28,8 +36,6 @@ class Records {
   void finish(Simulation& simulation);
 
  private:
-  void add(const fpga::FrameConflicts& frame);
-
   const RunInput& input_;
   Append append_;
 };

@@ -42,16 +42,15 @@ std::string name_of_other(const RunInput& input) { return input.fast ? "cycle" :
 void run_other(const RunInput& input, const process::Child::Tell& tell) {
   process::Problems problems;
   InputPictures pictures = input.described;
-  const std::unique_ptr<PairSource> pairs = open_source(pictures, &input.board, problems).pairs;
+  std::unique_ptr<PairSource> pairs = open_source(pictures, &input.board, problems).pairs;
   if (!problems.empty())
     throw std::runtime_error("the pictures cannot be read any more: " + problems.in_one_line());
-  BlankPairs blank(input.board);
-  host::FrameSource& source = pairs ? static_cast<host::FrameSource&>(*pairs) : blank;
+  if (input.timing_only) pairs = blank_pairs(input.board);
   Binder binder;
   RunMode mode = input.mode();
   mode.record = false;
   mode.fidelity = input.fast ? fpga::Fidelity::kCycle : fpga::Fidelity::kFast;
-  const auto simulation = make_simulation(input.board, input.tables, source, mode, binder);
+  const auto simulation = make_simulation(input.board, input.tables, *pairs, mode, binder);
   while (!simulation->finished()) {
     for (const Result& result : simulation->advance()) tell(line_of(result, !input.timing_only));
   }
@@ -61,9 +60,7 @@ void run_other(const RunInput& input, const process::Child::Tell& tell) {
 }  // namespace
 
 Verification::Verification(const RunInput& input)
-    : input_(input), other_(std::make_unique<process::Child>([&input](const process::Child::Tell& tell) {
-        run_other(input, tell);
-      })) {}
+    : input_(input), other_([&input](const process::Child::Tell& tell) { run_other(input, tell); }) {}
 
 void Verification::add(const Result& result) { results_.push_back(line_of(result, !input_.timing_only)); }
 
@@ -74,8 +71,8 @@ std::optional<std::string> Verification::next_of_other(ProgressLine& progress, s
     if (process::interrupted()) throw Interrupted();
     progress.show(
         [&](double) { return fmt::format("verifying: {}/{} frames", frames_compared, results_.size()); });
-  } while (!other_->has_news(kPollInterval));
-  return other_->next();
+  } while (!other_.has_news(kPollInterval));
+  return other_.next();
 }
 
 Verification::Outcome Verification::compare(const platform::Statistics& statistics) {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -36,7 +35,7 @@ class Verification {
 
   const RunInput& input_;
   std::vector<std::string> results_;  // one line per frame, in order
-  std::unique_ptr<process::Child> other_;
+  process::Child other_;
 };
 
 }  // namespace stereotlm::runs

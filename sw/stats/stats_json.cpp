@@ -17,7 +17,7 @@
 #include "platform/computer_parts.h"
 #include "platform/config/board_area.h"
 #include "platform/figures.h"
-#include "sw/files/json_text.h"
+#include "sw/files/text_forms.h"
 #include "sw/stats/console_table.h"
 
 namespace stereotlm::stats {

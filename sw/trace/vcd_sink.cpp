@@ -507,7 +507,7 @@ class VcdSink : public TraceSink {
   }
 
   Span write_fst(const TimeSpan& window) {
-    files::AsideFile text(files::linked_file(path_), path_.string());
+    files::AsideFile text(files::linked_file(path_) += ".vcd", path_.string());
     const Span span = Waveform(text, signals_).write(streams_, window);
     text.complete();
     const fs::path& fst = files_.front().aside().path();

@@ -28,6 +28,7 @@
 #include "sw/files/whole_file.h"
 #include "sw/process/child.h"
 #include "sw/runs/simulation/simulation.h"
+#include "sw/runs/sources/open_source.h"
 #include "sw/stats/stats_json.h"
 #include "tests/bench/bench_pair.h"
 #include "tests/bench/board_process.h"
@@ -176,9 +177,9 @@ void run_point(benchmark::State& state, const std::vector<std::string>& sets, bo
     process::Child child([&](const process::Child::Tell& tell) {
       const platform::BoardConfig board = platform::load_board("fpl2003", sets);
       const platform::Tables tables = platform::identity_tables(board);
-      runs::BlankPairs pairs(board);
+      const auto pairs = runs::blank_pairs(board);
       Binder binder;
-      const auto run = runs::make_simulation(board, tables, pairs, {camera, Fidelity::kTiming, 1}, binder);
+      const auto run = runs::make_simulation(board, tables, *pairs, {camera, Fidelity::kTiming, 1}, binder);
       while (!run->finished()) run->advance();
       tell(stats::stats_json(run->statistics(), std::nullopt));
     });

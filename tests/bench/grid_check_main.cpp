@@ -1,5 +1,7 @@
 // stereotlm-grid-check measures how right a board's disparities are at the corners of the grid with which its
 // rig was calibrated, and how right the distances that follow from them are.
+#include <fmt/format.h>
+
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -11,7 +13,6 @@
 #include "calib/grid.h"
 #include "sw/files/whole_file.h"
 #include "sw/media/load.h"
-#include "sw/runs/result_folder.h"
 #include "tests/bench/grid_assessment.h"
 
 namespace stereotlm::bench {
@@ -65,7 +66,7 @@ void run(const std::string& rig, const std::filesystem::path& result) {
     calib::GridPair corners = {corners_in(source.left, calibration.grid),
                                corners_in(source.right, calibration.grid)};
     corners.right = calib::ordered_like(corners.left, calibration.grid, corners.right);
-    const auto disparity = media::load_gray((result / runs::frame_file_name(i)).string()).image;
+    const auto disparity = media::load_gray((result / fmt::format("frames/{:06}.png", i)).string()).image;
     const test::GridAssessment found = test::assess(calibration, corners, disparity);
     pairs.push_back(to_json(std::filesystem::path(source.left).filename(), found));
     all.corners += found.corners;

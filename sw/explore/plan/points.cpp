@@ -7,7 +7,6 @@
 #include <array>
 #include <cctype>
 #include <map>
-#include <utility>
 
 #include "platform/config/board_keys.h"
 #include "platform/yaml/yaml_tree.h"
@@ -228,13 +227,6 @@ Point impossible_point(std::uint64_t number, const std::string& yaml, const plat
   }
   point.hash = files::sha256_hex(text.data(), text.size());
   return point;
-}
-
-Points board_points(std::vector<platform::BoardConfig> boards, const PointRun& run) {
-  const std::uint64_t size = boards.size();
-  return {size, [boards = std::move(boards), run](std::uint64_t number) {
-            return make_point(number, boards.at(number), run);
-          }};
 }
 
 }  // namespace stereotlm::explore

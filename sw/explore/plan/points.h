@@ -85,9 +85,6 @@ struct Points {
   std::vector<Condition> conditions = {};
 };
 
-// A list of boards as points, in the order of the list.
-Points board_points(std::vector<platform::BoardConfig> boards, const PointRun& run);
-
 // A condition cannot be computed for a point. what() has the place of the condition, its name and the reason;
 // `reason` is the reason alone.
 class ConditionError : public std::runtime_error {

@@ -26,70 +26,6 @@ bool are_alike(const BankConfig& a, const BankConfig& b) {
   return a.words == b.words && a.kind == b.kind && a.turnaround_cycles == b.turnaround_cycles;
 }
 
-class Placements {
- public:
-  Placements(const BoardConfig& board, int most_banks, const std::function<void(const Placement&)>& visit)
-      : board_(board),
-        most_banks_(most_banks),
-        visit_(visit),
-        buffers_(platform::buffers(board).size()),
-        used_(board.banks.size()) {}
-
-  void place_next() {
-    if (placement_.size() == buffers_) return visit_(placement_);
-    for (std::size_t bank = 0; bank < board_.banks.size(); ++bank) {
-      if (used_[bank] == 0 && (banks_ == most_banks_ || !is_first_of_its_kind(bank))) continue;
-      if (used_[bank]++ == 0) ++banks_;
-      placement_.push_back(static_cast<int>(bank));
-      place_next();
-      placement_.pop_back();
-      if (--used_[bank] == 0) --banks_;
-    }
-  }
-
- private:
-  // Whether no unused bank before `bank` is like it.
-  bool is_first_of_its_kind(std::size_t bank) const {
-    for (std::size_t other = 0; other < bank; ++other) {
-      if (used_[other] == 0 && are_alike(board_.banks[other], board_.banks[bank])) return false;
-    }
-    return true;
-  }
-
-  const BoardConfig& board_;
-  int most_banks_;
-  const std::function<void(const Placement&)>& visit_;
-  std::size_t buffers_;
-  std::vector<int> used_;  // [bank]: number of buffers in it
-  int banks_ = 0;          // number of banks with buffers
-  Placement placement_;
-};
-
-// Replaces each bank by the first bank that is like it and does not replace another.
-class FirstBanks {
- public:
-  explicit FirstBanks(const BoardConfig& board) : board_(board) {}
-
-  const std::string& name(int bank) {
-    const auto known = taken_.find(bank);
-    if (known != taken_.end()) return board_.banks[static_cast<std::size_t>(known->second)].name;
-    for (std::size_t other = 0;; ++other) {
-      const auto place = static_cast<int>(other);
-      if (given_.count(place) > 0 ||
-          !are_alike(board_.banks[other], board_.banks[static_cast<std::size_t>(bank)]))
-        continue;
-      given_.insert(place);
-      taken_[bank] = place;
-      return board_.banks[other].name;
-    }
-  }
-
- private:
-  const BoardConfig& board_;
-  std::map<int, int> taken_;  // [bank]: the bank that replaces it
-  std::set<int> given_;       // banks that replace a bank
-};
-
 // The largest number of boards that next() returns for each number of banks. It is large enough to keep the
 // processors busy. It is small enough that most runs start after the results that can leave them out.
 constexpr std::uint64_t kBoardsPerRound = 8;
@@ -153,7 +89,29 @@ bool fits(const BoardConfig& board, const Placement& placement) {
 
 void for_each_placement(const BoardConfig& board, int most_banks,
                         const std::function<void(const Placement&)>& visit) {
-  Placements(board, most_banks, visit).place_next();
+  const std::size_t buffers = platform::buffers(board).size();
+  std::vector<int> used(board.banks.size());  // [bank]: number of buffers in it
+  int banks = 0;                              // number of banks with buffers
+  Placement placement;
+  // Whether no unused bank before `bank` is like it.
+  const auto is_first_of_its_kind = [&](std::size_t bank) {
+    for (std::size_t other = 0; other < bank; ++other) {
+      if (used[other] == 0 && are_alike(board.banks[other], board.banks[bank])) return false;
+    }
+    return true;
+  };
+  const auto place_next = [&](const auto& self) -> void {
+    if (placement.size() == buffers) return visit(placement);
+    for (std::size_t bank = 0; bank < board.banks.size(); ++bank) {
+      if (used[bank] == 0 && (banks == most_banks || !is_first_of_its_kind(bank))) continue;
+      if (used[bank]++ == 0) ++banks;
+      placement.push_back(static_cast<int>(bank));
+      self(self);
+      placement.pop_back();
+      if (--used[bank] == 0) --banks;
+    }
+  };
+  place_next(place_next);
 }
 
 BoardConfig placed(const BoardConfig& board, const Placement& placement) {
@@ -175,16 +133,26 @@ bool frames_are_independent(const BoardConfig& board) {
 BoardConfig board_of_frame(const BoardConfig& board, const Placement& placement, std::uint64_t frame) {
   BoardConfig result = board;
   result.name = "one frame of " + board.name;
-  FirstBanks banks(board);
+  std::map<int, std::string> replacements;
+  std::set<std::string> given;
+  const auto replacement = [&](int bank) {
+    std::string& name = replacements[bank];
+    for (const BankConfig& other : board.banks) {
+      if (!name.empty()) break;
+      const bool is_alike = are_alike(other, board.banks[static_cast<std::size_t>(bank)]);
+      if (is_alike && given.insert(other.name).second) name = other.name;
+    }
+    return name;
+  };
   std::size_t first = 0;  // index in the placement of the list's first buffer, or of the table
   platform::AllocationConfig& allocation = result.allocation;
   for (auto* list : {&allocation.left_image, &allocation.right_image, &allocation.disparity}) {
     const std::size_t length = list->size();
-    *list = {banks.name(placement[first + frame % length])};
+    *list = {replacement(placement[first + frame % length])};
     first += length;
   }
   for (auto* table : {&allocation.left_lut, &allocation.right_lut}) {
-    if (*table && first < placement.size()) *table = banks.name(placement[first++]);
+    if (*table && first < placement.size()) *table = replacement(placement[first++]);
   }
   if (board.fpga.joint_tables) allocation.right_lut = allocation.left_lut;
   return result;

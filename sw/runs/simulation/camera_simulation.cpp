@@ -32,13 +32,11 @@ CameraSimulation::CameraSimulation(const platform::BoardConfig& board, const pla
                                    host::FrameSource& pairs, std::uint64_t frames, Binder& binder,
                                    fpga::Fidelity fidelity)
     : Simulation(board, tables, pairs, frames, fidelity),
-      board_(board),
       fidelity_(fidelity),
-      tables_(tables),
-      driver_(driver::driver_config(board, frames), entries_of(tables.left), entries_of(tables.right), *this),
-      computer_(platform::make_computer("computer", board,
-                                        driver::host_memory_bytes(driver::driver_config(board, frames)),
-                                        driver_, left_, right_, binder, fidelity)),
+      driver_(board, frames, entries_of(tables.left), entries_of(tables.right),
+              [this](const driver::DeliveredFrame& frame) { frame_delivered(frame); }),
+      computer_(platform::make_computer("computer", board, driver::host_memory_bytes(board), driver_, left_,
+                                        right_, binder, fidelity)),
       stall_timeout_seconds_(stall_timeout_seconds(board)) {}
 
 const kernels::GrayImage& CameraSimulation::View::frame(std::uint64_t number, std::uint64_t begin_ps) {
@@ -53,7 +51,7 @@ const host::StereoPair& CameraSimulation::captured_pair(std::uint64_t number, st
 }
 
 void CameraSimulation::record_timeline() {
-  computer_->record(timeline_.emplace(board_));
+  computer_->record(timeline_.emplace(board()));
   driver_.set_observer(timeline_->driver());
 }
 
@@ -73,7 +71,7 @@ platform::Statistics CameraSimulation::statistics() const {
         fmt::format("statistics of {} frames requested while the core is busy", deliveries_.size()));
   }
   platform::Statistics statistics =
-      platform::collect_statistics(board_, tables_, fidelity_ == fpga::Fidelity::kCycle ? "cycle" : "fast",
+      platform::collect_statistics(board(), tables(), fidelity_ == fpga::Fidelity::kCycle ? "cycle" : "fast",
                                    computer_->core().frame_cycles(), counters_, deliveries_);
   if (timeline_) {
     for (std::string& failed : timeline_->failed(statistics)) statistics.failed.push_back(std::move(failed));
@@ -93,8 +91,8 @@ void CameraSimulation::frame_delivered(const driver::DeliveredFrame& frame) {
   }
   kernels::GrayImage disparity;
   if (fidelity_ != fpga::Fidelity::kTiming) {
-    disparity.width = board_.image.width;
-    disparity.height = board_.image.height;
+    disparity.width = board().image.width;
+    disparity.height = board().image.height;
     const std::ptrdiff_t pixels = std::ptrdiff_t{disparity.width} * disparity.height;
     disparity.pixels.assign(frame.disparity, frame.disparity + pixels);
   }

@@ -19,7 +19,7 @@ namespace stereotlm::runs {
 
 // `--source camera`: the whole computer with the driver on its processor. Camera frame k shows pair k. A run
 // that ends early still finishes and delivers the frames that the core has begun.
-class CameraSimulation : public Simulation, private driver::FrameListener {
+class CameraSimulation : public Simulation {
  public:
   // The referenced arguments outlive the simulation; `binder` binds its sockets. Throws std::exception if the
   // computer cannot be built.
@@ -40,7 +40,7 @@ class CameraSimulation : public Simulation, private driver::FrameListener {
   platform::ComputerView& computer() { return *computer_; }
   // The steady rate of the frames delivered so far; nullopt if they are too few.
   std::optional<platform::SteadyRate> steady_rate() const {
-    return platform::steady_rate(deliveries_, platform::allocation_period_frames(board_));
+    return platform::steady_rate(deliveries_, platform::allocation_period_frames(board()));
   }
 
  private:
@@ -57,12 +57,10 @@ class CameraSimulation : public Simulation, private driver::FrameListener {
   };
 
   const host::StereoPair& captured_pair(std::uint64_t number, std::uint64_t begin_ps);
-  void frame_delivered(const driver::DeliveredFrame& frame) override;
+  void frame_delivered(const driver::DeliveredFrame& frame);
   void check_progress() override;
 
-  const platform::BoardConfig& board_;
   fpga::Fidelity fidelity_;
-  const platform::Tables& tables_;
   View left_{*this, &host::StereoPair::left};
   View right_{*this, &host::StereoPair::right};
   driver::StereoDriver driver_;

@@ -19,6 +19,7 @@
 #include "sw/process/child.h"
 #include "sw/runs/simulation/camera_simulation.h"
 #include "sw/runs/simulation/simulation.h"
+#include "sw/runs/sources/open_source.h"
 #include "sw/stats/stats_json.h"
 
 namespace stereotlm::runs {
@@ -56,9 +57,8 @@ Json simulate_computer(const explore::Point& point, const platform::Tables& tabl
                        const PointSimulator::Hopeless& hopeless) {
   const platform::BoardConfig& board = *point.board;
   auto* const binder = new Binder;
-  auto* const blank = new BlankPairs(board);
-  auto* const simulation =
-      new CameraSimulation(board, tables, *blank, point.run.frames, *binder, fpga::Fidelity::kTiming);
+  auto* const simulation = new CameraSimulation(board, tables, *blank_pairs(board).release(),
+                                                point.run.frames, *binder, fpga::Fidelity::kTiming);
   while (!simulation->finished()) {
     simulation->advance();
     if (!hopeless) continue;
@@ -102,8 +102,8 @@ std::map<std::string, double> core_time(const platform::BoardConfig& board, cons
                                         std::uint64_t frames) {
   const Json document = in_child([&]() -> Json {
     Binder binder;
-    BlankPairs blank(board);
-    CameraSimulation simulation(board, tables, blank, frames, binder, fpga::Fidelity::kTiming);
+    const auto blank = blank_pairs(board);
+    CameraSimulation simulation(board, tables, *blank, frames, binder, fpga::Fidelity::kTiming);
     simulation.record_timeline();
     const std::uint64_t first =
         frames - platform::steady_frames(frames, platform::allocation_period_frames(board));

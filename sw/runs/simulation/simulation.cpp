@@ -27,8 +27,6 @@ class PreloadedSimulation : public Simulation, private host::FrameSource, privat
   PreloadedSimulation(const platform::BoardConfig& board, const platform::Tables& tables,
                       host::FrameSource& pairs, const RunMode& mode, Binder& binder)
       : Simulation(board, tables, pairs, mode.frames, mode.fidelity),
-        board_(board),
-        tables_(tables),
         system_("system", board, tables, mode.frames, *this, *this, binder, mode.fidelity),
         counters_(platform::counters_of(system_.board)) {}
 
@@ -45,7 +43,8 @@ class PreloadedSimulation : public Simulation, private host::FrameSource, privat
   }
 
   platform::Statistics statistics() const override {
-    platform::Statistics statistics = platform::collect_statistics(board_, tables_, system_.board, counters_);
+    platform::Statistics statistics =
+        platform::collect_statistics(board(), tables(), system_.board, counters_);
     check_conflicts(statistics);
     return statistics;
   }
@@ -61,8 +60,6 @@ class PreloadedSimulation : public Simulation, private host::FrameSource, privat
   // Lets a frame that is fast-forwarded pass with the time, so that advance() returns within it.
   void check_progress() override { system_.board.core.catch_up(); }
 
-  const platform::BoardConfig& board_;
-  const platform::Tables& tables_;
   platform::PreloadedSystem system_;
   platform::BoardCounters counters_;  // counters at the end of the last finished frame
 };

@@ -89,6 +89,8 @@ class Simulation : private fpga::CycleObserver, private platform::BusObserver {
   Simulation(const platform::BoardConfig& board, const platform::Tables& tables, host::FrameSource& pairs,
              std::uint64_t frames, fpga::Fidelity fidelity);
 
+  const platform::BoardConfig& board() const { return board_; }
+  const platform::Tables& tables() const { return tables_; }
   void set_frames(std::uint64_t frames) { frames_ = frames; }
   // Loads a pair, within a SystemC process. An exception of the source ends that process, and advance()
   // throws it.
@@ -154,21 +156,5 @@ struct RunMode {
 std::unique_ptr<Simulation> make_simulation(const platform::BoardConfig& board,
                                             const platform::Tables& tables, host::FrameSource& pairs,
                                             const RunMode& mode, Binder& binder);
-
-// Pairs of black pictures, for runs without pixels.
-class BlankPairs : public host::FrameSource {
- public:
-  explicit BlankPairs(const platform::BoardConfig& board) : image_(board.image) {}
-  const host::StereoPair& pair(std::uint64_t /*frame*/) override {
-    if (pair_.left.pixels.empty()) {
-      pair_ = {{image_.width, image_.height}, {image_.width, image_.height}};
-    }
-    return pair_;
-  }
-
- private:
-  platform::ImageConfig image_;
-  host::StereoPair pair_;  // created at its first use
-};
 
 }  // namespace stereotlm::runs

@@ -1,7 +1,6 @@
 #include "sw/runs/sources/calibration_input.h"
 
 #include <fmt/format.h>
-#include <fnmatch.h>
 
 #include <filesystem>
 #include <stdexcept>
@@ -44,19 +43,6 @@ kernels::RectificationTable load_table(const fs::path& path, const calib::Rig& r
   }
 }
 
-// Patterns for fnmatch() of what follows F in the names of the files.
-constexpr std::array kEndings = {".yaml",
-                                 "_left.lut",
-                                 "_right.lut",
-                                 "_drawings/",
-                                 "_drawings/corners_+([0-9]).png",
-                                 "_drawings/rectified_+([0-9]).png",
-                                 "_drawings/displacement.png",
-                                 "_drawings/source_lines.png",
-                                 "_pictures/",
-                                 "_pictures/@(left|right)_+([0-9]).png",
-                                 "_pictures/scene_@(left|right|truth).png"};
-
 bool is_calibration(const fs::path& file) {
   try {
     calib::parse_calibration(files::read_whole_file(file, calib::kMostCalibrationBytes));
@@ -94,11 +80,13 @@ files::OutputContent calibration_content(const RigFiles& files, bool makes_pictu
   content.kind = {"calibration", is_calibration};
   content.rule =
       "only files that calibrate has made, with their calibration, are replaced: must be moved away";
-  content.is_ours = [stem](const std::string& name) {
-    return name.rfind(stem, 0) == 0 && std::any_of(kEndings.begin(), kEndings.end(), [&](const char* ending) {
-             return fnmatch(ending, name.c_str() + stem.size(), FNM_EXTMATCH | FNM_PATHNAME) == 0;
-           });
-  };
+  content.prefix = stem;
+  content.names = {"@(.yaml|_left.lut|_right.lut)",
+                   "_@(drawings|pictures)/",
+                   "_drawings/@(corners|rectified)_+([0-9]).png",
+                   "_drawings/@(displacement|source_lines).png",
+                   "_pictures/@(left|right)_+([0-9]).png",
+                   "_pictures/scene_@(left|right|truth).png"};
   content.others_stay = true;
   if (!makes_pictures) content.kept = files.pictures.filename();
   content.aside = stem + ".partial";

@@ -1,9 +1,5 @@
 #pragma once
 
-#include <cstdint>
-#include <string>
-#include <vector>
-
 #include "calib/calibrate.h"
 #include "calib/drawings.h"
 #include "calib/grid_sheet.h"
@@ -14,27 +10,18 @@ namespace stereotlm::runs {
 // of calibration_functions().
 struct CalibrationFunctions {
   // calibrate.h, calibration.h
-  calib::CalibrationResult (*calibrate)(const calib::CalibrationRequest& request);
-  std::string (*calibration_yaml)(const calib::Calibration& calibration);
-  calib::MatchedRows (*matched_rows)(const kernels::GrayImage& left, const kernels::GrayImage& right,
-                                     int disparities);
+  decltype(&calib::calibrate) calibrate;
+  decltype(&calib::calibration_yaml) calibration_yaml;
+  decltype(&calib::matched_rows) matched_rows;
   // drawings.h
-  std::vector<std::uint8_t> (*encode_corners_png)(const calib::GridShape& shape,
-                                                  const calib::CaptionedImage& left,
-                                                  const calib::MarkedCorners& left_corners,
-                                                  const calib::CaptionedImage& right,
-                                                  const calib::MarkedCorners& right_corners);
-  std::vector<std::uint8_t> (*encode_rectified_pair_png)(const calib::CaptionedImage& left,
-                                                         const calib::CaptionedImage& right);
-  std::vector<std::uint8_t> (*encode_displacement_png)(const kernels::RectificationTable& left,
-                                                       const kernels::RectificationTable& right);
-  std::vector<std::uint8_t> (*encode_source_lines_png)(const kernels::RectificationTable& left,
-                                                       const kernels::RectificationTable& right);
-  std::vector<std::uint8_t> (*encode_depth_color_png)(int width, int height,
-                                                      const std::vector<std::uint16_t>& millimetres);
+  decltype(&calib::encode_corners_png) encode_corners_png;
+  decltype(&calib::encode_rectified_pair_png) encode_rectified_pair_png;
+  decltype(&calib::encode_displacement_png) encode_displacement_png;
+  decltype(&calib::encode_source_lines_png) encode_source_lines_png;
+  decltype(&calib::encode_depth_color_png) encode_depth_color_png;
   // grid_sheet.h
-  std::string (*grid_sheet_pdf)(const calib::GridShape& shape);
-  std::string (*grid_sheet_svg)(const calib::GridShape& shape);
+  decltype(&calib::grid_sheet_pdf) grid_sheet_pdf;
+  decltype(&calib::grid_sheet_svg) grid_sheet_svg;
 };
 
 // Throws std::runtime_error if the library, which is installed with the program, cannot be loaded.

@@ -17,7 +17,6 @@
 #include "sw/files/text_forms.h"
 #include "sw/media/load.h"
 #include "sw/media/synthetic_scene.h"
-#include "sw/media/video.h"
 #include "sw/runs/run_json.h"
 
 namespace stereotlm::runs {
@@ -219,6 +218,12 @@ const host::StereoPair& PairSource::pair(std::uint64_t frame) {
   }
   if (held_.size() > kHeld) held_.pop_back();
   return held_.front().pair;
+}
+
+std::unique_ptr<PairSource> blank_pairs(const platform::BoardConfig& board) {
+  return std::make_unique<PairSource>("", 1, [size = board.image](std::uint64_t /*index*/) {
+    return host::StereoPair{{size.width, size.height}, {size.width, size.height}};
+  });
 }
 
 OpenedSource open_source(InputPictures& pictures, const platform::BoardConfig* board,

@@ -72,6 +72,9 @@ class PairSource : public host::FrameSource {
   std::list<Held> held_;  // most recently requested first
 };
 
+// Black pictures, for runs without pixels.
+std::unique_ptr<PairSource> blank_pairs(const platform::BoardConfig& board);
+
 using files::NamedFile;
 
 // The result of open_source().

@@ -246,7 +246,7 @@ TEST_F(CalibrationOutputTest, FilesWithoutAMarkAreAsTheyWereOrNewAfterAKillOrAFa
   content.called = "folder";
   content.kind = {"figure", [](const fs::path&) { return true; }};
   content.others_stay = true;
-  content.is_ours = [](const fs::path& name) { return name.stem() == "a" || name.stem() == "b"; };
+  content.names = {"[ab].*"};
   const Files earlier = {{"a.csv", "old"}, {"a.png", "old"}, {"a.svg", "old"}};
   const Files fresh = {{"a.csv", "new"}, {"a.pdf", "new"}, {"b.png", "new"}};
   const auto write_all = [&] {

@@ -17,28 +17,26 @@
 namespace stereotlm::driver {
 namespace {
 
-class Listener : public FrameListener {
- public:
-  void frame_delivered(const DeliveredFrame& frame) override { frames.push_back(frame.frame); }
+struct Listener {
+  void operator()(const DeliveredFrame& frame) { frames.push_back(frame.frame); }
   std::vector<std::uint64_t> frames;
 };
 
-constexpr std::uint32_t word_of_bank(std::uint32_t bank) { return bank << 26U; }
+// Pictures of one word, tables of four.
+platform::BoardConfig small(std::size_t inputs, std::size_t outputs) {
+  platform::BoardConfig board;
+  board.image = {4, 1};
+  board.allocation.left_image.assign(inputs, "bank0");
+  board.allocation.right_image.assign(inputs, "bank1");
+  board.allocation.disparity.assign(outputs, "bank2");
+  return board;
+}
 
-// Pictures of one word, tables of four; each buffer has its own bank.
-DriverConfig small(std::size_t inputs, std::size_t outputs, std::uint64_t frames) {
-  DriverConfig config;
-  config.width = 4;
-  config.height = 1;
-  config.frames = frames;
-  for (std::uint32_t i = 0; i < inputs; ++i) {
-    config.buffers.left_images.push_back(word_of_bank(i));
-    config.buffers.right_images.push_back(word_of_bank(10 + i));
-  }
-  for (std::uint32_t i = 0; i < outputs; ++i) config.buffers.disparities.push_back(word_of_bank(20 + i));
-  config.buffers.left_lut = word_of_bank(30);
-  config.buffers.right_lut = word_of_bank(31) + 5;
-  return config;
+// The same, with captures to host memory.
+platform::BoardConfig small_by_host(std::size_t inputs, std::size_t outputs) {
+  platform::BoardConfig board = small(inputs, outputs);
+  board.capture.destination = platform::CaptureDestination::kHostMemory;
+  return board;
 }
 
 const std::vector<std::uint32_t> kLeftTable = {1, 2, 3, 4};
@@ -56,14 +54,13 @@ class StereoDriverFailure : public testing::TestWithParam<Failure> {};
 
 TEST_P(StereoDriverFailure, EndsTheRun) {
   const Failure& failure = GetParam();
-  DriverConfig config = small(2, 2, 10);
-  config.capture_to_host = failure.copies;
-  if (failure.copies) config.buffers.left_lut = config.buffers.right_lut = std::nullopt;
+  platform::BoardConfig board = failure.copies ? small_by_host(2, 2) : small(2, 2);
+  if (failure.copies) board.allocation.left_lut = board.allocation.right_lut = std::nullopt;
   Listener listener;
   FakeMachine machine;
   failure.happens(machine);
-  StereoDriver driver(config, failure.copies ? nullptr : &kLeftTable, failure.copies ? nullptr : &kRightTable,
-                      listener);
+  StereoDriver driver(board, 10, failure.copies ? nullptr : &kLeftTable,
+                      failure.copies ? nullptr : &kRightTable, std::ref(listener));
   EXPECT_THAT([&] { driver.run(machine); },
               testing::ThrowsMessage<std::runtime_error>("stereo driver: " + failure.said));
   EXPECT_LE(listener.frames.size(), failure.most_frames);
@@ -106,9 +103,7 @@ class WatchedMachine : public FakeMachine {
 TEST(StereoDriver, NamesTheWorkThatItWaitsFor) {
   Listener listener;
   WatchedMachine machine;
-  DriverConfig config = small(2, 2, 3);
-  config.capture_to_host = true;
-  StereoDriver driver(config, &kLeftTable, &kRightTable, listener);
+  StereoDriver driver(small_by_host(2, 2), 3, &kLeftTable, &kRightTable, std::ref(listener));
   EXPECT_EQ(driver.under_way(), "nothing");
   std::vector<std::string> texts;
   machine.on_wait = [&] { texts.push_back(driver.under_way()); };
@@ -141,25 +136,22 @@ class Starts : public platform::DriverObserver {
 };
 
 TEST(StereoDriver, SaysWhatEachOfItsStartsHasWaitedFor) {
-  const auto lines_of = [](const DriverConfig& config) {
+  const auto lines_of = [](const platform::BoardConfig& board) {
     Listener listener;
     FakeMachine machine;
     Starts starts;
-    StereoDriver driver(config, &kLeftTable, &kRightTable, listener);
+    StereoDriver driver(board, 4, &kLeftTable, &kRightTable, std::ref(listener));
     driver.set_observer(starts);
     driver.run(machine);
     return starts.lines;
   };
-  EXPECT_THAT(lines_of(small(2, 1, 4)),
+  EXPECT_THAT(lines_of(small(2, 1)),
               testing::IsSupersetOf({"capture 0:", "capture 1: capture 0 (capture)",
                                      "capture 3: capture 2 (capture) frame 1 (input_buffer)",
                                      "frame 0: capture 0 (pair)",
                                      "frame 2: frame 1 (core) capture 2 (pair) read-back 1 (output_buffer)",
                                      "read-back 2: read-back 1 (read_back) frame 2 (frame)"}));
-  DriverConfig ring = small(2, 3, 4);
-  ring.capture_to_host = true;
-  ring.host_frames = 3;
-  EXPECT_THAT(lines_of(ring),
+  EXPECT_THAT(lines_of(small_by_host(2, 3)),
               testing::IsSupersetOf({"capture 3: capture 2 (capture) copy 0 (ring)",
                                      "copy 2: copy 1 (copy) capture 2 (pair) frame 0 (input_buffer)",
                                      "frame 3: frame 2 (core) copy 3 (pair) read-back 0 (output_buffer)"}));
@@ -171,7 +163,7 @@ TEST(StereoDriver, CanBeToldToStartNoMoreDuringAnyAccess) {
     SCOPED_TRACE(moment);
     Listener listener;
     WatchedMachine machine;
-    StereoDriver driver(small(2, 2, 1'000'000), &kLeftTable, &kRightTable, listener);
+    StereoDriver driver(small(2, 2), 1'000'000, &kLeftTable, &kRightTable, std::ref(listener));
     std::uint64_t started = 0;
     int writes = 0;
     machine.on_write = [&] {
@@ -187,24 +179,23 @@ TEST(StereoDriver, CanBeToldToStartNoMoreDuringAnyAccess) {
 
 TEST(StereoDriver, UsesJustTheHostMemoryThatItAnnounces) {
   for (const bool to_host : {false, true}) {
-    DriverConfig config = small(2, 2, 8);
-    config.capture_to_host = to_host;
+    const platform::BoardConfig board = to_host ? small_by_host(2, 2) : small(2, 2);
     Listener listener;
-    FakeMachine enough(host_memory_bytes(config));
-    StereoDriver driver(config, &kLeftTable, &kRightTable, listener);
+    FakeMachine enough(host_memory_bytes(board));
+    StereoDriver driver(board, 8, &kLeftTable, &kRightTable, std::ref(listener));
     EXPECT_NO_THROW(driver.run(enough));
-    FakeMachine short_of_a_byte(host_memory_bytes(config) - 1);
-    StereoDriver other(config, &kLeftTable, &kRightTable, listener);
+    FakeMachine short_of_a_byte(host_memory_bytes(board) - 1);
+    StereoDriver other(board, 8, &kLeftTable, &kRightTable, std::ref(listener));
     EXPECT_THROW(other.run(short_of_a_byte), std::out_of_range);
   }
 }
 
 TEST(StereoDriver, RefusesATableOfAnotherSize) {
   Listener listener;
-  const DriverConfig config = small(2, 1, 1);
+  const platform::BoardConfig board = small(2, 1);
   const std::vector<std::uint32_t> short_table = {1, 2, 3};
-  EXPECT_THROW(StereoDriver(config, &short_table, &kRightTable, listener), std::invalid_argument);
-  EXPECT_THROW(StereoDriver(config, &kLeftTable, nullptr, listener), std::invalid_argument);
+  EXPECT_THROW(StereoDriver(board, 1, &short_table, &kRightTable, std::ref(listener)), std::invalid_argument);
+  EXPECT_THROW(StereoDriver(board, 1, &kLeftTable, nullptr, std::ref(listener)), std::invalid_argument);
 }
 
 }  // namespace

@@ -1,11 +1,12 @@
-#include "sw/files/json_text.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
+
+#include "sw/files/text_forms.h"
 
 namespace stereotlm::files {
 namespace {

@@ -140,16 +140,21 @@ TEST_F(OutputFileTest, IsNotWrittenBesideAJournalOfAnotherDatabase) {
 }
 
 TEST_F(OutputFileTest, LeavesAllOtherFilesAlone) {
-  for (const char* name : {"file.part", ".file.writing-", ".file.writing-0123456789abcdeg",
-                           ".file.writing-0123456789abcdef0", ".other.writing-0123456789abcdef"})
+  for (const char* name : {"file.part", ".file.write", ".other.writing"})
     test::write_file(scratch_.path() / name, "precious");
-  fs::create_directory(scratch_.path() / ".file.writing-0123456789abcdef");
-  fs::create_symlink("file.part", scratch_.path() / ".file.writing-0123456789abcde0");
   replace(path_, "own : new");
   { OutputFile(path_, kKind).write("newer"); }
   EXPECT_EQ(test::read_file(path_), "own : new");
   EXPECT_EQ(test::read_file(scratch_.path() / "file.part"), "precious");
-  EXPECT_EQ(files(), 8);
+  EXPECT_EQ(files(), 4);
+  const fs::path aside = scratch_.path() / ".file.writing";
+  const std::string refusal = "'" + path_.string() + "': cannot be written: File exists";
+  fs::create_directory(aside);
+  EXPECT_EQ(test::message_of([this] { replace(path_, "newer"); }), refusal);
+  fs::remove(aside);
+  fs::create_symlink("file.part", aside);
+  EXPECT_EQ(test::message_of([this] { replace(path_, "newer"); }), refusal);
+  EXPECT_EQ(test::read_file(path_), "own : new");
 }
 
 TEST_F(OutputFileTest, RemovesTheFileOfAKilledProcess) {
@@ -165,7 +170,8 @@ TEST_F(OutputFileTest, RemovesTheFileOfAKilledProcess) {
   OutputFile living(path_, kKind);
   living.write("own : whole");
   EXPECT_EQ(files(), 2);
-  replace(path_, "own : other");
+  EXPECT_EQ(test::message_of([this] { replace(path_, "own : other"); }),
+            "'" + path_.string() + "': cannot be written: Device or resource busy");
   EXPECT_EQ(files(), 2) << "the file of the living one stays";
   living.commit();
   EXPECT_EQ(test::read_file(path_), "own : whole");

@@ -23,9 +23,7 @@ class OutputFolderTest : public testing::Test {
     content.mark = "doc.md";
     content.kind = marked_kind("document of this test", {{0, "ours"}});
     content.rule = "must be moved away";
-    content.is_ours = [](const std::string& name) {
-      return name == "doc.md" || name == "a.csv" || name == "kept/" || name == "kept/a.csv";
-    };
+    content.names = {"doc.md", "a.csv", "kept/", "kept/a.csv"};
     content.others_stay = true;
     content.kept = "kept";
     content.inputs = inputs;

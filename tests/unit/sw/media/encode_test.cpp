@@ -8,6 +8,7 @@
 #include <opencv2/imgproc.hpp>
 #include <string>
 
+#include "calib/png.h"
 #include "models/kernels/words.h"
 
 namespace stereotlm::media {
@@ -30,7 +31,8 @@ TEST(EncodePng, GivesTheBytesOfOpenCV) {
   EXPECT_EQ(encode_png_gray(image), png_of_opencv(cv::Mat(20, 33, CV_8UC1, image.pixels.data())));
   std::vector<std::uint16_t> values(33 * 20);
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<std::uint16_t>(i * 101);
-  EXPECT_EQ(encode_png_16(33, 20, values), png_of_opencv(cv::Mat(20, 33, CV_16UC1, values.data())));
+  EXPECT_EQ(calib::encode_png(33, 20, calib::PngPixel::kGrey16, values.data()),
+            png_of_opencv(cv::Mat(20, 33, CV_16UC1, values.data())));
   const auto colours = encode_disparity_color_png(kernels::GrayImage(33, 20, 7), 80);
   EXPECT_EQ(colours, png_of_opencv(cv::imdecode(colours, cv::IMREAD_UNCHANGED)));
 }
@@ -58,15 +60,6 @@ TEST(EncodePfm, HasRowsBottomToTopAndInfinityForInvalid) {
   const std::string expected(
       "Pf\n2 2\n-1.0\n\x00\x00\x80\x7F\x00\x00\x9E\x42\x00\x00\x00\x00\x00\x00\x80\x3F", 28);
   EXPECT_EQ(std::string(bytes.begin(), bytes.end()), expected);
-}
-
-TEST(NearestDisparity, RoundsTheTruthAndLeavesOutWhatCannotBeSearched) {
-  kernels::GrayImage grey(6, 1);
-  grey.pixels = {0, 1, 2, 13, 14, 255};  // scale 4: unknown, 0.25, 0.5, 3.25, 3.5, 63.75
-  EXPECT_EQ(
-      nearest_disparity({grey, 4}, 4).pixels,
-      (std::vector<std::uint8_t>{255, 0, 1, 3, kernels::kInvalidDisparity, kernels::kInvalidDisparity}));
-  EXPECT_EQ(nearest_disparity({grey, 4}, 5).pixels[4], 4);
 }
 
 }  // namespace

@@ -1,5 +1,3 @@
-#include "sw/media/video.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -8,6 +6,7 @@
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
 
+#include "sw/media/load.h"
 #include "tests/support/scratch_folder.h"
 
 namespace stereotlm::media {

@@ -56,6 +56,10 @@ Figures evaluate(const Point& point) {
 
 bool always(const SweepCounts& /*counts*/) { return true; }
 
+Points point_of_fpl2003() {
+  return {1, [](std::uint64_t number) { return make_point(number, platform::load_board("fpl2003"), {}); }};
+}
+
 class SweepTest : public StoreFiles {
  protected:
   SweepTest() { write_file(file("plan.yaml"), kPlan); }
@@ -258,12 +262,12 @@ TEST_F(SweepTest, RenamesAFigureThatHasThePathOfAKey) {
   const auto same_path = [](const Point& /*point*/) -> Figures {
     return {{{"image.width", std::int64_t{5}}}, {}};
   };
-  sweep(board_points({platform::load_board("fpl2003")}, {}), same_path, options("a.db"), always);
+  sweep(point_of_fpl2003(), same_path, options("a.db"), always);
   EXPECT_EQ(count("a.db", "\"image.width\" = 640 AND \"image.width.counted\" = 5"), 1U);
 }
 
 TEST_F(SweepTest, EndsIfAConditionCannotBeComputed) {
-  Points points = board_points({platform::load_board("fpl2003")}, {});
+  Points points = point_of_fpl2003();
   points.conditions = {{"abs(-9223372036854775807 - image.height / 480) > 0", "plan.yaml:1:8", "where"}};
   EXPECT_THROW(sweep(points, evaluate, options("a.db"), always), ConditionError);
 }
@@ -340,7 +344,7 @@ TEST_F(SweepTest, RefusesAStoreThatAnotherSweepUses) {
 }
 
 TEST(Batch, ReportsWhyAPointHasNoFigures) {
-  const Points points = board_points({platform::load_board("fpl2003")}, {});
+  const Points points = point_of_fpl2003();
   const auto fails = [](const Point& /*point*/) -> Figures { throw std::runtime_error("too large"); };
   Batch batch;
   ASSERT_TRUE(batch.run(points, fails, [](const SweepCounts&) { return true; }));
