@@ -20,8 +20,8 @@ using StateReader = StateWords::const_iterator;
 // Counters that have grown: the index of each, and by how much.
 using CountChanges = std::vector<std::pair<std::uint32_t, std::uint64_t>>;
 
-// The statistics of one arbiter, as one row of counters. Each stall cycle of a port is blamed on the port that
-// was granted in it, or on the turnaround.
+// The statistics of one arbiter, as one row of counters. Each stall cycle of a port is blamed on the port
+// that was granted in it, or on the turnaround.
 class ArbiterStats {
  public:
   static constexpr std::size_t kTurnaround = kMostPorts;  // cause of a stall, beside the ports

@@ -209,7 +209,7 @@ RunInput open_again(const RecordedRun& run, process::Problems& problems) {
   input.frames = run.options.frames;
   for (const RecordedFile& each : inputs_of(run.options))
     input.inputs.push_back({each.option, each.file.path});
-  InputPictures pictures = run.options;
+  auto pictures = static_cast<const InputPictures&>(run.options);
   input.pairs = open_source(pictures, &run.board, found).pairs;
   if (input.pairs && pictures.sequence)
     found.attempt("--sequence ", [&] { check_sequence(*pictures.sequence, *run.options.sequence); });

@@ -41,7 +41,7 @@ std::string name_of_other(const RunInput& input) { return input.fast ? "cycle" :
 
 void run_other(const RunInput& input, const process::Child::Tell& tell) {
   process::Problems problems;
-  InputPictures pictures = input.described;
+  auto pictures = static_cast<const InputPictures&>(input.described);
   std::unique_ptr<PairSource> pairs = open_source(pictures, &input.board, problems).pairs;
   if (!problems.empty())
     throw std::runtime_error("the pictures cannot be read any more: " + problems.in_one_line());

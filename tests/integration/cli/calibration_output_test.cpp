@@ -258,7 +258,7 @@ TEST_F(CalibrationOutputTest, FilesWithoutAMarkAreAsTheyWereOrNewAfterAKillOrAFa
   for (int steps = 0; steps <= 7; ++steps) {
     begin_with(earlier);
     EXPECT_EQ(is_killed(Fault::kKillInRename, steps, write_all), steps < 7);
-    files::OutputFolder(folder_, content);
+    const files::OutputFolder cleaned(folder_, content);
     EXPECT_EQ(files(), steps < 4 ? earlier : fresh) << steps;
   }
   int steps = 0;
@@ -272,7 +272,7 @@ TEST_F(CalibrationOutputTest, FilesWithoutAMarkAreAsTheyWereOrNewAfterAKillOrAFa
     } catch (const std::runtime_error&) {
       EXPECT_GT(failures, 0);
       steps_left = -1;
-      files::OutputFolder(folder_, content);
+      const files::OutputFolder cleaned(folder_, content);
       EXPECT_EQ(files(), earlier) << steps;
     }
     steps_left = -1;
