@@ -121,7 +121,7 @@ void CameraLines::apply(const Line& line, std::uint64_t now_ps, const OfSides<st
   const std::uint64_t words = words_of_line();
   bridge_.skip_posted((bridge_.turn() + line.turns) % pci::bridge::kChannels, kSides * words);
   for (std::size_t side = 0; side < kSides; ++side) {
-    const Line::Side& of_side = line.sides[side];
+    const Line::SideLine& of_side = line.sides[side];
     std::uint32_t* const stored = board_.skip_writes(addresses[side], words, first_local, of_side.bursts);
     if (has_pixels_) captures_[side].copy_line(stored);
     captures_[side].skip_line(pci_bus_.clock().edge_ps(first + of_side.end_clock), of_side.pci.transactions);
@@ -156,7 +156,7 @@ void CameraLines::record_pci_step(std::uint64_t clock) {
   narrow_pixel_bounds(clock);
   narrow_local_bounds(clock);
   for (std::size_t side = 0; side < kSides; ++side) {
-    Line::Side& of_side = record_.line.sides[side];
+    Line::SideLine& of_side = record_.line.sides[side];
     pci::PciBusControl::MasterCounts so_far = pci_bus_.counts(kMasters[side]);
     so_far.subtract(record_.counts[side]);
     if (so_far.transactions != of_side.pci.transactions) of_side.end_clock = clock - record_.pci_clock;

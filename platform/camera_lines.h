@@ -99,12 +99,12 @@ class CameraLines {
   // What a line does. Clocks are counted from the one with which it begins, on the local bus from the next
   // one.
   struct Line {
-    struct Side {
+    struct SideLine {
       pci::PciBusControl::MasterCounts pci;
       std::uint64_t end_clock = 0;                      // of the PCI bus: its last burst ends
       std::vector<fpga::HostPort::ServedWords> bursts;  // on the local bus: when its words request their bank
     };
-    OfSides<Side> sides;
+    OfSides<SideLine> sides;
     pci::PciBusControl::Position pci;  // after the line
     BusCounts buses;
     std::size_t turns = 0;         // how often the turn on the local bus was passed on

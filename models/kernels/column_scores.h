@@ -47,7 +47,7 @@ class ColumnScorer {
   }
 
   void start_frame() {
-    for (Side* side : {&left_, &right_}) {
+    for (ImageColumns* side : {&left_, &right_}) {
       side->window = {};
       side->columns.assign(static_cast<std::size_t>(window_), {});
     }
@@ -80,12 +80,12 @@ class ColumnScorer {
   const ColumnScores& scores() const { return scores_; }
 
  private:
-  struct Side {
+  struct ImageColumns {
     PixelSums window;
     std::vector<PixelSums> columns;  // the last n
   };
 
-  void push(Side& side, const std::uint8_t* pixels) const {
+  void push(ImageColumns& side, const std::uint8_t* pixels) const {
     PixelSums column;
     for (int row = 0; row < window_; ++row) {
       column.pixels += pixels[row];
@@ -100,8 +100,8 @@ class ColumnScorer {
   int window_;
   std::int64_t pixels_;  // N
   bool are_products_;
-  Side left_;
-  Side right_;
+  ImageColumns left_;
+  ImageColumns right_;
   std::size_t oldest_ = 0;                // index of the columns that leave the windows next
   std::vector<PixelSums> right_history_;  // [d]: the right window d columns ago
   std::vector<std::int64_t> covariances_;

@@ -33,7 +33,7 @@ class CorrelationSearch {
         quotients_(static_cast<std::size_t>(lanes_)) {
     const auto columns = static_cast<std::size_t>(width);
     const auto windows = static_cast<std::size_t>(across_ + kLanePadding);
-    for (Side& side : sides_) {
+    for (ImageSums& side : sides_) {
       side.image.resize(columns * static_cast<std::size_t>(height) + static_cast<std::size_t>(lanes_));
       side.column_sums.resize(2 * columns);
       side.sums.resize(windows);
@@ -51,11 +51,11 @@ class CorrelationSearch {
     for (int row = 0; row < height_; ++row, right += width_)
       std::reverse_copy(right, right + width_, sides_[1].image.begin() + std::ptrdiff_t{row} * width_);
     row_ = kNoRow - window_;
-    for (Side& side : sides_) std::fill(side.column_rows.begin(), side.column_rows.end(), kNoRow);
+    for (ImageSums& side : sides_) std::fill(side.column_rows.begin(), side.column_rows.end(), kNoRow);
   }
   // Sets the row at which the windows begin: a later one than the last of this pair.
   void set_row(int row) {
-    for (Side& side : sides_) {
+    for (ImageSums& side : sides_) {
       move_sums(side, row);
       side.end = 0;
     }
@@ -69,7 +69,7 @@ class CorrelationSearch {
  private:
   static constexpr int kNoRow = -2;  // far from every row
 
-  struct Side {
+  struct ImageSums {
     std::vector<std::uint8_t> image;        // mirrored if it is the right one; padded
     std::vector<std::int64_t> column_sums;  // over the rows of the windows: pixels, then squares
     std::vector<double> sums;               // [window]: of its pixels
@@ -84,7 +84,7 @@ class CorrelationSearch {
   };
 
   // Moves the sums of the columns from row_ to `row`, and adds up those of each window.
-  void move_sums(Side& side, int row) {
+  void move_sums(ImageSums& side, int row) {
     const auto width = static_cast<std::size_t>(width_);
     std::int64_t* const pixels = side.column_sums.data();
     std::int64_t* const squares = pixels + width;
@@ -118,7 +118,7 @@ class CorrelationSearch {
     }
   }
   // Adds the column at own.end to the products of the window, and removes the one that leaves it.
-  void enter_column(Side& own, const Side& other) {
+  void enter_column(ImageSums& own, const ImageSums& other) {
     const int column = own.end++;
     std::int32_t* const products = own.columns.data() + std::ptrdiff_t{column} * lanes_;
     std::size_t count = 0;
@@ -143,7 +143,7 @@ class CorrelationSearch {
         column - window_ < own.begin ? no_column_.data() : products - std::ptrdiff_t{window_} * lanes_,
         own.window.data());
   }
-  std::uint8_t best_of(Side& own, const Side& other, int column) {
+  std::uint8_t best_of(ImageSums& own, const ImageSums& other, int column) {
     if (column >= own.end) {
       own.begin = own.end = column;
       own.window.fill(0);
@@ -165,7 +165,7 @@ class CorrelationSearch {
   int lanes_;
   const Simd& simd_;
   int row_ = 0;
-  std::array<Side, 2> sides_;
+  std::array<ImageSums, 2> sides_;
   SimdArray<std::int32_t> no_column_;
   std::vector<const std::uint8_t*> rows_;
   std::vector<std::int16_t> own_pixels_;

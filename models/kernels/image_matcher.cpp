@@ -63,7 +63,7 @@ ImageMatcher::ImageMatcher(int width, int height, int window, int disparities, b
   column_sums_ = VectorArray(static_cast<std::size_t>(plan_.disparities) *
                              static_cast<std::size_t>(plan_.columns + window) *
                              static_cast<std::size_t>(loops_.sum_vectors) * lanes);
-  const auto side = [this](Side& its) -> MatchSide {
+  const auto side = [this](MatchedImage& its) -> MatchSide {
     return {its.pixel_vectors.data(),     pixel_stride(its),           its.best.data(), its.unpacked.data(),
             its.column_statistics.data(), its.window_statistics.data()};
   };
@@ -85,7 +85,7 @@ void ImageMatcher::choose_loops(const MatchingCost& cost, const Simd& simd) {
     case CostKind::kCensus:
       pixel_bytes_ = cost.pixel_bytes();
       loops_ = simd_.census_loops(pixel_bytes_, plan_.window);
-      for (Side* side : {&left_, &right_}) side->census.emplace(width_, height_, cost, simd);
+      for (MatchedImage* side : {&left_, &right_}) side->census.emplace(width_, height_, cost, simd);
   }
 }
 
@@ -111,7 +111,7 @@ void ImageMatcher::choose_bands() {
   }
 }
 
-void ImageMatcher::prepare(Side& side, int positions, int windows) {
+void ImageMatcher::prepare(MatchedImage& side, int positions, int windows) {
   const auto lanes = static_cast<std::size_t>(simd_.lanes);
   const auto vectors = [lanes](int count, int vectors_each) {
     return VectorArray(static_cast<std::size_t>(count) * static_cast<std::size_t>(vectors_each) * lanes);
@@ -129,10 +129,12 @@ void ImageMatcher::prepare(Side& side, int positions, int windows) {
   }
 }
 
-// From one byte of the pixels to the next, in Side::pixel_vectors.
-int ImageMatcher::pixel_stride(const Side& side) const { return rounded_up(side.positions, 8) * simd_.lanes; }
+// From one byte of the pixels to the next, in MatchedImage::pixel_vectors.
+int ImageMatcher::pixel_stride(const MatchedImage& side) const {
+  return rounded_up(side.positions, 8) * simd_.lanes;
+}
 
-void ImageMatcher::enter_rows(Side& side, const std::uint8_t* image, int step) {
+void ImageMatcher::enter_rows(MatchedImage& side, const std::uint8_t* image, int step) {
   if (!side.census) return enter_rows(side, image, step, side.pixel_vectors.data());
   for (int byte = 0; byte < pixel_bytes_; ++byte) {
     enter_rows(side, side.census->plane(byte), step,
@@ -142,7 +144,8 @@ void ImageMatcher::enter_rows(Side& side, const std::uint8_t* image, int step) {
 
 // Row `step` of each band enters its windows. Rows below the image repeat its last row; their results are not
 // used.
-void ImageMatcher::enter_rows(Side& side, const std::uint8_t* plane, int step, std::int16_t* pixel_vectors) {
+void ImageMatcher::enter_rows(MatchedImage& side, const std::uint8_t* plane, int step,
+                              std::int16_t* pixel_vectors) {
   const auto width = static_cast<std::size_t>(width_);
   const auto row_of = [&](int row) {
     return plane + static_cast<std::size_t>(std::min(row, height_ - 1)) * width;
@@ -160,7 +163,7 @@ void ImageMatcher::enter_rows(Side& side, const std::uint8_t* plane, int step, s
   simd_.to_lanes(lanes.data(), side.positions, pixel_vectors);
 }
 
-void ImageMatcher::leave_rows(Side& side, int step, std::uint8_t* disparity) {
+void ImageMatcher::leave_rows(MatchedImage& side, int step, std::uint8_t* disparity) {
   std::array<std::uint8_t*, kMostFrameLanes> lanes{};
   for (int lane = 0; lane < simd_.lanes; ++lane) {
     lanes[static_cast<std::size_t>(lane)] = side.out.data() +
@@ -207,7 +210,7 @@ void ImageMatcher::run(const std::uint8_t* left, const std::uint8_t* right, std:
   if (plan_.right_based) std::fill_n(right_disparity, pixels, kInvalidDisparity);
   if (windows_across_ < 1 || windows_down_ < 1) return;
   column_sums_.fill(0);
-  for (Side* side : {&left_, &right_}) side->column_statistics.fill(0);
+  for (MatchedImage* side : {&left_, &right_}) side->column_statistics.fill(0);
   if (left_.census) {
     left_.census->run(left);
     right_.census->run(right);

@@ -28,7 +28,7 @@ class ImageMatcher {
            std::uint8_t* right_disparity);
 
  private:
-  struct Side {
+  struct MatchedImage {
     VectorArray rows;           // per band: one row, each pixel paired with the pixel that leaves the window
     VectorArray pixel_vectors;  // these pairs of pixels, as one vector per position
     VectorArray unpacked;       // MatchSide::unpacked
@@ -42,11 +42,11 @@ class ImageMatcher {
 
   void choose_loops(const MatchingCost& cost, const Simd& simd);
   void choose_bands();
-  void prepare(Side& side, int positions, int windows);
-  int pixel_stride(const Side& side) const;
-  void enter_rows(Side& side, const std::uint8_t* image, int step);
-  void enter_rows(Side& side, const std::uint8_t* plane, int step, std::int16_t* pixel_vectors);
-  void leave_rows(Side& side, int step, std::uint8_t* disparity);
+  void prepare(MatchedImage& side, int positions, int windows);
+  int pixel_stride(const MatchedImage& side) const;
+  void enter_rows(MatchedImage& side, const std::uint8_t* image, int step);
+  void enter_rows(MatchedImage& side, const std::uint8_t* plane, int step, std::int16_t* pixel_vectors);
+  void leave_rows(MatchedImage& side, int step, std::uint8_t* disparity);
   void decide(const std::uint8_t* left, const std::uint8_t* right, std::uint8_t* left_disparity,
               std::uint8_t* right_disparity);
 
@@ -62,9 +62,9 @@ class ImageMatcher {
   int band_rows_ = 0;
   int windows_across_ = 0;
   int windows_down_ = 0;
-  std::size_t row_stride_ = 0;  // from one band to the next in Side::rows and Side::out
-  Side left_;
-  Side right_;
+  std::size_t row_stride_ = 0;  // from one band to the next in MatchedImage::rows and MatchedImage::out
+  MatchedImage left_;
+  MatchedImage right_;
   VectorArray outside_;
   VectorArray band_begins_;
   VectorArray column_sums_;

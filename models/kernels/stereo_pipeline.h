@@ -32,7 +32,7 @@ class StereoPipeline {
                  config.cost, simd) {
     if (config.filter) filter_.emplace(width, height, *config.filter, simd);
     const auto pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-    for (Side* side : {&left_, &right_}) {
+    for (PreparedImage* side : {&left_, &right_}) {
       if (filter_) side->filtered.resize(pixels + ImageFilter::kPadding);
       side->disparity.resize(pixels);
     }
@@ -49,13 +49,13 @@ class StereoPipeline {
   }
 
  private:
-  struct Side {
+  struct PreparedImage {
     std::vector<std::uint8_t> rectified;
     std::vector<std::uint8_t> filtered;
     std::vector<std::uint8_t> disparity;  // of the matches based on this side
   };
 
-  const std::uint8_t* prepare(Side& side, const std::uint8_t* image, const std::uint32_t* table) {
+  const std::uint8_t* prepare(PreparedImage& side, const std::uint8_t* image, const std::uint32_t* table) {
     if (table != nullptr) {
       side.rectified.resize(side.disparity.size());
       simd_.rectify(image, table, width_ * height_, width_, side.rectified.data());
@@ -88,8 +88,8 @@ class StereoPipeline {
   const Simd& simd_;
   std::optional<ImageFilter> filter_;
   ImageMatcher matcher_;
-  Side left_;
-  Side right_;
+  PreparedImage left_;
+  PreparedImage right_;
 };
 
 }  // namespace stereotlm::kernels

@@ -304,7 +304,7 @@ bool FrameAlignment::run() {
 }
 
 // Reads the next frame of a run. Polls for interrupts while it waits, and returns false after one.
-bool FrameAlignment::read(Side& side) {
+bool FrameAlignment::read(AlignedRun& side) {
   do {
     if (process::interrupted()) return false;
     progress_.show([this](double) { return fmt::format("{}/{} frames compared", rows_.frames(), frames_); });
@@ -313,7 +313,7 @@ bool FrameAlignment::read(Side& side) {
   return true;
 }
 
-bool FrameAlignment::advance(Side& side, const Side& other) {
+bool FrameAlignment::advance(AlignedRun& side, const AlignedRun& other) {
   const bool has_partner = other.ahead || !other.rows.empty();
   if (limits_.rows.empty() && has_partner) side.rows.push_back(std::move(side.ahead->rows));
   return read(side);

@@ -119,16 +119,16 @@ class FrameAlignment {
 
  private:
   // One of the two runs, and the frames of it that are still to be compared.
-  struct Side {
-    Side(const RecordedRun& run, Rerun::Record record) : rerun(run, std::move(record)) {}
+  struct AlignedRun {
+    AlignedRun(const RecordedRun& run, Rerun::Record record) : rerun(run, std::move(record)) {}
 
     Rerun rerun;
     std::optional<Rerun::Frame> ahead;  // next frame of the run; nullopt after the last
     std::deque<fpga::RowProfile> rows;  // rows of frames that the other run has not reached
   };
 
-  bool read(Side& side);
-  bool advance(Side& side, const Side& other);
+  bool read(AlignedRun& side);
+  bool advance(AlignedRun& side, const AlignedRun& other);
   void compare_rows();
 
   const DiffLimits& limits_;
@@ -137,8 +137,8 @@ class FrameAlignment {
   stats::RowComparison rows_;
   stats::PixelComparison pixels_;
   std::optional<CommonFrame> last_common_;
-  Side a_;
-  Side b_;
+  AlignedRun a_;
+  AlignedRun b_;
   ProgressLine progress_;
 };
 
