@@ -151,7 +151,7 @@ void Arbitration::set_state(std::uint64_t cycle, StateReader& state) {
 StateWords Arbitration::counts() const {
   StateWords counts(alone_grants_.begin(), alone_grants_.begin() + static_cast<std::ptrdiff_t>(port_count_));
   for (const SharedBank& shared : shared_banks_) {
-    const StateWords& of_bank = shared.arbiter->stats().counts_;
+    const StateWords& of_bank = shared.arbiter->stats().counts();
     counts.insert(counts.end(), of_bank.begin(), of_bank.end());
   }
   return counts;
@@ -173,7 +173,7 @@ void Arbitration::count_skipped(const CountChanges& changes, std::uint64_t times
       alone_grants_[place] += change * times;
     } else {
       BankArbiter& arbiter = *shared_banks_[(place - port_count_) / counts_of_bank()].arbiter;
-      arbiter.at((place - port_count_) % counts_of_bank()) += change * times;
+      arbiter.count_skipped((place - port_count_) % counts_of_bank(), change * times);
     }
   }
 }

@@ -116,7 +116,7 @@ class Arbitration {
   // All counters that may change as long as no route does: the grants of the uncontended ports, then the
   // statistics of each shared bank.
   StateWords counts() const;
-  std::size_t counts_of_bank() const { return arbiters_.front().stats().counts_.size(); }
+  std::size_t counts_of_bank() const { return arbiters_.front().stats().counts().size(); }
 
   std::vector<BankArbiter> arbiters_;
   std::size_t port_count_;

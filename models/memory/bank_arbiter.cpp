@@ -66,29 +66,29 @@ PortMask BankArbiter::decide_direction(PriorityList& order, std::uint64_t cycle,
 void BankArbiter::count(const Outcome& outcome, std::uint64_t cycles) {
   const auto reads = static_cast<PortMask>(outcome.requests & ~outcome.writes);
   if (!counting_) {
-    at(ArbiterStats::kUncounted) += cycles * static_cast<unsigned>(__builtin_popcount(outcome.granted));
+    stats_.add(ArbiterStats::kUncounted, cycles * static_cast<unsigned>(__builtin_popcount(outcome.granted)));
   } else if (has_separate_ports_) {
     count_direction(reads, outcome.granted & reads, false, cycles);
     count_direction(outcome.writes, outcome.granted & outcome.writes, true, cycles);
-    if (contend(outcome.granted)) at(ArbiterStats::kBusy) -= cycles;  // of two grants in one cycle
-    if (contend(reads) && contend(outcome.writes)) at(ArbiterStats::kContended) -= cycles;
+    if (contend(outcome.granted)) stats_.add(ArbiterStats::kBusy, 0 - cycles);  // of two grants in one cycle
+    if (contend(reads) && contend(outcome.writes)) stats_.add(ArbiterStats::kContended, 0 - cycles);
   } else {
     count_direction(outcome.requests, outcome.granted, (outcome.granted & outcome.writes) != 0, cycles);
-    if (outcome.granted == 0) at(ArbiterStats::kTurnaroundCycles) += cycles;
+    if (outcome.granted == 0) stats_.add(ArbiterStats::kTurnaroundCycles, cycles);
   }
 }
 
 void BankArbiter::count_direction(PortMask requests, PortMask granted, bool write, std::uint64_t cycles) {
-  if (contend(requests)) at(ArbiterStats::kContended) += cycles;
+  if (contend(requests)) stats_.add(ArbiterStats::kContended, cycles);
   std::size_t by = ArbiterStats::kTurnaround;
   if (granted != 0) {
     by = lowest_port(granted);
-    at(write ? ArbiterStats::kWrites : ArbiterStats::kReads) += cycles;
-    at(ArbiterStats::kBusy) += cycles;
-    at(ArbiterStats::kFirstGrants + by) += cycles;
+    stats_.add(write ? ArbiterStats::kWrites : ArbiterStats::kReads, cycles);
+    stats_.add(ArbiterStats::kBusy, cycles);
+    stats_.add(stats_.grants_place(by), cycles);
   }
   for_each_port(static_cast<PortMask>(requests & ~granted),
-                [&](Port port) { at(stats_.blame_place(port, by)) += cycles; });
+                [&](Port port) { stats_.add(stats_.blame_place(port, by), cycles); });
 }
 
 // The first grant moves the order. Each further one acts as a cycle without request does.
@@ -134,7 +134,8 @@ void BankArbiter::begin_counting(std::uint64_t first_cycle) {
 void BankArbiter::end_counting(std::uint64_t end_cycle) {
   counting_ = false;
   counted_cycles_ += end_cycle - first_counted_cycle_;
-  at(ArbiterStats::kIdle) = counted_cycles_ - stats_.busy_cycles() - stats_.turnaround_cycles();
+  stats_.add(ArbiterStats::kIdle,
+             counted_cycles_ - stats_.busy_cycles() - stats_.turnaround_cycles() - stats_.idle_cycles());
 }
 
 }  // namespace stereotlm::memory

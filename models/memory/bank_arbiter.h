@@ -25,6 +25,17 @@ using CountChanges = std::vector<std::pair<std::uint32_t, std::uint64_t>>;
 class ArbiterStats {
  public:
   static constexpr std::size_t kTurnaround = kMostPorts;  // cause of a stall, beside the ports
+  // The place of a counter in the row.
+  enum Place : std::size_t {
+    kReads,
+    kWrites,
+    kBusy,
+    kTurnaroundCycles,
+    kContended,
+    kIdle,
+    kUncounted,
+    kFirstGrants,  // then those of the other ports, then the blame
+  };
 
   explicit ArbiterStats(std::size_t ports) : ports_(ports), counts_(kFirstGrants + ports * (ports + 2)) {}
 
@@ -38,24 +49,11 @@ class ArbiterStats {
   std::uint64_t idle_cycles() const { return counts_[kIdle]; }  // cycles without request
   // Accesses granted in cycles that are not counted.
   std::uint64_t uncounted_accesses() const { return counts_[kUncounted]; }
-  std::uint64_t grants(Port port) const { return counts_[kFirstGrants + port]; }
+  std::uint64_t grants(Port port) const { return counts_[grants_place(port)]; }
   // Stall cycles of a port. `by`: the port that was granted in them, or kTurnaround.
   std::uint64_t blame(Port port, std::size_t by) const { return counts_[blame_place(port, by)]; }
 
- private:
-  friend class BankArbiter;
-  friend class Arbitration;
-
-  enum Place : std::size_t {
-    kReads,
-    kWrites,
-    kBusy,
-    kTurnaroundCycles,
-    kContended,
-    kIdle,
-    kUncounted,
-    kFirstGrants,  // then those of the other ports, then the blame
-  };
+  std::size_t grants_place(Port port) const { return kFirstGrants + port; }
   std::size_t blame_place(Port port, std::size_t by) const {
     return kFirstGrants + ports_ + port * (ports_ + 1) + (by == kTurnaround ? ports_ : by);
   }
@@ -67,6 +65,10 @@ class ArbiterStats {
     return std::pair{of_blame / (ports_ + 1), by == ports_ ? kTurnaround : by};
   }
 
+  const std::vector<std::uint64_t>& counts() const { return counts_; }  // [place]
+  void add(std::size_t place, std::uint64_t change) { counts_[place] += change; }
+
+ private:
   std::size_t ports_;
   std::vector<std::uint64_t> counts_;  // [place]
 };
@@ -96,6 +98,8 @@ class BankArbiter {
   Outcome decide(std::uint64_t cycle, PortMask requests, PortMask writes);
   // Counts `cycles` cycles with this outcome.
   void count(const Outcome& outcome, std::uint64_t cycles = 1);
+  // Counts a change of one counter in cycles that were skipped.
+  void count_skipped(std::size_t place, std::uint64_t change) { stats_.add(place, change); }
   // Moves the order of the policy by one or more grants of an uncontended port, which are counted elsewhere.
   void grant_alone(Port port, bool write);
 
@@ -116,14 +120,11 @@ class BankArbiter {
   bool separates_directions() const { return has_separate_ports_; }
 
  private:
-  friend class Arbitration;  // adds the counts of skipped cycles
-
   PortMask decide_direction(PriorityList& order, std::uint64_t cycle, PortMask requests, PortMask writes);
   void count_direction(PortMask requests, PortMask granted, bool write, std::uint64_t cycles);
   void advance(PriorityList& order, PortMask requests, PortMask granted) const {
     if (policy_->advance != nullptr) policy_->advance(list_, order, requests, granted);
   }
-  std::uint64_t& at(std::size_t place) { return stats_.counts_[place]; }
 
   const ArbitrationPolicy* policy_;
   PriorityList list_;

@@ -14,6 +14,8 @@
 namespace stereotlm::platform {
 namespace {
 
+using memory::ArbiterStats;
+
 using std::uint64_t;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
@@ -104,27 +106,35 @@ TEST_F(CollectStatistics, FindsEachIdentityThatDoesNotHold) {
     expect_failed(
         fmt::format("{}sum of its states = {}, but cycles = {}", name, cycles + 1, cycles),
         [port](BoardCounters& counters) { counters.ports[port].add(fpga::Intent::kStarved, false); });
-    for (std::size_t by = 0; by <= memory::ArbiterStats::kTurnaround; ++by) {
+    for (std::size_t by = 0; by <= ArbiterStats::kTurnaround; ++by) {
       expect_failed(name + "stall_cycles = 0, but blamed by the arbiters = 1",
-                    [port, by](BoardCounters& counters) { ++counters.banks[1].arbiter.blame[port][by]; });
+                    [port, by](BoardCounters& counters) {
+                      ArbiterStats& arbiter = counters.banks[1].arbiter;
+                      arbiter.add(arbiter.blame_place(port, by), 1);
+                    });
     }
     expect_failed(fmt::format("{}grants = {}, but given by the arbiters = {}", name, grants, grants + 1),
-                  [port](BoardCounters& counters) { ++counters.banks[1].arbiter.grants[port]; });
+                  [port](BoardCounters& counters) {
+                    ArbiterStats& arbiter = counters.banks[1].arbiter;
+                    arbiter.add(arbiter.grants_place(port), 1);
+                  });
   }
   for (std::size_t bank = 0; bank < board.banks.size(); ++bank) {
     const std::string name = fmt::format("bank {}: ", board.banks[bank].name);
     const uint64_t accesses = valid.banks[bank].busy_cycles;
     const std::string states = name + "busy + turnaround + idle cycles = {}, but cycles = {}";
-    expect_failed(fmt::format(states, cycles + 1, cycles),
-                  [bank](BoardCounters& counters) { ++counters.banks[bank].arbiter.idle_cycles; });
-    expect_failed(fmt::format(states, cycles + 1, cycles),
-                  [bank](BoardCounters& counters) { ++counters.banks[bank].arbiter.turnaround_cycles; });
+    expect_failed(fmt::format(states, cycles + 1, cycles), [bank](BoardCounters& counters) {
+      counters.banks[bank].arbiter.add(ArbiterStats::kIdle, 1);
+    });
+    expect_failed(fmt::format(states, cycles + 1, cycles), [bank](BoardCounters& counters) {
+      counters.banks[bank].arbiter.add(ArbiterStats::kTurnaroundCycles, 1);
+    });
     expect_failed(
         fmt::format("{}accesses = {}, but granted by its arbiter = {}", name, accesses + 1, accesses),
         [bank](BoardCounters& counters) { ++counters.banks[bank].accesses; });
     expect_failed(
         fmt::format("{}accesses = {}, but granted by its arbiter = {}", name, accesses, accesses + 1),
-        [bank](BoardCounters& counters) { ++counters.banks[bank].uncounted_grants; });
+        [bank](BoardCounters& counters) { counters.banks[bank].arbiter.add(ArbiterStats::kUncounted, 1); });
   }
   const auto slots = [](const std::string& what, int count) {
     return fmt::format("{} = {}, but slots of the sequence = 288", what, count);
