@@ -18,6 +18,9 @@ function(stereotlm_precompile_headers name)
   set_target_properties(${name} PROPERTIES UNITY_BUILD OFF)
 endfunction()
 
+# The label of tests that name none; folders set another.
+set(STEREOTLM_TEST_LABEL unit)
+
 # stereotlm_add_test(NAME SOURCES file... LIBRARIES target... [LABELS label] [TIMEOUT seconds] [SYSTEMC])
 # Adds one test program. ctest runs each of its cases in a process of its own, because SystemC elaborates once
 # per process. SYSTEMC: the cases run inside sc_main, and a SystemC warning that a case did not announce fails
@@ -25,7 +28,7 @@ endfunction()
 function(stereotlm_add_test name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "SYSTEMC" "TIMEOUT" "SOURCES;LIBRARIES;LABELS")
   if(NOT arg_LABELS)
-    set(arg_LABELS unit)
+    set(arg_LABELS ${STEREOTLM_TEST_LABEL})
   endif()
   if(NOT arg_TIMEOUT)
     set(arg_TIMEOUT 60)
@@ -40,12 +43,14 @@ function(stereotlm_add_test name)
     target_link_libraries(${name} PRIVATE GTest::gtest_main)
     target_precompile_headers(${name} REUSE_FROM stereotlm_test_headers)
   endif()
-  add_dependencies(quick_tests ${name})
+  if(NOT arg_LABELS STREQUAL "program")
+    add_dependencies(sanitized_tests ${name})
+  endif()
   if(NOT arg_LABELS STREQUAL "unit")
-    add_dependencies(program_tests ${name})
+    add_dependencies(release_tests ${name})
   endif()
   # ctest begins with the tests of the greatest cost, which would else be left alone at the end.
-  string(REPLACE unit 1 cost "${arg_LABELS}")
+  string(REGEX REPLACE "unit|program" 1 cost "${arg_LABELS}")
   string(REPLACE integration 10 cost "${cost}")
   gtest_discover_tests(${name} PROPERTIES LABELS "${arg_LABELS}" TIMEOUT ${arg_TIMEOUT} COST "${cost}"
     DISCOVERY_TIMEOUT 60)
