@@ -37,7 +37,8 @@ PlainCycleInput with(PlainCycleInput board, const Change& change) {
 
 // So many banks from `first` on.
 PlainBuffer banks_from(int first, int count) {
-  PlainBuffer buffer({});
+  PlainBuffer buffer;
+  buffer.banks.clear();
   for (int bank = first; bank < first + count; ++bank) buffer.banks.push_back(bank);
   return buffer;
 }
