@@ -47,8 +47,8 @@ struct RandomBoard : PlainCycleInput {
   }
 };
 
-// The knobs of contract sections 7 and 8 that boards draw, beside all of sections 1 to 6. Each is then drawn by
-// every second board or so: a board has any combination that is allowed.
+// The knobs of contract sections 7 and 8 that boards draw, beside all of sections 1 to 6. Each is then drawn
+// by every second board or so: a board has any combination that is allowed.
 struct RandomKnobs {
   bool large_images = false;  // few boards: up to 8192 columns or rows, without tables
   bool units = false;         // up to 16 passes
