@@ -29,15 +29,34 @@ double us_of(PlainTime ps) { return static_cast<double>(ps) / 1e6; }
 
 std::string bank_name(int bank) { return "bank" + std::to_string(bank); }
 
-std::vector<std::string> bank_names(const std::vector<int>& banks) {
+// The bank of a buffer without stripes.
+int bank_of(const PlainBuffer& buffer) { return buffer.banks.front(); }
+
+std::vector<std::string> bank_names(const std::vector<PlainBuffer>& list) {
   std::vector<std::string> names;
-  for (const int bank : banks) names.push_back(bank_name(bank));
+  for (const PlainBuffer& buffer : list) names.push_back(bank_name(bank_of(buffer)));
   return names;
 }
 
-std::optional<std::string> bank_name(const std::optional<int>& bank) {
-  if (!bank) return std::nullopt;
-  return bank_name(*bank);
+std::optional<std::string> bank_name(const std::optional<PlainBuffer>& buffer) {
+  if (!buffer) return std::nullopt;
+  return bank_name(bank_of(*buffer));
+}
+
+// The platform has no knob of contract section 8 yet.
+void refuse_section_8(const PlainCycleInput& input) {
+  std::vector<PlainBuffer> buffers;
+  for (const auto* list : {&input.left_image, &input.right_image, &input.disparity})
+    buffers.insert(buffers.end(), list->begin(), list->end());
+  for (const auto* table : {&input.left_lut, &input.right_lut}) {
+    if (*table) buffers.push_back(**table);
+  }
+  const bool striped = std::any_of(buffers.begin(), buffers.end(),
+                                   [](const PlainBuffer& buffer) { return buffer.banks.size() > 1; });
+  const bool sdram = std::any_of(input.banks.begin(), input.banks.end(),
+                                 [](const PlainBank& bank) { return bank.kind == PlainBankKind::kSdram; });
+  if (striped || sdram || input.lanes > 1)
+    throw std::invalid_argument("board_config: lanes, stripes and sdram are not in the platform");
 }
 
 std::vector<platform::BankConfig> bank_configs(const PlainCycleInput& input) {
@@ -50,18 +69,18 @@ std::vector<platform::BankConfig> bank_configs(const PlainCycleInput& input) {
   const int table_words = input.width * input.height;
   const auto add = [&banks](int bank, int words) { banks[static_cast<std::size_t>(bank)].words += words; };
   for (const auto* list : {&input.left_image, &input.right_image, &input.disparity}) {
-    for (const int bank : *list) add(bank, table_words / 4);
+    for (const PlainBuffer& buffer : *list) add(bank_of(buffer), table_words / 4);
   }
-  if (input.left_lut) add(*input.left_lut, table_words);
-  if (input.right_lut && !input.joint_tables) add(*input.right_lut, table_words);
+  if (input.left_lut) add(bank_of(*input.left_lut), table_words);
+  if (input.right_lut && !input.joint_tables) add(bank_of(*input.right_lut), table_words);
   for (platform::BankConfig& bank : banks) bank.words = std::max(bank.words, 1);
   return banks;
 }
 
 std::optional<kernels::RectificationTable> table_of(
-    const PlainCycleInput& input, const std::optional<int>& bank,
+    const PlainCycleInput& input, const std::optional<PlainBuffer>& buffer,
     const std::optional<std::vector<std::uint32_t>>& entries) {
-  if (!bank) return std::nullopt;
+  if (!buffer) return std::nullopt;
   if (!entries) throw std::invalid_argument("board_tables: a side with a bank for its table has no entries");
   return kernels::RectificationTable{input.width, input.height, *entries};
 }
@@ -92,6 +111,7 @@ kernels::GrayImage gray_image(const RandomBoard& board, const std::vector<std::u
 }  // namespace
 
 platform::BoardConfig board_config(const PlainCycleInput& input) {
+  refuse_section_8(input);
   platform::BoardConfig board;
   board.name = "plain";
   board.image = {input.width, input.height};

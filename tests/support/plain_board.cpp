@@ -6,31 +6,14 @@
 
 namespace stereotlm::test {
 
-PlainPlaces plain_places(const PlainCycleInput& input) {
-  const auto table_words = static_cast<std::uint64_t>(input.width) * static_cast<std::uint64_t>(input.height);
-  std::vector<std::uint64_t> used(input.banks.size());
-  const auto place = [&used](int bank, std::uint64_t words) {
-    return std::exchange(used[static_cast<std::size_t>(bank)], used[static_cast<std::size_t>(bank)] + words);
-  };
-  PlainPlaces places;
-  for (const int bank : input.left_image) places.left_image.push_back(place(bank, table_words / 4));
-  for (const int bank : input.right_image) places.right_image.push_back(place(bank, table_words / 4));
-  for (const int bank : input.disparity) places.disparity.push_back(place(bank, table_words / 4));
-  if (input.left_lut) places.left_lut = place(*input.left_lut, table_words);
-  if (input.right_lut) {
-    places.right_lut = input.joint_tables ? places.left_lut : place(*input.right_lut, table_words);
-  }
-  return places;
-}
-
 ReferenceJointTable plain_joint_table(const PlainCycleInput& input) {
   return reference_joint_table(input.width, plain_table(input, input.left_lut, input.left_table),
                                plain_table(input, input.right_lut, input.right_table));
 }
 
-std::vector<std::uint32_t> plain_table(const PlainCycleInput& input, const std::optional<int>& bank,
+std::vector<std::uint32_t> plain_table(const PlainCycleInput& input, const std::optional<PlainBuffer>& buffer,
                                        const std::optional<std::vector<std::uint32_t>>& entries) {
-  if (!bank) return {};
+  if (!buffer) return {};
   if (entries) return *entries;
   std::vector<std::uint32_t> identity;
   for (int row = 0; row < input.height; ++row) {
@@ -55,11 +38,10 @@ PlainBoard::PlainBoard(PlainEvents& events, const PlainBoardInput& input, std::f
   for (auto& words : banks_) words.resize(picture_pixels * 5);  // nine pictures and two tables at most
 }
 
-void PlainBoard::host_asks(int bank, std::uint64_t place, bool write, PlainTraffic traffic,
-                           std::uint32_t& word, PlainTime from_ps,
-                           std::function<void(PlainTime, PlainTime)> granted) {
+void PlainBoard::host_asks(const PlainWord& at, bool write, PlainTraffic traffic, std::uint32_t& word,
+                           PlainTime from_ps, std::function<void(PlainTime, PlainTime)> granted) {
   if (host_) throw std::logic_error("plain board: a word of the host while one waits");
-  host_ = HostWord{bank, place, write, traffic, &word, from_ps, std::move(granted)};
+  host_ = HostWord{at, write, traffic, &word, from_ps, std::move(granted)};
   await_cycle();
 }
 
@@ -86,7 +68,7 @@ void PlainBoard::run_cycle(std::uint64_t cycle) {
   if (cycle < next_cycle_) return;  // another event has run it
   std::optional<PlainHostRequest> request;
   if (host_ && host_->from_ps <= events_.now())
-    request = PlainHostRequest{host_->bank, host_->write, host_->traffic};
+    request = PlainHostRequest{host_->at, host_->write, host_->traffic};
   const bool ran = core_.runs();
   if (!ran && !request) return;
   next_cycle_ = cycle + 1;
@@ -103,10 +85,10 @@ void PlainBoard::run_cycle(std::uint64_t cycle) {
 void PlainBoard::grant_host(std::uint64_t cycle) {
   const HostWord host = std::move(*host_);
   host_.reset();
-  std::uint32_t& stored = *words_at(host.bank, host.place);
+  std::uint32_t& stored = word_at(host.at);
   (host.write ? stored : *host.word) = host.write ? *host.word : stored;
   const auto latency = static_cast<std::uint64_t>(
-      plain_read_latency(input_.core.banks[static_cast<std::size_t>(host.bank)].kind));
+      plain_read_latency(input_.core.banks[static_cast<std::size_t>(host.at.bank)]));
   host.granted(clock_.edge(cycle), clock_.edge(cycle + latency));
 }
 
@@ -118,14 +100,14 @@ void PlainBoard::compute(int frame) {
   ReferenceInput input;
   input.width = core.width;
   input.height = core.height;
-  input.left = pixels_at(core.left_image[input_entry], places_.left_image[input_entry]);
-  input.right = pixels_at(core.right_image[input_entry], places_.right_image[input_entry]);
+  input.left = pixels_at(places_.left_image[input_entry]);
+  input.right = pixels_at(places_.right_image[input_entry]);
   if (core.joint_tables) {
     input.left_table = reference_left_entries(core.width, joint_table());
     input.right_table = reference_right_entries(core.width, joint_table());
   } else {
-    input.left_table = table_at(core.left_lut, places_.left_lut);
-    input.right_table = table_at(core.right_lut, places_.right_lut);
+    input.left_table = table_at(places_.left_lut);
+    input.right_table = table_at(places_.right_lut);
   }
   input.filter = input_.filter;
   input.window = core.window;
@@ -133,38 +115,42 @@ void PlainBoard::compute(int frame) {
   input.lr_tolerance = input_.lr_tolerance;
   input.cost = input_.cost;
   const std::vector<std::uint32_t> words = compute_reference(input).disparity_words;
-  std::copy(words.begin(), words.end(),
-            words_at(core.disparity[output_entry], places_.disparity[output_entry]));
+  const int words_of_row = core.width / 4;
+  for (int word = 0; word < words_of_row * core.height; ++word) {
+    word_at(plain_word(places_.disparity[output_entry], word / words_of_row, word % words_of_row,
+                       words_of_row)) = words[static_cast<std::size_t>(word)];
+  }
 }
 
-std::uint32_t* PlainBoard::words_at(int bank, std::uint64_t place) {
-  return &banks_[static_cast<std::size_t>(bank)].at(place);
+std::uint32_t& PlainBoard::word_at(const PlainWord& at) {
+  return banks_[static_cast<std::size_t>(at.bank)].at(at.word);
 }
 
-std::vector<std::uint8_t> PlainBoard::pixels_at(int bank, std::uint64_t place) const {
-  const auto words =
-      static_cast<std::uint64_t>(input_.core.width) * static_cast<std::uint64_t>(input_.core.height) / 4;
+std::vector<std::uint32_t> PlainBoard::words_at(const PlainParts& parts, int words_of_row) {
+  std::vector<std::uint32_t> words;
+  for (int row = 0; row < input_.core.height; ++row) {
+    for (int word = 0; word < words_of_row; ++word)
+      words.push_back(word_at(plain_word(parts, row, word, words_of_row)));
+  }
+  return words;
+}
+
+std::vector<std::uint8_t> PlainBoard::pixels_at(const PlainParts& parts) {
   std::vector<std::uint8_t> pixels;
-  for (std::uint64_t word = place; word < place + words; ++word) {
-    const std::uint32_t value = banks_[static_cast<std::size_t>(bank)].at(word);
-    for (unsigned byte = 0; byte < 4; ++byte)
-      pixels.push_back(static_cast<std::uint8_t>(value >> (8 * byte)));
+  for (const std::uint32_t word : words_at(parts, input_.core.width / 4)) {
+    for (unsigned byte = 0; byte < 4; ++byte) pixels.push_back(static_cast<std::uint8_t>(word >> (8 * byte)));
   }
   return pixels;
 }
 
-std::optional<std::vector<std::uint32_t>> PlainBoard::table_at(const std::optional<int>& bank,
-                                                               std::uint64_t place) const {
-  if (!bank) return std::nullopt;
-  const auto entries =
-      static_cast<std::ptrdiff_t>(input_.core.width) * static_cast<std::ptrdiff_t>(input_.core.height);
-  const auto first = banks_[static_cast<std::size_t>(*bank)].begin() + static_cast<std::ptrdiff_t>(place);
-  return std::vector<std::uint32_t>(first, first + entries);
+std::optional<std::vector<std::uint32_t>> PlainBoard::table_at(const PlainParts& parts) {
+  if (parts.empty()) return std::nullopt;
+  return words_at(parts, input_.core.width);
 }
 
-ReferenceJointTable PlainBoard::joint_table() const {
+ReferenceJointTable PlainBoard::joint_table() {
   const auto middle = [this](PlainMiddle which) { return middles_[static_cast<std::size_t>(which)]; };
-  return {*table_at(input_.core.left_lut, places_.left_lut),
+  return {*table_at(places_.left_lut),
           {middle(PlainMiddle::kLeftX), middle(PlainMiddle::kLeftY)},
           {middle(PlainMiddle::kRightX), middle(PlainMiddle::kRightY)}};
 }

@@ -12,7 +12,7 @@
 #include "tests/support/plain_events.h"
 #include "tests/support/reference_arithmetic.h"
 
-// The FPGA and its banks with their words, as the local bus reaches them: contract sections 1 to 3 and 7.
+// The FPGA and its banks with their words, as the local bus reaches them: contract sections 1 to 3, 7 and 8.
 namespace stereotlm::test {
 
 struct PlainBoardInput {
@@ -23,16 +23,6 @@ struct PlainBoardInput {
   ReferenceCost cost{};
 };
 
-// The first word of each buffer in its bank.
-struct PlainPlaces {
-  std::vector<std::uint64_t> left_image;  // in the order of the list
-  std::vector<std::uint64_t> right_image;
-  std::vector<std::uint64_t> disparity;
-  std::uint64_t left_lut = 0;
-  std::uint64_t right_lut = 0;
-};
-PlainPlaces plain_places(const PlainCycleInput& input);
-
 // The core's registers for the four coordinates X and Y of joint tables (contract 7.3).
 enum class PlainMiddle { kLeftX, kLeftY, kRightX, kRightY };
 
@@ -40,7 +30,7 @@ enum class PlainMiddle { kLeftX, kLeftY, kRightX, kRightY };
 ReferenceJointTable plain_joint_table(const PlainCycleInput& input);
 
 // The entries of a table; none for a side without table.
-std::vector<std::uint32_t> plain_table(const PlainCycleInput& input, const std::optional<int>& bank,
+std::vector<std::uint32_t> plain_table(const PlainCycleInput& input, const std::optional<PlainBuffer>& buffer,
                                        const std::optional<std::vector<std::uint32_t>>& entries);
 
 class PlainBoard {
@@ -51,7 +41,7 @@ class PlainBoard {
   // The host requests a word of a bank from the first cycle that begins at or after `from_ps`, one word at a
   // time, of a burst of this traffic. Calls `granted` with the begin of the cycle of the grant and, for a
   // read, the time from which `word` is usable.
-  void host_asks(int bank, std::uint64_t place, bool write, PlainTraffic traffic, std::uint32_t& word,
+  void host_asks(const PlainWord& at, bool write, PlainTraffic traffic, std::uint32_t& word,
                  PlainTime from_ps, std::function<void(PlainTime begin_ps, PlainTime usable_ps)> granted);
   // A write to one of these registers.
   void write_middle(PlainMiddle which, std::uint32_t value) {
@@ -65,8 +55,7 @@ class PlainBoard {
 
  private:
   struct HostWord {
-    int bank;
-    std::uint64_t place;
+    PlainWord at;
     bool write;
     PlainTraffic traffic;
     std::uint32_t* word;
@@ -78,11 +67,11 @@ class PlainBoard {
   void run_cycle(std::uint64_t cycle);
   void grant_host(std::uint64_t cycle);
   void compute(int frame);
-  std::vector<std::uint8_t> pixels_at(int bank, std::uint64_t place) const;
-  std::uint32_t* words_at(int bank, std::uint64_t place);
-  std::optional<std::vector<std::uint32_t>> table_at(const std::optional<int>& bank,
-                                                     std::uint64_t place) const;
-  ReferenceJointTable joint_table() const;
+  std::uint32_t& word_at(const PlainWord& at);
+  std::vector<std::uint32_t> words_at(const PlainParts& parts, int words_of_row);
+  std::vector<std::uint8_t> pixels_at(const PlainParts& parts);
+  std::optional<std::vector<std::uint32_t>> table_at(const PlainParts& parts);
+  ReferenceJointTable joint_table();
 
   PlainEvents& events_;
   const PlainBoardInput& input_;

@@ -32,11 +32,15 @@ std::size_t PlainBridge::Slave::takes(std::size_t words) const {
 }
 
 void PlainBridge::Slave::write(std::uint64_t word, const PlainWords& words) {
-  const bool to_core = word >= kPlainCoreWindow;
-  std::uint64_t local = to_core ? kPlainCoreRegisters + word - kPlainCoreWindow
-                                : bridge_.pages_[word / kPlainApertureWords] + word % kPlainApertureWords;
+  const auto local_of = [this](std::uint64_t at) {
+    if (at >= kPlainCoreWindow) return kPlainCoreRegisters + at - kPlainCoreWindow;
+    const auto place = static_cast<int>(at % kPlainApertureWords);
+    const int words_of_row = bridge_.config_.words_of_row;
+    return plain_board_word(plain_word(bridge_.pages_.at(at / kPlainApertureWords), place / words_of_row,
+                                       place % words_of_row, words_of_row));
+  };
   const PlainTime now_ps = bridge_.events_.now();
-  for (const std::uint32_t value : words) bridge_.posted_.push_back({local++, value, now_ps});
+  for (const std::uint32_t value : words) bridge_.posted_.push_back({local_of(word++), value, now_ps});
   bridge_.stats_.posted_words += words.size();
   bridge_.posted_levels_.push_back({now_ps, bridge_.posted_.size() + bridge_.posted_on_local_});
   bridge_.ask();
@@ -60,8 +64,11 @@ void PlainBridge::Slave::read(std::uint64_t word, std::size_t count, PlainTime e
 
 void PlainBridge::Registers::write(std::uint64_t word, const PlainWords& words) {
   const std::uint32_t value = words.at(0);
-  if (word < bridge_.pages_.size()) {
-    bridge_.pages_[word] = value;
+  if (word < of(PlainBridgeRegister::kInterruptStatus)) {
+    // Part 0 comes first: the others are then those of the arming before.
+    PlainParts& pages = bridge_.pages_.at(word / kPlainMostParts);
+    pages.resize(word % kPlainMostParts);
+    pages.push_back({static_cast<int>(bank_of(value)), value % kPlainBankWords});
   } else if (word == of(PlainBridgeRegister::kInterruptStatus)) {
     bridge_.status_ &= ~value;
   } else if (word == of(PlainBridgeRegister::kInterruptEnable)) {
@@ -132,7 +139,7 @@ void PlainBridge::await_word(PlainTime end_ps) {
     const PlainTraffic traffic = !local_->write          ? PlainTraffic::kReadBack
                                  : posted_on_local_ != 0 ? PlainTraffic::kCapture
                                                          : PlainTraffic::kUpload;
-    board_.host_asks(static_cast<int>(bank_of(word)), word % kPlainBankWords, local_->write, traffic,
+    board_.host_asks({static_cast<int>(bank_of(word)), word % kPlainBankWords}, local_->write, traffic,
                      local_->words[word_], end_ps,
                      [this](PlainTime begin_ps, PlainTime usable_ps) { word_ends(begin_ps, usable_ps); });
     return;

@@ -20,8 +20,8 @@ namespace stereotlm::test {
 // Addresses on the local bus, in words.
 inline constexpr std::uint64_t kPlainBankWords = std::uint64_t{1} << 26U;
 inline constexpr std::uint64_t kPlainCoreRegisters = 64 * kPlainBankWords;
-constexpr std::uint64_t plain_board_word(int bank, std::uint64_t place) {
-  return static_cast<std::uint64_t>(bank) * kPlainBankWords + place;
+constexpr std::uint64_t plain_board_word(const PlainWord& at) {
+  return static_cast<std::uint64_t>(at.bank) * kPlainBankWords + at.word;
 }
 
 // The core's registers, in words from kPlainCoreRegisters.
@@ -43,13 +43,14 @@ inline constexpr std::uint64_t kPlainCoreWindow = 4 * kPlainApertureWords;
 
 // The bridge's registers, in words of its register window.
 enum class PlainBridgeRegister : std::uint64_t {
-  kPage0 = 0,
-  kPage1 = 1,
-  kInterruptStatus = 4,
-  kInterruptEnable = 5,
-  kDescriptor0 = 8,  // of channel 0; the register of channel 1 is kPlainChannelWords further
-  kControl0 = 9,
+  kPage0 =
+      0,  // of part 0 of the left picture, in order the others; kPlainMostParts further, of the right one
+  kInterruptStatus = 32,
+  kInterruptEnable = 33,
+  kDescriptor0 = 36,  // of channel 0; the register of channel 1 is kPlainChannelWords further
+  kControl0 = 37,
 };
+inline constexpr std::uint64_t kPlainMostParts = 16;
 inline constexpr std::uint64_t kPlainChannelWords = 4;
 inline constexpr std::uint32_t kPlainDoorbell = 1;
 inline constexpr std::uint32_t kPlainDmaDone = 2;  // channel 1: the bit above
@@ -66,6 +67,7 @@ struct PlainBridgeConfig {
   std::size_t dma_burst_words = 0;
   std::size_t posted_words = 0;
   int memory_wait_clocks = 0;
+  int words_of_row = 0;  // of a picture
 };
 
 class PlainBridge : private PlainMaster {
@@ -75,6 +77,8 @@ class PlainBridge : private PlainMaster {
 
   PlainTarget& slave() { return slave_; }
   PlainTarget& registers() { return registers_; }
+  // Whether the picture in whose aperture this word lies is striped.
+  bool is_striped(std::uint64_t word) const { return pages_.at(word / kPlainApertureWords).size() > 1; }
   // The chain of a channel from its next start on. The channel fetches each descriptor over PCI all the same.
   void set_chain(std::size_t channel, std::vector<PlainDescriptor> chain) {
     channels_[channel].chain = std::move(chain);
@@ -170,7 +174,7 @@ class PlainBridge : private PlainMaster {
   Slave slave_{*this};
   Registers registers_{*this};
 
-  std::array<std::uint32_t, 4> pages_{};
+  std::array<PlainParts, 2> pages_;  // of the apertures of both pictures
   std::uint32_t status_ = 0;
   std::uint32_t enable_ = 0;
 

@@ -101,6 +101,7 @@ PlainBurst PlainCaptureBoard::burst() {
   PlainBurst burst{true, place_.target, place_.wait_clocks, place_.word + fifo_.front().place, {}};
   for (const Word& word : fifo_) {
     if (word.pixels < 4 || word.place != fifo_.front().place + burst.words.size()) break;
+    if (place_.striped && word.row != fifo_.front().row) break;
     burst.words.push_back(word.value);
   }
   burst_words_ = burst.words.size();

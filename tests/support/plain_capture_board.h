@@ -11,7 +11,7 @@
 #include "tests/support/plain_pci_bus.h"
 #include "tests/support/plain_trace.h"
 
-// A camera's capture board of contract section 3, one pixel at a time.
+// A camera's capture board of contract sections 3 and 8.2, one pixel at a time.
 namespace stereotlm::test {
 
 struct PlainCaptureConfig {
@@ -25,6 +25,7 @@ struct PlainPicturePlace {
   PlainTarget* target = nullptr;
   int wait_clocks = 0;
   std::uint64_t word = 0;
+  bool striped = false;  // a burst ends with its line
 };
 
 class PlainCaptureBoard : private PlainMaster {

@@ -90,7 +90,7 @@ class Computer {
         board_(events_, input.board, [this] { bridge_.ring(); }),
         bridge_(events_, bus_, board_, host_memory_,
                 {input.local_clock_mhz, static_cast<std::size_t>(input.dma_burst_words),
-                 static_cast<std::size_t>(input.posted_words), input.memory_wait_clocks}),
+                 static_cast<std::size_t>(input.posted_words), input.memory_wait_clocks, words_of_row()}),
         left_registers_(left_, place_of(), [this] { frame_begins(); }),
         right_registers_(right_, place_of(), [] {}) {
     if (input.load) load_.emplace(events_, bus_, *input.load);
@@ -120,7 +120,9 @@ class Computer {
   }
   std::function<PlainPicturePlace(std::uint32_t)> place_of() {
     return [this](std::uint32_t word) -> PlainPicturePlace {
-      if (word >= kSlaveWindow) return {&bridge_.slave(), input_.bridge_wait_clocks, word - kSlaveWindow};
+      if (word >= kSlaveWindow)
+        return {&bridge_.slave(), input_.bridge_wait_clocks, word - kSlaveWindow,
+                bridge_.is_striped(word - kSlaveWindow)};
       return {&host_memory_, input_.memory_wait_clocks, word};
     };
   }
@@ -166,11 +168,13 @@ class Computer {
     const PlainCycleInput& core = input_.board.core;
     std::vector<PlainDescriptor> chain;
     std::uint64_t host = tables_start();
-    const auto add = [&](const std::optional<int>& bank, std::uint64_t place, const PlainWords& table) {
-      if (!bank) return;
-      host_memory_.write(host, table);
-      chain.push_back({host, plain_board_word(*bank, place), false, table.size()});
-      host += table.size();
+    const auto add = [&](const PlainParts& parts, const PlainWords& table) {
+      add_parts(chain, parts, host, core.width, false);
+      for (const int row : rows_by_part(parts)) {
+        const auto first = table.begin() + row * core.width;
+        host_memory_.write(host, PlainWords(first, first + core.width));
+        host += static_cast<std::uint64_t>(core.width);
+      }
     };
     if (core.joint_tables) {
       const ReferenceJointTable table = plain_joint_table(core);
@@ -178,10 +182,10 @@ class Computer {
       for (const int middle : {table.left.x, table.left.y, table.right.x, table.right.y})
         processor_.write(bridge_.slave(), word++, static_cast<std::uint32_t>(middle),
                          input_.bridge_wait_clocks);
-      add(core.left_lut, places_.left_lut, table.words);
+      add(places_.left_lut, table.words);
     } else {
-      add(core.left_lut, places_.left_lut, plain_table(core, core.left_lut, core.left_table));
-      add(core.right_lut, places_.right_lut, plain_table(core, core.right_lut, core.right_table));
+      add(places_.left_lut, plain_table(core, core.left_lut, core.left_table));
+      add(places_.right_lut, plain_table(core, core.right_lut, core.right_table));
     }
     if (chain.empty()) return;
     write(PlainBridgeRegister::kInterruptEnable, kPlainDmaDone);
@@ -239,13 +243,12 @@ class Computer {
       ++frames_.begun;
       const auto input = static_cast<std::size_t>(frame % core.left_image.size());
       const auto output = static_cast<std::size_t>(frame % core.disparity.size());
-      write(PlainCoreRegister::kLeftImage, board_word(core.left_image[input], places_.left_image[input]));
-      write(PlainCoreRegister::kRightImage, board_word(core.right_image[input], places_.right_image[input]));
-      write(PlainCoreRegister::kDisparity, board_word(core.disparity[output], places_.disparity[output]));
-      if (frame == 0 && core.left_lut)
-        write(PlainCoreRegister::kLeftLut, board_word(*core.left_lut, places_.left_lut));
+      write(PlainCoreRegister::kLeftImage, first_word(places_.left_image[input]));
+      write(PlainCoreRegister::kRightImage, first_word(places_.right_image[input]));
+      write(PlainCoreRegister::kDisparity, first_word(places_.disparity[output]));
+      if (frame == 0 && core.left_lut) write(PlainCoreRegister::kLeftLut, first_word(places_.left_lut));
       if (frame == 0 && core.right_lut && !core.joint_tables)
-        write(PlainCoreRegister::kRightLut, board_word(*core.right_lut, places_.right_lut));
+        write(PlainCoreRegister::kRightLut, first_word(places_.right_lut));
     }
     if (starts || acknowledges_) write(PlainCoreRegister::kControl, starts ? kPlainStart : 0);
     acknowledges_ = false;
@@ -264,8 +267,8 @@ class Computer {
     } else {
       if (capture >= frames_.ended + core.left_image.size()) return;
       const auto input = static_cast<std::size_t>(capture % core.left_image.size());
-      write(PlainBridgeRegister::kPage0, board_word(core.left_image[input], places_.left_image[input]));
-      write(PlainBridgeRegister::kPage1, board_word(core.right_image[input], places_.right_image[input]));
+      write_pages(places_.left_image[input], 0);
+      write_pages(places_.right_image[input], kPlainMostParts);
       left = kSlaveWindow;
       right = kSlaveWindow + kPlainApertureWords;
     }
@@ -287,11 +290,10 @@ class Computer {
     ++copies_.begun;
     const auto input = static_cast<std::size_t>(pair % core.left_image.size());
     const std::uint64_t host = pair_in_host(pair);
-    start_dma(
-        kToBoard,
-        {{host, plain_board_word(core.left_image[input], places_.left_image[input]), false, picture_words()},
-         {host + picture_words(), plain_board_word(core.right_image[input], places_.right_image[input]),
-          false, picture_words()}});
+    std::vector<PlainDescriptor> chain;
+    add_picture(chain, places_.left_image[input], host);
+    add_picture(chain, places_.right_image[input], host + picture_words());
+    start_dma(kToBoard, chain);
   }
 
   void read_back() {
@@ -300,9 +302,9 @@ class Computer {
     if (!read_backs_.idle() || frame >= frames_.ended) return;
     ++read_backs_.begun;
     const auto output = static_cast<std::size_t>(frame % core.disparity.size());
-    start_dma(kToHost,
-              {{result_in_host(frame), plain_board_word(core.disparity[output], places_.disparity[output]),
-                true, picture_words()}});
+    std::vector<PlainDescriptor> chain;
+    add_parts(chain, places_.disparity[output], result_in_host(frame), words_of_row(), true);
+    start_dma(kToHost, chain);
   }
 
   void deliver() {
@@ -311,13 +313,56 @@ class Computer {
     delivery.camera_frame = captured_[static_cast<std::size_t>(frame)];
     delivery.begin_ps = begins_ps_.at(delivery.camera_frame);
     delivery.host_ps = events_.now();
-    const auto words = host_memory_.at(result_in_host(frame), picture_words());
-    for (std::size_t word = 0; word < picture_words(); ++word) {
-      const std::uint32_t value = words[static_cast<std::ptrdiff_t>(word)];
-      for (unsigned byte = 0; byte < 4; ++byte)
-        delivery.disparity.push_back(static_cast<std::uint8_t>(value >> (8 * byte)));
+    auto words = host_memory_.at(result_in_host(frame), picture_words());
+    delivery.disparity.resize(4 * picture_words());
+    for (const int row : rows_by_part(places_.disparity[frame % places_.disparity.size()])) {
+      auto pixel = delivery.disparity.begin() + row * input_.board.core.width;
+      for (int word = 0; word < words_of_row(); ++word, ++words) {
+        for (unsigned byte = 0; byte < 4; ++byte) *pixel++ = static_cast<std::uint8_t>(*words >> (8 * byte));
+      }
     }
     deliveries_.push_back(std::move(delivery));
+  }
+
+  // The rows of a table or a result in the order in which host memory holds them: part by part.
+  std::vector<int> rows_by_part(const PlainParts& parts) const {
+    std::vector<int> rows;
+    for (std::size_t part = 0; part < parts.size(); ++part) {
+      for (auto row = static_cast<int>(part); row < input_.board.core.height;
+           row += static_cast<int>(parts.size()))
+        rows.push_back(row);
+    }
+    return rows;
+  }
+
+  // One descriptor for each part that has rows.
+  void add_parts(std::vector<PlainDescriptor>& chain, const PlainParts& parts, std::uint64_t host,
+                 int words_of_row, bool to_host) const {
+    for (std::size_t part = 0; part < parts.size(); ++part) {
+      const int rows = plain_rows(parts.size(), part, input_.board.core.height);
+      if (rows == 0) continue;
+      const auto words = static_cast<std::uint64_t>(rows * words_of_row);
+      chain.push_back({host, plain_board_word(parts[part]), to_host, words});
+      host += words;
+    }
+  }
+
+  // One descriptor for each row of a striped picture, part by part: the ring holds it row by row.
+  void add_picture(std::vector<PlainDescriptor>& chain, const PlainParts& parts, std::uint64_t host) const {
+    if (parts.size() == 1) return add_parts(chain, parts, host, words_of_row(), false);
+    const auto words = static_cast<std::uint64_t>(words_of_row());
+    for (const int row : rows_by_part(parts)) {
+      chain.push_back({host + static_cast<std::uint64_t>(row) * words,
+                       plain_board_word(plain_word(parts, row, 0, words_of_row())), false, words});
+    }
+  }
+
+  // The page of each part that has rows.
+  void write_pages(const PlainParts& parts, std::uint64_t page0) {
+    for (std::size_t part = 0; part < parts.size(); ++part) {
+      if (plain_rows(parts.size(), part, input_.board.core.height) == 0) continue;
+      write_bridge(page0 + part, static_cast<std::uint32_t>(plain_board_word(parts[part])));
+    }
   }
 
   void start_dma(std::size_t channel, const std::vector<PlainDescriptor>& chain) {
@@ -360,6 +405,7 @@ class Computer {
     return static_cast<std::uint64_t>(input_.board.core.width) *
            static_cast<std::uint64_t>(input_.board.core.height) / 4;
   }
+  int words_of_row() const { return input_.board.core.width / 4; }
   std::uint64_t tables_start() const { return 64; }
   std::uint64_t pair_in_host(std::uint64_t pair) const {
     const std::uint64_t slot = pair % static_cast<std::uint64_t>(input_.host_frames);
@@ -369,8 +415,8 @@ class Computer {
     const std::uint64_t pairs = static_cast<std::uint64_t>(input_.host_frames);
     return tables_start() + (8 + 2 * pairs + frame % input_.board.core.disparity.size()) * picture_words();
   }
-  static std::uint32_t board_word(int bank, std::uint64_t place) {
-    return static_cast<std::uint32_t>(plain_board_word(bank, place));
+  static std::uint32_t first_word(const PlainParts& parts) {
+    return static_cast<std::uint32_t>(plain_board_word(parts.front()));
   }
 
   PlainComputerResult result() {

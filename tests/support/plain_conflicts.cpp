@@ -1,15 +1,25 @@
 #include "tests/support/plain_conflicts.h"
 
 #include <algorithm>
-#include <array>
 #include <sstream>
 
 namespace stereotlm::test {
 namespace {
 
-constexpr std::array<const char*, kPlainWaiters + 1> kNames = {
-    "left_lut",     "right_lut",   "left_pixel",     "right_pixel", "result",
-    "host capture", "host upload", "host read-back", "turnaround"};
+// Of who waits and of who is to blame, by their numbers.
+std::vector<std::string> names_of(const PlainCycleInput& input) {
+  std::vector<std::string> names = plain_names(input.lanes);
+  const auto host = std::find(names.begin(), names.end(), "host");
+  *host = "host read-back";
+  names.insert(host, {"host capture", "host upload"});
+  return names;
+}
+
+std::string column_of(std::string name) {
+  std::replace_if(
+      name.begin(), name.end(), [](char letter) { return letter == ' ' || letter == '-'; }, '_');
+  return "," + name + "_stall_cycles";
+}
 
 std::string rows_of(const PlainCycleInput& input, std::size_t first_strip, std::size_t strips) {
   const auto rows = static_cast<std::size_t>(input.rows);
@@ -21,10 +31,11 @@ std::string rows_of(const PlainCycleInput& input, std::size_t first_strip, std::
 
 std::string plain_rows_csv(const PlainCycleInput& input, const std::vector<std::vector<PlainStrip>>& frames) {
   std::ostringstream text;
-  text << "frame,first_row,last_row,cycles,left_lut_stall_cycles,right_lut_stall_cycles,left_pixel_stall_"
-          "cycles,"
-          "right_pixel_stall_cycles,result_stall_cycles,host_capture_stall_cycles,host_upload_stall_cycles,"
-          "host_read_back_stall_cycles";
+  text << "frame,first_row,last_row,cycles";
+  for (const std::string& name : names_of(input)) {
+    if (name == "turnaround") break;
+    text << column_of(name);
+  }
   for (std::size_t bank = 0; bank < input.banks.size(); ++bank) {
     for (const char* kind : {"core", "capture", "upload", "read_back"})
       text << ",bank" << bank << "_" << kind << "_accesses";
@@ -50,10 +61,11 @@ std::string plain_conflicts_csv(const PlainCycleInput& input, const std::vector<
   const std::size_t all_strips = (tiles.size() - 1) / groups_of_strip;
   std::ostringstream text;
   text << "first_row,last_row,first_column,last_column,tile_cycles,port,bank,by,cycles\n";
-  const auto add = [&text](const std::string& place, const PlainTile& tile) {
+  const std::vector<std::string> names = names_of(input);
+  const auto add = [&text, &names](const std::string& place, const PlainTile& tile) {
     for (const auto& [loss, cycles] : tile.lost) {
-      text << place << "," << tile.cycles << "," << kNames[loss.waiter] << ",bank" << loss.bank << ","
-           << kNames[loss.by] << "," << cycles << "\n";
+      text << place << "," << tile.cycles << "," << names[loss.waiter] << ",bank" << loss.bank << ","
+           << names[loss.by] << "," << cycles << "\n";
     }
   };
   add(",,,", tiles.front());

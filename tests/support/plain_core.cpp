@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <deque>
+#include <utility>
 
 namespace stereotlm::test {
 namespace {
@@ -17,46 +18,48 @@ enum class Wish { kIdle, kBlocked, kStarved, kPass, kAccess };
 
 std::size_t index_of(PlainPort port) { return static_cast<std::size_t>(port); }
 
-int read_latency(PlainBankKind kind) { return kind == PlainBankKind::kZbtFlowThrough ? 1 : 2; }
+struct Request {
+  Wish wish = Wish::kIdle;
+  PlainWord at{};  // kAccess
+  Direction direction = Direction::kRead;
+};
 
-// One port of a bank and its arbiter; both keep their state from frame to frame.
+std::size_t port_count(const PlainCycleInput& input) { return 4 * static_cast<std::size_t>(input.lanes) + 2; }
+
+// The place of each port in the list: each group stands for its ports, lower p first.
+std::vector<std::size_t> places_in_list(const PlainCycleInput& input) {
+  const auto lanes = static_cast<std::size_t>(input.lanes);
+  std::vector<std::size_t> places(port_count(input));
+  std::size_t place = 0;
+  for (const PlainPort group : input.priority) {
+    if (group == PlainPort::kResult || group == PlainPort::kHost) {
+      places[4 * lanes + (group == PlainPort::kHost ? 1 : 0)] = place++;
+    } else {
+      for (std::size_t p = 0; p < lanes; ++p) places[index_of(group) * lanes + p] = place++;
+    }
+  }
+  return places;
+}
+
+// A bank, or a direction of a qdr bank, and its arbiter; both keep their state from frame to frame.
 class BankAndArbiter {
  public:
   BankAndArbiter(const PlainBank& bank, const PlainCycleInput& input)
-      : bank_(bank), arbitration_(input.arbitration), priority_(input.priority) {}
+      : bank_(bank),
+        arbitration_(input.arbitration),
+        place_(places_in_list(input)),
+        waits_(place_.size()),
+        open_rows_(static_cast<std::size_t>(bank.sdram.internal_banks)) {}
 
-  // The winner among the ports that request this bank; nullopt if none does.
-  std::optional<PlainPort> winner(const std::array<bool, kPlainPortCount>& requests, Cycle now) const {
-    if (arbitration_ == PlainArbitration::kAge) return oldest(requests, now);
-    std::size_t first = 0;
-    if (arbitration_ == PlainArbitration::kRoundRobin && last_granted_) {
-      const auto found = std::find(priority_.begin(), priority_.end(), *last_granted_);
-      first = static_cast<std::size_t>(found - priority_.begin()) + 1;
+  // Decides cycle `now`, greater than the last one, among the ports that request this bank. Returns the port
+  // that is granted, or the cause for which none is; nullopt if there is none of either.
+  std::optional<std::size_t> decide(const std::vector<std::size_t>& ports,
+                                    const std::vector<Request>& requests, Cycle now) {
+    const std::optional<std::size_t> outcome = outcome_of(ports, requests, now);
+    for (const std::size_t port : ports) {
+      if (port != outcome) waits_[port] = {age(port, now), now};
     }
-    for (std::size_t step = 0; step < kPlainPortCount; ++step) {
-      const PlainPort port = priority_[(first + step) % kPlainPortCount];
-      if (requests[index_of(port)]) return port;
-    }
-    return std::nullopt;
-  }
-
-  // Whether an earlier access in the other direction still forbids one in this direction.
-  bool is_turning_round(Direction direction, Cycle now) const {
-    if (bank_.kind != PlainBankKind::kSyncBurst) return false;
-    const std::optional<Cycle>& other = direction == Direction::kRead ? last_write_ : last_read_;
-    return other && now < *other + bank_.turnaround_cycles + 1;
-  }
-
-  void grant(PlainPort port, Direction direction, Cycle now) {
-    last_granted_ = port;
-    (direction == Direction::kRead ? last_read_ : last_write_) = now;
-  }
-
-  // The port has asked in this cycle, and is not granted.
-  void refuse(PlainPort port, Cycle now) {
-    Wait& wait = waits_[index_of(port)];
-    wait.cycles = age(port, now);
-    wait.last = now;
+    return outcome;
   }
 
  private:
@@ -65,29 +68,93 @@ class BankAndArbiter {
     std::optional<Cycle> last;  // the last of these cycles
   };
 
+  // The causes that are no port.
+  std::size_t turnaround() const { return place_.size(); }
+  std::size_t row() const { return place_.size() + 1; }
+  std::size_t refresh() const { return place_.size() + 2; }
+
+  // The rules of contract 8.3. Other kinds than sdram only have 3 without its rows, 4 and 5.
+  std::optional<std::size_t> outcome_of(const std::vector<std::size_t>& ports,
+                                        const std::vector<Request>& requests, Cycle now) {
+    for (; next_ <= now; ++next_) refresh_if_due(next_);  // also in cycles without requests
+    if (now < busy_until_) return busy_with_;
+    if (ports.empty()) return std::nullopt;
+    const std::size_t winner =
+        *std::min_element(ports.begin(), ports.end(),
+                          [&](std::size_t a, std::size_t b) { return rank(a, now) < rank(b, now); });
+    const Request& request = requests[winner];
+    open_row_of(request.at.word, now);
+    if (now < busy_until_) return busy_with_;
+    if (is_turning_round(request.direction, now)) return turnaround();
+    last_granted_ = winner;
+    (request.direction == Direction::kRead ? last_read_ : last_write_) = now;
+    return winner;
+  }
+
+  // The least wins.
+  std::pair<Cycle, std::size_t> rank(std::size_t port, Cycle now) const {
+    const std::size_t count = place_.size();
+    if (arbitration_ == PlainArbitration::kAge) return {-age(port, now), place_[port]};
+    if (arbitration_ == PlainArbitration::kRoundRobin && last_granted_)
+      return {0, (place_[port] + count - place_[*last_granted_] - 1) % count};
+    return {0, place_[port]};
+  }
+
   // The age of a request in this cycle.
-  Cycle age(PlainPort port, Cycle now) const {
-    const Wait& wait = waits_[index_of(port)];
+  Cycle age(std::size_t port, Cycle now) const {
+    const Wait& wait = waits_[port];
     return wait.last == now - 1 ? wait.cycles + 1 : 1;
   }
-  std::optional<PlainPort> oldest(const std::array<bool, kPlainPortCount>& requests, Cycle now) const {
-    std::optional<PlainPort> found;
-    for (const PlainPort port : priority_) {
-      if (requests[index_of(port)] && (!found || age(port, now) > age(*found, now))) found = port;
+
+  // Whether an earlier access in the other direction still forbids one in this direction.
+  bool is_turning_round(Direction direction, Cycle now) const {
+    if (bank_.kind == PlainBankKind::kSdram) {
+      return direction == Direction::kWrite && last_read_ && now - *last_read_ < bank_.sdram.cas_latency + 1;
     }
-    return found;
+    if (bank_.kind != PlainBankKind::kSyncBurst) return false;
+    const std::optional<Cycle>& other = direction == Direction::kRead ? last_write_ : last_read_;
+    return other && now < *other + bank_.turnaround_cycles + 1;
+  }
+
+  void refresh_if_due(Cycle now) {
+    const PlainSdram& sdram = bank_.sdram;
+    if (bank_.kind != PlainBankKind::kSdram || sdram.refresh_interval_cycles == 0 || now < busy_until_)
+      return;
+    if (now < next_refresh_ * sdram.refresh_interval_cycles) return;
+    ++next_refresh_;
+    const bool any_open =
+        std::any_of(open_rows_.begin(), open_rows_.end(), [](const auto& open) { return open.has_value(); });
+    busy_until_ = now + sdram.refresh_cycles + (any_open ? sdram.precharge_cycles : 0);
+    busy_with_ = refresh();
+    std::fill(open_rows_.begin(), open_rows_.end(), std::nullopt);
+  }
+
+  void open_row_of(std::uint64_t word, Cycle now) {
+    const PlainSdram& sdram = bank_.sdram;
+    if (bank_.kind != PlainBankKind::kSdram) return;
+    const std::uint64_t row_of_word = word / static_cast<std::uint64_t>(sdram.row_words);
+    std::optional<std::uint64_t>& open = open_rows_[row_of_word % open_rows_.size()];
+    if (open == row_of_word) return;
+    busy_until_ = now + sdram.activate_cycles + (open ? sdram.precharge_cycles : 0);
+    busy_with_ = row();
+    open = row_of_word;
   }
 
   PlainBank bank_;
   PlainArbitration arbitration_;
-  std::array<PlainPort, kPlainPortCount> priority_;
-  std::optional<PlainPort> last_granted_;
+  std::vector<std::size_t> place_;  // [port]
+  std::optional<std::size_t> last_granted_;
   std::optional<Cycle> last_read_;
   std::optional<Cycle> last_write_;
-  std::array<Wait, kPlainPortCount> waits_{};  // of each port, the last
+  std::vector<Wait> waits_;  // of each port, the last
+  Cycle next_ = 0;           // whose refresh is not yet looked at
+  Cycle next_refresh_ = 1;   // m
+  Cycle busy_until_ = 0;     // with a refresh or an opening
+  std::size_t busy_with_ = 0;
+  std::vector<std::optional<std::uint64_t>> open_rows_;  // [internal bank]
 };
 
-// The figures of a frame that contract sections 2 and 7 name by these letters.
+// The figures of a frame that contract sections 2, 7 and 8 name by these letters.
 struct Letters {
   explicit Letters(const PlainCycleInput& input)
       : R(input.rows),
@@ -95,6 +162,8 @@ struct Letters {
         h(input.filter_half + input.cost_half),
         w(R * up(std::max(0, h - r), R)),
         K(input.fetch == PlainFetch::kColumn ? input.window + R - 1 : 1),
+        P(input.lanes),
+        G(up(K, P)),
         S(input.units == 0 ? 1 : up(input.disparities, input.units)) {}
 
   int R;
@@ -102,6 +171,8 @@ struct Letters {
   int h;
   int w;
   int K;
+  int P;
+  int G;
   int S;
 
   // ceil(dividend / divisor)
@@ -113,16 +184,19 @@ struct Slot {
   int column = 0;
   int row = 0;
   int k = 0;            // its place in its column; line_buffer: 0
-  bool begins = false;  // is the first slot of a strip; line_buffer: of a row
+  bool begins = false;  // the first one of its k in a strip; line_buffer: of a row
 };
 
-std::vector<Slot> slots_of_a_frame(const PlainCycleInput& input) {
+// The slots of lane p.
+std::vector<Slot> slots_of_a_frame(const PlainCycleInput& input, int p) {
   const Letters is(input);
   std::vector<Slot> slots;
   if (input.fetch == PlainFetch::kColumn) {
     for (int v = -is.w; v < input.height; v += is.R) {
       for (int u = 0; u <= input.width - 1; ++u) {
-        for (int k = 0; k <= is.K - 1; ++k) slots.push_back({u, v + is.h - is.r + k, k, u == 0 && k == 0});
+        for (int k = 0; k <= is.K - 1; ++k) {
+          if (k % is.P == p) slots.push_back({u, v + is.h - is.r + k, k, u == 0});
+        }
       }
     }
   } else {
@@ -133,14 +207,15 @@ std::vector<Slot> slots_of_a_frame(const PlainCycleInput& input) {
   return slots;
 }
 
-// One side of the core during one frame.
+// One lane during one frame.
 class Lane {
  public:
   struct Setting {
-    bool has_table = false;
     const std::vector<std::uint32_t>* entries = nullptr;  // of the table; null: the identity
-    int table_latency = 0;                                // read latency of the table's bank
-    int image_latency = 0;                                // read latency of the bank of this frame's image
+    PlainParts table;                                     // none: a side without table
+    PlainParts image;                                     // of this frame
+    int table_latency = 0;                                // read latency of the table's banks
+    int image_latency = 0;                                // read latency of the image's banks
   };
 
   Lane(const PlainCycleInput& input, const std::vector<Slot>& sequence, const Setting& setting)
@@ -152,15 +227,15 @@ class Lane {
         setting_(setting),
         kept_(static_cast<std::size_t>(Letters(input).K)) {}
 
-  Wish lut_port_wish() const { return setting_.has_table ? wish_of_taker() : Wish::kIdle; }
+  Request lut_port_request() const { return has_table() ? request_of_taker() : Request{}; }
 
-  Wish pixel_port_wish(Cycle now) const {
-    if (!setting_.has_table) return wish_of_taker();
-    if (handled_ == sequence_.size()) return Wish::kIdle;  // after its last slot
+  Request pixel_port_request(Cycle now) const {
+    if (!has_table()) return request_of_taker();
+    if (handled_ == sequence_.size()) return {};  // after its last slot
     const bool can_handle =
         handled_ < taken_ && now >= in_lane_[handled_ - consumed_].taken_at + setting_.table_latency;
-    if (!can_handle) return handled_ == 0 ? Wish::kIdle : Wish::kStarved;  // idle before its first slot
-    return needs_access(sequence_[handled_]) ? Wish::kAccess : Wish::kPass;
+    if (!can_handle) return {handled_ == 0 ? Wish::kIdle : Wish::kStarved};  // idle before its first slot
+    return pixel_request(sequence_[handled_]);
   }
 
   bool can_be_consumed(Cycle now) const {
@@ -173,7 +248,7 @@ class Lane {
     ++taken_;
   }
   void pixel_port_handled(Cycle now) {
-    if (!setting_.has_table) lut_port_took(now);  // the pixel port takes the slots itself
+    if (!has_table()) lut_port_took(now);  // the pixel port takes the slots itself
     keep_word_of(sequence_[handled_]);
     in_lane_[handled_ - consumed_].handled_at = now;
     ++handled_;
@@ -189,21 +264,29 @@ class Lane {
     Cycle handled_at;  // meaningful once the slot is handled
   };
 
-  // The wish of the port that takes slots: the LUT port, or the pixel port of a side without table.
-  Wish wish_of_taker() const {
-    if (taken_ == sequence_.size()) return Wish::kIdle;  // after its last slot
-    if (in_lane_.size() >= lane_fifo_slots_) return Wish::kBlocked;
+  bool has_table() const { return !setting_.table.empty(); }
+
+  // The request of the port that takes slots: the LUT port, or the pixel port of a side without table.
+  Request request_of_taker() const {
+    if (taken_ == sequence_.size()) return {};  // after its last slot
+    if (in_lane_.size() >= lane_fifo_slots_) return {Wish::kBlocked};
     const Slot& slot = sequence_[taken_];
-    if (setting_.has_table) return is_empty(slot) ? Wish::kPass : Wish::kAccess;
-    return needs_access(slot) ? Wish::kAccess : Wish::kPass;
+    if (!has_table()) return pixel_request(slot);
+    if (is_empty(slot)) return {Wish::kPass};
+    return {Wish::kAccess, plain_word(setting_.table, slot.row, slot.column, width_)};
   }
 
   bool is_empty(const Slot& slot) const { return slot.row < 0 || slot.row > height_ - 1; }
 
   // Of the pixel port.
-  bool needs_access(const Slot& slot) const {
-    if (is_empty(slot) || !word_of(slot)) return false;
-    return !has_cache_ || slot.begins || kept_[static_cast<std::size_t>(slot.k)] != word_of(slot);
+  Request pixel_request(const Slot& slot) const {
+    if (is_empty(slot)) return {Wish::kPass};
+    const std::optional<int> word = word_of(slot);
+    if (!word) return {Wish::kPass};
+    if (has_cache_ && !slot.begins && kept_[static_cast<std::size_t>(slot.k)] == word) return {Wish::kPass};
+    const int words_of_row = width_ / 4;
+    return {Wish::kAccess,
+            plain_word(setting_.image, *word / words_of_row, *word % words_of_row, words_of_row)};
   }
 
   // The word of the picture in which the source pixel of a slot that is not empty lies; nullopt if the entry
@@ -219,8 +302,9 @@ class Lane {
   }
 
   void keep_word_of(const Slot& slot) {
-    if (slot.begins) std::fill(kept_.begin(), kept_.end(), std::nullopt);
-    if (!is_empty(slot) && word_of(slot)) kept_[static_cast<std::size_t>(slot.k)] = word_of(slot);
+    std::optional<int>& kept = kept_[static_cast<std::size_t>(slot.k)];
+    if (slot.begins) kept = std::nullopt;
+    if (!is_empty(slot) && word_of(slot)) kept = word_of(slot);
   }
 
   int width_;
@@ -239,18 +323,21 @@ class Lane {
 // Counts consume-cycles into columns and columns into result words, during one frame.
 class Matcher {
  public:
-  Matcher(const PlainCycleInput& input, std::size_t slots)
-      : is_(input), width_(input.width), height_(input.height), slots_(static_cast<std::int64_t>(slots)) {
+  // `columns`: those that have slots.
+  Matcher(const PlainCycleInput& input, std::int64_t columns)
+      : is_(input), width_(input.width), height_(input.height), cycles_with_slots_(columns * is_.G) {
     const std::int64_t drain_columns = input.disparities - 1 + is_.r + is_.h;  // C_d
     const std::int64_t strips_ahead = input.fetch == PlainFetch::kColumn ? is_.w / is_.R : is_.r + is_.h;
     columns_ahead_ = drain_columns + strips_ahead * width_;
-    drain_cycles_ = drain_columns * is_.K;
+    drain_cycles_ = drain_columns * is_.G;
   }
 
-  bool needs_slots() const { return slots_consumed_ < slots_; }
+  bool needs_slots() const { return cycles_with_slots_done_ < cycles_with_slots_; }
+  // Whether the next consume-cycle, or the one that it works on, consumes a slot of lane p of each side.
+  bool needs_slot_of(int p) const { return needs_slots() && cycles_of_column_ * is_.P + p < is_.K; }
   bool drains() const { return !needs_slots() && drain_cycles_done_ < drain_cycles_; }
 
-  // It works on one slot of both lanes, or on a consume-cycle of the drain, for S cycles from `now` on.
+  // It works on a consume-cycle for S cycles from `now` on.
   bool works() const { return began_.has_value(); }
   void begin(Cycle now) { began_ = now; }
   bool ends(Cycle now) const { return began_ && now == *began_ + is_.S - 1; }
@@ -260,9 +347,9 @@ class Matcher {
   // The end of a consume-cycle. Returns the rows in which it completes a result word, in their order.
   std::vector<int> consume() {
     began_.reset();
-    ++(needs_slots() ? slots_consumed_ : drain_cycles_done_);
+    ++(needs_slots() ? cycles_with_slots_done_ : drain_cycles_done_);
     ++cycles_of_column_;
-    if (cycles_of_column_ < is_.K) return {};
+    if (cycles_of_column_ < is_.G) return {};
     cycles_of_column_ = 0;
     const std::int64_t column = columns_consumed_++;
     const std::int64_t i = column - columns_ahead_;  // as column = i + C
@@ -279,11 +366,11 @@ class Matcher {
   Letters is_;
   std::int64_t width_;
   std::int64_t height_;
-  std::int64_t slots_;
+  std::int64_t cycles_with_slots_;
   std::int64_t columns_ahead_ = 0;  // C
   std::int64_t drain_cycles_ = 0;
   std::optional<Cycle> began_;
-  std::int64_t slots_consumed_ = 0;
+  std::int64_t cycles_with_slots_done_ = 0;
   std::int64_t drain_cycles_done_ = 0;
   std::int64_t cycles_of_column_ = 0;
   std::int64_t columns_consumed_ = 0;
@@ -291,8 +378,10 @@ class Matcher {
 
 class ResultQueue {
  public:
-  explicit ResultQueue(const PlainCycleInput& input)
-      : capacity_(input.result_fifo_words),
+  // `disparity`: the buffer of this frame.
+  ResultQueue(const PlainCycleInput& input, PlainParts disparity)
+      : disparity_(std::move(disparity)),
+        capacity_(input.result_fifo_words),
         words_of_frame_(input.width * input.height / 4),
         words_of_row_(input.width / 4),
         written_in_row_(static_cast<std::size_t>(input.height)) {}
@@ -301,9 +390,13 @@ class ResultQueue {
     return static_cast<std::int64_t>(rows_of_words_.size()) + places <= capacity_;
   }
   bool all_written() const { return written_ == words_of_frame_; }
-  Wish result_port_wish() const {
-    if (!rows_of_words_.empty()) return Wish::kAccess;
-    return written_ == 0 || all_written() ? Wish::kIdle : Wish::kStarved;
+  Request result_port_request() const {
+    if (rows_of_words_.empty()) return {written_ == 0 || all_written() ? Wish::kIdle : Wish::kStarved};
+    const int row = rows_of_words_.front();
+    const std::int64_t word = written_in_row_[static_cast<std::size_t>(row)];
+    return {Wish::kAccess,
+            plain_word(disparity_, row, static_cast<int>(word), static_cast<int>(words_of_row_)),
+            Direction::kWrite};
   }
   void word_enters(int row) { rows_of_words_.push_back(row); }
   // Returns its row if that is complete.
@@ -316,6 +409,7 @@ class ResultQueue {
   }
 
  private:
+  PlainParts disparity_;
   std::int64_t capacity_;
   std::int64_t words_of_frame_;
   std::int64_t words_of_row_;
@@ -328,10 +422,19 @@ class ResultQueue {
 
 class PlainCore::Cycles {
  public:
-  explicit Cycles(const PlainCycleInput& input) : input_(input), sequence_(slots_of_a_frame(input)) {
-    for (const PlainBank& bank : input.banks) banks_.push_back(ports_of(bank));
+  explicit Cycles(const PlainCycleInput& input)
+      : input_(input),
+        lanes_(static_cast<std::size_t>(input.lanes)),
+        ports_(port_count(input)),
+        places_(plain_places(input)) {
+    for (int p = 0; p < input.lanes; ++p) sequences_.push_back(slots_of_a_frame(input, p));
+    for (const PlainBank& bank : input.banks) {
+      const BankPort port{BankAndArbiter(bank, input), {}};
+      banks_.emplace_back(bank.kind == PlainBankKind::kQdr ? 2 : 1, port);
+    }
+    result_.names = plain_names(input.lanes);
+    result_.ports.resize(ports_);
     result_.banks.resize(input.banks.size());
-    blame_.resize(input.banks.size());
     const int strips = (input.height + input.rows - 1) / input.rows;
     groups_ = static_cast<std::size_t>(input.width / 4);
     result_.tiles.resize(1 + static_cast<std::size_t>(strips) * groups_);
@@ -339,208 +442,201 @@ class PlainCore::Cycles {
 
   void start_frame(int frame) {
     const auto entry = static_cast<std::size_t>(frame);
-    const int left_image = input_.left_image[entry % input_.left_image.size()];
-    const int right_image = input_.right_image[entry % input_.right_image.size()];
-    bank_of_port_.fill(std::nullopt);
-    bank_of_port_[index_of(PlainPort::kLeftLut)] = input_.left_lut;
-    if (!input_.joint_tables) bank_of_port_[index_of(PlainPort::kRightLut)] = input_.right_lut;
-    bank_of_port_[index_of(PlainPort::kLeftPixel)] = left_image;
-    bank_of_port_[index_of(PlainPort::kRightPixel)] = right_image;
-    bank_of_port_[index_of(PlainPort::kResult)] = input_.disparity[entry % input_.disparity.size()];
-    frame_.emplace(
-        Frame{Lane(input_, sequence_, lane_setting(input_.left_lut, input_.left_table, left_image)),
-              Lane(input_, sequence_, lane_setting(input_.right_lut, input_.right_table, right_image)),
-              Matcher(input_, sequence_.size()),
-              ResultQueue(input_),
-              std::vector<PlainRowEnd>(static_cast<std::size_t>(input_.height)),
-              {},
-              0,
-              std::vector<PlainStrip>(1 + (result_.tiles.size() - 1) / groups_)});
-    for (PlainStrip& strip : frame_->strips) strip.accesses.resize(banks_.size());
+    const std::size_t image = entry % input_.left_image.size();
+    const std::array<Lane::Setting, 2> settings = {
+        lane_setting(places_.left_lut, input_.left_table, places_.left_image[image]),
+        lane_setting(places_.right_lut, input_.right_table, places_.right_image[image])};
+    // Lane 0 has the first slot of each column.
+    const auto columns = std::count_if(sequences_[0].begin(), sequences_[0].end(),
+                                       [](const Slot& slot) { return slot.k == 0; });
+    frame_.emplace(Matcher(input_, columns),
+                   ResultQueue(input_, places_.disparity[entry % places_.disparity.size()]));
+    frame_->rows.resize(static_cast<std::size_t>(input_.height));
+    frame_->until_now.stalls.resize(ports_);
+    frame_->strips.resize(1 + (result_.tiles.size() - 1) / groups_);
+    for (std::size_t side = 0; side < 2; ++side) {
+      for (const auto& sequence : sequences_)
+        frame_->lanes[side].emplace_back(input_, sequence, settings[side]);
+    }
+    for (PlainStrip& strip : frame_->strips) {
+      strip.accesses.resize(banks_.size());
+      strip.lost.resize(ports_ + 2);
+    }
   }
 
   bool runs() const { return frame_.has_value(); }
 
   bool step(Cycle now, const std::optional<PlainHostRequest>& host) {
-    std::array<Wish, kPlainPortCount> wishes{};  // idle
+    requests_.assign(ports_, {});
     if (frame_) {
-      wishes[index_of(PlainPort::kLeftLut)] = frame_->left.lut_port_wish();
-      if (!input_.joint_tables) wishes[index_of(PlainPort::kRightLut)] = frame_->right.lut_port_wish();
-      wishes[index_of(PlainPort::kLeftPixel)] = frame_->left.pixel_port_wish(now);
-      wishes[index_of(PlainPort::kRightPixel)] = frame_->right.pixel_port_wish(now);
-      wishes[index_of(PlainPort::kResult)] = frame_->queue.result_port_wish();
+      for (std::size_t side = 0; side < 2; ++side) {
+        for (std::size_t p = 0; p < lanes_; ++p) {
+          const Lane& lane = frame_->lanes[side][p];
+          const bool has_port = side == 0 || !input_.joint_tables;
+          if (has_port) requests_[lut_port(side, p)] = lane.lut_port_request();
+          requests_[pixel_port(side, p)] = lane.pixel_port_request(now);
+        }
+      }
+      requests_[result_port()] = frame_->queue.result_port_request();
     }
-    if (host) wishes[index_of(PlainPort::kHost)] = Wish::kAccess;
-    bank_of_port_[index_of(PlainPort::kHost)] = host ? std::optional<int>(host->bank) : std::nullopt;
-    host_direction_ = host && host->write ? Direction::kWrite : Direction::kRead;
-    if (host) traffic_ = host->traffic;
-
-    const std::array<bool, kPlainPortCount> granted = arbitrate(wishes, now);
-    if (frame_) step_frame(wishes, granted, now);
-    return granted[index_of(PlainPort::kHost)];
+    if (host) {
+      requests_[host_port()] = {Wish::kAccess, host->at, host->write ? Direction::kWrite : Direction::kRead};
+      traffic_ = host->traffic;
+    }
+    arbitrate(now);
+    const bool host_granted = granted_[host_port()];
+    if (frame_) step_frame(now);
+    return host_granted;
   }
 
-  PlainCycleResult result() const {
-    PlainCycleResult result = result_;
-    collect_blame(result);
-    return result;
-  }
+  const PlainCycleResult& result() const { return result_; }
 
  private:
-  static constexpr std::size_t kTurnaround = kPlainPortCount;
-  using BlameOfBank = std::array<std::array<std::uint64_t, kPlainPortCount + 1>, kPlainPortCount>;
   struct Frame {
-    Lane left;
-    Lane right;
+    Frame(const Matcher& begun, const ResultQueue& empty) : matcher(begun), queue(empty) {}
+    std::array<std::vector<Lane>, 2> lanes;  // left, right
     Matcher matcher;
     ResultQueue queue;
     std::vector<PlainRowEnd> rows;
     PlainRowEnd until_now;
-    std::size_t tile;  // of the next results
+    std::size_t tile = 0;  // of the next results
     std::vector<PlainStrip> strips;
   };
+  // A bank, or a direction of a qdr bank: reads, then writes.
+  struct BankPort {
+    BankAndArbiter arbiter;
+    std::vector<std::size_t> asked_by;  // in this cycle
+  };
+
+  std::size_t lut_port(std::size_t side, std::size_t p) const { return side * lanes_ + p; }
+  std::size_t pixel_port(std::size_t side, std::size_t p) const { return (2 + side) * lanes_ + p; }
+  std::size_t result_port() const { return 4 * lanes_; }
+  std::size_t host_port() const { return 4 * lanes_ + 1; }
+
+  Lane::Setting lane_setting(const PlainParts& table,
+                             const std::optional<std::vector<std::uint32_t>>& entries,
+                             const PlainParts& image) const {
+    const auto latency = [this](const PlainParts& parts) {
+      return parts.empty() ? 0
+                           : plain_read_latency(input_.banks[static_cast<std::size_t>(parts.front().bank)]);
+    };
+    return {entries ? &*entries : nullptr, table, image, latency(table), latency(image)};
+  }
 
   std::size_t strip_of(std::size_t tile) const { return tile == 0 ? 0 : 1 + (tile - 1) / groups_; }
-  std::size_t waiter_of(std::size_t port) const {
-    return port < index_of(PlainPort::kHost) ? port : port + static_cast<std::size_t>(traffic_);
+  // Of a port or another cause.
+  std::size_t waiter_of(std::size_t number) const {
+    if (number == host_port()) return number + static_cast<std::size_t>(traffic_);
+    return number < host_port() ? number : number + 2;
   }
-  void note_loss(std::size_t port, std::size_t bank, const std::optional<PlainPort>& by) {
-    const std::size_t to_blame = by ? waiter_of(index_of(*by)) : kPlainWaiters;
-    ++result_.tiles[frame_->tile].lost[{waiter_of(port), static_cast<int>(bank), to_blame}];
+  void note_loss(std::size_t port, std::size_t bank, std::size_t by) {
+    ++result_.blame[{port, static_cast<int>(bank), by}];
+    ++result_.tiles[frame_->tile].lost[{waiter_of(port), static_cast<int>(bank), waiter_of(by)}];
     ++frame_->strips[strip_of(frame_->tile)].lost[waiter_of(port)];
+    ++frame_->until_now.stalls[port];
   }
-  void note_access(PlainPort port, std::size_t bank) {
-    const std::size_t kind = port == PlainPort::kHost ? 1 + static_cast<std::size_t>(traffic_) : 0;
+  void note_access(std::size_t port, std::size_t bank) {
+    const std::size_t kind = port == host_port() ? 1 + static_cast<std::size_t>(traffic_) : 0;
     ++frame_->strips[strip_of(frame_->tile)].accesses[bank][kind];
   }
 
-  void step_frame(const std::array<Wish, kPlainPortCount>& wishes,
-                  const std::array<bool, kPlainPortCount>& granted, Cycle now) {
+  void step_frame(Cycle now) {
     Frame& frame = *frame_;
-    const bool slots_ready = frame.left.can_be_consumed(now) && frame.right.can_be_consumed(now);
+    bool slots_ready = true;
+    for (const std::vector<Lane>& side : frame.lanes) {
+      for (std::size_t p = 0; p < lanes_; ++p) {
+        if (frame.matcher.needs_slot_of(static_cast<int>(p)) && !side[p].can_be_consumed(now))
+          slots_ready = false;
+      }
+    }
     const bool begins = !frame.matcher.works() && frame.queue.has_free_places(input_.rows) &&
                         ((frame.matcher.needs_slots() && slots_ready) || frame.matcher.drains());
     if (begins) frame.matcher.begin(now);
-    const bool consumes = frame.matcher.ends(now);
-    const bool consumes_slots = consumes && frame.matcher.needs_slots();
 
-    count_port_states(wishes, granted);
+    count_port_states();
     ++result_.counted_cycles;
     ++frame.until_now.cycles;
     ++frame.strips[strip_of(frame.tile)].cycles;
     ++result_.tiles[frame.tile].cycles;
-    for (std::size_t port = 0; port < kPlainPortCount; ++port) {
-      if (wishes[port] == Wish::kAccess && !granted[port]) ++frame.until_now.stalls[port];
-    }
 
-    const auto acts = [&](PlainPort port) {
-      return wishes[index_of(port)] == Wish::kPass || granted[index_of(port)];
-    };
-    if (acts(PlainPort::kResult)) {
+    const auto acts = [&](std::size_t port) { return requests_[port].wish == Wish::kPass || granted_[port]; };
+    if (acts(result_port())) {
       if (const auto row = frame.queue.word_is_written()) frame.rows[*row] = frame.until_now;
     }
-    if (consumes) {
+    if (frame.matcher.ends(now)) {
+      for (std::vector<Lane>& side : frame.lanes) {
+        for (std::size_t p = 0; p < lanes_; ++p) {
+          if (frame.matcher.needs_slot_of(static_cast<int>(p))) side[p].matcher_consumed();
+        }
+      }
       const std::vector<int> rows = frame.matcher.consume();
       for (const int row : rows) frame.queue.word_enters(row);
       if (frame.tile == 0 ? frame.matcher.has_filled() : !rows.empty())
         frame.tile = std::min(frame.tile + 1, result_.tiles.size() - 1);
     }
-    if (consumes_slots) {
-      frame.left.matcher_consumed();
-      frame.right.matcher_consumed();
+    for (std::size_t side = 0; side < 2; ++side) {
+      for (std::size_t p = 0; p < lanes_; ++p) {
+        Lane& lane = frame.lanes[side][p];
+        if (acts(pixel_port(side, p))) lane.pixel_port_handled(now);
+        if (acts(lut_port(input_.joint_tables ? 0 : side, p))) lane.lut_port_took(now);
+      }
     }
-    if (acts(PlainPort::kLeftPixel)) frame.left.pixel_port_handled(now);
-    if (acts(PlainPort::kRightPixel)) frame.right.pixel_port_handled(now);
-    if (acts(PlainPort::kLeftLut)) frame.left.lut_port_took(now);
-    if (input_.joint_tables ? acts(PlainPort::kLeftLut) : acts(PlainPort::kRightLut))
-      frame.right.lut_port_took(now);
     if (!frame.queue.all_written()) return;
     result_.rows.push_back(frame.rows);
     result_.strips.push_back(frame.strips);
     frame_.reset();
   }
 
-  Lane::Setting lane_setting(const std::optional<int>& lut,
-                             const std::optional<std::vector<std::uint32_t>>& entries, int image) const {
-    Lane::Setting setting;
-    setting.has_table = lut.has_value();
-    setting.entries = entries ? &*entries : nullptr;
-    if (lut) setting.table_latency = read_latency(input_.banks[static_cast<std::size_t>(*lut)].kind);
-    setting.image_latency = read_latency(input_.banks[static_cast<std::size_t>(image)].kind);
-    return setting;
-  }
-
-  Direction direction_of(PlainPort port) const {
-    if (port == PlainPort::kHost) return host_direction_;
-    return port == PlainPort::kResult ? Direction::kWrite : Direction::kRead;
-  }
-
-  // A port of a bank, and the directions of the accesses that it serves.
-  struct BankPort {
-    BankAndArbiter arbiter;
-    std::vector<Direction> directions;
-  };
-
-  std::vector<BankPort> ports_of(const PlainBank& bank) const {
-    const BankAndArbiter arbiter(bank, input_);
-    if (bank.kind != PlainBankKind::kQdr) return {{arbiter, {Direction::kRead, Direction::kWrite}}};
-    return {{arbiter, {Direction::kRead}}, {arbiter, {Direction::kWrite}}};
-  }
-
-  // Decides every bank, and notes the grants in the banks. Within a frame it counts bank states and blame.
-  std::array<bool, kPlainPortCount> arbitrate(const std::array<Wish, kPlainPortCount>& wishes, Cycle now) {
-    std::array<bool, kPlainPortCount> granted{};
+  // Decides every bank. Within a frame it counts bank states and blame.
+  void arbitrate(Cycle now) {
+    granted_.assign(ports_, false);
+    for (auto& bank : banks_) {
+      for (BankPort& port : bank) port.asked_by.clear();
+    }
+    for (std::size_t port = 0; port < ports_; ++port) {
+      if (requests_[port].wish != Wish::kAccess) continue;
+      auto& bank = banks_[static_cast<std::size_t>(requests_[port].at.bank)];
+      (requests_[port].direction == Direction::kRead ? bank.front() : bank.back()).asked_by.push_back(port);
+    }
     PlainBankStates not_counted;
-    BlameOfBank blame_not_counted{};
     for (std::size_t bank = 0; bank < banks_.size(); ++bank) {
       PlainBankStates& states = frame_ ? result_.banks[bank] : not_counted;
-      BlameOfBank& blame = frame_ ? blame_[bank] : blame_not_counted;
       bool is_busy = false;
-      bool is_turning = false;
       bool is_contended = false;
+      std::optional<std::size_t> cause;
       for (BankPort& bank_port : banks_[bank]) {
-        std::array<bool, kPlainPortCount> requests{};
-        int request_count = 0;
-        for (std::size_t port = 0; port < kPlainPortCount; ++port) {
-          const std::vector<Direction>& served = bank_port.directions;
-          requests[port] =
-              wishes[port] == Wish::kAccess && bank_of_port_[port] == static_cast<int>(bank) &&
-              std::count(served.begin(), served.end(), direction_of(static_cast<PlainPort>(port)));
-          if (requests[port]) ++request_count;
-        }
-        if (request_count == 0) continue;
-        if (request_count >= 2) is_contended = true;
-
-        const PlainPort winner = *bank_port.arbiter.winner(requests, now);
-        const Direction direction = direction_of(winner);
-        const bool refused = bank_port.arbiter.is_turning_round(direction, now);
-        if (refused) {
-          is_turning = true;
-        } else {
+        const std::vector<std::size_t>& asked_by = bank_port.asked_by;
+        if (asked_by.size() >= 2) is_contended = true;
+        const std::optional<std::size_t> outcome = bank_port.arbiter.decide(asked_by, requests_, now);
+        if (!outcome) continue;
+        if (*outcome < ports_) {
           is_busy = true;
-          ++(direction == Direction::kRead ? states.reads : states.writes);
-          bank_port.arbiter.grant(winner, direction, now);
-          granted[index_of(winner)] = true;
-          if (frame_) note_access(winner, bank);
+          granted_[*outcome] = true;
+          ++(requests_[*outcome].direction == Direction::kRead ? states.reads : states.writes);
+          if (frame_) note_access(*outcome, bank);
+        } else {
+          cause = outcome;
         }
-        for (std::size_t port = 0; port < kPlainPortCount; ++port) {
-          if (!requests[port] || granted[port]) continue;
-          ++blame[port][refused ? kTurnaround : index_of(winner)];
-          if (frame_) note_loss(port, bank, refused ? std::nullopt : std::optional(winner));
-          bank_port.arbiter.refuse(static_cast<PlainPort>(port), now);
+        for (const std::size_t port : asked_by) {
+          if (frame_ && port != *outcome) note_loss(port, bank, *outcome);
         }
       }
       if (is_contended) ++states.contended;
-      ++(is_busy ? states.busy : is_turning ? states.turnaround : states.idle);
+      if (is_busy) {
+        ++states.busy;
+      } else if (!cause) {
+        ++states.idle;
+      } else {
+        const std::array<std::uint64_t*, 3> of_causes = {&states.turnaround, &states.row, &states.refresh};
+        ++*of_causes[*cause - ports_];
+      }
     }
-    return granted;
   }
 
-  void count_port_states(const std::array<Wish, kPlainPortCount>& wishes,
-                         const std::array<bool, kPlainPortCount>& granted) {
-    for (std::size_t port = 0; port < kPlainPortCount; ++port) {
+  void count_port_states() {
+    for (std::size_t port = 0; port < ports_; ++port) {
       PlainPortStates& states = result_.ports[port];
-      switch (wishes[port]) {
+      switch (requests_[port].wish) {
         case Wish::kIdle:
           ++states.idle;
           break;
@@ -554,35 +650,23 @@ class PlainCore::Cycles {
           ++states.passed;
           break;
         case Wish::kAccess:
-          ++(granted[port] ? states.granted : states.stalled);
+          ++(granted_[port] ? states.granted : states.stalled);
           break;
       }
     }
   }
 
-  void collect_blame(PlainCycleResult& result) const {
-    for (std::size_t bank = 0; bank < blame_.size(); ++bank) {
-      for (std::size_t victim = 0; victim < kPlainPortCount; ++victim) {
-        for (std::size_t by = 0; by <= kTurnaround; ++by) {
-          const std::uint64_t cycles = blame_[bank][victim][by];
-          if (cycles == 0) continue;
-          PlainBlame key{static_cast<PlainPort>(victim), static_cast<int>(bank), std::nullopt};
-          if (by != kTurnaround) key.by = static_cast<PlainPort>(by);
-          result.blame[key] = cycles;
-        }
-      }
-    }
-  }
-
   const PlainCycleInput& input_;
-  std::vector<Slot> sequence_;
+  std::size_t lanes_;  // P
+  std::size_t ports_;
+  PlainPlaces places_;
+  std::vector<std::vector<Slot>> sequences_;  // [p]
   std::vector<std::vector<BankPort>> banks_;
-  std::array<std::optional<int>, kPlainPortCount> bank_of_port_;
-  Direction host_direction_ = Direction::kRead;
+  std::vector<Request> requests_;  // [port], in this cycle
+  std::vector<bool> granted_;
   PlainTraffic traffic_ = PlainTraffic::kReadBack;
   std::size_t groups_ = 0;      // of four columns, in a strip
   std::optional<Frame> frame_;  // that runs, until its last result write
-  std::vector<BlameOfBank> blame_;
   PlainCycleResult result_;
 };
 
@@ -595,17 +679,15 @@ bool PlainCore::step(std::int64_t now, const std::optional<PlainHostRequest>& ho
 }
 PlainCycleResult PlainCore::result() const { return cycles_->result(); }
 
-const char* name_of(PlainPort port) {
-  static constexpr std::array<const char*, kPlainPortCount> kNames = {
-      "left_lut", "right_lut", "left_pixel", "right_pixel", "result", "host"};
-  return kNames[index_of(port)];
+std::vector<std::string> plain_names(int lanes) {
+  std::vector<std::string> names;
+  for (const PlainPort group :
+       {PlainPort::kLeftLut, PlainPort::kRightLut, PlainPort::kLeftPixel, PlainPort::kRightPixel}) {
+    for (int p = 0; p < lanes; ++p)
+      names.push_back(name_of(group) + (lanes == 1 ? "" : "." + std::to_string(p)));
+  }
+  for (const char* name : {"result", "host", "turnaround", "row", "refresh"}) names.emplace_back(name);
+  return names;
 }
-
-const char* name_of(PlainArbitration arbitration) {
-  static constexpr std::array<const char*, 3> kNames = {"fixed_priority", "round_robin", "age"};
-  return kNames[static_cast<std::size_t>(arbitration)];
-}
-
-int plain_read_latency(PlainBankKind kind) { return read_latency(kind); }
 
 }  // namespace stereotlm::test

@@ -6,14 +6,19 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <string>
 #include <tuple>
 #include <vector>
 
 #include "tests/support/plain_cycle_input.h"
 
-// The timing of the FPGA core, cycle by cycle, written from contract sections 2 and 7 alone. It shares no
+// The timing of the FPGA core, cycle by cycle, written from contract sections 2, 7 and 8 alone. It shares no
 // code with the models, which tests compare with it: it keeps a time stamp for every event that the page
 // dates, and applies every rule in every cycle.
+//
+// Ports have numbers, in the order of "Ports" in section 8: left_lut.0 .. left_lut.P-1, right_lut.0 .., the
+// pixel ports likewise, result, host. The causes that are no port have the numbers behind them: turnaround,
+// row, refresh.
 namespace stereotlm::test {
 
 struct PlainPortStates {
@@ -30,15 +35,17 @@ struct PlainBankStates {
   std::uint64_t writes = 0;
   std::uint64_t busy = 0;
   std::uint64_t turnaround = 0;
+  std::uint64_t row = 0;
+  std::uint64_t refresh = 0;
   std::uint64_t idle = 0;
   std::uint64_t contended = 0;
 };
 
 // The cause of a lost cycle.
 struct PlainBlame {
-  PlainPort port = PlainPort::kHost;  // the victim
+  std::size_t port = 0;  // the victim
   int bank = 0;
-  std::optional<PlainPort> by;  // the port that was granted; nullopt: turnaround
+  std::size_t by = 0;  // the port that was granted, or another cause
 
   friend bool operator<(const PlainBlame& a, const PlainBlame& b) {
     return std::tie(a.port, a.bank, a.by) < std::tie(b.port, b.bank, b.by);
@@ -47,8 +54,8 @@ struct PlainBlame {
 
 // A row of results is complete with the write of its last word.
 struct PlainRowEnd {
-  std::uint64_t cycles = 0;                             // of the frame up to and including that write
-  std::array<std::uint64_t, kPlainPortCount> stalls{};  // in these cycles, in the order of PlainPort
+  std::uint64_t cycles = 0;           // of the frame up to and including that write
+  std::vector<std::uint64_t> stalls;  // of each port, in these cycles
 };
 
 // What the host's port is used for.
@@ -58,9 +65,8 @@ enum class PlainTraffic { kCapture, kUpload, kReadBack };
 // next: four columns of a strip of R rows. Number 0 is the fill: the cycles up to the one in which column C -
 // 1 is consumed. What comes after the last results belongs to the last tile.
 //
-// Who waits and who is to blame is a number: the ports in the order of PlainPort, with one for each
-// PlainTraffic in the place of the host, then turnaround.
-inline constexpr std::size_t kPlainWaiters = 8;
+// Who waits and who is to blame is a number: the ports, with one for each PlainTraffic in the place of the
+// host, then turnaround, row, refresh.
 struct PlainLoss {
   std::size_t waiter = 0;
   int bank = 0;
@@ -77,7 +83,7 @@ struct PlainTile {
 // A strip of R rows in one frame; the first one is the fill.
 struct PlainStrip {
   std::uint64_t cycles = 0;
-  std::array<std::uint64_t, kPlainWaiters> lost{};
+  std::vector<std::uint64_t> lost;                     // of each waiter
   std::vector<std::array<std::uint64_t, 4>> accesses;  // [bank]: of the core, and by PlainTraffic
 };
 
@@ -89,14 +95,15 @@ struct PlainCycleResult {
   std::vector<std::vector<PlainStrip>> strips;  // of each frame
   std::vector<PlainTile> tiles;                 // sums over the frames
   std::uint64_t counted_cycles = 0;
-  std::array<PlainPortStates, kPlainPortCount> ports;  // in the order of PlainPort
-  std::vector<PlainBankStates> banks;                  // in the order of PlainCycleInput::banks
-  std::map<PlainBlame, std::uint64_t> blame;           // without zero rows
+  std::vector<std::string> names;             // of the ports, then turnaround, row, refresh
+  std::vector<PlainPortStates> ports;         // by their numbers
+  std::vector<PlainBankStates> banks;         // in the order of PlainCycleInput::banks
+  std::map<PlainBlame, std::uint64_t> blame;  // without zero rows
 };
 
 // A word that the local bus requests in a cycle.
 struct PlainHostRequest {
-  int bank = 0;
+  PlainWord at;
   bool write = false;
   PlainTraffic traffic = PlainTraffic::kReadBack;
 };
@@ -122,7 +129,7 @@ class PlainCore {
   std::unique_ptr<Cycles> cycles_;
 };
 
-// From the cycle of the grant to the first in which the word can be used.
-int plain_read_latency(PlainBankKind kind);
+// The names of the ports, then turnaround, row, refresh.
+std::vector<std::string> plain_names(int lanes);
 
 }  // namespace stereotlm::test

@@ -233,9 +233,9 @@ class BankDraw {
                               : random_.between(0, static_cast<int>(free_.size()) - 1);
     return free_[static_cast<std::size_t>(place)];
   }
-  std::vector<int> banks(int count) {
-    std::vector<int> list(static_cast<std::size_t>(count));
-    for (int& entry : list) entry = bank();
+  std::vector<PlainBuffer> banks(int count) {
+    std::vector<PlainBuffer> list(static_cast<std::size_t>(count));
+    for (PlainBuffer& entry : list) entry = bank();
     return list;
   }
 
@@ -321,6 +321,69 @@ void draw_cost(RandomBoard& board, SplitMix64 random) {
   if (board.cost.kind == ReferenceCost::Kind::kCensus) board.cost.census_size = 2 * random.between(1, 3) + 1;
 }
 
+PlainSdram random_sdram(SplitMix64& random) {
+  PlainSdram sdram;
+  sdram.cas_latency = random.mostly_small(1, 3, 8);
+  sdram.row_words = 16 << random.mostly_small(0, 4, 12);
+  sdram.internal_banks = 1 << random.between(0, 3);
+  sdram.activate_cycles = random.mostly_small(0, 4, 63);
+  sdram.precharge_cycles = random.mostly_small(0, 4, 63);
+  sdram.refresh_interval_cycles = 0;
+  if (random.chance(30)) return sdram;
+  sdram.refresh_cycles = random.mostly_small(1, 12, 255);
+  const int openings = 2 * (sdram.activate_cycles + sdram.precharge_cycles);
+  const int least = std::max({64, openings + sdram.refresh_cycles, sdram.refresh_cycles + 1});
+  sdram.refresh_interval_cycles = least + random.mostly_small(0, 200, 2000);
+  return sdram;
+}
+
+// In few boards all banks, in most some.
+void draw_sdram_banks(RandomBoard& board, SplitMix64 random) {
+  const int percent = random.chance(20) ? 100 : random.between(0, 60);
+  for (PlainBank& bank : board.banks) {
+    if (random.chance(percent)) bank = {PlainBankKind::kSdram, 0, random_sdram(random)};
+  }
+}
+
+// Puts the rows of a buffer in turn over its bank and others of the same read latency.
+void stripe(const RandomBoard& board, PlainBuffer& buffer, SplitMix64& random) {
+  const auto latency_of = [&](int bank) {
+    return plain_read_latency(board.banks[static_cast<std::size_t>(bank)]);
+  };
+  const int latency = latency_of(buffer.banks.front());
+  std::vector<int> banks;
+  for (int bank = 0; bank < static_cast<int>(board.banks.size()); ++bank) {
+    if (latency_of(bank) == latency)
+      banks.insert(banks.begin() + random.between(0, static_cast<int>(banks.size())), bank);
+  }
+  if (banks.size() < 2) return;
+  banks.resize(static_cast<std::size_t>(random.between(2, std::min(16, static_cast<int>(banks.size())))));
+  buffer.banks = banks;
+}
+
+void draw_stripes(RandomBoard& board, SplitMix64 random) {
+  if (!random.chance(70)) return;
+  for (int more = random.between(0, 8); more > 0; --more) {
+    const int last = static_cast<int>(board.banks.size()) - 1;
+    board.banks.push_back(board.banks[static_cast<std::size_t>(random.between(0, last))]);
+  }
+  for (auto* list : {&board.left_image, &board.right_image, &board.disparity}) {
+    for (PlainBuffer& buffer : *list) {
+      if (random.chance(60)) stripe(board, buffer, random);
+    }
+  }
+  for (auto* table : {&board.left_lut, &board.right_lut}) {
+    if (*table && random.chance(60)) stripe(board, **table, random);
+  }
+  if (board.joint_tables) board.right_lut = board.left_lut;
+}
+
+void draw_lanes(RandomBoard& board, SplitMix64 random) {
+  if (board.fetch == PlainFetch::kLineBuffer || !random.chance(70)) return;
+  board.lanes = random.mostly_small(1, 5, 16);
+  board.lanes = std::min(board.lanes, board.window + board.rows - 1);
+}
+
 void draw_knobs(RandomBoard& board, const RandomKnobs& knobs) {
   if (knobs.large_images) draw_large_image(board, random_of(board, 1));
   if (knobs.units) draw_units(board, random_of(board, 2));
@@ -329,6 +392,9 @@ void draw_knobs(RandomBoard& board, const RandomKnobs& knobs) {
   if (knobs.word_cache) board.word_cache = random_of(board, 5).chance(50);
   if (knobs.qdr) draw_qdr_banks(board, random_of(board, 6));
   if (knobs.cost) draw_cost(board, random_of(board, 7));
+  if (knobs.sdram) draw_sdram_banks(board, random_of(board, 8));
+  if (knobs.stripes) draw_stripes(board, random_of(board, 9));
+  if (knobs.lanes) draw_lanes(board, random_of(board, 10));
 }
 
 }  // namespace

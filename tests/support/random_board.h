@@ -47,8 +47,8 @@ struct RandomBoard : PlainCycleInput {
   }
 };
 
-// The knobs of contract section 7 that boards draw, beside all of sections 1 to 6. Each is then drawn by
-// every second board or so: a board has any combination that is allowed.
+// The knobs of contract sections 7 and 8 that boards draw, beside all of sections 1 to 6. Each is then drawn
+// by every second board or so: a board has any combination that is allowed.
 struct RandomKnobs {
   bool large_images = false;  // few boards: up to 8192 columns or rows, without tables
   bool units = false;         // up to 16 passes
@@ -64,8 +64,18 @@ struct RandomKnobs {
   // Of computers: captures go to banks of their own, by a local bus in step with the core. The models skip
   // most of their lines.
   bool apart_captures = false;
+  // Of section 8, which the models do not have yet.
+  bool sdram = false;
+  bool stripes = false;  // and up to 8 banks more
+  bool lanes = false;
 
+  // Those that the models have.
   static constexpr RandomKnobs all() { return {true, true, true, true, true, true, true, true, true, true}; }
+  static constexpr RandomKnobs with_section_8() {
+    RandomKnobs knobs = all();
+    knobs.sdram = knobs.stripes = knobs.lanes = true;
+    return knobs;
+  }
 };
 
 // Without knobs a seed gives the board of sections 1 to 6 that it has always given. Each knob draws from a

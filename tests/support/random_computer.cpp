@@ -40,6 +40,7 @@ void make_regular_frame(RandomBoard& board, SplitMix64& random) {
   board.width = 4 * random.between(6, 16);
   board.height = random.between(12, 40);
   board.window = std::min(board.window, 9);
+  board.lanes = std::min(board.lanes, board.window + board.rows - 1);
   for (auto* table : {&board.left_table, &board.right_table}) {
     if (*table) *table = identity_table(board);
   }
@@ -48,14 +49,14 @@ void make_regular_frame(RandomBoard& board, SplitMix64& random) {
 // Pictures are captured into banks that the frame of the pictures before them uses.
 void draw_contended_captures(RandomBoard& board, SplitMix64& random) {
   make_regular_frame(board, random);
-  std::vector<int> used = board.disparity;
-  for (const std::optional<int>& bank : {board.left_lut, board.right_lut}) {
-    if (bank) used.push_back(*bank);
+  std::vector<PlainBuffer> used = board.disparity;
+  for (const std::optional<PlainBuffer>& table : {board.left_lut, board.right_lut}) {
+    if (table) used.push_back(*table);
   }
   used.push_back(board.left_image.front());
   for (auto* image : {&board.left_image, &board.right_image}) {
     image->resize(2);
-    for (int& bank : *image) bank = one_of(random, used);
+    for (PlainBuffer& picture : *image) picture = one_of(random, used);
   }
 }
 

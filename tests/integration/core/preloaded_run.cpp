@@ -83,9 +83,9 @@ Figures figures(const platform::Statistics& statistics) {
 Figures figures(const PlainCycleResult& result) {
   Figures all{{"frames", result.frame_cycles.size()}, {"cycles", result.counted_cycles}};
   for (const std::uint64_t cycles : result.frame_cycles) all[frame_key(all.size() - 2)] = cycles;
-  for (std::size_t index = 0; index < kPlainPortCount; ++index) {
+  for (std::size_t index = 0; index < result.ports.size(); ++index) {
     const PlainPortStates& port = result.ports[index];
-    const std::string name = name_of(static_cast<PlainPort>(index));
+    const std::string& name = result.names[index];
     all[name + " granted"] = port.granted;
     all[name + " stalled"] = port.stalled;
     all[name + " passed"] = port.passed;
@@ -104,8 +104,7 @@ Figures figures(const PlainCycleResult& result) {
     all[name + " contended"] = bank.contended;
   }
   for (const auto& [row, cycles] : result.blame) {
-    all[blame_key(name_of(row.port), "bank" + std::to_string(row.bank),
-                  row.by ? name_of(*row.by) : "turnaround")] = cycles;
+    all[blame_key(result.names[row.port], "bank" + std::to_string(row.bank), result.names[row.by])] = cycles;
   }
   return all;
 }

@@ -255,7 +255,7 @@ std::vector<platform::BoardConfig> allocations_of(const RandomBoard& board) {
   RandomBoard spread = board;
   int next = 0;
   for (auto* list : {&spread.left_image, &spread.right_image, &spread.disparity}) {
-    for (int& bank : *list) bank = next++;
+    for (PlainBuffer& buffer : *list) buffer = next++;
   }
   for (auto* lut : {&spread.left_lut, &spread.right_lut}) {
     if (*lut) *lut = next++;

@@ -147,10 +147,6 @@ std::size_t turn_of(const test::PlainCycleInput& board) {
   return turn;
 }
 
-const char* name_of(const std::optional<test::PlainPort>& by) {
-  return by ? test::name_of(*by) : "turnaround";
-}
-
 std::string figures_of(const test::PlainComputerResult& plain, const test::PlainComputerInput& input,
                        bool with_pixels) {
   Figures figures;
@@ -190,20 +186,11 @@ std::string figures_of(const test::PlainComputerResult& plain, const test::Plain
   }
   for (std::size_t index = 0; index < core.ports.size(); ++index) {
     const test::PlainPortStates& port = core.ports[index];
-    figures.line(fmt::format("port {}", test::name_of(static_cast<test::PlainPort>(index))), port.granted,
-                 port.stalled, port.passed, port.idle, port.blocked, port.starved);
+    figures.line("port " + core.names[index], port.granted, port.stalled, port.passed, port.idle,
+                 port.blocked, port.starved);
   }
-  // In the order of the keys but for turnaround, which is the least of them and comes last.
-  const auto is_before = [](const auto& a, const auto& b) {
-    const auto key = [](const test::PlainBlame& blame) {
-      return std::make_tuple(blame.port, blame.bank, !blame.by, blame.by);
-    };
-    return key(a.first) < key(b.first);
-  };
-  std::vector<std::pair<test::PlainBlame, std::uint64_t>> blame(core.blame.begin(), core.blame.end());
-  std::sort(blame.begin(), blame.end(), is_before);
-  for (const auto& [who, lost] : blame)
-    figures.line("blame", test::name_of(who.port), fmt::format("bank{}", who.bank), name_of(who.by), lost);
+  for (const auto& [who, lost] : core.blame)
+    figures.line("blame", core.names[who.port], fmt::format("bank{}", who.bank), core.names[who.by], lost);
   for (const auto& rows : core.rows) {
     for (const test::PlainRowEnd& row : rows)
       figures.line("row", row.cycles, fmt::join(row.stalls.begin(), row.stalls.end() - 1, " "));
