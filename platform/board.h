@@ -6,6 +6,7 @@
 #include "models/fpga/stereo_core.h"
 #include "models/memory/ssram_bank.h"
 #include "platform/config/board_config.h"
+#include "platform/config/buffer_layout.h"
 
 namespace stereotlm::platform {
 
@@ -31,7 +32,7 @@ class Board : public sc_core::sc_module {
   static fpga::StereoCoreConfig stereo_core_config(const BoardConfig& board, fpga::Fidelity fidelity) {
     return {core_config(board),
             {board.fpga.arbiter, ssram_configs(board)},
-            board.bridge.local_clock_mhz,
+            {board.bridge.local_clock_mhz, buffer_ranges(board)},
             fidelity};
   }
 };

@@ -119,9 +119,10 @@ void CameraLines::apply(const Line& line, std::uint64_t now_ps, const OfSides<st
   pci_bus_.skip_to({line.pci.last_granted, first + line.pci.free_clock}, line.buses.pci_busy);
   local_bus_.skip_bursts(line.buses.bursts, line.buses.local_busy, first_local + line.idle_clock);
   const std::uint64_t words = words_of_line();
-  bridge_.skip_posted((bridge_.turn() + line.turns) % pci::bridge::kChannels, kSides * words);
+  bridge_.skip_posted((bridge_.turn() + line.turns) % pci::bridge::kChannels);
   for (std::size_t side = 0; side < kSides; ++side) {
     const Line::SideLine& of_side = line.sides[side];
+    bridge_.count_posted(addresses[side], words);
     std::uint32_t* const stored = board_.skip_writes(addresses[side], words, first_local, of_side.bursts);
     if (has_pixels_) captures_[side].copy_line(stored);
     captures_[side].skip_line(pci_bus_.clock().edge_ps(first + of_side.end_clock), of_side.pci.transactions);

@@ -5,6 +5,7 @@
 
 #include "platform/audit.h"
 #include "platform/computer_parts.h"
+#include "platform/config/buffer_layout.h"
 
 namespace stereotlm::platform {
 namespace {
@@ -97,6 +98,17 @@ CameraStatistics camera_statistics(const char* name, const ComputerCounters::Cam
           not_armed,
           capture.dropped_busy,
           capture.dropped_by_partner};
+}
+
+void audit_words(const BoardConfig& config, const ComputerCounters::Words& words, Audit& audit) {
+  std::vector<std::string> names;
+  for (const PlacedBuffer& buffer : buffers(config)) names.push_back(buffer.path());
+  names.emplace_back("no buffer");
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    audit.equal("bytes written into the bridge for " + names[i], 4 * words.into_bridge[i],
+                "granted on the host port and still in the bridge",
+                4 * (words.granted[i] + words.on_bus[i] + words.in_bridge[i]));
+  }
 }
 
 void audit_host_port(const ComputerCounters& counters, Audit& audit) {
@@ -236,9 +248,7 @@ Statistics collect_statistics(const BoardConfig& config, const Tables& tables, c
 
   Audit audit;
   audit.equal("frames delivered", deliveries.size(), "frames of the core", statistics.frames);
-  audit.equal("words for the banks in the bridge", counters.bridge.bank_words,
-              "granted on the host port and still waiting",
-              counters.local_bus.words_written + counters.waiting_words);
+  audit_words(config, counters.words, audit);
   audit_host_port(counters, audit);
   audit_computer(around, audit);
   audit_captures(around, counters, audit);

@@ -60,6 +60,14 @@ inline Statistics collect_statistics(const BoardConfig& config, const Tables& ta
 
 // Counters of a computer's modules up to now. They must be taken while the core runs no frame.
 struct ComputerCounters {
+  // Words that are written to the board through the bridge. Each list has one entry per buffer, in the order
+  // of buffers() in buffer_layout.h, and a last entry for words outside all buffers.
+  struct Words {
+    std::vector<std::uint64_t> into_bridge;  // words that the bridge has taken
+    std::vector<std::uint64_t> in_bridge;    // words that wait in the bridge
+    std::vector<std::uint64_t> on_bus;       // words of the burst on the local bus that are not granted yet
+    std::vector<std::uint64_t> granted;      // words granted to the host port
+  };
   struct Camera {
     std::uint64_t frames = 0;  // frames that have begun
     bool undecided = false;    // the last frame began just now, and it is not decided whether it is captured
@@ -70,8 +78,8 @@ struct ComputerCounters {
   pci::PciBusControl::Stats pci;
   pci::BridgeControl::Stats bridge;
   fpga::LocalBusControl::Stats local_bus;
-  std::uint64_t waiting_words = 0;  // for the banks, that wait in the bridge or on the local bus
-  std::array<Camera, 2> cameras;    // left, right
+  Words words;
+  std::array<Camera, 2> cameras;  // left, right
 };
 
 // What the PCI masters have transferred for results. The words of the traffic generator do not count.

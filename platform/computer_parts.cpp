@@ -5,6 +5,7 @@
 #include "models/capture/capture_registers.h"
 #include "models/fpga/local_bus_control.h"
 #include "models/pci/bridge_registers.h"
+#include "platform/config/buffer_layout.h"
 #include "platform/device_map.h"
 
 namespace stereotlm::platform {
@@ -44,7 +45,8 @@ std::optional<pci::TrafficGeneratorConfig> traffic_config(const BoardConfig& boa
 }
 
 pci::PciBridgeConfig bridge_config(const BoardConfig& board) {
-  return {board.bridge.dma_burst_words, board.bridge.posted_words, fpga::kLocalRegisters};
+  return {board.bridge.dma_burst_words, board.bridge.posted_words, fpga::kLocalRegisters,
+          buffer_ranges(board)};
 }
 
 capture::CameraConfig camera_config(const BoardConfig& board) {

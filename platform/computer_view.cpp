@@ -13,7 +13,8 @@ ComputerCounters ComputerControls::counters(BoardCounters board, std::uint64_t n
           pci_bus.stats(now_ps),
           bridge.stats(),
           local_bus.stats(now_ps),
-          bridge.words_held() + local_bus.words_to_grant(),
+          {bridge.words_taken().words(), bridge.words_held().words(), local_bus.words_to_grant().words(),
+           local_bus.words_granted().words()},
           {camera(0), camera(1)}};
 }
 

@@ -9,6 +9,7 @@
 #include "models/fpga/core_ports.h"
 #include "models/memory/memory_config.h"
 #include "models/time_ps.h"
+#include "platform/config/buffer_layout.h"
 
 namespace stereotlm::platform {
 FastBoard::FastBoard(const BoardConfig& config, fpga::Fidelity fidelity,
@@ -20,7 +21,7 @@ FastBoard::FastBoard(const BoardConfig& config, fpga::Fidelity fidelity,
       clock_(config_.clock_mhz),
       arbitration_(config.fpga.arbiter, bank_configs_),
       frames_(config_, bank_configs_, arbitration_, stall_timeout_cycles),
-      local_bus_(config.bridge.local_clock_mhz, bank_configs_.size(), *this),
+      local_bus_({config.bridge.local_clock_mhz, buffer_ranges(config)}, bank_configs_.size(), *this),
       fast_core_(config_, fidelity == fpga::Fidelity::kFast, frames_, host_port_, local_bus_, *this, clock_,
                  *this),
       next_ps_(kNever) {
@@ -45,7 +46,7 @@ bool FastBoard::serves_one_word_per_cycle(std::uint64_t address, std::uint64_t b
 
 std::uint32_t* FastBoard::skip_writes(std::uint64_t address, std::uint64_t words, std::uint64_t cycle,
                                       const std::vector<fpga::HostPort::ServedWords>& bursts) {
-  local_bus_.count_words(true, words);
+  local_bus_.count_words(true, address, words);
   host_port_.skip_writes(address, words, cycle, bursts);
   count_direct(memory::bank_of_address(address), words);
   changes(address, 4 * words);

@@ -14,8 +14,8 @@ LocalBurst burst_of(const tlm::tlm_generic_payload& access) {
 
 }  // namespace
 
-LocalBus::LocalBus(const sc_core::sc_module_name& name, double clock_mhz, std::size_t banks)
-    : sc_module(name), control_(clock_mhz, banks, *this) {
+LocalBus::LocalBus(const sc_core::sc_module_name& name, const LocalBusConfig& config, std::size_t banks)
+    : sc_module(name), control_(config, banks, *this) {
   SC_HAS_PROCESS(LocalBus);
   kernel_time::check_resolution();
   control_.bind(*this);

@@ -48,7 +48,7 @@ class LocalBus : public sc_core::sc_module,
   StreamOut<HostRoute> route_out{"route_out"};
 
   // Throws std::invalid_argument if the clock or the number of banks is out of range.
-  LocalBus(const sc_core::sc_module_name& name, double clock_mhz, std::size_t banks);
+  LocalBus(const sc_core::sc_module_name& name, const LocalBusConfig& config, std::size_t banks);
 
   LocalBusControl& control() { return control_; }
   const LocalBusControl& control() const { return control_; }

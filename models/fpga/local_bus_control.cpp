@@ -20,8 +20,12 @@ double checked(double clock_mhz) {
 
 }  // namespace
 
-LocalBusControl::LocalBusControl(double clock_mhz, std::size_t banks, Core& core)
-    : clock_(checked(clock_mhz)), banks_(banks), core_(core) {
+LocalBusControl::LocalBusControl(const LocalBusConfig& config, std::size_t banks, Core& core)
+    : clock_(checked(config.clock_mhz)),
+      banks_(banks),
+      core_(core),
+      buffers_(config.buffers),
+      words_granted_(config.buffers) {
   memory::kBankCountRule.required("banks", static_cast<int>(banks));
 }
 
@@ -69,7 +73,7 @@ void LocalBusControl::access(std::uint64_t grant_ps, std::uint64_t usable_ps) {
   if (!core_.access_bank(grant_ps, burst_.write, next_address(), word)) {
     refuse_word();
   } else {
-    count_words(burst_.write, 1);
+    count_words(burst_.write, next_address(), 1);
   }
   if (!burst_.write) std::memcpy(next_data(), &word, 4);
   advance(1, grant_ps, usable_ps);
@@ -80,7 +84,7 @@ void LocalBusControl::move_words(unsigned char* words) {
 }
 
 void LocalBusControl::count_granted(std::size_t words, std::uint64_t grant_ps, std::uint64_t usable_ps) {
-  count_words(burst_.write, words);
+  count_words(burst_.write, next_address(), words);
   advance(words, grant_ps, usable_ps);
 }
 
@@ -149,6 +153,12 @@ LocalBusControl::Stats LocalBusControl::stats(std::uint64_t now_ps) const {
   const std::uint64_t end = std::min(idle_clock_, stats.clocks);
   stats.busy_clocks += end > address_clock_ ? end - address_clock_ : 0;
   return stats;
+}
+
+WordsByRange LocalBusControl::words_to_grant() const {
+  WordsByRange words(buffers_);
+  if (words_left_ != 0 && burst_.write) words.add(next_address(), words_left_);
+  return words;
 }
 
 }  // namespace stereotlm::fpga

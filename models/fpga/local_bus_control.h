@@ -3,10 +3,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "models/clock.h"
 #include "models/local_burst.h"
 #include "models/time_ps.h"
+#include "models/words_by_range.h"
 
 namespace stereotlm::fpga {
 
@@ -28,6 +30,11 @@ class LocalBusObserver {
   // Called once for each burst, in their order, as soon as its end is known. That is at free_ps or earlier. A
   // burst that was refused is none.
   virtual void local_burst_ended(const EndedLocalBurst& burst) = 0;
+};
+
+struct LocalBusConfig {
+  double clock_mhz = 40;                   // of the local bus, 1..1000
+  std::vector<AddressRange> buffers = {};  // on the local bus; words written are counted for each
 };
 
 // Byte addresses on the local bus: the banks as on the crossbar, then the registers of register_map.h.
@@ -82,9 +89,9 @@ class LocalBusControl final : public LocalBusIf {
                                  std::uint32_t& word) = 0;
   };
 
-  // `clock_mhz`: 1..1000. `core` outlives this object. Throws std::invalid_argument if the clock or the
-  // number of banks is out of range.
-  LocalBusControl(double clock_mhz, std::size_t banks, Core& core);
+  // `core` outlives this object. Throws std::invalid_argument if the clock or the number of banks is out of
+  // range.
+  LocalBusControl(const LocalBusConfig& config, std::size_t banks, Core& core);
   // The master of the bus, which outlives this object. To be called before the first burst.
   void bind(LocalBusMasterIf& master) { master_ = &master; }
   // `observer` outlives this object.
@@ -131,16 +138,18 @@ class LocalBusControl final : public LocalBusIf {
   std::uint64_t busy_clocks() const { return stats_.busy_clocks + idle_clock_ - address_clock_; }
   std::uint64_t bursts() const { return stats_.bursts; }
   // While the bus is idle: `bursts` bursts have taken `busy_clocks` clocks, and this is the idle clock of the
-  // last one. count_words() adds their words.
+  // last one. For each range of addresses count_words() adds their words.
   void skip_bursts(std::uint64_t bursts, std::uint64_t busy_clocks, std::uint64_t idle_clock);
-  void count_words(bool write, std::uint64_t words) {
+  void count_words(bool write, std::uint64_t address, std::uint64_t words) {
     (write ? stats_.words_written : stats_.words_read) += words;
+    if (write) words_granted_.add(address, words);
   }
 
   // Counts up to `now_ps`.
   Stats stats(std::uint64_t now_ps) const;
-  // The words of the burst that are to be written to a bank, and are not granted yet.
-  std::uint64_t words_to_grant() const { return burst_.write ? words_left_ : 0; }
+  // Words written to the banks: those granted, and those of the burst that are not granted yet.
+  const WordsByRange& words_granted() const { return words_granted_; }
+  WordsByRange words_to_grant() const;
 
  private:
   static constexpr std::uint64_t kUnknown = UINT64_MAX;
@@ -168,6 +177,8 @@ class LocalBusControl final : public LocalBusIf {
   std::uint64_t request_clock_ = 0;  // number of the first clock behind the waiting word's clock
   std::uint64_t request_ps_ = 0;     // its beginning
   std::uint64_t next_ps_ = kNever;
+  std::vector<AddressRange> buffers_;
+  WordsByRange words_granted_;
   Stats stats_;  // busy_clocks: of all bursts but the last; clocks: not kept
 };
 

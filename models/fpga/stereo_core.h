@@ -24,7 +24,7 @@ namespace stereotlm::fpga {
 struct StereoCoreConfig {
   CoreConfig core;
   memory::CrossbarConfig memory = {core_arbiter(), {}};
-  double local_bus_clock_mhz = 40;  // 1..1000
+  LocalBusConfig local_bus;
   Fidelity fidelity = Fidelity::kCycle;
   std::uint64_t stall_timeout_cycles = std::uint64_t{1}
                                        << 26U;  // cycles without progress after which a frame stalls
@@ -112,7 +112,7 @@ class StereoCore : public sc_core::sc_module, private FastCore::Board {
   memory::Crossbar crossbar_;
   FrameRun frames_{config_.core, config_.memory.banks, crossbar_.arbitration(), config_.stall_timeout_cycles};
   RegisterFile register_file_{"register_file"};
-  LocalBus local_bus_{"local_bus_port", config_.local_bus_clock_mhz, config_.memory.banks.size()};
+  LocalBus local_bus_{"local_bus_port", config_.local_bus, config_.memory.banks.size()};
   CoreDatapath datapath_;
   HostPort host_port_{local_bus_.control(), crossbar_, crossbar_.arbitration(), frames_, clock_};
   FastCore fast_core_{config_.core,

@@ -7,6 +7,7 @@
 namespace stereotlm::memory {
 
 static_assert(kBankCountRule.max <= 64, "shared() has a bit for each bank");
+
 namespace {
 
 // A cycle in which the port alone requests and is granted.
@@ -148,10 +149,11 @@ void Arbitration::set_state(std::uint64_t cycle, StateReader& state) {
   for (const SharedBank& shared : shared_banks_) shared.arbiter->set_state(cycle, state);
 }
 
-StateWords Arbitration::counts() const {
-  StateWords counts(alone_grants_.begin(), alone_grants_.begin() + static_cast<std::ptrdiff_t>(port_count_));
+std::vector<std::uint64_t> Arbitration::counts() const {
+  std::vector<std::uint64_t> counts(alone_grants_.begin(),
+                                    alone_grants_.begin() + static_cast<std::ptrdiff_t>(port_count_));
   for (const SharedBank& shared : shared_banks_) {
-    const StateWords& of_bank = shared.arbiter->stats().counts();
+    const std::vector<std::uint64_t>& of_bank = shared.arbiter->stats().counts();
     counts.insert(counts.end(), of_bank.begin(), of_bank.end());
   }
   return counts;
@@ -159,7 +161,7 @@ StateWords Arbitration::counts() const {
 
 CountChanges Arbitration::take_recorded() const {
   CountChanges changes;
-  const StateWords now = counts();
+  const std::vector<std::uint64_t> now = counts();
   for (std::size_t place = 0; place < now.size(); ++place) {
     if (now[place] != recorded_[place])
       changes.emplace_back(static_cast<std::uint32_t>(place), now[place] - recorded_[place]);

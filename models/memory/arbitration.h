@@ -115,7 +115,7 @@ class Arbitration {
   PortMask arbitrate_shared(std::uint64_t cycle, PortMask requests);
   // All counters that may change as long as no route does: the grants of the uncontended ports, then the
   // statistics of each shared bank.
-  StateWords counts() const;
+  std::vector<std::uint64_t> counts() const;
   std::size_t counts_of_bank() const { return arbiters_.front().stats().counts().size(); }
 
   std::vector<BankArbiter> arbiters_;
@@ -129,7 +129,7 @@ class Arbitration {
   PortMask alone_ = 0;
   std::array<std::uint64_t, kMostPorts> alone_grants_{};  // [port]
   std::vector<SharedBank> shared_banks_;
-  StateWords recorded_;  // the counts when the recording began
+  std::vector<std::uint64_t> recorded_;  // the counts when the recording began
 };
 
 }  // namespace stereotlm::memory

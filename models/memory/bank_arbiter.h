@@ -12,12 +12,12 @@
 
 namespace stereotlm::memory {
 
-// Words of a state: see fpga::TransitionCache.
+// A state as words: equal words mean that the same decisions follow.
 using StateWords = std::vector<std::uint64_t>;
-// The next word of a state that is read.
+// The place in StateWords from which the next part of a state is taken.
 using StateReader = StateWords::const_iterator;
 
-// Counters that have grown: the index of each, and by how much.
+// Counters that have changed: the index of each, and by how much.
 using CountChanges = std::vector<std::pair<std::uint32_t, std::uint64_t>>;
 
 // The statistics of one arbiter, as one row of counters. Each stall cycle of a port is blamed on the port

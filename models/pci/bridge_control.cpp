@@ -18,7 +18,8 @@ BridgeControl::BridgeControl(const PciBridgeConfig& config, PciSlot& slot, Local
       host_(host),
       channels_{{{0, static_cast<std::size_t>(config.dma_burst_words)},
                  {1, static_cast<std::size_t>(config.dma_burst_words)}}},
-      posted_(static_cast<std::size_t>(config.posted_words)) {}
+      posted_(static_cast<std::size_t>(config.posted_words)),
+      words_taken_(config.buffers) {}
 
 void BridgeControl::observe(BridgeObserver& observer) {
   observer_ = &observer;
@@ -50,11 +51,10 @@ bool BridgeControl::write(std::uint64_t now_ps, std::uint64_t offset, const unsi
     const std::uint64_t here = std::min(border, end) - offset;
     const std::uint64_t address = local_address_of(offset);
     posted_.push(address, data, here / 4);
-    stats_.bank_words += words_for_banks(address, here / 4);
+    count_posted(address, here / 4);
     offset += here;
     data += here;
   }
-  stats_.posted_words += words;
   if (local_observer_ != nullptr) local_observer_->words_posted(now_ps, words);
   if (busy_) {
     plan();
@@ -71,12 +71,12 @@ void BridgeControl::read(std::uint64_t now_ps, std::uint64_t offset, unsigned ch
   start_on_local_bus(now_ps, read_);
 }
 
-std::uint64_t BridgeControl::words_held() const {
-  std::uint64_t held = 0;
-  for (const PostedWrites::Run& run : posted_.waiting()) held += words_for_banks(run.address, run.words);
+WordsByRange BridgeControl::words_held() const {
+  WordsByRange held(config_.buffers);
+  for (const PostedWrites::Run& run : posted_.waiting()) count_for_banks(held, run.address, run.words);
   for (const DmaChannel& channel : channels_) {
     const BridgeTransfer& to = channel.on_local_bus();
-    if (to.under_way && to.write && &to != running_) held += to.words.size();
+    if (to.under_way && to.write && &to != running_) held.add(to.address, to.words.size());
   }
   return held;
 }
@@ -190,7 +190,7 @@ void BridgeControl::run(std::uint64_t now_ps, const DmaChannel::Step& step) {
     const bool on_pci = transfer == &transfer->channel->on_pci();
     if (transfer->write) {
       stats_.dma_words += transfer->words.size();
-      if (!on_pci) stats_.bank_words += transfer->words.size();
+      if (!on_pci) words_taken_.add(transfer->address, transfer->words.size());
     }
     on_pci ? start_on_pci(now_ps, *transfer) : start_on_local_bus(now_ps, *transfer);
   }

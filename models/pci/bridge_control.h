@@ -15,6 +15,7 @@
 #include "models/pci/pci_slot.h"
 #include "models/pci/posted_writes.h"
 #include "models/time_ps.h"
+#include "models/words_by_range.h"
 
 namespace stereotlm::pci {
 
@@ -37,7 +38,6 @@ class BridgeControl final : public PciMasterIf, public PciTarget, public LocalBu
     std::uint64_t posted_words = 0;  // words of writes that the slave window took
     std::uint64_t slave_reads = 0;   // words read through the slave window
     std::uint64_t dma_words = 0;     // words whose write by a DMA channel has begun, both directions
-    std::uint64_t bank_words = 0;    // words for the banks that the bridge has received, posted or by DMA
     std::uint64_t errors = 0;        // refused accesses and raised errors
   };
 
@@ -107,16 +107,19 @@ class BridgeControl final : public PciMasterIf, public PciTarget, public LocalBu
   std::optional<std::uint64_t> bank_address(std::uint64_t offset, std::uint64_t bytes) const;
   // The state while it is idle: the channel that has the next turn on the local bus.
   std::size_t turn() const { return turn_; }
-  // `words` words for the banks have been posted and sent: the turn after them.
-  void skip_posted(std::size_t turn, std::uint64_t words) {
-    turn_ = turn;
+  // Writes have been posted and sent: the turn after them. For each range of addresses on the local bus
+  // count_posted() counts their words.
+  void skip_posted(std::size_t turn) { turn_ = turn; }
+  void count_posted(std::uint64_t address, std::uint64_t words) {
     stats_.posted_words += words;
-    stats_.bank_words += words;
+    count_for_banks(words_taken_, address, words);
   }
 
   const Stats& stats() const { return stats_; }
-  // The part of Stats::bank_words that still waits in the bridge for the local bus.
-  std::uint64_t words_held() const;
+  // The words for the banks that the bridge has received, posted or by DMA, counted by buffer.
+  const WordsByRange& words_taken() const { return words_taken_; }
+  // The part of words_taken() that still waits in the bridge for the local bus.
+  WordsByRange words_held() const;
 
  private:
   // A register: its offset, which is that of page or channel 0 if it exists for each, and the number of the
@@ -132,9 +135,10 @@ class BridgeControl final : public PciMasterIf, public PciTarget, public LocalBu
   void write_register(std::uint64_t now_ps, const Register& its, std::uint32_t value);
 
   std::uint64_t local_address_of(std::uint64_t offset) const;
-  // The number of `words` words from this address on that are for the banks. The others are for registers.
-  std::uint64_t words_for_banks(std::uint64_t address, std::uint64_t words) const {
-    return address < config_.core_registers ? std::min(words, (config_.core_registers - address) / 4) : 0;
+  // Counts words from this address on. Words for the core's registers are not counted.
+  void count_for_banks(WordsByRange& counts, std::uint64_t address, std::uint64_t words) const {
+    if (address < config_.core_registers)
+      counts.add(address, std::min(words, (config_.core_registers - address) / 4));
   }
   void raise(std::uint64_t now_ps, std::uint32_t interrupts);
   void drive_interrupts(std::uint64_t now_ps);
@@ -181,6 +185,7 @@ class BridgeControl final : public PciMasterIf, public PciTarget, public LocalBu
   std::size_t turn_ = 1;               // the channel whose turn is next
   std::uint64_t next_ps_ = kNever;
 
+  WordsByRange words_taken_;
   BridgeObserver* observer_ = nullptr;
   LocalBusMasterObserver* local_observer_ = nullptr;
   Stats stats_;

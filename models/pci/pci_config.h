@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "models/address_range.h"
 #include "models/kernels/integer_rule.h"
 
 namespace stereotlm::pci {
@@ -41,6 +42,7 @@ struct PciBridgeConfig {
   int posted_words = 64;  // places for words of posted writes, kPostedWordsRule
   // Byte address of the core's registers on the local bus, behind all banks.
   std::uint64_t core_registers = std::uint64_t{1} << 34U;
+  std::vector<AddressRange> buffers = {};  // on the local bus; words for the banks are counted for each
 };
 
 // A master that loads the bus: it reads the same words again and again. Transfer k = 0, 1, .. requests the

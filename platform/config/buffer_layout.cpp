@@ -64,6 +64,12 @@ std::uint64_t buffer_words(const PlacedBuffer& buffer, const ImageConfig& image)
   return buffer.index < 0 ? pixels : pixels / 4;
 }
 
+std::vector<AddressRange> buffer_ranges(const BoardConfig& board) {
+  std::vector<AddressRange> ranges;
+  for (const PlacedBuffer& buffer : buffers(board)) ranges.push_back(buffer.range);
+  return ranges;
+}
+
 fpga::BufferBases buffer_bases(const BoardConfig& board) {
   fpga::BufferBases bases;
   bases.has_joint_tables = board.fpga.joint_tables;

@@ -81,6 +81,9 @@ void move_buffer(BoardConfig& board, const PlacedBuffer& buffer, const std::stri
 // Size of a buffer in 32-bit words.
 std::uint64_t buffer_words(const PlacedBuffer& buffer, const ImageConfig& image);
 
+// PlacedBuffer::range of each buffer, in the order of buffers().
+std::vector<AddressRange> buffer_ranges(const BoardConfig& board);
+
 // The values of the base registers for these buffers.
 fpga::BufferBases buffer_bases(const BoardConfig& board);
 

@@ -58,7 +58,7 @@ FREE_OF = [
     (re.compile(r"models/(kernels|area)/"), SYSTEMC, "SystemC"),
     (re.compile(r"(models|platform)/.*(_config|register_map|registers)\.h$"), SYSTEMC, "SystemC"),
     (re.compile(r"models/.*_control\.(h|cpp)$"), SYSTEMC, "SystemC"),
-    (re.compile(r"models/(clock|local_burst|period|time_ps)\.(h|cpp)$"), SYSTEMC, "SystemC"),
+    (re.compile(r"models/(clock|local_burst|period|time_ps|words_by_range)\.(h|cpp)$"), SYSTEMC, "SystemC"),
     (re.compile(r"models/capture/(camera_(link|timing)|capture_(fifo|register_file))\."), SYSTEMC, "SystemC"),
     (re.compile(r"models/fpga/(fast|record)/"), SYSTEMC, "SystemC"),
     (re.compile(r"models/fpga/(access_pattern|core_stepper|frame_run|host_port)\."), SYSTEMC, "SystemC"),

@@ -120,18 +120,25 @@ TEST_F(CollectComputer, FindsEachIdentityThatDoesNotHold) {
     change(counters);
     EXPECT_THAT(statistics().failed, ElementsAre(fmt::format("{} = {}, but {} = {}", left, is, right, but)));
   };
-  const std::uint64_t taken = valid.bridge.bank_words;
-  const std::string in_bridge = "words for the banks in the bridge";
-  const std::string granted = "granted on the host port and still waiting";
-  expect_failed(in_bridge, taken + 1, granted, taken, [](auto& found) { ++found.bridge.bank_words; });
-  expect_failed(in_bridge, taken, granted, taken + 1, [](auto& found) { ++found.waiting_words; });
+  std::vector<std::string> names;
+  for (const platform::PlacedBuffer& buffer : platform::buffers(board)) names.push_back(buffer.path());
+  names.emplace_back("no buffer");
+  ASSERT_EQ(valid.words.into_bridge.size(), names.size());
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const std::uint64_t bytes = 4 * valid.words.into_bridge[i];
+    const std::string left = "bytes written into the bridge for " + names[i];
+    const std::string right = "granted on the host port and still in the bridge";
+    expect_failed(left, bytes + 4, right, bytes, [i](auto& found) { ++found.words.into_bridge[i]; });
+    for (const auto part : {&ComputerCounters::Words::in_bridge, &ComputerCounters::Words::on_bus,
+                            &ComputerCounters::Words::granted}) {
+      expect_failed(left, bytes, right, bytes + 4, [i, part](auto& found) { ++(found.words.*part)[i]; });
+    }
+  }
   const std::uint64_t words = valid.local_bus.words_read + valid.local_bus.words_written;
-  expect_failed("port host: grants in and between frames", words, "words of the local bus", words + 1,
-                [](auto& found) { ++found.local_bus.words_read; });
-  expect_failed(in_bridge, taken, granted, taken + 1, [](auto& found) {
-    ++found.local_bus.words_written;
-    --found.local_bus.words_read;
-  });
+  for (const auto part : {&fpga::LocalBus::Stats::words_read, &fpga::LocalBus::Stats::words_written}) {
+    expect_failed("port host: grants in and between frames", words, "words of the local bus", words + 1,
+                  [part](auto& found) { ++(found.local_bus.*part); });
+  }
   for (const std::size_t side : {0U, 1U}) {
     const std::string camera = side == 0 ? "camera left: " : "camera right: ";
     const std::uint64_t frames = valid.cameras[side].frames;
@@ -153,8 +160,9 @@ TEST_F(CollectComputer, FindsEachIdentityThatDoesNotHold) {
 }
 
 TEST_F(CollectComputer, CountsWordsThatWaitInTheBridgeAndOnTheLocalBus) {
-  counters.bridge.bank_words += 3;
-  counters.waiting_words += 3;
+  counters.words.into_bridge[0] += 3;
+  counters.words.in_bridge[0] += 1;
+  counters.words.on_bus[0] += 2;
   EXPECT_THAT(statistics().failed, IsEmpty());
 }
 

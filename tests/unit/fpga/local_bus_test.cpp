@@ -66,27 +66,28 @@ class LocalBusTest : public testing::Test {
   TestHost unused{"unused"};
   memory::SsramBank bank{"bank", {kWords, memory::BankKind::kZbtPipelined, 0, 40}};
   RegisterFile register_file{"register_file"};
-  LocalBus bus{"bus", 1e6 / static_cast<double>(kLocalPs), kBanks};
+  LocalBus bus{"bus", {1e6 / static_cast<double>(kLocalPs), {{0, 8}}}, kBanks};  // one buffer of two words
   Collected<HostRoute> routes;
   Collected<FrameStart> starts;
   sc_core::sc_signal<bool> done{"done"};
 };
 
-TEST_F(LocalBusTest, CountsTheWordsWrittenAndThoseThatWait) {
-  const auto expect_words = [this](std::uint64_t granted, std::uint64_t to_grant) {
-    EXPECT_EQ(bus.stats().words_written, granted);
-    EXPECT_EQ(bus.control().words_to_grant(), to_grant);
+TEST_F(LocalBusTest, CountsTheWordsWrittenToEachBuffer) {
+  using Counts = std::vector<std::uint64_t>;
+  const auto expect_words = [this](const Counts& granted, const Counts& to_grant) {
+    EXPECT_EQ(bus.control().words_granted().words(), granted);
+    EXPECT_EQ(bus.control().words_to_grant().words(), to_grant);
   };
   host.request(TLM_WRITE_COMMAND, 4, Words{5, 6, 7});
-  expect_words(0, 3);
+  expect_words({0, 0}, {1, 2});
   grant(3 * kLocalPs);
   grant(4 * kLocalPs);
-  expect_words(2, 1);
+  expect_words({1, 1}, {0, 1});
   grant(5 * kLocalPs);
-  expect_words(3, 0);
+  expect_words({1, 2}, {0, 0});
   run_until(20);
   host.request(TLM_READ_COMMAND, 4, Words(2));
-  expect_words(3, 0);
+  expect_words({1, 2}, {0, 0});
 }
 
 TEST_F(LocalBusTest, TransfersTheOtherWordsBesideOneThatIsRefused) {

@@ -44,7 +44,7 @@ StereoCoreConfig random_board(SplitMix64& random, Fidelity fidelity) {
   draw_cost(random, board.core);
   const std::vector<double> clocks = {40, 50, 80};
   board.core.clock_mhz = clocks[static_cast<std::size_t>(random.between(0, 2))];
-  board.local_bus_clock_mhz =
+  board.local_bus.clock_mhz =
       random.chance(50) ? board.core.clock_mhz : clocks[static_cast<std::size_t>(random.between(0, 2))];
   board.memory.arbiter = random_arbiter(random);
   for (int banks = random.between(1, 8); banks > 0; --banks) {

@@ -23,8 +23,8 @@ TEST_F(PciBridgeDma, IsBusyUntilTheLastWordHasArrivedAndRefusesAStartMeanwhile) 
     run(20);
     EXPECT_EQ(read_register(bridge::kDmaStatus + channel * bridge::kChannelStride), 1U);
     EXPECT_EQ(status(), 0U);
-    EXPECT_EQ(dut->stats().bank_words, 4U * (channel + 1));
-    EXPECT_EQ(dut->control().words_held(), 0U);  // all on the local bus
+    EXPECT_EQ(dut->control().words_taken().total(), 4U * (channel + 1));
+    EXPECT_EQ(dut->control().words_held().total(), 0U);  // all on the local bus
     start(channel, kChain);
     EXPECT_EQ(status(), bridge::kDmaError << channel);
     local.release();
@@ -83,11 +83,11 @@ TEST_F(PciBridgeDma, CountsTheWordsThatWaitForTheLocalBus) {
   burst(true, kSlave + 400, 3);
   start(0, kChain, {{kData, 0, 4}});
   run(20);
-  EXPECT_EQ(dut->stats().bank_words, 7U);
-  EXPECT_EQ(dut->control().words_held(), 4U);
+  EXPECT_EQ(dut->control().words_taken().total(), 7U);
+  EXPECT_EQ(dut->control().words_held().total(), 4U);
   local.release();
   run(5);
-  EXPECT_EQ(dut->control().words_held(), 0U);
+  EXPECT_EQ(dut->control().words_held().total(), 0U);
 }
 
 // The test lets the bursts of the local bus through one by one. Posted writes go to bank 0, channels 0 and 1

@@ -31,8 +31,8 @@ TEST_F(PciBridgeSlave, PostsWritesToTheBoardWordsThatThePageOfTheirApertureNames
   EXPECT_EQ(local.bursts[4].address, byte_on_bus(1, bridge::kApertureBytes / 4 - 2));
   EXPECT_EQ(local.bursts[5].address, byte_on_bus(3, 100));
   EXPECT_EQ(dut->stats().posted_words, 24U);
-  EXPECT_EQ(dut->stats().bank_words, 24U);
-  EXPECT_EQ(dut->control().words_held(), 0U);
+  EXPECT_EQ(dut->control().words_taken().total(), 24U);
+  EXPECT_EQ(dut->control().words_held().total(), 0U);
 }
 
 TEST_F(PciBridgeSlave, ReachesTheRegistersOfTheCoreBehindTheApertures) {
@@ -42,7 +42,7 @@ TEST_F(PciBridgeSlave, ReachesTheRegistersOfTheCoreBehindTheApertures) {
   ASSERT_EQ(local.bursts.size(), 2U);
   EXPECT_EQ(local.bursts[0].address, kCore + 8);
   EXPECT_EQ(local.bursts[1].address, kCore + 4);
-  EXPECT_EQ(dut->stats().bank_words, 0U);  // registers are not counted
+  EXPECT_EQ(dut->control().words_taken().total(), 0U);  // registers are not counted
 }
 
 TEST_F(PciBridgeSlave, TakesNoMoreWordsThanItHasPlaces) {
@@ -53,14 +53,22 @@ TEST_F(PciBridgeSlave, TakesNoMoreWordsThanItHasPlaces) {
   const auto& retried = burst(true, kSlave + 40, 4);
   EXPECT_EQ(retried.result.end, BurstEnd::kDisconnect);
   EXPECT_EQ(retried.result.words, 0U);
-  EXPECT_EQ(dut->stats().bank_words, 10U);
-  EXPECT_EQ(dut->control().words_held(), 6U);
+  EXPECT_EQ(dut->control().words_taken().total(), 10U);
+  EXPECT_EQ(dut->control().words_held().total(), 6U);
   local.release();
   run(5);
-  EXPECT_EQ(dut->control().words_held(), 0U);
+  EXPECT_EQ(dut->control().words_held().total(), 0U);
   EXPECT_EQ(burst(true, kSlave, 11).result.words, 10U);
   run(5);
   EXPECT_EQ(local.words.size(), 10U);
+}
+
+TEST_F(PciBridgeSlave, CountsWordsForEachBuffer) {
+  build({4, 64, kCore, {{0, 20}, {20, 24}}});
+  local.held = true;
+  burst(true, kSlave, 8);
+  EXPECT_EQ(dut->control().words_taken().words(), (std::vector<std::uint64_t>{5, 1, 2}));
+  EXPECT_EQ(dut->control().words_held().words(), (std::vector<std::uint64_t>{1, 1, 2}));
 }
 
 TEST_F(PciBridgeSlave, ReadsBehindTheWritesPostedBefore) {
@@ -87,7 +95,7 @@ TEST_F(PciBridgeSlave, RaisesAnErrorForAWriteThatTheBoardRefuses) {
   burst(true, kSlave, 1);
   run(2);
   EXPECT_EQ(status(), bridge::kPostedError);
-  EXPECT_EQ(dut->control().words_held(), 0U);
+  EXPECT_EQ(dut->control().words_held().total(), 0U);
   EXPECT_GT(dut->stats().errors, 0U);
 }
 

@@ -320,10 +320,9 @@ std::string figures_of_lines(std::uint64_t seed, bool steps, std::uint64_t& skip
   }
   skipped += loop.skipped_lines();
   const ComputerCounters counters = processor.computer_counters();
-  std::string text =
-      fmt::format("{} {} {} {} {} {}\n", fmt::join(processor.granted_ps, " "), counters.pci.busy_clocks,
-                  counters.bridge.bank_words, counters.local_bus.bursts, counters.local_bus.busy_clocks,
-                  counters.local_bus.words_written);
+  std::string text = fmt::format("{} {} {} {} {}\n", fmt::join(processor.granted_ps, " "),
+                                 counters.pci.busy_clocks, counters.local_bus.bursts,
+                                 counters.local_bus.busy_clocks, fmt::join(counters.words.granted, " "));
   for (const pci::PciBusControl::MasterStats& master : counters.pci.masters)
     text +=
         fmt::format("{} {} {} {}\n", master.transactions, master.words, master.wait_clocks, master.retries);
