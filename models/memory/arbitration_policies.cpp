@@ -31,7 +31,8 @@ void put_waiting_first(const PriorityList& list, PriorityList& order, PortMask r
     std::copy(list.begin(), list.end(), order.begin());
     return;
   }
-  const auto waits = [waiting = requests & ~granted](Port port) { return (waiting >> port & 1U) != 0; };
+  const auto waiting = static_cast<PortMask>(requests & ~granted);
+  const auto waits = [waiting](Port port) { return (waiting >> port & 1) != 0; };
   const auto behind_waiting =
       std::remove_if(order.begin(), order.end(), [&waits](Port port) { return !waits(port); });
   std::remove_copy_if(list.begin(), list.end(), behind_waiting, waits);

@@ -208,7 +208,7 @@ TEST_F(CpuTest, PassesOnTheReportOfAModel) {
 }
 
 TEST_F(CpuTest, GivesTheProgramHostMemoryInNoTime) {
-  simulate([this](HostBus& bus) {
+  simulate([](HostBus& bus) {
     bus.memory(kMemoryBase + 8, 4)[1] = 5;
     EXPECT_EQ(bus.memory(kMemoryBase, kMemoryBytes)[9], 5);
     EXPECT_EQ(bus.memory(kMemoryBase + kMemoryBytes - 1, 1), bus.memory(kMemoryBase, 1) + kMemoryBytes - 1);
