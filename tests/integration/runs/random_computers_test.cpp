@@ -5,13 +5,14 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <sstream>
 #include <string>
 #include <thread>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -216,58 +217,65 @@ std::string figures_of(const test::PlainComputerResult& plain, const test::Plain
   return figures.text();
 }
 
-// Where a run of the models is not what it should be.
-std::string problems_of(std::uint64_t seed, const test::RandomKnobs& knobs, Fidelity fidelity) {
+// What `differences` says of the runs at these fidelities, each in a process of its own.
+std::string differences_at(const std::vector<Fidelity>& fidelities,
+                           const std::function<std::string(Fidelity)>& differences) {
+  std::string text;
+  for (const Fidelity fidelity : fidelities) {
+    const test::ChildResult result = test::run_in_child([&] { return differences(fidelity); });
+    if (!result.ok()) text += fmt::format("fidelity {}: {}\n", static_cast<int>(fidelity), result.text);
+  }
+  return text;
+}
+
+// Where runs of the models are not what they should be.
+std::string problems_of(std::uint64_t seed, const test::RandomKnobs& knobs) {
   const test::RandomComputer computer = test::make_random_computer(seed, knobs);
   const platform::BoardConfig board = test::board_config(computer);
   const platform::Tables tables = test::board_tables(computer.board);
-  Pictures pictures(computer.board);
   const test::PlainComputerInput& input = computer.input;
-  const Outcome outcome =
-      simulate(board, tables, pictures, static_cast<std::uint64_t>(input.frames), fidelity);
-  std::string problems;
-  for (const std::string& failed : outcome.statistics.failed) problems += failed + '\n';
-  const bool with_pixels = fidelity != Fidelity::kTiming;
-  problems += test::differing_lines(figures_of(test::run_plain_computer(input), input, with_pixels),
-                                    figures_of(outcome, with_pixels));
-  return problems.empty() ? problems : problems + platform::to_yaml(board);
+  const test::PlainComputerResult plain = test::run_plain_computer(input);
+  const auto differences = [&](Fidelity fidelity) {
+    Pictures pictures(computer.board);
+    const Outcome outcome =
+        simulate(board, tables, pictures, static_cast<std::uint64_t>(input.frames), fidelity);
+    const bool with_pixels = fidelity != Fidelity::kTiming;
+    std::string text =
+        test::differing_lines(figures_of(plain, input, with_pixels), figures_of(outcome, with_pixels));
+    for (const std::string& failed : outcome.statistics.failed) text += failed + '\n';
+    return text;
+  };
+  const std::string text =
+      differences_at({Fidelity::kCycle, Fidelity::kFast, Fidelity::kTiming}, differences);
+  return text.empty() ? text : text + platform::to_yaml(board);
 }
 
 std::uint64_t computers(std::uint64_t otherwise = 200) { return test::random_computers(otherwise); }
 
 int processors() { return static_cast<int>(std::max(1U, std::thread::hardware_concurrency())); }
 
-// Computers without the knobs of contract section 7, or with them.
-class RandomComputers : public testing::TestWithParam<std::tuple<Fidelity, bool>> {};
+// Computers with the knobs of contract section 7, or without them.
+class RandomComputers : public testing::TestWithParam<bool> {
+ protected:
+  // `problems(seed, knobs)` finds none in any of them.
+  static void expect_none(
+      std::uint64_t count,
+      const std::function<std::string(std::uint64_t, const test::RandomKnobs&)>& problems) {
+    test::RandomKnobs knobs = GetParam() ? test::RandomKnobs::all() : test::RandomKnobs{};
+    knobs.large_images = false;  // they take minutes under the sanitizers; the random boards have them
+    std::vector<test::ChildWork> jobs;
+    for (std::uint64_t seed = 0; seed < count; ++seed)
+      jobs.push_back([&, seed] { return problems(seed, knobs); });
+    const std::vector<test::ChildResult> results =
+        test::run_in_children(jobs, processors(), std::chrono::seconds(200));
+    for (std::size_t seed = 0; seed < results.size(); ++seed)
+      EXPECT_TRUE(results[seed].ok()) << "seed " << seed << ":\n" << results[seed].text;
+  }
+};
 
-TEST_P(RandomComputers, EqualThePlainLoopOverEvents) {
-  const auto [fidelity, with_knobs] = GetParam();
-  test::RandomKnobs knobs = with_knobs ? test::RandomKnobs::all() : test::RandomKnobs{};
-  knobs.large_images = false;  // they take minutes under the sanitizers; the random boards have them
-  std::vector<test::ChildWork> jobs;
-  for (std::uint64_t seed = 0; seed < computers(); ++seed)
-    jobs.push_back([seed, knobs, fidelity = fidelity] { return problems_of(seed, knobs, fidelity); });
-  const std::vector<test::ChildResult> results = test::run_in_children(jobs, processors());
-  for (std::size_t seed = 0; seed < results.size(); ++seed)
-    EXPECT_TRUE(results[seed].ok()) << "seed " << seed << ":\n" << results[seed].text;
-}
+TEST_P(RandomComputers, EqualThePlainLoopOverEvents) { expect_none(computers(), problems_of); }
 
-std::string suite_name(const testing::TestParamInfo<std::tuple<Fidelity, bool>>& suite) {
-  const auto [fidelity, with_knobs] = suite.param;
-  const std::string name = fidelity == Fidelity::kCycle  ? "Cycle"
-                           : fidelity == Fidelity::kFast ? "Fast"
-                                                         : "Timing";
-  return name + (with_knobs ? "WithKnobs" : "");
-}
-
-INSTANTIATE_TEST_SUITE_P(
-    Fidelities, RandomComputers,
-    testing::Combine(testing::Values(Fidelity::kCycle, Fidelity::kFast, Fidelity::kTiming), testing::Bool()),
-    suite_name);
-
-class RandomTimelines : public testing::TestWithParam<bool> {};
-
-TEST_P(RandomTimelines, AreTheSameAtEachFidelity) {
+TEST_P(RandomComputers, HaveTheSameTimeLineAtEachFidelity) {
   test::RandomKnobs knobs = GetParam() ? test::RandomKnobs::all() : test::RandomKnobs{};
   knobs.large_images = false;
   constexpr std::array kFidelities = {Fidelity::kCycle, Fidelity::kFast, Fidelity::kTiming};
@@ -294,54 +302,42 @@ TEST_P(RandomTimelines, AreTheSameAtEachFidelity) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Knobs, RandomTimelines, testing::Bool(),
-                         [](const auto& suite) { return suite.param ? "With" : "Without"; });
-
-// What differs in rows.csv and conflicts.csv between a run and the plain loop over events.
-std::string conflicts_that_differ(std::uint64_t seed, const test::RandomKnobs& knobs, Fidelity fidelity) {
+// What differs in rows.csv and conflicts.csv between runs and the plain loop over events.
+std::string conflicts_that_differ(std::uint64_t seed, const test::RandomKnobs& knobs) {
   const test::RandomComputer computer = test::make_random_computer(seed, knobs);
   const platform::BoardConfig board = test::board_config(computer);
   const platform::Tables tables = test::board_tables(computer.board);
-  Pictures pictures(computer.board);
   const test::PlainComputerInput& input = computer.input;
-  test::MonitoringBinder binder;
-  runs::CameraSimulation simulation(board, tables, pictures, static_cast<std::uint64_t>(input.frames), binder,
-                                    fidelity);
-  simulation.record_conflicts();
-  std::string rows = stats::rows_csv_head(board);
-  std::uint64_t frames = 0;
-  while (!simulation.finished()) {
-    simulation.advance();
-    for (const fpga::FrameConflicts& frame : simulation.take_conflicts())
-      rows += stats::rows_csv(board, frames++, frame);
-  }
   const test::PlainCycleResult core = test::run_plain_computer(input).core;
-  std::string text = test::differing_lines(test::plain_rows_csv(input.board.core, core.strips), rows);
-  text += test::differing_lines(test::plain_conflicts_csv(input.board.core, core.tiles),
-                                stats::conflicts_csv(board, *simulation.conflicts()));
-  for (const std::string& failed : simulation.statistics().failed) text += failed + '\n';
+  const auto differences = [&](Fidelity fidelity) {
+    Pictures pictures(computer.board);
+    test::MonitoringBinder binder;
+    runs::CameraSimulation simulation(board, tables, pictures, static_cast<std::uint64_t>(input.frames),
+                                      binder, fidelity);
+    simulation.record_conflicts();
+    std::string rows = stats::rows_csv_head(board);
+    std::uint64_t frames = 0;
+    while (!simulation.finished()) {
+      simulation.advance();
+      for (const fpga::FrameConflicts& frame : simulation.take_conflicts())
+        rows += stats::rows_csv(board, frames++, frame);
+    }
+    std::string text = test::differing_lines(test::plain_rows_csv(input.board.core, core.strips), rows);
+    text += test::differing_lines(test::plain_conflicts_csv(input.board.core, core.tiles),
+                                  stats::conflicts_csv(board, *simulation.conflicts()));
+    for (const std::string& failed : simulation.statistics().failed) text += failed + '\n';
+    return text;
+  };
+  const std::string text = differences_at({Fidelity::kCycle, Fidelity::kTiming}, differences);
   return text.empty() ? text : text + platform::to_yaml(board);
 }
 
-class RandomConflicts : public testing::TestWithParam<std::tuple<Fidelity, bool>> {};
-
-TEST_P(RandomConflicts, EqualThePlainLoopOverEvents) {
-  const auto [fidelity, with_knobs] = GetParam();
-  test::RandomKnobs knobs = with_knobs ? test::RandomKnobs::all() : test::RandomKnobs{};
-  knobs.large_images = false;
-  std::vector<test::ChildWork> jobs;
-  for (std::uint64_t seed = 0; seed < computers(100); ++seed)
-    jobs.push_back(
-        [seed, knobs, fidelity = fidelity] { return conflicts_that_differ(seed, knobs, fidelity); });
-  const std::vector<test::ChildResult> results = test::run_in_children(jobs, processors());
-  for (std::size_t seed = 0; seed < results.size(); ++seed)
-    EXPECT_TRUE(results[seed].ok()) << "seed " << seed << ":\n" << results[seed].text;
+TEST_P(RandomComputers, HaveTheConflictsOfThePlainLoop) {
+  expect_none(computers(100), conflicts_that_differ);
 }
 
-INSTANTIATE_TEST_SUITE_P(Fidelities, RandomConflicts,
-                         testing::Combine(testing::Values(Fidelity::kCycle, Fidelity::kTiming),
-                                          testing::Bool()),
-                         suite_name);
+INSTANTIATE_TEST_SUITE_P(Knobs, RandomComputers, testing::Bool(),
+                         [](const auto& suite) { return suite.param ? "With" : "Without"; });
 
 // What is wrong with the steady rate of the default number of frames, beside that of many.
 std::string steady_problems(std::uint64_t seed) {
