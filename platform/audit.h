@@ -35,8 +35,7 @@ class Audit {
     fail(fmt::format("{} = {}, but {} = {}", what, value, as, limit));
   }
   void fail(std::string message) { failed_.push_back(std::move(message)); }
-  const std::vector<std::string>& failed() const& { return failed_; }
-  std::vector<std::string> failed() && { return std::move(failed_); }
+  const std::vector<std::string>& failed() const { return failed_; }
 
  private:
   std::vector<Identity>* compared_;

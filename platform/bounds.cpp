@@ -1,11 +1,8 @@
 #include "platform/bounds.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
-#include <stdexcept>
-#include <utility>
 
 #include "models/capture/camera_timing.h"
 #include "models/fpga/access_pattern.h"

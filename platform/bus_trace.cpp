@@ -5,7 +5,6 @@
 #include <string_view>
 #include <tuple>
 
-#include "models/fpga/local_bus_control.h"
 #include "models/memory/memory_config.h"
 #include "platform/computer_parts.h"
 

@@ -30,10 +30,10 @@ namespace stereotlm::platform {
 // The window is a range of times, or the time of a frame of the core, from its start strobe to its end. A
 // burst belongs to it if the burst ends after the window begins, and requests its bus before the window ends.
 // A level belongs to it if its time is after the beginning of the window, and not after its end.
-class BusTrace : private pci::PciBusObserver,
-                 private pci::LocalBusMasterObserver,
-                 private fpga::LocalBusObserver,
-                 private fpga::FrameObserver {
+class BusTrace : public pci::PciBusObserver,
+                 public pci::LocalBusMasterObserver,
+                 public fpga::LocalBusObserver,
+                 public fpga::FrameObserver {
  public:
   // If the window names a frame, the whole frame is traced. `observer` outlives this object. Throws
   // std::invalid_argument if a window of rows names no frame, or if a clock of the board is out of range.
@@ -41,11 +41,16 @@ class BusTrace : private pci::PciBusObserver,
   BusTrace(const BusTrace&) = delete;
   BusTrace& operator=(const BusTrace&) = delete;
 
-  // The observers of the blocks. `side`: 0 left, 1 right.
-  pci::PciBusObserver& pci_bus() { return *this; }
-  pci::LocalBusMasterObserver& bridge() { return *this; }
-  fpga::LocalBusObserver& local_bus() { return *this; }
-  fpga::FrameObserver& core() { return *this; }
+  // What the blocks do.
+  void pci_burst_ended(const pci::EndedPciBurst& burst) override;
+  void words_posted(std::uint64_t now_ps, std::size_t words) override;
+  void transfer_waits(std::uint64_t now_ps, pci::LocalBusSource source) override;
+  void burst_begins(std::uint64_t now_ps, pci::LocalBusSource source, std::size_t words) override;
+  void posted_words_leave(std::uint64_t at_ps, std::size_t words) override { leaving_ = {at_ps, words}; }
+  void local_burst_ended(const fpga::EndedLocalBurst& burst) override;
+  void frame_begun(std::uint64_t strobe_ps) override;
+  void frame_ended(const fpga::FrameTimes& times) override;
+  // The observer of a capture board. `side`: 0 left, 1 right.
   capture::FifoObserver& capture_fifo(std::size_t side) { return fifos_[side]; }
   // `show(now_ps)` lets both observers of FIFOs receive all words up to a time.
   void set_show_words(std::function<void(std::uint64_t)> show) { show_words_ = std::move(show); }
@@ -96,15 +101,6 @@ class BusTrace : private pci::PciBusObserver,
     BusBurst burst;
     std::uint64_t free_ps = 0;  // its bus is free
   };
-
-  void pci_burst_ended(const pci::EndedPciBurst& burst) override;
-  void words_posted(std::uint64_t now_ps, std::size_t words) override;
-  void transfer_waits(std::uint64_t now_ps, pci::LocalBusSource source) override;
-  void burst_begins(std::uint64_t now_ps, pci::LocalBusSource source, std::size_t words) override;
-  void posted_words_leave(std::uint64_t at_ps, std::size_t words) override { leaving_ = {at_ps, words}; }
-  void local_burst_ended(const fpga::EndedLocalBurst& burst) override;
-  void frame_begun(std::uint64_t strobe_ps) override;
-  void frame_ended(const fpga::FrameTimes& times) override;
 
   std::uint64_t take_posted(std::size_t words);
   void settle_posted(std::uint64_t now_ps);

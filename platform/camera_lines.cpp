@@ -27,12 +27,6 @@ std::int64_t from_to(std::uint64_t from_ps, std::uint64_t to_ps) {
   return static_cast<std::int64_t>(to_ps) - static_cast<std::int64_t>(from_ps);
 }
 
-// Against the clocks of the local bus those of the PCI bus may have few phases. Then two phases that differ
-// by less than half a step are the same.
-std::int64_t phase_tolerance_ps(const Clock& pci, const Clock& local) {
-  return static_cast<std::int64_t>(local.edge_ps(1) / pci.phases_against(local) / 2) - kRounding;
-}
-
 }  // namespace
 
 CameraLines::CameraLines(pci::PciBusControl& pci_bus, pci::BridgeControl& bridge, FastBoard& board,
@@ -43,7 +37,9 @@ CameraLines::CameraLines(pci::PciBusControl& pci_bus, pci::BridgeControl& bridge
       board_(board),
       captures_(captures),
       has_pixels_(has_pixels),
-      phase_tolerance_ps_(phase_tolerance_ps(pci_bus.clock(), local_bus_.clock())) {}
+      phase_tolerance_ps_(static_cast<std::int64_t>(local_bus_.clock().edge_ps(1) /
+                                                    pci_bus.clock().phases_against(local_bus_.clock()) / 2) -
+                          kRounding) {}
 
 bool CameraLines::skip(std::uint64_t now_ps, std::uint64_t end_ps) {
   bridge_.settle(now_ps);

@@ -79,7 +79,6 @@ class CameraLines {
     std::uint64_t bursts = 0;        // on the local bus
     std::uint64_t local_busy = 0;    // clocks
   };
-  // How a line begins.
   struct Beginning {
     std::size_t last_granted = 0;  // master of the PCI bus
     std::int64_t pci_ps = 0;       // from the time of the requests to the next clock of the PCI bus
@@ -110,7 +109,6 @@ class CameraLines {
     std::size_t turns = 0;         // how often the turn on the local bus was passed on
     std::uint64_t idle_clock = 0;  // of the last burst on the local bus
   };
-  // The line that is being recorded.
   struct Record {
     Beginning beginning;
     // How far the clocks of the PCI bus could move against the pixels, and those of the local bus against
@@ -157,7 +155,8 @@ class CameraLines {
   FastBoard& board_;
   OfSides<capture::CaptureControl>& captures_;
   bool has_pixels_;
-  // Two phases of the clocks of the local bus that differ by no more than this are the same.
+  // Two phases of the clocks of the local bus that differ by no more than this are the same: half a step,
+  // because against them those of the PCI bus may have few phases.
   std::int64_t phase_tolerance_ps_;
 
   std::vector<Bounds> bounds_;

@@ -213,7 +213,7 @@ Statistics collect_statistics(const BoardConfig& config, const FrameAccesses& ac
     statistics.bound = core_bound(config, accesses);
     audit_frames(statistics.frame_cycles, turn_bounds(config, accesses), audit);
   }
-  statistics.failed = std::move(audit).failed();
+  statistics.failed = audit.failed();
   return statistics;
 }
 
@@ -253,7 +253,7 @@ Statistics collect_statistics(const BoardConfig& config, const Tables& tables, c
   audit_computer(around, audit);
   audit_captures(around, counters, audit);
   audit_rates(config, accesses, whole_pictures, statistics, audit);
-  for (std::string& failed : std::move(audit).failed()) statistics.failed.push_back(std::move(failed));
+  for (const std::string& failed : audit.failed()) statistics.failed.push_back(failed);
   return statistics;
 }
 

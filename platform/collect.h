@@ -10,7 +10,6 @@
 #include "models/fpga/local_bus_control.h"
 #include "models/fpga/port_cycles.h"
 #include "models/memory/arbitration.h"
-#include "models/memory/memory_config.h"
 #include "models/pci/bridge_control.h"
 #include "models/pci/pci_bus_control.h"
 #include "platform/board.h"

@@ -3,11 +3,6 @@
 #include "platform/computer_parts.h"
 
 namespace stereotlm::platform {
-namespace {
-
-enum Interrupt : std::size_t { kBridgeInterrupt, kLeftInterrupt, kRightInterrupt, kInterruptCount };
-
-}  // namespace
 
 Computer::Computer(const sc_core::sc_module_name& name, const BoardConfig& config,
                    std::uint64_t host_memory_bytes, host::Program& program, capture::CameraSource& left,
@@ -18,7 +13,7 @@ Computer::Computer(const sc_core::sc_module_name& name, const BoardConfig& confi
       bridge("bridge", bridge_config(config)),
       host_memory("host_memory", host_memory_bytes),
       host_bridge("host_bridge"),
-      cpu("cpu", {kInterruptCount, DeviceMap().host_memory}, program),
+      cpu("cpu", {3, DeviceMap().host_memory}, program),
       left_camera("left_camera", camera_config(config), left),
       right_camera("right_camera", camera_config(config), right),
       left_capture("left_capture", capture_config(config)),
@@ -32,9 +27,9 @@ Computer::Computer(const sc_core::sc_module_name& name, const BoardConfig& confi
   binder.bind(bridge.local, board.core.local_bus, "bridge_to_local_bus");
   board.core.done(done_);
   bridge.doorbell(done_);
-  cpu.interrupts[kBridgeInterrupt].bind(bridge.interrupt);
-  cpu.interrupts[kLeftInterrupt].bind(left_capture.interrupt);
-  cpu.interrupts[kRightInterrupt].bind(right_capture.interrupt);
+  cpu.interrupts[0].bind(bridge.interrupt);
+  cpu.interrupts[1].bind(left_capture.interrupt);
+  cpu.interrupts[2].bind(right_capture.interrupt);
 }
 
 ComputerControls Computer::controls() {

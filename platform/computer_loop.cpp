@@ -19,15 +19,6 @@ ComputerLoop::ComputerLoop(const BoardConfig& config, unsigned char* host_memory
                capture::CameraControl(camera_config(config), right, captures_[1])},
       host_memory_(host_memory),
       lines_(pci_bus_, bridge_, board_, captures_, fidelity == fpga::Fidelity::kFast) {
-  bind();
-  if (const auto traffic = traffic_config(config)) {
-    pci_bus_.bind(kTrafficDevice, traffic_device_);
-    traffic_access_ps_ = traffic->access_ps;
-    traffic_.emplace(*traffic).start(pci_bus_.slot(kTrafficGenerator));
-  }
-}
-
-void ComputerLoop::bind() {
   board_.local_bus().bind(bridge_.local_bus_master());
   pci_bus_.bind(kHostMemory, host_memory_window_);
   pci_bus_.bind(kBridgeSlave, bridge_slave_);
@@ -40,9 +31,12 @@ void ComputerLoop::bind() {
   captures_[1].bind_partner(captures_[0]);
   // The trigger of the left capture board starts both cameras.
   for (capture::CameraControl& camera : cameras_) captures_[0].bind_triggered(camera);
+  if (const auto traffic = traffic_config(config)) {
+    pci_bus_.bind(kTrafficDevice, traffic_device_);
+    traffic_access_ps_ = traffic->access_ps;
+    traffic_.emplace(*traffic).start(pci_bus_.slot(kTrafficGenerator));
+  }
 }
-
-pci::PciSlot& ComputerLoop::host_slot() { return pci_bus_.slot(kHost); }
 
 std::uint64_t ComputerLoop::next_event() const {
   const auto camera = [this](std::size_t side) { return cameras_[side].next_ps(); };
@@ -77,19 +71,21 @@ void ComputerLoop::run(std::uint64_t end_ps) {
     }
     now_ps_ = next >> kKindBits;
     const auto kind = static_cast<Kind>(next & ((1U << kKindBits) - 1));
-    if (kind == kPciDecides && skip_lines(end_ps + 1)) continue;
+    // Lines of the cameras whose course is known are skipped instead of stepped.
+    if (kind == kPciDecides && lines_.begins() && lines_.skip(now_ps_, skips_end_ps(end_ps + 1))) continue;
     step(kind);
-    if (lines_.is_recording()) note_step(kind);
+    if (lines_.is_recording()) {
+      const bool is_of_pci_bus = kind == kPciSteps || kind == kPciDecides;
+      if (is_of_pci_bus || kind == kLocalBusEnds || kind == kLocalBusChooses) {
+        lines_.stepped(now_ps_, is_of_pci_bus);
+      } else {
+        lines_.drop();
+      }
+    }
     const bool level = interrupt();
     if (level && !interrupt_) noticed_ = true;
     interrupt_ = level;
   }
-}
-
-// Skips the lines of the cameras that begin now, instead of stepping them, if what they do is known and ends
-// before `end_ps`.
-bool ComputerLoop::skip_lines(std::uint64_t end_ps) {
-  return lines_.begins() && lines_.skip(now_ps_, skips_end_ps(end_ps));
 }
 
 // The end of what can be skipped: `end_ps`, or the next time at which something but the PCI bus and the
@@ -98,15 +94,6 @@ std::uint64_t ComputerLoop::skips_end_ps(std::uint64_t end_ps) const {
   if (trace_ != nullptr) end_ps = std::min(end_ps, trace_->skips_end_ps(now_ps_));
   return std::min({end_ps, board_.next_ps(), board_.local_bus().next_ps(), captures_[0].next_ps(),
                    captures_[1].next_ps(), cameras_[0].next_ps(), cameras_[1].next_ps(), bridge_read_ps_});
-}
-
-void ComputerLoop::note_step(Kind kind) {
-  const bool is_of_pci_bus = kind == kPciSteps || kind == kPciDecides;
-  if (is_of_pci_bus || kind == kLocalBusEnds || kind == kLocalBusChooses) {
-    lines_.stepped(now_ps_, is_of_pci_bus);
-  } else {
-    lines_.drop();
-  }
 }
 
 void ComputerLoop::step(Kind kind) {
@@ -127,7 +114,9 @@ void ComputerLoop::step(Kind kind) {
     case kRightCamera:
       return cameras_[kind - kLeftCamera].step(now_ps_);
     case kSlaveRead:
-      return read_bridge();
+      bridge_read_ps_ = kNever;
+      return bridge_.read(now_ps_, bridge_read_.address, reinterpret_cast<unsigned char*>(bridge_read_.words),
+                          bridge_read_.count);
     case kLeftPixels:
     case kRightPixels:
       return captures_[kind - kLeftPixels].step(now_ps_);
@@ -148,40 +137,26 @@ ComputerControls ComputerLoop::controls() {
 
 pci::PciAnswer ComputerLoop::access(std::size_t window, std::uint64_t now_ps, const pci::PciAccess& access,
                                     std::uint64_t at_ps) {
-  switch (window) {
-    case kHostMemory: {
-      unsigned char* const stored = host_memory_ + access.address;
-      const bool write = access.write;
-      std::memcpy(write ? static_cast<void*>(stored) : access.words,
-                  write ? static_cast<const void*>(access.words) : stored, 4 * access.count);
-      return {at_ps, true};
-    }
-    case kBridgeSlave:
-      return access_bridge(now_ps, access, at_ps);
-    default:
-      break;
+  if (window == kBridgeSlave && access.write) {
+    const auto* const data = reinterpret_cast<const unsigned char*>(access.words);
+    return {at_ps, bridge_.write(now_ps, access.address, data, access.count)};
+  }
+  if (window == kBridgeSlave) {
+    bridge_read_ = access;
+    bridge_read_ps_ = at_ps;
+    return {kNever, true};
+  }
+  if (window == kHostMemory) {
+    unsigned char* const stored = host_memory_ + access.address;
+    const bool write = access.write;
+    std::memcpy(write ? static_cast<void*>(stored) : access.words,
+                write ? static_cast<const void*>(access.words) : stored, 4 * access.count);
+    return {at_ps, true};
   }
   // The device of the traffic generator.
   if (access.write) return {at_ps, false};
   std::fill_n(access.words, access.count, 0);
   return {at_ps + traffic_access_ps_, true};
-}
-
-pci::PciAnswer ComputerLoop::access_bridge(std::uint64_t now_ps, const pci::PciAccess& access,
-                                           std::uint64_t at_ps) {
-  if (access.write) {
-    const auto* const data = reinterpret_cast<const unsigned char*>(access.words);
-    return {at_ps, bridge_.write(now_ps, access.address, data, access.count)};
-  }
-  bridge_read_ = access;
-  bridge_read_ps_ = at_ps;
-  return {kNever, true};
-}
-
-void ComputerLoop::read_bridge() {
-  bridge_read_ps_ = kNever;
-  bridge_.read(now_ps_, bridge_read_.address, reinterpret_cast<unsigned char*>(bridge_read_.words),
-               bridge_read_.count);
 }
 
 }  // namespace stereotlm::platform

@@ -49,7 +49,7 @@ class ComputerLoop : private pci::BridgeControl::Host {
     return bridge_.interrupts() || captures_[0].interrupt() || captures_[1].interrupt();
   }
 
-  pci::PciSlot& host_slot();
+  pci::PciSlot& host_slot() { return pci_bus_.slot(kHost); }
   FastBoard& board() { return board_; }
   ComputerControls controls();
   // The buses are traced: the loop skips nothing that `trace` shows.
@@ -93,10 +93,8 @@ class ComputerLoop : private pci::BridgeControl::Host {
     kRightDecides,
   };
 
-  void bind();
   pci::PciAnswer access(std::size_t window, std::uint64_t now_ps, const pci::PciAccess& access,
                         std::uint64_t at_ps);
-  pci::PciAnswer access_bridge(std::uint64_t now_ps, const pci::PciAccess& access, std::uint64_t at_ps);
   // A number that orders events by time, then by kind. kNever is behind all times.
   static constexpr unsigned kKindBits = 4;
   static_assert(kEndOfTime == kNever >> kKindBits);
@@ -105,10 +103,7 @@ class ComputerLoop : private pci::BridgeControl::Host {
   }
   std::uint64_t next_event() const;
   void step(Kind kind);
-  void read_bridge();
-  bool skip_lines(std::uint64_t end_ps);
   std::uint64_t skips_end_ps(std::uint64_t end_ps) const;
-  void note_step(Kind kind);
   void slave_read_ended(std::uint64_t now_ps, bool ok) override { pci_bus_.answer(now_ps, {now_ps, ok}); }
   void interrupt_changed(std::uint64_t /*now_ps*/) override {}
 

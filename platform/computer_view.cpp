@@ -18,21 +18,23 @@ ComputerCounters ComputerControls::counters(BoardCounters board, std::uint64_t n
           {camera(0), camera(1)}};
 }
 
-void ComputerControls::record(Timeline& timeline) const {
-  for (std::size_t side = 0; side < captures.size(); ++side)
-    captures[side]->observe(timeline.capture_board(side));
-  bridge.observe(timeline.bridge());
-  core.observe(timeline.core());
+void ComputerView::record(Timeline& timeline) {
+  const ComputerControls of = controls();
+  for (std::size_t side = 0; side < of.captures.size(); ++side)
+    of.captures[side]->observe(timeline.capture_board(side));
+  of.bridge.observe(timeline);
+  of.core.observe(timeline);
 }
 
-void ComputerControls::trace_buses(BusTrace& trace) const {
-  pci_bus.observe(trace.pci_bus());
-  bridge.observe(trace.bridge());
-  local_bus.observe(trace.local_bus());
-  core.observe(trace.core());
-  for (std::size_t side = 0; side < captures.size(); ++side)
-    captures[side]->observe(trace.capture_fifo(side));
-  trace.set_show_words([captures = captures](std::uint64_t now) {
+void ComputerView::trace_buses(BusTrace& trace) {
+  const ComputerControls of = controls();
+  of.pci_bus.observe(trace);
+  of.bridge.observe(trace);
+  of.local_bus.observe(trace);
+  of.core.observe(trace);
+  for (std::size_t side = 0; side < of.captures.size(); ++side)
+    of.captures[side]->observe(trace.capture_fifo(side));
+  trace.set_show_words([captures = of.captures](std::uint64_t now) {
     for (const capture::CaptureControl* const capture : captures) capture->show_words(now);
   });
 }

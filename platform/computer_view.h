@@ -26,10 +26,6 @@ struct ComputerControls {
 
   // `board`: the counters of the board at `now_ps`, up to which the controls have been stepped.
   ComputerCounters counters(BoardCounters board, std::uint64_t now_ps) const;
-  // Hands everything that happens to `timeline`, which outlives the controls. To be called at time 0.
-  void record(Timeline& timeline) const;
-  // Hands what the buses and the queues do to `trace`, which outlives the controls. To be called at time 0.
-  void trace_buses(BusTrace& trace) const;
 };
 
 // What Computer and FastComputer show of a run.
@@ -42,16 +38,16 @@ class ComputerView {
   ComputerCounters counters() { return controls().counters(board_counters(), now_ps()); }
   // A measure of progress towards a result. It advances a running frame to the present.
   std::uint64_t work_done();
-  // See ComputerControls.
-  void record(Timeline& timeline) { controls().record(timeline); }
-  virtual void trace_buses(BusTrace& trace) { controls().trace_buses(trace); }
+  // Hands everything that happens to `timeline`, which outlives the computer. To be called at time 0.
+  void record(Timeline& timeline);
+  // Hands what the buses and the queues do to `trace`, which outlives the computer. To be called at time 0.
+  virtual void trace_buses(BusTrace& trace);
 
  private:
   virtual ComputerControls controls() = 0;
   // The time up to which the controls have been stepped.
   virtual std::uint64_t now_ps() const = 0;
   virtual BoardCounters board_counters() = 0;
-  // Advances a running frame to the present.
   virtual void catch_up() = 0;
 };
 

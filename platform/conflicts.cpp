@@ -26,11 +26,6 @@ std::vector<AddressRange> captured(const BoardConfig& board) {
   return ranges;
 }
 
-// Grants come first, because nothing is less than everything.
-bool comes_before(const TraceRun& a, const TraceRun& b) {
-  return std::tie(a.strip, a.requester, a.bank, a.by) < std::tie(b.strip, b.requester, b.bank, b.by);
-}
-
 }  // namespace
 
 void ConflictSums::check_rows(const Statistics& statistics, Audit& audit) const {
@@ -105,7 +100,7 @@ std::vector<std::string> Conflicts::failed(const Statistics& statistics) const {
         std::accumulate(each->cycles.begin(), each->cycles.end(), std::uint64_t{0});
   }
   sums.check_tiles(statistics, audit);
-  return std::move(audit).failed();
+  return audit.failed();
 }
 
 FrameRuns frame_runs(const fpga::FrameConflicts& frame) {
@@ -134,7 +129,10 @@ FrameRuns frame_runs(const fpga::FrameConflicts& frame) {
     const fpga::StallCause& cause = frame.causes[stalls.cause];
     add(stalls.strip, cause.requester, cause.bank, cause.by, stalls.cycles);
   }
-  std::sort(result.runs.begin(), result.runs.end(), comes_before);
+  // Grants come first, because nothing is less than everything.
+  std::sort(result.runs.begin(), result.runs.end(), [](const TraceRun& a, const TraceRun& b) {
+    return std::tie(a.strip, a.requester, a.bank, a.by) < std::tie(b.strip, b.requester, b.bank, b.by);
+  });
   return result;
 }
 

@@ -7,12 +7,6 @@
 #include "platform/device_map.h"
 
 namespace stereotlm::platform {
-namespace {
-
-// The longest time that the loop runs ahead of the kernel.
-constexpr std::uint64_t kMostAheadPs = 10'000'000'000;  // 10 ms
-
-}  // namespace
 
 FastComputer::FastComputer(const sc_core::sc_module_name& name, const BoardConfig& config,
                            std::uint64_t host_memory_bytes, host::Program& program,
@@ -37,10 +31,6 @@ void FastComputer::request(pci::PciMasterIf& master, std::uint64_t from_ps) {
   loop_.host_slot().request(*this, from_ps);
 }
 
-pci::BurstResult FastComputer::transferred(std::uint64_t now_ps) const {
-  return loop_.pci_bus().slot(kHost).transferred(now_ps);
-}
-
 void FastComputer::end_burst(const pci::BurstResult& result) {
   burst_has_ended_ = true;
   result_ = result;
@@ -54,6 +44,7 @@ void FastComputer::trace_buses(BusTrace& trace) {
 
 // Steps the loop whenever the program has done everything that it does at a time.
 void FastComputer::run() {
+  constexpr std::uint64_t kMostAheadPs = 10'000'000'000;  // 10 ms: the loop runs ahead of the kernel
   for (;;) {
     while (sc_core::sc_pending_activity_at_current_time()) wait(sc_core::SC_ZERO_TIME);
     loop_.run(kernel_time::now_ps() + kMostAheadPs);

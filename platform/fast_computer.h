@@ -2,9 +2,7 @@
 
 #include <cstdint>
 #include <memory>
-#include <string>
 #include <systemc>
-#include <vector>
 
 #include "models/binder.h"
 #include "models/capture/camera_control.h"
@@ -54,7 +52,9 @@ class FastComputer : public sc_core::sc_module,
 
   // The slot of the processor's bridge, in which this module stands between the bus and the bridge.
   void request(pci::PciMasterIf& master, std::uint64_t from_ps) override;
-  pci::BurstResult transferred(std::uint64_t now_ps) const override;
+  pci::BurstResult transferred(std::uint64_t now_ps) const override {
+    return loop_.pci_bus().slot(kHost).transferred(now_ps);
+  }
   const Clock& clock() const override { return loop_.pci_bus().clock(); }
   pci::PciBurst begin_burst(std::uint64_t address_clock_ps) override {
     return master_->begin_burst(address_clock_ps);

@@ -1,23 +1,20 @@
 #include "platform/preloaded_system.h"
 
-#include <stdexcept>
+#include <fmt/format.h>
 
+#include <stdexcept>
+#include <vector>
+
+#include "models/fpga/access_pattern.h"
+#include "models/fpga/frame_run.h"
+#include "models/memory/arbitration.h"
+#include "platform/collect.h"
 #include "platform/config/buffer_layout.h"
 
 namespace stereotlm::platform {
 namespace {
 
 using kernels::RectificationTable;
-
-host::IdealHostConfig host_config(const BoardConfig& board, std::uint64_t frames, fpga::Fidelity fidelity) {
-  host::IdealHostConfig config;
-  config.width = board.image.width;
-  config.height = board.image.height;
-  config.frames = frames;
-  config.pixels = fidelity != fpga::Fidelity::kTiming;
-  config.buffers = buffer_bases(board);
-  return config;
-}
 
 const RectificationTable* pointer_to(const std::optional<RectificationTable>& table) {
   return table ? &*table : nullptr;
@@ -35,12 +32,43 @@ PreloadedSystem::PreloadedSystem(const sc_core::sc_module_name& name, const Boar
                                  host::FrameSink& sink, Binder& binder, fpga::Fidelity fidelity)
     : sc_module(name),
       board("board", checked(config, tables), binder, fidelity),
-      host("host", host_config(config, frames, fidelity), pointer_to(tables.left), pointer_to(tables.right),
-           source, sink) {
+      host("host",
+           {config.image.width, config.image.height, frames, fidelity != fpga::Fidelity::kTiming,
+            buffer_bases(config)},
+           pointer_to(tables.left), pointer_to(tables.right), source, sink) {
   binder.bind(host.registers, board.core.registers, "host_to_registers");
   binder.bind(host.memory, board.core.local_bus, "host_to_local_bus");
   board.core.done(done_);
   host.done(done_);
+}
+
+Statistics run_core(const BoardConfig& board, const Tables& tables, std::uint64_t frames,
+                    std::uint64_t stall_timeout_cycles) {
+  if (frames == 0) throw std::invalid_argument("frames = 0: must be 1 or more");
+  check_tables(board, tables);
+  const fpga::CoreConfig config = core_config(board);
+  const fpga::BufferBases buffers = buffer_bases(board);
+  const std::vector<memory::SsramBankConfig> banks = ssram_configs(board);
+  memory::Arbitration arbitration(board.fpga.arbiter, banks);
+  fpga::FrameRun core(config, banks, arbitration, stall_timeout_cycles);
+  fpga::AccessPatterns patterns{fpga::AccessPattern(core.control().geometry(), config.pixel_cache),
+                                fpga::AccessPattern(core.control().geometry(), config.pixel_cache)};
+  if (tables.left) patterns[0].set_entries(tables.left->entries.data());
+  if (tables.right) patterns[1].set_entries(tables.right->entries.data());
+  for (std::uint64_t frame = 0; frame < frames; ++frame) {
+    core.start_direct(core.done_cycle(), buffers.of_frame(frame), patterns);
+    while (!core.control().frame_done()) {
+      core.run_ahead(core.cycle() + stall_timeout_cycles);
+      if (core.stalled_cycles() == 0) continue;
+      throw std::runtime_error(
+          fmt::format("frame {} of the core: no slot consumed and no result written for {} cycles", frame,
+                      stall_timeout_cycles));
+    }
+    core.finish();
+    core.end();
+  }
+  return collect_statistics(board, frame_accesses(board, tables), "fast", core.frame_cycles(),
+                            counters_of(core, arbitration));
 }
 
 }  // namespace stereotlm::platform

@@ -1,7 +1,6 @@
 #include "platform/timeline.h"
 
 #include <algorithm>
-#include <utility>
 
 #include "models/pci/bridge_registers.h"
 #include "platform/audit.h"
@@ -330,7 +329,7 @@ std::vector<std::string> Timeline::failed(const Statistics& statistics) const {
   audit.equal("recorded: latencies", latency_count_, "frames", statistics.frames);
   audit.equal("recorded: parts of the latencies, ps", parts_ps_, "time from capture to host", latencies_ps_);
   audit.equal("recorded: frames with times out of order", disordered_, "allowed", 0);
-  return std::move(audit).failed();
+  return audit.failed();
 }
 
 }  // namespace stereotlm::platform

@@ -6,7 +6,6 @@
 #include <deque>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -17,7 +16,6 @@
 #include "platform/collect.h"
 #include "platform/config/board_config.h"
 #include "platform/config/buffer_layout.h"
-#include "platform/driver_observer.h"
 #include "platform/timeline_records.h"
 
 namespace stereotlm::platform {
@@ -28,17 +26,23 @@ namespace stereotlm::platform {
 //
 // Events are handed out in the order of their ends. It keeps only the events since the capture of the last
 // frame that was delivered.
-class Timeline : private pci::BridgeObserver, private fpga::FrameObserver, private DriverObserver {
+class Timeline : public pci::BridgeObserver, public fpga::FrameObserver, public DriverObserver {
  public:
   explicit Timeline(const BoardConfig& board);
   Timeline(const Timeline&) = delete;
   Timeline& operator=(const Timeline&) = delete;
 
-  // The observers of the blocks and of the driver. `side`: 0 left, 1 right.
-  DriverObserver& driver() { return *this; }
+  // What the driver and the blocks do.
+  void starts(Activity activity, const std::vector<Awaited>& awaited) override;
+  void dma_started(unsigned channel, std::uint64_t now_ps) override;
+  void transfer_begun(unsigned channel, std::uint64_t begin_ps, const pci::DmaDescriptor& moved) override;
+  void transfer_ended(unsigned channel, std::uint64_t now_ps) override;
+  void interrupts_raised(std::uint64_t now_ps, std::uint32_t interrupts) override;
+  void interrupts_cleared(std::uint64_t now_ps, std::uint32_t interrupts) override;
+  void frame_begun(std::uint64_t strobe_ps) override;
+  void frame_ended(const fpga::FrameTimes& times) override;
+  // The observer of a capture board. `side`: 0 left, 1 right.
   capture::CaptureObserver& capture_board(std::size_t side) { return boards_[side]; }
-  pci::BridgeObserver& bridge() { return *this; }
-  fpga::FrameObserver& core() { return *this; }
 
   // The next frame is delivered, now.
   void deliver(const Delivery& delivery);
@@ -101,15 +105,6 @@ class Timeline : private pci::BridgeObserver, private fpga::FrameObserver, priva
     std::uint64_t words_ = 0;  // of the captures that have ended
     std::uint64_t dropped_pixels_ = 0;
   };
-
-  void starts(Activity activity, const std::vector<Awaited>& awaited) override;
-  void dma_started(unsigned channel, std::uint64_t now_ps) override;
-  void transfer_begun(unsigned channel, std::uint64_t begin_ps, const pci::DmaDescriptor& moved) override;
-  void transfer_ended(unsigned channel, std::uint64_t now_ps) override;
-  void interrupts_raised(std::uint64_t now_ps, std::uint32_t interrupts) override;
-  void interrupts_cleared(std::uint64_t now_ps, std::uint32_t interrupts) override;
-  void frame_begun(std::uint64_t strobe_ps) override;
-  void frame_ended(const fpga::FrameTimes& times) override;
 
   // An event of a pair, if there is a pair.
   TimelineEvent event_of(EventKind kind, const char* what, std::optional<std::uint64_t> frame,

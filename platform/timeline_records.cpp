@@ -1,7 +1,5 @@
 #include "platform/timeline_records.h"
 
-#include <numeric>
-
 #include "models/fpga/core_ports.h"
 #include "platform/computer_parts.h"
 

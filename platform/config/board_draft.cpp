@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <optional>
 #include <set>
 #include <system_error>
@@ -87,16 +90,62 @@ void advise_extends(std::vector<Finding>& findings) {
   findings.insert(findings.begin(), Finding({Place::kBoard, 1, 1}, text));
 }
 
-bool is_file(const std::filesystem::path& path) {
-  std::error_code none;
-  return std::filesystem::is_regular_file(path, none);
-}
-
 std::string text_of(const std::string& path, const YamlNode& value, const std::string& rule) {
   return fmt::format("{} = {}: {}", path, short_text(value), rule);
 }
 
+std::string lines_of(const std::vector<Diagnostic>& diagnostics, const std::string& note) {
+  std::vector<std::string> lines;
+  for (const Diagnostic& diagnostic : diagnostics) {
+    if (lines.size() == BoardError::kMostLines) {
+      const std::size_t more = diagnostics.size() - lines.size();
+      lines.push_back(fmt::format("and {} error{} more", more, more == 1 ? "" : "s"));
+      break;
+    }
+    lines.push_back(diagnostic.place + ": " + diagnostic.text);
+  }
+  if (!note.empty()) lines.push_back(note);
+  return fmt::format("{}", fmt::join(lines, "\n"));
+}
+
 }  // namespace
+
+BoardError::BoardError(std::vector<Diagnostic> diagnostics, const std::string& note)
+    : std::runtime_error(lines_of(diagnostics, note)), diagnostics_(std::move(diagnostics)) {}
+
+std::string read_text_file(const std::string& path, const std::string& kind) {
+  const auto refuse = [&path](const std::string& rule) { throw BoardError({{path, rule}}); };
+  constexpr std::size_t kLargestBytes = std::size_t{1} << 20;
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error)) refuse("a folder, not a " + kind);
+  std::ifstream file(path, std::ios::binary);
+  if (!file) refuse(fmt::format("cannot be read: {}", std::strerror(errno)));
+  std::string text(kLargestBytes + 1, '\0');
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (file.bad()) refuse("cannot be read: input error");
+  text.resize(static_cast<std::size_t>(file.gcount()));
+  if (text.size() > kLargestBytes) refuse(fmt::format("larger than {} bytes: not a {}", kLargestBytes, kind));
+  return text;
+}
+
+BoardConfig load_board(const std::string& board, const std::vector<std::string>& sets) {
+  BoardDraft draft(board);
+  for (const std::string& set : sets) draft.set(set);
+  return draft.read();
+}
+
+std::vector<std::string> preset_names() {
+  std::vector<std::string> names;
+  for (const Preset& preset : presets()) names.emplace_back(preset.name);
+  return names;
+}
+
+std::string_view preset_text(std::string_view name) {
+  for (const Preset& preset : presets()) {
+    if (preset.name == name) return preset.text;
+  }
+  throw std::out_of_range(fmt::format("{}: not a preset", name));
+}
 
 std::string path_problem(const std::string& path) {
   if (path == "extends") return "extends can only be given in the board file";
@@ -122,12 +171,13 @@ bool is_board_file(const std::string& board) {
 
 BoardDraft::BoardDraft(const std::string& board) {
   std::string text;
+  std::error_code none;
   const std::vector<std::string> names = preset_names();
   if (std::find(names.begin(), names.end(), board) != names.end()) {
     board_name_ = "preset " + board;
     text = preset_text(board);
   } else if (const std::filesystem::path inside = std::filesystem::path(board) / "config.yaml";
-             is_file(inside)) {
+             std::filesystem::is_regular_file(inside, none)) {
     fail(board, fmt::format("a folder, not a board file; its board is {}", inside.string()));
   } else if (is_board_file(board)) {
     board_name_ = board;

@@ -16,6 +16,7 @@
 #include "models/memory/arbitration_policies.h"
 #include "models/pci/pci_config.h"
 #include "platform/config/board_reader.h"
+#include "platform/config/board_yaml.h"
 #include "platform/config/buffer_layout.h"
 
 namespace stereotlm::platform {
@@ -114,7 +115,7 @@ Key coded(const char* path, Read read, Write write, std::string meaning, std::st
   return {path, std::move(meaning), "", {}, std::move(rule), std::nullopt, false, write, read};
 }
 
-// A part of the value of another key, whose code reads and writes it; or a key of a bank.
+// A part of the value of another key, whose code reads and writes it; or a key of a bank, or a section.
 Key part(const char* path, std::string meaning, const char* unit, std::string rule,
          const std::optional<IntegerRule>& numbers = std::nullopt) {
   return {path, std::move(meaning), unit, {}, std::move(rule), numbers};
@@ -162,7 +163,6 @@ std::vector<std::string> census_size_texts() {
 constexpr std::array kPlainCosts = {kernels::CostKind::kSad, kernels::CostKind::kSsd,
                                     kernels::CostKind::kZncc};
 
-// Every cost.
 std::vector<std::string> cost_texts() {
   std::vector<std::string> texts;
   for (const kernels::CostKind kind : kPlainCosts) texts.push_back(cost_text({kind, 0}));
@@ -171,16 +171,13 @@ std::vector<std::string> cost_texts() {
   return texts;
 }
 
-bool is_board_name(std::string_view name) {
-  const bool printable = std::none_of(
-      name.begin(), name.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; });
-  return !name.empty() && printable;
-}
-
 void read_name(ValueReader& values, const Key& key, const Entry& entry, BoardConfig& board) {
-  if (!is_text(entry.value) || !is_board_name(entry.value.text))
+  const std::string& name = entry.value.text;
+  const bool is_printable = std::none_of(
+      name.begin(), name.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; });
+  if (!is_text(entry.value) || name.empty() || !is_printable)
     return values.report(key.path, entry.value, key.rule_text);
-  board.name = entry.value.text;
+  board.name = name;
 }
 
 void read_priority(ValueReader& values, const Key& key, const Entry& entry, BoardConfig& board) {
@@ -398,12 +395,8 @@ std::vector<Key> make_keys() {
       optional(integer(
           "pci.width_bits", [](B& b) { return &b.pci.width_bits; },
           "width of the PCI bus; optional, without it 32", "bits", pci::kWidthRule)),
-      optional({"pci.load",
-                "a third-party master that loads the PCI bus; optional, without it none",
-                "",
-                {},
-                "none or a map of burst_words, interval_us, first_us, access_us",
-                std::nullopt}),
+      optional(part("pci.load", "a third-party master that loads the PCI bus; optional, without it none", "",
+                    "none or a map of burst_words, interval_us, first_us, access_us")),
       integer(
           "pci.load.burst_words", [](B& b) { return &b.pci.load.value().burst_words; },
           "words that each transfer of the load reads", "words", pci::kLoadBurstRule),
@@ -514,6 +507,14 @@ std::vector<Key> make_keys() {
 const std::vector<Key>& board_keys() {
   static const std::vector<Key> table = make_keys();
   return table;
+}
+
+std::vector<Key> keys() {
+  std::vector<Key> all = {
+      part("extends", "the preset that supplies the keys that the file leaves out; optional, the first key",
+           "", listed(preset_names()))};
+  all.insert(all.end(), board_keys().begin(), board_keys().end());
+  return all;
 }
 
 const Key* find_key(std::string_view path) {

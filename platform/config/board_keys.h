@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -60,6 +59,7 @@ struct Key {
 
 // All keys, in the order in which the writer of board files writes them.
 const std::vector<Key>& board_keys();
+std::vector<Key> keys();                       // `extends`, then board_keys()
 const Key* find_key(std::string_view path);    // nullptr if there is no such key
 const Key& board_key(std::string_view path);   // throws std::out_of_range
 bool has_key(const BoardConfig&, const Key&);  // false for a key below a `pci.load` that is not given

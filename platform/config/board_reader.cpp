@@ -3,12 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <optional>
 #include <set>
 #include <stdexcept>
-#include <utility>
-
-#include "platform/config/board_keys.h"
 
 namespace stereotlm::platform {
 namespace {

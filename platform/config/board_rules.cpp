@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <utility>
 
 #include "platform/config/board_reader.h"
 #include "platform/config/buffer_layout.h"

@@ -2,10 +2,7 @@
 
 #include <algorithm>
 #include <map>
-#include <string>
 #include <utility>
-#include <variant>
-#include <vector>
 
 #include "platform/config/board_keys.h"
 #include "platform/config/board_reader.h"

@@ -77,15 +77,4 @@ std::vector<std::string> preset_names();
 // The text of a preset's file. Throws std::out_of_range for an unknown name.
 std::string_view preset_text(std::string_view name);
 
-// One key of a board file. The keys of a bank are below `ssram.banks.NAME`.
-struct KeyInfo {
-  std::string path;
-  std::string meaning;
-  std::string unit;   // empty: none
-  std::string range;  // range or allowed values
-};
-
-// All keys: `extends`, then the others in the order of to_yaml().
-std::vector<KeyInfo> keys();
-
 }  // namespace stereotlm::platform

@@ -22,13 +22,6 @@ std::string& bank_at(std::optional<std::string>& bank, int /*index*/) { return *
 
 }  // namespace
 
-std::optional<Buffer> buffer_of_key(std::string_view key) {
-  for (const BufferKey& known : kBufferKeys) {
-    if (known.key == key) return known.buffer;
-  }
-  return std::nullopt;
-}
-
 std::string PlacedBuffer::label() const {
   const std::string name = name_of(buffer);
   return index < 0 ? name : name + '[' + std::to_string(index) + ']';
@@ -36,9 +29,10 @@ std::string PlacedBuffer::label() const {
 
 std::vector<PlacedBuffer> buffers(const BoardConfig& board) {
   std::vector<PlacedBuffer> all;
-  for (const BufferKey& known : kBufferKeys) {
-    if (board.fpga.joint_tables && known.buffer == Buffer::kRightLut) continue;
-    visit_buffer(board.allocation, known.buffer, [&](const auto& banks) { add(all, known.buffer, banks); });
+  for (std::size_t place = 0; place < kBufferKeys.size(); ++place) {
+    const auto buffer = static_cast<Buffer>(place);
+    if (board.fpga.joint_tables && buffer == Buffer::kRightLut) continue;
+    visit_buffer(board.allocation, buffer, [&](const auto& banks) { add(all, buffer, banks); });
   }
   std::map<std::string, std::uint64_t> used;  // [bank]: words
   for (PlacedBuffer& buffer : all) {

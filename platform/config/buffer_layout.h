@@ -18,26 +18,18 @@ namespace stereotlm::platform {
 // Buffers that share a bank lie in it in this order (contract 1.5).
 enum class Buffer { kLeftImage, kRightImage, kDisparity, kLeftLut, kRightLut };
 
-struct BufferKey {
-  Buffer buffer;
-  const char* key;  // in a board file
-};
-inline constexpr std::array<BufferKey, 5> kBufferKeys = {{{Buffer::kLeftImage, "allocation.left_image"},
-                                                          {Buffer::kRightImage, "allocation.right_image"},
-                                                          {Buffer::kDisparity, "allocation.disparity"},
-                                                          {Buffer::kLeftLut, "allocation.left_lut"},
-                                                          {Buffer::kRightLut, "allocation.right_lut"}}};
+// Their keys in a board file.
+inline constexpr std::array<const char*, 5> kBufferKeys = {"allocation.left_image", "allocation.right_image",
+                                                           "allocation.disparity", "allocation.left_lut",
+                                                           "allocation.right_lut"};
 
 // "allocation.left_image"
-constexpr const char* key_of(Buffer buffer) { return kBufferKeys[static_cast<std::size_t>(buffer)].key; }
+constexpr const char* key_of(Buffer buffer) { return kBufferKeys[static_cast<std::size_t>(buffer)]; }
 
 // "left_image"
 constexpr const char* name_of(Buffer buffer) {
   return key_of(buffer) + std::string_view("allocation.").size();
 }
-
-// The member of a key such as "allocation.left_image"; nullopt if the key is not one of an allocation.
-std::optional<Buffer> buffer_of_key(std::string_view key);
 
 // Calls `visit` with the member `buffer` of `all`, which is an AllocationConfig. The member is a std::vector
 // for a list, and a std::optional for a table. Returns the result of `visit`.

@@ -2,7 +2,6 @@
 
 #include <limits>
 #include <map>
-#include <optional>
 
 #include "models/memory/memory_config.h"
 #include "platform/config/board_keys.h"

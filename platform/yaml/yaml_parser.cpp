@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <sstream>
-#include <string_view>
 #include <utility>
 
 #include "platform/yaml/yaml_tree.h"
@@ -85,7 +84,6 @@ bool is_closed(const std::string& text, std::size_t at) {
   return false;
 }
 
-// Builds the tree from the events of yaml-cpp's parser.
 class TreeBuilder : public YAML::EventHandler {
  public:
   TreeBuilder(const std::string& text, const Places& places) : text_(text), places_(places) {}

@@ -1,26 +1,17 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <memory>
 #include <nlohmann/json.hpp>
-#include <optional>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "platform/bounds.h"
 #include "platform/config/board_yaml.h"
 #include "sw/cli/allocation_report.h"
-#include "sw/cli/board_options.h"
 #include "sw/cli/command.h"
+#include "sw/cli/run_options.h"
 #include "sw/explore/search/allocation_search.h"
 #include "sw/explore/store/store.h"
 #include "sw/explore/sweep/sweep.h"
-#include "sw/files/output_file.h"
 #include "sw/files/whole_file.h"
-#include "sw/process/command.h"
-#include "sw/process/interrupt.h"
-#include "sw/process/streams.h"
 #include "sw/runs/progress.h"
 #include "sw/runs/simulation/simulate_point.h"
 #include "sw/runs/sources/open_source.h"
@@ -155,43 +146,20 @@ std::unique_ptr<files::OutputFile> open_written(const AllocateOptions& options, 
   return file;
 }
 
-void check_store(const explore::SweepOptions& sweep, const BoardConfig& board) {
-  std::vector<std::string> names;
-  for (const platform::BankConfig& bank : board.banks) names.push_back(bank.name);
-  process::attempt_or_refuse("--out ", [&] {
-    const explore::StoreLock lock(sweep.store);
-    explore::Store(sweep.store, sweep.version).check_banks(names);
-  });
-}
-
-bool show_progress(runs::ProgressLine& line, const explore::SearchProgress& progress) {
-  line.show([&progress](double seconds) { return runs::progress_text(progress, seconds); });
-  return !process::interrupted();
-}
-
-// Writes the best allocation, if any, and prints the report.
-int finish(AllocationReport& report, const AllocateOptions& options,
-           std::unique_ptr<files::OutputFile> written) {
-  if (written && report.best) {
-    written->write(platform::to_yaml(explore::placed(report.board, report.best->witness)));
-    written->commit();
-    report.written = options.write.text();
-  }
-  if (options.json.is_given()) {
-    print_json(allocation_report_document(report));
-  } else {
-    process::print(allocation_report_text(report));
-  }
-  return process::interrupted() ? interrupted("run the same command to resume") : kDone;
-}
-
 std::uint64_t frames_of(const AllocateOptions& options, const BoardConfig& board) {
   return options.frames.number<std::uint64_t>().value_or(
       platform::allocation_period_frames(board) +
       (options.source.is_camera() ? explore::kSearchSteadyFrames : 0));
 }
 
-void check_frames(const AllocateOptions& options, const BoardConfig& board, process::Problems& problems) {
+void check(const AllocateOptions& options, const BoardConfig& board, process::Problems& problems) {
+  if (const auto problem = explore::bank_names_problem(board))
+    problems.add(fmt::format("{}: {}", options.board.argument.text(), *problem));
+  if (options.most_banks() > static_cast<int>(board.banks.size())) {
+    problems.add(fmt::format(
+        "--banks = {}: must be 1..{}, the banks of the board; --set 'ssram.banks.NEW={{}}' gives it one more",
+        options.most_banks(), board.banks.size()));
+  }
   const std::uint64_t turn = platform::allocation_period_frames(board);
   const std::uint64_t least = options.source.is_camera() ? 2 * turn : turn;
   const std::uint64_t frames = frames_of(options, board);
@@ -200,22 +168,11 @@ void check_frames(const AllocateOptions& options, const BoardConfig& board, proc
                            frames, turn, options.source.is_camera() ? ", and at least two turns" : ""));
 }
 
-void check_banks(const AllocateOptions& options, const BoardConfig& board, process::Problems& problems) {
-  if (const auto problem = explore::bank_names_problem(board))
-    problems.add(fmt::format("{}: {}", options.board.argument.text(), *problem));
-  if (options.most_banks() > static_cast<int>(board.banks.size())) {
-    problems.add(fmt::format(
-        "--banks = {}: must be 1..{}, the banks of the board; --set 'ssram.banks.NEW={{}}' gives it one more",
-        options.most_banks(), board.banks.size()));
-  }
-}
-
 int allocate(const AllocateOptions& options) {
   process::Problems problems;
   const LoadedBoard loaded = options.board.load(problems);
   const auto& board = loaded.board;
-  if (board) check_banks(options, *board, problems);
-  if (board) check_frames(options, *board, problems);
+  if (board) check(options, *board, problems);
   auto written = board ? open_written(options, *board, problems) : nullptr;
   problems.check();
   explore::SweepOptions sweep;
@@ -235,7 +192,12 @@ int allocate(const AllocateOptions& options) {
                                 search.placements(), fewest_text(*board, banks, run)));
   }
   process::catch_interrupts();
-  check_store(sweep, *board);
+  std::vector<std::string> names;
+  for (const platform::BankConfig& bank : board->banks) names.push_back(bank.name);
+  process::attempt_or_refuse("--out ", [&] {
+    const explore::StoreLock lock(sweep.store);
+    explore::Store(sweep.store, sweep.version).check_banks(names);
+  });
   runs::PointSimulator simulator = loaded.simulator();
   const auto evaluate = [&](const explore::Point& point) {
     const double rate = search.rate_to_reach(point.number);
@@ -252,13 +214,21 @@ int allocate(const AllocateOptions& options) {
                              options.keep.number<double>().value_or(kDefaultKeepPercent),
                              options.board.words_without_allocation()};
   report.is_whole = explore::simulate(search, evaluate, sweep, [&line](const explore::SearchProgress& done) {
-    return show_progress(line, done);
+    line.show([&done](double seconds) { return runs::progress_text(done, seconds); });
+    return !process::interrupted();
   });
   line.erase();
   report.all = search.best();
   report.best = search.best_of_all();
   if (report.is_whole) report.pixels = compare_pixels(*board, tables, run, report.all);
-  return finish(report, options, std::move(written));
+  if (written && report.best) {
+    written->write(platform::to_yaml(explore::placed(*board, report.best->witness)));
+    written->commit();
+    report.written = options.write.text();
+  }
+  process::print(options.json.is_given() ? json_text(allocation_report_document(report))
+                                         : allocation_report_text(report));
+  return process::interrupted() ? interrupted("run the same command to resume") : kDone;
 }
 
 }  // namespace

@@ -12,7 +12,6 @@
 #include "platform/config/board_yaml.h"
 #include "platform/config/buffer_layout.h"
 #include "sw/explore/plan/points.h"
-#include "sw/explore/search/allocation_search.h"
 #include "sw/files/text_forms.h"
 
 namespace stereotlm::cli {
@@ -185,7 +184,6 @@ std::string certificate_text(const AllocationReport& report) {
                      most > best ? fmt::format(" than {:.3f} frames/s", rounded_up(most, 3)) : "");
 }
 
-// The lines with the result of the search.
 std::string result_text(const AllocationReport& report) {
   if (!report.best)
     return report.is_whole ? "No allocation counts.\n" : "Interrupted before an allocation was known.\n";
@@ -222,7 +220,6 @@ std::string pixels_text(const AllocationReport& report) {
                      report.pixels->allocations, report.pixels->frames);
 }
 
-// The lines with the command that runs the best allocation.
 std::string command_text(const AllocationReport& report) {
   if (!report.best) return "";
   std::string text =

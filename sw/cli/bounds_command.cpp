@@ -1,20 +1,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 #include <nlohmann/json.hpp>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "platform/bounds.h"
 #include "platform/config/board_area.h"
 #include "platform/config/buffer_layout.h"
 #include "platform/config/tables.h"
-#include "sw/cli/board_options.h"
 #include "sw/cli/command.h"
+#include "sw/cli/run_options.h"
 #include "sw/files/text_forms.h"
-#include "sw/process/streams.h"
 #include "sw/stats/console_table.h"
 #include "sw/stats/stats_json.h"
 
@@ -28,14 +23,6 @@ using platform::ResourceBound;
 using Json = nlohmann::ordered_json;
 using Names = std::vector<std::string>;
 
-struct BoundsOptions : Options {
-  using Options::Options;
-
-  BoardOptions board{this};
-  JsonOption json{this};
-};
-
-// A resource and its bound.
 struct Row {
   std::string role;  // "port left_lut"; for a bank its buffers, "bank of left_image left_lut"
   std::uint64_t cycles = 0;
@@ -57,7 +44,6 @@ void add_new(Names& names, const Names& others) {
   }
 }
 
-// The buffers that a frame uses.
 std::vector<PlacedBuffer> buffers_of(const BoardConfig& board, std::uint64_t frame) {
   std::vector<PlacedBuffer> all = platform::buffers(board);
   std::map<platform::Buffer, std::uint64_t> lengths;
@@ -115,7 +101,6 @@ double headroom_percent(const Row& row, const Group& group) {
   return 100 * (1 - static_cast<double>(row.cycles) / static_cast<double>(most));
 }
 
-// What `bounds` says of a board.
 struct BoardBounds {
   const BoardConfig& board;
   std::vector<Group> groups;
@@ -224,17 +209,13 @@ Json document_of(const BoardBounds& all) {
   return document;
 }
 
-int bounds(const BoundsOptions& options) {
+int bounds(const BoardCommandOptions& options) {
   process::Problems problems;
   const LoadedBoard loaded = options.board.load(problems);
   problems.check();
   loaded.say_clock_remark();
   const BoardBounds all = bounds_of(*loaded.board, loaded.tables());
-  if (options.json.is_given()) {
-    print_json(document_of(all));
-  } else {
-    process::print(text_of(all));
-  }
+  process::print(options.json.is_given() ? json_text(document_of(all)) : text_of(all));
   return kDone;
 }
 

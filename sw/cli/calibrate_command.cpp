@@ -32,7 +32,6 @@
 #include "sw/files/whole_file.h"
 #include "sw/media/encode.h"
 #include "sw/media/load.h"
-#include "sw/process/interrupt.h"
 #include "sw/process/streams.h"
 #include "sw/runs/sources/calibration_input.h"
 #include "sw/runs/sources/calibration_library.h"

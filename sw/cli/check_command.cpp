@@ -2,24 +2,15 @@
 
 #include <nlohmann/json.hpp>
 #include <regex>
-#include <string>
 
 #include "platform/config/board_area.h"
-#include "sw/cli/board_options.h"
 #include "sw/cli/command.h"
-#include "sw/process/streams.h"
+#include "sw/cli/run_options.h"
 
 namespace stereotlm::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-struct CheckOptions : Options {
-  using Options::Options;
-
-  BoardOptions board{this};
-  JsonOption json{this};
-};
 
 std::string summary(const std::string& name, const platform::BoardConfig& board) {
   return fmt::format("{}: ok: {}x{}, window {}x{}, {} disparities, {} banks, {} MHz\n{}\n", name,
@@ -64,12 +55,13 @@ Json document_of(const std::string& name, const platform::BoardConfig* board,
   return document;
 }
 
-int check(const CheckOptions& options) {
+int check(const BoardCommandOptions& options) {
   process::Problems problems;
   const LoadedBoard loaded = options.board.load(problems);
   if (problems.empty()) loaded.say_clock_remark();
   if (options.json.is_given()) {
-    print_json(document_of(options.board.argument.text(), loaded.board ? &*loaded.board : nullptr, problems));
+    process::print(json_text(
+        document_of(options.board.argument.text(), loaded.board ? &*loaded.board : nullptr, problems)));
     return problems.empty() ? kDone : kRefused;
   }
   problems.check();

@@ -78,8 +78,8 @@ std::string paragraph(const std::string& head, std::size_t indent, const std::st
 std::string with_coloured_words(std::string text, std::size_t from,
                                 const std::vector<std::pair<std::string, process::Colour>>& words);
 
-// Prints the document to standard output.
-void print_json(const nlohmann::ordered_json& document);
+// The document as the text of --json. What is not UTF-8 is replaced.
+std::string json_text(const nlohmann::ordered_json& document);
 
 // Prints a note that the command was interrupted, and returns kInterrupted. `what`: what that means.
 int interrupted(const std::string& what);

@@ -1,16 +1,11 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <memory>
 #include <sstream>
-#include <string>
-#include <vector>
 
 #include "platform/config/board_keys.h"
 #include "sw/cli/command.h"
 #include "sw/process/command.h"
-#include "sw/process/problems.h"
-#include "sw/process/streams.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -89,22 +84,10 @@ Action parse_command_line(int argc, const char* const* argv) {
       "Exit status: 0 done; 1 failed after the first simulated cycle; 2 refused before it; 130\n"
       "interrupted.");
   Action action;
-  add_run(program, action);
-  add_check(program, action);
-  add_boards(program, action);
-  add_keys(program, action);
-  add_bounds(program, action);
-  add_explain(program, action);
-  add_calibrate(program, action);
-  add_sweep(program, action);
-  add_merge(program, action);
-  add_allocate(program, action);
-  add_plot(program, action);
-  add_conflicts(program, action);
-  add_diff(program, action);
-  add_diagram(program, action);
-  add_report(program, action);
-  add_paper(program, action);
+  for (const auto add :
+       {add_run, add_check, add_boards, add_keys, add_bounds, add_explain, add_calibrate, add_sweep,
+        add_merge, add_allocate, add_plot, add_conflicts, add_diff, add_diagram, add_report, add_paper})
+    add(program, action);
   for (CLI::App* command : program.get_subcommands({})) command->group("Commands");
   check_first_argument(program, argc, argv);
   try {

@@ -2,19 +2,12 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <optional>
-#include <string>
-#include <system_error>
-#include <vector>
 
 #include "models/binder.h"
 #include "sw/cli/command.h"
 #include "sw/cli/run_options.h"
-#include "sw/files/output_file.h"
 #include "sw/files/output_folder.h"
 #include "sw/process/command.h"
-#include "sw/process/interrupt.h"
-#include "sw/process/streams.h"
 #include "sw/report/conflicts_text.h"
 #include "sw/runs/progress.h"
 #include "sw/runs/recorded_run.h"
@@ -57,7 +50,6 @@ struct ConflictsOptions : Options {
     }
   }
 
-  // The options of the script.
   std::vector<std::string> looks() const {
     std::vector<std::string> words;
     for (const Option* option : {&format, &size}) {
@@ -89,7 +81,6 @@ files::OutputContent content_of(const runs::RunInput& input) {
   return content;
 }
 
-// What is simulated.
 struct Subject {
   std::optional<runs::RecordedRun> recorded;  // nullopt: a board
   runs::RunInput input;
@@ -176,15 +167,11 @@ std::optional<NamedBytes> figures_of(const ConflictsOptions& options, const runs
   return drawn(kConflictsScript, files, options.looks());
 }
 
-// Refuses --format or --size if they are wrong, before anything is simulated.
-void check_looks(const ConflictsOptions& options) {
-  if (options.looks().empty()) return;
-  const auto end = process::run_script(kConflictsScript, options.looks());
-  if (end.status != 0) process::refuse(end.errors.substr(0, end.errors.find_last_not_of('\n') + 1));
-}
-
 int conflicts(const ConflictsOptions& options) {
-  check_looks(options);
+  if (!options.looks().empty()) {  // refused before anything is simulated if they are wrong
+    const auto end = process::run_script(kConflictsScript, options.looks());
+    if (end.status != 0) process::refuse(end.errors.substr(0, end.errors.find_last_not_of('\n') + 1));
+  }
   Subject subject = load(options);
   runs::RunInput& input = subject.input;
   std::optional<files::OutputFolder> folder;
@@ -213,11 +200,7 @@ int conflicts(const ConflictsOptions& options) {
   }
   const auto document = report::conflicts_document(input.board, *simulation->conflicts(), shown.sums);
   runs::say_lost_pixels(statistics);
-  if (options.json.is_given()) {
-    print_json(document);
-  } else {
-    process::print(report::conflicts_text(document));
-  }
+  process::print(options.json.is_given() ? json_text(document) : report::conflicts_text(document));
   return kDone;
 }
 

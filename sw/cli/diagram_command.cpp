@@ -2,15 +2,10 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <string>
-#include <vector>
 
 #include "platform/config/board_yaml.h"
-#include "sw/cli/board_options.h"
 #include "sw/cli/command.h"
-#include "sw/files/output_file.h"
-#include "sw/process/interrupt.h"
-#include "sw/process/streams.h"
+#include "sw/cli/run_options.h"
 #include "sw/report/chart/memory_chart.h"
 #include "sw/runs/recorded_run.h"
 

@@ -1,16 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <functional>
-#include <memory>
 #include <nlohmann/json.hpp>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "sw/cli/command.h"
-#include "sw/process/interrupt.h"
-#include "sw/process/streams.h"
 #include "sw/report/difference_tables.h"
 #include "sw/report/page_data/page_data.h"
 #include "sw/runs/recorded_run.h"
@@ -130,7 +123,7 @@ int diff(const DiffOptions& options) {
   if (!aligned.run()) return interrupted("nothing is compared");
   if (csv) csv->commit();
   if (options.json.is_given()) {
-    print_json(report::diff_document(*a, *b, aligned, limits));
+    process::print(json_text(report::diff_document(*a, *b, aligned, limits)));
   } else {
     const std::string text = diff_text(*a, *b, aligned, limits);
     process::print(with_coloured_words(text, text.rfind("\n\n"),

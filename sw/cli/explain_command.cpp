@@ -5,18 +5,14 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <utility>
-#include <vector>
 
 #include "platform/bounds.h"
 #include "platform/config/board_area.h"
 #include "platform/config/buffer_layout.h"
-#include "sw/cli/board_options.h"
 #include "sw/cli/command.h"
+#include "sw/cli/run_options.h"
 #include "sw/explore/store/store.h"
 #include "sw/files/text_forms.h"
-#include "sw/process/interrupt.h"
-#include "sw/process/streams.h"
 #include "sw/runs/explanation.h"
 #include "sw/stats/console_table.h"
 
@@ -85,7 +81,7 @@ std::string resources_text(const BoardConfig& board, const Explanation& explanat
 }
 
 std::string blames_text(const Explanation& explanation) {
-  const std::vector<explore::StoredBlame>& blames = explanation.blames();
+  const std::vector<platform::BlameRow>& blames = explanation.blames();
   std::string text = "who waits for whom, % of the cycles of the frames\n";
   for (std::size_t row = 0; row < blames.size(); ++row) {
     if (row == kMostBlames) return text + "  and others, less\n";
@@ -203,12 +199,10 @@ int explain(const ExplainOptions& options) {
   runs::Explanation explanation(*board, tables, options.source.is_camera(),
                                 options.frames.number<std::uint64_t>().value_or(0));
   if (!explanation.simulate(loaded.simulator())) return kInterrupted;
-  if (options.json.is_given()) {
-    print_json(runs::explanation_document(*board, explanation));
-  } else {
-    process::print(head_text(*board, explanation) + resources_text(*board, explanation) +
-                   blames_text(explanation) + changes_text(*board, explanation));
-  }
+  process::print(options.json.is_given()
+                     ? json_text(runs::explanation_document(*board, explanation))
+                     : head_text(*board, explanation) + resources_text(*board, explanation) +
+                           blames_text(explanation) + changes_text(*board, explanation));
   return kDone;
 }
 

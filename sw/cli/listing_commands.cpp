@@ -2,15 +2,10 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "platform/config/board_keys.h"
 #include "platform/config/board_yaml.h"
 #include "sw/cli/command.h"
-#include "sw/process/problems.h"
-#include "sw/process/streams.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -24,24 +19,22 @@ std::string description(std::string_view file) {
   return line.substr(std::min(line.size(), line.find_first_not_of("# ")));
 }
 
-int list_boards(const Names& names) {
+std::string boards_text(const Names& names) {
   std::size_t width = 0;
   for (const std::string& name : names) width = std::max(width, name.size());
   std::string text;
   for (const std::string& name : names)
     text += paragraph(name, width + 2, description(platform::preset_text(name)));
-  process::print(text);
-  return kDone;
+  return text;
 }
 
-int print_boards_json(const Names& names) {
+std::string boards_json(const Names& names) {
   Json boards = Json::array();
   for (const std::string& name : names) {
     const std::string_view file = platform::preset_text(name);
     boards.push_back({{"name", name}, {"description", description(file)}, {"file", file}});
   }
-  print_json({{"schema", 1}, {"boards", std::move(boards)}});
-  return kDone;
+  return json_text({{"schema", 1}, {"boards", std::move(boards)}});
 }
 
 struct BoardsOptions : Options {
@@ -61,9 +54,9 @@ int print_boards(const BoardsOptions& options) {
     }
     names = {shown};
   }
-  if (options.json.is_given()) return print_boards_json(names);
-  if (!options.show.is_given()) return list_boards(names);
-  process::print(platform::preset_text(shown));
+  process::print(options.json.is_given()   ? boards_json(names)
+                 : options.show.is_given() ? std::string(platform::preset_text(shown))
+                                           : boards_text(names));
   return kDone;
 }
 
@@ -73,20 +66,18 @@ struct KeysOptions : Options {
   JsonOption json{this};
 };
 
-int print_keys_json() {
+std::string keys_json() {
   Json list = Json::array();
   for (const auto& key : platform::keys()) {
     Json json = {{"key", key.path}, {"meaning", key.meaning}};
     if (!key.unit.empty()) json["unit"] = key.unit;
-    json["range"] = key.range;
+    json["range"] = key.rule_text;
     list.push_back(std::move(json));
   }
-  print_json({{"schema", 1}, {"keys", std::move(list)}});
-  return kDone;
+  return json_text({{"schema", 1}, {"keys", std::move(list)}});
 }
 
-int print_keys(const KeysOptions& options) {
-  if (options.json.is_given()) return print_keys_json();
+std::string keys_text() {
   const auto keys = platform::keys();
   std::size_t path_width = 0;
   std::size_t unit_width = 0;
@@ -100,9 +91,13 @@ int print_keys(const KeysOptions& options) {
   };
   std::string text = paragraph(head("key", "unit"), indent, "meaning; below it the range or allowed values");
   for (const auto& key : keys) {
-    text += paragraph(head(key.path, key.unit), indent, key.meaning) + paragraph("", indent, key.range);
+    text += paragraph(head(key.path, key.unit), indent, key.meaning) + paragraph("", indent, key.rule_text);
   }
-  process::print(text);
+  return text;
+}
+
+int print_keys(const KeysOptions& options) {
+  process::print(options.json.is_given() ? keys_json() : keys_text());
   return kDone;
 }
 

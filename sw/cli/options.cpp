@@ -14,7 +14,6 @@
 #include "sw/files/text_forms.h"
 #include "sw/files/whole_file.h"
 #include "sw/process/command.h"
-#include "sw/process/interrupt.h"
 #include "sw/process/streams.h"
 
 // Implements options.h and command.h. The commands include these instead of CLI11, which takes long to
@@ -120,7 +119,7 @@ std::string with_coloured_words(std::string text, std::size_t from,
   return text;
 }
 
-void print_json(const nlohmann::ordered_json& document) { process::print(files::json_text(document, true)); }
+std::string json_text(const nlohmann::ordered_json& document) { return files::json_text(document, true); }
 
 int interrupted(const std::string& what) {
   process::say("note", "interrupted: " + what);

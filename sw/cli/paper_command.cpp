@@ -1,11 +1,6 @@
 #include <fmt/format.h>
 
-#include <memory>
-#include <optional>
 #include <stdexcept>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "models/kernels/limits.h"
 #include "platform/bounds.h"
@@ -16,10 +11,6 @@
 #include "sw/media/load.h"
 #include "sw/paper/document.h"
 #include "sw/paper/study.h"
-#include "sw/process/command.h"
-#include "sw/process/interrupt.h"
-#include "sw/process/problems.h"
-#include "sw/process/streams.h"
 #include "sw/runs/progress.h"
 #include "sw/runs/simulation/simulate_point.h"
 #include "sw/runs/sources/calibration_input.h"
@@ -63,13 +54,11 @@ struct PaperOptions : Options {
   TruthOptions truth{this, "the left picture"};
 };
 
-// The pictures of a scene.
 struct Pictures {
   std::unique_ptr<runs::PairSource> pairs;
   media::Truth truth;
 };
 
-// The given pair, loaded and checked.
 struct LoadedPair {
   paper::GivenPair files;
   Pictures pictures;

@@ -1,20 +1,13 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
-#include <memory>
 #include <sstream>
 #include <stdexcept>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "sw/cli/command.h"
 #include "sw/files/output_folder.h"
 #include "sw/files/whole_file.h"
 #include "sw/process/command.h"
-#include "sw/process/interrupt.h"
-#include "sw/process/problems.h"
-#include "sw/process/streams.h"
 
 namespace stereotlm::cli {
 namespace {

@@ -1,22 +1,16 @@
 #include <fmt/format.h>
 
-#include <cstdint>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <optional>
-#include <string>
 
 #include "sw/cli/command.h"
 #include "sw/explore/store/store.h"
-#include "sw/files/output_file.h"
 #include "sw/process/command.h"
-#include "sw/process/interrupt.h"
-#include "sw/process/streams.h"
 #include "sw/report/html_page.h"
 #include "sw/report/page_data/page_data.h"
 #include "sw/runs/explanation.h"
 #include "sw/runs/recorded_run.h"
-#include "sw/stats/console_table.h"
+#include "sw/runs/run_results.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -78,6 +72,7 @@ std::optional<Json> data_of_run(const ReportOptions& options, process::Problems&
       return std::nullopt;
     data["knobs"] = report::knobs_data(run->board, explanation);
   }
+  runs::say_lost_pixels(run->statistics, fmt::format("'{}': ", run->folder));
   return Json{{"kind", "run"}, {"run", std::move(data)}};
 }
 
@@ -96,6 +91,8 @@ std::optional<Json> data_of_two_runs(const ReportOptions& options, process::Prob
   };
   runs::FrameAlignment aligned(*a, *b, limits, nullptr, record(of_a), record(of_b));
   if (!aligned.run()) return std::nullopt;
+  for (const runs::RecordedRun& run : {std::cref(*a), std::cref(*b)})
+    runs::say_lost_pixels(run.statistics, fmt::format("'{}': ", run.folder));
   Json data = {{"kind", "two_runs"}};
   data.update(report::two_runs_data(of_a, of_b, aligned, limits));
   return data;
@@ -107,16 +104,6 @@ std::optional<Json> data_of(const ReportOptions& options, process::Problems& pro
   Json data = {{"kind", "database"}};
   problems.attempt("", [&] { data["database"] = report::database_data(options.inputs.texts().front()); });
   return data;
-}
-
-// `run`: of run_data().
-void say_lost_pixels(const Json& run) {
-  std::uint64_t pixels = 0;
-  for (const Json& camera : run.at("stats").value("cameras", Json::array()))
-    pixels += camera.at("dropped_pixels").get<std::uint64_t>();
-  const std::string text = stats::lost_pixels_text(pixels);
-  if (!text.empty())
-    process::say("warning", fmt::format("'{}': {}", run.at("folder").get<std::string>(), text));
 }
 
 int report(const ReportOptions& options) {
@@ -135,8 +122,6 @@ int report(const ReportOptions& options) {
   const std::string page = report::html_page(whole);
   file->write(page);
   file->commit();
-  if (data->contains("run")) say_lost_pixels(data->at("run"));
-  for (const Json& run : data->value("runs", Json::array())) say_lost_pixels(run);
   process::print(fmt::format("{}: {} kB\n", options.out.text(), (page.size() + 999) / 1000));
   return kDone;
 }

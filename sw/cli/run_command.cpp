@@ -1,15 +1,9 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <memory>
-#include <optional>
-
 #include "models/binder.h"
 #include "platform/bounds.h"
 #include "sw/cli/command.h"
 #include "sw/cli/run_options.h"
-#include "sw/process/interrupt.h"
-#include "sw/process/streams.h"
 #include "sw/runs/progress.h"
 #include "sw/runs/run_input.h"
 #include "sw/runs/run_results.h"
@@ -20,28 +14,11 @@ namespace {
 
 using runs::Simulation;
 
-// Builds the simulation. If that fails, refuses the command, because no cycle has been simulated yet.
-std::unique_ptr<Simulation> build(const runs::RunInput& input, Binder& binder) {
-  try {
-    return runs::make_simulation(input.board, input.tables, *input.pairs, input.mode(), binder);
-  } catch (const std::exception& error) {
-    process::refuse(fmt::format("the board cannot be built: {}", error.what()));
-  }
-}
-
-std::uint64_t least_frame_cycles(const runs::RunInput& input) {
-  std::uint64_t cycles = 1;
-  for (const auto& bound :
-       platform::frame_bounds(input.board, platform::frame_accesses(input.board, input.tables), 0)) {
-    cycles = std::max(cycles, bound.cycles);
-  }
-  return cycles;
-}
-
 // Simulates all frames. After an interrupt, simulates only until the frames that the core has begun are
 // finished.
 void simulate(Simulation& simulation, const runs::RunInput& input, runs::Verification* verification) {
-  const std::uint64_t frame_cycles = least_frame_cycles(input);
+  const platform::FrameAccesses accesses = platform::frame_accesses(input.board, input.tables);
+  const std::uint64_t frame_cycles = platform::turn_bounds(input.board, accesses).front().cycles;
   runs::Records records(input, [&input](const std::string& name, const std::string& text) {
     input.folder->append(name, text);
   });
@@ -72,12 +49,6 @@ void simulate(Simulation& simulation, const runs::RunInput& input, runs::Verific
   records.finish(simulation);
 }
 
-void say_verified(const runs::RunInput& input) {
-  process::say("note", fmt::format("verified: fast and cycle agree in every {} of {} frame{}",
-                                   input.timing_only ? "figure and time" : "figure, time and pixel",
-                                   input.frames, input.frames == 1 ? "" : "s"));
-}
-
 struct RunCommandOptions : Options {
   using Options::Options;
   void check_together(process::Problems& problems) override { run.check_together("run", problems); }
@@ -90,7 +61,10 @@ int run(const RunCommandOptions& options) {
   std::optional<runs::Verification> verification;
   if (options.run.verify.is_given()) verification.emplace(input);
   Binder binder;
-  const std::unique_ptr<Simulation> simulation = build(input, binder);
+  std::unique_ptr<Simulation> simulation;
+  process::attempt_or_refuse("the board cannot be built: ", [&] {
+    simulation = runs::make_simulation(input.board, input.tables, *input.pairs, input.mode(), binder);
+  });
   if (input.trace_window) simulation->trace(*input.trace_window, *input.trace, *input.trace);
   simulate(*simulation, input, verification ? &*verification : nullptr);
   const std::uint64_t done = simulation->frames_done();
@@ -102,16 +76,21 @@ int run(const RunCommandOptions& options) {
     runs::leave_out_truth_of_another_pair(input, done);
   }
   const platform::Statistics statistics = simulation->statistics();
-  runs::Verification::Outcome compared;
   const bool compares = verification && done == input.frames;
-  if (compares) compared = verification->compare(statistics);
-  if (compared.interrupted) runs::leave_out_verify(input);
+  const auto differences =
+      compares ? verification->compare(statistics) : std::optional(std::vector<std::string>());
+  if (!differences) runs::leave_out_verify(input);
   if (input.trace) input.trace->complete();  // before the earlier result is replaced: this may fail
-  const bool is_right = runs::deliver(input, statistics, simulation->last(), compared.failed);
+  const bool is_right =
+      runs::deliver(input, statistics, simulation->last(), differences.value_or(std::vector<std::string>()));
   if (input.trace) input.trace->commit();
   if (!is_right) return kFailed;
-  if (done < input.frames || compared.interrupted) return kInterrupted;
-  if (compares) say_verified(input);
+  if (done < input.frames || !differences) return kInterrupted;
+  if (compares) {
+    process::say("note", fmt::format("verified: fast and cycle agree in every {} of {} frame{}",
+                                     input.timing_only ? "figure and time" : "figure, time and pixel", done,
+                                     done == 1 ? "" : "s"));
+  }
   return kDone;
 }
 

@@ -7,7 +7,6 @@
 #include <iterator>
 #include <regex>
 #include <set>
-#include <string>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -18,12 +17,10 @@
 #include "platform/config/board_yaml.h"
 #include "sw/files/text_forms.h"
 #include "sw/process/command.h"
-#include "sw/process/interrupt.h"
 #include "sw/process/streams.h"
 #include "sw/runs/run_json.h"
 #include "sw/runs/run_results.h"
 #include "sw/runs/sources/calibration_library.h"
-#include "sw/runs/sources/open_source.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -85,7 +82,6 @@ bool lies_in(const fs::path& inner, const fs::path& folder) {
   return !no_inner && !no_folder && *inside.begin() != "..";
 }
 
-// Loads the ground truth, and checks that the last frame shows its pair.
 void load_truth(const RunOptions& options, const platform::BoardConfig* board, runs::OpenedSource& source,
                 runs::RunInput& input, process::Problems& problems) {
   if (!options.truth.file.is_given()) return;

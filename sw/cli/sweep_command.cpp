@@ -4,27 +4,19 @@
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <stdexcept>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "calib/calibration.h"
 #include "platform/config/board_draft.h"
 #include "sw/cli/command.h"
-#include "sw/cli/options.h"
 #include "sw/explore/plan/plan.h"
 #include "sw/explore/plan/points.h"
 #include "sw/explore/slurm/slurm.h"
 #include "sw/explore/store/store.h"
 #include "sw/explore/sweep/sweep.h"
-#include "sw/files/output_file.h"
 #include "sw/files/text_forms.h"
 #include "sw/files/whole_file.h"
 #include "sw/process/command.h"
-#include "sw/process/interrupt.h"
-#include "sw/process/streams.h"
 #include "sw/runs/progress.h"
 #include "sw/runs/simulation/simulate_point.h"
 #include "sw/runs/sources/calibration_input.h"
@@ -54,7 +46,6 @@ void check_sbatch(const std::string& option, process::Problems& problems) {
   }
 }
 
-// The options of `sweep`.
 struct SweepCommandOptions : Options {
   using Options::Options;
 
@@ -86,14 +77,6 @@ struct SweepCommandOptions : Options {
     return options;
   }
   bool is_slurm() const { return launcher.text() == "slurm"; }
-  // Of the job array.
-  std::uint64_t tasks() const { return shards.number<std::uint64_t>().value_or(kDefaultShards); }
-  // With their dashes.
-  std::vector<std::string> sbatch_options() const {
-    std::vector<std::string> options;
-    for (const std::string& option : sbatch.texts()) options.push_back("--" + option);
-    return options;
-  }
   // The file of --progress, for one write.
   files::OutputFile progress_file() const {
     const files::FileKind kind = {"file of --progress", [](const std::filesystem::path& path) {
@@ -109,9 +92,10 @@ struct SweepCommandOptions : Options {
                       {required("the database to write, or to continue")});
   Option jobs = Option(this, "--jobs", "N", "Worker processes; default: the processors of this machine",
                        {is_within<unsigned>(kMostJobs)});
-  Option shard =
-      Option(this, "--shard", "I/N",
-             "Only every N-th point, from number I on (0 .. N-1); see stereotlm merge", {is_shard()});
+  Option shard = Option(this, "--shard", "I/N",
+                        "Only every N-th point, from number I on (0 .. N-1); see stereotlm merge",
+                        {valid("I/N with I in 0 .. N-1, such as 0/4",
+                               [](const std::string& text) { return shard_of(text).has_value(); })});
   Option board = Option(this, "--board", "BOARD", "In place of the board that the plan names", {not_empty});
   Option calibration =
       Option(this, "--calibration", "F", "In place of the calibration that the plan names", {not_empty});
@@ -131,16 +115,11 @@ struct SweepCommandOptions : Options {
  private:
   static constexpr std::uint64_t kMostJobs = 1024;
   static constexpr std::uint64_t kMostShards = 1000;
-  static constexpr std::uint64_t kDefaultShards = 16;
 
   template <typename Number>
   static Rule is_within(std::uint64_t most) {
     return number<Number>("1.." + std::to_string(most),
                           [most](Number count) { return count >= 1 && count <= most; });
-  }
-  static Rule is_shard() {
-    return valid("I/N with I in 0 .. N-1, such as 0/4",
-                 [](const std::string& text) { return shard_of(text).has_value(); });
   }
   static void not_empty(const Option& option, process::Problems& problems) {
     if (option.is_given() && option.text().empty()) problems.add(option.name() + ": empty");
@@ -287,7 +266,6 @@ std::string kept_text(const std::string& store, const std::string& advice) {
   }
 }
 
-// Writes the counts of the sweep to the file of --progress, if it is given.
 void write_progress(const explore::SweepCounts& counts, const SweepCommandOptions& options) {
   if (!options.progress.is_given()) return;
   files::OutputFile file = options.progress_file();
@@ -295,7 +273,6 @@ void write_progress(const explore::SweepCounts& counts, const SweepCommandOption
   file.commit();
 }
 
-// Checks that the sweep can begin, and makes its database.
 void prepare(const SweepCommandOptions& options, const explore::SweepOptions& sweep,
              const explore::Plan& plan) {
   const std::uint64_t workers = std::min<std::uint64_t>(sweep.jobs, plan.size());
@@ -350,7 +327,6 @@ explore::SweepCounts sweep_here(const SweepCommandOptions& options, const explor
   }
 }
 
-// The sweep for Slurm, with the contents of all files that its tasks need.
 explore::ShardedSweep sharded(const SweepCommandOptions& options, const explore::Plan& plan,
                               const std::optional<runs::CalibrationInput>& calibration) {
   explore::ShardedSweep sweep;
@@ -366,7 +342,8 @@ explore::ShardedSweep sharded(const SweepCommandOptions& options, const explore:
   sweep.banks = plan.banks();
   sweep.version = process::kVersion;
   sweep.points = plan.size();
-  sweep.shards = std::min(options.tasks(), plan.size());
+  constexpr std::uint64_t kDefaultShards = 16;
+  sweep.shards = std::min(options.shards.number<std::uint64_t>().value_or(kDefaultShards), plan.size());
   return sweep;
 }
 
@@ -388,7 +365,7 @@ explore::SweepCounts sweep_on_slurm(const SweepCommandOptions& options, const ex
     progress.erase();
     process::say("note", note);
   };
-  explore::SlurmSweep sweep(sharded(options, plan, calibration), options.sbatch_options(), say_note);
+  explore::SlurmSweep sweep(sharded(options, plan, calibration), options.sbatch.texts(), say_note);
   process::catch_interrupts();
   try {
     sweep.begin(options.out.text());

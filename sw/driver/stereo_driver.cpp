@@ -7,7 +7,6 @@
 #include "models/capture/capture_registers.h"
 #include "models/fpga/core_config.h"
 #include "models/fpga/register_map.h"
-#include "models/kernels/joint_table.h"
 #include "models/pci/bridge_registers.h"
 #include "platform/config/buffer_layout.h"
 #include "platform/device_map.h"
@@ -28,7 +27,9 @@ constexpr std::uint64_t kDataStart = 4096;                    // address of the 
 // A capture writes through an aperture, whose page stays as it is.
 static_assert(fpga::kWidthRule.max * fpga::kHeightRule.max <= std::int64_t{bridge_map::kApertureBytes});
 
-const platform::DeviceMap kDevices;
+constexpr platform::DeviceMap kDevices;
+constexpr std::uint64_t kBridge = kDevices.bridge_registers;
+constexpr std::uint64_t kCore = kDevices.bridge_slave + bridge_map::kCoreRegisters;
 
 std::uint64_t image_bytes(const platform::BoardConfig& board) {
   return static_cast<std::uint64_t>(board.image.width) * static_cast<std::uint64_t>(board.image.height);
@@ -75,10 +76,7 @@ StereoDriver::StereoDriver(const platform::BoardConfig& board, std::uint64_t fra
   };
   check("left", buffers_.left_lut.has_value(), left_table_);
   check("right", buffers_.right_lut.has_value() || buffers_.has_joint_tables, right_table_);
-  if (buffers_.has_joint_tables) join_tables();
-}
-
-void StereoDriver::join_tables() {
+  if (!buffers_.has_joint_tables) return;
   const auto table = [this](const std::vector<std::uint32_t>& entries) {
     return kernels::RectificationTable{board_.image.width, board_.image.height, entries};
   };
@@ -90,7 +88,7 @@ void StereoDriver::join_tables() {
 void StereoDriver::run(host::HostBus& bus) {
   bus_ = &bus;
   upload_tables();
-  bridge(bridge_map::kInterruptEnable, bridge_map::kAllInterrupts);
+  bus_->write(kBridge + bridge_map::kInterruptEnable, bridge_map::kAllInterrupts);
   start_what_can_be();
   const Progress& read_backs = of(Activity::kReadBack);
   while (read_backs.ended < frames_) {
@@ -125,7 +123,8 @@ void StereoDriver::upload_tables() {
     host += bytes;
   };
   if (buffers_.has_joint_tables) {
-    for (const auto& [address, value] : core_map::joint_offsets(joint_offsets_)) core(address, value);
+    for (const auto& [address, value] : core_map::joint_offsets(joint_offsets_))
+      bus_->write(kCore + address, value);
     add(buffers_.left_lut, &joint_table_);
   } else {
     add(buffers_.left_lut, left_table_);
@@ -134,35 +133,34 @@ void StereoDriver::upload_tables() {
   if (pieces.empty()) return;
   const std::uint32_t done = bridge_map::kDmaDone << unsigned{kToBoard};
   const std::uint32_t error = bridge_map::kDmaError << unsigned{kToBoard};
-  bridge(bridge_map::kInterruptEnable, done | error);
+  bus_->write(kBridge + bridge_map::kInterruptEnable, done | error);
   uploading_ = true;
   start_dma(kToBoard, pieces);
   bus_->wait_for_interrupt();
   uploading_ = false;
-  const std::uint32_t status = bridge(bridge_map::kInterruptStatus);
+  const std::uint32_t status = bus_->read(kBridge + bridge_map::kInterruptStatus);
   if ((status & error) != 0) fail("the tables could not be uploaded");
-  bridge(bridge_map::kInterruptStatus, status);
+  bus_->write(kBridge + bridge_map::kInterruptStatus, status);
 }
 
 void StereoDriver::handle_interrupts() {
-  const std::uint32_t status = bridge(bridge_map::kInterruptStatus);
-  if (status != 0) bridge(bridge_map::kInterruptStatus, status);
+  const std::uint32_t status = bus_->read(kBridge + bridge_map::kInterruptStatus);
+  if (status != 0) bus_->write(kBridge + bridge_map::kInterruptStatus, status);
   for (const int channel : {kToBoard, kToHost}) {
     if ((status & bridge_map::kDmaError << static_cast<unsigned>(channel)) != 0) {
       fail("DMA channel " + std::to_string(channel) + " has met an error");
     }
   }
   if ((status & bridge_map::kPostedError) != 0) fail("the board has refused a write");
-  if ((status & bridge_map::kDoorbell) != 0) handle_core();
+  if ((status & bridge_map::kDoorbell) != 0) {
+    if ((bus_->read(kCore + core_map::kStatus) & core_map::kStatusError) != 0)
+      fail("the core has met an error");
+    ++of(Activity::kFrame).ended;
+    core_to_acknowledge_ = true;
+  }
   if ((status & bridge_map::kDmaDone << unsigned{kToBoard}) != 0) ++of(Activity::kCopy).ended;
   if ((status & bridge_map::kDmaDone << unsigned{kToHost}) != 0) end_read_back();
   if (!of(Activity::kCapture).idle()) handle_captures();
-}
-
-void StereoDriver::handle_core() {
-  if ((core(core_map::kStatus) & core_map::kStatusError) != 0) fail("the core has met an error");
-  ++of(Activity::kFrame).ended;
-  core_to_acknowledge_ = true;
 }
 
 void StereoDriver::handle_captures() {
@@ -215,16 +213,16 @@ void StereoDriver::start_core() {
                                {Activity::kReadBack, buffers_.disparities.size(), "output_buffer"}});
   if (starts) {
     const auto input = static_cast<std::size_t>(frame % buffers_.left_images.size());
-    core(core_map::kLeftImageBase, buffers_.left_images[input]);
-    core(core_map::kRightImageBase, buffers_.right_images[input]);
-    core(core_map::kDisparityBase,
-         buffers_.disparities[static_cast<std::size_t>(frame % buffers_.disparities.size())]);
-    if (frame == 0 && buffers_.left_lut) core(core_map::kLeftLutBase, *buffers_.left_lut);
-    if (frame == 0 && buffers_.right_lut) core(core_map::kRightLutBase, *buffers_.right_lut);
+    bus_->write(kCore + core_map::kLeftImageBase, buffers_.left_images[input]);
+    bus_->write(kCore + core_map::kRightImageBase, buffers_.right_images[input]);
+    bus_->write(kCore + core_map::kDisparityBase,
+                buffers_.disparities[static_cast<std::size_t>(frame % buffers_.disparities.size())]);
+    if (frame == 0 && buffers_.left_lut) bus_->write(kCore + core_map::kLeftLutBase, *buffers_.left_lut);
+    if (frame == 0 && buffers_.right_lut) bus_->write(kCore + core_map::kRightLutBase, *buffers_.right_lut);
   }
   if (!starts && !core_to_acknowledge_) return;
-  core(core_map::kControl,
-       (core_to_acknowledge_ ? core_map::kControlAcknowledge : 0U) | (starts ? core_map::kControlStart : 0U));
+  bus_->write(kCore + core_map::kControl, (core_to_acknowledge_ ? core_map::kControlAcknowledge : 0U) |
+                                              (starts ? core_map::kControlStart : 0U));
   core_to_acknowledge_ = false;
 }
 
@@ -243,8 +241,8 @@ void StereoDriver::arm_capture() {
     right = left + image_bytes(board_);
   } else {
     const auto input = static_cast<std::size_t>(capture % inputs);
-    bridge(bridge_map::kPage + 0, buffers_.left_images[input]);
-    bridge(bridge_map::kPage + 4, buffers_.right_images[input]);
+    bus_->write(kBridge + bridge_map::kPage + 0, buffers_.left_images[input]);
+    bus_->write(kBridge + bridge_map::kPage + 4, buffers_.right_images[input]);
     left = kDevices.bridge_slave;
     right = left + bridge_map::kApertureBytes;
   }
@@ -298,8 +296,8 @@ void StereoDriver::start_dma(int channel, const std::vector<Piece>& pieces) {
     std::memcpy(to + piece * kDescriptorBytes, descriptor.data(), kDescriptorBytes);
   }
   const std::uint64_t registers = static_cast<std::uint64_t>(channel) * bridge_map::kChannelStride;
-  bridge(bridge_map::kDmaDescriptor + registers, static_cast<std::uint32_t>(chain));
-  bridge(bridge_map::kDmaControl + registers, 1);
+  bus_->write(kBridge + bridge_map::kDmaDescriptor + registers, static_cast<std::uint32_t>(chain));
+  bus_->write(kBridge + bridge_map::kDmaControl + registers, 1);
 }
 
 std::uint64_t StereoDriver::pair_in_host(std::uint64_t capture) const {
@@ -309,19 +307,6 @@ std::uint64_t StereoDriver::pair_in_host(std::uint64_t capture) const {
 
 std::uint64_t StereoDriver::result_in_host(std::uint64_t frame) const {
   return results_start(board_) + frame % buffers_.disparities.size() * image_bytes(board_);
-}
-
-std::uint32_t StereoDriver::core(std::uint64_t offset) {
-  return bus_->read(kDevices.bridge_slave + bridge_map::kCoreRegisters + offset);
-}
-void StereoDriver::core(std::uint64_t offset, std::uint32_t value) {
-  bus_->write(kDevices.bridge_slave + bridge_map::kCoreRegisters + offset, value);
-}
-std::uint32_t StereoDriver::bridge(std::uint64_t offset) {
-  return bus_->read(kDevices.bridge_registers + offset);
-}
-void StereoDriver::bridge(std::uint64_t offset, std::uint32_t value) {
-  bus_->write(kDevices.bridge_registers + offset, value);
 }
 
 }  // namespace stereotlm::driver

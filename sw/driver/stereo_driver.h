@@ -11,7 +11,7 @@
 #include "models/host/program.h"
 #include "models/kernels/joint_table.h"
 #include "platform/config/board_config.h"
-#include "platform/driver_observer.h"
+#include "platform/timeline_records.h"
 
 // The program on the host (contract section 3). It uses only host::HostBus, so that it runs on the CPU of the
 // model and could run on a real machine.
@@ -63,7 +63,6 @@ class StereoDriver : public host::Program {
 
  private:
   using Activity = platform::Activity;
-  // How many of an activity have begun and ended.
   struct Progress {
     std::uint64_t begun = 0;
     std::uint64_t ended = 0;
@@ -75,7 +74,6 @@ class StereoDriver : public host::Program {
     std::uint64_t back;
     const char* reason;  // as in platform::Awaited
   };
-  // One contiguous piece of a DMA transfer.
   struct Piece {
     std::uint64_t host = 0;   // address in host memory, bytes
     std::uint32_t board = 0;  // first word on the board
@@ -85,13 +83,10 @@ class StereoDriver : public host::Program {
 
   Progress& of(Activity activity) { return progress_[static_cast<std::size_t>(activity)]; }
   const Progress& of(Activity activity) const { return progress_[static_cast<std::size_t>(activity)]; }
-  // Begins the next one of an activity if all conditions hold.
   bool begin(Activity activity, std::initializer_list<Condition> conditions);
-  void join_tables();
   void upload_tables();
   void handle_interrupts();
   void handle_captures();
-  void handle_core();
   void start_what_can_be();
   void start_core();
   void arm_capture();
@@ -102,10 +97,6 @@ class StereoDriver : public host::Program {
   void start_dma(int channel, const std::vector<Piece>& pieces);
   std::uint64_t pair_in_host(std::uint64_t capture) const;
   std::uint64_t result_in_host(std::uint64_t frame) const;
-  std::uint32_t core(std::uint64_t offset);
-  void core(std::uint64_t offset, std::uint32_t value);
-  std::uint32_t bridge(std::uint64_t offset);
-  void bridge(std::uint64_t offset, std::uint32_t value);
 
   platform::BoardConfig board_;
   fpga::BufferBases buffers_;

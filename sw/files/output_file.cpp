@@ -13,8 +13,6 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "sw/files/whole_file.h"
-
 namespace stereotlm::files {
 namespace {
 

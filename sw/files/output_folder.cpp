@@ -12,8 +12,6 @@
 #include <system_error>
 #include <utility>
 
-#include "sw/files/whole_file.h"
-
 namespace stereotlm::files {
 namespace {
 
@@ -126,7 +124,6 @@ void OutputFolder::check_aside() const {
   }
 }
 
-// Finds the entries that commit() removes.
 void OutputFolder::check_earlier() {
   const bool needs_mark = !content_.mark.empty();
   const bool has_mark =
@@ -177,7 +174,6 @@ NewFile& OutputFolder::new_file(const std::string& name) {
   return growing_.try_emplace(name, path).first->second;
 }
 
-// Calls `action`, which writes this file.
 template <typename Action>
 void OutputFolder::store(const std::string& name, const Action& action) const {
   try {

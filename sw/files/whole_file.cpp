@@ -12,7 +12,6 @@
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
-#include <string>
 #include <system_error>
 #include <tuple>
 #include <utility>

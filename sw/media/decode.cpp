@@ -1,6 +1,5 @@
 #include "sw/media/decode.h"
 
-#include <fmt/format.h>
 #include <jpeglib.h>
 #include <png.h>
 
@@ -85,7 +84,6 @@ void append_of_cmyk(std::vector<std::uint8_t>& samples, const std::uint8_t* cmyk
 
 bool is_space(char c) { return std::isspace(static_cast<unsigned char>(c)) != 0; }
 
-// Reads words from the header of a file.
 class Words {
  public:
   explicit Words(std::string_view bytes) : rest_(bytes) {}

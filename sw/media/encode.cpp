@@ -8,7 +8,6 @@
 #include <limits>
 
 #include "calib/png.h"
-#include "models/kernels/stereo.h"
 #include "models/kernels/words.h"
 
 namespace stereotlm::media {

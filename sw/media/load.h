@@ -54,8 +54,6 @@ class Video {
  public:
   virtual ~Video() = default;
 
-  virtual int width() const = 0;   // pixels
-  virtual int height() const = 0;  // pixels
   // The number of frames that can be decoded, 1 or more.
   virtual std::uint64_t frames() const = 0;
   // The number of frames in the file's header, possibly an estimate; 0 if the header has none.

@@ -1,20 +1,16 @@
 // The library of decoders.h: everything that needs the decoders of OpenCV.
 #include <dlfcn.h>
-#include <fmt/format.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
 #include <cstddef>
-#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
-#include <stdexcept>
 
-#include "models/fpga/core_config.h"
 #include "sw/media/decode.h"
 
 namespace stereotlm::media {
@@ -153,8 +149,6 @@ class FfmpegVideo : public Video {
     check(size_.width, size_.height);
   }
 
-  int width() const override { return size_.width; }
-  int height() const override { return size_.height; }
   std::uint64_t frames() const override { return frames_; }
   std::uint64_t stated_frames() const override { return stated_frames_; }
 

@@ -13,7 +13,6 @@ using kernels::GrayImage;
 
 using calib::SplitMix;
 
-// A random number from 0 to count-1.
 std::uint64_t below(std::uint64_t count, SplitMix& random) { return random.next() % count; }
 
 // The noise of a texture at this position, 0 .. 2^bits-1.
@@ -73,27 +72,17 @@ SyntheticScene::SyntheticScene(std::uint64_t seed, int width, int height, int di
 
 SyntheticScene::Frame SyntheticScene::frame(std::uint64_t number) const {
   Frame frame = {GrayImage(width_, height_), GrayImage(width_, height_), GrayImage(width_, height_)};
-  draw_background(frame);
-  for (const Box& box : boxes_) draw(box, number, frame);
-  return frame;
-}
-
-// The disparity of the wall in the upper half, and of the floor below.
-int SyntheticScene::background_disparity(int row) const {
-  const int floor_row = row - height_ / 2;
-  if (floor_row <= 0) return far_;
-  return far_ + (floor_near_ - far_) * floor_row / (height_ - height_ / 2);
-}
-
-void SyntheticScene::draw_background(Frame& frame) const {
   for (int y = 0; y < height_; ++y) {
-    const int d = background_disparity(y);
+    const int floor_row = std::max(y - height_ / 2, 0);  // the wall is in the upper half, the floor below
+    const int d = far_ + (floor_near_ - far_) * floor_row / (height_ - height_ / 2);
     for (int x = 0; x < width_; ++x) {
       frame.left.at(x, y) = texel(background_texture_, x, y);
       frame.right.at(x, y) = texel(background_texture_, x + d, y);
       frame.disparity.at(x, y) = static_cast<std::uint8_t>(d);
     }
   }
+  for (const Box& box : boxes_) draw(box, number, frame);
+  return frame;
 }
 
 // Draws a box over everything that was drawn before, in both pictures. The boxes are therefore drawn in the

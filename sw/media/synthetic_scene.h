@@ -49,8 +49,6 @@ class SyntheticScene {
     std::uint64_t texture = 0;
   };
 
-  int background_disparity(int row) const;
-  void draw_background(Frame& frame) const;
   void draw(const Box& box, std::uint64_t number, Frame& frame) const;
 
   int width_;

@@ -36,7 +36,6 @@ void send(int to, Kind kind, const std::string& text) {
   if (!is_heard) _exit(1);
 }
 
-// Runs the work in the child; returns its exit status.
 int run_child(const std::function<void(const Child::Tell&)>& work, int to) {
   std::string failure;
   try {
@@ -55,7 +54,6 @@ int run_child(const std::function<void(const Child::Tell&)>& work, int to) {
   return 1;
 }
 
-// The text of ChildDied.
 std::string text_of(int status) {
   if (!WIFSIGNALED(status))
     return fmt::format("the process ended with status {} before its work was done", WEXITSTATUS(status));

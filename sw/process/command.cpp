@@ -14,12 +14,10 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
-#include <stdexcept>
 #include <system_error>
-#include <vector>
 
 #include "models/fpga/core_config.h"
-#include "sw/process/interrupt.h"
+#include "sw/process/streams.h"
 
 namespace stereotlm::process {
 namespace {
@@ -43,7 +41,6 @@ void set_up_opencv() {
   throw std::system_error(error, std::generic_category(), what);
 }
 
-// A file in memory that takes the output of a program.
 class MemoryFile {
  public:
   MemoryFile() : descriptor_(memfd_create("output", MFD_CLOEXEC)) {
@@ -65,7 +62,6 @@ class MemoryFile {
   int descriptor_;
 };
 
-// The open files and the attributes with which a program starts.
 class SpawnSetup {
  public:
   SpawnSetup(int out, int errors) {

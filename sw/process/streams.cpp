@@ -12,6 +12,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "sw/process/child.h"
+
 namespace stereotlm::process {
 namespace {
 
@@ -26,13 +28,8 @@ bool notes_left_out = false;
 }  // namespace
 
 void print(std::string_view text) {
-  while (!text.empty()) {
-    const ssize_t count = write(STDOUT_FILENO, text.data(), text.size());
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0 && errno == EPIPE) return;
-    if (count < 0) throw std::runtime_error(std::string("standard output: ") + std::strerror(errno));
-    text.remove_prefix(static_cast<std::size_t>(count));
-  }
+  if (!write_all(STDOUT_FILENO, text.data(), text.size()) && errno != EPIPE)
+    throw std::runtime_error(std::string("standard output: ") + std::strerror(errno));
 }
 
 void say(const std::string& kind, const std::string& text) { say_line("stereotlm: " + kind + ": " + text); }

@@ -4,20 +4,16 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <numeric>
-#include <optional>
 #include <set>
 #include <stdexcept>
 #include <utility>
-#include <vector>
 
 #include "models/fpga/core_ports.h"
 #include "models/fpga/frame_geometry.h"
 #include "platform/figures.h"
-#include "sw/process/command.h"
-#include "sw/process/interrupt.h"
+#include "sw/process/streams.h"
 #include "sw/runs/progress.h"
 #include "sw/stats/console_table.h"
 #include "sw/stats/stats_json.h"
@@ -29,10 +25,6 @@ using Json = nlohmann::ordered_json;
 
 // A rate that is below its bound by less than this share is that of the bound.
 constexpr double kAtBound = 0.005;
-
-std::optional<std::string> joint_problem(const platform::Tables& tables) {
-  return tables.left && tables.right ? platform::joint_tables_problem(tables) : std::nullopt;
-}
 
 double mean_of(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
@@ -64,7 +56,7 @@ const Reason& reason_of(const std::string& why) {
 }
 
 // "left_lut waits there for left_pixel in 33.14 % of the cycles"
-std::string wait_of(const Explanation& explanation, const explore::StoredBlame& wait) {
+std::string wait_of(const Explanation& explanation, const platform::BlameRow& wait) {
   return fmt::format("{} waits there for {} in {:.2f} % of the cycles", wait.port, stats::cause_text(wait.by),
                      explanation.percent_of_cycles(wait.cycles));
 }
@@ -95,7 +87,7 @@ std::string lost_pixels_text(const Explanation& explanation) {
   const std::string text =
       fmt::format(": captures lose {} pixels while {} frames are delivered, so pictures are torn",
                   row.lost_pixels(), explanation.frames());
-  for (const explore::StoredBlame& wait : explanation.blames()) {
+  for (const platform::BlameRow& wait : explanation.blames()) {
     if (wait.port == kHost && explanation.percent_of_cycles(wait.cycles) > 100 * kVisibleLoss)
       return wait.bank + text + "; " + wait_of(explanation, wait);
   }
@@ -121,6 +113,24 @@ std::string waits_text(const Explanation& explanation) {
   const auto wait = longest_wait(explanation);
   return wait ? fmt::format("waits at {}: {}; {}", wait->bank, wait_of(explanation, *wait), cost)
               : "waits for banks: " + cost;
+}
+
+// The share of the cycles in which the matcher waits because the result queue is too short, in percent; 0 if
+// it does not limit the board.
+double result_queue_percent(const Explanation& explanation) {
+  const explore::StoredRow& row = explanation.figures();
+  const double cycles = static_cast<double>(row.integer("cycles"));
+  const double lost = cycles * (1 - row.real("frames_per_second.core") / row.real("bound.core"));
+  std::int64_t stalled = 0;
+  std::int64_t blocked = 0;
+  for (const fpga::CorePort& port : fpga::kPorts) {
+    const std::string name = std::string("ports.") + port.name;
+    stalled += row.integer(name + ".stall_cycles");
+    blocked = std::max(blocked, row.integer(name + ".blocked_cycles"));
+  }
+  const bool is_too_short = row.text("bound.core_limited_by") == "matcher" && lost > kVisibleLoss * cycles &&
+                            stalled == 0 && static_cast<double>(blocked) > lost / 2;
+  return is_too_short ? 100 * lost / cycles : 0;
 }
 
 std::string queues_text(const Explanation& explanation) {
@@ -172,7 +182,7 @@ Json resources_json(const Explanation& explanation) {
 
 Json blame_json(const Explanation& explanation) {
   Json all = Json::array();
-  for (const explore::StoredBlame& blame : explanation.blames()) {
+  for (const platform::BlameRow& blame : explanation.blames()) {
     all.push_back({{"port", blame.port},
                    {"bank", blame.bank},
                    {"by", blame.by},
@@ -229,7 +239,9 @@ Explanation::Explanation(const platform::BoardConfig& board, const platform::Tab
            : camera   ? kComputerFrames
                       : kCoreFrames,
            ""},
-      knobs_(explore::knob_steps(board, camera, joint_problem(tables))),
+      knobs_(explore::knob_steps(
+          board, camera,
+          tables.left && tables.right ? platform::joint_tables_problem(tables) : std::nullopt)),
       points_({1 + knobs_.possible.size(),
                [this](std::uint64_t number) {
                  return explore::make_point(
@@ -255,7 +267,14 @@ bool Explanation::simulate(PointSimulator simulator) {
   figures_ = std::make_unique<explore::StoredRow>(batch_.path());
   figures_->find(points_.point(0).hash);
   busiest_ = busiest_bank_of(0, board_);
-  read_blames();
+  sqlite::Database store(batch_.path(), sqlite::Database::Access::kRead);
+  sqlite::Statement find(
+      store, "SELECT port, bank, by, cycles FROM blame WHERE hash = ? ORDER BY cycles DESC, port, bank, by");
+  find.bind(1, points_.point(0).hash);
+  while (find.step()) {
+    const auto cycles_of_wait = static_cast<std::uint64_t>(find.integer(3));
+    blames_.push_back({find.text(0), find.text(1), find.text(2), cycles_of_wait});
+  }
   read_steps();
   const auto cycles = nlohmann::json::parse(figures_->text("frame_cycles")).get<std::vector<double>>();
   compare_resources(cycles);
@@ -291,14 +310,6 @@ Explanation::BusiestBank Explanation::busiest_bank_of(std::uint64_t number,
     busiest = {bank.name, static_cast<double>(accesses) / static_cast<double>(row.integer("frames"))};
   }
   return busiest;
-}
-
-void Explanation::read_blames() {
-  sqlite::Database store(batch_.path(), sqlite::Database::Access::kRead);
-  sqlite::Statement find(
-      store, "SELECT port, bank, by, cycles FROM blame WHERE hash = ? ORDER BY cycles DESC, port, bank, by");
-  find.bind(1, points_.point(0).hash);
-  while (find.step()) blames_.push_back({find.text(0), find.text(1), find.text(2), find.integer(3)});
 }
 
 void Explanation::read_steps() {
@@ -405,9 +416,8 @@ void Explanation::share_time(std::vector<double> frame_cycles) {
   budget_.waits = frames_share * (mean - waitless) / mean;
 }
 
-std::optional<explore::StoredBlame> longest_wait(const Explanation& explanation,
-                                                 const std::string& resource) {
-  for (const explore::StoredBlame& wait : explanation.blames()) {
+std::optional<platform::BlameRow> longest_wait(const Explanation& explanation, const std::string& resource) {
+  for (const platform::BlameRow& wait : explanation.blames()) {
     if (wait.port != kHost && (resource.empty() || platform::resource_of_bank(wait.bank) == resource))
       return wait;
   }
@@ -436,22 +446,6 @@ std::string budget_text(const Explanation& explanation) {
       text += fmt::format(", {:.2f} % the core waits for {}", share, reason_of(why).text);
   }
   return text;
-}
-
-double result_queue_percent(const Explanation& explanation) {
-  const explore::StoredRow& row = explanation.figures();
-  const double cycles = static_cast<double>(row.integer("cycles"));
-  const double lost = cycles * (1 - row.real("frames_per_second.core") / row.real("bound.core"));
-  std::int64_t stalled = 0;
-  std::int64_t blocked = 0;
-  for (const fpga::CorePort& port : fpga::kPorts) {
-    const std::string name = std::string("ports.") + port.name;
-    stalled += row.integer(name + ".stall_cycles");
-    blocked = std::max(blocked, row.integer(name + ".blocked_cycles"));
-  }
-  const bool is_too_short = row.text("bound.core_limited_by") == "matcher" && lost > kVisibleLoss * cycles &&
-                            stalled == 0 && static_cast<double>(blocked) > lost / 2;
-  return is_too_short ? 100 * lost / cycles : 0;
 }
 
 Json explanation_document(const platform::BoardConfig& board, const Explanation& explanation) {

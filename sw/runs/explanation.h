@@ -94,20 +94,19 @@ class Explanation {
   const std::vector<Resource>& resources() const { return resources_; }
 
   const Budget& budget() const { return budget_; }
-  double percent_of_cycles(std::int64_t cycles) const {
+  double percent_of_cycles(std::uint64_t cycles) const {
     return 100 * static_cast<double>(cycles) / static_cast<double>(figures_->integer("cycles"));
   }
   double gained_percent(const Step& step) const {
     return 100 * (step.rate.frames_per_second / now_.frames_per_second - 1);
   }
   // Who stalls for whom, the most cycles first.
-  const std::vector<explore::StoredBlame>& blames() const { return blames_; }
+  const std::vector<platform::BlameRow>& blames() const { return blames_; }
 
  private:
   Rate rate_of(std::uint64_t number);
   BusiestBank busiest_bank_of(std::uint64_t number, const platform::BoardConfig& board);
   double busy_percent(const std::string& resource) const;
-  void read_blames();
   void read_steps();
   void add_resource(const Resource& found);
   void compare_resources(const std::vector<double>& frame_cycles);
@@ -127,23 +126,19 @@ class Explanation {
   std::vector<Step> steps_;
   std::vector<Resource> resources_;
   Budget budget_;
-  std::vector<explore::StoredBlame> blames_;
+  std::vector<platform::BlameRow> blames_;
 };
 
 // The longest wait of a port of the core, at this resource ("bank bank0") or at any bank. Waits of the host
 // do not count: they cost the core nothing.
-std::optional<explore::StoredBlame> longest_wait(const Explanation& explanation,
-                                                 const std::string& resource = "");
+std::optional<platform::BlameRow> longest_wait(const Explanation& explanation,
+                                               const std::string& resource = "");
 
 // Why a board is not faster, after "limited by": "the matcher, at its bound of 18.596 frames/s".
 std::string limiter_text(const Explanation& explanation);
 
 // What the time of a frame goes to: "96.69 % the matcher and the ports, 3.31 % the core waits for ..".
 std::string budget_text(const Explanation& explanation);
-
-// The share of the cycles in which the matcher waits because the result queue is too short, in percent; 0 if
-// it does not limit the board.
-double result_queue_percent(const Explanation& explanation);
 
 // What `explain --json` prints. Its schema is sw/cli/schemas/explain.schema.json.
 nlohmann::ordered_json explanation_document(const platform::BoardConfig& board,

@@ -21,8 +21,7 @@ std::size_t terminal_columns() {
   return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : kUsual;
 }
 
-}  // namespace
-
+// "0:08", "1:02:03", or "years" for more than 30 years.
 std::string time_text(double seconds) {
   constexpr double kLongest = 1e9;
   if (!(seconds < kLongest)) return "years";
@@ -30,6 +29,8 @@ std::string time_text(double seconds) {
   if (whole < 3600) return fmt::format("{}:{:02}", whole / 60, whole % 60);
   return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
 }
+
+}  // namespace
 
 std::string progress_text(const RunState& state, double seconds) {
   const auto frames = static_cast<double>(state.frames);

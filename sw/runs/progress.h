@@ -31,9 +31,6 @@ std::string progress_text(const explore::SweepCounts& counts, std::uint64_t befo
 // cannot be estimated: the boards left are not narrowed, or fewer than 8 were simulated.
 std::string progress_text(const explore::SearchProgress& progress, double seconds);
 
-// A time for a progress line: "0:08", "1:02:03", or "years" for more than 30 years.
-std::string time_text(double seconds);
-
 // A progress line on standard error, if that is a terminal and notes are not left out. The destructor erases
 // it.
 class ProgressLine {

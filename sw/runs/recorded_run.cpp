@@ -3,13 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstring>
-#include <deque>
 #include <filesystem>
-#include <functional>
 #include <stdexcept>
-#include <utility>
 #include <vector>
 
 #include "models/binder.h"
@@ -18,7 +14,7 @@
 #include "sw/files/whole_file.h"
 #include "sw/media/load.h"
 #include "sw/process/command.h"
-#include "sw/process/interrupt.h"
+#include "sw/process/streams.h"
 #include "sw/runs/run_results.h"
 #include "sw/runs/sources/calibration_input.h"
 #include "sw/runs/sources/open_source.h"
@@ -52,28 +48,6 @@ std::vector<RecordedFile> inputs_of(const RecordedOptions& options) {
   }
   if (options.truth) add("--truth", *options.truth);
   return files;
-}
-
-// Throws std::runtime_error if the file differs from the one that the run used.
-void check_input(const RecordedFile& input) {
-  const std::string sha256 = files::sha256_file(input.file.path);
-  if (sha256 == input.file.sha256) return;
-  throw std::runtime_error(fmt::format("'{}': SHA-256 {}: must be that of the file of the run, {}",
-                                       input.file.path, sha256, input.file.sha256));
-}
-
-// Throws std::runtime_error if the video layout is unknown, or does not fit the number of videos.
-void check_video(const RecordedOptions& options) {
-  if (options.video.empty() || options.video.size() == video_files(options.video_layout)) return;
-  throw std::runtime_error(fmt::format("video_layout = {}: must be that of {} file{}", options.video_layout,
-                                       options.video.size(), options.video.size() == 1 ? "" : "s"));
-}
-
-// Throws std::runtime_error if the folder has another number of pairs than the run used.
-void check_sequence(const InputFolder& found, const InputFolder& recorded) {
-  if (found.files.size() == recorded.files.size()) return;
-  throw std::runtime_error(fmt::format("'{}': {} pairs: must be those of the run, {}", found.path,
-                                       found.files.size() / 2, recorded.files.size() / 2));
 }
 
 constexpr char kFrame = 'f';
@@ -169,7 +143,10 @@ std::optional<RecordedRun> read_recorded_run(const std::string& argument, const 
   };
   read("run.json", run.run_json, [&] {
     run.options = parse_run_json(run.run_json);
-    check_video(run.options);
+    const std::size_t videos = run.options.video.size();
+    if (videos == 0 || videos == video_files(run.options.video_layout)) return;
+    throw std::runtime_error(fmt::format("video_layout = {}: must be that of {} file{}",
+                                         run.options.video_layout, videos, videos == 1 ? "" : "s"));
   });
   std::string board;
   read("config.yaml", board,
@@ -192,8 +169,12 @@ std::optional<RecordedRun> load_recorded_run(const std::string& argument, const 
   if (!run) return std::nullopt;
   bool is_right = true;
   for (const RecordedFile& input : inputs_of(run->options)) {
-    is_right &= problems.attempt(fmt::format("{}: {} ", name_of(*run), input.option),
-                                 [&input] { check_input(input); });
+    is_right &= problems.attempt(fmt::format("{}: {} ", name_of(*run), input.option), [&file = input.file] {
+      const std::string sha256 = files::sha256_file(file.path);
+      if (sha256 == file.sha256) return;
+      throw std::runtime_error(fmt::format("'{}': SHA-256 {}: must be that of the file of the run, {}",
+                                           file.path, sha256, file.sha256));
+    });
   }
   return is_right ? run : std::nullopt;
 }
@@ -211,8 +192,11 @@ RunInput open_again(const RecordedRun& run, process::Problems& problems) {
     input.inputs.push_back({each.option, each.file.path});
   auto pictures = static_cast<const InputPictures&>(run.options);
   input.pairs = open_source(pictures, &run.board, found).pairs;
-  if (input.pairs && pictures.sequence)
-    found.attempt("--sequence ", [&] { check_sequence(*pictures.sequence, *run.options.sequence); });
+  const std::size_t pairs = pictures.sequence ? pictures.sequence->files.size() / 2 : 0;
+  const std::size_t recorded = pictures.sequence ? run.options.sequence->files.size() / 2 : 0;
+  if (input.pairs && pairs != recorded)
+    found.add(fmt::format("--sequence '{}': {} pairs: must be those of the run, {}", pictures.sequence->path,
+                          pairs, recorded));
   if (input.timing_only) input.pairs = blank_pairs(run.board);
   std::optional<CalibrationInput> calibration;
   if (run.options.calibration)
@@ -297,7 +281,10 @@ bool FrameAlignment::run() {
       last_common_ = {a_.ahead->number, std::move(a_.ahead->disparity), std::move(b_.ahead->disparity)};
     }
     goes_on = (!takes_a || advance(a_, b_)) && (!takes_b || advance(b_, a_));
-    compare_rows();
+    for (; !a_.rows.empty() && !b_.rows.empty(); a_.rows.pop_front(), b_.rows.pop_front()) {
+      rows_.add(a_.rows.front(), b_.rows.front());
+      if (csv_ != nullptr) csv_->add(a_.rows.front(), b_.rows.front());
+    }
   }
   progress_.erase();
   return goes_on;
@@ -317,15 +304,6 @@ bool FrameAlignment::advance(AlignedRun& side, const AlignedRun& other) {
   const bool has_partner = other.ahead || !other.rows.empty();
   if (limits_.rows.empty() && has_partner) side.rows.push_back(std::move(side.ahead->rows));
   return read(side);
-}
-
-void FrameAlignment::compare_rows() {
-  while (!a_.rows.empty() && !b_.rows.empty()) {
-    rows_.add(a_.rows.front(), b_.rows.front());
-    if (csv_ != nullptr) csv_->add(a_.rows.front(), b_.rows.front());
-    a_.rows.pop_front();
-    b_.rows.pop_front();
-  }
 }
 
 }  // namespace stereotlm::runs

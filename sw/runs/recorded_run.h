@@ -129,7 +129,6 @@ class FrameAlignment {
 
   bool read(AlignedRun& side);
   bool advance(AlignedRun& side, const AlignedRun& other);
-  void compare_rows();
 
   const DiffLimits& limits_;
   stats::RowsCsv* csv_;

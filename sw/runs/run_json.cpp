@@ -136,12 +136,6 @@ void each_key(Document& document, Options& options) {
   document.given("record", options.record);
 }
 
-// The number, from 1, of the first line in which the texts differ.
-std::ptrdiff_t first_other_line(const std::string& text, const std::string& other) {
-  const auto end = std::mismatch(text.begin(), text.end(), other.begin(), other.end()).first;
-  return std::count(text.begin(), end, '\n') + 1;
-}
-
 // Throws std::runtime_error for options that run_json() would write but no run can have.
 void check(const RecordedOptions& options) {
   const auto require = [](bool holds, const std::string& rule) {
@@ -178,8 +172,9 @@ RecordedOptions parse_run_json(const std::string& text) {
     throw std::runtime_error(fmt::format("must be as run writes it: {}", error.what()));
   }
   if (written != text) {
+    const auto end = std::mismatch(text.begin(), text.end(), written.begin(), written.end()).first;
     throw std::runtime_error(
-        fmt::format("line {}: must be as run writes it", first_other_line(text, written)));
+        fmt::format("line {}: must be as run writes it", std::count(text.begin(), end, '\n') + 1));
   }
   check(options);
   return options;

@@ -66,12 +66,6 @@ std::optional<stats::Accuracy> accuracy_to_show(const RunInput& input, const Res
   return stats::accuracy(last.disparity, *truth);
 }
 
-double answered_percent(const kernels::GrayImage& disparity) {
-  const auto& pixels = disparity.pixels;
-  const auto unanswered = std::count(pixels.begin(), pixels.end(), kernels::kInvalidDisparity);
-  return 100 - 100 * static_cast<double>(unanswered) / static_cast<double>(pixels.size());
-}
-
 // `accuracy`: against --truth.
 stats::TableExtras extras_of(const RunInput& input, const platform::Statistics& statistics,
                              const Result& last, const std::optional<stats::Accuracy>& accuracy) {
@@ -80,18 +74,14 @@ stats::TableExtras extras_of(const RunInput& input, const platform::Statistics& 
     extras.waitless_frames_per_second =
         waitless_frames_per_second(input.board, input.tables, statistics.frames);
   }
-  if (!input.timing_only) extras.answered_percent = answered_percent(last.disparity);
+  if (!input.timing_only) {
+    const auto& pixels = last.disparity.pixels;
+    const auto unanswered = std::count(pixels.begin(), pixels.end(), kernels::kInvalidDisparity);
+    extras.answered_percent =
+        100 - 100 * static_cast<double>(unanswered) / static_cast<double>(pixels.size());
+  }
   extras.accuracy = accuracy_to_show(input, last, accuracy);
   return extras;
-}
-
-// `accuracy`: the accuracy of the last frame against --truth.
-void say_if_doubtful(const RunInput& input, const stats::Accuracy& accuracy) {
-  const double bad = accuracy.bad_1_percent.value_or(0);
-  if (bad <= stats::kDoubtfulBad1Percent) return;
-  process::say("note", fmt::format("--truth: {:.2f} % of the answers are off by more than 1: is it of this "
-                                   "picture, and is --truth-scale {:g} right?",
-                                   bad, input.described.truth_scale));
 }
 
 }  // namespace
@@ -161,13 +151,13 @@ void leave_out_verify(RunInput& input) {
   input.described.verify = false;
 }
 
-void say_lost_pixels(const platform::Statistics& statistics) {
+void say_lost_pixels(const platform::Statistics& statistics, const std::string& subject) {
   if (!statistics.computer) return;
   std::uint64_t pixels = 0;
   for (const platform::CameraStatistics& camera : statistics.computer->cameras)
     pixels += camera.dropped_pixels;
   const std::string text = stats::lost_pixels_text(pixels);
-  if (!text.empty()) process::say("warning", text);
+  if (!text.empty()) process::say("warning", subject + text);
 }
 
 bool deliver(RunInput& input, const platform::Statistics& statistics, const Result& last,
@@ -181,7 +171,11 @@ bool deliver(RunInput& input, const platform::Statistics& statistics, const Resu
   process::print(input.json ? files::json_text(stats::run_document(statistics, extras))
                             : stats::console_table(statistics, input.board, extras));
   say_lost_pixels(statistics);
-  if (accuracy) say_if_doubtful(input, *accuracy);
+  if (const double bad = accuracy ? accuracy->bad_1_percent.value_or(0) : 0;
+      bad > stats::kDoubtfulBad1Percent)
+    process::say("note", fmt::format("--truth: {:.2f} % of the answers are off by more than 1: is it of this "
+                                     "picture, and is --truth-scale {:g} right?",
+                                     bad, input.described.truth_scale));
   for (const std::string& difference : differences) process::say("error", difference);
   return statistics.failed.empty() && differences.empty();
 }

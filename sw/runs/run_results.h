@@ -48,8 +48,8 @@ void leave_out_truth_of_another_pair(RunInput& input, std::uint64_t frames_done)
 // claim a comparison that did not take place.
 void leave_out_verify(RunInput& input);
 
-// Prints a warning if captures have lost pixels.
-void say_lost_pixels(const platform::Statistics& statistics);
+// Prints a warning if captures have lost pixels. `subject`: what it begins with.
+void say_lost_pixels(const platform::Statistics& statistics, const std::string& subject = "");
 
 // Writes the result files and prints the table, or with --json the document. `last`: the result of the last
 // frame. `differences`: found by --verify. Prints the differences and the identities that do not hold, and

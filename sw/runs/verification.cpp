@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "models/binder.h"
-#include "sw/process/interrupt.h"
+#include "sw/process/streams.h"
 #include "sw/runs/sources/open_source.h"
 #include "sw/stats/stats_json.h"
 
@@ -36,8 +36,6 @@ std::string stats_text(platform::Statistics statistics) {
   statistics.fidelity = "both";
   return stats::stats_json(statistics, std::nullopt);
 }
-
-std::string name_of_other(const RunInput& input) { return input.fast ? "cycle" : "fast"; }
 
 void run_other(const RunInput& input, const process::Child::Tell& tell) {
   process::Problems problems;
@@ -75,9 +73,9 @@ std::optional<std::string> Verification::next_of_other(ProgressLine& progress, s
   return other_.next();
 }
 
-Verification::Outcome Verification::compare(const platform::Statistics& statistics) {
+std::optional<std::vector<std::string>> Verification::compare(const platform::Statistics& statistics) {
   const std::string ours = input_.fast ? "fast" : "cycle";
-  const std::string other = name_of_other(input_);
+  const std::string other = input_.fast ? "cycle" : "fast";
   std::vector<std::string> lines;
   ProgressLine progress;
   try {
@@ -91,17 +89,17 @@ Verification::Outcome Verification::compare(const platform::Statistics& statisti
          stats::stats_differences(stats_text(statistics), theirs, ours, other))
       lines.push_back("stats.json: " + difference);
   } catch (const Interrupted&) {
-    return {true, {}};
+    return std::nullopt;
   } catch (const std::runtime_error& error) {
-    return {false, {fmt::format("--verify: the run at fidelity {}: {}", other, error.what())}};
+    return {{fmt::format("--verify: the run at fidelity {}: {}", other, error.what())}};
   }
-  Outcome outcome;
-  for (std::size_t i = 0; i < lines.size() && i < kMostLines; ++i)
-    outcome.failed.push_back("the fidelities differ: " + lines[i]);
   if (lines.size() > kMostLines) {
-    outcome.failed.push_back(fmt::format("the fidelities differ: {} more lines", lines.size() - kMostLines));
+    const std::string rest = fmt::format("{} more lines", lines.size() - kMostLines);
+    lines.resize(kMostLines);
+    lines.push_back(rest);
   }
-  return outcome;
+  for (std::string& line : lines) line.insert(0, "the fidelities differ: ");
+  return lines;
 }
 
 }  // namespace stereotlm::runs

@@ -22,13 +22,9 @@ class Verification {
   // Adds the next result of this process's run.
   void add(const Result& result);
 
-  // The result of the comparison.
-  struct Outcome {
-    bool interrupted = false;         // nothing was compared
-    std::vector<std::string> failed;  // differences, or the failure of the other run; empty if all is equal
-  };
-  // Waits for the other run and compares. The first interrupt ends the wait.
-  Outcome compare(const platform::Statistics& statistics);
+  // Waits for the other run and compares. Returns the differences, or the failure of the other run; nothing
+  // is in the list if all is equal. The first interrupt ends the wait: nullopt.
+  std::optional<std::vector<std::string>> compare(const platform::Statistics& statistics);
 
  private:
   std::optional<std::string> next_of_other(ProgressLine& progress, std::size_t frames_compared);

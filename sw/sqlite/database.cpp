@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <sqlite3.h>
 
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -10,48 +11,10 @@
 namespace stereotlm::sqlite {
 namespace {
 
-// The text for a result code of SQLite. `error` is the errno value, which is used if input or output failed,
-// or a file could not be opened.
-std::string meaning_of(const std::string& path, int code, int error, const char* message) {
-  const int kind = code & 0xFF;
-  if (code == SQLITE_READONLY_ROLLBACK) {
-    return fmt::format(
-        "{0}-journal was left by an unfinished change, and this command only reads: "
-        "`stereotlm merge {0} {0}` rolls the change back",
-        path);
-  }
-  const bool is_of_system = kind == SQLITE_IOERR || kind == SQLITE_CANTOPEN;
-  if (is_of_system && (error == ENOSPC || error == EDQUOT)) return "the disk is full";
-  switch (kind) {
-    case SQLITE_FULL:
-      return "the disk is full";
-    case SQLITE_BUSY:
-    case SQLITE_LOCKED:
-      return "another process keeps it locked";
-    case SQLITE_READONLY:
-    case SQLITE_PERM:
-      return "not writable";
-    case SQLITE_CANTOPEN:
-      return error != 0 ? fmt::format("cannot be opened: {}", std::strerror(error)) : "cannot be opened";
-    case SQLITE_NOTADB:
-      return "not a database";
-    default:
-      return message;
-  }
-}
-
-int flags_of(Database::Access access) {
-  switch (access) {
-    case Database::Access::kRead:
-      return SQLITE_OPEN_READONLY;
-    case Database::Access::kWrite:
-      return SQLITE_OPEN_READWRITE;
-    case Database::Access::kCreate:
-    case Database::Access::kMemory:
-      return SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;
-  }
-  return 0;
-}
+// [Database::Access]
+constexpr std::array kFlags = {SQLITE_OPEN_READONLY, SQLITE_OPEN_READWRITE,
+                               SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE,
+                               SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE};
 
 // Makes the path absolute, so that SQLite takes it for a file. It would take ":memory:" for a database in
 // memory, and "file:.." for a URI.
@@ -67,12 +30,12 @@ Database::Database(const std::string& path, Access access, std::chrono::millisec
     : path_(name.empty() ? path : name) {
   const std::string file = access == Access::kMemory ? ":memory:" : absolute(path);
   // One thread uses the connection, so that SQLite needs no mutex.
-  const int code = sqlite3_open_v2(file.c_str(), &handle_, flags_of(access) | SQLITE_OPEN_NOMUTEX, nullptr);
+  const int flags = kFlags[static_cast<std::size_t>(access)] | SQLITE_OPEN_NOMUTEX;
+  const int code = sqlite3_open_v2(file.c_str(), &handle_, flags, nullptr);
   if (code != SQLITE_OK) {
-    const std::string text = fmt::format(
-        "{}: {}", path_, meaning_of(path_, code, sqlite3_system_errno(handle_), sqlite3_errmsg(handle_)));
+    const DatabaseError error = error_of(code);
     sqlite3_close(handle_);
-    throw DatabaseError(text);
+    throw error;
   }
   sqlite3_extended_result_codes(handle_, 1);
   sqlite3_busy_timeout(handle_, static_cast<int>(busy_timeout.count()));
@@ -83,10 +46,33 @@ Database::Database(const std::string& path, Access access, std::chrono::millisec
 
 Database::~Database() { sqlite3_close(handle_); }
 
-void Database::fail(int code) const {
-  throw DatabaseError(fmt::format(
-      "{}: {}", path_, meaning_of(path_, code, sqlite3_system_errno(handle_), sqlite3_errmsg(handle_))));
+// `errno` counts if input or output failed, or a file could not be opened.
+DatabaseError Database::error_of(int code) const {
+  const int kind = code & 0xFF;
+  const int error = sqlite3_system_errno(handle_);
+  const bool is_of_system = kind == SQLITE_IOERR || kind == SQLITE_CANTOPEN;
+  const bool is_full = kind == SQLITE_FULL || (is_of_system && (error == ENOSPC || error == EDQUOT));
+  std::string text = sqlite3_errmsg(handle_);
+  if (code == SQLITE_READONLY_ROLLBACK) {
+    text = fmt::format(
+        "{0}-journal was left by an unfinished change, and this command only reads: "
+        "`stereotlm merge {0} {0}` rolls the change back",
+        path_);
+  } else if (is_full) {
+    text = "the disk is full";
+  } else if (kind == SQLITE_BUSY || kind == SQLITE_LOCKED) {
+    text = "another process keeps it locked";
+  } else if (kind == SQLITE_READONLY || kind == SQLITE_PERM) {
+    text = "not writable";
+  } else if (kind == SQLITE_CANTOPEN) {
+    text = error != 0 ? fmt::format("cannot be opened: {}", std::strerror(error)) : "cannot be opened";
+  } else if (kind == SQLITE_NOTADB) {
+    text = "not a database";
+  }
+  return DatabaseError(path_ + ": " + text);
 }
+
+void Database::fail(int code) const { throw error_of(code); }
 
 void Database::interrupt_if(bool (*is_interrupted)()) {
   constexpr int kInstructions = 1000;  // of SQLite's virtual machine, between two calls
@@ -131,26 +117,17 @@ Statement::Statement(const Database& database, const std::string& sql) : databas
 
 Statement::~Statement() { sqlite3_finalize(handle_); }
 
-void Statement::bind(int place, const std::string& text) {
-  const int code =
-      sqlite3_bind_text(handle_, place, text.data(), static_cast<int>(text.size()), SQLITE_TRANSIENT);
-  if (code != SQLITE_OK) database_.fail(code);
-}
-
-void Statement::bind(int place, std::int64_t number) {
-  const int code = sqlite3_bind_int64(handle_, place, number);
-  if (code != SQLITE_OK) database_.fail(code);
-}
-
 void Statement::bind(int place, const std::variant<std::int64_t, double, std::string>& value) {
+  int code = SQLITE_OK;
   if (const auto* integer = std::get_if<std::int64_t>(&value)) {
-    bind(place, *integer);
+    code = sqlite3_bind_int64(handle_, place, *integer);
   } else if (const auto* number = std::get_if<double>(&value)) {
-    const int code = sqlite3_bind_double(handle_, place, *number);
-    if (code != SQLITE_OK) database_.fail(code);
+    code = sqlite3_bind_double(handle_, place, *number);
   } else {
-    bind(place, std::get<std::string>(value));
+    const auto& text = std::get<std::string>(value);
+    code = sqlite3_bind_text(handle_, place, text.data(), static_cast<int>(text.size()), SQLITE_TRANSIENT);
   }
+  if (code != SQLITE_OK) database_.fail(code);
 }
 
 void Statement::clear_bindings() { sqlite3_clear_bindings(handle_); }

@@ -51,6 +51,8 @@ class Database {
   [[noreturn]] void fail(int code) const;
 
  private:
+  DatabaseError error_of(int code) const;
+
   std::string path_;
   sqlite3* handle_ = nullptr;
   bool (*is_interrupted_)() = nullptr;
@@ -65,8 +67,6 @@ class Statement {
   Statement& operator=(const Statement&) = delete;
 
   // Sets parameter number `place`, counted from 1, to a value.
-  void bind(int place, const std::string& text);
-  void bind(int place, std::int64_t number);
   void bind(int place, const std::variant<std::int64_t, double, std::string>& value);
   void clear_bindings();
 

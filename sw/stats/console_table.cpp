@@ -117,10 +117,6 @@ std::string wait_lines(const platform::Statistics& statistics,
   return text;
 }
 
-std::string disparities_line(double answered_percent) {
-  return fmt::format("{:<12} in {:.2f} % of the pixels of the last frame\n", "disparities", answered_percent);
-}
-
 std::string accuracy_line(const Accuracy& accuracy) {
   const auto number = [](const std::optional<double>& percent) {
     return percent ? fmt::format("{:.2f} %", *percent) : std::string("n/a");
@@ -144,7 +140,10 @@ std::string console_table(const platform::Statistics& statistics, const platform
                      bank_lines(statistics, board.fpga.clock_mhz) +
                      wait_lines(statistics, extras.waitless_frames_per_second);
   if (statistics.computer) text += computer_lines(*statistics.computer, board);
-  if (extras.answered_percent) text += disparities_line(*extras.answered_percent);
+  if (extras.answered_percent) {
+    text += fmt::format("{:<12} in {:.2f} % of the pixels of the last frame\n", "disparities",
+                        *extras.answered_percent);
+  }
   if (extras.accuracy) text += accuracy_line(*extras.accuracy);
   return text;
 }

@@ -8,7 +8,6 @@
 #include <cstddef>
 #include <iterator>
 #include <optional>
-#include <vector>
 
 namespace stereotlm::stats {
 namespace {

@@ -10,7 +10,6 @@
 #include <tuple>
 #include <type_traits>
 #include <utility>
-#include <vector>
 
 #include "models/fpga/core_ports.h"
 #include "platform/bounds.h"

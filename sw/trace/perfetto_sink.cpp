@@ -3,13 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <cstdint>
 #include <cstring>
-#include <deque>
 #include <initializer_list>
 #include <list>
 #include <map>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <tuple>
@@ -87,7 +84,6 @@ constexpr std::uint64_t kBootTime = 6, kOfSequence = 64;
 
 constexpr std::uint64_t kProcessUuid = 1;
 
-// The descriptor of a track or of a group.
 ProtoMessage described(std::uint64_t uuid, std::uint64_t parent, std::size_t rank, const std::string& name) {
   return ProtoMessage()
       .integer(descriptor::kUuid, uuid)
@@ -361,7 +357,6 @@ class Rows {
   }
 
  private:
-  // A track with the first cycle that is free on it.
   struct Row {
     PerfettoTrack track;
     std::uint64_t free_cycle = 0;
@@ -477,7 +472,6 @@ class Cycles {
     show_rest(cycle, owners);
   }
 
-  // The window has ended.
   void end() {
     if (!next_cycle_) return;
     CoreCycle idle;
@@ -491,7 +485,6 @@ class Cycles {
   enum class Arrow : std::uint8_t { kToPixel, kToResult };
   // The slices of what a port does beside its accesses. [fpga::Intent]
   static constexpr std::array<const char*, 5> kIntents = {"waits", "passes", nullptr, "blocked", "starved"};
-  // Consecutive cycles in one state.
   struct Run {
     const char* name = nullptr;  // of its slice; null: there is none
     PerfettoTrack* track = nullptr;
@@ -545,7 +538,6 @@ class Cycles {
     owners[track].track = &banks_[track];
   }
 
-  // Banks, matcher and queues.
   void show_rest(const CoreCycle& cycle, const std::vector<Run>& owners) {
     for (std::size_t track = 0; track < owners.size(); ++track)
       show(bank_runs_[track], owners[track], cycle.cycle);

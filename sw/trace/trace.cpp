@@ -93,25 +93,21 @@ void Trace::events(const platform::TimelineRecords& records) {
   for (const platform::TimelineEvent& event : records.events) write(&TraceSink::event, event);
 }
 
-// All cycles are known.
-void Trace::set_span() {
-  if (span_.begin_ps > span_.end_ps || (is_of_wait_ && wait_.cycles() == 0)) span_ = {0, 0};
-  if (wait_.cycles() == 0) return;
-  span_.wait_ps = clock_.edge_ps(wait_.first_cycle());
-  if (!is_of_wait_) return;
-  span_.begin_ps = clock_.edge_ps(wait_.begin_around());
-  span_.end_ps = std::min(span_.end_ps, clock_.edge_ps(wait_.end_around()));
-}
-
 void Trace::complete() {
+  const bool has_wait = wait_.cycles() != 0;
   if (has_window_ && is_empty_)
     process::say("note", "--trace-window: has no cycle in which a frame ran or the host accessed a bank");
-  else if (is_of_wait_ && wait_.cycles() == 0)
+  else if (is_of_wait_ && !has_wait)
     process::say("note", "--trace-window: no port waits in it");
   if (is_of_wait_) {
     for (const fpga::CoreCycle& cycle : wait_.take_kept()) write(&TraceSink::cycle, cycle);
   }
-  set_span();
+  if (span_.begin_ps > span_.end_ps || (is_of_wait_ && !has_wait)) span_ = {0, 0};
+  if (has_wait) span_.wait_ps = clock_.edge_ps(wait_.first_cycle());
+  if (has_wait && is_of_wait_) {
+    span_.begin_ps = clock_.edge_ps(wait_.begin_around());
+    span_.end_ps = std::min(span_.end_ps, clock_.edge_ps(wait_.end_around()));
+  }
   for (const platform::BusBurst& burst : bursts_) {
     if (burst.end_ps > span_.begin_ps && burst.request_ps < span_.end_ps) write(&TraceSink::burst, burst);
   }

@@ -94,7 +94,6 @@ class Trace : public fpga::CycleObserver, public platform::BusObserver {
   void write(Event event, const Record& record) {
     for (const auto& sink : sinks_) (*sink.*event)(record);
   }
-  void set_span();
 
   std::vector<std::unique_ptr<TraceSink>> sinks_;
   Clock clock_;

@@ -27,11 +27,7 @@ struct SlotPlace {
 // What the sinks need of a board.
 struct TraceBoard {
   explicit TraceBoard(const platform::BoardConfig& board)
-      : name(board.name),
-        core(platform::core_config(board)),
-        geometry(core),
-        clock(board.fpga.clock_mhz),
-        banks(board.banks) {}
+      : core(platform::core_config(board)), geometry(core), clock(board.fpga.clock_mhz), banks(board.banks) {}
 
   std::uint64_t ps(std::uint64_t cycle) const { return clock.edge_ps(cycle); }
   const std::string& bank_name(std::size_t bank) const { return banks[bank].name; }
@@ -81,7 +77,6 @@ struct TraceBoard {
     return slots;
   }
 
-  std::string name;
   fpga::CoreConfig core;
   fpga::FrameGeometry geometry;
   Clock clock;

@@ -3,11 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
-#include <deque>
 #include <initializer_list>
 #include <iterator>
-#include <optional>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -70,7 +67,6 @@ struct Signal {
   }
 };
 
-// The signals of a board, and the words that they show.
 struct Signals {
   explicit Signals(const TraceBoard& board) {
     for (std::size_t bank = 0; bank < board.banks.size(); ++bank) {
@@ -150,7 +146,6 @@ struct Signals {
   }
 };
 
-// What a waveform shows.
 struct Span {
   std::uint64_t first_ps = 0;
   std::uint64_t last_ps = 0;

@@ -48,6 +48,8 @@ class Steps {
       : board_(board), joint_problem_(joint_problem) {}
 
   void add_keys(bool camera) {
+    if (camera && board_.pci.load)
+      add({"pci.load", "as it is", "none"}, [](BoardConfig& b) { b.pci.load.reset(); });
     for (const Key& key : platform::board_keys()) {
       const bool stays = begins_with(key.path, "image.") || key.path == "fpga.device" ||
                          key.path == "fpga.tables" ||  // add_tables()
@@ -127,7 +129,6 @@ class Steps {
     }
   }
 
-  // Two neighbours exchanged, or a port first or last.
   void add_priorities() {
     using Order = memory::PriorityList;
     const Order& list = board_.fpga.arbiter.priority;
@@ -157,10 +158,6 @@ class Steps {
       std::rotate(at(order), at(order) + 1, order.end());
       add_order(order, "this order", name + " last");
     }
-  }
-
-  void add_load() {
-    if (board_.pci.load) add({"pci.load", "as it is", "none"}, [](BoardConfig& b) { b.pci.load.reset(); });
   }
 
   void add_kinds() {
@@ -359,7 +356,6 @@ class Steps {
     for (const PlacedBuffer& buffer : platform::buffers(board_)) count += buffer.bank == bank ? 1 : 0;
     return count;
   }
-  // Whether the bank can hold this buffer beside those that it has.
   bool can_hold(const BankConfig& bank, const PlacedBuffer& buffer) const {
     std::uint64_t words = buffer_words(buffer, board_.image);
     for (const PlacedBuffer& held : platform::buffers(board_)) {
@@ -416,7 +412,6 @@ KnobSteps knob_steps(const BoardConfig& board, bool camera, const std::optional<
   steps.add_costs();
   steps.add_filters();
   steps.add_priorities();
-  if (camera) steps.add_load();
   steps.add_kinds();
   steps.add_turnarounds();
   steps.add_buffers();

@@ -4,11 +4,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdint>
 #include <cstdlib>
 #include <limits>
 #include <map>
-#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -17,8 +15,6 @@
 #include "platform/config/board_yaml.h"
 #include "platform/config/tables.h"
 #include "platform/yaml/words.h"
-#include "platform/yaml/yaml_tree.h"
-#include "sw/explore/plan/points.h"
 #include "sw/explore/store/store.h"
 
 namespace stereotlm::explore {
@@ -36,7 +32,6 @@ constexpr std::size_t kMostDigits = 15;          // of a number as the plan has 
 constexpr std::size_t kMostRangeDigits =
     18;  // of a number that is written with as many places as its range has
 
-// The digits of a decimal number behind its point.
 int places_of(const std::string& number) {
   const std::size_t point = number.find('.');
   return point == std::string::npos ? 0 : static_cast<int>(number.size() - point - 1);
@@ -47,12 +42,6 @@ std::string digits_with(std::string number, int places) {
   number.append(static_cast<std::size_t>(places - places_of(number)), '0');
   number.erase(std::remove(number.begin(), number.end(), '.'), number.end());
   return number;
-}
-
-std::string rules_of(const std::vector<platform::Diagnostic>& problems) {
-  std::string text;
-  for (const platform::Diagnostic& problem : problems) text += (text.empty() ? "" : "; ") + problem.text;
-  return text;
 }
 
 // The Feistel network of shuffled_number(), for numbers of 2 * half_bits bits.
@@ -113,9 +102,9 @@ Plan::Combination Plan::combination(std::uint64_t number) const {
 Point Plan::point(std::uint64_t number) const {
   const auto [draft, run] = combination(number);
   const platform::BoardDraft::Reading reading = draft.read_with_problems();
-  if (!reading.problems.empty()) {
-    return impossible_point(number, draft.to_yaml(), reading.board, run, rules_of(reading.problems));
-  }
+  std::string rules;
+  for (const Diagnostic& problem : reading.problems) rules += (rules.empty() ? "" : "; ") + problem.text;
+  if (!rules.empty()) return impossible_point(number, draft.to_yaml(), reading.board, run, rules);
   const auto problem = table_problem(reading.board, [](const char*) { return true; });
   if (!problem) return make_point(number, reading.board, run);
   return impossible_point(number, to_yaml(reading.board), reading.board, run,
@@ -128,7 +117,14 @@ std::optional<std::string> Plan::use_calibration(const std::string& sha256, int 
   tables_width_ = width;
   tables_height_ = height;
   tables_joint_problem_ = joint_problem;
-  return table_problem(*base_board_, [this](const char* path) { return !varies(path); });
+  // Checked are the keys of which neither they nor those below them vary.
+  return table_problem(*base_board_, [this](const char* path) {
+    return std::none_of(axes_.begin(), axes_.end(), [path](const Axis& axis) {
+      return std::any_of(axis.paths.begin(), axis.paths.end(), [path](const std::string& one) {
+        return one == path || platform::is_below(one, path);
+      });
+    });
+  });
 }
 
 std::optional<std::string> Plan::table_problem(const platform::BoardConfig& board,
@@ -141,20 +137,6 @@ std::optional<std::string> Plan::table_problem(const platform::BoardConfig& boar
   return problem;
 }
 
-bool Plan::varies(const std::string& path) const {
-  const std::vector<std::string> paths = varied();
-  return std::any_of(paths.begin(), paths.end(), [&path](const std::string& one) {
-    return one == path || platform::is_below(one, path);
-  });
-}
-
-std::vector<std::string> Plan::varied() const {
-  std::vector<std::string> paths;
-  for (const Axis& axis : axes_) paths.insert(paths.end(), axis.paths.begin(), axis.paths.end());
-  return paths;
-}
-
-// Reads one plan, and collects everything that is wrong with it.
 class PlanReader {
  public:
   PlanReader(const std::string& path, const std::string& board) : plan_(path, board) {}
@@ -197,11 +179,9 @@ class PlanReader {
     return fmt::format("{}:{}:{}", plan_.path(), place.line, place.column);
   }
   void report(const Place& place, const std::string& text) { findings_.push_back({place_text(place), text}); }
-  // Reports `path = value: rule`.
   void report(const std::string& path, const YamlNode& node, const std::string& rule) {
     report(node.place, fmt::format("{} = {}: {}", path, short_text(node), rule));
   }
-  // Adds errors that already have a place.
   void add(const std::vector<Diagnostic>& found) {
     findings_.insert(findings_.end(), found.begin(), found.end());
   }
@@ -238,7 +218,6 @@ class PlanReader {
     return nullptr;
   }
 
-  // Reads `board`, `set` and `run`: the board and the run that all points have in common.
   void read_base(const Entries& sections, const YamlNode& tree) {
     if (const YamlNode* run = find(sections, "run")) read_run(*run);
     const YamlNode* const board = find(sections, "board");

@@ -47,8 +47,6 @@ class Plan {
   Points points() const {
     return {size(), [this](std::uint64_t number) { return point(number); }, conditions_};
   }
-  // Paths whose values vary, in the order of the file.
-  std::vector<std::string> varied() const;
   // Names of all banks of all points, sorted.
   const std::vector<std::string>& banks() const { return banks_; }
   const std::string& path() const { return path_; }
@@ -92,7 +90,6 @@ class Plan {
   // calibration. Reasons that depend on keys at or below a path for which `is_checked` is false are left out.
   std::optional<std::string> table_problem(const platform::BoardConfig& board,
                                            const std::function<bool(const char*)>& is_checked) const;
-  bool varies(const std::string& path) const;  // whether the key or a key below it varies
 
   std::string path_;
   std::string board_;

@@ -8,8 +8,6 @@
 #include <cctype>
 #include <map>
 
-#include "platform/config/board_keys.h"
-#include "platform/yaml/yaml_tree.h"
 #include "sw/files/text_forms.h"
 
 namespace stereotlm::explore {
@@ -72,13 +70,6 @@ std::set<std::string> pure_functions(const sqlite::Database& database) {
   return names;
 }
 
-bool is_bank_words(const std::string& path) {
-  const std::string begin = "ssram.banks.";
-  const std::string end = ".words";
-  return path.size() > begin.size() + end.size() && path.compare(0, begin.size(), begin) == 0 &&
-         path.compare(path.size() - end.size(), end.size(), end) == 0;
-}
-
 }  // namespace
 
 // Compiles each text twice. The first time it ends a statement: then unbalanced quotes and brackets are
@@ -96,6 +87,9 @@ Conditions::Conditions(const std::vector<Condition>& conditions)
     compiled_.push_back({condition, compile(fmt::format("SELECT (({}\n)) FROM {}", condition.text, kPoint))});
   }
   sqlite3_limit(database_.handle(), SQLITE_LIMIT_LENGTH, kMostBytes);
+  const auto exceeds_steps = [](void* self) {
+    return ++static_cast<Conditions*>(self)->portions_ > kMostSteps / kStepsOfPortion ? 1 : 0;
+  };
   sqlite3_progress_handler(database_.handle(), kStepsOfPortion, exceeds_steps, this);
 }
 
@@ -127,20 +121,11 @@ int Conditions::authorize(void* conditions, int action, const char* /*first*/, c
   return SQLITE_DENY;
 }
 
-int Conditions::exceeds_steps(void* conditions) {
-  return ++static_cast<Conditions*>(conditions)->portions_ > kMostSteps / kStepsOfPortion ? 1 : 0;
-}
-
 // SQLite's message quotes the text from the error to its end, which may be many lines.
 std::string Conditions::reason_of(const sqlite::DatabaseError& error) const {
-  switch (sqlite3_errcode(database_.handle())) {
-    case SQLITE_TOOBIG:
-      return fmt::format("a text must be at most {} bytes", kMostBytes);
-    case SQLITE_INTERRUPT:
-      return fmt::format("must be computed within {} steps of SQLite", kMostSteps);
-    default:
-      break;
-  }
+  const int code = sqlite3_errcode(database_.handle());
+  if (code == SQLITE_TOOBIG) return fmt::format("a text must be at most {} bytes", kMostBytes);
+  if (code == SQLITE_INTERRUPT) return fmt::format("must be computed within {} steps of SQLite", kMostSteps);
   return platform::short_text(
       std::string(error.what()).substr(database_.path().size() + 2));  // without "where: "
 }
@@ -153,7 +138,7 @@ bool Conditions::hold(const std::vector<BoardValue>& values) {
   };
   BoardValue banks{kBankCount, std::int64_t{0}};
   for (const BoardValue& value : values) {
-    if (is_bank_words(value.path)) ++std::get<std::int64_t>(banks.value);
+    if (platform::schema_path(value.path) == "ssram.banks.NAME.words") ++std::get<std::int64_t>(banks.value);
     const std::size_t place = place_of(value.path == "name" ? "board.name" : value.path);
     if (place < given.size()) given[place] = &value;
   }

@@ -118,8 +118,6 @@ class Conditions {
   // object.
   static int authorize(void* conditions, int action, const char* first, const char* second,
                        const char* database, const char* trigger);
-  // SQLite's progress handler. Returns 1, which ends the computation, if it has too many steps.
-  static int exceeds_steps(void* conditions);
   std::unique_ptr<sqlite::Statement> compile(const std::string& sql);
   std::string reason_of(const sqlite::DatabaseError& error) const;
 

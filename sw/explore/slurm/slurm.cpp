@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <regex>
 #include <sstream>
 #include <system_error>
 #include <thread>
@@ -155,13 +156,6 @@ std::string identity(const ShardedSweep& sweep) {
   return text;
 }
 
-// A path for sbatch, which replaces %a and the like in paths of logs.
-std::string without_patterns(const std::string& path) {
-  std::string text;
-  for (const char c : path) text += c == '%' ? "%%" : std::string(1, c);
-  return text;
-}
-
 }  // namespace
 
 SlurmSweep::~SlurmSweep() {
@@ -222,9 +216,6 @@ void SlurmSweep::lock() {
 }
 
 bool SlurmSweep::is_of_this_sweep() const { return text_of(file(kSweep)) == identity(sweep_); }
-bool SlurmSweep::has(std::uint64_t shard) const {
-  return names_.count(fmt::format("shard_{}.db", shard)) > 0;
-}
 bool SlurmSweep::is_merged() const { return names_.count("merged") > 0 && fs::exists(store_); }
 
 // Merges the points of all shards, whole or not, into the store. No other process may write to the shards.
@@ -321,7 +312,7 @@ void SlurmSweep::refresh() {
 void SlurmSweep::submit_round() {
   std::vector<std::uint64_t> missing;
   for (std::uint64_t shard = 0; shard < sweep_.shards; ++shard) {
-    if (!has(shard)) missing.push_back(shard);
+    if (names_.count(fmt::format("shard_{}.db", shard)) == 0) missing.push_back(shard);
   }
   if (!jobs_.empty()) end_round(missing);
   Words behind;
@@ -352,12 +343,13 @@ std::string SlurmSweep::end_of(std::optional<std::uint64_t> shard) const {
   return end == ends_.end() ? "gone from the queue" : end->second;
 }
 
-// Submits a script of the folder, and returns the number of the job.
 std::string SlurmSweep::submit(const std::string& script, const std::string& log, const Words& options) {
   Words words = {"sbatch"};
-  words.insert(words.end(), options_.begin(), options_.end());
-  words.insert(words.end(), {"--job-name=" + name_, "--open-mode=append",
-                             fmt::format("--output={}/{}", without_patterns(folder_), log)});
+  for (const std::string& option : options_) words.push_back("--" + option);
+  // In paths of logs sbatch replaces %a and the like.
+  const std::string folder = std::regex_replace(folder_, std::regex("%"), "%%");
+  words.insert(words.end(),
+               {"--job-name=" + name_, "--open-mode=append", fmt::format("--output={}/{}", folder, log)});
   words.insert(words.end(), options.begin(), options.end());
   words.insert(words.end(), {"--parsable", file(script), fs::read_symlink("/proc/self/exe").string(), folder_,
                              std::to_string(sweep_.shards), store_});

@@ -50,7 +50,7 @@ class SlurmSweep {
  public:
   using Say = std::function<void(const std::string& note)>;
 
-  // `options` are passed to sbatch for all jobs, such as --partition=long. `say` is called with notes for the
+  // `options` are passed to sbatch for all jobs, such as partition=long. `say` is called with notes for the
   // user.
   SlurmSweep(const ShardedSweep& sweep, const std::vector<std::string>& options, Say say)
       : sweep_(sweep), options_(options), say_(std::move(say)) {}
@@ -70,7 +70,6 @@ class SlurmSweep {
 
  private:
   std::string file(const std::string& name) const { return folder_ + '/' + name; }
-  bool has(std::uint64_t shard) const;  // whether the shard is whole
   bool is_merged() const;
   bool is_of_this_sweep() const;
   void lock();

@@ -8,12 +8,9 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstdint>
 #include <cstring>
 #include <filesystem>
-#include <map>
 #include <nlohmann/json.hpp>
-#include <set>
 #include <stdexcept>
 #include <system_error>
 #include <thread>
@@ -79,12 +76,6 @@ void create_tables(sqlite::Database& database, const Names& further_columns,
       "cycles INTEGER NOT NULL, PRIMARY KEY(hash, port, bank, by)) WITHOUT ROWID;"
       "CREATE TABLE {0}.keys(name TEXT PRIMARY KEY NOT NULL) WITHOUT ROWID",
       schema, kApplicationId, kLayout));
-}
-
-// How a file that is a store begins.
-files::FileKind store_kind() {
-  using namespace std::string_literals;
-  return files::marked_kind("database of stereotlm sweep", {{0, "SQLite format 3\0"s}, {68, "STLM"}});
 }
 
 // Throws if the store holds points of another version of the program.
@@ -255,7 +246,7 @@ Figures figures_of(const Json& document) {
     if (key == "schema") continue;
     if (key == "blame") {
       for (const Json& row : value) {
-        figures.blame.push_back({row["port"], row["bank"], row["by"], row["cycles"].get<std::int64_t>()});
+        figures.blame.push_back({row["port"], row["bank"], row["by"], row["cycles"]});
       }
     } else {
       append(key, value, figures.values);
@@ -355,12 +346,12 @@ bool Store::add(const StoredPoint& point) {
     for (const platform::BoardValue* value : values) insert.bind(++place, value->value);
     insert.run();
     const bool is_new = sqlite3_changes(database_.handle()) > 0;
-    for (const StoredBlame& row : point.figures.blame) {
+    for (const platform::BlameRow& row : point.figures.blame) {
       if (!is_new) break;
       place = 0;
       for (const std::string& text : {point.hash, row.port, row.bank, row.by})
         insert_blame_->bind(++place, text);
-      insert_blame_->bind(++place, row.cycles);
+      insert_blame_->bind(++place, static_cast<std::int64_t>(row.cycles));
       insert_blame_->run();
     }
     database_.execute("COMMIT");
@@ -458,7 +449,13 @@ StoreLock::StoreLock(const std::string& store, std::chrono::milliseconds busy_ti
     : store_(store), path_(behind_links(store)) {
   const auto end = std::chrono::steady_clock::now() + busy_timeout;
   for (;; std::this_thread::sleep_for(kBetweenTries)) {
-    open_store();
+    constexpr mode_t kMode = 0644;
+    file_ = open(path_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, kMode);
+    is_made_ = file_ >= 0;
+    if (file_ < 0 && errno == EEXIST) file_ = open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, kMode);
+    if (file_ < 0)
+      throw sqlite::DatabaseError(
+          fmt::format("{}: cannot be opened to write: {}", store, std::strerror(errno)));
     struct flock range = {};
     range.l_type = F_WRLCK;
     range.l_whence = SEEK_SET;
@@ -474,16 +471,6 @@ StoreLock::StoreLock(const std::string& store, std::chrono::milliseconds busy_ti
       throw sqlite::DatabaseError(
           store + ": another process is at work on it: wait for its end, or give another file");
   }
-}
-
-void StoreLock::open_store() {
-  constexpr mode_t kMode = 0644;
-  file_ = open(path_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, kMode);
-  is_made_ = file_ >= 0;
-  if (file_ < 0 && errno == EEXIST) file_ = open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, kMode);
-  if (file_ < 0)
-    throw sqlite::DatabaseError(
-        fmt::format("{}: cannot be opened to write: {}", store_, std::strerror(errno)));
 }
 
 void StoreLock::check() const {
@@ -505,7 +492,10 @@ void merge_stores(const Names& inputs, const std::string& store, bool (*is_inter
   for (const std::string& path : inputs) all.add(path);
   const Names further = all.further_columns();
   const Names columns = with_first(further);
-  files::OutputFile file(out, store_kind());
+  using namespace std::string_literals;
+  const auto kind =
+      files::marked_kind("database of stereotlm sweep", {{0, "SQLite format 3\0"s}, {68, "STLM"}});
+  files::OutputFile file(out, kind);
   {
     sqlite::Database database(file.aside().path().string(), sqlite::Database::Access::kWrite,
                               sqlite::Database::kBusyTimeout, out);

@@ -12,24 +12,17 @@
 
 #include "platform/config/board_config.h"
 #include "platform/config/board_yaml.h"
+#include "platform/statistics.h"
 #include "sw/sqlite/database.h"
 
 namespace stereotlm::explore {
-
-// Stall cycles of one point, with the members of platform::BlameRow.
-struct StoredBlame {
-  std::string port;
-  std::string bank;
-  std::string by;
-  std::int64_t cycles = 0;
-};
 
 // The contents of stats.json as one row of a database.
 struct Figures {
   // Each value has the dotted path of its key. The path of an element of a list has the element's member
   // `name`, as in "banks.bank0.reads". A list of numbers is one text, "[1,2]".
   std::vector<platform::BoardValue> values;
-  std::vector<StoredBlame> blame;
+  std::vector<platform::BlameRow> blame;
 };
 
 // `document`: as stats::stats_document() returns it.
@@ -169,8 +162,6 @@ class StoreLock {
   void check() const;
 
  private:
-  void open_store();
-
   std::string store_;
   std::string path_;  // of the file behind all symbolic links
   int file_ = -1;

@@ -6,23 +6,16 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <array>
 #include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <map>
-#include <memory>
 #include <new>
 #include <optional>
 #include <sstream>
-#include <stdexcept>
-#include <string>
 #include <system_error>
 #include <vector>
 
-#include "sw/explore/plan/points.h"
-#include "sw/explore/store/store.h"
 #include "sw/process/child.h"
 
 namespace stereotlm::explore {
@@ -30,7 +23,6 @@ namespace {
 
 constexpr int kPollMs = 20;  // between two calls of keep_going
 
-// The number of points of the shard.
 std::uint64_t points_of(const Points& points, const SweepOptions& options) {
   return points.size > options.shard ? (points.size - options.shard - 1) / options.shards + 1 : 0;
 }
@@ -114,7 +106,6 @@ class Claims {
       return next;
     });
   }
-  // Ends the point that the place has begun.
   void end(std::size_t place, PointEnd end) { ++places_[place].ended[static_cast<std::size_t>(end)]; }
   // The point that the place has begun and not ended.
   std::optional<std::uint64_t> unfinished(std::size_t place) const {
@@ -151,7 +142,6 @@ class Claims {
   SharedLock lock_;  // of begin()
 };
 
-// What the processes of a sweep have in common.
 struct SweepState {
   const Points& points;
   const Evaluate& evaluate;

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "sw/explore/store/store.h"
-#include "sw/process/interrupt.h"
+#include "sw/process/streams.h"
 #include "sw/report/page_data/page_data.h"
 #include "sw/sqlite/database.h"
 

@@ -24,7 +24,7 @@
 #include "sw/files/text_forms.h"
 #include "sw/files/whole_file.h"
 #include "sw/media/encode.h"
-#include "sw/process/interrupt.h"
+#include "sw/process/streams.h"
 #include "sw/report/chart/memory_chart.h"
 #include "sw/report/page_data/page_data.h"
 #include "sw/runs/explanation.h"
@@ -62,16 +62,13 @@ std::string command_of(const runs::RecordedRun& run) {
 }
 
 Json settings_of(const BoardConfig& board) {
-  std::map<std::string, platform::KeyInfo> known;
-  for (const platform::KeyInfo& key : platform::keys()) known[key.path] = key;
   Json all = Json::array();
   for (const platform::BoardValue& value : platform::values_of(board)) {
     Json setting = {{"key", value.path}};
     std::visit([&setting](const auto& its) { setting["value"] = its; }, value.value);
-    const auto key = known.find(platform::schema_path(value.path));
-    if (key != known.end()) {
-      setting["meaning"] = key->second.meaning;
-      if (!key->second.unit.empty()) setting["unit"] = key->second.unit;
+    if (const platform::Key* const key = platform::find_key(platform::schema_path(value.path))) {
+      setting["meaning"] = key->meaning;
+      if (!key->unit.empty()) setting["unit"] = key->unit;
     }
     all.push_back(std::move(setting));
   }

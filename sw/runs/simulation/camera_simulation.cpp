@@ -7,7 +7,6 @@
 
 #include "models/kernel_time.h"
 #include "platform/fast_computer.h"
-#include "sw/driver/stereo_driver.h"
 
 namespace stereotlm::runs {
 namespace {
@@ -52,7 +51,7 @@ const host::StereoPair& CameraSimulation::captured_pair(std::uint64_t number, st
 
 void CameraSimulation::record_timeline() {
   computer_->record(timeline_.emplace(board()));
-  driver_.set_observer(timeline_->driver());
+  driver_.set_observer(*timeline_);
 }
 
 platform::TimelineRecords CameraSimulation::take_timeline() {

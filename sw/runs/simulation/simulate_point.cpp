@@ -1,19 +1,17 @@
 #include "sw/runs/simulation/simulate_point.h"
 
 #include <algorithm>
-#include <functional>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <optional>
 #include <stdexcept>
-#include <string>
 #include <utility>
 #include <vector>
 
 #include "models/binder.h"
 #include "platform/config/buffer_layout.h"
-#include "platform/core_run.h"
 #include "platform/figures.h"
+#include "platform/preloaded_system.h"
 #include "sw/explore/sweep/sweep.h"
 #include "sw/files/text_forms.h"
 #include "sw/process/child.h"

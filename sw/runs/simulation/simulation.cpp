@@ -21,7 +21,6 @@ namespace {
 constexpr double kSliceCycles = 40'000;
 constexpr double kFastSliceCycles = 2'000'000;
 
-// The board alone with an ideal host.
 class PreloadedSimulation : public Simulation, private host::FrameSource, private host::FrameSink {
  public:
   PreloadedSimulation(const platform::BoardConfig& board, const platform::Tables& tables,

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <stdexcept>
 
 #include "calib/calibration.h"
@@ -19,12 +18,6 @@ namespace fs = std::filesystem;
 
 InputFile described(const fs::path& path, const std::string& content) {
   return {fs::absolute(path).string(), files::sha256_hex(content.data(), content.size())};
-}
-
-void check_board(const calib::Rig& rig, const platform::BoardConfig& board) {
-  auto problem = platform::calibration_size_problem(board, rig.width, rig.height);
-  if (!problem) problem = platform::calibration_buffer_problem(board);
-  if (problem) throw std::runtime_error(*problem);
 }
 
 kernels::RectificationTable load_table(const fs::path& path, const calib::Rig& rig, const std::string& sha256,
@@ -111,7 +104,11 @@ std::optional<CalibrationInput> load_calibration(const std::string& path, const 
     input.described.file = described(files.calibration, content);
     try {
       input.calibration = std::make_shared<const calib::Calibration>(calib::parse_calibration(content));
-      if (board != nullptr) check_board(input.calibration->rig, *board);
+      const calib::Rig& rig = input.calibration->rig;
+      auto problem =
+          board != nullptr ? platform::calibration_size_problem(*board, rig.width, rig.height) : std::nullopt;
+      if (!problem && board != nullptr) problem = platform::calibration_buffer_problem(*board);
+      if (problem) throw std::runtime_error(*problem);
     } catch (const std::exception& error) {
       throw at_path(error.what());
     }

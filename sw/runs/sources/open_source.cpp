@@ -2,22 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <future>
 #include <iterator>
-#include <memory>
 #include <stdexcept>
-#include <string>
 #include <system_error>
-#include <utility>
-#include <vector>
 
-#include "platform/config/board_config.h"
 #include "sw/files/text_forms.h"
-#include "sw/media/load.h"
 #include "sw/media/synthetic_scene.h"
-#include "sw/runs/run_json.h"
 
 namespace stereotlm::runs {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "platform/config/board_yaml.h"
 #include "platform/conflicts.h"
-#include "platform/core_run.h"
+#include "platform/preloaded_system.h"
 #include "sw/stats/record_csv.h"
 #include "tests/integration/core/preloaded_run.h"
 #include "tests/support/board_of_random.h"

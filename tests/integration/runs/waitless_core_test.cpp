@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "platform/config/board_yaml.h"
-#include "platform/core_run.h"
+#include "platform/preloaded_system.h"
 #include "sw/runs/simulation/simulate_point.h"
 
 namespace stereotlm::runs {

@@ -9,7 +9,7 @@
 #include <ostream>
 #include <stdexcept>
 
-#include "platform/core_run.h"
+#include "platform/preloaded_system.h"
 #include "tests/unit/platform/preloaded_run.h"
 
 namespace stereotlm::platform {

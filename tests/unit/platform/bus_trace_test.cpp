@@ -36,7 +36,7 @@ class BusTraceTest : public ::testing::Test {
   }
   // A burst on the PCI bus from its request to its end.
   void pci(std::uint64_t request_ps, std::uint64_t end_ps) {
-    trace_->pci_bus().pci_burst_ended(
+    trace_->pci_burst_ended(
         {kHost, kHostMemory, true, 0x100, 1, request_ps, request_ps, request_ps + 1, end_ps});
   }
   Lines handed_out() {
@@ -51,9 +51,9 @@ class BusTraceTest : public ::testing::Test {
 
 TEST_F(BusTraceTest, NamesMastersAndTargetsOfThePciBus) {
   trace();
-  trace_->pci_bus().pci_burst_ended({kLeftCapture, kBridgeSlave, true, 0xC0000000, 8, 1, 2, 3, 4});
-  trace_->pci_bus().pci_burst_ended({kBridge, std::nullopt, false, 0xFFFFFFF0, 0, 5, 6, 7, 8});
-  trace_->pci_bus().pci_burst_ended({kTrafficGenerator, kTrafficDevice, false, 0xE2000000, 2, 9, 10, 11, 12});
+  trace_->pci_burst_ended({kLeftCapture, kBridgeSlave, true, 0xC0000000, 8, 1, 2, 3, 4});
+  trace_->pci_burst_ended({kBridge, std::nullopt, false, 0xFFFFFFF0, 0, 5, 6, 7, 8});
+  trace_->pci_burst_ended({kTrafficGenerator, kTrafficDevice, false, 0xE2000000, 2, 9, 10, 11, 12});
   EXPECT_EQ(handed_out(),
             (Lines{"left_capture>bridge w8 at c0000000: 1 2 3 4", "bridge>none r0 at fffffff0: 5 6 7 8",
                    "load>load r2 at e2000000: 9 10 11 12"}));

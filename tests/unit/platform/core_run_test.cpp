@@ -1,5 +1,3 @@
-#include "platform/core_run.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -9,6 +7,7 @@
 #include <vector>
 
 #include "platform/config/board_yaml.h"
+#include "platform/preloaded_system.h"
 #include "tests/support/scratch_folder.h"
 #include "tests/unit/platform/preloaded_run.h"
 

@@ -56,19 +56,18 @@ class TimelineSteps : public ::testing::Test {
 
   void transfer(unsigned channel, Buffer buffer, std::uint64_t begin_ps, std::uint64_t end_ps,
                 std::uint64_t words) {
-    timeline.bridge().transfer_begun(channel, begin_ps,
-                                     {buffer == Buffer::kDisparity, 0, address_of(buffer), words});
-    timeline.bridge().transfer_ended(channel, end_ps);
+    timeline.transfer_begun(channel, begin_ps, {buffer == Buffer::kDisparity, 0, address_of(buffer), words});
+    timeline.transfer_ended(channel, end_ps);
   }
   void upload_tables() {
-    timeline.bridge().dma_started(0, 100);
+    timeline.dma_started(0, 100);
     transfer(0, Buffer::kLeftLut, 100, 1000, 30);
     transfer(0, Buffer::kRightLut, 1000, 2000, 30);
     interrupt(bridge_map::kDmaDone, 2000, 2100);
   }
   void interrupt(std::uint32_t bit, std::uint64_t raised_ps, std::uint64_t cleared_ps) {
-    timeline.bridge().interrupts_raised(raised_ps, bit);
-    timeline.bridge().interrupts_cleared(cleared_ps, bridge_map::kAllInterrupts);
+    timeline.interrupts_raised(raised_ps, bit);
+    timeline.interrupts_cleared(cleared_ps, bridge_map::kAllInterrupts);
   }
   void begin_capture(std::uint64_t frame, std::uint64_t begin_ps) {
     for (const std::size_t side : {0U, 1U}) {
@@ -101,7 +100,7 @@ class TimelineSteps : public ::testing::Test {
     for (const Before& before : conditions) {
       if (number >= before.back) awaited.push_back({before.activity, number - before.back, before.reason});
     }
-    timeline.driver().starts(activity, awaited);
+    timeline.starts(activity, awaited);
   }
   void begin_frame(std::uint64_t strobe_ps) {
     const Activity of_pair = copies_ > 0 ? Activity::kCopy : Activity::kCapture;
@@ -109,23 +108,23 @@ class TimelineSteps : public ::testing::Test {
           {{Activity::kFrame, 1, "core"},
            {of_pair, 0, "pair"},
            {Activity::kReadBack, board.allocation.disparity.size(), "output_buffer"}});
-    timeline.core().frame_begun(strobe_ps);
+    timeline.frame_begun(strobe_ps);
   }
   void begin_copy(std::uint64_t begin_ps) {
     start(Activity::kCopy, copies_++,
           {{Activity::kCopy, 1, "copy"},
            {Activity::kCapture, 0, "pair"},
            {Activity::kFrame, board.allocation.left_image.size(), "input_buffer"}});
-    timeline.bridge().dma_started(0, begin_ps);
+    timeline.dma_started(0, begin_ps);
   }
   void begin_read_back(std::uint64_t begin_ps) {
     start(Activity::kReadBack, read_backs_++,
           {{Activity::kReadBack, 1, "read_back"}, {Activity::kFrame, 0, "frame"}});
-    timeline.bridge().dma_started(1, begin_ps);
+    timeline.dma_started(1, begin_ps);
   }
   void run_core(std::uint64_t strobe_ps, std::uint64_t first, std::uint64_t end, std::uint64_t done) {
     begin_frame(strobe_ps);
-    timeline.core().frame_ended({strobe_ps, first, end, done, 8});
+    timeline.frame_ended({strobe_ps, first, end, done, 8});
     interrupt(bridge_map::kDoorbell, done * kCyclePs, done * kCyclePs + 50);
   }
   void read_back(std::uint64_t begin_ps, std::uint64_t end_ps) {
@@ -286,7 +285,7 @@ TEST_F(TwoRecordedFrames, EndWhatIsUnderWayAtTheEndOfTheRun) {
   run();
   begin_capture(4, 310'500);
   timeline.capture_board(0).frame_begun(5, 310'999);
-  timeline.bridge().interrupts_raised(310'900, bridge_map::kDoorbell);
+  timeline.interrupts_raised(310'900, bridge_map::kDoorbell);
   counters.cameras[0].capture.words += 3;
   counters.cameras[1].capture.dropped_pixels += 4;
   timeline.mark_end(counters);
@@ -355,10 +354,10 @@ TEST_F(RecordedRing, CountsTheWordsOfACopyThatTheEndOfTheRunCuts) {
   capture(0, 0, 10'000);
   begin_copy(11'000);
   transfer(0, Buffer::kLeftImage, 11'000, 12'000, 10);
-  timeline.bridge().transfer_begun(0, 12'000, {false, 0, address_of(Buffer::kRightImage), 10});
+  timeline.transfer_begun(0, 12'000, {false, 0, address_of(Buffer::kRightImage), 10});
   capture(1, 20'000, 30'000);
   begin_frame(40'000);
-  timeline.core().frame_ended({40'000, 2, 3, 4, 8});
+  timeline.frame_ended({40'000, 2, 3, 4, 8});
   begin_read_back(110'000);
   timeline.deliver({0, 120'000});
   counters.bridge.dma_words = 13;

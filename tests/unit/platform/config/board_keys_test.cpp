@@ -283,9 +283,9 @@ TEST(BoardKeysTable, ListsEveryKeyOfTheCasesAndOfBanksFiltersAndCosts) {
                                     "ssram.banks.NAME.turnaround_cycles"};
   for (const KeyCase& key : key_cases()) expected.insert(key.path);
   std::set<std::string> listed;
-  for (const KeyInfo& key : keys()) {
+  for (const Key& key : keys()) {
     EXPECT_FALSE(key.meaning.empty()) << key.path;
-    EXPECT_FALSE(key.range.empty()) << key.path;
+    EXPECT_FALSE(key.rule_text.empty()) << key.path;
     EXPECT_TRUE(listed.insert(key.path).second) << key.path;
   }
   EXPECT_EQ(listed, expected);
@@ -306,9 +306,9 @@ TEST(BoardKeysTable, SaysWhichKeysMayBeMissing) {
 
 TEST(BoardKeysTable, GivesTheRangesThatMessagesGive) {
   for (const KeyCase& key : key_cases()) {
-    for (const KeyInfo& info : keys()) {
+    for (const Key& info : keys()) {
       if (info.path == key.path) {
-        EXPECT_EQ(info.range, key.rule) << key.path;
+        EXPECT_EQ(info.rule_text, key.rule) << key.path;
       }
     }
   }

@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <system_error>
 
-#include "sw/process/interrupt.h"
+#include "sw/process/streams.h"
 #include "tests/support/scratch_folder.h"
 
 namespace stereotlm::process {

@@ -139,13 +139,6 @@ TEST(RowComparison, HasRangesThatSumUpToAllRows) {
   }
 }
 
-TEST(RowComparison, RefusesFramesOfDifferentHeights) {
-  RowComparison rows;
-  EXPECT_THROW(rows.add(profile({10, 20}), profile({10})), std::invalid_argument);
-  rows.add(profile({10, 20}), profile({10, 20}));
-  EXPECT_THROW(rows.add(profile({10}), profile({10})), std::invalid_argument);
-}
-
 constexpr const char* kHead =
     "frame,row,a_cycles,b_cycles,a_left_lut_stall_cycles,a_right_lut_stall_cycles,a_left_pixel_stall_cycles,"
     "a_right_pixel_stall_cycles,a_result_stall_cycles,b_left_lut_stall_cycles,b_right_lut_stall_cycles,"

@@ -51,7 +51,7 @@ constexpr std::uint64_t kStored = 45;
 Figures evaluate(const Point& point) {
   if (point.board->matcher.window == 11) throw std::runtime_error("a window that fails");
   return {{{"cycles", std::int64_t{point.board->matcher.window * point.board->matcher.disparities}}},
-          {{"left_pixel", "bank0", "host", point.board->matcher.window}}};
+          {{"left_pixel", "bank0", "host", static_cast<std::uint64_t>(point.board->matcher.window)}}};
 }
 
 bool always(const SweepCounts& /*counts*/) { return true; }

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "platform/config/board_yaml.h"
-#include "platform/core_run.h"
+#include "platform/preloaded_system.h"
 #include "sw/runs/simulation/camera_simulation.h"
 #include "sw/stats/stats_json.h"
 #include "tests/support/board_of_random.h"
