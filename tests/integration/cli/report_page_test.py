@@ -130,7 +130,7 @@ class EveryChart(PageTest):
         "computer": "memory bounds roofline banks blame ports rows picture frames time latency knobs area "
         "audit configuration",
         "two": "rows picture frames blame memory ports-A ports-B settings totals",
-        "database": "scatter chosen filters parallel points constants",
+        "database": "scatter chosen filters points constants",
     }
 
     def test_is_drawn_at_both_widths_and_in_both_themes(self):
@@ -367,15 +367,13 @@ class Database(PageTest):
         """Those of the CSV of a chart."""
         return list(csv.DictReader(io.StringIO(self.browser.csv(chart))))
 
-    def test_is_brushed_in_the_scatter_and_along_an_axis(self):
+    def test_is_brushed_in_the_scatter(self):
         self.assertEqual(self.selected_points(), self.size)
         self.browser.drag("#scatter .brush-xy", (0.01, 0.02), (0.6, 0.98))
         part = self.selected_points()
         self.assertGreater(part, 0)
         self.assertLess(part, self.size)
-        self.browser.drag("#parallel .brush-y", (0.5, 0.02), (0.5, 0.45))
-        self.assertLess(self.selected_points(), part)
-        self.assertEqual({row["allocation.left_lut"] for row in self.rows("points")}, {"bank6"})
+        self.assertEqual(len(self.rows("points")), part)
         self.browser.button("filters", "Select all points")
         self.assertEqual(self.selected_points(), self.size)
 

@@ -1,6 +1,6 @@
 // The page of a database: its charts, filters, table, and the board of a point.
 import {addAnswers, addChart, addGroup, addHead, htmlTable} from './card.js';
-import {addParallel, addScatter} from './database_charts.js';
+import {addScatter} from './database_charts.js';
 import {button, folded, h, note, textBox} from './dom.js';
 import {resourceText} from './findings.js';
 import {
@@ -181,7 +181,6 @@ export function showDatabase(page, {database}) {
   const scatter = addScatter(cards, points, choose);
   const boardChart = addChart(cards, {id: 'chosen', wide: true, title: 'The board of a point', body: board});
   addFilters(cards, points);
-  addParallel(cards, points);
   addTable(
       cards, points, [rateName, ...(points.figures.includes('area.slices') ? ['area.slices'] : [])], choose);
   const constants = [['key', 'value'], points.constantKeys.map(key => [key, points.column(key)[0]])];
