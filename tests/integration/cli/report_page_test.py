@@ -682,18 +682,6 @@ class Answers(PageTest):
         self.opened(computer(), lambda run: None)
         self.assertRegex(self.answer("Who waits for whom?"), r"left_lut waits in .* % for host capture")
 
-    def test_few_tiles_with_half_of_the_waits_are_named(self):
-        def change(run):
-            recording = run["recording"]
-            recording["tiles"] = {"columns": 10, "rows": 10, "width": 4, "height": 3}
-            recording["stalls"] = recording["stalls"][:1]
-            recording["stalls"][0]["tiles"] = few * [100 - few] + (100 - few) * [few]
-
-        for few, text in ((34, "Over all columns; half of all waits are in 34 % of the picture."),
-                          (35, "Over all columns.")):
-            self.opened(core(), change)
-            self.assertIn(text, self.answer("Where in the picture?"))
-
     def test_each_resource_of_the_fpga_has_its_own_number(self):
         def change(run):
             run["area"]["device"].update(block_rams=50, multipliers=200)
@@ -783,18 +771,6 @@ class Answers(PageTest):
                          "First: kind of memory of all banks: zbt_pipelined → qdr, +6.0 %")
         self.opened(core(), self.steps(("fpga.arbitration", "age", "round_robin", 0.9, {})))
         self.assertIn("no single change gains 1 %", self.answer("What to change first?"))
-
-    def test_a_change_that_reaches_another_limit_says_so(self):
-        def change(run):
-            run["bounds"]["computer"] = [{"resource": "camera", "frames_per_second": 29.97}]
-            run["knobs"]["frames_per_second"] = 20
-            self.steps((key, "a", "b", gain, {}))(run)
-
-        for key, gain, text in (("matcher.cost", 49.85, "(+49.9 %), where the cameras limit."),
-                                ("matcher.cost", 49, "(+49.0 %)."),
-                                ("cameras.trigger", 49.85, "(+49.9 %).")):
-            self.opened(computer(), change)
-            self.assertIn(f"{text}To try it: ", self.answer("What to change first?"))
 
     def test_small_changes_are_folded(self):
         self.opened(core(), self.steps(*(("matcher.rows", "1", str(i), gain, {}) for i, gain in

@@ -1,7 +1,7 @@
 // When things happen in the computer: the time line of captures, transfers, frames of the core, waits and
 // drops, and how long a frame takes from its first pixel to its results on the host.
 import {drawColumns} from './bars.js';
-import {addChart, addLeftOut, htmlTable, legend} from './card.js';
+import {addChart, addLeftOut, legend} from './card.js';
 import {objectsOf} from './data.js';
 import {s} from './dom.js';
 import {droppedText, settingOf} from './findings.js';
@@ -265,25 +265,15 @@ const kParts = [
 ];
 const kWaitParts = ['wait_copy_ps', 'wait_core_ps', 'wait_read_back_ps'];
 
-function addPercentiles(page, latency) {
-  const table =
-      [['percentile', 'ms'], ['min', 'p50', 'p95', 'p99', 'max'].map(name => [name, latency[name]])];
-  addChart(page, {
-    id: 'latency',
-    title: `Half of the results are ${fixed(latency.p50, 1)} ms old when they arrive, the oldest ${
-        fixed(latency.max, 1)} ms`,
-    body: htmlTable(...table),
-    note:
-        'From the first pixel of a capture to the results on the host. What of it is waiting was left out ' +
-        'by --quick, because the run was not recorded.',
-    numbers: () => table
-  });
-}
-
 export function addLatency(page, run) {
   const percentiles = run.stats.latency_ms?.capture_to_host;
   if (!percentiles) return;
-  if (!run.recording) return addPercentiles(page, percentiles);
+  if (!run.recording) {
+    return addLeftOut(
+        page, 'latency',
+        `Half of the results are ${fixed(percentiles.p50, 1)} ms old when they arrive, the oldest ${
+            fixed(percentiles.max, 1)} ms`);
+  }
   const {names, rows, all, means_ps: means} = run.recording.latency;
   const msOf = (parts, frame) => sum(parts.map(name => frame[name])) / kPsOfMs;
   const parts = kParts.filter(([columns]) => columns.some(name => means[name] > 0));

@@ -163,10 +163,8 @@ export function addRows(page, run) {
                                         .map(part => `${part.by}: ${whole(part.values[line])}`) :
                                     []];
   const draw = (host, width) => {
-    // Names from bottom to top, unless each has room.
-    const widest = Math.max(...columns.map(({name}) => textWidth(name)));
-    const upright = widest + 6 > (width - 48) / columns.length;
-    const top = upright ? Math.min(200, 16 + widest) : 24;
+    // Names from bottom to top.
+    const top = Math.min(200, 16 + Math.max(...columns.map(({name}) => textWidth(name))));
     const {plot, width: inner, height, context} = layeredDrawing(
         host, width, kRowsHeight + top + 8, {left: 44, right: 4, top, bottom: 8}, 'Rows of the picture');
     const y = numeric([zoom.from * rowsOfLine, zoom.to * rowsOfLine], [0, height]);
@@ -181,12 +179,11 @@ export function addRows(page, run) {
         context.fillStyle = css(heat(column.waits && mostWaits > 0 ? share / mostWaits : share));
         context.fillRect(i * step + 1, pixel, Math.max(1, step - 2), 1.5);
       }
-      const place = upright ? {transform: `translate(${(i + 0.5) * step + 4} -6) rotate(-90)`} :
-                              {x: (i + 0.5) * step, y: -6, 'text-anchor': 'middle'};
+      const place = {transform: `translate(${(i + 0.5) * step + 4} -6) rotate(-90)`};
       const some = column.values.filter(each => each !== 0).length;
       const reach =
           {x: i * step + 1, y: 4 - top, width: Math.max(1, step - 2), height: top - 6, class: 'reach'};
-      plot.append(s('text', place, cut(column.name, upright ? top - 10 : step)), mark(s('rect', reach), [
+      plot.append(s('text', place, cut(column.name, top - 10)), mark(s('rect', reach), [
                     `${column.name} ${column.what}`, `${whole(sum(column.values) + column.fill)} in all`,
                     `in ${some} of ${count(lines, rowsOfLine > 1 ? 'strip' : 'row')}`
                   ]));
