@@ -13,7 +13,6 @@ const kFirstFrames = 6;
 const kMostMarks = 1500;
 const kLeastPs = 1000;
 const kLine = 34;
-const kOverviewLine = 9;
 
 // Of each kind of event: its colour and its name.
 const kKinds = {
@@ -119,64 +118,21 @@ function shapesOf(event, x0, x1, y) {
   ].filter(Boolean);
 }
 
-// The time line, in a window that is chosen in an overview of the whole run.
+// The time line of a part of the run.
 export function addTimeLine(page, run) {
   if (!run.recording) return addLeftOut(page, 'time', 'Time line of captures, core and read-backs');
-  const {events: recorded, overview} = run.recording;
+  const recorded = run.recording.events;
   const events = objectsOf(recorded).map(event => ({...event, lane: laneOf(event.kind, event.class)}));
   const lanes = kLanes.filter(lane => events.some(event => event.lane === lane));
-  const last = overview.end_ps;
+  const last = Math.max(...events.map(event => event.end_ps));
   const begin = Math.min(...events.filter(({kind}) => kind === 'capture').map(event => event.start_ps), last);
   const early = Math.max(
       ...events.filter(({frame}) => frame >= 0 && frame < kFirstFrames).map(event => event.end_ps), 1);
 
-  const drawOverview = (above, inner) => {
-    const x = numeric([0, last], [0, inner]);
-    const height = lanes.length * kOverviewLine;
-    for (const {kind, class: side, amounts} of overview.lanes) {
-      const line = lanes.indexOf(laneOf(kind, side));
-      if (line < 0) continue;
-      const [y, tall, colour] = kind === 'drop' ? [5, 2, '--ink'] : [1, 7, kKinds[kind][0]];
-      amounts.forEach((amount, bin) => {
-        if (amount === 0) return;
-        const opacity = kind === 'drop' ? 1 : 0.15 + 0.85 * Math.min(1, amount / 100);
-        above.append(s('rect', {
-          x: bin / overview.bins * inner,
-          y: line * kOverviewLine + y,
-          width: inner / overview.bins + 0.3,
-          height: tall,
-          style: `fill:var(${colour});fill-opacity:${opacity}`
-        }));
-      });
-    }
-    const wide = Math.max(2, x(zoom.to) - x(zoom.from));
-    above.append(
-        s('text', {x: -8, y: 12, 'text-anchor': 'end', class: 'label'}, 'whole run'),
-        s('text', {x: inner, y: -5, 'text-anchor': 'end', class: 'label'},
-          `0 to ${inMs(last, 0)}; below: the window`),
-        s('rect', {x: x(zoom.from), y: -1, width: wide, height: height + 2, class: 'window'}));
-    addBrush(above, {
-      axis: 'x',
-      width: inner,
-      height,
-      end: (box, place) => {
-        const half = (zoom.to - zoom.from) / 2;
-        if (box)
-          zoom.set(x.invert(box.x0), x.invert(box.x1));
-        else
-          zoom.set(x.invert(place.x) - half, x.invert(place.x) + half);
-      }
-    });
-  };
-
   const draw = (host, width) => {
     const left = Math.min(100, width * 0.26);
-    const top = lanes.length * kOverviewLine + 34;
-    const {svg, plot, width: inner, height} =
-        drawing(host, width, top + lanes.length * kLine + 46, {left, right: 8, top, bottom: 40}, 'Time line');
-    const above = s('g', {transform: `translate(${left} 16)`});
-    svg.append(above);
-    drawOverview(above, inner);
+    const {plot, width: inner, height} =
+        drawing(host, width, lanes.length * kLine + 46, {left, right: 8, bottom: 40}, 'Time line');
     const x = numeric([zoom.from / kPsOfMs, zoom.to / kPsOfMs], [0, inner]);
     const atPs = ps => Math.max(0, Math.min(inner, x(ps / kPsOfMs)));
     const digits = Math.max(0, Math.ceil(1 - Math.log10((zoom.to - zoom.from) / kPsOfMs / 5)));
@@ -232,8 +188,7 @@ export function addTimeLine(page, run) {
       waits.note,
       drops > 0 && (droppedText(run) ?? `${count(drops, 'frame')} of the left camera are dropped.`),
       drops > 0 && 'Crosses: dropped frames.',
-      'The number in a bar is the frame; thin grey bars are waits. Drag in the overview, or in the window ' +
-          'below it, to choose the time that is shown.',
+      'The number in a bar is the frame; thin grey bars are waits. Drag to choose the time that is shown.',
       recorded.all > recorded.rows.length &&
           `The page has ${whole(recorded.rows.length)} of ${
               whole(recorded.all)} events: those of the beginning, of ` +
