@@ -150,20 +150,6 @@ export function showDatabase(page, {database}) {
                           .join(', '))}.`] :
           []
     ],
-    [
-      'What is the same in all?',
-      [`${points.constantKeys.length} keys, such as ${
-          points.constantKeys.filter(key => key.startsWith('matcher') || key.startsWith('image'))
-              .slice(0, 3)
-              .map(key => `${key} ${value(points.column(key)[0])}`)
-              .join(', ')}.`]
-    ],
-    [
-      'What is left out?',
-      [`${
-          whole(database.left_out
-                    .length)} columns, most of them counters of banks and ports: the database has them.`]
-    ]
   ].filter(([, texts]) => texts.length));
 
   const cards = addGroup(page, 'Points');
@@ -188,6 +174,8 @@ export function showDatabase(page, {database}) {
     id: 'constants',
     wide: true,
     title: `${points.constantKeys.length} keys are the same in all points`,
+    note: `${whole(database.left_out.length)} columns, most of them counters of banks and ports, are not in ` +
+        'the page.',
     body: folded('Show', htmlTable(...constants, 300)),
     numbers: () => constants
   });
