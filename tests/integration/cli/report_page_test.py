@@ -281,8 +281,7 @@ class Numbers(PageTest):
         expected = sorted([plain(point[name]) for name in names] for point in points)
         found = sorted([read(row[name], points[0][name]) for name in names] for row in rows)
         self.assertEqual(found, expected)
-        name = "banks.bank0.utilization"  # not in the data: follows from busy_cycles
-        self.assertEqual(sorted(float(row[name]) for row in rows), sorted(point[name] for point in points))
+        self.assertIn("banks.bank0.utilization", names)
 
 
 class Drawing(PageTest):
@@ -577,7 +576,7 @@ class Tools(PageTest):
         self.assertIn("of 9999 events", self.browser.text("#time"))
         box = "return document.querySelector(arguments[0]).getBoundingClientRect().width"
         self.assertAlmostEqual(self.browser.run(box, "#time .left-out") * 4,
-                               self.browser.run(box, "#time .window"), delta=8)
+                               self.browser.run(box, "#time .brush-x"), delta=8)
 
     def test_sliders_move_the_picture_and_the_overlay(self):
         self.browser.open(page_of(computer()))
@@ -770,15 +769,13 @@ class Answers(PageTest):
         self.opened(core(), self.steps(("fpga.arbitration", "age", "round_robin", 0.9, {})))
         self.assertIn("no single change gains 1 %", self.answer("What to change first?"))
 
-    def test_small_changes_are_folded(self):
+    def test_small_changes_are_in_the_table_alone(self):
         self.opened(core(), self.steps(*(("matcher.rows", "1", str(i), gain, {}) for i, gain in
                                          enumerate((5, 0.11, 0.09, 0.049, 0, -0.049, -0.09, -0.11)))))
-        self.assertEqual(len(self.browser.all("#knobs .mark")), 3)
-        self.assertEqual(self.browser.text("#fold-changes"), "▸ 5 changes that gain or lose less than 0.1 %")
-        self.browser.click("#fold-changes")
+        self.assertEqual(self.browser.csv("knobs").count("\n"), 1 + 8)
         gains = self.browser.run("return [...document.querySelectorAll('#knobs .mark')]"
                                  ".map(each => each.getAttribute('aria-label').match(/\\((.*?)\\)/)[1])")
-        self.assertEqual(gains, ["+5.0 %", "+0.1 %", "+0.1 %", "≈ 0", "≈ 0", "≈ 0", "−0.1 %", "−0.1 %"])
+        self.assertEqual(gains, ["+5.0 %", "+0.1 %", "−0.1 %"])
 
     def test_the_core_says_when_it_waits(self):
         recorded = list(csv.DictReader(io.StringIO((computer() / "timeline.csv").read_text())))
