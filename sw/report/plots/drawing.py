@@ -167,7 +167,6 @@ class Sheet:
         bar.outline.set_visible(False)
         axes.tick_params(labelsize=8)
         axes.set_xlabel(text)
-        return axes
 
     def _begin(self, inside, more_above, bottom, least):
         """Draws title, legend, list and notes, and sets the size of the figure.

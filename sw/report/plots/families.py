@@ -9,7 +9,6 @@ MOST_LINES = 28
 MOST_SINGLE = 6  # up to so many lines have a color each; of more, the color stands for one key
 MOST_MARKERS = 4
 NOTHING_TO_SEE = 0.01  # share of the value: a smaller change is not visible in a figure
-MOST_TEXT = 48
 
 
 @dataclasses.dataclass
@@ -158,17 +157,8 @@ def order(values):
 
 
 def named(keys, combinations):
-    """"key = value, .." of each combination. Long values are shortened, unless this makes texts equal."""
-    def texts(shorten):
-        return [", ".join(f"{key} = {shorten(text_of(value))}" for key, value in zip(keys, each))
-                for each in combinations]
-
-    short = texts(shortened)
-    return short if len(set(short)) == len(short) else texts(str)
-
-
-def shortened(text):
-    return text if len(text) <= MOST_TEXT else text[: MOST_TEXT - 2] + ".."
+    """"key = value, .." of each combination."""
+    return [", ".join(f"{key} = {text_of(value)}" for key, value in zip(keys, each)) for each in combinations]
 
 
 def colors_of(combinations):

@@ -77,8 +77,7 @@ def draw(points, options, heading, x, x_keys, panels, best=False):
               if reaches_limit(points, panel, places)]
     marks = [mark_handle(LOSES_PIXELS)] if losing else []
     sheet.legend([*handles(families, panels, best), *limits, *marks])
-    for text in (families.note, points.pixels_note(places), above_note(points, places, panels),
-                 points.size_note(places),
+    for text in (families.note, points.pixels_note(places), points.size_note(places),
                  points.note(len(places))):
         sheet.note(text)
     for axes, panel in zip(sheet.grid([panel.height for panel in panels]), panels):
@@ -117,18 +116,6 @@ def handles(families, panels, best):
         entries.append((line_handle(color, "o", ":", linewidth=0.8, markersize=3.5, markerfacecolor="white"),
                         "from power-up, tables included"))
     return entries
-
-
-def above_note(points, places, panels):
-    """A note if rates exceed their bounds, which they do by their uncertainty at most; otherwise empty."""
-    for panel in panels:
-        if panel.bound == "bound.system":
-            values, bounds = points.column(panel.column), points.column(panel.bound)
-            above = [place for place in places if values[place] is not None and values[place] > bounds[place]]
-            if above:
-                return (f"Above the bound by no more than the uncertainty: "
-                        f"{counted(len(above), 'steady rate')}.")
-    return ""
 
 
 def mark(axes, points):

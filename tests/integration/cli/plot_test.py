@@ -209,10 +209,6 @@ class Figures(FigureTest):
         self.assertLessEqual(rates, set(self.table("window")[0]))
         self.shows("window", "whole computer, steady frames/s", "from power-up, tables included")
         self.assertEqual((len(self.curves("window")), len(self.bounds("window"))), (2, 2))
-        change(store, 'UPDATE points SET "bound.system" = 0.9 * "frames_per_second.steady" WHERE '
-                      '"matcher.window" = 3')
-        self.plot("window", store)
-        self.shows("window", "Above the bound by no more than the uncertainty: 1 steady rate.")
 
     def test_points_that_lose_pixels_are_marked(self):
         store = self.sweep(LOSING)
