@@ -23,7 +23,7 @@ using Json = nlohmann::ordered_json;
 // Of the counters of each bank and each port the page has one: the others would make it too large.
 bool is_shown(const std::string& column) {
   static const std::regex hidden(
-      "hash|config|frame_cycles|banks\\.(?!.*\\.busy_cycles$).*|ports\\.(?!.*\\.stall_cycles$).*");
+      "hash|config|frame_cycles|banks\\.(?!.*\\.utilization$).*|ports\\.(?!.*\\.stall_cycles$).*");
   return !std::regex_match(column, hidden);
 }
 
@@ -94,12 +94,8 @@ Json database_data(const std::string& path) {
   }
   if (size == 0) throw std::runtime_error(fmt::format("'{}': has no points", path));
   Json shown = Json::array();
-  Json left_out = Json::array();
   for (std::size_t i = 0; i < names.size(); ++i) {
-    if (!shown_columns[i]) {
-      left_out.push_back(names[i]);
-      continue;
-    }
+    if (!shown_columns[i]) continue;
     shown.push_back({{"name", names[i]}});
     if (columns[i].list.empty()) {
       shown.back()["constant"] = std::move(columns[i].constant);
@@ -111,7 +107,6 @@ Json database_data(const std::string& path) {
           {"points", size},
           {"keys", database.texts("SELECT name FROM keys ORDER BY name")},
           {"columns", std::move(shown)},
-          {"left_out", std::move(left_out)},
           {"boards", {{"lines", std::move(boards.lines)}, {"points", std::move(boards.texts)}}}};
 }
 

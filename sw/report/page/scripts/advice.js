@@ -18,11 +18,6 @@ const kNeeds = [
   [/^fpga\.clock_mhz$/, step => `a clock of ${step.clock_mhz} MHz`],
 ];
 
-const kKeyTexts = {
-  'ssram.banks.*.kind': 'kind of memory of all banks',
-  'ssram.banks.*.turnaround_cycles': 'turnaround of all banks',
-};
-
 // The gain of a change, as a share of the present rate.
 export const gainOf = step => step.gained_percent / 100;
 
@@ -31,16 +26,10 @@ export const hasEffect = (step, board) => step.loses_pixels !== board.loses_pixe
     Math.abs(step.gained_frames_per_second) >= kVisible;
 
 // A change in words: matcher.rows: 1 → 2.
-export function shortStepText({key, from, to, idle_banks: idle}) {
+export function stepText({key, from, to, idle_banks: idle}) {
   const moved = key === 'a bank more' && /^(.*) in (.*)$/.exec(from);
   if (moved) return `${moved[1]}: ${moved[2]} → ${idle?.[0] ?? 'a new bank'}`;
-  return `${kKeyTexts[key] ?? key}: ${from} → ${to}`;
-}
-
-// The same with the key that it changes.
-export function stepText(step) {
-  const name = kKeyTexts[step.key];
-  return name ? `${name} (${step.key}): ${step.from} → ${step.to}` : shortStepText(step);
+  return `${key}: ${from} → ${to}`;
 }
 
 // What a change takes beside the board as it is.

@@ -1,6 +1,6 @@
 // What each single change of the board gains, and what the core takes of its FPGA.
 import {
-    adviceOf, gainOf, hasEffect, newPartsOf, priceOf, priceText, shortStepText, stepText,
+    adviceOf, gainOf, hasEffect, newPartsOf, priceOf, priceText, stepText,
 } from './advice.js';
 import {drawBars} from './bars.js';
 import {addChart, addLeftOut} from './card.js';
@@ -24,7 +24,7 @@ export function addKnobs(page, run) {
     const price = priceOf(step, board);
     const gain = gainText(gainOf(step));
     return {
-      name: shortStepText(step) + (step.changes_disparities ? ' *' : '') + (step.loses_pixels ? ' †' : ''),
+      name: stepText(step) + (step.changes_disparities ? ' *' : '') + (step.loses_pixels ? ' †' : ''),
       strong: step === advice.first,
       bars: [{
         from: now,
@@ -65,7 +65,7 @@ export function addKnobs(page, run) {
     id: 'knobs',
     wide: true,
     draw,
-    title: advice.first ? `First: ${shortStepText(advice.first)}, ${gainText(gainOf(advice.first))}` :
+    title: advice.first ? `First: ${stepText(advice.first)}, ${gainText(gainOf(advice.first))}` :
                           'No single change gains 1 % and keeps the disparities',
     note: `One setting changed at a time, simulated with ${
               count(board.frames, 'frame')} each. Right: the gain, and what the change takes in ` +

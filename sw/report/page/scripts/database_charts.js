@@ -2,7 +2,7 @@
 import {addChart, legend} from './card.js';
 import {checkBox, choice, controls, h, s} from './dom.js';
 import {brief, count, different, least, most, value, whole} from './format.js';
-import {addBrush, axisBelow, axisLeft, cut, layeredDrawing, numeric, ordinal} from './plot.js';
+import {addBrush, axisBelow, axisLeft, layeredDrawing, numeric, ordinal} from './plot.js';
 import {kRateColumns} from './points.js';
 import {css, heat, nthColour, styleColour} from './theme.js';
 import {linkMarks, mark} from './tooltip.js';

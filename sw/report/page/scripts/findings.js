@@ -6,7 +6,7 @@ import {capital, count, fixed, gainText, kRates, percent, rate, rateWith, sum, w
 const kLeastShare = 0.0005;  // of all cycles that a port waits, to be named
 const kMostCauses = 3;       // of a port that are named
 
-export const settingOf = (run, key) => run.settings.find(setting => setting.key === key)?.value;
+export const settingOf = (run, key) => run.settings[key];
 
 // The first kind of rate that all these runs have: [name in stats.json, kind].
 export const kindOfRate = (...runs) =>
@@ -81,29 +81,11 @@ const lostPixels = run => sum((run.stats.cameras ?? []).map(camera => camera.dro
 
 function whatLimits(run) {
   const {by, limit, share, text, kind: rateKind, computer} = rateOf(run);
-  const [kind, name] = by.split(' ');
   const reached =
       `The run reaches ${percent(share)} of the bound of ${rate(limit)} frames/s: ${text}, ${rateKind}`;
-  const because = {
-    bank: () => {
-      const bank = run.banks.find(each => each.name === name);
-      const busy = run.stats.banks.find(each => each.name === name);
-      const title = /^bank/i.test(name) ? name : `Bank ${name}`;
-      const held = bank.buffers.join(', ') || 'no buffer';
-      return `${title} holds ${held}, and is busy in ${percent(busy.utilization)} of the cycles`;
-    },
-    port: () => `Port ${name}: it moves one word a cycle at most`,
-    matcher: () =>
-        'The matcher: it takes one pixel of each picture a cycle at most, and needs each pixel of ' +
-        'a window',
-    camera: () => 'The cameras: the board could do more',
-    pci: () => 'The PCI bus: the transfers of its masters fill it',
-    bridge: () => 'The local bus behind the bridge',
-  }[kind]?.() ??
-      by;
   const limiter = run.knobs?.limited_by;
   return [
-    limiter ? `Limited by ${limiter}.` : `Not known with --quick. The lowest bound: ${because}.`,
+    limiter ? `Limited by ${limiter}.` : `Not known with --quick. The lowest bound: ${resourceText(by)}.`,
     `${reached}.`, computer && droppedText(run),
     !limiter && !computer && share < 0.99 && run.stats.blame.length === 0 &&
         'No port waits: the matcher waits for the queue of results, which the bound leaves out.',
@@ -193,16 +175,7 @@ function whereText(run) {
                                'Nowhere: no row of the picture waits.'
     ];
   }
-  const texts = [`${capital(rows)}.`];
-  const cycles = run.stats.frame_cycles;
-  const least = cycles.reduce((a, b) => Math.min(a, b));
-  const most = cycles.reduce((a, b) => Math.max(a, b));
-  const longer = cycles.filter(each => each > 1.01 * least).length;
-  if (longer > 0) {
-    texts.push(`${longer} of ${count(cycles.length, 'frame')} ${longer === 1 ? 'takes' : 'take up to'} ${
-        whole(most)} cycles; the shortest takes ${whole(least)}.`);
-  }
-  return texts;
+  return [`${capital(rows)}.`];
 }
 
 function whatFirst(run) {

@@ -169,14 +169,4 @@ export function showDatabase(page, {database}) {
   addFilters(cards, points);
   addTable(
       cards, points, [rateName, ...(points.figures.includes('area.slices') ? ['area.slices'] : [])], choose);
-  const constants = [['key', 'value'], points.constantKeys.map(key => [key, points.column(key)[0]])];
-  addChart(cards, {
-    id: 'constants',
-    wide: true,
-    title: `${points.constantKeys.length} keys are the same in all points`,
-    note: `${whole(database.left_out.length)} columns, most of them counters of banks and ports, are not in ` +
-        'the page.',
-    body: folded('Show', htmlTable(...constants, 300)),
-    numbers: () => constants
-  });
 }

@@ -14,7 +14,6 @@ export class Points {
     this.size = points;
     this.columns = new Map(columns.map(({name, ...column}) => [name, column]));
     this.keys = keys.filter(key => this.has(key) && !this.isConstant(key));
-    this.constantKeys = keys.filter(key => this.has(key) && this.isConstant(key));
     const figures = this.allNames.filter(name => !keys.includes(name));
     const differ = figures.filter(name => !this.isConstant(name));
     this.figures = differ.length > 0 ? differ : figures;

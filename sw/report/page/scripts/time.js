@@ -3,10 +3,10 @@
 import {drawColumns} from './bars.js';
 import {addChart, addLeftOut, legend} from './card.js';
 import {objectsOf} from './data.js';
-import {s} from './dom.js';
+import {button, controls, s} from './dom.js';
 import {droppedText, settingOf} from './findings.js';
 import {count, fixed, inMs, kPsOfMs, percent, sum, whole} from './format.js';
-import {addBrush, axisBelow, cut, drawing, numeric, Zoom} from './plot.js';
+import {addBrush, axisBelow, cut, drawing, numeric} from './plot.js';
 import {mark} from './tooltip.js';
 
 const kFirstFrames = 6;
@@ -141,7 +141,7 @@ export function addTimeLine(page, run) {
       axis: 'x',
       width: inner,
       height,
-      end: box => box && zoom.set(kPsOfMs * x.invert(box.x0), kPsOfMs * x.invert(box.x1))
+      end: box => box && show(kPsOfMs * x.invert(box.x0), kPsOfMs * x.invert(box.x1))
     });
     lanes.forEach(
         (name, line) =>
@@ -170,9 +170,17 @@ export function addTimeLine(page, run) {
       plot.append(...shapesOf(event, x0, x1, lanes.indexOf(lane) * kLine));
     }
   };
-  const zoom = new Zoom(
-      {last, least: kLeastPs, step: 0.5, from: Math.min(begin, early), to: early},
-      [['◀', 'Earlier'], ['▶', 'Later'], 'All'], () => chart.redraw());
+  const zoom = {from: Math.min(begin, early), to: early};  // ps
+  const show = (from, to) => {
+    const size = Math.min(last, Math.max(kLeastPs, Math.round(to - from)));
+    zoom.from = Math.max(0, Math.min(last - size, Math.round(from)));
+    zoom.to = zoom.from + size;
+    chart.redraw();
+  };
+  const move = (label, name, first, second) => button(label, () => {
+    const size = zoom.to - zoom.from;
+    show(zoom.from + first * size, zoom.to + second * size);
+  }, {'aria-label': name});
   const works = run.stats.cycles / settingOf(run, 'fpga.clock_mhz') * 1e6 / last;
   const drops = run.stats.cameras[0].dropped_frames;
   const firstFrame = Math.min(...events.filter(({kind}) => kind === 'frame').map(event => event.start_ps));
@@ -196,7 +204,10 @@ export function addTimeLine(page, run) {
     ].filter(Boolean)
               .join(' '),
     body: [
-      zoom.controls, legend([
+      controls(
+          move('+', 'Zoom in', 0.25, -0.25), move('−', 'Zoom out', -0.5, 0.5),
+          move('◀', 'Earlier', -0.5, -0.5), move('▶', 'Later', 0.5, 0.5), button('All', () => show(0, last))),
+      legend([
         ...Object.entries(kKinds)
             .filter(([name]) => events.some(({kind}) => kind === name))
             .map(([, [colour, name]]) => [name, `var(${colour})`]),
