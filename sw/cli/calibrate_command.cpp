@@ -289,8 +289,8 @@ Names files_of(const std::string& option, const Names& patterns, process::Proble
   return files;
 }
 
-// Prints a note about the first pair whose names do not end in the same number: if each side lacks a different
-// picture, all pairs between these two are wrong.
+// Prints a note about the first pair whose names do not end in the same number: if each side lacks a
+// different picture, all pairs between these two are wrong.
 void compare_numbers(const Names& left, const Names& right) {
   const auto number_of = [](const std::string& file) {
     const std::string stem = fs::path(file).stem();

@@ -23,6 +23,7 @@
 #include "sw/process/interrupt.h"
 #include "sw/report/chart/memory_chart.h"
 #include "sw/report/page_data/page_data.h"
+#include "sw/report/page_data/recording_data.h"
 #include "sw/runs/explanation.h"
 #include "sw/runs/progress.h"
 #include "sw/stats/stats_json.h"

@@ -41,14 +41,6 @@ export const withVerb = (name, verb) => `${resourceText(name)} ${verb}${name ===
 export const blamesOf = run => run.stats.blame.map(row => ({...row, share: row.cycles / run.stats.cycles}))
                                    .sort((a, b) => b.cycles - a.cycles);
 
-// The same, with what the host moved as its name, if all frames were recorded.
-export function blamesInDetail(run) {
-  const recorded = linesOf(run);
-  if (!recorded || recorded.frames !== run.stats.frame_cycles.length) return blamesOf(run);
-  return recorded.stalls.map(
-      ({port, bank, by, total}) => ({port, bank, by, cycles: total, share: total / run.stats.cycles}));
-}
-
 const causeText = by => by === 'turnaround' ? 'for the turnaround' : `for ${by}`;
 
 export const blameText = ({port, bank, by, share}) =>
@@ -57,7 +49,7 @@ export const blameText = ({port, bank, by, share}) =>
 // The ports that wait, the most first: {port, cycles, share, causes: its waits, the most first}.
 export function waitsOf(run) {
   const ports = new Map();
-  for (const row of blamesInDetail(run)) {
+  for (const row of blamesOf(run)) {
     if (!ports.has(row.port)) ports.set(row.port, {port: row.port, cycles: 0, share: 0, causes: []});
     const port = ports.get(row.port);
     port.cycles += row.cycles;

@@ -103,7 +103,7 @@ export function showTwoRuns(page, {runs: [a, b], difference}) {
   addFrames(
       where, [['A', a.stats.frame_cycles, '--blue'], ['B', b.stats.frame_cycles, '--vermilion']],
       settingOf(a, 'fpga.clock_mhz'));
-  addBlameDifference(where, a, b);
+  addBlameDifference(where, difference);
   addMemory(where, [a, b]);
 
   const ports = addGroup(page, 'The ports');

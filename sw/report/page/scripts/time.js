@@ -10,7 +10,6 @@ import {addBrush, axisBelow, cut, drawing, numeric} from './plot.js';
 import {mark} from './tooltip.js';
 
 const kFirstFrames = 6;
-const kMostMarks = 1500;
 const kLeastPs = 1000;
 const kLine = 34;
 
@@ -157,17 +156,10 @@ export function addTimeLine(page, run) {
       }
       known = Math.max(known, to);
     }
-    const inWindow = events.filter(({start_ps: start, end_ps: end}) => end >= zoom.from && start <= zoom.to);
-    // Of many events those are left out that would lie on others.
-    const gap = inWindow.length > kMostMarks ? 1 : -Infinity;
-    const drawnTo = new Map();  // of a lane and kind, in pixels
-    for (const event of inWindow) {
-      const {kind, lane} = event;
-      const [x0, x1] = [atPs(event.start_ps), atPs(event.end_ps)];
-      if (x1 < (drawnTo.get(lane + kind) ?? -Infinity) + (kind === 'drop' ? 8 * gap : gap)) continue;
-      drawnTo.set(lane + kind, x1);
-      if (kind === 'wait' && event.end_ps === event.start_ps) continue;
-      plot.append(...shapesOf(event, x0, x1, lanes.indexOf(lane) * kLine));
+    for (const event of events) {
+      const {kind, lane, start_ps: start, end_ps: end} = event;
+      if (end < zoom.from || start > zoom.to || (kind === 'wait' && end === start)) continue;
+      plot.append(...shapesOf(event, atPs(start), atPs(end), lanes.indexOf(lane) * kLine));
     }
   };
   const zoom = {from: Math.min(begin, early), to: early};  // ps

@@ -2,7 +2,7 @@
 import {drawBars} from './bars.js';
 import {addChart, addLeftOut, legend} from './card.js';
 import {commandLine, h, note, s} from './dom.js';
-import {blamesInDetail, blamesOf, blameText, settingOf, waitingRows, waitsOf, waitText} from './findings.js';
+import {blamesOf, blameText, settingOf, waitingRows, waitsOf, waitText} from './findings.js';
 import {count, least, most, percent, signed, sum, whole} from './format.js';
 import {lastRow, linesOf, rowsText} from './data.js';
 import {
@@ -66,17 +66,9 @@ export function addBlame(page, run) {
 }
 
 // The difference of the blames of two runs, as bars.
-export function addBlameDifference(page, a, b) {
-  const all = new Map();
-  for (const [run, side] of [[a, 'a'], [b, 'b']]) {
-    for (const {port, bank, by, cycles} of blamesInDetail(run)) {
-      const text = `${port} on ${bank} for ${by}`;
-      if (!all.has(text)) all.set(text, {text, port, bank, by, a: 0, b: 0});
-      all.get(text)[side] += cycles;
-    }
-  }
-  const rows = [...all.values()].map(row => ({...row, more: row.b - row.a})).filter(({more}) => more !== 0);
-  rows.sort((x, y) => Math.abs(y.more) - Math.abs(x.more));
+export function addBlameDifference(page, {waits}) {
+  const rows = waits.map(
+      wait => ({...wait, text: `${wait.port} on ${wait.bank} for ${wait.by}`, more: wait.b - wait.a}));
   if (rows.length === 0) {
     addChart(
         page,
