@@ -419,7 +419,6 @@ class Database(PageTest):
         drawn = lambda: self.browser.run("return document.querySelector('#scatter canvas').toDataURL()")
         before = drawn()
         self.browser.choose("scatter-x", "matcher.filter")
-        self.browser.choose("scatter-colour", "matcher.disparities")
         self.browser.drawn()
         self.assertNotEqual(drawn(), before)
         self.browser.run("document.querySelectorAll('#points button.sort')[1].click()")

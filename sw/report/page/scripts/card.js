@@ -90,9 +90,7 @@ export function addChart(page, {id, title, note, wide, body, draw, numbers}) {
 export const addLeftOut = (page, id, title) => addChart(page, {
   id,
   title,
-  note: id === 'knobs' ?
-      'Left out by --quick. `stereotlm report` without it tries single changes of the board.' :
-      'Left out by --quick, because the run was not recorded.'
+  note: 'Left out by --quick: without it, the run is repeated, and changes of its board are tried.'
 });
 
 // The names of colours, in a line: [[name, css colour], ..].

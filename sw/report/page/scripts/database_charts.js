@@ -1,13 +1,13 @@
 // The chart of a database: any two of its columns with the front of Pareto.
 import {addChart, legend} from './card.js';
 import {checkBox, choice, controls, h, s} from './dom.js';
-import {brief, count, different, least, most, value, whole} from './format.js';
+import {count, different, least, most, value, whole} from './format.js';
 import {addBrush, axisBelow, axisLeft, layeredDrawing, numeric, ordinal} from './plot.js';
 import {kRateColumns} from './points.js';
-import {css, heat, nthColour, styleColour} from './theme.js';
+import {nthColour, styleColour} from './theme.js';
 import {linkMarks, mark} from './tooltip.js';
 
-const kMostColours = 8;  // names with a colour of their own
+const kMostColours = 8;  // values of a key that have a colour each
 const kReach = 14;       // pixels from the pointer to the point that it means
 
 // The scale of a column, and the place of each point on it, NaN without a value. A column of words has its
@@ -39,23 +39,14 @@ function stepsOf(spots, edges) {
       .concat([[edges[0], spots.at(-1)[1]]]);
 }
 
-// The colour of each point: [function of a row, entries of the legend].
-function coloursOf(points, name) {
-  const blue = styleColour('--blue');
-  if (!name) return [() => blue, []];
-  const values = points.column(name);
-  const words = different(values);
-  if (words.length <= kMostColours) {
-    const colours = new Map(words.map((word, i) => [word, styleColour(nthColour(i))]));
-    return [row => colours.get(values[row]), words.map(word => [value(word), colours.get(word)])];
-  }
-  if (!points.isNumeric(name)) return [() => blue, [[`more than ${kMostColours} values`, blue]]];
-  const [low, high] = [words[0], words.at(-1)];
-  const stops = Array.from({length: 32}, (_, i) => css(heat(0.2 + 0.8 * i / 31)));
-  return [
-    row => stops[Math.round((values[row] - low) / (high - low) * 31)],
-    [[brief(low), stops[0]], [brief(high), stops[31]]]
-  ];
+// The colour of each point, by the first key with few values: [function of a row, entries of the legend].
+function coloursOf(points) {
+  const key = points.keys.find(each => new Set(points.column(each)).size <= kMostColours);
+  if (!key) return [() => styleColour('--blue'), []];
+  const values = points.column(key);
+  const colours = new Map(different(values).map((word, i) => [word, styleColour(nthColour(i))]));
+  const entries = [...colours].map(([word, colour]) => [`${key} ${value(word)}`, colour]);
+  return [row => colours.get(values[row]), entries];
 }
 
 // Any two columns: points on a canvas, below axes and the front of Pareto in SVG.
@@ -68,7 +59,6 @@ export function addScatter(page, points, choose) {
   };
   const other = numbers.find(name => name !== y.name) ?? y.name;
   const x = {id: 'x', name: points.figures.includes('area.slices') ? 'area.slices' : other, best: 'min'};
-  const state = {colour: points.keys.find(key => new Set(points.column(key)).size <= kMostColours) ?? ''};
   let repaint = () => {};
   const frontText = h('p', {class: 'note', id: 'front-text'});
   const legendHost = h('div');
@@ -84,7 +74,7 @@ export function addScatter(page, points, choose) {
     const [across, up] = [[x, [0, inner]], [y, [height, 0]]].map(
         ([axis, range]) => placesOf(points, axis.name, range, axis.log));
     const spot = row => [across.at[row], up.at[row]];
-    const [colourOf, entries] = coloursOf(points, state.colour);
+    const [colourOf, entries] = coloursOf(points);
     const faint = styleColour('--faint');
     legendHost.replaceChildren(legend(entries));
     const size = points.size > 3000 ? 3 : 5;
@@ -152,7 +142,7 @@ export function addScatter(page, points, choose) {
   };
   const pick = (id, label, chosen, names, change) =>
       h('label', null, `${label} `,
-        choice(id, names.map(name => [name, name || 'one colour']), chosen, name => {
+        choice(id, names.map(name => [name, name]), chosen, name => {
           change(name);
           points.filter('scatter', null);
           chart.redraw();
@@ -169,15 +159,7 @@ export function addScatter(page, points, choose) {
     wide: true,
     title: 'Two columns, and the points that no other beats',
     draw,
-    body: [
-      pickAxis(x), pickAxis(y),
-      controls(
-          pick(
-              'scatter-colour', 'colour', state.colour, ['', ...points.names],
-              colour => Object.assign(state, {colour})),
-          legendHost),
-      frontText
-    ],
+    body: [pickAxis(x), pickAxis(y), legendHost, frontText],
     note:
         'Drag to select points, click one for its board. Arrow keys go along the front, Enter opens a point.',
     numbers: () => points.numbers([...new Set([x.name, y.name, ...points.keys])], points.front(x, y))

@@ -17,15 +17,12 @@ export class Points {
     const figures = this.allNames.filter(name => !keys.includes(name));
     const differ = figures.filter(name => !this.isConstant(name));
     this.figures = differ.length > 0 ? differ : figures;
-    this.figures.sort((a, b) => this.rank(a) - this.rank(b));
+    const placeOf = name => (kFirst.indexOf(name) + 1) || kFirst.length + 1;
+    this.figures.sort((a, b) => placeOf(a) - placeOf(b));
     this.filters = new Map();  // of a name: row => whether the point passes
     this.selected = new Uint8Array(points).fill(1);
     this.listeners = new Set();
     this.chosen = -1;
-  }
-  rank(name) {
-    const place = kFirst.indexOf(name);
-    return place < 0 ? kFirst.length : place;
   }
   // The columns that are offered, and all columns.
   get names() {
