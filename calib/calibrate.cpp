@@ -60,24 +60,17 @@ void check_places(const Rig& rig) {
   }
 }
 
-// Whether the pictures determine the lens model: it maps directions one to one in the whole picture. A model
-// that folds the picture over describes no lens.
-bool is_determined(const CameraModel& lens, const Rig& rig) {
-  try {
+// Whether the pictures determine the lens models: they map directions one to one in the whole picture. A
+// model that folds the picture over describes no lens.
+bool lenses_are_determined(const Rig& rig) try {
+  for (const CameraModel& lens : {rig.left, rig.right}) {
     for (const int row : {0, rig.height - 1}) {
       for (const int column : {0, rig.width - 1}) lens.direction({column, row});
     }
-  } catch (const std::domain_error&) {
-    return false;
   }
   return true;
-}
-
-RigFit fit_with_lens(const CalibrationRequest& request, const std::vector<GridPair>& corners, Lens lens) {
-  const kernels::GrayImage& first = request.pictures.front().left;
-  RigFit fit = fit_rig(request.grid, first.width, first.height, corners, lens);
-  check_places(fit.rig);
-  return fit;
+} catch (const std::domain_error&) {
+  return false;
 }
 
 // Measures the used corners in the rectified pictures.
@@ -177,15 +170,15 @@ CalibrationResult calibrate(const CalibrationRequest& request) {
   find_grids(request, result);
   std::vector<GridPair> corners;
   for (const CalibratedPair& pair : result.pairs) corners.push_back(pair.corners);
-  RigFit fit = fit_with_lens(request, corners, Lens::kFull);
-  const auto lenses_are_determined = [&fit] {
-    return is_determined(fit.rig.left, fit.rig) && is_determined(fit.rig.right, fit.rig);
-  };
-  if (!lenses_are_determined()) {
-    result.lens = Lens::kWithoutK3;
-    fit = fit_with_lens(request, corners, result.lens);
+  RigFit fit;
+  for (const Lens lens : {Lens::kFull, Lens::kWithoutK3}) {
+    const kernels::GrayImage& first = request.pictures.front().left;
+    result.lens = lens;
+    fit = fit_rig(request.grid, first.width, first.height, corners, lens);
+    check_places(fit.rig);
+    if (lenses_are_determined(fit.rig)) break;
   }
-  if (!lenses_are_determined()) {
+  if (!lenses_are_determined(fit.rig)) {
     throw std::invalid_argument(
         "the lenses are not determined up to the corners of their pictures: the grid must be seen there too");
   }
@@ -219,9 +212,8 @@ CalibrationResult calibrate(const CalibrationRequest& request) {
 
 MatchedRows matched_rows(const kernels::GrayImage& left, const kernels::GrayImage& right, int disparities) {
   if (left.width != right.width || left.height != right.height) {
-    throw std::invalid_argument("right picture = " + std::to_string(right.width) + "x" +
-                                std::to_string(right.height) + ": must be as large as the left one, " +
-                                std::to_string(left.width) + "x" + std::to_string(left.height));
+    throw std::invalid_argument(fmt::format("right picture = {}x{}: must be as large as the left one, {}x{}",
+                                            right.width, right.height, left.width, left.height));
   }
   constexpr int kMostPoints = 150;
   constexpr int kReach = 7;     // pixels of the window to each side of a point

@@ -73,9 +73,8 @@ class Reader {
 
   template <typename Matrix>
   Matrix matrix(const std::string& key) const {
-    Matrix result;
-    const auto rows = static_cast<int>(result.rows());
-    const auto columns = static_cast<int>(result.cols());
+    constexpr int rows = Matrix::RowsAtCompileTime;
+    constexpr int columns = Matrix::ColsAtCompileTime;
     const Reader its = map(key);
     const int found_rows = its.integer("rows", 1, kMost);
     const int found_columns = its.integer("cols", 1, kMost);
@@ -86,11 +85,8 @@ class Reader {
     const auto data = its.as<std::vector<double>>("data", "no numbers", "must hold numbers");
     if (data.size() != static_cast<std::size_t>(rows * columns))
       its.refuse("data", fmt::format("{} numbers", data.size()), fmt::format("must be {}", rows * columns));
-    for (int i = 0; i < rows * columns; ++i) {
-      const double value = data[static_cast<std::size_t>(i)];
-      if (!std::isfinite(value)) its.refuse("data", "not finite", "must hold finite numbers");
-      result(i / columns, i % columns) = value;
-    }
+    const Matrix result = Eigen::Map<const Eigen::Matrix<double, columns, rows>>(data.data()).transpose();
+    if (!result.allFinite()) its.refuse("data", "not finite", "must hold finite numbers");
     return result;
   }
 
@@ -112,9 +108,7 @@ class Reader {
       refuse(matrix_key, "no camera", "must be [fx 0 cx; 0 fy cy; 0 0 1] with focal lengths above 0");
     }
     const auto distortion = matrix<Eigen::Matrix<double, 1, 5>>(distortion_key);
-    for (std::size_t i = 0; i < camera.distortion.size(); ++i) {
-      camera.distortion[i] = distortion(static_cast<Eigen::Index>(i));
-    }
+    std::copy_n(distortion.data(), camera.distortion.size(), camera.distortion.begin());
     return camera;
   }
 
@@ -145,12 +139,10 @@ class Reader {
 Eigen::Matrix4d q_of(const Projection& p1, const Projection& p2) {
   const double focal = p1(0, 0);
   const double baseline = -p2(0, 3) / p2(0, 0);
-  Eigen::Matrix4d q = Eigen::Matrix4d::Zero();
-  q << 1, 0, 0, -p1(0, 2),  //
-      0, 1, 0, -p1(1, 2),   //
-      0, 0, 0, focal,       //
-      0, 0, 1 / baseline, -(p1(0, 2) - p2(0, 2)) / baseline;
-  return q;
+  return Eigen::Matrix4d{{1, 0, 0, -p1(0, 2)},
+                         {0, 1, 0, -p1(1, 2)},
+                         {0, 0, 0, focal},
+                         {0, 0, 1 / baseline, -(p1(0, 2) - p2(0, 2)) / baseline}};
 }
 
 Rectification rectification_of(const Reader& file) {
@@ -240,10 +232,10 @@ int disparity_offset_for(const DisparityRange& range, int disparities) {
   const int least = static_cast<int>(std::floor(range.min));
   const int room = disparities - range.needed();
   if (room < 0) {
-    throw std::invalid_argument("--disparities = " + std::to_string(disparities) + ": must be " +
-                                std::to_string(range.needed()) + " or more for the grid's own, " +
-                                std::to_string(least) + ".." + std::to_string(least + range.needed() - 1) +
-                                "; or --disparity-offset N, for a part of them");
+    throw std::invalid_argument(
+        fmt::format("--disparities = {}: must be {} or more for the grid's own, {}..{}; or "
+                    "--disparity-offset N, for a part of them",
+                    disparities, range.needed(), least, least + range.needed() - 1));
   }
   return std::min(least, std::max(0, least - room / 2));
 }

@@ -19,7 +19,8 @@ namespace {
 
 constexpr double kFontSize = 14;  // pixels
 constexpr double kSmallestScale = 0.5;
-constexpr int kFractionBits = 4;  // of the fixed-point positions and lengths for OpenCV
+constexpr int kCaptionHeight = 24;  // pixels, above each picture
+constexpr int kFractionBits = 4;    // of the fixed-point positions and lengths for OpenCV
 // OpenCV cannot draw positions beyond this limit, in pixels.
 constexpr double kFarthest = 1e5;
 
@@ -164,48 +165,42 @@ void draw_color_scale(cv::Mat& canvas, cv::Point left_bottom, int width, const s
   draw_text(canvas, missing, {at + kSwatchWidth + kGap, bottom});
 }
 
-void draw_caption(cv::Mat& canvas, const std::string& caption, const cv::Rect& picture) {
-  const double fits = static_cast<double>(picture.width) / std::max(text_width(caption), 1);
-  cv::Mat strip = canvas({picture.x, picture.y - kCaptionHeight, picture.width, kCaptionHeight});
-  draw_text(strip, caption, {0, kCaptionHeight - 8}, std::clamp(fits, kSmallestScale, 1.0));
-}
-
 void draw_line(cv::Mat& canvas, const cv::Point2d& from, const cv::Point2d& to, const cv::Scalar& color,
                int thickness) {
   cv::line(canvas, fixed_point(from), fixed_point(to), color, thickness, cv::LINE_AA, kFractionBits);
 }
 
-void draw_circle(cv::Mat& canvas, const cv::Point2d& middle, double radius, const cv::Scalar& color,
-                 int thickness) {
-  cv::circle(canvas, fixed_point(middle), fixed_point(radius), color, thickness, cv::LINE_AA, kFractionBits);
+void draw_circle(cv::Mat& canvas, const cv::Point2d& middle, double radius, const cv::Scalar& color) {
+  cv::circle(canvas, fixed_point(middle), fixed_point(radius), color, 1, cv::LINE_AA, kFractionBits);
 }
 
-void draw_polygon(cv::Mat& canvas, const std::vector<cv::Point2d>& points, const cv::Scalar& color,
-                  int thickness) {
-  std::vector<cv::Point> corners;
-  corners.reserve(points.size());
-  for (const cv::Point2d& point : points) corners.push_back(fixed_point(point));
-  if (thickness == cv::FILLED) {
-    cv::fillConvexPoly(canvas, corners, color, cv::LINE_AA, kFractionBits);
-  } else {
-    cv::polylines(canvas, corners, true, color, thickness, cv::LINE_AA, kFractionBits);
+void draw_arrow(cv::Mat& canvas, const cv::Point2d& from, const cv::Point2d& to) {
+  constexpr double kHeadLength = 6;  // pixels
+  const double head = kHeadLength / std::max(cv::norm(to - from), kHeadLength);
+  for (const auto& [color, thickness] : {std::pair(kBlack, 3), std::pair(kWhite, 1)}) {
+    cv::arrowedLine(canvas, fixed_point(from), fixed_point(to), color, thickness, cv::LINE_AA, kFractionBits,
+                    head);
   }
 }
 
-Pair side_by_side(const std::string& left_caption, const cv::Mat& left, const std::string& right_caption,
-                  const cv::Mat& right, int height_below) {
-  const int width = left.cols;
-  const int height = left.rows;
-  const int top = kMargin + kCaptionHeight;
-  Pair pair;
-  pair.left = {kMargin, top, width, height};
-  pair.right = {kMargin + width + kMargin, top, width, height};
-  pair.canvas = cv::Mat(top + height + kMargin + height_below, pair.right.br().x + kMargin, CV_8UC3, kWhite);
-  left.copyTo(pair.canvas(pair.left));
-  right.copyTo(pair.canvas(pair.right));
-  draw_caption(pair.canvas, left_caption, pair.left);
-  draw_caption(pair.canvas, right_caption, pair.right);
-  return pair;
+Montage side_by_side(const std::vector<Panel>& panels, int height_below) {
+  Montage montage;
+  cv::Point end(kMargin, 0);
+  for (const Panel& panel : panels) {
+    montage.places.emplace_back(cv::Point(end.x, kMargin + kCaptionHeight), panel.picture.size());
+    const cv::Point corner = montage.places.back().br();
+    end = {corner.x + kMargin, std::max(end.y, corner.y + kMargin)};
+  }
+  montage.canvas = cv::Mat(end.y + height_below, end.x, CV_8UC3, kWhite);
+  for (std::size_t i = 0; i < panels.size(); ++i) {
+    const auto& [caption, picture] = panels[i];
+    const cv::Rect& place = montage.places[i];
+    picture.copyTo(montage.canvas(place));
+    const double fits = static_cast<double>(place.width) / std::max(text_width(caption), 1);
+    cv::Mat strip = montage.canvas({place.x, kMargin, place.width, kCaptionHeight});
+    draw_text(strip, caption, {0, kCaptionHeight - 8}, std::clamp(fits, kSmallestScale, 1.0));
+  }
+  return montage;
 }
 
 std::vector<std::uint8_t> encode_png(const cv::Mat& canvas) {

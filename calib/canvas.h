@@ -36,14 +36,12 @@ void draw_text(cv::Mat& canvas, const std::string& text, cv::Point left_bottom, 
                const cv::Scalar& color = kBlack);
 
 // The next functions draw with anti-aliasing, at positions in fractions of a pixel; (0, 0) is the middle of
-// the top left pixel. `thickness` is in pixels, or cv::FILLED.
+// the top left pixel. `thickness` is in pixels.
 void draw_line(cv::Mat& canvas, const cv::Point2d& from, const cv::Point2d& to, const cv::Scalar& color,
                int thickness = 1);
-void draw_circle(cv::Mat& canvas, const cv::Point2d& middle, double radius, const cv::Scalar& color,
-                 int thickness = 1);
-// A filled polygon must be convex.
-void draw_polygon(cv::Mat& canvas, const std::vector<cv::Point2d>& points, const cv::Scalar& color,
-                  int thickness = 1);
+void draw_circle(cv::Mat& canvas, const cv::Point2d& middle, double radius, const cv::Scalar& color);
+// White with a black edge, so that it is visible on every colour.
+void draw_arrow(cv::Mat& canvas, const cv::Point2d& from, const cv::Point2d& to);
 
 // Draws the scale of in_colors() in one line, which is not wider than `width` pixels: `first`, the colours,
 // `last`, and what kMissing stands for.
@@ -52,21 +50,20 @@ inline constexpr int kLeastScaleWidth = 300;  // pixels, for texts such as those
 void draw_color_scale(cv::Mat& canvas, cv::Point left_bottom, int width, const std::string& first,
                       const std::string& last, const std::string& missing);
 
-// Draws the caption into the strip of this height above the picture: smaller if it is wider than the picture,
-// by half at most, then cut off.
-inline constexpr int kMargin = 8;          // pixels, around each picture
-inline constexpr int kCaptionHeight = 24;  // pixels
-void draw_caption(cv::Mat& canvas, const std::string& caption, const cv::Rect& picture);
+// A picture and its caption, which is smaller if it is wider than the picture, by half at most, then cut off.
+struct Panel {
+  std::string caption;
+  cv::Mat picture;
+};
+inline constexpr int kMargin = 8;  // pixels, around each picture
 
-// Two pictures of one size side by side, under their captions, on white.
-struct Pair {
+// Panels side by side on white, aligned at the top.
+struct Montage {
   cv::Mat canvas;
-  cv::Rect left;  // place of the left picture
-  cv::Rect right;
+  std::vector<cv::Rect> places;  // of the pictures
 };
 // `height_below`: height of an empty white strip below the pictures, in pixels.
-Pair side_by_side(const std::string& left_caption, const cv::Mat& left, const std::string& right_caption,
-                  const cv::Mat& right, int height_below = 0);
+Montage side_by_side(const std::vector<Panel>& panels, int height_below = 0);
 
 std::vector<std::uint8_t> encode_png(const cv::Mat& canvas);
 

@@ -1,5 +1,7 @@
 #include "calib/depth.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -64,10 +66,9 @@ std::optional<DepthRange> depth_range(const std::vector<std::uint16_t>& millimet
 std::string point_cloud_ply(const DepthGeometry& geometry, const kernels::GrayImage& disparity,
                             const kernels::GrayImage& rectified_left) {
   if (rectified_left.width != disparity.width || rectified_left.height != disparity.height) {
-    throw std::invalid_argument("rectified picture = " + std::to_string(rectified_left.width) + "x" +
-                                std::to_string(rectified_left.height) +
-                                ": must be as large as the disparities, " + std::to_string(disparity.width) +
-                                "x" + std::to_string(disparity.height));
+    throw std::invalid_argument(
+        fmt::format("rectified picture = {}x{}: must be as large as the disparities, {}x{}",
+                    rectified_left.width, rectified_left.height, disparity.width, disparity.height));
   }
   std::string points;
   std::size_t count = 0;

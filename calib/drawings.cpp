@@ -31,8 +31,8 @@ cv::Scalar row_color(int row) {
 
 cv::Mat with_corners(const GridShape& shape, const kernels::GrayImage& image, const MarkedCorners& marked) {
   constexpr double kRadius = 4;
-  constexpr double kCross = 5;   // from the middle to its ends, across and down
-  constexpr double kSquare = 8;  // from the middle to its sides
+  constexpr int kCross = 10;  // width of a marker
+  constexpr int kSquare = 16;
   const cv::Scalar red(0, 0, 255);
   cv::Mat picture = in_grey(image);
   std::vector<cv::Point2d> middles;
@@ -40,20 +40,11 @@ cv::Mat with_corners(const GridShape& shape, const kernels::GrayImage& image, co
   const auto color = [&shape](std::size_t i) { return row_color(static_cast<int>(i) / shape.columns); };
   for (std::size_t i = 1; i < middles.size(); ++i) draw_line(picture, middles[i - 1], middles[i], color(i));
   for (std::size_t i = 0; i < middles.size(); ++i) {
-    const cv::Point2d down(1, 1);
-    const cv::Point2d up(1, -1);
-    const cv::Point2d& middle = middles[i];
-    if (i == 0) {
-      draw_polygon(
-          picture,
-          {middle - kSquare * down, middle + kSquare * up, middle + kSquare * down, middle - kSquare * up},
-          color(i), 2);
-    }
+    if (i == 0) cv::drawMarker(picture, middles[i], color(i), cv::MARKER_SQUARE, kSquare, 2);
     if (!marked.left_out.empty() && marked.left_out[i]) {
-      for (const cv::Point2d& end : {kCross * down, kCross * up})
-        draw_line(picture, middle - end, middle + end, red, 2);
+      cv::drawMarker(picture, middles[i], red, cv::MARKER_TILTED_CROSS, kCross, 2);
     } else {
-      draw_circle(picture, middle, kRadius, color(i));
+      draw_circle(picture, middles[i], kRadius, color(i));
     }
   }
   return picture;
@@ -114,26 +105,6 @@ double arrow_factor(double most) {
   return power;
 }
 
-// Draws an arrow in white with a black edge, so that it is visible on every colour. If the arrow is shorter
-// than its head, only the head is drawn, or a dot for the shortest.
-void draw_arrow(cv::Mat& panel, const cv::Point2d& from, const cv::Point2d& to) {
-  constexpr double kLongestPoint = 1.5;  // pixels
-  constexpr double kHeadLength = 6;      // pixels
-  const double length = cv::norm(to - from);
-  if (length <= kLongestPoint) {
-    draw_circle(panel, to, 2.5, kBlack, cv::FILLED);
-    draw_circle(panel, to, 1.5, kWhite, cv::FILLED);
-    return;
-  }
-  const cv::Point2d back = (from - to) * (std::min(kHeadLength, length) / length);
-  const cv::Point2d aside = cv::Point2d(-back.y, back.x) * 0.45;
-  const std::vector<cv::Point2d> head = {to, to + back + aside, to + back - aside};
-  draw_line(panel, from, to + back, kBlack, 3);
-  draw_polygon(panel, head, kBlack, 3);
-  draw_line(panel, from, to + back, kWhite);
-  draw_polygon(panel, head, kWhite, cv::FILLED);
-}
-
 cv::Mat drawn(const kernels::RectificationTable& table, const Moves& moves, double most, double arrows) {
   cv::Mat panel = in_colors(moves.lengths, 0, most);
   for (int row = kSpacing / 2; row < table.height; row += kSpacing) {
@@ -161,7 +132,7 @@ struct Curve {
   std::string name;
   cv::Scalar color;
   int thickness = 1;           // pixels
-  double mark = 0;             // radius of its marks, pixels: a ring if it is large; 0: none
+  double mark = 0;             // radius of its rings, pixels
   std::vector<double> values;  // [i]: for lines_of(i)
 };
 
@@ -213,21 +184,14 @@ void draw_axes(cv::Mat& chart, const Axis& axis) {
     draw_text(chart, label,
               {cvRound(tick.x) - text_width(label) / 2, kPlot.br().y + kTickLength + 6 + kTextHeight});
   }
-  draw_polygon(
-      chart, {place(axis, 0, axis.end), place(axis, 0, 0), place(axis, kMostLines + 1, 0), place(axis, 0, 0)},
-      kBlack);
+  draw_line(chart, place(axis, 0, axis.end), place(axis, 0, 0), kBlack);
+  draw_line(chart, place(axis, 0, 0), place(axis, kMostLines + 1, 0), kBlack);
   draw_text(chart,
             "Lines of the camera's picture, from first to last, that n rows of the rectified picture take "
             "pixels from",
             {12, 24});
   const std::string below = "n, rows of the rectified picture";
   draw_text(chart, below, {kPlot.x + (kPlot.width - text_width(below)) / 2, kChartSize.height - 14});
-}
-
-void draw_mark(cv::Mat& chart, const cv::Point2d& middle, const Curve& curve) {
-  constexpr double kLargestDisc = 3;
-  if (curve.mark > 0)
-    draw_circle(chart, middle, curve.mark, curve.color, curve.mark > kLargestDisc ? 1 : cv::FILLED);
 }
 
 void draw_curve(cv::Mat& chart, const Axis& axis, const Curve& curve) {
@@ -237,7 +201,7 @@ void draw_curve(cv::Mat& chart, const Axis& axis, const Curve& curve) {
       draw_line(chart, place(axis, lines_of(i - 1), curve.values[i - 1]), point, curve.color,
                 curve.thickness);
     }
-    draw_mark(chart, point, curve);
+    draw_circle(chart, point, curve.mark, curve.color);
   }
 }
 
@@ -250,7 +214,7 @@ void draw_legend(cv::Mat& chart, const std::vector<Curve>& curves) {
     const cv::Point2d middle(left + kSample / 2.0, bottom - kTextHeight / 2.0);
     const cv::Point2d half(kSample / 2.0, 0);
     draw_line(chart, middle - half, middle + half, curve.color, curve.thickness);
-    draw_mark(chart, middle, curve);
+    draw_circle(chart, middle, curve.mark, curve.color);
     draw_text(chart, curve.name, {left + kSample + 6, bottom});
     left += kSample + 6 + text_width(curve.name) + 20;
   }
@@ -261,21 +225,22 @@ void draw_legend(cv::Mat& chart, const std::vector<Curve>& curves) {
 std::vector<std::uint8_t> encode_corners_png(const GridShape& shape, const CaptionedImage& left,
                                              const MarkedCorners& left_corners, const CaptionedImage& right,
                                              const MarkedCorners& right_corners) {
-  return encode_png(side_by_side(left.caption, with_corners(shape, left.image, left_corners), right.caption,
-                                 with_corners(shape, right.image, right_corners))
+  return encode_png(side_by_side({{left.caption, with_corners(shape, left.image, left_corners)},
+                                  {right.caption, with_corners(shape, right.image, right_corners)}})
                         .canvas);
 }
 
 std::vector<std::uint8_t> encode_rectified_pair_png(const CaptionedImage& left, const CaptionedImage& right) {
   constexpr int kRows = 32;                                                   // from line to line
   const std::array<cv::Scalar, 2> colors = {{{0, 150, 255}, {220, 200, 0}}};  // orange, cyan
-  Pair pair = side_by_side(left.caption, in_grey(left.image), right.caption, in_grey(right.image));
+  auto [canvas, places] =
+      side_by_side({{left.caption, in_grey(left.image)}, {right.caption, in_grey(right.image)}});
   std::size_t count = 0;
   for (int row = kRows / 2; row < left.image.height; row += kRows) {
-    const int y = pair.left.y + row;
-    cv::line(pair.canvas, {pair.left.x, y}, {pair.right.br().x - 1, y}, colors[count++ % colors.size()]);
+    const int y = places[0].y + row;
+    cv::line(canvas, {places[0].x, y}, {places[1].br().x - 1, y}, colors[count++ % colors.size()]);
   }
-  return encode_png(pair.canvas);
+  return encode_png(canvas);
 }
 
 std::vector<std::uint8_t> encode_depth_color_png(int width, int height,
@@ -298,12 +263,13 @@ std::vector<std::uint8_t> encode_displacement_png(const kernels::RectificationTa
   const Moves of_right = moves_of(right);
   const double most = std::max(of_left.largest, of_right.largest);
   const double arrows = arrow_factor(most);
-  Pair pair = side_by_side(caption("left table", of_left, arrows), drawn(left, of_left, most, arrows),
-                           caption("right table", of_right, arrows), drawn(right, of_right, most, arrows),
-                           kScaleHeight);
-  draw_color_scale(pair.canvas, {pair.left.x, pair.left.br().y + kScaleHeight - 4}, pair.left.width, "0",
+  auto [canvas, places] =
+      side_by_side({{caption("left table", of_left, arrows), drawn(left, of_left, most, arrows)},
+                    {caption("right table", of_right, arrows), drawn(right, of_right, most, arrows)}},
+                   kScaleHeight);
+  draw_color_scale(canvas, {places[0].x, places[0].br().y + kScaleHeight - 4}, places[0].width, "0",
                    fmt::format("{:.1f} px", most), "no source");
-  return encode_png(pair.canvas);
+  return encode_png(canvas);
 }
 
 std::vector<std::uint8_t> encode_source_lines_png(const kernels::RectificationTable& left,

@@ -24,15 +24,10 @@ std::size_t index_of(const GridShape& shape, int column, int row) {
 
 double smallest_spacing(const GridShape& shape, const Corners& corners) {
   double smallest = std::numeric_limits<double>::infinity();
-  for (int row = 0; row < shape.rows; ++row) {
-    for (int column = 0; column < shape.columns; ++column) {
-      const Eigen::Vector2d& here = corners[index_of(shape, column, row)];
-      const Eigen::Vector2d& right = corners[index_of(shape, std::min(column + 1, shape.columns - 1), row)];
-      const Eigen::Vector2d& below = corners[index_of(shape, column, std::min(row + 1, shape.rows - 1))];
-      for (const double distance : {(right - here).norm(), (below - here).norm()}) {
-        if (distance > 0) smallest = std::min(smallest, distance);
-      }
-    }
+  const auto columns = static_cast<std::size_t>(shape.columns);
+  for (std::size_t i = 1; i < corners.size(); ++i) {
+    if (i % columns != 0) smallest = std::min(smallest, (corners[i] - corners[i - 1]).norm());
+    if (i >= columns) smallest = std::min(smallest, (corners[i] - corners[i - columns]).norm());
   }
   return smallest;
 }
@@ -68,17 +63,9 @@ double agreement(const GridShape& shape, const Corners& a, const Corners& b) {
 
 // The mean grey of the 3 x 3 pixels around a position. Pixels outside the picture are left out.
 double grey_at(const kernels::GrayImage& picture, const Eigen::Vector2d& position) {
-  const auto column = static_cast<int>(std::lround(position.x()));
-  const auto row = static_cast<int>(std::lround(position.y()));
-  double sum = 0;
-  int count = 0;
-  for (int y = std::max(0, row - 1); y <= std::min(picture.height - 1, row + 1); ++y) {
-    for (int x = std::max(0, column - 1); x <= std::min(picture.width - 1, column + 1); ++x) {
-      sum += picture.at(x, y);
-      ++count;
-    }
-  }
-  return count > 0 ? sum / count : 0;
+  const cv::Rect around(cvRound(position.x()) - 1, cvRound(position.y()) - 1, 3, 3);
+  const cv::Rect inside = around & cv::Rect(0, 0, picture.width, picture.height);
+  return inside.empty() ? 0 : cv::mean(view(picture)(inside))[0];
 }
 
 // By how much two opposite squares at a corner are brighter than the other two. `right` and `down` lead to

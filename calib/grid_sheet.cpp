@@ -95,11 +95,7 @@ void draw(cairo_t* context, const Drawing& drawing) {
   cairo_paint(context);
   cairo_set_source_rgb(context, 0, 0, 0);
   for (const Box& square : drawing.squares) {
-    cairo_move_to(context, square.left, square.top);
-    cairo_line_to(context, square.right, square.top);
-    cairo_line_to(context, square.right, square.bottom);
-    cairo_line_to(context, square.left, square.bottom);
-    cairo_close_path(context);
+    cairo_rectangle(context, square.left, square.top, square.right - square.left, square.bottom - square.top);
   }
   cairo_fill(context);
   for (const Box& line : drawing.lines) {

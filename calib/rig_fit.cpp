@@ -312,11 +312,8 @@ RigFit fit_rig(const GridShape& shape, int width, int height, const std::vector<
   const Observations seen = observations(shape, pairs, used);
   const SingleFit left = fit_camera(seen, seen.left, {width, height}, lens);
   const SingleFit right = fit_camera(seen, seen.right, {width, height}, lens);
-  Rig guess;
-  guess.width = width;
-  guess.height = height;
-  guess.left = to_camera(left.matrix, left.distortion);
-  guess.right = to_camera(right.matrix, right.distortion);
+  const Rig guess{width, height, to_camera(left.matrix, left.distortion),
+                  to_camera(right.matrix, right.distortion)};
   used = pairs_that_agree(left, right, corners);
   check_pairs(used);
   RigFit fit = fit_once(shape, pairs, used, guess, lens);

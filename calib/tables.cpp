@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
 #include <stdexcept>
 #include <string>
@@ -46,12 +47,9 @@ bool are_tables_of(const TablePair& tables, const Rig& rig, const Rectification&
   constexpr std::size_t kStep = 97;  // between the entries that are compared
   const SourcePixels left(rig.left, rectification.r1, rectification.p1);
   const SourcePixels right(rig.right, rectification.r2, rectification.p2);
-  const auto width = static_cast<std::size_t>(rig.width);
   std::size_t different = 0;
   for (std::size_t i = 0; i < tables.left.entries.size(); i += kStep) {
-    const auto column = static_cast<double>(i % width);
-    const std::size_t row_number = i / width;
-    const auto row = static_cast<double>(row_number);
+    const auto [row, column] = std::div(static_cast<int>(i), rig.width);
     if (tables.left.entries[i] != table_entry(rig, left, {column + disparity_offset, row})) ++different;
     if (tables.right.entries[i] != table_entry(rig, right, {column, row})) ++different;
   }

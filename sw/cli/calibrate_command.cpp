@@ -288,43 +288,28 @@ Names files_of(const std::string& option, const Names& patterns, process::Proble
   return files;
 }
 
-// The names without their common beginning.
-Names without_beginning(Names names) {
-  const auto [least, most] = std::minmax_element(names.begin(), names.end());
-  const auto length =
-      std::mismatch(least->begin(), least->end(), most->begin(), most->end()).first - least->begin();
-  for (std::string& name : names) name.erase(0, static_cast<std::size_t>(length));
-  return names;
-}
-
-// The names of the files, backwards, without what all have in common at their ends.
-Names own_parts(const Names& files) {
-  Names names;
-  for (const std::string& file : files) names.push_back(fs::path(file).stem());
-  names = without_beginning(names);
-  for (std::string& name : names) std::reverse(name.begin(), name.end());
-  return without_beginning(names);
-}
-
-// Prints a note about the first pair whose names differ: if each side lacks a different picture, all pairs
-// between these two are wrong.
-void compare_names(const Names& left, const Names& right) {
-  const Names left_parts = own_parts(left);
-  const Names right_parts = own_parts(right);
-  const auto differ = std::mismatch(left_parts.begin(), left_parts.end(), right_parts.begin());
-  if (differ.first == left_parts.end()) return;
-  const auto at = static_cast<std::size_t>(differ.first - left_parts.begin());
-  process::say(
-      "note",
-      fmt::format("pictures are paired in the order of their names, '{}' with '{}': do they belong together?",
-                  left[at], right[at]));
+// Prints a note about the first pair whose names do not end in the same number: if each side lacks a
+// different picture, all pairs between these two are wrong.
+void compare_numbers(const Names& left, const Names& right) {
+  const auto number_of = [](const std::string& file) {
+    const std::string stem = fs::path(file).stem();
+    return stem.substr(stem.find_last_not_of("0123456789") + 1);
+  };
+  for (std::size_t i = 0; i < left.size(); ++i) {
+    if (number_of(left[i]) == number_of(right[i])) continue;
+    process::say("note",
+                 fmt::format("pictures are paired in the order of their names, '{}' with '{}': do they "
+                             "belong together?",
+                             left[i], right[i]));
+    return;
+  }
 }
 
 // Loads the pictures of the calibration grid that match the patterns. Sorts both sides by name, and pairs
 // them in this order. Reports problems: a pattern without files, different counts, a file that is no picture,
 // a picture that appears twice, different sizes. Prints notes on standard error: how many pictures were
-// converted to grey, and the first pair whose names differ after the prefix and suffix that all names of a
-// side share are removed. Returns early when interrupted().
+// converted to grey, and the first pair whose names end in different numbers. Returns early when
+// interrupted().
 std::vector<calib::PicturePair> load_grid_pictures(const Names& left, const Names& right,
                                                    process::Problems& problems) {
   const Names left_files = files_of("--left", left, problems);
@@ -377,7 +362,7 @@ std::vector<calib::PicturePair> load_grid_pictures(const Names& left, const Name
   if (converted > 0)
     process::say("note", fmt::format("{} of {} pictures: colour, converted to grey", converted,
                                      2 * left_files.size()));
-  compare_names(left_files, right_files);
+  compare_numbers(left_files, right_files);
   return pairs;
 }
 
@@ -561,12 +546,12 @@ class Calibrator {
 
   std::string written_text() const {
     std::string text =
-        fmt::format("{:<16} {}, {}, {}, {}/\n", "written", files_.calibration.string(),
-                    files_.left_lut.string(), files_.right_lut.string(), files_.drawings.string());
+        row("written", fmt::format("{}, {}, {}, {}/", files_.calibration.string(), files_.left_lut.string(),
+                                   files_.right_lut.string(), files_.drawings.string()));
     if (!rig_) return text;
     const auto& known = rig_->rig();
-    text += fmt::format("{:<16} left focal length {:.1f} px, baseline {:.2f} mm\n", "known to be",
-                        known.left.matrix(0, 0), known.translation.norm());
+    text += row("known to be", fmt::format("left focal length {:.1f} px, baseline {:.2f} mm",
+                                           known.left.matrix(0, 0), known.translation.norm()));
     const std::string folder = files_.pictures.string();
     text += fmt::format(
         "{:<16} stereotlm run fpl2003 --source preloaded --set matcher.disparities={} \\\n"

@@ -52,33 +52,28 @@ void write_file(const fs::path& path, const std::vector<std::uint8_t>& bytes) {
 
 // A picture below its caption, and what the scale of its colours says below it: of the first level, of the
 // last, and where there is none. A picture in grey has no scale.
-struct Panel {
-  std::string caption;
-  cv::Mat picture;
+struct Montaged {
+  calib::Panel panel;
   Words scale = {};
 };
 
-Panel grey_panel(const std::string& caption, const GrayImage& image) {
-  return {caption, calib::in_grey(image)};
-}
-
 // Levels 0 .. `levels` - 1 in colours, 255 in light grey.
-Panel coloured_panel(const std::string& caption, const GrayImage& image, int levels, const Words& scale) {
+Montaged coloured_panel(const std::string& caption, const GrayImage& image, int levels, const Words& scale) {
   cv::Mat1f values(image.height, image.width);
   std::transform(image.pixels.begin(), image.pixels.end(), values.begin(), [](std::uint8_t level) {
     return level == kernels::kInvalidDisparity ? std::numeric_limits<float>::quiet_NaN()
                                                : static_cast<float>(level);
   });
-  return {caption, calib::in_colors(values, 0, levels - 1), scale};
+  return {{caption, calib::in_colors(values, 0, levels - 1)}, scale};
 }
 
-Panel disparity_panel(const std::string& caption, const GrayImage& image, int disparities,
-                      const std::string& missing) {
+Montaged disparity_panel(const std::string& caption, const GrayImage& image, int disparities,
+                         const std::string& missing) {
   return coloured_panel(caption, image, disparities, {"0", std::to_string(disparities - 1), missing});
 }
 
 // Far depths have level 0.
-Panel depth_panel(const std::vector<std::uint16_t>& millimetres, int width, int height) {
+Montaged depth_panel(const std::vector<std::uint16_t>& millimetres, int width, int height) {
   constexpr int kLevels = 254;
   GrayImage image(width, height, kernels::kInvalidDisparity);
   const auto [near, far] = calib::depth_range(millimetres).value();
@@ -91,25 +86,16 @@ Panel depth_panel(const std::vector<std::uint16_t>& millimetres, int width, int 
                         {fmt::format("{} mm", far), fmt::format("{} mm", near), "no answer"});
 }
 
-// Writes the panels side by side on white, aligned at the top.
-void write_side_by_side(const fs::path& path, const std::vector<Panel>& panels) {
-  const int top = kMargin + calib::kCaptionHeight;
-  int width = kMargin;
-  int height = 0;
-  for (const Panel& panel : panels) {
-    width += panel.picture.cols + kMargin;
-    height = std::max(height, panel.picture.rows + (panel.scale.empty() ? 0 : calib::kScaleHeight));
-  }
-  cv::Mat canvas(top + height + kMargin, width, CV_8UC3, calib::kWhite);
-  int left = kMargin;
-  for (const Panel& panel : panels) {
-    const cv::Rect place({left, top}, panel.picture.size());
-    panel.picture.copyTo(canvas(place));
-    calib::draw_caption(canvas, panel.caption, place);
-    if (!panel.scale.empty())
-      calib::draw_color_scale(canvas, {left, place.br().y + calib::kScaleHeight - kMargin}, place.width,
-                              panel.scale[0], panel.scale[1], panel.scale[2]);
-    left += place.width + kMargin;
+// Writes the pictures side by side, with their scales below them.
+void write_montage(const fs::path& path, const std::vector<Montaged>& pictures) {
+  std::vector<calib::Panel> panels;
+  for (const Montaged& picture : pictures) panels.push_back(picture.panel);
+  auto [canvas, places] = calib::side_by_side(panels, calib::kScaleHeight);
+  for (std::size_t i = 0; i < pictures.size(); ++i) {
+    const Words& scale = pictures[i].scale;
+    if (scale.empty()) continue;
+    const cv::Point left_bottom(places[i].x, places[i].br().y + calib::kScaleHeight - kMargin);
+    calib::draw_color_scale(canvas, left_bottom, places[i].width, scale[0], scale[1], scale[2]);
   }
   write_file(path, calib::encode_png(canvas));
 }
@@ -142,14 +128,14 @@ GrayImage nearest_disparity(const media::Truth& truth, int disparities) {
 
 void montage(const Words& words) {
   const int disparities = kernels::kDisparitiesRule.required("DISPARITIES", std::stoi(words[3]));
-  std::vector<Panel> panels = {
-      grey_panel("left picture", media::load_gray(words[1]).image),
+  std::vector<Montaged> pictures = {
+      {{"left picture", calib::in_grey(media::load_gray(words[1]).image)}},
       disparity_panel("disparity, pixels", media::load_gray(words[2]).image, disparities, "no answer")};
   if (words.size() == 5) {
     const auto truth = nearest_disparity(media::load_truth(words[4], kTruthScale), disparities);
-    panels.push_back(disparity_panel("ground truth, pixels", truth, disparities, "unknown"));
+    pictures.push_back(disparity_panel("ground truth, pixels", truth, disparities, "unknown"));
   }
-  write_side_by_side(words[0], panels);
+  write_montage(words[0], pictures);
 }
 
 void depth_montage(const Words& words) {
@@ -160,10 +146,10 @@ void depth_montage(const Words& words) {
   const auto table = calib::parse_lut(files::read_whole_file(lut), picture.width, picture.height);
   const auto disparity = media::load_gray((fs::path(words[3]) / "disparity.png").string()).image;
   const calib::DepthGeometry geometry = {calibration.rectification.q, calibration.disparity_offset};
-  write_side_by_side(
+  write_montage(
       words[0],
-      {grey_panel("left picture", picture),
-       grey_panel("rectified by the left table", kernels::rectify(picture, table)),
+      {{{"left picture", calib::in_grey(picture)}},
+       {{"rectified by the left table", calib::in_grey(kernels::rectify(picture, table))}},
        disparity_panel("disparity, pixels", disparity, calibration.disparities, "no answer"),
        depth_panel(calib::depth_millimetres(geometry, disparity), disparity.width, disparity.height)});
 }

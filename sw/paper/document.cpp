@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <set>
 
 #include "models/area/area.h"
 #include "sw/stats/accuracy.h"
@@ -101,30 +102,26 @@ std::string overview(const Findings& findings) {
 std::string cases_text(const ClaimFinding& found) {
   const Claim& claim = found.claim;
   const bool has_bound = claim.quantity == Quantity::kRate;
-  std::string text = fmt::format("\nRule: {}. In {}.\n\n| case | paper | model |", text_of(claim.rule),
-                                 unit_of(claim.quantity));
-  text += std::string(has_bound ? " bound, limited by |" : "") + " deviation |" +
-          (has_bound ? " MHz |" : "") + " verdict |\n|---|---|---|---|---|" + (has_bound ? "---|---|" : "") +
-          '\n';
+  std::string text = fmt::format(
+      "\nRule: {}. In {}.\n\n| case | paper | model |{} deviation |{} verdict |\n|---|---|---|---|---|{}\n",
+      text_of(claim.rule), unit_of(claim.quantity), has_bound ? " bound, limited by |" : "",
+      has_bound ? " MHz |" : "", has_bound ? "---|---|" : "");
   for (const CaseFinding& finding : found.cases) {
-    text += fmt::format("| {} | {} | {} |", finding.of.name, printed_text(claim, finding.of.printed),
-                        modelled_text(claim, finding.modelled));
+    std::string bound, mhz;
     if (has_bound) {
-      text += fmt::format(" {}, {} |", three(finding.runs.front().bound), finding.runs.front().limited_by);
-    }
-    text += fmt::format(" {} |", deviation_text(claim, finding));
-    if (has_bound) {
+      const Measured& run = finding.runs.front();
       const auto clock = clock_for(claim, finding);
-      text += clock ? fmt::format(" {:.2f} .. {:.2f} |", clock->least_mhz, clock->most_mhz) : " |";
+      bound = fmt::format(" {}, {} |", three(run.bound), run.limited_by);
+      mhz = clock ? fmt::format(" {:.2f} .. {:.2f} |", clock->least_mhz, clock->most_mhz) : " |";
     }
-    text += fmt::format(" {} |\n", text_of(finding.verdict));
+    text += fmt::format("| {} | {} | {} |{} {} |{} {} |\n", finding.of.name,
+                        printed_text(claim, finding.of.printed), modelled_text(claim, finding.modelled),
+                        bound, deviation_text(claim, finding), mhz, text_of(finding.verdict));
   }
   text += "\n```console\n";
-  std::vector<std::string> said;  // each once
+  std::set<std::string> said;
   const auto say = [&](const std::string& command) {
-    if (std::find(said.begin(), said.end(), command) != said.end()) return;
-    text += "$ " + command + '\n';
-    said.push_back(command);
+    if (said.insert(command).second) text += "$ " + command + '\n';
   };
   for (const Case& one : claim.cases) {
     for (const std::string& command : commands_of(claim, one)) say(command);
@@ -220,9 +217,8 @@ std::string practice_remarks(const ClaimFinding& found) {
 }
 
 std::string any_window_remarks(const ClaimFinding& found) {
-  return found.verdict == Verdict::kInPart
-             ? "\nIt depends on the window, which the paper does not name here.\n"
-             : "";
+  const bool depends = found.verdict == Verdict::kInPart;
+  return depends ? "\nIt depends on the window, which the paper does not name here.\n" : "";
 }
 
 std::string small_remarks(const ClaimFinding& found) {

@@ -76,11 +76,10 @@ Json wait_of(const platform::BoardConfig& board, const fpga::TileGrid& grid,
 std::vector<std::size_t> used_banks(const fpga::FrameConflicts& sums) {
   std::vector<std::size_t> banks;
   for (std::size_t bank = 0; bank < sums.banks; ++bank) {
-    for (std::size_t strip = 0; strip < sums.strips.size(); ++strip) {
-      if (sum_of(sums.accesses[strip * sums.banks + bank]) == 0) continue;
-      banks.push_back(bank);
-      break;
-    }
+    std::uint64_t accesses = 0;
+    for (std::size_t strip = 0; strip < sums.strips.size(); ++strip)
+      accesses += sum_of(sums.accesses[strip * sums.banks + bank]);
+    if (accesses > 0) banks.push_back(bank);
   }
   return banks;
 }

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <cmath>
 #include <cstdint>
 #include <fstream>
 #include <functional>
@@ -392,10 +391,7 @@ class TimelineData {
   }
 
   Json json() const {
-    return {{"events", events_json()},
-            {"overview", overview_json()},
-            {"waits", waits_json()},
-            {"latency", latency_json()}};
+    return {{"events", events_json()}, {"waits", waits_json()}, {"latency", latency_json()}};
   }
 
  private:
@@ -456,40 +452,6 @@ class TimelineData {
     Json json = {{"names", events_csv_.names()}, {"rows", std::move(rows)}, {"all", events_.size()}};
     json["periods_ps"] = Json::array();
     for (const auto& [begin, end] : shown) json["periods_ps"].push_back({begin, end});
-    return json;
-  }
-
-  // Of captures, transfers and cycles of the core: how much of each bin of time they take. Drops are counted.
-  Json overview_json() const {
-    const double bin_ps = std::max(1.0, real(end_ps()) / RecordingData::kBins);
-    std::map<std::pair<std::string, std::string>, std::vector<double>> lanes;
-    for (const platform::TimelineEvent& event : events_) {
-      const std::string kind = name_of(event.kind);
-      const std::string what = event.what;
-      if (kind == "wait" || kind == "interrupt" || (kind == "frame" && what != "cycles")) continue;
-      const bool has_side = kind == "capture" || kind == "drop";
-      std::vector<double>& bins = lanes[{kind, has_side ? what : std::string()}];
-      bins.resize(RecordingData::kBins);
-      const auto bin_of = [&](std::uint64_t time_ps) {
-        return std::min(RecordingData::kBins - 1, static_cast<std::size_t>(real(time_ps) / bin_ps));
-      };
-      if (kind == "drop") {
-        bins[bin_of(event.begin_ps)] += 1;
-        continue;
-      }
-      for (std::size_t bin = bin_of(event.begin_ps); bin <= bin_of(event.end_ps); ++bin) {
-        const double from = std::max(real(event.begin_ps), bin_ps * static_cast<double>(bin));
-        const double to = std::min(real(event.end_ps), bin_ps * static_cast<double>(bin + 1));
-        bins[bin] += 100 * std::max(0.0, to - from) / bin_ps;
-      }
-    }
-    Json json = {{"bins", RecordingData::kBins}, {"end_ps", end_ps()}, {"lanes", Json::array()}};
-    for (const auto& [name, bins] : lanes) {
-      Json amounts = Json::array();
-      for (const double amount : bins) amounts.push_back(std::lround(amount));
-      json["lanes"].push_back(
-          {{"kind", name.first}, {"class", name.second}, {"amounts", std::move(amounts)}});
-    }
     return json;
   }
 

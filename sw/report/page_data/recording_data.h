@@ -21,7 +21,6 @@ class RecordingData {
   static constexpr std::size_t kMostTiles = 20'000;
   static constexpr std::size_t kMostEvents = 4000;  // about
   static constexpr std::size_t kMostLatencies = 1000;
-  static constexpr std::size_t kBins = 300;  // of the overview
 
   // `camera`: with the time line of a computer. `folder`: that of the files, for messages. `board` outlives
   // this object.

@@ -175,7 +175,7 @@ TEST(DisplacementDrawing, HasArrowsWithoutTheOffsetThatDoNotReachTheNext) {
     EXPECT_EQ(count(drawing({right + 21, kTop + y, 17, 1}), kWhite), 17);  // to the right, in the left half
     EXPECT_FALSE(is(drawing, {right + 43, kTop + y}, kWhite));
     EXPECT_FALSE(is(drawing, {right + 24, kTop + y - 2}, kWhite));
-    EXPECT_TRUE(is(drawing, {right + 35, kTop + y - 2}, kWhite));  // the head is wider than the shaft
+    EXPECT_TRUE(is(drawing, {right + 38, kTop + y - 2}, kWhite));  // the head is wider than the shaft
     EXPECT_EQ(count(drawing({right + 163, kTop + y, 17, 1}), kWhite), 17);  // and to the left in the other
     EXPECT_EQ(count(drawing({kMargin + 21, kTop + y, 7, 1}), kWhite), 7);
     EXPECT_FALSE(is(drawing, {kMargin + 33, kTop + y}, kWhite));
@@ -186,7 +186,7 @@ TEST(DisplacementDrawing, ShowsTablesThatMoveNothingOrHaveNoValidEntry) {
   for (const RectificationTable& table : {kernels::identity_table(200, 80), shifted(200, 80, 10)}) {
     const cv::Mat3b drawing = decoded(encode_displacement_png(table, table));
     EXPECT_TRUE(is(drawing, {kMargin, kTop}, viridis(0)));
-    EXPECT_TRUE(is(drawing, {kMargin + 20, kTop + 20}, kWhite));
+    EXPECT_FALSE(is(drawing, {kMargin + 20, kTop + 20}, viridis(0))) << "a dot";
     EXPECT_FALSE(is(drawing, {kMargin + 26, kTop + 20}, kWhite));
   }
   const RectificationTable empty{4, 1, std::vector<std::uint32_t>(4)};

@@ -1,6 +1,6 @@
 // The page of a database: its charts, filters, table, and the board of a point.
 import {addAnswers, addChart, addGroup, addHead, htmlTable} from './card.js';
-import {addParallel, addScatter} from './database_charts.js';
+import {addScatter} from './database_charts.js';
 import {button, folded, h, note, textBox} from './dom.js';
 import {resourceText} from './findings.js';
 import {
@@ -150,20 +150,6 @@ export function showDatabase(page, {database}) {
                           .join(', '))}.`] :
           []
     ],
-    [
-      'What is the same in all?',
-      [`${points.constantKeys.length} keys, such as ${
-          points.constantKeys.filter(key => key.startsWith('matcher') || key.startsWith('image'))
-              .slice(0, 3)
-              .map(key => `${key} ${value(points.column(key)[0])}`)
-              .join(', ')}.`]
-    ],
-    [
-      'What is left out?',
-      [`${
-          whole(database.left_out
-                    .length)} columns, most of them counters of banks and ports: the database has them.`]
-    ]
   ].filter(([, texts]) => texts.length));
 
   const cards = addGroup(page, 'Points');
@@ -181,15 +167,6 @@ export function showDatabase(page, {database}) {
   const scatter = addScatter(cards, points, choose);
   const boardChart = addChart(cards, {id: 'chosen', wide: true, title: 'The board of a point', body: board});
   addFilters(cards, points);
-  addParallel(cards, points);
   addTable(
       cards, points, [rateName, ...(points.figures.includes('area.slices') ? ['area.slices'] : [])], choose);
-  const constants = [['key', 'value'], points.constantKeys.map(key => [key, points.column(key)[0]])];
-  addChart(cards, {
-    id: 'constants',
-    wide: true,
-    title: `${points.constantKeys.length} keys are the same in all points`,
-    body: folded('Show', htmlTable(...constants, 300)),
-    numbers: () => constants
-  });
 }

@@ -1,19 +1,17 @@
 // When things happen in the computer: the time line of captures, transfers, frames of the core, waits and
 // drops, and how long a frame takes from its first pixel to its results on the host.
 import {drawColumns} from './bars.js';
-import {addChart, addLeftOut, htmlTable, legend} from './card.js';
+import {addChart, addLeftOut, legend} from './card.js';
 import {objectsOf} from './data.js';
-import {s} from './dom.js';
+import {button, controls, s} from './dom.js';
 import {droppedText, settingOf} from './findings.js';
 import {count, fixed, inMs, kPsOfMs, percent, sum, whole} from './format.js';
-import {addBrush, axisBelow, cut, drawing, numeric, Zoom} from './plot.js';
+import {addBrush, axisBelow, cut, drawing, numeric} from './plot.js';
 import {mark} from './tooltip.js';
 
 const kFirstFrames = 6;
-const kMostMarks = 1500;
 const kLeastPs = 1000;
 const kLine = 34;
-const kOverviewLine = 9;
 
 // Of each kind of event: its colour and its name.
 const kKinds = {
@@ -119,64 +117,21 @@ function shapesOf(event, x0, x1, y) {
   ].filter(Boolean);
 }
 
-// The time line, in a window that is chosen in an overview of the whole run.
+// The time line of a part of the run.
 export function addTimeLine(page, run) {
   if (!run.recording) return addLeftOut(page, 'time', 'Time line of captures, core and read-backs');
-  const {events: recorded, overview} = run.recording;
+  const recorded = run.recording.events;
   const events = objectsOf(recorded).map(event => ({...event, lane: laneOf(event.kind, event.class)}));
   const lanes = kLanes.filter(lane => events.some(event => event.lane === lane));
-  const last = overview.end_ps;
+  const last = Math.max(...events.map(event => event.end_ps));
   const begin = Math.min(...events.filter(({kind}) => kind === 'capture').map(event => event.start_ps), last);
   const early = Math.max(
       ...events.filter(({frame}) => frame >= 0 && frame < kFirstFrames).map(event => event.end_ps), 1);
 
-  const drawOverview = (above, inner) => {
-    const x = numeric([0, last], [0, inner]);
-    const height = lanes.length * kOverviewLine;
-    for (const {kind, class: side, amounts} of overview.lanes) {
-      const line = lanes.indexOf(laneOf(kind, side));
-      if (line < 0) continue;
-      const [y, tall, colour] = kind === 'drop' ? [5, 2, '--ink'] : [1, 7, kKinds[kind][0]];
-      amounts.forEach((amount, bin) => {
-        if (amount === 0) return;
-        const opacity = kind === 'drop' ? 1 : 0.15 + 0.85 * Math.min(1, amount / 100);
-        above.append(s('rect', {
-          x: bin / overview.bins * inner,
-          y: line * kOverviewLine + y,
-          width: inner / overview.bins + 0.3,
-          height: tall,
-          style: `fill:var(${colour});fill-opacity:${opacity}`
-        }));
-      });
-    }
-    const wide = Math.max(2, x(zoom.to) - x(zoom.from));
-    above.append(
-        s('text', {x: -8, y: 12, 'text-anchor': 'end', class: 'label'}, 'whole run'),
-        s('text', {x: inner, y: -5, 'text-anchor': 'end', class: 'label'},
-          `0 to ${inMs(last, 0)}; below: the window`),
-        s('rect', {x: x(zoom.from), y: -1, width: wide, height: height + 2, class: 'window'}));
-    addBrush(above, {
-      axis: 'x',
-      width: inner,
-      height,
-      end: (box, place) => {
-        const half = (zoom.to - zoom.from) / 2;
-        if (box)
-          zoom.set(x.invert(box.x0), x.invert(box.x1));
-        else
-          zoom.set(x.invert(place.x) - half, x.invert(place.x) + half);
-      }
-    });
-  };
-
   const draw = (host, width) => {
     const left = Math.min(100, width * 0.26);
-    const top = lanes.length * kOverviewLine + 34;
-    const {svg, plot, width: inner, height} =
-        drawing(host, width, top + lanes.length * kLine + 46, {left, right: 8, top, bottom: 40}, 'Time line');
-    const above = s('g', {transform: `translate(${left} 16)`});
-    svg.append(above);
-    drawOverview(above, inner);
+    const {plot, width: inner, height} =
+        drawing(host, width, lanes.length * kLine + 46, {left, right: 8, bottom: 40}, 'Time line');
     const x = numeric([zoom.from / kPsOfMs, zoom.to / kPsOfMs], [0, inner]);
     const atPs = ps => Math.max(0, Math.min(inner, x(ps / kPsOfMs)));
     const digits = Math.max(0, Math.ceil(1 - Math.log10((zoom.to - zoom.from) / kPsOfMs / 5)));
@@ -185,7 +140,7 @@ export function addTimeLine(page, run) {
       axis: 'x',
       width: inner,
       height,
-      end: box => box && zoom.set(kPsOfMs * x.invert(box.x0), kPsOfMs * x.invert(box.x1))
+      end: box => box && show(kPsOfMs * x.invert(box.x0), kPsOfMs * x.invert(box.x1))
     });
     lanes.forEach(
         (name, line) =>
@@ -201,22 +156,23 @@ export function addTimeLine(page, run) {
       }
       known = Math.max(known, to);
     }
-    const inWindow = events.filter(({start_ps: start, end_ps: end}) => end >= zoom.from && start <= zoom.to);
-    // Of many events those are left out that would lie on others.
-    const gap = inWindow.length > kMostMarks ? 1 : -Infinity;
-    const drawnTo = new Map();  // of a lane and kind, in pixels
-    for (const event of inWindow) {
-      const {kind, lane} = event;
-      const [x0, x1] = [atPs(event.start_ps), atPs(event.end_ps)];
-      if (x1 < (drawnTo.get(lane + kind) ?? -Infinity) + (kind === 'drop' ? 8 * gap : gap)) continue;
-      drawnTo.set(lane + kind, x1);
-      if (kind === 'wait' && event.end_ps === event.start_ps) continue;
-      plot.append(...shapesOf(event, x0, x1, lanes.indexOf(lane) * kLine));
+    for (const event of events) {
+      const {kind, lane, start_ps: start, end_ps: end} = event;
+      if (end < zoom.from || start > zoom.to || (kind === 'wait' && end === start)) continue;
+      plot.append(...shapesOf(event, atPs(start), atPs(end), lanes.indexOf(lane) * kLine));
     }
   };
-  const zoom = new Zoom(
-      {last, least: kLeastPs, step: 0.5, from: Math.min(begin, early), to: early},
-      [['◀', 'Earlier'], ['▶', 'Later'], 'All'], () => chart.redraw());
+  const zoom = {from: Math.min(begin, early), to: early};  // ps
+  const show = (from, to) => {
+    const size = Math.min(last, Math.max(kLeastPs, Math.round(to - from)));
+    zoom.from = Math.max(0, Math.min(last - size, Math.round(from)));
+    zoom.to = zoom.from + size;
+    chart.redraw();
+  };
+  const move = (label, name, first, second) => button(label, () => {
+    const size = zoom.to - zoom.from;
+    show(zoom.from + first * size, zoom.to + second * size);
+  }, {'aria-label': name});
   const works = run.stats.cycles / settingOf(run, 'fpga.clock_mhz') * 1e6 / last;
   const drops = run.stats.cameras[0].dropped_frames;
   const firstFrame = Math.min(...events.filter(({kind}) => kind === 'frame').map(event => event.start_ps));
@@ -232,8 +188,7 @@ export function addTimeLine(page, run) {
       waits.note,
       drops > 0 && (droppedText(run) ?? `${count(drops, 'frame')} of the left camera are dropped.`),
       drops > 0 && 'Crosses: dropped frames.',
-      'The number in a bar is the frame; thin grey bars are waits. Drag in the overview, or in the window ' +
-          'below it, to choose the time that is shown.',
+      'The number in a bar is the frame; thin grey bars are waits. Drag to choose the time that is shown.',
       recorded.all > recorded.rows.length &&
           `The page has ${whole(recorded.rows.length)} of ${
               whole(recorded.all)} events: those of the beginning, of ` +
@@ -241,7 +196,10 @@ export function addTimeLine(page, run) {
     ].filter(Boolean)
               .join(' '),
     body: [
-      zoom.controls, legend([
+      controls(
+          move('+', 'Zoom in', 0.25, -0.25), move('−', 'Zoom out', -0.5, 0.5),
+          move('◀', 'Earlier', -0.5, -0.5), move('▶', 'Later', 0.5, 0.5), button('All', () => show(0, last))),
+      legend([
         ...Object.entries(kKinds)
             .filter(([name]) => events.some(({kind}) => kind === name))
             .map(([, [colour, name]]) => [name, `var(${colour})`]),
@@ -265,25 +223,15 @@ const kParts = [
 ];
 const kWaitParts = ['wait_copy_ps', 'wait_core_ps', 'wait_read_back_ps'];
 
-function addPercentiles(page, latency) {
-  const table =
-      [['percentile', 'ms'], ['min', 'p50', 'p95', 'p99', 'max'].map(name => [name, latency[name]])];
-  addChart(page, {
-    id: 'latency',
-    title: `Half of the results are ${fixed(latency.p50, 1)} ms old when they arrive, the oldest ${
-        fixed(latency.max, 1)} ms`,
-    body: htmlTable(...table),
-    note:
-        'From the first pixel of a capture to the results on the host. What of it is waiting was left out ' +
-        'by --quick, because the run was not recorded.',
-    numbers: () => table
-  });
-}
-
 export function addLatency(page, run) {
   const percentiles = run.stats.latency_ms?.capture_to_host;
   if (!percentiles) return;
-  if (!run.recording) return addPercentiles(page, percentiles);
+  if (!run.recording) {
+    return addLeftOut(
+        page, 'latency',
+        `Half of the results are ${fixed(percentiles.p50, 1)} ms old when they arrive, the oldest ${
+            fixed(percentiles.max, 1)} ms`);
+  }
   const {names, rows, all, means_ps: means} = run.recording.latency;
   const msOf = (parts, frame) => sum(parts.map(name => frame[name])) / kPsOfMs;
   const parts = kParts.filter(([columns]) => columns.some(name => means[name] > 0));
