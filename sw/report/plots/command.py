@@ -12,6 +12,7 @@ import os
 import re
 import signal
 import sys
+import warnings
 
 from points import Points, Unusable
 
@@ -164,6 +165,8 @@ def write(folder, files):
 
 def run(description, figures, arguments, check):
     options = parse(arguments, description, check is not None)
+    # Of matplotlib, such as that a character is missing from the font: PNG and PDF show a box for it.
+    warnings.showwarning = lambda message, *_: tell("note", message)
     points = prepare(options, check or (lambda points, options: []))
     files, said = draw_all(points, options, figures)
     on_interrupt(signal.SIG_IGN)

@@ -54,9 +54,7 @@ def use():
 def encoded(figure, kind, dpi=DPI):
     """The bytes of the figure as a file of one of FORMATS."""
     out = io.BytesIO()
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # characters that the font lacks: PNG and PDF show boxes for them
-        figure.savefig(out, format=kind, dpi=dpi, metadata=METADATA[kind])
+    figure.savefig(out, format=kind, dpi=dpi, metadata=METADATA[kind])
     return out.getvalue()
 
 
@@ -66,7 +64,7 @@ def text_width(text, size, bold=False):
     font = font_manager.get_font(font_manager.findfont(properties))
     font.set_size(size, 72)
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
+        warnings.simplefilter("ignore")  # of characters that the font lacks, savefig() warns
         font.set_text(text, 0, flags=LOAD_NO_HINTING)
     return font.get_width_height()[0] / 64 / 72
 
