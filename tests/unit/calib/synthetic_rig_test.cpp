@@ -1,4 +1,4 @@
-#include "calib/synthetic_rig.h"
+#include "tests/support/synthetic_rig.h"
 
 #include <gtest/gtest.h>
 
@@ -7,19 +7,16 @@
 #include <cmath>
 #include <limits>
 #include <opencv2/imgproc.hpp>
-#include <stdexcept>
 #include <vector>
 
 // calibrate_test.cpp finds the grids and the matches in the pictures: the rig and the disparities are
 // recovered.
-namespace stereotlm::calib {
+namespace stereotlm::test {
 namespace {
 
+using namespace calib;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-
-constexpr GridShape kGrid = {9, 6, 25};
-constexpr int kViews = 12;
 
 bool in_picture(const Vector2d& pixel, const Rig& rig, double margin = 0) {
   return pixel.x() >= margin && pixel.x() <= rig.width - 1 - margin && pixel.y() >= margin &&
@@ -35,57 +32,6 @@ Rig recovered(const Rig& rig) {
   result.right.distortion[0] += 0.004;
   result.rotation = Eigen::AngleAxisd(0.002, Vector3d::UnitY()).toRotationMatrix() * rig.rotation;
   return result;
-}
-
-TEST(SyntheticRig, IsTheSameForASeedAndDiffersBetweenSeeds) {
-  const SyntheticRig a(5, 64, 48);
-  const SyntheticRig b(5, 64, 48);
-  EXPECT_EQ(a.scene().right, b.scene().right);
-  EXPECT_EQ(a.grid_view(kGrid, 3).right, b.grid_view(kGrid, 3).right);
-  const SyntheticRig other(6, 64, 48);
-  EXPECT_NE(a.rig().left.matrix, other.rig().left.matrix);
-  EXPECT_NE(a.rig().right.distortion, other.rig().right.distortion);
-  EXPECT_NE(a.rig().rotation, other.rig().rotation);
-  EXPECT_NE(a.scene().left, other.scene().left);
-  EXPECT_NE(a.grid_view(kGrid, 0).left, other.grid_view(kGrid, 0).left);
-}
-
-TEST(SyntheticRig, HasCamerasWithinTheStatedBounds) {
-  for (std::uint64_t seed = 0; seed < 20; ++seed) {
-    const Rig rig = SyntheticRig(seed, 64, 48).rig();
-    EXPECT_EQ(rig.width, 64);
-    EXPECT_EQ(rig.height, 48);
-    EXPECT_NE(rig.left.matrix, rig.right.matrix);
-    EXPECT_NEAR(rig.left.matrix(0, 0), 0.83 * 64, 0.03 * 0.83 * 64);
-    EXPECT_NEAR(rig.left.matrix(0, 2), 31.5, 0.04 * 64);
-    EXPECT_NEAR(rig.left.distortion[0], -0.28, 0.02);
-    EXPECT_NEAR(rig.translation.norm(), 80, 3);
-    EXPECT_LT(rig.translation.x(), -70);
-    EXPECT_NEAR((rig.rotation * rig.rotation.transpose() - Eigen::Matrix3d::Identity()).norm(), 0, 1e-12);
-    const double turned = Eigen::AngleAxisd(rig.rotation).angle();
-    EXPECT_GT(turned, 0.001);
-    EXPECT_LT(turned, 0.046);
-  }
-}
-
-// The only row of one camera's picture shows nothing of the other's.
-TEST(SyntheticRig, RefusesAGridThatFindsNoPlace) {
-  const SyntheticRig rig(2, 2048, 1);
-  EXPECT_THROW(rig.grid_view(kGrid, 0), std::domain_error);
-  EXPECT_THROW(rig.grid_corners(kGrid, 0), std::domain_error);
-}
-
-TEST(SyntheticRig, ShowsEveryCornerToBothCameras) {
-  for (std::uint64_t seed = 0; seed < 4; ++seed) {
-    const SyntheticRig rig(seed, 320, 240);
-    for (const GridShape& shape : {kGrid, GridShape{4, 11, 100}, GridShape{7, 7, 20}}) {
-      for (int number = 0; number < kViews; ++number) {
-        const GridPair corners = rig.grid_corners(shape, number);
-        for (const Vector2d& pixel : corners.left) EXPECT_TRUE(in_picture(pixel, rig.rig(), 3));
-        for (const Vector2d& pixel : corners.right) EXPECT_TRUE(in_picture(pixel, rig.rig(), 3));
-      }
-    }
-  }
 }
 
 // A point inside the right camera's view that it does not see has a nearer point in front of it.
@@ -195,4 +141,4 @@ TEST(SyntheticRig, HasTheDisparityOfARecoveredCalibrationWithAnOffset) {
 }
 
 }  // namespace
-}  // namespace stereotlm::calib
+}  // namespace stereotlm::test

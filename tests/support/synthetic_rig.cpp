@@ -1,4 +1,4 @@
-#include "calib/synthetic_rig.h"
+#include "tests/support/synthetic_rig.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -12,8 +12,9 @@
 
 #include "calib/split_mix.h"
 
-namespace stereotlm::calib {
+namespace stereotlm::test {
 
+using namespace calib;  // the rig is made of its types
 using Eigen::AngleAxisd;
 using Eigen::Matrix3d;
 using Eigen::Vector2d;
@@ -516,4 +517,4 @@ std::vector<float> SyntheticRig::disparity(const Rig& calibrated, const Rectific
   return result;
 }
 
-}  // namespace stereotlm::calib
+}  // namespace stereotlm::test
