@@ -31,10 +31,10 @@ std::vector<std::uint8_t> encode_corners_png(const GridShape& shape, const Capti
 // Draws lines through both pictures along every 32nd row. Objects lie in the same row on both sides.
 std::vector<std::uint8_t> encode_rectified_pair_png(const CaptionedImage& left, const CaptionedImage& right);
 
-// Draws where each entry's source lies from the entry, without the mean of the table, which the captions
-// give: the distance in colours (Viridis) from 0 to the largest one of both tables, and light grey where the
-// entry is not valid. Arrows show the direction. They are lengthened alike in both tables, by a factor that
-// the captions give, as far as none reaches the position of the next.
+// Draws how far the source of each entry lies from the entry, less the mean of its table (in the captions),
+// in colours (Viridis) from 0 to the largest distance of both tables; light grey: the entry is not valid.
+// Arrows show the direction. In both tables they have the same scale, also in the captions, such that none
+// reaches the start of the next.
 std::vector<std::uint8_t> encode_displacement_png(const kernels::RectificationTable& left,
                                                   const kernels::RectificationTable& right);
 

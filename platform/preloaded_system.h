@@ -34,8 +34,8 @@ class PreloadedSystem : public sc_core::sc_module {
 // sweeps do.
 //
 // Throws std::invalid_argument if the tables do not fit the board, or `frames` is 0.
-// Throws std::runtime_error if the matcher does not work and no result is written for stall_timeout_cycles,
-// because the frame would never end.
+// Throws std::runtime_error if for stall_timeout_cycles the matcher works in no cycle and no result is
+// written, because the frame would never end.
 Statistics run_core(const BoardConfig& board, const Tables& tables, std::uint64_t frames,
                     std::uint64_t stall_timeout_cycles = std::uint64_t{1} << 26U);
 

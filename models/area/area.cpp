@@ -147,7 +147,7 @@ Resources word_cache(const Core& core) {
 // entry names a source pixel. The address of that pixel is row * W + column, and the pixel is one of four in
 // a word. The entries of joint tables (contract 7.3) are displacements. One reader takes both halves of an
 // entry, and each lane has its queue. The counters of a lane's position begin at the offsets X and Y, so that
-// one adder for the column and one for the row remain.
+// a displacement takes only one adder for the column and one for the row.
 void add_lanes(const Core& core, Items& items) {
   const CoreConfig& config = core.config;
   const int tables = core.tables();
@@ -315,9 +315,9 @@ Resources select_min(const Rank& rank, int disparity_bits) {
 // With several folds a disparity is held as its fold and its module, and is put together at the end.
 int split_disparity_bits(const Core& core) { return bits_of(core.folds - 1) + bits_of(core.units - 1); }
 
-// Paper section 3.3, figure 6: a chain. Module d keeps the smaller of its own sum and the sum that module d-1
-// held a column ago, whose disparity is at most d-1. Module 0 only holds its own sum. With several folds it
-// continues with what the last module held a pass and a column ago.
+// Paper section 3.3, figure 6: a chain. Module d keeps the smaller of two sums: its own, and the sum that
+// module d-1 held a column ago, of a disparity of at most d-1. Module 0 only holds its own sum. In each fold
+// but the first, it compares it with what the last module held in the fold before, a column ago.
 void add_select_min_chain(const Core& core, Items& items) {
   const Rank rank = rank_of(core);
   Resources chain;
@@ -368,8 +368,8 @@ void add_select_min_tree(const Core& core, Items& items) {
 // last D right-based disparities, and is read at the place to which the left-based disparity points. The
 // comparison takes an absolute difference, LUTs that compare it with the tolerance (4 bits in the first LUT,
 // 3 more in each further one), and a LUT that joins the result with both valid bits. The valid bit of the
-// left pixel itself waits until its column is the middle of the window. Without a check only the delays and
-// the selector remain. Each row of results has a check.
+// left pixel itself waits until its column is the middle of the window. A selector gives the disparity or
+// 255. Without a check only the delays and this selector remain. Each row of results has all these parts.
 void add_left_right_check(const Core& core, Items& items) {
   const int bits = core.disparity_bits;
   Resources check = shift_register(core.config.disparities - 1, bits + kValidBit);

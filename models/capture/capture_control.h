@@ -89,8 +89,8 @@ class CaptureControl : public FrameReceiver,
 
   // To skip lines that repeat:
   //
-  // Whether the board waits for the next line of its picture; and for the time from which it requests the
-  // bus.
+  // Whether the board has nothing to do before the next line of its picture. It then requests the bus from
+  // requested_ps() on.
   bool is_between_lines() const { return bus_state_ == BusState::kRequested && fifo_.is_between_lines(); }
   std::uint64_t requested_ps() const { return requested_ps_; }
   const CaptureFifo& fifo() const { return fifo_; }

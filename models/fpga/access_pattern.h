@@ -28,9 +28,9 @@ class AccessPattern {
   }
   // Whether every slot inside the image accesses it.
   bool needs_all_pixels() const { return needs_all_pixels_; }
-  // The next slot, from four columns behind `slot` on, whose pixel is accessed while that of the slot four
-  // columns before it is not, or the other way round; or the number of slots. (With a word cache the accesses
-  // repeat every four columns at best.)
+  // The first slot, from four columns after `slot` on, that differs from the slot four columns before it: one
+  // of the two accesses its pixel, the other does not. If there is none, the number of slots. (With a word
+  // cache the accesses repeat every four columns at best.)
   std::uint64_t uniform_until(std::uint64_t slot) const;
   // Whether slots access their pixels: bit i for slot `slot` + i of the frame, for 64 slots. 0 beyond the
   // end of the frame. `slot` is at most 256 slots beyond it.

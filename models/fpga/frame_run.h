@@ -121,8 +121,8 @@ class FrameRun {
   // See FastForward.
   std::uint64_t skipped_cycles() const { return core_.skipped_cycles(); }
   // To be called regularly while a frame runs. Returns the number of cycles without progress if it has
-  // reached stall_timeout_cycles, else 0: the matcher does not work and no result is written, because the
-  // arbiters never grant one of the core's ports. After a timeout it is counted anew.
+  // reached stall_timeout_cycles, else 0. In such cycles the matcher does not work and no result is written,
+  // because the arbiters never grant one of the core's ports. After a timeout they are counted anew.
   std::uint64_t stalled_cycles();
   // Text for messages: the frame that runs, and what its ports wait for.
   std::string waits();

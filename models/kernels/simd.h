@@ -45,9 +45,9 @@ struct MatchPlan {
   int first_outside = 0;
 };
 
-// The arrays of one side. They are aligned to kMostFrameVectorBytes. The comment of an array gives the number
-// of its positions: pixels or windows. There are columns right windows, columns + disparities - 1 left
-// windows, and window - 1 more pixels. Each position has one vector, unless the comment gives another number.
+// The arrays of one side, aligned to kMostFrameVectorBytes. The comment of an array gives the number of its
+// positions: pixels or windows. The right side has `columns` windows, the left `columns + disparities - 1`;
+// each has `window - 1` more pixels. A position has one vector, unless the comment gives another number.
 struct MatchSide {
   // [pixels]: in each lane the byte that enters the window is the lower one, the byte that leaves the window
   // the upper one. Pixels of more than one byte have a plane for each byte; the planes are `stride` apart.

@@ -57,9 +57,9 @@ struct BoardValue {
 // in to_yaml(), in one line. Each bank has all its values. A board without `pci.load` has no values below it.
 std::vector<BoardValue> values_of(const BoardConfig& board);
 
-// The values of `--set` that make `to` of `from`, in the order of to_yaml(). `to` has all banks of `from`, in
-// their order, and may have more behind them. Where more than one bank differs, `ssram.default` and
-// `ssram.banks` are given whole.
+// The values of `--set` that turn `from` into `to`: of the banks, then pci.load=none, then the others in the
+// order of to_yaml(). `to` has all banks of `from`, in their order, and may have more after them. Where more
+// than one bank differs or is new, `ssram.default` and `ssram.banks` are given whole.
 std::vector<std::string> sets_between(const BoardConfig& from, const BoardConfig& to);
 
 // A board file that is compiled in.

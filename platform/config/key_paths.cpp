@@ -21,9 +21,9 @@ std::optional<std::size_t> likely_path_distance(std::string_view path, std::stri
   return likely_distance(path, known);
 }
 
-// The known path nearest to an unknown one; empty if no path is near. A key that only has a similar name,
-// in any section, counts as 2 further away. So the right key in a wrong section is nearer than most wrong
-// keys in the right section. Below `ssram.banks` every name counts as the name of a bank.
+// The known path nearest to an unknown one; empty if no path is near. The distance is likely_path_distance(),
+// or likely_distance() of the last names plus 2, whichever is less. So the right key in a wrong section is
+// nearer than most wrong keys in the right section. Below `ssram.banks` every name counts as a bank's.
 std::string nearest_path(const std::string& path) {
   const std::string schema = schema_path(path);
   std::string best;

@@ -81,10 +81,9 @@ struct FileKind {
 FileKind marked_kind(std::string called, std::vector<std::pair<std::size_t, std::string>> marks);
 
 // A single file that a command writes, as a whole: commit() puts the new content in place, and until then an
-// earlier file is unchanged. Where the path is a symbolic link, the file to which it leads is written, and
-// the link stays. A file is replaced only if it was there when the object was made, and is then and at the
-// commit empty or of the kind that the command writes. All functions throw std::runtime_error with the path
-// and the cause.
+// earlier file is unchanged. A symbolic link stays, and the file to which it leads is written. A file is
+// replaced only if it existed when the object was made, and if both then and at the commit it is empty or of
+// the kind that the command writes. All functions throw std::runtime_error with the path and the cause.
 class OutputFile {
  public:
   // Throws also if a file must not be replaced, is one of `others` (those that the command reads or writes

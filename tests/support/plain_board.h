@@ -38,9 +38,9 @@ class PlainBoard {
   // `input` must outlive the board. Calls `frame_ends` at the end of each frame.
   PlainBoard(PlainEvents& events, const PlainBoardInput& input, std::function<void()> frame_ends);
 
-  // The host requests a word of a bank from the first cycle that begins at or after `from_ps`, one word at a
-  // time, of a burst of this traffic. Calls `granted` with the begin of the cycle of the grant and, for a
-  // read, the time from which `word` is usable.
+  // The host requests this word of a bank, in each cycle that begins at or after `from_ps`, until granted. No
+  // other word may wait. `traffic`: of the burst of the word. Calls `granted` with the begin of the cycle of
+  // the grant and, for a read, the time from which `word` is usable.
   void host_asks(const PlainWord& at, bool write, PlainTraffic traffic, std::uint32_t& word,
                  PlainTime from_ps, std::function<void(PlainTime begin_ps, PlainTime usable_ps)> granted);
   // A write to one of these registers.

@@ -13,8 +13,8 @@
 #include "tests/support/plain_cycle_input.h"
 
 // The timing of the FPGA core, cycle by cycle, written from contract sections 2, 7 and 8 alone. It shares no
-// code with the models, which tests compare with it: it keeps a time stamp for every event that the page
-// dates, and applies every rule in every cycle.
+// code with the models, which tests compare with it: it keeps a time stamp for every event to which the
+// contract gives a time, and applies every rule in every cycle.
 //
 // Ports have numbers, in the order of "Ports" in section 8: left_lut.0 .. left_lut.P-1, right_lut.0 .., the
 // pixel ports likewise, result, host. The causes that are no port have the numbers behind them: turnaround,
@@ -61,12 +61,12 @@ struct PlainRowEnd {
 // What the host's port is used for.
 enum class PlainTraffic { kCapture, kUpload, kReadBack };
 
-// Where in the picture, and when in a frame, ports stall. A cycle belongs to the tile whose results leave
-// next: four columns of a strip of R rows. Number 0 is the fill: the cycles up to the one in which column C -
-// 1 is consumed. What comes after the last results belongs to the last tile.
+// Where in the picture, and when in a frame, ports stall. A tile is four columns of a strip of R rows. A
+// cycle belongs to the tile whose results leave next. Tile 0 is the fill: the cycles up to that in which
+// column C - 1 is consumed (C: contract section 2). Cycles after the last results belong to the last tile.
 //
-// Who waits and who is to blame is a number: the ports, with one for each PlainTraffic in the place of the
-// host, then turnaround, row, refresh.
+// `waiter` and `by` are numbers: of a port (in place of the host: one for each PlainTraffic), then of
+// turnaround, row, refresh.
 struct PlainLoss {
   std::size_t waiter = 0;
   int bank = 0;

@@ -59,9 +59,9 @@ class SyntheticRig {
   // of the rectified left picture. A returned value is u less the column of the match in the rectified right
   // picture; the true disparity is this value + disparity_offset.
   //
-  // Matches are found with rig(), in the pictures of the cameras. `calibrated` and its `rectification` map
-  // them to the rectified pictures. So `calibrated` may be a rig that was fitted to pictures of that size.
-  // Throws as rectified_pixel() does.
+  // Matches are found with rig(), in the pictures of the cameras. `calibrated` and `rectification` only map
+  // positions between these and the rectified pictures. So `calibrated` may be a rig that was fitted to
+  // pictures of the size of rig(). Throws as rectified_pixel() does.
   std::vector<float> disparity(const calib::Rig& calibrated, const calib::Rectification& rectification,
                                int disparity_offset) const;
 

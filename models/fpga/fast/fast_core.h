@@ -15,13 +15,13 @@
 namespace stereotlm::fpga {
 
 // Fast-forwards the core beside the bursts of the local bus, for Fidelity::kFast and kTiming. It advances a
-// frame only when a word at the local bus contends for a bank of the frame, and when the frame may have
-// ended. The frame works directly on memory:
-// - It reads pictures and tables at the start strobe.
-// - It writes the disparities with the last write, or early, but never before a pending event that could
-//   observe them.
-// - A burst of the local bus that would observe the difference is a hazard: it writes what the frame reads,
-//   or touches the disparities.
+// frame in two cases: a word at the local bus contends for a bank of the frame, or the frame may have ended.
+// The frame works directly on memory:
+// - It reads pictures and tables at the start strobe, all at once.
+// - It writes all disparities at once: at the time of its last write, or earlier, but never before a pending
+//   event that could observe them.
+// - A burst of the local bus that could observe this is a hazard: it writes what the frame reads, or reads or
+//   writes the disparities.
 // Plain C++.
 class FastCore {
  public:

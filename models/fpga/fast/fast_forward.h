@@ -29,9 +29,9 @@ class FastForward : public CoreStepper {
   FastForward(const CoreConfig& config, memory::Arbitration& arbitration);
 
   // To be called when a frame with these accesses is to be fast-forwarded, after its ports have been routed
-  // and start_frame() has been called. The patterns must outlive the frame. Frames with buffers in the same
-  // banks have the same routes and latencies. This and the next function throw std::logic_error if settle()
-  // has not been called since the last frame.
+  // and start_frame() has been called. The patterns must outlive the frame. The caller guarantees that frames
+  // with buffers in the same banks have the same routes and latencies. This and the next function throw
+  // std::logic_error if settle() has not been called since the last frame.
   void start_direct_frame(const AccessPatterns& patterns, const FrameBases& bases);
   // To be called when a frame starts that the owner steps itself.
   void start_stepped_frame();

@@ -51,9 +51,9 @@ class CycleRecorder {
   }
 
   // Reports accesses of the host that do not contend with the frame, or that come while no frame runs. If
-  // `granted`, consecutive words are granted in `cycles` cycles from `cycle` on. Otherwise the first word
-  // waits in these cycles because of the turnaround. To be called in the order of the cycles, and before the
-  // frame is stepped there.
+  // `granted`, `first` and the words after it are granted, one in each of `cycles` cycles from `cycle` on. If
+  // not, `first` waits in these cycles because of the turnaround. To be called in the order of the cycles,
+  // and for cycles of a frame before FrameRun steps them.
   void host_accesses(const HostWord& first, std::uint64_t cycle, std::uint64_t cycles, bool granted) {
     accesses_.push_back({first, cycle, cycles, granted});
   }

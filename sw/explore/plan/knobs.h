@@ -30,24 +30,24 @@ struct KnobSteps {
 };
 
 // One step of every knob of a board, as long as the value is in the range of its key:
-//   a number: up and down by one (the window by two); a word: each other one
-//   matcher.fetch: the line buffer takes matcher.rows back to 1 with it
-//   matcher.units: to the fewest modules that take fewer folds, to the fewest that take more, and to all
-//   fpga.tables: to joint tables in the bank of the left table, or in the bank of the right table; to
-//   separate tables, with the right table in the first bank without buffers that can hold it, if there is one
-//   matcher.cost: each other one (census with 5 x 5 pixels); census also with the next sizes
+//   a number: up and down by the step of its key (1; window: 2; pci.width_bits: 32); a word: each other one
+//   matcher.fetch: a step to the line buffer also sets matcher.rows to 1
+//   matcher.units: the fewest modules for the next lower number of folds, and for the next higher; all
+//   matcher.cost: each other kind (census with 5 x 5 pixels); from census also the next larger and smaller
+//   matcher.filter: none; log7
+//   fpga.tables: joint, in the bank of the left table or in that of the right; or separate, with the right
+//   table in the first bank without buffers that can hold it, else in the bank of the joint table
 //   fpga.priority: two neighbours exchanged; a port moved to the front, or to the end
-//   pci.load: none
+//   pci.load: removed
 //   ssram.banks.*.kind: all banks get another kind (a bank that gains turnaround has 2 cycles of it)
 //   ssram.banks.*.turnaround_cycles: up and down by one, in all banks that have turnaround
-//   allocation.left_image, right_image, and allocation.disparity: a buffer more, in one of the banks with the
-//   fewest accesses, or one less
-//   a bank more: a buffer that shares its bank gets a bank that holds nothing; if there is none that can hold
-//   it, a new bank, which is like the shared one
+//   allocation.left_image with right_image, and allocation.disparity: one buffer less, or one more, in one of
+//   four banks: those without such a buffer first, then those with the fewest accesses
+//   a bank more: a buffer leaves a shared bank for one that holds nothing; if none can hold it, for a new
+//   bank, which is like the shared one
 //   a bank less: all buffers of one bank move into another bank that is used
-// The size of the images, the depth of banks and the device do not change. `camera`: whether the knobs of the
-// computer around the board are included. `joint_problem`: why the tables of the board cannot be joined;
-// nullopt if they can be joined.
+// Image size, bank depth and device do not change. `camera`: whether the knobs of the computer around the
+// board are included. `joint_problem`: why the tables cannot be joined; nullopt if they can.
 KnobSteps knob_steps(const platform::BoardConfig& board, bool camera,
                      const std::optional<std::string>& joint_problem);
 

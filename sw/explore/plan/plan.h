@@ -108,9 +108,9 @@ class Plan {
   std::optional<Sample> sample_;
 };
 
-// The numbers 0..size-1 in an order that depends on a seed: the number at `place`, 0..size-1. A Feistel
-// network permutes the numbers of the smallest even number of bits that suffices, and is applied again until
-// the result is below `size`. size: 1..2^62.
+// Shuffles the numbers 0..size-1 by a seed, and returns the one at `place`, 0..size-1. A Feistel network
+// permutes all numbers of b bits, where b is the least of 2, 4, 6, .. with 2^b >= size. It is applied again
+// to its result until that is below `size`. size: 1..2^62.
 std::uint64_t shuffled_number(std::uint64_t size, std::uint64_t seed, std::uint64_t place);
 
 }  // namespace stereotlm::explore

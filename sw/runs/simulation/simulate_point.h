@@ -37,8 +37,8 @@ class PointSimulator {
   bool is_calibrated_ = false;
 };
 
-// What the core of a whole computer does in the window of the steady rate: shares of its time, which sum to
-// 1. The key is empty for its frames, else the reason for which it waits for its next start
+// How the core of a whole computer spends its time in the window of the steady rate: shares, which sum to 1.
+// The key "" has the time in frames; each other key is a reason to wait for the next start, with that time
 // (sw/report/README.md, Time line). The run of `frames` frames must have a steady rate. Throws as
 // PointSimulator does.
 std::map<std::string, double> core_time(const platform::BoardConfig& board, const platform::Tables& tables,

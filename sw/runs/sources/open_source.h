@@ -84,9 +84,9 @@ struct OpenedSource {
   std::vector<std::string> notes;     // for standard error
 };
 
-// Opens the source of pictures and checks all its pictures. Reports problems. Of `pictures`, at most one
-// source is named, by its paths; the function makes them absolute, and adds the checksums of the files.
-// `board`: null if unknown; the sizes of the pictures are then not checked.
+// Opens the source of pictures, checks all its pictures, and reports problems. The caller names at most one
+// source in `pictures`. The function makes its paths absolute, and adds the checksums of its files. `board`:
+// null if unknown; the sizes of the pictures are then not checked.
 OpenedSource open_source(InputPictures& pictures, const platform::BoardConfig* board,
                          process::Problems& problems);
 

@@ -320,14 +320,14 @@ class Explain(ProgramTest):
 
     def test_the_limiter_is_named_first(self):
         shared = sets("allocation.left_image=[bank0, bank0]")
-        full_size = sets("image={width: 320, height: 240}", "cameras.frame_rate_hz=120")
+        small = sets("image={width: 160, height: 120}", "cameras.frame_rate_hz=480")
         cases = [
-            ([*full_size, *shared], r"waits at bank0: left_pixel waits there for host in [\d.]+ %"),
-            (full_size, r"the captures: the core waits [\d.]+ % of the time"),
-            ([*full_size, *sets("pci.load={burst_words: 1, interval_us: 0, access_us: 50}")],
+            ([*small, *shared], r"waits at bank0: left_pixel waits there for host in [\d.]+ %"),
+            (small, r"the captures: the core waits [\d.]+ % of the time"),
+            ([*small, *sets("pci.load={burst_words: 1, interval_us: 0, access_us: 50}")],
              r"the PCI bus: captures lose \d+ pixels while 42 frames are delivered, so pictures are torn"),
-            ([*full_size, *sets("matcher.fetch=line_buffer")],
-             "the cameras, at the bound of 120.000 frames/s"),
+            ([*small, *sets("matcher.fetch=line_buffer")],
+             "the cameras, at the bound of 480.000 frames/s"),
         ]
         for options, limiter in cases:
             text = unwrapped(self.succeeds(run("explain", "fpl2003", *options)))

@@ -206,14 +206,14 @@ class Environment(ProgramTest):
         ends = []
         for command in (self.run_arguments("--out", "b", *traces), ["conflicts", self.out, "--out", "c"],
                         ["report", self.out, "--out", "a.html"]):
-            for most in range(4, 14):  # with 3 the program cannot be loaded
+            for most in range(4, 14, 2):  # with 3 the program cannot be loaded
                 limit = lambda: resource.setrlimit(resource.RLIMIT_NOFILE, (most, most))
                 process = run(*command, cwd=self.folder, preexec_fn=limit)
                 ends.append(process.returncode)
                 self.assertEqual("Too many open files" in process.stderr,
                                  "(the limit: ulimit -n)" in process.stderr)
                 self.assertTrue(process.returncode == 0 or "ulimit -n" in process.stderr, process.stderr)
-        self.assertGreater(len(ends) - ends.count(0), 10)
+        self.assertGreater(len(ends) - ends.count(0), 6)
 
 
 class Boards(ProgramTest):

@@ -195,9 +195,9 @@ TEST_F(ComputerLoopTest, EndsABurstOfTheLocalBusBeforeWordsArePostedAtThatTime) 
   }
 }
 
-// At this camera rate the last pixel of a frame arrives with a clock of the bus. The load keeps the bus for
-// the last line until its second word has found the FIFO, of one place, full: the capture ends with the last
-// pixel. A write that clears `done` at this time comes first, and has no effect; a ns later it has.
+// At this camera rate the last pixel of a frame arrives with a clock of the bus. In the last line the load
+// keeps the bus until a word finds the one-word FIFO full: the rest is dropped, and the capture ends with the
+// last pixel. A write that clears `done` at this time comes first, and has no effect; a ns later it has.
 class ComputerLoopPixels : public ComputerLoopTest, public ::testing::WithParamInterface<bool> {};
 
 TEST_P(ComputerLoopPixels, ArriveAfterTheWritesOfTheirTime) {
