@@ -38,8 +38,8 @@ struct StereoCoreConfig {
 // cycles (also past the end of an sc_start()); every access carries its own time. The process sleeps while no
 // frame runs and no word waits at the local bus.
 //
-// At the other fidelities the process fast-forwards. It advances a frame in two cases: a word at the local bus
-// contends for a bank of the frame, or the frame may have ended. The frame works directly on memory:
+// At the other fidelities the process fast-forwards. It advances a frame in two cases: a word at the local
+// bus contends for a bank of the frame, or the frame may have ended. The frame works directly on memory:
 // - It reads pictures and tables at the start strobe, all at once.
 // - It writes all disparities at once: at the time of its last write, or earlier, but never before a pending
 //   event that could observe them.
@@ -51,8 +51,8 @@ struct StereoCoreConfig {
 //   can start a frame, all words of a burst are in place with the first one.
 //
 // A frame stalls if for stall_timeout_cycles the matcher works in no cycle and no result is written: the
-// arbiters never grant one of its ports. The stall is reported with SC_REPORT_ERROR (type /stereotlm/core), at most
-// 8192 cycles late at Fidelity::kCycle, at most 2^22 at the others.
+// arbiters never grant one of its ports. The stall is reported with SC_REPORT_ERROR (type /stereotlm/core),
+// at most 8192 cycles late at Fidelity::kCycle, at most 2^22 at the others.
 class StereoCore : public sc_core::sc_module, private FastCore::Board {
  public:
   // The registers of register_map.h, accessed without the local bus and without its time; may stay unbound.
