@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <functional>
@@ -20,6 +21,7 @@
 #include <vector>
 
 #include "calib/depth.h"
+#include "calib/synthetic_rig.h"
 #include "calib/tables.h"
 #include "models/fpga/core_config.h"
 #include "models/kernels/limits.h"
@@ -28,6 +30,7 @@
 #include "sw/files/output_folder.h"
 #include "sw/files/text_forms.h"
 #include "sw/files/whole_file.h"
+#include "sw/media/encode.h"
 #include "sw/media/load.h"
 #include "sw/process/streams.h"
 #include "sw/runs/sources/calibration_input.h"
@@ -141,6 +144,9 @@ std::string calibration_summary(const calib::CalibrationResult& result, std::siz
   return text;
 }
 
+constexpr int kSyntheticWidth = 640;  // image width of fpl2003, pixels
+constexpr int kSyntheticHeight = 480;
+constexpr int kSyntheticPairs = 9;
 constexpr int kDefaultDisparities = 80;
 
 constexpr const char* kCalibrateExample =
@@ -179,7 +185,7 @@ struct CalibrateOptions : Options {
   void check_together(process::Problems& problems) override {
     const std::string extension = std::filesystem::path(out.text()).extension();
     if (print_grid.is_given()) {
-      for (const Option* option : {&grid, &left, &right, &disparities, &offset}) {
+      for (const Option* option : {&grid, &left, &right, &synthetic, &disparities, &offset}) {
         if (option->is_given())
           problems.add(fmt::format("{}: does not go with --print-grid", option->name()));
       }
@@ -187,8 +193,11 @@ struct CalibrateOptions : Options {
         problems.add(fmt::format("--out '{}': must end in .pdf or .svg", out.text()));
     } else {
       if (!grid.is_given()) problems.add(fmt::format("--grid: missing: {}", kGridRule));
+      if (synthetic.is_given() && (left.is_given() || right.is_given()))
+        problems.add("--synthetic: makes its own pictures: does not go with --left and --right");
       for (const auto& [side, option] : {std::pair("left", &left), std::pair("right", &right)}) {
-        if (!option->is_given()) problems.add(fmt::format("--{0}: missing: the {0} camera's pictures", side));
+        if (!synthetic.is_given() && !option->is_given())
+          problems.add(fmt::format("--{0}: missing: the {0} camera's pictures (or --synthetic SEED)", side));
       }
       ends_in(".yaml")(out, problems);
     }
@@ -209,7 +218,10 @@ struct CalibrateOptions : Options {
     return shape;
   }
   // Columns; nullopt: auto.
-  std::optional<int> disparity_offset() const { return offset.number<int>(); }
+  std::optional<int> disparity_offset() const {
+    if (!offset.is_given() && synthetic.is_given()) return 0;
+    return offset.number<int>();
+  }
 
   Option left =
       Option(this, "--left", "'GLOB'",
@@ -217,6 +229,11 @@ struct CalibrateOptions : Options {
              {}, Takes::kList);
   Option right = Option(this, "--right", "'GLOB'", "The right camera's pictures, as many, in the same order",
                         {}, Takes::kList);
+  Option synthetic =
+      Option(this, "--synthetic", "SEED",
+             "Instead of pictures: a synthetic rig with known parameters, another one for each "
+             "SEED, 0 or more; also writes its pictures, and those of a scene to run",
+             {number<std::uint64_t>(kSeedRule)});
   Option grid = Option(
       this, "--grid", "CxR",
       "The grid: columns x rows of inner corners, where four squares meet (a board of 10x7 squares has 9x6)",
@@ -231,7 +248,8 @@ struct CalibrateOptions : Options {
                               })});
   Option offset = Option(
       this, "--disparity-offset", "auto|N",
-      "Columns that the left table subtracts from every disparity (default auto: so that the grid fits)",
+      "Columns that the left table subtracts from every disparity (default auto: so that the grid fits; "
+      "with --synthetic: 0, which suits its scene)",
       {is_offset()});
   Option print_grid =
       Option(this, "--print-grid", "CxR",
@@ -369,6 +387,20 @@ int print_grid(const CalibrateOptions& options) {
   return kDone;
 }
 
+// The pictures of a synthetic rig.
+std::vector<calib::PicturePair> synthetic_pictures(const calib::SyntheticRig& rig,
+                                                   const calib::GridShape& grid, const fs::path& folder) {
+  std::vector<calib::PicturePair> pairs;
+  for (int number = 0; number < kSyntheticPairs; ++number) {
+    auto pictures = rig.grid_view(grid, number);
+    const auto name = [&](const char* side) {
+      return (folder / fmt::format("{}_{:02}.png", side, number)).string();
+    };
+    pairs.push_back({name("left"), name("right"), std::move(pictures.left), std::move(pictures.right)});
+  }
+  return pairs;
+}
+
 class Calibrator {
  public:
   explicit Calibrator(const CalibrateOptions& options)
@@ -380,9 +412,11 @@ class Calibrator {
   int run() {
     process::catch_interrupts();
     process::Problems problems;
-    request_.pictures = load_grid_pictures(options_.left.texts(), options_.right.texts(), problems);
+    load_pictures(problems);
+    const bool is_synthetic = options_.synthetic.is_given();
     std::vector<files::NamedFile> inputs;
     for (const calib::PicturePair& pair : request_.pictures) {
+      if (is_synthetic) break;  // the pictures are outputs
       inputs.push_back({"--left", pair.left_name});
       inputs.push_back({"--right", pair.right_name});
     }
@@ -396,7 +430,8 @@ class Calibrator {
         throw std::runtime_error(fmt::format("'{}': {}", folder.string(),
                                              fs::status_known(status) ? "no such folder" : error.message()));
       }
-      output_ = std::make_unique<files::OutputFolder>(folder, runs::calibration_content(files_, inputs));
+      output_ = std::make_unique<files::OutputFolder>(
+          folder, runs::calibration_content(files_, is_synthetic, inputs));
     });
     if (process::interrupted()) return leave_unwritten();
     problems.check();
@@ -429,6 +464,19 @@ class Calibrator {
     process::attempt_or_refuse("", [&] { result_ = result.get(); });
   }
 
+  void load_pictures(process::Problems& problems) {
+    if (!options_.synthetic.is_given()) {
+      request_.pictures = load_grid_pictures(options_.left.texts(), options_.right.texts(), problems);
+      return;
+    }
+    problems.attempt("--synthetic: ", [&] {
+      rig_ = std::make_unique<calib::SyntheticRig>(*options_.synthetic.number<std::uint64_t>(),
+                                                   kSyntheticWidth, kSyntheticHeight);
+      request_.pictures =
+          synthetic_pictures(*rig_, request_.grid, runs::rig_files(options_.out.text()).pictures);
+    });
+  }
+
   // Adds a file of the calibration, which has this path.
   template <typename Bytes>
   void add(const fs::path& file, const Bytes& bytes) {
@@ -444,6 +492,7 @@ class Calibrator {
     add(files_.right_lut, right);
     add(files_.calibration, runs::calibration_functions().calibration_yaml(result_.calibration));
     draw(files_.drawings);
+    if (rig_) write_synthetic(files_.pictures);
   }
 
   void draw(const fs::path& folder) {
@@ -471,16 +520,53 @@ class Calibrator {
         functions.encode_source_lines_png(result_.tables.left, result_.tables.right));
   }
 
+  // Writes the pictures that the calibration used, and a stereo pair of a scene with the disparities that the
+  // board should find.
+  void write_synthetic(const fs::path& folder) {
+    for (const calib::PicturePair& pictures : request_.pictures) {
+      if (process::interrupted()) return;
+      add(pictures.left_name, media::encode_png_gray(pictures.left));
+      add(pictures.right_name, media::encode_png_gray(pictures.right));
+    }
+    const auto scene = rig_->scene();
+    add(folder / "scene_left.png", media::encode_png_gray(scene.left));
+    add(folder / "scene_right.png", media::encode_png_gray(scene.right));
+    const calib::Calibration& made = result_.calibration;
+    const std::vector<float> truth = rig_->disparity(made.rig, made.rectification, made.disparity_offset);
+    kernels::GrayImage grey(made.rig.width, made.rig.height);
+    for (std::size_t i = 0; i < truth.size(); ++i) {
+      const double level = std::floor(double{truth[i]} * truth_scale() + 0.5);
+      if (level > 0 && level <= 255) grey.pixels[i] = static_cast<std::uint8_t>(level);
+    }
+    add(folder / "scene_truth.png", media::encode_png_gray(grey));
+  }
+
+  // Grey levels per disparity in the truth of the scene.
+  int truth_scale() const { return 255 / request_.disparities; }
+
   std::string written_text() const {
-    return row("written",
-               fmt::format("{}, {}, {}, {}/", files_.calibration.string(), files_.left_lut.string(),
-                           files_.right_lut.string(), files_.drawings.string()));
+    std::string text =
+        row("written", fmt::format("{}, {}, {}, {}/", files_.calibration.string(), files_.left_lut.string(),
+                                   files_.right_lut.string(), files_.drawings.string()));
+    if (!rig_) return text;
+    const auto& known = rig_->rig();
+    text += row("known to be", fmt::format("left focal length {:.1f} px, baseline {:.2f} mm",
+                                           known.left.matrix(0, 0), known.translation.norm()));
+    const std::string folder = files_.pictures.string();
+    text += fmt::format(
+        "{:<16} stereotlm run fpl2003 --source preloaded --set matcher.disparities={} \\\n"
+        "{:<16}   --left {}/scene_left.png --right {}/scene_right.png --calibration {} \\\n"
+        "{:<16}   --truth {}/scene_truth.png --truth-scale {}\n",
+        "to go on", request_.disparities, "", folder, folder, files_.calibration.string(), "", folder,
+        truth_scale());
+    return text;
   }
 
   const CalibrateOptions& options_;
   calib::CalibrationRequest request_;
   runs::RigFiles files_;
   std::unique_ptr<files::OutputFolder> output_;
+  std::unique_ptr<calib::SyntheticRig> rig_;
   calib::CalibrationResult result_;
 };
 

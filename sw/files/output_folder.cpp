@@ -129,7 +129,7 @@ void OutputFolder::check_earlier() {
   const bool has_mark =
       needs_mark && is_file(dir_ / content_.mark) && content_.kind.is_own(dir_ / content_.mark);
   for (const fs::path& name : entries(dir_)) {
-    if (name == content_.aside) continue;
+    if (name == content_.aside || name == content_.kept) continue;
     const bool is_known = is_ours(name) || is_ours(name.string() + '/');
     if (!is_known && content_.others_stay) continue;
     if (const auto foreign = foreign_part(dir_ / name))

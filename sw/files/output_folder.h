@@ -26,6 +26,7 @@ struct OutputContent {
   std::vector<std::string> names;
   std::string prefix = {};
   bool others_stay = false;        // DIR may hold other files too, which stay
+  std::string kept = {};           // an entry of DIR that stays, although the command may write it
   std::string aside = ".partial";  // name of the folder of unfinished files, in DIR
   // The files that the command reads. None may lie where a commit removes it.
   std::vector<NamedFile> inputs = {};

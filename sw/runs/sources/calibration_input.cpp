@@ -61,10 +61,11 @@ RigFiles rig_files(const std::string& calibration) {
   const auto beside = [&path](const char* ending) {
     return path.parent_path() / (path.stem().string() + ending);
   };
-  return {path, beside("_left.lut"), beside("_right.lut"), beside("_drawings")};
+  return {path, beside("_left.lut"), beside("_right.lut"), beside("_drawings"), beside("_pictures")};
 }
 
-files::OutputContent calibration_content(const RigFiles& files, const std::vector<files::NamedFile>& inputs) {
+files::OutputContent calibration_content(const RigFiles& files, bool makes_pictures,
+                                         const std::vector<files::NamedFile>& inputs) {
   const std::string stem = files.calibration.stem();
   files::OutputContent content;
   content.called = "folder";
@@ -73,10 +74,14 @@ files::OutputContent calibration_content(const RigFiles& files, const std::vecto
   content.rule =
       "only files that calibrate has made, with their calibration, are replaced: must be moved away";
   content.prefix = stem;
-  content.names = {"@(.yaml|_left.lut|_right.lut)", "_drawings/",
+  content.names = {"@(.yaml|_left.lut|_right.lut)",
+                   "_@(drawings|pictures)/",
                    "_drawings/@(corners|rectified)_+([0-9]).png",
-                   "_drawings/@(displacement|source_lines).png"};
+                   "_drawings/@(displacement|source_lines).png",
+                   "_pictures/@(left|right)_+([0-9]).png",
+                   "_pictures/scene_@(left|right|truth).png"};
   content.others_stay = true;
+  if (!makes_pictures) content.kept = files.pictures.filename();
   content.aside = stem + ".partial";
   content.inputs = inputs;
   return content;

@@ -25,15 +25,16 @@ struct RigFiles {
   std::filesystem::path left_lut;   // F_left.lut
   std::filesystem::path right_lut;  // F_right.lut
   std::filesystem::path drawings;   // F_drawings/
+  std::filesystem::path pictures;   // F_pictures/, only for a synthetic rig
 };
 
 // Throws std::runtime_error if the name does not end in .yaml.
 RigFiles rig_files(const std::string& calibration);
 
-// The files of `calibrate` in the folder of the calibration F.yaml: its mark F.yaml, the tables and the
-// drawings. Other files in the folder stay. New files are first written to the folder F.partial beside
-// F.yaml.
-files::OutputContent calibration_content(const RigFiles& files,
+// The files of `calibrate` in the folder of the calibration F.yaml: its mark F.yaml, the tables, the
+// drawings, and the pictures if it `makes_pictures`; otherwise an existing F_pictures/ stays. Other files in
+// the folder stay. New files are first written to the folder F.partial beside F.yaml.
+files::OutputContent calibration_content(const RigFiles& files, bool makes_pictures,
                                          const std::vector<files::NamedFile>& inputs = {});
 
 // A calibration that a command has loaded: the file of --calibration and the tables beside it.

@@ -10,8 +10,7 @@ import zlib
 
 import program
 from pictures import pgm, read_pfm, read_png, read_png_16
-from program import (PRELOADED, RESULT_FILES, ProgramTest, made_rig, run, sets, wait_until,
-                     write_pictures_of_rig)
+from program import PRELOADED, RESULT_FILES, ProgramTest, made_rig, run, sets, wait_until
 
 GRID = ["--grid", "7x5", "--square-mm", "30"]
 SIDES = ("left", "right")
@@ -55,7 +54,7 @@ class Made(CalibrateTest):
         self.assertRegex(found["reprojection"], r"^RMS 0\.[01]\d\d px")
         self.assertRegex(found["row error"], r"^mean 0\.0\d\d px")
         baseline = float(found["baseline"].split()[0])
-        known = float(write_pictures_of_rig("grid", self.folder, 3, 7, 5, 30, 0))
+        known = float(re.search(r"baseline ([\d.]+) mm", found["known to be"]).group(1))
         self.assertLess(abs(baseline / known - 1), 0.01)
         for name in ("rig.yaml", "rig_left.lut", "rig_right.lut", "rig_drawings/"):
             self.assertIn(str(self.home / name), found["written"])
@@ -64,6 +63,15 @@ class Made(CalibrateTest):
         drawings = [f"{name}_{number:02}.png" for name in ("corners", "rectified") for number in range(9)]
         self.is_in(self.home / "rig_drawings", *drawings, "displacement.png", "source_lines.png")
         self.assertEqual(len(set(self.result(self.home / "rig_drawings").values())), len(drawings) + 2)
+
+    def test_the_pictures_it_wrote_give_the_same_tables(self):
+        process = self.calibrate("--disparity-offset", "0", left="left_*.png", right="right_*.png")
+        found, expected = fields(self.succeeds(process)), fields(self.made.stdout)
+        self.assertEqual(found["reprojection"], expected["reprojection"])
+        for side in SIDES:
+            table = (self.folder / f"new_{side}.lut").read_bytes()
+            self.assertEqual(table, (self.home / f"rig_{side}.lut").read_bytes())
+        self.assertFalse((self.folder / "new_pictures").exists())
 
     @program.slow
     def test_replaces_an_earlier_calibration(self):
@@ -93,8 +101,7 @@ class Made(CalibrateTest):
 
     @program.slow
     def test_writes_nothing_where_it_is_interrupted(self):
-        sides = ["--left", self.pictures / "left_*.png", "--right", self.pictures / "right_*.png"]
-        command = ["calibrate", *sides, *GRID, "--out", self.folder / "rig.yaml"]
+        command = ["calibrate", "--synthetic", 3, *GRID, "--out", self.folder / "rig.yaml"]
         for number, has_earlier, delay in (
             (signal.SIGINT, False, 0), (signal.SIGTERM, True, 0), (signal.SIGINT, True, 0.1),
         ):
@@ -111,8 +118,8 @@ class Made(CalibrateTest):
 
 class Run(CalibrateTest):
     def test_finds_the_disparities_and_depths_of_the_scene(self):
-        write_pictures_of_rig("truth", self.folder / "truth.png", 3, self.rig, 3)
-        truth = ["--truth", self.folder / "truth.png", "--truth-scale", 3]
+        scale = re.search(r"--truth-scale (\d+)", self.made.stdout).group(1)
+        truth = ["--truth", self.pictures / "scene_truth.png", "--truth-scale", scale]
         process = run(*self.scene(*truth, "--out", self.out))
         self.succeeds(process)
         rows = r"note: .* \d+ are found in the right one; their rows differ by 0\.\d\d pixels on average\n"
@@ -307,6 +314,12 @@ class RefusedPlaces(CalibrateTest):
         with self.unchanged(self.folder / "new.partial"):
             self.refused(self.calibrate(), "holds 'new.partial/thesis.txt', which no killed run has left")
 
+    def test_pictures_that_a_made_up_rig_would_replace_stay(self):
+        self.file("new_pictures/left_00.png", "mine")
+        command = ["calibrate", "--synthetic", 1, *GRID, "--out", self.new]
+        with self.unchanged(self.folder):
+            self.refused(run(*command), "holds 'new_pictures' but no new.yaml")
+
     def test_missing_folders_are_refused(self):
         for folder in (self.folder / "none", self.left):
             process = self.calibrate("--out", folder / "new.yaml")
@@ -330,10 +343,13 @@ class Usage(ProgramTest):
             ("--square-mm", "nan", "square_mm = nan: must be"),
             ("--disparities", "255", "--disparities = 255: must be an integer, 1..254"),
             ("--disparity-offset", "1.5", "--disparity-offset = 1.5: must be auto or an integer"),
+            ("--synthetic", "1", "does not go with --left and --right"),
             ("--out", "rig.yml", "--out 'rig.yml': must end in .yaml"),
         ):
             arguments = [word for pair in {**good, option: value}.items() for word in pair]
             self.refused(run("calibrate", *arguments), problem)
+        seed = ["calibrate", "--synthetic", "-1", *GRID, "--out", "rig.yaml"]
+        self.refused(run(*seed), "--synthetic = -1: must be")
 
 
 class PrintGrid(ProgramTest):

@@ -16,12 +16,12 @@
 #include <vector>
 
 #include "calib/calibration.h"
+#include "calib/synthetic_rig.h"
 #include "sw/files/output_folder.h"
 #include "sw/files/whole_file.h"
 #include "sw/runs/sources/calibration_input.h"
 #include "tests/support/fork.h"
 #include "tests/support/scratch_folder.h"
-#include "tests/support/synthetic_rig.h"
 
 namespace {
 
@@ -96,37 +96,38 @@ using Files = std::map<std::string, std::string>;  // contents by name
 std::string calibration_text() {
   calib::Calibration made;
   made.grid = {9, 6, 25.4};
-  made.rig = test::SyntheticRig(2, 320, 240).rig();
+  made.rig = calib::SyntheticRig(2, 320, 240).rig();
   made.rectification = calib::rectify(made.rig);
   made.disparities = 80;
   return calib::calibration_yaml(made);
 }
 
 // A calibration; one that differs for each `what`.
-Files calibration(const std::string& what) {
+Files calibration(const std::string& what, bool has_pictures) {
   static const std::string text = calibration_text();
   Files files = {{"rig.yaml", text + "# " + what + '\n'},
                  {"rig_left.lut", what},
                  {"rig_right.lut", what},
                  {what == "new" ? "rig_drawings/corners_01.png" : "rig_drawings/corners_00.png", what},
                  {"rig_drawings/displacement.png", what}};
+  if (has_pictures) files["rig_pictures/left_00.png"] = what;
   return files;
 }
 
 struct CalibrationOutput : files::OutputFolder {
-  explicit CalibrationOutput(const fs::path& folder, const std::string& name = "rig.yaml")
-      : OutputFolder(folder, runs::calibration_content(runs::rig_files(folder / name))) {}
+  CalibrationOutput(const fs::path& folder, bool makes_pictures, const std::string& name = "rig.yaml")
+      : OutputFolder(folder, runs::calibration_content(runs::rig_files(folder / name), makes_pictures)) {}
 };
 
 class CalibrationOutputTest : public ::testing::Test {
  protected:
   void write(const Files& files) const {
-    CalibrationOutput output(folder_);
+    CalibrationOutput output(folder_, files.count("rig_pictures/left_00.png") > 0);
     for (const auto& [name, bytes] : files) output.add(name, bytes);
     output.commit();
   }
   // As a run that is given up before it has calibrated.
-  void begin() const { const CalibrationOutput output(folder_); }
+  void begin(bool makes_pictures) const { const CalibrationOutput output(folder_, makes_pictures); }
 
   void begin_with(const Files& files) const {
     fs::remove_all(folder_);
@@ -141,6 +142,14 @@ class CalibrationOutputTest : public ::testing::Test {
     }
     EXPECT_EQ(files["other_left.lut"], "precious");
     files.erase("other_left.lut");
+    return files;
+  }
+
+  // The files of `fresh` in place of the earlier ones; pictures that it does not make stay.
+  static Files after(const Files& earlier, const Files& fresh) {
+    Files files = fresh;
+    const auto pictures = earlier.find("rig_pictures/left_00.png");
+    if (pictures != earlier.end()) files.insert(*pictures);
     return files;
   }
 
@@ -168,12 +177,12 @@ class CalibrationOutputTest : public ::testing::Test {
     for (bool has_failed = true; has_failed; ++steps) {
       begin_with(earlier);
       has_failed = attempt(steps, fresh);
-      begin();
+      begin(earlier.count("rig_pictures/left_00.png") > 0);
       const Files found = files();
-      EXPECT_TRUE(found == earlier || found == fresh) << steps;
-      EXPECT_TRUE(has_failed || found == fresh);
+      EXPECT_TRUE(found == earlier || found == after(earlier, fresh)) << steps;
+      EXPECT_TRUE(has_failed || found == after(earlier, fresh));
       write(fresh);
-      EXPECT_EQ(files(), fresh) << steps;
+      EXPECT_EQ(files(), after(earlier, fresh)) << steps;
     }
     EXPECT_GT(steps, 30);
   }
@@ -186,27 +195,29 @@ TEST_F(CalibrationOutputTest, IsAsItWasOrNewAfterAKillAnywhere) {
   const auto attempt = [this](int steps, const Files& fresh) {
     return is_killed(Fault::kKill, steps, [&] { write(fresh); });
   };
-  at_every_step({}, calibration("new"), attempt);
-  at_every_step(calibration("old"), calibration("new"), attempt);
+  at_every_step({}, calibration("new", false), attempt);
+  at_every_step(calibration("old", false), calibration("new", false), attempt);
+  at_every_step(calibration("old", false), calibration("new", true), attempt);
+  at_every_step(calibration("old", true), calibration("new", false), attempt);
 }
 
 // Once all earlier files are moved away, the next run completes the commit; before, it undoes it.
 TEST_F(CalibrationOutputTest, IsAsItWasOrNewAfterItsRepairIsKilledAnywhere) {
-  const Files fresh = calibration("new");
-  for (const Files& earlier : {Files(), calibration("old")}) {
-    const int moved_away = earlier.empty() ? 0 : 4;
+  const Files fresh = calibration("new", true);
+  for (const Files& earlier : {Files(), calibration("old", true)}) {
+    const int moved_away = earlier.empty() ? 0 : 5;
     int steps = 0;
     for (bool has_begun = true; has_begun; ++steps) {
       for (int repaired = 0, is_repaired = false; !is_repaired; ++repaired) {
         begin_with(earlier);
         has_begun = is_killed(Fault::kKillInRename, steps, [&] { write(fresh); });
-        is_repaired = !is_killed(Fault::kKillInRename, repaired, [&] { begin(); });
-        is_killed(Fault::kKillInRename, repaired / 2, [&] { begin(); });
-        begin();
+        is_repaired = !is_killed(Fault::kKillInRename, repaired, [&] { begin(true); });
+        is_killed(Fault::kKillInRename, repaired / 2, [&] { begin(true); });
+        begin(true);
         EXPECT_EQ(files(), steps <= moved_away ? earlier : fresh) << steps << ", " << repaired;
       }
     }
-    EXPECT_EQ(steps, moved_away + 1 + 4 + 1);  // all go well in the last one
+    EXPECT_EQ(steps, moved_away + 1 + 5 + 1);  // all go well in the last one
   }
 }
 
@@ -224,8 +235,8 @@ TEST_F(CalibrationOutputTest, IsAsItWasOrNewAfterAFailureAnywhere) {
       steps_left = -1;
       return failures > 0;
     };
-    at_every_step({}, calibration("new"), attempt);
-    at_every_step(calibration("old"), calibration("new"), attempt);
+    at_every_step({}, calibration("new", true), attempt);
+    at_every_step(calibration("old", true), calibration("new", false), attempt);
   }
 }
 
@@ -271,13 +282,14 @@ TEST_F(CalibrationOutputTest, FilesWithoutAMarkAreAsTheyWereOrNewAfterAKillOrAFa
 }
 
 TEST_F(CalibrationOutputTest, TakesTurnsWithAnotherRunOfTheSameNameAlone) {
-  begin_with(calibration("old"));
+  begin_with(calibration("old", false));
   {
-    const CalibrationOutput first(folder_);
-    EXPECT_THAT(test::message_of([&] { begin(); }), testing::HasSubstr("in use by another run"));
-    const CalibrationOutput other(folder_, "rig2.yaml");
+    const CalibrationOutput first(folder_, false);
+    EXPECT_THAT(test::message_of([&] { CalibrationOutput(folder_, false); }),
+                testing::HasSubstr("in use by another run"));
+    const CalibrationOutput other(folder_, false, "rig2.yaml");
   }
-  EXPECT_EQ(files(), calibration("old"));
+  EXPECT_EQ(files(), calibration("old", false));
 }
 
 }  // namespace

@@ -95,23 +95,11 @@ def shared_folder():
     return pathlib.Path(scratch.name)
 
 
-def write_pictures_of_rig(*arguments):
-    """What tests/support/made_rig_main.cpp says."""
-    command = [os.path.join(os.path.dirname(PROGRAM), "stereotlm-made-rig"), *map(str, arguments)]
-    return subprocess.run(command, capture_output=True, text=True, check=True).stdout
-
-
 @functools.cache
 def made_rig():
-    """A calibration of a made-up rig, rig.yaml in shared_folder(), and the process that has made it. The
-    pictures are in rig_pictures beside it."""
+    """A calibration of a made-up rig, rig.yaml in shared_folder(), and the process that has made it."""
     rig = shared_folder() / "rig.yaml"
-    pictures = rig.with_name("rig_pictures")
-    pictures.mkdir()
-    write_pictures_of_rig("grid", pictures, 3, 7, 5, 30, 9)
-    sides = ["--left", pictures / "left_*.png", "--right", pictures / "right_*.png"]
-    grid = ["--grid", "7x5", "--square-mm", 30, "--disparity-offset", 0]
-    return rig, run("calibrate", *sides, *grid, "--out", rig)
+    return rig, run("calibrate", "--synthetic", 3, "--grid", "7x5", "--square-mm", 30, "--out", rig)
 
 
 class ProgramTest(unittest.TestCase):

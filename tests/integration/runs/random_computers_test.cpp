@@ -250,7 +250,7 @@ std::string problems_of(std::uint64_t seed, const test::RandomKnobs& knobs) {
   return text.empty() ? text : text + platform::to_yaml(board);
 }
 
-std::uint64_t computers(std::uint64_t otherwise = 120) { return test::random_computers(otherwise); }
+std::uint64_t computers(std::uint64_t otherwise = 200) { return test::random_computers(otherwise); }
 
 int processors() { return static_cast<int>(std::max(1U, std::thread::hardware_concurrency())); }
 
@@ -332,7 +332,7 @@ std::string conflicts_that_differ(std::uint64_t seed, const test::RandomKnobs& k
   return text.empty() ? text : text + platform::to_yaml(board);
 }
 
-TEST_P(RandomComputers, HaveTheConflictsOfThePlainLoop) { expect_none(computers(60), conflicts_that_differ); }
+TEST_P(RandomComputers, HaveTheConflictsOfThePlainLoop) { expect_none(computers(100), conflicts_that_differ); }
 
 INSTANTIATE_TEST_SUITE_P(Knobs, RandomComputers, testing::Bool(),
                          [](const auto& suite) { return suite.param ? "With" : "Without"; });

@@ -579,7 +579,7 @@ class RandomTraces : public testing::TestWithParam<std::tuple<bool, bool>> {};
 TEST_P(RandomTraces, EqualTheCountersAndTheTransactionsAtEachFidelity) {
   const auto [with_knobs, camera] = GetParam();
   std::vector<test::ChildWork> jobs;
-  const std::uint64_t count = camera ? test::random_computers(16) : test::random_boards(24);
+  const std::uint64_t count = camera ? test::random_computers(24) : test::random_boards(24);
   for (std::uint64_t seed = 0; seed < count; ++seed) {
     jobs.push_back(
         [seed, with_knobs = with_knobs, camera = camera] { return problems_of(seed, with_knobs, camera); });

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <string>
 
+#include "calib/synthetic_rig.h"
 #include "models/kernels/stereo.h"
 #include "tests/support/scratch_folder.h"
-#include "tests/support/synthetic_rig.h"
 
 namespace stereotlm::calib {
 namespace {
@@ -32,8 +32,8 @@ class CalibrateTest : public testing::Test {
     return request;
   }
 
-  static const test::SyntheticRig& rig() {
-    static const test::SyntheticRig rig(8, kWidth, kHeight);
+  static const SyntheticRig& rig() {
+    static const SyntheticRig rig(8, kWidth, kHeight);
     return rig;
   }
 };

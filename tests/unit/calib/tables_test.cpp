@@ -10,7 +10,7 @@
 #include <stdexcept>
 
 #include "calib/opencv_conversions.h"
-#include "tests/support/synthetic_rig.h"
+#include "calib/synthetic_rig.h"
 
 namespace stereotlm::calib {
 namespace {
@@ -59,7 +59,7 @@ void expect_like(const kernels::RectificationTable& table, const Map& map) {
 
 class TablesTest : public testing::Test {
  protected:
-  Rig rig_ = test::SyntheticRig(3, 320, 240).rig();
+  Rig rig_ = SyntheticRig(3, 320, 240).rig();
   Rectification rectification_ = rectify(rig_);
 };
 

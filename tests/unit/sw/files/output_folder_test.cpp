@@ -23,8 +23,9 @@ class OutputFolderTest : public testing::Test {
     content.mark = "doc.md";
     content.kind = marked_kind("document of this test", {{0, "ours"}});
     content.rule = "must be moved away";
-    content.names = {"doc.md", "a.csv"};
+    content.names = {"doc.md", "a.csv", "kept/", "kept/a.csv"};
     content.others_stay = true;
+    content.kept = "kept";
     content.inputs = inputs;
     return std::make_unique<OutputFolder>(out_, content);
   }
@@ -40,8 +41,9 @@ class OutputFolderTest : public testing::Test {
   fs::path out_ = scratch_.path() / "parent" / "out";
 };
 
-TEST_F(OutputFolderTest, ReplacesItsFilesAndLeavesOthers) {
+TEST_F(OutputFolderTest, ReplacesItsFilesAndLeavesOthersAndWhatIsKept) {
   test::write_file(out_ / "run", "script");
+  test::write_file(out_ / "kept/note", "mine");
   for (const std::string earlier : {"ours, old", "ours, older"}) {
     test::write_file(out_ / "doc.md", earlier);
     test::write_file(out_ / "a.csv", "old");
@@ -52,6 +54,7 @@ TEST_F(OutputFolderTest, ReplacesItsFilesAndLeavesOthers) {
     EXPECT_EQ(test::read_file(out_ / "doc.md"), "ours");
     EXPECT_EQ(test::read_file(out_ / "a.csv"), "1");
     EXPECT_EQ(test::read_file(out_ / "run"), "script");
+    EXPECT_EQ(test::read_file(out_ / "kept/note"), "mine");
     EXPECT_FALSE(fs::exists(out_ / ".partial"));
   }
 }
@@ -79,7 +82,8 @@ TEST_F(OutputFolderTest, RefusesAnInputThatItWouldReplace) {
                 HasSubstr("out': --left '" + input.string() +
                           "' lies in it and would be replaced: an input must lie elsewhere"));
   }
-  EXPECT_NO_THROW(open({{"--left", test::write_file(out_ / "other", "mine")}}));
+  for (const char* other : {"other", "kept/a.csv"})
+    EXPECT_NO_THROW(open({{"--left", test::write_file(out_ / other, "mine")}})) << other;
 }
 
 // A file that has appeared since the object was made is not replaced, and no file has changed.

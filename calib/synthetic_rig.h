@@ -9,7 +9,7 @@
 #include "calib/rig.h"
 #include "models/kernels/gray_image.h"
 
-namespace stereotlm::test {
+namespace stereotlm::calib {
 
 namespace made_rig {
 struct View;  // the scene, and the cameras
@@ -28,7 +28,7 @@ class SyntheticRig {
   // `width` and `height`: of the pictures, at least one pixel.
   SyntheticRig(std::uint64_t seed, int width, int height);
 
-  const calib::Rig& rig() const { return rig_; }
+  const Rig& rig() const { return rig_; }
 
   struct Pair {
     kernels::GrayImage left;
@@ -41,9 +41,9 @@ class SyntheticRig {
   // the rig.
   // `shape` has no problems(). Throws std::domain_error if the pictures have no room for the board, such as
   // pictures of a few rows.
-  Pair grid_view(const calib::GridShape& shape, int number) const;
+  Pair grid_view(const GridShape& shape, int number) const;
   // The exact positions of the inner corners in the pictures of grid_view(). Throws as grid_view() does.
-  calib::GridPair grid_corners(const calib::GridShape& shape, int number) const;
+  GridPair grid_corners(const GridShape& shape, int number) const;
 
   // The pictures of the scene.
   Pair scene() const;
@@ -62,13 +62,13 @@ class SyntheticRig {
   // Matches are found with rig(), in the pictures of the cameras. `calibrated` and `rectification` only map
   // positions between these and the rectified pictures. So `calibrated` may be a rig that was fitted to
   // pictures of the size of rig(). Throws as rectified_pixel() does.
-  std::vector<float> disparity(const calib::Rig& calibrated, const calib::Rectification& rectification,
+  std::vector<float> disparity(const Rig& calibrated, const Rectification& rectification,
                                int disparity_offset) const;
 
  private:
   std::uint64_t seed_;
-  calib::Rig rig_;
+  Rig rig_;
   std::shared_ptr<const made_rig::View> view_;
 };
 
-}  // namespace stereotlm::test
+}  // namespace stereotlm::calib

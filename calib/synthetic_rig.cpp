@@ -1,4 +1,4 @@
-#include "tests/support/synthetic_rig.h"
+#include "calib/synthetic_rig.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -12,9 +12,8 @@
 
 #include "calib/split_mix.h"
 
-namespace stereotlm::test {
+namespace stereotlm::calib {
 
-using namespace calib;  // the rig is made of its types
 using Eigen::AngleAxisd;
 using Eigen::Matrix3d;
 using Eigen::Vector2d;
@@ -517,4 +516,4 @@ std::vector<float> SyntheticRig::disparity(const Rig& calibrated, const Rectific
   return result;
 }
 
-}  // namespace stereotlm::test
+}  // namespace stereotlm::calib
