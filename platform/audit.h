@@ -9,11 +9,23 @@
 
 namespace stereotlm::platform {
 
+// An identity, with both sides.
+struct Identity {
+  std::string what;
+  std::uint64_t left = 0;
+  std::string as;
+  std::uint64_t right = 0;
+};
+
 // Checks identities between counters (contract section 6), and collects a message for each that does not
 // hold. `what` and `as` name the two values in the message.
 class Audit {
  public:
+  // `compared`, unless null, gets each identity.
+  explicit Audit(std::vector<Identity>* compared = nullptr) : compared_(compared) {}
+
   void equal(const std::string& what, std::uint64_t left, const std::string& as, std::uint64_t right) {
+    if (compared_ != nullptr) compared_->push_back({what, left, as, right});
     if (left == right) return;
     fail(fmt::format("{} = {}, but {} = {}", what, left, as, right));
   }
@@ -26,6 +38,7 @@ class Audit {
   const std::vector<std::string>& failed() const { return failed_; }
 
  private:
+  std::vector<Identity>* compared_;
   std::vector<std::string> failed_;
 };
 

@@ -4,6 +4,8 @@
 
 namespace stereotlm::platform {
 
+constexpr std::size_t kInterrupts = 3;  // of the bridge and of both capture boards
+
 Computer::Computer(const sc_core::sc_module_name& name, const BoardConfig& config,
                    std::uint64_t host_memory_bytes, host::Program& program, capture::CameraSource& left,
                    capture::CameraSource& right, Binder& binder)
@@ -13,7 +15,7 @@ Computer::Computer(const sc_core::sc_module_name& name, const BoardConfig& confi
       bridge("bridge", bridge_config(config)),
       host_memory("host_memory", host_memory_bytes),
       host_bridge("host_bridge"),
-      cpu("cpu", {3, DeviceMap().host_memory}, program),
+      cpu("cpu", {kInterrupts, DeviceMap().host_memory}, program),
       left_camera("left_camera", camera_config(config), left),
       right_camera("right_camera", camera_config(config), right),
       left_capture("left_capture", capture_config(config)),

@@ -37,7 +37,7 @@ constexpr const char* kPlotFooter =
     "  pareto       two columns of the database, and the points that no other point dominates;\n"
     "               beside the columns there are banks_used and units_used\n"
     "Points that differ in keys besides the x axis are on separate lines; more than can be distinguished\n"
-    "are drawn as points. Of more than 16 points, states, stalls and use show some; the figure says\n"
+    "are drawn as envelopes. Of more than 16 points, states, stalls and use show some; the figure says\n"
     "which. DIR must be empty or hold only such files, which are replaced.\n"
     "The scripts that draw, one for each figure, lie in share/stereotlm/plots where the program is\n"
     "installed, in sw/report/plots of its source: python3 plot_window.py DB --out NEW_DIR.";

@@ -84,16 +84,18 @@ std::optional<Json> data_of_two_runs(const ReportOptions& options, process::Prob
   const runs::RunInput input_b = runs::open_again(*b, problems);
   problems.check();
   const runs::DiffLimits limits(*a, *b);
-  runs::FrameAlignment aligned(*a, *b, limits, nullptr);
+  report::ComparedRun of_a{*a, input_a.tables, {a->board, false}};
+  report::ComparedRun of_b{*b, input_b.tables, {b->board, false}};
+  const auto record = [](report::ComparedRun& run) -> runs::Rerun::Record {
+    return [&run](const std::string& name, const std::string& text) { run.waits.add(name, text); };
+  };
+  runs::FrameAlignment aligned(*a, *b, limits, nullptr, record(of_a), record(of_b));
   if (!aligned.run()) return std::nullopt;
   for (const runs::RecordedRun& run : {std::cref(*a), std::cref(*b)})
     runs::say_lost_pixels(run.statistics, fmt::format("'{}': ", run.folder));
-  Json of_a = report::run_data(*a, input_a.tables);
-  Json of_b = report::run_data(*b, input_b.tables);
-  Json difference = report::difference_data(*a, *b, aligned, limits, of_a, of_b);
-  return Json{{"kind", "two_runs"},
-              {"runs", {std::move(of_a), std::move(of_b)}},
-              {"difference", std::move(difference)}};
+  Json data = {{"kind", "two_runs"}};
+  data.update(report::two_runs_data(of_a, of_b, aligned, limits));
+  return data;
 }
 
 std::optional<Json> data_of(const ReportOptions& options, process::Problems& problems) {

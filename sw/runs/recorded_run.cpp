@@ -262,8 +262,12 @@ DiffLimits::DiffLimits(const RecordedRun& a, const RecordedRun& b) {
 }
 
 FrameAlignment::FrameAlignment(const RecordedRun& a, const RecordedRun& b, const DiffLimits& limits,
-                               stats::RowsCsv* csv)
-    : limits_(limits), csv_(csv), frames_(std::max(a.options.frames, b.options.frames)), a_(a), b_(b) {}
+                               stats::RowsCsv* csv, Rerun::Record record_a, Rerun::Record record_b)
+    : limits_(limits),
+      csv_(csv),
+      frames_(std::max(a.options.frames, b.options.frames)),
+      a_(a, std::move(record_a)),
+      b_(b, std::move(record_b)) {}
 
 bool FrameAlignment::run() {
   bool goes_on = read(a_) && read(b_);

@@ -98,7 +98,9 @@ struct DiffLimits {
 class FrameAlignment {
  public:
   // Starts both runs. All arguments outlive the object. `csv`: gets the compared rows; may be null.
-  FrameAlignment(const RecordedRun& a, const RecordedRun& b, const DiffLimits& limits, stats::RowsCsv* csv);
+  // `record_a` and `record_b`: what Rerun hands to a record; may be null.
+  FrameAlignment(const RecordedRun& a, const RecordedRun& b, const DiffLimits& limits, stats::RowsCsv* csv,
+                 Rerun::Record record_a = nullptr, Rerun::Record record_b = nullptr);
 
   // Returns true when both runs have ended, and false at the first interrupt. Throws what Rerun::next()
   // throws.
@@ -118,7 +120,7 @@ class FrameAlignment {
  private:
   // One of the two runs, and the frames of it that are still to be compared.
   struct AlignedRun {
-    explicit AlignedRun(const RecordedRun& run) : rerun(run) {}
+    AlignedRun(const RecordedRun& run, Rerun::Record record) : rerun(run, std::move(record)) {}
 
     Rerun rerun;
     std::optional<Rerun::Frame> ahead;  // next frame of the run; nullopt after the last

@@ -1,8 +1,11 @@
 #include "sw/stats/accuracy.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <stdexcept>
 #include <vector>
 
 #include "models/kernels/words.h"
@@ -46,6 +49,11 @@ std::optional<double> percent(std::uint64_t part, std::uint64_t whole) {
 }  // namespace
 
 Accuracy accuracy(const kernels::GrayImage& disparity, const media::Truth& truth) {
+  if (disparity.width != truth.grey.width || disparity.height != truth.grey.height) {
+    throw std::invalid_argument(fmt::format("truth = {}x{}: must be as large as the disparity image, {}x{}",
+                                            truth.grey.width, truth.grey.height, disparity.width,
+                                            disparity.height));
+  }
   std::uint64_t visible = 0;
   std::uint64_t answered = 0;
   std::uint64_t bad_1 = 0;

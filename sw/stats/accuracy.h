@@ -21,8 +21,8 @@ struct Accuracy {
 // another picture, or has another scale.
 inline constexpr double kDoubtfulBad1Percent = 50;
 
-// `disparity`: referenced to the left picture, of the size of the truth; kernels::kInvalidDisparity marks
-// pixels without a valid disparity.
+// `disparity`: referenced to the left picture; kernels::kInvalidDisparity marks pixels without a valid
+// disparity. Throws std::invalid_argument if the sizes differ.
 Accuracy accuracy(const kernels::GrayImage& disparity, const media::Truth& truth);
 
 }  // namespace stereotlm::stats

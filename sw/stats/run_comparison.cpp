@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <stdexcept>
 #include <string>
 
 #include "models/fpga/core_ports.h"
@@ -26,22 +27,12 @@ std::string csv_head() {
   return text + '\n';
 }
 
-// The cycles and stalls of each row alone: from the completion of the row above, or from the start of the
-// frame, to its own completion.
-fpga::RowProfile rows_alone(const fpga::RowProfile& profile) {
-  fpga::RowProfile rows = profile;
-  for (std::size_t row = rows.size(); row-- > 1;) {
-    rows[row].cycles -= profile[row - 1].cycles;
-    for (std::size_t port = 0; port < fpga::kCorePortCount; ++port)
-      rows[row].stalls[port] -= profile[row - 1].stalls[port];
-  }
-  return rows;
-}
-
 }  // namespace
 
 void PixelComparison::add(std::uint64_t camera_frame, const kernels::GrayImage& a,
                           const kernels::GrayImage& b) {
+  if (a.width != b.width || a.height != b.height)
+    throw std::invalid_argument("disparities of different sizes have no pixels in common");
   const std::uint64_t before = pixels_;
   for (int row = 0; row < a.height; ++row) {
     for (int column = 0; column < a.width; ++column) {
@@ -56,8 +47,20 @@ void PixelComparison::add(std::uint64_t camera_frame, const kernels::GrayImage& 
   if (pixels_ != before) ++frames_that_differ_;
 }
 
+fpga::RowProfile rows_alone(const fpga::RowProfile& profile) {
+  fpga::RowProfile rows = profile;
+  for (std::size_t row = rows.size(); row-- > 1;) {
+    rows[row].cycles -= profile[row - 1].cycles;
+    for (std::size_t port = 0; port < fpga::kCorePortCount; ++port)
+      rows[row].stalls[port] -= profile[row - 1].stalls[port];
+  }
+  return rows;
+}
+
 void RowComparison::add(const fpga::RowProfile& a, const fpga::RowProfile& b) {
   if (frames_ == 0) rows_.resize(a.size());
+  if (a.size() != rows_.size() || b.size() != rows_.size())
+    throw std::invalid_argument("frames of different heights have no rows in common");
   const fpga::RowProfile alone_a = rows_alone(a);
   const fpga::RowProfile alone_b = rows_alone(b);
   for (std::size_t row = 0; row < rows_.size(); ++row) {

@@ -17,7 +17,7 @@ namespace stereotlm::stats {
 // Compares the disparities of two runs, A and B, pixel by pixel.
 class PixelComparison {
  public:
-  // Adds the disparities of one camera frame, of equal sizes.
+  // Adds the disparities of one camera frame. Throws std::invalid_argument if the sizes differ.
   void add(std::uint64_t camera_frame, const kernels::GrayImage& a, const kernels::GrayImage& b);
 
   std::uint64_t frames() const { return frames_; }  // frames compared
@@ -41,11 +41,16 @@ class PixelComparison {
   std::optional<First> first_;
 };
 
+// The cycles and stalls of each row alone: from the completion of the row above, or from the start of the
+// frame, to its own completion.
+fpga::RowProfile rows_alone(const fpga::RowProfile& profile);
+
 // Compares the rows of results of two runs, A and B: how many more cycles and stalls each row alone takes in
 // B.
 class RowComparison {
  public:
-  // Adds the next frame of both runs. All frames have the same number of rows.
+  // Adds the next frame of both runs. Throws std::invalid_argument if the numbers of rows differ, or differ
+  // from earlier frames.
   void add(const fpga::RowProfile& a, const fpga::RowProfile& b);
 
   std::uint64_t frames() const { return frames_; }

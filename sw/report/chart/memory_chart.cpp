@@ -37,9 +37,9 @@ constexpr std::array kColors = {
     Color{"frame", "#afb8c1", "#4a535e"},    Color{"memory", "#f1ebfb", "#2c2440"},
     Color{"logic", "#ddf4ff", "#12324f"},    Color{"bus", "#e6eaef", "#2b323b"},
     Color{"computer", "#dafbe1", "#173d24"}, Color{"free", "#ffffff", "#0d1117"},
-    Color{"load0", "#b3bcc5", "#59636e"},    Color{"load1", "#86b6dd", "#3d74a8"},
-    Color{"load2", "#2f7fc1", "#5aa5e6"},    Color{"load3", "#e08a1e", "#e8a33d"},
-    Color{"load4", "#c4302b", "#ff6b5e"},
+    Color{"used", "#8b96a1", "#7d8792"},     Color{"load0", "#b3bcc5", "#59636e"},
+    Color{"load1", "#86b6dd", "#3d74a8"},    Color{"load2", "#2f7fc1", "#5aa5e6"},
+    Color{"load3", "#e08a1e", "#e8a33d"},    Color{"load4", "#c4302b", "#ff6b5e"},
 };
 constexpr std::array<double, 4> kLoadSteps = {1, 25, 50, 90};  // % of the peak, where load1 to load4 begin
 
@@ -311,6 +311,7 @@ Lines subtitle_of(const ChartView& view) {
 Lines legend_of(const ChartView& view) {
   if (view.run == nullptr) return {"Numbers at the links: peak MB/s (million bytes/s)"};
   Lines lines = {"Links: MB/s (million bytes/s), width by MB/s",
+                 "Bars of a bank: % of cycles busy; words of buffers",
                  "Colour: % of the peak of a link, % busy of a bank", "No number: nothing was moved",
                  "Thick outline: sets the bound of the frame rate"};
   if (!view.in_computer) {
@@ -443,7 +444,7 @@ class Chart {
         }
       }
       leave(bank, "host", kPadding + kNameStep / 2);
-      double y = kPadding + kNameStep + (run_ == nullptr ? 1 : 2) * kNoteStep + 4;
+      double y = kPadding + kNameStep + (run_ == nullptr ? 1 : 2) * kNoteStep + 10;
       for (std::size_t i = 0; i < bank.buffers.size(); ++i, y += kNoteStep) {
         if (i == 0 || bank.buffers[i].port != bank.buffers[i - 1].port)
           y = leave(bank, bank.buffers[i].port, y + kNoteStep / 2) - kNoteStep / 2;
@@ -572,27 +573,36 @@ class Chart {
                fmt::format("{}: {}\n{}, {}{}{}", bank.name, rate, size, kind,
                            busy.empty() ? "" : "\n" + busy + " of the cycles", held),
                bank.box, busy.empty() ? "memory" : "free");
-    if (!busy.empty()) {
-      const std::string load = paint("fill", load_colour(busy_percent, 100));
-      blocks_ += rect_element(bank.box, 4, load + " fill-opacity=\"0.2\"");
-    }
+    const std::string load = load_colour(busy_percent, 100);
+    if (!busy.empty()) blocks_ += rect_element(bank.box, 4, paint("fill", load) + " fill-opacity=\"0.2\"");
     const double rate_width = text_width(rate, kNote.size, kNote.bold);
     blocks_ += text_element(bank.name, kName, left, y, width - rate_width - 8) +
                text_element(rate, kNote, right, y + 1.5, width, "end");
     y += kNameStep;
     if (!busy.empty()) {
-      blocks_ += text_element(busy, kNote, left, y, width);
+      const Box bar = {left + 90, y + 2.5, width - 90, 8};
+      blocks_ += text_element(busy, kNote, left, y, 90) + rect_element(bar, 2, paint("fill", "free")) +
+                 rect_element({bar.x, bar.y, bar.width * busy_percent / 100, 8}, 2, paint("fill", load)) +
+                 frame_element(bar, 2, "line", 0.75);
       y += kNoteStep;
     }
     const double size_width = text_width(size, kNote.size, kNote.bold);
     blocks_ += text_element(size, kNote, left, y, width) +
                text_element(kind, kNote, right, y, width - size_width - 8, "end");
+    y += kNoteStep + 2;
+    const Box bar = {left, y, width, 6};
+    blocks_ += rect_element(bar, 2, paint("fill", "free"));
+    double x = left;
     for (const Held& buffer : bank.buffers) {
-      blocks_ += text_element(buffer.label, kPlain, left, bank.box.y + buffer.y, width - 70) +
+      const double share = static_cast<double>(buffer.words) / static_cast<double>(all_words);
+      const Box part{x, y, width * share, 6};
+      blocks_ += rect_element(part, 0, paint("fill", "used")) + frame_element(part, 0, "memory", 1) +
+                 text_element(buffer.label, kPlain, left, bank.box.y + buffer.y, width - 70) +
                  text_element(grouped(buffer.words), kNote, right, bank.box.y + buffer.y, 66, "end");
+      x += part.width;
     }
-    if (bank.buffers.empty()) blocks_ += text_element("no buffer", kNote, left, y + kNoteStep + 4, width);
-    blocks_ += "</g>\n";
+    if (bank.buffers.empty()) blocks_ += text_element("no buffer", kNote, left, y + 8, width);
+    blocks_ += frame_element(bar, 2, "line", 0.75) + "</g>\n";
   }
 
   // A block with its lines in its middle.

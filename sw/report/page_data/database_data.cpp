@@ -23,7 +23,7 @@ using Json = nlohmann::ordered_json;
 // Of the counters of each bank and each port the page has one: the others would make it too large.
 bool is_shown(const std::string& column) {
   static const std::regex hidden(
-      "hash|config|frame_cycles|banks\\.(?!.*\\.utilization$).*|ports\\.(?!.*\\.stall_cycles$).*");
+      "hash|config|frame_cycles|banks\\.(?!.*\\.busy_cycles$).*|ports\\.(?!.*\\.stall_cycles$).*");
   return !std::regex_match(column, hidden);
 }
 
@@ -79,29 +79,39 @@ struct BoardTexts {
 Json database_data(const std::string& path) {
   sqlite::Database database(path, sqlite::Database::Access::kRead);
   const std::vector<std::string> names = explore::store_columns(database);
-  std::map<std::size_t, Column> columns;  // those that are shown, by their places in `names`
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    if (is_shown(names[i])) columns[i] = {};
-  }
-  const auto config = std::find(names.begin(), names.end(), "config") - names.begin();
+  std::vector<Column> columns(names.size());
+  std::vector<bool> shown_columns;
+  for (const std::string& name : names) shown_columns.push_back(is_shown(name));
   BoardTexts boards;
   sqlite::Statement points(database, "SELECT * FROM points ORDER BY hash");
   std::size_t size = 0;
   for (; !process::interrupted() && points.step(); ++size) {
-    for (auto& [i, column] : columns) column.add(size, value_of(points, static_cast<int>(i)));
-    boards.add(points.text(static_cast<int>(config)));
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      const int column = static_cast<int>(i);
+      if (shown_columns[i]) columns[i].add(size, value_of(points, column));
+      if (names[i] == "config") boards.add(points.text(column));
+    }
   }
   if (size == 0) throw std::runtime_error(fmt::format("'{}': has no points", path));
   Json shown = Json::array();
-  for (auto& [i, column] : columns) {
-    const bool is_constant = column.list.empty();
+  Json left_out = Json::array();
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (!shown_columns[i]) {
+      left_out.push_back(names[i]);
+      continue;
+    }
     shown.push_back({{"name", names[i]}});
-    shown.back()[is_constant ? "constant" : "list"] = std::move(is_constant ? column.constant : column.list);
+    if (columns[i].list.empty()) {
+      shown.back()["constant"] = std::move(columns[i].constant);
+    } else {
+      shown.back()["list"] = std::move(columns[i].list);
+    }
   }
   return {{"path", path},
           {"points", size},
           {"keys", database.texts("SELECT name FROM keys ORDER BY name")},
           {"columns", std::move(shown)},
+          {"left_out", std::move(left_out)},
           {"boards", {{"lines", std::move(boards.lines)}, {"points", std::move(boards.texts)}}}};
 }
 

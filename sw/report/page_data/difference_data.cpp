@@ -96,6 +96,15 @@ Json json_of(const stats::PixelComparison& pixels) {
           {"pixels_that_differ", pixels.pixels()}};
 }
 
+Json run_data_of(const ComparedRun& compared) {
+  Json data = run_data(compared.run, compared.tables);
+  Json waits = compared.waits.json();
+  waits.erase("tiles");
+  for (Json& stalls : waits["stalls"]) stalls.erase("tiles");
+  data["recording"] = std::move(waits);
+  return data;
+}
+
 }  // namespace
 
 Json diff_document(const runs::RecordedRun& a, const runs::RecordedRun& b,
@@ -117,22 +126,23 @@ Json diff_document(const runs::RecordedRun& a, const runs::RecordedRun& b,
                                    limits.pixels.empty() ? &aligned.pixels() : nullptr)}};
 }
 
-Json difference_data(const runs::RecordedRun& a, const runs::RecordedRun& b,
-                     const runs::FrameAlignment& aligned, const runs::DiffLimits& limits, Json& of_a,
-                     Json& of_b) {
-  Json difference = diff_document(a, b, aligned, limits);
+Json two_runs_data(const ComparedRun& a, const ComparedRun& b, const runs::FrameAlignment& aligned,
+                   const runs::DiffLimits& limits) {
+  Json data = {{"runs", {run_data_of(a), run_data_of(b)}},
+               {"difference", diff_document(a.run, b.run, aligned, limits)}};
+  Json& difference = data["difference"];
   if (limits.rows.empty())
-    difference["rows"] = rows_data(aligned.rows(), static_cast<std::size_t>(a.board.image.height));
+    difference["rows"] = rows_data(aligned.rows(), static_cast<std::size_t>(a.run.board.image.height));
   if (const auto& first = aligned.pixels().first()) {
     difference["disparities"]["first"] = {
         {"camera_frame", first->camera_frame}, {"column", first->column}, {"row", first->row}};
   }
   if (const auto& common = aligned.last_common()) {
-    of_a["pictures"]["disparity"] = picture_url(common->a);
-    of_b["pictures"]["disparity"] = picture_url(common->b);
+    data["runs"][0]["pictures"]["disparity"] = picture_url(common->a);
+    data["runs"][1]["pictures"]["disparity"] = picture_url(common->b);
     difference["camera_frame"] = common->number;
   }
-  return difference;
+  return data;
 }
 
 }  // namespace stereotlm::report

@@ -5,6 +5,7 @@
 
 #include "models/kernels/gray_image.h"
 #include "platform/config/tables.h"
+#include "sw/report/page_data/recording_data.h"
 #include "sw/runs/explanation.h"
 #include "sw/runs/recorded_run.h"
 
@@ -29,15 +30,20 @@ void add_recorded_files(const runs::RecordedRun& run, nlohmann::ordered_json& da
 // The part `knobs`: what one step of each knob gains, and what it takes of the FPGA.
 nlohmann::ordered_json knobs_data(const platform::BoardConfig& board, runs::Explanation& explanation);
 
+// One of two compared runs, and what its repetition has recorded of waits.
+struct ComparedRun {
+  const runs::RecordedRun& run;
+  const platform::Tables& tables;
+  RecordingData waits;
+};
+
 // What `diff --json` prints of two runs. Its schema is sw/cli/schemas/diff.schema.json.
 nlohmann::ordered_json diff_document(const runs::RecordedRun& a, const runs::RecordedRun& b,
                                      const runs::FrameAlignment& aligned, const runs::DiffLimits& limits);
 
-// The part `difference`: diff_document() with all rows. Where both runs computed the same camera frame, also
-// sets the pictures of `of_a` and `of_b`, the run_data() of both, to those of the last one.
-nlohmann::ordered_json difference_data(const runs::RecordedRun& a, const runs::RecordedRun& b,
-                                       const runs::FrameAlignment& aligned, const runs::DiffLimits& limits,
-                                       nlohmann::ordered_json& of_a, nlohmann::ordered_json& of_b);
+// The parts `runs` and `difference`: diff_document() with all rows.
+nlohmann::ordered_json two_runs_data(const ComparedRun& a, const ComparedRun& b,
+                                     const runs::FrameAlignment& aligned, const runs::DiffLimits& limits);
 
 // The part `database`: the points of a database of `sweep`. Throws sqlite::DatabaseError if the file cannot
 // be read or is no such database, and std::runtime_error if it has no points.

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -13,17 +14,19 @@
 
 #include "models/kernels/rectification_table.h"
 #include "models/memory/bank_traits.h"
+#include "platform/audit.h"
 #include "platform/bounds.h"
 #include "platform/config/board_area.h"
+#include "platform/config/board_keys.h"
 #include "platform/config/board_yaml.h"
 #include "platform/config/buffer_layout.h"
+#include "platform/figures.h"
 #include "sw/files/text_forms.h"
 #include "sw/files/whole_file.h"
 #include "sw/media/encode.h"
 #include "sw/process/streams.h"
 #include "sw/report/chart/memory_chart.h"
 #include "sw/report/page_data/page_data.h"
-#include "sw/report/page_data/recording_data.h"
 #include "sw/runs/explanation.h"
 #include "sw/runs/progress.h"
 #include "sw/stats/stats_json.h"
@@ -59,9 +62,16 @@ std::string command_of(const runs::RecordedRun& run) {
 }
 
 Json settings_of(const BoardConfig& board) {
-  Json all = Json::object();
-  for (const platform::BoardValue& value : platform::values_of(board))
-    std::visit([&](const auto& its) { all[value.path] = its; }, value.value);
+  Json all = Json::array();
+  for (const platform::BoardValue& value : platform::values_of(board)) {
+    Json setting = {{"key", value.path}};
+    std::visit([&setting](const auto& its) { setting["value"] = its; }, value.value);
+    if (const platform::Key* const key = platform::find_key(platform::schema_path(value.path))) {
+      setting["meaning"] = key->meaning;
+      if (!key->unit.empty()) setting["unit"] = key->unit;
+    }
+    all.push_back(std::move(setting));
+  }
   return all;
 }
 
@@ -107,6 +117,19 @@ Json area_data(const BoardConfig& board) {
                     {"block_rams", device.block_rams},
                     {"multipliers", device.multipliers}};
   return data;
+}
+
+// The identities among the figures of the run, which was checked when it was loaded.
+Json identities_of(const runs::RecordedRun& run) {
+  std::vector<platform::Identity> identities;
+  platform::Audit audit(&identities);
+  platform::audit_core(run.statistics, audit);
+  platform::audit_accesses(run.board, run.statistics, audit);
+  if (run.statistics.computer) platform::audit_computer(*run.statistics.computer, audit);
+  Json all = Json::array();
+  for (const platform::Identity& each : identities)
+    all.push_back({each.what, each.left, each.as, each.right});
+  return all;
 }
 
 std::string png_url(const std::string& bytes) {
@@ -169,6 +192,7 @@ Json run_data(const runs::RecordedRun& run, const platform::Tables& tables) {
       {"banks", banks_of(board)},
       {"bounds", bounds_of(board, tables, run.options.source == "camera")},
       {"area", area_data(board)},
+      {"identities", identities_of(run)},
       {"memory_chart", memory_chart_svg({board, run.statistics.computer.has_value(), &run.statistics})}};
   if (!run.options.timing_only) {
     data["pictures"] = {{"disparity", png_url(read("disparity.png"))},

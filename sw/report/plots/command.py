@@ -12,9 +12,8 @@ import os
 import re
 import signal
 import sys
-import warnings
 
-from points import Points, Unusable
+from points import MOST_NAMED, Points, Unusable
 
 # plot_all.py is run by `stereotlm plot`, so its messages begin with the name of that program.
 NAME = "stereotlm" if os.path.basename(sys.argv[0]) == "plot_all.py" else os.path.basename(sys.argv[0])
@@ -139,9 +138,11 @@ def prepare(options, check):
 
 
 def draw_all(points, options, figures):
-    """Returns the files of all figures that apply, and a line about each figure."""
+    """Returns the files of all figures that apply, a line about each figure, and the texts that the font
+    lacks."""
     files = {}
     said = []
+    boxed = set()
     for name, draw in figures.items():
         try:
             drawing = draw(points, options)
@@ -150,9 +151,10 @@ def draw_all(points, options, figures):
             continue
         files.update({name + ending: data for ending, data in drawing.files.items()})
         said.append(f"{name:<12} {drawing.said}")
+        boxed |= drawing.boxed
     if not files:
         raise Unusable(*(" ".join(line.split()) for line in said))
-    return files, said
+    return files, said, boxed
 
 
 def write(folder, files):
@@ -165,15 +167,18 @@ def write(folder, files):
 
 def run(description, figures, arguments, check):
     options = parse(arguments, description, check is not None)
-    # Of matplotlib, such as that a character is missing from the font: PNG and PDF show a box for it.
-    warnings.showwarning = lambda message, *_: tell("note", message)
     points = prepare(options, check or (lambda points, options: []))
-    files, said = draw_all(points, options, figures)
+    files, said, boxed = draw_all(points, options, figures)
     on_interrupt(signal.SIG_IGN)
     try:
         write(options.into or options.out, files)
     except OSError as error:
         raise OSError(f"--out {options.out}: cannot be written to: {error.strerror}") from None
+    if boxed:
+        texts = ", ".join(f"'{each}'" if each.isprintable() else ascii(each)
+                          for each in sorted(boxed)[:MOST_NAMED])
+        tell("note",
+             f"the font of the figures lacks {texts}: boxes in PNG and PDF; SVG and CSV have the text")
     kinds = ", ".join(options.format or style.USUAL_FORMATS)
     say([*about_points(points), *said,
          f"{options.out}: {len(files)} files: {kinds} and csv of each figure that is drawn"])

@@ -3,11 +3,13 @@
 import csv
 import io
 import math
+import re
 
 import numpy
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.text import Text
 from matplotlib.ticker import (FixedFormatter, FixedLocator, LogLocator, MaxNLocator, NullLocator,
                                ScalarFormatter)
 
@@ -25,7 +27,6 @@ LEAST_HEIGHT, LEAST_WIDTH = 0.8, 0.5  # inches, of a panel
 GAP = 0.12  # inches, between two panels
 HEAD = 0.22  # inches: the title of a panel
 MOST_TICKS = 14
-MANY = 1500  # points; more of them are pixels in SVG and PDF
 # Marks of points that do not fit the FPGA, or whose pictures are not complete.
 MARK = {"color": "#000000", "linestyle": "", "zorder": 3.5}
 TOO_LARGE = {**MARK, "marker": "x", "markersize": 4.5, "label": "more area than the FPGA has"}
@@ -80,6 +81,7 @@ class Drawing:
         """header, rows: the table; said: text about the figure, such as the number of its points."""
         self.files = {**sheet.files, ".csv": table(header, rows)}
         self.said = said
+        self.boxed = sheet.boxed()  # see there
 
 
 def table(header, rows):
@@ -167,6 +169,7 @@ class Sheet:
         bar.outline.set_visible(False)
         axes.tick_params(labelsize=8)
         axes.set_xlabel(text)
+        return axes
 
     def _begin(self, inside, more_above, bottom, least):
         """Draws title, legend, list and notes, and sets the size of the figure.
@@ -201,6 +204,12 @@ class Sheet:
     def files(self):
         """{ending: bytes}."""
         return {f".{kind}": style.encoded(self.figure, kind) for kind in self._formats}
+
+    def boxed(self):
+        """The parts of its texts for which the font has no characters. PNG and PDF show boxes for them."""
+        texts = {text.get_text() for text in self.figure.findobj(Text)}
+        unknown = re.escape("".join(set().union(*map(style.unknown_characters, texts))))
+        return {part for text in texts for part in re.findall(f"[{unknown}]+", text)} if unknown else set()
 
 
 def rounded_up(inches):

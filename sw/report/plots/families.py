@@ -1,6 +1,7 @@
 """Groups points to lines, and chooses color, marker and dashes of each line, by which it is distinguished."""
 
 import dataclasses
+import math
 
 from points import natural, text_of
 from style import COLORS, DASHES, GRAY, MARKERS, shades
@@ -9,6 +10,9 @@ MOST_LINES = 28
 MOST_SINGLE = 6  # up to so many lines have a color each; of more, the color stands for one key
 MOST_MARKERS = 4
 NOTHING_TO_SEE = 0.01  # share of the value: a smaller change is not visible in a figure
+MOST_DOTS = 300  # of more points that cannot be distinguished, envelopes are drawn
+MOST_ENVELOPES = 4
+MOST_TEXT = 48
 
 
 @dataclasses.dataclass
@@ -34,7 +38,8 @@ class Families:
     all: the families.
     told: the keys whose values the looks of the lines distinguish.
     legend: groups of (text, Look).
-    as_points: more combinations of `told` than lines that can be distinguished: all points are one family.
+    as_points: more combinations of `told` than lines that can be distinguished: all families look the same.
+    envelopes: of many such points, groups (places, Look) that are drawn as envelopes; else empty.
     note: text about what is not distinguished.
     """
 
@@ -50,13 +55,15 @@ class Families:
         combinations = sorted({self._told(family) for family in self.all}, key=order)
         looks, self.legend = self._looks(combinations)
         self.as_points = looks is None
+        self.envelopes = []
         if self.as_points:
-            self.note = (f"Points without lines: {len(combinations)} combinations of {', '.join(self.told)} "
-                         "are more than can be told apart; --only KEY=VALUE draws fewer.")
-            self.all = [Family((), places, Look())]
-            return
+            if len(places) > MOST_DOTS:
+                self._find_envelopes(points, points.column(x), columns[0])
+            drawn = "Envelopes" if self.envelopes else "Points without lines"
+            self.note = (f"{drawn}: {len(combinations)} combinations of {', '.join(self.told)} are more "
+                         "than can be told apart; --only KEY=VALUE draws fewer.")
         for family in self.all:
-            family.look = looks[self._told(family)]
+            family.look = looks[self._told(family)] if looks else Look()
 
     def _told(self, family):
         return tuple(value for key, value in zip(self.keys, family.values) if key in self.told)
@@ -109,6 +116,30 @@ class Families:
                     greatest = max(greatest, (max(values) - min(values)) / max(map(abs, values)))
         return greatest
 
+    def _find_envelopes(self, points, xs, column):
+        """Groups all points by the key of `told` within whose values the column ranges least at each x."""
+        values = points.column(column)
+        best, self.envelopes = math.inf, []
+        for key in self.told:
+            groups = self._places_by(key)
+            colors = colors_of(list(groups)) if len(groups) <= MOST_ENVELOPES else None
+            left = sum(left_range(places, xs, values) for places in groups.values())
+            if colors and left < best:
+                best = left
+                looks = [Look(color, MARKERS[number]) for number, color in enumerate(colors)]
+                self.envelopes = list(zip(groups.values(), looks))
+                self.legend = [list(zip(named([key], list(groups)), looks))]
+        if not self.envelopes:
+            self.envelopes = [([place for family in self.all for place in family.places], Look())]
+
+    def _places_by(self, key):
+        """{(value,): places}, in the order of the values."""
+        at = self.keys.index(key)
+        groups = {(value,): [] for value in self._values(key)}
+        for family in self.all:
+            groups[family.values[at],] += family.places
+        return groups
+
     def _looks(self, combinations):
         """({combination: Look}, legend); (None, []) if there are too many combinations of values of
         `told`."""
@@ -156,9 +187,27 @@ def order(values):
     return [natural(value) for value in values]
 
 
+def left_range(places, xs, values):
+    """The range of the values at each x, relative to the greatest, in sum."""
+    by_x = {}
+    for place in places:
+        if values[place] is not None:
+            by_x.setdefault(xs[place], []).append(values[place])
+    return sum((max(each) - min(each)) / (max(map(abs, each)) or 1) for each in by_x.values())
+
+
 def named(keys, combinations):
-    """"key = value, .." of each combination."""
-    return [", ".join(f"{key} = {text_of(value)}" for key, value in zip(keys, each)) for each in combinations]
+    """"key = value, .." of each combination. Long values are shortened, unless this makes texts equal."""
+    def texts(shorten):
+        return [", ".join(f"{key} = {shorten(text_of(value))}" for key, value in zip(keys, each))
+                for each in combinations]
+
+    short = texts(shortened)
+    return short if len(set(short)) == len(short) else texts(str)
+
+
+def shortened(text):
+    return text if len(text) <= MOST_TEXT else text[: MOST_TEXT - 2] + ".."
 
 
 def colors_of(combinations):

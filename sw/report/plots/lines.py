@@ -3,14 +3,16 @@
 import dataclasses
 
 import style
-from drawing import LOSES_PIXELS, MANY, Drawing, Sheet, bound_of, mark_handle, scale, ticks_at, title
-from families import Families
+from drawing import LOSES_PIXELS, Drawing, Sheet, bound_of, mark_handle, scale, ticks_at, title
+from families import MOST_DOTS, Families
 from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 from points import LOST_PIXELS, counted, natural
 from style import GRAY, bound, bound_handle, line_handle
 
 RATE_HEIGHT = 2.7
 MORE_HEIGHT = 2.1
+ALL, MIDDLE = 0.16, 0.3  # opacity of an envelope: of all its points, and of their middle half
 
 
 @dataclasses.dataclass
@@ -71,19 +73,23 @@ def draw(points, options, heading, x, x_keys, panels, best=False):
     drawn = [each for panel in panels for each in panel.drawn()]
     families = Families(points, places, x, x_keys, drawn)
     sheet = Sheet(heading, options.size, options.format)
+    with_dots = len(places) <= MOST_DOTS
     for group in families.legend:
         sheet.legend([(line_handle(look.color, look.marker, look.dashes), text) for text, look in group])
     limits = [(Line2D([], [], **style.FAINT_LINE), panel.limit[1]) for panel in panels
               if reaches_limit(points, panel, places)]
     marks = [mark_handle(LOSES_PIXELS)] if losing else []
-    sheet.legend([*handles(families, panels, best), *limits, *marks])
-    for text in (families.note, points.pixels_note(places), points.size_note(places),
+    sheet.legend([*handles(families, panels, best, with_dots), *limits, *marks])
+    for text in (families.note, points.pixels_note(places), above_note(points, places, panels),
+                 points.size_note(places),
                  points.note(len(places))):
         sheet.note(text)
     for axes, panel in zip(sheet.grid([panel.height for panel in panels]), panels):
-        for family in families.all:
+        for group, look in families.envelopes:
+            draw_envelope(axes, points, group, xs, panel, look)
+        for family in [] if families.envelopes else families.all:
             not_best = set(losing) if best else None
-            draw_family(axes, points, family, xs, panel, families.as_points, not_best, len(places) > MANY)
+            draw_family(axes, points, family, xs, panel, families.as_points, not_best, with_dots)
         if panel.bound:
             mark(axes, [(xs[place], points.column(panel.column)[place]) for place in losing])
         values = [points.column(each)[place] for each in panel.drawn() for place in places]
@@ -95,27 +101,48 @@ def draw(points, options, heading, x, x_keys, panels, best=False):
     listed = [each for panel in panels for each in panel.listed]
     columns = list(dict.fromkeys(["hash", *points.varied, x, *drawn, *listed]))
     places.sort(key=lambda place: ([natural(points.column(key)[place]) for key in families.keys], xs[place]))
-    lines = "without lines" if families.as_points else counted(len(families.all), "line")
+    if families.envelopes:
+        lines = counted(len(families.envelopes), "envelope")
+    else:
+        lines = "without lines" if families.as_points else counted(len(families.all), "line")
     return Drawing(sheet, columns, points.rows(columns, places), f"{counted(len(places), 'point')}, {lines}")
 
 
-def handles(families, panels, best):
+def handles(families, panels, best, with_dots):
     """The entries of the legend that apply to all families."""
     entries = []
     color = GRAY if families.legend else families.all[0].look.color
-    if families.as_points:
+    if families.envelopes:
+        entries += [(Patch(color=color, alpha=ALL, linewidth=0),
+                     "all points, from the least to the greatest"),
+                    (Patch(color=color, alpha=ALL + MIDDLE, linewidth=0), "the middle half of them"),
+                    (line_handle(color, None if families.legend else "o"), "median")]
+    elif families.as_points:
         entries.append((line_handle(color, "o", "", markersize=4, alpha=0.55), "simulated"))
     elif best:
         entries.append((line_handle(color, None if families.legend else "o"), "best allocation"))
-        entries.append((line_handle(color, "o", "", markersize=3, alpha=0.5), "simulated"))
+        dots = line_handle(color, "o", "", markersize=3, alpha=0.5)
+        entries.append((dots if with_dots else Patch(color=color, alpha=ALL, linewidth=0), "simulated"))
     elif not families.legend:
         entries.append((line_handle(color, "o"), "simulated"))
     if any(panel.bound for panel in panels):
-        entries.append((bound_handle(color), "bound"))
+        entries.append((bound_handle(color), "greatest bound" if families.envelopes else "bound"))
     if any(panel.beside for panel in panels) and not families.as_points:
         entries.append((line_handle(color, "o", ":", linewidth=0.8, markersize=3.5, markerfacecolor="white"),
                         "from power-up, tables included"))
     return entries
+
+
+def above_note(points, places, panels):
+    """A note if rates exceed their bounds, which they do by their uncertainty at most; otherwise empty."""
+    for panel in panels:
+        if panel.bound == "bound.system":
+            values, bounds = points.column(panel.column), points.column(panel.bound)
+            above = [place for place in places if values[place] is not None and values[place] > bounds[place]]
+            if above:
+                return (f"Above the bound by no more than the uncertainty: "
+                        f"{counted(len(above), 'steady rate')}.")
+    return ""
 
 
 def mark(axes, points):
@@ -139,11 +166,46 @@ def greatest_places(xs, values, places):
     return [greatest[x] for x in sorted(greatest)]
 
 
-def draw_family(axes, points, family, xs, panel, as_points, not_best, is_many):
+def draw_range(axes, xs, lows, highs, color, opacity):
+    """A surface between the values at each x; at a single x, or beside it, a bar."""
+    look = {"color": color, "alpha": opacity, "linewidth": 0, "zorder": 1.6, "gid": "range"}
+    if len(xs) > 1:
+        axes.fill_between(xs, lows, highs, **look)
+    else:
+        axes.bar(xs, [high - low for low, high in zip(lows, highs)], 0.3, lows, **look)
+
+
+def by_x(places, xs, values):
+    """{x: its values, from the least}, from the least x."""
+    found = {}
+    for place in places:
+        found.setdefault(xs[place], []).append(values[place])
+    return {x: sorted(found[x]) for x in sorted(found)}
+
+
+def draw_envelope(axes, points, places, xs, panel, look):
+    """The range of many points at each x, their middle half, the median and the greatest bound."""
+    values = points.column(panel.column)
+    there = [place for place in places if values[place] is not None]
+    at = by_x(there, xs, values)
+    lows, highs = ([each[end] for each in at.values()] for end in (0, -1))
+    draw_range(axes, list(at), lows, highs, look.color, ALL)
+    quarters = [[each[round(share * (len(each) - 1))] for each in at.values()] for share in (0.25, 0.5, 0.75)]
+    draw_range(axes, list(at), quarters[0], quarters[2], look.color, MIDDLE)
+    for edge in (lows, highs):
+        axes.plot(list(at), edge, color=look.color, linewidth=0.8, zorder=2)
+    axes.plot(list(at), quarters[1], color=look.color, **{**style.POINT, "marker": look.marker}, zorder=3)
+    if panel.bound:
+        bounds = points.column(panel.bound)
+        axes.plot(list(at), [bounds[place] for place in greatest_places(xs, bounds, there)],
+                  **bound(look.color))
+
+
+def draw_family(axes, points, family, xs, panel, as_points, not_best, with_dots):
     """The line of a family.
 
     not_best: the line goes through the best point at each x, except these places; None: through all points.
-    is_many: dots, and the bounds of each, are pixels in SVG and PDF.
+    with_dots: the other points at each x are drawn as dots, else as their range.
     """
     values, look = points.column(panel.column), family.look
     there = sorted((place for place in family.places if values[place] is not None),
@@ -153,14 +215,16 @@ def draw_family(axes, points, family, xs, panel, as_points, not_best, is_many):
         axes.plot([xs[place] for place in places], [column[place] for place in places],
                   **{"color": look.color, **more})
 
-    if as_points or not_best is not None:
+    if as_points or (not_best is not None and with_dots):
         plot(there, values, marker="o", linestyle="", markersize=4 if as_points else 3, markeredgewidth=0,
              alpha=0.5,
-             zorder=2, rasterized=is_many)
+             zorder=2)
+    elif not_best is not None and there:
+        at = by_x(there, xs, values)
+        draw_range(axes, list(at), *([each[end] for each in at.values()] for end in (0, -1)), look.color, ALL)
     if panel.bound:
         bounds = points.column(panel.bound)
-        plot(there if as_points else greatest_places(xs, bounds, there), bounds, **bound(look.color),
-             rasterized=as_points and is_many)
+        plot(there if as_points else greatest_places(xs, bounds, there), bounds, **bound(look.color))
     if as_points:
         return
     best = greatest_places(xs, values, [each for each in there if each not in (not_best or ())])

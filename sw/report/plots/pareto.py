@@ -4,15 +4,16 @@ import math
 import re
 
 import style
-from drawing import LOSES_PIXELS, MANY, TOO_LARGE, Drawing, Sheet, bound_of, mark_handle, scale, title
+from drawing import LOSES_PIXELS, TOO_LARGE, Drawing, Sheet, bound_of, mark_handle, scale, title
 from points import BANKS_USED, LOST_PIXELS, UNITS_USED, Unusable, counted, short_names, text_of
 from style import bound, bound_handle, line_handle
 
 DEFAULT = "area.slices:min,frames_per_second.core:max"
 SENSES = {"min": "less is better", "max": "more is better"}
 MOST_NAMED = 16
+MANY = 1500  # points; more are small and paler, and are pixels in SVG and PDF
 FRONT, OTHER = style.VERMILION, "#7A858E"
-NUMBER_SIZE, NUMBER_ROOM = 8, (0.2, 0.15)  # points; inches across and up
+NUMBER_SIZE = 8
 
 
 def parse(text):
@@ -158,16 +159,36 @@ def draw_front(axes, corners, xs, ys, axes_of):
     # The numbers stand on the side of the front that has no points.
     side, align = (-1, "right") if axes_of[0][1] == "min" else (1, "left")
     rise, seat = (1, "bottom") if axes_of[1][1] == "max" else (-1, "top")
-    to_inches = axes.transData + axes.figure.dpi_scale_trans.inverted()
-    free_from = (-math.inf, -math.inf)  # the place of the number before
-    for number, corner in enumerate(corners[:MOST_NAMED], 1):
-        place = to_inches.transform(corner)
-        if all(abs(one - other) < least for one, other, least in zip(place, free_from, NUMBER_ROOM)):
-            continue  # the numbers would touch
-        free_from = place
-        axes.annotate(str(number), corner, (5 * side, 6 * rise), textcoords="offset points",
+    for first, last in numbers_apart(axes, corners[:MOST_NAMED]):
+        text = str(first + 1) if first == last else f"{first + 1}\N{EN DASH}{last + 1}"
+        axes.annotate(text, corners[first], (5 * side, 6 * rise), textcoords="offset points",
                       fontsize=NUMBER_SIZE,
                       ha=align, va=seat, zorder=4)
+
+
+def numbers_apart(axes, corners):
+    """Groups (first, last) of corners, so that the numbers of two groups do not touch: those that do are
+    merged."""
+    to_inches = axes.transData + axes.figure.dpi_scale_trans.inverted()
+    inches = [to_inches.transform(corner) for corner in corners]
+    groups = [(number, number) for number in range(len(corners))]
+
+    def box(group):
+        digits = len(str(group[0] + 1)) if group[0] == group[1] else len(f"{group[0] + 1}-{group[1] + 1}")
+        return inches[group[0]], 0.05 + 0.075 * digits, 0.15
+
+    def touch(one, other):
+        (a, width_a, height_a), (b, width_b, height_b) = box(one), box(other)
+        return abs(a[0] - b[0]) < max(width_a, width_b) and abs(a[1] - b[1]) < max(height_a, height_b)
+
+    at = 0
+    while at + 1 < len(groups):
+        if touch(groups[at], groups[at + 1]):
+            groups[at : at + 2] = [(groups[at][0], groups[at + 1][1])]
+            at = max(0, at - 1)
+        else:
+            at += 1
+    return groups
 
 
 def name(points, places):

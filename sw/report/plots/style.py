@@ -54,17 +54,30 @@ def use():
 def encoded(figure, kind, dpi=DPI):
     """The bytes of the figure as a file of one of FORMATS."""
     out = io.BytesIO()
-    figure.savefig(out, format=kind, dpi=dpi, metadata=METADATA[kind])
+    with warnings.catch_warnings():
+        for message in (r"Glyph \d+ ", "Matplotlib currently does not support"):  # see unknown_characters()
+            warnings.filterwarnings("ignore", message)
+        figure.savefig(out, format=kind, dpi=dpi, metadata=METADATA[kind])
     return out.getvalue()
+
+
+def _font(bold=False):
+    properties = font_manager.FontProperties(family=FONT, weight="bold" if bold else "normal")
+    return font_manager.get_font(font_manager.findfont(properties))
+
+
+def unknown_characters(text):
+    """The characters that the font lacks. PNG and PDF show boxes for them."""
+    known = _font().get_charmap()
+    return {each for each in text if ord(each) not in known} - {"\n"}
 
 
 def text_width(text, size, bold=False):
     """In inches; size: in points."""
-    properties = font_manager.FontProperties(family=FONT, weight="bold" if bold else "normal")
-    font = font_manager.get_font(font_manager.findfont(properties))
+    font = _font(bold)
     font.set_size(size, 72)
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # of characters that the font lacks, savefig() warns
+        warnings.simplefilter("ignore")
         font.set_text(text, 0, flags=LOAD_NO_HINTING)
     return font.get_width_height()[0] / 64 / 72
 

@@ -99,13 +99,6 @@ class Run(ReportTest):
         self.assertEqual(self.data(folder, "--quick")["run"]["recording"],
                          self.data(folder)["run"]["recording"])
 
-    def test_waits_for_the_host_are_divided_by_what_it_moves(self):
-        folder = self.run_of("a", *CAMERA_RATES, *SHARED, "--frames", "4")
-        stalls = self.data(folder)["run"]["recording"]["stalls"]
-        self.assertIn("host capture", {row["by"] for row in stalls})
-        self.assertEqual(sum(sum(row["rows"]) for row in stalls),
-                         sum(row["cycles"] for row in self.stats(folder)["blame"]))
-
 
 class RecordedFiles(ReportTest):
     """Files of a run that are changed by one pattern each: where, and which value and rule are named."""
@@ -239,6 +232,16 @@ class TwoRuns(ReportTest):
         for folder, of_run in zip((a, b), data["runs"]):
             url = of_run["pictures"]["disparity"].removeprefix("data:image/png;base64,")
             self.assertEqual(base64.b64decode(url), (folder / "frames" / last).read_bytes())
+
+    def test_divide_the_waits_for_the_host_by_what_it_moves(self):
+        a = self.run_of("a", *CAMERA_RATES, "--frames", "4")
+        b = self.run_of("b", *CAMERA_RATES, *SHARED, "--frames", "4")
+        (_, of_b) = self.data(a, b)["runs"]
+        stalls = [(row["by"], sum(row["rows"]))
+                  for row in of_b["recording"]["stalls"]]
+        self.assertIn("host capture", dict(stalls))
+        self.assertEqual(sum(cycles for _, cycles in stalls),
+                         sum(row["cycles"] for row in self.stats(b)["blame"]))
 
     def test_of_different_sizes_have_no_rows(self):
         a = self.run_of("a", *PRELOADED)

@@ -81,7 +81,8 @@ class Fidelities(RigTest):
         presets = [line.split()[0] for line in lines if line and not line.startswith(" ")]
         self.assertGreaterEqual(len(presets), 6)
         for board in presets:
-            self.verify(board, "camera", "--synthetic", "1", "--frames", "2")
+            for source in ("preloaded", "camera"):
+                self.verify(board, source, "--synthetic", "1", "--frames", "2")
 
     def test_agree_for_shared_banks(self):
         for name, assignments in SHARED.items():
@@ -91,7 +92,8 @@ class Fidelities(RigTest):
 
     def test_agree_for_the_tables_of_a_real_rig(self):
         rig = ["--calibration", self.rig, "--sequence", self.pairs, "--frames", "3"]
-        self.verify("fpl2003", "camera", *rig, *sets(DISPARITIES))
+        for source in ("preloaded", "camera"):
+            self.verify("fpl2003", source, *rig, *sets(DISPARITIES))
 
 
 class RealRig(RigTest):

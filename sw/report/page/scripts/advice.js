@@ -1,10 +1,11 @@
 // What to change first, of all single changes of the board, and what a change takes.
-import {fixed, signed, whole} from './format.js';
+import {fixed, sameWithin, signed, whole} from './format.js';
 
 const kWorthwhile = 0.01;  // least gain of a change worth naming, of the present rate
 const kFreeSlices = 1;     // percent of the FPGA that a change may take and still need nothing new
 const kSame = 0.9995;      // rates that differ by less are the same
 const kVisible = 0.0005;  // frames/s
+const kAtLimit = 0.003;    // a rate is at the bound of a resource around the board if it is as near as this
 
 // Keys that are no settings of the parts of the board, but need another part.
 const kNeeds = [
@@ -18,6 +19,11 @@ const kNeeds = [
   [/^fpga\.clock_mhz$/, step => `a clock of ${step.clock_mhz} MHz`],
 ];
 
+const kKeyTexts = {
+  'ssram.banks.*.kind': 'kind of memory of all banks',
+  'ssram.banks.*.turnaround_cycles': 'turnaround of all banks',
+};
+
 // The gain of a change, as a share of the present rate.
 export const gainOf = step => step.gained_percent / 100;
 
@@ -26,10 +32,16 @@ export const hasEffect = (step, board) => step.loses_pixels !== board.loses_pixe
     Math.abs(step.gained_frames_per_second) >= kVisible;
 
 // A change in words: matcher.rows: 1 → 2.
-export function stepText({key, from, to, idle_banks: idle}) {
+export function shortStepText({key, from, to, idle_banks: idle}) {
   const moved = key === 'a bank more' && /^(.*) in (.*)$/.exec(from);
   if (moved) return `${moved[1]}: ${moved[2]} → ${idle?.[0] ?? 'a new bank'}`;
-  return `${key}: ${from} → ${to}`;
+  return `${kKeyTexts[key] ?? key}: ${from} → ${to}`;
+}
+
+// The same with the key that it changes.
+export function stepText(step) {
+  const name = kKeyTexts[step.key];
+  return name ? `${name} (${step.key}): ${step.from} → ${step.to}` : shortStepText(step);
 }
 
 // What a change takes beside the board as it is.
@@ -67,6 +79,24 @@ export function priceText(step, board) {
       (idle.length ?
            `: it uses ${idle.join(' and ')}, which ${idle.length === 1 ? 'holds' : 'hold'} nothing` :
            '');
+}
+
+// The keys that move the bound of a resource around the board.
+const kMoves = {
+  camera: /^cameras\./,
+  pci: /^(pci|bridge|capture)\./,
+  bridge: /^(bridge\.|capture\.|fpga\.clock_mhz$)/
+};
+
+// The resource around the board whose bound the rate of a change reaches, such as `camera`. A resource whose
+// bound the change moves is left out.
+export function limitReached(run, step) {
+  const isConcerned = resource => kMoves[resource]?.test(step.key) ?? false;
+  return (run.bounds.computer ?? [])
+      .find(
+          ({resource, frames_per_second: bound}) =>
+              !isConcerned(resource) && sameWithin(step.frames_per_second, bound, kAtLimit))
+      ?.resource;
 }
 
 // The changes worth naming: the largest gain of those that need nothing new, and the largest of all. Changes

@@ -49,9 +49,10 @@ export function htmlTable(names, rows, most = kMostRows) {
 }
 
 // Adds a chart to the page. `draw(host, width)` fills the empty element `host`; it is called again where the
-// width or the theme changes. `numbers()` returns [names, rows]. `body`: elements above the plot that stay.
+// width or the theme changes. `numbers()` returns [names, rows]. `body`: elements above the plot that stay;
+// `foot`: below it.
 // Returns {element, redraw}.
-export function addChart(page, {id, title, note, wide, body, draw, numbers}) {
+export function addChart(page, {id, title, note, wide, body, foot, draw, numbers}) {
   const host = h('div', {class: 'plot'});
   const tableHost = h('div', {class: 'numbers', hidden: true});
   const toggle = button('Table', () => {
@@ -63,7 +64,7 @@ export function addChart(page, {id, title, note, wide, body, draw, numbers}) {
   const element =
       h('section', {class: wide ? 'card wide' : 'card', id, 'aria-label': title},
         h('header', null, h('h2', null, title), numbers && h('div', {class: 'tools'}, toggle, save)),
-        noteLine(note), body, draw && host, tableHost);
+        noteLine(note), body, draw && host, foot, tableHost);
   page.append(element);
   let width = 0;
   const redraw = () => {
@@ -90,7 +91,9 @@ export function addChart(page, {id, title, note, wide, body, draw, numbers}) {
 export const addLeftOut = (page, id, title) => addChart(page, {
   id,
   title,
-  note: 'Left out by --quick: without it, the run is repeated, and changes of its board are tried.'
+  note: id === 'knobs' ?
+      'Left out by --quick. `stereotlm report` without it tries single changes of the board.' :
+      'Left out by --quick, because the run was not recorded.'
 });
 
 // The names of colours, in a line: [[name, css colour], ..].

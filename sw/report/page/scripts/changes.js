@@ -1,14 +1,15 @@
 // What each single change of the board gains, and what the core takes of its FPGA.
 import {
-    adviceOf, gainOf, hasEffect, newPartsOf, priceOf, priceText, stepText,
+    adviceOf, gainOf, hasEffect, newPartsOf, priceOf, priceText, shortStepText, stepText,
 } from './advice.js';
 import {drawBars} from './bars.js';
 import {addChart, addLeftOut} from './card.js';
-import {folded, h, note} from './dom.js';
+import {button, checkBox, folded, h, note} from './dom.js';
 import {kindOfSteps} from './findings.js';
 import {count, fixed, gainText, most, percent, rate, signed, sum, whole} from './format.js';
 
-const kSmall = 0.001;  // a change that gains or loses less is in the table alone
+// A change that gains or loses less is folded, until it is asked for.
+const kFolded = 0.001;
 const kWide = 760;  // pixels; narrower, the names stand above the bars, and prices are in the tooltips
 
 export function addKnobs(page, run) {
@@ -18,13 +19,19 @@ export function addKnobs(page, run) {
   const advice = adviceOf(run);
   const now = board.frames_per_second;
   const kind = kindOfSteps(run);
+  const state = {keep: false, all: false};
+  const isSmall = step => step !== advice.first && Math.abs(gainOf(step)) < kFolded;
   const effective = board.changes.filter(step => hasEffect(step, board));
-  const shown = effective.filter(step => step === advice.first || Math.abs(gainOf(step)) >= kSmall);
+  const listed = () => effective.filter(step => !(state.keep && step.changes_disparities));
+  const fold = button('', () => {
+    state.all = !state.all;
+    chart.redraw();
+  }, {id: 'fold-changes'});
   const rowOf = step => {
     const price = priceOf(step, board);
     const gain = gainText(gainOf(step));
     return {
-      name: stepText(step) + (step.changes_disparities ? ' *' : '') + (step.loses_pixels ? ' †' : ''),
+      name: shortStepText(step) + (step.changes_disparities ? ' *' : '') + (step.loses_pixels ? ' †' : ''),
       strong: step === advice.first,
       bars: [{
         from: now,
@@ -43,10 +50,16 @@ export function addKnobs(page, run) {
     };
   };
   const draw = (host, width) => {
+    const small = listed().filter(isSmall).length;
+    const one = small === 1 ? 's' : '';
+    fold.hidden = small === 0;
+    fold.setAttribute('aria-expanded', String(state.all));
+    fold.textContent =
+        `${state.all ? '▾' : '▸'} ${count(small, 'change')} that gain${one} or lose${one} less than 0.1 %`;
     const above = width <= kWide;
-    const rows = shown.map(rowOf);
+    const rows = listed().filter(step => state.all || !isSmall(step)).map(rowOf);
     if (above) rows.forEach(row => row.texts.splice(1));
-    const rates = [now, ...shown.map(step => step.frames_per_second)].filter(each => each > 0);
+    const rates = [now, ...listed().map(step => step.frames_per_second)].filter(each => each > 0);
     const domain = [Math.min(...rates) * 0.95, Math.max(...rates) * 1.05];
     for (const {bars: [bar]} of rows) bar.to = Math.max(bar.to, domain[0]);
     drawBars(host, {
@@ -59,27 +72,32 @@ export function addKnobs(page, run) {
       above
     });
   };
+  const keep = checkBox('keep-disparities', 'only what keeps the disparities', checked => {
+    state.keep = checked;
+    chart.redraw();
+  });
   const without = [...new Set(board.changes.map(step => step.key))].filter(
       key => !effective.some(step => step.key === key));
-  addChart(page, {
+  const chart = addChart(page, {
     id: 'knobs',
     wide: true,
     draw,
-    title: advice.first ? `First: ${stepText(advice.first)}, ${gainText(gainOf(advice.first))}` :
+    title: advice.first ? `First: ${shortStepText(advice.first)}, ${gainText(gainOf(advice.first))}` :
                           'No single change gains 1 % and keeps the disparities',
     note: `One setting changed at a time, simulated with ${
               count(board.frames, 'frame')} each. Right: the gain, and what the change takes in ` +
         'addition. First: the largest gain that needs nothing new; if there is none, the largest of ' +
         'all; where captures lose pixels, the best change that ends that. *: changes the disparities. ' +
-        '†: captures lose pixels. Changes that gain or lose less than 0.1 % are in the table alone.',
+        '†: captures lose pixels.',
     body: [
-      note(without.length > 0 && `Without effect here: ${without.join(', ')}.`),
+      keep, note(without.length > 0 && `Without effect here: ${without.join(', ')}.`),
       impossible.length > 0 &&
           folded(
               `${count(impossible.length, 'change')} ${impossible.length === 1 ? 'is' : 'are'} not possible`,
               h('ul', {class: 'note'},
                 impossible.map(step => h('li', null, `${stepText(step)}: ${step.reason}`))))
     ],
+    foot: fold,
     numbers: () => [
         [
           'knob', 'from', 'to', 'frames_per_second', 'gain_percent', 'slices', 'block_rams', 'multipliers',

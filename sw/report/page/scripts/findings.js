@@ -1,12 +1,13 @@
 // What a run shows, in plain words: what limits, who waits for whom, where, what to change first, its price.
-import {adviceOf, gainOf, priceText, stepText} from './advice.js';
-import {linesOf, rowsText} from './data.js';
+import {adviceOf, gainOf, limitReached, priceText, stepText} from './advice.js';
+import {linesOf, rowsText, tilesOf} from './data.js';
 import {capital, count, fixed, gainText, kRates, percent, rate, rateWith, sum, whole} from './format.js';
 
 const kLeastShare = 0.0005;  // of all cycles that a port waits, to be named
+const kFewTiles = 0.35;      // a share of the tiles that is named if it holds half of the waits
 const kMostCauses = 3;       // of a port that are named
 
-export const settingOf = (run, key) => run.settings[key];
+export const settingOf = (run, key) => run.settings.find(setting => setting.key === key)?.value;
 
 // The first kind of rate that all these runs have: [name in stats.json, kind].
 export const kindOfRate = (...runs) =>
@@ -41,6 +42,14 @@ export const withVerb = (name, verb) => `${resourceText(name)} ${verb}${name ===
 export const blamesOf = run => run.stats.blame.map(row => ({...row, share: row.cycles / run.stats.cycles}))
                                    .sort((a, b) => b.cycles - a.cycles);
 
+// The same, with what the host moved as its name, if all frames were recorded.
+export function blamesInDetail(run) {
+  const recorded = linesOf(run);
+  if (!recorded || recorded.frames !== run.stats.frame_cycles.length) return blamesOf(run);
+  return recorded.stalls.map(
+      ({port, bank, by, total}) => ({port, bank, by, cycles: total, share: total / run.stats.cycles}));
+}
+
 const causeText = by => by === 'turnaround' ? 'for the turnaround' : `for ${by}`;
 
 export const blameText = ({port, bank, by, share}) =>
@@ -49,7 +58,7 @@ export const blameText = ({port, bank, by, share}) =>
 // The ports that wait, the most first: {port, cycles, share, causes: its waits, the most first}.
 export function waitsOf(run) {
   const ports = new Map();
-  for (const row of blamesOf(run)) {
+  for (const row of blamesInDetail(run)) {
     if (!ports.has(row.port)) ports.set(row.port, {port: row.port, cycles: 0, share: 0, causes: []});
     const port = ports.get(row.port);
     port.cycles += row.cycles;
@@ -73,11 +82,29 @@ const lostPixels = run => sum((run.stats.cameras ?? []).map(camera => camera.dro
 
 function whatLimits(run) {
   const {by, limit, share, text, kind: rateKind, computer} = rateOf(run);
+  const [kind, name] = by.split(' ');
   const reached =
       `The run reaches ${percent(share)} of the bound of ${rate(limit)} frames/s: ${text}, ${rateKind}`;
+  const because = {
+    bank: () => {
+      const bank = run.banks.find(each => each.name === name);
+      const busy = run.stats.banks.find(each => each.name === name);
+      const title = /^bank/i.test(name) ? name : `Bank ${name}`;
+      const held = bank.buffers.join(', ') || 'no buffer';
+      return `${title} holds ${held}, and is busy in ${percent(busy.utilization)} of the cycles`;
+    },
+    port: () => `Port ${name}: it moves one word a cycle at most`,
+    matcher: () =>
+        'The matcher: it takes one pixel of each picture a cycle at most, and needs each pixel of ' +
+        'a window',
+    camera: () => 'The cameras: the board could do more',
+    pci: () => 'The PCI bus: the transfers of its masters fill it',
+    bridge: () => 'The local bus behind the bridge',
+  }[kind]?.() ??
+      by;
   const limiter = run.knobs?.limited_by;
   return [
-    limiter ? `Limited by ${limiter}.` : `Not known with --quick. The lowest bound: ${resourceText(by)}.`,
+    limiter ? `Limited by ${limiter}.` : `Not known with --quick. The lowest bound: ${because}.`,
     `${reached}.`, computer && droppedText(run),
     !limiter && !computer && share < 0.99 && run.stats.blame.length === 0 &&
         'No port waits: the matcher waits for the queue of results, which the bound leaves out.',
@@ -119,6 +146,35 @@ function whoWaits(run) {
   ];
 }
 
+// The first and the last amount of the main part. Each end leaves out 0.5 % of the total at most, and only
+// amounts below half of the mean.
+function mainPart(amounts) {
+  const total = sum(amounts);
+  const little = total / amounts.length / 2;
+  const edgeOf = some => some.findIndex(
+      (amount, i) => amount >= little || sum(some.slice(0, i + 1)) >= 0.005 * total);
+  return {first: edgeOf(amounts), last: amounts.length - 1 - edgeOf([...amounts].reverse()), total};
+}
+
+// Which columns hold the waits, and whether few tiles hold many.
+function acrossText(run) {
+  const [{columns, width, values, total}] = tilesOf(run);
+  const amounts = new Array(columns).fill(0);
+  values.forEach((value, i) => {
+    amounts[i % columns] += value;
+  });
+  const {first, last} = mainPart(amounts);
+  const lastColumn = Math.min((last + 1) * width, settingOf(run, 'image.width')) - 1;
+  const where = first === 0 && last === columns - 1 ? 'Over all columns' :
+                                                      `In columns ${first * width} to ${lastColumn}`;
+  const order = [...values].sort((x, y) => y - x);
+  let tiles = 0;
+  for (let rest = total / 2; rest > 0; ++tiles) rest -= order[tiles];
+  const share = tiles / values.length;
+  return `${where}${
+      share < kFewTiles ? `; half of all waits are in ${percent(share, 0)} of the picture` : ''}.`;
+}
+
 // The consecutive lines with the largest surplus over `mean`: {from, to, sum}.
 function densestLines(amounts, mean) {
   let best = {surplus: 0, from: 0, to: 0};
@@ -135,13 +191,9 @@ export function waitingRows(run) {
   const recorded = linesOf(run);
   const {lines, height, frames, stalls} = recorded;
   const amounts = Array.from({length: lines}, (_, line) => sum(stalls.map(({values}) => values[line])));
-  const total = sum(amounts);
-  if (total === 0) return null;
+  if (sum(amounts) === 0) return null;
   const imageHeight = settingOf(run, 'image.height');
-  // Each end leaves out 0.5 % of the total at most, and only amounts below half of the mean.
-  const edgeOf = some => some.findIndex(
-      (amount, i) => amount >= total / lines / 2 || sum(some.slice(0, i + 1)) >= 0.005 * total);
-  const [first, last] = [edgeOf(amounts), lines - 1 - edgeOf([...amounts].reverse())];
+  const {first, last, total} = mainPart(amounts);
   const waiting = last + 1 - first;
   const waits = sum(amounts.slice(first, last + 1));
   const densest = densestLines(amounts, waits / waiting);
@@ -167,7 +219,16 @@ function whereText(run) {
                                'Nowhere: no row of the picture waits.'
     ];
   }
-  return [`${capital(rows)}.`];
+  const texts = [`${capital(rows)}.`, acrossText(run)];
+  const cycles = run.stats.frame_cycles;
+  const least = cycles.reduce((a, b) => Math.min(a, b));
+  const most = cycles.reduce((a, b) => Math.max(a, b));
+  const longer = cycles.filter(each => each > 1.01 * least).length;
+  if (longer > 0) {
+    texts.push(`${longer} of ${count(cycles.length, 'frame')} ${longer === 1 ? 'takes' : 'take up to'} ${
+        whole(most)} cycles; the shortest takes ${whole(least)}.`);
+  }
+  return texts;
 }
 
 function whatFirst(run) {
@@ -175,9 +236,12 @@ function whatFirst(run) {
   if (!advice) return ['Not known: this report was made with --quick.'];
   const {first, largest, board, cures} = advice;
   if (!first) return ['Nothing: no single change gains 1 % or more and keeps the disparities.'];
-  const text = step =>
-      `${stepText(step)} gives ${rate(step.frames_per_second)} frames/s, ${kindOfSteps(run)} (${
-          gainText(gainOf(step))})${step.loses_pixels ? ', and loses pixels too' : ''}`;
+  const text = step => {
+    const limit = limitReached(run, step);
+    return `${stepText(step)} gives ${rate(step.frames_per_second)} frames/s, ${kindOfSteps(run)} (${
+        gainText(gainOf(step))})${limit ? `, where ${withVerb(limit, 'limit')}` : ''}${
+        step.loses_pixels ? ', and loses pixels too' : ''}`;
+  };
   const sets = step => step.sets.map(set => `--set '${set}'`).join(' ');
   return [
     `${text(first)}${cures ? ', and loses no pixels' : ''}.`, `To try it: ${sets(first)}.`,

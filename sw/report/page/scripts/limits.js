@@ -1,6 +1,6 @@
-// What limits a run: the bounds of its resources, the roofline of its busiest bank, what ports do in all
-// cycles, and how long its frames take.
-import {adviceOf, hasEffect, stepText} from './advice.js';
+// What limits a run: the bounds of its resources, the roofline of its busiest bank, what ports and banks do
+// in all cycles, and how long its frames take.
+import {adviceOf, hasEffect, shortStepText} from './advice.js';
 import {drawBars, drawColumns} from './bars.js';
 import {addChart, legend} from './card.js';
 import {s} from './dom.js';
@@ -89,7 +89,7 @@ export function addRoofline(page, run) {
   });
   const here = point(board, 'this board');
   const all = board.changes.filter(step => hasEffect(step, board))
-                  .map(step => point(step, stepText(step)))
+                  .map(step => point(step, shortStepText(step)))
                   .filter(each => each.accesses_per_pixel > 0);
   const roofAt = here.clock_mhz / here.accesses_per_pixel;
   const share = here.megapixels_per_second / roofAt;
@@ -161,38 +161,73 @@ const kPortStates = [
   ['passed_cycles', 'no access needed', '--sky'], ['blocked_cycles', 'output full', '--yellow'],
   ['starved_cycles', 'no input', '--green'], ['idle_cycles', 'idle', '--pale']
 ];
+const kBankStates = [
+  ['busy_cycles', 'busy', '--blue'], ['turnaround_cycles', 'turnaround', '--grey'],
+  ['idle_cycles', 'idle', '--pale']
+];
 
-// What each port does, as bars that add up to all cycles of the frames.
-export function addPortStates(page, {stats: {ports, cycles}}, suffix = '') {
-  const worst = [...ports].sort((a, b) => b.stall_cycles - a.stall_cycles)[0];
-  const rowOf = port => {
+// Bars that add up to all cycles of the frames.
+function addStates(page, {id, title, note, items, states, cycles, more = () => []}) {
+  const rowOf = item => {
     let end = 0;
-    const bars = kPortStates.filter(([key]) => port[key] > 0)
+    const bars = states.filter(([key]) => item[key] > 0)
                      .map(([key, name, colour]) => ({
                             from: end,
-                            to: end += port[key],
+                            to: end += item[key],
                             colour,
                             lines: [
-                              `${port.name}: ${name} ${percent(port[key] / cycles, 2)}`,
-                              `${whole(port[key])} cycles`
+                              `${item.name}: ${name} ${percent(item[key] / cycles, 2)}`,
+                              `${whole(item[key])} cycles`, ...more(item)
                             ]
                           }));
-    return {name: port.name, bars, texts: [percent(port.grants / cycles)]};
+    return {name: item.name, bars, texts: [percent(item[states[0][0]] / cycles)]};
   };
   addChart(page, {
+    id,
+    title,
+    note,
+    draw: host => drawBars(host, {rows: items.map(rowOf), domain: [0, cycles]}),
+    body: legend(states.map(([, name, colour]) => [name, `var(${colour})`])),
+    numbers: () => tableOf(['name', ...states.map(([key]) => key)], items)
+  });
+}
+
+export function addPortStates(page, {stats}, suffix = '') {
+  const worst = [...stats.ports].sort((a, b) => b.stall_cycles - a.stall_cycles)[0];
+  addStates(page, {
     id: `ports${suffix && `-${suffix}`}`,
+    items: stats.ports,
+    states: kPortStates,
+    cycles: stats.cycles,
     title: (suffix && `${suffix}: `) +
         (worst.stall_cycles > 0 ?
-             `${worst.name} waits in ${percent(worst.stall_cycles / cycles)} of the cycles` :
+             `${worst.name} waits in ${percent(worst.stall_cycles / stats.cycles)} of the cycles` :
              'No port ever waits'),
     note:
         'What each port does in all cycles of the frames; on the right the share granted. No access ' +
         'needed: it has the word already, or the place is outside the picture. Output full: the queue ' +
         'behind it takes no more. No input: nothing to work on has come. Idle: before its first and after ' +
-        'its last work of a frame; the host: no request.',
-    draw: host => drawBars(host, {rows: ports.map(rowOf), domain: [0, cycles]}),
-    body: legend(kPortStates.map(([, name, colour]) => [name, `var(${colour})`])),
-    numbers: () => tableOf(['name', ...kPortStates.map(([key]) => key)], ports)
+        'its last work of a frame; the host: no request.'
+  });
+}
+
+export function addBankUse(page, {stats, banks}) {
+  const busiest = [...stats.banks].sort((a, b) => b.utilization - a.utilization)[0];
+  const unused = stats.banks.filter(bank => bank.busy_cycles === 0);
+  addStates(page, {
+    id: 'banks',
+    items: stats.banks,
+    states: kBankStates,
+    cycles: stats.cycles,
+    title: `${busiest.name} is busy in ${percent(busiest.utilization)} of the cycles` +
+        (unused.length === 0     ? '' :
+             unused.length === 1 ? `; ${unused[0].name} is never used` :
+                                   `; ${unused.length} of ${stats.banks.length} banks are never used`),
+    note: 'How busy each bank is in all cycles of the frames.',
+    more: bank =>
+        [`${whole(bank.reads)} reads, ${whole(bank.writes)} writes, ` +
+             `in ${whole(bank.contended_cycles)} cycles a port waits`,
+         banks.find(each => each.name === bank.name).buffers.join(', ') || 'holds nothing']
   });
 }
 

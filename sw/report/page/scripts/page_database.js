@@ -1,6 +1,6 @@
 // The page of a database: its charts, filters, table, and the board of a point.
 import {addAnswers, addChart, addGroup, addHead, htmlTable} from './card.js';
-import {addScatter} from './database_charts.js';
+import {addParallel, addScatter} from './database_charts.js';
 import {button, folded, h, note, textBox} from './dom.js';
 import {resourceText} from './findings.js';
 import {
@@ -167,6 +167,17 @@ export function showDatabase(page, {database}) {
   const scatter = addScatter(cards, points, choose);
   const boardChart = addChart(cards, {id: 'chosen', wide: true, title: 'The board of a point', body: board});
   addFilters(cards, points);
+  addParallel(cards, points);
   addTable(
       cards, points, [rateName, ...(points.figures.includes('area.slices') ? ['area.slices'] : [])], choose);
+  const constants = [['key', 'value'], points.constantKeys.map(key => [key, points.column(key)[0]])];
+  addChart(cards, {
+    id: 'constants',
+    wide: true,
+    title: `${points.constantKeys.length} keys are the same in all points`,
+    note: `${whole(database.left_out.length)} columns, most of them counters of banks and ports, are not in ` +
+        'the page.',
+    body: folded('Show', htmlTable(...constants, 300)),
+    numbers: () => constants
+  });
 }

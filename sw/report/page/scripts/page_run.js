@@ -1,11 +1,11 @@
 // The page of one run.
-import {addAnswers, addChart, addGroup, addHead} from './card.js';
+import {addAnswers, addChart, addGroup, addHead, htmlTable} from './card.js';
 import {addArea, addKnobs} from './changes.js';
 import {linesOf, tilesOf} from './data.js';
-import {commandLine, fileName, folded, note, textBox} from './dom.js';
+import {commandLine, fileName, folded, h, note, textBox} from './dom.js';
 import {answersOf, headlineOf, settingOf, waitingRows} from './findings.js';
-import {count} from './format.js';
-import {addBounds, addFrames, addPortStates, addRoofline} from './limits.js';
+import {count, value} from './format.js';
+import {addBankUse, addBounds, addFrames, addPortStates, addRoofline} from './limits.js';
 import {addMemory} from './memory.js';
 import {addPicture} from './picture.js';
 import {addLatency, addTimeLine} from './time.js';
@@ -35,17 +35,43 @@ function addPictureOf(page, run) {
   });
 }
 
-// The board and the figures, as the files of the run.
+// The identities among the figures, with both sides.
+function addAudit(page, {identities, knobs}) {
+  const names = ['figure', 'value', 'equals', 'value'];
+  addChart(page, {
+    id: 'audit',
+    wide: true,
+    title: `All ${identities.length} identities hold`,
+    note: `They were checked when stats.json was read${
+        knobs ? '; the run was repeated for this report, and gave its stats.json byte for byte' : ''}.`,
+    body: folded('Both sides of each', htmlTable(names, identities)),
+    numbers: () => [names, identities]
+  });
+}
+
+// The board, every key, and the files of the run.
 function addConfiguration(page, run) {
+  const names = ['key', 'value', 'unit', 'meaning'];
+  const rows = run.settings.map(({key, value: its, unit, meaning}) => [key, its, unit ?? '', meaning ?? '']);
+  const host = h('div');
+  const show = wanted => host.replaceChildren(htmlTable(
+      names,
+      rows.filter(([key, its, ,
+                    meaning]) => `${key} ${its} ${meaning}`.toLowerCase().includes(wanted.toLowerCase()))
+          .map(([key, its, ...others]) => [key, value(its), ...others])));
+  show('');
   addChart(page, {
     id: 'configuration',
     wide: true,
     title: `The board ${run.stats.board}`,
-    note: 'The board file as it was run, and the figures.',
+    note: 'Every key with its value, and the board file as it was run.',
     body: [
-      folded('config.yaml', textBox(run.config_yaml, `${fileName(run.stats.board)}.yaml`)),
+      h('label', {class: 'search'}, 'Search ',
+        h('input', {type: 'search', id: 'search-keys', input: event => show(event.target.value)})),
+      host, folded('config.yaml', textBox(run.config_yaml, `${fileName(run.stats.board)}.yaml`)),
       folded('stats.json', textBox(JSON.stringify(run.stats, null, 2), 'stats.json'))
-    ]
+    ],
+    numbers: () => [names, rows]
   });
 }
 
@@ -68,6 +94,7 @@ export function showRun(page, {run}) {
   const limits = addGroup(page, 'What limits');
   addBounds(limits, run);
   addRoofline(limits, run);
+  addBankUse(limits, run);
 
   const waits = addGroup(page, 'Who waits for whom, where and when');
   addBlame(waits, run);
@@ -84,5 +111,7 @@ export function showRun(page, {run}) {
   addKnobs(change, run);
   addArea(change, run);
 
-  addConfiguration(addGroup(page, 'The board and the figures'), run);
+  const trust = addGroup(page, 'The figures');
+  addAudit(trust, run);
+  addConfiguration(trust, run);
 }

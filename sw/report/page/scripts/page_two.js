@@ -72,10 +72,23 @@ export function showTwoRuns(page, {runs: [a, b], difference}) {
   const {rows} = difference;
   addAnswers(page, [
     [
+      'What was changed?',
+      settings.length ? settings.slice(0, 4)
+                            .map(changeText)
+                            .concat(settings.length > 4 ? `and ${settings.length - 4} more` : []) :
+                                                          ['Nothing on the board.']
+    ],
+    [
       'Which is faster, and why?',
       [grouped(difference.verdict), !isSame && `Disparities: ${pixelText(difference)}.`]
     ],
     ['Who waits for whom?', [`A: ${blame(a)}`, `B: ${blame(b)}`]],
+    [
+      'Where do they part?',
+      [rows.not_compared ? `Rows cannot be compared: ${rows.not_compared}.` :
+           rows.parting ? `In frame ${rows.parting.frame}, row ${rows.parting.row}.` :
+                          'Nowhere.']
+    ],
     [
       'What limits?',
       [
@@ -103,7 +116,7 @@ export function showTwoRuns(page, {runs: [a, b], difference}) {
   addFrames(
       where, [['A', a.stats.frame_cycles, '--blue'], ['B', b.stats.frame_cycles, '--vermilion']],
       settingOf(a, 'fpga.clock_mhz'));
-  addBlameDifference(where, difference);
+  addBlameDifference(where, a, b);
   addMemory(where, [a, b]);
 
   const ports = addGroup(page, 'The ports');

@@ -1,5 +1,5 @@
 // Plots in SVG, some of them above a canvas: scales from values to pixels, axes, and brushes.
-import {h, s} from './dom.js';
+import {button, controls, h, s} from './dom.js';
 import {brief} from './format.js';
 import {hideTooltip, showTooltip} from './tooltip.js';
 
@@ -107,10 +107,9 @@ export function layeredDrawing(host, width, height, margins, label) {
   return {...drawing(host, width, height, margins, label), context, clear};
 }
 
-// Adds a brush to a plot of this size. axis: 'x' or 'xy'. `change(box)` is called while the pointer
+// Adds a brush to a plot of this size. axis: 'x', 'y' or 'xy'. `change(box)` is called while the pointer
 // moves, `end(box, place)` when it is released: {x0, x1, y0, y1} in pixels, or null after a click, which
-// clears the brush; place: {x, y}. `tip(place)`: the lines of a tooltip of the place, or null. Without `end`
-// there is nothing but the tooltip.
+// clears the brush; place: {x, y}. `tip(place)`: the lines of a tooltip of the place, or null.
 export function addBrush(plot, {axis, width, height, change, end, tip}) {
   const area = s('rect', {x: 0, y: 0, width, height, class: `brush brush-${axis}${tip ? ' hovers' : ''}`});
   const shown = s('rect', {class: 'brushed'});
@@ -137,7 +136,7 @@ export function addBrush(plot, {axis, width, height, change, end, tip}) {
     return {x0, x1, y0, y1};
   };
   area.addEventListener('pointerdown', event => {
-    if (!end || event.button !== 0) return;
+    if (event.button !== 0) return;
     from = placeOf(event);
     area.setPointerCapture(event.pointerId);
     event.preventDefault();
@@ -159,10 +158,34 @@ export function addBrush(plot, {axis, width, height, change, end, tip}) {
     const box = boxTo(place);
     from = null;
     show(box);
-    end(box, place);
+    end?.(box, place);
   });
   area.addEventListener('pointercancel', () => {
     from = null;
   });
   if (tip) area.addEventListener('pointerleave', hideTooltip);
+}
+
+// A range of 0 to `last` that is shown, of `least` at least, and its buttons. `step`: by how much of it the
+// buttons of `names` move it. `changed()` is called after each change.
+export class Zoom {
+  constructor({last, least, step, from = 0, to = last}, names, changed) {
+    Object.assign(this, {last, least, from, to, changed});
+    const move = (label, name, first, second) => button(label, () => {
+      const size = this.to - this.from;
+      this.set(this.from + first * size, this.to + second * size);
+    }, {'aria-label': name});
+    const [[back, backName], [on, onName], all] = names;
+    this.controls = controls(
+        move('+', 'Zoom in', 0.25, -0.25), move('−', 'Zoom out', -0.5, 0.5),
+        move(back, backName, -step, -step), move(on, onName, step, step),
+        button(all, () => this.set(0, last)));
+  }
+  // Of whole numbers if `least` is one.
+  set(from, to) {
+    const size = Math.min(this.last, Math.max(this.least, Math.round(to - from)));
+    this.from = Math.max(0, Math.min(this.last - size, Math.round(from)));
+    this.to = this.from + size;
+    this.changed();
+  }
 }

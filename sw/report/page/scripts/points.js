@@ -13,16 +13,35 @@ export class Points {
   constructor({columns, points, keys}) {
     this.size = points;
     this.columns = new Map(columns.map(({name, ...column}) => [name, column]));
+    this.addShares();
     this.keys = keys.filter(key => this.has(key) && !this.isConstant(key));
+    this.constantKeys = keys.filter(key => this.has(key) && this.isConstant(key));
     const figures = this.allNames.filter(name => !keys.includes(name));
     const differ = figures.filter(name => !this.isConstant(name));
     this.figures = differ.length > 0 ? differ : figures;
-    const placeOf = name => (kFirst.indexOf(name) + 1) || kFirst.length + 1;
-    this.figures.sort((a, b) => placeOf(a) - placeOf(b));
+    this.figures.sort((a, b) => this.rank(a) - this.rank(b));
     this.filters = new Map();  // of a name: row => whether the point passes
     this.selected = new Uint8Array(points).fill(1);
     this.listeners = new Set();
     this.chosen = -1;
+  }
+  rank(name) {
+    const place = kFirst.indexOf(name);
+    return place < 0 ? kFirst.length : place;
+  }
+  // Utilization of each bank and stalls of each port in percent, as run's stats.json has the former.
+  addShares() {
+    if (!this.has('cycles')) return;
+    const cycles = this.column('cycles');
+    for (const name of this.allNames) {
+      const target = name.startsWith('banks.') ? name.replace(/busy_cycles$/, 'utilization') :
+          name.startsWith('ports.')            ? name.replace(/stall_cycles$/, 'stall_percent') :
+                                                 name;
+      if (target === name || this.isConstant(name)) continue;
+      const factor = target.endsWith('percent') ? 100 : 1;
+      const list = this.column(name).map((each, row) => each === null ? null : factor * each / cycles[row]);
+      this.columns.set(target, {list});
+    }
   }
   // The columns that are offered, and all columns.
   get names() {

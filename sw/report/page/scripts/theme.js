@@ -42,6 +42,7 @@ const kNamed = {
   right_pixel: '--orange',
   result: '--green',
   host: '--purple',
+  turnaround: '--grey',
 };
 const kOthers = ['--blue', '--vermilion', '--green', '--orange', '--sky', '--purple', '--yellow', '--grey'];
 // The variable of the colour of a port or a cause; `host capture` has that of the host.

@@ -1,15 +1,16 @@
 // When things happen in the computer: the time line of captures, transfers, frames of the core, waits and
 // drops, and how long a frame takes from its first pixel to its results on the host.
 import {drawColumns} from './bars.js';
-import {addChart, addLeftOut, legend} from './card.js';
+import {addChart, addLeftOut, htmlTable, legend} from './card.js';
 import {objectsOf} from './data.js';
-import {button, controls, s} from './dom.js';
+import {s} from './dom.js';
 import {droppedText, settingOf} from './findings.js';
 import {count, fixed, inMs, kPsOfMs, percent, sum, whole} from './format.js';
-import {addBrush, axisBelow, cut, drawing, numeric} from './plot.js';
+import {addBrush, axisBelow, cut, drawing, numeric, Zoom} from './plot.js';
 import {mark} from './tooltip.js';
 
 const kFirstFrames = 6;
+const kMostMarks = 1500;
 const kLeastPs = 1000;
 const kLine = 34;
 
@@ -140,7 +141,7 @@ export function addTimeLine(page, run) {
       axis: 'x',
       width: inner,
       height,
-      end: box => box && show(kPsOfMs * x.invert(box.x0), kPsOfMs * x.invert(box.x1))
+      end: box => box && zoom.set(kPsOfMs * x.invert(box.x0), kPsOfMs * x.invert(box.x1))
     });
     lanes.forEach(
         (name, line) =>
@@ -156,23 +157,22 @@ export function addTimeLine(page, run) {
       }
       known = Math.max(known, to);
     }
-    for (const event of events) {
-      const {kind, lane, start_ps: start, end_ps: end} = event;
-      if (end < zoom.from || start > zoom.to || (kind === 'wait' && end === start)) continue;
-      plot.append(...shapesOf(event, atPs(start), atPs(end), lanes.indexOf(lane) * kLine));
+    const inWindow = events.filter(({start_ps: start, end_ps: end}) => end >= zoom.from && start <= zoom.to);
+    // Of many events those are left out that would lie on others.
+    const gap = inWindow.length > kMostMarks ? 1 : -Infinity;
+    const drawnTo = new Map();  // of a lane and kind, in pixels
+    for (const event of inWindow) {
+      const {kind, lane} = event;
+      const [x0, x1] = [atPs(event.start_ps), atPs(event.end_ps)];
+      if (x1 < (drawnTo.get(lane + kind) ?? -Infinity) + (kind === 'drop' ? 8 * gap : gap)) continue;
+      drawnTo.set(lane + kind, x1);
+      if (kind === 'wait' && event.end_ps === event.start_ps) continue;
+      plot.append(...shapesOf(event, x0, x1, lanes.indexOf(lane) * kLine));
     }
   };
-  const zoom = {from: Math.min(begin, early), to: early};  // ps
-  const show = (from, to) => {
-    const size = Math.min(last, Math.max(kLeastPs, Math.round(to - from)));
-    zoom.from = Math.max(0, Math.min(last - size, Math.round(from)));
-    zoom.to = zoom.from + size;
-    chart.redraw();
-  };
-  const move = (label, name, first, second) => button(label, () => {
-    const size = zoom.to - zoom.from;
-    show(zoom.from + first * size, zoom.to + second * size);
-  }, {'aria-label': name});
+  const zoom = new Zoom(
+      {last, least: kLeastPs, step: 0.5, from: Math.min(begin, early), to: early},
+      [['◀', 'Earlier'], ['▶', 'Later'], 'All'], () => chart.redraw());
   const works = run.stats.cycles / settingOf(run, 'fpga.clock_mhz') * 1e6 / last;
   const drops = run.stats.cameras[0].dropped_frames;
   const firstFrame = Math.min(...events.filter(({kind}) => kind === 'frame').map(event => event.start_ps));
@@ -196,10 +196,7 @@ export function addTimeLine(page, run) {
     ].filter(Boolean)
               .join(' '),
     body: [
-      controls(
-          move('+', 'Zoom in', 0.25, -0.25), move('−', 'Zoom out', -0.5, 0.5),
-          move('◀', 'Earlier', -0.5, -0.5), move('▶', 'Later', 0.5, 0.5), button('All', () => show(0, last))),
-      legend([
+      zoom.controls, legend([
         ...Object.entries(kKinds)
             .filter(([name]) => events.some(({kind}) => kind === name))
             .map(([, [colour, name]]) => [name, `var(${colour})`]),
@@ -223,15 +220,25 @@ const kParts = [
 ];
 const kWaitParts = ['wait_copy_ps', 'wait_core_ps', 'wait_read_back_ps'];
 
+function addPercentiles(page, latency) {
+  const table =
+      [['percentile', 'ms'], ['min', 'p50', 'p95', 'p99', 'max'].map(name => [name, latency[name]])];
+  addChart(page, {
+    id: 'latency',
+    title: `Half of the results are ${fixed(latency.p50, 1)} ms old when they arrive, the oldest ${
+        fixed(latency.max, 1)} ms`,
+    body: htmlTable(...table),
+    note:
+        'From the first pixel of a capture to the results on the host. What of it is waiting was left out ' +
+        'by --quick, because the run was not recorded.',
+    numbers: () => table
+  });
+}
+
 export function addLatency(page, run) {
   const percentiles = run.stats.latency_ms?.capture_to_host;
   if (!percentiles) return;
-  if (!run.recording) {
-    return addLeftOut(
-        page, 'latency',
-        `Half of the results are ${fixed(percentiles.p50, 1)} ms old when they arrive, the oldest ${
-            fixed(percentiles.max, 1)} ms`);
-  }
+  if (!run.recording) return addPercentiles(page, percentiles);
   const {names, rows, all, means_ps: means} = run.recording.latency;
   const msOf = (parts, frame) => sum(parts.map(name => frame[name])) / kPsOfMs;
   const parts = kParts.filter(([columns]) => columns.some(name => means[name] > 0));

@@ -2,16 +2,17 @@
 import {drawBars} from './bars.js';
 import {addChart, addLeftOut, legend} from './card.js';
 import {commandLine, h, note, s} from './dom.js';
-import {blamesOf, blameText, settingOf, waitingRows, waitsOf, waitText} from './findings.js';
+import {blamesInDetail, blamesOf, blameText, settingOf, waitingRows, waitsOf, waitText} from './findings.js';
 import {count, least, most, percent, signed, sum, whole} from './format.js';
 import {lastRow, linesOf, rowsText} from './data.js';
 import {
-    addBrush, axisBelow, axisLeft, cut, drawing, layeredDrawing, numeric, textWidth,
+    addBrush, axisBelow, axisLeft, cut, drawing, layeredDrawing, numeric, textWidth, Zoom,
 } from './plot.js';
 import {css, heat, inkOn, namedColour} from './theme.js';
 import {mark} from './tooltip.js';
 
 const kMostDifferences = 20;
+const kLeastRows = 4;
 const kRowsHeight = 328;
 const kMostBands = 240;
 
@@ -66,9 +67,17 @@ export function addBlame(page, run) {
 }
 
 // The difference of the blames of two runs, as bars.
-export function addBlameDifference(page, {waits}) {
-  const rows = waits.map(
-      wait => ({...wait, text: `${wait.port} on ${wait.bank} for ${wait.by}`, more: wait.b - wait.a}));
+export function addBlameDifference(page, a, b) {
+  const all = new Map();
+  for (const [run, side] of [[a, 'a'], [b, 'b']]) {
+    for (const {port, bank, by, cycles} of blamesInDetail(run)) {
+      const text = `${port} on ${bank} for ${by}`;
+      if (!all.has(text)) all.set(text, {text, port, bank, by, a: 0, b: 0});
+      all.get(text)[side] += cycles;
+    }
+  }
+  const rows = [...all.values()].map(row => ({...row, more: row.b - row.a})).filter(({more}) => more !== 0);
+  rows.sort((x, y) => Math.abs(y.more) - Math.abs(x.more));
   if (rows.length === 0) {
     addChart(
         page,
@@ -124,13 +133,17 @@ function columnsOf(run, {accesses, stalls}) {
   return [...used, ...waits];
 }
 
-// The command that traces the longest wait in the longest frame.
-function traceCommand({command, stats: {frame_cycles: cycles}}, imageHeight) {
-  return `${command.replace(/ --out DIR$/, '')} --trace vcd:waits.vcd --trace-window frame=${
-      cycles.indexOf(most(cycles))},rows=0..${imageHeight - 1},longest-wait`;
+// The command that traces the longest wait among these lines in the longest frame; null: no port waits.
+function traceCommand(run, recorded, {from, to}) {
+  if (!recorded.stalls.some(({values}) => values.slice(from, to).some(each => each !== 0))) return null;
+  const cycles = run.stats.frame_cycles;
+  const last = lastRow(recorded, to - 1, settingOf(run, 'image.height'));
+  return `${run.command.replace(/ --out DIR$/, '')} --trace vcd:waits.vcd --trace-window frame=${
+      cycles.indexOf(most(cycles))},rows=${from * recorded.height}..${last},longest-wait`;
 }
 
-// What happens from top to bottom of the picture: use of the banks and waits.
+// What happens from top to bottom of the picture: use of the banks and waits. A range of rows can be brushed
+// to look closer.
 export function addRows(page, run) {
   const recorded = linesOf(run);
   if (!recorded) return addLeftOut(page, 'rows', 'What happens in each row');
@@ -150,11 +163,13 @@ export function addRows(page, run) {
                                         .map(part => `${part.by}: ${whole(part.values[line])}`) :
                                     []];
   const draw = (host, width) => {
-    // Names from bottom to top.
-    const top = Math.min(200, 16 + Math.max(...columns.map(({name}) => textWidth(name))));
+    // Names from bottom to top, unless each has room.
+    const widest = Math.max(...columns.map(({name}) => textWidth(name)));
+    const upright = widest + 6 > (width - 48) / columns.length;
+    const top = upright ? Math.min(200, 16 + widest) : 24;
     const {plot, width: inner, height, context} = layeredDrawing(
         host, width, kRowsHeight + top + 8, {left: 44, right: 4, top, bottom: 8}, 'Rows of the picture');
-    const y = numeric([0, lines * rowsOfLine], [0, height]);
+    const y = numeric([zoom.from * rowsOfLine, zoom.to * rowsOfLine], [0, height]);
     const step = inner / columns.length;
     const lineAt = pixel => Math.floor(y.invert(pixel) / rowsOfLine);
     columns.forEach((column, i) => {
@@ -166,40 +181,63 @@ export function addRows(page, run) {
         context.fillStyle = css(heat(column.waits && mostWaits > 0 ? share / mostWaits : share));
         context.fillRect(i * step + 1, pixel, Math.max(1, step - 2), 1.5);
       }
-      const place = {transform: `translate(${(i + 0.5) * step + 4} -6) rotate(-90)`};
+      const place = upright ? {transform: `translate(${(i + 0.5) * step + 4} -6) rotate(-90)`} :
+                              {x: (i + 0.5) * step, y: -6, 'text-anchor': 'middle'};
       const some = column.values.filter(each => each !== 0).length;
       const reach =
           {x: i * step + 1, y: 4 - top, width: Math.max(1, step - 2), height: top - 6, class: 'reach'};
-      plot.append(s('text', place, cut(column.name, top - 10)), mark(s('rect', reach), [
+      plot.append(s('text', place, cut(column.name, upright ? top - 10 : step)), mark(s('rect', reach), [
                     `${column.name} ${column.what}`, `${whole(sum(column.values) + column.fill)} in all`,
                     `in ${some} of ${count(lines, rowsOfLine > 1 ? 'strip' : 'row')}`
                   ]));
     });
     plot.append(axisLeft(y, inner, height, 'row', {grid: false, ticks: 8}));
     addBrush(plot, {
-      axis: 'xy',
+      axis: 'y',
       width: inner,
       height,
+      end: box => {
+        if (!box) return;
+        const [from, to] = [lineAt(box.y0), Math.ceil(y.invert(box.y1) / rowsOfLine)];
+        if (to - from >= kLeastRows) zoom.set(from, to);
+      },
       tip: ({x, y: pixel}) => {
         const [column, line] = [columns[Math.floor(x / step)], lineAt(pixel)];
         return column && line >= 0 && line < lines ? tipOf(column, line) : null;
       }
     });
   };
-  const waiting = waitingRows(run);
-  addChart(page, {
+  const shownText = h('span', {class: 'note'});
+  const trace = h('div');
+  const sayShown = () => {
+    shownText.textContent = rowsText(recorded, zoom.from, zoom.to, imageHeight);
+    const command = traceCommand(run, recorded, zoom);
+    trace.replaceChildren(
+        ...command ?
+            [
+              note(
+                  'The cycles around the longest wait in these rows of the longest frame, ' +
+                  'for a waveform viewer:'),
+              commandLine(command)
+            ] :
+            []);
+  };
+  const zoom =
+      new Zoom({last: lines, least: kLeastRows, step: 0.25}, [['▲', 'Up'], ['▼', 'Down'], 'All rows'], () => {
+        sayShown();
+        chart.redraw();
+      });
+  zoom.controls.append(shownText);
+  const chart = addChart(page, {
     id: 'rows',
     draw,
-    body: waiting &&
-        [
-          note('The cycles around the longest wait in the longest frame, for a waveform viewer:'),
-          commandLine(traceCommand(run, imageHeight))
-        ],
-    title: `Ports wait ${waiting ?? 'in no row of the picture'}`,
+    body: [zoom.controls, trace],
+    title: `Ports wait ${waitingRows(run) ?? 'in no row of the picture'}`,
     note: `Banks: the share of the cycles of each row with an access. Ports: the share in which they wait. ` +
         `Sums over ${count(frames, 'frame')}. The colours of banks end at 100 %${
               mostWaits > 0 ? `, those of waits at the most of them in any row, ${percent(mostWaits)}` :
-                              ''}.`,
+                              ''}. ` +
+        'Drag over rows to zoom in.',
     numbers: () => {
       const named = [
         ...recorded.accesses.map(each => [`${each.bank} ${each.by} accesses`, each]),
@@ -214,6 +252,7 @@ export function addRows(page, run) {
       ];
     }
   });
+  sayShown();
 }
 
 // Cycles that each row takes more in B, beside the waits.

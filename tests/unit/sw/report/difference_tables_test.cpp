@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -203,6 +204,7 @@ TEST(PixelsLine, CountsThePixelsThatDifferAndNamesTheFirst) {
   pixels.add(5, image, other);
   pixels.add(6, image, image);
   EXPECT_EQ(pixels_line(pixels), "disparities: 4 pixels differ, in 2 of 4 frames; " + first);
+  EXPECT_THROW(pixels.add(7, image, kernels::GrayImage(8, 1)), std::invalid_argument);
 }
 
 }  // namespace

@@ -82,5 +82,10 @@ TEST(Accuracy, OccludesWithinARowOnly) {
   EXPECT_EQ(accuracy(disparity, {truth, 1}).answered_percent, 50);
 }
 
+TEST(Accuracy, RefusesATruthOfAnotherSize) {
+  EXPECT_THROW(of({1, 2}, {1}), std::invalid_argument);
+  EXPECT_THROW(accuracy(kernels::GrayImage(1, 2), {kernels::GrayImage(1, 1), 1}), std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace stereotlm::stats

@@ -130,13 +130,20 @@ TEST(RowComparison, HasRangesThatSumUpToAllRows) {
     RowComparison rows;
     rows.add(a, b);
     RowEnd summed = a.back();
-    for (const RowComparison::Range& range : rows.ranges(repetition % 20 + 1U)) {
+    for (const RowComparison::Range& range : rows.ranges(static_cast<std::size_t>(repetition % 20) + 1)) {
       summed.cycles += static_cast<std::uint64_t>(range.cycles);
       for (std::size_t port = 0; port < summed.stalls.size(); ++port)
         summed.stalls[port] += static_cast<std::uint64_t>(range.stalls[port]);
     }
     EXPECT_EQ(summed, b.back());
   }
+}
+
+TEST(RowComparison, RefusesFramesOfDifferentHeights) {
+  RowComparison rows;
+  EXPECT_THROW(rows.add(profile({10, 20}), profile({10})), std::invalid_argument);
+  rows.add(profile({10, 20}), profile({10, 20}));
+  EXPECT_THROW(rows.add(profile({10}), profile({10})), std::invalid_argument);
 }
 
 constexpr const char* kHead =

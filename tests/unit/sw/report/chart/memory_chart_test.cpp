@@ -379,15 +379,20 @@ TEST(MemoryChart, ColoursByTheShareOfThePeak) {
   EXPECT_EQ(load_colour(144, 160), "load4");
 }
 
-TEST(MemoryChart, ColoursABankByHowBusyItIs) {
-  for (const auto& [percent, colour] : {std::pair(99.8, "load4"), std::pair(50.0, "load3"),
-                                        std::pair(24.9, "load1"), std::pair(0.0, "load0")}) {
+TEST(MemoryChart, ColoursABankAndItsBarByHowBusyItIs) {
+  for (const auto& [percent, colour, width] :
+       {std::tuple(99.8, "load4", "147.7"), std::tuple(50.0, "load3", "74"),
+        std::tuple(24.9, "load1", "36.85"), std::tuple(0.0, "load0", "0")}) {
     Statistics run = run_of_two_ports();
     run.banks[0].utilization = percent / 100;
     const std::string svg = group_of(svg_of(run), "bank-bank0");
-    EXPECT_THAT(svg, HasSubstr(std::string("rx=\"4\" class=\"fill-") + colour + '"')) << percent;
+    const std::string fill = std::string("class=\"fill-") + colour + '"';
+    EXPECT_THAT(svg, HasSubstr("rx=\"4\" " + fill)) << percent;
     EXPECT_THAT(svg, HasSubstr(" fill-opacity=\"0.2\"/>")) << "the whole bank";
+    EXPECT_THAT(svg, HasSubstr(std::string("width=\"") + width + "\" height=\"8\" rx=\"2\" " + fill))
+        << "of 148";
     EXPECT_THAT(svg, HasSubstr(">busy " + measured(percent) + " %</text>"));
+    EXPECT_THAT(svg, HasSubstr("rx=\"0\" class=\"fill-used\"")) << "words";
   }
 }
 
