@@ -332,7 +332,9 @@ std::string conflicts_that_differ(std::uint64_t seed, const test::RandomKnobs& k
   return text.empty() ? text : text + platform::to_yaml(board);
 }
 
-TEST_P(RandomComputers, HaveTheConflictsOfThePlainLoop) { expect_none(computers(100), conflicts_that_differ); }
+TEST_P(RandomComputers, HaveTheConflictsOfThePlainLoop) {
+  expect_none(computers(100), conflicts_that_differ);
+}
 
 INSTANTIATE_TEST_SUITE_P(Knobs, RandomComputers, testing::Bool(),
                          [](const auto& suite) { return suite.param ? "With" : "Without"; });

@@ -175,8 +175,8 @@ export function showDatabase(page, {database}) {
     id: 'constants',
     wide: true,
     title: `${points.constantKeys.length} keys are the same in all points`,
-    note: `${whole(database.left_out.length)} columns, most of them counters of banks and ports, are not in ` +
-        'the page.',
+    note: `${whole(database.left_out.length)} columns, most of them counters of banks and ports, are not ` +
+        'in the page.',
     body: folded('Show', htmlTable(...constants, 300)),
     numbers: () => constants
   });
