@@ -41,15 +41,13 @@ def on_interrupt(action):
 on_interrupt(leave)
 os.environ.pop("MPLBACKEND", None)  # selects a display; matplotlib fails if it does not know the name
 try:
-    import matplotlib  # noqa: F401
+    import style  # needs matplotlib, which may have to write a list of fonts
 except ImportError as error:
     tell("error", f"needs matplotlib, which ./setup tests installs: {error}")
     sys.exit(2)
 except Exception as error:  # of any kind, such as one that a user's matplotlibrc causes
     tell("error", f"matplotlib cannot be loaded: {error}")
     sys.exit(2)
-
-import style  # noqa: E402: it needs matplotlib
 
 LEAST_SIZE, MOST_SIZE = 2, 40  # inches
 

@@ -1,6 +1,7 @@
 """run --record and conflicts: where in the picture, and when in a frame, ports wait for banks."""
 
 import csv
+import os
 import re
 import signal
 import resource
@@ -103,9 +104,11 @@ class Command(ConflictsTest):
             self.succeeds(run("conflicts", *self.scene, *CAPTURES, *options))
 
     def test_a_full_disk_is_named_and_leaves_nothing(self):
-        for blocks in (1, 10, 30):
+        no_fonts = {"MPLCONFIGDIR": str(self.folder)}  # matplotlib's list of fonts is there, or is written
+        for blocks, variables in ((1, {}), (10, {}), (30, {}), (10, no_fonts)):
             limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (1000 * blocks, 1000 * blocks))
-            process = run("conflicts", *self.scene, *PRELOADED, "--out", self.out, preexec_fn=limit)
+            process = run("conflicts", *self.scene, *PRELOADED, "--out", self.out, preexec_fn=limit,
+                          env={**os.environ, **variables})
             self.assertEqual(self.ended(process, 1, "File too large")[0][:17], "stereotlm: error:")
             self.assertNotIn("Traceback", process.stderr)
             self.assertFalse(self.out.exists())
