@@ -60,8 +60,8 @@ void check_places(const Rig& rig) {
   }
 }
 
-// Whether the pictures determine the lens models: they map directions one to one in the whole picture. A
-// model that folds the picture over describes no lens.
+// Whether the pictures determine the lens models. A model that does not map directions one to one in the
+// whole picture folds it over, which no lens does.
 bool lenses_are_determined(const Rig& rig) try {
   for (const CameraModel& lens : {rig.left, rig.right}) {
     for (const int row : {0, rig.height - 1}) {
@@ -156,8 +156,8 @@ std::optional<HeldOut> held_out(const CalibrationRequest& request, const RigFit&
   return std::nullopt;
 }
 
-// The position of the maximum of a parabola through three values, from the middle one, which is the largest:
-// -0.5..0.5.
+// The position of the maximum of a parabola through three values, relative to the middle one, which is the
+// largest: -0.5..0.5.
 double between(double before, double largest, double after) {
   const double bend = before - 2 * largest + after;
   return bend < 0 ? 0.5 * (before - after) / bend : 0;

@@ -44,8 +44,9 @@ struct CalibrationResult {
 
 // Makes tables from pictures of a grid: finds the corners, fits the rig and leaves out corners that do not
 // fit, rectifies, chooses the disparity offset, and measures the quality. Throws std::invalid_argument, with
-// a message that names the cure, if too few pairs show a grid, if the cameras are swapped or one above the
-// other, or if the grid needs more disparities.
+// a message that names the cure, if too few pairs show a grid, if they do not determine the lenses, if the
+// cameras are swapped or not side by side, or if the grid needs more disparities; std::runtime_error if no
+// rig fits.
 CalibrationResult calibrate(const CalibrationRequest& request);
 
 // The result of matched_rows().
@@ -56,9 +57,8 @@ struct MatchedRows {
 
 // Measures how well the rows of two rectified pictures agree. The most distinctive points of the left picture
 // are searched for in the right one, 0..disparities-1 columns to the left and up to 8 rows above or below.
-// Only reliable matches count. The mean error indicates whether the tables belong to the cameras: it is below
-// one pixel if they do. The function takes about 20 ms at 640x480. Throws std::invalid_argument if the
-// pictures differ in size.
+// Only reliable matches count. If the tables belong to the cameras, the mean error is below one pixel. The
+// function takes about 20 ms at 640x480. Throws std::invalid_argument if the pictures differ in size.
 MatchedRows matched_rows(const kernels::GrayImage& left, const kernels::GrayImage& right, int disparities);
 
 }  // namespace stereotlm::calib

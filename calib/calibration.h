@@ -20,7 +20,7 @@ struct RowError {
   std::size_t corners = 0;
 };
 
-// Of these distances, whose signs do not matter.
+// Their signs do not matter. All is 0 if there are none.
 RowError row_error(const std::vector<double>& distances);
 
 // Disparities x_left - x_right that the rig has to cover.
@@ -32,13 +32,12 @@ struct DisparityRange {
   int needed() const;
 };
 
-// The offset that `--disparity-offset auto` chooses. It centres `range` among the candidates, but is not
-// below 0 unless `range` is. Throws std::invalid_argument if `range` needs more than `disparities`
-// candidates; the message names the options of `calibrate`.
+// The offset that `--disparity-offset auto` chooses: floor(range.min) if that is negative. Else it centres
+// `range` among the candidates, but is at least 0. Throws std::invalid_argument if `range` needs more than
+// `disparities` candidates; the message names the options of `calibrate`.
 int disparity_offset_for(const DisparityRange& range, int disparities);
 
-// The errors of pairs under a rig that was fitted without them (cross-validation). Each pair is left out
-// once.
+// The errors of pairs under a rig fitted without them (cross-validation). Each pair is left out once.
 struct HeldOut {
   double rms_px = 0;   // reprojection, over the pictures of both cameras
   RowError row_error;  // of rectified corners
@@ -50,8 +49,7 @@ struct Quality {
   double right_rms_px = 0;
   double stereo_rms_px = 0;  // over the pictures of both cameras
   RowError row_error;        // of rectified corners
-  // Of corners that are searched again in the rectified pictures. The tables round the sources of their
-  // pixels.
+  // Of corners found again in the rectified pictures, whose pixels come from rounded positions.
   RowError found_again;
   std::optional<HeldOut> held_out;  // nullopt if there are too few pairs
   DisparityRange disparities;       // of the grid, without the offset
@@ -80,10 +78,10 @@ struct Calibration {
 // The most bytes of a calibration file. Each pair of pictures adds 60 bytes and two paths.
 inline constexpr std::size_t kMostCalibrationBytes = 1'000'000;
 
-// Reads a text that calibration_yaml() wrote; every number is the same to the last bit. Throws
-// std::runtime_error, which names the line, the key, the value and the rule, for a text of another kind, a
-// missing key, a matrix of another size, a number that is not finite, an R that is no rotation, or a Q that
-// does not follow from P1 and P2.
+// Reads a text of calibration_yaml(); every number is the same to the last bit. Throws std::runtime_error,
+// which names the line, the key, the value and the rule, if the text is of another kind or too long, a key is
+// missing, a matrix has another size, a number is not finite, R, R1 or R2 is no rotation, or Q does not
+// follow from P1 and P2.
 Calibration parse_calibration(const std::string& text);
 
 // The text of a calibration file: OpenCV FileStorage YAML with the keys of OpenCV's stereo_calib sample (M1

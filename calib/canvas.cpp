@@ -2,14 +2,12 @@
 
 #include <cairo-ft.h>
 #include <cairo.h>
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <memory>
 #include <opencv2/imgproc.hpp>
 #include <optional>
-#include <stdexcept>
 
 #include "calib/opencv_conversions.h"
 #include "calib/png.h"

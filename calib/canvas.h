@@ -8,8 +8,8 @@
 
 #include "models/kernels/gray_image.h"
 
-// Drawing functions that the drawings of this folder and of sw/media share. Font and colours are those of the
-// figures (sw/report/plots/style.mplstyle). Components of colours are in the order blue, green, red.
+// Drawing functions for the drawings of this folder and of sw/demo. Font and colours are those of the figures
+// (sw/report/plots/style.mplstyle). Components of colours are in the order blue, green, red.
 namespace stereotlm::calib {
 
 inline const cv::Scalar kBlack(0, 0, 0);
@@ -30,7 +30,7 @@ cv::Mat in_colors(const cv::Mat1f& values, double first, double last);
 inline constexpr int kTextHeight = 10;  // pixels
 int text_width(const std::string& text, double scale = 1);
 
-// Draws UTF-8; of any other text, '?' for each byte that is not ASCII. `left_bottom` is the bottom left
+// Draws UTF-8. In any other text, '?' replaces each byte that is not ASCII. `left_bottom` is the bottom left
 // corner of the first letter.
 void draw_text(cv::Mat& canvas, const std::string& text, cv::Point left_bottom, double scale = 1,
                const cv::Scalar& color = kBlack);
@@ -43,14 +43,14 @@ void draw_circle(cv::Mat& canvas, const cv::Point2d& middle, double radius, cons
 // White with a black edge, so that it is visible on every colour.
 void draw_arrow(cv::Mat& canvas, const cv::Point2d& from, const cv::Point2d& to);
 
-// Draws the scale of in_colors() in one line, which is not wider than `width` pixels: `first`, the colours,
-// `last`, and what kMissing stands for.
+// Draws the scale of in_colors() in one line: `first`, the colours, `last`, and what kMissing stands for. It
+// is at most `width` pixels wide, if that is at least kLeastScaleWidth.
 inline constexpr int kScaleHeight = 28;       // pixels, with its margins
 inline constexpr int kLeastScaleWidth = 300;  // pixels, for texts such as those of this program
 void draw_color_scale(cv::Mat& canvas, cv::Point left_bottom, int width, const std::string& first,
                       const std::string& last, const std::string& missing);
 
-// A picture and its caption, which is smaller if it is wider than the picture, by half at most, then cut off.
+// A picture and its caption. If wider, the caption shrinks to half its size at most, then is cut off.
 struct Panel {
   std::string caption;
   cv::Mat picture;

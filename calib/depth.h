@@ -26,8 +26,8 @@ struct DepthGeometry {
 std::vector<std::uint16_t> depth_millimetres(const DepthGeometry& geometry,
                                              const kernels::GrayImage& disparity);
 
-// The nearest and the farthest depth that a coloured picture distinguishes. A hundredth of all known depths
-// is nearer, and one is farther. Nullopt if no depth is known.
+// The nearest and the farthest depth that a coloured picture distinguishes. One hundredth of all known depths
+// is nearer, another is farther. Nullopt if no depth is known.
 struct DepthRange {
   int near_mm = 0;
   int far_mm = 0;  // above near_mm

@@ -31,16 +31,16 @@ std::vector<std::uint8_t> encode_corners_png(const GridShape& shape, const Capti
 // Draws lines through both pictures along every 32nd row. Objects lie in the same row on both sides.
 std::vector<std::uint8_t> encode_rectified_pair_png(const CaptionedImage& left, const CaptionedImage& right);
 
-// Draws how far the source of each entry lies from the entry, less the mean of its table (in the captions),
-// in colours (Viridis) from 0 to the largest distance of both tables; light grey: the entry is not valid.
-// Arrows show the direction. In both tables they have the same scale, also in the captions, such that none
-// reaches the start of the next.
+// Draws the displacement from each entry to its source, less the mean of its table (in the caption). Colours
+// (Viridis) show its length, from 0 to the largest of both tables; light grey: the entry is not valid. Arrows
+// show its direction. Both tables have the same scale of arrows (in the captions), such that no arrow reaches
+// the next.
 std::vector<std::uint8_t> encode_displacement_png(const kernels::RectificationTable& left,
                                                   const kernels::RectificationTable& right);
 
-// Draws depths in colours (Viridis), near ones bright, with the scale below the picture, which
-// is widened by white to the room of the scale. Depths beyond
-// depth_range() have the colours of its ends; 0 (unknown) is light grey.
+// Draws depths in colours (Viridis), near ones bright, with the scale below. White on the right makes a
+// narrow picture as wide as the scale. Depths beyond depth_range() have the colours of its ends; 0 (unknown)
+// is light grey.
 std::vector<std::uint8_t> encode_depth_color_png(int width, int height,
                                                  const std::vector<std::uint16_t>& millimetres);
 

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <iterator>
 #include <limits>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
@@ -110,8 +109,8 @@ class BoardCheck {
     return std::abs(sum) > kAtLeast * most;
   }
 
-  // Whether the board has further lines of corners outside the lines found. If there is none, one or two of
-  // the four squares around a point are missing, so that the point has half the contrast of a corner.
+  // Whether the board has further lines of corners outside the lines found. If not, a point one square
+  // outside lies at the edge of the board. It has squares on one side only, so half the contrast of a corner.
   bool continue_outside() const {
     constexpr double kAtLeast = 0.72;
     const auto exceeds = [](double beyond, double within) {
@@ -149,7 +148,7 @@ class BoardCheck {
     return contrast(picture_, here, right, down);
   }
 
-  // Of a row or a column of corners. The signs of its corners alternate.
+  // The contrast of a row or a column of corners, whose signs alternate.
   double contrast_of_line(bool is_row, int line) const {
     double sum = 0;
     for (int i = 0; i < (is_row ? shape_.columns : shape_.rows); ++i)

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <memory>
 #include <stdexcept>
 #include <utility>
@@ -65,7 +64,7 @@ std::string small_print(const GridShape& shape) {
                      shape.square_mm);
 }
 
-// With a ruler that has a tick every 10 mm, upwards from its bottom.
+// Adds a ruler with a tick every 10 mm, upwards from its bottom.
 Drawing drawing_of(const GridShape& shape) {
   constexpr double kPrintWidthMm = 198;  // from the beginning of the ruler to the end of the text
   Drawing drawing{grid_sheet(shape), {}, {}, {}};

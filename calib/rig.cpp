@@ -4,7 +4,6 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
-#include <cmath>
 #include <stdexcept>
 #include <string>
 

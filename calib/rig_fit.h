@@ -9,8 +9,7 @@
 
 namespace stereotlm::calib {
 
-// Distances in pixels from the corners found in a pair to the positions at which a rig would see them:
-// [corner].
+// [corner]: distance in pixels from a corner found in a pair to the position at which a rig would see it.
 struct Misfit {
   std::vector<double> left;
   std::vector<double> right;
@@ -45,8 +44,8 @@ inline constexpr std::size_t kFewestPairs = 3;
 // Calibrates both cameras and their relative pose (OpenCV's calibrateCamera and stereoCalibrate). The first
 // fit uses the pairs that agree about the position of the right camera relative to the left. A corner whose
 // misfit is more than eight times the median, and more than 0.1 pixels, is left out on both sides. A pair
-// that keeps less than half of its corners is left out completely. The fit is repeated until no corner
-// changes. Throws std::invalid_argument if fewer than kFewestPairs are given or left; std::runtime_error if
+// that keeps less than half of its corners is left out. The fit is repeated until it uses the same corners
+// again. Throws std::invalid_argument if fewer than kFewestPairs are given or left; std::runtime_error if
 // OpenCV finds no rig.
 RigFit fit_rig(const GridShape& shape, int width, int height, const std::vector<GridPair>& pairs,
                Lens lens = Lens::kFull);

@@ -143,9 +143,8 @@ Texture chessboard(const GridShape& shape) {
   };
 }
 
-// A textured rectangle. `origin` is the origin of its texture. The vectors `across` and `down`, at right
-// angles, are one unit of the texture each. `extent` is the rectangle in these units. Both sides look the
-// same.
+// A textured rectangle, the same on both sides. `origin` is the origin of its texture. `across` and `down`,
+// at right angles, are one unit of the texture each. `extent` is the rectangle in these units.
 Surface plane(const Vector3d& origin, const Vector3d& across, const Vector3d& down,
               const Eigen::AlignedBox2d& extent, Texture texture) {
   const Vector3d normal = across.cross(down).normalized();
@@ -243,8 +242,8 @@ struct Rectangle {
   double level;
 };
 
-// Draws random numbers only inside braces, whose elements are evaluated in order. Arguments in parentheses
-// are not.
+// Several random numbers of one expression stand in braces, whose elements are evaluated in order. Arguments
+// in parentheses are not.
 Scene random_scene(std::uint64_t seed, const Rig& rig) {
   SplitMix random = random_for(seed, Part::scene);
   std::vector<Surface> surfaces;
@@ -291,8 +290,7 @@ bool inside(const Vector2d& position, int width, int height) {
          position.y() >= -0.5 && position.y() < height - 0.5;
 }
 
-// The pixel at which a camera sees a point, which is in its own coordinates; nullopt if it is not in the
-// picture.
+// The pixel at which a camera sees a point in its own coordinates; nullopt if it is not in the picture.
 std::optional<Vector2d> pixel_of(const CameraModel& camera, const Vector3d& point, int width, int height) {
   if (!(point.z() > 0)) return std::nullopt;
   const Vector2d pixel = camera.pixel(point.hnormalized());
@@ -316,9 +314,9 @@ std::optional<GridPair> seen(const Rig& rig, const std::vector<Vector3d>& points
   return result;
 }
 
-// From chessboard coordinates to coordinates of the left camera. Size and tilt follow from the number, so
-// that a few poses are well spread. Positions are drawn at random, each a little farther away, until the
-// squares lie inside both pictures.
+// Maps chessboard coordinates to those of the left camera. Size and tilt follow from the number, so that a
+// few poses are well spread. Positions are drawn at random, each a little farther away, until the squares lie
+// inside both pictures.
 Eigen::Isometry3d grid_pose(std::uint64_t seed, const Rig& rig, const GridShape& shape, int number) {
   constexpr int kMostDraws = 500;
   constexpr double kFartherEachTime = 1.003;
@@ -357,9 +355,8 @@ Eigen::Isometry3d grid_pose(std::uint64_t seed, const Rig& rig, const GridShape&
                           std::to_string(rig.height) + " pixels show");
 }
 
-// Renders the pictures of a camera from one place in the scene, slightly blurred. It stores the direction of
-// the ray at every corner of a pixel, because computing the directions takes longer than rendering most
-// pictures.
+// Renders the pictures of a camera from one place in the scene, slightly blurred. Stores the direction of the
+// ray at every corner of a pixel: computing them takes longer than rendering most pictures.
 class Camera {
  public:
   // `to_scene` turns directions in camera coordinates to scene coordinates. Throws as

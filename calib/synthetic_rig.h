@@ -21,8 +21,7 @@ struct View;  // the scene, and the cameras
 //
 // The cameras are about 80 mm apart and not quite parallel. Let w be the width of the smallest 4:3 picture
 // that contains theirs. The wide-angle lenses see about 68 degrees over the width w, and 51 degrees over the
-// height 3/4 w. The rectified disparities of the scene are w/34 to w/9, such as about 20 to 65 pixels at 640
-// x 480.
+// height 3/4 w. The rectified disparities of the scene are about w/34 to w/9.5: 19 to 67 pixels at 640 x 480.
 class SyntheticRig {
  public:
   // `width` and `height`: of the pictures, at least one pixel.
@@ -38,9 +37,8 @@ class SyntheticRig {
   // The pictures of the chessboard, with a white border before a grey background, in pose `number`: 0, 1, ..
   // The chessboard fills a good part of both pictures. It is tilted from the line of sight by 10 to 35
   // degrees, and rolled. Every square lies wholly inside both pictures. A dozen poses suffice to calibrate
-  // the rig.
-  // `shape` has no problems(). Throws std::domain_error if the pictures have no room for the board, such as
-  // pictures of a few rows.
+  // the rig. `shape` has no problems(). Throws std::domain_error if the pictures have no room for the board,
+  // such as pictures of a few rows.
   Pair grid_view(const GridShape& shape, int number) const;
   // The exact positions of the inner corners in the pictures of grid_view(). Throws as grid_view() does.
   GridPair grid_corners(const GridShape& shape, int number) const;
@@ -60,8 +58,8 @@ class SyntheticRig {
   // picture; the true disparity is this value + disparity_offset.
   //
   // Matches are found with rig(), in the pictures of the cameras. `calibrated` and `rectification` only map
-  // positions between these and the rectified pictures. So `calibrated` may be a rig that was fitted to
-  // pictures of the size of rig(). Throws as rectified_pixel() does.
+  // positions between these pictures and the rectified ones. So `calibrated` may be a rig that was fitted to
+  // pictures of rig(). Throws as rectified_pixel() does.
   std::vector<float> disparity(const Rig& calibrated, const Rectification& rectification,
                                int disparity_offset) const;
 

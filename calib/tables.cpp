@@ -53,8 +53,7 @@ bool are_tables_of(const TablePair& tables, const Rig& rig, const Rectification&
     if (tables.left.entries[i] != table_entry(rig, left, {column + disparity_offset, row})) ++different;
     if (tables.right.entries[i] != table_entry(rig, right, {column, row})) ++different;
   }
-  // One compared entry in 1000 may differ: another machine may round a position half way between two pixels
-  // differently.
+  // One compared entry in 1000 may differ: another machine may round half a pixel differently.
   return different <= tables.left.entries.size() / kStep / 1000;
 }
 

@@ -24,8 +24,8 @@ std::uint32_t table_entry(const Rig& rig, const SourcePixels& sources, const Eig
 // std::invalid_argument if the pictures are larger than 2048 x 2048.
 TablePair tables(const Rig& rig, const Rectification& rectification, int disparity_offset);
 
-// Whether tables() would make the same tables. They must have the size of the rig's pictures. Compares about
-// one entry in a hundred.
+// Whether tables() would make `tables`, which must have the size of the rig's pictures. Compares about one
+// entry in a hundred.
 bool are_tables_of(const TablePair& tables, const Rig& rig, const Rectification& rectification,
                    int disparity_offset);
 
@@ -35,15 +35,13 @@ std::string lut_bytes(const kernels::RectificationTable& table);
 // The size in bytes of the table file for images of this size.
 std::size_t lut_byte_count(int width, int height);
 
-// Throws std::runtime_error if the bytes are not a table for images of this size, or if the table has
-// problems.
+// Throws std::runtime_error if the bytes are no table for images of this size, or the table has problems.
 kernels::RectificationTable parse_lut(std::string_view bytes, int width, int height);
 
-// The number of source lines that a front end would have to buffer if it kept lines of the source picture
-// instead of reading single pixels. For every `lines` consecutive rows of the rectified picture, from the
-// top, it is the number of source rows from the first to the last that a valid entry names, or 0 without
-// valid entries. Returns height - lines + 1 values. Throws std::invalid_argument if the table has problems or
-// `lines` is not 1..height.
+// How many source lines a front end would have to buffer if it kept lines instead of reading single pixels.
+// Value i is for rows i..i+lines-1 of the rectified picture. It counts the source rows from the first to the
+// last, both included, that a valid entry names; 0 without valid entries. Returns height - lines + 1 values.
+// Throws std::invalid_argument if the table has problems or `lines` is not 1..height.
 std::vector<int> source_lines(const kernels::RectificationTable& table, int lines);
 
 }  // namespace stereotlm::calib

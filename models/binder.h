@@ -8,9 +8,9 @@ namespace stereotlm {
 using InitiatorSocket = tlm::tlm_initiator_socket<32>;
 using TargetSocket = tlm::tlm_base_target_socket_b<32>;  // also the base of optional target sockets
 
-// Binds a memory-mapped initiator to its target. The default binds them directly. A test or a tracer
-// overrides bind() to insert a module of its own between the two: it owns that module and binds both of its
-// sides during elaboration.
+// Binds a memory-mapped initiator to its target; the default does so directly. A test or a tracer overrides
+// bind() to insert a module between the two. The override owns that module, and binds both sides of it during
+// elaboration.
 class Binder {
  public:
   virtual ~Binder() = default;

@@ -28,8 +28,8 @@ class Clock {
 
   // Whether all edges of both clocks lie at the same times.
   bool has_edges_of(const Clock& other) const { return period_ == other.period_; }
-  // The number of phases that the edges of this clock have against those of `other`: each edge is a multiple
-  // of other's period divided by this number behind an edge of `other`.
+  // The number of phases that the edges of this clock have against those of `other`. A phase is a multiple of
+  // other's period divided by this number.
   Wide phases_against(const Clock& other) const {
     const Wide mine = mhz_.numerator * other.mhz_.denominator;
     const Wide others = other.mhz_.numerator * mhz_.denominator;

@@ -68,7 +68,7 @@ struct PciDemand {
   std::uint64_t bursts = 0;  // of the master with the most
 };
 
-// `latency_timer`: the clock with whose word a burst ends; nullopt: no burst is cut.
+// `latency_timer`: a burst ends with the word of this clock; nullopt: no burst is cut.
 PciDemand pci_demand(const BoardConfig& board, bool whole_pictures, std::optional<int> latency_timer) {
   const int words_a_clock = board.pci.width_bits / 32;
   PciDemand demand;
@@ -89,8 +89,8 @@ PciDemand pci_demand(const BoardConfig& board, bool whole_pictures, std::optiona
 
 // Either the bus serves every transfer of the load when it is due. Or the load has a backlog and requests all
 // the time: then it gets a burst between any two bursts of another master, and the latency timer cuts all
-// bursts. A frame may see both. At most one transfer that is due and one that is cut lie partly outside of
-// it.
+// bursts. A frame may see both cases. At most one due transfer and one cut transfer lie partly outside the
+// frame.
 double pci_rate(const BoardConfig& board, bool whole_pictures) {
   const double hz = board.pci.clock_mhz * 1e6;
   const double alone = static_cast<double>(pci_demand(board, whole_pictures, std::nullopt).clocks);
@@ -114,9 +114,9 @@ double pci_rate(const BoardConfig& board, bool whole_pictures) {
 double bridge_rate(const BoardConfig& board, bool whole_pictures) {
   const auto picture =
       static_cast<std::uint64_t>(board.image.width) * static_cast<std::uint64_t>(board.image.height) / 4;
-  // The local bus moves the result, and the pair either by DMA or as it was captured. A cycle of the FPGA
-  // grants one word at most. From one word of a burst to the next it takes at least one local clock. From the
-  // last word of a burst to the first of the next burst it takes four: idle, address, decode and word.
+  // The local bus moves the result and the pair, by DMA or straight from the capture boards. The FPGA grants
+  // at most one word a cycle. Two words of a burst are at least one local clock apart. The last word of a
+  // burst and the first word of the next are four apart: idle, address, decode and word.
   const bool to_host = board.capture.destination == CaptureDestination::kHostMemory;
   const double pictures = to_host || whole_pictures ? 3 : 1;
   const double words = pictures * static_cast<double>(picture);

@@ -33,7 +33,7 @@ FrameAccesses frame_accesses(const BoardConfig& board, const Tables& tables);
 // |          | of the matcher after it was taken.                                                         |
 // | bank B   | One cycle per access, no turnaround; with separate ports one cycle per read or one per     |
 // |          | write, whichever are more. After the last read: the latencies of its slot up to the        |
-// |          | matcher, the folds on it, the drain and the last  writes.                                  |
+// |          | matcher, the folds on it, the drain and the last writes.                                   |
 // | matcher  | The read latencies of the first slot, the folds on each slot, the drain, the last writes.  |
 //
 // The last writes store the words that the last column completes, one for each row of the last strip.

@@ -24,12 +24,12 @@
 namespace stereotlm::platform {
 
 // Traces the buses and the queues of a computer in a window, at every fidelity with the same records
-// (trace_records.h). The controls of the blocks report what they do. A computer skips no burst that belongs
-// to the window. Plain C++.
+// (trace_records.h). The controls of the blocks report what they do. A computer skips no burst that is in the
+// window. Plain C++.
 //
 // The window is a range of times, or the time of a frame of the core, from its start strobe to its end. A
-// burst belongs to it if the burst ends after the window begins, and requests its bus before the window ends.
-// A level belongs to it if its time is after the beginning of the window, and not after its end.
+// burst is in the window if it ends after the window begins, and requests its bus before the window ends. A
+// QueueLevel is in the window if the window begins before its time, and ends then or later.
 class BusTrace : public pci::PciBusObserver,
                  public pci::LocalBusMasterObserver,
                  public fpga::LocalBusObserver,
@@ -55,12 +55,12 @@ class BusTrace : public pci::PciBusObserver,
   // `show(now_ps)` lets both observers of FIFOs receive all words up to a time.
   void set_show_words(std::function<void(std::uint64_t)> show) { show_words_ = std::move(show); }
 
-  // Bursts that begin at `now_ps` or later may be skipped if they end before this time.
+  // Bursts that begin at `now_ps` or later may be skipped if they end before the returned time.
   std::uint64_t skips_end_ps(std::uint64_t now_ps) const { return now_ps <= end_ps_ ? begin_ps_ : kNever; }
 
   // Hands out the bursts whose bus is free again by `now_ps`, and the levels up to then, each once. To be
-  // called regularly, because they fill memory, and with the time of the end of the run. A computer may be
-  // ahead of `now_ps`.
+  // called regularly, because they fill memory, and with the time of the end of the run. Later records, of a
+  // computer that is ahead of `now_ps`, are kept.
   void hand_out(std::uint64_t now_ps);
 
  private:
@@ -126,7 +126,7 @@ class BusTrace : public pci::PciBusObserver,
   std::function<void(std::uint64_t)> show_words_;
   std::array<Fifo, 2> fifos_{Fifo(*this, "left_capture"), Fifo(*this, "right_capture")};
 
-  // The window. Both are kNever until the frame of a window begins; the second is, until that frame ends.
+  // The window. If it is a frame, both are kNever until the frame begins, and end_ps_ is until it ends.
   std::uint64_t begin_ps_ = kNever;
   std::uint64_t end_ps_ = kNever;
   std::optional<std::uint64_t> frame_;

@@ -64,7 +64,7 @@ bool CameraLines::skip(std::uint64_t now_ps, std::uint64_t end_ps) {
   return false;
 }
 
-// Where the words of the line go on the local bus; nothing unless to two banks that serve one word a cycle.
+// The addresses of the line's words on the local bus, if they go to two banks that serve one word a cycle.
 std::optional<CameraLines::OfSides<std::uint64_t>> CameraLines::bank_addresses() const {
   const std::uint64_t bytes = 4 * words_of_line();
   OfSides<std::uint64_t> addresses{};
@@ -158,7 +158,7 @@ void CameraLines::record_pci_step(std::uint64_t clock) {
     so_far.subtract(record_.counts[side]);
     if (so_far.transactions != of_side.pci.transactions) of_side.end_clock = clock - record_.pci_clock;
     of_side.pci = so_far;
-    // A request counts from the first clock at or after its time. That of the next line is not of this one.
+    // A request counts from the first clock at or after its time. A request for the next line is left out.
     const std::uint64_t requested = pci_bus_.request_clock(kMasters[side]);
     if (requested != kNever && requested != record_.request_clocks[side] &&
         !captures_[side].is_between_lines()) {
@@ -169,7 +169,7 @@ void CameraLines::record_pci_step(std::uint64_t clock) {
   }
 }
 
-// The same words stay complete at this clock of the PCI bus.
+// Narrows the bounds: the same words must be complete at this clock of the PCI bus.
 void CameraLines::narrow_pixel_bounds(std::uint64_t pci_clock) {
   const std::uint64_t time_ps = pci_bus_.clock().edge_ps(pci_clock);
   const capture::CaptureFifo::Span span = captures_[0].fifo().same_words(record_.row, time_ps);
@@ -177,7 +177,7 @@ void CameraLines::narrow_pixel_bounds(std::uint64_t pci_clock) {
   record_.pci_later_ps = std::min(record_.pci_later_ps, from_to(time_ps, span.end_ps) - kRounding);
 }
 
-// The same clock of the local bus stays the next one at this clock of the PCI bus.
+// Narrows the bounds: the same clock of the local bus must be the next one at this clock of the PCI bus.
 void CameraLines::narrow_local_bounds(std::uint64_t pci_clock) {
   const Clock& local = local_bus_.clock();
   const std::uint64_t time_ps = pci_bus_.clock().edge_ps(pci_clock);

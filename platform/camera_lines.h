@@ -17,26 +17,24 @@ namespace stereotlm::platform {
 // Skips lines of the cameras that repeat what an earlier line did.
 //
 // Both cameras send a line at the same time. Its words take bursts on the PCI bus, wait in the bridge, and
-// take bursts on the local bus to their banks. What happens when depends on three series of times: the
-// arrivals of the first and of the last pixel of each word, the clocks of the PCI bus, and the clocks of the
-// local bus. These are seldom in step, so the times of one line seldom come again. But only their order
-// matters: which words are complete when a clock of the PCI bus begins, and which clock of the local bus is
-// the next one then.
+// take bursts on the local bus to their banks. When this happens depends on three series of times: the
+// arrivals of the first and of the last pixel of each word, the clocks of the PCI bus, and those of the local
+// bus. These are seldom in step, so the times of a line seldom repeat. But only their order matters: which
+// words are complete when a clock of the PCI bus begins, and which clock of the local bus comes next.
 //
-// So a line is stepped once and recorded: what it counts, and in which clocks it ends. Beside that stands how
-// far the clocks of the PCI bus could move against the pixels, and those of the local bus against those of
-// the PCI bus, before two times would change places. A later line is skipped if it begins within these
-// bounds, and if the same master had the PCI bus last (the bus is granted in turn). A line that no record
-// fits is stepped.
+// So a line is stepped once and recorded: its counts, and the clocks in which it ends. The record also has
+// bounds: how far the clocks of the PCI bus can move against the pixels, and those of the local bus against
+// those of the PCI bus, before two times change their order. A later line is skipped if it begins within
+// these bounds, and if the same master had the PCI bus last (the bus is granted in turn). A line that no
+// record fits is stepped.
 //
 // This holds only for lines that nothing else touches:
 // - Bridge, local bus and PCI bus are idle when the line begins, and both boards request then.
 // - The words go to two banks, and each bank takes one word a cycle, beside the frame of the core. The local
 //   bus and the core must have the same clock.
 // - Until the last word is stored, no other master requests the PCI bus, and no other block has an event.
-// - No pixel arrives when its FIFO would be full if no word left: else it would also matter in which data
-// clock
-//   each word leaves.
+// - No pixel arrives when its FIFO would be full if no word left. Else the data clock in which each word
+//   leaves would matter too.
 // The first line of a picture and the last one are always stepped.
 class CameraLines {
  public:
@@ -53,8 +51,8 @@ class CameraLines {
            captures_[0].fifo().next_row() == captures_[1].fifo().next_row() &&
            pci_bus_.request_clock(kLeftCapture) == pci_bus_.decision_clock();
   }
-  // To be called then, before that decision, at `now_ps`. Before `end_ps` nothing but the PCI bus and the
-  // bridge has an event. Returns true if it has skipped the line, instead of that decision.
+  // To be called if begins(), before that decision, at `now_ps`. Before `end_ps` only the PCI bus and the
+  // bridge have events. Returns true if it has skipped the line: that decision must not be made then.
   bool skip(std::uint64_t now_ps, std::uint64_t end_ps);
 
   // While a line is recorded, stepped() is to be called after each event of PCI bus and bridge, and drop()
@@ -95,8 +93,8 @@ class CameraLines {
              least.last_granted == beginning.last_granted;
     }
   };
-  // What a line does. Clocks are counted from the one with which it begins, on the local bus from the next
-  // one.
+  // What a line does. Clocks of the PCI bus are counted from the one with which the line begins, clocks of
+  // the local bus from the next one after that.
   struct Line {
     struct SideLine {
       pci::PciBusControl::MasterCounts pci;
@@ -125,7 +123,7 @@ class CameraLines {
     OfSides<std::uint64_t> full_checks{};
     BusCounts buses;
     std::size_t turn = 0;
-    // The first clocks of the last requests, among whose pixels the bounds are narrowed already.
+    // The clocks of the requests for which the bounds are narrowed already.
     OfSides<std::uint64_t> request_clocks{};
   };
 
@@ -155,8 +153,8 @@ class CameraLines {
   FastBoard& board_;
   OfSides<capture::CaptureControl>& captures_;
   bool has_pixels_;
-  // Two phases of the clocks of the local bus that differ by no more than this are the same: half a step,
-  // because against them those of the PCI bus may have few phases.
+  // The clocks of the PCI bus have few phases against those of the local bus. Two phases that differ by at
+  // most this are the same: it is half a step from phase to phase.
   std::int64_t phase_tolerance_ps_;
 
   std::vector<Bounds> bounds_;

@@ -1,7 +1,6 @@
 #include "platform/collect.h"
 
 #include <algorithm>
-#include <utility>
 
 #include "platform/audit.h"
 #include "platform/computer_parts.h"

@@ -88,8 +88,8 @@ void ComputerLoop::run(std::uint64_t end_ps) {
   }
 }
 
-// The end of what can be skipped: `end_ps`, or the next time at which something but the PCI bus and the
-// bridge has an event, or at which the buses are traced.
+// The end of what can be skipped: the earliest of `end_ps`, the next event of a block other than the PCI bus
+// and the bridge, and the time from which the buses are traced.
 std::uint64_t ComputerLoop::skips_end_ps(std::uint64_t end_ps) const {
   if (trace_ != nullptr) end_ps = std::min(end_ps, trace_->skips_end_ps(now_ps_));
   return std::min({end_ps, board_.next_ps(), board_.local_bus().next_ps(), captures_[0].next_ps(),

@@ -22,8 +22,8 @@
 namespace stereotlm::platform {
 
 // The computer without its processor at fidelity fast or timing: the controls of all blocks, bound directly
-// and stepped in the order of their events (contract section 3, "To the clock"). No kernel. The master kHost
-// of the PCI bus is free for the processor's bridge.
+// and stepped in the order of their events (contract section 3, "To the clock"), without the SystemC kernel.
+// The master kHost of the PCI bus is free for the processor's bridge.
 class ComputerLoop : private pci::BridgeControl::Host {
  public:
   // `host_memory` has `host_memory_bytes` bytes. It, `left` and `right` outlive the loop. Throws
@@ -35,10 +35,10 @@ class ComputerLoop : private pci::BridgeControl::Host {
 
   // Times are below 2^60 - 1 ps, which are 13 days.
   static constexpr std::uint64_t kEndOfTime = (std::uint64_t{1} << 60U) - 1;
-  // Steps the blocks to the time at which the interrupt rises or notice() is called, at most to `end_ps`. The
-  // decisions of that time are still to be made, because whatever the processor does then comes before them.
-  // If it returns at `end_ps`, those of that time have been made. Throws std::invalid_argument unless
-  // `end_ps` is below kEndOfTime.
+  // Steps the blocks to the time at which the interrupt rises or notice() is called. The decisions of that
+  // time are still to be made, because what the processor does then comes before them. Else stops at
+  // `end_ps`, after the decisions of that time. Throws std::invalid_argument unless `end_ps` is below
+  // kEndOfTime.
   void run(std::uint64_t end_ps);
   // The time up to which the blocks have been stepped.
   std::uint64_t now_ps() const { return now_ps_; }

@@ -41,8 +41,8 @@ class Conflicts {
   // See ConflictRecorder::take_frames().
   std::vector<fpga::FrameConflicts> take_frames();
 
-  // Identities between the sums of tiles and strips, and the figures of the run; those that do not hold. To
-  // be called when all frames have been taken.
+  // The identities between the sums of tiles and strips and the figures of the run that do not hold. To be
+  // called when all frames have been taken.
   std::vector<std::string> failed(const Statistics& statistics) const;
 
  private:

@@ -56,8 +56,8 @@ class FastBoard : private fpga::LocalBusControl::Core,
   //
   // Whether bursts to these bytes are served one word a cycle, independently of the running frame.
   bool serves_one_word_per_cycle(std::uint64_t address, std::uint64_t bytes) const;
-  // Such bursts have written `words` words from `address` on, see HostPort::skip_writes(). Returns the place
-  // of the words, which the caller writes.
+  // Skips such bursts, which write `words` words from `address` on; see HostPort::skip_writes(). Returns
+  // where the caller must write the words.
   std::uint32_t* skip_writes(std::uint64_t address, std::uint64_t words, std::uint64_t cycle,
                              const std::vector<fpga::HostPort::ServedWords>& bursts);
 

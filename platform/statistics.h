@@ -43,11 +43,11 @@ struct BlameRow {
 };
 
 // The rate of a whole computer without its start-up. L is allocation_period_frames(). The first L deliveries
-// are warm-up; the window is the greatest multiple of L of the last frames that the others allow.
+// are warm-up. The window has the last k * L of the other deliveries, for the greatest k.
 struct SteadyRate {
   double frames_per_second = 0;  // frames of the window / time from the delivery before it to the last one
-  // What the window leaves open: frames_per_second * (greatest - least latency of the window and of the
-  // delivery before it) / its time.
+  // What the window leaves open: frames_per_second * (greatest - least latency) / time of the window. The
+  // latencies are those of the window and of the delivery before it.
   double uncertainty = 0;
   std::uint64_t frames = 0;  // of the window
 };

@@ -234,8 +234,8 @@ void Timeline::frame_ended(const fpga::FrameTimes& times) {
   pair(number).ends_ps[kFrameIndex] = event.end_ps;
 }
 
-// Adds a wait as one event for each reason, which holds until its time or the time of one before. For the
-// rest nothing is busy: the driver's accesses take the time.
+// Adds a wait as one event for each reason, one after the other: each ends at the time of its reason. The
+// rest has the reason `host`: nothing is busy, the driver's accesses take the time.
 void Timeline::wait(const char* who, std::uint64_t frame, std::uint64_t from_ps, std::uint64_t to_ps,
                     const Reasons& reasons) {
   TimelineEvent event = event_of(EventKind::kWait, who, frame, from_ps);

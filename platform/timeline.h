@@ -21,11 +21,11 @@
 namespace stereotlm::platform {
 
 // Records what happens in a computer: captures and dropped frames, DMA transfers, frames of the core,
-// interrupts, and who waits for whom. The blocks say what they do, at every fidelity in the same words. The
-// driver says what each of its starts has waited for. Plain C++.
+// interrupts, and who waits for whom. The blocks report what they do, the same at every fidelity. The driver
+// reports what each of its starts has waited for. Plain C++.
 //
-// Events are handed out in the order of their ends. It keeps only the events since the capture of the last
-// frame that was delivered.
+// Events are handed out in the order of their ends. The time line keeps only the events since the capture of
+// the last frame that was delivered.
 class Timeline : public pci::BridgeObserver, public fpga::FrameObserver, public DriverObserver {
  public:
   explicit Timeline(const BoardConfig& board);
@@ -46,8 +46,8 @@ class Timeline : public pci::BridgeObserver, public fpga::FrameObserver, public 
 
   // The next frame is delivered, now.
   void deliver(const Delivery& delivery);
-  // The run may have ended with the last delivery, which is now. `counters` are of this time. Events that are
-  // under way end now.
+  // To be called if the run may end with the last delivery, which is now. `counters` are of this time. Events
+  // that are under way end now, for finish().
   void mark_end(const ComputerCounters& counters);
 
   // The records that are complete, each once. To be called regularly.
@@ -55,8 +55,8 @@ class Timeline : public pci::BridgeObserver, public fpga::FrameObserver, public 
   // All other records, up to the last mark_end(). To be called once.
   TimelineRecords finish();
 
-  // Identities between all that was handed out and the figures of the run; those that do not hold. To be
-  // called after finish().
+  // The identities between all that was handed out and the figures of the run that do not hold. To be called
+  // after finish().
   std::vector<std::string> failed(const Statistics& statistics) const;
 
  private:
@@ -113,7 +113,7 @@ class Timeline : public pci::BridgeObserver, public fpga::FrameObserver, public 
   void end_interrupt(std::size_t interrupt, std::uint64_t now_ps);
   void fetch(Buffer picture, std::uint64_t now_ps);
   void dma_done(unsigned channel, std::uint64_t now_ps);
-  // The next one of an activity of the core or of the DMA begins. Returns its number.
+  // Begins the next activity of this kind, of the core or of the DMA. Returns its number.
   std::uint64_t begin(Activity activity, std::uint64_t now_ps);
   std::uint64_t begun(Activity activity) const { return begun_[static_cast<std::size_t>(activity)]; }
   void wait(const char* who, std::uint64_t frame, std::uint64_t from_ps, std::uint64_t to_ps,
@@ -134,7 +134,7 @@ class Timeline : public pci::BridgeObserver, public fpga::FrameObserver, public 
   std::vector<PlacedBuffer> buffers_;
   std::array<CaptureSide, 2> boards_{CaptureSide(*this, 0), CaptureSide(*this, 1)};
 
-  // Pairs that are under way, and those before whose times are still needed.
+  // The pairs under way, and earlier ones whose times are still needed.
   std::deque<Pair> pairs_;
   std::uint64_t first_pair_ = 0;
   std::array<std::vector<Awaited>, kActivities> awaited_;  // [Activity]: of its last start
@@ -152,8 +152,8 @@ class Timeline : public pci::BridgeObserver, public fpga::FrameObserver, public 
 
   std::vector<TimelineEvent> ended_;  // not handed out yet
   std::vector<TimelineEvent> last_;   // the events up to the last mark_end(), some of which are handed out
-  // All events that end before are recorded: everything that is recorded later ends after the beginning of
-  // the last pair that was delivered.
+  // All events that end before this time are recorded. It is the beginning of the last delivered pair: what
+  // is recorded later ends after it.
   std::uint64_t complete_until_ps_ = 0;
   std::uint64_t handed_out_until_ps_ = 0;  // all events that ended before are handed out
   std::vector<FrameLatency> latencies_;

@@ -7,8 +7,8 @@
 
 namespace stereotlm::platform {
 
-// What a port does at a bank during the cycles of a strip of results: it is granted `count` of them, or waits
-// for `count` of them. Plain data.
+// What a port does at a bank in the cycles of a strip of results: it is granted in `count` of these cycles,
+// or waits in `count` of them. Plain data.
 struct TraceRun {
   std::size_t strip = 0;          // 0: the fill, which comes before the first results
   std::uint64_t first_cycle = 0;  // since power-up; the first cycle of the strip
@@ -32,7 +32,7 @@ struct FrameRuns {
 // of the bus.
 //
 // On the local bus a posted burst requests the bus from the post of its first word on, a read and a burst of
-// DMA from their start on. The list has no burst that the local bus refuses.
+// DMA from their start on. A burst that the local bus refuses is left out.
 struct BusBurst {
   enum class Bus : std::uint8_t { kPci, kLocal };
 
@@ -54,9 +54,8 @@ struct BusBurst {
 
 // A queue holds this number of words from a time on.
 //
-// - The FIFO of a capture board: its complete words. A word comes with its last pixel, and leaves at the end
-// of
-//   its data clock, or of the burst that loses it. There is one level for each time.
+// - The FIFO of a capture board: its complete words. A word comes with its last pixel. It leaves at the end
+//   of its data clock, or of the burst that loses it. There is one level for each time.
 // - The posted words: as each write is posted, and as the places of a posted burst become free, which is the
 //   end of its idle clock. Of two levels at the same time the later one holds.
 struct QueueLevel {

@@ -20,8 +20,7 @@ constexpr int kDisparityBits = 8;           // contract 1.5, 255 = invalid
 constexpr int kWordBits = 32;
 constexpr int kValidBit = 1;
 
-// The resources of the cost functions (contract 7.6): what compares two pixels, the census bits of a pixel,
-// and what compares two scores of zncc.
+// Resources of the cost functions (contract 7.6).
 
 constexpr std::int64_t kMostProduct = kMostPixel * kMostPixel;
 
@@ -54,12 +53,12 @@ PairArithmetic pair_arithmetic(const kernels::MatchingCost& cost) {
   return {absolute_difference(kPixelBits), kMostPixel, kPixelBits};
 }
 
-// Computes the census bits of one pixel per cycle, on one side. c is the size of the neighbourhood.
+// The resources for the census bits of one pixel per cycle, on one side. c is the size of the neighbourhood.
 // - c * c - 1 comparators, and registers for the c * (c - 1) pixels that the next position needs too.
-// - `moves_down`: the neighbourhood moves down a column; else to the right, behind a line buffer. At the top
-//   of a column these registers are loaded with the c - 1 rows above, through one selector per bit. The
-//   newest pixels of these rows come from the line memories, the pixels of the c - 1 columns before from
-//   further registers.
+// - `moves_down`: the neighbourhood moves down a column. At the top of a column one selector per bit loads
+//   these registers with the c - 1 rows above: their newest pixels come from the line memories, the pixels of
+//   the c - 1 columns before from further registers.
+// - Else it moves to the right, behind a line buffer.
 Resources census_bits(const kernels::MatchingCost& cost, bool moves_down) {
   const int before = 2 * cost.half();
   const int kept = cost.census_size * before * kPixelBits;
@@ -142,12 +141,12 @@ Resources word_cache(const Core& core) {
          shift_register(places, kWordBits) + selector(kWordBits);
 }
 
-// Contract section 2, "Lane": a slot waits as a table entry, then as a pixel, in queues of `lane_fifo_slots`
-// places. Of the valid bits only the left one is passed on, to the left-right check. Paper section 3.2: an
-// entry names a source pixel. The address of that pixel is row * W + column, and the pixel is one of four in
-// a word. The entries of joint tables (contract 7.3) are displacements. One reader takes both halves of an
-// entry, and each lane has its queue. The counters of a lane's position begin at the offsets X and Y, so that
-// a displacement takes only one adder for the column and one for the row.
+// Contract section 2, "Lane", and paper section 3.2. A slot waits in queues of `lane_fifo_slots` places,
+// first as a table entry, then as a pixel. Only the left valid bit is passed on, to the left-right check. The
+// source pixel of an entry has the address row * W + column, and is one of four in its word. Joint tables
+// (contract 7.3): one port reads both halves of an entry, and each lane has its queue. The halves are
+// displacements. The counters of a lane's position begin at the offsets X and Y, so that a displacement takes
+// one adder for the column and one for the row.
 void add_lanes(const Core& core, Items& items) {
   const CoreConfig& config = core.config;
   const int tables = core.tables();
@@ -169,9 +168,9 @@ void add_lanes(const Core& core, Items& items) {
 }
 
 // Paper section 2.4, contract 1.2. m is the size of the kernel. Beside the new pixel the filter reads the
-// pixels of the m - 1 columns before it in the same row; a column of slots has K rows. For each column of the
-// image the line memories hold the partial sums of the rows above. They also hold as many valid bits as there
-// are rows from the middle of the first window down to the newest K rows.
+// m - 1 pixels before it in the same row. A column of slots has K rows. For each image column the line
+// memories hold the partial sums of the rows above, and h - r valid bits. These belong to the rows from the
+// middle of the first window to the last row above the newest K.
 void add_filter(const Core& core, Items& items) {
   const CoreConfig& config = core.config;
   if (!config.filter) return;
@@ -191,9 +190,8 @@ void add_filter(const Core& core, Items& items) {
 }
 
 // Contract 7.6. c is the size of the neighbourhood. The stage behind the filter makes c * c - 1 bits of each
-// filtered pixel. It keeps c - 1 rows of filtered pixels as the filter keeps its sums, and the pixels of the
-// c - 1 columns before as the filter keeps its pixels. Without a filter these line memories also keep the
-// valid bits, at most 2, for which they have room.
+// filtered pixel. Line memories hold c - 1 rows of filtered pixels, column memories the c - 1 columns before.
+// Without a filter the line memories also hold the valid bits, at most 2, for which they have room.
 void add_census(const Core& core, Items& items) {
   const CoreConfig& config = core.config;
   if (config.cost.kind != CostKind::kCensus) return;
@@ -204,8 +202,8 @@ void add_census(const Core& core, Items& items) {
   add("census line memories", 2, 2 * memory(config.width, before_bits), items);
 }
 
-// Contract section 2, `line_buffer`: the row buffers hold the n - 1 rows above the newest row, as the modules
-// take them, and the left valid bits from the newest row up to the middle of the window.
+// Contract section 2, `line_buffer`: the row buffers hold the n - 1 rows above the newest one, as the modules
+// take them, and r + h left valid bits: from the middle row of the window to the row above the newest slot.
 void add_row_buffers(const Core& core, Items& items) {
   if (!core.columns_of_pixels) return;
   Resources rows;
@@ -216,13 +214,13 @@ void add_row_buffers(const Core& core, Items& items) {
   add("row buffers", 2, rows, items);
 }
 
-// Contract 7.1: a module does the candidates u, u + U, u + 2U, .. in S folds. What it keeps of one candidate
-// from column to column is a shift register with a place for each pass (S = 1: registers).
+// Contract 7.1: a module computes the candidates u, u + U, u + 2U, .. in S folds. A value that it keeps from
+// column to column is a shift register with a place for each fold (S = 1: registers).
 
-// Sums the results of n pixel pairs: of one pair per cycle, or of n pairs in one cycle. With one row of
-// results the sum begins anew with each column. With several rows (contract 7.2) it slides down the column:
-// the result of the new pair is added, and the result of n slots before is subtracted. The last R values of
-// the sum belong to the R rows.
+// Sums the results of n pixel pairs of a column: one pair per cycle, or all in one cycle behind a line
+// buffer. With one row of results the sum begins anew with each column. With several rows (contract 7.2) it
+// slides down the column: it adds the result of the new pair, and subtracts that of n slots before. Its last
+// R values belong to the R rows.
 Resources column_sum(const Core& core, const Resources& pair, std::int64_t most, int folds) {
   const int n = core.config.window;
   const int bits = core.column_sum_bits(most);
@@ -241,8 +239,8 @@ Resources window_sum(const Core& core, std::int64_t most, int folds) {
          shift_register(folds, bits);
 }
 
-// Delays a number of the right side from module to module, by `places` clock enables each: U - 1 delays. With
-// several folds the last module's number comes back to the first one, a fold later.
+// U - 1 delays, which take a number of the right side from module to module, by `places` clock enables each.
+// With several folds one more delay takes it from the last module back to the first one, a fold later.
 struct Delays {
   std::int64_t count;
   Resources all;
@@ -257,10 +255,9 @@ Delays delays(const Core& core, int places, int bits) {
 }
 
 // Paper figures 6 and 8. Left pixels go to all column modules. Right pixels go from module to module, one
-// column later in each. A column module adds up the results of n pixel pairs, one per cycle. A window module
-// adds the output of its column module, and subtracts the output of n columns before; R rows share the column
-// module. Each candidate has a flip-flop that marks whether its window lies inside both images (contract
-// 1.3). Each column of a row adds one candidate whose window does.
+// column later in each. A column module adds up the results of n pixel pairs, and serves R window modules.
+// Each of these adds its output, and subtracts its output of n columns before. A flip-flop for each candidate
+// marks that its window lies inside both images (contract 1.3). Along a row each column marks one more.
 void add_modules(const Core& core, Items& items) {
   const PairArithmetic& pair = core.pair;
   const Delays pixels = core.columns_of_pixels
@@ -315,9 +312,9 @@ Resources select_min(const Rank& rank, int disparity_bits) {
 // With several folds a disparity is held as its fold and its module, and is put together at the end.
 int split_disparity_bits(const Core& core) { return bits_of(core.folds - 1) + bits_of(core.units - 1); }
 
-// Paper section 3.3, figure 6: a chain. Module d keeps the smaller of two sums: its own, and the sum that
-// module d-1 held a column ago, of a disparity of at most d-1. Module 0 only holds its own sum. In each fold
-// but the first, it compares it with what the last module held in the fold before, a column ago.
+// Paper section 3.3, figure 6: a chain. Module d keeps the smaller of two sums: its own, and the one that
+// module d-1 held a column ago, of a disparity of at most d-1. Module 0 just holds its own sum in fold 0. In
+// later folds its second sum is the last module's, a column and a fold ago.
 void add_select_min_chain(const Core& core, Items& items) {
   const Rank rank = rank_of(core);
   Resources chain;

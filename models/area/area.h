@@ -34,8 +34,8 @@ struct Item {
 // the configuration does not need are absent. Throws std::invalid_argument if the configuration has problems.
 std::vector<Item> items(const fpga::CoreConfig& config);
 
-// Slices per LUT-equivalent, from a least-squares fit to the three rows of Table 2. With 0.5 every slice
-// would hold two.
+// Slices per LUT-equivalent, from a least-squares fit to the three rows of Table 2. A slice has room for two:
+// 0.5 would mean that all slices are full.
 inline constexpr double kSlicesPerLutEquivalent = 0.6218;
 
 // The resources of all items together. Percentages are shares of the device: the core does not fit if one of

@@ -34,8 +34,8 @@ class CameraTiming {
   std::uint64_t row_ps(int row) const { return pixel_ps(0, row); }
   std::uint64_t last_pixel_ps() const { return pixel_ps(width_ - 1, height_ - 1); }
   // Returns how many pixels of a row have arrived when `since_begin_ps` have passed since the beginning of
-  // the frame. A pixel that arrives at that very time counts.
-  // Rounding moves the beginning of the row and the arrival of a pixel by at most half a ps each.
+  // the frame. A pixel that arrives at that very time counts. Two roundings of up to half a ps can make the
+  // count uncertain: then the loops correct it.
   int pixels_by(int row, std::uint64_t since_begin_ps) const {
     const std::uint64_t begin_ps = row_ps(row);
     if (since_begin_ps < begin_ps) return 0;
@@ -55,7 +55,7 @@ class CameraTiming {
 
  private:
   // A frame has 525/480 = 35/32 line times per row. With a frame rate of 17 digits the step is a fraction of
-  // numbers below 2^102, and a time has fewer than 2^36 steps.
+  // numbers below 2^102, and a time has fewer than 2^36 steps, as Period requires.
   CameraTiming(const CameraConfig& config, const DecimalNumber& rate_hz)
       : width_(config.width),
         height_(config.height),

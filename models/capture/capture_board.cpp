@@ -1,6 +1,5 @@
 #include "models/capture/capture_board.h"
 
-#include <stdexcept>
 #include <string>
 
 #include "models/kernel_time.h"

@@ -161,8 +161,8 @@ void CaptureControl::start(std::uint64_t now_ps) {
   proceed(now_ps);
 }
 
-// No burst runs: requests the bus for the time at which the FIFO needs it, or finishes the capture when the
-// FIFO has finished.
+// Called while no burst runs. If the frame has words left, requests the bus for the time at which the FIFO
+// needs it. Else finishes the capture.
 void CaptureControl::proceed(std::uint64_t now_ps) {
   const std::uint64_t next_ps = fifo_.next_ps();
   if (!fifo_.finishes_next()) {

@@ -69,8 +69,7 @@ class CaptureControl : public FrameReceiver,
 
   // The time at which step() is to be called next; kNever: a call may change it.
   std::uint64_t next_ps() const { return next_ps_; }
-  // Whether it decides about a frame, from the state after everything else that happens at that time. Else it
-  // ends a capture.
+  // Whether step() decides about a frame, after all other effects of that time. Else it ends a capture.
   bool decides_next() const { return decision_ps_ <= finish_ps_; }
   void step(std::uint64_t now_ps);
 
@@ -99,7 +98,7 @@ class CaptureControl : public FrameReceiver,
   void copy_line(std::uint32_t* to) const {
     camera_->copy_words(next_line_word(), fifo_.words_per_line(), to);
   }
-  // The next line has been captured, in this number of bursts, of which the last one ended at `now_ps`.
+  // Skips the next line, whose words have left in `bursts` bursts. The last burst ended at `now_ps`.
   void skip_line(std::uint64_t now_ps, std::uint64_t bursts);
 
   bool capturing() const { return capturing_; }

@@ -110,8 +110,8 @@ class CaptureFifo {
   bool finishes_next() const { return occupancy_ == 0 && next_line_ps_ == kNever && takes_no_more(); }
   // To skip lines that repeat:
   //
-  // Whether a line can be skipped: no word of the lines up to now is to come or to leave, and a line comes,
-  // which is next_row().
+  // Whether there is a next line, next_row(), and it can be skipped: all words of the lines so far have come
+  // and left.
   bool is_between_lines() const { return occupancy_ == 0 && takes_no_more() && next_line_ps_ != kNever; }
   int next_row() const { return row_ + 1; }
   bool has_row(int row) const { return row < timing_->height(); }
@@ -120,13 +120,13 @@ class CaptureFifo {
   std::uint64_t first_request_ps(int row) const {
     return arrival_ps(std::min(trigger_words_, words_per_line_) * kernels::kPixelsPerWord - 1, row);
   }
-  // From `first_ps` on, and before `end_ps`, as many words have begun, and are complete, as at `time_ps`.
-  // Some of this row's pixels have arrived then, but none of the next row's, which exists.
+  // A span of time: `first_ps` included, `end_ps` not.
   struct Span {
     std::uint64_t first_ps = 0;
     std::uint64_t end_ps = 0;
   };
-  // The number of words changes with the first and with the last pixel of each word.
+  // The span around `time_ps` in which the numbers of words begun and of words complete stay the same. Some
+  // pixels of `row` have arrived at `time_ps`, but none of the next row, which exists.
   Span same_words(int row, std::uint64_t time_ps) const {
     const int pixels = timing_->pixels_by(row, time_ps - begin_ps_);
     const int first_of_word = pixels / kernels::kPixelsPerWord * kernels::kPixelsPerWord;
@@ -137,7 +137,7 @@ class CaptureFifo {
   }
   // The number of times that a word needed a check for a free place.
   std::uint64_t full_checks() const { return full_checks_; }
-  // The next line has come, and all its words have entered and left, the last of them at `now_ps`.
+  // Skips the next line: all its words have entered and left, the last of them at `now_ps`.
   void skip_line(std::uint64_t now_ps) {
     begin_line(row_ + 1);
     pixels_ = timing_->width();

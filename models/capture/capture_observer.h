@@ -32,8 +32,8 @@ class CaptureObserver {
   virtual void interrupt_cleared(std::uint64_t now_ps) = 0;
 };
 
-// Receives the words of a capture board's FIFO, for traces. Words that come are reported by their times, and
-// so are words that leave: later than they do, and perhaps several times. Plain C++.
+// Receives the words of a capture board's FIFO, for traces. Words that come are reported in the order of
+// their times, and so are words that leave. A report may be late, and may be repeated. Plain C++.
 class FifoObserver {
  public:
   virtual ~FifoObserver() = default;

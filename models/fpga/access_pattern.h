@@ -10,9 +10,9 @@
 
 namespace stereotlm::fpga {
 
-// Computes, before a frame that works directly on memory, which accesses each slot of one side makes: none if
-// the slot lies outside the image, else one for its table entry, and one for its pixel if the entry is valid
-// and the word cache does not have its word.
+// The accesses of the slots of one side, computed before a frame that works directly on memory. A slot
+// outside the image makes none. Any other reads its table entry. It reads its pixel if the entry is valid,
+// unless the word cache holds the pixel's word.
 class AccessPattern {
  public:
   // At first every entry is its own source, as on a side without table.
@@ -21,16 +21,16 @@ class AccessPattern {
   // Takes width * height entries, row-major.
   void set_entries(const std::uint32_t* entries);
 
-  // Whether a slot for this pixel accesses the image. A pixel has the same word before it in each strip.
+  // Whether a slot for this pixel accesses the image, in any strip: each begins with an empty word cache.
   bool needs_pixel(int column, int row) const {
     const auto place = static_cast<std::size_t>(column);
     return (pixels_of_row(row)[place / 64] >> place % 64 & 1U) != 0;
   }
   // Whether every slot inside the image accesses it.
   bool needs_all_pixels() const { return needs_all_pixels_; }
-  // The first slot, from four columns after `slot` on, that differs from the slot four columns before it: one
-  // of the two accesses its pixel, the other does not. If there is none, the number of slots. (With a word
-  // cache the accesses repeat every four columns at best.)
+  // The first slot, at least four columns after `slot`, that differs from the slot four columns before it:
+  // only one of the two accesses its pixel. If there is none, the number of slots. (With a word cache the
+  // accesses repeat every four columns at best.)
   std::uint64_t uniform_until(std::uint64_t slot) const;
   // Whether slots access their pixels: bit i for slot `slot` + i of the frame, for 64 slots. 0 beyond the
   // end of the frame. `slot` is at most 256 slots beyond it.

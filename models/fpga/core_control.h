@@ -55,7 +55,7 @@ class CoreControl {
   // columns. Groups are counted from column result_delay_columns % 4 on.
   bool commit(const Decision& decision, memory::PortMask granted, const PixelNeeds& needs_pixel);
 
-  // The number of the next cycles that are alike because everything waits for the matcher: no port of the
+  // The number of cycles, from the next one on, in which everything waits for the matcher: no port of the
   // core requests or passes, and the matcher works on a slot without consuming it.
   std::uint64_t waiting_cycles() const {
     const std::uint64_t cycles = match_.cycles_to_consume();
@@ -63,15 +63,15 @@ class CoreControl {
     const Decision decision = decide();
     return decision.requests() == 0 && decision.passes() == 0 ? cycles : 0;
   }
-  // Skips this number of them, in which the host does not request.
+  // Skips `cycles` of these cycles. The host must not request in them.
   void skip_waiting(std::uint64_t cycles);
 
   // Counts cycles of the host port, which commit() does not count.
   void count_host(bool requested, bool granted, std::uint64_t cycles = 1) {
     host_cycles().add(requested ? Intent::kRequest : Intent::kIdle, granted, cycles);
   }
-  // Counts cycles in which the host requested an uncontended bank. The frame counts them as idle too, now or
-  // later, which is corrected here.
+  // Counts cycles in which the host requested an uncontended bank. Corrects the frame's own count of them as
+  // idle, which may come before or after this call.
   void host_was_busy(bool granted, std::uint64_t cycles) {
     host_cycles().subtract(Intent::kIdle, false, cycles);
     host_cycles().add(Intent::kRequest, granted, cycles);
@@ -88,9 +88,9 @@ class CoreControl {
     for (const LaneControl& lane : lanes_) state.push_back(lane.state());
     state.push_back(match_.state() | result_.state() << kHalf);
   }
-  // Skips the cycles in which the matcher consumes `slots` slots, or consume-cycles of the drain, and `words`
-  // words of results are written. The core is in `state` afterwards; the caller corrects the marks of the
-  // lanes. `slots` is at most MatchControl::uniform_slots().
+  // Skips cycles, after which the core is in `state`. In them the matcher consumes `slots` slots (in the
+  // drain: consume-cycles), and `words` words of results are written. `slots` is at most
+  // MatchControl::uniform_slots(). The caller then calls correct_marks().
   void skip_to(memory::StateReader& state, std::uint64_t slots, std::uint64_t words);
   // Cycles of the core's own ports, over all frames.
   using Counts = std::array<PortCycles, kCorePortCount>;

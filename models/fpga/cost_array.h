@@ -14,11 +14,10 @@
 
 namespace stereotlm::fpga {
 
-// The array of column and window modules (paper figures 6 and 8). It takes a column of the left side,
-// then one of the right side. For the windows that end at these columns it passes on the sum of every
-// candidate, or its score: row by row, first to select-min unit A, then to unit B. Nothing leaves before the
-// first window is complete. The number of modules has no effect here: all candidates are computed when the
-// last pass ends.
+// The array of column and window modules (paper figures 6 and 8). It takes a column of the left side, then
+// one of the right side. For the windows that end at these columns it passes on the sum or the score of every
+// candidate: row by row, first to select-min unit A, then to unit B. Nothing leaves before the first window
+// is complete. The number of modules has no effect here: all candidates are computed when the last fold ends.
 class CostArray : public sc_core::sc_module {
  public:
   StreamOut<WindowSums> chain_out{"chain_out"};

@@ -13,8 +13,8 @@ inline bool is_row_of_image(int row, int height) {
   return static_cast<unsigned>(row) < static_cast<unsigned>(height);
 }
 
-// Whether a word of an image begins with this column. On a side without table the word cache has the words of
-// all other columns (contract 7.4): a strip begins with a word, and its columns follow one another.
+// Whether a word of an image begins with this column. On a side without table the columns follow one another,
+// so the pixels of all other columns are hits of the word cache (contract 7.4).
 inline bool begins_word(int column) { return column % kernels::kPixelsPerWord == 0; }
 
 // The slots of a frame (contract section 2, "Slots" and "Matcher"): strips of columns, and the delay of a

@@ -50,8 +50,7 @@ class FrameRun {
   FrameRun(const CoreConfig& config, const std::vector<memory::SsramBankConfig>& banks,
            memory::Arbitration& arbitration, std::uint64_t stall_timeout_cycles);
 
-  // Adds an observer, which outlives this object. Whoever observes frames names the strobe of each, by
-  // strobe().
+  // Adds an observer, which outlives this object. The caller then calls strobe() for each frame.
   void observe(FrameObserver& observer) { observers_.push_back(&observer); }
   // To be called after a frame is started.
   void strobe(std::uint64_t time_ps) {
@@ -106,8 +105,7 @@ class FrameRun {
   std::uint64_t first_cycle() const { return first_cycle_; }
   // The first cycle after the frame that was finished last.
   std::uint64_t done_cycle() const { return done_cycle_; }
-  // After serve_host() its state and counts may be of an earlier cycle, up to the next other call that runs
-  // cycles.
+  // After serve_host() its state and counts may be those of an earlier cycle, until another call runs cycles.
   CoreControl& control() { return core_.control(); }
   const CoreControl& control() const { return core_.control(); }
   // A lower bound of the cycle in which the last write of the frame is granted.
@@ -121,8 +119,8 @@ class FrameRun {
   // See FastForward.
   std::uint64_t skipped_cycles() const { return core_.skipped_cycles(); }
   // To be called regularly while a frame runs. Returns the number of cycles without progress if it has
-  // reached stall_timeout_cycles, else 0. In such cycles the matcher does not work and no result is written,
-  // because the arbiters never grant one of the core's ports. After a timeout they are counted anew.
+  // reached stall_timeout_cycles, else 0. Without progress, the matcher does not work and no result is
+  // written: one of the core's ports is never granted. After a timeout the count begins anew.
   std::uint64_t stalled_cycles();
   // Text for messages: the frame that runs, and what its ports wait for.
   std::string waits();
@@ -135,7 +133,7 @@ class FrameRun {
   void record_rows() { core_.rows().turn_on(); }
   std::vector<RowProfile> take_rows() { return std::exchange(row_profiles_, {}); }
 
-  // The words of the host port, which is served beside the frames; to be called once.
+  // Sets the source of the host port's next word. To be called once.
   void set_host(NextHostWord host) { host_ = std::move(host); }
   // Records all frames from the next one on. `conflicts` outlives this object.
   void record(ConflictRecorder& conflicts) { conflicts_ = &conflicts; }

@@ -93,8 +93,8 @@ std::optional<std::uint64_t> HostPort::serve_uncontended(std::uint64_t horizon_p
   while (bus_.word_waits()) {
     cycle = std::max(cycle, clock_.edge_at_or_after(bus_.request_ps()));
     const std::uint64_t edge_ps = clock_.edge_ps(cycle);
-    // Another master of the registers may start a frame that uses the bank: when the previous frame ends, and
-    // at any pending event.
+    // Another master of the registers may start a frame that uses the bank: when the finishing frame ends,
+    // and at any event from horizon_ps on.
     if (!is_only_master_ && frames_.is_finishing() && cycle >= frames_.done_cycle()) {
       count_words_outside();
       return clock_.edge_ps(frames_.done_cycle());
@@ -141,9 +141,9 @@ void HostPort::serve_word(std::uint64_t cycle, std::uint64_t edge_ps) {
   }
 }
 
-// Serves one word a cycle from `first_cycle` on, to the end of the burst. After its first grant the port is
-// alone with requests that all win: each further one changes the state of the bank's policy as a cycle
-// without request does (memory::ArbitrationPolicy), and has the same outcome.
+// Serves one word a cycle from `first_cycle` on, to the end of the burst. The port is uncontended: each grant
+// after the first one has the same outcome, and changes the state of the bank's policy as a cycle without
+// request does (memory::ArbitrationPolicy).
 void HostPort::serve_in_step(std::uint64_t first_cycle) {
   const std::uint64_t first = std::max(first_cycle, bus_.request_clock());
   const std::size_t words = bus_.words_left();
@@ -158,8 +158,8 @@ bool HostPort::serves_one_word_per_cycle(std::size_t bank) const {
          !arbitration_.arbiter(bank).needs_turnaround();
 }
 
-// As in serve_in_step(), the words behind the first one change the state of the policy as cycles without
-// request do, which is what lies between two bursts.
+// As in serve_in_step(), each grant after the first one changes the state of the policy as a cycle without
+// request does. So do the cycles between the bursts: one decide() serves all of them.
 void HostPort::skip_writes(std::uint64_t address, std::uint64_t words, std::uint64_t cycle,
                            const std::vector<ServedWords>& bursts) {
   const bool in_frame = frames_.is_running();

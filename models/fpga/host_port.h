@@ -53,13 +53,12 @@ class HostPort {
   // Whether the burst goes to a bank of the running frame, or another master of the registers may start the
   // next frame as soon as this one ends.
   bool is_contended() const;
-  // Runs the frame and serves the words of the burst, to the end of the burst or of the frame, but not more
-  // than FastForward::kMostHostCycles after the waiting word requests.
+  // Runs the frame and serves the words of the burst until the burst or the frame ends, but for at most
+  // FastForward::kMostHostCycles after the waiting word requests.
   void serve_contended();
-  // Serves the words of an uncontended burst. A word may be served early, but another master of the registers
-  // could start a frame on its bank from `horizon_ps` on. Returns the time to call again, in ps: either a
-  // later time, or the end of the finishing frame, which must be ended first. Returns nothing if no word
-  // waits any more.
+  // Serves the words of an uncontended burst, early if possible: but from `horizon_ps` on, another master of
+  // the registers could start a frame on its bank. Returns the time of the next call, in ps. If it is the end
+  // of the finishing frame, that frame must be ended first. Returns nullopt if no word waits any more.
   std::optional<std::uint64_t> serve_uncontended(std::uint64_t horizon_ps);
   // To be called for each cycle in which the host requests while no frame runs, if serve_uncontended() is not
   // called.
@@ -77,13 +76,13 @@ class HostPort {
     std::uint64_t first_cycle;
     std::uint64_t words;
   };
-  // Counts skipped bursts that have written `words` words to such a bank, from byte address `address` on.
-  // Their cycles are counted from `cycle` on; the running frame cannot have ended by the last one.
+  // Counts skipped bursts that have written `words` words to such a bank, from byte address `address` on. The
+  // cycles of `bursts` are relative to `cycle`. The running frame cannot have ended by the last of them.
   void skip_writes(std::uint64_t address, std::uint64_t words, std::uint64_t cycle,
                    const std::vector<ServedWords>& bursts);
 
-  // Finishes the frame, after the cycle in which its last write was granted. The words that were served
-  // before the frame's cycle() are in it, all others that are not counted yet are outside.
+  // Finishes the frame, after the cycle in which its last write was granted. Words served before the frame's
+  // cycle() belong to it, later ones do not.
   void finish_frame() {
     count_served(frames_.cycle(), true);
     frames_.finish();

@@ -100,7 +100,7 @@ class LaneControl {
            std::uint64_t{arrived_entries_ != 0} << 33U;
   }
   // Skips the cycles in which the matcher consumes `slots` slots. The lane is in `state` afterwards. The
-  // caller corrects the marks.
+  // caller then calls correct_marks().
   void skip_to(State state, std::uint64_t slots) {
     static_assert(kMostSlots <= 0xff);
     const auto behind_consumed = [&](unsigned bit) { return consumed_ + (state >> bit & 0xffU); };

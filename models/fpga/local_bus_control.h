@@ -57,8 +57,8 @@ struct HostRoute {
 // - Words read are on the bus once they are usable.
 // - The burst ends with the idle clock after the last word.
 //
-// The words of the banks need no step here: whoever grants the port of the host calls access(), or
-// move_words() and count_granted(). A register is accessed at the end of its word's clock, by step().
+// step() accesses only registers, each at the end of its word's clock. Words of the banks move without it:
+// whoever grants the host port calls access(), or move_words() and count_granted().
 class LocalBusControl final : public LocalBusIf {
  public:
   struct Stats {
@@ -137,8 +137,8 @@ class LocalBusControl final : public LocalBusIf {
   // The clocks of all bursts, while the bus is idle.
   std::uint64_t busy_clocks() const { return stats_.busy_clocks + idle_clock_ - address_clock_; }
   std::uint64_t bursts() const { return stats_.bursts; }
-  // While the bus is idle: `bursts` bursts have taken `busy_clocks` clocks, and this is the idle clock of the
-  // last one. For each range of addresses count_words() adds their words.
+  // Skips `bursts` bursts while the bus is idle. They take `busy_clocks` clocks; `idle_clock` is the idle
+  // clock of the last one. For each range of addresses the caller adds their words by count_words().
   void skip_bursts(std::uint64_t bursts, std::uint64_t busy_clocks, std::uint64_t idle_clock);
   void count_words(bool write, std::uint64_t address, std::uint64_t words) {
     (write ? stats_.words_written : stats_.words_read) += words;

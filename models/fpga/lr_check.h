@@ -14,7 +14,7 @@ namespace stereotlm::fpga {
 
 // The left-right check (paper section 2.3; contract 1.4). For each column it takes the match of unit A, then
 // that of unit B. It passes on the checked disparity of the left pixel D-1 columns back, from the first pixel
-// of the frame on. Each of the R rows has a check of its own; rows outside the image end here.
+// of the frame on. Each of the R rows has its own check. Results of rows outside the image are dropped here.
 class LrCheck : public sc_core::sc_module {
  public:
   StreamOut<Disparity> disparities_out{"disparities_out"};

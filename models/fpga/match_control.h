@@ -70,12 +70,12 @@ class MatchControl {
                static_cast<std::uint64_t>(geometry_.rows) +
            (columns_ - before_last_strip) / 4 * static_cast<std::uint64_t>(geometry_.last_rows);
   }
-  // The number of cycles in which it still works on the slot, or the consume-cycle, that it has begun, before
-  // it consumes it.
+  // The number of cycles for which the matcher still works on the slot, or the consume-cycle, that it has
+  // begun, before the cycle in which it consumes it.
   std::uint64_t cycles_to_consume() const {
     return fold_ == 0 ? 0 : static_cast<std::uint64_t>(geometry_.folds - 1 - fold_);
   }
-  // Skips this number of them.
+  // Skips `cycles` of these cycles.
   void skip_folds(std::uint64_t cycles) { fold_ += static_cast<int>(cycles); }
   // The number of slots, or of consume-cycles of the drain, that have been consumed in this frame.
   std::uint64_t consumed() const { return columns_ * slots_per_column() + static_cast<std::uint64_t>(k_); }

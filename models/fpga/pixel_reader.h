@@ -68,7 +68,7 @@ class PixelReader : public sc_core::sc_module {
   // Whether the slot that comes next, whose pixel is `pixel` of the image, needs an access. To be called once
   // for each slot, in their order.
   bool next_needs_access(bool is_valid, std::uint64_t pixel);
-  // The next slot is handled.
+  // Handles the next slot: stores its pixel, which is read now if `needs_access`.
   void deliver(std::uint64_t pixel, bool needs_access, const sc_core::sc_time& at);
   void pass() { pixels_[pixels_stored_++ % kRing] = MaskedPixel{}; }
   std::uint64_t pixel_of(int column, int row) const {
@@ -83,8 +83,8 @@ class PixelReader : public sc_core::sc_module {
   std::array<Waiting, kRing> entries_{};
   std::array<MaskedPixel, kRing> pixels_{};
   bool needs_access_ = false;
-  // [slot of a column]: the number in the image of the word that the slots before leave in the cache when
-  // they are handled, or kNoWord.
+  // [slot of a column]: the word that is in the cache when the next slot is handled, or kNoWord. Words are
+  // counted over the image.
   std::vector<std::uint64_t> cached_;
   std::vector<std::uint32_t> words_;  // [slot of a column]: the last word read
   // Numbers of slots since the start of the frame.

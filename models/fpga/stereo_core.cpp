@@ -1,6 +1,5 @@
 #include "models/fpga/stereo_core.h"
 
-#include <algorithm>
 #include <stdexcept>
 
 namespace stereotlm::fpga {

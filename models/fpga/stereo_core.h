@@ -4,7 +4,6 @@
 #include <string>
 #include <systemc>
 #include <tlm>
-#include <vector>
 
 #include "models/binder.h"
 #include "models/clock.h"
@@ -38,17 +37,12 @@ struct StereoCoreConfig {
 // cycles (also past the end of an sc_start()); every access carries its own time. The process sleeps while no
 // frame runs and no word waits at the local bus.
 //
-// At the other fidelities the process fast-forwards. It advances a frame in two cases: a word at the local
-// bus contends for a bank of the frame, or the frame may have ended. The frame works directly on memory:
-// - It reads pictures and tables at the start strobe, all at once.
-// - It writes all disparities at once: at the time of its last write, or earlier, but never before a pending
-//   event that could observe them.
-// - A burst of the local bus that could observe this is a hazard: it writes what the frame reads, or reads or
-//   writes the disparities. It is reported with SC_REPORT_ERROR (type /stereotlm/core). Where errors are
-//   not thrown, the frame ends with the error flag of register_map.h.
+// At the other fidelities the process fast-forwards (FastCore), and a frame works directly on memory:
+// - A hazard is reported with SC_REPORT_ERROR (type /stereotlm/core). Where errors are not thrown, the frame
+//   ends with the error flag of register_map.h.
 // - A frame is stepped cycle by cycle if memory grants no direct access, if its buffers overlap, if its
-//   tables point outside the image, or if it begins within a burst that is a hazard. If only the local bus
-//   can start a frame, all words of a burst are in place with the first one.
+//   tables point outside the image, or if it begins within a burst that is a hazard.
+// - If only the local bus can start a frame, all words of a burst are in place with the first one.
 //
 // A frame stalls if for stall_timeout_cycles the matcher works in no cycle and no result is written: the
 // arbiters never grant one of its ports. The stall is reported with SC_REPORT_ERROR (type /stereotlm/core),
@@ -81,9 +75,8 @@ class StereoCore : public sc_core::sc_module, private FastCore::Board {
 
   // Advances control() to the present, for observers of a running frame. Two counts are provisional until a
   // burst contends for a bank of the frame, or the frame ends:
-  // - A pass on an uncontended pixel port counts as a grant, in the arbiters' reads too, and
-  // FrameRun::waits()
-  //   shows it as a request.
+  // - A slot that an uncontended pixel port passes without access counts as a grant and a read.
+  //   FrameRun::waits() shows a request.
   // - Words of a burst for an uncontended bank count as idle cycles of the host port.
   void catch_up();
 

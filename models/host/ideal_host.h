@@ -40,8 +40,8 @@ class IdealHost : public sc_core::sc_module {
 
   // The tables, `source` and `sink` outlive the host. A side without rectification has a null table. Throws
   // std::invalid_argument if a list of buffers is empty, or a side has a table without a buffer or a buffer
-  // without a table. With joint tables both tables are needed. The host joins them; it throws
-  // std::invalid_argument if they do not fit.
+  // without a table. Joint tables need both, and the host joins them. It throws std::invalid_argument if they
+  // cannot be joined.
   IdealHost(const sc_core::sc_module_name& name, const IdealHostConfig& config,
             const kernels::RectificationTable* left_table, const kernels::RectificationTable* right_table,
             FrameSource& source, FrameSink& sink);

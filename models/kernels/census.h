@@ -28,7 +28,7 @@ class CensusColumns {
 
   // Begins a frame. `first_row`: see ColumnNeighbourhood.
   void start_frame(int first_row) { pixels_.start_frame(first_row); }
-  // Enters the next column. Returns the column that leaves, or any one until the first leaves.
+  // Enters the next column. Returns the column that leaves; without meaning until the first one leaves.
   PixelColumn push(const PixelColumn& column) {
     std::copy_n(column.values, rows_, pixels_.begin_column());
     if (!pixels_.finish_column(column.valid)) return output();

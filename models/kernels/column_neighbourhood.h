@@ -12,14 +12,14 @@
 namespace stereotlm::kernels {
 
 // Holds the pixels around the columns of a frame, in the order in which the hardware fetches them. Columns
-// enter strip by strip: columns 0..width-1 of a strip, then those of the next strip, `rows_per_strip` rows
-// further down. A column has `rows_per_column` new rows. The 2h rows above the new ones come from line
-// memories. When column u enters, column u - h leaves, h rows further up, with the h columns on both of its
-// sides. Edge pixels repeat, and pixels of rows outside the image are ignored.
+// enter strip by strip: columns 0..width-1, then those of the next strip, `rows_per_strip` rows below. A
+// column has `rows_per_column` new rows; line memories give the 2h rows above (h is `half`). When column u
+// enters, column u - h leaves, with its rows h above the new ones. columns() also has h columns on each side
+// of it. Edge pixels replace what lies outside the image.
 template <class Value>
 class ColumnNeighbourhood {
  public:
-  // The image has pixels; `rows_per_column` is 1..kMostRows.
+  // The image is not empty; `rows_per_column` is 1..kMostRows.
   ColumnNeighbourhood(int width, int height, int rows_per_column, int rows_per_strip, int half)
       : width_(width), height_(height), rows_(rows_per_column), step_(rows_per_strip), half_(half) {
     const auto size = static_cast<std::size_t>(2 * half + 1);

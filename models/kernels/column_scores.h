@@ -12,12 +12,12 @@ namespace stereotlm::kernels {
 
 // The select-min units compare keys: a window sum in the upper bits and a disparity in the lowest 8. The
 // smallest key is the smallest sum, and among equal sums the smallest disparity. This is the largest sum that
-// fits. Other scores are compared as exact fractions.
+// fits. Scores that do not fit are compared as exact fractions.
 inline constexpr std::int32_t kLargestKeySum = 0x7FFFFF;
 
 // The scores of the candidates of one column, as exact fractions; the greatest wins. All candidates of a left
-// pixel share the variance of its window, so only the variances of the right windows enter the scores. For a
-// right pixel, only the variance of the left window does.
+// pixel share the variance of its window: their scores use the variances of the right windows alone. Those of
+// a right pixel use the variance of the left window alone.
 struct ColumnScores {
   const std::int64_t* covariances = nullptr;      // [d]
   const std::int64_t* right_variances = nullptr;  // [d]: of the right window d columns ago
@@ -55,8 +55,8 @@ class ColumnScorer {
     oldest_ = 0;
   }
   // Enters the next column of each side: n pixels, top first. `window_sums`: the sums of CostColumns after
-  // the same columns. Sums that are not sums of products become negative covariances with variances of 1, so
-  // that the smallest sum wins.
+  // the same columns. Sums of ssd become negative covariances with a variance of 1, so that the smallest sum
+  // wins.
   void push_column(const std::uint8_t* left, const std::uint8_t* right, const std::int32_t* window_sums) {
     scores_.covariances = covariances_.data();
     scores_.right_variances = right_variances_.data();

@@ -15,8 +15,8 @@ namespace stereotlm::kernels {
 // for windows that the vector loops leave undecided. Sums of products are kept from column to column and from
 // row to row, so that neighbouring windows cost little more than the comparison of their candidates.
 //
-// The right image is mirrored. Then both sides do the same: the candidates of a window at column u of its own
-// image are windows of the other image in the order of their columns, from across - 1 - u on.
+// The right image is mirrored, so that both sides do the same: the candidates of the window at column u are
+// windows of the other image, in the order of their columns, from across - 1 - u on.
 class CorrelationSearch {
  public:
   CorrelationSearch(int width, int height, int window, int disparities, const Simd& simd)

@@ -4,10 +4,10 @@
 
 namespace stereotlm::kernels::STEREOTLM_SIMD {
 
-// A Key stands for the score of a candidate, with as much of its disparity as fits. Kept is what is known
-// about several candidates, Best the same about candidates of several groups of disparities.
+// A Key is the score of a candidate, with as much of its disparity as fits. Kept holds what is known about
+// the candidates of one group of disparities, Best the same for several groups.
 
-// Window sums of up to this value fit into NarrowKeys, and of up to that value into WideKeys.
+// The largest window sums that fit into NarrowKeys and into WideKeys.
 constexpr int kLargestNarrowSum = 16383;
 constexpr int kLargestWideSum = 0x7FFEFE;
 
@@ -28,7 +28,7 @@ struct NarrowKeys {
   static Key none() { return int16s(32767); }
   static Kept only(Key key) { return key; }
   static Kept best_of(Kept a, Key b) { return smaller(a, b); }
-  // Returns none() in the lanes in which `outside` is the largest value; in the others it is the smallest.
+  // Returns none() in the lanes in which `outside` is the largest value. In all others it is the smallest.
   static Key unless(Int16s outside, Key key) { return larger(key, outside); }
   static Best best_of_none() { return {none(), Int16s{}}; }
   // The smaller sum wins. Of equal sums `best` wins, whose disparity is smaller.

@@ -8,18 +8,18 @@ namespace stereotlm::kernels::STEREOTLM_SIMD {
 // position; a row adds the pixels that enter at the bottom and subtracts those that leave at the top. Along
 // the row a window sum gains the column sum that enters and loses the one that leaves.
 //
-// A Cost has:
-//   Keys                    how candidates are compared (frame_simd_keys.h)
-//   kGroup                  the number of disparities that are matched together
-//   kPixelLanes, kSumLanes  lanes of the pixels and of a column sum at one position
-//   Sum                     a column sum, or its change
-//   WindowSum, start(d), add(WindowSum&, Sum)
-//   right(pixels)           loads the right pixels at a position
-//   change(right, pixels)   the change of a column sum, for these left pixels
-//   score(WindowSum, j)     what both sides' keys have in common, for the j-th disparity of the group
-//   right_key(score, j), left_key(score, j)
-//   next()                  to be called between two windows
-// It is made from the plan, the memory and the first disparity of the group.
+// A Cost is made from the MatchPlan, the MatchMemory and the first disparity of a group. It has:
+//   Keys                      how candidates are compared (frame_simd_keys.h)
+//   kGroup                    the number of disparities that are matched together
+//   kPixelLanes, kSumLanes    lanes of the pixels and of a column sum at one position
+//   kUnpacks, kHasStatistics  see MatchLoops; prepare() fills these arrays before each row
+//   pixels(side)              the pixels of a side that right() and change() take
+//   Sum                       a column sum, or its change
+//   WindowSum, start(d), add(WindowSum&, Sum)    start(d): the empty sum of disparity d
+//   right(pixels)             loads the right pixels at a position
+//   change(right, pixels)     the change of a column sum, for these left pixels
+//   score(WindowSum, j)       what right_key(score, j) and left_key(score, j) share; j: place in the group
+//   next()                    to be called between two windows
 
 // The column sums of kCount neighbouring disparities, which lie side by side for each position. next()
 // advances the pointers to the next position. Nothing points to this object, so that the compiler knows that

@@ -91,7 +91,7 @@ void ImageMatcher::choose_loops(const MatchingCost& cost, const Simd& simd) {
 
 // Chooses the number of bands that needs the least work. Neighbouring segments share window - 1 columns, and
 // neighbouring bands as many rows. Shared columns and rows are computed twice, each time with about half the
-// work of others. More segments need fewer column sums.
+// work of the others. More segments are shorter, and need fewer column sums.
 void ImageMatcher::choose_bands() {
   const double shared = plan_.window - 1;
   double least = std::numeric_limits<double>::max();
@@ -129,7 +129,7 @@ void ImageMatcher::prepare(MatchedImage& side, int positions, int windows) {
   }
 }
 
-// From one byte of the pixels to the next, in MatchedImage::pixel_vectors.
+// The distance from one byte of the pixels to the next in MatchedImage::pixel_vectors, in lanes.
 int ImageMatcher::pixel_stride(const MatchedImage& side) const {
   return rounded_up(side.positions, 8) * simd_.lanes;
 }

@@ -32,8 +32,8 @@ struct JointTable {
   JointOffsets offsets;
 };
 
-// The reasons for which two tables of one size, which have no problems, cannot be joined: one for each side
-// and coordinate whose displacements need a larger range than there is. Empty if they can.
+// Why two tables cannot be joined: a text for each side and coordinate whose displacements need a larger
+// range than there is. Empty if they can be joined. Both tables have one size and no problems.
 std::vector<std::string> joint_problems(const RectificationTable& left, const RectificationTable& right);
 
 // Joins two tables. The offsets are the middles of the ranges that the valid entries of a side need. Throws

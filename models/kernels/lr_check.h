@@ -9,8 +9,8 @@
 
 namespace stereotlm::kernels {
 
-// Returns whether (contract 1.4) the left-based disparity of a left pixel survives, given the right-based
-// disparity of the right pixel that it points to. Without a tolerance (`off`) every valid disparity survives.
+// Returns whether the left-based disparity of a left pixel survives (contract 1.4). `right_based`: that of
+// the right pixel that it points to. Without a tolerance (`off`) every valid disparity survives.
 inline bool left_right_consistent(std::uint8_t left_based, std::uint8_t right_based,
                                   std::optional<int> tolerance) {
   if (left_based == kInvalidDisparity) return false;
@@ -19,8 +19,8 @@ inline bool left_right_consistent(std::uint8_t left_based, std::uint8_t right_ba
 }
 
 // The left-right check behind the select-min units, column by column; used by fpga::LrCheck. The right-based
-// results (unit A) come disparities-1 columns after the left-based results (unit B), which wait for that
-// long, so that both results belong to the same column.
+// result of a column (unit A) comes disparities-1 columns after its left-based result (unit B), which waits
+// for it.
 class LrCheck {
  public:
   LrCheck(int disparities, std::optional<int> tolerance) : delay_(disparities - 1), tolerance_(tolerance) {}

@@ -46,21 +46,20 @@ struct MatchPlan {
 };
 
 // The arrays of one side, aligned to kMostFrameVectorBytes. The comment of an array gives the number of its
-// positions: pixels or windows. The right side has `columns` windows, the left `columns + disparities - 1`;
-// each has `window - 1` more pixels. A position has one vector, unless the comment gives another number.
+// positions: pixels or windows. The right side has `columns` windows, the left `columns + disparities - 1`.
+// Each has `window - 1` more pixels than windows. A position has one vector, unless the comment gives more.
 struct MatchSide {
-  // [pixels]: in each lane the byte that enters the window is the lower one, the byte that leaves the window
-  // the upper one. Pixels of more than one byte have a plane for each byte; the planes are `stride` apart.
+  // [pixels]: the lower byte of a lane enters the window, the upper byte leaves it. Pixels of more than one
+  // byte have a plane for each byte; the planes are `stride` apart.
   const std::int16_t* pixels = nullptr;
   int stride = 0;
   // [windows]: while match_row() runs, the best key of each position so far, in MatchLoops::best_vectors
-  // vectors. When it returns, in the same place: the disparities of positions 0 .. columns - 1, in one vector
-  // each.
+  // vectors. After it, in the same place: the disparities of positions 0 .. columns - 1, one vector each.
   std::int16_t* best = nullptr;
   // [pixels], with MatchLoops::unpacks: the pixels as numbers of 16 bits, in two vectors.
   std::int16_t* unpacked = nullptr;
-  // [pixels] and [windows], with MatchLoops::has_statistics: kColumnStatisticsVectors vectors, all 0 before
-  // the first row; kWindowStatisticsVectors vectors.
+  // With MatchLoops::has_statistics. `columns`: [pixels], kColumnStatisticsVectors vectors each, all 0 before
+  // the first row. `windows`: [windows], kWindowStatisticsVectors vectors each.
   std::int16_t* columns = nullptr;
   std::int16_t* windows = nullptr;
 };
@@ -141,8 +140,7 @@ struct Simd {
   // of the neighbours is the same for all. Reads the rows and writes `out` up to 64 pixels beyond `width`.
   void (*census_row)(const std::int8_t* const* rows, int half, int width, std::uint8_t* const* out);
 
-  // The loops of each cost for windows of `window` x `window` pixels. kUndecided comes from zncc_loops()
-  // only.
+  // The loops of each cost for windows of `window` x `window` pixels. Only zncc_loops() give kUndecided.
   MatchLoops (*sad_loops)(int window);
   MatchLoops (*ssd_loops)(int window);
   MatchLoops (*zncc_loops)(int window);

@@ -67,8 +67,8 @@ class StereoPipeline {
     }
     return image;
   }
-  // Every pixel with a window has a left-based disparity, which points to a pixel with a window. The others
-  // have none.
+  // Every pixel that has a window has a left-based disparity, which points to a pixel that has a window too.
+  // All other pixels are invalid.
   void check(const std::uint32_t* left_table, std::uint8_t* disparity) const {
     std::fill_n(disparity, left_.disparity.size(), kInvalidDisparity);
     const int windows = width_ - 2 * radius_;  // in a row

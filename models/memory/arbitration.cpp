@@ -116,8 +116,8 @@ void Arbitration::share_banks() {
   }
 }
 
-// To be called when no grant of these uncontended ports can be retracted any more: adds their grants to the
-// statistics, and moves the orders of the policies by them.
+// Adds the grants of these uncontended ports to the statistics, and moves the orders of their policies. To be
+// called when none of these grants can be retracted any more.
 void Arbitration::settle(PortMask ports) {
   for_each_port(static_cast<PortMask>(ports & alone_), [this](Port port) {
     const std::uint64_t grants = std::exchange(alone_grants_[port], 0);
@@ -202,7 +202,7 @@ void Arbitration::end_counting(std::uint64_t end_cycle) {
   for (BankArbiter& arbiter : arbiters_) arbiter.end_counting(end_cycle);
 }
 
-// Between two calls of settle() all cycles are counted, or none.
+// Adds the grants since the last settle(): in all of their cycles counting is on, or in none.
 ArbiterStats Arbitration::stats(std::size_t bank) const {
   BankArbiter arbiter = arbiters_[bank];
   for_each_port(alone_, [&](Port port) {

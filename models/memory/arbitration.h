@@ -3,7 +3,6 @@
 #include <array>
 #include <cstdint>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "models/memory/bank_arbiter.h"
@@ -34,8 +33,8 @@ class Arbitration {
   // Removes the route of the port, which must not request from now on.
   void unroute(Port port);
   // Routes a port that changes its bank often. Its banks count as shared until the next route() or unroute().
-  // So a visit of a bank that is shared changes nothing for the other ports: State keeps its layout, and a
-  // record of decisions is continued.
+  // So a visit of a shared bank changes nothing for the other ports: the words of append_state() keep their
+  // layout, and a recording can go on.
   void visit(Port port, std::size_t bank, bool write);
   // Whether the bank has several ports, or turnaround, or was visited.
   bool is_shared(std::size_t bank) const { return (shared_ >> bank & 1U) != 0; }
@@ -68,7 +67,7 @@ class Arbitration {
   // grants move the state of the bank's policy.
   void retract_grants(Port port, std::uint64_t grants) { alone_grants_[port] -= grants; }
 
-  // The arbiter of a bank that no routed port requests, for requests of a port without route.
+  // The arbiter of a bank, for requests of a port without route. No routed port may request the bank.
   BankArbiter& arbiter(std::size_t bank) { return arbiters_[bank]; }
   const BankArbiter& arbiter(std::size_t bank) const { return arbiters_[bank]; }
 

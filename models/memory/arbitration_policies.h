@@ -11,10 +11,10 @@ namespace stereotlm::memory {
 // request in a cycle, the one that comes first in the order wins. At power-up the order is the priority list.
 // BankArbiter holds the order, so that one policy serves any number of banks.
 //
-// The order is the whole state of an arbiter. Two rules let cycles be skipped: after a cycle without request,
-// further such cycles change nothing; and once a port is granted without competitors, each further such grant
-// to it acts as a cycle without request does. So an uncontended port can be granted without its arbiter,
-// which receives the number of grants later.
+// The order is the whole state of an arbiter. Two rules let cycles be skipped. After a cycle without request,
+// further such cycles change nothing. After a grant without competitors, each further one to the same port
+// acts as a cycle without request does. So an uncontended port can be granted without its arbiter, which
+// receives the number of grants later.
 struct ArbitrationPolicy {
   const char* name;          // in board files
   const char* list_meaning;  // meaning of the priority list for this policy, for the list of keys

@@ -110,8 +110,8 @@ class BankArbiter {
   void set_state(std::uint64_t cycle, StateReader& state);
 
   // stats() counts only the cycles from `first_cycle` up to `end_cycle`, `end_cycle` not included. In all
-  // other cycles only the accesses are counted, in ArbiterStats::uncounted_accesses(). It has no idle cycles
-  // of a window that has not ended.
+  // other cycles only the accesses are counted, in ArbiterStats::uncounted_accesses(). end_counting() adds
+  // the idle cycles.
   void begin_counting(std::uint64_t first_cycle);
   void end_counting(std::uint64_t end_cycle);
   const ArbiterStats& stats() const { return stats_; }

@@ -2,7 +2,6 @@
 
 #include <tlm_utils/simple_initiator_socket.h>
 
-#include <array>
 #include <cstdint>
 #include <deque>
 #include <systemc>

@@ -14,8 +14,8 @@ namespace stereotlm::memory {
 
 // One synchronous SRAM bank (RamTarget): one 32-bit word per access, with or without byte enables. A read
 // takes the time until its reader can use the word. The arbiter in front of the bank decides which port may
-// access it. A bank with separate ports has one socket too: of a read and a write in one cycle the initiators
-// make the read first. Words are in the byte order of the host computer.
+// access it. A bank with separate ports also has one socket: if a cycle has a read and a write, the
+// initiators read first. Words are in the byte order of the host computer.
 class SsramBank : public sc_core::sc_module {
  public:
   using Stats = RamTarget::Stats;

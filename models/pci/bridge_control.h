@@ -107,8 +107,8 @@ class BridgeControl final : public PciMasterIf, public PciTarget, public LocalBu
   std::optional<std::uint64_t> bank_address(std::uint64_t offset, std::uint64_t bytes) const;
   // The state while it is idle: the channel that has the next turn on the local bus.
   std::size_t turn() const { return turn_; }
-  // Writes have been posted and sent: the turn after them. For each range of addresses on the local bus
-  // count_posted() counts their words.
+  // Skips posted writes that have been sent; `turn` is the turn after them. For each range of addresses on
+  // the local bus the caller adds their words by count_posted().
   void skip_posted(std::size_t turn) { turn_ = turn; }
   void count_posted(std::uint64_t address, std::uint64_t words) {
     stats_.posted_words += words;
@@ -122,8 +122,8 @@ class BridgeControl final : public PciMasterIf, public PciTarget, public LocalBu
   WordsByRange words_held() const;
 
  private:
-  // A register: its offset, which is that of page or channel 0 if it exists for each, and the number of the
-  // page or channel.
+  // A register. `name`: its offset; if each page or channel has one, that of number 0. `index`: the number of
+  // the page or channel.
   struct Register {
     std::uint64_t name = 0;
     std::size_t index = 0;

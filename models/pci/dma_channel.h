@@ -51,8 +51,7 @@ struct BridgeTransfer {
 // bus; both must end before its next step.
 //
 // The channel decides, and the bridge acts: each step names the transfers that the bridge is to start, and
-// the bridge calls next_step() when one of them has ended. Plain C++. Times only pass through, to an
-// observer.
+// the bridge calls next_step() when one of them has ended. Times are only for the observer. Plain C++.
 class DmaChannel {
  public:
   struct Step {

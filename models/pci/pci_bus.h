@@ -6,8 +6,6 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
-#include <optional>
-#include <string>
 #include <systemc>
 #include <tlm>
 #include <vector>

@@ -35,7 +35,7 @@ class PciBusObserver {
   virtual void pci_burst_ended(const EndedPciBurst& burst) = 0;
 };
 
-// The arbitration and the timing of PciBus, which describes them, and its counters. Plain C++.
+// The arbitration, the timing and the counters of PciBus, whose comment describes them. Plain C++.
 class PciBusControl {
  public:
   struct MasterCounts {
@@ -79,7 +79,7 @@ class PciBusControl {
 
   // The time of the next step() or decide().
   std::uint64_t next_ps() const { return next_ps_; }
-  // Which of them: decide() grants the bus, from the state after everything else that happens at this time.
+  // Whether decide() is next, which grants the bus after all other effects of this time. Else step() is.
   bool decides_next() const { return state_ == State::kFree; }
   void step(std::uint64_t now_ps);
   void decide(std::uint64_t now_ps);  // throws std::logic_error for an address that is no multiple of 4
@@ -97,7 +97,7 @@ class PciBusControl {
   // none).
   std::uint64_t decision_clock() const { return decision_clock_; }
   std::uint64_t request_clock(std::size_t master) const { return requests_[master].clock; }
-  // The earliest of these clocks over all masters but some.
+  // The earliest request_clock() of the masters that are not in `masters`.
   using Masters = std::uint64_t;  // a bit for each slot
   static constexpr Masters mask_of(std::size_t master) { return Masters{1} << master; }
   std::uint64_t earliest_request_beside(Masters masters) const;
@@ -111,11 +111,11 @@ class PciBusControl {
   const MasterCounts& counts(std::size_t master) const { return master_stats_[master]; }
   std::uint64_t transactions() const;
   std::uint64_t busy_clocks() const { return busy_clocks_; }
-  // Instead of decide(): the request of a master has been granted, and its bursts have ended. These are their
-  // counts.
+  // Called instead of decide(): grants the request of a master. `counts` are those of its bursts, which have
+  // ended.
   void skip_bursts(std::size_t master, const MasterCounts& counts);
-  // To be called then: the position after all of them, and the clocks that they have taken. The masters may
-  // then request again.
+  // To be called after skip_bursts() for all masters. `position`: the state after these bursts;
+  // `busy_clocks`: their clocks. The masters may then request again.
   void skip_to(const Position& position, std::uint64_t busy_clocks);
 
  private:

@@ -94,9 +94,8 @@ class PciTarget {
   virtual std::size_t writable_words(std::uint64_t /*now_ps*/, std::uint64_t /*address*/, std::size_t words) {
     return words;
   }
-  // A write is called at the end of its last data clock, which is `at_ps`. A read is called in the address
-  // clock, and reads at the end of that clock, `at_ps`. An answer that is not given yet is given by
-  // PciBusControl::answer().
+  // Called for a write at the end of its last data clock, `at_ps`. Called for a read in the address clock; it
+  // reads at the end of that clock, `at_ps`. PciBusControl::answer() gives an answer that is not known yet.
   virtual PciAnswer access(std::uint64_t now_ps, const PciAccess& access, std::uint64_t at_ps) = 0;
 };
 

@@ -119,8 +119,8 @@ bool operator==(const BoardConfig& a, const BoardConfig& b);
 inline bool operator!=(const BoardConfig& a, const BoardConfig& b) { return !(a == b); }
 
 // Returns every broken rule as `path.of.key = value: rule`: first those of single values in the order of the
-// keys, then those between keys. Nothing if the board can be built. The board is read as its own board file
-// would be. All other functions that take a board expect one without problems.
+// keys, then those between keys. Empty if the board can be built. The rules are those for reading the file
+// to_yaml(board). All other functions that take a board expect one without problems.
 std::vector<std::string> problems(const BoardConfig& board);
 // Returns the board. Throws std::invalid_argument with all problems() if there are any.
 const BoardConfig& require_valid(const BoardConfig& board);

@@ -19,8 +19,8 @@ bool is_board_file(const std::string& board);
 std::string path_problem(const std::string& path);
 
 // A board file before its values are checked: a tree of YAML values, merged with the preset that the file
-// extends. load_board() replaces the values of `--set` in it. A sweep copies it, and makes many boards from
-// one file.
+// extends. load_board() puts the values of `--set` into it. A sweep copies it, and makes many boards from one
+// file.
 class BoardDraft {
  public:
   // `board` as for load_board(). Throws BoardError for an unknown preset, a file that cannot be read and a
@@ -34,8 +34,8 @@ class BoardDraft {
   // with the line and column of `value`.
   void replace(const std::string& path, YamlNode value, const std::string& file);
 
-  // Checks a value for that path alone: neither rules between keys nor the rest of the board. Places are as
-  // for replace().
+  // The problems of this value at that path alone. Rules between keys and the rest of the board are not
+  // checked. Places are as for replace().
   std::vector<Diagnostic> problems_of(const std::string& path, const YamlNode& value,
                                       const std::string& file) const;
 

@@ -20,9 +20,9 @@ using kernels::IntegerRule;
 class ValueReader;
 struct Key;
 
-// The table of the keys of board files: each key with its rule, once. Reader, writer, problems(), `keys`,
-// `--set`, sweeps and knobs follow from it. On a board without `pci.load`, `field` of the keys below it
-// throws std::bad_optional_access.
+// board_keys() has each key of board files once, with its rule. Reader, writer, problems(), `keys`, `--set`,
+// sweeps and knobs follow from it. If a board has no `pci.load`, `field` of a key below `pci.load` throws
+// std::bad_optional_access.
 struct IntegerKey {
   int* (*field)(BoardConfig&);
 };
@@ -51,8 +51,8 @@ struct Key {
   std::string rule_text;                                               // the range or the allowed values
   std::optional<IntegerRule> numbers;  // the rule for integers; nullopt: takes none
   bool is_optional = false;            // may be missing from its map
-  // The value as YAML; and its reader, which reports what is wrong with the value of `entry`, or sets the
-  // board. Empty for `pci.load`, for a part of the value of another key, and for a key of a bank.
+  // `write`: the value as YAML. `read`: sets the board to the value of `entry`, or reports what is wrong with
+  // it. Null for `pci.load`, for a part of the value of another key, and for a key of a bank.
   std::function<YamlNode(const BoardConfig&)> write = nullptr;
   std::function<void(ValueReader&, const Key&, const YamlNode::Entry& entry, BoardConfig&)> read = nullptr;
 };
@@ -96,7 +96,7 @@ std::string schema_path(const std::string& path);
 // key is near.
 std::string unknown_key_text(const std::string& path);
 
-// What a message says before the listed() words to one of which a value must be equal.
+// The beginning of a message. The allowed words follow, as listed().
 inline constexpr const char* kMustBeOneOf = "must be one of ";
 
 // A cost as a board file has it: "sad", "{census: 5}".

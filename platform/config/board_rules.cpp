@@ -38,8 +38,8 @@ class RuleChecker {
     return std::all_of(paths.begin(), paths.end(), is_valid_);
   }
 
-  // Adds the broken rule `text()` unless it is kept, or a value that it involves is not valid by itself.
-  // Returns whether it is kept.
+  // Adds the broken rule `text()` if it is not kept, and all values that it involves are valid by themselves.
+  // Returns false if it has added the rule.
   template <typename Text>
   bool require(bool is_kept, const std::vector<std::string>& involved, const Text& text) {
     if (is_kept || !all_valid(involved)) return true;

@@ -107,8 +107,8 @@ AllocationSearch search_of(const BoardConfig& board, int banks, const explore::P
   }
 }
 
-// "; with N some do": N is the fewest banks, more than `banks`, into which N allocations fit; empty if there
-// are none.
+// "; with N some do": N is the least number of banks above `banks` with which an allocation fits; empty if
+// there is none.
 std::string fewest_text(const BoardConfig& board, int banks, const explore::PointRun& run) {
   const auto most = static_cast<int>(board.banks.size());
   const auto no_bound = [](const BoardConfig&) { return 0.0; };

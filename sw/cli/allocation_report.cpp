@@ -193,8 +193,7 @@ std::string result_text(const AllocationReport& report) {
          certificate_text(report);
 }
 
-// The lines with the numbers of allocations that do not count, because they lose pixels or could not be
-// simulated.
+// The lines with the numbers of allocations that do not count: they lose pixels, or could not be simulated.
 std::string not_counted_text(const AllocationReport& report) {
   std::uint64_t losing = 0;
   std::uint64_t failed = 0;

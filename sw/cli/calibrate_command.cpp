@@ -307,9 +307,8 @@ void compare_numbers(const Names& left, const Names& right) {
 
 // Loads the pictures of the calibration grid that match the patterns. Sorts both sides by name, and pairs
 // them in this order. Reports problems: a pattern without files, different counts, a file that is no picture,
-// a picture that appears twice, different sizes. Prints notes on standard error: how many pictures were
-// converted to grey, and the first pair whose names end in different numbers. Returns early when
-// interrupted().
+// a picture that appears twice, different sizes. Prints notes: how many pictures were converted to grey, and
+// the first pair whose names end in different numbers. Returns early when interrupted().
 std::vector<calib::PicturePair> load_grid_pictures(const Names& left, const Names& right,
                                                    process::Problems& problems) {
   const Names left_files = files_of("--left", left, problems);

@@ -91,8 +91,8 @@ std::string blames_text(const Explanation& explanation) {
   return blames.empty() ? "no port waits for another\n" : text;
 }
 
-// The line of a change; empty if it has none: it changes neither the rate nor whether pixels are lost, and
-// saves neither a part of the FPGA nor a bank.
+// The line of a change. Empty if the change affects neither the rate nor whether pixels are lost, and saves
+// neither a part of the FPGA nor a bank.
 std::string line_of(const Explanation::Step& found, const BoardConfig& board,
                     const Explanation& explanation) {
   const explore::KnobStep& step = *found.step;
@@ -123,8 +123,8 @@ std::string line_of(const Explanation::Step& found, const BoardConfig& board,
   return text;
 }
 
-// The table of the changes, the best first, and what is said of those without a line: they are named in the
-// order of the keys, by the key, or by its new value if other values of the key have a line.
+// The table of the changes, the best first. Below it, changes without a line are named in the order of the
+// keys: by the key, or by its new value if other values of the key have a line.
 std::string changes_text(const BoardConfig& board, const Explanation& explanation) {
   std::string text = fmt::format(
       "one change at a time: {} boards simulated; *: the disparities change too{}\n"

@@ -16,8 +16,7 @@
 #include "sw/process/command.h"
 #include "sw/process/streams.h"
 
-// Implements options.h and command.h. The commands include these instead of CLI11, which takes long to
-// compile.
+// Implements options.h and command.h. Commands include these, because CLI11 takes long to compile.
 namespace stereotlm::cli {
 
 Rule required(const std::string& what) {

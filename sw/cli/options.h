@@ -46,8 +46,8 @@ Rule number(
     return value && is_valid(*value);
   });
 }
-// The option goes only with `other`, which has the value `value` in the message. `other` must be a member of
-// the same class as the option.
+// The option needs `other`, which messages quote with `value`. `other` must be a member of the same class as
+// the option.
 Rule goes_with(const Option& other, const std::string& value);
 
 // The options of a command. A command derives a class from this one. Its members of type Option are the

@@ -14,8 +14,7 @@ namespace {
 
 using runs::Simulation;
 
-// Simulates all frames. After an interrupt, simulates only until the frames that the core has begun are
-// finished.
+// Simulates all frames; after an interrupt, only until the frames that the core has begun are finished.
 void simulate(Simulation& simulation, const runs::RunInput& input, runs::Verification* verification) {
   const platform::FrameAccesses accesses = platform::frame_accesses(input.board, input.tables);
   const std::uint64_t frame_cycles = platform::turn_bounds(input.board, accesses).front().cycles;

@@ -73,8 +73,7 @@ std::optional<trace::TraceFile> file_of(const std::string& text) {
 constexpr const char* kPictureOptions =
     "--left F --right F, --sequence DIR, --video F [F2] or --synthetic SEED";
 
-// Whether `inner` is the folder or lies below it, after resolving links and dots. False if either does not
-// exist.
+// Whether `inner` is the folder or lies below it, with links and dots resolved. False if one does not exist.
 bool lies_in(const fs::path& inner, const fs::path& folder) {
   std::error_code no_inner;
   std::error_code no_folder;

@@ -106,8 +106,8 @@ struct TruthOptions {
 // The options that select the pictures of a run.
 struct PictureOptions {
   bool is_given() const { return !sources_given().empty() || video_layout.is_given(); }
-  // Reports a missing source of pictures, unless `may_be_missing`, several of them, a pair with one side, and
-  // a video without its layout. Returns whether nothing is missing.
+  // Reports a missing source of pictures (unless `may_be_missing`), several sources, a pair with one side,
+  // and a video without its layout. Returns whether nothing is missing.
   bool check_together(process::Problems& problems, bool may_be_missing) const;
   // The source as named: if there are no problems, exactly one, or none if pictures may be missing.
   runs::InputPictures named() const;

@@ -215,9 +215,9 @@ std::string summary(const explore::SweepCounts& counts, const SweepCommandOption
   return text + '\n';
 }
 
-// The lines with the reasons of points that failed, then of impossible ones, and the number of points for
-// each reason, the most frequent first. Of more than four reasons, a line counts those after the third, and
-// the last line says how to list all. One scan of the table; by name 'failed' comes before 'impossible'.
+// A line for each reason with its number of points: of failed points first, then of impossible ones (ORDER BY
+// status: 'failed' < 'impossible'), the most frequent first. If a status has over four reasons, a line counts
+// those after the third, and the last line says how to list all. One scan of the table.
 std::string reasons(sqlite::Database& store) {
   sqlite::Statement statement(
       store,
@@ -254,8 +254,7 @@ int report(const explore::SweepCounts& counts, const SweepCommandOptions& option
   return counts.done() == counts.total ? kDone : interrupted("run the same command to resume");
 }
 
-// The end of an error message, which states that finished points are kept. Empty if the database cannot be
-// read.
+// The end of an error message: that finished points are kept. Empty if the database cannot be read.
 std::string kept_text(const std::string& store, const std::string& advice) {
   try {
     sqlite::Database(store, sqlite::Database::Access::kRead, kBriefTimeout)

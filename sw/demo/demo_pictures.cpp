@@ -50,8 +50,8 @@ void write_file(const fs::path& path, const std::vector<std::uint8_t>& bytes) {
   file.commit();
 }
 
-// A picture below its caption, and what the scale of its colours says below it: of the first level, of the
-// last, and where there is none. A picture in grey has no scale.
+// A picture with its caption, and the texts of its colour scale: the first level, the last one, and no level.
+// A picture in grey has no scale.
 struct Montaged {
   calib::Panel panel;
   Words scale = {};

@@ -41,9 +41,9 @@ using Deliver = std::function<void(const DeliveredFrame& frame)>;
 // std::runtime_error if the hardware reports an error, and what HostBus throws.
 class StereoDriver : public host::Program {
  public:
-  // Entries of the tables, row by row (contract 1.1); null for a side without table. The driver joins those
-  // of joint tables. The tables outlive the driver. `frames`: 1 or more. Throws std::invalid_argument if a
-  // table does not have one entry per pixel, or joint tables do not fit.
+  // Entries of the tables, row by row (contract 1.1); null for a side without table. With joint tables the
+  // driver joins both. The tables outlive the driver. `frames`: 1 or more. Throws std::invalid_argument if a
+  // table does not have one entry per pixel, or if both cannot be joined.
   StereoDriver(const platform::BoardConfig& board, std::uint64_t frames,
                const std::vector<std::uint32_t>* left_table, const std::vector<std::uint32_t>* right_table,
                Deliver deliver);

@@ -24,14 +24,13 @@ struct NamedFile {
   std::string text() const { return option + " '" + path + "'"; }
 };
 
-// Follows symbolic links from `path` to a file, which need not exist. Returns the path of that file. Throws
-// std::system_error.
+// Follows symbolic links to a file, which need not exist, and returns its path. Throws std::system_error.
 std::filesystem::path linked_file(const std::filesystem::path& path);
 
-// New content for a file, in a hidden file in the same folder. The destructor removes it; if the process is
-// killed, the next one that writes the same file replaces it. All functions throw std::runtime_error with the
-// name of the file, not of the hidden one, and the cause. The constructor throws also while another process
-// writes the file.
+// New content for a file, in a hidden file in the same folder. The destructor removes the hidden file. If the
+// process is killed, the next process that writes the same file replaces it. All functions throw
+// std::runtime_error with the name of the file, not of the hidden one, and the cause. The constructor also
+// throws while another process writes the file.
 class AsideFile {
  public:
   // `file`: not a symbolic link (see linked_file()). `name`: the file in messages.

@@ -234,9 +234,9 @@ std::vector<fs::path> OutputFolder::with_mark_last(const fs::path& folder) const
   return names;
 }
 
-// The names of the folders in the folder of unfinished files say how far a commit has come, because repair()
-// relies on them. Until `new` is renamed to `complete`, earlier files may be missing in DIR, and all are
-// there or in `earlier`. From then on, new files may be missing in DIR, and all are there or in `complete`.
+// repair() learns from the names of the folders in the folder of unfinished files how far a commit has come.
+// Until `new` is renamed to `complete`, each earlier file is in DIR or in `earlier`. From then on, each new
+// file is in DIR or in `complete`.
 void OutputFolder::move_into_place(const std::vector<fs::path>& names) const {
   for (const fs::path& name : names) {
     if (is_folder(made() / name)) sync_folder(made() / name);

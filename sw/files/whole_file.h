@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <limits>
 #include <string>
@@ -53,8 +52,7 @@ std::vector<std::filesystem::path> entries(const std::filesystem::path& folder);
 // Whether the open file is the one at `path`, which is not a symbolic link.
 bool is_open_at(int file, const std::filesystem::path& path);
 
-// Whether an entry exists, is a regular file, is a folder. A symbolic link exists, but is neither file nor
-// folder.
+// Whether an entry exists, is a regular file, is a folder. A symbolic link exists, but is neither of the two.
 bool is_there(const std::filesystem::path& path);
 bool is_file(const std::filesystem::path& path);
 bool is_folder(const std::filesystem::path& path);

@@ -40,8 +40,7 @@ struct Picture {
                                                fpga::kHeightRule.max));
 }
 
-// A picture with room for its samples. Throws if it is larger than a board's images: a header may state any
-// size.
+// A picture with room for its samples. Throws beyond a board's images, because a header may state any size.
 inline Picture new_picture(std::uint64_t width, std::uint64_t height, int channels) {
   if (width == 0 || height == 0) refuse_damaged();
   if (width > fpga::kWidthRule.max || height > fpga::kHeightRule.max)

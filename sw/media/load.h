@@ -32,8 +32,7 @@ inline double disparities_needed(const Truth& truth) {
 // - a picture larger than the largest image of a board, before its pixels are decoded;
 // - alpha, transparency, 16-bit and float pixels;
 // - grey of fewer than 8 bits (PNG of 1, 2, 4 bits; PNM with a maximum other than 255), whose levels would
-// have
-//   to be stretched.
+//   have to be stretched.
 // While OpenCV decodes, standard error is captured, so no other thread may write there.
 
 // The result of load_gray().

@@ -166,8 +166,7 @@ class FfmpegVideo : public Video {
   }
 
  private:
-  // Opens the video at its first frame. The path is absolute, because FFmpeg reads text before a colon as a
-  // protocol.
+  // Opens the video at its first frame. An absolute path, as FFmpeg takes text before a colon for a protocol.
   bool open() {
     setenv("OPENCV_FFMPEG_CAPTURE_OPTIONS", kOptions, 1);
     next_ = 0;

@@ -26,8 +26,8 @@ struct GivenPair {
   int disparities = 0;     // matcher.disparities that a board needs to find all disparities of the pair
 };
 
-// A board as a command line names it. It is run without pixels for explore::frames_of() frames. With a scene
-// the core alone is run with pixels too, for one frame.
+// A board as a command line names it. It is run without pixels for explore::frames_of() frames. With a scene,
+// the core alone also runs one frame with pixels.
 struct BoardRun {
   std::string preset;
   std::vector<std::string> sets;  // KEY=VALUE
@@ -71,8 +71,7 @@ enum class Quantity {
   // The smallest number of banks with which some allocation is as fast as the fastest allocation on the first
   // run's board. All allocations are searched, so the minimum is proved.
   kBanksProved,
-  // The smallest number of banks among the runs that reach the rate of the first run. It is no proof of a
-  // minimum.
+  // The smallest number of banks among the runs that reach the rate of the first run; no proof of a minimum.
   kBanksFound,
   // The second run against the first on the same scene: the change of the share of wrong answers, or the
   // change of the share of answered pixels, whichever is larger. Further runs are shown beside it, and not

@@ -371,8 +371,7 @@ std::string figure_text(const std::string& claim) {
   return "";
 }
 
-// The lines of the cases of a claim that are not confirmed, below the name of the claim; empty if there are
-// none.
+// The lines of the cases of a claim that are not confirmed, below its name; empty if there are none.
 std::string others_text(const ClaimFinding& found) {
   const Claim& claim = found.claim;
   std::string lines;

@@ -113,8 +113,7 @@ std::string command_of(const BoardRun& run);
 // The commands that reproduce the numbers of a case.
 std::vector<std::string> commands_of(const Claim& claim, const Case& one);
 
-// A range of clocks of the FPGA. At these clocks the core alone would reach a printed rate: from the least to
-// the greatest rate that rounds to the printed one.
+// The FPGA clocks at which the core alone would reach a printed rate, that is, any rate that rounds to it.
 struct ClockRange {
   double least_mhz = 0;
   double most_mhz = 0;

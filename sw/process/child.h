@@ -25,11 +25,10 @@ class ChildDied : public std::runtime_error {
   int signal_;
 };
 
-// Reads `count` bytes; caught signals do not end the read. Returns false at the end of the file. Throws
-// std::system_error.
+// Reads `count` bytes; signals do not end the read. False at the end of the file. Throws std::system_error.
 bool read_all(int from, void* bytes, std::size_t count);
 // Writes all bytes; caught signals do not end the write. Returns false, with the error in `errno`, if that
-// fails: if the read end is closed, where SIGPIPE is ignored; else that signal ends this process.
+// fails. If the read end is closed, SIGPIPE ends this process unless it is ignored.
 bool write_all(int to, const void* bytes, std::size_t count);
 
 // A pipe that programs started by exec do not inherit. The destructor closes the ends that are still open.

@@ -27,10 +27,10 @@ struct CommandEnd {
   std::string errors;
 };
 
-// Runs the program words[0], which is searched in PATH, with the other words as arguments and without a
-// shell, and waits until it has ended. Its standard input is empty. Its environment is that of this process
-// without the variables whose names begin with one of `hidden`. Ctrl-C in a terminal does not reach the
-// program. `ends_if_interrupted`: interrupted() ends the program with SIGTERM. Throws CommandMissing and
+// Runs the program words[0], searched in PATH, with the other words as arguments, without a shell, and waits
+// for its end. Its standard input is empty. Its environment is that of this process without the variables
+// whose names begin with one of `hidden`. Ctrl-C in a terminal does not reach the program.
+// `ends_if_interrupted`: interrupted() ends the program with SIGTERM. Throws CommandMissing and
 // std::system_error.
 CommandEnd run_command(const std::vector<std::string>& words, const std::vector<std::string>& hidden = {},
                        bool ends_if_interrupted = false);

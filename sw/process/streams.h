@@ -1,7 +1,6 @@
 #pragma once
 
 #include <csignal>
-#include <initializer_list>
 #include <string>
 #include <string_view>
 
@@ -26,9 +25,8 @@ enum class Colour { kRed, kGreen, kYellow, kDim };
 // `dumb`, or if NO_COLOR is set and not empty (https://no-color.org).
 std::string coloured(int descriptor, Colour colour, const std::string& text);
 
-// Opens descriptors 0, 1 and 2 where the caller has closed them, so that no other file gets one of them. From
-// then on, a write to a closed pipe or beyond the limit on file sizes returns an error instead of ending the
-// process.
+// Opens descriptors 0, 1 and 2 if they are closed, so that no other file gets one of them. From then on, a
+// write to a closed pipe or beyond the limit on file sizes fails instead of ending the process.
 void prepare_streams();
 
 // Whether the first Ctrl-C (SIGINT) or SIGTERM was caught. A signal handler may write only to a variable of

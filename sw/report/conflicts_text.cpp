@@ -41,8 +41,8 @@ std::pair<std::size_t, std::size_t> shortest_run(const std::vector<std::uint64_t
   return best;
 }
 
-// Adds the place of shortest_run() as "first_NAME" and "last_NAME", unless that is most of it. `length`: rows
-// or columns of a value; `whole`: those of the picture.
+// Adds the rows or columns of shortest_run() as "first_NAME" and "last_NAME", unless they are most of the
+// picture. `length`: rows or columns of a value; `whole`: those of the picture.
 void add_place(const std::string& name, const std::vector<std::uint64_t>& values, std::size_t length,
                int whole, Json& json) {
   const auto [first, end] = shortest_run(values);

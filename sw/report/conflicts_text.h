@@ -12,10 +12,9 @@ namespace stereotlm::report {
 // before the first frame.
 void add_frame(const fpga::FrameConflicts& frame, fpga::FrameConflicts& sums);
 
-// What `conflicts` says of a run, as `conflicts --json` prints it: who waits where for whom, the longest wait
-// first, and where in the picture: the first of the shortest ranges of rows and columns that have 80 % of the
-// wait, left out if that is most of the picture; how busy the banks that are used are from top to bottom. Its
-// schema is sw/cli/schemas/conflicts.schema.json.
+// What `conflicts --json` prints of a run (sw/cli/schemas/conflicts.schema.json): who waits where for whom,
+// the longest wait first. For each wait, the first of the shortest ranges of rows and columns that have 80 %
+// of it, left out if that is most of the picture. Then how busy the used banks are from top to bottom.
 nlohmann::ordered_json conflicts_document(const platform::BoardConfig& board,
                                           const fpga::ConflictRecorder& recorder,
                                           const fpga::FrameConflicts& sums);

@@ -53,7 +53,7 @@ std::map<Wait, double> waits_a_frame(const Json& stats) {
 }
 
 // Why one run is faster. `b_is_faster`: by the rates, which need not be those of the core. A wait is named if
-// its change is at least half of that of the cycles.
+// its change is at least half of the change of the cycles.
 std::string cause(const JudgedRun& a, const JudgedRun& b, bool b_is_faster) {
   const JudgedRun& slower = b_is_faster ? a : b;
   const JudgedRun& faster = b_is_faster ? b : a;

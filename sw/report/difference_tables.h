@@ -18,9 +18,9 @@ struct JudgedRun {
 };
 
 // The comparison of two runs in one sentence: which is faster, by how much, where the difference arises, and
-// whether the disparities are the same. The rates are the steady ones if both runs have them, else those
-// from power-up, else those of the core. What lies within the uncertainty of both is no difference. `pixels`:
-// null if the disparities are not compared.
+// whether the disparities are the same. The rates are the steady ones if both runs have them, else those from
+// power-up, else those of the core. A difference up to the sum of the uncertainties is none. `pixels`: null
+// if the disparities are not compared.
 std::string diff_verdict(const JudgedRun& a, const JudgedRun& b, const stats::PixelComparison* pixels);
 
 // The sum of `frame_cycles`.
@@ -35,8 +35,7 @@ using Values = std::vector<platform::BoardValue>;
 // What a run does not have is left out.
 nlohmann::ordered_json differing_values(const Values& a, const Values& b);
 
-// The waits that differ, the largest difference first: a list of `port`, `bank`, `by`, and the cycles `a` and
-// `b`.
+// The waits that differ, the largest difference first: a list of `port`, `bank`, `by`, and cycles `a`, `b`.
 nlohmann::ordered_json differing_waits(const std::vector<platform::BlameRow>& a,
                                        const std::vector<platform::BlameRow>& b);
 

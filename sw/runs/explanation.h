@@ -27,12 +27,12 @@ struct Budget {
   std::map<std::string, double> core_waits;
 };
 
-// Simulates a board, and once more one board for each step of a knob, without pixels: what limits the board,
-// and what each step gains or costs.
+// Simulates a board, and one board for each step of a knob, without pixels. Finds what limits the board, and
+// what each step gains or costs.
 class Explanation {
  public:
-  // The default numbers of frames of each board. 6 and 36 are multiples of every possible turn of the lists
-  // (1, 2, 3 or 6); the whole computer has up to 6 more for the warm-up.
+  // The default numbers of frames of each board: a multiple of every possible turn of the lists (1, 2, 3 or
+  // 6). 6 of the 42 are for the warm-up of the whole computer.
   static constexpr std::uint64_t kCoreFrames = 6;
   static constexpr std::uint64_t kComputerFrames = 42;
   // The fewest frames of the whole computer with which every board has a steady rate.
@@ -81,16 +81,15 @@ class Explanation {
     std::string name;
     double frames_per_second = 0;  // its bound
     double headroom_percent = 0;   // share of the time of a frame that the resource does not need
-    // The measured use. Ports, matcher and banks: share of the cycles of the frames in which they work on a
-    // slot or make an access. Buses: share of their clocks that are not idle. Cameras: share of their frames
-    // that are captured.
+    // The measured use. Ports, matcher and banks: share of the cycles of all frames in which they work on a
+    // slot or make an access. Buses: share of clocks that are not idle. Cameras: share of frames captured.
     double busy_percent = 0;
     std::uint64_t frame = 0;  // the frame with the least headroom
     bool varies = false;      // the headroom is larger in other frames
   };
-  // All resources, the least headroom first. For ports and matcher, and for the banks of the core alone, the
-  // headroom is the least over the frames of one turn of the lists. The time of a frame is its cycles and,
-  // for a whole computer, its share of the time between frames.
+  // All resources, the least headroom first. That of ports and matcher (and of banks, if the core runs alone)
+  // is the least in a turn of the allocation lists. A frame takes its cycles; on a whole computer also a part
+  // of the time between frames, in proportion to them.
   const std::vector<Resource>& resources() const { return resources_; }
 
   const Budget& budget() const { return budget_; }

@@ -27,12 +27,11 @@ std::string progress_text(const RunState& state, double seconds);
 // `seconds` began.
 std::string progress_text(const explore::SweepCounts& counts, std::uint64_t before, double seconds);
 
-// For a search: "332 boards simulated, 120 left at most (0:05 at this rate)". Without the time while it
-// cannot be estimated: the boards left are not narrowed, or fewer than 8 were simulated.
+// For a search: "332 boards simulated, 120 left at most (0:05 at this rate)". The time is left out until
+// most_left is narrowed and 8 boards were simulated.
 std::string progress_text(const explore::SearchProgress& progress, double seconds);
 
-// A progress line on standard error, if that is a terminal and notes are not left out. The destructor erases
-// it.
+// A progress line on standard error, if that is a terminal and notes are shown. The destructor erases it.
 class ProgressLine {
  public:
   ProgressLine();
@@ -40,8 +39,7 @@ class ProgressLine {
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
-  // Redraws the line, at most a few times a second, with the text that `line` returns for the seconds since
-  // construction.
+  // Redraws the text that `line` returns for the seconds since construction, at most a few times a second.
   void show(const std::function<std::string(double seconds)>& line);
   // Erases the line until the next show().
   void erase();

@@ -84,8 +84,7 @@ class Rerun {
   process::Child child_;
 };
 
-// The reasons why the rows and the pixels of two runs, A and B, cannot be compared. A reason is empty if they
-// can.
+// Why the rows and the pixels of two runs, A and B, cannot be compared; empty if they can.
 struct DiffLimits {
   DiffLimits(const RecordedRun& a, const RecordedRun& b);
 
@@ -102,8 +101,7 @@ class FrameAlignment {
   FrameAlignment(const RecordedRun& a, const RecordedRun& b, const DiffLimits& limits, stats::RowsCsv* csv,
                  Rerun::Record record_a = nullptr, Rerun::Record record_b = nullptr);
 
-  // Returns true when both runs have ended, and false at the first interrupt. Throws what Rerun::next()
-  // throws.
+  // Returns true when both runs have ended, false at the first interrupt. Throws as Rerun::next() does.
   bool run();
 
   const stats::RowComparison& rows() const { return rows_; }

@@ -45,8 +45,7 @@ class PixelComparison {
 // frame, to its own completion.
 fpga::RowProfile rows_alone(const fpga::RowProfile& profile);
 
-// Compares the rows of results of two runs, A and B: how many more cycles and stalls each row alone takes in
-// B.
+// Compares the rows of two runs: how many more cycles and stalls each row alone takes in B than in A.
 class RowComparison {
  public:
   // Adds the next frame of both runs. Throws std::invalid_argument if the numbers of rows differ, or differ
@@ -81,10 +80,9 @@ class RowComparison {
     std::array<std::int64_t, fpga::kCorePortCount> stalls{};  // sums over the rows
   };
   // Ranges of rows from top to bottom, at most `most_ranges`. The rows of a range have the same differences
-  // in cycles and in stalls. If that gives too many ranges, the rows of a range have only the same difference
-  // in cycles. If there are still too many, all ranges have the same height. A range whose rows do not differ
-  // in cycles, and whose sums do not differ in stalls, is left out; the others add up to the whole
-  // difference.
+  // in cycles and in stalls; if that gives too many ranges, only in cycles. If there are still too many, all
+  // ranges have the same height. A range whose rows do not differ in cycles, and whose sums do not differ in
+  // stalls, is left out; the others add up to the whole difference.
   std::vector<Range> ranges(std::size_t most_ranges) const;
 
  private:

@@ -76,7 +76,7 @@ constexpr auto fields_of(const platform::Percentiles* /*type*/) {
 }
 
 // The fields of stats.json that hold figures, in their order. `document`: a StatsWriter or a StatsReader,
-// which takes each field by its path. Those of a computer are there if `statistics` has it.
+// which takes each field by its path. The fields of a computer are there if `statistics` has one.
 template <typename Document, typename Statistics>
 void each_field(Document& document, Statistics& statistics) {
   document.field("/board", statistics.board);

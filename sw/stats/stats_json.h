@@ -25,9 +25,9 @@ std::string stats_json(const platform::Statistics& statistics, const std::option
 struct TableExtras;
 nlohmann::ordered_json run_document(const platform::Statistics& statistics, const TableExtras& extras);
 
-// Reads stats.json of a run of this board, with these figures in its run.json; `camera`: of a whole computer.
-// It must be the text of stats_json(), with known names, and with figures that follow from each other and
-// hold the identities of README.md. Throws std::runtime_error: "LINE: path = value: rule".
+// Reads stats.json of a run of this board. `fidelity`, `frames` and `camera` (a whole computer) are those of
+// its run.json. The text must be that of stats_json(), with known names, and with figures that agree and hold
+// the identities of README.md. Throws std::runtime_error: "LINE: path = value: rule".
 platform::Statistics read_stats(const std::string& text, const platform::BoardConfig& board,
                                 const std::string& fidelity, std::uint64_t frames, bool camera);
 

@@ -217,8 +217,7 @@ class PerfettoTrack {
                     .text(packet::kClockSnapshot, snapshot)
                     .text(packet::kDefaults, defaults));
   }
-  // The number of a name in its table, which is a field of the interned data. A new name goes into the
-  // packet.
+  // The number of a name in its table (a field of the interned data). A new name goes into the packet.
   std::uint64_t number_of(std::uint32_t table, std::string_view name) {
     auto& names = names_[table - interned::kEventNames];
     const auto [entry, is_new] = names.try_emplace(std::string(name), names.size() + 1);
@@ -270,7 +269,7 @@ class PerfettoTrack {
 };
 
 // Tracks of one name, which Perfetto shows as one. Slices that overlap without being nested need several. The
-// slices come by their ends.
+// slices come in the order of their ends.
 class OverlappingTracks {
  public:
   OverlappingTracks(PerfettoFile& file, TrackGroup group, std::size_t rank, const std::string& name)
@@ -434,9 +433,8 @@ class Rows {
   std::uint64_t first_flow_ = 1;           // of that run; the next ones follow
 };
 
-// The cycles of a window: a slice for each access, and one for consecutive cycles in which a port waits for
-// the same port, or is in the same other state, in which a bank has the same owner, or in which the matcher
-// works.
+// The cycles of a window: a slice for each access, and one for consecutive cycles in which a port is in the
+// same state (if it waits: for the same port), a bank has the same owner, or the matcher works.
 class Cycles {
  public:
   Cycles(const TraceBoard& board, PerfettoFile& file)
@@ -572,7 +570,7 @@ class Cycles {
   }
 
   // The arrows of a pixel: from its table entry to itself, and from the left pixel to the word that holds its
-  // disparity. Each has a number of its own, because a pixel that is passed ends the first and begins none.
+  // disparity. Each has its own number: a pixel that is passed ends the first and begins no second one.
   void add_data_flows(const CoreCycle& cycle, std::size_t port) {
     if (port == fpga::kHostPort || !cycle.frame) return;
     const auto add = [&](Arrow arrow, fpga::Side side, std::uint64_t slot) {

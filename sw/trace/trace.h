@@ -16,21 +16,21 @@
 
 namespace stereotlm::trace {
 
-// Finds the longest wait of a port for a bank, and keeps the cycles around it: 30 before it, or those that
-// there are, and behind it so many that there are 60 beside it. Of equal waits it takes the first one with 30
+// Finds the longest wait of a port for a bank, and keeps it with 60 cycles around it. 30 of them come before
+// it, or fewer if there are fewer; the others come behind it. Of equal waits it takes the first one with 30
 // cycles before it.
 class LongestWait {
  public:
-  // Cycles in their order. One that is left out ends every wait.
+  // Cycles in their order. A missing cycle ends every wait.
   void add(const fpga::CoreCycle& cycle);
 
-  // The number of its cycles; 0: no port waits.
+  // The length of the longest wait; 0: no port waits.
   std::uint64_t cycles() const { return end_ - first_; }
   std::uint64_t first_cycle() const { return first_; }
-  // The first one of the cycles around it, and the first one behind them.
+  // The first cycle around the wait, and the first one behind them.
   std::uint64_t begin_around() const { return lacks_cycles_before() ? first_added_ : first_ - kBefore; }
   std::uint64_t end_around() const { return begin_around() + cycles() + kBeside; }
-  // Those of the cycles around it that were added. To be called once, behind the last one.
+  // The cycles around the wait that were added. To be called once, after the last add().
   std::deque<fpga::CoreCycle> take_kept();
 
  private:
@@ -55,8 +55,7 @@ struct TraceFile {
   std::string path;
 };
 
-// The files that the trace is written to, without links. Throws std::system_error if links cannot be
-// followed.
+// The files of the trace, behind links. Throws std::system_error if links cannot be followed.
 std::vector<std::filesystem::path> outputs_of(const TraceFile& file);
 
 // What the window of a trace shows: these cycles, or those of them around the longest wait of a port.
@@ -68,13 +67,12 @@ struct TraceWindow {
 // The traces of a run. Its files appear whole with commit(), or not at all.
 //
 // The sinks get the cycles, bursts and levels of the window. For the window of a frame BusTrace reports the
-// whole frame, because the cycles of its rows are not known before. Where the longest wait is, is known at
-// the end of the run. In both cases this class keeps the bursts and levels, and leaves out those beside the
-// window at the end.
+// whole frame, because the cycles of its rows are not known before. The longest wait is known only at the end
+// of the run. In both cases this class keeps the bursts and levels, and at the end leaves out those outside
+// the window.
 class Trace : public fpga::CycleObserver, public platform::BusObserver {
  public:
-  // Throws std::runtime_error, with the name of the file, if one cannot be written. So do all other
-  // functions.
+  // All functions throw std::runtime_error, with the name of the file, if one cannot be written.
   Trace(const std::vector<TraceFile>& files, const platform::BoardConfig& board,
         const std::optional<TraceWindow>& window);
 

@@ -59,9 +59,8 @@ struct TraceBoard {
   SlotPlace place_of(std::size_t port, std::uint64_t item) const {
     return port == fpga::kResultPort ? place_of_word(item) : place_of_slot(item);
   }
-  // The slots of the pixels whose disparities the word holds. With the fetch `column` a pixel has several
-  // slots: this is the one in the strip of the result. There is none if the filter takes the pixel from an
-  // earlier strip.
+  // The slots of the pixels whose disparities the word holds. With the fetch `column` a pixel has several:
+  // this is the one in the strip of the result. Nullopt if the filter takes the pixel from an earlier strip.
   std::optional<std::array<std::uint64_t, 4>> slots_of_word(std::uint64_t word) const {
     const SlotPlace result = place_of_word(word);
     const auto strip = geometry.slots_per_column > 1 ? static_cast<int>(result.strip) : result.row;

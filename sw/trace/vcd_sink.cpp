@@ -153,11 +153,11 @@ struct Span {
   std::set<std::string> active_scopes;   // scopes with a signal that has had another value than its idle one
 };
 
-// Writes the changes of all streams in the order of their times, as a value change dump of IEEE 1364. A
-// signal has at most one change at a time: the last one of its stream.
+// Writes the changes of all streams in the order of their times, as a value change dump of IEEE 1364. If a
+// signal changes several times at one ps, only the last change is written.
 //
 // The file begins and ends with the window, or with the last change if the window has no end. A change before
-// the window gives the value with which the window begins. Changes after it are left out.
+// the window sets its first value. Changes after the end of the window are left out.
 class Waveform {
  public:
   Waveform(files::AsideFile& file, const Signals& signals)
@@ -447,8 +447,7 @@ class VcdSink : public TraceSink {
  private:
   std::uint32_t access_word(bool write) { return signals_.word(write ? "writes" : "reads"); }
 
-  // Bank and address of a port stay those of its last request, as on a bus, and so that a waveform has fewer
-  // changes.
+  // A port keeps the bank and address of its last request, as on a bus: a waveform then has fewer changes.
   void show_idle() {
     now_ = idle_;
     for (const std::size_t first : signals_.ports) {

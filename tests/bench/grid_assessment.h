@@ -24,14 +24,14 @@ struct GridAssessment {
   std::size_t right = 0;       // the board's disparity is within kMostDifference of the geometric disparity
   std::size_t wrong = 0;       // the board has another disparity
   std::size_t unanswered = 0;  // the board has no disparity, or the corner is outside its output
-  // Distances between neighbouring corners, compared with the side of a square: by the board's disparities
-  // for right corners and for all answered corners, and by the geometric disparities of the right corners
-  // rounded to whole pixels, the least error that a board can have.
+  // Deviations of the distances between neighbouring corners from the side of a square: of right corners, of
+  // all answered corners, and of right corners with their geometric disparities rounded to whole pixels, the
+  // least error that a board can have.
   Deviations lengths;
   Deviations lengths_of_answered;
   Deviations lengths_floor;
-  // For right corners: the mean distance from the camera, and the root mean square of their distances from
-  // one plane, in percent of that distance. 0 with fewer than four right corners.
+  // Of right corners: the mean distance from the camera, and, in percent of that, the root mean square of
+  // their distances from one plane (floor: as above). 0 with fewer than four right corners.
   double distance_mm = 0;
   double plane_percent = 0;
   double plane_floor_percent = 0;

@@ -10,8 +10,8 @@
 // Converts the boards of the references to boards of the platform.
 namespace stereotlm::test {
 
-// Bank i is called "bank<i>" and is as deep as its buffers need, at least one word. A filter of half h gets
-// some kernel of that size, and a cost that looks ahead becomes the census of that half.
+// Bank i is called "bank<i>" and is as deep as its buffers need, at least one word. A filter_half of h gives
+// some kernel of that size; a cost_half above 0 gives the census of that half.
 platform::BoardConfig board_config(const PlainCycleInput& input);
 // Throws std::invalid_argument if a side has a bank for its table, but no entries.
 platform::Tables board_tables(const PlainCycleInput& input);

@@ -20,9 +20,8 @@ struct ChildResult {
   bool ok() const { return exit_status == 0; }
 };
 
-// Runs the work in a forked child and waits for it. The child inherits the memory of its parent and returns
-// only the text. It exits without the destructors of static objects. Throws std::system_error if fork()
-// fails.
+// Runs the work in a forked child and waits for it. The child inherits the memory, returns only the text, and
+// exits without the destructors of static objects. Throws std::system_error if fork() fails.
 ChildResult run_in_child(const ChildWork& work, std::chrono::milliseconds timeout = std::chrono::seconds(60));
 
 // Runs work whose text is a result. The running test fails if the work throws, or with an expectation in it.

@@ -11,8 +11,8 @@
 
 namespace stereotlm::test {
 
-// The records of a run, made without the simulator: a plain core with one row of results per strip, fixed
-// priority, an endless host that now and then writes to a bank, and a few bursts and events around it. Each
+// The records of a run, made without the simulator: a plain core with one row of results per strip and fixed
+// priority, a host that requests a bank in one of 16 cycles, and a few bursts and events around it. Each
 // cycle of each frame is there.
 struct MadeTrace {
   std::vector<fpga::CoreCycle> cycles;

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <systemc>
 #include <tlm>
 #include <unordered_map>

@@ -34,8 +34,7 @@ class HostMemory : public PlainTarget {
   PlainWords words_;
 };
 
-// The processor. An access to a register is a PCI transaction of one word, repeated until the target takes
-// it.
+// The processor. A register access is a PCI transaction of one word, repeated until the target takes it.
 class Processor : private PlainMaster {
  public:
   Processor(PlainEvents& events, PlainPciBus& bus, std::function<bool()> interrupt)

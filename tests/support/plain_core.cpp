@@ -52,7 +52,7 @@ class BankAndArbiter {
         open_rows_(static_cast<std::size_t>(bank.sdram.internal_banks)) {}
 
   // Decides cycle `now`, greater than the last one, among the ports that request this bank. Returns the port
-  // that is granted, or the cause for which none is; nullopt if there is none of either.
+  // that is granted, else the cause for which none is; nullopt if there is neither.
   std::optional<std::size_t> decide(const std::vector<std::size_t>& ports,
                                     const std::vector<Request>& requests, Cycle now) {
     const std::optional<std::size_t> outcome = outcome_of(ports, requests, now);

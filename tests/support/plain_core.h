@@ -17,7 +17,7 @@
 // contract gives a time, and applies every rule in every cycle.
 //
 // Ports have numbers, in the order of "Ports" in section 8: left_lut.0 .. left_lut.P-1, right_lut.0 .., the
-// pixel ports likewise, result, host. The causes that are no port have the numbers behind them: turnaround,
+// pixel ports likewise, result, host. The next numbers are the causes of stalls that are no port: turnaround,
 // row, refresh.
 namespace stereotlm::test {
 
@@ -62,8 +62,8 @@ struct PlainRowEnd {
 enum class PlainTraffic { kCapture, kUpload, kReadBack };
 
 // Where in the picture, and when in a frame, ports stall. A tile is four columns of a strip of R rows. A
-// cycle belongs to the tile whose results leave next. Tile 0 is the fill: the cycles up to that in which
-// column C - 1 is consumed (C: contract section 2). Cycles after the last results belong to the last tile.
+// cycle belongs to the tile whose results leave next. Tile 0 is the fill: the cycles up to and including that
+// of column C - 1 (C: contract section 2). Cycles after the last results belong to the last tile.
 //
 // `waiter` and `by` are numbers: of a port (in place of the host: one for each PlainTraffic), then of
 // turnaround, row, refresh.

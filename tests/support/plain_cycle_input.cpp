@@ -1,7 +1,5 @@
 #include "tests/support/plain_cycle_input.h"
 
-#include <utility>
-
 namespace stereotlm::test {
 
 const char* name_of(PlainPort port) {

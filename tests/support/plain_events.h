@@ -5,7 +5,6 @@
 #include <queue>
 #include <stdexcept>
 #include <utility>
-#include <vector>
 
 #include "tests/support/plain_clock.h"
 

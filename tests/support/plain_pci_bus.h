@@ -22,7 +22,7 @@ class PlainTarget {
   virtual std::size_t takes(std::size_t words) const { return words; }
   virtual void write(std::uint64_t word, const PlainWords& words) = 0;
   // Called at the address clock, which ends at `end_ps`. The target calls `answer` when it has the words. The
-  // first is on the bus in the first clock after that, and not before the wait clocks have passed.
+  // first is on the bus in the first clock after the answer, but not before the wait clocks have passed.
   virtual void read(std::uint64_t word, std::size_t count, PlainTime end_ps,
                     std::function<void(PlainWords)> answer) = 0;
 };

@@ -47,8 +47,8 @@ struct RandomBoard : PlainCycleInput {
   }
 };
 
-// The knobs of contract sections 7 and 8 that boards draw, beside all of sections 1 to 6. Each is then drawn
-// by every second board or so: a board has any combination that is allowed.
+// The knobs of contract sections 7 and 8 that boards draw, beside all of sections 1 to 6. About every second
+// board draws each of them, in any combination that is allowed.
 struct RandomKnobs {
   bool large_images = false;  // few boards: up to 8192 columns or rows, without tables
   bool units = false;         // up to 16 passes
@@ -59,7 +59,7 @@ struct RandomKnobs {
   bool cost = false;
   bool wide_pci = false;  // of computers: 64 bits
   // Of computers: captures contend with the frame, by a local bus in step with the core, and the accesses of
-  // the frame are regular. No knob of section 7: the models have a faster way there.
+  // the frame are regular. The models have a faster way there; it is no knob of section 7.
   bool contended_captures = false;
   // Of computers: captures go to banks of their own, by a local bus in step with the core. The models skip
   // most of their lines.
@@ -78,11 +78,11 @@ struct RandomKnobs {
   }
 };
 
-// Without knobs a seed gives the board of sections 1 to 6 that it has always given. Each knob draws from a
-// generator of its own.
-// How many of them a test compares: as many as STEREOTLM_RANDOM_BOARDS says.
+// The number of boards that a test compares: STEREOTLM_RANDOM_BOARDS, if that is set.
 std::uint64_t random_boards(std::uint64_t without_it);
 
+// Without knobs a seed gives the board of sections 1 to 6 that it has always given. Each knob draws from a
+// generator of its own.
 RandomBoard make_random_board(std::uint64_t seed, const RandomKnobs& knobs = {});
 
 // For the message of a failure.

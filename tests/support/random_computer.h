@@ -6,8 +6,7 @@
 #include "tests/support/random_board.h"
 
 // Random computers around the boards of random_board.h, for tests that compare the models with the plain
-// computer. Every one keeps the rules of contract section 4. A seed gives the same computer on every
-// platform.
+// computer. Each keeps the rules of contract section 4. A seed gives the same one on every platform.
 namespace stereotlm::test {
 
 struct RandomComputer {
@@ -15,7 +14,7 @@ struct RandomComputer {
   PlainComputerInput input;  // the same board and the computer around it
 };
 
-// How many of them a test compares: as many as STEREOTLM_RANDOM_COMPUTERS says.
+// The number of computers that a test compares: STEREOTLM_RANDOM_COMPUTERS, if that is set.
 std::uint64_t random_computers(std::uint64_t without_it);
 
 RandomComputer make_random_computer(std::uint64_t seed, const RandomKnobs& knobs = {});

@@ -51,7 +51,7 @@ bool DirectFrame::read(const kernels::JointOffsets& offsets) {
   return is_readable;
 }
 
-// Reads both tables in any case: may_have_changed() is not repeated in the next frame.
+// Reads both tables even if one is not readable: may_have_changed() reports a change only once.
 bool DirectFrame::read_tables(const kernels::JointOffsets& offsets) {
   bool is_readable = true;
   for (const Side side : kSides) {

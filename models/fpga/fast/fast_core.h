@@ -29,7 +29,7 @@ class FastCore {
   class Board {
    public:
     virtual ~Board() = default;
-    // Nothing else can happen before this time, which is not before the present.
+    // No other event can happen before this time. It is the present or later.
     virtual std::uint64_t horizon_ps() const = 0;
     // The frame has ended, now. `failed`: its result may differ from that at Fidelity::kCycle.
     virtual void frame_ended(bool failed) = 0;
@@ -50,9 +50,9 @@ class FastCore {
   // To be called instead of HostPort::route() unless a stepped frame runs.
   void route(const HostRoute& route);
 
-  // Does what is due at `now_ps`. Returns the time of the next call; kNever: the next call is due when a
-  // frame starts. When a burst begins to request, a call is due in any case. An event at the time of an edge
-  // belongs to the cycle that begins there.
+  // Does what is due at `now_ps`. Returns the time of the next call; kNever: when a frame starts. A call is
+  // also due when a burst begins to request. An event at the time of an edge belongs to the cycle that begins
+  // there.
   std::uint64_t advance(std::uint64_t now_ps);
 
  private:

@@ -95,7 +95,7 @@ void FastForward::resolve_accesses(Side side) {
   tell_assumed();
 }
 
-// `kMayRequest`: false where the host requests in no cycle, which is most of them and costs less.
+// `kMayRequest`: false if the host does not request, as in most cycles. That costs less.
 template <bool kMayRequest>
 memory::PortMask FastForward::step_core(std::uint64_t cycle, bool host_requests) {
   return step(cycle, kMayRequest && host_requests,
@@ -150,7 +150,7 @@ FastForward::Served FastForward::serve_host(std::uint64_t& cycle, const Route& r
   return served;
 }
 
-// Routes the host to the bank. If a port is alone there, and ceases to be, runs up to `first` before.
+// Routes the host to the bank. If a port was alone there until now, first runs the core up to `first`.
 void FastForward::route_host(std::uint64_t& cycle, const Route& route, std::uint64_t first) {
   memory::Arbitration& arbitration = this->arbitration();
   const bool is_new = !arbitration.is_shared(route.bank);
@@ -167,7 +167,7 @@ void FastForward::route_host(std::uint64_t& cycle, const Route& route, std::uint
   if (is_new) begin_walk(cycle);
 }
 
-// Steps to the end of the group, or of the burst of the host, at most up to `end` or the end of the frame.
+// Steps to the end of the group or of the host's burst, but not beyond `end` or the end of the frame.
 std::uint64_t FastForward::step_group(std::uint64_t cycle, std::uint64_t end) {
   if (is_walking_) end_walk(cycle);
   const auto is_over = [&] { return cycle >= end || completed_group() || control().frame_done(); };
@@ -273,8 +273,8 @@ std::optional<TransitionCache::Transition> FastForward::find_host(std::uint64_t 
   return found && fits_host(*found) ? found : std::nullopt;
 }
 
-// Whether a transition with requests of the host can be followed. It may consume no slot, or continue after
-// its last one. Both would be wrong after the last uniform slot: there the cache has another state.
+// Whether a transition with requests of the host can be followed. It may run on after its last slot. But
+// after the last uniform slot the state in the cache differs from that of the core. So it must leave one.
 bool FastForward::fits_host(const TransitionCache::Transition& transition) const {
   const Progress& progress = known_.progress(transition);
   return progress.fits(room_) && progress.consumed < room_.consumed;
@@ -353,7 +353,7 @@ void FastForward::catch_up(std::uint64_t cycle) {
   host_ahead_ = {};
 }
 
-// Follows recorded transitions as far as there is room, which it reduces. Returns the state that comes next.
+// Follows recorded transitions as far as `room` allows, and reduces `room`. Returns the next state.
 FastForward::StateNumber FastForward::walk_varying(StateNumber state, Progress& room) {
   const std::uint64_t slots = slots_of_group();
   int alike = 0;  // groups with the accesses of the group before
@@ -380,7 +380,7 @@ FastForward::StateNumber FastForward::walk_varying(StateNumber state, Progress& 
   }
 }
 
-// Walks over groups with the same accesses. `consumed`: slots of the frame that are consumed before.
+// Follows groups with the same accesses. `consumed`: slots of the frame that are consumed before them.
 FastForward::StateNumber FastForward::walk_uniform(StateNumber state, std::uint64_t consumed,
                                                    Progress& room) {
   Progress uniform = room;
@@ -392,7 +392,7 @@ FastForward::StateNumber FastForward::walk_uniform(StateNumber state, std::uint6
   return last;
 }
 
-// Finds the strips in which both lanes handle and take their next slots. Returns false if there are none.
+// Finds the run of strips (Strips) in which both lanes handle and take slots. Returns false if there is none.
 bool FastForward::find_strips() {
   if (control().match().draining()) return true;
   const LaneControl& left = control().lane(Side::kLeft);
@@ -404,8 +404,8 @@ bool FastForward::find_strips() {
          std::max(left.taken(), right.taken()) < all_strips_[strips_].end;
 }
 
-// Returns how far the core can run before the strips end, MatchControl::part() changes, or a row of results
-// is complete.
+// Returns how far the core can run before this run of strips ends, MatchControl::part() changes, or a row of
+// results is complete.
 Progress FastForward::room() const {
   const bool drains = control().match().draining();
   // A port decides by the slot after the last one taken: that slot must be in the strips too.
@@ -423,8 +423,8 @@ bool FastForward::holds_group(const Progress& room) const {
   return room.consumed >= slots_of_group() && room.left_slots >= slots && room.right_slots >= slots;
 }
 
-// The accesses of the slots in the lanes while the matcher consumes `slots` slots, before which `consumed`
-// slots are consumed.
+// The accesses of all slots that are in the lanes while the matcher consumes `slots` slots. `consumed`: slots
+// of the frame that are consumed before them.
 TransitionCache::Accesses FastForward::accesses_from(std::uint64_t consumed, std::uint64_t slots) const {
   TransitionCache::Accesses accesses{};
   const std::size_t words = known_.words_of_side();
@@ -456,9 +456,8 @@ TransitionCache::Accesses FastForward::accesses() const {
   return varies() ? accesses_from(consumed_, left_of_group_) : TransitionCache::Accesses{};
 }
 
-// Records the transition that has just been stepped. Does not record it if the next state depends on the
-// position in the frame, and not on the state before alone: a lane has left the current run of equal strips
-// (Strips), or MatchControl::part() has changed.
+// Records the transition that has just been stepped. Does not if the next state depends on the position in
+// the frame too: a lane has left its run of strips (Strips), or MatchControl::part() has changed.
 void FastForward::end_stepped(std::uint64_t cycle) {
   const Stepped stepped = *stepped_;
   stepped_.reset();

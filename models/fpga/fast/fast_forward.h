@@ -12,26 +12,27 @@
 
 namespace stereotlm::fpga {
 
-// Runs many cycles of a frame in one step, without data; used by FrameRun. A transition of the core that is
-// in the TransitionCache is skipped; others are stepped and recorded. While rows are recorded, the cycles
-// around the end of each row are stepped.
+// Runs many cycles of a frame in one step, without data; used by FrameRun. It skips the transitions of the
+// core that are in the TransitionCache; it steps and records all others. While rows are recorded, it steps
+// the cycles around the end of each row.
 //
-// A walk only follows recorded transitions: the core and the arbiters keep their old state until catch_up().
-// The last grant of a burst of the host ends a transition, so that a group may hold several bursts.
+// A walk looks up one transition after the other. The core and the arbiters keep their old state until
+// catch_up(). The last grant of a burst of the host ends a transition, so that a group may hold several
+// bursts.
 //
-// While a frame is skipped, every slot of a side with table whose pixel port is uncontended is assumed to
-// access its pixel. Such a port takes one cycle for a slot, whether it is granted or passes. Only the counts
-// differ: a pass counts as a grant until resolve_accesses() corrects them. So the transitions repeat far more
-// often with the tables of a rig: a frame of the paper's board takes a thirtieth of the time.
+// On a side with table whose pixel port is uncontended, each slot in the image is assumed to access its
+// pixel. A grant and a pass both take one cycle. Only the counts differ: a pass counts as a grant until
+// resolve_accesses() corrects it. With the tables of a rig transitions then repeat far more often: a frame of
+// the paper's board takes a thirtieth of the time.
 class FastForward : public CoreStepper {
  public:
   // `arbitration` outlives this object. Throws std::invalid_argument if the configuration has problems.
   FastForward(const CoreConfig& config, memory::Arbitration& arbitration);
 
-  // To be called when a frame with these accesses is to be fast-forwarded, after its ports have been routed
-  // and start_frame() has been called. The patterns must outlive the frame. The caller guarantees that frames
-  // with buffers in the same banks have the same routes and latencies. This and the next function throw
-  // std::logic_error if settle() has not been called since the last frame.
+  // Prepares to fast-forward a frame with these accesses. To be called after its ports have been routed and
+  // after start_frame(). The patterns must outlive the frame. The caller guarantees that frames with buffers
+  // in the same banks have the same routes and latencies. This and the next function throw std::logic_error
+  // if settle() has not been called since the last frame.
   void start_direct_frame(const AccessPatterns& patterns, const FrameBases& bases);
   // To be called when a frame starts that the owner steps itself.
   void start_stepped_frame();
@@ -57,14 +58,14 @@ class FastForward : public CoreStepper {
     std::size_t words = 0;         // of the burst
     std::uint64_t last_cycle = 0;  // in which the last of them was granted
   };
-  // Runs the cycles from `cycle` on until the host is granted `words` words of its bank. The first requests
-  // from cycle `first` on, each other in the cycle after a grant. The caller guarantees that every earlier
-  // burst has ended before `first`. Ends early if the frame is done, or kMostHostCycles after the first
-  // request. Sets `cycle` to the next cycle, to which the core is taken only by the next other call.
+  // Runs the core from `cycle` on until the host has been granted `words` words. The first word requests from
+  // cycle `first` on, each further word from the cycle after a grant on. Every earlier burst must have ended
+  // before `first`. Returns early if the frame is done, or kMostHostCycles after the first request. Sets
+  // `cycle` to the next cycle; only a call of another function takes the core there.
   Served serve_host(std::uint64_t& cycle, const Route& route, std::uint64_t first, std::size_t words);
   // The number of cycles that were skipped and not stepped, over all frames.
   std::uint64_t skipped_cycles() const { return skipped_cycles_; }
-  // The cycles that were skipped, but not by the core: its control is still in the state before them.
+  // The cycles that were skipped so far, but not by the core: its control has the state before them.
   const Progress& ahead() const { return ahead_; }
 
  private:
@@ -119,8 +120,8 @@ class FastForward : public CoreStepper {
   // Where the recorder of the frame finds the transitions that were followed; null without recorder.
   TransitionCache::Log* log() { return conflicts() != nullptr ? &in_order_ : nullptr; }
   void skip(const Progress& progress);
-  // Hands what has been skipped to the recorder of the frame, if there is one. `left_of_group`: as it was
-  // before. Returns true at the end of a strip, where more may be skipped.
+  // Reports what has been skipped to the recorder of the frame, if there is one. `left_of_group`:
+  // left_of_group_ before it was skipped. Returns true at the end of a strip: more may be skipped then.
   bool record_skipped(std::uint64_t cycle, std::uint64_t left_of_group) {
     return conflicts() != nullptr && hand_over(*conflicts(), cycle, left_of_group);
   }
@@ -172,8 +173,8 @@ class FastForward : public CoreStepper {
   bool is_host_routed_ = false;      // by serve_host()
   std::uint64_t banks_ = 0;          // of the frame's buffers, 6 bits for each port
   std::size_t strips_ = 0;           // index in all_strips_: the run in which the lanes take their next slots
-  // [side]: the pattern by which the accesses of the side vary. Null if all its slots inside the image access
-  // their pixels, or are assumed to, or if its port itself finds them in the cache (a side without table).
+  // [side]: the pattern of a side whose accesses vary. Null if all slots inside the image access their
+  // pixels, or are assumed to. Null for a side without table: LaneControl itself finds hits of the cache.
   std::array<const AccessPattern*, 2> varying_{};
   // [side]: the pattern of a side whose passes are counted as grants; null if there are none.
   std::array<const AccessPattern*, 2> assumed_{};

@@ -72,12 +72,12 @@ struct HostGrants {
 };
 
 // Cache of state transitions for FastForward. A transition leads to the end of a group of four columns of the
-// matcher, or to the last grant of a burst of the host in the group. The state before it, the requests of the
-// host, and the accesses of the slots that the group can handle, determine its cycles, its counts and the
-// next state. A transition is recorded when it is stepped; after that it is skipped.
+// matcher, or to the last grant of a burst of the host in the group. Its cycles, its counts and the next
+// state follow from the state before it, the requests of the host, and the accesses of the slots that the
+// group can handle. Its cycles are stepped once and recorded; after that they are skipped.
 //
-// States and effects have numbers: they are few, while the accesses of real tables hardly repeat. A step
-// of a walk is one look-up in a small table.
+// States and Effects are few: each is stored once, and has a number. The accesses of real tables hardly
+// repeat: each transition stores its own.
 class TransitionCache {
  public:
   // Cap: a frame that never repeats would otherwise fill memory.
@@ -86,9 +86,9 @@ class TransitionCache {
   using State = memory::StateWords;
   using StateNumber = std::uint32_t;
 
-  // The slots in the lanes up to the end of the group, from the first one that is not consumed before the
-  // transition: a bit for each, which is 1 if the slot accesses its pixel. words_of_side() words for the left
-  // lane, then as many for the right lane. Slots that are handled before have no effect.
+  // A bit for each slot that is in a lane before the end of the group, the oldest one first: 1 if the slot
+  // accesses its pixel. words_of_side() words for the left lane, then as many for the right lane. The bits of
+  // slots that are handled before the transition have no effect.
   static constexpr std::size_t kMostWordsOfSide = 4;
   using Accesses = std::array<std::uint64_t, 2 * kMostWordsOfSide>;
   std::size_t words_of_side() const { return words_ / 2; }
@@ -108,8 +108,8 @@ class TransitionCache {
     StateNumber next = 0;
     std::uint32_t effect = 0;
   };
-  // Transitions in the order in which they were followed, for a recorder. `length` consecutive entries were
-  // followed one after the other, and this `times` times.
+  // Transitions in the order in which they were followed, for a recorder. This entry and the `length` - 1
+  // behind it are a loop, which was followed `times` times.
   struct Followed {
     std::uint32_t effect;
     std::uint32_t length;
@@ -151,7 +151,7 @@ class TransitionCache {
     if (comes_again) ++log->back().times;
     follow(transition, 1, comes_again ? nullptr : log);
   }
-  // Follows recorded transitions with the same accesses, as far as there is room, which it reduces. A loop of
+  // Follows recorded transitions with these accesses as far as `room` allows, and reduces `room`. A loop of
   // transitions is repeated in one step. Adds them to `log`, unless that is null. Returns the next state.
   StateNumber walk(StateNumber first, const Accesses& accesses, Progress& room, Log* log = nullptr);
   // Adds the counts of the transitions that were followed since the last call.
@@ -167,8 +167,8 @@ class TransitionCache {
 
   static constexpr std::size_t kMostStates = std::size_t{1} << 23U;
 
-  // A bucket of the table of transitions: the number of the state plus one (0: the bucket is free) and, above
-  // it, the requests of the host; the accesses of key_of(); the transition.
+  // A bucket of the table: one word with the state's number plus one (0: the bucket is free) and the requests
+  // of the host, the accesses of key_of(), one word with the transition.
   std::size_t words_of_bucket() const { return words_ + 2; }
   Accesses key_of(StateNumber from, const Accesses& accesses) const;
   static std::uint64_t first_word_of(StateNumber from, HostRequests host) {

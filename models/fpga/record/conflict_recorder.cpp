@@ -133,8 +133,8 @@ void ConflictRecorder::repeat(const GroupConflicts* const* groups, std::size_t s
   group_ = next;
 }
 
-// Adds the stalls of a group that comes `count` times, every `step` groups, `first` groups after the next
-// one.
+// Adds the stalls of a group that comes `count` times, every `step` groups. The first time is `first` groups
+// after group number group_.
 void ConflictRecorder::add_stalls(const GroupConflicts& group, std::size_t first, std::size_t count,
                                   std::size_t step) {
   for (const memory::Stall& stall : group.stalls) {

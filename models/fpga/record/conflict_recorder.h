@@ -4,7 +4,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -17,8 +16,8 @@
 
 namespace stereotlm::fpga {
 
-// How the image is divided into tiles. A tile is a group of four columns of one strip of results, but larger
-// where the image would have more tiles than wanted.
+// How the image is divided into tiles. A tile is a group of four columns of one strip of results. Tiles are
+// larger if there would be more of them than wanted.
 struct TileGrid {
   TileGrid(const FrameGeometry& geometry, std::size_t most_tiles);
 
@@ -30,8 +29,8 @@ struct TileGrid {
   std::size_t strips_of_tile;
 };
 
-// The cycles of one group of four columns of the matcher, up to the end of the cycle in which it is complete;
-// or a part of them.
+// The cycles of one group of four columns of the matcher, up to and including the cycle that completes it; or
+// a part of them.
 struct GroupConflicts {
   std::uint64_t cycles = 0;
   std::uint64_t host_words = 0;  // that the host is granted
@@ -45,8 +44,8 @@ struct StallCause {
   std::size_t by = 0;  // requester, or kTurnaroundToBlame
 };
 
-// The cycles of a strip of results in one frame: those after the last group of the strip before, up to its
-// own last group.
+// The cycles of a strip of results in one frame: from the end of the strip before to the cycle that completes
+// its own last group.
 struct StripConflicts {
   std::uint64_t cycles = 0;
   std::array<std::uint64_t, kRequesters> stalls{};     // [requester]
@@ -75,11 +74,11 @@ struct FrameConflicts {
   std::vector<Stalls> stalls;          // by strip, then by cause; no zeros
 };
 
-// Records where in the picture, and when in a frame, the ports stall: the cycles of each frame are divided by
-// the completions of the matcher's groups of four columns. The cycles after one completion, up to and
-// including that of the next group, belong to the tile whose results leave with it. The cycles before the
-// first group with results are the fill; those after the last completion belong to the last tile. So fill and
-// tiles together have the counted cycles of the frame.
+// Records where in the picture, and when in a frame, the ports stall. The cycles after the matcher has
+// completed a group of four columns, up to and including the completion of the next group, belong to the tile
+// whose results leave with that next group. The cycles before the first group with results are the fill;
+// those after the last group belong to the last tile. So fill and tiles together have the counted cycles of
+// the frame.
 //
 // The ports read ahead: when the results of column x leave, the lanes fetch for column x + C (C of contract
 // section 2).
@@ -112,13 +111,13 @@ class ConflictRecorder {
   void skip_from(std::uint64_t cycle) { cycle_ = cycle; }
   // A part of a group, but not its end.
   void add_part(const GroupConflicts& part);
-  // The number of columns up to the end of the strip: there the core must be in the state after them when
-  // end_strip() is called.
+  // The number of columns up to the end of the strip. When end_strip() is called, the core must be in the
+  // state after them.
   std::uint64_t strip_end_column() const {
     return geometry_.result_delay_columns + 4 * groups_of_strip_ * strip_;
   }
-  // These groups follow each other, and this `times` times. They end at the end of the strip at the latest.
-  // The first one may be the rest of a group.
+  // Adds groups that follow each other, this sequence `times` times. The first one may be the rest of a
+  // group. None lies beyond the end of the strip.
   void repeat(const GroupConflicts* const* groups, std::size_t size, std::uint64_t times);
   bool is_at_strip_end() const { return group_ == (strip_ == 0 ? groups_of_fill_ : groups_of_strip_); }
   void end_strip();
@@ -129,8 +128,8 @@ class ConflictRecorder {
   // on.
   HostTraffic traffic_of(bool write, std::uint64_t address) const;
   void set_host_traffic(HostTraffic traffic) { traffic_ = traffic; }
-  // Words of the host have been served in an uncontended bank, in cycles of the running frame, or, if not
-  // `granted`, were refused because of the turnaround.
+  // In these cycles of the running frame the host was granted words of an uncontended bank. If not `granted`,
+  // it was refused a word because of the turnaround.
   void add_served(HostTraffic traffic, std::size_t bank, std::uint64_t cycle, std::uint64_t cycles,
                   bool granted);
 

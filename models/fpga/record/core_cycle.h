@@ -33,8 +33,8 @@ struct CoreCycle {
   bool works = false;                                // the matcher works
 };
 
-// Receives each cycle of the core in a window, in the order of the cycles. A cycle that is left out is one in
-// which no frame runs and the host requests no bank. Plain C++.
+// Receives the cycles of the core in a window, in their order. Cycles in which no frame runs and the host
+// requests no bank are left out. Plain C++.
 class CycleObserver {
  public:
   virtual ~CycleObserver() = default;

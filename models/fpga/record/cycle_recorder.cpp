@@ -145,7 +145,7 @@ void CycleRecorder::drop_accesses(std::uint64_t end_cycle) {
   }
 }
 
-// Sets what the host's port does in the cycle, before which accesses_ has none.
+// Sets what the host's port does in the cycle. accesses_ must have no earlier cycle.
 void CycleRecorder::set_access(CoreCycle& cycle) const {
   if (accesses_.empty() || cycle.cycle < accesses_.front().cycle) return;
   const Accesses& accesses = accesses_.front();

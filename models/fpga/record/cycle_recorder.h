@@ -26,7 +26,7 @@ struct HostWord {
 using NextHostWord = std::function<std::optional<HostWord>()>;
 
 // Reports to an observer what every port does in each cycle of a window. FastForward must not skip these
-// cycles. Addresses follow from the slots and from the look-up tables, so that memory need not hold them.
+// cycles. Addresses follow from the slots and from set_entries(), so that a frame without pixels has them.
 // Plain C++; used at every fidelity, with the same cycles.
 class CycleRecorder {
  public:
@@ -58,8 +58,8 @@ class CycleRecorder {
     accesses_.push_back({first, cycle, cycles, granted});
   }
 
-  // Hands out the accesses of the host before `end_cycle` while no frame runs. To be called regularly,
-  // because they fill memory, and at the end of the run. Later accesses may be known by then.
+  // Hands out the accesses of the host before `end_cycle` while no frame runs, and keeps later ones. To be
+  // called regularly, because they fill memory, and at the end of the run.
   void hand_out(std::uint64_t end_cycle) {
     if (!frame_) report_accesses(end_cycle);
   }

@@ -8,13 +8,13 @@
 
 namespace stereotlm::fpga {
 
-// What a burst of the host is for. A read of a bank is a read-back. A write is of a capture if the capture
-// boards write to its address, else an upload.
+// What a burst of the host is for. A read of a bank is a read-back. A write belongs to a capture if the
+// capture boards write to its address; any other write is an upload.
 enum class HostTraffic : std::uint8_t { kCapture, kUpload, kReadBack };
 inline constexpr std::size_t kHostTraffics = 3;
 
-// Who requests banks, or is to blame: the ports of the core, then the host's port for each HostTraffic. To
-// blame may also be the turnaround.
+// Who requests banks, or is to blame: the ports of the core, then the host's port for each HostTraffic. The
+// turnaround can only be to blame.
 inline constexpr std::size_t kRequesters = kCorePortCount + kHostTraffics;
 inline constexpr std::size_t kTurnaroundToBlame = kRequesters;
 constexpr std::size_t requester_of(HostTraffic traffic) {

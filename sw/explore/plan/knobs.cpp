@@ -365,8 +365,8 @@ class Steps {
   }
 
   // The names of kQuietBanks banks for one more buffer of this list. First come those without a buffer of the
-  // list, then those with fewer accesses: a picture or table has one for each slot, a result two for each
-  // four pixels.
+  // list, then those with fewer accesses. A picture or table has one access for each slot, a result two for
+  // each four pixels.
   std::vector<std::string> quiet_banks(Buffer list) const {
     const int rows = board_.matcher.rows;
     const bool is_column = board_.matcher.fetch == fpga::Fetch::kColumn;

@@ -24,15 +24,15 @@ struct KnobStep {
 
 struct KnobSteps {
   std::vector<KnobStep> possible;
-  // The steps that a rule between several keys forbids, or that the tables forbid. Of a group none, if one of
-  // its steps is possible; else the first.
+  // The steps that a rule between keys or the tables forbid. If all steps of a group are forbidden, only the
+  // first is listed; else none of them.
   std::vector<KnobStep> forbidden;
 };
 
-// One step of every knob of a board, as long as the value is in the range of its key:
-//   a number: up and down by the step of its key (1; window: 2; pci.width_bits: 32); a word: each other one
+// One step of every knob of a board, if the new value is in the range of its key:
+//   a number: up and down by the step of its key (1; window: 2; pci.width_bits: 32); a word: each other word
 //   matcher.fetch: a step to the line buffer also sets matcher.rows to 1
-//   matcher.units: the fewest modules for the next lower number of folds, and for the next higher; all
+//   matcher.units: the fewest modules for the next lower and next higher number of folds; `all`
 //   matcher.cost: each other kind (census with 5 x 5 pixels); from census also the next larger and smaller
 //   matcher.filter: none; log7
 //   fpga.tables: joint, in the bank of the left table or in that of the right; or separate, with the right
@@ -41,9 +41,9 @@ struct KnobSteps {
 //   pci.load: removed
 //   ssram.banks.*.kind: all banks get another kind (a bank that gains turnaround has 2 cycles of it)
 //   ssram.banks.*.turnaround_cycles: up and down by one, in all banks that have turnaround
-//   allocation.left_image with right_image, and allocation.disparity: one buffer less, or one more, in one of
-//   four banks: those without such a buffer first, then those with the fewest accesses
-//   a bank more: a buffer leaves a shared bank for one that holds nothing; if none can hold it, for a new
+//   allocation.left_image with right_image, and allocation.disparity: the last buffer removed; or one added,
+//   in one of four banks: first those without such a buffer, then the least accessed
+//   a bank more: a buffer leaves a shared bank for an empty one. If no empty bank can hold it, it gets a new
 //   bank, which is like the shared one
 //   a bank less: all buffers of one bank move into another bank that is used
 // Image size, bank depth and device do not change. `camera`: whether the knobs of the computer around the

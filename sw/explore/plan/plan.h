@@ -13,8 +13,7 @@
 
 namespace stereotlm::explore {
 
-// The values that a plan gives one key: a list, or a range of exact decimal numbers, which are made one by
-// one.
+// The values that a plan gives one key: a list, or a range of exact decimal numbers, made on demand.
 struct PlanValues {
   std::vector<platform::YamlNode> list = {};  // empty: the range
   // The range: `from`, `from` + `step`, and so on. Both are digits without the decimal point.
@@ -30,13 +29,11 @@ struct PlanValues {
 };
 
 // The plan of a sweep: a board, values for some of its keys, and the combinations of these values that are
-// points. Each point is made from its number, so that a plan takes as much memory for a million points as for
-// ten.
+// points. Each point is made from its number, so that memory does not grow with the number of points.
 class Plan {
  public:
   // Reads a plan file. `board`: a board in place of the one that the plan names; empty: none. Throws
-  // platform::BoardError with everything that is wrong, and with the number of points that the plan would
-  // have.
+  // platform::BoardError with all that is wrong, and the number of points that the plan would have.
   static Plan load(const std::string& path, const std::string& board = "");
 
   // The number of points before conditions leave out some.

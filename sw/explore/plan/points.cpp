@@ -72,9 +72,9 @@ std::set<std::string> pure_functions(const sqlite::Database& database) {
 
 }  // namespace
 
-// Compiles each text twice. The first time it ends a statement: then unbalanced quotes and brackets are
-// errors, and SQLite's message quotes only the text. The second time it stands in brackets: then a clause
-// behind the expression, such as LIMIT, and a comment that does not end are errors.
+// Compiles each text twice. At the end of a statement, unbalanced quotes and brackets are errors, and
+// SQLite's message quotes only the text. In brackets, a clause behind the expression, such as LIMIT, and a
+// comment that does not end are errors.
 Conditions::Conditions(const std::vector<Condition>& conditions)
     : database_("where", sqlite::Database::Access::kMemory), functions_(pure_functions(database_)) {
   sqlite3_set_authorizer(database_.handle(), authorize, this);

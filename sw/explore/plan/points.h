@@ -30,7 +30,7 @@ struct PointRun {
 };
 
 // The least window of the steady rate (platform::SteadyRate) in a run of the default length. It is whole
-// turns of lists of 1, 2 or 3.
+// turns of lists of 1, 2 or 3 buffers.
 inline constexpr std::uint64_t kSteadyFrames = 12;
 // The same for the runs of `allocate`, whose rates mostly differ by less than a percent.
 inline constexpr std::uint64_t kSearchSteadyFrames = 10 * kSteadyFrames;
@@ -47,8 +47,7 @@ bool may_vary(const std::string& run_key);
 std::string run_key_problem(const std::string& run_key, const platform::YamlNode& value);
 inline constexpr platform::IntegerRule kFramesRule = {1, 1'000'000};
 
-// Sets the member of `run` for kSourcePath or kFramesPath to the value, which must be valid. Ignores other
-// keys.
+// Sets the member of `run` for kSourcePath or kFramesPath to the value, which is valid. Ignores other keys.
 void apply_run_key(const std::string& run_key, const platform::YamlNode& value, PointRun& run);
 
 // One point: a board and its run; or the reason for which there is no such board.
@@ -98,8 +97,8 @@ class ConditionError : public std::runtime_error {
 // over the keys of the board, such as `image.width * image.height <= 307200`. The value of a list or a filter
 // is its text. `ssram.banks` is the number of banks, `board.name` the name of the board; `run.source` and
 // `run.frames` are also defined. An absent value is NULL. A condition depends only on the point: it cannot
-// use other tables, parameters, or functions of time or chance. Its texts and its steps are limited. Must
-// not be used across fork().
+// use other tables, parameters, or functions of time or chance. The lengths of texts and the steps of SQLite
+// are limited. Must not be used across fork().
 class Conditions {
  public:
   // Throws std::invalid_argument with the reason if a text is not such an expression.
@@ -114,8 +113,7 @@ class Conditions {
     std::unique_ptr<sqlite::Statement> statement;
   };
 
-  // SQLite's authorizer: SQLite calls it for each function and table that a text names. `conditions` is this
-  // object.
+  // SQLite calls this authorizer for each function and table that a text names. `conditions`: this object.
   static int authorize(void* conditions, int action, const char* first, const char* second,
                        const char* database, const char* trigger);
   std::unique_ptr<sqlite::Statement> compile(const std::string& sql);

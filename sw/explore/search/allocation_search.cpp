@@ -42,8 +42,8 @@ std::string key_of(const platform::BoardConfig& board) {
   return key;
 }
 
-// Records the results of some boards in the search. Reads them from the database. If the sweep of the boards
-// is whole, it has given up a board that is not in the database.
+// Reads the results of some boards from the database, and records them in the search. If the sweep of the
+// boards is whole, a board that is not in the database was given up.
 void record_outcomes(const std::vector<std::size_t>& numbers, const std::string& path, bool is_whole,
                      AllocationSearch& search) {
   StoredRow row(path);

@@ -13,8 +13,7 @@
 
 namespace stereotlm::explore {
 
-// The bank of each buffer of a board, as an index into BoardConfig::banks, in the order of
-// platform::buffers().
+// The bank of each buffer, as an index of BoardConfig::banks, in the order of platform::buffers().
 using Placement = std::vector<int>;
 
 // The number of different banks that a placement uses.
@@ -40,9 +39,8 @@ bool frames_are_independent(const platform::BoardConfig& board);
 
 // A board that computes only frame number `frame` of the placement: it has only the buffers of that frame.
 // Its name is "one frame of NAME", for those who read it in a database. Each bank of the placement is
-// replaced by the first equal bank that has not yet replaced another one. If frames_are_independent(), two
-// frames with the same such board take the same number of cycles, even if they belong to different
-// placements.
+// replaced by the first equal bank that has not yet replaced another one. If frames_are_independent(), frames
+// with the same such board take the same number of cycles, also in different placements.
 platform::BoardConfig board_of_frame(const platform::BoardConfig& board, const Placement& placement,
                                      std::uint64_t frame);
 
@@ -85,14 +83,14 @@ struct BestOfAll {
 // Finds the best placement of a board's buffers for each number of banks. It selects the boards to simulate,
 // and the caller records their results.
 //
-// The rate of a long run lies between the rate of a run less its uncertainty and that rate plus its
-// uncertainty. It is not above the bound of the placement. A placement is known to be slower than another if
-// the most that it can have is below the least that the other one has. All others tie.
+// The rate of a long run differs from the rate of a run by at most the run's uncertainty. It is not above the
+// bound of the placement. A placement is known to be slower than another if its highest possible rate is
+// below the lowest possible rate of the other. All others tie.
 //
 // If frames_are_independent() and the core runs alone, the search is by frames. It needs a simulation of one
 // frame for each way in which the buffers of a frame share banks, and computes the rate of every placement
 // from these. Otherwise each placement is a run. A placement is left out if its bound shows that it is slower
-// than another with as many banks. A run may be given up as soon as its rate shows that.
+// than another with as many banks. A run may be given up once its rate shows the same.
 class AllocationSearch {
  public:
   // An upper bound of the frames per second of a board that loses no pixels.
@@ -178,8 +176,7 @@ struct SearchProgress {
   std::uint64_t done = 0;       // boards with a result
   std::uint64_t simulated = 0;  // those of `done` that the store did not have before
   std::uint64_t most_left = 0;  // upper limit for the boards that are left
-  // Whether most_left is without the boards that first results leave out. The first results leave out most
-  // boards.
+  // Whether most_left excludes the boards that the first results leave out, which are most boards.
   bool is_narrowed = false;
 };
 

@@ -120,8 +120,8 @@ struct Task {
   std::string state;                   // "PENDING", "RUNNING", "NODE_FAIL", ..
   std::string reason;                  // why it waits: "Resources", ..
 
-  // Whether it waits, runs, or still has processes: not the states of ended jobs, from "JOB STATE CODES" in
-  // the manual of squeue.
+  // Whether the task waits, runs, or still has processes. kEnded are the states of ended jobs, from "JOB
+  // STATE CODES" in the manual of squeue.
   bool is_live() const {
     constexpr std::array kEnded = {"BOOT_FAIL", "CANCELLED",     "COMPLETED", "DEADLINE", "FAILED",
                                    "NODE_FAIL", "OUT_OF_MEMORY", "PREEMPTED", "REVOKED",  "TIMEOUT"};

@@ -38,20 +38,19 @@ struct SlurmProgress {
   std::string reason;         // why the first waiting shard waits, in Slurm's words; empty: not known
 };
 
-// A sweep on a cluster, in rounds. A round is a job array of Slurm, one task for each shard that is not
-// whole, and behind it a job that merges all shards into the store. Once all jobs of a round have ended, and
-// shards were lost, the next round begins. This process reports the progress. If it ends, the jobs of its
-// round continue, and a new process finds them by their name.
+// A sweep on a cluster, in rounds. A shard is whole (all of its points are done) once shard_I.db exists. A
+// round is a job array of Slurm, with a task for each shard that is not whole, and behind it a job that
+// merges all shards into the store. If all jobs of a round have ended without a merged store, the next round
+// begins. This process reports the progress. If it ends, the jobs of its round continue, and a new process
+// finds them by their name.
 //
-// The folder STORE.shards, on a file system that all machines share, holds the files of the sweep, the
-// scripts of the tasks, and the store, the counts and the log of each shard: some files for each shard, none
-// for each point. A shard is whole (all of its points are done) once shard_I.db exists.
+// The folder STORE.shards is on a file system that all machines share. It holds the files of the sweep, the
+// scripts of the tasks, and the store, counts and log of each shard; no file per point.
 class SlurmSweep {
  public:
   using Say = std::function<void(const std::string& note)>;
 
-  // `options` are passed to sbatch for all jobs, such as partition=long. `say` is called with notes for the
-  // user.
+  // `options`: of sbatch, for all jobs, such as partition=long. `say` is called with notes for the user.
   SlurmSweep(const ShardedSweep& sweep, const std::vector<std::string>& options, Say say)
       : sweep_(sweep), options_(options), say_(std::move(say)) {}
   ~SlurmSweep();
@@ -96,8 +95,7 @@ class SlurmSweep {
   std::string name_;                 // of the jobs
   std::set<std::string> names_;      // in the folder
   std::set<std::string> live_jobs_;  // numbers
-  // Of the round that was submitted or found last: the numbers of its jobs, and how its tasks and its merge
-  // have ended.
+  // The numbers of the jobs of the latest round, and how its tasks and its merge have ended.
   std::set<std::string> jobs_;
   std::map<std::optional<std::uint64_t>, std::string> ends_;  // [shard]; nullopt: the merge
   int losses_ = 0;                                            // successive rounds without a further point

@@ -294,8 +294,8 @@ Store::Store(const std::string& path, const std::string& version, std::chrono::m
 void Store::create() {
   if (database_.number(kSizeOfSchema) == 0) {
     database_.execute("PRAGMA synchronous = OFF");  // an empty store has nothing that could be lost
-    // Small pages: a point changes some pages, and each changed page is written to the journal as a whole.
-    // Not smaller: a row that does not fit into its page makes every column that the merge reads slow.
+    // Small pages, because the journal holds each changed page as a whole. Not smaller: if a row does not fit
+    // into its page, the merge reads its columns slowly.
     database_.execute("PRAGMA page_size = 2048");
     wait_for_writers(database_);
     // With this journal readers do not wait for a writer, and nothing is lost when a process ends, whatever

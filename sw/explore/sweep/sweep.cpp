@@ -31,9 +31,8 @@ StoredPoint row_of(const Point& point, const std::string& status, const std::str
   return {point.hash, status, reason, point.yaml, point.values, {}};
 }
 
-// Renames a figure that has the same path as a key, because both have a column: bridge.posted_words is the
-// number of words that the bridge can hold, bridge.posted_words.counted the number of words that it has
-// taken.
+// Renames a figure with the path of a key, because both have a column: bridge.posted_words is how many words
+// the bridge can hold, bridge.posted_words.counted how many it has taken.
 Figures beside_keys(Figures figures, const std::vector<platform::BoardValue>& keys) {
   for (platform::BoardValue& figure : figures.values) {
     const auto is_key = [&figure](const platform::BoardValue& key) { return key.path == figure.path; };
@@ -74,8 +73,7 @@ class SharedLock {
 
 // The points that the workers of a sweep have begun and ended, in memory that all its processes share. A
 // point is a number from 0. Each worker has a place; when it dies, its successor takes the place over. One
-// store to memory begins a point, and one store ends it: a place is thus valid at whatever moment its worker
-// dies.
+// store to memory begins a point, and one ends it, so that a place is valid whenever its worker dies.
 class Claims {
  public:
   Claims(std::size_t places, std::uint64_t points)

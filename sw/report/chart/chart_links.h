@@ -36,11 +36,11 @@ std::string name_of_block(const std::string& id);
 // buffers, in the order of fpga::kPorts and of the board's banks. The ids differ, because only the links of
 // ports begin with the name of a port.
 //
-// Links of banks have the accesses of the counted cycles of all frames, and their time. A port of the core
-// makes equally many accesses in each frame, so its grants divide by the frames. The host has the accesses of
-// a bank that no other port made. Links around the board have the words since power-up, and that time: a
-// camera the pixels that its capture board has written, the CPU its register accesses, the bridge the words
-// written into it (edge-pci-bridge) and those that its DMA moved over PCI (edge-bridge-pci).
+// The rates of bank links count the accesses in the counted cycles of all frames, over their time. A port of
+// the core makes equally many accesses in each frame, so its grants are divided by frames. The host has the
+// accesses of a bank that no other port made. The rates around the board count words since power-up: a camera
+// the pixels that its capture board has written, the CPU its register accesses, the bridge the words written
+// into it (edge-pci-bridge) and those that its DMA moved over PCI (edge-bridge-pci).
 std::vector<ChartLink> chart_links(const ChartView& view);
 
 }  // namespace stereotlm::report

@@ -10,7 +10,6 @@
 #include <map>
 #include <optional>
 #include <set>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -180,8 +179,8 @@ std::string colors_css(const char* Color::*theme) {
   return text;
 }
 
-// Viewers that do not know CSS variables ignore all of it, and take the attributes. A page forces a theme by
-// the class `light` or `dark` on the chart.
+// Viewers without CSS variables ignore the style, and use the attributes. A page forces a theme by the class
+// `light` or `dark` on the chart.
 std::string style_element() {
   const std::string dark = colors_css(&Color::dark);
   std::string text =
@@ -428,8 +427,8 @@ class Chart {
     return 2 * kPadding + kNameStep + kNoteStep * static_cast<double>(lines_.at(block).size() - 1);
   }
 
-  // A link leaves a bank at the buffers that it carries, that of the host, which carries all, at its name.
-  // The lines of the buffers are as far apart as the links need.
+  // A link leaves a bank at the buffers that it carries. The link of the host, which carries all, leaves at
+  // its name. The distances of the buffers leave room for the links.
   void measure_banks() {
     for (const platform::BankConfig& config : board_.banks) {
       Bank bank;
@@ -455,8 +454,8 @@ class Chart {
     }
   }
 
-  // Lets the link of the port leave the bank, at `y` below its top or as far below as the link above needs:
-  // the label of a link stands on it. Returns where.
+  // Lets the link of the port leave the bank at `y` below its top, or lower if the link above and the label
+  // between them need the room. Returns where.
   double leave(Bank& bank, const std::string& port, double y) {
     for (std::size_t i = 0; i < edges_.size(); ++i) {
       if (edges_[i].link.from != "port-" + port || edges_[i].link.to != "bank-" + bank.name) continue;
@@ -515,8 +514,8 @@ class Chart {
     }
   }
 
-  // Puts the ports one below the other, and draws the ways of their edges: straight out of the bank, below
-  // its label, and on in a bend. Returns the bottom of the last port.
+  // Places the ports one below the other, and lays out their links: straight out of the bank, below its
+  // label, then in a bend. Returns the bottom of the last port.
   double place_ports() {
     double y = fpga_.y + kFpgaTitle;
     for (Port& port : ports_) {

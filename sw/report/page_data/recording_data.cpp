@@ -412,8 +412,8 @@ class TimelineData {
     events_csv_.refuse(kClass, fmt::format("must be a class of {} with why = {}", kind, why));
   }
 
-  // All of a run with few events. Otherwise its beginning, the time around its slowest frame, and its end,
-  // which may overlap.
+  // The periods to show: all of a run with few events; else its beginning, the time around its slowest frame,
+  // and its end, which may overlap.
   std::vector<Period> periods() const {
     if (events_.size() <= RecordingData::kMostEvents) return {{0, end_ps()}};
     constexpr std::size_t kPart = RecordingData::kMostEvents / 3;
@@ -468,8 +468,8 @@ class TimelineData {
     return json;
   }
 
-  // Of many frames: as many, at equal distances when ordered by their latency; the least and the greatest are
-  // among them.
+  // At most kMostLatencies frames. Of more, they are chosen at equal distances in the order of the latency,
+  // with the least and the greatest.
   Json latency_json() const {
     std::vector<const Latency*> order;
     for (const Latency& latency : latencies_) order.push_back(&latency);

@@ -27,7 +27,7 @@ class RecordingData {
   RecordingData(const platform::BoardConfig& board, bool camera, const std::filesystem::path& folder = {});
   ~RecordingData();
 
-  // Whole lines of one of the files, in their order; without a time line those of the conflicts. Throws
+  // Adds whole lines of one file, in their order; without a time line only of conflict files. Throws
   // std::runtime_error if something is not as `run` writes it: "PATH:LINE: column = value: rule".
   void add(const std::string& name, std::string_view text);
   // Adds the files of the folder, and checks their identities with the figures of the run. Throws as add()

@@ -4,9 +4,7 @@
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
-#include <map>
 #include <set>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <variant>
@@ -142,8 +140,8 @@ std::set<std::string> banks_used(const BoardConfig& board) {
   return banks;
 }
 
-// Where a changed board uses banks that the board does not use: those that the board has, and how many it
-// lacks.
+// Adds the banks that a changed board uses and the board does not: by name those that the board has, and the
+// number of the others.
 void add_banks_taken(const BoardConfig& board, const BoardConfig& changed, Json& data) {
   const std::set<std::string> used = banks_used(board);
   std::vector<std::string> idle;

@@ -31,9 +31,9 @@ CAUSES = {by: (by if by == TURNAROUND else f"for {by}", color)
 class Rows:
     """The points of a figure, from its top, with their names.
 
-    height, least: in inches; the second with all lines as close as they can be.
+    height: in inches; least: the same with all lines as close as they can be.
 
-    Of more than MOST points: those with the most stalls (most_stalled), or a selection over all frame rates.
+    If there are more than MOST: those with the most stalls (most_stalled), or a selection over all rates.
     """
 
     def __init__(self, points, options, most_stalled=False):

@@ -302,8 +302,8 @@ def scale(axes, which, label, values, *remarks, are_counts=False):
     """Sets scale and label of an axis. The scale is logarithmic if the values differ much, else it begins at
     zero.
 
-    which: "x" or "y". remarks: added to the label in brackets. are_counts: a few whole numbers, such as
-    banks, are not seen from zero.
+    which: "x" or "y". remarks: added to the label in brackets. are_counts: an axis of few whole
+    numbers, such as banks, does not begin at zero.
     """
     values = [value for value in values if value is not None]
     axis, limit = getattr(axes, which + "axis"), getattr(axes, f"set_{which}lim")

@@ -15,8 +15,7 @@
 
 namespace stereotlm::runs {
 
-// Simulates points of a plan without pixels: a board alone in this process, a whole computer in a child
-// process.
+// Simulates points of a plan without pixels: a board alone in this process, a whole computer in a child.
 class PointSimulator {
  public:
   PointSimulator() = default;
@@ -38,9 +37,8 @@ class PointSimulator {
 };
 
 // How the core of a whole computer spends its time in the window of the steady rate: shares, which sum to 1.
-// The key "" has the time in frames; each other key is a reason to wait for the next start, with that time
-// (sw/report/README.md, Time line). The run of `frames` frames must have a steady rate. Throws as
-// PointSimulator does.
+// Key "": in frames. Each other key: waiting for the next start, by reason (sw/report/README.md, Time line).
+// The run of `frames` frames must have a steady rate. Throws as PointSimulator does.
 std::map<std::string, double> core_time(const platform::BoardConfig& board, const platform::Tables& tables,
                                         std::uint64_t frames);
 

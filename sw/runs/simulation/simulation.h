@@ -60,9 +60,8 @@ class Simulation : private fpga::CycleObserver, private platform::BusObserver {
   // The frames of the core, which may have ended before their results are delivered.
   virtual fpga::FrameRun& core() = 0;
 
-  // The records of a run that is recorded, since the last call; those up to the end of the run once it has
-  // finished. It must be called regularly, because they fill memory, and before statistics(). A board alone
-  // has none.
+  // If the run is recorded, the records since the last call; after the last frame, up to the end of the run.
+  // To be called regularly, because they fill memory, and before statistics(). A board alone has none.
   virtual platform::TimelineRecords take_timeline() { return {}; }
 
   // Records where and when the ports of the core stall, from the next frame of the core on. To be called
@@ -79,8 +78,8 @@ class Simulation : private fpga::CycleObserver, private platform::BusObserver {
   // An exception of an observer ends the simulation, and advance() throws it.
   void trace(const fpga::CycleWindow& window, fpga::CycleObserver& cycles, platform::BusObserver& buses);
 
-  // The figures of the finished frames. May be called only if no frame is running that end_early() would let
-  // finish, and for a whole computer only after the first result.
+  // The figures of the finished frames. May be called only while no frame runs that end_early() would let
+  // finish. A whole computer also needs its first result.
   virtual platform::Statistics statistics() const = 0;
   const Result& last() const { return last_; }
 

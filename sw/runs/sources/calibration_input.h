@@ -32,7 +32,7 @@ struct RigFiles {
 RigFiles rig_files(const std::string& calibration);
 
 // The files of `calibrate` in the folder of the calibration F.yaml: its mark F.yaml, the tables, the
-// drawings, and the pictures if it `makes_pictures`; otherwise an existing F_pictures/ stays. Other files in
+// drawings, and, if `makes_pictures`, the pictures. Otherwise an existing F_pictures/ stays. Other files in
 // the folder stay. New files are first written to the folder F.partial beside F.yaml.
 files::OutputContent calibration_content(const RigFiles& files, bool makes_pictures,
                                          const std::vector<files::NamedFile>& inputs = {});
@@ -48,8 +48,7 @@ struct CalibrationInput {
 // Loads a calibration and checks that it fits the board. Reports all problems and returns nullopt if there
 // are any: a damaged file, pictures of another size than the board's, tables that were not written with the
 // calibration, a side without table on the board, tables that cannot be joined for a board with joint tables.
-// `board`: null if unknown; the fit is then not checked. `named`: the option that gave the path, for
-// messages.
+// `board`: null if unknown; the fit is then not checked. `named`: the option in messages.
 std::optional<CalibrationInput> load_calibration(const std::string& path, const platform::BoardConfig* board,
                                                  process::Problems& problems,
                                                  const std::string& named = "--calibration");

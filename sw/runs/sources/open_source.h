@@ -53,8 +53,7 @@ class PairSource : public host::FrameSource {
   static constexpr std::size_t kHeld = 4;
   const host::StereoPair& pair(std::uint64_t frame) override;
 
-  // The truth of the pair that a frame shows; nullopt if unknown. It holds only for a run without
-  // calibration.
+  // The truth of the pair that a frame shows, for a run without calibration; nullopt if unknown.
   std::optional<media::Truth> truth(std::uint64_t frame) const {
     return load_truth_ ? std::optional(load_truth_(frame % length_)) : std::nullopt;
   }

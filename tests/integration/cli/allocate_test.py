@@ -123,9 +123,8 @@ class Allocate(ProgramTest):
         return found
 
     def rates_of_all(self, text, source, frames):
-        """The least possible, simulated and most possible rates of all that lose no pixel, simulated as a
-        plan, by
-        number of banks; the number of all."""
+        """The least possible, simulated and most possible rates of all that lose no pixel, by number of
+        banks; the number of all. They are simulated as a plan."""
         chosen = list(placements())
         lists = (", ".join(banks[place] for banks in chosen) for place in range(len(BUFFERS)))
         keys = ", ".join(f"allocation.{name}: [{banks}]" for name, banks in zip(BUFFERS, lists))

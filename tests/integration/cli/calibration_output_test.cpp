@@ -10,10 +10,8 @@
 #include <csignal>
 #include <cstdarg>
 #include <map>
-#include <optional>
 #include <stdexcept>
 #include <string>
-#include <vector>
 
 #include "calib/calibration.h"
 #include "calib/synthetic_rig.h"

@@ -10,8 +10,8 @@ import program
 from program import run
 from sweep_test import SweepTest
 
-# Each job is in its state $END as soon as it is submitted. Then the shards have run the command $TASK, or the
-# merge $MERGE, with the folder of the shards as $FOLDER.
+# Each job has state $END as soon as it is submitted. By then it has run $TASK (shards) or $MERGE (merge),
+# with the folder of the shards as $FOLDER.
 SBATCH = """#!/bin/sh
 echo "$@" >>"$FAKE/submitted"
 job=$(wc -l <"$FAKE/submitted")

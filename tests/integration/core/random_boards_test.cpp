@@ -17,8 +17,7 @@
 #include "tests/support/plain_conflicts.h"
 #include "tests/support/random_board.h"
 
-// Whole runs on random boards, each in a process of its own, against the plain cycle loop and the literal
-// arithmetic.
+// Whole runs on random boards, each in its own process, against the plain cycle loop and literal arithmetic.
 namespace stereotlm::test {
 namespace {
 

@@ -1,6 +1,6 @@
-// What traces are made of, on random boards and random computers, each in a process of its own: the same at
-// each fidelity, equal to the figures of the run, cycle by cycle equal to the transactions on the links, and,
-// on the buses and in the queues, equal to the plain loop over events.
+// The records of traces, on random boards and random computers, each in a process of its own. They are the
+// same at each fidelity, and equal to the figures of the run. Cycles are equal to the transactions on the
+// links; buses and queues to the plain loop over events.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>

@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "models/area/area.h"
@@ -140,8 +139,7 @@ TEST(SsdArea, SquaresWithMultipliersAndSumsMoreBits) {
   EXPECT_EQ(all_of(core(kCost, kSsd, kFetch, Fetch::kLineBuffer), "column modules").multipliers, 80 * 7);
 }
 
-// 24 bits per pixel give 12 counts of 0..2. Their tree has eight adders of 3 bits, two of 4 bits and one of
-// 5.
+// 24 bits per pixel give 12 counts of 0..2. Their tree has 8 adders of 3 bits, 2 of 4 bits and 1 of 5.
 TEST(CensusArea, CountsDifferentBitsInsteadOfDifferences) {
   constexpr int kPair = 24 + (4 * 3 + 4 * 3 + 2 * 4 + 5);
   expect_all("column modules", {{core(kCost, census(5)), 80 * Resources{kPair + 8, 8}}});

@@ -110,8 +110,8 @@ TEST(SelectMinUnitA, IsAChainWhoseDisparitiesWiden) {
 }
 
 TEST(SelectMinUnitB, IsATreeOfOneComparatorLessThanDisparities) {
-  // 8: 4 comparisons of single disparities, 2 of pairs, 1 of fours. 5: 2 pairs and one waits, 1 pair and one
-  // waits, 1 pair.
+  // 8 disparities: 4 comparisons, then 2, then 1. 5 disparities: 2 comparisons, then 1, then 1; in the first
+  // two stages one disparity waits.
   expect_all("select-min unit B",
              {{core(kDisparities, 1), {}},
               {core(kDisparities, 2), {kComparison, 16}},

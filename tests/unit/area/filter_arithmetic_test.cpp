@@ -12,9 +12,9 @@ using kernels::FilterKernel;
 FilterKernel laplacian(int shift) { return {3, {0, -1, 0, -1, 4, -1, 0, -1, 0}, shift}; }
 
 TEST(FilterArithmetic, IsTheSumOfItsAdders) {
-  // One pair of 9 bits. Row -c needs no adder. Row 4c - pair is -510..1020, 11 bits, of which 4c leaves two
-  // unchanged. Chain: 8 bits of -255..0, then two adders of 11 bits. Sums of -1020..1020 are clamped from 11
-  // bits to 8.
+  // c is the middle pixel of a row; the pair, of 9 bits, is the sum of the outer two. Row -c needs no adder.
+  // Row 4c - pair is -510..1020, 11 bits; the lowest two of 4c need no adder. Chain: 8 bits of -255..0, then
+  // two adders of 11 bits. 11 bits are clamped to 8.
   const FilterArithmetic filter = filter_arithmetic(laplacian(0));
   EXPECT_EQ(filter.resources, (Resources{9 + (11 - 2) + 2 * 11 + 8 + 1, 8 + 11}));
   EXPECT_EQ(filter.chain_bits, 8 + 11);
@@ -37,8 +37,8 @@ TEST(FilterArithmetic, ClampsResultsOfMoreThanEightBits) {
 }
 
 TEST(FilterArithmetic, SharesEqualRowsAndAddsPairsInSymmetricRowsOnly) {
-  // Sobel: two differences of 9 bits, of which 2a - 2b leaves one bit unchanged; a chain of 9, 11 and 11
-  // bits.
+  // Sobel: rows b - a of 9 bits and 2b - 2a of 10, the lowest of which needs no adder; a chain of 9, 11 and
+  // 11 bits.
   const FilterArithmetic filter = filter_arithmetic({3, {-1, 0, 1, -2, 0, 2, -1, 0, 1}, 3});
   EXPECT_EQ(filter.resources, (Resources{9 + (10 - 1) + 2 * 11, 9 + 11}));
   // With one row that differs, that row is not shared.
@@ -55,13 +55,12 @@ TEST(FilterArithmetic, MultipliesByWeightsThatAreNoPowerOfTwo) {
 }
 
 TEST(FilterArithmetic, CountsThePartsOfLog7) {
-  // Three pairs of 9 bits. Adders of the rows, outermost term first; bits behind a minus stay unchanged:
+  // Three pairs of 9 bits. Adders of the rows, outermost term first; bits behind a minus need no adder:
   //   1 3 5        11, 12
   //   1 6 14 16    12-1, 14-1, 14-4
   //   3 14 -35     14-1, 15
   //   5 16 -35 -112    14-4, 16, 17-4
-  // Chain: 12 bits of row 0, then adders of 15, 16, 17, 17, 17 and 17 bits. The result is clamped from 11
-  // bits.
+  // Chain: 12 bits of row 0, then adders of 15, 16, 17, 17, 17 and 17 bits. 11 bits are clamped to 8.
   const FilterArithmetic filter = filter_arithmetic(kernels::log7());
   constexpr int kRows = (11 + 12) + (11 + 13 + 10) + (13 + 15) + (10 + 16 + 13);
   EXPECT_EQ(filter.resources, (Resources{27 + kRows + (15 + 16 + 4 * 17) + 9, 12 + 15 + 16 + 3 * 17, 0, 10}));

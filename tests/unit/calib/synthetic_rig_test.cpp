@@ -5,13 +5,11 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 #include <vector>
 
-// calibrate_test.cpp finds the grids and the matches in the pictures: the rig and the disparities are
-// recovered.
+// calibrate_test.cpp recovers the rig and the disparities from the pictures.
 namespace stereotlm::calib {
 namespace {
 

@@ -1,5 +1,5 @@
-// A capture board that is granted the bus too late (contract section 3): moments that the random computers do
-// not look at.
+// A capture board that is granted the bus too late (contract section 3): cases that the random computers do
+// not cover.
 #include "tests/unit/capture/capture_bench.h"
 
 namespace stereotlm::capture {

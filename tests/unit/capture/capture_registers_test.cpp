@@ -3,7 +3,6 @@
 #include <stdexcept>
 
 #include "models/capture/capture_fifo.h"
-#include "tests/support/expected_report.h"
 #include "tests/support/refused_access.h"
 #include "tests/unit/capture/capture_bench.h"
 

@@ -4,8 +4,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
-
 #include "models/kernels/stereo.h"
 #include "tests/support/expected_report.h"
 #include "tests/unit/fpga/stereo_core_bench.h"

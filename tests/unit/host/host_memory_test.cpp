@@ -21,8 +21,7 @@ using Words = std::vector<std::uint32_t>;
 
 constexpr std::uint64_t kBytes = 64;
 
-// Memory with two initiators, each behind a monitor. ssram_bank_test.cpp tests what both memories share
-// (memory::RamTarget).
+// Memory with two initiators, each behind a monitor. ssram_bank_test.cpp tests memory::RamTarget.
 class HostMemoryTest : public testing::Test {
  protected:
   void build(const test::ProtocolOptions& options = {}) {

@@ -1,5 +1,4 @@
-// The random boards compare the disparities. They do not see those of the columns before the first
-// candidates.
+// The random boards compare the disparities, but not those of the columns before the first candidates.
 #include "models/kernels/select_min.h"
 
 #include <gtest/gtest.h>

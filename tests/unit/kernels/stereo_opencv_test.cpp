@@ -5,7 +5,6 @@
 #include <limits>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
-#include <vector>
 
 #include "models/kernels/stereo.h"
 #include "models/kernels/words.h"

@@ -2,13 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "models/kernels/words.h"
 #include "tests/support/random_board.h"
 #include "tests/support/reference_arithmetic.h"
 #include "tests/unit/kernels/reference_types.h"

@@ -40,8 +40,7 @@ void expect_reference(const RandomBoard& board) {
   EXPECT_EQ(test::disparity_image(board).pixels, expected.disparity);
 }
 
-// The pixels of a pair in four contents: constant; the largest sums; extreme noise; a period of three
-// columns.
+// The pixels of a pair in four contents: constant, largest sums, extreme noise, a period of three columns.
 std::uint8_t pixel_of(int content, bool left, int column, int row, test::SplitMix64& random) {
   if (content == 0) return 77;
   if (content == 1) return left ? 255 : 0;

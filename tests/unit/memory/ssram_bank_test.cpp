@@ -7,7 +7,6 @@
 #include <memory>
 #include <ostream>
 #include <stdexcept>
-#include <string>
 
 #include "models/clock.h"
 #include "models/kernel_time.h"

@@ -5,7 +5,6 @@
 #include <cstring>
 #include <map>
 #include <memory>
-#include <string>
 #include <systemc>
 #include <tlm>
 #include <utility>
@@ -18,8 +17,8 @@
 
 namespace stereotlm::pci {
 
-// The target on the local bus: words that keep what is written, and name their address before. A burst takes
-// one word_time per word and one more, and is answered in advance. While `held`, no burst is answered.
+// The target on the local bus. A word reads as its address until it is written. A burst takes one word_time
+// per word and one more, and is answered in advance. While `held`, no burst is answered.
 class LocalTarget : public sc_core::sc_module, public tlm::tlm_fw_transport_if<> {
  public:
   struct Burst {

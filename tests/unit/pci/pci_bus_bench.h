@@ -87,7 +87,7 @@ class TestMaster : public sc_core::sc_module, public PciMasterIf {
   std::vector<std::uint32_t> words_;
 };
 
-// A target that answers correctly, after the time that the test sets, and records each access. Reads return
+// A target that answers after the time that the test sets, and records accesses. Reads return
 // word_at(address).
 class TestTarget : public sc_core::sc_module, public tlm::tlm_fw_transport_if<>, public PciStopIf {
  public:

@@ -2,8 +2,6 @@
 // masters, and their times.
 #include <gtest/gtest.h>
 
-#include <ostream>
-
 #include "tests/support/expected_report.h"
 #include "tests/unit/pci/pci_bus_bench.h"
 

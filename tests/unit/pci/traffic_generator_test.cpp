@@ -12,8 +12,7 @@ namespace {
 
 constexpr std::uint64_t kUs = 1'000'000;  // ps
 
-// The load on a bus with a target. Its times and its words are compared with those of the literal load in
-// tests/integration/runs/random_computers_test.cpp.
+// The load on a bus with a target. random_computers_test.cpp compares its times and words with a plain load.
 class TrafficGeneratorTest : public testing::Test {
  protected:
   void build(std::uint32_t address) {

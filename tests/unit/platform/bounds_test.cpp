@@ -4,10 +4,8 @@
 
 #include <algorithm>
 #include <functional>
-#include <map>
 #include <optional>
 #include <ostream>
-#include <stdexcept>
 
 #include "platform/preloaded_system.h"
 #include "tests/unit/platform/preloaded_run.h"
@@ -27,8 +25,8 @@ uint64_t largest(const BoardConfig& board, const Tables& tables, uint64_t frame)
   return cycles;
 }
 
-// small_board(): slots of 16 columns of 6 rows, 3 each; two of the 18 row fetches lie outside the image. The
-// drain has D - 1 + r columns.
+// small_board(): 6 rows of 16 columns, with 3 slots each. Two of the 18 fetched rows lie outside the image.
+// The drain has D - 1 + r columns.
 constexpr uint64_t kSlots = uint64_t{16} * 6 * 3;
 constexpr uint64_t kReads = uint64_t{16} * (6 * 3 - 2);
 constexpr uint64_t kDrain = uint64_t{3} * (3 - 1 + 1);
@@ -87,8 +85,7 @@ TEST_F(FrameBounds, CountTheReadsOfLineBuffers) {
 TEST_F(FrameBounds, CountTheReadsOfALargeFilter) {
   board.matcher.filter = kernels::log7();  // two strips more, rows 0..5 of -2+3-1 = 0 on
   const uint64_t drain = uint64_t{3} * (3 - 1 + 1 + 3);
-  // Strips start at rows 0 .. 7. Four have three rows inside the image, one has two, one has one, two have
-  // none.
+  // Strips start at rows 0 .. 7. Inside the image, four have three rows, one has two, one one, two none.
   EXPECT_EQ(bound_of("bank bank0"), 16 * (4 * 3 + 2 + 1) + 2 + drain + 1 + kPipeline);
 }
 

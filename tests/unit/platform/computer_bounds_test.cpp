@@ -1,7 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <stdexcept>
-
 #include "platform/bounds.h"
 
 namespace stereotlm::platform {
@@ -71,8 +69,8 @@ TEST_F(ComputerBounds, CountTheLocalBusOfAllThreePictures) {
   EXPECT_DOUBLE_EQ(bound_of("bridge"), 40e6 / (3 * (kPicture - 4800 + 4800 * 2)));
 }
 
-// A load that requests the bus all the time gets a burst beside each of the bridge, which has the most:
-// 2,401. Then the latency timer of 64 clocks cuts each burst behind its word in clock 64: captures after 60
+// A load that requests the bus all the time gets a burst for each of the bridge's 2,401, the most of a
+// master. Then the latency timer of 64 clocks cuts each burst behind its word in clock 64: captures after 60
 // words, behind 4 wait clocks, and the load after 64. The bursts of one transfer of the load are left out.
 TEST_F(ComputerBounds, CountTheBurstsOfALoadThatTheBusCannotRefuse) {
   const double alone = 33.333e6 / bound_of("pci");

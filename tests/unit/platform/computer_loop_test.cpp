@@ -1,6 +1,5 @@
-// The event loop of the computer, without the kernel: where it stops, the order of the events of one time,
-// and that it skips lines of the cameras. Random computers compare its figures with the plain loop over
-// events.
+// The event loop of the computer, without the kernel: where it stops, the order of events of one time, and
+// that it skips lines of the cameras. Random computers compare its figures with the plain event loop.
 #include "platform/computer_loop.h"
 
 #include <fmt/format.h>
@@ -152,8 +151,8 @@ class LoopProcessor : public pci::PciMasterIf {
 
 class ComputerLoopTest : public ::testing::Test, public LoopProcessor {};
 
-// The load requests the bus for the clock that begins with the interrupt, and was the last to have it. What
-// the processor requests at that time comes before the decision.
+// The load, which had the bus last, requests the clock that begins with the interrupt. A request of the
+// processor at that time comes before the decision.
 TEST_F(ComputerLoopTest, LetsTheProcessorTakePartInTheDecisionsOfTheTimeOfAnInterrupt) {
   LoopProcessor first;
   first.start_core();
@@ -177,9 +176,9 @@ TEST_F(ComputerLoopTest, LetsTheProcessorTakePartInTheDecisionsOfTheTimeOfAnInte
   EXPECT_EQ(granted_ps.back(), interrupt_ps);
 }
 
-// Burst A is on the local bus while B and C, of one word each, are posted: with B's word from clock e + 7 on,
-// with C's from e + 14 on, e being the end of A on PCI. The local bus ends A in e + 3 + its words. If that is
-// the time at which C comes, it has chosen B alone, and sends C by itself.
+// PCI ends burst A in clock e. The only word of B is posted at e + 7, that of C at e + 14. The local bus ends
+// A at e + 3 + words. 11 words: that is when C's word comes, and the bridge sends B and C apart. 12 words: it
+// sends both in one burst.
 TEST_F(ComputerLoopTest, EndsABurstOfTheLocalBusBeforeWordsArePostedAtThatTime) {
   for (const std::size_t words : {11U, 12U}) {
     const std::uint64_t before = computer_counters().local_bus.bursts;
@@ -294,7 +293,7 @@ BoardConfig board_of_lines(test::SplitMix64 random) {
   return load_board("fpl2003", keys);
 }
 
-// What two pictures do on a board. Nothing can be skipped that does not end within a step. Every fourth
+// What two pictures do on a board. If `steps`, the loop stops so often that no line is skipped. Every fourth
 // program writes to the board and reads a register now and then. In some, both pictures go to one bank.
 std::string figures_of_lines(std::uint64_t seed, bool steps, std::uint64_t& skipped) {
   LoopProcessor processor;

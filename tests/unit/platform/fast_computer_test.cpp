@@ -314,8 +314,7 @@ TEST(FastComputer, RefusesTheAccessesThatComputerRefuses) {
   EXPECT_EQ(log_of(Fidelity::kFast, script, board), expected);
 }
 
-// A program that polls, while another process of the simulation has events of its own between those of the
-// computer.
+// A program polls, while another process has events of its own between those of the computer.
 TEST(FastComputer, RunsBesideOtherProcesses) {
   const auto log = [](Fidelity fidelity) {
     return test::run_for_text([fidelity] {

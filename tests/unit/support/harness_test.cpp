@@ -1,6 +1,5 @@
 // What makes a test fail: a SystemC report that it did not announce, a broken rule of the protocol that it
-// did not expect, and a child process that fails. No test of the models would notice that these fail no
-// more.
+// did not expect, and a child process that fails. If these failed no longer, no other test would notice.
 #include <gtest/gtest-spi.h>
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -4,7 +4,6 @@
 #include <initializer_list>
 #include <vector>
 
-#include "tests/support/plain_cycle_loop.h"
 #include "tests/unit/support/worked_board.h"
 
 namespace stereotlm::test {

@@ -3,7 +3,6 @@
 #include <utility>
 #include <vector>
 
-#include "tests/support/plain_cycle_loop.h"
 #include "tests/unit/support/worked_board.h"
 
 namespace stereotlm::test {

@@ -88,8 +88,8 @@ const kMoves = {
   bridge: /^(bridge\.|capture\.|fpga\.clock_mhz$)/
 };
 
-// The resource around the board whose bound the rate of a change reaches, such as `camera`. A resource whose
-// bound the change moves is left out.
+// The resource around the board whose bound the rate after a change reaches, such as `camera`; not one whose
+// bound the change moves.
 export function limitReached(run, step) {
   const isConcerned = resource => kMoves[resource]?.test(step.key) ?? false;
   return (run.bounds.computer ?? [])

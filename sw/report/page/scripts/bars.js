@@ -9,8 +9,8 @@ const kWidestColumn = 40;
 
 // Bars one below the other. The browser places them, so that they need no width. rows: [{name, strong, bars:
 // [{from, to, colour, lines}], texts: [..]}]: the texts stand behind the bars; a bar with `dot` is a dot at
-// `to`, with a line to it. `domain`: of the scale. With `axis`, its label, the scale has ticks. now: {value,
-// text}: a line across all rows. `heads`: above the texts. `above`: the names stand above the bars.
+// `to`, with a line to it. `domain`: range of the scale. With `axis`, its label, the scale has ticks. now:
+// {value, text}: a line across all rows. `heads`: above the texts. `above`: the names stand above the bars.
 export function drawBars(host, {rows, domain, isLog = false, axis, now, heads = [], above = false}) {
   const scale = numeric(domain, [0, 100], isLog);
   const barOf = ({from = domain[0], to, colour, dot, lines}) => {
@@ -53,8 +53,8 @@ export function drawBars(host, {rows, domain, isLog = false, axis, now, heads = 
         ticks.map(({at, label}) => h('span', {style: `left:${at}px`}, label)), h('p', null, axis)));
 }
 
-// Bars side by side: groups: for each place a list of {parts: [[size, colour], ..], lines}, each of which is
-// a bar of parts that stand one on the other.
+// Bars side by side. groups: a list for each place, with a {parts: [[size, colour], ..], lines} for each bar,
+// whose parts are stacked.
 export function drawColumns(host, width, {groups, label, unit, below}) {
   const {plot, width: inner, height} =
       drawing(host, width, kColumnsHeight, {left: 48, right: 8, top: 22, bottom: 28}, label);

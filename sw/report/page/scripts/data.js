@@ -7,7 +7,7 @@ export const objectsOf = ({names, rows}) =>
 
 // The lines of the picture in a recording, from top to bottom, each of `height` rows, as sums over all
 // frames: {frames, lines, height, cycles, fill, accesses: [{bank, by, values, fill}], stalls: [{port, bank,
-// by, values, fill, total}]}. `fill` is before the first line. null without a recording.
+// by, values, fill, total}]}. `fill`: the sum before the first line. null without a recording.
 export function linesOf({recording}) {
   if (!recording) return null;
   const {frames, rows: {lines, height, cycles, accesses}, stalls} = recording;

@@ -11,8 +11,8 @@ const kMostColours = 8;  // names with a colour of their own
 const kReach = 14;       // pixels from the pointer to the point that it means
 
 // The scale of a column, and the place of each point on it, NaN without a value. A column of words, or of at
-// most `mostWords` numbers, has its different values at equal distances. `room`: of the range, on either
-// side.
+// most `mostWords` numbers, has its different values at equal distances. `room`: margin on either side, as a
+// share of the range.
 function placesOf(points, name, range, {isLog = false, room = 0, mostWords = 0} = {}) {
   const values = points.column(name);
   const isNumeric = points.isNumeric(name) && (mostWords === 0 || new Set(values).size > mostWords);
@@ -27,8 +27,8 @@ function placesOf(points, name, range, {isLog = false, room = 0, mostWords = 0} 
   return placed(scale, each => each);
 }
 
-// The line around what a front beats, from the best x on: steps between its points, and on to the edges of
-// the drawing. `spots`: places of the points; `edges`: the worst x and y.
+// The border of what a front beats, from the best x on: steps between its points, and on to the edges of the
+// drawing. `spots`: places of the points; `edges`: the worst x and y.
 function stepsOf(spots, edges) {
   if (spots.length === 0) return [];
   const worse = edges.map(edge => edge === 0 ? Math.min : Math.max);

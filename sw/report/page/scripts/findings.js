@@ -146,8 +146,8 @@ function whoWaits(run) {
   ];
 }
 
-// The first and the last amount of the main part. Each end leaves out 0.5 % of the total at most, and only
-// amounts below half of the mean.
+// The indices of the first and the last amount of the main part. Each end leaves out less than 0.5 % of the
+// total, and only amounts below half of the mean.
 function mainPart(amounts) {
   const total = sum(amounts);
   const little = total / amounts.length / 2;

@@ -1,5 +1,4 @@
-// The waits over the picture: a slider between the picture and its disparities, one for the strength of the
-// overlay.
+// The waits over the picture, with sliders between the picture and its disparities, and for the overlay.
 import {addChart} from './card.js';
 import {choice, controls, h} from './dom.js';
 import {count, most, whole} from './format.js';
@@ -46,9 +45,9 @@ function overlayOf({values, columns, rows}) {
   return canvas;
 }
 
-// pictures: one or two of {url, disparities}, the latter of a picture of disparities, or of {width, height}
-// without picture; names: of the pictures. The second lies on the first, to the right of the slider.
-// layers: maps of amounts as those of tilesOf(), sums over `frames` frames. One lies on the pictures.
+// pictures: one or two of {url, disparities}, or of {width, height} without picture; only a picture of
+// disparities has `disparities`. names: of the pictures. The second lies on the first, to the right of the
+// slider. layers: maps of amounts as those of tilesOf(), sums over `frames` frames. One lies on the pictures.
 export function addPicture(page, {title, note, pictures, layers, frames, names}) {
   const overlays = layers.map(overlayOf);
   const stack = h('div', {

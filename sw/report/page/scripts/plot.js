@@ -92,8 +92,8 @@ export function drawing(host, width, height, {left = 0, right = 0, top = 0, bott
   return {svg, plot, width: width - left - right, height: height - top - bottom};
 }
 
-// A drawing above a canvas as sharp as the screen. The zero of `context`, whose pixels are those of the style
-// sheet, is that of the plot; `clear()` empties the canvas.
+// A drawing above a canvas with the resolution of the screen. `context` has CSS pixels and the origin of the
+// plot; `clear()` empties the canvas.
 export function layeredDrawing(host, width, height, margins, label) {
   const density = window.devicePixelRatio || 1;
   const size = {width: Math.round(width * density), height: Math.round(height * density)};
@@ -166,8 +166,8 @@ export function addBrush(plot, {axis, width, height, change, end, tip}) {
   if (tip) area.addEventListener('pointerleave', hideTooltip);
 }
 
-// A range of 0 to `last` that is shown, of `least` at least, and its buttons. `step`: by how much of it the
-// buttons of `names` move it. `changed()` is called after each change.
+// The shown part of the range 0 to `last`, at least `least` long, and its buttons. `step`: the share of the
+// part by which the buttons of `names` move it. `changed()` is called after each change.
 export class Zoom {
   constructor({last, least, step, from = 0, to = last}, names, changed) {
     Object.assign(this, {last, least, from, to, changed});

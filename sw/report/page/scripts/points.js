@@ -110,8 +110,8 @@ export class Points {
     };
   }
 
-  // The points with a number in this column whose board fits its FPGA and loses no pixels; all of them if
-  // there is none.
+  // The points with a number in this column whose board fits its FPGA and loses no pixels. If there are none:
+  // all points with a number.
   sound(name) {
     const numbers = this.column(name);
     const limits = this.allNames.filter(each => /^area\..*_percent$/.test(each))
@@ -138,9 +138,9 @@ export class Points {
     return {best, ties};
   }
 
-  // The selected points that no other beats, from the best x on. From one point to the next the column
-  // without uncertainty becomes worse, and the other one better by more than the uncertainty of both. Points
-  // that are the same in the former, and tie in the latter, are all on the front.
+  // The selected points that no other beats, from the best x on. From one point to the next the exact column
+  // becomes worse, and the other one better by more than the sum of their uncertainties. Points that are
+  // equal in the exact column, and tie in the other, are all on the front.
   front(x, y) {
     const worse = axis => this.column(axis.name).map(
         v => typeof v !== 'number' ? NaN :

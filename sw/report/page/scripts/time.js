@@ -60,8 +60,7 @@ const whyText = (who, why) => kWhy[`${who} ${why}`] ?? 'the driver works: regist
 
 const kHardly = 0.001;  // of the time of a run that the core waits: not worth its reasons
 
-// How long the core waits and why, in words: {title, note}. `early`: what of it is before its first frame, in
-// ps.
+// How long the core waits and why, in words: {title, note}. `early`: the wait before its first frame, in ps.
 function coreWaits(run, span, early) {
   const waits = run.recording.waits.filter(wait => wait.class === 'core').sort((a, b) => b.ps - a.ps);
   const all = sum(waits.map(wait => wait.ps));

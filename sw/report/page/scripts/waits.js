@@ -18,8 +18,8 @@ const kMostBands = 240;
 
 const bare = share => percent(share).replace(' %', '');
 
-// A row for each bank and cause, a column for each port that waits. It closes: the sum of a column is the
-// stalls that the port itself has counted.
+// A row for each bank and cause, a column for each port. The sum of a column must be the stalls that the port
+// itself has counted.
 export function addBlame(page, run) {
   const blames = blamesOf(run);
   const {cycles, ports} = run.stats;
@@ -107,8 +107,8 @@ export function addBlameDifference(page, a, b) {
   });
 }
 
-// The columns of the map of rows: {name, what, values, fill, most, parts, waits}: amounts of each line, of
-// which a cycle has at most `most`; whether they are waits.
+// The columns of the map of rows: {name, what, values, fill, most, parts, waits}. values: the amount of each
+// line, at most `most` per cycle; waits: whether the amounts are waits.
 function columnsOf(run, {accesses, stalls}) {
   const used = [...new Set(accesses.map(({bank}) => bank))].map(name => {
     const parts = accesses.filter(({bank}) => bank === name);

@@ -28,8 +28,7 @@ void expect_refusals(const std::vector<Refusal>& refusals);
 // a line of its own.
 std::string block_board();
 
-// block_board() with another value at the path of a single value or of a whole map, and the place of that
-// value.
+// block_board() with another value at the path of a single value or a whole map, and that value's place.
 struct ChangedBoard {
   std::string text;
   std::string place;  // "board.yaml:3:10"

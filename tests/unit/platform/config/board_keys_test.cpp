@@ -9,7 +9,6 @@
 #include <variant>
 #include <vector>
 
-#include "platform/config/board_yaml.h"
 #include "tests/unit/platform/config/board_files.h"
 
 namespace stereotlm::platform::testing {

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <string>
-#include <vector>
 
 #include "platform/config/board_yaml.h"
 #include "tests/unit/platform/config/board_files.h"

@@ -5,7 +5,6 @@
 #include <gmock/gmock.h>
 
 #include <memory>
-#include <stdexcept>
 
 #include "tests/support/scratch_folder.h"
 

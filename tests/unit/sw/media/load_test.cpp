@@ -5,9 +5,6 @@
 #include <jpeglib.h>
 
 #include <algorithm>
-#include <cmath>
-#include <cstdio>  // before jpeglib.h, which needs it
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <opencv2/core.hpp>

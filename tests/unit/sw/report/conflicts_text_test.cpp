@@ -52,9 +52,8 @@ TEST(ConflictsText, SumsFramesAndShowsTheBanksThatAreUsed) {
 
 using Parts = std::array<std::uint64_t, 8>;
 
-// A frame of eight strips of two rows, the last one of one row, and eight groups of four columns. A group
-// takes 10 cycles. In each group left_lut waits on bank b for left_pixel, as many cycles as its strip times
-// its group says.
+// A frame of eight strips of two rows (the last: one row) and eight groups of four columns, of 10 cycles
+// each. In group g of strip s, left_lut waits strips[s] * groups[g] cycles on bank b for left_pixel.
 class MadeConflicts {
  public:
   MadeConflicts(std::uint64_t in_fill, const Parts& strips, const Parts& groups, std::size_t most_tiles = 64)

@@ -232,8 +232,8 @@ TEST_F(VcdSinkTest, LeavesALayoutThatGtkwaveHasSaved) {
   EXPECT_EQ(test::read_file(layout_), "[*]\n[*] GTKWave Analyzer v3.3.118\n");
 }
 
-// Nothing happens in its first and its last two cycles. The layout has a marker where the longest wait
-// begins.
+// Nothing happens in the first and the last two cycles of the window. The layout has a marker where the
+// longest wait begins.
 TEST_F(VcdSinkTest, BeginsAndEndsWithTheWindow) {
   using Bus = platform::BusBurst::Bus;
   for (const char* name : {"file.vcd", "file.fst"}) {

@@ -185,8 +185,8 @@ TEST(KnobSteps, ChangeNothingButTheirKnob) {
 
 TEST(KnobSteps, AreValidBoardsThatDifferAndAreMarkedByTheirEffect) {
   const BoardConfig board = board_with({"allocation.disparity=[bank0, bank5]"});
-  // Five pairs of neighbours; each of the six ports first and last, but for four that are among these or
-  // stay.
+  // Five swaps of neighbours, and each of six ports first and last, less two that are such swaps and two that
+  // change nothing.
   EXPECT_EQ(steps_of("fpga.priority", board).size(), 13U);
   EXPECT_EQ(steps_of("a bank less", board_with({})).size(), 8U * 7 - 2) << "no bank holds both tables";
   for (const KnobStep& step : knob_steps(board, true, std::nullopt).possible) {

@@ -348,8 +348,7 @@ TEST_F(ComputerSearch, FindsTheBestPlacementsAndLeavesOutThoseThatAreSlower) {
   EXPECT_LT(fewest, 8);
 }
 
-// At each time, the open bounds and the best rates so far are above the least rates of all placements that
-// count.
+// At each time, the open bound or the best rate so far reaches the least rates of all placements that count.
 TEST_F(ComputerSearch, HasABoundOfWhatIsNotKnownUntilItsEnd) {
   std::map<int, double> most;  // [banks]
   for (std::size_t number = 0; number < search.size(); ++number) {
@@ -385,8 +384,7 @@ TEST_F(ComputerSearch, RefusesARateAboveItsBoundByMoreThanItsUncertaintyUnlessPi
   search.record(number, {1000, 100, 0, true, ""});
 }
 
-// One placement to three banks has the bound 11 frames/s, and all others have 10. The rate of the one is
-// known.
+// One placement to three banks, whose rate is known, has the bound 11 frames/s; all others have 10.
 TEST(AllocationSearch, LeavesOutAPlacementOnlyIfItsBoundIsBelowTheLeastRateOfAnother) {
   const std::string known = allocation_text(placed(fpl2003(), {0, 0, 1, 1, 2, 2, 0, 1}));
   const auto bound_of = [&](const BoardConfig& board) {

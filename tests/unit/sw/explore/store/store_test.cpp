@@ -10,7 +10,6 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <vector>
 
 #include "sw/stats/stats_json.h"
 #include "tests/unit/sw/explore/store_files.h"
@@ -203,7 +202,7 @@ TEST_F(StoreTest, DoesNotMergeDifferentResultsOfAPoint) {
 }
 
 // A process has added a point and ended at once, so that only the journal has the point. The journal may be
-// gone after the merge, whatever ends it.
+// gone after the merge, even if that fails.
 TEST_F(StoreTest, BringsItsJournalIntoTheFileBeforeItIsReplaced) {
   add("a.db", {point("h1")});
   const pid_t child = fork();
