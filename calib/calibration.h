@@ -32,9 +32,9 @@ struct DisparityRange {
   int needed() const;
 };
 
-// The offset that `--disparity-offset auto` chooses: floor(range.min) if that is negative. Else it centres
-// `range` among the candidates, but is at least 0. Throws std::invalid_argument if `range` needs more than
-// `disparities` candidates; the message names the options of `calibrate`.
+// The offset that `--disparity-offset auto` chooses: m = floor(range.min) if that is negative. Else it is
+// max(0, m - (disparities - range.needed()) / 2), which centres `range` among the candidates. Throws
+// std::invalid_argument if range.needed() > disparities; the message names the options of `calibrate`.
 int disparity_offset_for(const DisparityRange& range, int disparities);
 
 // The errors of pairs under a rig fitted without them (cross-validation). Each pair is left out once.

@@ -31,10 +31,10 @@ std::vector<std::uint8_t> encode_corners_png(const GridShape& shape, const Capti
 // Draws lines through both pictures along every 32nd row. Objects lie in the same row on both sides.
 std::vector<std::uint8_t> encode_rectified_pair_png(const CaptionedImage& left, const CaptionedImage& right);
 
-// Draws the displacement from each entry to its source, less the mean of its table (in the caption). Colours
-// (Viridis) show its length, from 0 to the largest of both tables; light grey: the entry is not valid. Arrows
-// show its direction. Both tables have the same scale of arrows (in the captions), such that no arrow reaches
-// the next.
+// Draws the displacement from each entry to its source, less the mean of its table, which the caption gives.
+// Colours (Viridis) show the length of the difference, from 0 to the largest of both tables; light grey: the
+// entry is not valid. Arrows show its direction. Their scale is in the captions. It is the same for both
+// tables, and such that no arrow reaches the next.
 std::vector<std::uint8_t> encode_displacement_png(const kernels::RectificationTable& left,
                                                   const kernels::RectificationTable& right);
 

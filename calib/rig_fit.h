@@ -42,11 +42,11 @@ enum class Lens : std::uint8_t { kFull, kWithoutK3 };
 inline constexpr std::size_t kFewestPairs = 3;
 
 // Calibrates both cameras and their relative pose (OpenCV's calibrateCamera and stereoCalibrate). The first
-// fit uses the pairs that agree about the position of the right camera relative to the left. A corner whose
-// misfit is more than eight times the median, and more than 0.1 pixels, is left out on both sides. A pair
-// that keeps less than half of its corners is left out. The fit is repeated until it uses the same corners
-// again. Throws std::invalid_argument if fewer than kFewestPairs are given or left; std::runtime_error if
-// OpenCV finds no rig.
+// fit uses the pairs that agree about the position of the right camera relative to the left. A corner is left
+// out on both sides if its misfit is above max(8 * median, 0.1 pixels). A pair that keeps less than half of
+// its corners is left out. The fit is repeated until it uses the same corners again. Throws
+// std::invalid_argument if fewer than kFewestPairs are given or left; std::runtime_error if OpenCV finds no
+// rig.
 RigFit fit_rig(const GridShape& shape, int width, int height, const std::vector<GridPair>& pairs,
                Lens lens = Lens::kFull);
 

@@ -314,9 +314,9 @@ std::optional<GridPair> seen(const Rig& rig, const std::vector<Vector3d>& points
   return result;
 }
 
-// Maps chessboard coordinates to those of the left camera. Size and tilt follow from the number, so that a
-// few poses are well spread. Positions are drawn at random, each a little farther away, until the squares lie
-// inside both pictures.
+// Maps chessboard coordinates to those of the left camera. The size and the direction of the tilt follow from
+// the number, so that a few poses are well spread. Positions are drawn at random, each a little farther away,
+// until the squares lie inside both pictures.
 Eigen::Isometry3d grid_pose(std::uint64_t seed, const Rig& rig, const GridShape& shape, int number) {
   constexpr int kMostDraws = 500;
   constexpr double kFartherEachTime = 1.003;
@@ -408,9 +408,9 @@ class Camera {
     return result;
   }
 
-  // The grey level of the pixel whose upper corners are a and b, and whose lower corners are c and d. Samples
-  // its middle and its corners, which neighbouring pixels share. If their levels show that an edge crosses
-  // the pixel, takes 64 samples instead.
+  // The grey level of the pixel whose upper corners are a and b, and whose lower corners are c and d: the
+  // mean of samples at its middle and at its corners, which neighbouring pixels share. If the corners differ
+  // by kEdge or more, an edge crosses the pixel, and the mean of 64 samples is taken instead.
   double level(const Scene& scene, const Corner& a, const Corner& b, const Corner& c, const Corner& d) const {
     constexpr double kEdge = 95;
     constexpr int kSamplesOfAnEdge = 8;  // in each direction

@@ -39,9 +39,9 @@ std::size_t lut_byte_count(int width, int height);
 kernels::RectificationTable parse_lut(std::string_view bytes, int width, int height);
 
 // How many source lines a front end would have to buffer if it kept lines instead of reading single pixels.
-// Value i is for rows i..i+lines-1 of the rectified picture. It counts the source rows from the first to the
-// last, both included, that a valid entry names; 0 without valid entries. Returns height - lines + 1 values.
-// Throws std::invalid_argument if the table has problems or `lines` is not 1..height.
+// Value i is for rows i..i+lines-1 of the rectified picture: the last source row that a valid entry of these
+// rows names, minus the first, plus 1; 0 without valid entries. Returns height - lines + 1 values. Throws
+// std::invalid_argument if the table has problems or `lines` is not 1..height.
 std::vector<int> source_lines(const kernels::RectificationTable& table, int lines);
 
 }  // namespace stereotlm::calib

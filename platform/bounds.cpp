@@ -87,10 +87,10 @@ PciDemand pci_demand(const BoardConfig& board, bool whole_pictures, std::optiona
   return demand;
 }
 
-// Either the bus serves every transfer of the load when it is due. Or the load has a backlog and requests all
-// the time: then it gets a burst between any two bursts of another master, and the latency timer cuts all
-// bursts. A frame may see both cases. At most one due transfer and one cut transfer lie partly outside the
-// frame.
+// The frame rate that the PCI bus allows. Either it serves every transfer of the load when it is due. Or the
+// load has a backlog and always requests: it then gets a burst between any two bursts of another master, and
+// the latency timer cuts all bursts. A frame may see both, so the case with fewer clocks counts. At most one
+// due and one cut transfer lie partly outside the frame: these are subtracted.
 double pci_rate(const BoardConfig& board, bool whole_pictures) {
   const double hz = board.pci.clock_mhz * 1e6;
   const double alone = static_cast<double>(pci_demand(board, whole_pictures, std::nullopt).clocks);
@@ -116,7 +116,7 @@ double bridge_rate(const BoardConfig& board, bool whole_pictures) {
       static_cast<std::uint64_t>(board.image.width) * static_cast<std::uint64_t>(board.image.height) / 4;
   // The local bus moves the result and the pair, by DMA or straight from the capture boards. The FPGA grants
   // at most one word a cycle. Two words of a burst are at least one local clock apart. The last word of a
-  // burst and the first word of the next are four apart: idle, address, decode and word.
+  // burst and the first one of the next are four local clocks apart: idle, address, decode and word.
   const bool to_host = board.capture.destination == CaptureDestination::kHostMemory;
   const double pictures = to_host || whole_pictures ? 3 : 1;
   const double words = pictures * static_cast<double>(picture);

@@ -29,11 +29,11 @@ FrameAccesses frame_accesses(const BoardConfig& board, const Tables& tables);
 // | port P   | A LUT or pixel port: one cycle per slot. The result port: one cycle per word. The first    |
 // |          | port of a lane (LUT, or pixel if the side has no table) also waits for a place in the      |
 // |          | lane, which holds F slots (fpga.lane_fifo_slots). Slot s+F is taken only after slot s is   |
-// |          | consumed. Slot s is consumed no earlier than the read latencies of the lane and the folds  |
-// |          | of the matcher after it was taken.                                                         |
-// | bank B   | One cycle per access, no turnaround; with separate ports one cycle per read or one per     |
-// |          | write, whichever are more. After the last read: the latencies of its slot up to the        |
-// |          | matcher, the folds on it, the drain and the last writes.                                   |
+// |          | consumed. From its take to its consumption a slot needs at least the read latencies of the |
+// |          | lane and the folds of the matcher.                                                         |
+// | bank B   | max(reads, writes) cycles with separate ports, else reads + writes; turnaround is not      |
+// |          | counted. After the last read: the latencies of its slot up to the matcher, the folds on    |
+// |          | it, the drain and the last writes.                                                         |
 // | matcher  | The read latencies of the first slot, the folds on each slot, the drain, the last writes.  |
 //
 // The last writes store the words that the last column completes, one for each row of the last strip.
@@ -67,7 +67,7 @@ inline Bound core_bound(const BoardConfig& board, const Tables& tables) {
   return core_bound(board, frame_accesses(board, tables));
 }
 
-// An upper bound for the frame rate that one part of the computer allows. It counts every master of the part.
+// An upper bound for the frame rate that one part of the computer allows to all masters that use it.
 //
 // | resource | limit                                                                                      |
 // |----------|--------------------------------------------------------------------------------------------|
@@ -76,11 +76,11 @@ inline Bound core_bound(const BoardConfig& board, const Tables& tables) {
 // |          | Plus the bursts that pci.load gets at least, if its first request is at time 0.            |
 // | bridge   | The clocks of the local bus for the words of a pair and a result. It moves at most one     |
 // |          | word per cycle of the FPGA.                                                                |
-// | bank B   | One cycle per access of the core, of the pictures that are written and of the results that |
-// |          | are read back; with separate ports one cycle per read or per write, whichever are more.    |
+// | bank B   | reads + writes, with separate ports max(reads, writes): of the core, of the pictures that  |
+// |          | are written, of the results that are read back. One cycle each.                            |
 //
-// A run that drops pixels moves fewer words. With `whole_pictures` false, as for such a run, the words that
-// the capture boards write are not counted.
+// With `whole_pictures` false, the words that the capture boards write are not counted: a run that drops
+// pixels moves fewer.
 struct RateBound {
   std::string resource;  // "camera", "pci", "bridge", "bank bank0"
   double frames_per_second = 0;

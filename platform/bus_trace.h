@@ -28,8 +28,8 @@ namespace stereotlm::platform {
 // window. Plain C++.
 //
 // The window is a range of times, or the time of a frame of the core, from its start strobe to its end. A
-// burst is in the window if it ends after the window begins, and requests its bus before the window ends. A
-// QueueLevel is in the window if the window begins before its time, and ends then or later.
+// burst is in the window begin..end if its end_ps > begin and its request_ps < end. A QueueLevel is in the
+// window if begin < time_ps <= end.
 class BusTrace : public pci::PciBusObserver,
                  public pci::LocalBusMasterObserver,
                  public fpga::LocalBusObserver,
@@ -58,9 +58,9 @@ class BusTrace : public pci::PciBusObserver,
   // Bursts that begin at `now_ps` or later may be skipped if they end before the returned time.
   std::uint64_t skips_end_ps(std::uint64_t now_ps) const { return now_ps <= end_ps_ ? begin_ps_ : kNever; }
 
-  // Hands out the bursts whose bus is free again by `now_ps`, and the levels up to then, each once. To be
-  // called regularly, because they fill memory, and with the time of the end of the run. Later records, of a
-  // computer that is ahead of `now_ps`, are kept.
+  // Hands out, once each, the bursts whose bus is free again by `now_ps`, and the levels up to `now_ps`.
+  // Keeps later records, which a computer that is ahead of `now_ps` has made. To be called regularly, because
+  // records fill memory, and at the end of the run.
   void hand_out(std::uint64_t now_ps);
 
  private:

@@ -12,9 +12,9 @@ namespace {
 constexpr std::array<std::size_t, 2> kMasters = {kLeftCapture, kRightCapture};
 constexpr pci::PciBusControl::Masters kCaptures =
     pci::PciBusControl::mask_of(kLeftCapture) | pci::PciBusControl::mask_of(kRightCapture);
-// Each time is rounded to whole ps. So the distance of two clocks, or of two pixels, may be 1 ps longer in
-// one line than in another. Two such distances lie between the beginning of a line and two times whose order
-// matters. Rounding moves each of the two distances by up to 1 ps. The third ps keeps the times apart.
+// Each time is rounded to whole ps, so the distance of two clocks, or of two pixels, may differ by 1 ps from
+// line to line. The order of two times depends on two such distances: from the beginning of the line to each
+// of the times. That makes 2 ps. The third ps keeps the two times apart.
 constexpr std::int64_t kRounding = 3;
 // Recording stops when the records exceed the skipped lines by this number.
 constexpr std::uint64_t kFirstRecords = 64;

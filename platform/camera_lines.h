@@ -30,11 +30,11 @@ namespace stereotlm::platform {
 //
 // This holds only for lines that nothing else touches:
 // - Bridge, local bus and PCI bus are idle when the line begins, and both boards request then.
-// - The words go to two banks, and each bank takes one word a cycle, beside the frame of the core. The local
-//   bus and the core must have the same clock.
+// - The words go to two banks. Each serves one word a cycle, independently of the running frame. The local
+//   bus and the core have the same clock.
 // - Until the last word is stored, no other master requests the PCI bus, and no other block has an event.
-// - No pixel arrives when its FIFO would be full if no word left. Else the data clock in which each word
-//   leaves would matter too.
+// - No FIFO would run full if the words of a burst left it only at the end of the burst. Else the data clock
+//   in which each word leaves would matter too.
 // The first line of a picture and the last one are always stepped.
 class CameraLines {
  public:

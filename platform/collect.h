@@ -86,8 +86,8 @@ std::uint64_t words_for_results(const pci::PciBusControl::Stats& bus);
 
 // Returns the figures and the bounds of a run that ended with the last of `deliveries`. Checks the identities
 // of contract section 6; Statistics::failed lists those that do not hold. `counters` were taken at the end of
-// the run. `deliveries` has one entry for each frame that they cover, at least one. `frame_cycles`: the
-// length of each frame of the core.
+// the run. `deliveries` has one entry for each frame in `counters`, at least one. `frame_cycles`: the length
+// of each frame of the core.
 Statistics collect_statistics(const BoardConfig& config, const Tables& tables, const std::string& fidelity,
                               const std::vector<std::uint64_t>& frame_cycles,
                               const ComputerCounters& counters, const std::vector<Delivery>& deliveries);

@@ -35,10 +35,9 @@ class ComputerLoop : private pci::BridgeControl::Host {
 
   // Times are below 2^60 - 1 ps, which are 13 days.
   static constexpr std::uint64_t kEndOfTime = (std::uint64_t{1} << 60U) - 1;
-  // Steps the blocks to the time at which the interrupt rises or notice() is called. The decisions of that
-  // time are still to be made, because what the processor does then comes before them. Else stops at
-  // `end_ps`, after the decisions of that time. Throws std::invalid_argument unless `end_ps` is below
-  // kEndOfTime.
+  // Steps the blocks until the interrupt rises or notice() is called, at most to `end_ps`. In the first case
+  // stops before the decisions of that time, because the processor acts before them. At `end_ps` stops after
+  // the decisions. Throws std::invalid_argument if end_ps >= kEndOfTime.
   void run(std::uint64_t end_ps);
   // The time up to which the blocks have been stepped.
   std::uint64_t now_ps() const { return now_ps_; }

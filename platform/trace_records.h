@@ -31,8 +31,8 @@ struct FrameRuns {
 // A burst on the PCI bus or on the local bus. Times are since power-up, and each is the beginning of a clock
 // of the bus.
 //
-// On the local bus a posted burst requests the bus from the post of its first word on, a read and a burst of
-// DMA from their start on. A burst that the local bus refuses is left out.
+// On the local bus request_ps is the first clock at or after the post of the first word of a posted burst, or
+// the start of a read or a burst of DMA. A burst that the local bus refuses is left out.
 struct BusBurst {
   enum class Bus : std::uint8_t { kPci, kLocal };
 

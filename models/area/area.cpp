@@ -56,8 +56,8 @@ PairArithmetic pair_arithmetic(const kernels::MatchingCost& cost) {
 // The resources for the census bits of one pixel per cycle, on one side. c is the size of the neighbourhood.
 // - c * c - 1 comparators, and registers for the c * (c - 1) pixels that the next position needs too.
 // - `moves_down`: the neighbourhood moves down a column. At the top of a column one selector per bit loads
-//   these registers with the c - 1 rows above: their newest pixels come from the line memories, the pixels of
-//   the c - 1 columns before from further registers.
+//   these registers with the c - 1 rows above. Their newest column comes from the line memories, the other
+//   c - 1 columns from (c - 1) * (c - 1) further registers.
 // - Else it moves to the right, behind a line buffer.
 Resources census_bits(const kernels::MatchingCost& cost, bool moves_down) {
   const int before = 2 * cost.half();
@@ -69,8 +69,8 @@ Resources census_bits(const kernels::MatchingCost& cost, bool moves_down) {
 }
 
 // zncc: the widths that follow from the window, and the parts for one pixel or candidate. N is the number of
-// pixels of a window. By the inequality of Cauchy and Schwarz |cov| is at most the larger variance, which is
-// largest where half the pixels are 0 and half are 255.
+// pixels of a window. A variance is at most N^2 * 255^2 / 4: half the pixels are 0, half are 255. |cov| is at
+// most the larger variance (inequality of Cauchy and Schwarz).
 struct ZnccArithmetic {
   explicit ZnccArithmetic(int window)
       : count(std::int64_t{window} * window), variance_bits(bits_of(kMostProduct * count * count / 4)) {}
@@ -168,9 +168,9 @@ void add_lanes(const Core& core, Items& items) {
 }
 
 // Paper section 2.4, contract 1.2. m is the size of the kernel. Beside the new pixel the filter reads the
-// m - 1 pixels before it in the same row. A column of slots has K rows. For each image column the line
-// memories hold the partial sums of the rows above, and h - r valid bits. These belong to the rows from the
-// middle of the first window to the last row above the newest K.
+// m - 1 pixels before it in the same row, from memories (registers behind a line buffer). The line memories
+// hold the partial sums of the rows above for each image column. Without a line buffer they also hold
+// max(0, h - r) left valid bits: from the middle row of the first window to the row above the newest K.
 void add_filter(const Core& core, Items& items) {
   const CoreConfig& config = core.config;
   if (!config.filter) return;
@@ -255,9 +255,9 @@ Delays delays(const Core& core, int places, int bits) {
 }
 
 // Paper figures 6 and 8. Left pixels go to all column modules. Right pixels go from module to module, one
-// column later in each. A column module adds up the results of n pixel pairs, and serves R window modules.
-// Each of these adds its output, and subtracts its output of n columns before. A flip-flop for each candidate
-// marks that its window lies inside both images (contract 1.3). Along a row each column marks one more.
+// column later in each. A column module sums the results of n pixel pairs. Each of its R window modules adds
+// the new column sum, and subtracts that of n columns before. One flip-flop per candidate marks that its
+// windows lie inside both images (contract 1.3). Along a row each column marks one more candidate.
 void add_modules(const Core& core, Items& items) {
   const PairArithmetic& pair = core.pair;
   const Delays pixels = core.columns_of_pixels
@@ -312,9 +312,9 @@ Resources select_min(const Rank& rank, int disparity_bits) {
 // With several folds a disparity is held as its fold and its module, and is put together at the end.
 int split_disparity_bits(const Core& core) { return bits_of(core.folds - 1) + bits_of(core.units - 1); }
 
-// Paper section 3.3, figure 6: a chain. Module d keeps the smaller of two sums: its own, and the one that
-// module d-1 held a column ago, of a disparity of at most d-1. Module 0 just holds its own sum in fold 0. In
-// later folds its second sum is the last module's, a column and a fold ago.
+// Paper section 3.3, figure 6: a chain. Module d keeps the smaller of two sums: its own, and the sum that
+// module d-1 held one column before, whose disparity is at most d-1. In fold 0 module 0 keeps its own sum. In
+// later folds its second sum is that of the last module, one column and one fold before.
 void add_select_min_chain(const Core& core, Items& items) {
   const Rank rank = rank_of(core);
   Resources chain;

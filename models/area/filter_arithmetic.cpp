@@ -70,8 +70,8 @@ RowSum row_sum(const std::vector<Term>& terms) {
 }
 
 // The resources that clamp a sum of this range to 8 bits. The 7 lowest bits are kept if all bits above them
-// are equal. The first LUT compares 4 of those bits, each further LUT 2 more. If they differ, one LUT for
-// each of the 8 bits replaces the value by 0 or 255.
+// are equal: the first LUT compares 4 of the bits above, each further LUT 2 more. Else one LUT for each of
+// the 8 bits replaces the value by 0 or 255.
 Resources clamp(const Range& range, int shift) {
   const int bits = bits_of(Range{range.low >> shift, range.high >> shift});
   if (bits <= kPixelBits) return {};

@@ -19,9 +19,9 @@ class FrameCameraIf : public virtual sc_core::sc_interface, public FrameCamera {
 // triggered. The capture board that takes a frame reads its pixels when they have arrived. Cost: one event
 // per frame.
 //
-// A trigger is accepted from the last pixel of a frame on, and begins the next frame immediately. The camera
-// ignores and counts a trigger that comes earlier, one that comes while another trigger is pending, and every
-// trigger if it runs freely.
+// A trigger has a time, now or later. The next frame begins at this time, if the last pixel of the frame
+// before has arrived by then. The camera ignores and counts a trigger that is too early, one that comes
+// before the frame of the last accepted trigger has begun, and every trigger if it runs freely.
 //
 // SC_REPORT_ERROR (type /stereotlm/camera) reports: a picture of another size; the taking of a frame that is
 // not the running one or has been taken already.

@@ -22,11 +22,11 @@ class CapturePartner {
   virtual bool can_start(std::uint64_t frame, std::uint64_t begin_ps) = 0;
 };
 
-// What a CaptureBoard does, and when: its registers, the decision whether it takes a frame, the words in its
-// FIFO and its requests of the bus. Plain C++.
+// The rules and the timing of a CaptureBoard: its registers, the decision whether it takes a frame, the words
+// in its FIFO, its requests of the bus. Plain C++.
 //
-// Its steps are this decision, 1 ps after the beginning of each frame, and the end of a capture whose last
-// pixels are dropped. Everything else happens in the calls of its camera and of the bus.
+// Its steps are the decision, 1 ps after the beginning of each frame, and the end of a capture whose last
+// pixels are dropped. Everything else happens in calls from its camera and from the bus.
 class CaptureControl : public FrameReceiver,
                        public CapturePartner,
                        public pci::PciMasterIf,
@@ -88,8 +88,8 @@ class CaptureControl : public FrameReceiver,
 
   // To skip lines that repeat:
   //
-  // Whether the board has nothing to do before the next line of its picture. It then requests the bus from
-  // requested_ps() on.
+  // Whether a next line of the picture exists and the FIFO is empty before it. The board then requests the
+  // bus for the next line, from requested_ps() on.
   bool is_between_lines() const { return bus_state_ == BusState::kRequested && fifo_.is_between_lines(); }
   std::uint64_t requested_ps() const { return requested_ps_; }
   const CaptureFifo& fifo() const { return fifo_; }

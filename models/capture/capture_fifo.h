@@ -110,8 +110,8 @@ class CaptureFifo {
   bool finishes_next() const { return occupancy_ == 0 && next_line_ps_ == kNever && takes_no_more(); }
   // To skip lines that repeat:
   //
-  // Whether there is a next line, next_row(), and it can be skipped: all words of the lines so far have come
-  // and left.
+  // Whether next_row() exists and can be skipped: the FIFO is empty, and takes no more words of the lines so
+  // far.
   bool is_between_lines() const { return occupancy_ == 0 && takes_no_more() && next_line_ps_ != kNever; }
   int next_row() const { return row_ + 1; }
   bool has_row(int row) const { return row < timing_->height(); }

@@ -22,7 +22,7 @@ namespace stereotlm::host {
 // | the target responds with an error                              | TLM_GENERIC_ERROR_RESPONSE     |
 // | refused without a burst:                                       |                                |
 // | an address that is not a multiple of 4                         | TLM_ADDRESS_ERROR_RESPONSE     |
-// | a length of 0 or not a multiple of 4, a smaller stream width   | TLM_BURST_ERROR_RESPONSE       |
+// | a length of 0 or not a multiple of 4; streaming width < length | TLM_BURST_ERROR_RESPONSE       |
 // | byte enables                                                   | TLM_BYTE_ENABLE_ERROR_RESPONSE |
 // | neither read nor write                                         | TLM_COMMAND_ERROR_RESPONSE     |
 //

@@ -26,22 +26,21 @@ struct IdealHostConfig {
 
 // Runs frames on a core without a modelled computer (contract section 2, `preloaded`). The tables are in
 // their banks before cycle 0. Pictures enter and results leave their buffers in zero time, and each frame
-// starts when the last one ends. The host drives the core's registers and reaches the memory by debug
-// transport.
+// starts when the last one ends. The host accesses registers by b_transport, the memory by debug transport.
 //
-// SC_REPORT_ERROR (type /stereotlm/ideal_host) reports: a picture of the wrong size, a register or memory
-// that refuses an access, a core that does not start or that reports an error. The host then stops, and
-// finished() stays false.
+// SC_REPORT_ERROR (type /stereotlm/ideal_host) reports: a picture of the wrong size, a core that does not
+// start or that reports an error, a register or memory that refuses an access. The host then stops, and
+// finished() stays false. Where errors are not thrown, it goes on after a refused access.
 class IdealHost : public sc_core::sc_module {
  public:
   tlm_utils::simple_initiator_socket<IdealHost> registers{"registers"};
   tlm_utils::simple_initiator_socket<IdealHost> memory{"memory"};
   sc_core::sc_in<bool> done{"done"};
 
-  // The tables, `source` and `sink` outlive the host. A side without rectification has a null table. Throws
-  // std::invalid_argument if a list of buffers is empty, or a side has a table without a buffer or a buffer
-  // without a table. Joint tables need both, and the host joins them. It throws std::invalid_argument if they
-  // cannot be joined.
+  // The tables, `source` and `sink` outlive the host. A side without rectification has a null table. Joint
+  // tables need both tables, which the host joins. Throws std::invalid_argument if a list of buffers is
+  // empty, if a side has a table without a buffer or a buffer without a table, or if the tables cannot be
+  // joined.
   IdealHost(const sc_core::sc_module_name& name, const IdealHostConfig& config,
             const kernels::RectificationTable* left_table, const kernels::RectificationTable* right_table,
             FrameSource& source, FrameSink& sink);
@@ -54,7 +53,7 @@ class IdealHost : public sc_core::sc_module {
   void load_tables();
   void load_table(std::uint32_t base, const std::vector<std::uint32_t>& words, std::uint64_t base_register);
   bool load_pictures(std::uint32_t left, std::uint32_t right);
-  // start_frame() and end_frame() return false if an error has been reported; the host then stops.
+  // start_frame() and end_frame() return false after an error that stops the host.
   bool start_frame();
   bool end_frame();
   void write_register(std::uint64_t address, std::uint32_t value);

@@ -14,8 +14,8 @@
 namespace stereotlm::kernels {
 
 // Computes the census bits (contract 7.6) of filtered columns, in the order in which they leave the filter;
-// used by fpga::Census. When column u enters, the bits of column u - h leave, h rows further up, where
-// h = (c - 1) / 2. The 2h rows above the new ones come from line memories.
+// used by fpga::Census. The neighbourhood has 2h + 1 rows and columns. When column u enters, the bits of
+// column u - h leave, h rows further up. The 2h rows above the new ones come from line memories.
 class CensusColumns {
  public:
   CensusColumns(int width, int height, int rows_per_column, int rows_per_strip, const MatchingCost& cost)

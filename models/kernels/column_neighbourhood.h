@@ -14,8 +14,8 @@ namespace stereotlm::kernels {
 // Holds the pixels around the columns of a frame, in the order in which the hardware fetches them. Columns
 // enter strip by strip: columns 0..width-1, then those of the next strip, `rows_per_strip` rows below. A
 // column has `rows_per_column` new rows; line memories give the 2h rows above (h is `half`). When column u
-// enters, column u - h leaves, with its rows h above the new ones. columns() also has h columns on each side
-// of it. Edge pixels replace what lies outside the image.
+// enters, as many rows of column u - h leave, which lie h rows higher. columns() gives these pixels and h
+// rows and columns on each side of them. Edge pixels replace what lies outside the image.
 template <class Value>
 class ColumnNeighbourhood {
  public:

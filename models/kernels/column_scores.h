@@ -11,13 +11,13 @@
 namespace stereotlm::kernels {
 
 // The select-min units compare keys: a window sum in the upper bits and a disparity in the lowest 8. The
-// smallest key is the smallest sum, and among equal sums the smallest disparity. This is the largest sum that
-// fits. Scores that do not fit are compared as exact fractions.
+// smallest key is the smallest sum, and among equal sums the smallest disparity. kLargestKeySum is the
+// largest sum that fits. Scores that do not fit are compared as exact fractions.
 inline constexpr std::int32_t kLargestKeySum = 0x7FFFFF;
 
-// The scores of the candidates of one column, as exact fractions; the greatest wins. All candidates of a left
-// pixel share the variance of its window: their scores use the variances of the right windows alone. Those of
-// a right pixel use the variance of the left window alone.
+// The scores of the candidates of one column, as exact fractions; the greatest wins. The variance that all
+// candidates of a pixel share is left out: the score is cov * |cov| / var_r for a left pixel, and
+// cov * |cov| / var_l for a right pixel.
 struct ColumnScores {
   const std::int64_t* covariances = nullptr;      // [d]
   const std::int64_t* right_variances = nullptr;  // [d]: of the right window d columns ago

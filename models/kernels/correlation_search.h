@@ -16,7 +16,7 @@ namespace stereotlm::kernels {
 // row to row, so that neighbouring windows cost little more than the comparison of their candidates.
 //
 // The right image is mirrored, so that both sides do the same: the candidates of the window at column u are
-// windows of the other image, in the order of their columns, from across - 1 - u on.
+// the windows of the other image at columns a, a + 1, .., where a = (width - window) - u.
 class CorrelationSearch {
  public:
   CorrelationSearch(int width, int height, int window, int disparities, const Simd& simd)

@@ -39,11 +39,11 @@ void add_products(const std::uint8_t* const* rows, const std::int16_t* own, int 
 }
 
 // The quotients covariance * |covariance| / variance are rounded three times, each time by at most 2^-53 of
-// their value. So the quotients of equal scores differ by less than 2^-50. A candidate is near if its
-// quotient is less than 2^-49 below the greatest one, so that every candidate with the greatest score is
-// near. Near candidates with the same variance have the same covariance, because covariances are integers
-// below 2^34. If all near candidates have the same variance, their scores are equal. Otherwise they are
-// compared as fractions, exactly.
+// their value. So the quotients of equal scores differ by less than 2^-50 of their value. A candidate is near
+// if its quotient is at most 2^-49 of the greatest one below it, so that every candidate with the greatest
+// score is near. Near candidates with the same variance have the same covariance, because covariances are
+// integers below 2^34. If all near candidates have the same variance, their scores are equal. Otherwise they
+// are compared as fractions, exactly.
 int best_candidate(const Candidates& candidates, const std::int32_t* products, double pixels, double own_sum,
                    double* quotients) {
   const double lowest = -__builtin_inf();

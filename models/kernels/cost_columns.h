@@ -19,10 +19,10 @@ constexpr int candidate_count(int column, int row, int width, int height, int wi
 }
 
 // The array of column and window modules (paper section 3.4, figures 6 and 8); used by fpga::CostArray.
-// Column module d accumulates the costs of the right pixels d columns ago and the left pixels, over the n
-// rows of a column: absolute differences, their squares, or differing census bits; products for the cost
-// `zncc`. Window module d adds the finished column sum and subtracts the column sum of n columns ago, so
-// that it holds the sum of candidate d for the window that ends at this column.
+// Column module d sums the costs of the n pixel pairs of a column: the left pixels and the right pixels of d
+// columns before. The cost is the absolute difference, its square, the number of census bits that differ, or
+// (`zncc`) the product. Window module d adds the new column sum and subtracts that of n columns before. It
+// then holds the sum of candidate d for the window that ends at this column.
 class CostColumns {
  public:
   // `window` keeps kWindowRule, `disparities` kDisparitiesRule; the cost has no problems.

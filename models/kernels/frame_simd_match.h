@@ -12,13 +12,13 @@ namespace stereotlm::kernels::STEREOTLM_SIMD {
 //   Keys                      how candidates are compared (frame_simd_keys.h)
 //   kGroup                    the number of disparities that are matched together
 //   kPixelLanes, kSumLanes    lanes of the pixels and of a column sum at one position
-//   kUnpacks, kHasStatistics  see MatchLoops; prepare() fills these arrays before each row
+//   kUnpacks, kHasStatistics  whether prepare() fills `unpacked`; `columns` and `windows`, of MatchSide
 //   pixels(side)              the pixels of a side that right() and change() take
 //   Sum                       a column sum, or its change
 //   WindowSum, start(d), add(WindowSum&, Sum)    start(d): the empty sum of disparity d
 //   right(pixels)             loads the right pixels at a position
-//   change(right, pixels)     the change of a column sum, for these left pixels
-//   score(WindowSum, j)       what right_key(score, j) and left_key(score, j) share; j: place in the group
+//   change(right, pixels)     the change of a column sum. `right`: from right(); `pixels`: of the left side
+//   score(WindowSum, j)       the input of right_key(score, j), left_key(score, j); j: place in the group
 //   next()                    to be called between two windows
 
 // The column sums of kCount neighbouring disparities, which lie side by side for each position. next()

@@ -11,10 +11,10 @@
 // - The sums of products of pixels, N * sum and cov are integers of less than 53 bits, exact as doubles.
 // - cov as a float, its square, 1 / var and their product are each rounded by at most 2^-24 of the value, and
 //   cov enters twice: a quotient is off by less than 2^-21 of its value. It neither overflows nor underflows:
-//   cov and var are below 2^34, and not 0 unless the quotient is exactly 0.
+//   cov and var are below 2^34; where one of them is 0, the quotient is exactly 0.
 // - A key holds the upper 24 bits of the quotient, of which 15 are of the mantissa. One step of these bits is
-//   at least 2^-16 of the value. If two keys differ by two steps or more, at least one lies between their
-//   quotients. That is more than their errors: their order is certain.
+//   at least 2^-16 of the value. If two keys differ by two steps or more, at least one whole step lies
+//   between their quotients. Their errors are smaller than this step, so their order is certain.
 // - The quotient 0 is exact. Of equal zeros the smaller disparity has the greater key.
 // - The bits of negative floats are in the reverse order: a window that has only negative quotients is
 //   undecided.

@@ -90,8 +90,8 @@ void ImageMatcher::choose_loops(const MatchingCost& cost, const Simd& simd) {
 }
 
 // Chooses the number of bands that needs the least work. Neighbouring segments share window - 1 columns, and
-// neighbouring bands as many rows. Shared columns and rows are computed twice, each time with about half the
-// work of the others. More segments are shorter, and need fewer column sums.
+// neighbouring bands as many rows. These are computed twice, each time with about half the usual work. More
+// than one band is chosen only if the column sums take at most kMostColumnSumBytes.
 void ImageMatcher::choose_bands() {
   const double shared = plan_.window - 1;
   double least = std::numeric_limits<double>::max();

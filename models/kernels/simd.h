@@ -45,9 +45,9 @@ struct MatchPlan {
   int first_outside = 0;
 };
 
-// The arrays of one side, aligned to kMostFrameVectorBytes. The comment of an array gives the number of its
-// positions: pixels or windows. The right side has `columns` windows, the left `columns + disparities - 1`.
-// Each has `window - 1` more pixels than windows. A position has one vector, unless the comment gives more.
+// The arrays of one side, aligned to kMostFrameVectorBytes. Brackets give the positions of an array: pixels
+// or windows, with one vector each unless the comment gives more. With the names of MatchPlan: the right side
+// has `columns` windows, the left `columns + disparities - 1`; each side has `window - 1` more pixels.
 struct MatchSide {
   // [pixels]: the lower byte of a lane enters the window, the upper byte leaves it. Pixels of more than one
   // byte have a plane for each byte; the planes are `stride` apart.
@@ -129,14 +129,14 @@ struct Simd {
   void (*to_lanes)(const std::int16_t* const* from, int count, std::int16_t* out);
   // The reverse of to_lanes(), with bytes as output.
   void (*from_lanes)(const std::int16_t* from, int count, std::uint8_t* const* out);
-  // The left-right check of `count` pixels of a row (contract 1.4), and the validity of their own entries:
-  // out[i] = left_based[i], or kInvalidDisparity if it fails. right_based[i - left_based[i]] is read for each
-  // pixel, so left_based must hold disparities only. A null `right_based` or `left_table` leaves out its
-  // check.
+  // Checks `count` pixels of a row (contract 1.4): left_based[i] against right_based[i - left_based[i]], and
+  // the valid bit of left_table[i]. out[i] = left_based[i], or kInvalidDisparity if a check fails. A null
+  // `right_based` or `left_table` leaves out its check. left_based must hold valid disparities only, because
+  // right_based is read for each of them.
   void (*check_row)(const std::uint8_t* left_based, const std::uint8_t* right_based,
                     const std::uint32_t* left_table, int count, int tolerance, std::uint8_t* out);
-  // The census bits of one row (contract 7.6). `rows`: the 2 * half + 1 rows and columns around the first
-  // pixel, with the upper bit of each pixel inverted. out[b] gets bits 8b .. 8b + 7 of each pixel; the order
+  // The census bits of one row (contract 7.6). `rows`: 2 * half + 1 rows, each from `half` columns left of
+  // the first pixel on, with the upper bits inverted. out[b] gets bits 8b .. 8b + 7 of each pixel; the order
   // of the neighbours is the same for all. Reads the rows and writes `out` up to 64 pixels beyond `width`.
   void (*census_row)(const std::int8_t* const* rows, int half, int width, std::uint8_t* const* out);
 
@@ -149,8 +149,8 @@ struct Simd {
   // The loops over one column of the matcher. Arrays over the disparities d hold `lanes` values, a multiple
   // of kLanePadding; arrays with values of more than 8 bits must be SimdArrays.
   //
-  // Steps all column and window modules by one column. For each d: adds the sum over the `rows` of
-  // |histories[row][d] - left[row]| to windows[d], subtracts leaving[d], and stores the sum in leaving[d].
+  // Steps all column and window modules by one column. For each d: sum = the sum over the `rows` of
+  // |histories[row][d] - left[row]|; windows[d] += sum - leaving[d]; leaving[d] = sum.
   void (*sad_windows)(const std::uint8_t* const* histories, const std::uint8_t* left, int rows, int lanes,
                       std::int16_t* leaving, std::int32_t* windows);
   // The same with the number of bits in which histories[row][d] and left[row] differ.

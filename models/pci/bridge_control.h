@@ -65,7 +65,7 @@ class BridgeControl final : public PciMasterIf, public PciTarget, public LocalBu
 
   // The slave window. `offset`: a multiple of 4; the words are inside the window.
   //
-  // How many of `words` words a write can have now: STOP#.
+  // How many of the `words` words of a write have free places now. STOP# ends the write after these.
   std::size_t postable_words(std::uint64_t now_ps, std::size_t words) const;
   // Posts a write. Returns false, without effect, if it has more words than there are free places.
   bool write(std::uint64_t now_ps, std::uint64_t offset, const unsigned char* data, std::size_t words);
@@ -95,7 +95,7 @@ class BridgeControl final : public PciMasterIf, public PciTarget, public LocalBu
 
   // To skip posted writes that repeat:
   //
-  // If the end of a burst on the local bus has come, ends the burst and begins the next one.
+  // If the burst on the local bus is due to end by `now_ps`, ends it and begins the next one.
   void settle(std::uint64_t now_ps) {
     if (has_ended(now_ps)) end_local(now_ps);
   }

@@ -46,8 +46,8 @@ using PciStopPort = sc_core::sc_port<PciStopIf, 1, sc_core::SC_ZERO_OR_MORE_BOUN
 //
 // Burst: an address clock, the target's wait clocks, one data clock per word (64 bits: per two words) and an
 // idle clock. The next address clock can follow immediately, because arbitration is hidden behind the burst.
-// A burst of any length costs two events: its grant and its end. A request that cuts the burst moves the
-// second one.
+// A burst of any length costs two events: its grant and its end. If the request of another master cuts the
+// burst, the second event moves.
 //
 // Arbitration: round robin, from the slot after the last one granted, at first from slot 0. It considers the
 // requests made at or before the beginning of the clock, and decides when nothing else is pending at that

@@ -93,8 +93,8 @@ class PciBusControl {
 
   // To skip bursts that repeat:
   //
-  // The clock that the next decide() grants, and the first clock of a master's request (kNever: there is
-  // none).
+  // The clock that the next decide() grants, and the first clock in which the request of a master counts;
+  // kNever if there is none.
   std::uint64_t decision_clock() const { return decision_clock_; }
   std::uint64_t request_clock(std::size_t master) const { return requests_[master].clock; }
   // The earliest request_clock() of the masters that are not in `masters`.

@@ -8,8 +8,8 @@
 #include "models/clock.h"
 
 // The protocol between the PCI bus and its masters and targets: REQ#, GNT# and the burst that follows (PCI
-// 2.2). Plain C++; pci_slot_if.h has the sockets. The targets of PciBus use the base protocol, those of
-// PciBusControl are a PciTarget.
+// 2.2). Plain C++; pci_slot_if.h has the sockets. A target of PciBus uses the TLM base protocol, a target of
+// PciBusControl is a PciTarget.
 namespace stereotlm::pci {
 
 // The burst for which a master uses its grant.

@@ -57,9 +57,9 @@ struct BoardValue {
 // in to_yaml(), in one line. Each bank has all its values. A board without `pci.load` has no values below it.
 std::vector<BoardValue> values_of(const BoardConfig& board);
 
-// The values of `--set` that turn `from` into `to`: of banks; then pci.load=none, if only `from` has a load;
-// then the others as in to_yaml(). `to` has all banks of `from`, in their order, and maybe more after them.
-// If two or more differ or are new, `ssram.default` and `ssram.banks` are given whole.
+// The values of `--set` that turn `from` into `to`, in this order: those of banks; pci.load=none if only
+// `from` has a load; the others as in to_yaml(). `to` has all banks of `from`, in their order, before new
+// ones. If two or more banks differ or are new, `ssram.default` and `ssram.banks` are given whole.
 std::vector<std::string> sets_between(const BoardConfig& from, const BoardConfig& to);
 
 // A board file that is compiled in.

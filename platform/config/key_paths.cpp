@@ -21,8 +21,8 @@ std::optional<std::size_t> likely_path_distance(std::string_view path, std::stri
   return likely_distance(path, known);
 }
 
-// The known path nearest to an unknown one; empty if no path is near. The distance is likely_path_distance(),
-// or likely_distance() of the last names plus 2, whichever is less. So the right key in a wrong section is
+// The known path nearest to an unknown one; empty if no path is near. The distance is the least of
+// likely_path_distance() and likely_distance() of the last names + 2. So the right key in a wrong section is
 // nearer than most wrong keys in the right section. Below `ssram.banks` every name counts as a bank's.
 std::string nearest_path(const std::string& path) {
   const std::string schema = schema_path(path);

@@ -80,9 +80,9 @@ enum class Takes { kOne, kOneOrTwo, kList, kRepeated };
 // An option of the command line. Its values are kept as typed, so that messages can quote them.
 class Option {
  public:
-  // Adds the option to the command of `of`; if that is null, to none, and the option is never given. `name`:
-  // its names, separated by commas; messages use the first. Names without dashes make it positional. `value`:
-  // the help's word for its value; empty: the option is a flag.
+  // Adds the option to the command of `of`. If `of` is null, no command has the option, and it is never
+  // given. `name`: its names, separated by commas; messages use the first. Names without dashes make it
+  // positional. `value`: the help's word for its value; empty: the option is a flag.
   Option(Options* of, const std::string& name, const std::string& value, const std::string& meaning,
          const std::vector<Rule>& rules = {}, Takes takes = Takes::kOne);
   Option(const Option&) = delete;

@@ -7,9 +7,9 @@
 
 namespace stereotlm::demo {
 
-// The middle of a picture at half size, 640x480 as the images of fpl2003. A pixel is the mean of 2x2 pixels
-// (halves up), but in a truth the top left one: the mean over an edge is the depth of neither side. Levels of
-// a truth stay, so its scale doubles. Throws std::invalid_argument for a picture below 1280x960.
+// The middle of a picture at half size, 640x480 as the images of fpl2003. A pixel is the mean of 2x2 pixels,
+// halves up. A picture of true disparities (`is_truth`) has the top left one instead, because a mean over an
+// edge is no depth; its scale doubles. Throws std::invalid_argument for a picture below 1280x960.
 inline kernels::GrayImage middle_at_half_size(const kernels::GrayImage& full, bool is_truth = false) {
   kernels::GrayImage half(640, 480);
   if (full.width < 2 * half.width || full.height < 2 * half.height)

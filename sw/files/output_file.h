@@ -28,7 +28,7 @@ struct NamedFile {
 std::filesystem::path linked_file(const std::filesystem::path& path);
 
 // New content for a file, in a hidden file in the same folder. The destructor removes the hidden file. If the
-// process is killed, the next process that writes the same file replaces it. All functions throw
+// process is killed, the next process that writes the same file replaces the hidden file. All functions throw
 // std::runtime_error with the name of the file, not of the hidden one, and the cause. The constructor also
 // throws while another process writes the file.
 class AsideFile {
@@ -48,10 +48,10 @@ class AsideFile {
   const std::filesystem::path& path() const { return path_; }
   // Makes the content durable. No write() may follow. A second call has no effect.
   void complete();
-  // Renames the hidden file to the file, after complete(). If `replaces`, an existing file is replaced, and
-  // the new one gets its mode, owner and group. Only root may change the owner; for other users, the new file
-  // keeps its own. If the group cannot be changed either, the group gets the permissions of all other users.
-  // Unless `replaces`, an existing file is an error.
+  // Renames the hidden file to the file, after complete(). Without `replaces`, an existing file is an error.
+  // With `replaces`, an existing file is replaced, and the new one gets its mode and group, and its owner if
+  // root runs this process. If the group cannot be changed, its own group gets the permissions of all other
+  // users.
   void take_place(bool replaces);
 
  private:
@@ -80,9 +80,9 @@ struct FileKind {
 FileKind marked_kind(std::string called, std::vector<std::pair<std::size_t, std::string>> marks);
 
 // A single file that a command writes, as a whole: commit() puts the new content in place, and until then an
-// earlier file is unchanged. A symbolic link stays, and the file to which it leads is written. A file is
-// replaced only if it existed when the object was made, and if both then and at the commit it is empty or of
-// the kind that the command writes. All functions throw std::runtime_error with the path and the cause.
+// earlier file is unchanged. A symbolic link stays, and the file to which it leads is written. A file that
+// did not exist when the object was made is not replaced. Then and at the commit a file must be empty or of
+// the command's kind. All functions throw std::runtime_error with the path and the cause.
 class OutputFile {
  public:
   // Throws also if a file must not be replaced, is one of `others` (those that the command reads or writes

@@ -234,9 +234,9 @@ std::vector<fs::path> OutputFolder::with_mark_last(const fs::path& folder) const
   return names;
 }
 
-// repair() learns from the names of the folders in the folder of unfinished files how far a commit has come.
-// Until `new` is renamed to `complete`, each earlier file is in DIR or in `earlier`. From then on, each new
-// file is in DIR or in `complete`.
+// The names of the folders in aside() show repair() how far a commit has come. Until `new` is renamed to
+// `complete`, each earlier file is in DIR or in `earlier`. From then on, each new file is in DIR or in
+// `complete`.
 void OutputFolder::move_into_place(const std::vector<fs::path>& names) const {
   for (const fs::path& name : names) {
     if (is_folder(made() / name)) sync_folder(made() / name);

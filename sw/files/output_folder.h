@@ -41,10 +41,10 @@ struct OutputContent {
 // second run is refused.
 class OutputFolder {
  public:
-  // Creates DIR and its missing parents and checks that DIR is writable. Throws std::runtime_error, and
-  // changes nothing but an unfinished commit, if DIR is not writable or another run uses it; if DIR holds
-  // files of the command without a mark of its kind, other files (unless they stay), or other files in a
-  // folder that is replaced; if DIR/.partial holds other files; or if an input would be replaced.
+  // Creates DIR and its missing parents. Completes or undoes the commit of a killed run. Throws
+  // std::runtime_error, without other changes, if DIR is not writable or in use, if an input would be
+  // replaced, or if files are there that the command does not write (see OutputContent::others_stay). Throws
+  // it also if files of the command are there that OutputContent::kind does not accept.
   OutputFolder(const std::filesystem::path& dir, OutputContent content);
   // Without commit(): removes everything that this object has created. Earlier files are unchanged.
   ~OutputFolder();

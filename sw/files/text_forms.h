@@ -30,8 +30,8 @@ std::string ranges_text(const std::vector<std::uint64_t>& numbers, const std::st
 
 // The text of a JSON document in the form of the result files: keys in insertion order, two spaces of indent,
 // a container without containers on one line, numbers as the shortest decimals that read back equal, a
-// newline at the end. Throws std::invalid_argument for a number that is not finite, and, unless `replaces`,
-// for a string that is not UTF-8. `replaces`: bytes that are not UTF-8 are replaced.
+// newline at the end. With `replaces`, bytes that are not UTF-8 are replaced; else a string with such bytes
+// throws std::invalid_argument. A number that is not finite throws it always.
 std::string json_text(const nlohmann::ordered_json& document, bool replaces = false);
 
 }  // namespace stereotlm::files

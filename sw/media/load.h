@@ -58,9 +58,9 @@ class Video {
   // The number of frames in the file's header, possibly an estimate; 0 if the header has none.
   virtual std::uint64_t stated_frames() const = 0;
 
-  // Frame `index`, 0 .. frames()-1. The reference is valid until the next call. Decodes all frames up to
-  // `index`; for an earlier frame it opens the file again. Throws std::runtime_error if the file no longer
-  // has the frame.
+  // Frame `index`, 0 .. frames()-1. The reference is valid until the next call. Decodes the frames from the
+  // last requested one up to `index`; for an earlier `index`, opens the file again and decodes from frame 0.
+  // Throws std::runtime_error if the file no longer has the frame.
   virtual const kernels::GrayImage& frame(std::uint64_t index) = 0;
 };
 

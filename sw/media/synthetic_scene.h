@@ -16,9 +16,8 @@ namespace stereotlm::media {
 // requested in any order, without limit.
 class SyntheticScene {
  public:
-  // A scene for a board with images of this size. Its disparities are 1 .. disparities-1, at most a quarter
-  // of the width; all are 0 if disparities = 1. Throws std::invalid_argument if the arguments break the rules
-  // of a board.
+  // A scene for a board with images of this size. Its disparities are 1 .. min(disparities - 1, width / 4),
+  // or all 0 if that is 0. Throws std::invalid_argument if the arguments break the rules of a board.
   SyntheticScene(std::uint64_t seed, int width, int height, int disparities);
 
   // The pictures of both cameras, and their ground truth.

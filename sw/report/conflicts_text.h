@@ -13,8 +13,8 @@ namespace stereotlm::report {
 void add_frame(const fpga::FrameConflicts& frame, fpga::FrameConflicts& sums);
 
 // What `conflicts --json` prints of a run (sw/cli/schemas/conflicts.schema.json): who waits where for whom,
-// the longest wait first. For each wait, the first of the shortest ranges of rows and columns that have 80 %
-// of it, left out if that is most of the picture. Then how busy the used banks are from top to bottom.
+// the longest wait first. For each wait the shortest range of rows, and that of columns, with 80 % of it; a
+// range of 75 % of the picture or more is left out. Then how busy the used banks are from top to bottom.
 nlohmann::ordered_json conflicts_document(const platform::BoardConfig& board,
                                           const fpga::ConflictRecorder& recorder,
                                           const fpga::FrameConflicts& sums);

@@ -19,8 +19,8 @@ struct JudgedRun {
 
 // The comparison of two runs in one sentence: which is faster, by how much, where the difference arises, and
 // whether the disparities are the same. The rates are the steady ones if both runs have them, else those from
-// power-up, else those of the core. A difference up to the sum of the uncertainties is none. `pixels`: null
-// if the disparities are not compared.
+// power-up, else those of the core. Rates that differ by at most the sum of their uncertainties count as
+// equal. `pixels`: null if the disparities are not compared.
 std::string diff_verdict(const JudgedRun& a, const JudgedRun& b, const stats::PixelComparison* pixels);
 
 // The sum of `frame_cycles`.

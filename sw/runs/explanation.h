@@ -87,9 +87,9 @@ class Explanation {
     std::uint64_t frame = 0;  // the frame with the least headroom
     bool varies = false;      // the headroom is larger in other frames
   };
-  // All resources, the least headroom first. That of ports and matcher (and of banks, if the core runs alone)
-  // is the least in a turn of the allocation lists. A frame takes its cycles; on a whole computer also a part
-  // of the time between frames, in proportion to them.
+  // All resources, the least headroom first. The headroom of ports and matcher, and of banks if the core runs
+  // alone, is the least in a turn of the allocation lists. On a whole computer the time between frames is
+  // divided among the frames in proportion to their cycles.
   const std::vector<Resource>& resources() const { return resources_; }
 
   const Budget& budget() const { return budget_; }

@@ -22,9 +22,9 @@ files::OutputContent result_content(std::vector<files::NamedFile> inputs = {});
 // Throws std::runtime_error if they cannot be written.
 void save_frame(const RunInput& input, const Result& result);
 
-// Takes what the simulation has recorded since the last call: with --record as text for the files of the
-// result folder, with --trace for the traces, which it does not commit. The constructor begins the files.
-// finish() adds what is complete only at the end of the run.
+// Takes what the simulation has recorded since the last add(). With --record it appends this to the files of
+// the result folder, which the constructor begins. With --trace it hands this to the traces; the caller
+// commits them. finish() adds what is complete only at the end of the run.
 class Records {
  public:
   // Adds text to the end of a file.

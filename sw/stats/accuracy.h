@@ -7,9 +7,9 @@
 
 namespace stereotlm::stats {
 
-// The accuracy of disparities, as the end of contract section 6 defines it, in percent, 0..100. Only pixels
-// count whose truth is known and which the right camera sees too. A pixel with a valid disparity is answered.
-// nullopt: the denominator is 0.
+// The accuracy of disparities, as sw/report/README.md defines it (stats.json), in percent, 0..100. Only
+// pixels count whose truth is known and which the right camera sees too. A pixel with a valid disparity is
+// answered. nullopt: the denominator is 0.
 struct Accuracy {
   std::optional<double>
       bad_1_percent;  // share of the answered pixels that are wrong by more than 1 disparity

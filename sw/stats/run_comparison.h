@@ -79,10 +79,10 @@ class RowComparison {
     std::int64_t most = 0;                                    // the most cycles of a single row
     std::array<std::int64_t, fpga::kCorePortCount> stalls{};  // sums over the rows
   };
-  // Ranges of rows from top to bottom, at most `most_ranges`. The rows of a range have the same differences
-  // in cycles and in stalls; if that gives too many ranges, only in cycles. If there are still too many, all
-  // ranges have the same height. A range whose rows do not differ in cycles, and whose sums do not differ in
-  // stalls, is left out; the others add up to the whole difference.
+  // Ranges of rows from top to bottom, at most `most_ranges`. The rows of a range have the same B - A in
+  // cycles and in stalls; if that gives too many ranges, only in cycles. If there are still too many, all
+  // ranges have the same height, +-1 row. A range is left out if B - A is 0 for the cycles of each row and
+  // for each sum of stalls. The others add up to the whole difference.
   std::vector<Range> ranges(std::size_t most_ranges) const;
 
  private:

@@ -16,9 +16,9 @@
 
 namespace stereotlm::trace {
 
-// Finds the longest wait of a port for a bank, and keeps it with 60 cycles around it. 30 of them come before
-// it, or fewer if there are fewer; the others come behind it. Of equal waits it takes the first one with 30
-// cycles before it.
+// Finds the longest wait of a port for a bank. Keeps its cycles and 60 around it: n before it and 60 - n
+// behind it, where n is 30, or less if fewer cycles came before. Of equal waits it takes the first one with
+// n = 30, else the last one.
 class LongestWait {
  public:
   // Cycles in their order. A missing cycle ends every wait.

@@ -156,8 +156,8 @@ struct Span {
 // Writes the changes of all streams in the order of their times, as a value change dump of IEEE 1364. If a
 // signal changes several times at one ps, only the last change is written.
 //
-// The file begins and ends with the window, or with the last change if the window has no end. A change before
-// the window sets its first value. Changes after the end of the window are left out.
+// The file begins and ends with the window, or with the last change if the window has no end. The last change
+// of a signal before the window sets its first value. Changes after the end of the window are left out.
 class Waveform {
  public:
   Waveform(files::AsideFile& file, const Signals& signals)

@@ -125,8 +125,8 @@ void stereo_bm(benchmark::State& state, const host::StereoPair& pair) {
 }
 
 // An iteration simulates enough frames to last some milliseconds; frame_ms is the time of one. StereoBM runs
-// between iterations (at kTiming between some), so that other load on the machine slows down both; `ratio` is
-// the quotient of the two times.
+// between iterations (at kTiming before every 16th), so that other load on the machine slows down both.
+// `ratio`: the time of a frame, divided by that of StereoBM.
 void run_frames(benchmark::State& state, const Case& c, const BoardProcess::Setting& setting,
                 const host::StereoPair& pair) {
   const std::uint32_t frames = setting.fidelity == Fidelity::kTiming ? 20

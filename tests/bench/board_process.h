@@ -12,8 +12,8 @@
 namespace stereotlm::bench {
 
 // Runs a board in a child process, because SystemC elaborates once per process. The child simulates on order
-// and sleeps in between. A failure of the child is a std::runtime_error here; a broken identity of contract
-// section 6 is one too.
+// and sleeps in between. Throws std::runtime_error if the child fails, or if an identity of contract section
+// 6 does not hold.
 class BoardProcess {
  public:
   struct Setting {

@@ -24,9 +24,9 @@ struct GridAssessment {
   std::size_t right = 0;       // the board's disparity is within kMostDifference of the geometric disparity
   std::size_t wrong = 0;       // the board has another disparity
   std::size_t unanswered = 0;  // the board has no disparity, or the corner is outside its output
-  // Deviations of the distances between neighbouring corners from the side of a square: of right corners, of
-  // all answered corners, and of right corners with their geometric disparities rounded to whole pixels, the
-  // least error that a board can have.
+  // Deviations of the distances between neighbouring corners from the side of a square: of right corners; of
+  // all answered corners; of right corners with their geometric disparities rounded to whole pixels, which is
+  // the least error that a board can have.
   Deviations lengths;
   Deviations lengths_of_answered;
   Deviations lengths_floor;

@@ -62,8 +62,8 @@ struct PlainRowEnd {
 enum class PlainTraffic { kCapture, kUpload, kReadBack };
 
 // Where in the picture, and when in a frame, ports stall. A tile is four columns of a strip of R rows. A
-// cycle belongs to the tile whose results leave next. Tile 0 is the fill: the cycles up to and including that
-// of column C - 1 (C: contract section 2). Cycles after the last results belong to the last tile.
+// cycle belongs to the tile whose results leave next. Tile 0 is the fill: the cycles up to the one in which
+// column C - 1 is consumed (C: contract section 2). Cycles after the last results belong to the last tile.
 //
 // `waiter` and `by` are numbers: of a port (in place of the host: one for each PlainTraffic), then of
 // turnaround, row, refresh.

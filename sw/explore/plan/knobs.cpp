@@ -364,9 +364,9 @@ class Steps {
     return static_cast<std::uint64_t>(bank.words) >= words;
   }
 
-  // The names of kQuietBanks banks for one more buffer of this list. First come those without a buffer of the
-  // list, then those with fewer accesses. A picture or table has one access for each slot, a result two for
-  // each four pixels.
+  // The names of at most kQuietBanks banks that can hold one more buffer of this list. Banks without a buffer
+  // of the list come before the others; within both groups, fewer accesses come first. A picture or table has
+  // one access for each slot, a result two for each four pixels.
   std::vector<std::string> quiet_banks(Buffer list) const {
     const int rows = board_.matcher.rows;
     const bool is_column = board_.matcher.fetch == fpga::Fetch::kColumn;

@@ -72,9 +72,9 @@ std::set<std::string> pure_functions(const sqlite::Database& database) {
 
 }  // namespace
 
-// Compiles each text twice. At the end of a statement, unbalanced quotes and brackets are errors, and
-// SQLite's message quotes only the text. In brackets, a clause behind the expression, such as LIMIT, and a
-// comment that does not end are errors.
+// Compiles each text twice. First without brackets, at the end of a statement, which refuses unbalanced
+// quotes and brackets; SQLite's message then quotes only the text. Then in brackets, which refuses a clause
+// behind the expression, such as LIMIT, and a comment that does not end.
 Conditions::Conditions(const std::vector<Condition>& conditions)
     : database_("where", sqlite::Database::Access::kMemory), functions_(pure_functions(database_)) {
   sqlite3_set_authorizer(database_.handle(), authorize, this);

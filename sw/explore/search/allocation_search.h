@@ -83,9 +83,9 @@ struct BestOfAll {
 // Finds the best placement of a board's buffers for each number of banks. It selects the boards to simulate,
 // and the caller records their results.
 //
-// The rate of a long run differs from the rate of a run by at most the run's uncertainty. It is not above the
-// bound of the placement. A placement is known to be slower than another if its highest possible rate is
-// below the lowest possible rate of the other. All others tie.
+// A run with rate r and uncertainty u, and the bound b of its placement, give the rate of a long run: at
+// least r - u, at most min(r + u, b). A placement is known to be slower than another if its highest possible
+// rate is below the lowest possible rate of the other. All others tie.
 //
 // If frames_are_independent() and the core runs alone, the search is by frames. It needs a simulation of one
 // frame for each way in which the buffers of a frame share banks, and computes the rate of every placement

@@ -83,9 +83,9 @@ std::string text_of(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-// Runs a command of Slurm and returns its output. It runs without the variables SQUEUE_.. and SCANCEL_..,
-// which users set for interactive use, but with SBATCH_.., which also apply to jobs that programs submit. Its
-// errors are "sbatch: one; another" for "sbatch: error: one\nsbatch: error: another\n".
+// Runs a command of Slurm and returns its output. The command gets no variables SQUEUE_.. and SCANCEL_..,
+// which users set for interactive use, but SBATCH_.., which also apply to jobs that programs submit. Throws
+// SlurmError: "sbatch: one; another" for the message "sbatch: error: one\nsbatch: error: another\n".
 std::string run(const Words& words) {
   const std::string& program = words[0];
   process::CommandEnd end;

@@ -97,9 +97,9 @@ class Store {
 // another layout.
 std::vector<std::string> store_columns(sqlite::Database& database);
 
-// Reads one point at a time from the file of a Store, which it finds by its hash. Member functions throw
-// DatabaseError. Must not be used across fork(). Once merge_stores() has written the file, any number of
-// machines may read it at the same time.
+// Reads the points in the file of a Store, one at a time: find() selects a point by its hash. Member
+// functions throw DatabaseError. Must not be used across fork(). A file that merge_stores() has written may
+// be read by any number of machines at the same time.
 class StoredRow {
  public:
   // Throws if the file holds points of another version of the program; an empty version allows any.
@@ -127,9 +127,9 @@ class StoredRow {
 // that a Store or merge_stores() has written. The bytes of the new file depend only on the points. `store`
 // may be one of the inputs. If `store` is a symbolic link, the file behind it is replaced. The old file is
 // replaced only when the new one is complete and on the disk; its mode and owner are kept. No other process
-// may write to `store` meanwhile (see StoreLock). Throws DatabaseError (database.h), also if two inputs hold
-// different results of one point, if the points have different versions, if `store` exists and is neither
-// empty nor a file of a Store, or once `is_interrupted` (null: never) returns true.
+// may write to `store` meanwhile (see StoreLock). Throws DatabaseError (database.h), also in these cases: two
+// inputs have different results of one point; points have different versions; `store` is neither missing,
+// empty nor a file of a Store; `is_interrupted` returns true (null: never).
 void merge_stores(const std::vector<std::string>& inputs, const std::string& store,
                   bool (*is_interrupted)() = nullptr);
 

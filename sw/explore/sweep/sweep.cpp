@@ -342,9 +342,9 @@ SweepCounts sweep(const Points& points, const Evaluate& evaluate, const SweepOpt
   return Sweep(points, evaluate, options).run(keep_going);
 }
 
-// Opens, for a moment, as many files as the last worker will have open. A worker inherits the end of a pipe
-// for each worker before it and the file of SharedLock. It opens its stores with their journals, and a pipe
-// to the process that simulates.
+// Tries the limit: opens, for a moment, as many files as the last worker will have open. A worker inherits
+// the end of a pipe for each worker before it and the file of SharedLock. It opens its stores with their
+// journals, and a pipe to the process that simulates.
 std::uint64_t workers_with_files(std::uint64_t workers) {
   constexpr std::uint64_t kOwnFiles = 17;
   std::vector<int> files;

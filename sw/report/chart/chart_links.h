@@ -37,10 +37,10 @@ std::string name_of_block(const std::string& id);
 // ports begin with the name of a port.
 //
 // The rates of bank links count the accesses in the counted cycles of all frames, over their time. A port of
-// the core makes equally many accesses in each frame, so its grants are divided by frames. The host has the
-// accesses of a bank that no other port made. The rates around the board count words since power-up: a camera
-// the pixels that its capture board has written, the CPU its register accesses, the bridge the words written
-// into it (edge-pci-bridge) and those that its DMA moved over PCI (edge-bridge-pci).
+// the core makes equally many accesses in each frame, so the grants of a port are divided among its banks by
+// the frames that use each bank. The host made the accesses that no port of the core made. The rates around
+// the board count words since power-up: a camera the pixels that its capture board has written, the CPU its
+// register accesses, the bridge the words written into it (edge-pci-bridge) and moved by its DMA over PCI.
 std::vector<ChartLink> chart_links(const ChartView& view);
 
 }  // namespace stereotlm::report

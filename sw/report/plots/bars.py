@@ -33,7 +33,7 @@ class Rows:
 
     height: in inches; least: the same with all lines as close as they can be.
 
-    If there are more than MOST: those with the most stalls (most_stalled), or a selection over all rates.
+    Of more than MOST points, MOST are shown: with most_stalled those that wait most, else evenly by rate.
     """
 
     def __init__(self, points, options, most_stalled=False):
@@ -95,7 +95,7 @@ def stacked(points, options, rows, heading, ports, parts, cycles, unit):
 
     parts: {part: (name, color)}; those without cycles are not shown.
     cycles(place, port, part): of all frames.
-    unit: what an axis of cycles a frame says.
+    unit: the end of the label of the x axis, behind the factor in words.
     """
     frames = points.frames()
     shares = {(place, port, part): cycles(place, port, part) / frames[place]

@@ -1,7 +1,7 @@
 """What the plot scripts share: their command line, its checks, and how the figures are written.
 
-`stereotlm plot` runs plot_all.py with a folder of its own, --into. It checks --out, and replaces the files
-there.
+`stereotlm plot` checks --out, runs plot_all.py with a folder of its own (--into), and then replaces the files
+in --out.
 Exit status: 0 done; 2 refused before anything was written; 1 failed after that; 130 interrupted.
 """
 

@@ -130,7 +130,7 @@ class Sheet:
         """Creates and returns panels: one of each height from the top, or `count` side by side from the left.
 
         Panels above each other share their x axis, panels side by side their y axis.
-        left, right, bottom, above: inches around them; least: the least height of all.
+        left, right, bottom, above: inches around them; least: the least height of all panels together.
         """
         gaps = GAP * (len(heights) - 1)
         total, inside, top = self._begin(sum(heights) + gaps, above, bottom,
@@ -299,8 +299,8 @@ def in_words(most):
 
 
 def scale(axes, which, label, values, *remarks, are_counts=False):
-    """Sets scale and label of an axis. The scale is logarithmic if the values differ much, else it begins at
-    zero.
+    """Sets scale and label of an axis. The scale is logarithmic if all values are positive and the largest is
+    above 6 times the least; else it begins at zero if no value is negative.
 
     which: "x" or "y". remarks: added to the label in brackets. are_counts: an axis of few whole
     numbers, such as banks, does not begin at zero.

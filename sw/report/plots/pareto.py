@@ -47,9 +47,9 @@ def uncertainty_of(points, column, places):
 def front_of(columns, senses, uncertainties):
     """Indices of the points of the Pareto front, from the best x on.
 
-    From one point to the next the exact column becomes worse, and the other one better by more than the sum
-    of their uncertainties. Points that are equal in the exact column, and tie in the other, are all on the
-    front.
+    From one point to the next the exact column (without uncertainty) becomes worse, and the other better by
+    more than the sum of both uncertainties. Points that are equal in the exact column, and tie in the other,
+    are all on the front.
     columns, senses, uncertainties: of x and y.
     """
     xs, ys = ([value if sense == "min" else -value for value in column]

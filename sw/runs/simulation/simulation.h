@@ -73,9 +73,9 @@ class Simulation : private fpga::CycleObserver, private platform::BusObserver {
   // Null if conflicts are not recorded.
   const fpga::ConflictRecorder* conflicts() const { return conflicts_ ? &conflicts_->recorder() : nullptr; }
 
-  // Reports to the observers what the core does in the window, and around it the buses and queues of a
-  // computer. To be called after record_conflicts(), before advance(). The observers outlive the simulation.
-  // An exception of an observer ends the simulation, and advance() throws it.
+  // Reports to the observers what the core does in the window, and what the buses and queues of a computer do
+  // in it. To be called after record_conflicts(), before advance(). The observers outlive the simulation. An
+  // exception of an observer ends the simulation, and advance() throws it.
   void trace(const fpga::CycleWindow& window, fpga::CycleObserver& cycles, platform::BusObserver& buses);
 
   // The figures of the finished frames. May be called only while no frame runs that end_early() would let

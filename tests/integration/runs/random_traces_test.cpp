@@ -1,6 +1,6 @@
-// The records of traces, on random boards and random computers, each in a process of its own. They are the
-// same at each fidelity, and equal to the figures of the run. Cycles are equal to the transactions on the
-// links; buses and queues to the plain loop over events.
+// The records of traces, on random boards and random computers, each in a process of its own. The records are
+// the same at each fidelity, and agree with the figures of the run. Records of cycles agree with the
+// transactions on the links, records of buses and queues with the plain loop over events.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>

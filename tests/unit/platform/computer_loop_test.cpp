@@ -177,8 +177,8 @@ TEST_F(ComputerLoopTest, LetsTheProcessorTakePartInTheDecisionsOfTheTimeOfAnInte
 }
 
 // PCI ends burst A in clock e. The only word of B is posted at e + 7, that of C at e + 14. The local bus ends
-// A at e + 3 + words. 11 words: that is when C's word comes, and the bridge sends B and C apart. 12 words: it
-// sends both in one burst.
+// A at e + 3 + words. With 11 words, that is when C's word comes: the bridge sends B and C in two bursts.
+// With 12 words it sends both in one burst.
 TEST_F(ComputerLoopTest, EndsABurstOfTheLocalBusBeforeWordsArePostedAtThatTime) {
   for (const std::size_t words : {11U, 12U}) {
     const std::uint64_t before = computer_counters().local_bus.bursts;
@@ -196,7 +196,7 @@ TEST_F(ComputerLoopTest, EndsABurstOfTheLocalBusBeforeWordsArePostedAtThatTime) 
 
 // At this camera rate the last pixel of a frame arrives with a clock of the bus. In the last line the load
 // keeps the bus until a word finds the one-word FIFO full: the rest is dropped, and the capture ends with the
-// last pixel. A write that clears `done` at this time comes first, and has no effect; a ns later it has.
+// last pixel. A write at this time that clears `done` comes first, and clears nothing; 1 ns later it does.
 class ComputerLoopPixels : public ComputerLoopTest, public ::testing::WithParamInterface<bool> {};
 
 TEST_P(ComputerLoopPixels, ArriveAfterTheWritesOfTheirTime) {

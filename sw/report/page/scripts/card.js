@@ -48,7 +48,7 @@ export function htmlTable(names, rows, most = kMostRows) {
       noteLine(rows.length > most && `${whole(rows.length - most)} more rows: in the CSV`));
 }
 
-// Adds a chart to the page. `draw(host, width)` fills the empty element `host`; it is called again where the
+// Adds a chart to the page. `draw(host, width)` fills the empty element `host`; it is called again when the
 // width or the theme changes. `numbers()` returns [names, rows]. `body`: elements above the plot that stay;
 // `foot`: below it.
 // Returns {element, redraw}.

@@ -46,8 +46,8 @@ function overlayOf({values, columns, rows}) {
 }
 
 // pictures: one or two of {url, disparities}, or of {width, height} without picture; only a picture of
-// disparities has `disparities`. names: of the pictures. The second lies on the first, to the right of the
-// slider. layers: maps of amounts as those of tilesOf(), sums over `frames` frames. One lies on the pictures.
+// disparities has `disparities`. names: of the pictures. To the right of the slider the second picture covers
+// the first. layers: maps as those of tilesOf(), summed over `frames` frames; the chosen one is drawn on top.
 export function addPicture(page, {title, note, pictures, layers, frames, names}) {
   const overlays = layers.map(overlayOf);
   const stack = h('div', {

@@ -108,8 +108,8 @@ export function layeredDrawing(host, width, height, margins, label) {
 }
 
 // Adds a brush to a plot of this size. axis: 'x', 'y' or 'xy'. `change(box)` is called while the pointer
-// moves, `end(box, place)` when it is released: {x0, x1, y0, y1} in pixels, or null after a click, which
-// clears the brush; place: {x, y}. `tip(place)`: the lines of a tooltip of the place, or null.
+// moves, `end(box, place)` when it is released. box: {x0, x1, y0, y1} in pixels, or null after a click, which
+// clears the brush. place: {x, y}. `tip(place)`: the lines of a tooltip of the place, or null.
 export function addBrush(plot, {axis, width, height, change, end, tip}) {
   const area = s('rect', {x: 0, y: 0, width, height, class: `brush brush-${axis}${tip ? ' hovers' : ''}`});
   const shown = s('rect', {class: 'brushed'});

@@ -139,8 +139,8 @@ export class Points {
   }
 
   // The selected points that no other beats, from the best x on. From one point to the next the exact column
-  // becomes worse, and the other one better by more than the sum of their uncertainties. Points that are
-  // equal in the exact column, and tie in the other, are all on the front.
+  // (without uncertainty) becomes worse, and the other better by more than the sum of both uncertainties.
+  // Points that are equal in the exact column, and tie in the other, are all on the front.
   front(x, y) {
     const worse = axis => this.column(axis.name).map(
         v => typeof v !== 'number' ? NaN :
