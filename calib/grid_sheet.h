@@ -17,9 +17,9 @@ struct GridSheet {
 };
 
 // Let m be half a square, at least 10 mm. The page is the first of A4 landscape, A4 portrait, A3 landscape
-// and A3 portrait that leaves a white margin of m around the board, else the first that leaves 10 mm. Else it
-// is as large as the board with the margin m, and at least as wide as A4. Throws std::invalid_argument with
-// all problems(shape), or if the page would be larger than the limit of PDF, 5080 mm (14400 pt).
+// and A3 portrait that leaves a white margin of m around the board. If none does, it is the first that leaves
+// 10 mm. If none does that, it is as large as the board with the margin m, and at least as wide as A4. Throws
+// std::invalid_argument with all problems(shape), or if the page would exceed the 5080 mm (14400 pt) of PDF.
 GridSheet grid_sheet(const GridShape& shape);
 
 // Files as bytes, to be printed at 100 %. Every edge is within 1/1000 mm of its place. The same shape gives

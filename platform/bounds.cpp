@@ -87,10 +87,10 @@ PciDemand pci_demand(const BoardConfig& board, bool whole_pictures, std::optiona
   return demand;
 }
 
-// The frame rate that the PCI bus allows. Either it serves every transfer of the load when it is due. Or the
-// load has a backlog and always requests: it then gets a burst between any two bursts of another master, and
-// the latency timer cuts all bursts. A frame may see both, so the case with fewer clocks counts. At most one
-// due and one cut transfer lie partly outside the frame: these are subtracted.
+// The frame rate that the PCI bus allows. Either the bus serves every transfer of the load when it is due. Or
+// the load has a backlog and always requests: then it gets a burst between any two bursts of another master,
+// and the latency timer cuts all bursts. A frame may see both, so the smaller number of clocks counts. Of
+// each case one transfer of the load may lie partly outside the frame: its clocks are subtracted.
 double pci_rate(const BoardConfig& board, bool whole_pictures) {
   const double hz = board.pci.clock_mhz * 1e6;
   const double alone = static_cast<double>(pci_demand(board, whole_pictures, std::nullopt).clocks);

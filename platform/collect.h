@@ -41,9 +41,9 @@ BoardCounters counters_of(const Board& board);
 // The counters of a core without stages and without a host: all its frames work directly on memory.
 BoardCounters counters_of(const fpga::FrameRun& frames, const memory::Arbitration& arbitration);
 
-// Returns the figures of the frames that `counters` cover, and the bound for these frames. Checks the
-// identities of contract section 6; Statistics::failed lists those that do not hold. `counters` were taken
-// from this board, now or earlier.
+// Returns the figures of the frames that `counters` cover; if there are any, also core_bound() of the board.
+// Checks the identities of contract section 6; Statistics::failed lists those that do not hold. `counters`
+// were taken from this board, now or earlier.
 Statistics collect_statistics(const BoardConfig& config, const Tables& tables, const Board& board,
                               const BoardCounters& counters);
 

@@ -35,9 +35,9 @@ class ComputerLoop : private pci::BridgeControl::Host {
 
   // Times are below 2^60 - 1 ps, which are 13 days.
   static constexpr std::uint64_t kEndOfTime = (std::uint64_t{1} << 60U) - 1;
-  // Steps the blocks until the interrupt rises or notice() is called, at most to `end_ps`. In the first case
-  // stops before the decisions of that time, because the processor acts before them. At `end_ps` stops after
-  // the decisions. Throws std::invalid_argument if end_ps >= kEndOfTime.
+  // Steps the blocks until the interrupt rises, notice() is called, or `end_ps` is reached. On an interrupt
+  // or notice() it stops before the decisions of that time, because the processor acts before them. At
+  // `end_ps` it stops after the decisions. Throws std::invalid_argument if end_ps >= kEndOfTime.
   void run(std::uint64_t end_ps);
   // The time up to which the blocks have been stepped.
   std::uint64_t now_ps() const { return now_ps_; }

@@ -55,9 +55,9 @@ struct BusBurst {
 // A queue holds this number of words from a time on.
 //
 // - The FIFO of a capture board: its complete words. A word comes with its last pixel. It leaves at the end
-//   of its data clock, or of the burst that loses it. There is one level for each time.
-// - The posted words: as each write is posted, and as the places of a posted burst become free, which is the
-//   end of its idle clock. Of two levels at the same time the later one holds.
+//   of its data clock, or of the burst that loses it. No two levels have the same time.
+// - The posted words: there is a level when a write is posted, and when the places of a posted burst become
+//   free at the end of its idle clock. Of two levels at the same time the later one holds.
 struct QueueLevel {
   const char* queue = "";  // "left_capture", "right_capture", "posted"
   std::uint64_t time_ps = 0;

@@ -11,10 +11,10 @@ namespace stereotlm::area {
 //   pairs    in a kernel whose rows are symmetric, two pixels of equal weight are added first
 //   rows     for each row of the kernel the weighted sum of the m new pixels; equal kernel rows share a sum.
 //            A weight that is no power of two takes a multiplier of the device
-//   chain    m sums (transposed filter). Place i adds the sum for kernel row i, and each sum moves one place
-//            on; the last sum is then complete. Line memories keep the sums from one strip to the next,
-//            instead of 2h rows of pixels. At the top of a column the adders take the sums from the line
-//            memories, else from the chain; their LUTs have free inputs for this choice
+//   chain    m places (transposed filter). Place i adds the sum for kernel row i to a partial result, which
+//            moves one place on; the last place completes it. Line memories keep the partial results from one
+//            strip to the next, instead of 2h rows of pixels. At the top of a column the adders take them
+//            from the line memories, else from the chain; their LUTs have free inputs for this choice
 //   clamp    128 is added by inverting a bit; results outside 8 bits become 0 or 255
 struct FilterArithmetic {
   Resources resources;  // including the registers of the chain

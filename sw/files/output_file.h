@@ -81,8 +81,8 @@ FileKind marked_kind(std::string called, std::vector<std::pair<std::size_t, std:
 
 // A single file that a command writes, as a whole: commit() puts the new content in place, and until then an
 // earlier file is unchanged. A symbolic link stays, and the file to which it leads is written. A file that
-// did not exist when the object was made is not replaced. Then and at the commit a file must be empty or of
-// the command's kind. All functions throw std::runtime_error with the path and the cause.
+// did not exist when the object was made is not replaced; one that did must be empty or of the command's
+// kind, then and at the commit. All functions throw std::runtime_error with the path and the cause.
 class OutputFile {
  public:
   // Throws also if a file must not be replaced, is one of `others` (those that the command reads or writes

@@ -13,9 +13,9 @@
 
 namespace stereotlm::stats {
 
-// The content of stats.json and its text. sw/report/README.md lists the keys, in their order. A key is absent
-// if it does not apply: `failed` if all identities hold, `accuracy` if it is not given, a percentage if its
-// denominator is 0.
+// The content of stats.json and its text. sw/report/README.md lists the keys, in their order. Keys that do
+// not apply are left out: `failed` when all identities hold, `accuracy` when it is not given, a percentage
+// when its denominator is 0.
 nlohmann::ordered_json stats_document(const platform::Statistics& statistics,
                                       const std::optional<Accuracy>& accuracy);
 std::string stats_json(const platform::Statistics& statistics, const std::optional<Accuracy>& accuracy);

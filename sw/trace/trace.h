@@ -66,10 +66,10 @@ struct TraceWindow {
 
 // The traces of a run. Its files appear whole with commit(), or not at all.
 //
-// The sinks get the cycles, bursts and levels of the window. For the window of a frame BusTrace reports the
-// whole frame, because the cycles of its rows are not known before. The longest wait is known only at the end
-// of the run. In both cases this class keeps the bursts and levels, and at the end leaves out those outside
-// the window.
+// The sinks get the cycles, bursts and levels of the window. If the window names a frame, BusTrace reports
+// the whole frame, because it is not known in advance when the rows of a window begin. The longest wait is
+// known only at the end of the run. So with both kinds of window this class keeps the bursts and levels, and
+// at the end leaves out those outside the window.
 class Trace : public fpga::CycleObserver, public platform::BusObserver {
  public:
   // All functions throw std::runtime_error, with the name of the file, if one cannot be written.

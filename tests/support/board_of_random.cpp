@@ -43,7 +43,7 @@ std::optional<std::string> bank_name(const std::optional<PlainBuffer>& buffer) {
   return bank_name(bank_of(*buffer));
 }
 
-// The platform has no knob of contract section 8 yet.
+// The platform has no knob of section 8, which the contract will get when the models have it.
 void refuse_section_8(const PlainCycleInput& input) {
   std::vector<PlainBuffer> buffers;
   for (const auto* list : {&input.left_image, &input.right_image, &input.disparity})

@@ -11,7 +11,7 @@
 #include "tests/support/plain_pci_bus.h"
 #include "tests/support/plain_trace.h"
 
-// A camera's capture board of contract sections 3 and 8.2, one pixel at a time.
+// A camera's capture board of contract section 3, one pixel at a time.
 namespace stereotlm::test {
 
 struct PlainCaptureConfig {

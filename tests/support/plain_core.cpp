@@ -73,7 +73,7 @@ class BankAndArbiter {
   std::size_t row() const { return place_.size() + 1; }
   std::size_t refresh() const { return place_.size() + 2; }
 
-  // The rules of contract 8.3. Other kinds than sdram only have 3 without its rows, 4 and 5.
+  // The rules in their order: refresh, winner, its row, its turnaround. Only sdram has refreshes and rows.
   std::optional<std::size_t> outcome_of(const std::vector<std::size_t>& ports,
                                         const std::vector<Request>& requests, Cycle now) {
     for (; next_ <= now; ++next_) refresh_if_due(next_);  // also in cycles without requests
@@ -154,7 +154,7 @@ class BankAndArbiter {
   std::vector<std::optional<std::uint64_t>> open_rows_;  // [internal bank]
 };
 
-// The figures of a frame that contract sections 2, 7 and 8 name by these letters.
+// The figures of a frame, by their letters in the contract; P and G are of section 8, which is to come.
 struct Letters {
   explicit Letters(const PlainCycleInput& input)
       : R(input.rows),

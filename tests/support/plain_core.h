@@ -12,13 +12,13 @@
 
 #include "tests/support/plain_cycle_input.h"
 
-// The timing of the FPGA core, cycle by cycle, written from contract sections 2, 7 and 8 alone. It shares no
-// code with the models, which tests compare with it: it keeps a time stamp for every event to which the
-// contract gives a time, and applies every rule in every cycle.
+// The timing of the FPGA core, cycle by cycle, written from contract sections 2, 7 and 8 alone (8: lanes,
+// stripes, SDRAM; models/contract.md will get it when the models have them). It shares no code with the
+// models, which tests compare with it. It keeps a time stamp for every event to which the contract gives a
+// time, and applies every rule in every cycle.
 //
-// Ports have numbers, in the order of "Ports" in section 8: left_lut.0 .. left_lut.P-1, right_lut.0 .., the
-// pixel ports likewise, result, host. The next numbers are the causes of stalls that are no port: turnaround,
-// row, refresh.
+// Ports have numbers: left_lut.0 .. left_lut.P-1 (P lanes), right_lut.0 .., the pixel ports likewise, result,
+// host. Then come the causes of stalls that are no port: turnaround, row (an SDRAM opens one), refresh.
 namespace stereotlm::test {
 
 struct PlainPortStates {

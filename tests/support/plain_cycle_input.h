@@ -7,8 +7,8 @@
 #include <optional>
 #include <vector>
 
-// The part of a board on which contract sections 2, 7 and 8 depend, in types that share nothing with the
-// models. Nothing checks it: a board must keep the rules of contract section 4.
+// The part of a board on which the timing of the core depends (plain_core.h), in types that share nothing
+// with the models. Nothing checks it: a board must keep the rules of contract section 4.
 namespace stereotlm::test {
 
 // The groups of ports, in the order of "Ports" in the contract: the first four have a port for each lane.

@@ -64,7 +64,7 @@ struct RandomKnobs {
   // Of computers: captures go to banks of their own, by a local bus in step with the core. The models skip
   // most of their lines.
   bool apart_captures = false;
-  // Of section 8, which the models do not have yet.
+  // Of section 8, which models/contract.md will get when the models have it.
   bool sdram = false;
   bool stripes = false;  // and up to 8 banks more
   bool lanes = false;

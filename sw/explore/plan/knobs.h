@@ -42,7 +42,7 @@ struct KnobSteps {
 //   ssram.banks.*.kind: all banks get another kind (a bank that gains turnaround has 2 cycles of it)
 //   ssram.banks.*.turnaround_cycles: up and down by one, in all banks that have turnaround
 //   allocation.left_image with right_image, and allocation.disparity: the last buffer removed; or one added,
-//   in one of four banks: first those without such a buffer, then the least accessed
+//   in each of up to four banks (images: each pair), preferably without such a buffer, then little used
 //   a bank more: a buffer leaves a shared bank for an empty one. If no empty bank can hold it, it gets a new
 //   bank, which is like the shared one
 //   a bank less: all buffers of one bank move into another bank that is used

@@ -55,7 +55,7 @@ TEST(FilterArithmetic, MultipliesByWeightsThatAreNoPowerOfTwo) {
 }
 
 TEST(FilterArithmetic, CountsThePartsOfLog7) {
-  // Three pairs of 9 bits. Weights of a row, outermost first, and bits of its adders (-n: n bits need none):
+  // Three pairs of 9 bits. Weights of a row, outermost first; bits of its adders, less those without adder:
   //   1 3 5        11, 12
   //   1 6 14 16    12-1, 14-1, 14-4
   //   3 14 -35     14-1, 15

@@ -69,9 +69,9 @@ TEST_F(ComputerBounds, CountTheLocalBusOfAllThreePictures) {
   EXPECT_DOUBLE_EQ(bound_of("bridge"), 40e6 / (3 * (kPicture - 4800 + 4800 * 2)));
 }
 
-// A load that always requests gets as many bursts as the master with the most has: the bridge, with 2,401.
-// The latency timer of 64 clocks then cuts each burst behind its word in clock 64: captures after 60 words (4
-// wait clocks), the load after 64. The bursts of one transfer of the load are left out.
+// A load that always requests gets a burst for each burst of the bridge, the master with the most: 2,401. The
+// latency timer of 64 clocks cuts longer bursts after the word of clock 64: captures after 60 words (4 wait
+// clocks), the load after 64. The bursts of one transfer of the load are left out.
 TEST_F(ComputerBounds, CountTheBurstsOfALoadThatTheBusCannotRefuse) {
   const double alone = 33.333e6 / bound_of("pci");
   board.pci.load = PciLoadConfig{100, 0, 0, 0};

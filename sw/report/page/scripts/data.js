@@ -5,9 +5,9 @@ import {sum} from './format.js';
 export const objectsOf = ({names, rows}) =>
     rows.map(row => Object.fromEntries(names.map((name, i) => [name, row[i]])));
 
-// The lines of the picture in a recording, from top to bottom, each of `height` rows, as sums over all
-// frames: {frames, lines, height, cycles, fill, accesses: [{bank, by, values, fill}], stalls: [{port, bank,
-// by, values, fill, total}]}. `fill`: the sum before the first line. null without a recording.
+// The lines of tiles of a recording, from top to bottom, each of `height` rows of results. Values are sums
+// over all frames: {frames, lines, height, cycles, fill, accesses: [{bank, by, values, fill}], stalls:
+// [{port, bank, by, values, fill, total}]}. `fill`: the sum before the first line. null without a recording.
 export function linesOf({recording}) {
   if (!recording) return null;
   const {frames, rows: {lines, height, cycles, accesses}, stalls} = recording;

@@ -10,9 +10,9 @@ import {linkMarks, mark} from './tooltip.js';
 const kMostColours = 8;  // names with a colour of their own
 const kReach = 14;       // pixels from the pointer to the point that it means
 
-// The scale of a column, and the place of each point on it, NaN without a value. A column of words, or of at
-// most `mostWords` numbers, has its different values at equal distances. `room`: margin on either side, as a
-// share of the range.
+// The scale of a column, and the place of each point on it, NaN without a value. A column of texts, or of at
+// most `mostWords` different numbers, has its values at equal distances. `room`: margin on either side, as a
+// share of the difference of largest and smallest value; a logarithmic scale has a margin of its own.
 function placesOf(points, name, range, {isLog = false, room = 0, mostWords = 0} = {}) {
   const values = points.column(name);
   const isNumeric = points.isNumeric(name) && (mostWords === 0 || new Set(values).size > mostWords);
