@@ -131,6 +131,7 @@ double bridge_rate(const BoardConfig& board, bool whole_pictures) {
 // larger of the reads and the writes.
 std::vector<std::uint64_t> bank_accesses(const BoardConfig& board, const FrameAccesses& accesses,
                                          bool pairs_are_written, std::uint64_t frames) {
+  const fpga::CorePorts ports = core_ports(board);
   const fpga::BufferBases buffers = buffer_bases(board);
   // A picture has as many words as a result.
   const std::uint64_t words = fpga::FrameGeometry(core_config(board)).result_words;
@@ -138,12 +139,12 @@ std::vector<std::uint64_t> bank_accesses(const BoardConfig& board, const FrameAc
   std::vector<std::uint64_t> writes(board.banks.size());
   for (std::uint64_t frame = 0; frame < frames; ++frame) {
     const fpga::FrameBases bases = buffers.of_frame(frame);
-    for (std::size_t port = 0; port < bases.size(); ++port)
-      reads[fpga::registers::bank_of(bases[port])] += accesses.reads[port];
+    for (std::size_t port = 0; port < accesses.reads.size(); ++port)
+      reads[fpga::registers::bank_of(bases[ports.group_of(port)])] += accesses.reads[port];
     for (const fpga::Side side : fpga::kSides) {
-      if (pairs_are_written) writes[fpga::registers::bank_of(bases[fpga::pixel_port(side)])] += words;
+      if (pairs_are_written) writes[fpga::registers::bank_of(bases[fpga::pixel_group(side)])] += words;
     }
-    const std::size_t disparity = fpga::registers::bank_of(bases[fpga::kResultPort]);
+    const std::size_t disparity = fpga::registers::bank_of(bases[fpga::kResultGroup]);
     writes[disparity] += words;
     reads[disparity] += words;  // by the host
   }
@@ -158,15 +159,18 @@ std::vector<std::uint64_t> bank_accesses(const BoardConfig& board, const FrameAc
 
 FrameAccesses frame_accesses(const BoardConfig& board, const Tables& tables) {
   const fpga::CoreConfig core = core_config(board);
-  const fpga::FrameGeometry geometry(core);
-  FrameAccesses accesses;
+  const fpga::CorePorts ports(core);
+  FrameAccesses accesses{std::vector<std::uint64_t>(ports.core_size())};
   for (const fpga::Side side : fpga::kSides) {
     const auto& table = side == fpga::Side::kLeft ? tables.left : tables.right;
-    fpga::AccessPattern pattern(geometry, core.pixel_cache);
+    fpga::AccessPattern pattern(fpga::FrameGeometry(core), core.pixel_cache);
     if (table) pattern.set_entries(table->entries.data());
-    if (table && has_port(core, fpga::lut_port(side)))  // with joint tables the left one reads for both sides
-      accesses.reads[fpga::lut_port(side)] = geometry.slots - pattern.empty_slots();
-    accesses.reads[fpga::pixel_port(side)] = pattern.pixel_accesses();
+    for (int lane = 0; lane < core.lanes; ++lane) {
+      const auto number = static_cast<std::size_t>(lane);
+      if (table && has_group(core, fpga::lut_group(side)))  // joint tables: the left ones read for both sides
+        accesses.reads[ports.lut(side, number)] = pattern.table_accesses(lane);
+      accesses.reads[ports.pixel(side, number)] = pattern.pixel_accesses(lane);
+    }
   }
   return accesses;
 }
@@ -175,15 +179,17 @@ std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const FrameAcc
                                         std::uint64_t frame) {
   const fpga::CoreConfig core = core_config(board);
   const fpga::FrameGeometry geometry(core);
+  const fpga::CorePorts ports(core);
   const fpga::FrameBases bases = buffer_bases(board).of_frame(frame);
-  const auto bank_of = [&](memory::Port port) { return fpga::registers::bank_of(bases[port]); };
+  const auto bank_of = [&](memory::Port port) {
+    return fpga::registers::bank_of(bases[ports.group_of(port)]);
+  };
   const auto latency = [&](memory::Port port) {
     return static_cast<std::uint64_t>(memory::read_latency_cycles(board.banks[bank_of(port)].kind));
   };
   const auto pipeline = static_cast<std::uint64_t>(board.fpga.pipeline_latency_cycles);
   const auto folds = static_cast<std::uint64_t>(geometry.folds);
   const auto places = static_cast<std::uint64_t>(board.fpga.lane_fifo_slots);
-  const std::uint64_t slot_a_cycle = geometry.slots + pipeline;
   const std::uint64_t after_last_slot =
       geometry.drain_cycles * folds + static_cast<std::uint64_t>(geometry.last_rows) + pipeline;
 
@@ -199,30 +205,34 @@ std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const FrameAcc
     demand.after_last_read = std::min(demand.after_last_read, cycles_to_matcher);
     demand.reads += accesses.reads[port];
   };
-  const auto port_bound = [](memory::Port port, std::uint64_t cycles) {
-    return ResourceBound{std::string("port ") + fpga::kPorts[port].name, cycles};
+  const auto port_bound = [&ports](memory::Port port, std::uint64_t cycles) {
+    return ResourceBound{"port " + ports.name(port), cycles};
   };
   std::uint64_t first_slot = 0;
   std::vector<ResourceBound> bounds;  // first those of the LUT ports
   std::vector<ResourceBound> pixels;
   for (const fpga::Side side : fpga::kSides) {
-    const memory::Port lut = fpga::lut_port(side);
-    const memory::Port pixel = fpga::pixel_port(side);
     const bool has_table = fpga::has_table(core, side);
-    const memory::Port table_port = core.joint_tables ? fpga::lut_port(fpga::Side::kLeft) : lut;
-    const std::uint64_t in_lane = latency(pixel) + (has_table ? latency(table_port) : 0);
-    first_slot = std::max(first_slot, in_lane);
-    read(lut, in_lane);
-    read(pixel, latency(pixel));
-    const std::uint64_t taking =
-        std::max(slot_a_cycle, ((geometry.slots - 1) / places + 1) * (in_lane + folds) + after_last_slot);
-    if (accesses.reads[lut] > 0) bounds.push_back(port_bound(lut, taking));
-    pixels.push_back(port_bound(pixel, has_table ? slot_a_cycle : taking));
+    for (std::size_t lane = 0; lane < ports.lanes(); ++lane) {
+      const memory::Port lut = ports.lut(side, lane);
+      const memory::Port pixel = ports.pixel(side, lane);
+      const memory::Port table_port = core.joint_tables ? ports.lut(fpga::Side::kLeft, lane) : lut;
+      const std::uint64_t in_lane = latency(pixel) + (has_table ? latency(table_port) : 0);
+      first_slot = std::max(first_slot, in_lane);
+      read(lut, in_lane);
+      read(pixel, latency(pixel));
+      const std::uint64_t slots = geometry.consumed_slots(static_cast<int>(lane), geometry.consume_cycles);
+      const std::uint64_t slot_a_cycle = slots + pipeline;
+      const std::uint64_t taking =
+          std::max(slot_a_cycle, ((slots - 1) / places + 1) * (in_lane + folds) + after_last_slot);
+      if (accesses.reads[lut] > 0) bounds.push_back(port_bound(lut, taking));
+      pixels.push_back(port_bound(pixel, has_table ? slot_a_cycle : taking));
+    }
   }
-  demands[bank_of(fpga::kResultPort)].writes += geometry.result_words;
+  demands[bank_of(ports.result())].writes += geometry.result_words;
 
   bounds.insert(bounds.end(), pixels.begin(), pixels.end());
-  bounds.push_back(port_bound(fpga::kResultPort, geometry.result_words + pipeline));
+  bounds.push_back(port_bound(ports.result(), geometry.result_words + pipeline));
   for (const auto& [bank, demand] : demands) {
     // With separate ports the writes are made beside the reads.
     const bool is_beside = memory::has_separate_ports(board.banks[bank].kind);
@@ -233,7 +243,7 @@ std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const FrameAcc
       cycles = std::max(cycles, demand.reads - 1 + demand.after_last_read + folds + after_last_slot);
     bounds.push_back({resource_of_bank(board.banks[bank].name), cycles});
   }
-  bounds.push_back({"matcher", first_slot + geometry.slots * folds + after_last_slot});
+  bounds.push_back({"matcher", first_slot + geometry.consume_cycles * folds + after_last_slot});
   return bounds;
 }
 

@@ -16,7 +16,7 @@ namespace stereotlm::platform {
 // Numbers of reads that the ports make in a frame. They depend on the geometry of the frame and on the
 // tables, not on the allocation of the buffers.
 struct FrameAccesses {
-  std::array<std::uint64_t, fpga::kCorePortCount> reads{};  // [port]
+  std::vector<std::uint64_t> reads;  // [port]
 };
 
 FrameAccesses frame_accesses(const BoardConfig& board, const Tables& tables);
@@ -26,11 +26,11 @@ FrameAccesses frame_accesses(const BoardConfig& board, const Tables& tables);
 //
 // | resource | needs                                                                                      |
 // |----------|--------------------------------------------------------------------------------------------|
-// | port P   | A LUT or pixel port: one cycle per slot. The result port: one cycle per word. The first    |
-// |          | port of a lane (LUT, or pixel if the side has no table) also waits for a place in the      |
-// |          | lane, which holds F slots (fpga.lane_fifo_slots). Slot s+F is taken only after slot s is   |
-// |          | consumed. From its take to its consumption a slot needs at least the read latencies of the |
-// |          | lane and the folds of the matcher.                                                         |
+// | port P   | A LUT or pixel port: one cycle per slot of its lane. The result port: one cycle per word.  |
+// |          | The first port of a lane (LUT; pixel if the side has no table) also waits for a place in   |
+// |          | the lane, which holds F slots (fpga.lane_fifo_slots). Slot s+F is taken only after slot s  |
+// |          | is consumed. From its take to its consumption a slot needs at least the read latencies of  |
+// |          | the lane and the folds of the matcher.                                                     |
 // | bank B   | max(reads, writes) cycles with separate ports, else reads + writes; turnaround is not      |
 // |          | counted. After the last read: the latencies of its slot up to the matcher, the folds on    |
 // |          | it, the drain and the last writes.                                                         |

@@ -9,7 +9,6 @@
 namespace stereotlm::platform {
 namespace {
 
-using fpga::kPortCount;
 using memory::ArbiterStats;
 
 // Their names and shares follow from derive_figures().
@@ -36,24 +35,26 @@ PortStatistics port_statistics(const fpga::PortCycles& cycles) {
 // Returns the stall cycles that are not 0, sorted by port, bank and cause. The last cause is turnaround.
 std::vector<BlameRow> blame_rows(const BoardConfig& config, const BoardCounters& counters) {
   std::vector<BlameRow> rows;
-  for (std::size_t victim = 0; victim < kPortCount; ++victim) {
+  const fpga::CorePorts ports = core_ports(config);
+  for (std::size_t victim = 0; victim < ports.size(); ++victim) {
     for (std::size_t bank = 0; bank < counters.banks.size(); ++bank) {
-      for (std::size_t by = 0; by <= ArbiterStats::kTurnaround; ++by) {
+      const auto add = [&](std::size_t by, const std::string& name) {
         const std::uint64_t cycles = counters.banks[bank].arbiter.blame(victim, by);
-        if (cycles == 0) continue;
-        rows.push_back({fpga::kPorts[victim].name, config.banks[bank].name,
-                        by == ArbiterStats::kTurnaround ? "turnaround" : fpga::kPorts[by].name, cycles});
-      }
+        if (cycles != 0) rows.push_back({ports.name(victim), config.banks[bank].name, name, cycles});
+      };
+      for (std::size_t by = 0; by < ports.size(); ++by) add(by, ports.name(by));
+      add(ArbiterStats::kTurnaround, "turnaround");
     }
   }
   return rows;
 }
 
 void audit_arbiters(const BoardConfig& config, const BoardCounters& counters, Audit& audit) {
-  for (std::size_t port = 0; port < kPortCount; ++port) {
+  const fpga::CorePorts ports = core_ports(config);
+  for (std::size_t port = 0; port < ports.size(); ++port) {
     std::uint64_t granted = 0;
     for (const BoardCounters::Bank& bank : counters.banks) granted += bank.arbiter.grants(port);
-    audit.equal(std::string("port ") + fpga::kPorts[port].name + ": grants", counters.ports[port].granted(),
+    audit.equal("port " + ports.name(port) + ": grants", counters.ports[port].granted(),
                 "given by the arbiters", granted);
   }
   for (std::size_t index = 0; index < counters.banks.size(); ++index) {
@@ -113,7 +114,7 @@ void audit_words(const BoardConfig& config, const ComputerCounters::Words& words
 void audit_host_port(const ComputerCounters& counters, Audit& audit) {
   std::uint64_t grants = 0;
   for (const BoardCounters::Bank& bank : counters.board.banks) {
-    grants += bank.arbiter.uncounted_accesses() + bank.arbiter.grants(fpga::kHostPort);
+    grants += bank.arbiter.uncounted_accesses() + bank.arbiter.grants(counters.board.ports.size() - 1);
   }
   audit.equal("port host: grants in and between frames", grants, "words of the local bus",
               counters.local_bus.words_read + counters.local_bus.words_written);
@@ -155,16 +156,17 @@ void audit_rates(const BoardConfig& config, const FrameAccesses& accesses, bool 
 BoardCounters counters_of(const fpga::FrameRun& frames, const memory::Arbitration& arbitration) {
   BoardCounters counters;
   counters.frames = frames.frame_cycles().size();
-  for (std::size_t port = 0; port < kPortCount; ++port)
-    counters.ports[port] = frames.control().port_cycles(port);
+  const fpga::CoreControl& control = frames.control();
+  for (std::size_t port = 0; port < control.ports().size(); ++port)
+    counters.ports.push_back(control.port_cycles(port));
   const fpga::DirectCounts& direct = frames.direct_counts();
   for (std::size_t bank = 0; bank < arbitration.banks(); ++bank)
     counters.banks.push_back({arbitration.stats(bank), direct.accesses[bank]});
   counters.issued = direct.slots;
   counters.packed_words = direct.packed_words;
   counters.written_words = direct.written_words;
-  for (const fpga::Side side : fpga::kSides)
-    counters.consumed[fpga::index_of(side)] = frames.control().lane(side).consumed();
+  for (std::size_t lane = 0; lane < control.lanes().size(); ++lane)
+    counters.consumed[fpga::index_of(control.side_of(lane))] += control.lane(lane).consumed();
   return counters;
 }
 

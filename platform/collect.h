@@ -29,10 +29,10 @@ struct BoardCounters {
     std::uint64_t accesses = 0;  // accesses that reached the bank, including those that it refused
   };
   std::size_t frames = 0;
-  std::array<fpga::PortCycles, fpga::kPortCount> ports{};  // [port]
-  std::vector<Bank> banks;                                 // in the order of the configuration
-  std::array<std::uint64_t, 2> issued{};                   // [side]: slots that the sequencer has issued
-  std::array<std::uint64_t, 2> consumed{};                 // [side]: slots that the matcher has consumed
+  std::vector<fpga::PortCycles> ports;      // [port]
+  std::vector<Bank> banks;                  // in the order of the configuration
+  std::array<std::uint64_t, 2> issued{};    // [side]: slots that the sequencer has issued
+  std::array<std::uint64_t, 2> consumed{};  // [side]: slots that the matcher has consumed
   std::uint64_t packed_words = 0;
   std::uint64_t written_words = 0;
 };

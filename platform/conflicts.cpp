@@ -9,9 +9,9 @@
 namespace stereotlm::platform {
 namespace {
 
-const char* port_name(std::size_t requester) {
-  return requester == fpga::kTurnaroundToBlame ? fpga::requester_name(requester)
-                                               : fpga::kPorts[fpga::port_of_requester(requester)].name;
+std::string port_name(const fpga::Requesters& requesters, std::size_t requester) {
+  return requester == requesters.turnaround() ? requesters.name(requester)
+                                              : requesters.ports().name(requesters.port_of(requester));
 }
 
 // The buffers that the capture boards write to.
@@ -27,12 +27,13 @@ std::vector<AddressRange> captured(const BoardConfig& board) {
 
 }  // namespace
 
-void ConflictSums::check_rows(const Statistics& statistics, Audit& audit) const {
+void ConflictSums::check_rows(const fpga::Requesters& requesters, const Statistics& statistics,
+                              Audit& audit) const {
   audit.equal("recorded: frames with rows", frames, "frames", statistics.frames);
   audit.equal("recorded: cycles of the rows", cycles, "cycles", statistics.cycles);
-  std::array<std::uint64_t, fpga::kPortCount> of_ports{};
+  std::vector<std::uint64_t> of_ports(requesters.ports().size());
   for (std::size_t requester = 0; requester < stalls.size(); ++requester)
-    of_ports[fpga::port_of_requester(requester)] += stalls[requester];
+    of_ports[requesters.port_of(requester)] += stalls[requester];
   for (std::size_t port = 0; port < of_ports.size(); ++port) {
     audit.equal("recorded: port " + statistics.ports[port].name + ": stalls in the rows", of_ports[port],
                 "stall_cycles", statistics.ports[port].stall_cycles);
@@ -44,14 +45,15 @@ void ConflictSums::check_rows(const Statistics& statistics, Audit& audit) const 
   }
 }
 
-void ConflictSums::check_tiles(const Statistics& statistics, Audit& audit) const {
+void ConflictSums::check_tiles(const fpga::Requesters& requesters, const Statistics& statistics,
+                               Audit& audit) const {
   std::uint64_t blamed = 0;
   std::uint64_t in_tiles = 0;
   for (const BlameRow& row : statistics.blame) {
     std::uint64_t cycles_of_row = 0;
     for (const auto& [cause, stalled] : blame) {
-      if (port_name(cause[0]) == row.port && statistics.banks[cause[1]].name == row.bank &&
-          port_name(cause[2]) == row.by)
+      if (port_name(requesters, cause[0]) == row.port && statistics.banks[cause[1]].name == row.bank &&
+          port_name(requesters, cause[2]) == row.by)
         cycles_of_row += stalled;
     }
     audit.equal(
@@ -66,6 +68,7 @@ void ConflictSums::check_tiles(const Statistics& statistics, Audit& audit) const
 Conflicts::Conflicts(const BoardConfig& board, std::size_t most_tiles)
     : recorder_(core_config(board), ssram_configs(board), captured(board), most_tiles) {
   sums_.accesses.resize(board.banks.size());
+  sums_.stalls.resize(recorder_.requesters().size());
 }
 
 std::vector<fpga::FrameConflicts> Conflicts::take_frames() {
@@ -92,13 +95,13 @@ std::vector<std::string> Conflicts::failed(const Statistics& statistics) const {
   const std::vector<std::uint64_t> tiles = recorder_.tile_cycles();
   audit.equal("recorded: cycles of the tiles", std::accumulate(tiles.begin(), tiles.end(), std::uint64_t{0}),
               "cycles", statistics.cycles);
-  sums_.check_rows(statistics, audit);
+  sums_.check_rows(recorder_.requesters(), statistics, audit);
   ConflictSums sums;
   for (const fpga::ConflictRecorder::Stalls* each : recorder_.stalls()) {
     sums.blame[{each->requester, each->bank, each->by}] =
         std::accumulate(each->cycles.begin(), each->cycles.end(), std::uint64_t{0});
   }
-  sums.check_tiles(statistics, audit);
+  sums.check_tiles(recorder_.requesters(), statistics, audit);
   return audit.failed();
 }
 
@@ -116,12 +119,13 @@ FrameRuns frame_runs(const fpga::FrameConflicts& frame) {
     result.runs.push_back({strip, first, result.strip_ends[strip], requester, bank, by, count});
   };
   for (std::size_t strip = 0; strip < frame.strips.size(); ++strip) {
-    for (std::size_t port = 0; port < fpga::kCorePortCount; ++port)
-      add(strip, port, frame.bank_of_port[port], std::nullopt, frame.strips[strip].grants[port]);
+    const std::vector<std::uint64_t>& grants = frame.strips[strip].grants;
+    for (std::size_t port = 0; port < grants.size(); ++port)
+      add(strip, port, frame.bank_of_port[port], std::nullopt, grants[port]);
     for (std::size_t bank = 0; bank < frame.banks; ++bank) {
       const auto& accesses = frame.accesses[strip * frame.banks + bank];
       for (std::size_t traffic = 0; traffic < fpga::kHostTraffics; ++traffic)
-        add(strip, fpga::kCorePortCount + traffic, bank, std::nullopt, accesses[1 + traffic]);
+        add(strip, grants.size() + traffic, bank, std::nullopt, accesses[1 + traffic]);
     }
   }
   for (const fpga::FrameConflicts::Stalls& stalls : frame.stalls) {

@@ -20,14 +20,14 @@ struct ConflictSums {
   std::uint64_t frames = 0;
   // Of the strips.
   std::uint64_t cycles = 0;
-  std::array<std::uint64_t, fpga::kRequesters> stalls{};
+  std::vector<std::uint64_t> stalls;    // [requester]
   std::vector<std::uint64_t> accesses;  // [bank]
   // Of the tiles: stall cycles by requester, bank and requester to blame.
   std::map<std::array<std::size_t, 3>, std::uint64_t> blame;
 
   // Check the identities with the figures of the run.
-  void check_rows(const Statistics& statistics, Audit& audit) const;
-  void check_tiles(const Statistics& statistics, Audit& audit) const;
+  void check_rows(const fpga::Requesters& requesters, const Statistics& statistics, Audit& audit) const;
+  void check_tiles(const fpga::Requesters& requesters, const Statistics& statistics, Audit& audit) const;
 };
 
 // The ConflictRecorder of a board, with the sums of all that it has handed out.

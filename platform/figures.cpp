@@ -73,8 +73,8 @@ void derive_figures(const BoardConfig& board, Statistics& statistics) {
     bank.megabytes_per_second =
         4.0 * static_cast<double>(bank.reads + bank.writes) * board.fpga.clock_mhz / cycles;
   }
-  for (std::size_t port = 0; port < fpga::kPortCount; ++port)
-    statistics.ports[port].name = fpga::kPorts[port].name;
+  const fpga::CorePorts ports = core_ports(board);
+  for (std::size_t port = 0; port < ports.size(); ++port) statistics.ports[port].name = ports.name(port);
   if (statistics.frames > 0) {
     statistics.frames_per_second.core =
         board.fpga.clock_mhz * 1e6 * static_cast<double>(statistics.frames) / static_cast<double>(all_cycles);
@@ -124,7 +124,8 @@ void audit_computer(const ComputerStatistics& computer, Audit& audit) {
 
 std::vector<std::vector<std::uint64_t>> core_accesses(const BoardConfig& board,
                                                       const Statistics& statistics) {
-  std::vector<std::vector<std::uint64_t>> accesses(fpga::kCorePortCount,
+  const fpga::CorePorts ports = core_ports(board);
+  std::vector<std::vector<std::uint64_t>> accesses(ports.core_size(),
                                                    std::vector<std::uint64_t>(board.banks.size()));
   const fpga::BufferBases buffers = buffer_bases(board);
   const std::uint64_t frames = statistics.frames;
@@ -132,15 +133,16 @@ std::vector<std::vector<std::uint64_t>> core_accesses(const BoardConfig& board,
   for (std::uint64_t frame = 0; frame < std::min(frames, turn); ++frame) {
     const fpga::FrameBases bases = buffers.of_frame(frame);
     const std::uint64_t uses = frames / turn + (frame < frames % turn ? 1 : 0);
-    for (std::size_t port = 0; port < fpga::kCorePortCount; ++port)
-      accesses[port][fpga::registers::bank_of(bases[port])] += statistics.ports[port].grants / frames * uses;
+    for (std::size_t port = 0; port < ports.core_size(); ++port)
+      accesses[port][fpga::registers::bank_of(bases[ports.group_of(port)])] +=
+          statistics.ports[port].grants / frames * uses;
   }
   return accesses;
 }
 
 void audit_accesses(const BoardConfig& board, const Statistics& statistics, Audit& audit) {
   const std::vector<std::vector<std::uint64_t>> accesses = core_accesses(board, statistics);
-  for (std::size_t port = 0; port < fpga::kCorePortCount; ++port) {
+  for (std::size_t port = 0; port < accesses.size(); ++port) {
     audit.equal("port " + statistics.ports[port].name + ": grants, equally many in each frame",
                 sum_of(accesses[port]), "grants", statistics.ports[port].grants);
   }
@@ -158,7 +160,7 @@ void audit_accesses(const BoardConfig& board, const Statistics& statistics, Audi
                   statistics.cycles);
     of_host += bank.reads + bank.writes - of_core;
   }
-  audit.equal("port host: grants", statistics.ports[fpga::kHostPort].grants,
+  audit.equal("port host: grants", statistics.ports.back().grants,
               "accesses of the banks that are not of the core", of_host);
 }
 

@@ -49,7 +49,7 @@ Statistics run_core(const BoardConfig& board, const Tables& tables, std::uint64_
   const fpga::CoreConfig config = core_config(board);
   const fpga::BufferBases buffers = buffer_bases(board);
   const std::vector<memory::SsramBankConfig> banks = ssram_configs(board);
-  memory::Arbitration arbitration(board.fpga.arbiter, banks);
+  memory::Arbitration arbitration(arbiter_of_ports(board.fpga.arbiter, core_ports(board)), banks);
   fpga::FrameRun core(config, banks, arbitration, stall_timeout_cycles);
   fpga::AccessPatterns patterns{fpga::AccessPattern(core.control().geometry(), config.pixel_cache),
                                 fpga::AccessPattern(core.control().geometry(), config.pixel_cache)};

@@ -101,19 +101,19 @@ bool AccessPattern::set_row_cached(int row, const std::uint32_t* entries) {
 }
 
 void AccessPattern::count() {
-  empty_slots_ = 0;
-  pixel_accesses_ = 0;
+  const auto lanes = static_cast<std::size_t>(geometry_.lanes);
+  table_accesses_.assign(lanes, 0);
+  pixel_accesses_.assign(lanes, 0);
+  std::uint64_t passes = 0;
   for (int strip = 0; strip < geometry_.strips; ++strip) {
-    const std::uint64_t slots_before = static_cast<std::uint64_t>(strip) * geometry_.columns_per_strip() *
-                                       static_cast<std::uint64_t>(geometry_.slots_per_column);
-    passes_before_strip_[static_cast<std::size_t>(strip)] = slots_before - empty_slots_ - pixel_accesses_;
+    passes_before_strip_[static_cast<std::size_t>(strip)] = passes;
     for (int k = 0; k < geometry_.slots_per_column; ++k) {
       const int row = geometry_.first_row_of(strip) + k;
-      if (!geometry_.is_inside(row)) {
-        empty_slots_ += geometry_.columns_per_strip();
-        continue;
-      }
-      pixel_accesses_ += counts_[static_cast<std::size_t>(row)];
+      if (!geometry_.is_inside(row)) continue;
+      const std::uint64_t pixels = counts_[static_cast<std::size_t>(row)];
+      table_accesses_[static_cast<std::size_t>(k) % lanes] += geometry_.columns_per_strip();
+      pixel_accesses_[static_cast<std::size_t>(k) % lanes] += pixels;
+      passes += geometry_.columns_per_strip() - pixels;
     }
   }
 }
@@ -151,8 +151,7 @@ std::uint64_t AccessPattern::passes_before(std::uint64_t slots) const {
   const auto slots_per_column = static_cast<std::uint64_t>(geometry_.slots_per_column);
   const std::uint64_t columns = slots / slots_per_column;
   const std::uint64_t strip = columns / geometry_.columns_per_strip();
-  if (strip == static_cast<std::uint64_t>(geometry_.strips))
-    return geometry_.slots - empty_slots_ - pixel_accesses_;
+  if (strip == static_cast<std::uint64_t>(geometry_.strips)) return table_accesses() - pixel_accesses();
   std::uint64_t passes = passes_before_strip_[strip];
   if (needs_all_pixels_) return passes;
   for (int k = 0; k < geometry_.slots_per_column; ++k) {

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <numeric>
 #include <vector>
 
 #include "models/fpga/core_config.h"
@@ -26,6 +27,7 @@ class AccessPattern {
     const auto place = static_cast<std::size_t>(column);
     return (pixels_of_row(row)[place / 64] >> place % 64 & 1U) != 0;
   }
+  std::uint64_t slots_of_group() const { return 4 * static_cast<std::uint64_t>(geometry_.slots_per_column); }
   // Whether every slot inside the image accesses it.
   bool needs_all_pixels() const { return needs_all_pixels_; }
   // The first slot, at least four columns after `slot`, that differs from the slot four columns before it:
@@ -43,13 +45,19 @@ class AccessPattern {
 
   // The number of slots inside the image that do not access it, among the first `slots` slots of a frame.
   std::uint64_t passes_before(std::uint64_t slots) const;
-  // Numbers of slots of a frame that are empty, and that access their pixel.
-  std::uint64_t empty_slots() const { return empty_slots_; }
-  std::uint64_t pixel_accesses() const { return pixel_accesses_; }
+  // Numbers of slots of a frame that lie inside the image, and that access their pixel: in a lane, and in
+  // all.
+  std::uint64_t table_accesses(int lane) const { return table_accesses_[static_cast<std::size_t>(lane)]; }
+  std::uint64_t pixel_accesses(int lane) const { return pixel_accesses_[static_cast<std::size_t>(lane)]; }
+  std::uint64_t table_accesses() const { return sum_of(table_accesses_); }
+  std::uint64_t pixel_accesses() const { return sum_of(pixel_accesses_); }
 
  private:
   const std::uint64_t* pixels_of_row(int row) const {
     return pixels_.data() + static_cast<std::size_t>(row) * words_;
+  }
+  static std::uint64_t sum_of(const std::vector<std::uint64_t>& counts) {
+    return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
   }
   std::uint64_t accesses_of_row(int row, std::uint64_t columns) const;
   void set_all(std::uint64_t* row_bits) const;
@@ -57,7 +65,6 @@ class AccessPattern {
   bool set_row_cached(int row, const std::uint32_t* entries);
   void count();
   void set_slots() const;
-  std::uint64_t slots_of_group() const { return 4 * static_cast<std::uint64_t>(geometry_.slots_per_column); }
 
   FrameGeometry geometry_;
   bool has_cache_;
@@ -69,8 +76,8 @@ class AccessPattern {
   // Both are empty until the first query: few frames need them.
   mutable std::vector<std::uint64_t> slots_;    // bit i of the sequence: slot i accesses its pixel
   mutable std::vector<std::uint64_t> changes_;  // the slots that differ from the one four columns before
-  std::uint64_t empty_slots_ = 0;
-  std::uint64_t pixel_accesses_ = 0;
+  std::vector<std::uint64_t> table_accesses_;   // [lane]
+  std::vector<std::uint64_t> pixel_accesses_;   // [lane]
 };
 
 using AccessPatterns = std::array<AccessPattern, 2>;  // [side]

@@ -40,6 +40,7 @@ inline constexpr kernels::IntegerRule kRowsRule{1, 16};
 inline constexpr kernels::IntegerRule kLaneFifoRule{1, 64};
 inline constexpr kernels::IntegerRule kResultFifoRule{1, 64};
 inline constexpr kernels::IntegerRule kPipelineLatencyRule{0, 1024};
+inline constexpr kernels::IntegerRule kLanesRule{1, 16};
 
 // The parameters that the FPGA is synthesised with. Defaults: the board of the paper.
 struct CoreConfig {
@@ -57,6 +58,7 @@ struct CoreConfig {
   bool right_table = true;
   bool joint_tables = false;  // one table for both sides, which both have one then (contract 7.3)
   PixelCache pixel_cache = PixelCache::kNone;
+  int lanes = 1;                     // P: lanes on each side (contract 8.1)
   double clock_mhz = 40;             // 1..1000
   int lane_fifo_slots = 16;          // slots, kLaneFifoRule
   int result_fifo_words = 8;         // 32-bit words, kResultFifoRule, at least `rows`

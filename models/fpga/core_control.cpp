@@ -1,20 +1,25 @@
 #include "models/fpga/core_control.h"
 
-#include <algorithm>
-
 namespace stereotlm::fpga {
 
 CoreControl::CoreControl(const CoreConfig& config)
     : geometry_(checked(config)),
+      ports_(config),
       has_joint_tables_(config.joint_tables),
-      lanes_{LaneControl(geometry_, config.left_table, config.pixel_cache, config.lane_fifo_slots),
-             LaneControl(geometry_, config.right_table, config.pixel_cache, config.lane_fifo_slots)},
       match_(geometry_),
-      result_(geometry_, config.result_fifo_words) {}
+      result_(geometry_, config.result_fifo_words),
+      cycles_(ports_.size()) {
+  for (const Side side : kSides) {
+    for (int lane = 0; lane < config.lanes; ++lane)
+      lanes_.emplace_back(geometry_, lane, has_table(config, side), config.pixel_cache,
+                          config.lane_fifo_slots);
+  }
+}
 
 void CoreControl::start_frame(const FrameLatencies& latencies) {
-  for (const Side side : kSides) {
-    lanes_[index_of(side)].start_frame(latencies[table_port(side)], latencies[pixel_port(side)]);
+  for (std::size_t lane = 0; lane < lanes_.size(); ++lane) {
+    lanes_[lane].start_frame(latencies[ports_.group_of(table_port(lane))],
+                             latencies[ports_.group_of(pixel_port(lane))]);
   }
   match_.start_frame();
   result_.start_frame();
@@ -22,26 +27,22 @@ void CoreControl::start_frame(const FrameLatencies& latencies) {
 
 void CoreControl::skip_waiting(std::uint64_t cycles) {
   const Decision decision = decide();
-  for (std::size_t port = 0; port < kCorePortCount; ++port)
+  for (std::size_t port = 0; port < ports_.core_size(); ++port)
     cycles_[port].add(decision.intents[port], false, cycles);
   count_host(false, false, cycles);
   match_.skip_folds(cycles);
 }
 
-void CoreControl::correct_passes(Side side, std::uint64_t cycles) {
-  PortCycles& pixel = cycles_[pixel_port(side)];
+void CoreControl::correct_passes(std::size_t lane, std::uint64_t cycles) {
+  PortCycles& pixel = cycles_[pixel_port(lane)];
   pixel.subtract(Intent::kRequest, true, cycles);
   pixel.add(Intent::kPass, false, cycles);
 }
 
-CoreControl::Counts CoreControl::counts() const {
-  Counts counts;
-  std::copy_n(cycles_.begin(), counts.size(), counts.begin());
-  return counts;
-}
+CoreControl::Counts CoreControl::counts() const { return {cycles_.begin(), cycles_.end() - 1}; }
 
 CoreControl::Counts CoreControl::difference(const Counts& after, const Counts& before) {
-  Counts difference;
+  Counts difference = after;
   for (std::size_t port = 0; port < difference.size(); ++port)
     difference[port] = after[port].since(before[port]);
   return difference;
@@ -51,10 +52,15 @@ void CoreControl::add(const Counts& counts, std::uint64_t times) {
   for (std::size_t port = 0; port < counts.size(); ++port) cycles_[port].add(counts[port], times);
 }
 
-void CoreControl::skip_to(memory::StateReader& state, std::uint64_t slots, std::uint64_t words) {
-  const std::uint64_t of_lanes = match_.draining() ? 0 : slots;
-  for (LaneControl& lane : lanes_) lane.skip_to(*state++, of_lanes);
-  match_.skip_to(*state & 0xffff'ffffU, slots);
+void CoreControl::skip_to(memory::StateReader& state, std::uint64_t consumed, std::uint64_t words) {
+  const std::uint64_t before = match_.consumed();
+  const std::uint64_t after = before + (match_.draining() ? 0 : consumed);
+  for (std::size_t lane = 0; lane < lanes_.size(); ++lane) {
+    const auto number = static_cast<int>(lane % ports_.lanes());
+    lanes_[lane].skip_to(*state++,
+                         geometry_.consumed_slots(number, after) - geometry_.consumed_slots(number, before));
+  }
+  match_.skip_to(*state & 0xffff'ffffU, consumed);
   result_.skip_to(*state++ >> kHalf, words);
 }
 

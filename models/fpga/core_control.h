@@ -1,7 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <functional>
+#include <vector>
 
 #include "models/fpga/core_config.h"
 #include "models/fpga/core_ports.h"
@@ -14,12 +17,13 @@
 
 namespace stereotlm::fpga {
 
-// [port]: read latency of the bank that holds the port's buffer in a frame, 1 or 2 cycles. Without meaning
-// for a port that writes, or that the core does not have.
-using FrameLatencies = std::array<int, kCorePortCount>;
+// [group]: read latency of the bank that holds the group's buffer in a frame, 1 or 2 cycles. Without meaning
+// for a group that writes, or that the core does not have.
+using FrameLatencies = std::array<int, kCoreGroupCount>;
 
-// [side]: whether the slot whose table entry has been read in a cycle needs an access for its pixel.
-using PixelNeeds = std::array<bool, 2>;
+// Whether the slots whose table entries have been read in a cycle need an access for their pixels: bit
+// CoreControl::lane_index() for each lane.
+using PixelNeeds = std::uint32_t;
 
 // Decides the timing of the whole core (contract section 2): what every port requests in a cycle, and what
 // follows from the grants. Plain C++ without data and without SystemC, used at every fidelity, with and
@@ -29,21 +33,12 @@ using PixelNeeds = std::array<bool, 2>;
 class CoreControl {
  public:
   struct Decision {
-    std::array<Intent, kCorePortCount> intents;  // [port]
-    bool work;     // the matcher works on a slot of both lanes, or on a consume-cycle of the drain
-    bool consume;  // the matcher consumes it in this cycle
+    std::array<Intent, memory::kMostPorts - 1> intents;  // [port]
+    memory::PortMask requests = 0;                       // ports with Intent::kRequest
+    memory::PortMask passes = 0;                         // ports with Intent::kPass
+    bool work;                                           // the matcher works on a consume-cycle
+    bool consume;                                        // the consume-cycle ends in this cycle
     bool drain;
-
-    memory::PortMask requests() const { return ports_with(Intent::kRequest); }
-    memory::PortMask passes() const { return ports_with(Intent::kPass); }
-
-   private:
-    memory::PortMask ports_with(Intent intent) const {
-      unsigned ports = 0;
-      for (std::size_t port = 0; port < kCorePortCount; ++port)
-        ports |= unsigned{intents[port] == intent} << port;
-      return static_cast<memory::PortMask>(ports);
-    }
   };
 
   // Throws std::invalid_argument if the configuration has problems.
@@ -53,15 +48,16 @@ class CoreControl {
   Decision decide() const;
   // Carries out the decision with these grants. Returns true if the matcher has completed a group of four
   // columns. Groups are counted from column result_delay_columns % 4 on.
-  bool commit(const Decision& decision, memory::PortMask granted, const PixelNeeds& needs_pixel);
+  bool commit(const Decision& decision, memory::PortMask granted, PixelNeeds needs_pixel);
 
   // The number of cycles, from the next one on, in which everything waits for the matcher: no port of the
   // core requests or passes, and the matcher works on a slot without consuming it.
   std::uint64_t waiting_cycles() const {
     const std::uint64_t cycles = match_.cycles_to_consume();
-    if (cycles == 0 || !lane(Side::kLeft).is_settled() || !lane(Side::kRight).is_settled()) return 0;
+    if (cycles == 0 || !std::all_of(lanes_.begin(), lanes_.end(), std::mem_fn(&LaneControl::is_settled)))
+      return 0;
     const Decision decision = decide();
-    return decision.requests() == 0 && decision.passes() == 0 ? cycles : 0;
+    return decision.requests == 0 && decision.passes == 0 ? cycles : 0;
   }
   // Skips `cycles` of these cycles. The host must not request in them.
   void skip_waiting(std::uint64_t cycles);
@@ -76,11 +72,11 @@ class CoreControl {
     host_cycles().subtract(Intent::kIdle, false, cycles);
     host_cycles().add(Intent::kRequest, granted, cycles);
   }
-  // Recounts `cycles` cycles of this frame in which the pixel port of a side was counted as granted, but
+  // Recounts `cycles` cycles of this frame in which the pixel port of a lane was counted as granted, but
   // passed a slot.
-  void correct_passes(Side side, std::uint64_t cycles);
+  void correct_passes(std::size_t lane, std::uint64_t cycles);
   // See LaneControl.
-  void correct_marks(Side side, std::uint64_t marks) { lanes_[index_of(side)].correct_marks(marks); }
+  void correct_marks(std::size_t lane, std::uint64_t marks) { lanes_[lane].correct_marks(marks); }
 
   // The state that determines the next cycles, together with the arbiters' state and the slots that the pixel
   // ports have not handled.
@@ -88,12 +84,12 @@ class CoreControl {
     for (const LaneControl& lane : lanes_) state.push_back(lane.state());
     state.push_back(match_.state() | result_.state() << kHalf);
   }
-  // Skips cycles, after which the core is in `state`. In them the matcher consumes `slots` slots (in the
-  // drain: consume-cycles), and `words` words of results are written. `slots` is at most
-  // MatchControl::uniform_slots(). The caller then calls correct_marks().
-  void skip_to(memory::StateReader& state, std::uint64_t slots, std::uint64_t words);
-  // Cycles of the core's own ports, over all frames.
-  using Counts = std::array<PortCycles, kCorePortCount>;
+  // Skips cycles, after which the core is in `state`. In them `consumed` consume-cycles end, and `words`
+  // words of results are written. `consumed` is at most MatchControl::uniform_cycles(). The caller then calls
+  // correct_marks().
+  void skip_to(memory::StateReader& state, std::uint64_t consumed, std::uint64_t words);
+  // [port]: cycles of the core's own ports, over all frames.
+  using Counts = std::vector<PortCycles>;
   Counts counts() const;
   static Counts difference(const Counts& after, const Counts& before);
   // Adds cycles that were skipped.
@@ -101,9 +97,17 @@ class CoreControl {
 
   const MatchControl& match() const { return match_; }
   const ResultControl& result() const { return result_; }
-  const LaneControl& lane(Side side) const { return lanes_[index_of(side)]; }
-  // The port that takes the slots of a side with table. With joint tables it is one port for both sides.
-  memory::Port table_port(Side side) const { return lut_port(has_joint_tables_ ? Side::kLeft : side); }
+  // The lanes of the left side, then those of the right side.
+  const std::vector<LaneControl>& lanes() const { return lanes_; }
+  const LaneControl& lane(std::size_t lane) const { return lanes_[lane]; }
+  std::size_t lane_index(Side side, std::size_t lane) const { return index_of(side) * ports_.lanes() + lane; }
+  Side side_of(std::size_t lane) const { return lane < ports_.lanes() ? Side::kLeft : Side::kRight; }
+  // The port that takes the slots of a lane with table. With joint tables it serves the lane of each side.
+  memory::Port table_port(std::size_t lane) const {
+    return has_joint_tables_ && lane >= ports_.lanes() ? lane - ports_.lanes() : lane;
+  }
+  memory::Port pixel_port(std::size_t lane) const { return lanes_.size() + lane; }
+  const CorePorts& ports() const { return ports_; }
   const FrameGeometry& geometry() const { return geometry_; }
   // Whether the last word of the frame has been written.
   bool frame_done() const { return result_.frame_done(); }
@@ -114,58 +118,97 @@ class CoreControl {
   const PortCycles& port_cycles(memory::Port port) const { return cycles_[port]; }
   // Cycles in which the matcher worked plus words written, over all frames. The sum grows as long as frames
   // make progress.
-  std::uint64_t work() const { return match_.worked() + port_cycles(kResultPort).granted(); }
+  std::uint64_t work() const { return match_.worked() + port_cycles(ports_.result()).granted(); }
 
  private:
   // Bits of the last word of the state: the matcher has the lower half, the result queue the upper half.
   static constexpr unsigned kHalf = 32;
 
-  PortCycles& host_cycles() { return cycles_[kHostPort]; }
+  template <std::size_t kLanes>
+  Decision decide_lanes() const;
+  template <std::size_t kLanes>
+  bool commit_lanes(const Decision& decision, memory::PortMask granted, PixelNeeds needs_pixel);
+  PortCycles& host_cycles() { return cycles_.back(); }
+  // Whether the matcher can consume the slots of its next consume-cycle.
+  bool slots_ready() const {
+    const auto lanes = static_cast<std::size_t>(match_.lanes());
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+      if (!lanes_[lane].ready() || !lanes_[ports_.lanes() + lane].ready()) return false;
+    }
+    return true;
+  }
 
   FrameGeometry geometry_;
+  CorePorts ports_;
   bool has_joint_tables_;
-  std::array<LaneControl, 2> lanes_;  // [side]
+  std::vector<LaneControl> lanes_;  // see lanes()
   MatchControl match_;
   ResultControl result_;
-  std::array<PortCycles, kPortCount> cycles_{};  // [port]
+  std::vector<PortCycles> cycles_;  // [port]
 };
 
-inline CoreControl::Decision CoreControl::decide() const {
+// `kLanes`: the number of lanes of both sides, or 0 if it is not known when this is compiled.
+template <std::size_t kLanes>
+CoreControl::Decision CoreControl::decide_lanes() const {
+  const std::size_t lanes = kLanes != 0 ? kLanes : lanes_.size();
+  const LaneControl* const all = lanes_.data();
   Decision decision;
-  const auto decide_lane = [&](Side side) {
-    const LaneControl::Decision of_lane = lane(side).decide();
-    decision.intents[lut_port(side)] = of_lane.lut;
-    decision.intents[pixel_port(side)] = of_lane.pixel;
+  std::uint64_t requests = 0;  // of the readers, which are ports 0..63 at most
+  std::uint64_t passes = 0;
+  const auto decide_port = [&](std::size_t port, Intent intent) {
+    decision.intents[port] = intent;
+    requests |= std::uint64_t{intent == Intent::kRequest} << port;
+    passes |= std::uint64_t{intent == Intent::kPass} << port;
   };
-  decide_lane(Side::kLeft);
-  decide_lane(Side::kRight);
-  // With joint tables both lanes hold equally many slots, so that the left one decides for both.
-  if (has_joint_tables_) decision.intents[lut_port(Side::kRight)] = Intent::kIdle;
-  decision.intents[kResultPort] = result_.decide();
-  const bool slots_ready = lane(Side::kLeft).ready() && lane(Side::kRight).ready();
-  decision.work = match_.decide(slots_ready, result_.has_room());
-  decision.consume = decision.work && match_.consumes();
+  for (std::size_t lane = 0; lane < lanes; ++lane) {
+    const LaneControl::Decision of_lane = all[lane].decide();
+    // With joint tables the lanes of both sides hold equally many slots, so that the left one decides.
+    decide_port(lane, has_joint_tables_ && lane >= lanes / 2 ? Intent::kIdle : of_lane.lut);
+    decide_port(lanes + lane, of_lane.pixel);
+  }
+  const Intent result = result_.decide();
+  decision.intents[2 * lanes] = result;
+  decision.requests = requests | memory::PortMask{result == Intent::kRequest} << 2 * lanes;
+  decision.passes = passes;
   decision.drain = match_.draining();
+  const bool is_ready = decision.drain || (kLanes == 2 ? all[0].ready() && all[1].ready() : slots_ready());
+  decision.work = match_.decide(is_ready, result_.has_room());
+  decision.consume = decision.work && match_.consumes();
   return decision;
 }
 
-inline bool CoreControl::commit(const Decision& decision, memory::PortMask granted,
-                                const PixelNeeds& needs_pixel) {
-  const auto is_granted = [granted](std::size_t port) { return (granted >> port & 1U) != 0; };
-  for (std::size_t port = 0; port < kCorePortCount; ++port)
-    cycles_[port].add(decision.intents[port], is_granted(port));
-  const bool consumes_slot = decision.consume && !decision.drain;
-  const auto commit_lane = [&](Side side) {
-    const memory::Port lut = table_port(side);
-    const memory::Port pixel = pixel_port(side);
-    lanes_[index_of(side)].commit({decision.intents[lut], decision.intents[pixel]}, is_granted(lut),
-                                  is_granted(pixel), needs_pixel[index_of(side)], consumes_slot);
-  };
-  commit_lane(Side::kLeft);
-  commit_lane(Side::kRight);
+template <std::size_t kLanes>
+bool CoreControl::commit_lanes(const Decision& decision, memory::PortMask granted, PixelNeeds needs_pixel) {
+  const std::size_t lanes = kLanes != 0 ? kLanes : lanes_.size();
+  LaneControl* const all = lanes_.data();
+  PortCycles* const cycles = cycles_.data();
+  const auto of_readers = static_cast<std::uint64_t>(granted);  // they are ports 0..63 at most
+  const auto is_granted = [of_readers](std::size_t port) { return (of_readers >> port & 1U) != 0; };
+  const int in_cycle = kLanes == 2 ? 1 : match_.lanes();
+  const auto consuming = static_cast<std::size_t>(decision.consume && !decision.drain ? in_cycle : 0);
+  for (std::size_t port = 0; port < 2 * lanes; ++port)
+    cycles[port].add(decision.intents[port], is_granted(port));
+  for (std::size_t lane = 0; lane < lanes; ++lane) {
+    const bool is_right = lane >= lanes / 2;
+    const memory::Port lut = has_joint_tables_ && is_right ? lane - lanes / 2 : lane;
+    const memory::Port pixel = lanes + lane;
+    all[lane].commit({decision.intents[lut], decision.intents[pixel]}, is_granted(lut), is_granted(pixel),
+                     (needs_pixel >> lane & 1U) != 0, (is_right ? lane - lanes / 2 : lane) < consuming);
+  }
+  const bool result_granted = memory::has(granted, 2 * lanes);
+  cycles[2 * lanes].add(decision.intents[2 * lanes], result_granted);
   const bool four_columns = decision.work && match_.work();
-  result_.commit(is_granted(kResultPort), four_columns ? match_.words_leaving() : 0);
+  result_.commit(result_granted, four_columns ? match_.words_leaving() : 0);
   return four_columns;
+}
+
+inline CoreControl::Decision CoreControl::decide() const {
+  return lanes_.size() == 2 ? decide_lanes<2>() : decide_lanes<0>();
+}
+
+inline bool CoreControl::commit(const Decision& decision, memory::PortMask granted, PixelNeeds needs_pixel) {
+  return lanes_.size() == 2 ? commit_lanes<2>(decision, granted, needs_pixel)
+                            : commit_lanes<0>(decision, granted, needs_pixel);
 }
 
 }  // namespace stereotlm::fpga

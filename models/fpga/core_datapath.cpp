@@ -1,25 +1,38 @@
 #include "models/fpga/core_datapath.h"
 
+#include <algorithm>
 #include <string>
+#include <utility>
 
 namespace stereotlm::fpga {
 namespace {
 
+using memory::has;
 using memory::PortMask;
 
 std::string name_of(Side side) { return side == Side::kLeft ? "left" : "right"; }
 
-constexpr bool has(PortMask mask, memory::Port port) { return (mask & memory::mask_of(port)) != 0; }
+// "left_pixel", or with several lanes "left_pixel_0".
+std::string module_name(const CorePorts& ports, memory::Port port) {
+  std::string name = ports.name(port);
+  std::replace(name.begin(), name.end(), '.', '_');
+  return name;
+}
 
 }  // namespace
 
-CoreDatapath::Lane::Lane(const CoreConfig& config, Side side)
-    : has_table(fpga::has_table(config, side)),
-      pixel_reader((name_of(side) + "_pixel").c_str(), config),
-      filter((name_of(side) + "_filter").c_str(), config) {
-  if (has_port(config, lut_port(side))) {
-    lut_reader =
-        std::make_unique<LutReader>((name_of(side) + "_lut").c_str(), config.width, config.joint_tables);
+CoreDatapath::SideStages::SideStages(const CoreConfig& config, Side side)
+    : has_table(fpga::has_table(config, side)), filter((name_of(side) + "_filter").c_str(), config) {
+  const CorePorts ports(config);
+  for (std::size_t lane = 0; lane < ports.lanes(); ++lane) {
+    Readers readers;
+    if (has_group(config, lut_group(side))) {
+      readers.lut = std::make_unique<LutReader>(module_name(ports, ports.lut(side, lane)).c_str(),
+                                                config.width, config.joint_tables);
+    }
+    readers.pixel = std::make_unique<PixelReader>(module_name(ports, ports.pixel(side, lane)).c_str(), config,
+                                                  static_cast<int>(lane));
+    lanes.push_back(std::move(readers));
   }
   if (config.cost.kind == kernels::CostKind::kCensus)
     census = std::make_unique<Census>((name_of(side) + "_census").c_str(), config);
@@ -29,51 +42,56 @@ CoreDatapath::Lane::Lane(const CoreConfig& config, Side side)
 }
 
 CoreDatapath::CoreDatapath(const CoreConfig& config, memory::Crossbar& crossbar, Binder& binder)
-    : config_(config), crossbar_(crossbar) {
+    : config_(config), crossbar_(crossbar), ports_(config) {
+  for (const SideStages& stages : sides_) {
+    for (const Readers& readers : stages.lanes) pixel_readers_.push_back(readers.pixel.get());
+  }
   bind_memory(binder);
   bind_streams();
 }
 
 void CoreDatapath::bind_memory(Binder& binder) {
   const auto bind = [this, &binder](InitiatorSocket& from, memory::Port port) {
-    binder.bind(from, crossbar_.ports[port], std::string(kPorts[port].name) + "_to_crossbar");
+    binder.bind(from, crossbar_.ports[port], module_name(ports_, port) + "_to_crossbar");
   };
   for (const Side side : kSides) {
-    Lane& lane = lanes_[index_of(side)];
-    if (lane.lut_reader) bind(lane.lut_reader->port, lut_port(side));
-    bind(lane.pixel_reader.port, pixel_port(side));
+    for (std::size_t lane = 0; lane < ports_.lanes(); ++lane) {
+      const Readers& readers = sides_[index_of(side)].lanes[lane];
+      if (readers.lut) bind(readers.lut->port, ports_.lut(side, lane));
+      bind(readers.pixel->port, ports_.pixel(side, lane));
+    }
   }
-  bind(result_writer_.port, kResultPort);
+  bind(result_writer_.port, ports_.result());
 }
 
 void CoreDatapath::bind_streams() {
   const std::array<sc_core::sc_export<StreamIf<PixelColumn>>*, 2> columns_of = {&cost_array_.left_in,
                                                                                 &cost_array_.right_in};
   for (const Side side : kSides) {
-    Lane& lane = lanes_[index_of(side)];
-    const auto bind_slots = [this, side](auto& slots_in) {
-      side == Side::kLeft ? sequencer_.left_out.bind(slots_in) : sequencer_.right_out.bind(slots_in);
-    };
-    auto& columns = *columns_of[index_of(side)];
-    if (lane.lut_reader) {
-      bind_slots(lane.lut_reader->slots_in);
-      lane.lut_reader->entries_out.bind(lane.pixel_reader.entries_in);
-    } else if (lane.has_table) {
-      lanes_[0].lut_reader->right_entries_out.bind(lane.pixel_reader.entries_in);
-    } else {
-      bind_slots(lane.pixel_reader.slots_in);
+    SideStages& stages = sides_[index_of(side)];
+    for (std::size_t lane = 0; lane < ports_.lanes(); ++lane) {
+      Readers& readers = stages.lanes[lane];
+      auto& slots_out = sequencer_.slots_out[index_of(side) * ports_.lanes() + lane];
+      if (readers.lut) {
+        slots_out.bind(readers.lut->slots_in);
+        readers.lut->entries_out.bind(readers.pixel->entries_in);
+      } else if (stages.has_table) {
+        sides_[0].lanes[lane].lut->right_entries_out.bind(readers.pixel->entries_in);
+      } else {
+        slots_out.bind(readers.pixel->slots_in);
+      }
+      readers.pixel->pixels_out.bind(stages.filter.pixels_in);
     }
-    lane.pixel_reader.pixels_out.bind(lane.filter.pixels_in);
-    StreamOut<PixelColumn>* last_out = &lane.filter.columns_out;
-    if (lane.census) {
-      last_out->bind(lane.census->columns_in);
-      last_out = &lane.census->columns_out;
+    StreamOut<PixelColumn>* last_out = &stages.filter.columns_out;
+    if (stages.census) {
+      last_out->bind(stages.census->columns_in);
+      last_out = &stages.census->columns_out;
     }
-    if (lane.row_buffer) {
-      last_out->bind(lane.row_buffer->columns_in);
-      last_out = &lane.row_buffer->columns_out;
+    if (stages.row_buffer) {
+      last_out->bind(stages.row_buffer->columns_in);
+      last_out = &stages.row_buffer->columns_out;
     }
-    last_out->bind(columns);
+    last_out->bind(*columns_of[index_of(side)]);
   }
   cost_array_.chain_out.bind(select_min_chain_.sums_in);
   cost_array_.tree_out.bind(select_min_tree_.sums_in);
@@ -85,18 +103,22 @@ void CoreDatapath::bind_streams() {
 
 void CoreDatapath::start_frame(const FrameBases& bases, const kernels::JointOffsets& offsets) {
   const auto aim = [this, &bases](memory::Port port) {
-    crossbar_.aim(port, registers::bank_of(bases[port]), kPorts[port].write);
-    return registers::base_address(bases[port]);
+    const std::size_t group = ports_.group_of(port);
+    crossbar_.aim(port, registers::bank_of(bases[group]), kPortGroups[group].write);
+    return registers::base_address(bases[group]);
   };
   for (const Side side : kSides) {
-    Lane& lane = lanes_[index_of(side)];
-    if (lane.lut_reader) lane.lut_reader->start_frame(aim(lut_port(side)), offsets);
-    lane.pixel_reader.start_frame(aim(pixel_port(side)));
-    lane.filter.start_frame();
-    if (lane.census) lane.census->start_frame();
-    if (lane.row_buffer) lane.row_buffer->start_frame();
+    SideStages& stages = sides_[index_of(side)];
+    for (std::size_t lane = 0; lane < ports_.lanes(); ++lane) {
+      const Readers& readers = stages.lanes[lane];
+      if (readers.lut) readers.lut->start_frame(aim(ports_.lut(side, lane)), offsets);
+      readers.pixel->start_frame(aim(ports_.pixel(side, lane)));
+    }
+    stages.filter.start_frame();
+    if (stages.census) stages.census->start_frame();
+    if (stages.row_buffer) stages.row_buffer->start_frame();
   }
-  result_writer_.start_frame(aim(kResultPort));
+  result_writer_.start_frame(aim(ports_.result()));
   cost_array_.start_frame();
   select_min_chain_.start_frame();
   lr_check_.start_frame();
@@ -105,38 +127,43 @@ void CoreDatapath::start_frame(const FrameBases& bases, const kernels::JointOffs
 
 PixelNeeds CoreDatapath::move(const CoreControl& control, const CoreControl::Decision& decision,
                               PortMask granted, const sc_core::sc_time& at) {
-  const auto moving = static_cast<PortMask>(granted | decision.passes());
-  const auto take_slot = [&](Side side) {
-    if (has(moving, lut_port(side))) issue(side, control, at);
-  };
-  const auto handle_slot = [&](Side side, Lane& lane) {
-    if (!has(moving, pixel_port(side))) return;
-    lane.has_table ? lane.pixel_reader.handle(at) : issue(side, control, at);
-  };
-  Lane& left = lanes_[0];
-  Lane& right = lanes_[1];
-  take_slot(Side::kLeft);
-  take_slot(Side::kRight);
-  const PixelNeeds needs_pixel = {left.pixel_reader.needs_access(), right.pixel_reader.needs_access()};
-  handle_slot(Side::kLeft, left);
-  handle_slot(Side::kRight, right);
-  if (has(granted, kResultPort)) result_writer_.write(at);
+  return pixel_readers_.size() == 2 ? move_lanes<2>(control, decision, granted, at)
+                                    : move_lanes<0>(control, decision, granted, at);
+}
+
+// `kLanes`: as in CoreControl::decide_lanes().
+template <std::size_t kLanes>
+PixelNeeds CoreDatapath::move_lanes(const CoreControl& control, const CoreControl::Decision& decision,
+                                    PortMask granted, const sc_core::sc_time& at) {
+  const std::size_t lanes = kLanes != 0 ? kLanes : pixel_readers_.size();
+  PixelReader* const* const readers = pixel_readers_.data();
+  const auto moving = static_cast<std::uint64_t>(granted | decision.passes);  // readers: ports 0..63 at most
+  PixelNeeds needs_pixel = 0;
+  for (std::size_t lane = 0; lane < lanes; ++lane) {
+    if ((moving >> lane & 1U) != 0) issue(lane, control, at);  // the LUT port of a lane has the same number
+    needs_pixel |= PixelNeeds{readers[lane]->needs_access()} << lane;
+  }
+  for (std::size_t lane = 0; lane < lanes; ++lane) {
+    if ((moving >> (lanes + lane) & 1U) == 0) continue;
+    control.lane(lane).has_table() ? readers[lane]->handle(at) : issue(lane, control, at);
+  }
+  if (has(granted, 2 * lanes)) result_writer_.write(at);
   if (!decision.consume) return needs_pixel;
-  if (decision.drain) {
-    left.pixel_reader.release_blank();
-    right.pixel_reader.release_blank();
-  } else {
-    left.pixel_reader.release();
-    right.pixel_reader.release();
+  const auto consumed = static_cast<std::size_t>(kLanes == 2 ? 1 : control.match().lanes());  // of each side
+  for (std::size_t first = 0; first < lanes; first += lanes / 2) {
+    for (std::size_t lane = first; lane < first + consumed; ++lane)
+      decision.drain ? readers[lane]->release_blank() : readers[lane]->release();
   }
   return needs_pixel;
 }
 
 std::uint64_t CoreDatapath::errors() const {
   std::uint64_t errors = result_writer_.errors();
-  for (const Lane& lane : lanes_) {
-    errors += lane.pixel_reader.errors();
-    if (lane.lut_reader) errors += lane.lut_reader->errors();
+  for (const SideStages& stages : sides_) {
+    for (const Readers& readers : stages.lanes) {
+      errors += readers.pixel->errors();
+      if (readers.lut) errors += readers.lut->errors();
+    }
   }
   return errors;
 }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <systemc>
+#include <vector>
 
 #include "models/binder.h"
 #include "models/fpga/census.h"
@@ -30,13 +31,17 @@ namespace stereotlm::fpga {
 // StereoCore.
 class CoreDatapath {
  public:
+  // The stages that read, in one lane.
+  struct Readers {
+    std::unique_ptr<LutReader> lut;  // null if the side has no table, or the left one reads for both
+    std::unique_ptr<PixelReader> pixel;
+  };
   // The stages of one side, up to the matcher.
-  struct Lane {
-    Lane(const CoreConfig& config, Side side);
+  struct SideStages {
+    SideStages(const CoreConfig& config, Side side);
 
     bool has_table;
-    std::unique_ptr<LutReader> lut_reader;  // null if the side has no table, or the left one reads for both
-    PixelReader pixel_reader;
+    std::vector<Readers> lanes;
     LogFilter filter;
     std::unique_ptr<Census> census;         // null unless the cost is kCensus
     std::unique_ptr<RowBuffer> row_buffer;  // null unless the fetch is kLineBuffer
@@ -57,22 +62,26 @@ class CoreDatapath {
 
   // The stages, for their statistics.
   const Sequencer& sequencer() const { return sequencer_; }
-  const Lane& lane(Side side) const { return lanes_[index_of(side)]; }
   const ResultPacker& result_packer() const { return result_packer_; }
   const ResultWriter& result_writer() const { return result_writer_; }
 
  private:
+  template <std::size_t kLanes>
+  PixelNeeds move_lanes(const CoreControl& control, const CoreControl::Decision& decision,
+                        memory::PortMask granted, const sc_core::sc_time& at);
   void bind_memory(Binder& binder);
   void bind_streams();
-  void issue(Side side, const CoreControl& control, const sc_core::sc_time& at) {
-    const SlotCursor& slot = control.lane(side).next_slot();
-    config_.joint_tables ? sequencer_.issue_to_both(slot, at) : sequencer_.issue(side, slot, at);
+  void issue(std::size_t lane, const CoreControl& control, const sc_core::sc_time& at) {
+    const SlotCursor& slot = control.lane(lane).next_slot();
+    config_.joint_tables ? sequencer_.issue_to_both(lane, slot, at) : sequencer_.issue(lane, slot, at);
   }
 
   CoreConfig config_;
   memory::Crossbar& crossbar_;
-  Sequencer sequencer_{"sequencer"};
-  std::array<Lane, 2> lanes_{Lane(config_, Side::kLeft), Lane(config_, Side::kRight)};  // [side]
+  CorePorts ports_;
+  Sequencer sequencer_{"sequencer", ports_.lanes()};
+  std::array<SideStages, 2> sides_{SideStages(config_, Side::kLeft), SideStages(config_, Side::kRight)};
+  std::vector<PixelReader*> pixel_readers_;  // [lane]: CoreControl::lanes()
   CostArray cost_array_{"cost_array", config_};
   SelectMinChain select_min_chain_{"select_min_chain", config_};
   SelectMinTree select_min_tree_{"select_min_tree"};

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "models/fpga/core_config.h"
@@ -20,11 +21,12 @@ constexpr std::size_t index_of(Side side) { return static_cast<std::size_t>(side
 // The stage behind a port.
 enum class PortStage : std::uint8_t { kLutReader, kPixelReader, kResultWriter, kLocalBus };
 
-// A port of the FPGA on the SSRAM banks. In a frame a port of the core accesses one buffer, in one direction.
-struct CorePort {
+// A group of ports of the FPGA on the SSRAM banks: a port for each lane, or a single one. In a frame all
+// ports of a group of the core access one buffer, in one direction.
+struct PortGroup {
   const char* name;  // in board files, results and messages
   PortStage stage;
-  Side side;                      // of a reader; without meaning for other stages
+  Side side;                      // of readers; without meaning for other stages
   const char* buffer;             // name of the buffer
   std::uint64_t base_register;    // register_map.h: bank and first word of the buffer
   std::uint64_t bytes_per_pixel;  // of the buffer
@@ -34,56 +36,103 @@ struct CorePort {
 
 constexpr bool always(const CoreConfig& /*config*/) { return true; }
 
-// All ports, in the order in which results list them. Masks, routes, buffers, blame, counts, board files and
-// reports follow from this table. The core's own ports come first; the last one is the host's, which has no
-// buffer of its own.
-inline constexpr std::array kPorts = {
-    CorePort{"left_lut", PortStage::kLutReader, Side::kLeft, "left_lut", registers::kLeftLutBase, 4, false,
-             [](const CoreConfig& config) { return config.left_table; }},
-    CorePort{"right_lut", PortStage::kLutReader, Side::kRight, "right_lut", registers::kRightLutBase, 4,
-             false, [](const CoreConfig& config) { return config.right_table && !config.joint_tables; }},
-    CorePort{"left_pixel", PortStage::kPixelReader, Side::kLeft, "left_image", registers::kLeftImageBase, 1,
-             false, always},
-    CorePort{"right_pixel", PortStage::kPixelReader, Side::kRight, "right_image", registers::kRightImageBase,
-             1, false, always},
-    CorePort{"result", PortStage::kResultWriter, Side::kLeft, "disparity", registers::kDisparityBase, 1, true,
-             always},
-    CorePort{"host", PortStage::kLocalBus, Side::kLeft, "", 0, 0, false, always},
+// All groups, in the order in which results list their ports. Masks, routes, buffers, blame, counts, board
+// files and reports follow from this table. The groups of the core come first; the last one is the host's,
+// which has no buffer of its own.
+inline constexpr std::array kPortGroups = {
+    PortGroup{"left_lut", PortStage::kLutReader, Side::kLeft, "left_lut", registers::kLeftLutBase, 4, false,
+              [](const CoreConfig& config) { return config.left_table; }},
+    PortGroup{"right_lut", PortStage::kLutReader, Side::kRight, "right_lut", registers::kRightLutBase, 4,
+              false, [](const CoreConfig& config) { return config.right_table && !config.joint_tables; }},
+    PortGroup{"left_pixel", PortStage::kPixelReader, Side::kLeft, "left_image", registers::kLeftImageBase, 1,
+              false, always},
+    PortGroup{"right_pixel", PortStage::kPixelReader, Side::kRight, "right_image", registers::kRightImageBase,
+              1, false, always},
+    PortGroup{"result", PortStage::kResultWriter, Side::kLeft, "disparity", registers::kDisparityBase, 1,
+              true, always},
+    PortGroup{"host", PortStage::kLocalBus, Side::kLeft, "", 0, 0, false, always},
 };
-inline constexpr std::size_t kPortCount = kPorts.size();
-inline constexpr std::size_t kCorePortCount = kPortCount - 1;
-static_assert(kPortCount <= memory::kMostPorts);
+inline constexpr std::size_t kGroupCount = kPortGroups.size();
+inline constexpr std::size_t kCoreGroupCount = kGroupCount - 1;
 
-// Index of the port of a stage; the side distinguishes the readers.
-constexpr memory::Port port_of(PortStage stage, Side side = Side::kLeft) {
-  memory::Port port = 0;
-  while (kPorts[port].stage != stage || kPorts[port].side != side) ++port;
-  return port;
+// Index of the group of a stage; the side distinguishes the readers.
+constexpr std::size_t group_of(PortStage stage, Side side = Side::kLeft) {
+  std::size_t group = 0;
+  while (kPortGroups[group].stage != stage || kPortGroups[group].side != side) ++group;
+  return group;
 }
-inline constexpr std::array<memory::Port, 2> kLutPorts = {port_of(PortStage::kLutReader, Side::kLeft),
-                                                          port_of(PortStage::kLutReader, Side::kRight)};
-inline constexpr std::array<memory::Port, 2> kPixelPorts = {port_of(PortStage::kPixelReader, Side::kLeft),
-                                                            port_of(PortStage::kPixelReader, Side::kRight)};
-inline constexpr memory::Port kResultPort = port_of(PortStage::kResultWriter);
-inline constexpr memory::Port kHostPort = port_of(PortStage::kLocalBus);
-static_assert(kHostPort == kCorePortCount, "the host's port is the last one");
+constexpr std::size_t lut_group(Side side) { return group_of(PortStage::kLutReader, side); }
+constexpr std::size_t pixel_group(Side side) { return group_of(PortStage::kPixelReader, side); }
+inline constexpr std::size_t kResultGroup = group_of(PortStage::kResultWriter);
+inline constexpr std::size_t kHostGroup = group_of(PortStage::kLocalBus);
+static_assert(kHostGroup == kCoreGroupCount, "the host's group is the last one");
 
-constexpr memory::Port lut_port(Side side) { return kLutPorts[index_of(side)]; }
-constexpr memory::Port pixel_port(Side side) { return kPixelPorts[index_of(side)]; }
-constexpr bool has_port(const CoreConfig& config, memory::Port port) { return kPorts[port].exists(config); }
+constexpr bool has_group(const CoreConfig& config, std::size_t group) {
+  return kPortGroups[group].exists(config);
+}
 constexpr bool has_table(const CoreConfig& config, Side side) {
   return side == Side::kLeft ? config.left_table : config.right_table;
 }
 
-// The arbiters of the paper's board.
+// The ports of a core with this number of lanes on each side, group after group: in a group of readers a port
+// for each lane, else a single one. With one lane, the index of a port is that of its group.
+class CorePorts {
+ public:
+  explicit CorePorts(int lanes) : lanes_(static_cast<std::size_t>(lanes)) {}
+  explicit CorePorts(const CoreConfig& config) : CorePorts(config.lanes) {}
+
+  std::size_t size() const { return core_size() + 1; }
+  std::size_t core_size() const { return kReaderGroups * lanes_ + 1; }  // without the host's port
+  std::size_t lanes() const { return lanes_; }                          // on each side
+  memory::Port lut(Side side, std::size_t lane) const { return lut_group(side) * lanes_ + lane; }
+  memory::Port pixel(Side side, std::size_t lane) const { return pixel_group(side) * lanes_ + lane; }
+  memory::Port result() const { return kReaderGroups * lanes_; }
+  memory::Port host() const { return core_size(); }
+  // The only port of a group, or that of a lane.
+  memory::Port port(std::size_t group, std::size_t lane = 0) const {
+    return group < kReaderGroups ? group * lanes_ + lane : core_size() - (kHostGroup - group);
+  }
+
+  std::size_t group_of(memory::Port port) const {
+    return port < kReaderGroups * lanes_ ? port / lanes_ : kHostGroup - (host() - port);
+  }
+  const PortGroup& group(memory::Port port) const { return kPortGroups[group_of(port)]; }
+  std::size_t lane_of(memory::Port port) const { return port < result() ? port % lanes_ : 0; }
+  // "left_lut", or with several lanes "left_lut.0".
+  std::string name(memory::Port port) const {
+    const std::string name = group(port).name;
+    return lanes_ == 1 || port >= result() ? name : name + '.' + std::to_string(lane_of(port));
+  }
+
+ private:
+  static constexpr std::size_t kReaderGroups = kResultGroup;
+
+  std::size_t lanes_;
+};
+static_assert(kResultGroup == 4 && kResultGroup + 1 == kHostGroup, "the readers come first");
+static_assert(4 * kLanesRule.max + 2 <= memory::kMostPorts);
+
+// The arbiters of the paper's board, with a priority list of groups.
 inline memory::ArbiterConfig core_arbiter() {
   return {"fixed_priority",
-          {kHostPort, kResultPort, kPixelPorts[0], kPixelPorts[1], kLutPorts[0], kLutPorts[1]}};
+          {kHostGroup, kResultGroup, pixel_group(Side::kLeft), pixel_group(Side::kRight),
+           lut_group(Side::kLeft), lut_group(Side::kRight)}};
+}
+// The arbiters of a core, from a priority list of groups: each stands for its ports, lane 0 first.
+inline memory::ArbiterConfig arbiter_of_ports(const memory::ArbiterConfig& of_groups,
+                                              const CorePorts& ports) {
+  memory::ArbiterConfig arbiter = {of_groups.policy, {}};
+  for (const std::size_t group : of_groups.priority) {
+    const bool has_lanes = group < kResultGroup;
+    for (std::size_t lane = 0; lane < (has_lanes ? ports.lanes() : 1); ++lane)
+      arbiter.priority.push_back(ports.port(group, lane));
+  }
+  return arbiter;
 }
 
-// The base registers of one frame: for each port of the core the bank and the first word of its buffer, as in
-// register_map.h. Without meaning for a port that does not exist.
-using FrameBases = std::array<std::uint32_t, kCorePortCount>;
+// The base registers of one frame: for each group of the core the bank and the first word of its buffer, as
+// in register_map.h. Without meaning for a group that does not exist.
+using FrameBases = std::array<std::uint32_t, kCoreGroupCount>;
 
 // Bank and first word of each buffer of a board, as the base registers and the bridge's descriptors take
 // them: bits 31..26 bank, 25..0 first word. The buffers of a list are used in turn, frame by frame.

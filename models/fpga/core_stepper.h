@@ -31,8 +31,8 @@ class CoreStepper {
   memory::PortMask step(std::uint64_t cycle, bool host_requests, const Move& move) {
     using memory::PortMask;
     const CoreControl::Decision decision = control_.decide();
-    const PortMask host = host_requests ? memory::mask_of(kHostPort) : PortMask{0};
-    const auto requests = static_cast<PortMask>(decision.requests() | host);
+    const PortMask host = host_requests ? memory::mask_of(control_.ports().host()) : PortMask{0};
+    const PortMask requests = decision.requests | host;
     const PortMask granted = arbitration_.arbitrate(cycle, requests);
     if (cycles_ != nullptr) cycles_->step(cycle, decision, host_requests, granted, control_, arbitration_);
     completed_group_ = control_.commit(decision, granted, move(decision, granted));

@@ -28,16 +28,19 @@ struct FrameGeometry {
         rows(config.rows),
         last_rows((height - 1) % rows + 1),
         folds(folds_of(config)),
+        lanes(config.lanes),
         slots_per_column(config.fetch == Fetch::kColumn ? config.window + rows - 1 : 1),
+        cycles_per_column((slots_per_column + lanes - 1) / lanes),
         lead_strips(config.fetch == Fetch::kColumn ? (std::max(0, half - radius) + rows - 1) / rows
                                                    : radius + half),
         strips((height + rows - 1) / rows + lead_strips),
         first_row(config.fetch == Fetch::kColumn ? half - radius - lead_strips * rows : 0),
         drain_columns(config.disparities - 1 + radius + half),
-        slots(static_cast<std::uint64_t>(strips) * columns_per_strip() *
-              static_cast<std::uint64_t>(slots_per_column)),
+        columns(static_cast<std::uint64_t>(strips) * columns_per_strip()),
+        slots(columns * static_cast<std::uint64_t>(slots_per_column)),
+        consume_cycles(columns * static_cast<std::uint64_t>(cycles_per_column)),
         drain_cycles(static_cast<std::uint64_t>(drain_columns) *
-                     static_cast<std::uint64_t>(slots_per_column)),
+                     static_cast<std::uint64_t>(cycles_per_column)),
         result_delay_columns(static_cast<std::uint64_t>(drain_columns) +
                              static_cast<std::uint64_t>(lead_strips) * columns_per_strip()),
         last_strip_column(result_delay_columns +
@@ -46,18 +49,22 @@ struct FrameGeometry {
 
   int width;
   int height;
-  int radius;            // r
-  int half;              // h: half width of the filter and the cost together
-  int rows;              // R: rows of results of a strip
-  int last_rows;         // rows of results of the last strip that lie inside the image
-  int folds;             // S: cycles of the matcher for a slot, or for a consume-cycle of the drain
-  int slots_per_column;  // also the number of consume-cycles of a column of the drain
-  int lead_strips;       // strips before the first row of results can begin
+  int radius;             // r
+  int half;               // h: half width of the filter and the cost together
+  int rows;               // R: rows of results of a strip
+  int last_rows;          // rows of results of the last strip that lie inside the image
+  int folds;              // S: cycles of the matcher for a consume-cycle
+  int lanes;              // P: lanes on each side
+  int slots_per_column;   // K: lane p has those with k mod P = p
+  int cycles_per_column;  // G: consume-cycles of a column. Number g takes slot gP + p of every lane p
+  int lead_strips;        // strips before the first row of results can begin
   int strips;
   int first_row;      // first row of strip 0; may lie above the image. Each strip begins `rows` further down
   int drain_columns;  // C_d of the contract
-  std::uint64_t slots;
-  std::uint64_t drain_cycles;  // consume-cycles, each of `folds` cycles
+  std::uint64_t columns;         // of all strips
+  std::uint64_t slots;           // of a side
+  std::uint64_t consume_cycles;  // up to the drain, each of `folds` cycles
+  std::uint64_t drain_cycles;    // consume-cycles of the drain
   // C of the contract: the results of column i leave with column i + C, both counted over all strips.
   std::uint64_t result_delay_columns;
   std::uint64_t last_strip_column;  // the column with which the first results of the last strip leave
@@ -65,6 +72,14 @@ struct FrameGeometry {
 
   // The row of the first slot of each column of a strip; may lie outside the image.
   int first_row_of(int strip) const { return first_row + strip * rows; }
+  // The slots that a lane has of each column.
+  int slots_of_lane(int lane) const { return (slots_per_column - lane + lanes - 1) / lanes; }
+  // The slots of a lane that have been consumed after this number of consume-cycles.
+  std::uint64_t consumed_slots(int lane, std::uint64_t cycles) const {
+    const auto of_column = static_cast<std::uint64_t>(cycles_per_column);
+    const auto of_lane = static_cast<std::uint64_t>(slots_of_lane(lane));
+    return cycles / of_column * of_lane + std::min(cycles % of_column, of_lane);
+  }
   // Whether a row lies inside the image. A slot outside it makes no access, but takes its turn.
   bool is_inside(int row) const { return is_row_of_image(row, height); }
   // The place of a word of results in the buffer. Words are counted in the order in which they leave: a group
@@ -81,31 +96,36 @@ struct FrameGeometry {
   std::uint64_t columns_per_strip() const { return static_cast<std::uint64_t>(width); }
 };
 
-// A place in the sequence of the slots of a frame.
+// A place in the sequence of the slots of one lane in a frame.
 class SlotCursor {
  public:
   SlotCursor() = default;
-  explicit SlotCursor(const FrameGeometry& geometry)
+  SlotCursor(const FrameGeometry& geometry, int lane)
       : width_(geometry.width),
         height_(geometry.height),
-        slots_per_column_(geometry.slots_per_column),
+        slots_per_column_(geometry.slots_of_lane(lane)),
+        step_(geometry.lanes),
         rows_(geometry.rows),
-        strip_row_(geometry.first_row),
-        left_(geometry.slots) {}
+        strip_row_(geometry.first_row + lane),
+        row_(strip_row_),
+        left_(geometry.columns * static_cast<std::uint64_t>(slots_per_column_)) {}
 
   bool done() const { return left_ == 0; }
   int column() const { return column_; }
-  int row() const { return strip_row_ + k_; }  // may lie outside the image
+  int row() const { return row_; }  // may lie outside the image
   // See FrameGeometry::is_inside().
   bool empty() const { return !is_row_of_image(row(), height_); }
 
   void advance() {
     --left_;
+    row_ += step_;
     if (++k_ < slots_per_column_) return;
     k_ = 0;
-    if (++column_ < width_) return;
-    column_ = 0;
-    strip_row_ += rows_;
+    if (++column_ == width_) {
+      column_ = 0;
+      strip_row_ += rows_;
+    }
+    row_ = strip_row_;
   }
   void advance(std::uint64_t slots) {
     left_ -= slots;
@@ -116,16 +136,19 @@ class SlotCursor {
     column_ = static_cast<int>(column % static_cast<std::uint64_t>(width_));
     const auto strips = static_cast<int>(column / static_cast<std::uint64_t>(width_));
     strip_row_ += strips * rows_;
+    row_ = strip_row_ + k_ * step_;
   }
 
  private:
   int width_ = 0;
   int height_ = 0;
   int slots_per_column_ = 1;
+  int step_ = 1;  // rows from a slot of the column to the next one
   int rows_ = 1;
   int strip_row_ = 0;  // row of the first slot of each column of the strip
+  int row_ = 0;        // of the slot
   int column_ = 0;
-  int k_ = 0;               // slot within the column
+  int k_ = 0;               // slot within the column, counted in this sequence
   std::uint64_t left_ = 0;  // slots from this one to the end
 };
 

@@ -21,15 +21,15 @@ std::string text_of(Intent intent) {
   return "is idle";
 }
 
-std::string losses_of(std::size_t port, const memory::ArbiterStats& arbiter) {
-  std::size_t by = 0;
-  for (std::size_t other = 1; other <= memory::ArbiterStats::kTurnaround; ++other) {
-    if (arbiter.blame(port, other) > arbiter.blame(port, by)) by = other;
+std::string losses_of(std::size_t port, const memory::ArbiterStats& arbiter, const CorePorts& ports) {
+  std::size_t by = memory::ArbiterStats::kTurnaround;
+  for (std::size_t other = ports.size(); other-- > 0;) {
+    if (arbiter.blame(port, other) >= arbiter.blame(port, by)) by = other;
   }
   const std::uint64_t most = arbiter.blame(port, by);
   if (most == 0) return {};
   return ", lost " + std::to_string(most) + " cycles to " +
-         (by == memory::ArbiterStats::kTurnaround ? "turnaround" : kPorts[by].name);
+         (by == memory::ArbiterStats::kTurnaround ? "turnaround" : ports.name(by));
 }
 
 // What each port does in the next cycle of a frame. For a port that requests a bank, the text also names the
@@ -38,13 +38,14 @@ std::string waits_of_ports(const CoreControl& control, const memory::Arbitration
                            bool host_requests) {
   const CoreControl::Decision decision = control.decide();
   std::string text;
-  for (std::size_t port = 0; port < kPortCount; ++port) {
+  const CorePorts& ports = control.ports();
+  for (std::size_t port = 0; port < ports.size(); ++port) {
     const Intent host = host_requests ? Intent::kRequest : Intent::kIdle;
-    const Intent intent = port < kCorePortCount ? decision.intents[port] : host;
-    text += std::string(port == 0 ? "" : "; ") + kPorts[port].name + ' ' + text_of(intent);
+    const Intent intent = port < ports.core_size() ? decision.intents[port] : host;
+    text += std::string(port == 0 ? "" : "; ") + ports.name(port) + ' ' + text_of(intent);
     if (intent != Intent::kRequest) continue;
     const std::size_t bank = arbitration.bank_of(port);
-    text += std::to_string(bank) + losses_of(port, arbitration.stats(bank));
+    text += std::to_string(bank) + losses_of(port, arbitration.stats(bank), ports);
   }
   return text;
 }
@@ -60,8 +61,8 @@ FrameRun::FrameRun(const CoreConfig& config, const std::vector<memory::SsramBank
 }
 
 bool FrameRun::has_banks(const FrameBases& bases) const {
-  for (std::size_t port = 0; port < kCorePortCount; ++port) {
-    if (has_port(config_, port) && registers::bank_of(bases[port]) >= latencies_.size()) return false;
+  for (std::size_t group = 0; group < kCoreGroupCount; ++group) {
+    if (has_group(config_, group) && registers::bank_of(bases[group]) >= latencies_.size()) return false;
   }
   return true;
 }
@@ -111,11 +112,13 @@ void FrameRun::run_ahead_recorded(std::uint64_t end) {
 
 FrameLatencies FrameRun::route_ports(const FrameBases& bases) {
   FrameLatencies latencies{};
-  for (std::size_t port = 0; port < kCorePortCount; ++port) {
-    if (!has_port(config_, port)) continue;
-    const std::size_t bank = registers::bank_of(bases[port]);
-    core_.arbitration().route(port, bank, kPorts[port].write);
-    latencies[port] = latencies_[bank];
+  const CorePorts& ports = control().ports();
+  for (std::size_t port = 0; port < ports.core_size(); ++port) {
+    const std::size_t group = ports.group_of(port);
+    if (!has_group(config_, group)) continue;
+    const std::size_t bank = registers::bank_of(bases[group]);
+    core_.arbitration().route(port, bank, kPortGroups[group].write);
+    latencies[group] = latencies_[bank];
   }
   return latencies;
 }
@@ -146,16 +149,17 @@ void FrameRun::finish() {
 // accesses are those of the tables.
 void FrameRun::count_direct() {
   const FrameGeometry& geometry = control().geometry();
-  const auto count = [this](std::size_t port, std::uint64_t accesses) {
-    direct_counts_.accesses[core_.arbitration().bank_of(port)] += accesses;
+  const auto count = [this](std::size_t group, std::uint64_t accesses) {
+    direct_counts_.accesses[core_.arbitration().bank_of(control().ports().port(group))] += accesses;
   };
   for (const Side side : kSides) {
     const AccessPattern& pattern = (*patterns_)[index_of(side)];
-    if (has_port(config_, lut_port(side))) count(lut_port(side), geometry.slots - pattern.empty_slots());
-    count(pixel_port(side), pattern.pixel_accesses());
-    direct_counts_.slots[index_of(side)] += control().lane(side).taken();
+    if (has_group(config_, lut_group(side))) count(lut_group(side), pattern.table_accesses());
+    count(pixel_group(side), pattern.pixel_accesses());
   }
-  count(kResultPort, geometry.result_words);
+  for (std::size_t lane = 0; lane < control().lanes().size(); ++lane)
+    direct_counts_.slots[index_of(control().side_of(lane))] += control().lane(lane).taken();
+  count(kResultGroup, geometry.result_words);
   direct_counts_.packed_words += control().match().words();
   direct_counts_.written_words += writes();
 }

@@ -159,7 +159,7 @@ class FrameRun {
   void begin(std::uint64_t cycle, const FrameBases& bases);
   void run_ahead_recorded(std::uint64_t end);
   void count_direct();
-  std::uint64_t all_writes() const { return control().port_cycles(kResultPort).granted(); }
+  std::uint64_t all_writes() const { return control().port_cycles(control().ports().result()).granted(); }
 
   CoreConfig config_;
   std::vector<int> latencies_;  // [bank]: read latency, cycles

@@ -7,8 +7,6 @@
 namespace stereotlm::fpga {
 namespace {
 
-constexpr memory::PortMask kHostMask = memory::mask_of(kHostPort);
-
 bool grants(const memory::BankArbiter::Outcome& outcome) { return outcome.granted != 0; }
 
 }  // namespace
@@ -21,7 +19,7 @@ void HostPort::route(const HostRoute& route) {
   } else if (is_joined_) {
     is_joined_ = false;
     frames_.host_route_changes();
-    arbitration_.unroute(kHostPort);
+    arbitration_.unroute(port_);
   }
 }
 
@@ -30,7 +28,7 @@ void HostPort::join() {
   is_joined_ = true;
   if (ConflictRecorder* const conflicts = frames_.conflicts()) conflicts->set_host_traffic(traffic());
   frames_.host_route_changes();
-  arbitration_.route(kHostPort, *burst_.bank, burst_.write);
+  arbitration_.route(port_, *burst_.bank, burst_.write);
 }
 
 bool HostPort::access(std::uint64_t cycle, std::uint64_t edge_ps) {
@@ -46,7 +44,7 @@ std::optional<HostWord> HostPort::next_word() const {
 bool HostPort::is_contended() const { return is_contended(*burst_.bank); }
 
 bool HostPort::is_contended(std::size_t bank) const {
-  return frames_.is_running() && (!is_only_master_ || arbitration_.is_used_beside(kHostPort, bank));
+  return frames_.is_running() && (!is_only_master_ || arbitration_.is_used_beside(port_, bank));
 }
 
 void HostPort::serve_contended() {
@@ -72,7 +70,7 @@ void HostPort::step_contended(std::uint64_t first_cycle) {
     const std::uint64_t cycle = frames_.cycle();
     const std::uint64_t edge_ps = clock_.edge_ps(cycle);
     const memory::PortMask granted = frames_.step(bus_.requests(edge_ps));
-    if ((granted & kHostMask) != 0) serve_word(cycle, edge_ps);
+    if (memory::has(granted, port_)) serve_word(cycle, edge_ps);
   }
 }
 
@@ -115,7 +113,8 @@ std::optional<std::uint64_t> HostPort::serve_uncontended(std::uint64_t horizon_p
 
 // The outcome is counted only by count().
 memory::BankArbiter::Outcome HostPort::decide(std::size_t bank, std::uint64_t cycle, bool write) {
-  return arbitration_.arbiter(bank).decide(cycle, kHostMask, write ? kHostMask : memory::PortMask{0});
+  const memory::PortMask host = memory::mask_of(port_);
+  return arbitration_.arbiter(bank).decide(cycle, host, write ? host : 0);
 }
 
 // Moves all data of a burst that has just begun, if no frame can start within the burst and its bank grants
@@ -136,7 +135,7 @@ void HostPort::serve_word(std::uint64_t cycle, std::uint64_t edge_ps) {
   if (is_moved_) {
     bus_.count_granted(1, edge_ps, usable_ps(cycle));
   } else {
-    banks_.allow_access(kHostPort);
+    banks_.allow_access(port_);
     access(cycle, edge_ps);
   }
 }

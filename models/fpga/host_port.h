@@ -120,6 +120,7 @@ class HostPort {
   memory::Arbitration& arbitration_;
   FrameRun& frames_;
   const Clock& clock_;
+  memory::Port port_ = frames_.control().ports().host();
   bool is_in_step_;  // the clocks of the local bus begin with those of the core
   bool is_only_master_ = false;
   HostRoute burst_;

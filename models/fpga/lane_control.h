@@ -32,9 +32,10 @@ class LaneControl {
     Intent pixel = Intent::kIdle;
   };
 
-  // `fifo_slots`: the most slots in the lane. Throws std::invalid_argument outside kLaneFifoRule.
-  LaneControl(const FrameGeometry& geometry, bool has_table, PixelCache cache, int fifo_slots)
-      : geometry_(geometry),
+  // `lane`: 0 .. geometry.lanes - 1. `fifo_slots`: the most slots in the lane. Throws std::invalid_argument
+  // outside kLaneFifoRule.
+  LaneControl(const FrameGeometry& geometry, int lane, bool has_table, PixelCache cache, int fifo_slots)
+      : first_slot_(geometry, lane),
         has_table_(has_table),
         has_cache_(cache == PixelCache::kWord),
         fifo_slots_(static_cast<std::uint64_t>(kLaneFifoRule.required("lane_fifo_slots", fifo_slots))) {}
@@ -47,7 +48,7 @@ class LaneControl {
     };
     table_takes_two_cycles_ = has_table_ && takes_two("table_latency_cycles", table_latency_cycles);
     image_takes_two_cycles_ = takes_two("image_latency_cycles", image_latency_cycles);
-    next_slot_ = SlotCursor(geometry_);
+    next_slot_ = first_slot_;
     consumed_before_frame_ += consumed_;
     taken_ = 0;
     handled_ = 0;
@@ -123,6 +124,8 @@ class LaneControl {
   std::uint64_t taken() const { return taken_; }
   std::uint64_t handled() const { return handled_; }
   bool has_table() const { return has_table_; }
+  // The first slot of the lane in a frame.
+  const SlotCursor& first_slot() const { return first_slot_; }
   // The slot that the lane takes next.
   const SlotCursor& next_slot() const { return next_slot_; }
   // The number of slots that the matcher has consumed, over all frames.
@@ -142,10 +145,11 @@ class LaneControl {
     if (arrived_entries_ > handled_) {
       return (marks_ >> handled_ % kMostSlots & 1U) != 0 ? Intent::kRequest : Intent::kPass;
     }
-    return arrived_entries_ == 0 || handled_ == geometry_.slots ? Intent::kIdle : Intent::kStarved;
+    return arrived_entries_ == 0 || (handled_ == taken_ && next_slot_.done()) ? Intent::kIdle
+                                                                              : Intent::kStarved;
   }
 
-  FrameGeometry geometry_;
+  SlotCursor first_slot_;  // of a frame
   bool has_table_;
   bool has_cache_;
   std::uint64_t fifo_slots_;

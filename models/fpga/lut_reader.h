@@ -13,9 +13,9 @@
 
 namespace stereotlm::fpga {
 
-// Reads the table entry of each slot of one side, at most one per cycle, and passes it to the pixel reader
-// (paper section 3.2). A reader of joint tables serves both sides with each word. The control decides when a
-// slot comes: one that is not empty comes in the cycle in which its access is granted.
+// Reads the table entry of each slot of one lane, at most one per cycle, and passes it to the pixel reader
+// (paper section 3.2). A reader of joint tables serves a lane of each side with each word. The control
+// decides when a slot comes: one that is not empty comes in the cycle in which its access is granted.
 class LutReader : public sc_core::sc_module {
  public:
   tlm_utils::simple_initiator_socket<LutReader> port{"port"};

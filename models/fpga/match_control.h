@@ -8,24 +8,29 @@
 
 namespace stereotlm::fpga {
 
-// Decides when the matcher works, and which of its cycles complete words of results. It works on a slot, or
-// on a consume-cycle of the drain, for `folds` cycles, and consumes it in the last of them (contract 7.1).
+// Decides when the matcher works, and which of its cycles complete words of results. It works on a
+// consume-cycle (contract 8.1; with one lane: a slot) for `folds` cycles. In the last of them it consumes the
+// slots of the consume-cycle (contract 7.1). In the drain there are no slots.
 class MatchControl {
  public:
   explicit MatchControl(const FrameGeometry& geometry) : geometry_(geometry) {}
 
   void start_frame() {
     worked_before_frame_ = worked();
-    slots_left_ = geometry_.slots;
+    left_ = geometry_.consume_cycles;
     drain_left_ = geometry_.drain_cycles;
     fold_ = 0;
-    k_ = 0;
+    cycle_of_column_ = 0;
     columns_ = 0;
   }
-  // After the last slot the matcher consumes the columns of the drain, which need no slots.
-  bool draining() const { return slots_left_ == 0; }
-  // Whether the matcher works in this cycle. The arguments matter only for the first cycle of a slot, or of a
-  // consume-cycle of the drain.
+  bool draining() const { return left_ == 0; }
+  // The number of lanes of each side, from lane 0 on, that have a slot for the consume-cycle which is next or
+  // under way.
+  int lanes() const {
+    return std::min(geometry_.lanes, geometry_.slots_per_column - cycle_of_column_ * geometry_.lanes);
+  }
+  // Whether the matcher works in this cycle. The arguments matter only for the first cycle of a
+  // consume-cycle.
   bool decide(bool slots_ready, bool result_queue_has_room) const {
     return fold_ != 0 || (result_queue_has_room && (draining() ? drain_left_ > 0 : slots_ready));
   }
@@ -36,9 +41,9 @@ class MatchControl {
   bool work() {
     if (++fold_ < geometry_.folds) return false;
     fold_ = 0;
-    --(draining() ? drain_left_ : slots_left_);
-    if (++k_ < geometry_.slots_per_column) return false;
-    k_ = 0;
+    --(draining() ? drain_left_ : left_);
+    if (++cycle_of_column_ < geometry_.cycles_per_column) return false;
+    cycle_of_column_ = 0;
     ++columns_;
     return (columns_ - geometry_.result_delay_columns) % 4 == 0;
   }
@@ -51,10 +56,10 @@ class MatchControl {
   }
 
   // The matcher's part of the state that determines the next cycles: bits 0..2 the part of the frame, bits 3
-  // and 4 the columns of the group that are consumed, bits 5..10 the slots of the column, bits 11..18 fold_.
+  // and 4 the columns of the group that are consumed, bits 5..10 cycle_of_column_, bits 11..18 fold_.
   std::uint64_t state() const {
     return part() | (columns_ - geometry_.result_delay_columns) % 4 << 3U |
-           static_cast<std::uint64_t>(k_) << 5U | static_cast<std::uint64_t>(fold_) << kFoldBit;
+           static_cast<std::uint64_t>(cycle_of_column_) << 5U | static_cast<std::uint64_t>(fold_) << kFoldBit;
   }
   // The part of the frame: before or after the first results, the last strip, the drain.
   std::uint64_t part() const {
@@ -70,47 +75,48 @@ class MatchControl {
                static_cast<std::uint64_t>(geometry_.rows) +
            (columns_ - before_last_strip) / 4 * static_cast<std::uint64_t>(geometry_.last_rows);
   }
-  // The number of cycles for which the matcher still works on the slot, or the consume-cycle, that it has
-  // begun, before the cycle in which it consumes it.
+  // The number of cycles for which the matcher still works on the consume-cycle that it has begun, before the
+  // cycle in which it consumes.
   std::uint64_t cycles_to_consume() const {
     return fold_ == 0 ? 0 : static_cast<std::uint64_t>(geometry_.folds - 1 - fold_);
   }
   // Skips `cycles` of these cycles.
   void skip_folds(std::uint64_t cycles) { fold_ += static_cast<int>(cycles); }
-  // The number of slots, or of consume-cycles of the drain, that have been consumed in this frame.
-  std::uint64_t consumed() const { return columns_ * slots_per_column() + static_cast<std::uint64_t>(k_); }
-  // The number of slots, or of consume-cycles, up to and including the one after which part() changes.
-  std::uint64_t uniform_slots() const {
-    const std::uint64_t left = draining() ? drain_left_ : slots_left_;
+  // The number of consume-cycles that have ended in this frame.
+  std::uint64_t consumed() const {
+    return columns_ * cycles_per_column() + static_cast<std::uint64_t>(cycle_of_column_);
+  }
+  // The number of consume-cycles up to and including the one after which part() changes.
+  std::uint64_t uniform_cycles() const {
+    const std::uint64_t left = draining() ? drain_left_ : left_;
     if (columns_ < geometry_.result_delay_columns)
-      return std::min(left, geometry_.result_delay_columns * slots_per_column() - consumed());
+      return std::min(left, geometry_.result_delay_columns * cycles_per_column() - consumed());
     return columns_ < fewer_rows_column_ && fewer_rows_column_ != UINT64_MAX
-               ? std::min(left, fewer_rows_column_ * slots_per_column() - consumed())
+               ? std::min(left, fewer_rows_column_ * cycles_per_column() - consumed())
                : left;
   }
-  // The number of slots, or of consume-cycles, to the end of the group.
-  std::uint64_t slots_of_group_left() const {
+  // The number of consume-cycles to the end of the group.
+  std::uint64_t cycles_of_group_left() const {
     const std::uint64_t columns = 4 - (columns_ - geometry_.result_delay_columns) % 4;
-    return columns * slots_per_column() - static_cast<std::uint64_t>(k_);
+    return columns * cycles_per_column() - static_cast<std::uint64_t>(cycle_of_column_);
   }
-  // Skips the cycles in which `slots` slots, or consume-cycles, are consumed, at most uniform_slots(). The
-  // matcher is in `state` afterwards.
-  void skip_to(std::uint64_t state, std::uint64_t slots) {
-    (draining() ? drain_left_ : slots_left_) -= slots;
-    const std::uint64_t consumed = this->consumed() + slots;
-    columns_ = consumed / slots_per_column();
-    k_ = static_cast<int>(consumed % slots_per_column());
+  // Skips `consumed` consume-cycles, at most uniform_cycles(). The matcher is in `state` afterwards.
+  void skip_to(std::uint64_t state, std::uint64_t consumed) {
+    (draining() ? drain_left_ : left_) -= consumed;
+    const std::uint64_t all = this->consumed() + consumed;
+    columns_ = all / cycles_per_column();
+    cycle_of_column_ = static_cast<int>(all % cycles_per_column());
     fold_ = static_cast<int>(state >> kFoldBit);
   }
   // The number of cycles of the frame in which the matcher has still to work.
   std::uint64_t cycles_left() const {
-    return (slots_left_ + drain_left_) * static_cast<std::uint64_t>(geometry_.folds) -
+    return (left_ + drain_left_) * static_cast<std::uint64_t>(geometry_.folds) -
            static_cast<std::uint64_t>(fold_);
   }
   // The number of cycles in which the matcher has worked, over all frames.
   std::uint64_t worked() const {
     return worked_before_frame_ +
-           (geometry_.slots + geometry_.drain_cycles) * static_cast<std::uint64_t>(geometry_.folds) -
+           (geometry_.consume_cycles + geometry_.drain_cycles) * static_cast<std::uint64_t>(geometry_.folds) -
            cycles_left();
   }
 
@@ -118,16 +124,16 @@ class MatchControl {
   static constexpr unsigned kFoldBit = 11;
   static_assert(kernels::kMostRows < 1 << 6U);
 
-  std::uint64_t slots_per_column() const { return static_cast<std::uint64_t>(geometry_.slots_per_column); }
+  std::uint64_t cycles_per_column() const { return static_cast<std::uint64_t>(geometry_.cycles_per_column); }
 
   FrameGeometry geometry_;
   // From this column on, fewer rows of a strip lie inside the image. Never reached if all strips lie inside.
   std::uint64_t fewer_rows_column_ =
       geometry_.last_rows == geometry_.rows ? UINT64_MAX : geometry_.last_strip_column;
-  std::uint64_t slots_left_ = geometry_.slots;
+  std::uint64_t left_ = geometry_.consume_cycles;  // before the drain
   std::uint64_t drain_left_ = geometry_.drain_cycles;
-  int fold_ = 0;               // cycles worked on the slot, or the consume-cycle, that is being worked on
-  int k_ = 0;                  // slots of the current column that have been consumed
+  int fold_ = 0;               // cycles worked on the consume-cycle that is under way
+  int cycle_of_column_ = 0;    // consume-cycles of the current column that have ended
   std::uint64_t columns_ = 0;  // columns consumed
   std::uint64_t worked_before_frame_ = 0;
 };

@@ -8,10 +8,10 @@
 
 namespace stereotlm::fpga {
 
-PixelReader::PixelReader(const sc_core::sc_module_name& name, const CoreConfig& config)
+PixelReader::PixelReader(const sc_core::sc_module_name& name, const CoreConfig& config, int lane)
     : sc_module(name),
       width_(static_cast<std::uint64_t>(config.width)),
-      slots_per_column_(static_cast<std::size_t>(FrameGeometry(config).slots_per_column)),
+      slots_per_column_(static_cast<std::size_t>(FrameGeometry(config).slots_of_lane(lane))),
       has_cache_(config.pixel_cache == PixelCache::kWord),
       cached_(slots_per_column_),
       words_(slots_per_column_) {}

@@ -15,7 +15,7 @@
 
 namespace stereotlm::fpga {
 
-// Reads the source pixel of each slot of one side, at most one per cycle, in order, and holds it until the
+// Reads the source pixel of each slot of one lane, at most one per cycle, in order, and holds it until the
 // matcher consumes it. With a table, an entry from the LUT reader waits until handle() is called. Without a
 // table, the pixel of a slot from the sequencer is read as soon as the slot arrives. CoreControl decides in
 // which cycle a pixel is read, and in which cycle release() is called.
@@ -35,7 +35,8 @@ class PixelReader : public sc_core::sc_module {
   StreamIn<TableEntry, PixelReader, &PixelReader::store_entry> entries_in{"entries_in", this};
   StreamIn<Slot, PixelReader, &PixelReader::take> slots_in{"slots_in", this};
 
-  PixelReader(const sc_core::sc_module_name& name, const CoreConfig& config);
+  // `lane`: its number on its side.
+  PixelReader(const sc_core::sc_module_name& name, const CoreConfig& config, int lane);
 
   // `image_address`: byte address on the port.
   void start_frame(std::uint64_t image_address);

@@ -13,15 +13,13 @@ constexpr std::uint64_t kMostSteppedCycles = 8192;
 
 std::uint64_t present_ps() { return kernel_time::to_ps(sc_core::sc_time_stamp()); }
 
-const memory::CrossbarConfig& crossbar_config(const StereoCoreConfig& config) {
-  if (const std::size_t ports = config.memory.arbiter.priority.size(); ports != kPortCount) {
-    throw std::invalid_argument("memory.arbiter.priority = " + std::to_string(ports) +
-                                " ports: must name all " + std::to_string(kPortCount));
+memory::CrossbarConfig crossbar_config(const StereoCoreConfig& config) {
+  if (const std::size_t groups = config.memory.arbiter.priority.size(); groups != kGroupCount) {
+    throw std::invalid_argument("memory.arbiter.priority = " + std::to_string(groups) +
+                                " ports: must name all " + std::to_string(kGroupCount));
   }
-  return config.memory;
+  return {arbiter_of_ports(config.memory.arbiter, CorePorts(config.core)), config.memory.banks};
 }
-
-constexpr bool has_host(PortMask mask) { return (mask & memory::mask_of(kHostPort)) != 0; }
 
 }  // namespace
 
@@ -30,6 +28,7 @@ StereoCore::StereoCore(const sc_core::sc_module_name& name, const StereoCoreConf
       banks("bank", config.memory.banks.size()),
       config_(config),
       clock_(config.core.clock_mhz),
+      ports_(config.core),
       crossbar_("crossbar", crossbar_config(config)),
       datapath_(config_.core, crossbar_, binder) {
   SC_HAS_PROCESS(StereoCore);
@@ -39,7 +38,7 @@ StereoCore::StereoCore(const sc_core::sc_module_name& name, const StereoCoreConf
                                 ": must be that of the banks, " + std::to_string(banks_mhz));
   }
   local_bus.bind(local_bus_.bus);
-  binder.bind(local_bus_.memory, crossbar_.ports[kHostPort], "host_to_crossbar");
+  binder.bind(local_bus_.memory, crossbar_.ports[ports_.host()], "host_to_crossbar");
   binder.bind(local_bus_.registers, register_file_.local_bus, "local_bus_to_registers");
   local_bus_.route_out.bind(route_in_);
   for (std::size_t bank = 0; bank < banks.size(); ++bank) crossbar_.banks[bank].bind(banks[bank]);
@@ -70,7 +69,7 @@ void StereoCore::frame_ended(bool failed) {
 }
 
 void StereoCore::route_host(const HostRoute& route) {
-  if (route.bank) crossbar_.aim(kHostPort, *route.bank, route.write);
+  if (route.bank) crossbar_.aim(ports_.host(), *route.bank, route.write);
   if (fast_forwards()) {
     fast_core_.route(route);
   } else {
@@ -187,11 +186,11 @@ bool StereoCore::step(std::uint64_t edge_ps, const sc_core::sc_time& at) {
     });
     if (control().frame_done()) host_port_.finish_frame();
   } else {
-    granted = crossbar_.arbitrate(cycle, host_requests ? memory::mask_of(kHostPort) : PortMask{0});
-    if (host_requests) host_port_.record_cycle(cycle, has_host(granted));
+    granted = crossbar_.arbitrate(cycle, host_requests ? memory::mask_of(ports_.host()) : 0);
+    if (host_requests) host_port_.record_cycle(cycle, memory::has(granted, ports_.host()));
     frames_.skip_to(cycle + 1);
   }
-  if (has_host(granted) && !host_is_served) serve_host();
+  if (memory::has(granted, ports_.host()) && !host_is_served) serve_host();
   return burst_has_ended;
 }
 
@@ -199,8 +198,8 @@ bool StereoCore::step(std::uint64_t edge_ps, const sc_core::sc_time& at) {
 // read must come first, because it gets the old word. (move() reads before it writes, and before the host
 // writes.)
 bool StereoCore::host_reads_where_core_writes(PortMask granted) const {
-  return has_host(granted) && (granted & memory::mask_of(kResultPort)) != 0 &&
-         crossbar_.bank_of(kHostPort) == crossbar_.bank_of(kResultPort);
+  return memory::has(granted, ports_.host()) && memory::has(granted, ports_.result()) &&
+         crossbar_.bank_of(ports_.host()) == crossbar_.bank_of(ports_.result());
 }
 
 void StereoCore::wait_for_request_until(std::uint64_t time_ps) {

@@ -102,6 +102,7 @@ class StereoCore : public sc_core::sc_module, private FastCore::Board {
 
   StereoCoreConfig config_;
   Clock clock_;
+  CorePorts ports_;
   memory::Crossbar crossbar_;
   FrameRun frames_{config_.core, config_.memory.banks, crossbar_.arbitration(), config_.stall_timeout_cycles};
   RegisterFile register_file_{"register_file"};

@@ -48,30 +48,28 @@ void Arbitration::unroute(Port port) {
   check_route(port, 0);
   settle(alone_);
   shared_ = 0;
-  routed_ = static_cast<PortMask>(routed_ & ~mask_of(port));
+  routed_ &= ~mask_of(port);
   share_banks();
 }
 
 void Arbitration::visit(Port port, std::size_t bank, bool write) {
   check_route(port, bank);
   if (!is_shared(bank) || is_alone(port)) {
-    settle(static_cast<PortMask>(ports_on(bank) | mask_of(port)));
+    settle(ports_on(bank) | mask_of(port));
     shared_ |= std::uint64_t{1} << bank;
     set_route(port, bank, write);
     share_banks();
     return;
   }
-  for (SharedBank& shared : shared_banks_)
-    shared.ports = static_cast<PortMask>(shared.ports & ~mask_of(port));
-  SharedBank& shared = *find_shared(bank);
-  shared.ports = static_cast<PortMask>(shared.ports | mask_of(port));
+  for (SharedBank& shared : shared_banks_) shared.ports &= ~mask_of(port);
+  find_shared(bank)->ports |= mask_of(port);
   set_route(port, bank, write);
 }
 
 void Arbitration::set_route(Port port, std::size_t bank, bool write) {
   routes_[port] = {bank, write};
-  routed_ = static_cast<PortMask>(routed_ | mask_of(port));
-  writes_ = static_cast<PortMask>((writes_ & ~mask_of(port)) | (write ? mask_of(port) : 0U));
+  routed_ |= mask_of(port);
+  writes_ = (writes_ & ~mask_of(port)) | (write ? mask_of(port) : 0);
 }
 
 Arbitration::SharedBank* Arbitration::find_shared(std::size_t bank) {
@@ -80,17 +78,16 @@ Arbitration::SharedBank* Arbitration::find_shared(std::size_t bank) {
 }
 
 PortMask Arbitration::ports_on(std::size_t bank) const {
-  unsigned ports = 0;
-  for (std::size_t port = 0; port < kMostPorts; ++port)
-    ports |= unsigned{is_routed(port) && routes_[port].bank == bank} << port;
-  return static_cast<PortMask>(ports);
+  PortMask ports = 0;
+  for_each_port(routed_, [&](Port port) { ports |= routes_[port].bank == bank ? mask_of(port) : 0; });
+  return ports;
 }
 
 std::size_t Arbitration::cause_of(Port port, PortMask granted) const {
   const Route& route = routes_[port];
   const bool is_apart = arbiters_[route.bank].separates_directions();
-  for (unsigned ports = granted; ports != 0; ports &= ports - 1) {
-    const Port other = lowest_port(static_cast<PortMask>(ports));
+  for (PortMask ports = granted; ports != 0; ports &= ports - 1) {
+    const Port other = lowest_port(ports);
     if (routes_[other].bank == route.bank && (!is_apart || routes_[other].write == route.write)) return other;
   }
   return ArbiterStats::kTurnaround;
@@ -102,24 +99,23 @@ void Arbitration::share_banks() {
   const std::uint64_t were_shared = std::exchange(shared_, 0);
   alone_ = 0;
   shared_banks_.clear();
-  for (std::size_t port = 0; port < kMostPorts; ++port) {
-    if (!is_routed(port)) continue;
+  for_each_port(routed_, [&](Port port) {
     const std::size_t bank = routes_[port].bank;
     const PortMask together = ports_on(bank);
-    if (lowest_port(together) != port) continue;
+    if (lowest_port(together) != port) return;
     if (together == mask_of(port) && (were_shared >> bank & 1U) == 0 && !arbiters_[bank].needs_turnaround()) {
-      alone_ = static_cast<PortMask>(alone_ | mask_of(port));
+      alone_ |= mask_of(port);
     } else {
       shared_ |= std::uint64_t{1} << bank;
       shared_banks_.push_back({bank, &arbiters_[bank], together});
     }
-  }
+  });
 }
 
 // Adds the grants of these uncontended ports to the statistics, and moves the orders of their policies. To be
 // called when none of these grants can be retracted any more.
 void Arbitration::settle(PortMask ports) {
-  for_each_port(static_cast<PortMask>(ports & alone_), [this](Port port) {
+  for_each_port(ports & alone_, [this](Port port) {
     const std::uint64_t grants = std::exchange(alone_grants_[port], 0);
     if (grants == 0) return;
     const auto [bank, write] = routes_[port];
@@ -132,11 +128,11 @@ void Arbitration::settle(PortMask ports) {
 PortMask Arbitration::arbitrate_shared(std::uint64_t cycle, PortMask requests) {
   PortMask granted = 0;
   for (const SharedBank& shared : shared_banks_) {
-    const auto asking = static_cast<PortMask>(requests & shared.ports);
+    const auto asking = requests & shared.ports;
     if (asking == 0) continue;
     const BankArbiter::Outcome outcome = shared.arbiter->decide(cycle, asking, writes_);
     shared.arbiter->count(outcome);
-    granted = static_cast<PortMask>(granted | outcome.granted);
+    granted |= outcome.granted;
   }
   return granted;
 }

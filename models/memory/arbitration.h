@@ -42,25 +42,24 @@ class Arbitration {
   std::uint64_t shared() const { return shared_; }
   std::size_t bank_of(Port port) const { return routes_[port].bank; }  // bank of its last route
   bool writes(Port port) const { return routes_[port].write; }         // direction of its last route
-  bool is_routed(Port port) const { return (routed_ >> port & 1U) != 0; }
+  bool is_routed(Port port) const { return has(routed_, port); }
   // Whether a port other than this one is routed to the bank.
   bool is_used_beside(Port port, std::size_t bank) const { return (ports_on(bank) & ~mask_of(port)) != 0; }
 
   // Decides the requests of one cycle, and returns the ports granted. `cycle` must increase from call to
   // call; a cycle that is left out has no request.
   PortMask arbitrate(std::uint64_t cycle, PortMask requests) {
-    const auto granted = static_cast<PortMask>(requests & alone_);
+    const auto granted = requests & alone_;
     for_each_port(granted, [this](Port port) { ++alone_grants_[port]; });
     if (requests == granted) return granted;
-    return static_cast<PortMask>(granted |
-                                 arbitrate_shared(cycle, static_cast<PortMask>(requests & ~alone_)));
+    return granted | arbitrate_shared(cycle, requests & ~alone_);
   }
   // The cause of a stall of this port in the cycle in which arbitrate() has returned `granted`: the port that
   // its bank has granted, or ArbiterStats::kTurnaround.
   std::size_t cause_of(Port port, PortMask granted) const;
   // Whether the port is the only one on its bank, and the bank has no turnaround. Then each request is
   // granted in its cycle, as long as no route changes.
-  bool is_alone(Port port) const { return (alone_ & mask_of(port)) != 0; }
+  bool is_alone(Port port) const { return has(alone_, port); }
   // Subtracts grants of a port that is alone. FastForward counts a grant for each slot of such a pixel port
   // before it knows which table entries are valid, and then subtracts the grants of the slots that passed. To
   // be called before the bank is visited, another route changes, or counting ends: at that time the remaining

@@ -31,8 +31,8 @@ void put_waiting_first(const PriorityList& list, PriorityList& order, PortMask r
     std::copy(list.begin(), list.end(), order.begin());
     return;
   }
-  const auto waiting = static_cast<PortMask>(requests & ~granted);
-  const auto waits = [waiting](Port port) { return (waiting >> port & 1) != 0; };
+  const auto waiting = requests & ~granted;
+  const auto waits = [waiting](Port port) { return has(waiting, port); };
   const auto behind_waiting =
       std::remove_if(order.begin(), order.end(), [&waits](Port port) { return !waits(port); });
   std::remove_copy_if(list.begin(), list.end(), behind_waiting, waits);

@@ -20,6 +20,7 @@ constexpr std::size_t kPortsOfWord = 8;
 BankArbiter::BankArbiter(const ArbiterConfig& config, const SsramBankConfig& bank)
     : policy_(find_arbitration_policy(checked(config).policy)),
       list_(config.priority),
+      ports_(mask_of(list_.size()) - 1),
       has_separate_ports_(has_separate_ports(checked(bank).kind)),
       orders_{list_, list_},
       other_direction_cycles_(has_separate_ports_ ? 0
@@ -27,23 +28,21 @@ BankArbiter::BankArbiter(const ArbiterConfig& config, const SsramBankConfig& ban
       stats_(list_.size()) {}
 
 BankArbiter::Outcome BankArbiter::decide(std::uint64_t cycle, PortMask requests, PortMask writes) {
-  if (requests == 0 || requests >> list_.size() != 0) {
-    throw std::invalid_argument("requests = " + std::to_string(requests) +
-                                ": must be a mask of one or more of the ports 0.." +
-                                std::to_string(list_.size() - 1));
+  if (requests == 0 || (requests & ~ports_) != 0) {
+    throw std::invalid_argument("requests: must be one or more of the ports 0.." +
+                                std::to_string(list_.size() - 1) + ", and no other");
   }
   // Any number of cycles without request acts as one does.
   if (cycle != next_cycle_) {
     for (PriorityList& order : orders_) advance(order, 0, 0);
   }
   next_cycle_ = cycle + 1;
-  const auto writing = static_cast<PortMask>(requests & writes);
+  const auto writing = requests & writes;
   if (!has_separate_ports_)
     return {requests, writing, decide_direction(orders_[0], cycle, requests, writing)};
-  const auto reading = static_cast<PortMask>(requests & ~writes);
+  const auto reading = requests & ~writes;
   const PortMask read = decide_direction(orders_[0], cycle, reading, 0);
-  return {requests, writing,
-          static_cast<PortMask>(read | decide_direction(orders_[1], cycle, writing, writing))};
+  return {requests, writing, read | decide_direction(orders_[1], cycle, writing, writing)};
 }
 
 // Returns the port that is granted.
@@ -51,11 +50,13 @@ PortMask BankArbiter::decide_direction(PriorityList& order, std::uint64_t cycle,
                                        PortMask writes) {
   PortMask granted = 0;
   if (requests != 0) {
-    const auto winner = std::find_if(order.begin(), order.end(),
-                                     [requests](Port port) { return (requests >> port & 1U) != 0; });
-    const std::size_t write = writes >> *winner & 1U;
+    const PortMask winner =
+        contend(requests) ? mask_of(*std::find_if(order.begin(), order.end(),
+                                                  [requests](Port port) { return has(requests, port); }))
+                          : requests;
+    const std::size_t write = (writes & winner) != 0 ? 1 : 0;
     if (cycle >= ready_cycle_[write]) {
-      granted = mask_of(*winner);
+      granted = winner;
       ready_cycle_[1 - write] = cycle + other_direction_cycles_;
     }
   }
@@ -64,9 +65,10 @@ PortMask BankArbiter::decide_direction(PriorityList& order, std::uint64_t cycle,
 }
 
 void BankArbiter::count(const Outcome& outcome, std::uint64_t cycles) {
-  const auto reads = static_cast<PortMask>(outcome.requests & ~outcome.writes);
+  const auto reads = outcome.requests & ~outcome.writes;
   if (!counting_) {
-    stats_.add(ArbiterStats::kUncounted, cycles * static_cast<unsigned>(__builtin_popcount(outcome.granted)));
+    stats_.add(ArbiterStats::kUncounted,
+               cycles * (contend(outcome.granted) ? 2U : unsigned{outcome.granted != 0}));
   } else if (has_separate_ports_) {
     count_direction(reads, outcome.granted & reads, false, cycles);
     count_direction(outcome.writes, outcome.granted & outcome.writes, true, cycles);
@@ -87,8 +89,7 @@ void BankArbiter::count_direction(PortMask requests, PortMask granted, bool writ
     stats_.add(ArbiterStats::kBusy, cycles);
     stats_.add(stats_.grants_place(by), cycles);
   }
-  for_each_port(static_cast<PortMask>(requests & ~granted),
-                [&](Port port) { stats_.add(stats_.blame_place(port, by), cycles); });
+  for_each_port(requests & ~granted, [&](Port port) { stats_.add(stats_.blame_place(port, by), cycles); });
 }
 
 // The first grant moves the order. Each further one acts as a cycle without request does.

@@ -128,6 +128,7 @@ class BankArbiter {
 
   const ArbitrationPolicy* policy_;
   PriorityList list_;
+  PortMask ports_;  // all of the list
   bool has_separate_ports_;
   // Of [0] reads, [1] writes. Without separate ports [0] is of both.
   std::array<PriorityList, 2> orders_;

@@ -52,12 +52,13 @@ void Crossbar::PortTarget::route(std::size_t bank, bool write, tlm::tlm_blocking
 
 void Crossbar::PortTarget::b_transport(tlm::tlm_generic_payload& access, sc_core::sc_time& delay) {
   const std::uint64_t address = access.get_address();
-  if ((crossbar_.granted_ & port_mask_) == 0 || bank_base(address) != bank_base_ ||
-      access.is_write() != write_) {
+  std::uint64_t& granted = crossbar_.granted_[port_ / 64];
+  const std::uint64_t port = std::uint64_t{1} << port_ % 64;
+  if ((granted & port) == 0 || bank_base(address) != bank_base_ || access.is_write() != write_) {
     crossbar_.refuse(access);
     return;
   }
-  crossbar_.granted_ = static_cast<PortMask>(crossbar_.granted_ & ~port_mask_);
+  granted &= ~port;
   access.set_address(address - bank_base_);
   bank_port_->b_transport(access, delay);
   access.set_address(address);

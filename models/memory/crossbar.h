@@ -2,6 +2,7 @@
 
 #include <tlm_utils/simple_initiator_socket.h>
 
+#include <array>
 #include <cstdint>
 #include <deque>
 #include <systemc>
@@ -53,7 +54,10 @@ class Crossbar : public sc_core::sc_module, public DirectBanks {
     return grant(arbitration_.arbitrate(cycle, requests));
   }
   // Grants these ports one access each in the current cycle. For an owner that calls arbitration() itself.
-  PortMask grant(PortMask granted) { return granted_ = granted; }
+  PortMask grant(PortMask granted) {
+    granted_ = {static_cast<std::uint64_t>(granted), static_cast<std::uint64_t>(granted >> 64U)};
+    return granted;
+  }
   Arbitration& arbitration() { return arbitration_; }
   const Arbitration& arbitration() const { return arbitration_; }
 
@@ -64,7 +68,7 @@ class Crossbar : public sc_core::sc_module, public DirectBanks {
   // The target behind the socket of one port.
   class PortTarget : public tlm::tlm_fw_transport_if<> {
    public:
-    PortTarget(Crossbar& crossbar, Port port) : crossbar_(crossbar), port_mask_(mask_of(port)) {}
+    PortTarget(Crossbar& crossbar, Port port) : crossbar_(crossbar), port_(port) {}
     void route(std::size_t bank, bool write, tlm::tlm_blocking_transport_if<>& target);
     void b_transport(tlm::tlm_generic_payload& access, sc_core::sc_time& delay) override;
     tlm::tlm_sync_enum nb_transport_fw(tlm::tlm_generic_payload& access, tlm::tlm_phase&,
@@ -80,7 +84,7 @@ class Crossbar : public sc_core::sc_module, public DirectBanks {
 
    private:
     Crossbar& crossbar_;
-    PortMask port_mask_;
+    Port port_;
     bool write_ = false;
     std::uint64_t bank_base_ = 0;  // first address of the bank to which the port is directed
     tlm::tlm_blocking_transport_if<>* bank_port_ = nullptr;  // looked up once, for speed
@@ -91,7 +95,9 @@ class Crossbar : public sc_core::sc_module, public DirectBanks {
 
   Arbitration arbitration_;
   std::deque<PortTarget> targets_;
-  PortMask granted_ = 0;  // grants of the current cycle that are not yet used
+  // Grants of the current cycle that are not yet used: ports 0..63, then the others. A stage changes one
+  // word.
+  std::array<std::uint64_t, 2> granted_{};
 };
 
 }  // namespace stereotlm::memory

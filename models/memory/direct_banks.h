@@ -30,6 +30,7 @@ class DirectBanks {
   // Whether the words at byte addresses first .. end - 1 may have changed since the last call for this port.
   // True in the first call, and if the last call was for other addresses.
   bool may_have_changed(Port port, std::uint64_t first, std::uint64_t end) {
+    if (port >= watches_.size()) watches_.resize(port + 1);
     Watch& watch = watches_[port];
     const bool is_new = watch.first != first || watch.end != end;
     const bool changed = watch.changed || is_new;
@@ -48,7 +49,7 @@ class DirectBanks {
     bool changed = true;
   };
 
-  std::array<Watch, kMostPorts> watches_{};
+  std::vector<Watch> watches_;
   std::vector<std::uint64_t> direct_accesses_;  // [bank]
 };
 

@@ -26,18 +26,29 @@ constexpr std::uint64_t bank_of_address(std::uint64_t address) { return address 
 // The index of a port on the banks: 0 .. n-1. The module that owns the ports names them (fpga/core_ports.h).
 using Port = std::size_t;
 // The largest number of ports.
-inline constexpr std::size_t kMostPorts = 6;
+inline constexpr std::size_t kMostPorts = 66;
 
 // A set of ports: bit number `port` is 1 if the port is in the set.
-using PortMask = std::uint8_t;
-static_assert(kMostPorts <= 8);
-constexpr PortMask mask_of(Port port) { return static_cast<PortMask>(1U << port); }
+__extension__ using PortMask = unsigned __int128;
+static_assert(kMostPorts <= 128);
+constexpr PortMask mask_of(Port port) { return PortMask{1} << port; }
+constexpr bool has(PortMask ports, Port port) {
+  const auto half = static_cast<std::uint64_t>(port < 64 ? ports : ports >> 64U);
+  return (half >> port % 64 & 1U) != 0;
+}
 // The port with the lowest index in a set that is not empty.
-constexpr Port lowest_port(PortMask ports) { return static_cast<Port>(__builtin_ctz(ports)); }
+constexpr Port lowest_port(PortMask ports) {
+  const auto low = static_cast<std::uint64_t>(ports);
+  return static_cast<Port>(low != 0 ? __builtin_ctzll(low)
+                                    : 64 + __builtin_ctzll(static_cast<std::uint64_t>(ports >> 64U)));
+}
 // Calls visit(port) for each port of a set, the lowest first.
 template <class Visit>
 void for_each_port(PortMask ports, const Visit& visit) {
-  for (unsigned left = ports; left != 0; left &= left - 1) visit(static_cast<Port>(__builtin_ctz(left)));
+  for (auto low = static_cast<std::uint64_t>(ports); low != 0; low &= low - 1)
+    visit(static_cast<Port>(__builtin_ctzll(low)));
+  for (auto high = static_cast<std::uint64_t>(ports >> 64U); high != 0; high &= high - 1)
+    visit(static_cast<Port>(64 + __builtin_ctzll(high)));
 }
 
 using PriorityList = std::vector<Port>;

@@ -29,6 +29,7 @@ fpga::CoreConfig core_config(const BoardConfig& board) {
   core.right_table = board.allocation.right_lut.has_value();
   core.joint_tables = board.fpga.joint_tables;
   core.pixel_cache = board.fpga.pixel_cache;
+  core.lanes = board.fpga.lanes;
   core.clock_mhz = board.fpga.clock_mhz;
   core.lane_fifo_slots = board.fpga.lane_fifo_slots;
   core.result_fifo_words = board.fpga.result_fifo_words;

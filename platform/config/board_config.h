@@ -67,6 +67,7 @@ struct FpgaConfig {
   int lane_fifo_slots = 16;          // slots, 1..64
   int result_fifo_words = 8;         // 32-bit words, 1..64, at least matcher.rows
   int pipeline_latency_cycles = 16;  // cycles, 0..1024
+  int lanes = 1;                     // lanes on each side, 1..16
   bool joint_tables = false;         // true: one table for both sides
   fpga::PixelCache pixel_cache = fpga::PixelCache::kNone;
 };
@@ -134,5 +135,7 @@ std::vector<memory::SsramBankConfig> ssram_configs(const BoardConfig& board);
 
 // The configuration of the core.
 fpga::CoreConfig core_config(const BoardConfig& board);
+// The ports of the core, and that of the host.
+inline fpga::CorePorts core_ports(const BoardConfig& board) { return fpga::CorePorts(board.fpga.lanes); }
 
 }  // namespace stereotlm::platform

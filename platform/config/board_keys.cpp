@@ -136,7 +136,7 @@ std::vector<std::string> names_in(const Table& table) {
 }
 
 const std::vector<std::string>& port_names() {
-  static const std::vector<std::string> kNames = names_in(fpga::kPorts);
+  static const std::vector<std::string> kNames = names_in(fpga::kPortGroups);
   return kNames;
 }
 
@@ -206,7 +206,7 @@ void read_priority(ValueReader& values, const Key& key, const Entry& entry, Boar
 YamlNode write_priority(const BoardConfig& board) {
   std::vector<YamlNode> ports;
   for (const memory::Port port : board.fpga.arbiter.priority)
-    ports.push_back(YamlNode::word(port < fpga::kPortCount ? fpga::kPorts[port].name : "(no port)"));
+    ports.push_back(YamlNode::word(port < fpga::kGroupCount ? fpga::kPortGroups[port].name : "(no port)"));
   return YamlNode::list(std::move(ports));
 }
 

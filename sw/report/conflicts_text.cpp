@@ -60,9 +60,10 @@ Json wait_of(const platform::BoardConfig& board, const fpga::TileGrid& grid,
     columns[(tile - 1) % grid.columns] += stalls.cycles[tile];
   }
   const bool is_in_fill = sum_of(rows) == 0;
-  Json wait = {{"port", fpga::requester_name(stalls.requester)},
+  const fpga::Requesters requesters(platform::core_ports(board));
+  Json wait = {{"port", requesters.name(stalls.requester)},
                {"bank", board.banks[stalls.bank].name},
-               {"by", fpga::requester_name(stalls.by)},
+               {"by", requesters.name(stalls.by)},
                {"cycles", sum_of(stalls.cycles)},
                {"cycles_percent", percent_of(sum_of(stalls.cycles), cycles)},
                {"before_first_row", is_in_fill}};

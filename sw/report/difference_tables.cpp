@@ -262,8 +262,8 @@ std::string rows_table(const stats::RowComparison& rows) {
   const std::vector<stats::RowComparison::Range> ranges = rows.ranges(kMostLines);
   if (ranges.empty()) return text;  // no difference, or differences of frames cancel out
   text += fmt::format("{:>43}waiting cycles of\n{:<11} {:>11} {:>15}", "", "rows", "difference", "each row");
-  for (std::size_t port = 0; port < fpga::kCorePortCount; ++port)
-    text += fmt::format(" {:>11}", fpga::kPorts[port].name);
+  for (std::size_t port = 0; port < fpga::kCoreGroupCount; ++port)
+    text += fmt::format(" {:>11}", fpga::kPortGroups[port].name);
   text += '\n';
   for (const stats::RowComparison::Range& range : ranges) {
     text +=

@@ -30,7 +30,7 @@ double mean_of(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-const std::string kHost = fpga::kPorts[fpga::kHostPort].name;
+const std::string kHost = fpga::kPortGroups[fpga::kHostGroup].name;
 constexpr double kVisibleLoss = 0.01;     // of the cycles
 constexpr double kVisiblePercent = 0.05;  // of the time of a frame
 constexpr double kLeastHeadroom = 10;     // of a bus in percent; with less it is named beside what waits
@@ -123,7 +123,7 @@ double result_queue_percent(const Explanation& explanation) {
   const double lost = cycles * (1 - row.real("frames_per_second.core") / row.real("bound.core"));
   std::int64_t stalled = 0;
   std::int64_t blocked = 0;
-  for (const fpga::CorePort& port : fpga::kPorts) {
+  for (const fpga::PortGroup& port : fpga::kPortGroups) {
     const std::string name = std::string("ports.") + port.name;
     stalled += row.integer(name + ".stall_cycles");
     blocked = std::max(blocked, row.integer(name + ".blocked_cycles"));
@@ -347,8 +347,8 @@ double Explanation::busy_percent(const std::string& resource) const {
   if (resource == "bridge") return 100 * number("bridge.local_busy_clocks") / number("bridge.local_clocks");
   if (resource == "matcher") {
     const fpga::FrameGeometry geometry(platform::core_config(board_));
-    const auto of_frame =
-        static_cast<double>((geometry.slots + geometry.drain_cycles) * static_cast<unsigned>(geometry.folds));
+    const auto of_frame = static_cast<double>((geometry.consume_cycles + geometry.drain_cycles) *
+                                              static_cast<unsigned>(geometry.folds));
     return 100 * number("frames") * of_frame / number("cycles");
   }
   if (const auto bank = platform::bank_of_resource(resource))

@@ -58,8 +58,14 @@ constexpr char kRecord = 'r';
 // as bytes, because both processes run the same program.
 std::string message_of(const Result& result, const fpga::RowProfile& rows) {
   std::string message(1, kFrame);
-  message.append(reinterpret_cast<const char*>(&result.number), sizeof result.number);
-  message.append(reinterpret_cast<const char*>(rows.data()), rows.size() * sizeof rows[0]);
+  const auto put = [&message](const std::uint64_t* from, std::size_t count) {
+    message.append(reinterpret_cast<const char*>(from), count * sizeof *from);
+  };
+  put(&result.number, 1);
+  for (const fpga::RowEnd& row : rows) {
+    put(&row.cycles, 1);
+    put(row.stalls.data(), row.stalls.size());
+  }
   const auto& pixels = result.disparity.pixels;
   return message.append(pixels.begin(), pixels.end());
 }
@@ -73,7 +79,11 @@ Rerun::Frame frame_of(const std::string& message, const RecordedRun& run) {
   };
   take(&frame.number, sizeof frame.number);
   frame.rows.resize(static_cast<std::size_t>(run.board.image.height));
-  take(frame.rows.data(), frame.rows.size() * sizeof frame.rows[0]);
+  for (fpga::RowEnd& row : frame.rows) {
+    row.stalls.resize(platform::core_ports(run.board).core_size());
+    take(&row.cycles, sizeof row.cycles);
+    take(row.stalls.data(), row.stalls.size() * sizeof row.stalls[0]);
+  }
   if (run.options.timing_only) return frame;
   frame.disparity = kernels::GrayImage(run.board.image.width, run.board.image.height);
   take(frame.disparity.pixels.data(), frame.disparity.pixels.size());

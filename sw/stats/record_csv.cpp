@@ -45,8 +45,9 @@ std::string csv_range(std::size_t index, std::size_t length, int whole) {
 
 std::string rows_csv_head(const platform::BoardConfig& board) {
   std::string text = "frame,first_row,last_row,cycles";
-  for (std::size_t requester = 0; requester < fpga::kRequesters; ++requester) {
-    std::string name = fpga::requester_name(requester);
+  const fpga::Requesters requesters(platform::core_ports(board));
+  for (std::size_t requester = 0; requester < requesters.size(); ++requester) {
+    std::string name = requesters.name(requester);
     std::replace_if(
         name.begin(), name.end(), [](char letter) { return letter == ' ' || letter == '-'; }, '_');
     text += fmt::format(",{}_stall_cycles", name);
@@ -61,7 +62,8 @@ std::string rows_csv(const platform::BoardConfig& board, std::uint64_t frame,
                      const fpga::FrameConflicts& conflicts) {
   std::string text;
   const auto rows = static_cast<std::size_t>(board.matcher.rows);
-  const std::size_t numbers = 1 + fpga::kRequesters + conflicts.banks * fpga::FrameConflicts::kAccessKinds;
+  const std::size_t numbers =
+      1 + conflicts.strips.front().stalls.size() + conflicts.banks * fpga::FrameConflicts::kAccessKinds;
   std::vector<char> line(numbers * (kMostDigits + 1));
   for (std::size_t strip = 0; strip < conflicts.strips.size(); ++strip) {
     const fpga::StripConflicts& of_strip = conflicts.strips[strip];
@@ -94,9 +96,10 @@ std::string conflicts_csv(const platform::BoardConfig& board, const fpga::Confli
   const fpga::TileGrid& grid = recorder.grid();
   const std::vector<const fpga::ConflictRecorder::Stalls*> stalls = recorder.stalls();
   std::vector<std::string> names;
+  const fpga::Requesters& requesters = recorder.requesters();
   for (const fpga::ConflictRecorder::Stalls* each : stalls) {
-    names.push_back(fmt::format("{},{},{},", fpga::requester_name(each->requester),
-                                board.banks[each->bank].name, fpga::requester_name(each->by)));
+    names.push_back(fmt::format("{},{},{},", requesters.name(each->requester), board.banks[each->bank].name,
+                                requesters.name(each->by)));
   }
   const std::vector<std::uint64_t> tile_cycles = recorder.tile_cycles();
   std::string place;

@@ -21,8 +21,8 @@ bool is_empty(const RowComparison::Range& range) {
 std::string csv_head() {
   std::string text = "frame,row,a_cycles,b_cycles";
   for (const char* run : {"a", "b"}) {
-    for (std::size_t port = 0; port < fpga::kCorePortCount; ++port)
-      text += fmt::format(",{}_{}_stall_cycles", run, fpga::kPorts[port].name);
+    for (std::size_t port = 0; port < fpga::kCoreGroupCount; ++port)
+      text += fmt::format(",{}_{}_stall_cycles", run, fpga::kPortGroups[port].name);
   }
   return text + '\n';
 }
@@ -51,7 +51,7 @@ fpga::RowProfile rows_alone(const fpga::RowProfile& profile) {
   fpga::RowProfile rows = profile;
   for (std::size_t row = rows.size(); row-- > 1;) {
     rows[row].cycles -= profile[row - 1].cycles;
-    for (std::size_t port = 0; port < fpga::kCorePortCount; ++port)
+    for (std::size_t port = 0; port < rows[row].stalls.size(); ++port)
       rows[row].stalls[port] -= profile[row - 1].stalls[port];
   }
   return rows;
@@ -69,7 +69,7 @@ void RowComparison::add(const fpga::RowProfile& a, const fpga::RowProfile& b) {
     if (!other_stalls_ && alone_a[row].stalls != alone_b[row].stalls)
       other_stalls_ = OtherStalls{frames_, row};
     rows_[row].cycles += difference(alone_a[row].cycles, alone_b[row].cycles);
-    for (std::size_t port = 0; port < fpga::kCorePortCount; ++port)
+    for (std::size_t port = 0; port < fpga::kCoreGroupCount; ++port)
       rows_[row].stalls[port] += difference(alone_a[row].stalls[port], alone_b[row].stalls[port]);
   }
   ++frames_;
@@ -81,7 +81,7 @@ RowComparison::Range RowComparison::range(std::size_t first_row, std::size_t las
     range.cycles += rows_[row].cycles;
     range.least = std::min(range.least, rows_[row].cycles);
     range.most = std::max(range.most, rows_[row].cycles);
-    for (std::size_t port = 0; port < fpga::kCorePortCount; ++port)
+    for (std::size_t port = 0; port < fpga::kCoreGroupCount; ++port)
       range.stalls[port] += rows_[row].stalls[port];
   }
   return range;

@@ -74,10 +74,10 @@ class RowComparison {
   struct Range {
     std::size_t first_row = 0;
     std::size_t last_row = 0;
-    std::int64_t cycles = 0;                                  // sum over the rows
-    std::int64_t least = 0;                                   // the least cycles of a single row
-    std::int64_t most = 0;                                    // the most cycles of a single row
-    std::array<std::int64_t, fpga::kCorePortCount> stalls{};  // sums over the rows
+    std::int64_t cycles = 0;                                   // sum over the rows
+    std::int64_t least = 0;                                    // the least cycles of a single row
+    std::int64_t most = 0;                                     // the most cycles of a single row
+    std::array<std::int64_t, fpga::kCoreGroupCount> stalls{};  // sums over the rows
   };
   // Ranges of rows from top to bottom, at most `most_ranges`. The rows of a range have the same B - A in
   // cycles and in stalls; if that gives too many ranges, only in cycles. If there are still too many, all
@@ -88,7 +88,7 @@ class RowComparison {
  private:
   struct Row {
     std::int64_t cycles = 0;
-    std::array<std::int64_t, fpga::kCorePortCount> stalls{};
+    std::array<std::int64_t, fpga::kCoreGroupCount> stalls{};
   };
 
   Range range(std::size_t first_row, std::size_t last_row) const;

@@ -290,7 +290,8 @@ void check_names(const StatsReader& reader, const platform::BoardConfig& board,
   std::vector<std::string> banks;
   for (const platform::BankConfig& bank : board.banks) banks.push_back(bank.name);
   std::vector<std::string> ports;
-  for (const fpga::CorePort& port : fpga::kPorts) ports.emplace_back(port.name);
+  const fpga::CorePorts all_ports = platform::core_ports(board);
+  for (std::size_t port = 0; port < all_ports.size(); ++port) ports.push_back(all_ports.name(port));
   std::vector<std::string> causes = ports;
   causes.emplace_back("turnaround");
   std::array<std::size_t, 3> last{};
@@ -436,7 +437,7 @@ platform::Statistics read_stats(const std::string& text, const platform::BoardCo
                   fmt::format("must have an entry for each of the {} frames of run.json", frames));
   statistics.fidelity = fidelity;
   statistics.banks.resize(board.banks.size());
-  statistics.ports.resize(fpga::kPortCount);
+  statistics.ports.resize(platform::core_ports(board).size());
   platform::derive_figures(board, statistics);
   check_names(reader, board, statistics);
   const Json right = stats_document(statistics, read_accuracy(reader));

@@ -305,7 +305,7 @@ constexpr std::size_t kFirstQueueRank = 3;  // behind those of the core
 
 // The tracks of a bank: its only one, or that of its reads; and that of its writes. [2 * bank + is_second]
 std::size_t bank_track(const TraceBoard& board, std::size_t bank, std::size_t requester) {
-  return 2 * bank + (writes(requester) && board.has_separate_ports(bank) ? 1 : 0);
+  return 2 * bank + (board.requesters.writes(requester) && board.has_separate_ports(bank) ? 1 : 0);
 }
 
 // The frames of the core: a slice for each frame, each strip, and each run of a strip. The slices of a port
@@ -316,8 +316,8 @@ class Rows {
       : board_(board),
         frames_(file, TrackGroup::kCore, 0, "frames"),
         strips_(file, TrackGroup::kCore, 1, "rows") {
-    for (std::size_t requester = 0; requester < fpga::kRequesters; ++requester) {
-      const std::string name = fpga::requester_name(requester);
+    for (std::size_t requester = 0; requester < board.requesters.size(); ++requester) {
+      const std::string& name = board.requester_names[requester];
       ports_.push_back({{file, TrackGroup::kPorts, 3 * requester, name}});
       port_waits_.emplace_back(file, TrackGroup::kPorts, 3 * requester + 2, name + " waits in each row",
                                "cycles");
@@ -386,17 +386,17 @@ class Rows {
         if (wait->by == run->requester && wait->bank == run->bank) flows.push_back(flow_of(*wait));
       }
       write_run(ports_[run->requester], *run,
-                fmt::format("{} {} x{}", writes(run->requester) ? "writes" : "reads",
+                fmt::format("{} {} x{}", board_.requesters.writes(run->requester) ? "writes" : "reads",
                             board_.bank_name(run->bank), run->count),
                 flows);
       write_run(banks_[bank_track(board_, run->bank, run->requester)], *run,
-                fmt::format("{} x{}", fpga::requester_name(run->requester), run->count), {});
+                fmt::format("{} x{}", board_.requester_names[run->requester], run->count), {});
     }
     for (const TraceRun* run = begin; run != end; ++run) {
       if (!run->by) continue;
       write_run(ports_[run->requester], *run,
                 board_.wait_text(run->requester, run->count, *run->by, run->bank),
-                *run->by != fpga::kTurnaroundToBlame ? Flows{flow_of(*run)} : Flows{});
+                *run->by != board_.requesters.turnaround() ? Flows{flow_of(*run)} : Flows{});
     }
   }
 
@@ -408,7 +408,7 @@ class Rows {
 
   void write_counters(const TraceRun* begin, const TraceRun* end, std::uint64_t first_cycle,
                       std::uint64_t end_cycle) {
-    std::array<std::uint64_t, fpga::kRequesters> waits{};
+    std::vector<std::uint64_t> waits(board_.requesters.size());
     std::vector<std::uint64_t> uses(board_.banks.size());
     for (const TraceRun* run = begin; run != end; ++run)
       (run->by ? waits[run->requester] : uses[run->bank]) += run->count;
@@ -443,10 +443,12 @@ class Cycles {
         queues_{PerfettoTrack(file, TrackGroup::kQueues, 0, "left lane", "slots"),
                 PerfettoTrack(file, TrackGroup::kQueues, 1, "right lane", "slots"),
                 PerfettoTrack(file, TrackGroup::kQueues, 2, "results", "words")},
-        bank_runs_(2 * board.banks.size()) {
-    for (std::size_t requester = 0; requester < fpga::kRequesters; ++requester)
+        port_runs_(board.ports().size()),
+        bank_runs_(2 * board.banks.size()),
+        flows_(board.requesters.size()) {
+    for (std::size_t requester = 0; requester < board.requesters.size(); ++requester)
       ports_.emplace_back(file, TrackGroup::kPorts, 3 * requester + 1,
-                          std::string(fpga::requester_name(requester)) + " cycles");
+                          board.requester_names[requester] + " cycles");
     for (std::size_t bank = 0; bank < board.banks.size(); ++bank) {
       const std::string& name = board.bank_name(bank);
       const std::string first = board.has_separate_ports(bank) ? " read cycles" : " cycles";
@@ -460,11 +462,11 @@ class Cycles {
     if (next_cycle_ && *next_cycle_ != cycle.cycle) end();
     next_cycle_ = cycle.cycle + 1;
     std::vector<Run> owners(bank_runs_.size());
-    for (std::size_t port = 0; port < fpga::kPortCount; ++port) {
+    for (std::size_t port = 0; port < port_runs_.size(); ++port) {
       show(port_runs_[port], run_of(cycle, port), cycle.cycle);
       set_owner(cycle, port, owners);
     }
-    for (std::size_t port = 0; port < fpga::kPortCount; ++port) {
+    for (std::size_t port = 0; port < port_runs_.size(); ++port) {
       if (cycle.ports[port].granted) write_access(cycle, port);
     }
     show_rest(cycle, owners);
@@ -474,6 +476,7 @@ class Cycles {
     if (!next_cycle_) return;
     CoreCycle idle;
     idle.cycle = *next_cycle_;
+    idle.lane_slots.resize(2 * board_.ports().lanes());
     for (Run& run : port_runs_) show(run, {}, idle.cycle);
     show_rest(idle, std::vector<Run>(bank_runs_.size()));
     next_cycle_.reset();
@@ -501,7 +504,7 @@ class Cycles {
   Run run_of(const CoreCycle& cycle, std::size_t port) {
     const PortCycle& now = cycle.ports[port];
     if (now.granted) return {};
-    const std::size_t requester = requester_of_port(port, cycle.host_traffic);
+    const std::size_t requester = board_.requesters.of_port(port, cycle.host_traffic);
     Run run{kIntents[static_cast<std::size_t>(now.intent)], &ports_[requester], requester};
     if (!run.waits()) return run;
     run.bank = now.bank;
@@ -521,7 +524,7 @@ class Cycles {
     }
     run = now;
     run.first_cycle = cycle;
-    if (!run.waits() || run.by == fpga::kTurnaroundToBlame) return;
+    if (!run.waits() || run.by == board_.requesters.turnaround()) return;
     run.flow = kFirstWaitFlow + waits_++;
     flows_[run.by].push_back(run.flow);
   }
@@ -529,10 +532,10 @@ class Cycles {
   void set_owner(const CoreCycle& cycle, std::size_t port, std::vector<Run>& owners) {
     const PortCycle& now = cycle.ports[port];
     if (now.intent != Intent::kRequest) return;
-    const std::size_t requester = requester_of_port(port, cycle.host_traffic);
+    const std::size_t requester = board_.requesters.of_port(port, cycle.host_traffic);
     const std::size_t track = bank_track(board_, now.bank, requester);
-    if (!now.granted && now.by != fpga::kTurnaroundToBlame) return;
-    owners[track].name = fpga::requester_name(now.granted ? requester : now.by);
+    if (!now.granted && now.by != board_.requesters.turnaround()) return;
+    owners[track].name = board_.requester_names[now.granted ? requester : now.by].c_str();
     owners[track].track = &banks_[track];
   }
 
@@ -540,7 +543,9 @@ class Cycles {
     for (std::size_t track = 0; track < owners.size(); ++track)
       show(bank_runs_[track], owners[track], cycle.cycle);
     show(matcher_run_, cycle.works ? Run{"works", &matcher_} : Run{}, cycle.cycle);
-    const std::array<std::uint32_t, 3> levels = {cycle.lane_slots[0], cycle.lane_slots[1],
+    const auto middle = cycle.lane_slots.begin() + static_cast<std::ptrdiff_t>(board_.ports().lanes());
+    const std::array<std::uint32_t, 3> levels = {std::accumulate(cycle.lane_slots.begin(), middle, 0U),
+                                                 std::accumulate(middle, cycle.lane_slots.end(), 0U),
                                                  cycle.result_words};
     for (std::size_t queue = 0; queue < levels.size(); ++queue)
       queues_[queue].count(ns(cycle.cycle), levels[queue]);
@@ -548,13 +553,13 @@ class Cycles {
 
   void write_access(const CoreCycle& cycle, std::size_t port) {
     const PortCycle& now = cycle.ports[port];
-    const std::size_t requester = requester_of_port(port, cycle.host_traffic);
+    const std::size_t requester = board_.requesters.of_port(port, cycle.host_traffic);
     add_data_flows(cycle, port);
-    const std::string& name = access_[now.bank][writes(requester) ? 1 : 0];
+    const std::string& name = access_[now.bank][board_.requesters.writes(requester) ? 1 : 0];
     std::optional<std::uint64_t> item;
     std::optional<std::uint64_t> row;
     std::optional<std::uint64_t> column;
-    if (port != fpga::kHostPort) {
+    if (port != board_.ports().host()) {
       const SlotPlace place = board_.place_of(port, now.item);
       item = now.item;
       row = static_cast<std::uint64_t>(place.row);
@@ -562,7 +567,7 @@ class Cycles {
     }
     ports_[requester].slice(ns(cycle.cycle), ns(cycle.cycle + 1), name,
                             {{"address", now.address},
-                             {port == fpga::kResultPort ? "word" : "slot", item},
+                             {port == board_.ports().result() ? "word" : "slot", item},
                              {"row", row},
                              {"column", column}},
                             flows_[requester]);
@@ -572,23 +577,24 @@ class Cycles {
   // The arrows of a pixel: from its table entry to itself, and from the left pixel to the word that holds its
   // disparity. Each has its own number: a pixel that is passed ends the first and begins no second one.
   void add_data_flows(const CoreCycle& cycle, std::size_t port) {
-    if (port == fpga::kHostPort || !cycle.frame) return;
+    if (port == board_.ports().host() || !cycle.frame) return;
     const auto add = [&](Arrow arrow, fpga::Side side, std::uint64_t slot) {
       const std::uint64_t pixel = (*cycle.frame * board_.geometry.slots + slot) * 2 + fpga::index_of(side);
       flows_[port].push_back(kDataFlow | (pixel * 2 + static_cast<std::uint64_t>(arrow)));
     };
     const std::uint64_t item = cycle.ports[port].item;
-    if (port == fpga::kResultPort) {
+    if (port == board_.ports().result()) {
       const auto slots = board_.slots_of_word(item);
       if (!slots) return;
       for (const std::uint64_t slot : *slots) add(Arrow::kToResult, fpga::Side::kLeft, slot);
       return;
     }
-    const fpga::Side side = fpga::kPorts[port].side;
-    add(Arrow::kToPixel, side, item);
-    if (port == fpga::pixel_port(fpga::Side::kLeft)) add(Arrow::kToResult, side, item);
-    if (board_.core.joint_tables && port == fpga::lut_port(fpga::Side::kLeft))
-      add(Arrow::kToPixel, fpga::Side::kRight, item);
+    const fpga::PortGroup& group = board_.ports().group(port);
+    const bool is_pixel = group.stage == fpga::PortStage::kPixelReader;
+    const std::uint64_t slot = board_.slot_of_item(port, item);
+    add(Arrow::kToPixel, group.side, slot);
+    if (is_pixel && group.side == fpga::Side::kLeft) add(Arrow::kToResult, group.side, slot);
+    if (board_.core.joint_tables && !is_pixel) add(Arrow::kToPixel, fpga::Side::kRight, slot);
   }
 
   const TraceBoard& board_;
@@ -597,12 +603,12 @@ class Cycles {
   PerfettoTrack matcher_;
   std::array<PerfettoTrack, 3> queues_;             // left lane, right lane, results
   std::vector<std::array<std::string, 2>> access_;  // [bank][write]: name of a slice
-  std::array<Run, fpga::kPortCount> port_runs_{};
-  std::vector<Run> bank_runs_;  // [bank_track()]
+  std::vector<Run> port_runs_;                      // [port]
+  std::vector<Run> bank_runs_;                      // [bank_track()]
   Run matcher_run_;
   std::optional<std::uint64_t> next_cycle_;  // the one behind the last cycle
   std::uint64_t waits_ = 0;
-  std::array<Flows, fpga::kRequesters> flows_;  // [requester]: of its access
+  std::vector<Flows> flows_;  // [requester]: of its access
 };
 
 // The computer around the core: bursts of both buses, levels of queues, and the events of the time line.

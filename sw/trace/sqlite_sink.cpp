@@ -183,9 +183,9 @@ class SqliteSink : public TraceSink {
   }
 
   void cycle(const fpga::CoreCycle& cycle) override {
-    if (cycle.cycle != last_cycle_ + 1) waited_ = {};
+    if (cycle.cycle != last_cycle_ + 1) waited_.assign(waited_.size(), {});
     last_cycle_ = cycle.cycle;
-    for (std::size_t port = 0; port < fpga::kPortCount; ++port) {
+    for (std::size_t port = 0; port < waited_.size(); ++port) {
       const fpga::PortCycle& of_port = cycle.ports[port];
       const bool requests = of_port.intent == fpga::Intent::kRequest;
       if (requests && !of_port.granted) {
@@ -235,30 +235,30 @@ class SqliteSink : public TraceSink {
           std::min(last_strip * rows, static_cast<std::size_t>(board_.geometry.height)) - *first_row;
     }
     tables_->runs->row(frame.frame, first_row, count_of_rows, run.first_cycle, frame.strip_ends[last_strip],
-                       fpga::requester_name(run.requester), board_.bank_name(run.bank),
-                       run.by ? "wait" : "grant", run.by ? fpga::requester_name(*run.by) : nullptr,
+                       board_.requester_names[run.requester], board_.bank_name(run.bank),
+                       run.by ? "wait" : "grant", run.by ? board_.requester_names[*run.by].c_str() : nullptr,
                        run.count * (last_strip - run.strip + 1));
   }
 
   void add_transaction(const fpga::CoreCycle& cycle, std::size_t port) {
     const fpga::PortCycle& access = cycle.ports[port];
-    const std::size_t requester = requester_of_port(port, cycle.host_traffic);
+    const std::size_t requester = board_.requesters.of_port(port, cycle.host_traffic);
     std::array<std::optional<std::uint64_t>, 3> item;  // and its row and column
-    if (port != fpga::kHostPort) {
+    if (port != board_.ports().host()) {
       const SlotPlace place = board_.place_of(port, access.item);
       item = {access.item, static_cast<std::uint64_t>(place.row), static_cast<std::uint64_t>(place.column)};
     }
     const Waited& waited = waited_[port];
-    tables_->transactions->row(cycle.frame, cycle.cycle, fpga::requester_name(requester),
-                               board_.bank_name(access.bank), writes(requester), access.address,
-                               waited.cycles, waited.cycles != 0 ? fpga::requester_name(waited.by) : nullptr,
-                               item[0], item[1], item[2]);
+    tables_->transactions->row(
+        cycle.frame, cycle.cycle, board_.requester_names[requester], board_.bank_name(access.bank),
+        board_.requesters.writes(requester), access.address, waited.cycles,
+        waited.cycles != 0 ? board_.requester_names[waited.by].c_str() : nullptr, item[0], item[1], item[2]);
   }
 
   TraceBoard board_;
   std::optional<Tables> tables_;
-  std::array<Waited, fpga::kPortCount> waited_{};  // [port]
-  std::uint64_t last_cycle_ = 0;                   // of cycle()
+  std::vector<Waited> waited_ = std::vector<Waited>(board_.ports().size());  // [port]
+  std::uint64_t last_cycle_ = 0;                                             // of cycle()
 };
 
 }  // namespace

@@ -21,7 +21,7 @@ TimeSpan span_of(const fpga::CycleWindow& window, const Clock& clock) {
 
 void LongestWait::add(const fpga::CoreCycle& cycle) {
   if (next_cycle_ == 0) first_added_ = cycle.cycle;
-  if (cycle.cycle != next_cycle_) waited_ = {};
+  if (cycle.cycle != next_cycle_ || waited_.empty()) waited_.assign(cycle.ports.size(), 0);
   next_cycle_ = cycle.cycle + 1;
   const bool grew = std::exchange(grows_, false);
   for (std::size_t port = 0; port < waited_.size(); ++port) {

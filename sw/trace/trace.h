@@ -40,8 +40,8 @@ class LongestWait {
   bool lacks_cycles_before() const { return first_ < first_added_ + kBefore; }
 
   std::uint64_t first_added_ = 0;
-  std::uint64_t next_cycle_ = 0;                          // 0: none was added
-  std::array<std::uint64_t, fpga::kPortCount> waited_{};  // [port]: cycles of the wait that is under way
+  std::uint64_t next_cycle_ = 0;       // 0: none was added
+  std::vector<std::uint64_t> waited_;  // [port]: cycles of the wait that is under way
   std::uint64_t first_ = 0;
   std::uint64_t end_ = 0;
   bool grows_ = false;                  // it is under way

@@ -27,14 +27,21 @@ struct SlotPlace {
 // What the sinks need of a board.
 struct TraceBoard {
   explicit TraceBoard(const platform::BoardConfig& board)
-      : core(platform::core_config(board)), geometry(core), clock(board.fpga.clock_mhz), banks(board.banks) {}
+      : core(platform::core_config(board)),
+        geometry(core),
+        clock(board.fpga.clock_mhz),
+        banks(board.banks),
+        requesters(platform::core_ports(board)) {
+    for (std::size_t requester = 0; requester <= requesters.turnaround(); ++requester)
+      requester_names.push_back(requesters.name(requester));
+  }
 
   std::uint64_t ps(std::uint64_t cycle) const { return clock.edge_ps(cycle); }
   const std::string& bank_name(std::size_t bank) const { return banks[bank].name; }
   // The name of the slice of a wait.
   std::string wait_text(std::size_t requester, std::uint64_t cycles, std::size_t by, std::size_t bank) const {
-    return fmt::format("{} waits {} cycle{} for {} on {}", fpga::requester_name(requester), cycles,
-                       cycles == 1 ? "" : "s", fpga::requester_name(by), bank_name(bank));
+    return fmt::format("{} waits {} cycle{} for {} on {}", requester_names[requester], cycles,
+                       cycles == 1 ? "" : "s", requester_names[by], bank_name(bank));
   }
   // Whether two ports can be granted in one cycle: one that reads and one that writes.
   bool has_separate_ports(std::size_t bank) const { return memory::has_separate_ports(banks[bank].kind); }
@@ -57,7 +64,14 @@ struct TraceBoard {
   }
   // The place of what an access of a port of the core is for.
   SlotPlace place_of(std::size_t port, std::uint64_t item) const {
-    return port == fpga::kResultPort ? place_of_word(item) : place_of_slot(item);
+    return port == ports().result() ? place_of_word(item) : place_of_slot(slot_of_item(port, item));
+  }
+  // The number among all slots of its side, of a slot that a reader has counted in its lane.
+  std::uint64_t slot_of_item(std::size_t port, std::uint64_t item) const {
+    const std::size_t lane = ports().lane_of(port);
+    const auto of_lane = static_cast<std::uint64_t>(geometry.slots_of_lane(static_cast<int>(lane)));
+    return item / of_lane * static_cast<std::uint64_t>(geometry.slots_per_column) +
+           item % of_lane * ports().lanes() + lane;
   }
   // The slots of the pixels whose disparities the word holds. With the fetch `column` a pixel has several:
   // this is the one in the strip of the result. Nullopt if the filter takes the pixel from an earlier strip.
@@ -80,17 +94,10 @@ struct TraceBoard {
   fpga::FrameGeometry geometry;
   Clock clock;
   std::vector<platform::BankConfig> banks;
+  fpga::Requesters requesters;
+  std::vector<std::string> requester_names;  // [requester], last the turnaround
+
+  const fpga::CorePorts& ports() const { return requesters.ports(); }
 };
-
-// The direction of all accesses of a requester.
-constexpr bool writes(std::size_t requester) {
-  if (requester < fpga::kCorePortCount) return fpga::kPorts[requester].write;
-  return requester != fpga::requester_of(fpga::HostTraffic::kReadBack);
-}
-
-// The requester behind a port in a cycle.
-constexpr std::size_t requester_of_port(std::size_t port, fpga::HostTraffic traffic) {
-  return port == fpga::kHostPort ? fpga::requester_of(traffic) : port;
-}
 
 }  // namespace stereotlm::trace

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <initializer_list>
 #include <iterator>
+#include <numeric>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -30,8 +31,6 @@ constexpr const char* kVcdMark = "$version stereotlm $end\n$timescale 1 ps $end\
 constexpr const char* kLayoutMark = "[*] stereotlm";  // a comment for GTKWave
 constexpr unsigned kBusAddressBits = 32;
 constexpr unsigned kCountBits = 16;
-constexpr unsigned kRequestBits = 3;
-static_assert(fpga::kPortCount < 1U << kRequestBits);
 static_assert(fpga::kLaneFifoRule.max < 1 << kCountBits && fpga::kResultFifoRule.max < 1 << kCountBits);
 
 // Values of a signal while it has no number, and before its first change in the window.
@@ -69,9 +68,11 @@ struct Signal {
 
 struct Signals {
   explicit Signals(const TraceBoard& board) {
+    unsigned request_bits = 1;
+    while (board.ports().size() >> request_bits != 0) ++request_bits;
     for (std::size_t bank = 0; bank < board.banks.size(); ++bank) {
       const std::string& name = board.bank_name(bank);
-      banks.push_back(add(Group::kBanks, name, "requests", kRequestBits, 0));
+      banks.push_back(add(Group::kBanks, name, "requests", request_bits, 0));
       const bool is_separate = board.has_separate_ports(bank);
       add_words(Group::kBanks, name, {{is_separate ? "read_owner" : "owner", "-"}});
       if (is_separate) add_words(Group::kBanks, name, {{"write_owner", "-"}});
@@ -80,10 +81,10 @@ struct Signals {
     for (const platform::BankConfig& bank : board.banks) {
       while (std::uint64_t{1} << address_bits < 4 * static_cast<std::uint64_t>(bank.words)) ++address_bits;
     }
-    for (std::size_t port = 0; port < fpga::kPortCount; ++port) {
-      ports[port] = kNoSignal;
-      if (!fpga::has_port(board.core, port)) continue;
-      const std::string name = fpga::kPorts[port].name;
+    ports.resize(board.ports().size(), kNoSignal);
+    for (std::size_t port = 0; port < ports.size(); ++port) {
+      if (!fpga::has_group(board.core, board.ports().group_of(port))) continue;
+      const std::string name = board.ports().name(port);
       ports[port] = add_words(Group::kPorts, name, {{"state", "idle"}, {"bank", "-"}});
       add(Group::kPorts, name, "address", address_bits, kUnknown);
       add_words(Group::kPorts, name, {{"waits_for", "-"}});
@@ -119,7 +120,7 @@ struct Signals {
   std::size_t core_size = 0;                               // the signals of the core come first
   // The first signals of each.
   std::vector<std::size_t> banks;
-  std::array<std::size_t, fpga::kPortCount> ports{};  // kNoSignal: the port does not exist
+  std::vector<std::size_t> ports;  // kNoSignal: the port does not exist
   std::size_t host_traffic = 0;
   std::size_t queues = 0;
   std::array<std::size_t, kBusNames.size()> buses{};
@@ -389,8 +390,7 @@ class VcdSink : public TraceSink {
     // In the order of fpga::Intent. A request that is not granted waits.
     for (const char* intent : {"waits", "passes", "idle", "blocked", "starved"})
       intents_.push_back(signals_.word(intent));
-    for (std::size_t requester = 0; requester <= fpga::kRequesters; ++requester)
-      requesters_.push_back(signals_.word(fpga::requester_name(requester)));
+    for (const std::string& name : board_.requester_names) requesters_.push_back(signals_.word(name));
     for (const platform::BankConfig& bank : board_.banks) banks_.push_back(signals_.word(bank.name));
     for (const char* traffic : {"capture", "upload", "read-back"})
       traffics_.push_back(signals_.word(traffic));
@@ -400,12 +400,13 @@ class VcdSink : public TraceSink {
     if (next_cycle_ && *next_cycle_ != cycle.cycle) end_cycles();
     next_cycle_ = cycle.cycle + 1;
     show_idle();
-    for (std::size_t port = 0; port < fpga::kPortCount; ++port) {
+    for (std::size_t port = 0; port < signals_.ports.size(); ++port) {
       if (signals_.ports[port] != kNoSignal) show_port(cycle, port);
     }
     std::uint32_t* const queues = now_.data() + signals_.queues;
-    queues[kLeftLane] = cycle.lane_slots[0];
-    queues[kRightLane] = cycle.lane_slots[1];
+    const auto middle = cycle.lane_slots.begin() + static_cast<std::ptrdiff_t>(board_.ports().lanes());
+    queues[kLeftLane] = std::accumulate(cycle.lane_slots.begin(), middle, 0U);
+    queues[kRightLane] = std::accumulate(middle, cycle.lane_slots.end(), 0U);
     queues[kResults] = cycle.result_words;
     queues[kWorks] = cycle.works ? 1 : 0;
     add_changes(cycle.cycle);
@@ -469,14 +470,14 @@ class VcdSink : public TraceSink {
     std::uint32_t* const shown = now_.data() + signals_.ports[port];
     shown[kState] = intents_[static_cast<std::size_t>(its.intent)];
     if (its.intent != fpga::Intent::kRequest) return;
-    const std::size_t requester = requester_of_port(port, cycle.host_traffic);
+    const std::size_t requester = board_.requesters.of_port(port, cycle.host_traffic);
     if (its.granted)
-      shown[kState] = accesses_[writes(requester) ? 1 : 0];
+      shown[kState] = accesses_[board_.requesters.writes(requester) ? 1 : 0];
     else
       shown[kWaitsFor] = requesters_[its.by];
     shown[kBank] = banks_[its.bank];
     shown[kAddress] = static_cast<std::uint32_t>(its.address);
-    if (port == fpga::kHostPort)
+    if (port == board_.ports().host())
       now_[signals_.host_traffic] = traffics_[static_cast<std::size_t>(cycle.host_traffic)];
     show_bank(its, requester);
   }
@@ -484,11 +485,11 @@ class VcdSink : public TraceSink {
   void show_bank(const PortCycle& port, std::size_t requester) {
     std::uint32_t* const bank = now_.data() + signals_.banks[port.bank];
     ++bank[kRequests];
-    const bool is_second = board_.has_separate_ports(port.bank) && writes(requester);
+    const bool is_second = board_.has_separate_ports(port.bank) && board_.requesters.writes(requester);
     std::uint32_t& owner = bank[is_second ? kWriteOwner : kOwner];
     if (port.granted)
       owner = requesters_[requester];
-    else if (port.by == fpga::kTurnaroundToBlame)
+    else if (port.by == board_.requesters.turnaround())
       owner = requesters_[port.by];
   }
 

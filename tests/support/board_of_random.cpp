@@ -10,7 +10,7 @@ namespace {
 
 memory::Port port_of(PlainPort plain) {
   memory::Port port = 0;
-  while (std::string(fpga::kPorts[port].name) != name_of(plain)) ++port;
+  while (std::string(fpga::kPortGroups[port].name) != name_of(plain)) ++port;
   return port;
 }
 
@@ -55,8 +55,8 @@ void refuse_section_8(const PlainCycleInput& input) {
                                    [](const PlainBuffer& buffer) { return buffer.banks.size() > 1; });
   const bool sdram = std::any_of(input.banks.begin(), input.banks.end(),
                                  [](const PlainBank& bank) { return bank.kind == PlainBankKind::kSdram; });
-  if (striped || sdram || input.lanes > 1)
-    throw std::invalid_argument("board_config: lanes, stripes and sdram are not in the platform");
+  if (striped || sdram)
+    throw std::invalid_argument("board_config: stripes and sdram are not in the platform");
 }
 
 std::vector<platform::BankConfig> bank_configs(const PlainCycleInput& input) {
@@ -117,6 +117,7 @@ platform::BoardConfig board_config(const PlainCycleInput& input) {
   board.image = {input.width, input.height};
   board.fpga.arbiter.policy = name_of(input.arbitration);
   std::transform(input.priority.begin(), input.priority.end(), board.fpga.arbiter.priority.begin(), port_of);
+  board.fpga.lanes = input.lanes;
   board.fpga.lane_fifo_slots = input.lane_fifo_slots;
   board.fpga.result_fifo_words = input.result_fifo_words;
   board.fpga.pipeline_latency_cycles = input.pipeline_latency_cycles;

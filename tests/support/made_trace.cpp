@@ -59,16 +59,16 @@ class PlainRun {
   }
 
  private:
-  static std::size_t bank_of(std::size_t port) { return port == fpga::kResultPort ? 1 : port % 2; }
+  static std::size_t bank_of(std::size_t port) { return port == fpga::kResultGroup ? 1 : port % 2; }
 
   CoreCycle request(std::uint64_t frame) {
-    CoreCycle now;
+    CoreCycle now = idle_cycle();
     now.cycle = cycle_;
     now.frame = frame;
     for (std::size_t side = 0; side < 2; ++side) {
       const Lane& lane = lanes_[side];
       now.lane_slots[side] = static_cast<std::uint32_t>(lane.taken - consumed_);
-      PortCycle& lut = now.ports[fpga::kLutPorts[side]];
+      PortCycle& lut = now.ports[fpga::lut_group(fpga::kSides[side])];
       lut.item = lane.taken;
       if (lane.taken == geometry_.slots)
         lut.intent = Intent::kIdle;
@@ -76,7 +76,7 @@ class PlainRun {
         lut.intent = Intent::kBlocked;
       else
         lut.intent = is_empty(lane.taken) ? Intent::kPass : Intent::kRequest;
-      PortCycle& pixel = now.ports[fpga::kPixelPorts[side]];
+      PortCycle& pixel = now.ports[fpga::pixel_group(fpga::kSides[side])];
       pixel.item = lane.handled;
       if (lane.handled == geometry_.slots || lane.taken == 0)
         pixel.intent = Intent::kIdle;
@@ -85,39 +85,42 @@ class PlainRun {
       else
         pixel.intent = is_empty(lane.handled) ? Intent::kPass : Intent::kRequest;
     }
-    PortCycle& result = now.ports[fpga::kResultPort];
+    PortCycle& result = now.ports[fpga::kResultGroup];
     result.item = words_written_;
     now.result_words = static_cast<std::uint32_t>(words_made_ - words_written_);
     if (now.result_words > 0)
       result.intent = Intent::kRequest;
     else
       result.intent = words_made_ == 0 ? Intent::kIdle : Intent::kStarved;
-    if (random_() % 16 == 0) now.ports[fpga::kHostPort].intent = Intent::kRequest;
+    if (random_() % 16 == 0) now.ports[fpga::kHostGroup].intent = Intent::kRequest;
     return now;
   }
 
   bool is_empty(std::uint64_t slot) const {
-    fpga::SlotCursor cursor(geometry_);
+    fpga::SlotCursor cursor(geometry_, 0);
     cursor.advance(slot);
     return cursor.empty();
   }
 
   static void arbitrate(CoreCycle& now) {
-    constexpr std::array<std::size_t, fpga::kPortCount> kOrder = {fpga::kHostPort,      fpga::kResultPort,
-                                                                  fpga::kPixelPorts[0], fpga::kPixelPorts[1],
-                                                                  fpga::kLutPorts[0],   fpga::kLutPorts[1]};
-    std::array<std::size_t, 2> winners = {fpga::kPortCount, fpga::kPortCount};
+    constexpr std::array<std::size_t, fpga::kGroupCount> kOrder = {fpga::kHostGroup,
+                                                                   fpga::kResultGroup,
+                                                                   fpga::pixel_group(fpga::Side::kLeft),
+                                                                   fpga::pixel_group(fpga::Side::kRight),
+                                                                   fpga::lut_group(fpga::Side::kLeft),
+                                                                   fpga::lut_group(fpga::Side::kRight)};
+    std::array<std::size_t, 2> winners = {fpga::kGroupCount, fpga::kGroupCount};
     for (const std::size_t port : kOrder) {
       PortCycle& cycle = now.ports[port];
       if (cycle.intent != Intent::kRequest) continue;
       cycle.bank = bank_of(port);
       cycle.address = 4 * (port * 1024 + cycle.item % 1024);
       std::size_t& winner = winners[cycle.bank];
-      cycle.granted = winner == fpga::kPortCount;
+      cycle.granted = winner == fpga::kGroupCount;
       if (cycle.granted)
         winner = port;
       else
-        cycle.by = winner == fpga::kHostPort ? fpga::requester_of(now.host_traffic) : winner;
+        cycle.by = winner == fpga::kHostGroup ? kRequesters.host(now.host_traffic) : winner;
     }
   }
 
@@ -131,18 +134,18 @@ class PlainRun {
       const auto passes = [&now](std::size_t port) {
         return now.ports[port].granted || now.ports[port].intent == Intent::kPass;
       };
-      if (passes(fpga::kPixelPorts[side])) {
+      if (passes(fpga::pixel_group(fpga::kSides[side]))) {
         ++lane.handled;
         lane.pixel_ready.pop_front();
         lane.match_ready.push_back(cycle_ + kLatency);
       }
-      if (passes(fpga::kLutPorts[side])) {
+      if (passes(fpga::lut_group(fpga::kSides[side]))) {
         ++lane.taken;
         lane.pixel_ready.push_back(cycle_ + kLatency);
       }
       if (can_match) lane.match_ready.pop_front();
     }
-    if (now.ports[fpga::kResultPort].granted) ++words_written_;
+    if (now.ports[fpga::kResultGroup].granted) ++words_written_;
     if (can_match) ++consumed_;
     drained_ = drains ? drained_ + 1 : 0;
     const auto slots = static_cast<std::uint64_t>(geometry_.slots_per_column);
@@ -152,10 +155,10 @@ class PlainRun {
   }
 
   void count(const CoreCycle& now) {
-    for (std::size_t port = 0; port < fpga::kPortCount; ++port) {
+    for (std::size_t port = 0; port < fpga::kGroupCount; ++port) {
       const PortCycle& cycle = now.ports[port];
       if (cycle.intent != Intent::kRequest) continue;
-      const std::size_t requester = port == fpga::kHostPort ? fpga::requester_of(now.host_traffic) : port;
+      const std::size_t requester = port == fpga::kHostGroup ? kRequesters.host(now.host_traffic) : port;
       ++counts_[{requester, cycle.bank, cycle.granted ? std::nullopt : std::optional(cycle.by)}];
     }
   }
@@ -193,6 +196,13 @@ void MadeTrace::send(trace::TraceSink& sink) const {
   for (const CoreCycle& cycle : cycles) sink.cycle(cycle);
   for (const platform::FrameRuns& frame : frames) sink.frame(frame);
   for (const platform::TimelineEvent& event : events) sink.event(event);
+}
+
+fpga::CoreCycle idle_cycle() {
+  fpga::CoreCycle cycle;
+  cycle.ports.resize(kRequesters.ports().size());
+  cycle.lane_slots.resize(2);
+  return cycle;
 }
 
 void finish(trace::TraceSink& sink, const trace::TimeSpan& window) {

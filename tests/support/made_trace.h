@@ -24,6 +24,11 @@ struct MadeTrace {
   void send(trace::TraceSink& sink) const;
 };
 
+// The requesters of a board with one lane on each side.
+inline const fpga::Requesters kRequesters{fpga::CorePorts(1)};
+// A cycle in which nothing happens.
+fpga::CoreCycle idle_cycle();
+
 // Ends a trace and puts its files in place.
 void finish(trace::TraceSink& sink, const trace::TimeSpan& window = {});
 

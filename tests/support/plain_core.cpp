@@ -473,8 +473,8 @@ class PlainCore::Cycles {
         for (std::size_t p = 0; p < lanes_; ++p) {
           const Lane& lane = frame_->lanes[side][p];
           const bool has_port = side == 0 || !input_.joint_tables;
-          if (has_port) requests_[lut_port(side, p)] = lane.lut_port_request();
-          requests_[pixel_port(side, p)] = lane.pixel_port_request(now);
+          if (has_port) requests_[lut_group(side, p)] = lane.lut_port_request();
+          requests_[pixel_group(side, p)] = lane.pixel_port_request(now);
         }
       }
       requests_[result_port()] = frame_->queue.result_port_request();
@@ -508,8 +508,8 @@ class PlainCore::Cycles {
     std::vector<std::size_t> asked_by;  // in this cycle
   };
 
-  std::size_t lut_port(std::size_t side, std::size_t p) const { return side * lanes_ + p; }
-  std::size_t pixel_port(std::size_t side, std::size_t p) const { return (2 + side) * lanes_ + p; }
+  std::size_t lut_group(std::size_t side, std::size_t p) const { return side * lanes_ + p; }
+  std::size_t pixel_group(std::size_t side, std::size_t p) const { return (2 + side) * lanes_ + p; }
   std::size_t result_port() const { return 4 * lanes_; }
   std::size_t host_port() const { return 4 * lanes_ + 1; }
 
@@ -577,8 +577,8 @@ class PlainCore::Cycles {
     for (std::size_t side = 0; side < 2; ++side) {
       for (std::size_t p = 0; p < lanes_; ++p) {
         Lane& lane = frame.lanes[side][p];
-        if (acts(pixel_port(side, p))) lane.pixel_port_handled(now);
-        if (acts(lut_port(input_.joint_tables ? 0 : side, p))) lane.lut_port_took(now);
+        if (acts(pixel_group(side, p))) lane.pixel_port_handled(now);
+        if (acts(lut_group(input_.joint_tables ? 0 : side, p))) lane.lut_port_took(now);
       }
     }
     if (!frame.queue.all_written()) return;

@@ -69,11 +69,17 @@ struct RandomKnobs {
   bool stripes = false;  // and up to 8 banks more
   bool lanes = false;
 
-  // Those that the models have.
+  // Those that boards can have.
   static constexpr RandomKnobs all() { return {true, true, true, true, true, true, true, true, true, true}; }
-  static constexpr RandomKnobs with_section_8() {
+  // Those that the core has.
+  static constexpr RandomKnobs with_lanes() {
     RandomKnobs knobs = all();
-    knobs.sdram = knobs.stripes = knobs.lanes = true;
+    knobs.lanes = true;
+    return knobs;
+  }
+  static constexpr RandomKnobs with_section_8() {
+    RandomKnobs knobs = with_lanes();
+    knobs.sdram = knobs.stripes = true;
     return knobs;
   }
 };

@@ -28,25 +28,25 @@ DirectFrame::DirectFrame(const CoreConfig& config, bool has_pixels, memory::Dire
 }
 
 void DirectFrame::set_buffers(const FrameBases& bases) {
-  for (std::size_t port = 0; port < kCorePortCount; ++port) {
-    if (!has_port(config_, port)) continue;
+  for (std::size_t port = 0; port < kCoreGroupCount; ++port) {
+    if (!has_group(config_, port)) continue;
     const std::uint64_t first = registers::base_address(bases[port]);
-    buffers_[port] = {first, first + pixels_of(config_) * kPorts[port].bytes_per_pixel};
+    buffers_[port] = {first, first + pixels_of(config_) * kPortGroups[port].bytes_per_pixel};
   }
 }
 
 bool DirectFrame::disparities_are_apart() const {
-  const AddressRange& disparities = buffers_[kResultPort];
+  const AddressRange& disparities = buffers_[kResultGroup];
   return std::count_if(buffers_.begin(), buffers_.end(), [&disparities](const AddressRange& buffer) {
            return buffer.overlaps(disparities);
          }) == 1;  // itself
 }
 
 bool DirectFrame::read(const kernels::JointOffsets& offsets) {
-  const unsigned char* const left = buffer(pixel_port(Side::kLeft));
-  const unsigned char* const right = buffer(pixel_port(Side::kRight));
+  const unsigned char* const left = buffer(pixel_group(Side::kLeft));
+  const unsigned char* const right = buffer(pixel_group(Side::kRight));
   const bool is_readable =
-      read_tables(offsets) && left != nullptr && right != nullptr && buffer(kResultPort) != nullptr;
+      read_tables(offsets) && left != nullptr && right != nullptr && buffer(kResultGroup) != nullptr;
   if (is_readable && pipeline_) pipeline_->run(left, right, entries_[0], entries_[1], disparities_.data());
   return is_readable;
 }
@@ -55,8 +55,8 @@ bool DirectFrame::read(const kernels::JointOffsets& offsets) {
 bool DirectFrame::read_tables(const kernels::JointOffsets& offsets) {
   bool is_readable = true;
   for (const Side side : kSides) {
-    const memory::Port port = lut_port(side);
-    if (!has_port(config_, port)) continue;
+    const memory::Port port = lut_group(side);
+    if (!has_group(config_, port)) continue;
     const auto* const entries = reinterpret_cast<const std::uint32_t*>(buffer(port));
     const bool may_have_changed =
         entries != nullptr && banks_.may_have_changed(port, buffers_[port].first, buffers_[port].end);
@@ -98,8 +98,8 @@ bool DirectFrame::read_table(Side side, const std::uint32_t* entries, bool may_h
 }
 
 std::optional<memory::Port> DirectFrame::hazard_with(const AddressRange& words, bool write) const {
-  for (std::size_t port = 0; port < kCorePortCount; ++port) {
-    const bool is_exclusive = write || kPorts[port].write;
+  for (std::size_t port = 0; port < kCoreGroupCount; ++port) {
+    const bool is_exclusive = write || kPortGroups[port].write;
     if (is_exclusive && buffers_[port].overlaps(words)) return port;
   }
   return std::nullopt;
@@ -107,7 +107,7 @@ std::optional<memory::Port> DirectFrame::hazard_with(const AddressRange& words, 
 
 bool DirectFrame::write() const {
   if (pipeline_ == nullptr) return true;
-  unsigned char* const disparities = buffer(kResultPort);
+  unsigned char* const disparities = buffer(kResultGroup);
   if (disparities == nullptr) return false;
   std::copy(disparities_.begin(), disparities_.end(), disparities);
   return true;

@@ -57,7 +57,7 @@ class DirectFrame {
   CoreConfig config_;
   memory::DirectBanks& banks_;
   // [port]: the buffer that the port accesses; empty if there is none.
-  std::array<AddressRange, kCorePortCount> buffers_{};
+  std::array<AddressRange, kCoreGroupCount> buffers_{};
   AccessPatterns patterns_;
   // [side]: the entries of the frame; null if the side has no table.
   std::array<const std::uint32_t*, 2> entries_{};

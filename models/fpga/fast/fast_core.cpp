@@ -54,7 +54,7 @@ void FastCore::report_hazard(const HostRoute& burst, memory::Port port) {
   };
   fail("a burst of the local bus " + std::string(burst.write ? "writes" : "reads") + " words " +
        word(burst.first) + ".." + word(burst.end - 4) + " of bank number " + std::to_string(*burst.bank) +
-       ", where the running frame has its " + kPorts[port].buffer + ": needs fidelity cycle");
+       ", where the running frame has its " + kPortGroups[port].buffer + ": needs fidelity cycle");
 }
 
 void FastCore::fail(const std::string& why) {

@@ -10,14 +10,21 @@ namespace {
 // After this number of groups with the same accesses, the walk expects more groups with these accesses.
 constexpr int kManyAlike = 8;
 
-// The empty slots of a column of a strip: bit k for slot k.
-std::uint64_t empty_slots(const FrameGeometry& geometry, int strip) {
-  std::uint64_t empty = 0;
-  for (int k = 0; k < geometry.slots_per_column; ++k) {
-    const int row = geometry.first_row_of(strip) + k;
-    empty |= std::uint64_t{!geometry.is_inside(row)} << k;
-  }
-  return empty;
+// See FastForward::slots_ahead_.
+std::uint64_t slots_ahead(const FrameGeometry& geometry, int lane_fifo_slots) {
+  if (geometry.lanes == 1) return static_cast<std::uint64_t>(lane_fifo_slots);
+  const int fewest = geometry.slots_of_lane(geometry.lanes - 1);  // of a column in a lane
+  return static_cast<std::uint64_t>((lane_fifo_slots / fewest + 1) * geometry.slots_per_column);
+}
+
+// The number of columns whose slots can have an effect before a group ends, and the one behind.
+std::uint64_t columns_of_window(const FrameGeometry& geometry, std::uint64_t slots_ahead) {
+  return 4 + slots_ahead / static_cast<std::uint64_t>(geometry.slots_per_column) + 3;
+}
+
+// The words of TransitionCache::Accesses for both sides.
+std::size_t words_of_accesses(const FrameGeometry& geometry, std::uint64_t slots_ahead) {
+  return 2 * ((4 * static_cast<std::uint64_t>(geometry.slots_per_column) + slots_ahead + 63) / 64);
 }
 
 static_assert(memory::kBankCountRule.max <= 1 << 6U &&
@@ -27,26 +34,23 @@ static_assert(memory::kBankCountRule.max <= 1 << 6U &&
 
 FastForward::FastForward(const CoreConfig& config, memory::Arbitration& arbitration)
     : CoreStepper(config, arbitration),
-      lane_fifo_slots_(static_cast<std::uint64_t>(config.lane_fifo_slots)),
-      known_(static_cast<std::size_t>(4 * control().geometry().slots_per_column + config.lane_fifo_slots)) {
-  const FrameGeometry& geometry = control().geometry();
-  for (int strip = 0; strip < geometry.strips; ++strip) {
-    const std::uint64_t empty = empty_slots(geometry, strip);
-    if (all_strips_.empty() || all_strips_.back().empty != empty) all_strips_.push_back({0, empty});
-    all_strips_.back().end = (static_cast<std::uint64_t>(strip) + 1) * geometry.columns_per_strip() *
-                             static_cast<std::uint64_t>(geometry.slots_per_column);
-  }
-}
+      slots_ahead_(slots_ahead(control().geometry(), config.lane_fifo_slots)),
+      windows_(control().geometry(), columns_of_window(control().geometry(), slots_ahead_)),
+      known_(words_of_accesses(control().geometry(), slots_ahead_)),
+      no_accesses_(words_of_accesses(control().geometry(), slots_ahead_)),
+      accesses_(no_accesses_),
+      accesses_before_(no_accesses_) {}
 
 void FastForward::start_direct_frame(const AccessPatterns& patterns, const FrameBases& bases) {
   start_stepped_frame();
   banks_ = 0;
   for (const std::uint32_t base : bases) banks_ = banks_ << 6U | registers::bank_of(base);
-  strips_ = 0;
   for (const Side side : kSides) {
     const AccessPattern* const pattern = &patterns[index_of(side)];
-    if (!control().lane(side).has_table() || pattern->needs_all_pixels()) continue;
-    const bool is_assumed = arbitration().is_alone(pixel_port(side));
+    const std::size_t lane = control().lane_index(side, 0);
+    if (!control().lane(lane).has_table() || pattern->needs_all_pixels()) continue;
+    const bool is_assumed =
+        control().ports().lanes() == 1 && arbitration().is_alone(control().pixel_port(lane));
     (is_assumed ? assumed_ : varying_)[index_of(side)] = pattern;
   }
   tell_assumed();
@@ -64,16 +68,17 @@ void FastForward::settle(std::uint64_t cycle) {
   stepped_.reset();
   leave_walk(cycle);
   for (const Side side : kSides) resolve_accesses(side);
-  if (is_host_routed_) arbitration().unroute(kHostPort);
+  if (is_host_routed_) arbitration().unroute(control().ports().host());
   is_host_routed_ = false;
 }
 
-// LaneControl::correct_marks() of a side.
-std::uint64_t FastForward::marks(Side side) const {
-  const LaneControl& lane = control().lane(side);
+// LaneControl::correct_marks() of a lane.
+std::uint64_t FastForward::marks(std::size_t number) const {
+  const LaneControl& lane = control().lane(number);
   if (!lane.has_table() || lane.handled() == lane.taken()) return 0;
+  const Side side = control().side_of(number);
   std::uint64_t marks = 0;
-  SlotCursor slot(control().geometry());
+  SlotCursor slot = lane.first_slot();
   slot.advance(lane.handled());
   for (std::uint64_t mark = 1, left = lane.taken() - lane.handled(); left > 0; --left, mark <<= 1U) {
     if (!slot.empty() && accesses_pixel(side, slot)) marks |= mark;
@@ -82,16 +87,22 @@ std::uint64_t FastForward::marks(Side side) const {
   return marks;
 }
 
+void FastForward::correct_marks() {
+  for (std::size_t lane = 0; lane < control().lanes().size(); ++lane)
+    control().correct_marks(lane, marks(lane));
+}
+
 // To be called before the pixel port of a side ceases to be alone on its bank, and after the last cycle of a
 // frame. Corrects the counts. From now on the pattern determines which slots need their pixels.
 void FastForward::resolve_accesses(Side side) {
   const AccessPattern* const pattern = std::exchange(assumed_[index_of(side)], nullptr);
   if (pattern == nullptr) return;
   varying_[index_of(side)] = pattern;
-  const std::uint64_t passed = pattern->passes_before(control().lane(side).handled());
-  control().correct_passes(side, passed);
-  control().correct_marks(side, marks(side));
-  arbitration().retract_grants(pixel_port(side), passed);
+  const std::size_t lane = control().lane_index(side, 0);
+  const std::uint64_t passed = pattern->passes_before(control().lane(lane).handled());
+  control().correct_passes(lane, passed);
+  control().correct_marks(lane, marks(lane));
+  arbitration().retract_grants(control().pixel_port(lane), passed);
   tell_assumed();
 }
 
@@ -159,10 +170,10 @@ void FastForward::route_host(std::uint64_t& cycle, const Route& route, std::uint
     stepped_.reset();
     leave_walk(cycle);
     for (const Side side : kSides) {
-      if (arbitration.bank_of(pixel_port(side)) == route.bank) resolve_accesses(side);
+      if (arbitration.bank_of(control().ports().pixel(side, 0)) == route.bank) resolve_accesses(side);
     }
   }
-  arbitration.visit(kHostPort, route.bank, route.write);
+  arbitration.visit(control().ports().host(), route.bank, route.write);
   is_host_routed_ = true;
   if (is_new) begin_walk(cycle);
 }
@@ -181,7 +192,7 @@ std::uint64_t FastForward::step_group(std::uint64_t cycle, std::uint64_t end) {
     do {
       const bool requests = cycle >= host_.first;
       const memory::PortMask granted = step_core<true>(cycle++, requests);
-      if ((granted & memory::mask_of(kHostPort)) != 0) {
+      if (memory::has(granted, control().ports().host())) {
         host_.first = cycle;
         burst_ends = --host_.words == 0;
       }
@@ -204,13 +215,13 @@ std::uint64_t FastForward::skip_waiting(std::uint64_t cycle, std::uint64_t end) 
 // Begins to follow transitions, if possible.
 void FastForward::begin_walk(std::uint64_t cycle) {
   if (stepped_) end_stepped(cycle);
-  if (!find_strips()) return;
   room_ = room();
   if (!holds_group(room_)) return;
   if (known_.is_full()) known_.clear();
   state_ = state(cycle);
   consumed_ = control().match().consumed();
-  left_of_group_ = control().match().slots_of_group_left();
+  left_of_group_ = control().match().cycles_of_group_left();
+  set_area();
   is_walking_ = true;
   if (ConflictRecorder* const conflicts = this->conflicts()) conflicts->skip_from(cycle);
 }
@@ -226,7 +237,7 @@ void FastForward::leave_walk(std::uint64_t cycle) {
 void FastForward::end_walk(std::uint64_t cycle) {
   leave_walk(cycle);
   if (!holds_group(room_)) return;
-  const TransitionCache::Accesses accesses = this->accesses();
+  const TransitionCache::Accesses& accesses = this->accesses();
   if (host_.words == 0 && known_.find(state_, accesses)) return;
   stepped_ = {state_, accesses, host_, progress(cycle), control().counts(), control().match().part()};
   arbitration().begin_recording();
@@ -235,35 +246,34 @@ void FastForward::end_walk(std::uint64_t cycle) {
 // Follows the transitions to the ends of groups that are over before `end`.
 std::uint64_t FastForward::walk(std::uint64_t cycle, std::uint64_t end) {
   // A group has at least as many cycles as slots.
-  if (left_of_group_ != slots_of_group() && end - cycle >= left_of_group_) {
+  if (left_of_group_ != cycles_of_group() && end - cycle >= left_of_group_) {
     const auto found = known_.find(state_, accesses());
-    Progress room = room_;
-    room.cycles = end - cycle;
-    if (found && known_.progress(*found).fits(room)) {
+    if (found && known_.progress(*found).fits(room_of_area(end - cycle))) {
       cycle += known_.progress(*found).cycles;
       follow(*found, cycle);
     }
   }
-  if (left_of_group_ != slots_of_group() || end - cycle < slots_of_group()) return cycle;
-  do {
-    Progress room = room_;
-    room.cycles = end - cycle;
+  if (left_of_group_ != cycles_of_group() || end - cycle < cycles_of_group()) return cycle;
+  for (bool is_over = false; !is_over;) {
+    Progress room = room_of_area(end - cycle);
     if (const ConflictRecorder* const conflicts = this->conflicts())
-      room.consumed = std::min(room.consumed, slots_to(conflicts->strip_end_column()));
+      room.consumed = std::min(room.consumed, cycles_to(conflicts->strip_end_column()));
     Progress skipped = room;
-    state_ = varies() ? walk_varying(state_, room) : known_.walk(state_, {}, room, log());
+    state_ = varies() ? walk_varying(state_, room) : known_.walk(state_, no_accesses_, room, log());
     skipped.subtract(room);
     skip(skipped);
     cycle += skipped.cycles;
-  } while (record_skipped(cycle, slots_of_group()));
+    const bool is_strip_recorded = record_skipped(cycle, cycles_of_group());
+    is_over = !change_area() && !is_strip_recorded;
+  }
   return cycle;
 }
 
 // The transition from `cycle` on, in which the host requests its words.
-std::optional<TransitionCache::Transition> FastForward::find_host(std::uint64_t cycle) const {
+std::optional<TransitionCache::Transition> FastForward::find_host(std::uint64_t cycle) {
   std::optional<HostRequests> requests = is_walking_ ? requests_of(host_, cycle) : std::nullopt;
   if (!requests) return std::nullopt;
-  const TransitionCache::Accesses accesses = this->accesses();
+  const TransitionCache::Accesses& accesses = this->accesses();
   auto found = known_.find(state_, accesses, *requests);
   if (!found) {
     requests->words = HostRequests::kEndless;
@@ -277,7 +287,7 @@ std::optional<TransitionCache::Transition> FastForward::find_host(std::uint64_t 
 // after the last uniform slot the state in the cache differs from that of the core. So it must leave one.
 bool FastForward::fits_host(const TransitionCache::Transition& transition) const {
   const Progress& progress = known_.progress(transition);
-  return progress.fits(room_) && progress.consumed < room_.consumed;
+  return progress.fits(room_of_area(UINT64_MAX)) && progress.consumed < room_.consumed;
 }
 
 // The requests of these words from `cycle` on. Nothing if the cache cannot hold them.
@@ -299,6 +309,7 @@ void FastForward::follow(const TransitionCache::Transition& transition, std::uin
   const std::uint64_t left_of_group = left_of_group_;
   skip(known_.progress(transition));
   record_skipped(cycle, left_of_group);
+  change_area();
 }
 
 void FastForward::skip(const Progress& progress) {
@@ -308,7 +319,7 @@ void FastForward::skip(const Progress& progress) {
   if (progress.consumed < left_of_group_) {
     left_of_group_ -= progress.consumed;
   } else {
-    left_of_group_ = slots_of_group() - (progress.consumed - left_of_group_) % slots_of_group();
+    left_of_group_ = cycles_of_group() - (progress.consumed - left_of_group_) % cycles_of_group();
   }
   skipped_cycles_ += progress.cycles;
 }
@@ -327,7 +338,7 @@ bool FastForward::hand_over(ConflictRecorder& conflicts, std::uint64_t cycle, st
     for (std::uint32_t step = 0; step < next->length; ++step)
       repeated_.push_back(&known_.conflicts((next + step)->effect));
     conflicts.repeat(repeated_.data(), repeated_.size(), next->times);
-    left_of_group = slots_of_group();
+    left_of_group = cycles_of_group();
   }
   in_order_.clear();
   if (!conflicts.is_at_strip_end()) return false;
@@ -347,7 +358,7 @@ void FastForward::catch_up(std::uint64_t cycle) {
   control.count_host(true, true, host_ahead_.words);
   memory::StateReader state = known_.state(state_).begin();
   control.skip_to(state, ahead_.consumed, ahead_.words);
-  for (const Side side : kSides) control.correct_marks(side, marks(side));
+  correct_marks();
   arbitration.set_state(cycle, state);
   ahead_ = {};
   host_ahead_ = {};
@@ -355,13 +366,12 @@ void FastForward::catch_up(std::uint64_t cycle) {
 
 // Follows recorded transitions as far as `room` allows, and reduces `room`. Returns the next state.
 FastForward::StateNumber FastForward::walk_varying(StateNumber state, Progress& room) {
-  const std::uint64_t slots = slots_of_group();
+  const std::uint64_t cycles = cycles_of_group();
   int alike = 0;  // groups with the accesses of the group before
-  TransitionCache::Accesses before{};
   for (std::uint64_t consumed = consumed_;;) {
-    const TransitionCache::Accesses accesses = accesses_from(consumed, slots);
-    alike = consumed != consumed_ && accesses == before ? alike + 1 : 0;
-    before = accesses;
+    accesses_before_.swap(accesses_);
+    set_accesses(consumed, cycles);
+    alike = consumed != consumed_ && accesses_ == accesses_before_ ? alike + 1 : 0;
     if (alike == kManyAlike) {
       alike = 0;
       const std::uint64_t left = room.consumed;
@@ -369,95 +379,128 @@ FastForward::StateNumber FastForward::walk_varying(StateNumber state, Progress& 
       consumed += left - room.consumed;
       if (left != room.consumed) continue;
     }
-    const auto found = known_.find(state, accesses);
+    const auto found = known_.find(state, accesses_);
     if (!found) return state;
     const Progress& progress = known_.progress(*found);
     if (!progress.fits(room)) return state;
     known_.follow_group(*found, log());
     room.subtract(progress);
     state = found->next;
-    consumed += slots;
+    consumed += cycles;
   }
 }
 
-// Follows groups with the same accesses. `consumed`: slots of the frame that are consumed before them.
+// Follows groups with the accesses of accesses_. `consumed`: consume-cycles of the frame before them.
 FastForward::StateNumber FastForward::walk_uniform(StateNumber state, std::uint64_t consumed,
                                                    Progress& room) {
   Progress uniform = room;
-  uniform.consumed = std::min(uniform.consumed, uniform_slots(consumed));
+  uniform.consumed = std::min(uniform.consumed, uniform_cycles(consumed));
   Progress left = uniform;
-  const StateNumber last = known_.walk(state, accesses_from(consumed, slots_of_group()), left, log());
+  const StateNumber last = known_.walk(state, accesses_, left, log());
   uniform.subtract(left);
   room.subtract(uniform);
   return last;
 }
 
-// Finds the run of strips (Strips) in which both lanes handle and take slots. Returns false if there is none.
-bool FastForward::find_strips() {
-  if (control().match().draining()) return true;
-  const LaneControl& left = control().lane(Side::kLeft);
-  const LaneControl& right = control().lane(Side::kRight);
-  if (left.next_slot().done() || right.next_slot().done()) return false;
-  while (all_strips_[strips_].end <= std::min(left.taken(), right.taken())) ++strips_;
-  const std::uint64_t begin = strips_ == 0 ? 0 : all_strips_[strips_ - 1].end;
-  return std::min(left.handled(), right.handled()) >= begin &&
-         std::max(left.taken(), right.taken()) < all_strips_[strips_].end;
-}
-
-// Returns how far the core can run before this run of strips ends, MatchControl::part() changes, or a row of
-// results is complete.
+// Returns how far the core can run before MatchControl::part() changes, or a row of results is complete.
 Progress FastForward::room() const {
-  const bool drains = control().match().draining();
-  // A port decides by the slot after the last one taken: that slot must be in the strips too.
-  const auto slots = [this, drains](Side side) {
-    return drains ? 0 : all_strips_[strips_].end - 1 - control().lane(side).taken();
-  };
-  return {UINT64_MAX, control().match().uniform_slots(), slots(Side::kLeft), slots(Side::kRight),
+  return {UINT64_MAX, control().match().uniform_cycles(),
           rows().next_words() - control().result().words_written() - 1};
 }
 
-// Whether a whole group fits into `room`. If not, nothing may be recorded: after a walk up to the last
-// uniform slot, the state in the cache differs from that of the core.
-bool FastForward::holds_group(const Progress& room) const {
-  const std::uint64_t slots = control().match().draining() ? 0 : slots_of_group();
-  return room.consumed >= slots_of_group() && room.left_slots >= slots && room.right_slots >= slots;
+// How far transitions can be followed within `cycles` cycles and the area.
+Progress FastForward::room_of_area(std::uint64_t cycles) const {
+  Progress room = room_;
+  room.cycles = cycles;
+  room.consumed = std::min(room.consumed, area_end_ - consumed_);
+  return room;
 }
 
-// The accesses of all slots that are in the lanes while the matcher consumes `slots` slots. `consumed`: slots
-// of the frame that are consumed before them.
-TransitionCache::Accesses FastForward::accesses_from(std::uint64_t consumed, std::uint64_t slots) const {
-  TransitionCache::Accesses accesses{};
-  const std::size_t words = known_.words_of_side();
-  const std::uint64_t in_use = slots + lane_fifo_slots_;  // bits of a side
+// Sets area_end_ for the state of the walk.
+void FastForward::set_area() {
+  const auto cycles = static_cast<std::uint64_t>(control().geometry().cycles_per_column);
+  const std::uint64_t end =
+      control().match().draining() ? UINT64_MAX : windows_.end_of_area(consumed_ / cycles);
+  area_end_ = end == UINT64_MAX ? UINT64_MAX : end * cycles;
+}
+
+// Goes on to the next area if no group fits into this one any more. Returns whether it does.
+bool FastForward::change_area() {
+  if (area_end_ - consumed_ >= left_of_group_ || !holds_group(room_)) return false;
+  const auto cycles = static_cast<std::uint64_t>(control().geometry().cycles_per_column);
+  state_ = known_.with_last_word(state_, windows_.number_of(consumed_ / cycles));
+  set_area();
+  return true;
+}
+
+// The number of slots of a side that are consumed with these consume-cycles of the frame.
+std::uint64_t FastForward::slots_before(std::uint64_t consumed) const {
+  const FrameGeometry& geometry = control().geometry();
+  const auto cycles = static_cast<std::uint64_t>(geometry.cycles_per_column);
+  const auto slots = static_cast<std::uint64_t>(geometry.slots_per_column);
+  return consumed / cycles * slots +
+         std::min(consumed % cycles * static_cast<std::uint64_t>(geometry.lanes), slots);
+}
+
+// Sets accesses_: of all slots that can be in the lanes during `cycles` consume-cycles. `consumed`:
+// consume-cycles of the frame before them.
+void FastForward::set_accesses(std::uint64_t consumed, std::uint64_t cycles) {
+  const std::uint64_t first = slots_before(consumed);
+  const std::uint64_t in_use = slots_before(consumed + cycles) - first + slots_ahead_;  // bits of a side
+  const std::size_t words = accesses_.size() / 2;
+  std::fill(accesses_.begin(), accesses_.end(), 0);
   for (std::size_t side = 0; side < varying_.size(); ++side) {
     if (varying_[side] == nullptr) continue;
-    std::uint64_t* const of_side = accesses.data() + side * words;
+    std::uint64_t* const of_side = accesses_.data() + side * words;
     for (std::size_t word = 0; 64 * word < in_use; ++word)
-      of_side[word] = varying_[side]->pixels_of_slots(consumed + 64 * word);
+      of_side[word] = varying_[side]->pixels_of_slots(first + 64 * word);
     if (in_use % 64 != 0) of_side[in_use / 64] &= (std::uint64_t{1} << in_use % 64) - 1;
   }
-  return accesses;
 }
 
-// The number of slots from slot `consumed` on over which accesses_from() stays the same, group after group.
-std::uint64_t FastForward::uniform_slots(std::uint64_t consumed) const {
-  std::uint64_t uniform = UINT64_MAX;
+// The number of consume-cycles, a multiple of a group's, over which set_accesses() gives the same for each
+// group.
+std::uint64_t FastForward::uniform_cycles(std::uint64_t consumed) const {
+  const std::uint64_t first = slots_before(consumed);
+  std::uint64_t groups = UINT64_MAX / cycles_of_group();
   for (const AccessPattern* pattern : varying_) {
     if (pattern == nullptr) continue;
-    const std::uint64_t end = pattern->uniform_until(consumed);
-    const std::uint64_t last = consumed + lane_fifo_slots_;
-    uniform = std::min(uniform, end < last ? 0 : end - last);
+    const std::uint64_t end = pattern->uniform_until(first);
+    const std::uint64_t last = first + slots_ahead_;
+    groups = std::min(groups, end < last ? 0 : (end - last) / pattern->slots_of_group());
   }
-  return uniform;
+  return groups * cycles_of_group();
 }
 
-// The accesses of the slots in the lanes up to the end of the group, from the state of the walk on.
-TransitionCache::Accesses FastForward::accesses() const {
-  return varies() ? accesses_from(consumed_, left_of_group_) : TransitionCache::Accesses{};
+// The accesses of the slots that can be in the lanes up to the end of the group, from the state of the walk
+// on.
+const TransitionCache::Accesses& FastForward::accesses() {
+  if (!varies()) return no_accesses_;
+  set_accesses(consumed_, left_of_group_);
+  return accesses_;
 }
 
-// Records the transition that has just been stepped. Does not if the next state depends on the position in
-// the frame too: a lane has left its run of strips (Strips), or MatchControl::part() has changed.
+// See TransitionCache::number_of().
+TransitionCache::Accesses FastForward::unhandled() const {
+  TransitionCache::Accesses unhandled(accesses_.size(), ~std::uint64_t{0});
+  const FrameGeometry& geometry = control().geometry();
+  const std::uint64_t first = slots_before(control().match().consumed());
+  for (std::size_t lane = 0; lane < control().lanes().size(); ++lane) {
+    const LaneControl& of_lane = control().lane(lane);
+    const std::size_t number = lane % control().ports().lanes();
+    const auto slots = static_cast<std::uint64_t>(geometry.slots_of_lane(static_cast<int>(number)));
+    for (std::uint64_t slot = of_lane.handled() - of_lane.handled_slots(); slot < of_lane.handled(); ++slot) {
+      const std::uint64_t of_side = slot / slots * static_cast<std::uint64_t>(geometry.slots_per_column) +
+                                    slot % slots * control().ports().lanes() + number;
+      const std::size_t bit = index_of(control().side_of(lane)) * 32 * unhandled.size() + of_side - first;
+      unhandled[bit / 64] &= ~(std::uint64_t{1} << bit % 64);
+    }
+  }
+  return unhandled;
+}
+
+// Records the transition that has just been stepped. Does not if MatchControl::part() has changed: the next
+// state then depends on the position in the frame too.
 void FastForward::end_stepped(std::uint64_t cycle) {
   const Stepped stepped = *stepped_;
   stepped_.reset();
@@ -477,35 +520,35 @@ void FastForward::end_stepped(std::uint64_t cycle) {
     if (effect.host.words != 0) effect.host.cycles = host_.first - stepped.begin.cycles;
     if (host_.words != 0) requests.words = HostRequests::kEndless;
   }
-  const auto is_beyond = [this](Side side) {
-    return !control().match().draining() && control().lane(side).taken() >= all_strips_[strips_].end;
-  };
-  if (stepped.part != control().match().part() || is_beyond(Side::kLeft) || is_beyond(Side::kRight)) return;
-  known_.record(stepped.state, stepped.accesses, requests, state(cycle), effect, arbitration());
+  if (stepped.part != control().match().part()) return;
+  StateNumber next = state(cycle);
+  // A transition of a uniform area is also followed where the area goes on.
+  if (const std::uint64_t area = known_.state(stepped.state).back(); SlotWindows::is_uniform_number(area))
+    next = known_.with_last_word(next, area);
+  known_.record(stepped.state, stepped.accesses, requests, next, effect, arbitration());
 }
 
 // The progress up to `cycle`. Its beginning is arbitrary: only differences have a meaning.
 Progress FastForward::progress(std::uint64_t cycle) const {
-  return {cycle, control().match().consumed(), control().lane(Side::kLeft).taken(),
-          control().lane(Side::kRight).taken(), control().result().words_written()};
+  return {cycle, control().match().consumed(), control().result().words_written()};
 }
 
 FastForward::StateNumber FastForward::state(std::uint64_t cycle) {
   const std::uint64_t varies = std::uint64_t{varying_[0] != nullptr} | std::uint64_t{varying_[1] != nullptr}
                                                                            << 1U;
   const memory::Arbitration& arbitration = this->arbitration();
+  const memory::Port port = control().ports().host();
   const std::uint64_t host =
-      arbitration.is_routed(kHostPort) && !is_host_routed_
-          ? arbitration.bank_of(kHostPort) << 2U | std::uint64_t{arbitration.writes(kHostPort)} << 1U | 1U
+      arbitration.is_routed(port) && !is_host_routed_
+          ? arbitration.bank_of(port) << 2U | std::uint64_t{arbitration.writes(port)} << 1U | 1U
           : 0;
   state_words_.clear();
   control().append_state(state_words_);
   arbitration.append_state(cycle, state_words_);
-  state_words_.push_back(control().match().draining() ? 0 : all_strips_[strips_].empty);
   state_words_.push_back(banks_ << 32U | host << 2U | varies);
   state_words_.push_back(arbitration.shared());
-  return known_.number_of(state_words_, {control().lane(Side::kLeft).handled_slots(),
-                                         control().lane(Side::kRight).handled_slots()});
+  state_words_.push_back(control().match().draining() ? 0 : windows_.number_of(control().match().columns()));
+  return known_.number_of(state_words_, [this] { return unhandled(); });
 }
 
 }  // namespace stereotlm::fpga

@@ -8,6 +8,7 @@
 
 #include "models/fpga/access_pattern.h"
 #include "models/fpga/core_stepper.h"
+#include "models/fpga/fast/slot_windows.h"
 #include "models/fpga/fast/transition_cache.h"
 
 namespace stereotlm::fpga {
@@ -70,11 +71,6 @@ class FastForward : public CoreStepper {
 
  private:
   using StateNumber = TransitionCache::StateNumber;
-  // A run of consecutive strips whose columns have the same empty slots.
-  struct Strips {
-    std::uint64_t end = 0;    // number of slots of the frame up to the end of the last of these strips
-    std::uint64_t empty = 0;  // bit k: slot k of each column is empty
-  };
   // Words that the host requests one after the other.
   struct HostWords {
     std::uint64_t first = 0;  // first cycle in which the next word requests
@@ -101,20 +97,23 @@ class FastForward : public CoreStepper {
   std::uint64_t walk(std::uint64_t cycle, std::uint64_t end);
   void route_host(std::uint64_t& cycle, const Route& route, std::uint64_t first);
   PixelNeeds needs_pixel(memory::PortMask granted) const {
-    return {needs_pixel(Side::kLeft, granted), needs_pixel(Side::kRight, granted)};
-  }
-  bool needs_pixel(Side side, memory::PortMask granted) const {
-    const bool is_read = (granted & memory::mask_of(control().table_port(side))) != 0;
-    return is_read && accesses_pixel(side, control().lane(side).next_slot());
+    PixelNeeds needs = 0;
+    for (std::size_t lane = 0; lane < control().lanes().size(); ++lane) {
+      if (memory::has(granted, control().table_port(lane)) &&
+          accesses_pixel(control().side_of(lane), control().lane(lane).next_slot()))
+        needs |= PixelNeeds{1} << lane;
+    }
+    return needs;
   }
   // Whether a slot that is not empty accesses its pixel, or is assumed to.
   bool accesses_pixel(Side side, const SlotCursor& slot) const {
     const AccessPattern* const varying = varying_[index_of(side)];
     return varying == nullptr || varying->needs_pixel(slot.column(), slot.row());
   }
-  std::uint64_t marks(Side side) const;
+  std::uint64_t marks(std::size_t lane) const;
+  void correct_marks();
   void resolve_accesses(Side side);
-  std::optional<TransitionCache::Transition> find_host(std::uint64_t cycle) const;
+  std::optional<TransitionCache::Transition> find_host(std::uint64_t cycle);
   bool fits_host(const TransitionCache::Transition& transition) const;
   void follow(const TransitionCache::Transition& transition, std::uint64_t cycle);
   // Where the recorder of the frame finds the transitions that were followed; null without recorder.
@@ -132,12 +131,18 @@ class FastForward : public CoreStepper {
   void catch_up(std::uint64_t cycle);
   StateNumber walk_varying(StateNumber state, Progress& room);
   StateNumber walk_uniform(StateNumber state, std::uint64_t consumed, Progress& room);
-  bool find_strips();
   Progress room() const;
-  bool holds_group(const Progress& room) const;
-  TransitionCache::Accesses accesses_from(std::uint64_t consumed, std::uint64_t slots) const;
-  std::uint64_t uniform_slots(std::uint64_t consumed) const;
-  TransitionCache::Accesses accesses() const;
+  Progress room_of_area(std::uint64_t cycles) const;
+  void set_area();
+  bool change_area();
+  // Whether a whole group fits into `room`. If not, nothing may be recorded: after a walk up to the last
+  // uniform consume-cycle, the state in the cache differs from that of the core.
+  bool holds_group(const Progress& room) const { return room.consumed >= cycles_of_group(); }
+  std::uint64_t slots_before(std::uint64_t consumed) const;
+  void set_accesses(std::uint64_t consumed, std::uint64_t cycles);
+  std::uint64_t uniform_cycles(std::uint64_t consumed) const;
+  const TransitionCache::Accesses& accesses();
+  TransitionCache::Accesses unhandled() const;
   static std::optional<HostRequests> requests_of(const HostWords& host, std::uint64_t cycle);
   void end_stepped(std::uint64_t cycle);
   Progress progress(std::uint64_t cycle) const;
@@ -146,16 +151,19 @@ class FastForward : public CoreStepper {
   bool varies() const {
     return (varying_[0] != nullptr || varying_[1] != nullptr) && !control().match().draining();
   }
-  // The number of slots that the matcher consumes in a group.
-  std::uint64_t slots_of_group() const {
-    return 4 * static_cast<std::uint64_t>(control().geometry().slots_per_column);
+  // The number of consume-cycles of a group.
+  std::uint64_t cycles_of_group() const {
+    return 4 * static_cast<std::uint64_t>(control().geometry().cycles_per_column);
   }
-  // The number of slots up to this column, from the state of the walk on.
-  std::uint64_t slots_to(std::uint64_t column) const { return column * slots_of_group() / 4 - consumed_; }
+  // The number of consume-cycles up to this column, from the state of the walk on.
+  std::uint64_t cycles_to(std::uint64_t column) const { return column * cycles_of_group() / 4 - consumed_; }
 
-  std::uint64_t lane_fifo_slots_;
-  std::vector<Strips> all_strips_;  // all strips of a frame, in order
+  std::uint64_t slots_ahead_;  // of a side: the most slots from the next one of the matcher to one in a lane
+  SlotWindows windows_;
   TransitionCache known_;
+  TransitionCache::Accesses no_accesses_;
+  TransitionCache::Accesses accesses_;
+  TransitionCache::Accesses accesses_before_;
   std::optional<Stepped> stepped_;
   memory::StateWords state_words_;               // of state()
   std::vector<const GroupConflicts*> repeated_;  // of record_skipped()
@@ -164,15 +172,15 @@ class FastForward : public CoreStepper {
   bool is_walking_ = false;
   StateNumber state_ = 0;
   Progress room_;                    // how far transitions can be followed
-  std::uint64_t consumed_ = 0;       // slots of the frame that the matcher has consumed
-  std::uint64_t left_of_group_ = 0;  // slots, or consume-cycles, to the end of the group
+  std::uint64_t consumed_ = 0;       // consume-cycles of the frame
+  std::uint64_t left_of_group_ = 0;  // consume-cycles to the end of the group
+  std::uint64_t area_end_ = 0;       // consume-cycles of the frame up to the end of the area (SlotWindows)
   Progress ahead_;                   // see ahead()
   HostGrants host_ahead_;            // words of the host in these cycles, without HostGrants::cycles
   HostWords host_;                   // words that are granted from the next cycle on
   TransitionCache::Log in_order_;    // what has been followed and is not yet handed to the recorder
   bool is_host_routed_ = false;      // by serve_host()
-  std::uint64_t banks_ = 0;          // of the frame's buffers, 6 bits for each port
-  std::size_t strips_ = 0;           // index in all_strips_: the run in which the lanes take their next slots
+  std::uint64_t banks_ = 0;          // of the frame's buffers, 6 bits for each group
   // [side]: the pattern of a side whose accesses vary. Null if all slots inside the image access their
   // pixels, or are assumed to. Null for a side without table: LaneControl itself finds hits of the cache.
   std::array<const AccessPattern*, 2> varying_{};

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "models/kernels/pixel_column.h"
-
 namespace stereotlm::fpga {
 namespace {
 
@@ -27,8 +25,6 @@ constexpr std::size_t kFirstBuckets = 1024;
 std::uint64_t Progress::times_in(const Progress& room) const {
   std::uint64_t times = room.cycles / cycles;
   if (consumed != 0) times = std::min(times, room.consumed / consumed);
-  if (left_slots != 0) times = std::min(times, room.left_slots / left_slots);
-  if (right_slots != 0) times = std::min(times, room.right_slots / right_slots);
   if (words != 0) times = std::min(times, room.words / words);
   return times;
 }
@@ -41,9 +37,7 @@ std::size_t TransitionCache::StateHash::operator()(const State& state) const {
 
 std::size_t TransitionCache::EffectHash::operator()(const Effect& effect) const {
   Hash hash;
-  const Progress& progress = effect.progress;
-  for (const std::uint64_t word :
-       {progress.cycles, progress.consumed, progress.left_slots, progress.right_slots, progress.words})
+  for (const std::uint64_t word : {effect.progress.cycles, effect.progress.consumed, effect.progress.words})
     hash.mix(word);
   for (const PortCycles& port : effect.counts) {
     hash.mix(port.granted() << 32U | port.stalled());
@@ -54,10 +48,7 @@ std::size_t TransitionCache::EffectHash::operator()(const Effect& effect) const 
   return hash.value();
 }
 
-static_assert(4 * kernels::kMostRows + kLaneFifoRule.max <= 64 * TransitionCache::kMostWordsOfSide,
-              "Accesses does not hold the slots of a group");
-
-TransitionCache::TransitionCache(std::size_t slots) : words_(2 * ((slots + 63) / 64)) { clear(); }
+TransitionCache::TransitionCache(std::size_t words) : words_(words), key_(words) { clear(); }
 
 void TransitionCache::clear() {
   states_.clear();
@@ -73,20 +64,14 @@ void TransitionCache::clear() {
   buckets_.assign(kFirstBuckets * words_of_bucket(), 0);
 }
 
-TransitionCache::StateNumber TransitionCache::number_of(const State& state,
-                                                        const std::array<std::uint64_t, 2>& handled) {
-  const auto [entry, is_new] = state_numbers_.try_emplace(state, static_cast<StateNumber>(states_.size()));
-  if (is_new) {
-    states_.push_back(&entry->first);
-    Accesses unhandled;
-    unhandled.fill(~std::uint64_t{0});
-    for (std::size_t side = 0; side < 2; ++side) {
-      std::uint64_t& first_word = unhandled[side * words_of_side()];
-      first_word = handled[side] < 64 ? first_word << handled[side] : 0;
-    }
-    unhandled_.push_back(unhandled);
-  }
-  return entry->second;
+TransitionCache::StateNumber TransitionCache::with_last_word(StateNumber number, std::uint64_t last_word) {
+  State state = *states_[number];
+  if (state.back() == last_word) return number;
+  state.back() = last_word;
+  return number_of(state, [this, number] {
+    const auto first = unhandled_.begin() + static_cast<std::ptrdiff_t>(number * words_);
+    return Accesses(first, first + static_cast<std::ptrdiff_t>(words_));
+  });
 }
 
 std::uint32_t TransitionCache::number_of_effect(const Effect& effect,
@@ -102,32 +87,32 @@ std::uint32_t TransitionCache::number_of_effect(const Effect& effect,
   return entry->second;
 }
 
-TransitionCache::Accesses TransitionCache::key_of(StateNumber from, const Accesses& accesses) const {
-  const Accesses& unhandled = unhandled_[from];
-  Accesses key;
-  for (std::size_t word = 0; word < words_; ++word) key[word] = accesses[word] & unhandled[word];
-  return key;
+// Sets key_ to the accesses that matter.
+void TransitionCache::set_key(StateNumber from, const Accesses& accesses) const {
+  const std::uint64_t* const unhandled = unhandled_.data() + from * words_;
+  for (std::size_t word = 0; word < words_; ++word) key_[word] = accesses[word] & unhandled[word];
 }
 
-// Returns the first word of the bucket of this key, or of the free bucket where it belongs.
-std::size_t TransitionCache::bucket_of(std::uint64_t first_word, const Accesses& key) const {
+// Returns the first word of the bucket of key_, or of the free bucket where it belongs.
+std::size_t TransitionCache::bucket_of(std::uint64_t first_word) const {
   Hash hash;
   hash.mix(first_word);
-  for (std::size_t word = 0; word < words_; ++word) hash.mix(key[word]);
+  for (const std::uint64_t word : key_) hash.mix(word);
   for (std::size_t number = hash.value();; ++number) {
     const std::size_t bucket = (number & mask_) * words_of_bucket();
     const std::uint64_t* const words = buckets_.data() + bucket;
     if (words[0] == 0) return bucket;
     if (words[0] != first_word) continue;
     std::uint64_t difference = 0;
-    for (std::size_t word = 0; word < words_; ++word) difference |= words[1 + word] ^ key[word];
+    for (std::size_t word = 0; word < words_; ++word) difference |= words[1 + word] ^ key_[word];
     if (difference == 0) return bucket;
   }
 }
 
 std::optional<TransitionCache::Transition> TransitionCache::find(StateNumber from, const Accesses& accesses,
                                                                  HostRequests host) const {
-  const std::size_t bucket = bucket_of(first_word_of(from, host), key_of(from, accesses));
+  set_key(from, accesses);
+  const std::size_t bucket = bucket_of(first_word_of(from, host));
   if (buckets_[bucket] == 0) return std::nullopt;
   const std::uint64_t transition = buckets_[bucket + 1 + words_];
   return Transition{static_cast<StateNumber>(transition), static_cast<std::uint32_t>(transition >> 32U)};
@@ -136,12 +121,12 @@ std::optional<TransitionCache::Transition> TransitionCache::find(StateNumber fro
 void TransitionCache::record(StateNumber from, const Accesses& accesses, HostRequests host, StateNumber next,
                              const Effect& effect, const memory::Arbitration& arbitration) {
   if (2 * (transitions_ + 1) > mask_) double_buckets();
-  const Accesses key = key_of(from, accesses);
+  set_key(from, accesses);
   const std::uint64_t first_word = first_word_of(from, host);
-  std::uint64_t* const words = buckets_.data() + bucket_of(first_word, key);
+  std::uint64_t* const words = buckets_.data() + bucket_of(first_word);
   if (words[0] == 0) ++transitions_;
   words[0] = first_word;
-  std::copy_n(key.begin(), words_, words + 1);
+  std::copy(key_.begin(), key_.end(), words + 1);
   words[1 + words_] = std::uint64_t{number_of_effect(effect, arbitration)} << 32U | next;
 }
 
@@ -149,12 +134,11 @@ void TransitionCache::double_buckets() {
   std::vector<std::uint64_t> old(2 * buckets_.size(), 0);
   old.swap(buckets_);
   mask_ = 2 * mask_ + 1;
-  Accesses key{};
   for (std::size_t bucket = 0; bucket < old.size(); bucket += words_of_bucket()) {
     if (old[bucket] == 0) continue;
     const auto first = old.begin() + static_cast<std::ptrdiff_t>(bucket);
-    std::copy_n(first + 1, words_, key.begin());
-    const std::size_t to = bucket_of(old[bucket], key);
+    std::copy_n(first + 1, words_, key_.begin());
+    const std::size_t to = bucket_of(old[bucket]);
     std::copy_n(first, words_of_bucket(), buckets_.begin() + static_cast<std::ptrdiff_t>(to));
   }
 }

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -16,35 +15,27 @@ namespace stereotlm::fpga {
 // The progress of the core over some cycles of a frame, or a limit for that progress.
 struct Progress {
   std::uint64_t cycles = 0;
-  std::uint64_t consumed = 0;     // slots, or consume-cycles of the drain, of the matcher
-  std::uint64_t left_slots = 0;   // taken by the left lane
-  std::uint64_t right_slots = 0;  // taken by the right lane
-  std::uint64_t words = 0;        // results written
+  std::uint64_t consumed = 0;  // consume-cycles of the matcher
+  std::uint64_t words = 0;     // results written
 
   bool fits(const Progress& room) const {
-    return cycles <= room.cycles && consumed <= room.consumed && left_slots <= room.left_slots &&
-           right_slots <= room.right_slots && words <= room.words;
+    return cycles <= room.cycles && consumed <= room.consumed && words <= room.words;
   }
   // How many times this progress fits into the limit `room`. `cycles` must not be 0.
   std::uint64_t times_in(const Progress& room) const;
   void add(const Progress& other) {
     cycles += other.cycles;
     consumed += other.consumed;
-    left_slots += other.left_slots;
-    right_slots += other.right_slots;
     words += other.words;
   }
   void subtract(const Progress& other, std::uint64_t times = 1) {
     cycles -= other.cycles * times;
     consumed -= other.consumed * times;
-    left_slots -= other.left_slots * times;
-    right_slots -= other.right_slots * times;
     words -= other.words * times;
   }
 
   friend bool operator==(const Progress& a, const Progress& b) {
-    return a.cycles == b.cycles && a.consumed == b.consumed && a.left_slots == b.left_slots &&
-           a.right_slots == b.right_slots && a.words == b.words;
+    return a.cycles == b.cycles && a.consumed == b.consumed && a.words == b.words;
   }
 };
 
@@ -86,16 +77,14 @@ class TransitionCache {
   using State = memory::StateWords;
   using StateNumber = std::uint32_t;
 
-  // A bit for each slot that is in a lane before the end of the group, the oldest one first: 1 if the slot
-  // accesses its pixel. words_of_side() words for the left lane, then as many for the right lane. The bits of
-  // slots that are handled before the transition have no effect.
-  static constexpr std::size_t kMostWordsOfSide = 4;
-  using Accesses = std::array<std::uint64_t, 2 * kMostWordsOfSide>;
-  std::size_t words_of_side() const { return words_ / 2; }
+  // A bit for each slot that can be in a lane before the end of the group, in the order of the slots: 1 if
+  // the slot accesses its pixel. Half of the words are for the left side. The bits of slots that are handled
+  // before the transition have no effect. All objects of a cache have the same number of words.
+  using Accesses = std::vector<std::uint64_t>;
 
   struct Effect {
     Progress progress;
-    CoreControl::Counts counts{};
+    CoreControl::Counts counts;
     memory::CountChanges arbitration;
     HostGrants host;
 
@@ -117,13 +106,24 @@ class TransitionCache {
   };
   using Log = std::vector<Followed>;
 
-  // `slots`: the most slots that are in a lane during a group.
-  explicit TransitionCache(std::size_t slots);
+  // `words`: of Accesses.
+  explicit TransitionCache(std::size_t words);
   TransitionCache(const TransitionCache&) = delete;  // effects are referred to
   TransitionCache& operator=(const TransitionCache&) = delete;
 
-  // `handled`: [side] slots in the lane that are handled.
-  StateNumber number_of(const State& state, const std::array<std::uint64_t, 2>& handled);
+  // `unhandled`: returns Accesses with a 0 for each slot that is handled before a transition from this state.
+  template <class Unhandled>
+  StateNumber number_of(const State& state, const Unhandled& unhandled) {
+    const auto [entry, is_new] = state_numbers_.try_emplace(state, static_cast<StateNumber>(states_.size()));
+    if (is_new) {
+      states_.push_back(&entry->first);
+      const Accesses mask = unhandled();
+      unhandled_.insert(unhandled_.end(), mask.begin(), mask.end());
+    }
+    return entry->second;
+  }
+  // The number of a state that differs from this one in the last word only.
+  StateNumber with_last_word(StateNumber number, std::uint64_t last_word);
   const State& state(StateNumber number) const { return *states_[number]; }
   // The transition from this state with these accesses and requests of the host, if it is recorded.
   std::optional<Transition> find(StateNumber from, const Accesses& accesses, HostRequests host = {}) const;
@@ -168,21 +168,22 @@ class TransitionCache {
   static constexpr std::size_t kMostStates = std::size_t{1} << 23U;
 
   // A bucket of the table: one word with the state's number plus one (0: the bucket is free) and the requests
-  // of the host, the accesses of key_of(), one word with the transition.
+  // of the host, the accesses of key_, one word with the transition.
   std::size_t words_of_bucket() const { return words_ + 2; }
-  Accesses key_of(StateNumber from, const Accesses& accesses) const;
+  void set_key(StateNumber from, const Accesses& accesses) const;
   static std::uint64_t first_word_of(StateNumber from, HostRequests host) {
     return std::uint64_t{host.first} << 48U | std::uint64_t{host.words} << 32U |
            std::uint64_t{host.route} << 24U | (from + 1);
   }
-  std::size_t bucket_of(std::uint64_t first_word, const Accesses& key) const;
+  std::size_t bucket_of(std::uint64_t first_word) const;
   std::uint32_t number_of_effect(const Effect& effect, const memory::Arbitration& arbitration);
   void double_buckets();
 
   std::size_t words_;  // of the accesses
   std::unordered_map<State, StateNumber, StateHash> state_numbers_;
-  std::vector<const State*> states_;  // [number]
-  std::vector<Accesses> unhandled_;   // [number of the state]: bits of the slots that are not handled before
+  std::vector<const State*> states_;      // [number]
+  std::vector<std::uint64_t> unhandled_;  // words_ for each state: see number_of()
+  mutable Accesses key_;                  // of the look-up that is under way
   std::unordered_map<Effect, std::uint32_t, EffectHash> effect_numbers_;
   std::vector<const Effect*> effects_;   // [number]
   std::vector<std::uint64_t> followed_;  // [number of the effect]: times not counted yet

@@ -38,6 +38,7 @@ ConflictRecorder::ConflictRecorder(const CoreConfig& config,
                                    const std::vector<memory::SsramBankConfig>& banks,
                                    std::vector<AddressRange> captured, std::size_t most_tiles)
     : geometry_(checked(config)),
+      requesters_(CorePorts(config)),
       banks_(banks.size()),
       captured_(std::move(captured)),
       grid_(geometry_, most_tiles),
@@ -47,7 +48,7 @@ ConflictRecorder::ConflictRecorder(const CoreConfig& config,
       strips_(1 + strips_of_results(geometry_)),
       ends_(1 + (strips_ - 1) * grid_.columns),
       tile_cycles_(tiles()),
-      indices_(kRequesters * banks_ * (kRequesters + 1)) {}
+      indices_(requesters_.size() * banks_ * (requesters_.size() + 1)) {}
 
 bool ConflictRecorder::start_frame(std::uint64_t cycle, const CoreControl& control,
                                    const memory::Arbitration& arbitration) {
@@ -57,7 +58,10 @@ bool ConflictRecorder::start_frame(std::uint64_t cycle, const CoreControl& contr
   if (!is_recording_) return false;
   first_cycle_ = cycle_ = cycle;
   strip_ = group_ = strip_tile_ = 0;
-  for (std::size_t port = 0; port < kCorePortCount; ++port) {
+  const std::size_t ports = requesters_.ports().core_size();
+  grants_.resize(ports);
+  frame_.bank_of_port.resize(ports);
+  for (std::size_t port = 0; port < ports; ++port) {
     grants_[port] = control.port_cycles(port).granted();
     frame_.bank_of_port[port] = arbitration_->bank_of(port);
   }
@@ -66,7 +70,8 @@ bool ConflictRecorder::start_frame(std::uint64_t cycle, const CoreControl& contr
   frame_.number = frames_begun_ - 1;
   frame_.first_cycle = cycle;
   frame_.banks = banks_;
-  frame_.strips.assign(strips_, {});
+  frame_.strips.assign(
+      strips_, {0, std::vector<std::uint64_t>(requesters_.size()), std::vector<std::uint64_t>(ports)});
   frame_.accesses.assign(strips_ * banks_, {});
   frame_.stalls.clear();
   return true;
@@ -75,20 +80,19 @@ bool ConflictRecorder::start_frame(std::uint64_t cycle, const CoreControl& contr
 std::size_t ConflictRecorder::first_cause(std::size_t requester, std::size_t bank, std::size_t by) {
   stalls_.push_back({{requester, bank, by}, std::vector<std::uint64_t>(tiles())});
   of_strip_.push_back(0);
-  indices_[(requester * banks_ + bank) * (kRequesters + 1) + by] = stalls_.size();
+  indices_[(requester * banks_ + bank) * (requesters_.size() + 1) + by] = stalls_.size();
   return stalls_.size() - 1;
 }
 
 void ConflictRecorder::step(memory::PortMask requests, memory::PortMask granted) {
-  if ((granted & memory::mask_of(kHostPort)) != 0)
-    ++host_accesses(strip_, arbitration_->bank_of(kHostPort), traffic_);
-  for (auto stalled = static_cast<unsigned>(requests & ~granted); stalled != 0; stalled &= stalled - 1) {
-    const memory::Port port = memory::lowest_port(static_cast<memory::PortMask>(stalled));
+  const memory::Port host = requesters_.ports().host();
+  if (memory::has(granted, host)) ++host_accesses(strip_, arbitration_->bank_of(host), traffic_);
+  memory::for_each_port(requests & ~granted, [&](memory::Port port) {
     const std::size_t by = requester_of_port(arbitration_->cause_of(port, granted));
     const std::size_t cause = cause_of(requester_of_port(port), arbitration_->bank_of(port), by);
     ++stalls_[cause].cycles[tile()];
     ++of_strip_[cause];
-  }
+  });
 }
 
 void ConflictRecorder::end_group(std::uint64_t next_cycle) {
@@ -106,7 +110,8 @@ void ConflictRecorder::add_part(const GroupConflicts& part) {
 
 void ConflictRecorder::count_host_words(const GroupConflicts& group, std::uint64_t times) {
   if (group.host_words != 0)
-    host_accesses(strip_, arbitration_->bank_of(kHostPort), traffic_) += group.host_words * times;
+    host_accesses(strip_, arbitration_->bank_of(requesters_.ports().host()), traffic_) +=
+        group.host_words * times;
 }
 
 void ConflictRecorder::repeat(const GroupConflicts* const* groups, std::size_t size, std::uint64_t times) {
@@ -168,12 +173,13 @@ void ConflictRecorder::end_strip() {
 
 // Counts the grants of the core and all stalls since the end of the strip before.
 void ConflictRecorder::count_strip() {
-  for (std::size_t port = 0; port < kCorePortCount; ++port) {
+  for (std::size_t port = 0; port < grants_.size(); ++port) {
     std::uint64_t grants = control_->port_cycles(port).granted();
     for (const Side side : kSides) {
       const AccessPattern* const assumed = assumed_[index_of(side)];
-      if (assumed != nullptr && port == pixel_port(side))
-        grants -= assumed->passes_before(control_->lane(side).handled());
+      const std::size_t lane = control_->lane_index(side, 0);  // the only one of a side that is assumed
+      if (assumed != nullptr && port == control_->pixel_port(lane))
+        grants -= assumed->passes_before(control_->lane(lane).handled());
     }
     const std::uint64_t of_strip = grants - std::exchange(grants_[port], grants);
     frame_.strips[strip_].grants[port] = of_strip;
@@ -235,7 +241,7 @@ void ConflictRecorder::count_served() {
   std::map<std::pair<std::size_t, std::size_t>, std::uint64_t> stalls;  // [strip, cause]
   std::size_t strip = 0;                                                // mostly that of the words before
   for (const Served& served : served_) {
-    const std::size_t requester = requester_of(served.traffic);
+    const std::size_t requester = requesters_.host(served.traffic);
     const std::uint64_t end = served.cycle + served.cycles;
     for (std::uint64_t cycle = served.cycle; cycle < end;) {
       if (cycle >= end_of(strip) || (strip != 0 && cycle < end_of(strip - 1)))
@@ -247,7 +253,7 @@ void ConflictRecorder::count_served() {
         const std::size_t place = place_at(cycle);
         until = std::min(until, ends_[place]);
         const std::size_t tile = tile_of(strip) + place - place_of(strip, 0);
-        const std::size_t cause = cause_of(requester, served.bank, kTurnaroundToBlame);
+        const std::size_t cause = cause_of(requester, served.bank, requesters_.turnaround());
         stalls_[cause].cycles[tile] += until - cycle;
         stalls[{strip, cause}] += until - cycle;
       }

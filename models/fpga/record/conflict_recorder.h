@@ -41,15 +41,15 @@ struct GroupConflicts {
 struct StallCause {
   std::size_t requester = 0;
   std::size_t bank = 0;
-  std::size_t by = 0;  // requester, or kTurnaroundToBlame
+  std::size_t by = 0;  // a requester, or the turnaround
 };
 
 // The cycles of a strip of results in one frame: from the end of the strip before to the cycle that completes
 // its own last group.
 struct StripConflicts {
   std::uint64_t cycles = 0;
-  std::array<std::uint64_t, kRequesters> stalls{};     // [requester]
-  std::array<std::uint64_t, kCorePortCount> grants{};  // [port]
+  std::vector<std::uint64_t> stalls;  // [requester]
+  std::vector<std::uint64_t> grants;  // [port] of the core
 };
 
 // One frame. Strip 0 is the fill: the cycles before the first group with results. The last strip has the
@@ -67,7 +67,7 @@ struct FrameConflicts {
   std::uint64_t number = 0;       // of the frame, among those of the core
   std::uint64_t first_cycle = 0;  // since power-up
   std::vector<StripConflicts> strips;
-  std::array<std::size_t, kCorePortCount> bank_of_port{};  // without meaning for a port that does not exist
+  std::vector<std::size_t> bank_of_port;  // of the core; without meaning for a port that does not exist
   std::size_t banks = 0;
   std::vector<BankAccesses> accesses;  // [strip * banks + bank]
   std::vector<StallCause> causes;      // of all frames up to this one
@@ -135,10 +135,11 @@ class ConflictRecorder {
 
   // Of a port, or of ArbiterStats::kTurnaround.
   std::size_t requester_of_port(std::size_t port) const {
-    if (port == memory::ArbiterStats::kTurnaround) return kTurnaroundToBlame;
-    return port == kHostPort ? requester_of(traffic_) : port;
+    if (port == memory::ArbiterStats::kTurnaround) return requesters_.turnaround();
+    return requesters_.of_port(port, traffic_);
   }
   HostTraffic host_traffic() const { return traffic_; }
+  const Requesters& requesters() const { return requesters_; }
   // The strip of the running frame to which the next cycle belongs.
   std::size_t strip() const { return strip_; }
 
@@ -183,7 +184,7 @@ class ConflictRecorder {
   std::uint64_t end_of(std::size_t strip) const { return ends_[place_of(strip, groups_of_strip_ - 1)]; }
   // The index in stalls_.
   std::size_t cause_of(std::size_t requester, std::size_t bank, std::size_t by) {
-    const std::size_t index = indices_[(requester * banks_ + bank) * (kRequesters + 1) + by];
+    const std::size_t index = indices_[(requester * banks_ + bank) * (requesters_.size() + 1) + by];
     return index != 0 ? index - 1 : first_cause(requester, bank, by);
   }
   std::size_t first_cause(std::size_t requester, std::size_t bank, std::size_t by);
@@ -200,6 +201,7 @@ class ConflictRecorder {
   void count_served();
 
   FrameGeometry geometry_;
+  Requesters requesters_;
   std::size_t banks_;
   std::vector<AddressRange> captured_;
   TileGrid grid_;
@@ -219,7 +221,7 @@ class ConflictRecorder {
   std::size_t strip_ = 0;       // of the next group
   std::size_t group_ = 0;       // number of the next group in its strip
   std::size_t strip_tile_ = 0;  // the first tile of this strip
-  std::array<std::uint64_t, kCorePortCount> grants_{};  // [port]: up to the end of the strip before
+  std::vector<std::uint64_t> grants_;  // [port]: up to the end of the strip before
   std::array<const AccessPattern*, 2> assumed_{};
   // [place_of()]: the first cycle after the part of a tile in its strip.
   std::vector<std::uint64_t> ends_;

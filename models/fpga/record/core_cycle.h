@@ -1,9 +1,9 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "models/fpga/core_ports.h"
 #include "models/fpga/port_cycles.h"
@@ -17,7 +17,7 @@ struct PortCycle {
   bool granted = false;       // of a request
   std::size_t bank = 0;       // of a request
   std::uint64_t address = 0;  // of a request: byte address in the bank
-  std::size_t by = 0;         // of a request that waits: the requester to blame, or kTurnaroundToBlame
+  std::size_t by = 0;         // of a request that waits: who is to blame, see Requesters
   // The number in its frame of the slot that a reader takes or handles, or of the word that is written.
   std::uint64_t item = 0;
 };
@@ -26,9 +26,9 @@ struct PortCycle {
 struct CoreCycle {
   std::uint64_t cycle = 0;             // since power-up
   std::optional<std::uint64_t> frame;  // the frame that runs; else only the host's port is set
-  std::array<PortCycle, kPortCount> ports{};
+  std::vector<PortCycle> ports;
   HostTraffic host_traffic = HostTraffic::kCapture;  // if the host requests
-  std::array<std::uint32_t, 2> lane_slots{};         // [side]: slots in the lane
+  std::vector<std::uint32_t> lane_slots;             // [lane]: CoreControl::lanes(); slots in the lane
   std::uint32_t result_words = 0;                    // in the queue of results
   bool works = false;                                // the matcher works
 };

@@ -17,10 +17,20 @@ std::uint64_t sum(std::uint64_t a, std::uint64_t b) { return a > UINT64_MAX - b 
 CycleRecorder::CycleRecorder(const CoreConfig& config, const ConflictRecorder& conflicts,
                              const CycleWindow& window, CycleObserver& observer)
     : geometry_(config),
+      requesters_(CorePorts(config)),
       has_table_{has_table(config, Side::kLeft), has_table(config, Side::kRight)},
       conflicts_(conflicts),
       window_(window),
-      observer_(observer) {}
+      observer_(observer),
+      places_(requesters_.ports().core_size()) {}
+
+CoreCycle CycleRecorder::new_cycle(std::uint64_t cycle) const {
+  CoreCycle out;
+  out.cycle = cycle;
+  out.ports.resize(requesters_.ports().size());
+  out.lane_slots.resize(2 * requesters_.ports().lanes());
+  return out;
+}
 
 void CycleRecorder::start_frame(std::uint64_t number, std::uint64_t first_cycle, const FrameBases& bases) {
   report_accesses(first_cycle);
@@ -61,46 +71,45 @@ bool CycleRecorder::is_inside(std::uint64_t cycle) const {
 void CycleRecorder::record(std::uint64_t cycle, const CoreControl::Decision& decision, bool host_requests,
                            memory::PortMask granted, const CoreControl& control,
                            const memory::Arbitration& arbitration) {
-  CoreCycle out;
-  out.cycle = cycle;
+  CoreCycle out = new_cycle(cycle);
   out.frame = frame_;
   const auto blamed = [&](memory::Port port) {
     return conflicts_.requester_of_port(arbitration.cause_of(port, granted));
   };
-  for (memory::Port port = 0; port < kCorePortCount; ++port) {
+  const CorePorts& ports = requesters_.ports();
+  for (memory::Port port = 0; port < ports.core_size(); ++port) {
     PortCycle& of_port = out.ports[port];
     of_port.intent = decision.intents[port];
-    const LaneControl& lane = control.lane(kPorts[port].side);
+    const PortGroup& group = ports.group(port);
+    const LaneControl& lane = control.lane(control.lane_index(group.side, ports.lane_of(port)));
     if (of_port.intent == Intent::kRequest || of_port.intent == Intent::kPass) {
-      of_port.item = port == kResultPort                           ? control.result().words_written()
-                     : kPorts[port].stage == PortStage::kLutReader ? lane.taken()
-                                                                   : lane.handled();
+      of_port.item = port == ports.result()                 ? control.result().words_written()
+                     : group.stage == PortStage::kLutReader ? lane.taken()
+                                                            : lane.handled();
     }
     if (of_port.intent != Intent::kRequest) continue;
-    of_port.granted = (granted & memory::mask_of(port)) != 0;
+    of_port.granted = memory::has(granted, port);
     of_port.bank = arbitration.bank_of(port);
-    of_port.address = registers::base_address(bases_[port]) - memory::crossbar_address(of_port.bank, 0) +
-                      address_of(port, of_port.item);
+    of_port.address = registers::base_address(bases_[ports.group_of(port)]) -
+                      memory::crossbar_address(of_port.bank, 0) + address_of(port, of_port.item);
     if (!of_port.granted) of_port.by = blamed(port);
   }
   if (host_requests) {
-    const bool is_granted = (granted & memory::mask_of(kHostPort)) != 0;
-    set_host(out, *host_(), is_granted, is_granted ? 0 : blamed(kHostPort));
+    const bool is_granted = memory::has(granted, ports.host());
+    set_host(out, *host_(), is_granted, is_granted ? 0 : blamed(ports.host()));
   } else {
     drop_accesses(cycle);
     set_access(out);
   }
-  for (const Side side : kSides) {
-    const LaneControl& lane = control.lane(side);
-    out.lane_slots[index_of(side)] = static_cast<std::uint32_t>(lane.slots());
-  }
+  for (std::size_t lane = 0; lane < out.lane_slots.size(); ++lane)
+    out.lane_slots[lane] = static_cast<std::uint32_t>(control.lane(lane).slots());
   out.result_words = static_cast<std::uint32_t>(control.result().queued());
   out.works = decision.work;
   observer_.cycle(out);
 }
 
 std::uint64_t CycleRecorder::address_of(memory::Port port, std::uint64_t item) {
-  const CorePort& description = kPorts[port];
+  const PortGroup& description = requesters_.ports().group(port);
   if (description.stage == PortStage::kResultWriter)
     return result_word_offset(geometry_.place_of_result_word(item));
   const std::uint64_t pixel = pixel_of_slot(port, item);
@@ -119,7 +128,7 @@ std::uint64_t CycleRecorder::pixel_of_slot(memory::Port port, std::uint64_t slot
   if (slot == place.slot + 1) {
     place.cursor.advance();
   } else if (slot != place.slot) {
-    place.cursor = SlotCursor(geometry_);
+    place.cursor = SlotCursor(geometry_, static_cast<int>(requesters_.ports().lane_of(port)));
     place.cursor.advance(slot);
   }
   place.slot = slot;
@@ -127,8 +136,8 @@ std::uint64_t CycleRecorder::pixel_of_slot(memory::Port port, std::uint64_t slot
          static_cast<std::uint64_t>(place.cursor.column());
 }
 
-void CycleRecorder::set_host(CoreCycle& cycle, const HostWord& word, bool granted, std::size_t by) {
-  cycle.ports[kHostPort] = {Intent::kRequest, granted, word.bank, word.address, by, 0};
+void CycleRecorder::set_host(CoreCycle& cycle, const HostWord& word, bool granted, std::size_t by) const {
+  cycle.ports.back() = {Intent::kRequest, granted, word.bank, word.address, by, 0};
   cycle.host_traffic = word.traffic;
 }
 
@@ -149,14 +158,13 @@ void CycleRecorder::drop_accesses(std::uint64_t end_cycle) {
 void CycleRecorder::set_access(CoreCycle& cycle) const {
   if (accesses_.empty() || cycle.cycle < accesses_.front().cycle) return;
   const Accesses& accesses = accesses_.front();
-  set_host(cycle, accesses.word, accesses.granted, accesses.granted ? 0 : kTurnaroundToBlame);
+  set_host(cycle, accesses.word, accesses.granted, accesses.granted ? 0 : requesters_.turnaround());
 }
 
 // Reports the accesses before `end_cycle`, while no frame runs.
 void CycleRecorder::report_accesses(std::uint64_t end_cycle) {
   while (!accesses_.empty() && accesses_.front().cycle < end_cycle) {
-    CoreCycle out;
-    out.cycle = accesses_.front().cycle;
+    CoreCycle out = new_cycle(accesses_.front().cycle);
     set_access(out);
     if (is_inside(out.cycle)) observer_.cycle(out);
     drop_accesses(out.cycle + 1);

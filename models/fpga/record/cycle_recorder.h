@@ -7,6 +7,7 @@
 #include <functional>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "models/fpga/core_control.h"
 #include "models/fpga/core_ports.h"
@@ -77,12 +78,15 @@ class CycleRecorder {
               memory::PortMask granted, const CoreControl& control, const memory::Arbitration& arbitration);
   std::uint64_t address_of(memory::Port port, std::uint64_t item);
   std::uint64_t pixel_of_slot(memory::Port port, std::uint64_t slot);
-  static void set_host(CoreCycle& cycle, const HostWord& word, bool granted, std::size_t by);
+  void set_host(CoreCycle& cycle, const HostWord& word, bool granted, std::size_t by) const;
   void set_access(CoreCycle& cycle) const;
   void drop_accesses(std::uint64_t end_cycle);
   void report_accesses(std::uint64_t end_cycle);
 
+  CoreCycle new_cycle(std::uint64_t cycle) const;
+
   FrameGeometry geometry_;
+  Requesters requesters_;
   std::array<bool, 2> has_table_;  // [side]
   const ConflictRecorder& conflicts_;
   CycleWindow window_;
@@ -98,7 +102,7 @@ class CycleRecorder {
     std::uint64_t slot = UINT64_MAX - 1;  // none
     SlotCursor cursor;
   };
-  std::array<Place, kCorePortCount> places_{};
+  std::vector<Place> places_;
   std::deque<Accesses> accesses_;  // of the host, not handed out yet
 };
 

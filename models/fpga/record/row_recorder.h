@@ -14,7 +14,7 @@ struct RowEnd {
   std::uint64_t cycles = 0;  // cycles of the frame up to that write, its own cycle included
   // [port]: in how many of these cycles the port was stalled. The host has no entry, because its words are
   // not counted cycle by cycle where they are uncontended.
-  std::array<std::uint64_t, kCorePortCount> stalls{};
+  std::vector<std::uint64_t> stalls;
 
   friend bool operator==(const RowEnd& a, const RowEnd& b) {
     return a.cycles == b.cycles && a.stalls == b.stalls;
@@ -57,18 +57,18 @@ class RowRecorder {
     RowProfile profile(rows_.begin(), rows_.begin() + static_cast<std::ptrdiff_t>(rows_complete_));
     for (RowEnd& row : profile) {
       row.cycles -= first_cycle;
-      for (std::size_t port = 0; port < kCorePortCount; ++port) row.stalls[port] -= before_[port];
+      for (std::size_t port = 0; port < before_.size(); ++port) row.stalls[port] -= before_[port];
     }
     return profile;
   }
 
  private:
   static constexpr std::uint64_t kNever = UINT64_MAX;
-  using Stalls = std::array<std::uint64_t, kCorePortCount>;
+  using Stalls = std::vector<std::uint64_t>;
 
   static Stalls stalls_of(const CoreControl& control) {
-    Stalls stalls{};
-    for (std::size_t port = 0; port < kCorePortCount; ++port)
+    Stalls stalls(control.ports().core_size());
+    for (std::size_t port = 0; port < stalls.size(); ++port)
       stalls[port] = control.port_cycles(port).stalled();
     return stalls;
   }
@@ -86,7 +86,7 @@ class RowRecorder {
   FrameGeometry geometry_;
   bool is_on_ = false;
   std::uint64_t next_words_ = kNever;
-  Stalls before_{};  // [port]: stalls before the frame
+  Stalls before_;  // [port]: stalls before the frame
   std::size_t rows_complete_ = 0;
   RowProfile rows_;  // counted from cycle 0 of the clock
 };

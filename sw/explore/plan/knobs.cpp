@@ -134,7 +134,7 @@ class Steps {
     const Order& list = board_.fpga.arbiter.priority;
     const auto names = [](const Order& order) {
       std::vector<std::string> ports;
-      for (const memory::Port port : order) ports.emplace_back(fpga::kPorts[port].name);
+      for (const memory::Port port : order) ports.emplace_back(fpga::kPortGroups[port].name);
       return fmt::format("{}", fmt::join(ports, ", "));
     };
     std::set<Order> known = {list};
@@ -149,7 +149,7 @@ class Steps {
       add_order(order, pair(list), pair(order));
     }
     for (std::size_t place = 0; place < list.size(); ++place) {
-      const std::string name = fpga::kPorts[list[place]].name;
+      const std::string name = fpga::kPortGroups[list[place]].name;
       const auto at = [place](Order& order) { return order.begin() + static_cast<std::ptrdiff_t>(place); };
       Order order = list;
       std::rotate(order.begin(), at(order), at(order) + 1);

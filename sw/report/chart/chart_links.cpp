@@ -70,17 +70,17 @@ std::vector<ChartLink> chart_links(const ChartView& view) {
                                             : platform::core_accesses(board, *view.run);
   std::vector<ChartLink> links;
   if (view.in_computer) links = links_around(view);
-  for (std::size_t port = 0; port < fpga::kPortCount; ++port) {
-    const bool is_host = port == fpga::kHostPort;
+  for (std::size_t port = 0; port < fpga::kGroupCount; ++port) {
+    const bool is_host = port == fpga::kHostGroup;
     if (is_host && !view.in_computer) continue;
     for (std::size_t bank = 0; bank < board.banks.size(); ++bank) {
       const std::string& name = board.banks[bank].name;
-      ChartLink link{std::string("port-") + fpga::kPorts[port].name, "bank-" + name, false, false, peak};
+      ChartLink link{std::string("port-") + fpga::kPortGroups[port].name, "bank-" + name, false, false, peak};
       // The host writes pictures and tables, and reads results; the ports of the core do the opposite.
       for (const platform::PlacedBuffer& buffer : platform::buffers(board)) {
         const bool is_result = buffer.buffer == platform::Buffer::kDisparity;
         if (buffer.bank == name &&
-            (is_host || fpga::kPorts[port].buffer == std::string(platform::name_of(buffer.buffer))))
+            (is_host || fpga::kPortGroups[port].buffer == std::string(platform::name_of(buffer.buffer))))
           (is_result == is_host ? link.back : link.there) = true;
       }
       if (!link.there && !link.back) continue;

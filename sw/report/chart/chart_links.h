@@ -33,7 +33,7 @@ struct ChartLink {
 std::string name_of_block(const std::string& id);
 
 // Every link of the board: first those around the board, then those from each port to the banks of its
-// buffers, in the order of fpga::kPorts and of the board's banks. The ids differ, because only the links of
+// buffers, in the order of fpga::kPortGroups and of the board's banks. The ids differ: only the links of
 // ports begin with the name of a port.
 //
 // The rates of bank links count the accesses in the counted cycles of all frames, over their time. A port of

@@ -232,9 +232,9 @@ void add_core(const BoardConfig& board, const Statistics* run, std::map<std::str
   const bool has_cache = board.fpga.pixel_cache == fpga::PixelCache::kWord;
   const std::string table = board.fpga.joint_tables ? "table of both sides" : "rectification table";
   const std::string pixels = has_cache ? "pixels, word cache" : "pixels";
-  for (std::size_t port = 0; port < fpga::kPortCount; ++port) {
-    const std::string name = fpga::kPorts[port].name;
-    const bool is_lut = fpga::kPorts[port].stage == fpga::PortStage::kLutReader;
+  for (std::size_t port = 0; port < fpga::kGroupCount; ++port) {
+    const std::string name = fpga::kPortGroups[port].name;
+    const bool is_lut = fpga::kPortGroups[port].stage == fpga::PortStage::kLutReader;
     Lines& its = lines["port-" + name] = {name, name == "host"     ? "from the local bus"
                                                 : name == "result" ? "disparities"
                                                                    : (is_lut ? table : pixels)};
@@ -436,7 +436,7 @@ class Chart {
       for (const platform::PlacedBuffer& buffer : platform::buffers(board_)) {
         if (buffer.bank != bank.name) continue;
         const bool is_joint = board_.fpga.joint_tables && buffer.buffer == platform::Buffer::kLeftLut;
-        for (const fpga::CorePort& port : fpga::kPorts) {
+        for (const fpga::PortGroup& port : fpga::kPortGroups) {
           if (port.buffer != std::string(platform::name_of(buffer.buffer))) continue;
           bank.buffers.push_back({is_joint ? "left_lut, right_lut" : buffer.label(), port.name,
                                   platform::buffer_words(buffer, board_.image)});
@@ -663,7 +663,7 @@ class Chart {
                             fpga_.right() - kFpgaPadding, fpga_.y + 7, kFpgaWidth / 2, "end");
     Lines priority;
     for (const memory::Port each : board_.fpga.arbiter.priority)
-      priority.emplace_back(fpga::kPorts[each].name);
+      priority.emplace_back(fpga::kPortGroups[each].name);
     blocks_ += text_element("each bank: " + board_.fpga.arbiter.policy, kNote, fpga_.x + kFpgaPadding,
                             ports_bottom + 10, width) +
                text_element(fmt::format("{}", fmt::join(priority, ", ")), kNote, fpga_.x + kFpgaPadding,

@@ -18,7 +18,7 @@ using Json = nlohmann::ordered_json;
 // B - A for each row, summed over the frames.
 Json rows_data(const stats::RowComparison& rows, std::size_t height) {
   std::vector<std::int64_t> cycles(height);
-  std::array<std::vector<std::int64_t>, fpga::kCorePortCount> stalls;
+  std::array<std::vector<std::int64_t>, fpga::kCoreGroupCount> stalls;
   stalls.fill(cycles);
   // With as many ranges as rows, all rows of a range have the same differences.
   for (const stats::RowComparison::Range& range : rows.ranges(height)) {
@@ -29,7 +29,8 @@ Json rows_data(const stats::RowComparison& rows, std::size_t height) {
     }
   }
   Json by_port = Json::object();
-  for (std::size_t port = 0; port < stalls.size(); ++port) by_port[fpga::kPorts[port].name] = stalls[port];
+  for (std::size_t port = 0; port < stalls.size(); ++port)
+    by_port[fpga::kPortGroups[port].name] = stalls[port];
   Json data = {{"frames", rows.frames()}, {"cycles", cycles}, {"stalls", std::move(by_port)}};
   if (const auto& parting = rows.parting()) {
     data["parting"] = {{"frame", parting->frame},
@@ -80,8 +81,8 @@ Json json_of(const stats::RowComparison& rows) {
   Json ranges = Json::array();
   for (const stats::RowComparison::Range& range : rows.ranges(kMostLines)) {
     Json waits = Json::object();
-    for (std::size_t port = 0; port < fpga::kCorePortCount; ++port)
-      waits[fpga::kPorts[port].name] = range.stalls[port];
+    for (std::size_t port = 0; port < fpga::kCoreGroupCount; ++port)
+      waits[fpga::kPortGroups[port].name] = range.stalls[port];
     ranges.push_back({{"first_row", range.first_row},
                       {"last_row", range.last_row},
                       {"cycles", range.cycles},

@@ -154,16 +154,18 @@ class ConflictData {
         strips_(1, ","),
         cycles_(1 + grid_.rows),
         accesses_(board.banks.size() * kKinds, cycles_) {
-    stalls_.fill(cycles_);
-    stalls_of_tiles_ = stalls_;
     const auto rows = static_cast<std::size_t>(board.matcher.rows);
     for (std::size_t strip = 0; strip < parts_of(static_cast<std::size_t>(board.image.height), rows); ++strip)
       strips_.push_back(stats::csv_range(strip, rows, board.image.height));
     for (const platform::BankConfig& bank : board.banks) banks_.push_back(bank.name);
-    for (std::size_t requester = 0; requester < fpga::kRequesters; ++requester)
-      requesters_.emplace_back(fpga::requester_name(requester));
+    const fpga::Requesters requesters(platform::core_ports(board));
+    for (std::size_t requester = 0; requester < requesters.size(); ++requester)
+      requesters_.push_back(requesters.name(requester));
     causes_ = requesters_;
-    causes_.emplace_back(fpga::requester_name(fpga::kTurnaroundToBlame));
+    causes_.push_back(requesters.name(requesters.turnaround()));
+    stalls_.assign(requesters.size(), cycles_);
+    stalls_of_tiles_ = stalls_;
+    sums_.stalls.resize(requesters.size());
     sums_.accesses.resize(banks_.size());
   }
 
@@ -218,10 +220,10 @@ class ConflictData {
                   "frame_cycles", statistics.frame_cycles[frame]);
       sums_.cycles += frame_cycles_[frame];
     }
-    sums_.check_rows(statistics, audit);
+    sums_.check_rows(fpga::Requesters(platform::core_ports(board_)), statistics, audit);
     rows_csv_.finish(audit);
     platform::Audit of_tiles;
-    sums_.check_tiles(statistics, of_tiles);
+    sums_.check_tiles(fpga::Requesters(platform::core_ports(board_)), statistics, of_tiles);
     for (std::size_t line = 0; line < cycles_.size(); ++line) {
       const std::string name =
           line == 0 ? "recorded: fill" : fmt::format("recorded: row {} of tiles", line - 1);
@@ -311,11 +313,11 @@ class ConflictData {
   std::uint64_t row_lines_ = 0;      // lines of rows.csv
   Amounts frame_cycles_;             // [frame]: cycles of its lines
   platform::ConflictSums sums_;
-  Amounts cycles_;                                          // [line]
-  std::vector<Amounts> accesses_;                           // [bank and kind][line]
-  std::array<Amounts, fpga::kRequesters> stalls_;           // [requester][line], in rows.csv
-  std::array<Amounts, fpga::kRequesters> stalls_of_tiles_;  // the same in conflicts.csv
-  std::map<std::string, Amounts, std::less<>> tiles_;       // ["port,bank,by"][tile]; [0]: the fill
+  Amounts cycles_;                                     // [line]
+  std::vector<Amounts> accesses_;                      // [bank and kind][line]
+  std::vector<Amounts> stalls_;                        // [requester][line], in rows.csv
+  std::vector<Amounts> stalls_of_tiles_;               // the same in conflicts.csv
+  std::map<std::string, Amounts, std::less<>> tiles_;  // ["port,bank,by"][tile]; [0]: the fill
 };
 
 // What happens when in the computer: events and latencies of timeline.csv and latency.csv. The events of a

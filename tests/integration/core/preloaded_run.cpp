@@ -48,10 +48,11 @@ PreloadedRun run_preloaded(const platform::BoardConfig& board, const platform::T
   if (conflicts != nullptr) system.board.core.frames().record(conflicts->recorder());
   sc_core::sc_start();
   EXPECT_TRUE(system.host.finished());
-  // Two of the host, three to five from the ports of the core, one to each bank.
+  // Those of the host, of the registers and of the results; of the readers in each lane; one to each bank.
   const std::size_t tables_bound =
       (tables.left ? 1U : 0U) + (tables.right && !board.fpga.joint_tables ? 1U : 0U);
-  EXPECT_EQ(binder.monitors().size(), 7 + tables_bound + board.banks.size());
+  EXPECT_EQ(binder.monitors().size(),
+            5 + static_cast<std::size_t>(board.fpga.lanes) * (2 + tables_bound) + board.banks.size());
   return {platform::collect_statistics(board, tables, system.board), std::move(sink.disparities),
           system.board.core.frames().take_rows()};
 }

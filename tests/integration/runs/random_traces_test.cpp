@@ -37,6 +37,8 @@
 namespace stereotlm::simulation {
 namespace {
 
+const fpga::Requesters kRequesters{fpga::CorePorts(1)};
+
 using fpga::CycleWindow;
 using fpga::Fidelity;
 using platform::BusBurst;
@@ -90,12 +92,12 @@ class KeptCycles : public fpga::CycleObserver {
     writer_.cycle(cycle);
     if (keeps_) cycles.push_back(cycle);
     if (!cycle.frame) return;
-    for (std::size_t port = 0; port < fpga::kPortCount; ++port)
+    for (std::size_t port = 0; port < fpga::kGroupCount; ++port)
       sums[port].add(cycle.ports[port].intent, cycle.ports[port].granted);
   }
 
   std::vector<fpga::CoreCycle> cycles;
-  std::array<fpga::PortCycles, fpga::kPortCount> sums{};  // while frames run
+  std::array<fpga::PortCycles, fpga::kGroupCount> sums{};  // while frames run
 
  private:
   bool keeps_;
@@ -238,8 +240,8 @@ Sums sums_of_perfetto(const std::filesystem::path& path) {
   const std::string bytes = test::read_file(path);
   const test::PerfettoFile file(bytes);
   Sums sums;
-  for (std::size_t requester = 0; requester < fpga::kRequesters; ++requester) {
-    const std::string name = fpga::requester_name(requester);
+  for (std::size_t requester = 0; requester < kRequesters.size(); ++requester) {
+    const std::string name = kRequesters.name(requester);
     for (const test::PerfettoFile::Slice& slice : file.slices_of(name)) {
       const std::size_t waits = slice.name.find(" waits ");
       if (waits == std::string::npos) {
@@ -275,8 +277,8 @@ Sums states_of_vcd(const std::filesystem::path& path, const platform::BoardConfi
   const Clock clock(board.fpga.clock_mhz);
   const test::VcdFile file(test::read_file(path));
   Sums sums;
-  for (std::size_t port = 0; port < fpga::kCorePortCount; ++port) {
-    const std::string name = fpga::kPorts[port].name;
+  for (std::size_t port = 0; port < fpga::kCoreGroupCount; ++port) {
+    const std::string name = fpga::kPortGroups[port].name;
     if (file.signals().count(name + ".state") == 0) continue;
     const std::map<std::uint64_t, std::string>& states = file.changes(name + ".state");
     for (auto state = states.begin(); state != states.end(); ++state) {
@@ -293,7 +295,7 @@ Sums states_of_vcd(const std::filesystem::path& path, const platform::BoardConfi
 
 Sums states_of(const platform::Statistics& statistics) {
   Sums sums;
-  for (std::size_t port = 0; port < fpga::kCorePortCount; ++port) {
+  for (std::size_t port = 0; port < fpga::kCoreGroupCount; ++port) {
     const platform::PortStatistics& its = statistics.ports[port];
     sums[its.name + " accesses"] = its.grants;
     sums[its.name + " waits"] = its.stall_cycles;
@@ -322,7 +324,7 @@ std::string differences(const std::string& name, const Sums& found, const Sums& 
 struct Traced {
   std::vector<platform::FrameRuns> runs;
   std::vector<fpga::CoreCycle> cycles;
-  std::array<fpga::PortCycles, fpga::kPortCount> sums{};
+  std::array<fpga::PortCycles, fpga::kGroupCount> sums{};
   std::vector<test::LoggedTransaction> log;
   platform::Statistics statistics;
   std::string buses;
@@ -398,8 +400,8 @@ std::string text_of(const platform::FrameRuns& frame) {
   std::string text = fmt::format("frame {}: {}..{}\n", frame.frame, frame.first_cycle, frame.end_cycle);
   for (const platform::TraceRun& run : frame.runs) {
     text += fmt::format("{} {}..{} {} {} {} {}\n", run.strip, run.first_cycle, run.end_cycle,
-                        fpga::requester_name(run.requester), run.bank,
-                        run.by ? fpga::requester_name(*run.by) : "granted", run.count);
+                        kRequesters.name(run.requester), run.bank,
+                        run.by ? kRequesters.name(*run.by) : "granted", run.count);
   }
   return text;
 }
@@ -435,10 +437,10 @@ std::string wrong_sums(const Traced& traced, bool whole_run) {
     return cycles;
   };
   const auto& statistics = traced.statistics;
-  for (std::size_t port = 0; port < fpga::kPortCount; ++port) {
+  for (std::size_t port = 0; port < fpga::kGroupCount; ++port) {
     const platform::PortStatistics& of_port = statistics.ports[port];
     const auto is_of_port = [port](std::size_t requester) {
-      return requester != fpga::kTurnaroundToBlame && fpga::port_of_requester(requester) == port;
+      return requester != kRequesters.turnaround() && kRequesters.port_of(requester) == port;
     };
     compare(of_port.name + " granted in the runs",
             count([&](const auto& run) { return is_of_port(run.requester) && !run.by; }), of_port.grants);
@@ -463,8 +465,8 @@ std::string wrong_sums(const Traced& traced, bool whole_run) {
     const auto is_of_row = [&](const platform::TraceRun& run) {
       if (!run.by || statistics.banks[run.bank].name != row.bank) return false;
       const auto name = [](std::size_t requester) {
-        return requester == fpga::kTurnaroundToBlame ? fpga::requester_name(requester)
-                                                     : fpga::kPorts[fpga::port_of_requester(requester)].name;
+        return requester == kRequesters.turnaround() ? kRequesters.name(requester)
+                                                     : fpga::kPortGroups[kRequesters.port_of(requester)].name;
       };
       return name(run.requester) == row.port && name(*run.by) == row.by;
     };
@@ -489,12 +491,12 @@ std::string wrong_accesses(const Case& of, const Traced& traced) {
   }
   std::vector<std::string> expected;
   for (const fpga::CoreCycle& cycle : traced.cycles) {
-    for (std::size_t port = 0; port < fpga::kPortCount; ++port) {
+    for (std::size_t port = 0; port < fpga::kGroupCount; ++port) {
       const fpga::PortCycle& access = cycle.ports[port];
       if (!access.granted) continue;
-      const bool write = port == fpga::kHostPort ? cycle.host_traffic != fpga::HostTraffic::kReadBack
-                                                 : fpga::kPorts[port].write;
-      for (const std::string& link : {fmt::format("{}_to_crossbar", fpga::kPorts[port].name),
+      const bool write = port == fpga::kHostGroup ? cycle.host_traffic != fpga::HostTraffic::kReadBack
+                                                  : fpga::kPortGroups[port].write;
+      for (const std::string& link : {fmt::format("{}_to_crossbar", fpga::kPortGroups[port].name),
                                       fmt::format("crossbar_to_{}", of.board.banks[access.bank].name)})
         expected.push_back(fmt::format("{} {} {} {:x}", cycle.cycle, link, write, access.address));
     }

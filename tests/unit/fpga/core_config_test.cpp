@@ -50,11 +50,11 @@ TEST(CoreConfig, RefusesAKernelWithProblems) {
 
 TEST(LaneControl, RefusesADepthOrAReadLatencyOutsideItsRange) {
   const FrameGeometry geometry{CoreConfig()};
-  for (const int slots : {1, 64}) EXPECT_NO_THROW(LaneControl(geometry, true, PixelCache::kNone, slots));
+  for (const int slots : {1, 64}) EXPECT_NO_THROW(LaneControl(geometry, 0, true, PixelCache::kNone, slots));
   for (const int slots : {0, 65})
-    EXPECT_THROW(LaneControl(geometry, true, PixelCache::kNone, slots), std::invalid_argument);
-  LaneControl lane(geometry, true, PixelCache::kNone, 1);
-  LaneControl lane_without_table(geometry, false, PixelCache::kNone, 1);
+    EXPECT_THROW(LaneControl(geometry, 0, true, PixelCache::kNone, slots), std::invalid_argument);
+  LaneControl lane(geometry, 0, true, PixelCache::kNone, 1);
+  LaneControl lane_without_table(geometry, 0, false, PixelCache::kNone, 1);
   for (const int latency : {1, 2}) EXPECT_NO_THROW(lane.start_frame(latency, latency));
   for (const int latency : {0, 3}) {
     EXPECT_THROW(lane.start_frame(latency, 2), std::invalid_argument);
@@ -67,13 +67,13 @@ TEST(CorePorts, AreThoseOfTheContract) {
   const std::vector<std::string> expected = {"left_lut",    "right_lut", "left_pixel",
                                              "right_pixel", "result",    "host"};
   std::vector<std::string> names;
-  for (const CorePort& port : kPorts) names.emplace_back(port.name);
+  for (const PortGroup& port : kPortGroups) names.emplace_back(port.name);
   EXPECT_EQ(names, expected);
 }
 
 TEST(CorePorts, HaveThePriorityListOfTheContract) {
   std::vector<std::string> names;
-  for (const memory::Port port : core_arbiter().priority) names.emplace_back(kPorts[port].name);
+  for (const memory::Port port : core_arbiter().priority) names.emplace_back(kPortGroups[port].name);
   EXPECT_EQ(names, (std::vector<std::string>{"host", "result", "left_pixel", "right_pixel", "left_lut",
                                              "right_lut"}));
   EXPECT_EQ(core_arbiter().policy, "fixed_priority");

@@ -14,13 +14,14 @@ class CoreFigures {
  public:
   CoreFigures(const FrameRun& frames, const memory::Arbitration& arbitration) {
     line("frame_cycles", frames.frame_cycles());
-    for (std::size_t index = 0; index < kPortCount; ++index) {
+    const CorePorts& ports = frames.control().ports();
+    for (std::size_t index = 0; index < ports.size(); ++index) {
       const PortCycles& port = frames.control().port_cycles(index);
-      line(kPorts[index].name,
+      line(ports.name(index),
            {port.granted(), port.stalled(), port.passed(), port.idle(), port.blocked(), port.starved()});
     }
     for (std::size_t bank = 0; bank < arbitration.banks(); ++bank) add(arbitration.stats(bank));
-    for (const Side side : kSides) line("consumed", {frames.control().lane(side).consumed()});
+    for (const LaneControl& lane : frames.control().lanes()) line("consumed", {lane.consumed()});
   }
   explicit CoreFigures(const StereoCore& core) : CoreFigures(core.frames(), core.crossbar().arbitration()) {
     const LocalBus::Stats bus = core.local_bus_port().stats();
@@ -44,9 +45,9 @@ class CoreFigures {
   void add(const memory::ArbiterStats& stats) {
     line("bank", {stats.reads(), stats.writes(), stats.turnaround_cycles(), stats.idle_cycles(),
                   stats.contended_cycles(), stats.uncounted_accesses()});
-    for (memory::Port port = 0; port < kPortCount; ++port) {
+    for (memory::Port port = 0; port < kGroupCount; ++port) {
       line("  grants", {stats.grants(port)});
-      for (std::size_t by = 0; by <= kPortCount; ++by) line("  blame", {stats.blame(port, by)});
+      for (std::size_t by = 0; by <= kGroupCount; ++by) line("  blame", {stats.blame(port, by)});
     }
   }
   std::string text_;

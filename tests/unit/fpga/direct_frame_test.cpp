@@ -14,13 +14,13 @@ namespace {
 
 // Banks that hold a buffer each.
 struct Buffers : memory::DirectBanks {
-  Buffers() : DirectBanks(kCorePortCount) {}
+  Buffers() : DirectBanks(kCoreGroupCount) {}
   unsigned char* direct(std::uint64_t address, std::uint64_t /*bytes*/) override {
     return of_port[memory::bank_of_address(address)];
   }
   void allow_access(memory::Port /*port*/) override {}
 
-  std::array<unsigned char*, kCorePortCount> of_port{};
+  std::array<unsigned char*, kCoreGroupCount> of_port{};
 };
 
 TEST(DirectFrame, DecodesJointTablesAgainOnlyIfTheyOrARegisterMayHaveChanged) {
@@ -36,7 +36,7 @@ TEST(DirectFrame, DecodesJointTablesAgainOnlyIfTheyOrARegisterMayHaveChanged) {
                      image.data(), disparities.data()};
   DirectFrame frame(core, true, buffers);
   FrameBases bases{};
-  for (std::uint32_t port = 0; port < kCorePortCount; ++port) bases[port] = registers::base(port, 0);
+  for (std::uint32_t port = 0; port < kCoreGroupCount; ++port) bases[port] = registers::base(port, 0);
   frame.set_buffers(bases);
   const auto reads = [&](bool may_have_changed) {
     if (may_have_changed) buffers.changes(0, UINT64_MAX);

@@ -135,7 +135,7 @@ class Core {
     advance(first);
     if (done()) return first;
     run_->host_route_changes();
-    arbitration_->route(kHostPort, route.bank, route.write);
+    arbitration_->route(kHostGroup, route.bank, route.write);
     advance(cycle() + waits);
     while (words > 0 && !done()) {
       if (!step(true)) continue;
@@ -143,10 +143,10 @@ class Core {
       first = run_->cycle() - 1;
     }
     run_->host_route_changes();
-    arbitration_->unroute(kHostPort);
+    arbitration_->unroute(kHostGroup);
     return first;
   }
-  bool step(bool requests) { return (run_->step(requests) & memory::mask_of(kHostPort)) != 0; }
+  bool step(bool requests) { return (run_->step(requests) & memory::mask_of(kHostGroup)) != 0; }
   void finish() {
     advance(UINT64_MAX);
     run_->finish();

@@ -71,7 +71,7 @@ TEST_F(LutReaderTest, TakesARefusedAccessForAnEntryThatIsNotValid) {
 
 class PixelReaderTest : public StageTest<PixelReader> {
  protected:
-  PixelReaderTest() : StageTest(small_core(8, 4)) {
+  PixelReaderTest() : StageTest(small_core(8, 4), 0) {
     stage.pixels_out.bind(pixels);
     elaborate();
     stage.start_frame(8);

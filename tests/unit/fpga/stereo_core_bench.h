@@ -82,8 +82,8 @@ class StereoCoreBench : public testing::Test {
     memory.debug_write(memory::crossbar_address(kLeftTable, 0), table.entries);
     memory.debug_write(memory::crossbar_address(kRightTable, 0), table.entries);
     const FrameBases banks_of_ports = {kLeftTable, kRightTable, kLeft, kRight, kResult};
-    for (memory::Port port = 0; port < kCorePortCount; ++port)
-      set_base(kPorts[port].base_register, banks_of_ports[port]);
+    for (memory::Port port = 0; port < kCoreGroupCount; ++port)
+      set_base(kPortGroups[port].base_register, banks_of_ports[port]);
   }
   void set_base(std::uint64_t base_register, std::uint32_t bank, std::uint32_t word = 0) {
     registers.write(base_register, registers::base(bank, word));

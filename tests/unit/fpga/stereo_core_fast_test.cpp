@@ -196,7 +196,7 @@ TEST_F(StereoCoreDirectAccess, TakenBackWithinAFrameIsReportedAndRaisesError) {
   EXPECT_EQ(result_words(), Words(kImageWords, 77));
   EXPECT_EQ(frame_cycles(), std::vector<std::uint64_t>{frame_cycles_alone(4)});
   EXPECT_EQ(core->frames().direct_counts().written_words, kImageWords);
-  EXPECT_EQ(accesses(kResult), port(kResultPort).granted());
+  EXPECT_EQ(accesses(kResult), port(kResultGroup).granted());
   start();
   finish();
   EXPECT_EQ(status(), registers::kStatusDone);

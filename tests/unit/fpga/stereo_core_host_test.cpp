@@ -41,7 +41,7 @@ TEST_F(StereoCoreQdr, GivesTheHostTheOldWordInTheCycleOfItsWrite) {
   EXPECT_EQ(stats.reads(), 1U);
   EXPECT_EQ(stats.busy_cycles(), stats.writes());
   EXPECT_EQ(stats.contended_cycles(), 0U);
-  EXPECT_EQ(port(kHostPort).granted(), 1U);
+  EXPECT_EQ(port(kHostGroup).granted(), 1U);
   EXPECT_EQ(frame_cycles(), std::vector<std::uint64_t>{frame_cycles_alone(4)});
 }
 

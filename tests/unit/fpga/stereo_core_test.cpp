@@ -108,7 +108,7 @@ TEST_P(StereoCoreTest, IsBusyForAStrobeAPicosecondBeforeTheEndOfAFrameAndFreeAtT
 
 class StereoCoreBases : public StereoCoreBench, public testing::WithParamInterface<memory::Port> {
  protected:
-  const CorePort& tested() const { return kPorts[GetParam()]; }
+  const PortGroup& tested() const { return kPortGroups[GetParam()]; }
   void run_frame_on(std::uint32_t bank, std::uint32_t word = 0) {
     set_base(tested().base_register, bank, word);
     start();
@@ -143,8 +143,8 @@ TEST_P(StereoCoreBases, RaiseErrorBehindABanksEndAndTheFrameEnds) {
   EXPECT_EQ(status(), kStatusDone);
 }
 
-INSTANTIATE_TEST_SUITE_P(StereoCore, StereoCoreBases, testing::Range(std::size_t{0}, kCorePortCount),
-                         [](const auto& suite) { return std::string(kPorts[suite.param].name); });
+INSTANTIATE_TEST_SUITE_P(StereoCore, StereoCoreBases, testing::Range(std::size_t{0}, kCoreGroupCount),
+                         [](const auto& suite) { return std::string(kPortGroups[suite.param].name); });
 
 TEST_P(StereoCoreTest, RefusesAConfigurationWithProblems) {
   std::vector<StereoCoreConfig> refused(4, small_board());

@@ -26,8 +26,8 @@ class EveryPolicy : public testing::TestWithParam<ArbitrationPolicy> {
     std::vector<PriorityList> found = {kList};
     orders_ = {kList};
     for (std::size_t i = 0; i < found.size(); ++i) {
-      for (unsigned requests = 0; requests <= kAll; ++requests) {
-        for (unsigned winner = 0; winner <= requests; winner = winner == 0 ? 1 : winner << 1U) {
+      for (PortMask requests = 0; requests <= kAll; ++requests) {
+        for (PortMask winner = 0; winner <= requests; winner = winner == 0 ? 1 : winner << 1U) {
           if ((winner & ~requests) != 0) continue;
           const PriorityList order = after(found[i], requests, winner);
           if (orders_.insert(order).second) found.push_back(order);
@@ -35,9 +35,8 @@ class EveryPolicy : public testing::TestWithParam<ArbitrationPolicy> {
       }
     }
   }
-  PriorityList after(PriorityList order, unsigned requests, unsigned granted) const {
-    if (GetParam().advance != nullptr)
-      GetParam().advance(kList, order, static_cast<PortMask>(requests), static_cast<PortMask>(granted));
+  PriorityList after(PriorityList order, PortMask requests, PortMask granted) const {
+    if (GetParam().advance != nullptr) GetParam().advance(kList, order, requests, granted);
     return order;
   }
 

@@ -31,7 +31,7 @@ class CrossbarBench : public testing::Test {
                                  {kWords, BankKind::kZbtFlowThrough},
                                  {kWords, BankKind::kSyncBurst, 2}}};
     crossbar = std::make_unique<Crossbar>("crossbar", config);
-    for (std::size_t port = 0; port < kPortCount; ++port)
+    for (std::size_t port = 0; port < kGroupCount; ++port)
       binder.bind(hosts[port].socket, crossbar->ports[port], "port" + std::to_string(port) + "_to_crossbar");
     for (std::size_t bank = 0; bank < config.banks.size(); ++bank) {
       const std::string number = std::to_string(bank);
@@ -59,7 +59,7 @@ class CrossbarBench : public testing::Test {
   }
 
   test::MonitoringBinder binder;
-  sc_core::sc_vector<test::TestHost> hosts{"test_host", kPortCount};
+  sc_core::sc_vector<test::TestHost> hosts{"test_host", kGroupCount};
   std::vector<std::unique_ptr<SsramBank>> banks;
   std::unique_ptr<Crossbar> crossbar;
 };

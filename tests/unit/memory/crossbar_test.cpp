@@ -109,7 +109,7 @@ TEST_F(CrossbarPorts, AreNotRoutedToABankOrFromAPortThatDoesNotExist) {
   route(port::kLeftPixel, kPipelined, false);
   EXPECT_THROW(crossbar->aim(port::kLeftPixel, 3, false), sc_core::sc_report);
   EXPECT_EQ(report.text(), "crossbar: aim: bank = 3: must be 0..2");
-  EXPECT_THROW(crossbar->aim(kPortCount, kPipelined, false), sc_core::sc_report);
+  EXPECT_THROW(crossbar->aim(kGroupCount, kPipelined, false), sc_core::sc_report);
   EXPECT_EQ(report.text(), "crossbar: aim: port = 6: must be 0..5");
   EXPECT_EQ(crossbar->bank_of(port::kLeftPixel), kPipelined);
   EXPECT_EQ(arbitrate(0, kLeft), kLeft) << "its route has stayed";

@@ -49,16 +49,16 @@ TEST(ArbiterConfig, RefusesAnUnknownPolicyAndAListThatDoesNotNameEachPortOnce) {
                                             "priority = port 5 0 times: must name each port once"));
 }
 
-TEST(ArbiterConfig, HasOneToSixPorts) {
+TEST(ArbiterConfig, HasOneToSixtySixPorts) {
   const auto problems_with = [](std::size_t ports) {
     ArbiterConfig config;
     for (Port port = 0; port < ports; ++port) config.priority.push_back(port);
     return problems(config);
   };
-  EXPECT_EQ(problems_with(0), Problems{"priority = 0 ports: must be 1..6"});
+  EXPECT_EQ(problems_with(0), Problems{"priority = 0 ports: must be 1..66"});
   EXPECT_EQ(problems_with(1), Problems{});
-  EXPECT_EQ(problems_with(6), Problems{});
-  EXPECT_EQ(problems_with(7), Problems{"priority = 7 ports: must be 1..6"});
+  EXPECT_EQ(problems_with(66), Problems{});
+  EXPECT_EQ(problems_with(67), Problems{"priority = 67 ports: must be 1..66"});
 }
 
 }  // namespace

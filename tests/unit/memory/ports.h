@@ -16,10 +16,10 @@ inline constexpr Port kRightPixel = 3;
 inline constexpr Port kResult = 4;
 inline constexpr Port kHost = 5;
 }  // namespace port
-inline constexpr std::size_t kPortCount = 6;
+inline constexpr std::size_t kGroupCount = 6;
 
 inline constexpr PortMask kNone = 0;
-inline constexpr PortMask kAll = (1U << kPortCount) - 1;
+inline constexpr PortMask kAll = (1U << kGroupCount) - 1;
 inline constexpr PortMask kLeft = mask_of(port::kLeftPixel);
 inline constexpr PortMask kRight = mask_of(port::kRightPixel);
 inline constexpr PortMask kResult = mask_of(port::kResult);

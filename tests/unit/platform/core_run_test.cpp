@@ -129,7 +129,7 @@ TEST(CoreRun, RunsTheLargestImageWithTheLongestColumns) {
   const std::uint64_t columns = std::uint64_t{8192} * 8192 / 16 + 254 - 1 + 15;
   EXPECT_THAT(statistics.frame_cycles, ElementsAre(2 + columns * (31 + 15) * 2 + 16 + 16));
   EXPECT_THAT(statistics.failed, ElementsAre());
-  EXPECT_EQ(statistics.ports[fpga::kResultPort].grants, std::uint64_t{1} << 24U);
+  EXPECT_EQ(statistics.ports[fpga::kResultGroup].grants, std::uint64_t{1} << 24U);
 }
 
 TEST(CoreRun, GivesTheWorkedValueOfOddTables) {

@@ -170,8 +170,8 @@ class TwoRecordedFrames : public TimelineSteps {
     Statistics found;
     found.frames = 2;
     found.frame_cycles = {4, 2};
-    found.ports.resize(fpga::kPortCount);
-    found.ports[fpga::kResultPort].grants = 16;
+    found.ports.resize(fpga::kGroupCount);
+    found.ports[fpga::kResultGroup].grants = 16;
     ComputerStatistics& computer = found.computer.emplace();
     computer.dma_words = 76;
     computer.pci_masters.resize(4);
@@ -251,7 +251,7 @@ TEST_F(TwoRecordedFrames, FailIfAFigureOfTheRunIsAnother) {
                 "recorded: camera left: dropped: partner = 1, but dropped_partner = 2");
   expect_failed([](auto&, Figures& computer) { ++computer.dma_words; },
                 "recorded: words of transfers = 76, but dma_words = 77");
-  expect_failed([](Statistics& found, auto&) { ++found.ports[fpga::kResultPort].grants; },
+  expect_failed([](Statistics& found, auto&) { ++found.ports[fpga::kResultGroup].grants; },
                 "recorded: words of results = 16, but grants of port result = 17");
   expect_failed([](Statistics& found, auto&) { ++found.frame_cycles[1]; },
                 "recorded: cycles of frames = 6, but sum of frame_cycles = 7");

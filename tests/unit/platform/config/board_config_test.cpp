@@ -27,7 +27,7 @@ TEST(BoardConfig, ReportsEveryBrokenRuleInTheOrderOfTheKeys) {
   board.pci.load = PciLoadConfig{0, -0.5, 0, 1000000.5};
   board.fpga.device = "xc4vlx25";
   board.fpga.arbiter.policy = "lottery";
-  board.fpga.arbiter.priority[0] = fpga::kResultPort;
+  board.fpga.arbiter.priority[0] = fpga::kResultGroup;
   board.fpga.arbiter.priority[2] = 6;
   board.banks[1].name = "bank0";
   board.banks[2].name = "none";

@@ -199,9 +199,9 @@ TEST(BoardPriority, NamesEachPortOnce) {
   EXPECT_EQ(refusal_of(priority_board("")).substr(0, 68),
             "board.yaml:2:18: fpga.priority = []: each port once; left_lut, right");
   const auto priority = load_text(priority_board("right_lut, " + five)).fpga.arbiter.priority;
-  EXPECT_EQ(priority[0], fpga::lut_port(fpga::Side::kRight));
-  EXPECT_EQ(priority[1], fpga::kHostPort);
-  EXPECT_EQ(priority[5], fpga::lut_port(fpga::Side::kLeft));
+  EXPECT_EQ(priority[0], fpga::lut_group(fpga::Side::kRight));
+  EXPECT_EQ(priority[1], fpga::kHostGroup);
+  EXPECT_EQ(priority[5], fpga::lut_group(fpga::Side::kLeft));
 }
 
 TEST(BoardLoad, IsNoneOrAMapOfItsWordsAndTimes) {

@@ -21,9 +21,11 @@ namespace {
 fpga::FrameConflicts frame() {
   fpga::FrameConflicts frame;
   frame.banks = 2;
-  frame.strips = {{10, {}}, {200, {}}, {100, {}}};
+  const fpga::Requesters requesters{fpga::CorePorts(1)};
+  const std::vector<std::uint64_t> stalls(requesters.size());
+  frame.strips = {{10, stalls, {}}, {200, stalls, {}}, {100, stalls, {}}};
   frame.strips[1].stalls[0] = 50;
-  frame.strips[1].stalls[fpga::requester_of(fpga::HostTraffic::kReadBack)] = 7;
+  frame.strips[1].stalls[requesters.host(fpga::HostTraffic::kReadBack)] = 7;
   frame.accesses.resize(6);
   frame.accesses[2] = {150, 0, 0, 0};
   frame.accesses[3] = {0, 1, 2, 3};
@@ -58,13 +60,13 @@ class MadeConflicts {
  public:
   MadeConflicts(std::uint64_t in_fill, const Parts& strips, const Parts& groups, std::size_t most_tiles = 64)
       : conflicts_(board_, most_tiles) {
-    constexpr memory::PortMask kLut = memory::mask_of(fpga::lut_port(fpga::Side::kLeft));
-    constexpr memory::PortMask kPixel = memory::mask_of(fpga::pixel_port(fpga::Side::kLeft));
+    constexpr memory::PortMask kLut = memory::mask_of(fpga::lut_group(fpga::Side::kLeft));
+    constexpr memory::PortMask kPixel = memory::mask_of(fpga::pixel_group(fpga::Side::kLeft));
     const fpga::CoreControl control(platform::core_config(board_));
     memory::Arbitration arbitration(board_.fpga.arbiter, platform::ssram_configs(board_));
     for (const fpga::Side side : {fpga::Side::kLeft, fpga::Side::kRight}) {
-      arbitration.route(fpga::lut_port(side), 1, false);
-      arbitration.route(fpga::pixel_port(side), 1, false);
+      arbitration.route(fpga::lut_group(side), 1, false);
+      arbitration.route(fpga::pixel_group(side), 1, false);
     }
     fpga::ConflictRecorder& recorder = conflicts_.recorder();
     recorder.start_frame(0, control, arbitration);

@@ -24,7 +24,7 @@ using fpga::RowProfile;
 // Rows of the given cycles. The left pixel port is stalled in every tenth cycle.
 RowProfile profile(const std::vector<std::uint64_t>& cycles) {
   RowProfile rows;
-  RowEnd end;
+  RowEnd end = {0, std::vector<std::uint64_t>(fpga::kCoreGroupCount)};
   for (const std::uint64_t row : cycles) {
     end.cycles += row;
     end.stalls[2] += row / 10;
@@ -75,7 +75,7 @@ TEST(RowComparison, JoinsRowsToBandsWhereTheRangesAreTooMany) {
 // Rows of 10 cycles with the given stalls of the left and of the right table port.
 RowProfile stalled(const std::vector<std::pair<std::uint64_t, std::uint64_t>>& stalls) {
   RowProfile rows;
-  RowEnd end;
+  RowEnd end = {0, std::vector<std::uint64_t>(fpga::kCoreGroupCount)};
   for (const auto& [left, right] : stalls) {
     end.cycles += 10;
     end.stalls[0] += left;
@@ -116,7 +116,7 @@ TEST(RowComparison, HasRangesThatSumUpToAllRows) {
   std::uniform_int_distribution<std::uint64_t> few(0, 2);
   const auto made_up = [&] {
     RowProfile rows(23);
-    RowEnd end;
+    RowEnd end = {0, std::vector<std::uint64_t>(fpga::kCoreGroupCount)};
     for (RowEnd& row : rows) {
       end.cycles += few(random);
       for (std::uint64_t& stalls : end.stalls) stalls += few(random) / 2;
@@ -159,8 +159,9 @@ TEST(RowsCsv, HasALineForEachFrameAndRow) {
   const test::ScratchFolder folder;
   const auto path = folder.path() / "rows.csv";
   RowsCsv csv(path);
-  csv.add({{10, {1, 2, 3, 4, 5}}, {25, {1, 2, 3, 4, 6}}}, {{11, {}}, {26, {0, 7, 0, 0, 0}}});
-  csv.add({{9, {}}, {18, {}}}, {{9, {}}, {18, {}}});
+  const std::vector<std::uint64_t> none(fpga::kCoreGroupCount);
+  csv.add({{10, {1, 2, 3, 4, 5}}, {25, {1, 2, 3, 4, 6}}}, {{11, none}, {26, {0, 7, 0, 0, 0}}});
+  csv.add({{9, none}, {18, none}}, {{9, none}, {18, none}});
   EXPECT_FALSE(std::filesystem::exists(path));
   csv.commit();
   EXPECT_EQ(files::read_whole_file(path), std::string(kHead) +

@@ -88,7 +88,7 @@ std::size_t expect_arrows_to_waits(const PerfettoFile& file) {
 }
 
 TEST_F(PerfettoSinkTest, AnArrowLeadsFromTheAccessesAtTheBankOfTheWaitAlone) {
-  const std::size_t host = fpga::requester_of(fpga::HostTraffic::kCapture);
+  const std::size_t host = test::kRequesters.host(fpga::HostTraffic::kCapture);
   platform::FrameRuns frame;
   frame.strip_ends = {100};
   frame.runs = {{0, 0, 100, 0, 0, std::nullopt, 4},    {0, 0, 100, 0, 0, host, 1},
@@ -139,8 +139,8 @@ TEST_F(PerfettoSinkTest, ArrowsLeadFromATableEntryToItsPixelAndFromThereToItsRes
 TEST_F(PerfettoSinkTest, NoArrowLeadsOverAPixelThatIsPassed) {
   test::MadeTrace trace = test::make_trace(board_, 1);
   for (fpga::CoreCycle& cycle : trace.cycles) {
-    for (const std::size_t port : fpga::kPixelPorts) {
-      fpga::PortCycle& pixel = cycle.ports[port];
+    for (const fpga::Side side : fpga::kSides) {
+      fpga::PortCycle& pixel = cycle.ports[fpga::pixel_group(side)];
       if (pixel.granted && pixel.item % 4 != 0) pixel = {fpga::Intent::kPass, false, 0, 0, 0, pixel.item};
     }
   }

@@ -22,7 +22,7 @@ TEST(TraceBoard, FindsThePlaceOfEachSlotAndTheSlotsOfEachWord) {
        {board_of(1, fpga::Fetch::kColumn), board_of(2, fpga::Fetch::kColumn),
         board_of(1, fpga::Fetch::kLineBuffer)}) {
     const TraceBoard board(config);
-    fpga::SlotCursor cursor(board.geometry);
+    fpga::SlotCursor cursor(board.geometry, 0);
     for (std::uint64_t slot = 0; slot < board.geometry.slots; ++slot, cursor.advance()) {
       ASSERT_EQ(board.place_of_slot(slot).row, cursor.row()) << slot;
       ASSERT_EQ(board.place_of_slot(slot).column, cursor.column()) << slot;

@@ -30,7 +30,7 @@ struct Wait {
 };
 
 fpga::CoreCycle cycle_of(std::uint64_t number, const std::vector<Wait>& waits) {
-  fpga::CoreCycle cycle;
+  fpga::CoreCycle cycle = test::idle_cycle();
   cycle.cycle = number;
   for (const Wait& wait : waits) {
     if (wait.first <= number && number <= wait.last)

@@ -47,7 +47,7 @@ std::string with_underscores(std::string name) {
 std::string state_of(const fpga::PortCycle& port, std::size_t requester) {
   switch (port.intent) {
     case fpga::Intent::kRequest:
-      return !port.granted ? "waits" : writes(requester) ? "writes" : "reads";
+      return !port.granted ? "waits" : test::kRequesters.writes(requester) ? "writes" : "reads";
     case fpga::Intent::kPass:
       return "passes";
     case fpga::Intent::kIdle:
@@ -68,24 +68,25 @@ TEST_F(VcdSinkTest, ShowsEachPortInEachCycle) {
     std::string bank = "-";
     std::string address = "x";
   };
-  std::array<Held, fpga::kPortCount> held;  // by the last request of each port
+  std::array<Held, fpga::kGroupCount> held;  // by the last request of each port
   for (const fpga::CoreCycle& cycle : trace.cycles) {
     const std::uint64_t time = ps(cycle.cycle);
-    for (std::size_t port = 0; port < fpga::kPortCount; ++port) {
+    for (std::size_t port = 0; port < fpga::kGroupCount; ++port) {
       const fpga::PortCycle& now = cycle.ports[port];
-      const std::string name = fpga::kPorts[port].name;
+      const std::string name = fpga::kPortGroups[port].name;
       const bool requests = now.intent == fpga::Intent::kRequest;
       if (requests) held[port] = {board_.banks[now.bank].name, std::to_string(now.address)};
-      ASSERT_EQ(file.at(name + ".state", time), state_of(now, requester_of_port(port, cycle.host_traffic)));
+      ASSERT_EQ(file.at(name + ".state", time),
+                state_of(now, test::kRequesters.of_port(port, cycle.host_traffic)));
       ASSERT_EQ(file.at(name + ".bank", time), held[port].bank);
       ASSERT_EQ(file.at(name + ".waits_for", time),
-                requests && !now.granted ? with_underscores(fpga::requester_name(now.by)) : "-");
+                requests && !now.granted ? with_underscores(test::kRequesters.name(now.by)) : "-");
       const std::string address = file.at(name + ".address", time);
       ASSERT_EQ(address == "x" ? address : std::to_string(file.number(name + ".address", time)),
                 held[port].address);
     }
     ASSERT_EQ(file.at("host.traffic", time),
-              cycle.ports[fpga::kHostPort].intent == fpga::Intent::kRequest ? "capture" : "-");
+              cycle.ports[fpga::kHostGroup].intent == fpga::Intent::kRequest ? "capture" : "-");
   }
 }
 
@@ -97,12 +98,13 @@ TEST_F(VcdSinkTest, ShowsEachBankAndQueueInEachCycle) {
     for (std::size_t bank = 0; bank < 2; ++bank) {
       std::uint64_t requests = 0;
       std::string owner = "-";
-      for (std::size_t port = 0; port < fpga::kPortCount; ++port) {
+      for (std::size_t port = 0; port < fpga::kGroupCount; ++port) {
         const fpga::PortCycle& now = cycle.ports[port];
         if (now.intent != fpga::Intent::kRequest || now.bank != bank) continue;
         ++requests;
         if (now.granted)
-          owner = with_underscores(fpga::requester_name(requester_of_port(port, cycle.host_traffic)));
+          owner =
+              with_underscores(test::kRequesters.name(test::kRequesters.of_port(port, cycle.host_traffic)));
       }
       ASSERT_EQ(file.number(board_.banks[bank].name + ".requests", time), requests);
       ASSERT_EQ(file.at(board_.banks[bank].name + ".owner", time), owner);
@@ -168,11 +170,11 @@ TEST_F(VcdSinkTest, ABurstThatBeginsAsAnotherEndsLeavesNoIdlePhaseBetween) {
 
 TEST_F(VcdSinkTest, ABankWithSeparatePortsHasTwoOwners) {
   board_.banks[0].kind = memory::BankKind::kQdr;
-  fpga::CoreCycle cycle;
+  fpga::CoreCycle cycle = test::idle_cycle();
   cycle.cycle = 7;
   cycle.ports[0] = {fpga::Intent::kRequest, true, 0, 4, 0, 0};
-  cycle.ports[fpga::kResultPort] = {fpga::Intent::kRequest, true, 0, 8, 0, 0};
-  cycle.ports[2] = {fpga::Intent::kRequest, false, 1, 4, fpga::kTurnaroundToBlame, 0};
+  cycle.ports[fpga::kResultGroup] = {fpga::Intent::kRequest, true, 0, 8, 0, 0};
+  cycle.ports[2] = {fpga::Intent::kRequest, false, 1, 4, test::kRequesters.turnaround(), 0};
   test::MadeTrace trace;
   trace.cycles = {cycle};
   const VcdFile file = written(trace);
@@ -193,7 +195,7 @@ TEST_F(VcdSinkTest, AnAbsentPortHasNoSignals) {
 
 TEST_F(VcdSinkTest, SixtyFourBanksHaveSignalsOfTheirOwn) {
   while (board_.banks.size() < 64) board_.banks.push_back({"more" + std::to_string(board_.banks.size())});
-  fpga::CoreCycle cycle;
+  fpga::CoreCycle cycle = test::idle_cycle();
   cycle.ports[0] = {fpga::Intent::kRequest, true, 63, 4, 0, 0};
   test::MadeTrace trace;
   trace.cycles = {cycle};
@@ -215,7 +217,7 @@ TEST_F(VcdSinkTest, TheLayoutNamesTheFileAndEachSignalOfWhatDoesSomething) {
 }
 
 TEST_F(VcdSinkTest, TheLayoutLeavesOutWhatDoesNothingInTheWindow) {
-  fpga::CoreCycle cycle;
+  fpga::CoreCycle cycle = test::idle_cycle();
   cycle.ports[0] = {fpga::Intent::kRequest, true, 1, 4, 0, 0};
   test::MadeTrace trace;
   trace.cycles = {cycle};
@@ -239,7 +241,7 @@ TEST_F(VcdSinkTest, BeginsAndEndsWithTheWindow) {
   for (const char* name : {"file.vcd", "file.fst"}) {
     path_ = scratch_.path() / name;
     const bool is_vcd = path_.extension() == ".vcd";
-    fpga::CoreCycle cycle;
+    fpga::CoreCycle cycle = test::idle_cycle();
     cycle.cycle = 4;
     cycle.ports[0] = {fpga::Intent::kRequest, true, 0, 4, 0, 0};
     test::MadeTrace trace;

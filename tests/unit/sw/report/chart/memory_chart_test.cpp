@@ -52,7 +52,7 @@ Statistics random_run(const BoardConfig& board, bool in_computer, test::SplitMix
   run.frames_per_second.core = 18.596;
   run.bound.core = 18.596;
   run.bound.core_limited_by = "bank " + board.banks.front().name;
-  for (const fpga::CorePort& port : fpga::kPorts) {
+  for (const fpga::PortGroup& port : fpga::kPortGroups) {
     const int grants = random.chance(20) ? 0 : random.between(0, 10'000);
     run.ports.push_back({port.name, 6 * static_cast<std::uint64_t>(grants), run.cycles});
   }
@@ -256,7 +256,7 @@ void expect_links_at_buffers(const Drawn& chart, const BoardConfig& board) {
   for (const Group& edge : chart.edges) {
     if (edge.to.compare(0, 5, "bank-") != 0) continue;
     Box place{0, 1e9, 0, 0};
-    for (const fpga::CorePort& port : fpga::kPorts) {
+    for (const fpga::PortGroup& port : fpga::kPortGroups) {
       if (edge.from != std::string("port-") + port.name) continue;
       for (const platform::PlacedBuffer& buffer : platform::buffers(board)) {
         if (port.buffer != std::string(platform::name_of(buffer.buffer))) continue;
@@ -306,7 +306,7 @@ Statistics run_of_two_ports() {
   run.frames_per_second.core = 12.345;
   run.bound.core = 123.45;
   run.bound.core_limited_by = "bank bank0";
-  for (const fpga::CorePort& port : fpga::kPorts) run.ports.push_back({port.name});
+  for (const fpga::PortGroup& port : fpga::kPortGroups) run.ports.push_back({port.name});
   for (const platform::BankConfig& bank : BoardConfig().banks) run.banks.push_back({bank.name});
   run.ports[0].grants = run.banks[6].reads = 1000;
   run.ports[1].grants = run.banks[7].reads = 251;
