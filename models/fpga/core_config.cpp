@@ -34,6 +34,15 @@ std::vector<std::string> problems(const CoreConfig& config) {
       !can_queue_rows(config.result_fifo_words, config.rows))
     found.push_back("result_fifo_words = " + std::to_string(config.result_fifo_words) +
                     ": must be at least rows, which is " + std::to_string(config.rows));
+  kLanesRule.check("lanes", config.lanes, found);
+  const int column = config.window + config.rows - 1;
+  if (!can_divide_columns(config.fetch, config.lanes)) {
+    found.push_back("lanes = " + std::to_string(config.lanes) + ": must be 1 with the line buffer");
+  } else if (kLanesRule.allows(config.lanes) && config.lanes > column) {
+    found.push_back("lanes = " + std::to_string(config.lanes) +
+                    ": must be at most the slots of a column, window + rows - 1, which is " +
+                    std::to_string(column));
+  }
   kPipelineLatencyRule.check("pipeline_latency_cycles", config.pipeline_latency_cycles, found);
   if (!(config.clock_mhz >= 1 && config.clock_mhz <= 1000)) {
     found.push_back("clock_mhz = " + std::to_string(config.clock_mhz) + ": must be 1..1000");

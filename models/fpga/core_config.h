@@ -58,7 +58,7 @@ struct CoreConfig {
   bool right_table = true;
   bool joint_tables = false;  // one table for both sides, which both have one then (contract 7.3)
   PixelCache pixel_cache = PixelCache::kNone;
-  int lanes = 1;                     // P: lanes on each side (contract 8.1)
+  int lanes = 1;                     // P: lanes of each side, kLanesRule; more than 1 only with kColumn
   double clock_mhz = 40;             // 1..1000
   int lane_fifo_slots = 16;          // slots, kLaneFifoRule
   int result_fifo_words = 8;         // 32-bit words, kResultFifoRule, at least `rows`
@@ -71,12 +71,13 @@ inline int units_of(const CoreConfig& config) { return config.units.value_or(con
 inline int folds_of(int disparities, int units) { return (disparities + units - 1) / units; }
 inline int folds_of(const CoreConfig& config) { return folds_of(config.disparities, units_of(config)); }
 
-// The rules between parameters (contract 7.1, 7.2).
+// The rules between parameters (contract 7.1, 7.2, 8.1).
 inline bool has_units_for(std::optional<int> units, int disparities) {
   return !units || *units <= disparities;
 }
 inline bool can_fetch_rows(Fetch fetch, int rows) { return fetch == Fetch::kColumn || rows == 1; }
 inline bool can_queue_rows(int result_fifo_words, int rows) { return result_fifo_words >= rows; }
+inline bool can_divide_columns(Fetch fetch, int lanes) { return fetch == Fetch::kColumn || lanes == 1; }
 
 // Every broken rule as `field = value: rule`; empty if the core can be built.
 std::vector<std::string> problems(const CoreConfig& config);

@@ -21,8 +21,8 @@ constexpr std::size_t index_of(Side side) { return static_cast<std::size_t>(side
 // The stage behind a port.
 enum class PortStage : std::uint8_t { kLutReader, kPixelReader, kResultWriter, kLocalBus };
 
-// A group of ports of the FPGA on the SSRAM banks: a port for each lane, or a single one. In a frame all
-// ports of a group of the core access one buffer, in one direction.
+// A port group: the ports of the FPGA on the SSRAM banks with the same stage and side. It has a port for each
+// lane, or a single one. In a frame all ports of a group access one buffer, in one direction.
 struct PortGroup {
   const char* name;  // in board files, results and messages
   PortStage stage;
@@ -36,9 +36,9 @@ struct PortGroup {
 
 constexpr bool always(const CoreConfig& /*config*/) { return true; }
 
-// All groups, in the order in which results list their ports. Masks, routes, buffers, blame, counts, board
-// files and reports follow from this table. The groups of the core come first; the last one is the host's,
-// which has no buffer of its own.
+// All port groups, in the order in which results list their ports. Masks, routes, buffers, blame, counts,
+// board files and reports follow from this table. The groups of the core come first; the last one is the
+// host's, which has no buffer of its own.
 inline constexpr std::array kPortGroups = {
     PortGroup{"left_lut", PortStage::kLutReader, Side::kLeft, "left_lut", registers::kLeftLutBase, 4, false,
               [](const CoreConfig& config) { return config.left_table; }},
@@ -55,7 +55,7 @@ inline constexpr std::array kPortGroups = {
 inline constexpr std::size_t kGroupCount = kPortGroups.size();
 inline constexpr std::size_t kCoreGroupCount = kGroupCount - 1;
 
-// Index of the group of a stage; the side distinguishes the readers.
+// Index of the port group of a stage; the side distinguishes the readers.
 constexpr std::size_t group_of(PortStage stage, Side side = Side::kLeft) {
   std::size_t group = 0;
   while (kPortGroups[group].stage != stage || kPortGroups[group].side != side) ++group;
@@ -74,11 +74,12 @@ constexpr bool has_table(const CoreConfig& config, Side side) {
   return side == Side::kLeft ? config.left_table : config.right_table;
 }
 
-// The ports of a core with this number of lanes on each side, group after group: in a group of readers a port
-// for each lane, else a single one. With one lane, the index of a port is that of its group.
+// The ports of a core with this number of lanes on each side: those of each port group, one group after the
+// other. With one lane, the index of a port is that of its group.
 class CorePorts {
  public:
-  explicit CorePorts(int lanes) : lanes_(static_cast<std::size_t>(lanes)) {}
+  // Throws std::invalid_argument outside kLanesRule.
+  explicit CorePorts(int lanes) : lanes_(static_cast<std::size_t>(kLanesRule.required("lanes", lanes))) {}
   explicit CorePorts(const CoreConfig& config) : CorePorts(config.lanes) {}
 
   std::size_t size() const { return core_size() + 1; }
@@ -130,8 +131,8 @@ inline memory::ArbiterConfig arbiter_of_ports(const memory::ArbiterConfig& of_gr
   return arbiter;
 }
 
-// The base registers of one frame: for each group of the core the bank and the first word of its buffer, as
-// in register_map.h. Without meaning for a group that does not exist.
+// The base registers of one frame: for each port group of the core the bank and the first word of its buffer,
+// as in register_map.h. Without meaning for a group that does not exist.
 using FrameBases = std::array<std::uint32_t, kCoreGroupCount>;
 
 // Bank and first word of each buffer of a board, as the base registers and the bridge's descriptors take

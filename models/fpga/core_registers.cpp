@@ -51,8 +51,8 @@ void CoreRegisters::start(std::uint64_t time_ps) {
   busy_ = true;
   FrameStart start;
   start.time_ps = time_ps;
-  for (std::size_t port = 0; port < kCoreGroupCount; ++port)
-    start.bases[port] = frame_[frame_index(kPortGroups[port].base_register)];
+  for (std::size_t group = 0; group < kCoreGroupCount; ++group)
+    start.bases[group] = frame_[frame_index(kPortGroups[group].base_register)];
   const auto offset = [this](std::uint64_t address) {
     return static_cast<int>(frame_[frame_index(address)]);
   };

@@ -8,7 +8,6 @@ namespace stereotlm::memory {
 namespace {
 
 constexpr std::uint64_t kOffsetMask = (std::uint64_t{1} << kBankAddressBits) - 1;
-constexpr std::uint64_t bank_base(std::uint64_t address) { return address & ~kOffsetMask; }
 
 }  // namespace
 
@@ -45,24 +44,23 @@ void Crossbar::aim(Port port, std::size_t bank, bool write) {
 }
 
 void Crossbar::PortTarget::route(std::size_t bank, bool write, tlm::tlm_blocking_transport_if<>& target) {
-  write_ = write;
+  command_ = write ? tlm::TLM_WRITE_COMMAND : tlm::TLM_READ_COMMAND;
   bank_base_ = crossbar_address(bank, 0);
   bank_port_ = &target;
 }
 
 void Crossbar::PortTarget::b_transport(tlm::tlm_generic_payload& access, sc_core::sc_time& delay) {
   const std::uint64_t address = access.get_address();
-  std::uint64_t& granted = crossbar_.granted_[port_ / 64];
-  const std::uint64_t port = std::uint64_t{1} << port_ % 64;
-  if ((granted & port) == 0 || bank_base(address) != bank_base_ || access.is_write() != write_) {
+  const std::uint64_t offset = address - bank_base_;
+  if ((granted_ & port_) == 0 || offset > kOffsetMask || access.get_command() != command_) {
     crossbar_.refuse(access);
     return;
   }
-  granted &= ~port;
-  access.set_address(address - bank_base_);
+  granted_ &= ~port_;
+  access.set_address(offset);
   bank_port_->b_transport(access, delay);
   access.set_address(address);
-  if (write_) crossbar_.changes(address, 4);
+  if (command_ == tlm::TLM_WRITE_COMMAND) crossbar_.changes(address, 4);
 }
 
 unsigned char* Crossbar::direct(std::uint64_t address, std::uint64_t bytes) {

@@ -68,7 +68,8 @@ class Crossbar : public sc_core::sc_module, public DirectBanks {
   // The target behind the socket of one port.
   class PortTarget : public tlm::tlm_fw_transport_if<> {
    public:
-    PortTarget(Crossbar& crossbar, Port port) : crossbar_(crossbar), port_(port) {}
+    PortTarget(Crossbar& crossbar, Port port)
+        : crossbar_(crossbar), granted_(crossbar.granted_[port / 64]), port_(std::uint64_t{1} << port % 64) {}
     void route(std::size_t bank, bool write, tlm::tlm_blocking_transport_if<>& target);
     void b_transport(tlm::tlm_generic_payload& access, sc_core::sc_time& delay) override;
     tlm::tlm_sync_enum nb_transport_fw(tlm::tlm_generic_payload& access, tlm::tlm_phase&,
@@ -84,8 +85,9 @@ class Crossbar : public sc_core::sc_module, public DirectBanks {
 
    private:
     Crossbar& crossbar_;
-    Port port_;
-    bool write_ = false;
+    std::uint64_t& granted_;  // the half of the crossbar's grants that holds this port
+    std::uint64_t port_;      // its bit there
+    tlm::tlm_command command_ = tlm::TLM_READ_COMMAND;
     std::uint64_t bank_base_ = 0;  // first address of the bank to which the port is directed
     tlm::tlm_blocking_transport_if<>* bank_port_ = nullptr;  // looked up once, for speed
   };

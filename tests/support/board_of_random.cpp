@@ -43,7 +43,7 @@ std::optional<std::string> bank_name(const std::optional<PlainBuffer>& buffer) {
   return bank_name(bank_of(*buffer));
 }
 
-// The platform has no knob of section 8, which the contract will get when the models have it.
+// The platform has no stripes and no SDRAM yet (section 8).
 void refuse_section_8(const PlainCycleInput& input) {
   std::vector<PlainBuffer> buffers;
   for (const auto* list : {&input.left_image, &input.right_image, &input.disparity})

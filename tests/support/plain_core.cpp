@@ -154,7 +154,7 @@ class BankAndArbiter {
   std::vector<std::optional<std::uint64_t>> open_rows_;  // [internal bank]
 };
 
-// The figures of a frame, by their letters in the contract; P and G are of section 8, which is to come.
+// The figures of a frame, by their letters in the contract; P and G are of section 8 (lanes).
 struct Letters {
   explicit Letters(const PlainCycleInput& input)
       : R(input.rows),

@@ -64,7 +64,7 @@ struct RandomKnobs {
   // Of computers: captures go to banks of their own, by a local bus in step with the core. The models skip
   // most of their lines.
   bool apart_captures = false;
-  // Of section 8, which models/contract.md will get when the models have it.
+  // Of section 8. The models have lanes; stripes and SDRAM are to come.
   bool sdram = false;
   bool stripes = false;  // and up to 8 banks more
   bool lanes = false;

@@ -28,10 +28,10 @@ DirectFrame::DirectFrame(const CoreConfig& config, bool has_pixels, memory::Dire
 }
 
 void DirectFrame::set_buffers(const FrameBases& bases) {
-  for (std::size_t port = 0; port < kCoreGroupCount; ++port) {
-    if (!has_group(config_, port)) continue;
-    const std::uint64_t first = registers::base_address(bases[port]);
-    buffers_[port] = {first, first + pixels_of(config_) * kPortGroups[port].bytes_per_pixel};
+  for (std::size_t group = 0; group < kCoreGroupCount; ++group) {
+    if (!has_group(config_, group)) continue;
+    const std::uint64_t first = registers::base_address(bases[group]);
+    buffers_[group] = {first, first + pixels_of(config_) * kPortGroups[group].bytes_per_pixel};
   }
 }
 
@@ -55,11 +55,11 @@ bool DirectFrame::read(const kernels::JointOffsets& offsets) {
 bool DirectFrame::read_tables(const kernels::JointOffsets& offsets) {
   bool is_readable = true;
   for (const Side side : kSides) {
-    const memory::Port port = lut_group(side);
-    if (!has_group(config_, port)) continue;
-    const auto* const entries = reinterpret_cast<const std::uint32_t*>(buffer(port));
+    const std::size_t group = lut_group(side);
+    if (!has_group(config_, group)) continue;
+    const auto* const entries = reinterpret_cast<const std::uint32_t*>(buffer(group));
     const bool may_have_changed =
-        entries != nullptr && banks_.may_have_changed(port, buffers_[port].first, buffers_[port].end);
+        entries != nullptr && banks_.may_have_changed(group, buffers_[group].first, buffers_[group].end);
     if (config_.joint_tables) return decode_joint_table(entries, may_have_changed, offsets);
     if (!read_table(side, entries, may_have_changed)) is_readable = false;
   }
@@ -97,10 +97,10 @@ bool DirectFrame::read_table(Side side, const std::uint32_t* entries, bool may_h
   return is_valid;
 }
 
-std::optional<memory::Port> DirectFrame::hazard_with(const AddressRange& words, bool write) const {
-  for (std::size_t port = 0; port < kCoreGroupCount; ++port) {
-    const bool is_exclusive = write || kPortGroups[port].write;
-    if (is_exclusive && buffers_[port].overlaps(words)) return port;
+std::optional<std::size_t> DirectFrame::hazard_with(const AddressRange& words, bool write) const {
+  for (std::size_t group = 0; group < kCoreGroupCount; ++group) {
+    const bool is_exclusive = write || kPortGroups[group].write;
+    if (is_exclusive && buffers_[group].overlaps(words)) return group;
   }
   return std::nullopt;
 }

@@ -34,9 +34,9 @@ class DirectFrame {
   bool read(const kernels::JointOffsets& offsets);
 
   // Checks an access of another master to `words` while the frame runs. It is a hazard if it would observe
-  // when the frame reads or writes its data. Returns the port whose buffer it accesses if it is a hazard,
+  // when the frame reads or writes its data. Returns the port group whose buffer it accesses if it is one,
   // else nothing.
-  std::optional<memory::Port> hazard_with(const AddressRange& words, bool write) const;
+  std::optional<std::size_t> hazard_with(const AddressRange& words, bool write) const;
 
   // The accesses of the frame's slots.
   const AccessPatterns& patterns() const { return patterns_; }
@@ -45,9 +45,9 @@ class DirectFrame {
   bool write() const;
 
  private:
-  // The buffer of a port; null if direct access is not granted.
-  unsigned char* buffer(memory::Port port) const {
-    return banks_.direct(buffers_[port].first, buffers_[port].end - buffers_[port].first);
+  // The buffer of a port group; null if direct access is not granted.
+  unsigned char* buffer(std::size_t group) const {
+    return banks_.direct(buffers_[group].first, buffers_[group].end - buffers_[group].first);
   }
   bool read_tables(const kernels::JointOffsets& offsets);
   bool decode_joint_table(const std::uint32_t* words, bool may_have_changed,
@@ -56,7 +56,7 @@ class DirectFrame {
 
   CoreConfig config_;
   memory::DirectBanks& banks_;
-  // [port]: the buffer that the port accesses; empty if there is none.
+  // [port group]: the buffer that it accesses; empty if there is none.
   std::array<AddressRange, kCoreGroupCount> buffers_{};
   AccessPatterns patterns_;
   // [side]: the entries of the frame; null if the side has no table.

@@ -41,20 +41,20 @@ void FastCore::route(const HostRoute& route) {
   host_port_.route(route);
   if (!route.bank) return;
   if (frames_.is_running()) {
-    if (const auto port = direct_frame_.hazard_with(host_port_.words_left(), route.write))
-      report_hazard(route, *port);
+    if (const auto group = direct_frame_.hazard_with(host_port_.words_left(), route.write))
+      report_hazard(route, *group);
   }
   host_port_.serve_new_burst();
 }
 
-// A burst of the local bus is a hazard: it accesses the buffer of this port.
-void FastCore::report_hazard(const HostRoute& burst, memory::Port port) {
+// A burst of the local bus is a hazard: it accesses the buffer of this port group.
+void FastCore::report_hazard(const HostRoute& burst, std::size_t group) {
   const auto word = [](std::uint64_t address) {
     return std::to_string((address - memory::crossbar_address(memory::bank_of_address(address), 0)) / 4);
   };
   fail("a burst of the local bus " + std::string(burst.write ? "writes" : "reads") + " words " +
        word(burst.first) + ".." + word(burst.end - 4) + " of bank number " + std::to_string(*burst.bank) +
-       ", where the running frame has its " + kPortGroups[port].buffer + ": needs fidelity cycle");
+       ", where the running frame has its " + kPortGroups[group].buffer + ": needs fidelity cycle");
 }
 
 void FastCore::fail(const std::string& why) {

@@ -58,7 +58,7 @@ class FastCore {
  private:
   bool works_directly(const FrameStart& start);
   void end_frame();
-  void report_hazard(const HostRoute& burst, memory::Port port);
+  void report_hazard(const HostRoute& burst, std::size_t group);
   void fail(const std::string& why);
 
   FrameRun& frames_;

@@ -180,7 +180,7 @@ class FastForward : public CoreStepper {
   HostWords host_;                   // words that are granted from the next cycle on
   TransitionCache::Log in_order_;    // what has been followed and is not yet handed to the recorder
   bool is_host_routed_ = false;      // by serve_host()
-  std::uint64_t banks_ = 0;          // of the frame's buffers, 6 bits for each group
+  std::uint64_t banks_ = 0;          // of the frame's buffers, 6 bits for each port group
   // [side]: the pattern of a side whose accesses vary. Null if all slots inside the image access their
   // pixels, or are assumed to. Null for a side without table: LaneControl itself finds hits of the cache.
   std::array<const AccessPattern*, 2> varying_{};

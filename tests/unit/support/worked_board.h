@@ -10,7 +10,7 @@
 
 #include "tests/support/plain_cycle_loop.h"
 
-// The worked values of contract section 8 (lanes, stripes, SDRAM; to come), from the plain core.
+// The worked values of contract section 8 (lanes; stripes and SDRAM are to come), from the plain core.
 namespace stereotlm::test {
 
 inline constexpr int kLog7Half = 3;
