@@ -25,6 +25,32 @@ const BoardConfig& checked(const BoardConfig& board, const Tables& tables) {
   return board;
 }
 
+// Runs frames of the core without data. The tables must fit the board.
+void run_frames(fpga::FrameRun& core, const BoardConfig& board, const Tables& tables, std::uint64_t frames,
+                std::uint64_t stall_timeout_cycles) {
+  const fpga::BufferBases buffers = buffer_bases(board);
+  const fpga::AccessPattern pattern(core.control().geometry(), board.fpga.pixel_cache);
+  fpga::AccessPatterns patterns{pattern, pattern};
+  if (tables.left) patterns[0].set_entries(tables.left->entries.data());
+  if (tables.right) patterns[1].set_entries(tables.right->entries.data());
+  for (std::uint64_t frame = 0; frame < frames; ++frame) {
+    core.start_direct(core.done_cycle(), buffers.of_frame(frame), patterns);
+    while (!core.control().frame_done()) {
+      core.run_ahead(core.cycle() + stall_timeout_cycles);
+      if (core.stalled_cycles() == 0) continue;
+      throw std::runtime_error(
+          fmt::format("frame {} of the core: no slot consumed and no result written for {} cycles", frame,
+                      stall_timeout_cycles));
+    }
+    core.finish();
+    core.end();
+  }
+}
+
+memory::Arbitration arbitration_of(const BoardConfig& board) {
+  return {arbiter_of_ports(board.fpga.arbiter, core_ports(board)), ssram_configs(board)};
+}
+
 }  // namespace
 
 PreloadedSystem::PreloadedSystem(const sc_core::sc_module_name& name, const BoardConfig& config,
@@ -46,29 +72,22 @@ Statistics run_core(const BoardConfig& board, const Tables& tables, std::uint64_
                     std::uint64_t stall_timeout_cycles) {
   if (frames == 0) throw std::invalid_argument("frames = 0: must be 1 or more");
   check_tables(board, tables);
-  const fpga::CoreConfig config = core_config(board);
-  const fpga::BufferBases buffers = buffer_bases(board);
-  const std::vector<memory::SsramBankConfig> banks = ssram_configs(board);
-  memory::Arbitration arbitration(arbiter_of_ports(board.fpga.arbiter, core_ports(board)), banks);
-  fpga::FrameRun core(config, banks, arbitration, stall_timeout_cycles);
-  fpga::AccessPatterns patterns{fpga::AccessPattern(core.control().geometry(), config.pixel_cache),
-                                fpga::AccessPattern(core.control().geometry(), config.pixel_cache)};
-  if (tables.left) patterns[0].set_entries(tables.left->entries.data());
-  if (tables.right) patterns[1].set_entries(tables.right->entries.data());
-  for (std::uint64_t frame = 0; frame < frames; ++frame) {
-    core.start_direct(core.done_cycle(), buffers.of_frame(frame), patterns);
-    while (!core.control().frame_done()) {
-      core.run_ahead(core.cycle() + stall_timeout_cycles);
-      if (core.stalled_cycles() == 0) continue;
-      throw std::runtime_error(
-          fmt::format("frame {} of the core: no slot consumed and no result written for {} cycles", frame,
-                      stall_timeout_cycles));
-    }
-    core.finish();
-    core.end();
-  }
+  memory::Arbitration arbitration = arbitration_of(board);
+  fpga::FrameRun core(core_config(board), ssram_configs(board), arbitration, stall_timeout_cycles);
+  run_frames(core, board, tables, frames, stall_timeout_cycles);
   return collect_statistics(board, frame_accesses(board, tables), "fast", core.frame_cycles(),
                             counters_of(core, arbitration));
+}
+
+std::vector<std::uint64_t> waitless_frame_cycles(const BoardConfig& board, const Tables& tables,
+                                                 std::uint64_t frames) {
+  constexpr std::uint64_t kNoTimeout = std::uint64_t{1} << 26U;
+  check_tables(board, tables);
+  memory::Arbitration arbitration = arbitration_of(board);
+  arbitration.grant_all_requests();
+  fpga::FrameRun core(core_config(board), ssram_configs(board), arbitration, kNoTimeout);
+  run_frames(core, board, tables, frames, kNoTimeout);
+  return core.frame_cycles();
 }
 
 }  // namespace stereotlm::platform

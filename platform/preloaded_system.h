@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <systemc>
+#include <vector>
 
 #include "models/binder.h"
 #include "models/host/ideal_host.h"
@@ -38,5 +39,9 @@ class PreloadedSystem : public sc_core::sc_module {
 // written, because the frame would never end.
 Statistics run_core(const BoardConfig& board, const Tables& tables, std::uint64_t frames,
                     std::uint64_t stall_timeout_cycles = std::uint64_t{1} << 26U);
+// The cycles of each frame if each request of a port were granted in its cycle. Throws std::invalid_argument
+// if the tables do not fit the board.
+std::vector<std::uint64_t> waitless_frame_cycles(const BoardConfig& board, const Tables& tables,
+                                                 std::uint64_t frames);
 
 }  // namespace stereotlm::platform

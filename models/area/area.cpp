@@ -132,10 +132,10 @@ void add(const char* name, std::int64_t count, const Resources& all, Items& item
   if (count > 0) items.push_back({name, count, all});
 }
 
-// Contract 7.4. For each slot of a column a lane keeps the last word, its address and a valid bit. Slots come
-// in turn, so these are shift registers of K places. A slot without access keeps the old address and word.
-Resources word_cache(const Core& core) {
-  const int places = core.geometry.slots_per_column;
+// Contract 7.4. For each slot that it has of a column, a lane keeps the last word, its address and a valid
+// bit. Slots come in turn, so these are shift registers with a place for each of them. A slot without access keeps the old address and word.
+Resources word_cache(const Core& core, int lane) {
+  const int places = core.geometry.slots_of_lane(lane);
   const int address_bits = bits_of(std::int64_t{core.config.width} * core.config.height / 4 - 1) + kValidBit;
   return shift_register(places, address_bits) + selector(address_bits) + equality(address_bits) +
          shift_register(places, kWordBits) + selector(kWordBits);
@@ -146,10 +146,11 @@ Resources word_cache(const Core& core) {
 // source pixel of an entry has the address row * W + column, and is one of four in its word. Joint tables
 // (contract 7.3): one port reads both halves of an entry, and each lane has its queue. The halves are
 // displacements. The counters of a lane's position begin at the offsets X and Y, so that a displacement takes
-// one adder for the column and one for the row.
+// one adder for the column and one for the row. Each side has P lanes (contract 8.1).
 void add_lanes(const Core& core, Items& items) {
   const CoreConfig& config = core.config;
-  const int tables = core.tables();
+  const int lanes = 2 * config.lanes;
+  const int tables = core.tables() * config.lanes;
   const int entry_bits = config.joint_tables ? kJointEntryBits : kEntryBits;
   add("table entry queues", tables, tables * shift_register(config.lane_fifo_slots, entry_bits), items);
   if (config.joint_tables) {
@@ -159,27 +160,39 @@ void add_lanes(const Core& core, Items& items) {
   }
   const int address_bits = bits_of(std::int64_t{config.width} * config.height - 1);
   add("source addresses", tables, tables * digits(config.width, address_bits), items);
-  if (config.pixel_cache == fpga::PixelCache::kWord) add("word caches", 2, 2 * word_cache(core), items);
-  add("byte selectors", 2, 2 * multiplexer(4, kPixelBits), items);
+  Resources caches;
+  for (int lane = 0; lane < config.lanes; ++lane) caches += 2 * word_cache(core, lane);
+  if (config.pixel_cache == fpga::PixelCache::kWord) add("word caches", lanes, caches, items);
+  add("byte selectors", lanes, lanes * multiplexer(4, kPixelBits), items);
   Resources queues;
   for (const bool left : {true, false})
-    queues += shift_register(config.lane_fifo_slots, kPixelBits + core.valid_bit_of(left));
-  add("pixel queues", 2, queues, items);
+    queues += config.lanes * shift_register(config.lane_fifo_slots, kPixelBits + core.valid_bit_of(left));
+  add("pixel queues", lanes, queues, items);
+}
+
+// The `bits` before each new pixel in its row, of both sides. A lane has a memory with a place for each slot
+// that it has of a column, or behind a line buffer registers.
+Resources columns_before(const Core& core, int bits) {
+  if (core.columns_of_pixels) return 2 * registers(bits);
+  Resources all;
+  for (int lane = 0; lane < core.config.lanes; ++lane)
+    all += 2 * memory(core.geometry.slots_of_lane(lane), bits);
+  return all;
 }
 
 // Paper section 2.4, contract 1.2. m is the size of the kernel. Beside the new pixel the filter reads the
 // m - 1 pixels before it in the same row, from memories (registers behind a line buffer). The line memories
 // hold the partial sums of the rows above for each image column. Without a line buffer they also hold
-// max(0, h - r) left valid bits: from the middle row of the first window to the row above the newest K.
+// max(0, h - r) left valid bits: from the middle row of the first window to the row above the newest K. Each
+// of P lanes has a filter, which passes its partial sums on to the next slot of the column.
 void add_filter(const Core& core, Items& items) {
   const CoreConfig& config = core.config;
   if (!config.filter) return;
   const FilterArithmetic arithmetic = filter_arithmetic(*config.filter);
-  add("filters", 2, 2 * arithmetic.resources, items);
+  const int filters = 2 * config.lanes;
+  add("filters", filters, filters * arithmetic.resources, items);
   const int before_bits = (config.filter->size - 1) * kPixelBits;
-  const Resources columns_before =
-      core.columns_of_pixels ? registers(before_bits) : memory(core.geometry.slots_per_column, before_bits);
-  add("filter columns", 2, 2 * columns_before, items);
+  add("filter columns", filters, columns_before(core, before_bits), items);
   const int rows_above = std::max(0, core.geometry.half - core.geometry.radius);
   Resources lines;
   for (const bool left : {true, false}) {
@@ -191,14 +204,15 @@ void add_filter(const Core& core, Items& items) {
 
 // Contract 7.6. c is the size of the neighbourhood. The stage behind the filter makes c * c - 1 bits of each
 // filtered pixel. Line memories hold c - 1 rows of filtered pixels, column memories the c - 1 columns before.
-// Without a filter the line memories also hold the valid bits, at most 2, for which they have room.
+// Without a filter the line memories also hold the valid bits, at most 2, for which they have room. The bits
+// of P pixels are made in a cycle.
 void add_census(const Core& core, Items& items) {
   const CoreConfig& config = core.config;
   if (config.cost.kind != CostKind::kCensus) return;
   const int before_bits = 2 * config.cost.half() * kPixelBits;
-  add("census bits", 2, 2 * census_bits(config.cost, !core.columns_of_pixels), items);
-  if (!core.columns_of_pixels)
-    add("census columns", 2, 2 * memory(core.geometry.slots_per_column, before_bits), items);
+  const int lanes = 2 * config.lanes;
+  add("census bits", lanes, lanes * census_bits(config.cost, !core.columns_of_pixels), items);
+  if (!core.columns_of_pixels) add("census columns", lanes, columns_before(core, before_bits), items);
   add("census line memories", 2, 2 * memory(config.width, before_bits), items);
 }
 
@@ -220,14 +234,18 @@ void add_row_buffers(const Core& core, Items& items) {
 // Sums the results of n pixel pairs of a column: one pair per cycle, or all in one cycle behind a line
 // buffer. With one row of results the sum begins anew with each column. With several rows (contract 7.2) it
 // slides down the column: it adds the result of the new pair, and subtracts that of n slots before. Its last
-// R values belong to the R rows.
+// R values belong to the R rows. With P lanes (contract 8.1) P pairs come in a cycle: a tree of adders sums
+// their results. With several rows the sum slides P times in a cycle, because each of its values may belong
+// to a row.
 Resources column_sum(const Core& core, const Resources& pair, std::int64_t most, int folds) {
   const int n = core.config.window;
   const int bits = core.column_sum_bits(most);
   if (core.columns_of_pixels) return n * pair + adder_tree(n, most) + registers(bits);
-  Resources column = pair + adder(bits) + shift_register(folds, bits);
-  if (core.config.rows > 1) column += shift_register(n * folds, bits_of(most)) + adder(bits_of(most) + 1);
-  return column;
+  const int lanes = core.config.lanes;
+  Resources column = lanes * pair + shift_register(folds, bits);
+  if (core.config.rows == 1) return column + adder_tree(lanes, most) + adder(bits);
+  const Resources kept = shift_register((n + lanes - 1) / lanes * folds, bits_of(most));
+  return column + lanes * (kept + adder(bits_of(most) + 1) + adder(bits));
 }
 
 // Sums the last n column sums: adds the new column sum, and subtracts the column sum of n columns before.
@@ -260,9 +278,9 @@ Delays delays(const Core& core, int places, int bits) {
 // windows lie inside both images (contract 1.3). Along a row each column marks one more candidate.
 void add_modules(const Core& core, Items& items) {
   const PairArithmetic& pair = core.pair;
-  const Delays pixels = core.columns_of_pixels
-                            ? delays(core, 1, core.config.window * pair.pixel_bits)
-                            : delays(core, core.geometry.slots_per_column, pair.pixel_bits);
+  const Delays pixels = core.columns_of_pixels ? delays(core, 1, core.config.window * pair.pixel_bits)
+                                               : delays(core, core.geometry.cycles_per_column,
+                                                        core.config.lanes * pair.pixel_bits);
   add("right pixel delays", pixels.count, pixels.all, items);
   const std::int64_t units = core.units;
   add("column modules", units, units * column_sum(core, pair.resources, pair.most, core.folds), items);

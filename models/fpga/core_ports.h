@@ -81,6 +81,10 @@ class CorePorts {
   // Throws std::invalid_argument outside kLanesRule.
   explicit CorePorts(int lanes) : lanes_(static_cast<std::size_t>(kLanesRule.required("lanes", lanes))) {}
   explicit CorePorts(const CoreConfig& config) : CorePorts(config.lanes) {}
+  // With this core_size().
+  static CorePorts of_core_size(std::size_t ports) {
+    return CorePorts(static_cast<int>((ports - 1) / kReaderGroups));
+  }
 
   std::size_t size() const { return core_size() + 1; }
   std::size_t core_size() const { return kReaderGroups * lanes_ + 1; }  // without the host's port

@@ -97,8 +97,12 @@ std::size_t Arbitration::cause_of(Port port, PortMask granted) const {
 // stays so as long as it has a port.
 void Arbitration::share_banks() {
   const std::uint64_t were_shared = std::exchange(shared_, 0);
-  alone_ = 0;
   shared_banks_.clear();
+  if (grants_all_) {
+    alone_ = routed_;
+    return;
+  }
+  alone_ = 0;
   for_each_port(routed_, [&](Port port) {
     const std::size_t bank = routes_[port].bank;
     const PortMask together = ports_on(bank);

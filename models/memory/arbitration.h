@@ -46,6 +46,10 @@ class Arbitration {
   // Whether a port other than this one is routed to the bank.
   bool is_used_beside(Port port, std::size_t bank) const { return (ports_on(bank) & ~mask_of(port)) != 0; }
 
+  // From now on each request is granted in its cycle, for the time that frames take without waits. The
+  // statistics of the banks then have no meaning.
+  void grant_all_requests() { grants_all_ = true; }
+
   // Decides the requests of one cycle, and returns the ports granted. `cycle` must increase from call to
   // call; a cycle that is left out has no request.
   PortMask arbitrate(std::uint64_t cycle, PortMask requests) {
@@ -125,6 +129,7 @@ class Arbitration {
   // Uncontended ports: each is alone on a bank that is not shared. They need no arbitration. Their grants are
   // added to the statistics when they cease to be alone, and when counting begins or ends.
   PortMask alone_ = 0;
+  bool grants_all_ = false;                               // all ports count as alone
   std::array<std::uint64_t, kMostPorts> alone_grants_{};  // [port]
   std::vector<SharedBank> shared_banks_;
   std::vector<std::uint64_t> recorded_;  // the counts when the recording began

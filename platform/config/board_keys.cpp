@@ -451,6 +451,12 @@ std::vector<Key> make_keys() {
           "whether a lane keeps the last word that it read, for each slot of a column; optional, without it "
           "none",
           {"none", "word"})),
+      optional(integer(
+          "fpga.lanes", [](B& b) { return &b.fpga.lanes; },
+          "lanes of each side, each fetches a pixel in a cycle; at most matcher.window + matcher.rows - 1, "
+          "and 1 "
+          "unless matcher.fetch is column; optional, without it 1",
+          "lanes", fpga::kLanesRule)),
       part("ssram.default.words", "depth of a bank that gives none of its own", "words",
            memory::kBankWordsRule.text(), memory::kBankWordsRule),
       part("ssram.default.kind", "kind of a bank that gives none of its own", "", kinds),

@@ -92,6 +92,20 @@ class RuleChecker {
           "matcher.rows = {}: must be 1 where matcher.fetch is line_buffer; with column it may be {}",
           matcher.rows, fpga::kRowsRule.text());
     });
+    const int lanes = board_.fpga.lanes;
+    require(fpga::can_divide_columns(matcher.fetch, lanes), {"fpga.lanes", "matcher.fetch"}, [&] {
+      return fmt::format(
+          "fpga.lanes = {}: must be 1 where matcher.fetch is line_buffer; with column it may be {}", lanes,
+          fpga::kLanesRule.text());
+    });
+    const int slots = matcher.window + matcher.rows - 1;
+    std::vector<std::string> of_column = {"fpga.lanes", "matcher.window"};
+    if (matcher.rows != 1) of_column.emplace_back("matcher.rows");  // it may be left out
+    require(matcher.fetch == fpga::Fetch::kLineBuffer || lanes <= slots, of_column, [&] {
+      return fmt::format(
+          "fpga.lanes = {}: at most {}, the slots of a column (matcher.window + matcher.rows - 1)", lanes,
+          slots);
+    });
   }
 
   void check_result_queue() {

@@ -262,8 +262,8 @@ std::string rows_table(const stats::RowComparison& rows) {
   const std::vector<stats::RowComparison::Range> ranges = rows.ranges(kMostLines);
   if (ranges.empty()) return text;  // no difference, or differences of frames cancel out
   text += fmt::format("{:>43}waiting cycles of\n{:<11} {:>11} {:>15}", "", "rows", "difference", "each row");
-  for (std::size_t port = 0; port < fpga::kCoreGroupCount; ++port)
-    text += fmt::format(" {:>11}", fpga::kPortGroups[port].name);
+  for (std::size_t group = 0; group < fpga::kCoreGroupCount; ++group)
+    text += fmt::format(" {:>11}", fpga::kPortGroups[group].name);
   text += '\n';
   for (const stats::RowComparison::Range& range : ranges) {
     text +=

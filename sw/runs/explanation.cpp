@@ -123,8 +123,9 @@ double result_queue_percent(const Explanation& explanation) {
   const double lost = cycles * (1 - row.real("frames_per_second.core") / row.real("bound.core"));
   std::int64_t stalled = 0;
   std::int64_t blocked = 0;
-  for (const fpga::PortGroup& port : fpga::kPortGroups) {
-    const std::string name = std::string("ports.") + port.name;
+  const fpga::CorePorts ports = platform::core_ports(explanation.board());
+  for (memory::Port port = 0; port < ports.size(); ++port) {
+    const std::string name = "ports." + ports.name(port);
     stalled += row.integer(name + ".stall_cycles");
     blocked = std::max(blocked, row.integer(name + ".blocked_cycles"));
   }

@@ -54,6 +54,7 @@ class Explanation {
     bool loses_pixels = false;
     std::string failure;  // the reason if the run has failed; else empty
   };
+  const platform::BoardConfig& board() const { return board_; }
   const Rate& now() const { return now_; }  // of the board itself
   // The figures of the board itself.
   const explore::StoredRow& figures() const { return *figures_; }

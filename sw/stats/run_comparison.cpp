@@ -21,10 +21,18 @@ bool is_empty(const RowComparison::Range& range) {
 std::string csv_head() {
   std::string text = "frame,row,a_cycles,b_cycles";
   for (const char* run : {"a", "b"}) {
-    for (std::size_t port = 0; port < fpga::kCoreGroupCount; ++port)
-      text += fmt::format(",{}_{}_stall_cycles", run, fpga::kPortGroups[port].name);
+    for (std::size_t group = 0; group < fpga::kCoreGroupCount; ++group)
+      text += fmt::format(",{}_{}_stall_cycles", run, fpga::kPortGroups[group].name);
   }
   return text + '\n';
+}
+
+// The stalls of ports, added for each port group: two runs may have different numbers of lanes.
+std::array<std::uint64_t, fpga::kCoreGroupCount> by_group(const std::vector<std::uint64_t>& stalls) {
+  const auto ports = fpga::CorePorts::of_core_size(stalls.size());
+  std::array<std::uint64_t, fpga::kCoreGroupCount> sums{};
+  for (memory::Port port = 0; port < stalls.size(); ++port) sums[ports.group_of(port)] += stalls[port];
+  return sums;
 }
 
 }  // namespace
@@ -66,11 +74,12 @@ void RowComparison::add(const fpga::RowProfile& a, const fpga::RowProfile& b) {
   for (std::size_t row = 0; row < rows_.size(); ++row) {
     if (!parting_ && a[row].cycles != b[row].cycles)
       parting_ = Parting{frames_, row, a[row].cycles, b[row].cycles};
-    if (!other_stalls_ && alone_a[row].stalls != alone_b[row].stalls)
-      other_stalls_ = OtherStalls{frames_, row};
+    const auto stalls_a = by_group(alone_a[row].stalls);
+    const auto stalls_b = by_group(alone_b[row].stalls);
+    if (!other_stalls_ && stalls_a != stalls_b) other_stalls_ = OtherStalls{frames_, row};
     rows_[row].cycles += difference(alone_a[row].cycles, alone_b[row].cycles);
-    for (std::size_t port = 0; port < fpga::kCoreGroupCount; ++port)
-      rows_[row].stalls[port] += difference(alone_a[row].stalls[port], alone_b[row].stalls[port]);
+    for (std::size_t group = 0; group < fpga::kCoreGroupCount; ++group)
+      rows_[row].stalls[group] += difference(stalls_a[group], stalls_b[group]);
   }
   ++frames_;
 }
@@ -81,8 +90,8 @@ RowComparison::Range RowComparison::range(std::size_t first_row, std::size_t las
     range.cycles += rows_[row].cycles;
     range.least = std::min(range.least, rows_[row].cycles);
     range.most = std::max(range.most, rows_[row].cycles);
-    for (std::size_t port = 0; port < fpga::kCoreGroupCount; ++port)
-      range.stalls[port] += rows_[row].stalls[port];
+    for (std::size_t group = 0; group < fpga::kCoreGroupCount; ++group)
+      range.stalls[group] += rows_[row].stalls[group];
   }
   return range;
 }
@@ -126,7 +135,8 @@ void RowsCsv::add(const fpga::RowProfile& a, const fpga::RowProfile& b) {
   std::string lines;
   for (std::size_t row = 0; row < a.size(); ++row) {
     lines += fmt::format("{},{},{},{},{},{}\n", frame_, row, alone_a[row].cycles, alone_b[row].cycles,
-                         fmt::join(alone_a[row].stalls, ","), fmt::join(alone_b[row].stalls, ","));
+                         fmt::join(by_group(alone_a[row].stalls), ","),
+                         fmt::join(by_group(alone_b[row].stalls), ","));
   }
   ++frame_;
   file_.write(lines);

@@ -77,7 +77,7 @@ class RowComparison {
     std::int64_t cycles = 0;                                   // sum over the rows
     std::int64_t least = 0;                                    // the least cycles of a single row
     std::int64_t most = 0;                                     // the most cycles of a single row
-    std::array<std::int64_t, fpga::kCoreGroupCount> stalls{};  // sums over the rows
+    std::array<std::int64_t, fpga::kCoreGroupCount> stalls{};  // [port group]: sums over the rows and lanes
   };
   // Ranges of rows from top to bottom, at most `most_ranges`. The rows of a range have the same B - A in
   // cycles and in stalls; if that gives too many ranges, only in cycles. If there are still too many, all
@@ -103,7 +103,7 @@ class RowComparison {
 };
 
 // Writes a CSV file with the rows of results of two runs, A and B: one line per frame and row with the row's
-// own cycles and stalls in both runs. See files::OutputFile for commit() and errors.
+// own cycles and stalls (of all lanes of a port group) in both runs. See files::OutputFile for commit() and errors.
 class RowsCsv {
  public:
   explicit RowsCsv(const std::filesystem::path& path);

@@ -104,7 +104,8 @@ enum class TrackGroup : std::uint8_t { kCore, kPorts, kBanks, kQueues, kBuses, k
 constexpr std::array<const char*, 7> kTrackGroupNames = {"core",  "ports",   "banks",   "queues",
                                                          "buses", "capture", "software"};
 
-// A trace of Perfetto: a process, and below it groups of tracks. A group is written with its first track.
+// A trace of Perfetto: a process, and below it groups of tracks. A group is written with its first track. The
+// tracks of lanes are below one of their port group: "left_lut.0" is below "left_lut".
 class PerfettoFile {
  public:
   PerfettoFile(files::OutputFile& file, const std::string& process) : file_(file), last_uuid_(kProcessUuid) {
@@ -128,7 +129,18 @@ class PerfettoFile {
       message.integer(descriptor::kChildOrder, descriptor::kByRank);
       write(ProtoMessage().text(packet::kTrackDescriptor, message));
     }
-    ProtoMessage track = described(++last_uuid_, groups_[place], rank, name);
+    std::uint64_t parent = groups_[place];
+    if (const std::size_t point = name.find('.'); group == TrackGroup::kPorts && point != std::string::npos) {
+      std::uint64_t& ports = port_groups_[name.substr(0, point)];
+      if (ports == 0) {
+        ports = ++last_uuid_;
+        ProtoMessage message = described(ports, parent, rank, name.substr(0, point));
+        message.integer(descriptor::kChildOrder, descriptor::kByRank);
+        write(ProtoMessage().text(packet::kTrackDescriptor, message));
+      }
+      parent = ports;
+    }
+    ProtoMessage track = described(++last_uuid_, parent, rank, name);
     if (!unit.empty()) track.text(descriptor::kCounter, ProtoMessage().text(descriptor::kUnitName, unit));
     write(ProtoMessage().text(packet::kTrackDescriptor, track));
     return last_uuid_;
@@ -142,6 +154,7 @@ class PerfettoFile {
   ProtoMessage packet_;
   std::uint64_t last_uuid_;
   std::array<std::uint64_t, kTrackGroupNames.size()> groups_{};  // uuid; 0: not written
+  std::map<std::string, std::uint64_t> port_groups_;             // uuid, by name
 };
 
 // A track, which is written when its first event comes. Each track is a packet sequence of its own, with its

@@ -198,19 +198,23 @@ class Waveform {
   }
 
  private:
+  // The ports of the lanes are scopes in that of their port group: "left_lut.0" is scope 0 of left_lut.
   void write_header() {
     text_ = kVcdMark;
-    const std::string* scope = nullptr;
+    std::vector<std::string> open;
     for (const Signal& signal : signals_.all) {
-      if (scope == nullptr || *scope != signal.scope) {
-        if (scope != nullptr) text_ += "$upscope $end\n";
-        text_ += "$scope module " + signal.scope + " $end\n";
-        scope = &signal.scope;
-      }
+      std::vector<std::string> scopes = {signal.scope};
+      if (const std::size_t point = signal.scope.find('.'); point != std::string::npos)
+        scopes = {signal.scope.substr(0, point), signal.scope.substr(point + 1)};
+      const auto [outer, begin] = std::mismatch(open.begin(), open.end(), scopes.begin(), scopes.end());
+      for (auto scope = outer; scope != open.end(); ++scope) text_ += "$upscope $end\n";
+      for (auto scope = begin; scope != scopes.end(); ++scope) text_ += "$scope module " + *scope + " $end\n";
+      open = scopes;
       text_ += fmt::format("$var {} {} {} {}{} $end\n", signal.bits == 0 ? "string" : "wire",
                            std::max(signal.bits, 1U), signal.code, signal.name, signal.range(" "));
     }
-    text_ += "$upscope $end\n$enddefinitions $end\n";
+    for (std::size_t scope = 0; scope < open.size(); ++scope) text_ += "$upscope $end\n";
+    text_ += "$enddefinitions $end\n";
   }
 
   void take_up_to(std::uint64_t time_ps, std::deque<ChangeStream>& streams) {

@@ -341,10 +341,13 @@ class Steps {
     const std::string now = word.get(board_);
     for (std::size_t other = 0; other < word.words.size(); ++other) {
       if (word.words[other] == now) continue;
-      const bool is_one_row = key.path == "matcher.fetch" && board_.matcher.rows != 1;
-      add({key.path, now, word.words[other] + (is_one_row ? ", matcher.rows 1" : "")}, [&](BoardConfig& b) {
+      const bool is_line_buffer = key.path == "matcher.fetch" && board_.matcher.fetch == fpga::Fetch::kColumn;
+      std::string to = word.words[other];
+      if (is_line_buffer && board_.matcher.rows != 1) to += ", matcher.rows 1";
+      if (is_line_buffer && board_.fpga.lanes != 1) to += ", fpga.lanes 1";
+      add({key.path, now, to}, [&](BoardConfig& b) {
         word.set(b, static_cast<int>(other));
-        if (is_one_row) b.matcher.rows = 1;  // as the line buffer needs
+        if (is_line_buffer) b.matcher.rows = b.fpga.lanes = 1;  // as the line buffer needs
       });
     }
   }

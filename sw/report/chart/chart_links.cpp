@@ -66,29 +66,36 @@ std::vector<ChartLink> chart_links(const ChartView& view) {
   const auto rate = [&](std::uint64_t accesses) {
     return rate_of(accesses, view.run->cycles, board.fpga.clock_mhz);
   };
+  const fpga::CorePorts ports = platform::core_ports(board);
   const auto accesses = view.run == nullptr ? std::vector<std::vector<std::uint64_t>>()
                                             : platform::core_accesses(board, *view.run);
+  const auto accesses_of = [&](std::size_t group, std::size_t bank) {
+    std::uint64_t sum = 0;
+    for (std::size_t port = 0; port < accesses.size(); ++port)
+      sum += group == ports.group_of(port) || group == fpga::kHostGroup ? accesses[port][bank] : 0;
+    return sum;
+  };
   std::vector<ChartLink> links;
   if (view.in_computer) links = links_around(view);
-  for (std::size_t port = 0; port < fpga::kGroupCount; ++port) {
-    const bool is_host = port == fpga::kHostGroup;
+  for (std::size_t group = 0; group < fpga::kGroupCount; ++group) {
+    const bool is_host = group == fpga::kHostGroup;
     if (is_host && !view.in_computer) continue;
     for (std::size_t bank = 0; bank < board.banks.size(); ++bank) {
       const std::string& name = board.banks[bank].name;
-      ChartLink link{std::string("port-") + fpga::kPortGroups[port].name, "bank-" + name, false, false, peak};
+      ChartLink link{std::string("port-") + fpga::kPortGroups[group].name, "bank-" + name, false, false,
+                     peak};
       // The host writes pictures and tables, and reads results; the ports of the core do the opposite.
       for (const platform::PlacedBuffer& buffer : platform::buffers(board)) {
         const bool is_result = buffer.buffer == platform::Buffer::kDisparity;
         if (buffer.bank == name &&
-            (is_host || fpga::kPortGroups[port].buffer == std::string(platform::name_of(buffer.buffer))))
+            (is_host || fpga::kPortGroups[group].buffer == std::string(platform::name_of(buffer.buffer))))
           (is_result == is_host ? link.back : link.there) = true;
       }
       if (!link.there && !link.back) continue;
       if (view.run != nullptr) {
-        std::uint64_t moved =
-            is_host ? view.run->banks[bank].reads + view.run->banks[bank].writes : accesses[port][bank];
-        for (std::size_t each = 0; is_host && each < accesses.size(); ++each) moved -= accesses[each][bank];
-        link.rate = rate(moved);
+        const std::uint64_t of_core = accesses_of(group, bank);
+        link.rate =
+            rate(is_host ? view.run->banks[bank].reads + view.run->banks[bank].writes - of_core : of_core);
       }
       links.push_back(link);
     }

@@ -32,9 +32,9 @@ struct ChartLink {
 // "bank0" for "bank-bank0".
 std::string name_of_block(const std::string& id);
 
-// Every link of the board: first those around the board, then those from each port to the banks of its
-// buffers, in the order of fpga::kPortGroups and of the board's banks. The ids differ: only the links of
-// ports begin with the name of a port.
+// Every link of the board: first those around the board, then those from each port group to the banks of its
+// buffers, in the order of fpga::kPortGroups and of the board's banks. The ports of all lanes are one block.
+// The ids differ: only the links of ports begin with the name of a port group.
 //
 // The rates of bank links count the accesses in the counted cycles of all frames, over their time. A port of
 // the core makes equally many accesses in each frame, so the grants of a port are divided among its banks by

@@ -232,16 +232,21 @@ void add_core(const BoardConfig& board, const Statistics* run, std::map<std::str
   const bool has_cache = board.fpga.pixel_cache == fpga::PixelCache::kWord;
   const std::string table = board.fpga.joint_tables ? "table of both sides" : "rectification table";
   const std::string pixels = has_cache ? "pixels, word cache" : "pixels";
-  for (std::size_t port = 0; port < fpga::kGroupCount; ++port) {
-    const std::string name = fpga::kPortGroups[port].name;
-    const bool is_lut = fpga::kPortGroups[port].stage == fpga::PortStage::kLutReader;
+  const fpga::CorePorts ports = platform::core_ports(board);
+  for (std::size_t group = 0; group < fpga::kGroupCount; ++group) {
+    const std::string name = fpga::kPortGroups[group].name;
+    const bool is_lut = fpga::kPortGroups[group].stage == fpga::PortStage::kLutReader;
+    const bool has_lanes = ports.lanes() > 1 && group < fpga::kResultGroup;
     Lines& its = lines["port-" + name] = {name, name == "host"     ? "from the local bus"
                                                 : name == "result" ? "disparities"
                                                                    : (is_lut ? table : pixels)};
+    if (has_lanes) its.push_back(count_of(board.fpga.lanes, "lane"));
     if (run == nullptr) continue;
-    const std::uint64_t stalls = run->ports[port].stall_cycles;
-    its.push_back(stalls == 0 ? "never waits"
-                              : fmt::format("waits {} %", measured(percent(stalls, run->cycles))));
+    std::uint64_t stalls = 0;
+    for (memory::Port port = 0; port < ports.size(); ++port)
+      stalls += ports.group_of(port) == group ? run->ports[port].stall_cycles : 0;
+    const std::uint64_t cycles = run->cycles * (has_lanes ? ports.lanes() : 1);
+    its.push_back(stalls == 0 ? "never waits" : fmt::format("waits {} %", measured(percent(stalls, cycles))));
   }
   for (const std::string side : {"left", "right"}) lines["stage-" + side + "_lane"] = lane_lines(board, side);
   lines["stage-matcher"] = matcher_lines(board);

@@ -25,13 +25,14 @@ Json rows_data(const stats::RowComparison& rows, std::size_t height) {
     const auto count = static_cast<std::int64_t>(range.last_row - range.first_row + 1);
     for (std::size_t row = range.first_row; row <= range.last_row; ++row) {
       cycles[row] = range.cycles / count;
-      for (std::size_t port = 0; port < stalls.size(); ++port) stalls[port][row] = range.stalls[port] / count;
+      for (std::size_t group = 0; group < stalls.size(); ++group)
+        stalls[group][row] = range.stalls[group] / count;
     }
   }
-  Json by_port = Json::object();
-  for (std::size_t port = 0; port < stalls.size(); ++port)
-    by_port[fpga::kPortGroups[port].name] = stalls[port];
-  Json data = {{"frames", rows.frames()}, {"cycles", cycles}, {"stalls", std::move(by_port)}};
+  Json by_group = Json::object();
+  for (std::size_t group = 0; group < stalls.size(); ++group)
+    by_group[fpga::kPortGroups[group].name] = stalls[group];
+  Json data = {{"frames", rows.frames()}, {"cycles", cycles}, {"stalls", std::move(by_group)}};
   if (const auto& parting = rows.parting()) {
     data["parting"] = {{"frame", parting->frame},
                        {"row", parting->row},
@@ -81,8 +82,8 @@ Json json_of(const stats::RowComparison& rows) {
   Json ranges = Json::array();
   for (const stats::RowComparison::Range& range : rows.ranges(kMostLines)) {
     Json waits = Json::object();
-    for (std::size_t port = 0; port < fpga::kCoreGroupCount; ++port)
-      waits[fpga::kPortGroups[port].name] = range.stalls[port];
+    for (std::size_t group = 0; group < fpga::kCoreGroupCount; ++group)
+      waits[fpga::kPortGroups[group].name] = range.stalls[group];
     ranges.push_back({{"first_row", range.first_row},
                       {"last_row", range.last_row},
                       {"cycles", range.cycles},

@@ -24,7 +24,6 @@ namespace stereotlm::runs {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using platform::BankConfig;
 using platform::BoardConfig;
 
 bool is_table_of(const std::optional<kernels::RectificationTable>& table, const platform::BoardConfig& board,
@@ -64,19 +63,6 @@ Json simulate_computer(const explore::Point& point, const platform::Tables& tabl
     if (so_far && hopeless(*so_far)) return nullptr;
   }
   return document_of(simulation->statistics());
-}
-
-BoardConfig with_a_bank_for_each_buffer(const BoardConfig& board) {
-  BoardConfig changed = board;
-  changed.banks.clear();
-  for (const platform::PlacedBuffer& buffer : platform::buffers(board)) {
-    BankConfig bank = *std::find_if(board.banks.begin(), board.banks.end(),
-                                    [&](const BankConfig& each) { return each.name == buffer.bank; });
-    bank.name = "own" + std::to_string(changed.banks.size());
-    platform::move_buffer(changed, buffer, bank.name);
-    changed.banks.push_back(std::move(bank));
-  }
-  return changed;
 }
 
 }  // namespace
@@ -154,8 +140,7 @@ PixelRun simulate_pixels(const platform::BoardConfig& board, const platform::Tab
 double waitless_frames_per_second(const platform::BoardConfig& board, const platform::Tables& tables,
                                   std::uint64_t frames) {
   const std::uint64_t turn = std::min(platform::allocation_period_frames(board), frames);
-  const std::vector<std::uint64_t> frame_cycles =
-      platform::run_core(with_a_bank_for_each_buffer(board), tables, turn).frame_cycles;
+  const std::vector<std::uint64_t> frame_cycles = platform::waitless_frame_cycles(board, tables, turn);
   std::uint64_t cycles = 0;
   for (std::uint64_t frame = 0; frame < turn; ++frame)
     cycles += frame_cycles[frame] * ((frames - frame + turn - 1) / turn);

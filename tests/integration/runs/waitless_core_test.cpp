@@ -29,6 +29,9 @@ TEST(WaitlessCore, RunsAsIfEachBufferHadABankOfItsOwn) {
     EXPECT_LT(rate_of(board, 2), uncontended);
     EXPECT_DOUBLE_EQ(waitless_rate_of(board, 2), uncontended);
   }
+  // A column of 7 slots takes 2 cycles.
+  const platform::BoardConfig lanes = platform::load_board("fpl2003", {"fpga.lanes=4"});
+  EXPECT_NEAR(waitless_rate_of(lanes, 1), 3.5 * uncontended, 0.01 * uncontended);
 }
 
 TEST(WaitlessCore, CountsFramesOfAnUnfinishedTurnOfTheLists) {
@@ -40,7 +43,7 @@ TEST(WaitlessCore, CountsFramesOfAnUnfinishedTurnOfTheLists) {
                          "allocation={left_image: [a, b, c], right_image: [d, e, f], disparity: g, left_lut: "
                          "h, right_lut: i}"});
   ASSERT_NE(rate_of(board, 1), rate_of(board, 2)) << "the frames differ";
-  for (const std::uint64_t frames : {1, 2, 3, 4, 5})
+  for (const std::uint64_t frames : {1U, 2U, 3U, 4U, 5U})
     EXPECT_DOUBLE_EQ(waitless_rate_of(board, frames), rate_of(board, frames)) << frames;
 }
 

@@ -110,6 +110,38 @@ TEST(RowsArea, KeepsTheValidBitsOfAsManyRowsAbove) {
   expect_all("filter line memories", {{one_row, block_rams(8 + 7)}, {four_rows, block_rams(8 + 7)}});
 }
 
+TEST(LanesArea, HasQueuesAndFiltersForEachLane) {
+  for (const char* const name : {"table entry queues", "source addresses", "byte selectors", "pixel queues",
+                                 "filters", "filter columns"}) {
+    expect_all(name, {{core(kLanes, 4), 4 * all_of(core(), name)}});
+    EXPECT_EQ(item_of(core(kLanes, 4), name).count, 4 * item_of(core(), name).count);
+  }
+  for (const char* const name : {"filter line memories", "window modules", "candidate marks",
+                                 "select-min unit A", "left-right check", "result queue"})
+    expect_all(name, {{core(kLanes, 4), all_of(core(), name)}});
+  const CoreConfig joint = core(kLanes, 3, kJoint, true);
+  expect_all("source positions", {{joint, 3 * all_of(core(kJoint, true), "source positions")}});
+}
+
+// A column of 7 slots takes 2 cycles of 4 pixels.
+TEST(LanesArea, SumsTheDifferencesOfAllLanesByATree) {
+  expect_all("right pixel delays", {{core(kLanes, 4), {79 * 4 * 8}}});
+  // 4 differences (11 and 8 bits are of one), a tree of 2 adders of 9 bits and one of 10, and the sum.
+  const Resources one = all_of(core(), "column modules");
+  expect_all("column modules", {{core(kLanes, 4), one + 80 * Resources{3 * 17 + 2 * 9 + 10}}});
+  // With several rows each pixel moves the sum by one row. A lane keeps 2 of 7 differences.
+  const Resources rows = all_of(core(kRows, 4), "column modules");
+  expect_all("column modules", {{core(kRows, 4, kLanes, 4), rows + 80 * Resources{3 * (17 + 8 + 9 + 11)}}});
+}
+
+TEST(LanesArea, DividesTheSlotsOfAColumnAmongTheCaches) {
+  const auto cache = [](int places) { return Resources{2 * (places * (18 + 32) + 18 + 9 + 32)}; };
+  const Resources cache_of_one{2 * (18 + 9 + 32), 2 * (18 + 32)};
+  expect_all("word caches", {{core(kCache, kWord, kWindow, 17, kLanes, 16), cache(1) + 15 * cache_of_one},
+                             {core(kCache, kWord, kWindow, 31, kLanes, 1), cache(2)},
+                             {core(kCache, kWord, kWindow, 31, kLanes, 2), 2 * cache(1)}});
+}
+
 TEST(JointTablesArea, HasQueuesOfDisplacementsAndAddsThePosition) {
   const CoreConfig joint = core(kJoint, true);
   expect_all("table entry queues", {{joint, {2 * 16}}});

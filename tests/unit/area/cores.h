@@ -29,6 +29,7 @@ inline constexpr auto kLaneSlots = &CoreConfig::lane_fifo_slots;
 inline constexpr auto kResultWords = &CoreConfig::result_fifo_words;
 inline constexpr auto kUnits = &CoreConfig::units;
 inline constexpr auto kRows = &CoreConfig::rows;
+inline constexpr auto kLanes = &CoreConfig::lanes;
 inline constexpr auto kCost = &CoreConfig::cost;
 inline constexpr auto kJoint = &CoreConfig::joint_tables;
 inline constexpr auto kCache = &CoreConfig::pixel_cache;

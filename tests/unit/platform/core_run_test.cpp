@@ -104,6 +104,12 @@ TEST(CoreRun, GivesTheWorkedValues) {
   }
 }
 
+// Contract section 8.
+TEST(CoreRun, GivesTheWorkedValuesOfLanes) {
+  const BoardConfig board = load_board("fpl2003", {"matcher.filter=none", "fpga.lanes=4"});
+  EXPECT_THAT(run_core(board, identity_tables(board), 1).frame_cycles, ElementsAre(2'142'909));
+}
+
 TEST(CoreRun, GivesTheWorkedPortStates) {
   BoardConfig board = load_board("fpl2003", {"matcher.filter=none"});
   const PortStatistics table = run_core(board, identity_tables(board), 1).ports[0];

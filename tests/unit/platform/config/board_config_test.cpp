@@ -96,12 +96,14 @@ TEST(BoardConfig, HandsOptionalKeysToTheCore) {
   board.banks[6].words = 614400;
   board.fpga.joint_tables = true;
   board.fpga.pixel_cache = fpga::PixelCache::kWord;
+  board.fpga.lanes = 10;
   const fpga::CoreConfig core = core_config(board);
   EXPECT_EQ(core.units, 40);
   EXPECT_EQ(core.rows, 4);
   EXPECT_EQ(core.cost, board.matcher.cost);
   EXPECT_TRUE(core.joint_tables);
   EXPECT_EQ(core.pixel_cache, fpga::PixelCache::kWord);
+  EXPECT_EQ(core.lanes, 10);
 }
 
 TEST(BoardConfig, LaysBuffersOfOneBankOneBehindTheOther) {

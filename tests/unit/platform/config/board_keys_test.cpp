@@ -114,6 +114,8 @@ std::vector<KeyCase> key_cases() {
   units.mistyped.insert(units.mistyped.end(), {"false", "none", "All"});
   KeyCase rows = integer_case("matcher.rows", 1, 16);
   rows.accepted = {"1", "8", "08"};  // more: BoardRows of board_rules_test.cpp
+  KeyCase lanes = integer_case("fpga.lanes", 1, 16);
+  lanes.accepted = {"1", "7", "07"};  // more: BoardLanes of board_rules_test.cpp
   tolerance.mistyped.insert(tolerance.mistyped.end(), {"false", "none", "Off"});
   return {
       {"name",
@@ -184,6 +186,7 @@ std::vector<KeyCase> key_cases() {
        {"none", "\"none\"", "word", "'word'"},
        {"line", "off", "null", "[word]", "1", "None"},
        "none or word"},
+      lanes,
       {"allocation.left_image",
        {"[bank0, bank1]", "[bank7, bank7]", "['bank0', bank2]"},
        {"[]", "[bank0, bank1, bank2, bank3]", "null", "{bank0: bank1}"},

@@ -76,6 +76,8 @@ void set_optional_keys(BoardConfig& board) {
   if (any_int(0, 1) == 1) matcher.units = any_int(1, matcher.disparities);
   if (matcher.fetch == fpga::Fetch::kColumn)
     matcher.rows = any_int(1, std::min(16, board.fpga.result_fifo_words));
+  if (matcher.fetch == fpga::Fetch::kColumn)
+    board.fpga.lanes = any_int(1, std::min(16, matcher.window + matcher.rows - 1));
   using kernels::CostKind;
   matcher.cost = {*rc::gen::element(CostKind::kSad, CostKind::kSsd, CostKind::kZncc, CostKind::kCensus), 0};
   if (matcher.cost.kind == CostKind::kCensus) matcher.cost.census_size = 3 + 2 * any_int(0, 2);
@@ -169,17 +171,18 @@ TEST(BoardRoundTrip, WritesALoadInFullAndNoneNotAtAll) {
 
 TEST(BoardRoundTrip, WritesOptionalKeysOnlyWhereTheyHaveAnEffect) {
   const std::string usual = to_yaml(load_board("fpl2003"));
-  for (const char* const name : {"tables", "pixel_cache", "units", "rows", "cost"})
+  for (const char* const name : {"tables", "pixel_cache", "lanes", "units", "rows", "cost"})
     EXPECT_EQ(usual.find(std::string("  ") + name + ":"), std::string::npos) << name;
-  EXPECT_EQ(to_yaml(load_board("fpl2003", {"fpga.tables=separate", "fpga.pixel_cache=none",
+  EXPECT_EQ(to_yaml(load_board("fpl2003", {"fpga.tables=separate", "fpga.pixel_cache=none", "fpga.lanes=1",
                                            "matcher.units=all", "matcher.rows=1", "matcher.cost=sad"})),
             usual);
-  const std::string text =
-      to_yaml(load_board("fpl2003", {"fpga.tables=joint", "allocation.right_lut=bank6",
-                                     "fpga.pixel_cache=word", "ssram.banks.bank6.words=614400",
-                                     "matcher.units=40", "matcher.rows=4", "matcher.cost={census: 5}"}));
-  EXPECT_NE(text.find("  pipeline_latency_cycles: 16\n  tables: joint\n  pixel_cache: word\nssram:"),
-            std::string::npos);
+  const std::string text = to_yaml(load_board(
+      "fpl2003",
+      {"fpga.tables=joint", "allocation.right_lut=bank6", "fpga.pixel_cache=word", "fpga.lanes=4",
+       "ssram.banks.bank6.words=614400", "matcher.units=40", "matcher.rows=4", "matcher.cost={census: 5}"}));
+  EXPECT_NE(
+      text.find("  pipeline_latency_cycles: 16\n  tables: joint\n  pixel_cache: word\n  lanes: 4\nssram:"),
+      std::string::npos);
   EXPECT_NE(text.find("  lr_tolerance: 0\n  units: 40\n  rows: 4\n  cost: {census: 5}\n"), std::string::npos);
   EXPECT_NE(to_yaml(load_board("fpl2003", {"matcher.cost=zncc"})).find("  cost: zncc\n"), std::string::npos);
 }

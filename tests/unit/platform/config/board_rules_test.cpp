@@ -274,6 +274,25 @@ TEST(BoardRows, AreOneBehindALineBufferAndHaveAPlaceInTheResultQueueEach) {
        {kBase, "--set matcher.rows: fpga.result_fifo_words = 8: at least 16" + end, {"matcher.rows=16"}}});
 }
 
+TEST(BoardLanes, DivideAColumnOfSlots) {
+  const auto lanes = [](int count, const std::string& matcher) {
+    return matcher_board(matcher) + fmt::format("fpga: {{lanes: {}}}\n", count);
+  };
+  EXPECT_EQ(load_text(kBase).fpga.lanes, 1);
+  EXPECT_EQ(load_text(lanes(7, "window: 7")).fpga.lanes, 7);
+  EXPECT_EQ(load_text(lanes(16, "window: 9, rows: 8")).fpga.lanes, 16);
+  const std::string column = ", the slots of a column (matcher.window + matcher.rows - 1)";
+  expect_refusals(
+      {{lanes(1, "fetch: line_buffer"), ""},
+       {lanes(2, "fetch: line_buffer"),
+        "board.yaml:3:15: fpga.lanes = 2: must be 1 where matcher.fetch is line_buffer; with column it may "
+        "be 1..16"},
+       {lanes(8, "window: 7"), "board.yaml:3:15: fpga.lanes = 8: at most 7" + column},
+       {lanes(8, "window: 7, rows: 2"), ""},
+       {lanes(9, "window: 7, rows: 2"), "board.yaml:3:15: fpga.lanes = 9: at most 8" + column},
+       {lanes(17, "window: 31"), "board.yaml:3:15: fpga.lanes = 17: 1..16"}});
+}
+
 TEST(BoardTables, AreInOneBankIfTheyAreJoint) {
   const auto text = [](const std::string& left, const std::string& right) {
     return kBase +

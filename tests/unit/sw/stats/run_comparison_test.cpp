@@ -172,6 +172,16 @@ TEST(RowsCsv, HasALineForEachFrameAndRow) {
   EXPECT_EQ(files_in(folder), 1);
 }
 
+// Two runs may have different numbers of lanes.
+TEST(RowsCsv, AddsTheStallsOfTheLanesOfAPortGroup) {
+  const test::ScratchFolder folder;
+  const auto path = folder.path() / "rows.csv";
+  RowsCsv csv(path);
+  csv.add({{10, {1, 2, 3, 4, 5}}}, {{11, {1, 2, 10, 20, 100, 200, 1000, 2000, 5}}});
+  csv.commit();
+  EXPECT_EQ(files::read_whole_file(path), std::string(kHead) + "0,0,10,11,1,2,3,4,5,3,30,300,3000,5\n");
+}
+
 TEST(RowsCsv, NamesTheFileThatCannotBeWritten) {
   const test::ScratchFolder folder;
   const auto path = folder.path() / "rows.csv";
@@ -180,7 +190,7 @@ TEST(RowsCsv, NamesTheFileThatCannotBeWritten) {
     const std::string full = refusal + "File too large";
     const test::FileSizeLimit limit(1000);
     RowsCsv csv(path);
-    csv.add(fpga::RowProfile(100), fpga::RowProfile(100));
+    csv.add(profile(std::vector<std::uint64_t>(100)), profile(std::vector<std::uint64_t>(100)));
     EXPECT_EQ(test::message_of([&] { csv.commit(); }), full);
   }
   EXPECT_EQ(files_in(folder), 0);

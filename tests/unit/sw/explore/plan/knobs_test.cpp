@@ -234,8 +234,15 @@ TEST(KnobSteps, AreForbiddenWhereAnotherKeyForbidsThem) {
   EXPECT_THAT(forbidden("fpl2003", {}), IsEmpty()) << "a bank less is possible somewhere";
   // 0 rows, which no board has, are not listed.
   EXPECT_THAT(forbidden("fpl2003-line-buffer", {}),
-              ElementsAre("matcher.rows: 1 -> 2: matcher.rows = 2: must be 1 where matcher.fetch is "
+              ElementsAre("fpga.lanes: 1 -> 2: fpga.lanes = 2: must be 1 where matcher.fetch is "
+                          "line_buffer; with column it may be 1..16",
+                          "matcher.rows: 1 -> 2: matcher.rows = 2: must be 1 where matcher.fetch is "
                           "line_buffer; with column it may be 1..16"));
+  EXPECT_THAT(forbidden("fpl2003", {"fpga.lanes=7"}),
+              ElementsAre("fpga.lanes: 7 -> 8: fpga.lanes = 8: at most 7, the slots of a column "
+                          "(matcher.window + matcher.rows - 1)",
+                          "matcher.window: 7 -> 5: fpga.lanes = 7: at most 5, the slots of a column "
+                          "(matcher.window + matcher.rows - 1)"));
   const Texts all = forbidden("two-banks", {});
   ASSERT_EQ(all.size(), 2U) << "one of the two steps of a bank less";
   EXPECT_EQ(
