@@ -3,11 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "models/capture/camera_timing.h"
 #include "models/fpga/access_pattern.h"
 #include "models/fpga/frame_geometry.h"
+#include "models/fpga/placement.h"
 #include "models/fpga/register_map.h"
+#include "models/kernels/rectification_table.h"
+#include "models/kernels/words.h"
 #include "platform/config/buffer_layout.h"
 
 namespace stereotlm::platform {
@@ -127,26 +131,49 @@ double bridge_rate(const BoardConfig& board, bool whole_pictures) {
          std::max(words * fpga_us, bursts * 4 * local_us + (words - bursts) * std::max(local_us, fpga_us));
 }
 
+// Calls visit(bank, part, reads) for each part of the buffer of a port, with the reads of its rows in a
+// frame.
+template <typename Visit>
+void for_each_part(const fpga::Placement& buffer, const FrameAccesses& accesses, memory::Port port,
+                   const Visit& visit) {
+  const std::size_t parts = buffer.parts().size();
+  for (std::size_t part = 0; part < parts; ++part) {
+    std::uint64_t reads = parts == 1 ? accesses.reads[port] : 0;
+    if (parts > 1) {
+      const std::vector<std::uint64_t>& of_row = accesses.reads_of_row[port];
+      for (std::size_t row = part; row < of_row.size(); row += parts) reads += of_row[row];
+    }
+    visit(fpga::registers::bank_of(buffer.parts()[part]), part, reads);
+  }
+}
+
 // The accesses of the core and of the host to each bank for frames 0..frames-1. With separate ports it is the
 // larger of the reads and the writes.
 std::vector<std::uint64_t> bank_accesses(const BoardConfig& board, const FrameAccesses& accesses,
                                          bool pairs_are_written, std::uint64_t frames) {
-  const fpga::CorePorts ports = core_ports(board);
+  const fpga::CoreConfig core = core_config(board);
+  const fpga::CorePorts ports(core);
   const fpga::BufferBases buffers = buffer_bases(board);
-  // A picture has as many words as a result.
-  const std::uint64_t words = fpga::FrameGeometry(core_config(board)).result_words;
   std::vector<std::uint64_t> reads(board.banks.size());
   std::vector<std::uint64_t> writes(board.banks.size());
   for (std::uint64_t frame = 0; frame < frames; ++frame) {
-    const fpga::FrameBases bases = buffers.of_frame(frame);
-    for (std::size_t port = 0; port < accesses.reads.size(); ++port)
-      reads[fpga::registers::bank_of(bases[ports.group_of(port)])] += accesses.reads[port];
-    for (const fpga::Side side : fpga::kSides) {
-      if (pairs_are_written) writes[fpga::registers::bank_of(bases[fpga::pixel_group(side)])] += words;
+    const fpga::Placements placements = placements_of(core, buffers.of_frame(frame));
+    for (std::size_t port = 0; port < accesses.reads.size(); ++port) {
+      for_each_part(
+          placements[ports.group_of(port)], accesses, port,
+          [&](std::size_t bank, std::size_t /*part*/, std::uint64_t count) { reads[bank] += count; });
     }
-    const std::size_t disparity = fpga::registers::bank_of(bases[fpga::kResultGroup]);
-    writes[disparity] += words;
-    reads[disparity] += words;  // by the host
+    const auto add_whole = [&](std::size_t group, std::vector<std::uint64_t>& counts) {
+      const fpga::Placement& buffer = placements[group];
+      for (std::size_t part = 0; part < buffer.parts().size(); ++part)
+        counts[fpga::registers::bank_of(buffer.parts()[part])] +=
+            buffer.rows_of_part(part, board.image.height) * buffer.row_words();
+    };
+    for (const fpga::Side side : fpga::kSides) {
+      if (pairs_are_written) add_whole(fpga::pixel_group(side), writes);
+    }
+    add_whole(fpga::kResultGroup, writes);
+    add_whole(fpga::kResultGroup, reads);  // by the host
   }
   for (std::size_t bank = 0; bank < reads.size(); ++bank) {
     const bool is_beside = memory::has_separate_ports(board.banks[bank].kind);
@@ -155,12 +182,82 @@ std::vector<std::uint64_t> bank_accesses(const BoardConfig& board, const FrameAc
   return reads;
 }
 
+// The rows of a bank of sdram that accesses to these groups touch: bit r for row r.
+std::size_t touched_rows(const BoardConfig& board, const FrameAccesses& accesses,
+                         const fpga::Placements& placements, std::size_t bank,
+                         const std::vector<std::size_t>& groups) {
+  const auto row_words = static_cast<std::uint32_t>(board.banks[bank].sdram->row_words);
+  std::vector<bool> touched(static_cast<std::size_t>(board.banks[bank].words) / row_words + 1);
+  for (const std::size_t group : groups) {
+    const auto& rows = accesses.touched[group];
+    for (std::size_t row = 0; row < rows.size(); ++row) {
+      if (placements[group].word(row, 0).bank != bank) continue;
+      for (std::size_t word = 0; word < rows[row].size(); ++word) {
+        if (rows[row][word]) touched[placements[group].word(row, word).word / row_words] = true;
+      }
+    }
+  }
+  return static_cast<std::size_t>(std::count(touched.begin(), touched.end(), true));
+}
+
+// The cycles of so many accesses to so many rows of sdram: see ResourceBound.
+std::uint64_t sdram_cycles(const memory::SdramTiming& timing, std::uint64_t accesses, std::uint64_t rows) {
+  const auto banks = static_cast<std::uint64_t>(timing.internal_banks);
+  const std::uint64_t unrefreshed =
+      accesses + static_cast<std::uint64_t>(timing.activate_cycles) * (rows > banks ? rows - banks : 0);
+  if (!timing.refresh_interval_cycles) return unrefreshed;
+  const auto interval = static_cast<std::uint64_t>(*timing.refresh_interval_cycles);
+  std::uint64_t cycles = unrefreshed;
+  for (std::uint64_t before = 0; before != cycles;) {
+    before = cycles;
+    const std::uint64_t refreshes = cycles / interval;
+    cycles =
+        unrefreshed + static_cast<std::uint64_t>(timing.refresh_cycles) * (refreshes > 1 ? refreshes - 1 : 0);
+  }
+  return cycles;
+}
+
+// The rows that the slots of a side read, how often, and the words.
+void count_rows(const BoardConfig& board, bool has_table, fpga::Side side, const fpga::AccessPattern& pattern,
+                FrameAccesses& accesses) {
+  const fpga::CoreConfig core = core_config(board);
+  const fpga::CorePorts ports(core);
+  const auto height = static_cast<std::size_t>(core.height);
+  accesses.reads_of_row.resize(ports.core_size(), std::vector<std::uint64_t>(height));
+  const auto of_table = pattern.table_accesses_of_rows();
+  const auto of_image = pattern.pixel_accesses_of_rows();
+  auto& table_words = accesses.touched[fpga::lut_group(side)];
+  auto& image_words = accesses.touched[fpga::pixel_group(side)];
+  table_words.assign(height, std::vector<bool>(static_cast<std::size_t>(core.width)));
+  image_words.assign(height, std::vector<bool>(static_cast<std::size_t>(core.width) / 4));
+  for (std::size_t lane = 0; lane < ports.lanes(); ++lane) {
+    if (has_group(core, fpga::lut_group(side))) accesses.reads_of_row[ports.lut(side, lane)] = of_table[lane];
+    accesses.reads_of_row[ports.pixel(side, lane)] = of_image[lane];
+    for (std::size_t row = 0; row < height; ++row) {
+      if (of_table[lane][row] == 0) continue;
+      table_words[row].assign(table_words[row].size(), true);
+      for (int column = 0; column < core.width; ++column) {
+        const auto at = static_cast<int>(row);
+        if (!pattern.needs_pixel(column, at)) continue;
+        const std::uint32_t entry = has_table ? pattern.entry(column, at) : 0;
+        const auto source_row = has_table ? static_cast<std::size_t>(kernels::entry_row(entry)) : row;
+        const int source = has_table ? kernels::entry_column(entry) : column;
+        image_words[source_row][static_cast<std::size_t>(source) / kernels::kPixelsPerWord] = true;
+      }
+    }
+  }
+}
+
 }  // namespace
 
 FrameAccesses frame_accesses(const BoardConfig& board, const Tables& tables) {
   const fpga::CoreConfig core = core_config(board);
   const fpga::CorePorts ports(core);
-  FrameAccesses accesses{std::vector<std::uint64_t>(ports.core_size())};
+  FrameAccesses accesses;
+  accesses.reads.resize(ports.core_size());
+  const bool needs_rows =
+      !core.stripes.empty() || std::any_of(board.banks.begin(), board.banks.end(),
+                                           [](const BankConfig& bank) { return bank.sdram.has_value(); });
   for (const fpga::Side side : fpga::kSides) {
     const auto& table = side == fpga::Side::kLeft ? tables.left : tables.right;
     fpga::AccessPattern pattern(fpga::FrameGeometry(core), core.pixel_cache);
@@ -171,6 +268,12 @@ FrameAccesses frame_accesses(const BoardConfig& board, const Tables& tables) {
         accesses.reads[ports.lut(side, number)] = pattern.table_accesses(lane);
       accesses.reads[ports.pixel(side, number)] = pattern.pixel_accesses(lane);
     }
+    if (needs_rows) count_rows(board, table.has_value(), side, pattern, accesses);
+  }
+  if (needs_rows) {
+    const auto height = static_cast<std::size_t>(core.height);
+    const std::vector<bool> row(static_cast<std::size_t>(core.width) / 4, true);
+    accesses.touched[fpga::kResultGroup].assign(height, row);
   }
   return accesses;
 }
@@ -180,12 +283,11 @@ std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const FrameAcc
   const fpga::CoreConfig core = core_config(board);
   const fpga::FrameGeometry geometry(core);
   const fpga::CorePorts ports(core);
-  const fpga::FrameBases bases = buffer_bases(board).of_frame(frame);
-  const auto bank_of = [&](memory::Port port) {
-    return fpga::registers::bank_of(bases[ports.group_of(port)]);
-  };
+  const fpga::Placements placements = placements_of(core, buffer_bases(board).of_frame(frame));
+  const std::vector<memory::SsramBankConfig> banks = ssram_configs(board);
   const auto latency = [&](memory::Port port) {
-    return static_cast<std::uint64_t>(memory::read_latency_cycles(board.banks[bank_of(port)].kind));
+    const std::size_t bank = fpga::registers::bank_of(placements[ports.group_of(port)].parts().front());
+    return static_cast<std::uint64_t>(memory::read_latency_cycles(banks[bank]));
   };
   const auto pipeline = static_cast<std::uint64_t>(board.fpga.pipeline_latency_cycles);
   const auto folds = static_cast<std::uint64_t>(geometry.folds);
@@ -197,13 +299,19 @@ std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const FrameAcc
     std::uint64_t reads = 0;
     std::uint64_t writes = 0;
     std::uint64_t after_last_read = UINT64_MAX;  // least number of cycles from a read to the matcher
+    std::set<std::size_t> groups;                // port groups that read
   };
   std::map<std::size_t, BankDemand> demands;
   const auto read = [&](memory::Port port, std::uint64_t cycles_to_matcher) {
-    if (accesses.reads[port] == 0) return;
-    BankDemand& demand = demands[bank_of(port)];
-    demand.after_last_read = std::min(demand.after_last_read, cycles_to_matcher);
-    demand.reads += accesses.reads[port];
+    const std::size_t group = ports.group_of(port);
+    for_each_part(placements[group], accesses, port,
+                  [&](std::size_t bank, std::size_t /*part*/, std::uint64_t reads) {
+                    if (reads == 0) return;
+                    BankDemand& demand = demands[bank];
+                    demand.after_last_read = std::min(demand.after_last_read, cycles_to_matcher);
+                    demand.reads += reads;
+                    demand.groups.insert(group);
+                  });
   };
   const auto port_bound = [&ports](memory::Port port, std::uint64_t cycles) {
     return ResourceBound{"port " + ports.name(port), cycles};
@@ -229,19 +337,33 @@ std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const FrameAcc
       pixels.push_back(port_bound(pixel, has_table ? slot_a_cycle : taking));
     }
   }
-  demands[bank_of(ports.result())].writes += geometry.result_words;
+  const fpga::Placement& results = placements[fpga::kResultGroup];
+  for (std::size_t part = 0; part < results.parts().size(); ++part) {
+    const std::uint64_t words = results.rows_of_part(part, geometry.height) * results.row_words();
+    if (words != 0) demands[fpga::registers::bank_of(results.parts()[part])].writes += words;
+  }
 
   bounds.insert(bounds.end(), pixels.begin(), pixels.end());
   bounds.push_back(port_bound(ports.result(), geometry.result_words + pipeline));
   for (const auto& [bank, demand] : demands) {
+    const BankConfig& config = board.banks[bank];
     // With separate ports the writes are made beside the reads.
-    const bool is_beside = memory::has_separate_ports(board.banks[bank].kind);
-    std::uint64_t cycles = (is_beside ? 0 : demand.reads) + demand.writes + pipeline;
-    // The last read is granted after `reads` - 1 other cycles at the earliest. The matcher begins to work on
-    // its slot at least `after_last_read` cycles later.
+    const bool is_beside = memory::has_separate_ports(config.kind);
+    std::uint64_t reading = demand.reads;
+    std::uint64_t accessing = (is_beside ? 0 : demand.reads) + demand.writes;
+    if (config.sdram) {
+      std::vector<std::size_t> groups(demand.groups.begin(), demand.groups.end());
+      reading = sdram_cycles(*config.sdram, reading, touched_rows(board, accesses, placements, bank, groups));
+      if (demand.writes > 0) groups.push_back(fpga::kResultGroup);
+      accessing =
+          sdram_cycles(*config.sdram, accessing, touched_rows(board, accesses, placements, bank, groups));
+    }
+    std::uint64_t cycles = accessing + pipeline;
+    // The last read is granted after `reading` - 1 other cycles at the earliest. The matcher begins to work
+    // on its slot at least `after_last_read` cycles later.
     if (demand.reads > 0)
-      cycles = std::max(cycles, demand.reads - 1 + demand.after_last_read + folds + after_last_slot);
-    bounds.push_back({resource_of_bank(board.banks[bank].name), cycles});
+      cycles = std::max(cycles, reading - 1 + demand.after_last_read + folds + after_last_slot);
+    bounds.push_back({resource_of_bank(config.name), cycles});
   }
   bounds.push_back({"matcher", first_slot + geometry.consume_cycles * folds + after_last_slot});
   return bounds;

@@ -17,6 +17,10 @@ namespace stereotlm::platform {
 // tables, not on the allocation of the buffers.
 struct FrameAccesses {
   std::vector<std::uint64_t> reads;  // [port]
+  // Of boards with stripes or sdram: [port][row of the buffer]: reads of that row.
+  std::vector<std::vector<std::uint64_t>> reads_of_row;
+  // Of boards with sdram: [port group][row of the buffer][word of the row]: whether it is accessed.
+  std::array<std::vector<std::vector<bool>>, fpga::kCoreGroupCount> touched;
 };
 
 FrameAccesses frame_accesses(const BoardConfig& board, const Tables& tables);
@@ -33,7 +37,9 @@ FrameAccesses frame_accesses(const BoardConfig& board, const Tables& tables);
 // |          | the lane and the folds of the matcher.                                                     |
 // | bank B   | max(reads, writes) cycles with separate ports, else reads + writes; turnaround is not      |
 // |          | counted. After the last read: the latencies of its slot up to the matcher, the folds on    |
-// |          | it, the drain and the last writes.                                                         |
+// |          | it, the drain and the last writes. Of sdram also the openings of rows and the refreshes    |
+// |          | that cannot be avoided: with A accesses to Z rows the least X >= A + activate_cycles *     |
+// |          | max(0, Z - internal_banks) + refresh_cycles * max(0, floor(X / interval) - 1).             |
 // | matcher  | The read latencies of the first slot, the folds on each slot, the drain, the last writes.  |
 //
 // The last writes store the words that the last column completes, one for each row of the last strip.

@@ -19,7 +19,12 @@ BankStatistics bank_statistics(const ArbiterStats& arbiter) {
           arbiter.busy_cycles(),
           arbiter.turnaround_cycles(),
           arbiter.idle_cycles(),
-          arbiter.contended_cycles()};
+          arbiter.contended_cycles(),
+          0,
+          0,
+          1,
+          arbiter.row_cycles(),
+          arbiter.refresh_cycles()};
 }
 
 PortStatistics port_statistics(const fpga::PortCycles& cycles) {
@@ -32,7 +37,8 @@ PortStatistics port_statistics(const fpga::PortCycles& cycles) {
           cycles.starved()};
 }
 
-// Returns the stall cycles that are not 0, sorted by port, bank and cause. The last cause is turnaround.
+// Returns the stall cycles that are not 0, sorted by port, bank and cause. The causes that are no ports come
+// last.
 std::vector<BlameRow> blame_rows(const BoardConfig& config, const BoardCounters& counters) {
   std::vector<BlameRow> rows;
   const fpga::CorePorts ports = core_ports(config);
@@ -43,7 +49,8 @@ std::vector<BlameRow> blame_rows(const BoardConfig& config, const BoardCounters&
         if (cycles != 0) rows.push_back({ports.name(victim), config.banks[bank].name, name, cycles});
       };
       for (std::size_t by = 0; by < ports.size(); ++by) add(by, ports.name(by));
-      add(ArbiterStats::kTurnaround, "turnaround");
+      for (std::size_t by = memory::kTurnaround; by <= memory::kRefresh; ++by)
+        add(by, memory::name_of_cause(by));
     }
   }
   return rows;

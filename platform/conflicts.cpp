@@ -10,8 +10,8 @@ namespace stereotlm::platform {
 namespace {
 
 std::string port_name(const fpga::Requesters& requesters, std::size_t requester) {
-  return requester == requesters.turnaround() ? requesters.name(requester)
-                                              : requesters.ports().name(requesters.port_of(requester));
+  return requesters.is_requester(requester) ? requesters.ports().name(requesters.port_of(requester))
+                                            : requesters.name(requester);
 }
 
 // The buffers that the capture boards write to.
@@ -106,6 +106,7 @@ std::vector<std::string> Conflicts::failed(const Statistics& statistics) const {
 }
 
 FrameRuns frame_runs(const fpga::FrameConflicts& frame) {
+  const std::size_t first_of_host = frame.strips.front().stalls.size() - fpga::kHostTraffics;
   FrameRuns result;
   result.frame = frame.number;
   result.first_cycle = result.end_cycle = frame.first_cycle;
@@ -119,13 +120,12 @@ FrameRuns frame_runs(const fpga::FrameConflicts& frame) {
     result.runs.push_back({strip, first, result.strip_ends[strip], requester, bank, by, count});
   };
   for (std::size_t strip = 0; strip < frame.strips.size(); ++strip) {
-    const std::vector<std::uint64_t>& grants = frame.strips[strip].grants;
-    for (std::size_t port = 0; port < grants.size(); ++port)
-      add(strip, port, frame.bank_of_port[port], std::nullopt, grants[port]);
+    for (const auto& [port, bank, cycles] : frame.strips[strip].grants)
+      add(strip, port, bank, std::nullopt, cycles);
     for (std::size_t bank = 0; bank < frame.banks; ++bank) {
       const auto& accesses = frame.accesses[strip * frame.banks + bank];
       for (std::size_t traffic = 0; traffic < fpga::kHostTraffics; ++traffic)
-        add(strip, grants.size() + traffic, bank, std::nullopt, accesses[1 + traffic]);
+        add(strip, first_of_host + traffic, bank, std::nullopt, accesses[1 + traffic]);
     }
   }
   for (const fpga::FrameConflicts::Stalls& stalls : frame.stalls) {

@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "models/fpga/core_ports.h"
+#include "models/fpga/frame_geometry.h"
+#include "models/fpga/placement.h"
 #include "models/memory/bank_traits.h"
 #include "platform/config/board_area.h"
 #include "platform/config/buffer_layout.h"
@@ -31,6 +33,23 @@ Percentiles percentiles(std::vector<std::uint64_t> values_ps) {
     return static_cast<double>(values_ps[std::max<std::size_t>(place, 1) - 1]) / kPsPerMs;
   };
   return {rank(0), rank(50), rank(95), rank(99), rank(100)};
+}
+
+// [lane][row]: the slots of a lane that lie in this row of the image; behind the lanes the words of results.
+std::vector<std::vector<std::uint64_t>> slots_of_rows(const fpga::CoreConfig& core) {
+  const fpga::FrameGeometry geometry(core);
+  const auto lanes = static_cast<std::size_t>(geometry.lanes);
+  std::vector<std::vector<std::uint64_t>> slots(
+      lanes + 1, std::vector<std::uint64_t>(static_cast<std::size_t>(geometry.height)));
+  for (int strip = 0; strip < geometry.strips; ++strip) {
+    for (int k = 0; k < geometry.slots_per_column; ++k) {
+      const int row = geometry.first_row_of(strip) + k;
+      if (geometry.is_inside(row))
+        ++slots[static_cast<std::size_t>(k) % lanes][static_cast<std::size_t>(row)];
+    }
+  }
+  slots.back().assign(slots.back().size(), 1);
+  return slots;
 }
 
 std::uint64_t latency_ps(const Delivery& delivery) { return delivery.host_ps - delivery.capture_ps; }
@@ -68,6 +87,9 @@ void derive_figures(const BoardConfig& board, Statistics& statistics) {
     BankStatistics& bank = statistics.banks[index];
     bank.name = board.banks[index].name;
     bank.ports = memory::traits_of(board.banks[index].kind).ports;
+    const bool has_rows = board.banks[index].sdram.has_value();
+    for (auto* const counter : {&bank.row_cycles, &bank.refresh_cycles})
+      *counter = has_rows ? std::optional(counter->value_or(0)) : std::nullopt;
     if (statistics.cycles == 0) continue;
     bank.utilization = static_cast<double>(bank.busy_cycles) / cycles;
     bank.megabytes_per_second =
@@ -105,8 +127,12 @@ void audit_core(const Statistics& statistics, Audit& audit) {
     audit.equal(name + ": stall_cycles", port.stall_cycles, "blamed by the arbiters", blamed[port.name]);
   }
   for (const BankStatistics& bank : statistics.banks) {
-    audit.equal("bank " + bank.name + ": busy + turnaround + idle cycles",
-                bank.busy_cycles + bank.turnaround_cycles + bank.idle_cycles, "cycles", statistics.cycles);
+    audit.equal("bank " + bank.name +
+                    (bank.row_cycles ? ": busy + turnaround + row + refresh + idle cycles"
+                                     : ": busy + turnaround + idle cycles"),
+                bank.busy_cycles + bank.turnaround_cycles + bank.row_cycles.value_or(0) +
+                    bank.refresh_cycles.value_or(0) + bank.idle_cycles,
+                "cycles", statistics.cycles);
   }
 }
 
@@ -124,18 +150,32 @@ void audit_computer(const ComputerStatistics& computer, Audit& audit) {
 
 std::vector<std::vector<std::uint64_t>> core_accesses(const BoardConfig& board,
                                                       const Statistics& statistics) {
-  const fpga::CorePorts ports = core_ports(board);
+  const fpga::CoreConfig core = core_config(board);
+  const fpga::CorePorts ports(core);
   std::vector<std::vector<std::uint64_t>> accesses(ports.core_size(),
                                                    std::vector<std::uint64_t>(board.banks.size()));
   const fpga::BufferBases buffers = buffer_bases(board);
   const std::uint64_t frames = statistics.frames;
   const std::uint64_t turn = allocation_period_frames(board);
+  const std::vector<std::vector<std::uint64_t>> slots = slots_of_rows(core);
   for (std::uint64_t frame = 0; frame < std::min(frames, turn); ++frame) {
-    const fpga::FrameBases bases = buffers.of_frame(frame);
+    const fpga::Placements placements = placements_of(core, buffers.of_frame(frame));
     const std::uint64_t uses = frames / turn + (frame < frames % turn ? 1 : 0);
-    for (std::size_t port = 0; port < ports.core_size(); ++port)
-      accesses[port][fpga::registers::bank_of(bases[ports.group_of(port)])] +=
-          statistics.ports[port].grants / frames * uses;
+    for (std::size_t port = 0; port < ports.core_size(); ++port) {
+      const std::vector<std::uint32_t>& parts = placements[ports.group_of(port)].parts();
+      const std::vector<std::uint64_t>& of_row =
+          slots[port == ports.result() ? ports.lanes() : ports.lane_of(port)];
+      std::uint64_t left = statistics.ports[port].grants / frames;
+      std::uint64_t left_slots = sum_of(of_row);
+      for (std::size_t part = 0; part < parts.size(); ++part) {
+        std::uint64_t of_part = 0;
+        for (std::size_t row = part; row < of_row.size(); row += parts.size()) of_part += of_row[row];
+        const std::uint64_t grants = left_slots == 0 ? 0 : left * of_part / left_slots;
+        left -= grants;
+        left_slots -= of_part;
+        accesses[port][fpga::registers::bank_of(parts[part])] += grants * uses;
+      }
+    }
   }
   return accesses;
 }
@@ -147,12 +187,14 @@ void audit_accesses(const BoardConfig& board, const Statistics& statistics, Audi
                 sum_of(accesses[port]), "grants", statistics.ports[port].grants);
   }
   std::uint64_t of_host = 0;
+  const bool is_exact = core_config(board).stripes.empty();
   for (std::size_t index = 0; index < board.banks.size(); ++index) {
     const BankStatistics& bank = statistics.banks[index];
     std::uint64_t of_core = 0;
     for (const std::vector<std::uint64_t>& of_port : accesses) of_core += of_port[index];
-    audit.at_most("bank " + bank.name + ": accesses of the core's ports", of_core, "reads + writes",
-                  bank.reads + bank.writes);
+    if (is_exact)
+      audit.at_most("bank " + bank.name + ": accesses of the core's ports", of_core, "reads + writes",
+                    bank.reads + bank.writes);
     audit.at_most("bank " + bank.name + ": reads + writes", bank.reads + bank.writes,
                   "accesses that fit into busy_cycles",
                   bank.busy_cycles * static_cast<std::uint64_t>(bank.ports));

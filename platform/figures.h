@@ -42,7 +42,8 @@ void audit_core(const Statistics& statistics, Audit& audit);
 void audit_computer(const ComputerStatistics& computer, Audit& audit);
 
 // The accesses of the core's ports to the banks: [port][bank]. A port makes equally many in each frame, and
-// frame f uses entry f mod length of its list.
+// frame f uses entry f mod length of its list. Those to a striped buffer are divided among its banks by the
+// slots of their rows: exact, but for pictures that a table does not read row by row.
 std::vector<std::vector<std::uint64_t>> core_accesses(const BoardConfig& board, const Statistics& statistics);
 // Checks that the accesses of the banks are those of the core's ports and of the host.
 void audit_accesses(const BoardConfig& board, const Statistics& statistics, Audit& audit);

@@ -23,6 +23,8 @@ struct BankStatistics {
   double utilization = 0;           // busy_cycles / cycles, 0..1
   double megabytes_per_second = 0;  // 10^6 bytes per second: 4 * (reads + writes) * clock_mhz / cycles
   int ports = 1;                    // accesses that the bank can serve in a cycle
+  std::optional<std::uint64_t> row_cycles = std::nullopt;      // of sdram only: rows were being opened
+  std::optional<std::uint64_t> refresh_cycles = std::nullopt;  // of sdram only
 };
 
 struct PortStatistics {
@@ -38,7 +40,7 @@ struct PortStatistics {
 struct BlameRow {
   std::string port;  // the victim
   std::string bank;
-  std::string by;  // the port that was granted, or "turnaround"
+  std::string by;  // the port that was granted, or "turnaround", "row" or "refresh"
   std::uint64_t cycles = 0;
 };
 
@@ -117,7 +119,7 @@ struct Statistics {
   Bound bound;
   std::vector<BankStatistics> banks;  // in the order of the board file
   std::vector<PortStatistics> ports;  // in the order of memory::Port
-  std::vector<BlameRow> blame;        // sorted by port, bank, by (turnaround last), without zero rows
+  std::vector<BlameRow> blame;        // sorted by port, bank, by (ports first), without zero rows
   std::optional<ComputerStatistics> computer;
   area::Area area;
   std::vector<std::string> failed;  // identities that do not hold, each with both sides; empty in a valid run

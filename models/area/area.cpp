@@ -133,7 +133,8 @@ void add(const char* name, std::int64_t count, const Resources& all, Items& item
 }
 
 // Contract 7.4. For each slot that it has of a column, a lane keeps the last word, its address and a valid
-// bit. Slots come in turn, so these are shift registers with a place for each of them. A slot without access keeps the old address and word.
+// bit. Slots come in turn, so these are shift registers with a place for each of them. A slot without access
+// keeps the old address and word.
 Resources word_cache(const Core& core, int lane) {
   const int places = core.geometry.slots_of_lane(lane);
   const int address_bits = bits_of(std::int64_t{core.config.width} * core.config.height / 4 - 1) + kValidBit;

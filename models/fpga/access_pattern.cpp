@@ -35,6 +35,7 @@ void AccessPattern::set_all(std::uint64_t* row_bits) const {
 }
 
 void AccessPattern::set_entries(const std::uint32_t* entries) {
+  entries_ = entries;
   const bool needed_all_pixels = needs_all_pixels_;
   needs_all_pixels_ = true;
   for (int row = 0; row < geometry_.height; ++row, entries += geometry_.width) {
@@ -179,6 +180,35 @@ std::uint64_t AccessPattern::uniform_until(std::uint64_t slot) const {
   if (slots_.empty()) set_slots();
   const auto change = std::lower_bound(changes_.begin(), changes_.end(), slot + slots_of_group());
   return change == changes_.end() ? geometry_.slots : std::min(*change, geometry_.slots);
+}
+
+AccessPattern::RowAccesses AccessPattern::table_accesses_of_rows() const {
+  RowAccesses slots(table_accesses_.size(),
+                    std::vector<std::uint64_t>(static_cast<std::size_t>(geometry_.height)));
+  for (int strip = 0; strip < geometry_.strips; ++strip) {
+    for (int k = 0; k < geometry_.slots_per_column; ++k) {
+      const int row = geometry_.first_row_of(strip) + k;
+      if (geometry_.is_inside(row))
+        slots[static_cast<std::size_t>(k % geometry_.lanes)][static_cast<std::size_t>(row)] +=
+            geometry_.columns_per_strip();
+    }
+  }
+  return slots;
+}
+
+AccessPattern::RowAccesses AccessPattern::pixel_accesses_of_rows() const {
+  const RowAccesses slots = table_accesses_of_rows();
+  RowAccesses accesses(slots.size(), std::vector<std::uint64_t>(slots.front().size()));
+  for (int row = 0; row < geometry_.height; ++row) {
+    for (int column = 0; column < geometry_.width; ++column) {
+      if (!needs_pixel(column, row)) continue;
+      const int source = entries_ == nullptr ? row : kernels::entry_row(entry(column, row));
+      for (std::size_t lane = 0; lane < slots.size(); ++lane)
+        accesses[lane][static_cast<std::size_t>(source)] +=
+            slots[lane][static_cast<std::size_t>(row)] / geometry_.columns_per_strip();
+    }
+  }
+  return accesses;
 }
 
 }  // namespace stereotlm::fpga

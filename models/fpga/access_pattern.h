@@ -19,8 +19,12 @@ class AccessPattern {
   // At first every entry is its own source, as on a side without table.
   AccessPattern(const FrameGeometry& geometry, PixelCache cache);
 
-  // Takes width * height entries, row-major.
+  // Takes width * height entries, row-major. They must stay as long as entry() is called.
   void set_entries(const std::uint32_t* entries);
+  std::uint32_t entry(int column, int row) const {
+    return entries_[static_cast<std::size_t>(row) * static_cast<std::size_t>(geometry_.width) +
+                    static_cast<std::size_t>(column)];
+  }
 
   // Whether a slot for this pixel accesses the image, in any strip: each begins with an empty word cache.
   bool needs_pixel(int column, int row) const {
@@ -49,6 +53,10 @@ class AccessPattern {
   // all.
   std::uint64_t table_accesses(int lane) const { return table_accesses_[static_cast<std::size_t>(lane)]; }
   std::uint64_t pixel_accesses(int lane) const { return pixel_accesses_[static_cast<std::size_t>(lane)]; }
+  // [lane][row of the buffer]: how often the slots of a frame read the row of the table, and of the image.
+  using RowAccesses = std::vector<std::vector<std::uint64_t>>;
+  RowAccesses table_accesses_of_rows() const;
+  RowAccesses pixel_accesses_of_rows() const;
   std::uint64_t table_accesses() const { return sum_of(table_accesses_); }
   std::uint64_t pixel_accesses() const { return sum_of(pixel_accesses_); }
 
@@ -68,6 +76,7 @@ class AccessPattern {
 
   FrameGeometry geometry_;
   bool has_cache_;
+  const std::uint32_t* entries_ = nullptr;
   std::size_t words_;                  // words of 64 bits for a row of the image
   std::vector<std::uint64_t> pixels_;  // [row][word]: pixels that are accessed
   std::vector<std::uint64_t> counts_;  // [row]: their number

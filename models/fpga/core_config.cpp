@@ -1,5 +1,9 @@
 #include "models/fpga/core_config.h"
 
+#include <set>
+
+#include "models/fpga/register_map.h"
+
 namespace stereotlm::fpga {
 
 std::vector<std::string> problems(const CoreConfig& config) {
@@ -42,6 +46,12 @@ std::vector<std::string> problems(const CoreConfig& config) {
     found.push_back("lanes = " + std::to_string(config.lanes) +
                     ": must be at most the slots of a column, window + rows - 1, which is " +
                     std::to_string(column));
+  }
+  for (const std::vector<std::uint32_t>& parts : config.stripes) {
+    kStripeRule.check("stripes", static_cast<std::int64_t>(parts.size()), found);
+    std::set<std::uint32_t> banks;
+    for (const std::uint32_t part : parts) banks.insert(registers::bank_of(part));
+    if (banks.size() != parts.size()) found.emplace_back("stripes: the parts must lie in different banks");
   }
   kPipelineLatencyRule.check("pipeline_latency_cycles", config.pipeline_latency_cycles, found);
   if (!(config.clock_mhz >= 1 && config.clock_mhz <= 1000)) {

@@ -41,6 +41,7 @@ inline constexpr kernels::IntegerRule kLaneFifoRule{1, 64};
 inline constexpr kernels::IntegerRule kResultFifoRule{1, 64};
 inline constexpr kernels::IntegerRule kPipelineLatencyRule{0, 1024};
 inline constexpr kernels::IntegerRule kLanesRule{1, 16};
+inline constexpr kernels::IntegerRule kStripeRule{2, 16};  // parts
 
 // The parameters that the FPGA is synthesised with. Defaults: the board of the paper.
 struct CoreConfig {
@@ -58,6 +59,9 @@ struct CoreConfig {
   bool right_table = true;
   bool joint_tables = false;  // one table for both sides, which both have one then (contract 7.3)
   PixelCache pixel_cache = PixelCache::kNone;
+  // The striped buffers (contract 8.2), each as the bases of its parts: bits 31..26 bank, 25..0 first word.
+  // All banks of a buffer differ, and have one read latency.
+  std::vector<std::vector<std::uint32_t>> stripes;
   int lanes = 1;                     // P: lanes of each side, kLanesRule; more than 1 only with kColumn
   double clock_mhz = 40;             // 1..1000
   int lane_fifo_slots = 16;          // slots, kLaneFifoRule

@@ -27,8 +27,8 @@ CoreDatapath::SideStages::SideStages(const CoreConfig& config, Side side)
   for (std::size_t lane = 0; lane < ports.lanes(); ++lane) {
     Readers readers;
     if (has_group(config, lut_group(side))) {
-      readers.lut = std::make_unique<LutReader>(module_name(ports, ports.lut(side, lane)).c_str(),
-                                                config.width, config.joint_tables);
+      readers.lut =
+          std::make_unique<LutReader>(module_name(ports, ports.lut(side, lane)).c_str(), config.joint_tables);
     }
     readers.pixel = std::make_unique<PixelReader>(module_name(ports, ports.pixel(side, lane)).c_str(), config,
                                                   static_cast<int>(lane));
@@ -102,10 +102,11 @@ void CoreDatapath::bind_streams() {
 }
 
 void CoreDatapath::start_frame(const FrameBases& bases, const kernels::JointOffsets& offsets) {
-  const auto aim = [this, &bases](memory::Port port) {
+  const Placements placements = placements_of(config_, bases);
+  const auto aim = [&](memory::Port port) -> const Placement& {
     const std::size_t group = ports_.group_of(port);
     crossbar_.aim(port, registers::bank_of(bases[group]), kPortGroups[group].write);
-    return registers::base_address(bases[group]);
+    return placements[group];
   };
   for (const Side side : kSides) {
     SideStages& stages = sides_[index_of(side)];

@@ -57,6 +57,8 @@ class CoreDatapath {
   // decided, before commit().
   PixelNeeds move(const CoreControl& control, const CoreControl::Decision& decision, memory::PortMask granted,
                   const sc_core::sc_time& at);
+  // See PixelReader.
+  std::uint32_t next_entry(std::size_t lane) const { return pixel_readers_[lane]->next_entry(); }
   // The number of accesses that memory has refused, over all frames.
   std::uint64_t errors() const;
 

@@ -9,7 +9,6 @@
 
 #include "models/fpga/core_config.h"
 #include "models/fpga/register_map.h"
-#include "models/kernels/words.h"
 #include "models/memory/memory_config.h"
 
 namespace stereotlm::fpga {
@@ -140,13 +139,15 @@ inline memory::ArbiterConfig arbiter_of_ports(const memory::ArbiterConfig& of_gr
 using FrameBases = std::array<std::uint32_t, kCoreGroupCount>;
 
 // Bank and first word of each buffer of a board, as the base registers and the bridge's descriptors take
-// them: bits 31..26 bank, 25..0 first word. The buffers of a list are used in turn, frame by frame.
+// them: bits 31..26 bank, 25..0 first word; of a striped buffer those of its first part. The buffers of a
+// list are used in turn, frame by frame.
 struct BufferBases {
   std::vector<std::uint32_t> left_images;
   std::vector<std::uint32_t> right_images;  // as many as left_images
   std::vector<std::uint32_t> disparities;
   std::optional<std::uint32_t> left_lut;  // nullopt: the side has no table of its own
   std::optional<std::uint32_t> right_lut;
+  std::vector<std::vector<std::uint32_t>> stripes;  // CoreConfig::stripes
   bool has_joint_tables = false;  // left_lut is one table for both sides; right_lut is nullopt
 
   // The base registers of frame number `frame`.
@@ -158,14 +159,5 @@ struct BufferBases {
             in_turn(disparities)};
   }
 };
-
-// Byte addresses in the buffers of a frame, relative to the first byte of the buffer (contract section 1).
-//
-// The entry of a pixel in a look-up table. Pixels are counted row by row.
-constexpr std::uint64_t entry_offset(std::uint64_t pixel) { return 4 * pixel; }
-// The word of a picture that holds a pixel.
-constexpr std::uint64_t pixel_word_offset(std::uint64_t pixel) { return pixel / kernels::kPixelsPerWord * 4; }
-// A word of the disparities. Words are counted row by row.
-constexpr std::uint64_t result_word_offset(std::uint64_t place) { return 4 * place; }
 
 }  // namespace stereotlm::fpga

@@ -4,9 +4,12 @@
 
 #include "models/fpga/core_config.h"
 #include "models/fpga/core_control.h"
+#include "models/fpga/placement.h"
 #include "models/fpga/record/conflict_recorder.h"
 #include "models/fpga/record/cycle_recorder.h"
 #include "models/fpga/record/row_recorder.h"
+#include "models/kernels/rectification_table.h"
+#include "models/kernels/words.h"
 #include "models/memory/arbitration.h"
 
 namespace stereotlm::fpga {
@@ -19,20 +22,24 @@ class CoreStepper {
   CoreStepper(const CoreConfig& config, memory::Arbitration& arbitration)
       : control_(config), rows_(control_.geometry()), arbitration_(arbitration) {}
 
-  // The ports must be routed before.
-  void start_frame(const FrameLatencies& latencies) {
+  // The ports must be routed before. `placements` must outlive the frame.
+  void start_frame(const FrameLatencies& latencies, const Placements& placements) {
+    placements_ = &placements;
     control_.start_frame(latencies);
     rows_.start_frame(control_);
   }
 
   // Runs `cycle`. `host_requests`: whether the host port requests in it. `move` moves the data of the cycle:
-  // it is called as move(decision, granted) and returns PixelNeeds. Returns the ports granted.
-  template <class Move>
-  memory::PortMask step(std::uint64_t cycle, bool host_requests, const Move& move) {
+  // it is called as move(decision, granted) and returns PixelNeeds. `entry` returns the oldest table entry of
+  // a lane whose pixel is not handled: it is called as entry(lane), see CoreControl::lane_index(). Returns
+  // the ports granted.
+  template <class Move, class Entry>
+  memory::PortMask step(std::uint64_t cycle, bool host_requests, const Move& move, const Entry& entry) {
     using memory::PortMask;
     const CoreControl::Decision decision = control_.decide();
     const PortMask host = host_requests ? memory::mask_of(control_.ports().host()) : PortMask{0};
     const PortMask requests = decision.requests | host;
+    if (const PortMask placed = decision.requests & arbitration_.placed(); placed != 0) place(placed, entry);
     const PortMask granted = arbitration_.arbitrate(cycle, requests);
     if (cycles_ != nullptr) cycles_->step(cycle, decision, host_requests, granted, control_, arbitration_);
     completed_group_ = control_.commit(decision, granted, move(decision, granted));
@@ -61,9 +68,39 @@ class CoreStepper {
   const memory::Arbitration& arbitration() const { return arbitration_; }
 
  private:
+  // Tells the arbiters the words that these ports request.
+  template <class Entry>
+  void place(memory::PortMask requests, const Entry& entry) {
+    const CorePorts& ports = control_.ports();
+    memory::for_each_port(requests, [&](memory::Port port) {
+      const Placement& buffer = (*placements_)[ports.group_of(port)];
+      const PortGroup& group = ports.group(port);
+      std::uint64_t row = 0;
+      std::uint64_t number = 0;  // of the word in its row
+      if (group.stage == PortStage::kResultWriter) {
+        const std::uint64_t place =
+            control_.geometry().place_of_result_word(control_.result().words_written());
+        row = place / buffer.row_words();
+        number = place % buffer.row_words();
+      } else {
+        const std::size_t lane = control_.lane_index(group.side, ports.lane_of(port));
+        const bool reads_entry = group.stage == PortStage::kPixelReader && control_.lane(lane).has_table();
+        const std::uint32_t source = reads_entry ? entry(lane) : 0;
+        const SlotCursor& slot = control_.lane(lane).next_slot();
+        const int column = reads_entry ? kernels::entry_column(source) : slot.column();
+        row = static_cast<std::uint64_t>(reads_entry ? kernels::entry_row(source) : slot.row());
+        number =
+            static_cast<std::uint64_t>(column) / (group.bytes_per_pixel == 4 ? 1 : kernels::kPixelsPerWord);
+      }
+      const Placement::Word word = buffer.word(row, number);
+      arbitration_.place(port, word.bank, word.word);
+    });
+  }
+
   CoreControl control_;
   RowRecorder rows_;
   memory::Arbitration& arbitration_;
+  const Placements* placements_ = nullptr;  // of the running frame
   ConflictRecorder* conflicts_ = nullptr;
   CycleRecorder* cycles_ = nullptr;
   bool completed_group_ = false;

@@ -22,14 +22,15 @@ std::string text_of(Intent intent) {
 }
 
 std::string losses_of(std::size_t port, const memory::ArbiterStats& arbiter, const CorePorts& ports) {
-  std::size_t by = memory::ArbiterStats::kTurnaround;
-  for (std::size_t other = ports.size(); other-- > 0;) {
-    if (arbiter.blame(port, other) >= arbiter.blame(port, by)) by = other;
+  std::size_t by = memory::kRefresh;
+  for (std::size_t other = by; other-- > 0;) {
+    const bool is_cause = other < ports.size() || other >= memory::kTurnaround;
+    if (is_cause && arbiter.blame(port, other) >= arbiter.blame(port, by)) by = other;
   }
   const std::uint64_t most = arbiter.blame(port, by);
   if (most == 0) return {};
-  return ", lost " + std::to_string(most) + " cycles to " +
-         (by == memory::ArbiterStats::kTurnaround ? "turnaround" : ports.name(by));
+  const std::string name = by < ports.size() ? ports.name(by) : memory::name_of_cause(by);
+  return ", lost " + std::to_string(most) + " cycles to " + name;
 }
 
 // What each port does in the next cycle of a frame. For a port that requests a bank, the text also names the
@@ -55,8 +56,7 @@ std::string waits_of_ports(const CoreControl& control, const memory::Arbitration
 FrameRun::FrameRun(const CoreConfig& config, const std::vector<memory::SsramBankConfig>& banks,
                    memory::Arbitration& arbitration, std::uint64_t stall_timeout_cycles)
     : config_(config), core_(config, arbitration), stall_timeout_cycles_(stall_timeout_cycles) {
-  for (const memory::SsramBankConfig& bank : banks)
-    latencies_.push_back(memory::read_latency_cycles(bank.kind));
+  for (const memory::SsramBankConfig& bank : banks) latencies_.push_back(memory::read_latency_cycles(bank));
   direct_counts_.accesses.resize(banks.size());
 }
 
@@ -86,7 +86,8 @@ void FrameRun::begin(std::uint64_t cycle, const FrameBases& bases) {
   writes_before_ = all_writes();
   work_ = control().work();
   work_cycle_ = cycle_;
-  core_.start_frame(route_ports(bases));
+  placements_ = placements_of(config_, bases);
+  core_.start_frame(route_ports(), placements_);
   core_.arbitration().begin_counting(first_cycle_);
   is_settled_ = false;
   const bool is_recorded =
@@ -110,15 +111,14 @@ void FrameRun::run_ahead_recorded(std::uint64_t end) {
   }
 }
 
-FrameLatencies FrameRun::route_ports(const FrameBases& bases) {
+FrameLatencies FrameRun::route_ports() {
   FrameLatencies latencies{};
   const CorePorts& ports = control().ports();
   for (std::size_t port = 0; port < ports.core_size(); ++port) {
     const std::size_t group = ports.group_of(port);
     if (!has_group(config_, group)) continue;
-    const std::size_t bank = registers::bank_of(bases[group]);
-    core_.arbitration().route(port, bank, kPortGroups[group].write);
-    latencies[group] = latencies_[bank];
+    core_.arbitration().route_stripe(port, placements_[group].banks(), kPortGroups[group].write);
+    latencies[group] = latencies_[registers::bank_of(placements_[group].parts().front())];
   }
   return latencies;
 }
@@ -149,17 +149,31 @@ void FrameRun::finish() {
 // accesses are those of the tables.
 void FrameRun::count_direct() {
   const FrameGeometry& geometry = control().geometry();
-  const auto count = [this](std::size_t group, std::uint64_t accesses) {
-    direct_counts_.accesses[core_.arbitration().bank_of(control().ports().port(group))] += accesses;
+  using RowAccesses = AccessPattern::RowAccesses;
+  // `of_rows` is called only for a striped buffer.
+  const auto count = [this](std::size_t group, std::uint64_t accesses, const auto& of_rows) {
+    const std::vector<std::uint32_t>& parts = placements_[group].parts();
+    if (parts.size() == 1) {
+      direct_counts_.accesses[registers::bank_of(parts.front())] += accesses;
+      return;
+    }
+    for (const std::vector<std::uint64_t>& of_lane : of_rows()) {
+      for (std::size_t row = 0; row < of_lane.size(); ++row)
+        direct_counts_.accesses[registers::bank_of(parts[row % parts.size()])] += of_lane[row];
+    }
   };
   for (const Side side : kSides) {
     const AccessPattern& pattern = (*patterns_)[index_of(side)];
-    if (has_group(config_, lut_group(side))) count(lut_group(side), pattern.table_accesses());
-    count(pixel_group(side), pattern.pixel_accesses());
+    if (has_group(config_, lut_group(side)))
+      count(lut_group(side), pattern.table_accesses(), [&] { return pattern.table_accesses_of_rows(); });
+    count(pixel_group(side), pattern.pixel_accesses(), [&] { return pattern.pixel_accesses_of_rows(); });
   }
+  count(kResultGroup, geometry.result_words, [&] {
+    return RowAccesses{std::vector<std::uint64_t>(static_cast<std::size_t>(geometry.height),
+                                                  geometry.columns_per_strip() / 4)};
+  });
   for (std::size_t lane = 0; lane < control().lanes().size(); ++lane)
     direct_counts_.slots[index_of(control().side_of(lane))] += control().lane(lane).taken();
-  count(kResultGroup, geometry.result_words);
   direct_counts_.packed_words += control().match().words();
   direct_counts_.written_words += writes();
 }

@@ -69,10 +69,10 @@ class FrameRun {
   // `patterns`: the accesses of the slots; they must outlive the frame.
   void start_direct(std::uint64_t cycle, const FrameBases& bases, const AccessPatterns& patterns);
 
-  // Runs cycle() of a stepped frame. `host_requests` and `move`: see CoreStepper::step().
-  template <class Move>
-  memory::PortMask step(bool host_requests, const Move& move) {
-    return core_.step(cycle_++, host_requests, move);
+  // Runs cycle() of a stepped frame. The arguments are those of CoreStepper::step().
+  template <class Move, class Entry>
+  memory::PortMask step(bool host_requests, const Move& move, const Entry& entry) {
+    return core_.step(cycle_++, host_requests, move, entry);
   }
   // Runs cycle() of a direct frame.
   memory::PortMask step(bool host_requests) { return core_.step(cycle_++, host_requests); }
@@ -155,13 +155,14 @@ class FrameRun {
  private:
   enum class State { kIdle, kRunning, kFinishing };
 
-  FrameLatencies route_ports(const FrameBases& bases);
+  FrameLatencies route_ports();
   void begin(std::uint64_t cycle, const FrameBases& bases);
   void run_ahead_recorded(std::uint64_t end);
   void count_direct();
   std::uint64_t all_writes() const { return control().port_cycles(control().ports().result()).granted(); }
 
   CoreConfig config_;
+  Placements placements_;       // of the frame that was started last
   std::vector<int> latencies_;  // [bank]: read latency, cycles
   FastForward core_;
   std::uint64_t stall_timeout_cycles_;

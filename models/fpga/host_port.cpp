@@ -1,6 +1,7 @@
 #include "models/fpga/host_port.h"
 
 #include <algorithm>
+#include <array>
 
 #include "models/memory/memory_config.h"
 
@@ -56,7 +57,7 @@ void HostPort::serve_contended() {
     return;
   }
   const FastForward::Served served =
-      frames_.serve_host({*burst_.bank, burst_.write, traffic()}, first, bus_.words_left());
+      frames_.serve_host({*burst_.bank, burst_.write, traffic(), first_word()}, first, bus_.words_left());
   if (served.words != 0)
     bus_.count_granted(served.words, clock_.edge_ps(served.last_cycle), usable_ps(served.last_cycle));
 }
@@ -69,7 +70,9 @@ void HostPort::step_contended(std::uint64_t first_cycle) {
   while (frames_.cycle() < end && !frames_.control().frame_done() && bus_.word_waits()) {
     const std::uint64_t cycle = frames_.cycle();
     const std::uint64_t edge_ps = clock_.edge_ps(cycle);
-    const memory::PortMask granted = frames_.step(bus_.requests(edge_ps));
+    const bool requests = bus_.requests(edge_ps);
+    if (requests) place();
+    const memory::PortMask granted = frames_.step(requests);
     if (memory::has(granted, port_)) serve_word(cycle, edge_ps);
   }
 }
@@ -87,7 +90,7 @@ std::optional<std::uint64_t> HostPort::serve_uncontended(std::uint64_t horizon_p
   // this cycle.
   std::uint64_t cycle = frames_.is_running() ? 0 : frames_.cycle();
   move_burst();
-  if (is_moved_ && !arbitration_.arbiter(bank).needs_turnaround() && is_in_step_) serve_in_step(cycle);
+  if (is_moved_ && arbitration_.arbiter(bank).grants_at_once() && is_in_step_) serve_in_step(cycle);
   while (bus_.word_waits()) {
     cycle = std::max(cycle, clock_.edge_at_or_after(bus_.request_ps()));
     const std::uint64_t edge_ps = clock_.edge_ps(cycle);
@@ -103,7 +106,7 @@ std::optional<std::uint64_t> HostPort::serve_uncontended(std::uint64_t horizon_p
     }
     const memory::BankArbiter::Outcome outcome = decide(bank, cycle, burst_.write);
     served_.push_back({cycle, 1, outcome});
-    record_served(cycle, 1, grants(outcome));
+    record_served(cycle, 1, grants(outcome), outcome.cause);
     if (grants(outcome)) serve_word(cycle, edge_ps);
     ++cycle;
   }
@@ -114,7 +117,9 @@ std::optional<std::uint64_t> HostPort::serve_uncontended(std::uint64_t horizon_p
 // The outcome is counted only by count().
 memory::BankArbiter::Outcome HostPort::decide(std::size_t bank, std::uint64_t cycle, bool write) {
   const memory::PortMask host = memory::mask_of(port_);
-  return arbitration_.arbiter(bank).decide(cycle, host, write ? host : 0);
+  std::array<std::uint32_t, memory::kMostPorts> words;
+  words[port_] = bus_.word_waits() ? first_word() : 0;
+  return arbitration_.arbiter(bank).decide(cycle, host, write ? host : 0, words.data());
 }
 
 // Moves all data of a burst that has just begun, if no frame can start within the burst and its bank grants
@@ -147,14 +152,13 @@ void HostPort::serve_in_step(std::uint64_t first_cycle) {
   const std::uint64_t first = std::max(first_cycle, bus_.request_clock());
   const std::size_t words = bus_.words_left();
   served_.push_back({first, words, decide(*burst_.bank, first, burst_.write)});
-  record_served(first, words, true);
+  record_served(first, words, true, 0);
   const std::uint64_t last = first + words - 1;
   bus_.count_granted(words, clock_.edge_ps(last), usable_ps(last));
 }
 
 bool HostPort::serves_one_word_per_cycle(std::size_t bank) const {
-  return is_in_step_ && is_only_master_ && !is_contended(bank) &&
-         !arbitration_.arbiter(bank).needs_turnaround();
+  return is_in_step_ && is_only_master_ && !is_contended(bank) && arbitration_.arbiter(bank).grants_at_once();
 }
 
 // As in serve_in_step(), each grant after the first one changes the state of the policy as a cycle without
@@ -191,7 +195,8 @@ void HostPort::count_served(std::uint64_t end_cycle, bool in_frame) {
     const std::uint64_t cycles = std::min(next->cycles, end_cycle - next->cycle);
     count({next->cycle, cycles, next->outcome}, in_frame);
     if (conflicts != nullptr) {
-      conflicts->add_served(served_traffic_, served_bank_, next->cycle, cycles, grants(next->outcome));
+      conflicts->add_served(served_traffic_, served_bank_, next->cycle, cycles, grants(next->outcome),
+                            next->outcome.cause);
     }
     next->cycle += cycles;
     next->cycles -= cycles;

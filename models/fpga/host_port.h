@@ -44,6 +44,11 @@ class HostPort {
   // The addresses of the words of the burst that are not granted yet.
   AddressRange words_left() const { return {burst_.end - 4 * bus_.words_left(), burst_.end}; }
 
+  // To be called before a cycle in which the waiting word requests, if it takes part in the arbitration:
+  // tells the arbiters which word it is.
+  void place() {
+    if (memory::has(arbitration_.placed(), port_)) arbitration_.place(port_, *burst_.bank, first_word());
+  }
   // Lets the burst take part in the arbitration of its bank from now on.
   void join();
   // Transfers the waiting word, which has been granted in `cycle`, which begins at `edge_ps`. Returns true if
@@ -62,7 +67,9 @@ class HostPort {
   std::optional<std::uint64_t> serve_uncontended(std::uint64_t horizon_ps);
   // To be called for each cycle in which the host requests while no frame runs, if serve_uncontended() is not
   // called.
-  void record_cycle(std::uint64_t cycle, bool granted) { record_served(cycle, 1, granted); }
+  void record_cycle(std::uint64_t cycle, bool granted) {
+    record_served(cycle, 1, granted, granted ? 0 : arbitration_.cause_of(port_, 0));
+  }
 
   // Serves an uncontended burst that has just begun, if no frame can start within it.
   void serve_new_burst();
@@ -98,8 +105,13 @@ class HostPort {
   };
 
   std::optional<HostWord> next_word() const;
-  void record_served(std::uint64_t cycle, std::uint64_t cycles, bool granted) {
-    if (frames_.cycles() != nullptr) frames_.cycles()->host_accesses(*next_word(), cycle, cycles, granted);
+  // The number of the waiting word in its bank.
+  std::uint32_t first_word() const {
+    return static_cast<std::uint32_t>(memory::address_in_bank(words_left().first) / 4);
+  }
+  void record_served(std::uint64_t cycle, std::uint64_t cycles, bool granted, std::size_t cause) {
+    if (frames_.cycles() != nullptr)
+      frames_.cycles()->host_accesses(*next_word(), cycle, cycles, granted, cause);
   }
   bool is_contended(std::size_t bank) const;
   void move_burst();

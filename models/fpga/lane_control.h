@@ -9,14 +9,16 @@
 namespace stereotlm::fpga {
 
 // The read latencies that a lane supports, in cycles.
-inline constexpr kernels::IntegerRule kLaneLatencyRule{1, 2};
+inline constexpr kernels::IntegerRule kLaneLatencyRule{1, 8};
 
 static_assert(
     [] {
       for (const memory::BankTraits& bank : memory::kBankTraits) {
-        if (!kLaneLatencyRule.allows(bank.read_latency_cycles)) return false;
+        if (bank.kind != memory::BankKind::kSdram && !kLaneLatencyRule.allows(bank.read_latency_cycles))
+          return false;
       }
-      return true;
+      return kLaneLatencyRule.allows(memory::kCasLatencyRule.min) &&
+             kLaneLatencyRule.allows(memory::kCasLatencyRule.max);
     }(),
     "a lane cannot hold the read latency of a kind of bank");
 
@@ -43,11 +45,13 @@ class LaneControl {
   // Read latencies of the banks that hold this frame's table and image; without a table the first has no
   // effect. Throws std::invalid_argument outside kLaneLatencyRule.
   void start_frame(int table_latency_cycles, int image_latency_cycles) {
-    const auto takes_two = [](const char* field, int latency) {
-      return kLaneLatencyRule.required(field, latency) == 2;
+    const auto more_than_one = [](const char* field, int latency) {
+      return static_cast<unsigned>(kLaneLatencyRule.required(field, latency) - 1);
     };
-    table_takes_two_cycles_ = has_table_ && takes_two("table_latency_cycles", table_latency_cycles);
-    image_takes_two_cycles_ = takes_two("image_latency_cycles", image_latency_cycles);
+    table_cycles_ = has_table_ ? more_than_one("table_latency_cycles", table_latency_cycles) : 0;
+    image_cycles_ = more_than_one("image_latency_cycles", image_latency_cycles);
+    coming_entries_ = 0;
+    coming_pixels_ = 0;
     next_slot_ = first_slot_;
     consumed_before_frame_ += consumed_;
     taken_ = 0;
@@ -70,9 +74,6 @@ class LaneControl {
   void commit(Decision decision, bool lut_granted, bool pixel_granted, bool needs_pixel, bool consumes) {
     const bool pixel_moves = pixel_granted || decision.pixel == Intent::kPass;
     const bool takes = has_table_ ? lut_granted || decision.lut == Intent::kPass : pixel_moves;
-    // What is read in cycle c can be used from cycle c + latency on.
-    const std::uint64_t taken_before = taken_;
-    const std::uint64_t handled_before = handled_;
     if (takes) {
       const std::uint64_t mark = std::uint64_t{1} << taken_ % kMostSlots;
       marks_ = lut_granted && needs_pixel ? marks_ | mark : marks_ & ~mark;
@@ -81,8 +82,11 @@ class LaneControl {
     }
     handled_ += std::uint64_t{pixel_moves};
     consumed_ += std::uint64_t{consumes};
-    arrived_entries_ = table_takes_two_cycles_ ? taken_before : taken_;
-    arrived_pixels_ = image_takes_two_cycles_ ? handled_before : handled_;
+    // What is read in cycle c can be used from cycle c + latency on.
+    coming_entries_ = coming_entries_ << 1U | unsigned{takes};
+    coming_pixels_ = coming_pixels_ << 1U | unsigned{pixel_moves};
+    arrived_entries_ += coming_entries_ >> table_cycles_ & 1U;
+    arrived_pixels_ += coming_pixels_ >> image_cycles_ & 1U;
   }
 
   // Corrects, for each slot that is taken but not handled, whether it needs an access: bit i of `marks` is
@@ -98,7 +102,9 @@ class LaneControl {
   State state() const {
     return (taken_ - consumed_) | (handled_ - consumed_) << 8U | (arrived_entries_ - consumed_) << 16U |
            (arrived_pixels_ - consumed_) << 24U | std::uint64_t{next_slot_.done()} << 32U |
-           std::uint64_t{arrived_entries_ != 0} << 33U;
+           std::uint64_t{arrived_entries_ != 0} << 33U |
+           std::uint64_t{coming_entries_ & ((1U << table_cycles_) - 1)} << kComingEntriesBit |
+           std::uint64_t{coming_pixels_ & ((1U << image_cycles_) - 1)} << kComingPixelsBit;
   }
   // Skips the cycles in which the matcher consumes `slots` slots. The lane is in `state` afterwards. The
   // caller then calls correct_marks().
@@ -111,6 +117,8 @@ class LaneControl {
     handled_ = behind_consumed(8);
     arrived_entries_ = behind_consumed(16);
     arrived_pixels_ = behind_consumed(24);
+    coming_entries_ = state >> kComingEntriesBit & 0xffU;
+    coming_pixels_ = state >> kComingPixelsBit & 0xffU;
     next_slot_.advance(taken_ - taken_before);
   }
 
@@ -133,6 +141,8 @@ class LaneControl {
 
  private:
   static constexpr std::uint64_t kMostSlots = kLaneFifoRule.max;
+  static constexpr unsigned kComingEntriesBit = 40;  // of State
+  static constexpr unsigned kComingPixelsBit = 48;
 
   Intent take_intent() const {
     if (next_slot_.done()) return Intent::kIdle;
@@ -153,8 +163,12 @@ class LaneControl {
   bool has_table_;
   bool has_cache_;
   std::uint64_t fifo_slots_;
-  bool table_takes_two_cycles_ = false;
-  bool image_takes_two_cycles_ = false;
+  // Cycles of the read latencies beyond the first. Bit i of the next two: a slot was taken, and its pixel was
+  // handled, i + 1 cycles ago.
+  unsigned table_cycles_ = 0;
+  unsigned image_cycles_ = 0;
+  unsigned coming_entries_ = 0;
+  unsigned coming_pixels_ = 0;
   SlotCursor next_slot_;
   // Numbers of slots of the frame.
   std::uint64_t taken_ = 0;

@@ -6,7 +6,7 @@
 #include <systemc>
 
 #include "models/fpga/beats.h"
-#include "models/fpga/core_ports.h"
+#include "models/fpga/placement.h"
 #include "models/kernels/joint_table.h"
 #include "models/memory/word_access.h"
 #include "models/stream.h"
@@ -29,10 +29,10 @@ class LutReader : public sc_core::sc_module {
     TableEntry left;
     TableEntry right;
     if (!slot.empty) {
-      const std::uint64_t pixel =
-          static_cast<std::uint64_t>(slot.row) * width_ + static_cast<std::uint64_t>(slot.column);
       sc_core::sc_time delay = slot.at;
-      if (!access_.read(table_address_ + entry_offset(pixel), delay)) ++errors_;
+      const std::uint64_t address =
+          table_.address(static_cast<std::uint64_t>(slot.row), static_cast<std::uint64_t>(slot.column));
+      if (!access_.read(address, delay)) ++errors_;
       left.entry = access_.word();
     }
     if (has_joint_tables_ && !slot.empty) {
@@ -46,22 +46,20 @@ class LutReader : public sc_core::sc_module {
  public:
   StreamIn<Slot, LutReader, &LutReader::take> slots_in{"slots_in", this};
 
-  // `width`: pixels of a row of the image.
-  LutReader(const sc_core::sc_module_name& name, int width, bool has_joint_tables)
-      : sc_module(name), width_(static_cast<std::uint64_t>(width)), has_joint_tables_(has_joint_tables) {}
+  LutReader(const sc_core::sc_module_name& name, bool has_joint_tables)
+      : sc_module(name), has_joint_tables_(has_joint_tables) {}
 
-  // `table_address`: byte address on the port. `offsets`: without effect unless the tables are joint.
-  void start_frame(std::uint64_t table_address, const kernels::JointOffsets& offsets) {
-    table_address_ = table_address;
+  // `offsets`: without effect unless the tables are joint.
+  void start_frame(const Placement& table, const kernels::JointOffsets& offsets) {
+    table_ = table;
     offsets_ = offsets;
   }
   // The number of refused accesses. Their entries are not valid.
   std::uint64_t errors() const { return errors_; }
 
  private:
-  std::uint64_t width_;
   bool has_joint_tables_;
-  std::uint64_t table_address_ = 0;
+  Placement table_;
   kernels::JointOffsets offsets_{};
   memory::WordAccess access_{port};
   std::uint64_t errors_ = 0;

@@ -16,20 +16,21 @@ PixelReader::PixelReader(const sc_core::sc_module_name& name, const CoreConfig& 
       cached_(slots_per_column_),
       words_(slots_per_column_) {}
 
-void PixelReader::start_frame(std::uint64_t image_address) {
-  image_address_ = image_address;
+void PixelReader::start_frame(const Placement& image) {
+  image_ = image;
   slots_arrived_ = 0;
   pixels_stored_ = 0;
   pixels_released_ = 0;
 }
 
-bool PixelReader::next_needs_access(bool is_valid, std::uint64_t pixel) {
+bool PixelReader::next_needs_access(bool is_valid, int column, int row) {
   const std::size_t slot = slots_arrived_++;
   if (!has_cache_) return is_valid;
   if (slot % (slots_per_column_ * width_) == 0) std::fill(cached_.begin(), cached_.end(), kNoWord);
   if (!is_valid) return false;
   std::uint64_t& cached = cached_[slot % slots_per_column_];
-  const std::uint64_t word = pixel / kernels::kPixelsPerWord;
+  const std::uint64_t word = (static_cast<std::uint64_t>(row) * width_ + static_cast<std::uint64_t>(column)) /
+                             kernels::kPixelsPerWord;
   if (cached == word) return false;
   cached = word;
   return true;
@@ -37,9 +38,8 @@ bool PixelReader::next_needs_access(bool is_valid, std::uint64_t pixel) {
 
 void PixelReader::store_entry(const TableEntry& entry) {
   Waiting& waiting = entries_[slots_arrived_ % kRing];
-  needs_access_ =
-      next_needs_access(kernels::entry_is_valid(entry.entry),
-                        pixel_of(kernels::entry_column(entry.entry), kernels::entry_row(entry.entry)));
+  needs_access_ = next_needs_access(kernels::entry_is_valid(entry.entry), kernels::entry_column(entry.entry),
+                                    kernels::entry_row(entry.entry));
   waiting = {entry.entry, needs_access_};
 }
 
@@ -53,28 +53,29 @@ void PixelReader::handle(const sc_core::sc_time& at) {
     pass();
     return;
   }
-  deliver(pixel_of(kernels::entry_column(waiting.entry), kernels::entry_row(waiting.entry)),
-          waiting.needs_access, at);
+  deliver(kernels::entry_column(waiting.entry), kernels::entry_row(waiting.entry), waiting.needs_access, at);
 }
 
 void PixelReader::take(const Slot& slot) {
-  const std::uint64_t pixel = pixel_of(slot.column, slot.row);
-  const bool needs_access = next_needs_access(!slot.empty, pixel);
+  const bool needs_access = next_needs_access(!slot.empty, slot.column, slot.row);
   if (slot.empty) {
     pass();
     return;
   }
-  deliver(pixel, needs_access, slot.at);
+  deliver(slot.column, slot.row, needs_access, slot.at);
 }
 
-void PixelReader::deliver(std::uint64_t pixel, bool needs_access, const sc_core::sc_time& at) {
+void PixelReader::deliver(int column, int row, bool needs_access, const sc_core::sc_time& at) {
   std::uint32_t& word = words_[has_cache_ ? pixels_stored_ % slots_per_column_ : 0];
+  const auto place = static_cast<std::uint64_t>(column);
   if (needs_access) {
     sc_core::sc_time delay = at;
-    if (!access_.read(image_address_ + pixel_word_offset(pixel), delay)) ++errors_;
+    if (!access_.read(image_.address(static_cast<std::uint64_t>(row), place / kernels::kPixelsPerWord),
+                      delay))
+      ++errors_;
     word = access_.word();
   }
-  pixels_[pixels_stored_++ % kRing] = {kernels::pixel_of_word(word, pixel), true};
+  pixels_[pixels_stored_++ % kRing] = {kernels::pixel_of_word(word, place), true};
 }
 
 }  // namespace stereotlm::fpga

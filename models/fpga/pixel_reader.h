@@ -10,6 +10,7 @@
 #include "models/fpga/beats.h"
 #include "models/fpga/core_config.h"
 #include "models/fpga/frame_geometry.h"
+#include "models/fpga/placement.h"
 #include "models/memory/word_access.h"
 #include "models/stream.h"
 
@@ -38,11 +39,12 @@ class PixelReader : public sc_core::sc_module {
   // `lane`: its number on its side.
   PixelReader(const sc_core::sc_module_name& name, const CoreConfig& config, int lane);
 
-  // `image_address`: byte address on the port.
-  void start_frame(std::uint64_t image_address);
+  void start_frame(const Placement& image);
   // Whether the entry that arrived last needs an access for its pixel.
   bool needs_access() const { return needs_access_; }
-  // Reads or passes the oldest waiting entry, in the cycle that is `at` from now.
+  // The oldest waiting entry; without meaning if none waits.
+  std::uint32_t next_entry() const { return entries_[pixels_stored_ % kRing].entry; }
+  // Reads or passes it, in the cycle that is `at` from now.
   void handle(const sc_core::sc_time& at);
   // Passes on the oldest pixel, which the matcher consumes.
   void release() {
@@ -66,20 +68,17 @@ class PixelReader : public sc_core::sc_module {
     bool needs_access = false;
   };
 
-  // Whether the slot that comes next, whose pixel is `pixel` of the image, needs an access. To be called once
-  // for each slot, in their order.
-  bool next_needs_access(bool is_valid, std::uint64_t pixel);
+  // Whether the slot that comes next needs an access for this pixel of the image. To be called once for each
+  // slot, in their order.
+  bool next_needs_access(bool is_valid, int column, int row);
   // Handles the next slot: stores its pixel, which is read now if `needs_access`.
-  void deliver(std::uint64_t pixel, bool needs_access, const sc_core::sc_time& at);
+  void deliver(int column, int row, bool needs_access, const sc_core::sc_time& at);
   void pass() { pixels_[pixels_stored_++ % kRing] = MaskedPixel{}; }
-  std::uint64_t pixel_of(int column, int row) const {
-    return static_cast<std::uint64_t>(row) * width_ + static_cast<std::uint64_t>(column);
-  }
 
   std::uint64_t width_;
   std::size_t slots_per_column_;
   bool has_cache_;
-  std::uint64_t image_address_ = 0;
+  Placement image_;
   memory::WordAccess access_{port};
   std::array<Waiting, kRing> entries_{};
   std::array<MaskedPixel, kRing> pixels_{};

@@ -25,6 +25,9 @@
 // | 0x2c    | kRightColumns    | both   | as kLeftColumns                                              |
 // | 0x30    | kRightRows       | both   | as kLeftColumns                                              |
 //
+// The base of a striped buffer (contract 8.2) is that of its first part. The core knows the places of the
+// others (CoreConfig::stripes).
+//
 // The core takes bases and offsets at the start strobe. It ignores a strobe while it is busy, and a strobe
 // with a base in a bank that the board does not have. Both raise error. Error is also raised if memory
 // refuses an access of the running frame, or if the frame works directly on memory and its result may differ
@@ -65,11 +68,12 @@ constexpr std::array<RegisterValue, 4> joint_offsets(const kernels::JointOffsets
            {kRightRows, static_cast<std::uint32_t>(offsets[1].rows)}}};
 }
 
-// The value of a base register, and the bank in it.
+// The value of a base register, and the bank and the word in it.
 constexpr std::uint32_t base(std::uint32_t bank, std::uint32_t first_word) {
   return bank << 26U | first_word;
 }
 constexpr std::uint32_t bank_of(std::uint32_t base) { return base >> 26U; }
+constexpr std::uint32_t first_word_of(std::uint32_t base) { return base & 0x03FF'FFFFU; }
 // The byte address on the crossbar that the value stands for.
 constexpr std::uint64_t base_address(std::uint32_t value) {
   return static_cast<std::uint64_t>(value >> 26U) << 28U | (value & 0x03FF'FFFFULL) << 2U;

@@ -8,7 +8,7 @@
 
 #include "models/fpga/beats.h"
 #include "models/fpga/core_config.h"
-#include "models/fpga/core_ports.h"
+#include "models/fpga/placement.h"
 #include "models/memory/word_access.h"
 #include "models/stream.h"
 
@@ -37,9 +37,8 @@ class ResultWriter : public sc_core::sc_module {
       : sc_module(name),
         fifo_words_(static_cast<std::size_t>(kResultFifoRule.required("result_fifo_words", fifo_words))) {}
 
-  // `disparity_address`: byte address of the buffer on the port.
-  void start_frame(std::uint64_t disparity_address) {
-    disparity_address_ = disparity_address;
+  void start_frame(const Placement& disparities) {
+    disparities_ = disparities;
     stored_ = 0;
     written_ = 0;
   }
@@ -51,7 +50,10 @@ class ResultWriter : public sc_core::sc_module {
     }
     sc_core::sc_time delay = at;
     const ResultWord& word = words_[written_++ % kRing];
-    if (!access_.write(disparity_address_ + result_word_offset(word.place), word.word, delay)) ++errors_;
+    const std::uint64_t row_words = disparities_.row_words();
+    if (!access_.write(disparities_.address(word.place / row_words, word.place % row_words), word.word,
+                       delay))
+      ++errors_;
     ++writes_;
   }
   // The number of words written, over all frames, and of refused accesses among them, whose words are lost.
@@ -62,7 +64,7 @@ class ResultWriter : public sc_core::sc_module {
   static constexpr std::size_t kRing = kResultFifoRule.max;
 
   std::size_t fifo_words_;
-  std::uint64_t disparity_address_ = 0;
+  Placement disparities_;
   memory::WordAccess access_{port};
   std::array<ResultWord, kRing> words_{};
   std::size_t stored_ = 0;  // words since the start of the frame

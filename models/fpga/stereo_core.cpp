@@ -171,6 +171,7 @@ void StereoCore::run_cycles() {
 bool StereoCore::step(std::uint64_t edge_ps, const sc_core::sc_time& at) {
   const std::uint64_t cycle = frames_.cycle();
   const bool host_requests = local_bus_.control().requests(edge_ps);
+  if (host_requests) host_port_.place();
   PortMask granted = 0;
   bool host_is_served = false;
   bool burst_has_ended = false;
@@ -179,11 +180,14 @@ bool StereoCore::step(std::uint64_t edge_ps, const sc_core::sc_time& at) {
     burst_has_ended = host_port_.access(cycle, edge_ps);
   };
   if (frames_.is_running()) {
-    granted = frames_.step(host_requests, [&](const CoreControl::Decision& decision, PortMask grants) {
-      crossbar_.grant(grants);
-      if (host_reads_where_core_writes(grants)) serve_host();
-      return datapath_.move(control(), decision, grants, at);
-    });
+    granted = frames_.step(
+        host_requests,
+        [&](const CoreControl::Decision& decision, PortMask grants) {
+          crossbar_.grant(grants);
+          if (host_reads_where_core_writes(grants)) serve_host();
+          return datapath_.move(control(), decision, grants, at);
+        },
+        [this](std::size_t lane) { return datapath_.next_entry(lane); });
     if (control().frame_done()) host_port_.finish_frame();
   } else {
     granted = crossbar_.arbitrate(cycle, host_requests ? memory::mask_of(ports_.host()) : 0);

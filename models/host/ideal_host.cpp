@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "models/fpga/placement.h"
 #include "models/fpga/register_map.h"
 
 namespace stereotlm::host {
@@ -145,13 +146,21 @@ std::uint32_t IdealHost::read_status() {
 }
 
 void IdealHost::debug(tlm::tlm_command command, std::uint32_t base, const void* bytes, std::size_t size) {
-  tlm::tlm_generic_payload access;
-  access.set_command(command);
-  access.set_address(registers_of::base_address(base));
-  access.set_data_ptr(static_cast<unsigned char*>(const_cast<void*>(bytes)));
-  access.set_data_length(static_cast<unsigned>(size));
-  access.set_streaming_width(static_cast<unsigned>(size));
-  const unsigned moved = memory->transport_dbg(access);
+  const std::size_t row_bytes = size / static_cast<std::size_t>(config_.height);
+  const fpga::Placement buffer(config_.buffers.stripes, base, row_bytes / 4);
+  const bool is_striped = buffer.parts().size() > 1;
+  const std::size_t length = is_striped ? row_bytes : size;  // of an access: a row, or all
+  auto* const data = static_cast<unsigned char*>(const_cast<void*>(bytes));
+  std::size_t moved = 0;
+  for (std::size_t first = 0; first < size; first += length) {
+    tlm::tlm_generic_payload access;
+    access.set_command(command);
+    access.set_address(buffer.address(first / row_bytes, 0));
+    access.set_data_ptr(data + first);
+    access.set_data_length(static_cast<unsigned>(length));
+    access.set_streaming_width(static_cast<unsigned>(length));
+    moved += memory->transport_dbg(access);
+  }
   if (moved != size) {
     report("the buffer at base " + std::to_string(base) + " takes " + std::to_string(moved) + " of " +
            std::to_string(size) + " bytes");

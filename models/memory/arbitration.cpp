@@ -36,50 +36,63 @@ void Arbitration::check_route(Port port, std::size_t bank) const {
   if (!problem.empty()) throw std::invalid_argument(problem);
 }
 
-void Arbitration::route(Port port, std::size_t bank, bool write) {
-  check_route(port, bank);
+void Arbitration::route_stripe(Port port, std::uint64_t banks, bool write) {
+  const auto first = static_cast<std::size_t>(__builtin_ctzll(banks));
+  check_route(port, 63 - static_cast<std::size_t>(__builtin_clzll(banks)));
   settle(alone_);
-  shared_ = 0;
-  set_route(port, bank, write);
+  forget_visits();
+  routes_[port] = {first, write, banks};
+  routed_ |= mask_of(port);
   share_banks();
 }
 
 void Arbitration::unroute(Port port) {
   check_route(port, 0);
   settle(alone_);
-  shared_ = 0;
+  forget_visits();
   routed_ &= ~mask_of(port);
   share_banks();
 }
 
 void Arbitration::visit(Port port, std::size_t bank, bool write) {
   check_route(port, bank);
-  if (!is_shared(bank) || is_alone(port)) {
+  const bool is_known = has(routed_ & visitors_, port) && (routes_[port].banks & bank_bit(bank)) != 0;
+  if (!is_known || !is_shared(bank)) {
     settle(ports_on(bank) | mask_of(port));
-    shared_ |= std::uint64_t{1} << bank;
-    set_route(port, bank, write);
+    if (!has(routed_, port)) routes_[port].banks = 0;
+    routes_[port].banks |= bank_bit(bank);
+    visitors_ |= mask_of(port);
+    visited_ |= bank_bit(bank);
+    routed_ |= mask_of(port);
+    routes_[port].bank = bank;
+    routes_[port].write = write;
     share_banks();
     return;
   }
-  for (SharedBank& shared : shared_banks_) shared.ports &= ~mask_of(port);
-  find_shared(bank)->ports |= mask_of(port);
-  set_route(port, bank, write);
-}
-
-void Arbitration::set_route(Port port, std::size_t bank, bool write) {
-  routes_[port] = {bank, write};
-  routed_ |= mask_of(port);
+  routes_[port].write = write;
   writes_ = (writes_ & ~mask_of(port)) | (write ? mask_of(port) : 0);
+  if (routes_[port].bank != bank) move(port, bank);
 }
 
-Arbitration::SharedBank* Arbitration::find_shared(std::size_t bank) {
-  return &*std::find_if(shared_banks_.begin(), shared_banks_.end(),
-                        [bank](const SharedBank& shared) { return shared.bank == bank; });
+// Each port that has visited banks stays on the last of them.
+void Arbitration::forget_visits() {
+  for_each_port(visitors_, [this](Port port) { routes_[port].banks = bank_bit(routes_[port].bank); });
+  visitors_ = 0;
+  visited_ = 0;
+}
+
+// Lets the port request another one of its banks.
+void Arbitration::move(Port port, std::size_t bank) {
+  const std::size_t from = std::exchange(routes_[port].bank, bank);
+  if (grants_all_) return;
+  shared_banks_[place_of_shared_[from]].ports &= ~mask_of(port);
+  shared_banks_[place_of_shared_[bank]].ports |= mask_of(port);
 }
 
 PortMask Arbitration::ports_on(std::size_t bank) const {
   PortMask ports = 0;
-  for_each_port(routed_, [&](Port port) { ports |= routes_[port].bank == bank ? mask_of(port) : 0; });
+  for_each_port(routed_,
+                [&](Port port) { ports |= (routes_[port].banks & bank_bit(bank)) != 0 ? mask_of(port) : 0; });
   return ports;
 }
 
@@ -90,30 +103,43 @@ std::size_t Arbitration::cause_of(Port port, PortMask granted) const {
     const Port other = lowest_port(ports);
     if (routes_[other].bank == route.bank && (!is_apart || routes_[other].write == route.write)) return other;
   }
-  return ArbiterStats::kTurnaround;
+  return shared_banks_[place_of_shared_[route.bank]].cause;
 }
 
-// Finds the uncontended ports, and the shared banks in the order of their first ports. A bank that was shared
-// stays so as long as it has a port.
+// Finds the uncontended ports and the shared banks.
 void Arbitration::share_banks() {
-  const std::uint64_t were_shared = std::exchange(shared_, 0);
-  shared_banks_.clear();
-  if (grants_all_) {
-    alone_ = routed_;
-    return;
-  }
-  alone_ = 0;
-  for_each_port(routed_, [&](Port port) {
-    const std::size_t bank = routes_[port].bank;
-    const PortMask together = ports_on(bank);
-    if (lowest_port(together) != port) return;
-    if (together == mask_of(port) && (were_shared >> bank & 1U) == 0 && !arbiters_[bank].needs_turnaround()) {
-      alone_ |= mask_of(port);
-    } else {
-      shared_ |= std::uint64_t{1} << bank;
-      shared_banks_.push_back({bank, &arbiters_[bank], together});
-    }
+  writes_ = 0;
+  placed_ = 0;
+  for_each_port(routed_, [this](Port port) {
+    if (routes_[port].write) writes_ |= mask_of(port);
+    if ((routes_[port].banks & (routes_[port].banks - 1)) != 0 && !has(visitors_, port))
+      placed_ |= mask_of(port);
   });
+  alone_ = 0;
+  shared_ = 0;
+  shared_banks_.clear();
+  for (std::size_t bank = 0; bank < arbiters_.size(); ++bank) {
+    const PortMask together = ports_on(bank);
+    if (together == 0) continue;
+    BankArbiter& arbiter = arbiters_[bank];
+    if (arbiter.has_rows()) placed_ |= together;
+    const Port first = lowest_port(together);
+    if (together == mask_of(first) && routes_[first].banks == bank_bit(bank) &&
+        (visited_ & bank_bit(bank)) == 0 && arbiter.grants_at_once()) {
+      alone_ |= together;
+      continue;
+    }
+    shared_ |= bank_bit(bank);
+    place_of_shared_[bank] = static_cast<std::uint8_t>(shared_banks_.size());
+    PortMask next = 0;
+    for_each_port(together, [&](Port port) { next |= routes_[port].bank == bank ? mask_of(port) : 0; });
+    shared_banks_.push_back({bank, &arbiter, next});
+  }
+  if (!grants_all_) return;
+  alone_ = routed_;
+  placed_ = 0;
+  shared_ = 0;
+  shared_banks_.clear();
 }
 
 // Adds the grants of these uncontended ports to the statistics, and moves the orders of their policies. To be
@@ -122,21 +148,23 @@ void Arbitration::settle(PortMask ports) {
   for_each_port(ports & alone_, [this](Port port) {
     const std::uint64_t grants = std::exchange(alone_grants_[port], 0);
     if (grants == 0) return;
-    const auto [bank, write] = routes_[port];
-    arbiters_[bank].count(alone_outcome(port, write), grants);
-    arbiters_[bank].grant_alone(port, write);
+    const Route& route = routes_[port];
+    arbiters_[route.bank].count(alone_outcome(port, route.write), grants);
+    arbiters_[route.bank].grant_alone(port, route.write);
   });
 }
 
 // The part of arbitrate() for requests to shared_banks_.
 PortMask Arbitration::arbitrate_shared(std::uint64_t cycle, PortMask requests) {
   PortMask granted = 0;
-  for (const SharedBank& shared : shared_banks_) {
+  for (SharedBank& shared : shared_banks_) {
     const auto asking = requests & shared.ports;
     if (asking == 0) continue;
-    const BankArbiter::Outcome outcome = shared.arbiter->decide(cycle, asking, writes_);
+    if (shared.arbiter->has_rows()) shared.arbiter->count_rows(cycle);
+    const BankArbiter::Outcome outcome = shared.arbiter->decide(cycle, asking, writes_, words_.data());
     shared.arbiter->count(outcome);
     granted |= outcome.granted;
+    shared.cause = outcome.cause;
   }
   return granted;
 }
@@ -185,10 +213,12 @@ std::vector<Stall> Arbitration::stalls_of(const CountChanges& changes) const {
   for (const auto& [place, change] : changes) {
     if (place < port_count_) continue;
     const auto stall = arbiters_.front().stats().stall_at((place - port_count_) % counts_of_bank());
-    if (stall) stalls.push_back({stall->first, stall->second, change});
+    if (stall)
+      stalls.push_back({stall->first, (place - port_count_) / counts_of_bank(), stall->second, change});
   }
-  std::sort(stalls.begin(), stalls.end(),
-            [](const Stall& a, const Stall& b) { return std::tie(a.port, a.by) < std::tie(b.port, b.by); });
+  std::sort(stalls.begin(), stalls.end(), [](const Stall& a, const Stall& b) {
+    return std::tie(a.port, a.bank, a.by) < std::tie(b.port, b.bank, b.by);
+  });
   return stalls;
 }
 

@@ -13,13 +13,15 @@ namespace stereotlm::memory {
 // Stall cycles of a port.
 struct Stall {
   Port port = 0;
-  std::size_t by = 0;  // the port that was granted, or ArbiterStats::kTurnaround
+  std::size_t bank = 0;  // number among Arbitration::shared_bank()
+  std::size_t by = 0;    // the port that was granted, or another cause (ArbiterStats)
   std::uint64_t cycles = 0;
 };
 
 // Arbitrates all banks (contract section 2): each port is routed to a bank, whose arbiter decides on its
-// requests. Used by Crossbar, by platform::run_core() without a crossbar, and by the core to skip cycles
-// (fpga::FastForward, fpga::HostPort). Plain C++, no SystemC.
+// requests. The parts of a striped buffer lie in several banks (contract 8.2): its port is routed to all of
+// them, and place() says which one it requests next. Used by Crossbar, by platform::run_core() without a
+// crossbar, and by the core to skip cycles (fpga::FastForward, fpga::HostPort). Plain C++, no SystemC.
 class Arbitration {
  public:
   Arbitration(const ArbiterConfig& arbiter, const std::vector<SsramBankConfig>& banks);
@@ -29,19 +31,34 @@ class Arbitration {
   // Routes the port to this bank from the next arbitrate() on. `write`: direction of all its requests. This
   // and the next two throw std::invalid_argument if the port is not one of the priority list, or the bank
   // does not exist.
-  void route(Port port, std::size_t bank, bool write);
+  void route(Port port, std::size_t bank, bool write) {
+    check_route(port, bank);
+    route_stripe(port, bank_bit(bank), write);
+  }
+  // Routes the port to several banks. `banks`: bit b for bank b.
+  void route_stripe(Port port, std::uint64_t banks, bool write);
+  // Sets the bank that a port with several banks requests, which is one of them, and the word of a bank of
+  // sdram. To be called before each arbitrate() with a request for another bank or another word.
+  void place(Port port, std::size_t bank, std::uint32_t word) {
+    words_[port] = word;
+    if (routes_[port].bank != bank) move(port, bank);
+  }
+  // The ports to which place() applies: those with several banks, and those of banks of sdram.
+  PortMask placed() const { return placed_; }
   // Removes the route of the port, which must not request from now on.
   void unroute(Port port);
   // Routes a port that changes its bank often. Its banks count as shared until the next route() or unroute().
   // So a visit of a shared bank changes nothing for the other ports: the words of append_state() keep their
   // layout, and a recording can go on.
   void visit(Port port, std::size_t bank, bool write);
-  // Whether the bank has several ports, or turnaround, or was visited.
+  // Whether the bank is that of several ports or of a port with several banks, or does not grant at once, or
+  // was visited.
   bool is_shared(std::size_t bank) const { return (shared_ >> bank & 1U) != 0; }
-  // All such banks: bit b for bank b.
+  // All such banks.
   std::uint64_t shared() const { return shared_; }
-  std::size_t bank_of(Port port) const { return routes_[port].bank; }  // bank of its last route
-  bool writes(Port port) const { return routes_[port].write; }         // direction of its last route
+  std::size_t bank_of(Port port) const { return routes_[port].bank; }      // bank of its last route
+  std::uint64_t banks_of(Port port) const { return routes_[port].banks; }  // all of its banks
+  bool writes(Port port) const { return routes_[port].write; }             // direction of its last route
   bool is_routed(Port port) const { return has(routed_, port); }
   // Whether a port other than this one is routed to the bank.
   bool is_used_beside(Port port, std::size_t bank) const { return (ports_on(bank) & ~mask_of(port)) != 0; }
@@ -59,7 +76,7 @@ class Arbitration {
     return granted | arbitrate_shared(cycle, requests & ~alone_);
   }
   // The cause of a stall of this port in the cycle in which arbitrate() has returned `granted`: the port that
-  // its bank has granted, or ArbiterStats::kTurnaround.
+  // its bank has granted, or another cause.
   std::size_t cause_of(Port port, PortMask granted) const;
   // Whether the port is the only one on its bank, and the bank has no turnaround. Then each request is
   // granted in its cycle, as long as no route changes.
@@ -85,7 +102,9 @@ class Arbitration {
   CountChanges take_recorded() const;
   // Adds the counts of skipped cycles.
   void count_skipped(const CountChanges& changes, std::uint64_t times);
-  // The stalls among the changes, sorted by port and cause.
+  // The banks of shared(), in their order.
+  std::size_t shared_bank(std::size_t number) const { return shared_banks_[number].bank; }
+  // The stalls among the changes, sorted by port, bank and cause.
   std::vector<Stall> stalls_of(const CountChanges& changes) const;
 
   // The statistics count cycles first_cycle .. end_cycle - 1 only, and are complete after end_counting().
@@ -98,19 +117,22 @@ class Arbitration {
 
  private:
   struct Route {
-    std::size_t bank = 0;
+    std::size_t bank = 0;  // that the port requests next
     bool write = false;
+    std::uint64_t banks = 0;  // all of its banks
   };
-  // A bank with several ports, or with turnaround, or that was visited.
+  // See is_shared().
   struct SharedBank {
     std::size_t bank = 0;
     BankArbiter* arbiter = nullptr;
-    PortMask ports = 0;
+    PortMask ports = 0;               // those that request it next
+    std::size_t cause = kTurnaround;  // of the last cycle with a request and without a grant
   };
 
+  static constexpr std::uint64_t bank_bit(std::size_t bank) { return std::uint64_t{1} << bank; }
   void check_route(Port port, std::size_t bank) const;
-  void set_route(Port port, std::size_t bank, bool write);
-  SharedBank* find_shared(std::size_t bank);
+  void forget_visits();
+  void move(Port port, std::size_t bank);
   PortMask ports_on(std::size_t bank) const;
   void share_banks();
   void settle(PortMask ports);
@@ -123,16 +145,21 @@ class Arbitration {
   std::vector<BankArbiter> arbiters_;
   std::size_t port_count_;
   std::array<Route, kMostPorts> routes_{};
+  std::array<std::uint32_t, kMostPorts> words_{};  // [port]: see place()
   PortMask routed_ = 0;
-  PortMask writes_ = 0;       // ports whose route writes
+  PortMask writes_ = 0;    // ports whose route writes
+  PortMask placed_ = 0;    // see placed()
+  PortMask visitors_ = 0;  // ports that have visited banks
+  std::uint64_t visited_ = 0;
   std::uint64_t shared_ = 0;  // see shared()
   // Uncontended ports: each is alone on a bank that is not shared. They need no arbitration. Their grants are
   // added to the statistics when they cease to be alone, and when counting begins or ends.
   PortMask alone_ = 0;
   bool grants_all_ = false;                               // all ports count as alone
   std::array<std::uint64_t, kMostPorts> alone_grants_{};  // [port]
-  std::vector<SharedBank> shared_banks_;
-  std::vector<std::uint64_t> recorded_;  // the counts when the recording began
+  std::vector<SharedBank> shared_banks_;                  // in the order of the banks
+  std::array<std::uint8_t, 64> place_of_shared_{};        // [bank]: in shared_banks_
+  std::vector<std::uint64_t> recorded_;                   // the counts when the recording began
 };
 
 }  // namespace stereotlm::memory

@@ -55,6 +55,8 @@ class Crossbar : public sc_core::sc_module, public DirectBanks {
   }
   // Grants these ports one access each in the current cycle. For an owner that calls arbitration() itself.
   PortMask grant(PortMask granted) {
+    for_each_port(granted & arbitration_.placed(),
+                  [this](Port port) { aim(port, arbitration_.bank_of(port), arbitration_.writes(port)); });
     granted_ = {static_cast<std::uint64_t>(granted), static_cast<std::uint64_t>(granted >> 64U)};
     return granted;
   }

@@ -21,6 +21,11 @@ std::vector<std::string> problems(const SsramBankConfig& config) {
   } else if (const auto rule = broken_turnaround_rule(config.kind, config.turnaround_cycles); !rule.empty()) {
     found.push_back("turnaround_cycles = " + std::to_string(config.turnaround_cycles) + ": must be " + rule);
   }
+  if (config.sdram.has_value() != (config.kind == BankKind::kSdram))
+    found.emplace_back(config.sdram ? "sdram: only for the kind sdram" : "sdram: missing for the kind sdram");
+  if (config.sdram) {
+    for (const std::string& problem : problems(*config.sdram)) found.push_back("sdram: " + problem);
+  }
   if (!(config.clock_mhz >= 1 && config.clock_mhz <= 1000)) {
     found.push_back("clock_mhz = " + std::to_string(config.clock_mhz) + ": must be 1..1000");
   }

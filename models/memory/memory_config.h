@@ -2,11 +2,13 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "models/kernels/integer_rule.h"
 #include "models/memory/bank_traits.h"
+#include "models/memory/sdram.h"
 
 namespace stereotlm::memory {
 
@@ -58,12 +60,19 @@ struct ArbiterConfig {
   PriorityList priority;                  // all ports, each once; the policy says what the order means
 };
 
+// A bank: SSRAM, or SDRAM in its place.
 struct SsramBankConfig {
   std::uint32_t words = 524288;  // 32-bit words, kBankWordsRule
   BankKind kind = BankKind::kZbtPipelined;
-  int turnaround_cycles = 0;  // kTurnaroundRule if the kind has turnaround, else 0
-  double clock_mhz = 40;      // clock of the bank, 1..1000
+  int turnaround_cycles = 0;                        // kTurnaroundRule if the kind has turnaround, else 0
+  double clock_mhz = 40;                            // clock of the bank, 1..1000
+  std::optional<SdramTiming> sdram = std::nullopt;  // of this kind only, which needs it
 };
+
+// From the grant of a read to the cycle in which its reader can use the word.
+inline int read_latency_cycles(const SsramBankConfig& bank) {
+  return bank.sdram ? bank.sdram->cas_latency : traits_of(bank.kind).read_latency_cycles;
+}
 
 // Returns the rule that `turnaround_cycles` breaks for a bank of this kind, such as "1..16 for sync_burst";
 // empty if the value is allowed.

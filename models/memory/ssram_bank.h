@@ -12,10 +12,10 @@
 
 namespace stereotlm::memory {
 
-// One synchronous SRAM bank (RamTarget): one 32-bit word per access, with or without byte enables. A read
-// takes the time until its reader can use the word. The arbiter in front of the bank decides which port may
-// access it. A bank with separate ports also has one socket: if a cycle has a read and a write, the
-// initiators read first. Words are in the byte order of the host computer.
+// One synchronous SRAM bank, or one of SDRAM (RamTarget): one 32-bit word per access, with or without byte
+// enables. A read takes the time until its reader can use the word. The arbiter in front of the bank decides
+// which port may access it. A bank with separate ports also has one socket: if a cycle has a read and a
+// write, the initiators read first. Words are in the byte order of the host computer.
 class SsramBank : public sc_core::sc_module {
  public:
   using Stats = RamTarget::Stats;
@@ -38,7 +38,7 @@ class SsramBank : public sc_core::sc_module {
  private:
   static sc_core::sc_time read_time(const SsramBankConfig& config) {
     kernel_time::check_resolution();
-    const auto cycles = static_cast<std::uint64_t>(read_latency_cycles(config.kind));
+    const auto cycles = static_cast<std::uint64_t>(read_latency_cycles(config));
     return kernel_time::to_time(Clock(config.clock_mhz).edge_ps(cycles));
   }
 

@@ -2,13 +2,15 @@
 
 #include <numeric>
 
+#include "platform/config/buffer_layout.h"
+
 namespace stereotlm::platform {
 
 std::vector<memory::SsramBankConfig> ssram_configs(const BoardConfig& board) {
   std::vector<memory::SsramBankConfig> banks;
   for (const BankConfig& bank : board.banks) {
-    banks.push_back(
-        {static_cast<std::uint32_t>(bank.words), bank.kind, bank.turnaround_cycles, board.fpga.clock_mhz});
+    banks.push_back({static_cast<std::uint32_t>(bank.words), bank.kind, bank.turnaround_cycles,
+                     board.fpga.clock_mhz, bank.sdram});
   }
   return banks;
 }
@@ -30,6 +32,7 @@ fpga::CoreConfig core_config(const BoardConfig& board) {
   core.joint_tables = board.fpga.joint_tables;
   core.pixel_cache = board.fpga.pixel_cache;
   core.lanes = board.fpga.lanes;
+  core.stripes = stripes_of(board);
   core.clock_mhz = board.fpga.clock_mhz;
   core.lane_fifo_slots = board.fpga.lane_fifo_slots;
   core.result_fifo_words = board.fpga.result_fifo_words;

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "models/capture/capture_config.h"
@@ -72,23 +73,36 @@ struct FpgaConfig {
   fpga::PixelCache pixel_cache = fpga::PixelCache::kNone;
 };
 
-// One SSRAM bank with everything that `ssram.default` supplies filled in.
+// One bank with everything that `ssram.default` supplies filled in.
 struct BankConfig {
   std::string name;
   int words = 524288;  // 32-bit words, 1..2^26
   memory::BankKind kind = memory::BankKind::kZbtPipelined;
-  int turnaround_cycles = 0;  // 1..16 if the kind has turnaround, else 0
+  int turnaround_cycles = 0;                                // 1..16 if the kind has turnaround, else 0
+  std::optional<memory::SdramTiming> sdram = std::nullopt;  // of this kind only
 };
 
-// The bank of each buffer, by name. The frames use the entries of a list in turn. A list has 1 to 3 entries;
+// The banks of a buffer, by name: one, or 2 to 16 over which its rows are striped (contract 8.2).
+struct BufferBanks {
+  BufferBanks(std::string bank) : banks{std::move(bank)} {}  // NOLINT: an unstriped buffer is just its bank
+  BufferBanks(const char* bank) : BufferBanks(std::string(bank)) {}  // NOLINT
+  explicit BufferBanks(std::vector<std::string> stripe) : banks(std::move(stripe)) {}
+
+  bool is_striped() const { return banks.size() > 1; }
+  friend bool operator==(const BufferBanks& a, const BufferBanks& b) { return a.banks == b.banks; }
+
+  std::vector<std::string> banks;  // row y is in bank number y mod N
+};
+
+// The banks of each buffer. The frames use the entries of a list in turn. A list has 1 to 3 entries;
 // the two image lists are equally long. A side whose `.._lut` has no value has no look-up table (`none`).
-// With joint tables both name the bank of the one table.
+// With joint tables both name the banks of the one table.
 struct AllocationConfig {
-  std::vector<std::string> left_image = {"bank0", "bank1"};
-  std::vector<std::string> right_image = {"bank2", "bank3"};
-  std::vector<std::string> disparity = {"bank4", "bank5"};
-  std::optional<std::string> left_lut = "bank6";
-  std::optional<std::string> right_lut = "bank7";
+  std::vector<BufferBanks> left_image = {"bank0", "bank1"};
+  std::vector<BufferBanks> right_image = {"bank2", "bank3"};
+  std::vector<BufferBanks> disparity = {"bank4", "bank5"};
+  std::optional<BufferBanks> left_lut = "bank6";
+  std::optional<BufferBanks> right_lut = "bank7";
 };
 
 struct MatcherConfig {

@@ -25,6 +25,7 @@ namespace {
 using Entry = YamlNode::Entry;
 
 constexpr std::size_t kMaximumBuffers = 3;  // entries of an image or disparity list
+const std::string kRefreshCycles = "refresh_cycles";
 
 // The value of a key's field. The accessors need a board that is not const.
 template <typename Field>
@@ -210,39 +211,83 @@ YamlNode write_priority(const BoardConfig& board) {
   return YamlNode::list(std::move(ports));
 }
 
-// Reads the names of banks. Whether they exist is a rule between keys (board_rules.cpp).
-void read_banks(ValueReader& values, const Key& key, const YamlNode& node, std::vector<std::string>& banks) {
+// Reads the banks of a buffer: a name, or {rows: [names]}. Whether they exist is a rule between keys
+// (board_rules.cpp). `path`: of the buffer.
+std::optional<BufferBanks> read_buffer(ValueReader& values, const Key& key, const std::string& path,
+                                       const YamlNode& node) {
+  if (!values.check_use(key.path, node)) return std::nullopt;
+  if (node.is_scalar()) {
+    values.accept(path, node.place);
+    return BufferBanks(node.text);
+  }
+  const Entry* const entry = node.is_map() && node.entries.size() == 1 ? node.find("rows") : nullptr;
+  const std::string rule =
+      fmt::format("a stripe {{rows: [..]}} has {} different banks", fpga::kStripeRule.text());
+  if (entry == nullptr) {
+    values.report(key.path, node, key.rule_text);
+    return std::nullopt;
+  }
+  const YamlNode* const rows = &entry->value;
+  std::vector<std::string> banks;
+  const std::size_t before = values.finding_count();
+  for (const YamlNode& item : rows->items) {
+    if (!values.check_use(key.path, item)) continue;
+    if (!item.is_scalar()) {
+      values.report(key.path, item, rule);
+    } else if (std::find(banks.begin(), banks.end(), item.text) != banks.end()) {
+      values.report(key.path, item, "twice in one stripe; " + rule);
+    } else {
+      values.accept(fmt::format("{}.rows[{}]", path, banks.size()), item.place);
+      banks.push_back(item.text);
+    }
+  }
+  if (values.finding_count() != before) return std::nullopt;
+  if (!rows->is_list() || !fpga::kStripeRule.allows(static_cast<std::int64_t>(banks.size()))) {
+    values.report(key.path, *rows, rule);
+    return std::nullopt;
+  }
+  return BufferBanks(banks);
+}
+
+void read_banks(ValueReader& values, const Key& key, const YamlNode& node, std::vector<BufferBanks>& list) {
   const std::vector<YamlNode> single = {node};
   const std::vector<YamlNode>& items = node.is_list() ? node.items : single;
   if (items.empty() || items.size() > kMaximumBuffers) return values.report(key.path, node, key.rule_text);
   const std::size_t before = values.finding_count();
-  banks.clear();
+  list.clear();
   for (const YamlNode& item : items) {
-    if (!values.check_use(key.path, item)) continue;
-    if (!item.is_scalar()) {
-      values.report(key.path, item, key.rule_text);
-      continue;
-    }
-    values.accept(fmt::format("{}[{}]", key.path, banks.size()), item.place);
-    banks.push_back(item.text);
+    if (auto banks = read_buffer(values, key, fmt::format("{}[{}]", key.path, list.size()), item))
+      list.push_back(*banks);
   }
   if (values.finding_count() == before) values.accept(key.path, node.place);
 }
 
-void read_banks(ValueReader& values, const Key& key, const YamlNode& node, std::optional<std::string>& bank) {
+void read_banks(ValueReader& values, const Key& key, const YamlNode& node,
+                std::optional<BufferBanks>& table) {
   const YamlNode& item = node.is_list() && node.items.size() == 1 ? node.items[0] : node;
-  if (!values.check_use(key.path, item)) return;
-  if (!item.is_scalar()) return values.report(key.path, item, key.rule_text);
-  values.accept(key.path, item.place);
-  bank = item.text == "none" ? std::nullopt : std::optional(item.text);
+  if (auto banks = read_buffer(values, key, key.path, item)) {
+    if (banks->is_striped()) values.accept(key.path, item.place);
+    table = item.is("none") ? std::nullopt : std::optional(*banks);
+  }
 }
 
-YamlNode banks_node(const std::vector<std::string>& banks) {
+YamlNode banks_node(const BufferBanks& in) {
+  if (!in.is_striped()) return YamlNode::word(in.banks.front());
   std::vector<YamlNode> items;
-  for (const std::string& bank : banks) items.push_back(YamlNode::word(bank));
+  for (const std::string& bank : in.banks) items.push_back(YamlNode::word(bank));
+  YamlNode node = YamlNode::map();
+  node.style = YamlNode::Style::kOther;
+  node.add(YamlNode::word("rows"), YamlNode::list(std::move(items)));
+  return node;
+}
+YamlNode banks_node(const std::vector<BufferBanks>& list) {
+  std::vector<YamlNode> items;
+  for (const BufferBanks& banks : list) items.push_back(banks_node(banks));
   return YamlNode::list(std::move(items));
 }
-YamlNode banks_node(const std::optional<std::string>& bank) { return YamlNode::word(bank.value_or("none")); }
+YamlNode banks_node(const std::optional<BufferBanks>& in) {
+  return in ? banks_node(*in) : YamlNode::word("none");
+}
 
 Key banks_key(Buffer buffer, const char* meaning, const std::string& rule) {
   const auto read = [buffer](ValueReader& values, const Key& key, const Entry& entry, BoardConfig& board) {
@@ -346,21 +391,48 @@ YamlNode write_cost(const BoardConfig& board) {
   return node;
 }
 
+std::string rule_of(const BankTimingKey& key) {
+  const std::string kind = memory::traits_of(key.kind).name;
+  if (key.name == kRefreshCycles)
+    return fmt::format("{}; required where the kind is {} and refreshes, refused beside off or another kind",
+                       key.rule_text(), kind);
+  return fmt::format("{}; required where the kind is {}, refused beside another", key.rule_text(), kind);
+}
+
+// The keys of `ssram`.
+std::vector<Key> bank_keys() {
+  const std::string kinds = listed(bank_kind_names());
+  const std::string words = memory::kBankWordsRule.text();
+  std::vector<Key> keys = {
+      part("ssram.default.words", "depth of a bank that gives none of its own", "words", words,
+           memory::kBankWordsRule),
+      part("ssram.default.kind", "kind of a bank that gives none of its own", "", kinds)};
+  const auto add_timing = [&keys](const std::string& path, const char* of) {
+    for (const BankTimingKey& key : bank_timing_keys())
+      keys.push_back(optional(part((path + key.name).c_str(), fmt::format("{}{}", key.meaning, of), key.unit,
+                                   rule_of(key), key.rule)));
+  };
+  add_timing("ssram.default.", "; of a bank that gives none of its own");
+  keys.push_back(optional(
+      part("ssram.banks.NAME.words", "depth of the bank NAME", "words", words, memory::kBankWordsRule)));
+  keys.push_back(optional(part("ssram.banks.NAME.kind", "kind of the bank NAME", "", kinds)));
+  add_timing("ssram.banks.NAME.", "; of the bank NAME");
+  return keys;
+}
+
 std::vector<Key> make_keys() {
   using B = BoardConfig;
-  const std::string list_rule = "a bank, or a list of 1 to 3 banks";
+  const std::string one =
+      fmt::format("a bank, a stripe {{rows: [..]}} of {} banks, or ", fpga::kStripeRule.text());
+  const std::string list_rule = one + "a list of 1 to 3 of them";
   const std::string image_rule = list_rule + "; left_image and right_image equally long";
-  const std::string table_rule = "a bank or none";
+  const std::string table_rule = one + "none";
   const std::string kinds = listed(bank_kind_names());
-  const std::string turnaround_rule = fmt::format("{}; required where the kind is {}, refused beside another",
-                                                  memory::kTurnaroundRule.text(), turnaround_kinds());
-  const std::string default_turnaround =
-      fmt::format("turnaround of a {} bank that gives none of its own", turnaround_kinds());
   Key trigger_words =
       integer("capture.fifo_trigger_words", [](B& b) { return &b.capture.fifo_trigger_words; },
               "words in the FIFO at which it asks for the PCI bus", "words", {1, 4096});
   trigger_words.rule_text = "1..fifo_words";
-  return {
+  std::vector<Key> all = {
       coded(
           "name", read_name, [](const B& b) { return YamlNode::word(b.name); },
           "the board's name, as results give it",
@@ -457,17 +529,6 @@ std::vector<Key> make_keys() {
           "and 1 "
           "unless matcher.fetch is column; optional, without it 1",
           "lanes", fpga::kLanesRule)),
-      part("ssram.default.words", "depth of a bank that gives none of its own", "words",
-           memory::kBankWordsRule.text(), memory::kBankWordsRule),
-      part("ssram.default.kind", "kind of a bank that gives none of its own", "", kinds),
-      optional(part("ssram.default.turnaround_cycles", default_turnaround, "cycles", turnaround_rule,
-                    memory::kTurnaroundRule)),
-      optional(part("ssram.banks.NAME.words", "depth of the bank NAME", "words",
-                    memory::kBankWordsRule.text(), memory::kBankWordsRule)),
-      optional(part("ssram.banks.NAME.kind", "kind of the bank NAME", "", kinds)),
-      optional(part("ssram.banks.NAME.turnaround_cycles",
-                    "cycles lost when the bank NAME changes between reads and writes", "cycles",
-                    turnaround_rule, memory::kTurnaroundRule)),
       banks_key(Buffer::kLeftImage, "banks of the left input buffers, used in turn", image_rule),
       banks_key(Buffer::kRightImage, "banks of the right input buffers, used in turn", image_rule),
       banks_key(Buffer::kDisparity, "banks of the result buffers, used in turn", list_rule),
@@ -506,6 +567,11 @@ std::vector<Key> make_keys() {
       part("matcher.cost.census", "rows and columns of the neighbourhood of the census bits", "pixels",
            listed(census_size_texts()), kernels::kCensusSizeRule),
   };
+  const auto allocation = std::find_if(all.begin(), all.end(),
+                                       [](const Key& key) { return key.path == key_of(Buffer::kLeftImage); });
+  const std::vector<Key> banks = bank_keys();
+  all.insert(allocation, banks.begin(), banks.end());
+  return all;
 }
 
 }  // namespace
@@ -562,12 +628,56 @@ const std::vector<std::string>& bank_kind_names() {
   return kNames;
 }
 
-std::string turnaround_kinds() {
-  std::vector<std::string> names;
-  for (const memory::BankTraits& traits : memory::kBankTraits) {
-    if (traits.has_turnaround) names.emplace_back(traits.name);
-  }
-  return listed(names);
+std::string BankTimingKey::rule_text() const {
+  return rule.text() + (is_power_of_two ? ", a power of two" : "") + (may_be_off ? " or off" : "");
+}
+
+const std::vector<BankTimingKey>& bank_timing_keys() {
+  using memory::BankKind;
+  using memory::SdramTiming;
+  using B = BankConfig;
+  // With a value that is read, the timing of the other keys follows.
+  static const auto sdram = [](B& bank) -> SdramTiming& {
+    if (!bank.sdram) bank.sdram.emplace();
+    return *bank.sdram;
+  };
+  constexpr BankKind kSdram = BankKind::kSdram;
+  static const std::vector<BankTimingKey> kKeys = {
+      {"turnaround_cycles", BankKind::kSyncBurst, "cycles lost between a read and a write", "cycles",
+       memory::kTurnaroundRule, false, false, [](const B& bank) { return bank.turnaround_cycles; },
+       [](B& bank, int value) { bank.turnaround_cycles = value; }},
+      {"cas_latency", kSdram, "read latency", "cycles", memory::kCasLatencyRule, false, false,
+       [](const B& bank) { return bank.sdram->cas_latency; },
+       [](B& bank, int value) { sdram(bank).cas_latency = value; }},
+      {"row_words", kSdram, "32-bit words of a row", "words", memory::kRowWordsRule, true, false,
+       [](const B& bank) { return bank.sdram->row_words; },
+       [](B& bank, int value) { sdram(bank).row_words = value; }},
+      {"internal_banks", kSdram, "banks inside the memory, each with an open row", "banks",
+       memory::kInternalBanksRule, true, false, [](const B& bank) { return bank.sdram->internal_banks; },
+       [](B& bank, int value) { sdram(bank).internal_banks = value; }},
+      {"activate_cycles", kSdram, "cycles to open a row", "cycles", memory::kRowCyclesRule, false, false,
+       [](const B& bank) { return bank.sdram->activate_cycles; },
+       [](B& bank, int value) { sdram(bank).activate_cycles = value; }},
+      {"precharge_cycles", kSdram, "cycles to close a row", "cycles", memory::kRowCyclesRule, false, false,
+       [](const B& bank) { return bank.sdram->precharge_cycles; },
+       [](B& bank, int value) { sdram(bank).precharge_cycles = value; }},
+      {"refresh_interval_cycles", kSdram, "cycles from one refresh to the next", "cycles",
+       memory::kRefreshIntervalRule, false, true,
+       [](const B& bank) { return bank.sdram->refresh_interval_cycles.value_or(0); },
+       [](B& bank, int value) {
+         sdram(bank).refresh_interval_cycles = value == 0 ? std::nullopt : std::optional(value);
+       }},
+      {kRefreshCycles.c_str(), kSdram, "cycles of a refresh", "cycles", memory::kRefreshCyclesRule, false,
+       false, [](const B& bank) { return bank.sdram->refresh_cycles; },
+       [](B& bank, int value) { sdram(bank).refresh_cycles = value; }},
+  };
+  return kKeys;
+}
+
+bool needs_key(const BankConfig& bank, const BankTimingKey& key) {
+  if (bank.kind != key.kind) return false;
+  const bool refreshes = bank.sdram && bank.sdram->refresh_interval_cycles.has_value();
+  return key.name != kRefreshCycles || refreshes;
 }
 
 bool is_bank_name(std::string_view name) {

@@ -104,8 +104,24 @@ std::string cost_text(const kernels::MatchingCost& cost);
 
 // The names that board files use for the kinds of banks, in the order of memory::BankKind.
 const std::vector<std::string>& bank_kind_names();
-// The kinds of banks that have turnaround, joined by listed(): "sync_burst".
-std::string turnaround_kinds();
+// A key of `ssram.default` and of a bank that is required for banks of one kind, and without effect for all
+// others. In one entry with another kind it is an error.
+struct BankTimingKey {
+  const char* name;
+  memory::BankKind kind;
+  const char* meaning;
+  const char* unit;
+  IntegerRule rule;
+  bool is_power_of_two;
+  bool may_be_off;  // 0 stands for off
+  int (*get)(const BankConfig&);
+  void (*set)(BankConfig&, int);
+
+  std::string rule_text() const;  // of the value
+};
+const std::vector<BankTimingKey>& bank_timing_keys();
+// Whether the bank needs the key: refresh_cycles only with a refresh.
+bool needs_key(const BankConfig& bank, const BankTimingKey& key);
 
 inline constexpr const char* kBankNameRule = "a bank's name is [A-Za-z][A-Za-z0-9_-]*, and not none";
 bool is_bank_name(std::string_view name);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 #include <stdexcept>
 
@@ -32,8 +33,8 @@ struct Given {
 struct BankEntry {
   Place key;
   Given words;
-  Given kind;  // index of memory::kBankTraits
-  Given turnaround_cycles;
+  Given kind;                           // index of memory::kBankTraits
+  std::map<std::string, Given> timing;  // [name of a BankTimingKey]
 };
 
 // Null if there is no kind, or it could not be read.
@@ -102,30 +103,60 @@ class BoardReader {
     for (const YamlNode::Entry* const given : *entries) {
       const std::string& name = given->key.text;
       const std::string full = below(path, name);
-      const auto& numbers = board_key(below(schema, name)).numbers;
-      const std::optional<int> value =
-          numbers ? values_.read_integer(full, given->value, *numbers, numbers->text())
-                  : values_.read_word(full, given->value, bank_kind_names());
-      Given& field = !numbers ? bank.kind : name == "words" ? bank.words : bank.turnaround_cycles;
-      field = {true, given->value.place, value};
+      if (const BankTimingKey* const key = timing_key(name)) {
+        bank.timing[name] = {true, given->value.place, read_timing(full, given->value, *key)};
+      } else if (name == "words") {
+        bank.words = {
+            true, given->value.place,
+            values_.read_integer(full, given->value, memory::kBankWordsRule, memory::kBankWordsRule.text())};
+      } else {
+        bank.kind = {true, given->value.place, values_.read_word(full, given->value, bank_kind_names())};
+      }
     }
-    check_turnaround_use(path, bank);
+    check_timing_use(path, bank);
     return bank;
   }
 
-  // An entry with turnaround cycles and a kind without turnaround is a mistake. If the entry inherits its
-  // kind, turnaround cycles are allowed, and have an effect only if that kind has turnaround.
-  void check_turnaround_use(const std::string& path, const BankEntry& entry) {
-    const Given& given = entry.turnaround_cycles;
-    const Given& kind = entry.kind;
-    if (!given.value || !kind.value || traits_of(kind)->has_turnaround) return;
-    // Turnaround cycles of a preset count as inherited: the file or `--set` has overridden the kind beside
-    // them.
-    if (given.place.source == Place::kPreset) return;
-    values_.report_between_keys(
-        latest(given.place, kind.place),
-        fmt::format("{}.turnaround_cycles = {}: only where the kind is {}, and it is {}", path, *given.value,
-                    turnaround_kinds(), traits_of(kind)->name));
+  static const BankTimingKey* timing_key(const std::string& name) {
+    for (const BankTimingKey& key : bank_timing_keys()) {
+      if (key.name == name) return &key;
+    }
+    return nullptr;
+  }
+
+  std::optional<int> read_timing(const std::string& path, const YamlNode& node, const BankTimingKey& key) {
+    if (key.may_be_off && node.is("off")) return 0;
+    const auto value = values_.read_integer(path, node, key.rule, key.rule_text());
+    if (!value || !key.is_power_of_two || memory::is_power_of_two(*value)) return value;
+    values_.report(path, node, key.rule_text());
+    return std::nullopt;
+  }
+
+  // An entry with a timing of another kind than its own is a mistake. If the entry inherits its kind, the
+  // timing is allowed, and has an effect only if it is of that kind. So is the time of a refresh beside
+  // `off`.
+  void check_timing_use(const std::string& path, const BankEntry& entry) {
+    const auto off = entry.timing.find("refresh_interval_cycles");
+    for (const BankTimingKey& key : bank_timing_keys()) {
+      const auto found = entry.timing.find(key.name);
+      if (found == entry.timing.end()) continue;
+      const Given& given = found->second;
+      // Those of a preset count as inherited: the file or `--set` has overridden the kind beside them.
+      if (!given.value || given.place.source == Place::kPreset) continue;
+      const auto report = [&](const Place& place, const std::string& rule) {
+        values_.report_between_keys(
+            latest(given.place, place),
+            fmt::format("{}.{} = {}: {}", path, key.name,
+                        *given.value == 0 ? "off" : std::to_string(*given.value), rule));
+      };
+      if (entry.kind.value && traits_of(entry.kind)->kind != key.kind) {
+        report(entry.kind.place, fmt::format("only where the kind is {}, and it is {}",
+                                             memory::traits_of(key.kind).name, traits_of(entry.kind)->name));
+      } else if (key.name == std::string("refresh_cycles") && off != entry.timing.end() &&
+                 off->second.value == 0) {
+        report(off->second.place, "only with a refresh, and refresh_interval_cycles is off");
+      }
+    }
   }
 
   void read_banks(const YamlNode& node, const BankEntry& defaults) {
@@ -146,35 +177,23 @@ class BoardReader {
     if (!entries) return;
     const bool names_valid = values_.finding_count() == before;
     board_.banks.clear();
-    bool default_lacks_turnaround = false;
+    std::set<std::string> default_lacks;
     for (const YamlNode::Entry* const entry : *entries)
-      read_bank(below(path, entry->key.text), *entry, defaults, default_lacks_turnaround);
+      read_bank(below(path, entry->key.text), *entry, defaults, default_lacks);
     if (names_valid) values_.accept(path, node.place);
-    if (default_lacks_turnaround) {
-      values_.report_missing_beside(latest(defaults.key, defaults.kind.place),
-                                    "ssram.default.turnaround_cycles",
-                                    rule_text("ssram.default.turnaround_cycles"));
+    for (const BankTimingKey& key : bank_timing_keys()) {
+      if (default_lacks.count(key.name) == 0) continue;
+      const std::string full = below("ssram.default", key.name);
+      values_.report_missing_beside(latest(defaults.key, defaults.kind.place), full, rule_text(full));
     }
   }
 
   void read_bank(const std::string& path, const YamlNode::Entry& node, const BankEntry& defaults,
-                 bool& default_lacks_turnaround) {
+                 std::set<std::string>& default_lacks) {
     const BankEntry own = read_bank_entry(path, node);
-    const auto given = [&](Given BankEntry::*field) {
-      return (own.*field).present ? own.*field : defaults.*field;
-    };
-    const Given words = given(&BankEntry::words);
-    const Given turnaround = given(&BankEntry::turnaround_cycles);
-    const memory::BankTraits* const traits = traits_of(given(&BankEntry::kind));
-    if (traits != nullptr && traits->has_turnaround && !turnaround.present) {
-      if (own.kind.present) {
-        values_.report_missing_beside(latest(latest(own.key, own.kind.place), defaults.key),
-                                      path + ".turnaround_cycles",
-                                      rule_text("ssram.banks.NAME.turnaround_cycles"));
-      } else {
-        default_lacks_turnaround = true;
-      }
-    }
+    const Given& words = own.words.present ? own.words : defaults.words;
+    const Given& kind = own.kind.present ? own.kind : defaults.kind;
+    const memory::BankTraits* const traits = traits_of(kind);
     BankConfig bank;
     bank.name = node.key.text;
     if (words.value) {
@@ -183,8 +202,25 @@ class BoardReader {
     }
     if (traits != nullptr) {
       bank.kind = traits->kind;
-      if (traits->has_turnaround) bank.turnaround_cycles = turnaround.value.value_or(0);
+      values_.accept(path + ".kind", kind.place);
     }
+    for (const BankTimingKey& key : bank_timing_keys()) {
+      if (traits == nullptr || !needs_key(bank, key)) continue;
+      const auto in_own = own.timing.find(key.name);
+      const auto in_defaults = defaults.timing.find(key.name);
+      if (in_own != own.timing.end() || in_defaults != defaults.timing.end()) {
+        const Given& given = (in_own != own.timing.end() ? in_own : in_defaults)->second;
+        if (!given.value) continue;
+        key.set(bank, *given.value);
+        values_.accept(below(path, key.name), given.place);
+      } else if (own.kind.present) {
+        values_.report_missing_beside(latest(latest(own.key, own.kind.place), defaults.key),
+                                      below(path, key.name), rule_text(below("ssram.banks.NAME", key.name)));
+      } else {
+        default_lacks.insert(key.name);
+      }
+    }
+    if (bank.kind == memory::BankKind::kSdram && !bank.sdram) bank.sdram.emplace();
     board_.banks.push_back(std::move(bank));
   }
 

@@ -9,8 +9,14 @@
 namespace stereotlm::platform {
 namespace {
 
-std::string list_text(const std::vector<std::string>& words) {
-  return fmt::format("[{}]", fmt::join(words, ", "));
+std::string text_of(const BufferBanks& in) {
+  return in.is_striped() ? fmt::format("{{rows: [{}]}}", fmt::join(in.banks, ", ")) : in.banks.front();
+}
+
+std::string list_text(const std::vector<BufferBanks>& list) {
+  std::vector<std::string> texts;
+  for (const BufferBanks& in : list) texts.push_back(text_of(in));
+  return fmt::format("[{}]", fmt::join(texts, ", "));
 }
 
 class RuleChecker {
@@ -28,6 +34,8 @@ class RuleChecker {
     if (fits_width && fits_height) check_bank_depths();
     check_list_lengths();
     check_bank_names();
+    check_stripes();
+    check_refreshes();
     check_joint_tables();
     check_matcher();
     return std::move(found_);
@@ -127,11 +135,12 @@ class RuleChecker {
     const Buffer other = left ? Buffer::kLeftLut : Buffer::kRightLut;
     require(!board_.fpga.joint_tables || (left && left == right),
             {key_of(wrong), key_of(other), "fpga.tables"}, [&] {
-              const std::optional<std::string>& bank = left ? left : right;
-              const std::string rule = bank ? fmt::format("must be {}, the bank of {}", *bank, name_of(other))
-                                            : "must be a bank, and right_lut the same bank";
+              const auto& in = left ? left : right;
+              const std::string rule = in ? fmt::format("must be {}, the bank{} of {}", text_of(*in),
+                                                        in->is_striped() ? "s" : "", name_of(other))
+                                          : "must be a bank, and right_lut the same bank";
               return fmt::format("{} = {}: {}, because fpga.tables is joint; or set fpga.tables to separate",
-                                 key_of(wrong), left ? right.value_or("none") : "none", rule);
+                                 key_of(wrong), left && right ? text_of(*right) : "none", rule);
             });
   }
 
@@ -183,6 +192,47 @@ class RuleChecker {
       found_.push_back({fmt::format("{} = {}: not a bank of this board{}", key_of(buffer.buffer), buffer.bank,
                                     nearest_text(buffer.bank, names)),
                         {buffer.path(), "ssram.banks"}});
+    }
+  }
+
+  // A lane waits as long for each part of a buffer.
+  void check_stripes() {
+    if (!is_valid_("ssram.banks")) return;
+    const std::vector<memory::SsramBankConfig> banks = ssram_configs(board_);
+    const auto bank_of = [this](const PlacedBuffer& part) {
+      return static_cast<std::size_t>(
+          std::find_if(board_.banks.begin(), board_.banks.end(),
+                       [&](const BankConfig& bank) { return bank.name == part.bank; }) -
+          board_.banks.begin());
+    };
+    std::size_t first = 0;
+    for (const PlacedBuffer& part : buffers(board_)) {
+      const std::size_t bank = bank_of(part);
+      if (bank == banks.size()) continue;  // check_bank_names()
+      if (part.part == 0) first = bank;
+      const int cycles = memory::read_latency_cycles(banks[bank]);
+      const int of_first = memory::read_latency_cycles(banks[first]);
+      const std::string kind = below(below("ssram.banks", part.bank), "kind");
+      require(part.parts == 1 || cycles == of_first, {part.path(), kind}, [&] {
+        return fmt::format(
+            "{} = {}: its read latency is {}, that of {} is {}; all banks of a stripe need one", part.path(),
+            part.bank, cycles, board_.banks[first].name, of_first);
+      });
+    }
+  }
+
+  void check_refreshes() {
+    if (!is_valid_("ssram.banks")) return;
+    for (const BankConfig& bank : board_.banks) {
+      if (!bank.sdram || !bank.sdram->refresh_interval_cycles) continue;
+      const int least = memory::least_refresh_interval(*bank.sdram);
+      const std::string path = below(below("ssram.banks", bank.name), "refresh_interval_cycles");
+      require(*bank.sdram->refresh_interval_cycles >= least, {path}, [&] {
+        return fmt::format(
+            "{} = {}: at least {}, or no access might ever be granted: a refresh, and the opening of two "
+            "rows",
+            path, *bank.sdram->refresh_interval_cycles, least);
+      });
     }
   }
 

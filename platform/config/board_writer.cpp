@@ -18,12 +18,16 @@ YamlNode bank_node(const BankConfig& bank, const BankConfig* base) {
   node.style = YamlNode::Style::kOther;
   if (base == nullptr || bank.words != base->words)
     node.add(YamlNode::plain("words"), YamlNode::plain(std::to_string(bank.words)));
-  if (base != nullptr && bank.kind == base->kind && bank.turnaround_cycles == base->turnaround_cycles)
+  if (base != nullptr && bank.kind == base->kind && bank.turnaround_cycles == base->turnaround_cycles &&
+      bank.sdram == base->sdram)
     return node;
-  const memory::BankTraits& traits = memory::traits_of(bank.kind);
-  node.add(YamlNode::plain("kind"), YamlNode::word(traits.name));
-  if (traits.has_turnaround)
-    node.add(YamlNode::plain("turnaround_cycles"), YamlNode::plain(std::to_string(bank.turnaround_cycles)));
+  node.add(YamlNode::plain("kind"), YamlNode::word(memory::traits_of(bank.kind).name));
+  for (const BankTimingKey& key : bank_timing_keys()) {
+    if (!needs_key(bank, key)) continue;
+    const int value = key.get(bank);
+    node.add(YamlNode::plain(key.name),
+             key.may_be_off && value == 0 ? YamlNode::word("off") : YamlNode::plain(std::to_string(value)));
+  }
   return node;
 }
 
@@ -99,6 +103,10 @@ std::vector<BoardValue> values_of(const BoardConfig& board) {
     values.push_back({path + ".words", std::int64_t{bank.words}});
     values.push_back({path + ".kind", memory::traits_of(bank.kind).name});
     values.push_back({path + ".turnaround_cycles", std::int64_t{bank.turnaround_cycles}});
+    for (const BankTimingKey& key : bank_timing_keys()) {
+      if (key.kind == memory::BankKind::kSdram && needs_key(bank, key))
+        values.push_back({below(path, key.name), std::int64_t{key.get(bank)}});
+    }
   }
   return values;
 }
@@ -118,7 +126,7 @@ std::vector<std::string> sets_between(const BoardConfig& from, const BoardConfig
     if (const auto* const integer = std::get_if<std::int64_t>(&value.value)) return std::to_string(*integer);
     const bool is_bank = value.path == key_of(Buffer::kLeftLut) || value.path == key_of(Buffer::kRightLut);
     const std::string& text = std::get<std::string>(value.value);
-    return is_bank ? flow_text(YamlNode::word(text)) : text;
+    return is_bank && text[0] != '{' ? flow_text(YamlNode::word(text)) : text;
   };
   std::map<std::string, std::string> before;
   for (const BoardValue& value : values_of(from)) before[value.path] = text_of(value);

@@ -8,23 +8,30 @@
 namespace stereotlm::platform {
 namespace {
 
-void add(std::vector<PlacedBuffer>& all, Buffer buffer, const std::vector<std::string>& banks) {
-  for (std::size_t i = 0; i < banks.size(); ++i) all.push_back({buffer, static_cast<int>(i), banks[i]});
+void add(std::vector<PlacedBuffer>& all, Buffer buffer, int index, const BufferBanks& in) {
+  const auto parts = static_cast<int>(in.banks.size());
+  for (int part = 0; part < parts; ++part)
+    all.push_back({buffer, index, in.banks[static_cast<std::size_t>(part)], part, parts});
 }
-void add(std::vector<PlacedBuffer>& all, Buffer buffer, const std::optional<std::string>& bank) {
-  if (bank) all.push_back({buffer, -1, *bank});
+void add(std::vector<PlacedBuffer>& all, Buffer buffer, const std::vector<BufferBanks>& list) {
+  for (std::size_t i = 0; i < list.size(); ++i) add(all, buffer, static_cast<int>(i), list[i]);
+}
+void add(std::vector<PlacedBuffer>& all, Buffer buffer, const std::optional<BufferBanks>& in) {
+  if (in) add(all, buffer, -1, *in);
 }
 
-std::string& bank_at(std::vector<std::string>& banks, int index) {
-  return banks[static_cast<std::size_t>(index)];
+BufferBanks& banks_at(std::vector<BufferBanks>& list, int index) {
+  return list[static_cast<std::size_t>(index)];
 }
-std::string& bank_at(std::optional<std::string>& bank, int /*index*/) { return *bank; }
+BufferBanks& banks_at(std::optional<BufferBanks>& in, int /*index*/) { return *in; }
 
 }  // namespace
 
 std::string PlacedBuffer::label() const {
-  const std::string name = name_of(buffer);
-  return index < 0 ? name : name + '[' + std::to_string(index) + ']';
+  std::string label = name_of(buffer);
+  if (index >= 0) label += '[' + std::to_string(index) + ']';
+  if (parts > 1) label += ".rows[" + std::to_string(part) + ']';
+  return label;
 }
 
 std::vector<PlacedBuffer> buffers(const BoardConfig& board) {
@@ -49,12 +56,14 @@ std::vector<PlacedBuffer> buffers(const BoardConfig& board) {
 }
 
 void move_buffer(BoardConfig& board, const PlacedBuffer& buffer, const std::string& bank) {
-  visit_buffer(board.allocation, buffer.buffer, [&](auto& banks) { bank_at(banks, buffer.index) = bank; });
+  visit_buffer(board.allocation, buffer.buffer, [&](auto& all) {
+    banks_at(all, buffer.index).banks[static_cast<std::size_t>(buffer.part)] = bank;
+  });
   if (board.fpga.joint_tables) board.allocation.right_lut = board.allocation.left_lut;
 }
 
 std::uint64_t buffer_words(const PlacedBuffer& buffer, const ImageConfig& image) {
-  const auto pixels = static_cast<std::uint64_t>(image.width) * static_cast<std::uint64_t>(image.height);
+  const std::uint64_t pixels = static_cast<std::uint64_t>(image.width) * buffer.rows(image);
   return buffer.index < 0 ? pixels : pixels / 4;
 }
 
@@ -64,10 +73,22 @@ std::vector<AddressRange> buffer_ranges(const BoardConfig& board) {
   return ranges;
 }
 
+std::vector<std::vector<std::uint32_t>> stripes_of(const BoardConfig& board) {
+  std::vector<std::vector<std::uint32_t>> stripes;
+  for (const PlacedBuffer& placed : buffers(board)) {
+    if (placed.parts == 1) continue;
+    if (placed.part == 0) stripes.emplace_back();
+    stripes.back().push_back(static_cast<std::uint32_t>(placed.range.first / 4));
+  }
+  return stripes;
+}
+
 fpga::BufferBases buffer_bases(const BoardConfig& board) {
   fpga::BufferBases bases;
   bases.has_joint_tables = board.fpga.joint_tables;
+  bases.stripes = stripes_of(board);
   for (const PlacedBuffer& placed : buffers(board)) {
+    if (placed.part != 0) continue;
     const auto base = static_cast<std::uint32_t>(placed.range.first / 4);
     switch (placed.buffer) {
       case Buffer::kLeftImage:

@@ -49,31 +49,40 @@ decltype(auto) visit_buffer(All& all, Buffer buffer, const Visit& visit) {
   return visit(all.right_lut);
 }
 
-// One buffer, and the bank that holds it.
+// One buffer, and the bank that holds it; or a part of a striped buffer.
 struct PlacedBuffer {
   Buffer buffer;
   int index;         // index in its list; -1: a table
   std::string bank;  // name
+  int part = 0;      // row y of the buffer is in part y mod `parts`
+  int parts = 1;
   // Its addresses on the local bus. Buffers that share a bank begin at word 0, and follow each other in the
   // order of buffers() (contract 1.5). Without meaning if the board has no such bank.
   AddressRange range = {};
 
-  std::string label() const;                                    // "left_image[0]", "left_lut"
+  // "left_image[0]", "left_lut"; of a part "left_lut.rows[2]"
+  std::string label() const;
   std::string path() const { return "allocation." + label(); }  // "allocation.left_image[0]"
+  std::uint64_t rows(const ImageConfig& image) const {
+    return static_cast<std::uint64_t>((image.height - part + parts - 1) / parts);
+  }
 };
 
-// All buffers, in the order of Buffer; the buffers of a list are in the order of the list. Joint tables are
-// one buffer, kLeftLut.
+// All buffers, in the order of Buffer; the buffers of a list are in the order of the list, and the parts of a
+// striped one in their order. Joint tables are one buffer, kLeftLut.
 std::vector<PlacedBuffer> buffers(const BoardConfig& board);
 
-// Puts a buffer of the board into another bank.
+// Puts a buffer of the board, or a part of one, into another bank.
 void move_buffer(BoardConfig& board, const PlacedBuffer& buffer, const std::string& bank);
 
-// Size of a buffer in 32-bit words.
+// Size of a buffer, or of a part, in 32-bit words.
 std::uint64_t buffer_words(const PlacedBuffer& buffer, const ImageConfig& image);
 
 // PlacedBuffer::range of each buffer, in the order of buffers().
 std::vector<AddressRange> buffer_ranges(const BoardConfig& board);
+
+// CoreConfig::stripes.
+std::vector<std::vector<std::uint32_t>> stripes_of(const BoardConfig& board);
 
 // The values of the base registers for these buffers.
 fpga::BufferBases buffer_bases(const BoardConfig& board);

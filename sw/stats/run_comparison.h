@@ -103,7 +103,8 @@ class RowComparison {
 };
 
 // Writes a CSV file with the rows of results of two runs, A and B: one line per frame and row with the row's
-// own cycles and stalls (of all lanes of a port group) in both runs. See files::OutputFile for commit() and errors.
+// own cycles and stalls (of all lanes of a port group) in both runs. See files::OutputFile for commit() and
+// errors.
 class RowsCsv {
  public:
   explicit RowsCsv(const std::filesystem::path& path);

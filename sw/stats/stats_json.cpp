@@ -15,6 +15,7 @@
 #include "platform/bounds.h"
 #include "platform/computer_parts.h"
 #include "platform/config/board_area.h"
+#include "platform/config/buffer_layout.h"
 #include "platform/figures.h"
 #include "sw/files/text_forms.h"
 #include "sw/stats/console_table.h"
@@ -40,6 +41,7 @@ constexpr auto fields_of(const platform::BankStatistics* /*type*/) {
   return std::tuple(
       Field{"name", &Bank::name}, Field{"reads", &Bank::reads}, Field{"writes", &Bank::writes},
       Field{"busy_cycles", &Bank::busy_cycles}, Field{"turnaround_cycles", &Bank::turnaround_cycles},
+      Field{"row_cycles", &Bank::row_cycles}, Field{"refresh_cycles", &Bank::refresh_cycles},
       Field{"idle_cycles", &Bank::idle_cycles}, Field{"contended_cycles", &Bank::contended_cycles},
       Field{"utilization", &Bank::utilization}, Field{"megabytes_per_second", &Bank::megabytes_per_second});
 }
@@ -130,7 +132,7 @@ struct StatsWriter {
   static Json json_of(const Value& value) {
     if constexpr (HasFields<Value>::value) {
       Json json = Json::object();
-      std::apply([&](const auto&... field) { ((json[field.key] = value.*field.member), ...); },
+      std::apply([&](const auto&... field) { (add(json, field.key, value.*field.member), ...); },
                  fields_of(&value));
       return json;
     } else {
@@ -142,6 +144,16 @@ struct StatsWriter {
     Json json = Json::array();
     for (const Value& value : values) json.push_back(json_of(value));
     return json;
+  }
+
+  template <typename Value>
+  static void add(Json& object, const char* key, const Value& value) {
+    object[key] = value;
+  }
+  // A value that not every object has.
+  template <typename Value>
+  static void add(Json& object, const char* key, const std::optional<Value>& value) {
+    if (value) object[key] = *value;
   }
 
   Json document = {{"schema", 1}};
@@ -197,6 +209,10 @@ class StatsReader {
       }
       value = json.get<Value>();
     }
+  }
+  template <typename Value>
+  void read(const Pointer& path, std::optional<Value>& value) const {
+    if (has(path)) read(path, value.emplace());
   }
   template <typename Value>
   void read(const Pointer& path, std::vector<Value>& values) const {
@@ -293,16 +309,18 @@ void check_names(const StatsReader& reader, const platform::BoardConfig& board,
   const fpga::CorePorts all_ports = platform::core_ports(board);
   for (std::size_t port = 0; port < all_ports.size(); ++port) ports.push_back(all_ports.name(port));
   std::vector<std::string> causes = ports;
-  causes.emplace_back("turnaround");
+  for (std::size_t cause = memory::kTurnaround; cause <= memory::kRefresh; ++cause)
+    causes.emplace_back(memory::name_of_cause(cause));
   std::array<std::size_t, 3> last{};
   const auto accesses = platform::core_accesses(board, statistics);
+  const bool is_exact = platform::stripes_of(board).empty();  // of the accesses
   for (std::size_t row = 0; row < statistics.blame.size(); ++row) {
     const Pointer path = Pointer("/blame") / row;
     const platform::BlameRow& blame = statistics.blame[row];
     const std::array<std::size_t, 3> cause = {reader.index(path / "port", blame.port, ports),
                                               reader.index(path / "bank", blame.bank, banks),
                                               reader.index(path / "by", blame.by, causes)};
-    if (cause[0] < accesses.size() && accesses[cause[0]][cause[1]] == 0)
+    if (is_exact && cause[0] < accesses.size() && accesses[cause[0]][cause[1]] == 0)
       reader.refuse(path / "bank", "must be a bank that the port accesses");
     if (blame.cycles == 0) reader.refuse(path / "cycles", "must be 1 or more");
     if (row != 0 && cause <= last) reader.refuse(path, "must follow the row before, by port, bank and by");

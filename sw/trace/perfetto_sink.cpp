@@ -409,7 +409,7 @@ class Rows {
       if (!run->by) continue;
       write_run(ports_[run->requester], *run,
                 board_.wait_text(run->requester, run->count, *run->by, run->bank),
-                *run->by != board_.requesters.turnaround() ? Flows{flow_of(*run)} : Flows{});
+                board_.requesters.is_requester(*run->by) ? Flows{flow_of(*run)} : Flows{});
     }
   }
 
@@ -537,7 +537,7 @@ class Cycles {
     }
     run = now;
     run.first_cycle = cycle;
-    if (!run.waits() || run.by == board_.requesters.turnaround()) return;
+    if (!run.waits() || !board_.requesters.is_requester(run.by)) return;
     run.flow = kFirstWaitFlow + waits_++;
     flows_[run.by].push_back(run.flow);
   }
@@ -547,7 +547,7 @@ class Cycles {
     if (now.intent != Intent::kRequest) return;
     const std::size_t requester = board_.requesters.of_port(port, cycle.host_traffic);
     const std::size_t track = bank_track(board_, now.bank, requester);
-    if (!now.granted && now.by != board_.requesters.turnaround()) return;
+    if (!now.granted && board_.requesters.is_requester(now.by)) return;
     owners[track].name = board_.requester_names[now.granted ? requester : now.by].c_str();
     owners[track].track = &banks_[track];
   }

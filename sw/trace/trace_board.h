@@ -32,7 +32,7 @@ struct TraceBoard {
         clock(board.fpga.clock_mhz),
         banks(board.banks),
         requesters(platform::core_ports(board)) {
-    for (std::size_t requester = 0; requester <= requesters.turnaround(); ++requester)
+    for (std::size_t requester = 0; requester < requesters.causes(); ++requester)
       requester_names.push_back(requesters.name(requester));
   }
 
@@ -95,7 +95,7 @@ struct TraceBoard {
   Clock clock;
   std::vector<platform::BankConfig> banks;
   fpga::Requesters requesters;
-  std::vector<std::string> requester_names;  // [requester], last the turnaround
+  std::vector<std::string> requester_names;  // [requester], then the other causes
 
   const fpga::CorePorts& ports() const { return requesters.ports(); }
 };

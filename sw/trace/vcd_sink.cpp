@@ -493,7 +493,7 @@ class VcdSink : public TraceSink {
     std::uint32_t& owner = bank[is_second ? kWriteOwner : kOwner];
     if (port.granted)
       owner = requesters_[requester];
-    else if (port.by == board_.requesters.turnaround())
+    else if (!board_.requesters.is_requester(port.by))
       owner = requesters_[port.by];
   }
 

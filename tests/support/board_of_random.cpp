@@ -16,8 +16,8 @@ memory::Port port_of(PlainPort plain) {
 
 memory::BankKind kind_of(PlainBankKind kind) {
   using memory::BankKind;
-  static constexpr std::array<BankKind, 4> kKinds = {BankKind::kZbtPipelined, BankKind::kZbtFlowThrough,
-                                                     BankKind::kSyncBurst, BankKind::kQdr};
+  static constexpr std::array<BankKind, 5> kKinds = {BankKind::kZbtPipelined, BankKind::kZbtFlowThrough,
+                                                     BankKind::kSyncBurst, BankKind::kQdr, BankKind::kSdram};
   return kKinds[static_cast<std::size_t>(kind)];
 }
 
@@ -29,34 +29,33 @@ double us_of(PlainTime ps) { return static_cast<double>(ps) / 1e6; }
 
 std::string bank_name(int bank) { return "bank" + std::to_string(bank); }
 
-// The bank of a buffer without stripes.
-int bank_of(const PlainBuffer& buffer) { return buffer.banks.front(); }
-
-std::vector<std::string> bank_names(const std::vector<PlainBuffer>& list) {
+platform::BufferBanks banks_of(const PlainBuffer& buffer) {
   std::vector<std::string> names;
-  for (const PlainBuffer& buffer : list) names.push_back(bank_name(bank_of(buffer)));
-  return names;
+  for (const int bank : buffer.banks) names.push_back(bank_name(bank));
+  return platform::BufferBanks(names);
 }
 
-std::optional<std::string> bank_name(const std::optional<PlainBuffer>& buffer) {
-  if (!buffer) return std::nullopt;
-  return bank_name(bank_of(*buffer));
+std::vector<platform::BufferBanks> banks_of(const std::vector<PlainBuffer>& list) {
+  std::vector<platform::BufferBanks> all;
+  for (const PlainBuffer& buffer : list) all.push_back(banks_of(buffer));
+  return all;
 }
 
-// The platform has no stripes and no SDRAM yet (section 8).
-void refuse_section_8(const PlainCycleInput& input) {
-  std::vector<PlainBuffer> buffers;
-  for (const auto* list : {&input.left_image, &input.right_image, &input.disparity})
-    buffers.insert(buffers.end(), list->begin(), list->end());
-  for (const auto* table : {&input.left_lut, &input.right_lut}) {
-    if (*table) buffers.push_back(**table);
-  }
-  const bool striped = std::any_of(buffers.begin(), buffers.end(),
-                                   [](const PlainBuffer& buffer) { return buffer.banks.size() > 1; });
-  const bool sdram = std::any_of(input.banks.begin(), input.banks.end(),
-                                 [](const PlainBank& bank) { return bank.kind == PlainBankKind::kSdram; });
-  if (striped || sdram)
-    throw std::invalid_argument("board_config: stripes and sdram are not in the platform");
+std::optional<platform::BufferBanks> banks_of(const std::optional<PlainBuffer>& buffer) {
+  return buffer ? std::optional(banks_of(*buffer)) : std::nullopt;
+}
+
+memory::SdramTiming timing_of(const PlainSdram& sdram) {
+  memory::SdramTiming timing;
+  timing.cas_latency = sdram.cas_latency;
+  timing.row_words = sdram.row_words;
+  timing.internal_banks = sdram.internal_banks;
+  timing.activate_cycles = sdram.activate_cycles;
+  timing.precharge_cycles = sdram.precharge_cycles;
+  timing.refresh_cycles = sdram.refresh_cycles;
+  timing.refresh_interval_cycles.reset();
+  if (sdram.refresh_interval_cycles != 0) timing.refresh_interval_cycles = sdram.refresh_interval_cycles;
+  return timing;
 }
 
 std::vector<platform::BankConfig> bank_configs(const PlainCycleInput& input) {
@@ -65,14 +64,18 @@ std::vector<platform::BankConfig> bank_configs(const PlainCycleInput& input) {
     const bool turns = bank.kind == PlainBankKind::kSyncBurst;
     banks.push_back({bank_name(static_cast<int>(banks.size())), 0, kind_of(bank.kind),
                      turns ? bank.turnaround_cycles : 0});
+    if (bank.kind == PlainBankKind::kSdram) banks.back().sdram = timing_of(bank.sdram);
   }
-  const int table_words = input.width * input.height;
-  const auto add = [&banks](int bank, int words) { banks[static_cast<std::size_t>(bank)].words += words; };
+  const auto add = [&](const PlainBuffer& buffer, int row_words) {
+    for (std::size_t part = 0; part < buffer.banks.size(); ++part)
+      banks[static_cast<std::size_t>(buffer.banks[part])].words +=
+          row_words * plain_rows(buffer.banks.size(), part, input.height);
+  };
   for (const auto* list : {&input.left_image, &input.right_image, &input.disparity}) {
-    for (const PlainBuffer& buffer : *list) add(bank_of(buffer), table_words / 4);
+    for (const PlainBuffer& buffer : *list) add(buffer, input.width / 4);
   }
-  if (input.left_lut) add(bank_of(*input.left_lut), table_words);
-  if (input.right_lut && !input.joint_tables) add(bank_of(*input.right_lut), table_words);
+  if (input.left_lut) add(*input.left_lut, input.width);
+  if (input.right_lut && !input.joint_tables) add(*input.right_lut, input.width);
   for (platform::BankConfig& bank : banks) bank.words = std::max(bank.words, 1);
   return banks;
 }
@@ -111,7 +114,6 @@ kernels::GrayImage gray_image(const RandomBoard& board, const std::vector<std::u
 }  // namespace
 
 platform::BoardConfig board_config(const PlainCycleInput& input) {
-  refuse_section_8(input);
   platform::BoardConfig board;
   board.name = "plain";
   board.image = {input.width, input.height};
@@ -122,11 +124,11 @@ platform::BoardConfig board_config(const PlainCycleInput& input) {
   board.fpga.result_fifo_words = input.result_fifo_words;
   board.fpga.pipeline_latency_cycles = input.pipeline_latency_cycles;
   board.banks = bank_configs(input);
-  board.allocation.left_image = bank_names(input.left_image);
-  board.allocation.right_image = bank_names(input.right_image);
-  board.allocation.disparity = bank_names(input.disparity);
-  board.allocation.left_lut = bank_name(input.left_lut);
-  board.allocation.right_lut = bank_name(input.right_lut);
+  board.allocation.left_image = banks_of(input.left_image);
+  board.allocation.right_image = banks_of(input.right_image);
+  board.allocation.disparity = banks_of(input.disparity);
+  board.allocation.left_lut = banks_of(input.left_lut);
+  board.allocation.right_lut = banks_of(input.right_lut);
   board.matcher.window = input.window;
   board.matcher.disparities = input.disparities;
   board.matcher.filter.reset();

@@ -12,6 +12,11 @@ std::size_t pixels_of(const CoreConfig& config) {
   return static_cast<std::size_t>(config.width) * static_cast<std::size_t>(config.height);
 }
 
+bool overlaps_any(const AddressRange& range, const std::vector<AddressRange>& others) {
+  return std::any_of(others.begin(), others.end(),
+                     [&range](const AddressRange& other) { return range.overlaps(other); });
+}
+
 }  // namespace
 
 DirectFrame::DirectFrame(const CoreConfig& config, bool has_pixels, memory::DirectBanks& banks)
@@ -28,26 +33,67 @@ DirectFrame::DirectFrame(const CoreConfig& config, bool has_pixels, memory::Dire
 }
 
 void DirectFrame::set_buffers(const FrameBases& bases) {
+  placements_ = placements_of(config_, bases);
   for (std::size_t group = 0; group < kCoreGroupCount; ++group) {
+    buffers_[group].clear();
     if (!has_group(config_, group)) continue;
-    const std::uint64_t first = registers::base_address(bases[group]);
-    buffers_[group] = {first, first + pixels_of(config_) * kPortGroups[group].bytes_per_pixel};
+    const Placement& buffer = placements_[group];
+    for (std::size_t part = 0; part < buffer.parts().size(); ++part) {
+      const std::uint64_t first = registers::base_address(buffer.parts()[part]);
+      const std::uint64_t words = buffer.rows_of_part(part, config_.height) * buffer.row_words();
+      if (words != 0) buffers_[group].push_back({first, first + 4 * words});
+    }
   }
 }
 
 bool DirectFrame::disparities_are_apart() const {
-  const AddressRange& disparities = buffers_[kResultGroup];
-  return std::count_if(buffers_.begin(), buffers_.end(), [&disparities](const AddressRange& buffer) {
-           return buffer.overlaps(disparities);
-         }) == 1;  // itself
+  for (std::size_t group = 0; group < kResultGroup; ++group) {
+    for (const AddressRange& disparities : buffers_[kResultGroup]) {
+      if (overlaps_any(disparities, buffers_[group])) return false;
+    }
+  }
+  return true;
+}
+
+bool DirectFrame::is_direct(std::size_t group) const {
+  for (std::size_t number = 0; number < buffers_[group].size(); ++number) {
+    if (part(group, number) == nullptr) return false;
+  }
+  return true;
+}
+
+template <class Byte, class Visit>
+void DirectFrame::for_each_row(std::size_t group, Byte* whole, const Visit& visit) const {
+  const std::size_t parts = placements_[group].parts().size();
+  const std::size_t bytes = 4 * placements_[group].row_words();
+  for (std::size_t number = 0; number < buffers_[group].size(); ++number) {
+    unsigned char* row = part(group, number);
+    for (auto place = number; place < static_cast<std::size_t>(config_.height); place += parts, row += bytes)
+      visit(row, whole + place * bytes);
+  }
+}
+
+const unsigned char* DirectFrame::buffer(std::size_t group, bool may_have_changed) {
+  if (!is_direct(group)) return nullptr;
+  if (placements_[group].parts().size() == 1) return part(group, 0);
+  std::vector<unsigned char>& collected = collected_[group];
+  const std::size_t bytes = 4 * placements_[group].row_words();
+  if (may_have_changed || collected.empty()) {
+    collected.resize(bytes * static_cast<std::size_t>(config_.height));
+    for_each_row(group, collected.data(),
+                 [bytes](const unsigned char* row, unsigned char* to) { std::copy_n(row, bytes, to); });
+  }
+  return collected.data();
 }
 
 bool DirectFrame::read(const kernels::JointOffsets& offsets) {
-  const unsigned char* const left = buffer(pixel_group(Side::kLeft));
-  const unsigned char* const right = buffer(pixel_group(Side::kRight));
+  const std::size_t left = pixel_group(Side::kLeft);
+  const std::size_t right = pixel_group(Side::kRight);
   const bool is_readable =
-      read_tables(offsets) && left != nullptr && right != nullptr && buffer(kResultGroup) != nullptr;
-  if (is_readable && pipeline_) pipeline_->run(left, right, entries_[0], entries_[1], disparities_.data());
+      read_tables(offsets) && is_direct(left) && is_direct(right) && is_direct(kResultGroup);
+  if (is_readable && pipeline_) {
+    pipeline_->run(buffer(left, true), buffer(right, true), entries_[0], entries_[1], disparities_.data());
+  }
   return is_readable;
 }
 
@@ -57,9 +103,13 @@ bool DirectFrame::read_tables(const kernels::JointOffsets& offsets) {
   for (const Side side : kSides) {
     const std::size_t group = lut_group(side);
     if (!has_group(config_, group)) continue;
-    const auto* const entries = reinterpret_cast<const std::uint32_t*>(buffer(group));
-    const bool may_have_changed =
-        entries != nullptr && banks_.may_have_changed(group, buffers_[group].first, buffers_[group].end);
+    bool may_have_changed = false;
+    for (std::size_t number = 0; is_direct(group) && number < buffers_[group].size(); ++number) {
+      const AddressRange& range = buffers_[group][number];
+      const std::size_t watch = group + number * kCoreGroupCount;
+      may_have_changed = banks_.may_have_changed(watch, range.first, range.end) || may_have_changed;
+    }
+    const auto* const entries = reinterpret_cast<const std::uint32_t*>(buffer(group, may_have_changed));
     if (config_.joint_tables) return decode_joint_table(entries, may_have_changed, offsets);
     if (!read_table(side, entries, may_have_changed)) is_readable = false;
   }
@@ -100,16 +150,21 @@ bool DirectFrame::read_table(Side side, const std::uint32_t* entries, bool may_h
 std::optional<std::size_t> DirectFrame::hazard_with(const AddressRange& words, bool write) const {
   for (std::size_t group = 0; group < kCoreGroupCount; ++group) {
     const bool is_exclusive = write || kPortGroups[group].write;
-    if (is_exclusive && buffers_[group].overlaps(words)) return group;
+    if (is_exclusive && overlaps_any(words, buffers_[group])) return group;
   }
   return std::nullopt;
 }
 
 bool DirectFrame::write() const {
   if (pipeline_ == nullptr) return true;
-  unsigned char* const disparities = buffer(kResultGroup);
-  if (disparities == nullptr) return false;
-  std::copy(disparities_.begin(), disparities_.end(), disparities);
+  if (!is_direct(kResultGroup)) return false;
+  if (placements_[kResultGroup].parts().size() == 1) {
+    std::copy(disparities_.begin(), disparities_.end(), part(kResultGroup, 0));
+  } else {
+    const std::size_t bytes = 4 * placements_[kResultGroup].row_words();
+    for_each_row(kResultGroup, disparities_.data(),
+                 [bytes](unsigned char* row, const std::uint8_t* from) { std::copy_n(from, bytes, row); });
+  }
   return true;
 }
 

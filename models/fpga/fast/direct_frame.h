@@ -10,6 +10,7 @@
 #include "models/fpga/access_pattern.h"
 #include "models/fpga/core_config.h"
 #include "models/fpga/core_ports.h"
+#include "models/fpga/placement.h"
 #include "models/kernels/joint_table.h"
 #include "models/kernels/stereo_pipeline.h"
 #include "models/memory/direct_banks.h"
@@ -45,10 +46,19 @@ class DirectFrame {
   bool write() const;
 
  private:
-  // The buffer of a port group; null if direct access is not granted.
-  unsigned char* buffer(std::size_t group) const {
-    return banks_.direct(buffers_[group].first, buffers_[group].end - buffers_[group].first);
+  // The bytes of the part of a buffer, of its rows in their order; null if direct access is not granted.
+  unsigned char* part(std::size_t group, std::size_t part) const {
+    const AddressRange& range = buffers_[group][part];
+    return banks_.direct(range.first, range.end - range.first);
   }
+  // Whether direct access is granted to all parts of the buffer.
+  bool is_direct(std::size_t group) const;
+  // The buffer, row by row; null if direct access is not granted. `may_have_changed`: the rows of a striped
+  // buffer are collected anew.
+  const unsigned char* buffer(std::size_t group, bool may_have_changed);
+  // Calls visit(bytes of the row in its part, bytes of the row in `whole`) for each row of a striped buffer.
+  template <class Byte, class Visit>
+  void for_each_row(std::size_t group, Byte* whole, const Visit& visit) const;
   bool read_tables(const kernels::JointOffsets& offsets);
   bool decode_joint_table(const std::uint32_t* words, bool may_have_changed,
                           const kernels::JointOffsets& offsets);
@@ -56,8 +66,10 @@ class DirectFrame {
 
   CoreConfig config_;
   memory::DirectBanks& banks_;
-  // [port group]: the buffer that it accesses; empty if there is none.
-  std::array<AddressRange, kCoreGroupCount> buffers_{};
+  Placements placements_;
+  // [port group][part]: the buffer that it accesses; none if there is none.
+  std::array<std::vector<AddressRange>, kCoreGroupCount> buffers_;
+  std::array<std::vector<unsigned char>, kCoreGroupCount> collected_;  // striped buffers, row by row
   AccessPatterns patterns_;
   // [side]: the entries of the frame; null if the side has no table.
   std::array<const std::uint32_t*, 2> entries_{};

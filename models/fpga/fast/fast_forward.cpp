@@ -39,10 +39,15 @@ FastForward::FastForward(const CoreConfig& config, memory::Arbitration& arbitrat
       known_(words_of_accesses(control().geometry(), slots_ahead_)),
       no_accesses_(words_of_accesses(control().geometry(), slots_ahead_)),
       accesses_(no_accesses_),
-      accesses_before_(no_accesses_) {}
+      accesses_before_(no_accesses_),
+      handled_(control().lanes().size()) {
+  for (std::size_t lane = 0; lane < handled_.size(); ++lane)
+    handled_[lane].slot = control().lane(lane).first_slot();
+}
 
 void FastForward::start_direct_frame(const AccessPatterns& patterns, const FrameBases& bases) {
   start_stepped_frame();
+  patterns_ = &patterns;
   banks_ = 0;
   for (const std::uint32_t base : bases) banks_ = banks_ << 6U | registers::bank_of(base);
   for (const Side side : kSides) {
@@ -109,10 +114,26 @@ void FastForward::resolve_accesses(Side side) {
 // `kMayRequest`: false if the host does not request, as in most cycles. That costs less.
 template <bool kMayRequest>
 memory::PortMask FastForward::step_core(std::uint64_t cycle, bool host_requests) {
-  return step(cycle, kMayRequest && host_requests,
-              [this](const CoreControl::Decision& /*decision*/, memory::PortMask granted) {
-                return needs_pixel(granted);
-              });
+  return step(
+      cycle, kMayRequest && host_requests,
+      [this](const CoreControl::Decision& /*decision*/, memory::PortMask granted) {
+        return needs_pixel(granted);
+      },
+      [this](std::size_t lane) { return next_entry(lane); });
+}
+
+// The entry of the slot that the pixel port of a lane handles next.
+std::uint32_t FastForward::next_entry(std::size_t number) {
+  const LaneControl& lane = control().lane(number);
+  Handled& handled = handled_[number];
+  if (lane.handled() < handled.slots) handled = {0, lane.first_slot()};
+  if (lane.handled() == handled.slots + 1) {
+    handled.slot.advance();
+  } else if (lane.handled() != handled.slots) {
+    handled.slot.advance(lane.handled() - handled.slots);
+  }
+  handled.slots = lane.handled();
+  return (*patterns_)[index_of(control().side_of(number))].entry(handled.slot.column(), handled.slot.row());
 }
 
 memory::PortMask FastForward::step(std::uint64_t cycle, bool host_requests) {
@@ -135,7 +156,7 @@ FastForward::Served FastForward::serve_host(std::uint64_t& cycle, const Route& r
   if (!is_walking_) stepped_.reset();  // a group that is begun without the burst is not recorded
   route_host(cycle, route, first);
   if (ConflictRecorder* const conflicts = this->conflicts()) conflicts->set_host_traffic(route.traffic);
-  host_ = {first, words, static_cast<std::uint8_t>(route.bank << 1U | std::size_t{route.write})};
+  host_ = {first, words, static_cast<std::uint8_t>(route.bank << 1U | std::size_t{route.write}), route.word};
   Served served;
   const std::uint64_t end = std::max(cycle, first) + kMostHostCycles;
   while (host_.words != 0 && cycle < end && !control().frame_done()) {
@@ -191,9 +212,13 @@ std::uint64_t FastForward::step_group(std::uint64_t cycle, std::uint64_t end) {
   } else {
     do {
       const bool requests = cycle >= host_.first;
+      const memory::Port port = control().ports().host();
+      if (memory::has(arbitration().placed(), port))
+        arbitration().place(port, arbitration().bank_of(port), host_.word);
       const memory::PortMask granted = step_core<true>(cycle++, requests);
-      if (memory::has(granted, control().ports().host())) {
+      if (memory::has(granted, port)) {
         host_.first = cycle;
+        ++host_.word;
         burst_ends = --host_.words == 0;
       }
       cycle = skip_waiting(cycle, std::min(end, host_.first));
@@ -215,6 +240,7 @@ std::uint64_t FastForward::skip_waiting(std::uint64_t cycle, std::uint64_t end) 
 // Begins to follow transitions, if possible.
 void FastForward::begin_walk(std::uint64_t cycle) {
   if (stepped_) end_stepped(cycle);
+  if (arbitration().placed() != 0) return;  // what the ports request depends on more than the state
   room_ = room();
   if (!holds_group(room_)) return;
   if (known_.is_full()) known_.clear();

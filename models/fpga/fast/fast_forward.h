@@ -54,6 +54,7 @@ class FastForward : public CoreStepper {
     std::size_t bank = 0;
     bool write = false;
     HostTraffic traffic = HostTraffic::kCapture;
+    std::uint32_t word = 0;  // the first of the burst
   };
   struct Served {
     std::size_t words = 0;         // of the burst
@@ -76,6 +77,7 @@ class FastForward : public CoreStepper {
     std::uint64_t first = 0;  // first cycle in which the next word requests
     std::size_t words = 0;
     std::uint8_t route = 0;  // HostRequests::route
+    std::uint32_t word = 0;  // the number of the next word in its bank
   };
   // The transition that is being stepped, to be recorded at its end.
   struct Stepped {
@@ -110,6 +112,7 @@ class FastForward : public CoreStepper {
     const AccessPattern* const varying = varying_[index_of(side)];
     return varying == nullptr || varying->needs_pixel(slot.column(), slot.row());
   }
+  std::uint32_t next_entry(std::size_t lane);
   std::uint64_t marks(std::size_t lane) const;
   void correct_marks();
   void resolve_accesses(Side side);
@@ -184,6 +187,13 @@ class FastForward : public CoreStepper {
   // [side]: the pattern of a side whose accesses vary. Null if all slots inside the image access their
   // pixels, or are assumed to. Null for a side without table: LaneControl itself finds hits of the cache.
   std::array<const AccessPattern*, 2> varying_{};
+  const AccessPatterns* patterns_ = nullptr;  // of a direct frame
+  // [lane]: the place of a slot that the pixel port has handled, with the number of slots before it.
+  struct Handled {
+    std::uint64_t slots = 0;
+    SlotCursor slot;
+  };
+  std::vector<Handled> handled_;
   // [side]: the pattern of a side whose passes are counted as grants; null if there are none.
   std::array<const AccessPattern*, 2> assumed_{};
 };

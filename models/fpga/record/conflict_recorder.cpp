@@ -48,7 +48,7 @@ ConflictRecorder::ConflictRecorder(const CoreConfig& config,
       strips_(1 + strips_of_results(geometry_)),
       ends_(1 + (strips_ - 1) * grid_.columns),
       tile_cycles_(tiles()),
-      indices_(requesters_.size() * banks_ * (requesters_.size() + 1)) {}
+      indices_(requesters_.size() * banks_ * requesters_.causes()) {}
 
 bool ConflictRecorder::start_frame(std::uint64_t cycle, const CoreControl& control,
                                    const memory::Arbitration& arbitration) {
@@ -58,20 +58,20 @@ bool ConflictRecorder::start_frame(std::uint64_t cycle, const CoreControl& contr
   if (!is_recording_) return false;
   first_cycle_ = cycle_ = cycle;
   strip_ = group_ = strip_tile_ = 0;
-  const std::size_t ports = requesters_.ports().core_size();
-  grants_.resize(ports);
-  frame_.bank_of_port.resize(ports);
-  for (std::size_t port = 0; port < ports; ++port) {
-    grants_[port] = control.port_cycles(port).granted();
-    frame_.bank_of_port[port] = arbitration_->bank_of(port);
-  }
   assumed_ = {};
+  grants_.clear();
+  for (memory::Port port = 0; port < requesters_.ports().core_size(); ++port) {
+    if (!arbitration_->is_routed(port)) continue;
+    for (std::size_t bank = 0; bank < banks_; ++bank) {
+      if ((arbitration_->banks_of(port) >> bank & 1U) != 0) grants_.push_back({port, bank, 0});
+    }
+  }
+  for (StripConflicts::Grants& grants : grants_) grants.cycles = grants_now(grants);
   served_.clear();
   frame_.number = frames_begun_ - 1;
   frame_.first_cycle = cycle;
   frame_.banks = banks_;
-  frame_.strips.assign(
-      strips_, {0, std::vector<std::uint64_t>(requesters_.size()), std::vector<std::uint64_t>(ports)});
+  frame_.strips.assign(strips_, {0, std::vector<std::uint64_t>(requesters_.size()), {}});
   frame_.accesses.assign(strips_ * banks_, {});
   frame_.stalls.clear();
   return true;
@@ -80,7 +80,7 @@ bool ConflictRecorder::start_frame(std::uint64_t cycle, const CoreControl& contr
 std::size_t ConflictRecorder::first_cause(std::size_t requester, std::size_t bank, std::size_t by) {
   stalls_.push_back({{requester, bank, by}, std::vector<std::uint64_t>(tiles())});
   of_strip_.push_back(0);
-  indices_[(requester * banks_ + bank) * (requesters_.size() + 1) + by] = stalls_.size();
+  indices_[(requester * banks_ + bank) * requesters_.causes() + by] = stalls_.size();
   return stalls_.size() - 1;
 }
 
@@ -143,7 +143,7 @@ void ConflictRecorder::repeat(const GroupConflicts* const* groups, std::size_t s
 void ConflictRecorder::add_stalls(const GroupConflicts& group, std::size_t first, std::size_t count,
                                   std::size_t step) {
   for (const memory::Stall& stall : group.stalls) {
-    const std::size_t cause = cause_of(requester_of_port(stall.port), arbitration_->bank_of(stall.port),
+    const std::size_t cause = cause_of(requester_of_port(stall.port), arbitration_->shared_bank(stall.bank),
                                        requester_of_port(stall.by));
     std::uint64_t* const cycles = stalls_[cause].cycles.data();
     of_strip_[cause] += stall.cycles * count;
@@ -171,19 +171,28 @@ void ConflictRecorder::end_strip() {
   strip_tile_ = tile_of(strip_);
 }
 
+// The grants of a port at a bank up to now.
+std::uint64_t ConflictRecorder::grants_now(const StripConflicts::Grants& of_port) const {
+  const auto& [port, bank, cycles] = of_port;
+  if (arbitration_->banks_of(port) != std::uint64_t{1} << bank)
+    return arbitration_->arbiter(bank).stats().grants(port);  // one of several banks
+  std::uint64_t grants = control_->port_cycles(port).granted();
+  for (const Side side : kSides) {
+    const AccessPattern* const assumed = assumed_[index_of(side)];
+    const std::size_t lane = control_->lane_index(side, 0);  // the only one of a side that is assumed
+    if (assumed != nullptr && port == control_->pixel_port(lane))
+      grants -= assumed->passes_before(control_->lane(lane).handled());
+  }
+  return grants;
+}
+
 // Counts the grants of the core and all stalls since the end of the strip before.
 void ConflictRecorder::count_strip() {
-  for (std::size_t port = 0; port < grants_.size(); ++port) {
-    std::uint64_t grants = control_->port_cycles(port).granted();
-    for (const Side side : kSides) {
-      const AccessPattern* const assumed = assumed_[index_of(side)];
-      const std::size_t lane = control_->lane_index(side, 0);  // the only one of a side that is assumed
-      if (assumed != nullptr && port == control_->pixel_port(lane))
-        grants -= assumed->passes_before(control_->lane(lane).handled());
-    }
-    const std::uint64_t of_strip = grants - std::exchange(grants_[port], grants);
-    frame_.strips[strip_].grants[port] = of_strip;
-    accesses_of(strip_, frame_.bank_of_port[port])[0] += of_strip;
+  for (StripConflicts::Grants& grants : grants_) {
+    const std::uint64_t now = grants_now(grants);
+    const std::uint64_t of_strip = now - std::exchange(grants.cycles, now);
+    frame_.strips[strip_].grants.push_back({grants.port, grants.bank, of_strip});
+    accesses_of(strip_, grants.bank)[0] += of_strip;
   }
   for (std::size_t cause = 0; cause < of_strip_.size(); ++cause) {
     if (of_strip_[cause] != 0) frame_.stalls.push_back({strip_, cause, std::exchange(of_strip_[cause], 0)});
@@ -198,17 +207,17 @@ HostTraffic ConflictRecorder::traffic_of(bool write, std::uint64_t address) cons
 }
 
 void ConflictRecorder::add_served(HostTraffic traffic, std::size_t bank, std::uint64_t cycle,
-                                  std::uint64_t cycles, bool granted) {
+                                  std::uint64_t cycles, bool granted, std::size_t by) {
   if (!is_recording_) return;
   if (!served_.empty()) {
     Served& last = served_.back();
     if (last.cycle + last.cycles == cycle && last.bank == bank && last.traffic == traffic &&
-        last.granted == granted) {
+        last.granted == granted && last.cause == by) {
       last.cycles += cycles;
       return;
     }
   }
-  served_.push_back({cycle, cycles, bank, traffic, granted});
+  served_.push_back({cycle, cycles, bank, traffic, granted, by});
 }
 
 void ConflictRecorder::end_frame(std::uint64_t end_cycle) {
@@ -253,7 +262,8 @@ void ConflictRecorder::count_served() {
         const std::size_t place = place_at(cycle);
         until = std::min(until, ends_[place]);
         const std::size_t tile = tile_of(strip) + place - place_of(strip, 0);
-        const std::size_t cause = cause_of(requester, served.bank, requesters_.turnaround());
+        const std::size_t cause =
+            cause_of(requester, served.bank, requesters_.of_port(served.cause, served.traffic));
         stalls_[cause].cycles[tile] += until - cycle;
         stalls[{strip, cause}] += until - cycle;
       }

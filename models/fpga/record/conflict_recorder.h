@@ -41,7 +41,7 @@ struct GroupConflicts {
 struct StallCause {
   std::size_t requester = 0;
   std::size_t bank = 0;
-  std::size_t by = 0;  // a requester, or the turnaround
+  std::size_t by = 0;  // a requester, or another cause
 };
 
 // The cycles of a strip of results in one frame: from the end of the strip before to the cycle that completes
@@ -49,7 +49,13 @@ struct StallCause {
 struct StripConflicts {
   std::uint64_t cycles = 0;
   std::vector<std::uint64_t> stalls;  // [requester]
-  std::vector<std::uint64_t> grants;  // [port] of the core
+  // Of the ports of the core, in their order, at each of their banks.
+  struct Grants {
+    memory::Port port = 0;
+    std::size_t bank = 0;
+    std::uint64_t cycles = 0;
+  };
+  std::vector<Grants> grants;
 };
 
 // One frame. Strip 0 is the fill: the cycles before the first group with results. The last strip has the
@@ -67,7 +73,6 @@ struct FrameConflicts {
   std::uint64_t number = 0;       // of the frame, among those of the core
   std::uint64_t first_cycle = 0;  // since power-up
   std::vector<StripConflicts> strips;
-  std::vector<std::size_t> bank_of_port;  // of the core; without meaning for a port that does not exist
   std::size_t banks = 0;
   std::vector<BankAccesses> accesses;  // [strip * banks + bank]
   std::vector<StallCause> causes;      // of all frames up to this one
@@ -129,15 +134,12 @@ class ConflictRecorder {
   HostTraffic traffic_of(bool write, std::uint64_t address) const;
   void set_host_traffic(HostTraffic traffic) { traffic_ = traffic; }
   // In these cycles of the running frame the host was granted words of an uncontended bank. If not `granted`,
-  // it was refused a word because of the turnaround.
+  // it was refused a word because of `cause`: memory::kTurnaround, ..
   void add_served(HostTraffic traffic, std::size_t bank, std::uint64_t cycle, std::uint64_t cycles,
-                  bool granted);
+                  bool granted, std::size_t cause = memory::kTurnaround);
 
-  // Of a port, or of ArbiterStats::kTurnaround.
-  std::size_t requester_of_port(std::size_t port) const {
-    if (port == memory::ArbiterStats::kTurnaround) return requesters_.turnaround();
-    return requesters_.of_port(port, traffic_);
-  }
+  // Of a port, or of another cause.
+  std::size_t requester_of_port(std::size_t port) const { return requesters_.of_port(port, traffic_); }
   HostTraffic host_traffic() const { return traffic_; }
   const Requesters& requesters() const { return requesters_; }
   // The strip of the running frame to which the next cycle belongs.
@@ -166,6 +168,7 @@ class ConflictRecorder {
     std::size_t bank;
     HostTraffic traffic;
     bool granted;
+    std::size_t cause;  // of a wait
   };
 
   // The first tile of a strip.
@@ -184,7 +187,7 @@ class ConflictRecorder {
   std::uint64_t end_of(std::size_t strip) const { return ends_[place_of(strip, groups_of_strip_ - 1)]; }
   // The index in stalls_.
   std::size_t cause_of(std::size_t requester, std::size_t bank, std::size_t by) {
-    const std::size_t index = indices_[(requester * banks_ + bank) * (requesters_.size() + 1) + by];
+    const std::size_t index = indices_[(requester * banks_ + bank) * requesters_.causes() + by];
     return index != 0 ? index - 1 : first_cause(requester, bank, by);
   }
   std::size_t first_cause(std::size_t requester, std::size_t bank, std::size_t by);
@@ -196,6 +199,7 @@ class ConflictRecorder {
   }
   void count_host_words(const GroupConflicts& group, std::uint64_t times);
   void add_stalls(const GroupConflicts& group, std::size_t first, std::size_t count, std::size_t step);
+  std::uint64_t grants_now(const StripConflicts::Grants& of_port) const;
   void count_strip();
   std::size_t tiles() const { return 1 + grid_.columns * grid_.rows; }
   void count_served();
@@ -221,7 +225,8 @@ class ConflictRecorder {
   std::size_t strip_ = 0;       // of the next group
   std::size_t group_ = 0;       // number of the next group in its strip
   std::size_t strip_tile_ = 0;  // the first tile of this strip
-  std::vector<std::uint64_t> grants_;  // [port]: up to the end of the strip before
+  // Up to the end of the strip before: of each port of the core, at each of its banks.
+  std::vector<StripConflicts::Grants> grants_;
   std::array<const AccessPattern*, 2> assumed_{};
   // [place_of()]: the first cycle after the part of a tile in its strip.
   std::vector<std::uint64_t> ends_;

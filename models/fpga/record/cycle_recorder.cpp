@@ -4,6 +4,7 @@
 
 #include "models/fpga/core_ports.h"
 #include "models/kernels/rectification_table.h"
+#include "models/kernels/words.h"
 #include "models/memory/memory_config.h"
 
 namespace stereotlm::fpga {
@@ -16,7 +17,8 @@ std::uint64_t sum(std::uint64_t a, std::uint64_t b) { return a > UINT64_MAX - b 
 
 CycleRecorder::CycleRecorder(const CoreConfig& config, const ConflictRecorder& conflicts,
                              const CycleWindow& window, CycleObserver& observer)
-    : geometry_(config),
+    : config_(config),
+      geometry_(config),
       requesters_(CorePorts(config)),
       has_table_{has_table(config, Side::kLeft), has_table(config, Side::kRight)},
       conflicts_(conflicts),
@@ -36,7 +38,7 @@ void CycleRecorder::start_frame(std::uint64_t number, std::uint64_t first_cycle,
   report_accesses(first_cycle);
   frame_ = number;
   first_cycle_ = first_cycle;
-  bases_ = bases;
+  placements_ = placements_of(config_, bases);
 }
 
 void CycleRecorder::end_frame(std::uint64_t end_cycle) {
@@ -90,8 +92,7 @@ void CycleRecorder::record(std::uint64_t cycle, const CoreControl::Decision& dec
     if (of_port.intent != Intent::kRequest) continue;
     of_port.granted = memory::has(granted, port);
     of_port.bank = arbitration.bank_of(port);
-    of_port.address = registers::base_address(bases_[ports.group_of(port)]) -
-                      memory::crossbar_address(of_port.bank, 0) + address_of(port, of_port.item);
+    of_port.address = memory::address_in_bank(address_of(port, of_port.item));
     if (!of_port.granted) of_port.by = blamed(port);
   }
   if (host_requests) {
@@ -108,22 +109,29 @@ void CycleRecorder::record(std::uint64_t cycle, const CoreControl::Decision& dec
   observer_.cycle(out);
 }
 
+// The address on the crossbar of what an access of a port is for.
 std::uint64_t CycleRecorder::address_of(memory::Port port, std::uint64_t item) {
-  const PortGroup& description = requesters_.ports().group(port);
-  if (description.stage == PortStage::kResultWriter)
-    return result_word_offset(geometry_.place_of_result_word(item));
-  const std::uint64_t pixel = pixel_of_slot(port, item);
-  if (description.stage == PortStage::kLutReader) return entry_offset(pixel);
-  const std::size_t side = index_of(description.side);
-  if (!has_table_[side]) return pixel_word_offset(pixel);
-  const std::uint32_t entry = entries_[side][pixel];
-  return pixel_word_offset(static_cast<std::uint64_t>(kernels::entry_row(entry)) *
-                               geometry_.columns_per_strip() +
-                           static_cast<std::uint64_t>(kernels::entry_column(entry)));
+  const PortGroup& group = requesters_.ports().group(port);
+  const Placement& buffer = placements_[requesters_.ports().group_of(port)];
+  if (group.stage == PortStage::kResultWriter) {
+    const std::uint64_t place = geometry_.place_of_result_word(item);
+    return buffer.address(place / buffer.row_words(), place % buffer.row_words());
+  }
+  const SlotCursor& slot = place_of_slot(port, item);
+  auto row = static_cast<std::uint64_t>(slot.row());
+  auto column = static_cast<std::uint64_t>(slot.column());
+  if (group.stage == PortStage::kLutReader) return buffer.address(row, column);
+  const std::size_t side = index_of(group.side);
+  if (has_table_[side]) {
+    const std::uint32_t entry = entries_[side][row * geometry_.columns_per_strip() + column];
+    row = static_cast<std::uint64_t>(kernels::entry_row(entry));
+    column = static_cast<std::uint64_t>(kernels::entry_column(entry));
+  }
+  return buffer.address(row, column / kernels::kPixelsPerWord);
 }
 
-// The pixel at the place of a slot that is not empty. Pixels are counted row by row.
-std::uint64_t CycleRecorder::pixel_of_slot(memory::Port port, std::uint64_t slot) {
+// The place of a slot that is not empty.
+const SlotCursor& CycleRecorder::place_of_slot(memory::Port port, std::uint64_t slot) {
   Place& place = places_[port];
   if (slot == place.slot + 1) {
     place.cursor.advance();
@@ -132,8 +140,7 @@ std::uint64_t CycleRecorder::pixel_of_slot(memory::Port port, std::uint64_t slot
     place.cursor.advance(slot);
   }
   place.slot = slot;
-  return static_cast<std::uint64_t>(place.cursor.row()) * geometry_.columns_per_strip() +
-         static_cast<std::uint64_t>(place.cursor.column());
+  return place.cursor;
 }
 
 void CycleRecorder::set_host(CoreCycle& cycle, const HostWord& word, bool granted, std::size_t by) const {
@@ -158,7 +165,8 @@ void CycleRecorder::drop_accesses(std::uint64_t end_cycle) {
 void CycleRecorder::set_access(CoreCycle& cycle) const {
   if (accesses_.empty() || cycle.cycle < accesses_.front().cycle) return;
   const Accesses& accesses = accesses_.front();
-  set_host(cycle, accesses.word, accesses.granted, accesses.granted ? 0 : requesters_.turnaround());
+  set_host(cycle, accesses.word, accesses.granted,
+           accesses.granted ? 0 : requesters_.of_port(accesses.cause, accesses.word.traffic));
 }
 
 // Reports the accesses before `end_cycle`, while no frame runs.

@@ -11,6 +11,7 @@
 
 #include "models/fpga/core_control.h"
 #include "models/fpga/core_ports.h"
+#include "models/fpga/placement.h"
 #include "models/fpga/record/conflict_recorder.h"
 #include "models/fpga/record/core_cycle.h"
 #include "models/memory/arbitration.h"
@@ -53,10 +54,11 @@ class CycleRecorder {
 
   // Reports accesses of the host that do not contend with the frame, or that come while no frame runs. If
   // `granted`, `first` and the words after it are granted, one in each of `cycles` cycles from `cycle` on. If
-  // not, `first` waits in these cycles because of the turnaround. To be called in the order of the cycles,
-  // and for cycles of a frame before FrameRun steps them.
-  void host_accesses(const HostWord& first, std::uint64_t cycle, std::uint64_t cycles, bool granted) {
-    accesses_.push_back({first, cycle, cycles, granted});
+  // not, `first` waits in these cycles because of `cause`: memory::kTurnaround, .. To be called in the order
+  // of the cycles, and for cycles of a frame before FrameRun steps them.
+  void host_accesses(const HostWord& first, std::uint64_t cycle, std::uint64_t cycles, bool granted,
+                     std::size_t cause = memory::kTurnaround) {
+    accesses_.push_back({first, cycle, cycles, granted, cause});
   }
 
   // Hands out the accesses of the host before `end_cycle` while no frame runs, and keeps later ones. To be
@@ -71,13 +73,14 @@ class CycleRecorder {
     std::uint64_t cycle;
     std::uint64_t cycles;
     bool granted;
+    std::size_t cause;  // of a wait
   };
 
   bool is_inside(std::uint64_t cycle) const;
   void record(std::uint64_t cycle, const CoreControl::Decision& decision, bool host_requests,
               memory::PortMask granted, const CoreControl& control, const memory::Arbitration& arbitration);
   std::uint64_t address_of(memory::Port port, std::uint64_t item);
-  std::uint64_t pixel_of_slot(memory::Port port, std::uint64_t slot);
+  const SlotCursor& place_of_slot(memory::Port port, std::uint64_t slot);
   void set_host(CoreCycle& cycle, const HostWord& word, bool granted, std::size_t by) const;
   void set_access(CoreCycle& cycle) const;
   void drop_accesses(std::uint64_t end_cycle);
@@ -85,6 +88,7 @@ class CycleRecorder {
 
   CoreCycle new_cycle(std::uint64_t cycle) const;
 
+  CoreConfig config_;
   FrameGeometry geometry_;
   Requesters requesters_;
   std::array<bool, 2> has_table_;  // [side]
@@ -96,7 +100,7 @@ class CycleRecorder {
 
   std::optional<std::uint64_t> frame_;  // that runs
   std::uint64_t first_cycle_ = 0;       // of the frame
-  FrameBases bases_{};
+  Placements placements_;
   // [port]: the place of the last slot, from which the next one is mostly one step away.
   struct Place {
     std::uint64_t slot = UINT64_MAX - 1;  // none

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "models/fpga/core_ports.h"
+#include "models/memory/bank_arbiter.h"
 
 namespace stereotlm::fpga {
 
@@ -15,18 +16,21 @@ enum class HostTraffic : std::uint8_t { kCapture, kUpload, kReadBack };
 inline constexpr std::size_t kHostTraffics = 3;
 
 // Who requests banks, or is to blame: the ports of the core, then the host's port for each HostTraffic. The
-// turnaround can only be to blame.
+// causes behind them can only be to blame: the turnaround, and of sdram the rows and the refresh.
 class Requesters {
  public:
   explicit Requesters(const CorePorts& ports) : ports_(ports) {}
 
   std::size_t size() const { return ports_.core_size() + kHostTraffics; }
-  std::size_t turnaround() const { return size(); }
+  std::size_t causes() const { return size() + memory::kOtherCauses; }  // the requesters among them
+  bool is_requester(std::size_t cause) const { return cause < size(); }
   std::size_t host(HostTraffic traffic) const {
     return ports_.core_size() + static_cast<std::size_t>(traffic);
   }
-  // The requester behind a port, whose traffic this is if it is the host's.
-  std::size_t of_port(memory::Port port, HostTraffic traffic) const {
+  // The requester behind a port, whose traffic this is if it is the host's. Or the number of another cause,
+  // such as memory::kTurnaround.
+  std::size_t of_port(std::size_t port, HostTraffic traffic) const {
+    if (port >= memory::kTurnaround) return size() + (port - memory::kTurnaround);
     return port == ports_.host() ? host(traffic) : port;
   }
   // The port of a requester.
@@ -39,10 +43,11 @@ class Requesters {
     return requester != host(HostTraffic::kReadBack);
   }
   // "left_lut", "host capture", "turnaround".
-  std::string name(std::size_t requester) const {
-    constexpr std::array<const char*, kHostTraffics + 1> kOthers = {"host capture", "host upload",
-                                                                    "host read-back", "turnaround"};
-    return requester < ports_.core_size() ? ports_.name(requester) : kOthers[requester - ports_.core_size()];
+  std::string name(std::size_t cause) const {
+    constexpr std::array<const char*, kHostTraffics> kHost = {"host capture", "host upload",
+                                                              "host read-back"};
+    if (!is_requester(cause)) return memory::name_of_cause(memory::kTurnaround + (cause - size()));
+    return cause < ports_.core_size() ? ports_.name(cause) : kHost[cause - ports_.core_size()];
   }
   const CorePorts& ports() const { return ports_; }
 

@@ -92,22 +92,25 @@ class Steps {
     const auto& right = board_.allocation.right_lut;
     if (!left || !right) return;
     if (!board_.fpga.joint_tables) {
-      for (const std::string& bank : std::set<std::string>{*left, *right}) {
-        add_best({"fpga.tables", "separate", "joint in " + bank}, [&](BoardConfig& b) {
+      for (const platform::BufferBanks& banks : {*left, *right}) {
+        const std::string in = fmt::format("{}", fmt::join(banks.banks, ", "));
+        add_best({"fpga.tables", "separate", "joint in " + in}, [&](BoardConfig& b) {
           b.fpga.joint_tables = true;
-          b.allocation.left_lut = b.allocation.right_lut = bank;
+          b.allocation.left_lut = b.allocation.right_lut = banks;
         });
+        if (*left == *right) break;
       }
       return;
     }
     BoardConfig separate = board_;
     separate.fpga.joint_tables = false;
+    if (right->is_striped()) return;
     const PlacedBuffer right_lut = platform::buffers(separate).back();
     const auto free = std::find_if(board_.banks.begin(), board_.banks.end(), [&](const BankConfig& bank) {
       return buffers_in(bank.name) == 0 && can_hold(bank, right_lut);
     });
     if (free != board_.banks.end()) separate.allocation.right_lut = free->name;
-    const std::string to = "separate, right_lut in " + *separate.allocation.right_lut;
+    const std::string to = "separate, right_lut in " + separate.allocation.right_lut->banks.front();
     add_best({"fpga.tables", "joint", to}, [&](BoardConfig& b) { b = separate; });
   }
 
@@ -165,10 +168,11 @@ class Steps {
     for (const BankConfig& bank : board_.banks) kinds.insert(bank.kind);
     const std::string from = kinds.size() > 1 ? "different" : memory::traits_of(*kinds.begin()).name;
     for (const memory::BankTraits& traits : memory::kBankTraits) {
-      if (from == traits.name) continue;
+      if (from == traits.name || traits.kind == memory::BankKind::kSdram) continue;
       add({"ssram.banks.*.kind", from, traits.name}, [&](BoardConfig& b) {
         for (BankConfig& bank : b.banks) {
           bank.kind = traits.kind;
+          bank.sdram.reset();
           if (!traits.has_turnaround) {
             bank.turnaround_cycles = 0;
           } else if (bank.turnaround_cycles == 0) {

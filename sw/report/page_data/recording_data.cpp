@@ -159,10 +159,9 @@ class ConflictData {
       strips_.push_back(stats::csv_range(strip, rows, board.image.height));
     for (const platform::BankConfig& bank : board.banks) banks_.push_back(bank.name);
     const fpga::Requesters requesters(platform::core_ports(board));
-    for (std::size_t requester = 0; requester < requesters.size(); ++requester)
-      requesters_.push_back(requesters.name(requester));
-    causes_ = requesters_;
-    causes_.push_back(requesters.name(requesters.turnaround()));
+    for (std::size_t cause = 0; cause < requesters.causes(); ++cause)
+      causes_.push_back(requesters.name(cause));
+    requesters_.assign(causes_.begin(), causes_.begin() + static_cast<std::ptrdiff_t>(requesters.size()));
     stalls_.assign(requesters.size(), cycles_);
     stalls_of_tiles_ = stalls_;
     sums_.stalls.resize(requesters.size());

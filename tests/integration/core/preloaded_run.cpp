@@ -73,6 +73,8 @@ Figures figures(const platform::Statistics& statistics) {
     all[bank.name + " writes"] = bank.writes;
     all[bank.name + " busy"] = bank.busy_cycles;
     all[bank.name + " turnaround"] = bank.turnaround_cycles;
+    all[bank.name + " row"] = bank.row_cycles.value_or(0);
+    all[bank.name + " refresh"] = bank.refresh_cycles.value_or(0);
     all[bank.name + " idle"] = bank.idle_cycles;
     all[bank.name + " contended"] = bank.contended_cycles;
   }
@@ -101,6 +103,8 @@ Figures figures(const PlainCycleResult& result) {
     all[name + " writes"] = bank.writes;
     all[name + " busy"] = bank.busy;
     all[name + " turnaround"] = bank.turnaround;
+    all[name + " row"] = bank.row;
+    all[name + " refresh"] = bank.refresh;
     all[name + " idle"] = bank.idle;
     all[name + " contended"] = bank.contended;
   }

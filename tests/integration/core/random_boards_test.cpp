@@ -143,7 +143,7 @@ INSTANTIATE_TEST_SUITE_P(Drawn, RandomBoards, testing::Bool(),
                          [](const auto& suite) { return suite.param ? "WithKnobs" : "WithoutKnobs"; });
 
 RandomBoard board_of(std::uint64_t seed, bool with_knobs) {
-  return make_random_board(seed, with_knobs ? RandomKnobs::with_lanes() : RandomKnobs{});
+  return make_random_board(seed, with_knobs ? RandomKnobs::with_section_8() : RandomKnobs{});
 }
 
 void expect_boards_equal_references(Fidelity fidelity, bool with_knobs, std::uint64_t boards,

@@ -440,7 +440,7 @@ std::string wrong_sums(const Traced& traced, bool whole_run) {
   for (std::size_t port = 0; port < fpga::kGroupCount; ++port) {
     const platform::PortStatistics& of_port = statistics.ports[port];
     const auto is_of_port = [port](std::size_t requester) {
-      return requester != kRequesters.turnaround() && kRequesters.port_of(requester) == port;
+      return kRequesters.is_requester(requester) && kRequesters.port_of(requester) == port;
     };
     compare(of_port.name + " granted in the runs",
             count([&](const auto& run) { return is_of_port(run.requester) && !run.by; }), of_port.grants);
@@ -465,8 +465,8 @@ std::string wrong_sums(const Traced& traced, bool whole_run) {
     const auto is_of_row = [&](const platform::TraceRun& run) {
       if (!run.by || statistics.banks[run.bank].name != row.bank) return false;
       const auto name = [](std::size_t requester) {
-        return requester == kRequesters.turnaround() ? kRequesters.name(requester)
-                                                     : fpga::kPortGroups[kRequesters.port_of(requester)].name;
+        return !kRequesters.is_requester(requester) ? kRequesters.name(requester)
+                                                    : fpga::kPortGroups[kRequesters.port_of(requester)].name;
       };
       return name(run.requester) == row.port && name(*run.by) == row.by;
     };

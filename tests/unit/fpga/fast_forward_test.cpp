@@ -125,6 +125,7 @@ class Core {
     while (words > 0 && !done()) {
       const FastForward::Served served = run_->serve_host(route, first, words);
       words -= served.words;
+      route.word += static_cast<std::uint32_t>(served.words);
       if (served.words != 0) first = 1 + (last = served.last_cycle);
     }
     return last;
@@ -138,8 +139,11 @@ class Core {
     arbitration_->route(kHostGroup, route.bank, route.write);
     advance(cycle() + waits);
     while (words > 0 && !done()) {
+      if (memory::has(arbitration_->placed(), kHostGroup))
+        arbitration_->place(kHostGroup, route.bank, route.word);
       if (!step(true)) continue;
       --words;
+      ++route.word;
       first = run_->cycle() - 1;
     }
     run_->host_route_changes();

@@ -83,6 +83,19 @@ inline memory::SsramBankConfig random_bank(test::SplitMix64& random) {
   memory::SsramBankConfig config;
   config.kind = static_cast<memory::BankKind>(random.between(0, kinds - 1));
   if (memory::traits_of(config.kind).has_turnaround) config.turnaround_cycles = random.mostly_small(1, 3, 16);
+  if (config.kind == memory::BankKind::kSdram) {
+    memory::SdramTiming& timing = config.sdram.emplace();
+    timing.cas_latency = random.mostly_small(1, 3, 8);
+    timing.row_words = 16 << random.between(0, 4);
+    timing.internal_banks = 1 << random.between(0, 3);
+    timing.activate_cycles = random.mostly_small(0, 2, 20);
+    timing.precharge_cycles = random.mostly_small(0, 2, 20);
+    timing.refresh_cycles = random.mostly_small(1, 5, 60);
+    timing.refresh_interval_cycles.reset();
+    if (random.chance(70))
+      timing.refresh_interval_cycles =
+          std::max(64, memory::least_refresh_interval(timing)) + random.between(0, 500);
+  }
   return config;
 }
 

@@ -51,7 +51,7 @@ class StageTest : public testing::Test {
 
 class LutReaderTest : public StageTest<LutReader> {
  protected:
-  LutReaderTest() : StageTest(8, false) {
+  LutReaderTest() : StageTest(false) {
     stage.entries_out.bind(entries);
     elaborate();
   }
@@ -60,7 +60,7 @@ class LutReaderTest : public StageTest<LutReader> {
 
 TEST_F(LutReaderTest, TakesARefusedAccessForAnEntryThatIsNotValid) {
   preload(9, kernels::make_entry(5, 1));
-  stage.start_frame(0, {});
+  stage.start_frame(Placement({}, 0, 8), {});
   stage.slots_in->push({1, 1, false, kAt});  // the last word of the bank
   EXPECT_EQ(entries.beats.back().entry, kernels::make_entry(5, 1));
   EXPECT_EQ(stage.errors(), 0U);
@@ -74,7 +74,7 @@ class PixelReaderTest : public StageTest<PixelReader> {
   PixelReaderTest() : StageTest(small_core(8, 4), 0) {
     stage.pixels_out.bind(pixels);
     elaborate();
-    stage.start_frame(8);
+    stage.start_frame(Placement({}, 2, 2));
   }
   void expect_pixel(std::uint8_t value) {
     stage.release();
@@ -85,7 +85,7 @@ class PixelReaderTest : public StageTest<PixelReader> {
 };
 
 TEST_F(PixelReaderTest, ReadsZeroWhereAnAccessIsRefused) {
-  stage.start_frame(36);  // one word before the end of the bank
+  stage.start_frame(Placement({}, 9, 2));  // one word before the end of the bank
   stage.slots_in->push({3, 0, false, kAt});
   EXPECT_EQ(stage.errors(), 0U);
   stage.slots_in->push({4, 0, false, kAt});
@@ -96,7 +96,7 @@ TEST_F(PixelReaderTest, ReadsZeroWhereAnAccessIsRefused) {
 
 TEST_F(PixelReaderTest, ReportsASlotThatItDoesNotHave) {
   stage.entries_in->push({kernels::make_entry(0, 0)});
-  stage.start_frame(8);  // without the slots of the last frame
+  stage.start_frame(Placement({}, 2, 2));  // without the slots of the last frame
   const ExpectedReport report("/stereotlm/pixel_reader", 2);
   EXPECT_THROW(stage.handle(kAt), sc_core::sc_report);
   EXPECT_THROW(stage.release(), sc_core::sc_report);
@@ -106,7 +106,7 @@ class ResultWriterTest : public StageTest<ResultWriter> {
  protected:
   ResultWriterTest() : StageTest(3) {
     elaborate();
-    stage.start_frame(16);
+    stage.start_frame(Placement({}, 4, 2));
   }
   void write(std::uint32_t word) {
     stage.words_in->push({word, word - 4});
@@ -122,7 +122,7 @@ TEST_F(ResultWriterTest, TakesAsManyWordsAsItIsDeepAndReportsOneMore) {
 
 TEST_F(ResultWriterTest, ReportsAWriteFromAnEmptyQueue) {
   stage.words_in->push({7, 0});
-  stage.start_frame(4);  // without the word of the last frame
+  stage.start_frame(Placement({}, 1, 2));  // without the word of the last frame
   const ExpectedReport report("/stereotlm/result_writer");
   EXPECT_THROW(stage.write(kAt), sc_core::sc_report);
 }

@@ -16,11 +16,12 @@ TEST(BankTraits, HaveTheLatenciesAndTurnaroundsOfTheDataSheets) {
   const std::vector<BankTraits> expected = {{BankKind::kZbtPipelined, "zbt_pipelined", 2, false, 1},
                                             {BankKind::kZbtFlowThrough, "zbt_flow_through", 1, false, 1},
                                             {BankKind::kSyncBurst, "sync_burst", 2, true, 1},
-                                            {BankKind::kQdr, "qdr", 2, false, 2}};  // QDR-II SRAM
+                                            {BankKind::kQdr, "qdr", 2, false, 2},  // QDR-II SRAM
+                                            {BankKind::kSdram, "sdram", 0, false, 1}};
   ASSERT_EQ(kBankTraits.size(), expected.size());
   for (const BankTraits& traits : expected) {
     EXPECT_STREQ(traits_of(traits.kind).name, traits.name);
-    EXPECT_EQ(read_latency_cycles(traits.kind), traits.read_latency_cycles) << traits.name;
+    EXPECT_EQ(traits_of(traits.kind).read_latency_cycles, traits.read_latency_cycles) << traits.name;
     EXPECT_EQ(traits_of(traits.kind).has_turnaround, traits.has_turnaround) << traits.name;
     EXPECT_EQ(traits_of(traits.kind).ports, traits.ports) << traits.name;
   }

@@ -75,7 +75,7 @@ class SsramBankTimes : public SsramBankTest, public testing::WithParamInterface<
 TEST_P(SsramBankTimes, AddsItsReadLatencyToAReadAndNothingToAWrite) {
   build(GetParam());
   const sc_time before(3, sc_core::SC_NS);
-  const auto latency = static_cast<std::uint64_t>(read_latency_cycles(GetParam().kind));
+  const auto latency = static_cast<std::uint64_t>(read_latency_cycles(GetParam()));
   const sc_time read_time = kernel_time::to_time(Clock(GetParam().clock_mhz).edge_ps(latency));
   EXPECT_EQ(host.write(8, 0xDEAD'BEEF, before).at, before);
   const TestHost::Answer answer = host.read(8, before);

@@ -107,7 +107,7 @@ TEST_F(CollectStatistics, FindsEachIdentityThatDoesNotHold) {
         fmt::format("{}sum of its states = {}, but cycles = {}", name, cycles + 1, cycles),
         [port](BoardCounters& counters) { counters.ports[port].add(fpga::Intent::kStarved, false); });
     for (const std::size_t by : {std::size_t{0}, std::size_t{1}, std::size_t{2}, std::size_t{3},
-                                 std::size_t{4}, std::size_t{5}, ArbiterStats::kTurnaround}) {
+                                 std::size_t{4}, std::size_t{5}, memory::kTurnaround}) {
       expect_failed(name + "stall_cycles = 0, but blamed by the arbiters = 1",
                     [port, by](BoardCounters& counters) {
                       ArbiterStats& arbiter = counters.banks[1].arbiter;

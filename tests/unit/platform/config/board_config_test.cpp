@@ -42,35 +42,37 @@ TEST(BoardConfig, ReportsEveryBrokenRuleInTheOrderOfTheKeys) {
   board.fpga.pixel_cache = static_cast<fpga::PixelCache>(2);
   EXPECT_EQ(
       problems(board),
-      (Problems{"name = \"a\\nb\": a text of one or more characters without control characters; quoted if it "
-                "could be read as a number, a truth value or null",
-                "image.width = 642: 4..8192, a multiple of 4",
-                "cameras.frame_rate_hz = nan: not a decimal number (such as 29.97, not in quotes); 0.1..1000",
-                "pci.clock_mhz = inf: not a decimal number (such as 29.97, not in quotes); 1..1000",
-                "pci.load.burst_words = 0: 1..1024",
-                "pci.load.interval_us = -0.5: 0..1000000000",
-                "pci.load.access_us = 1000000.5: 0..1000000",
-                "fpga.device = xc4vlx25: must be one of xc2v1000, xc2v1500, xc2v2000, xc2v3000, "
-                "xc2v4000, xc2v6000 or xc2v8000",
-                "fpga.arbitration = lottery: must be one of fixed_priority, round_robin or age",
-                "fpga.priority = result: repeated; each port once",
-                "fpga.priority = \"(no port)\": must be one of left_lut, right_lut, left_pixel, right_pixel, "
-                "result or host",
-                "fpga.pixel_cache = \"2\": must be one of none or word",
-                "ssram.banks.bank0 = {}: repeated key",
-                "ssram.banks.none = {}: a bank's name is [A-Za-z][A-Za-z0-9_-]*, and not none",
-                "ssram.banks.bank3.words = 0: 1..67108864",
-                "ssram.banks.bank4.turnaround_cycles = 0: 1..16",
-                "allocation.disparity = []: a bank, or a list of 1 to 3 banks",
-                "matcher.filter.kernel = [[1, 2]]: a square list of lists, 3..31, odd rows, entries "
-                "-32768..32767, sum 0",
-                "matcher.filter.shift = 32: 0..31",
-                "matcher.lr_tolerance = 254: 0..253 or off",
-                "matcher.units = 255: 1..254 or all",
-                "matcher.rows = 17: 1..16",
-                "matcher.cost.sad = 4: unknown key; nearest known key: pci.load",
-                "matcher.cost.census: missing: 3, 5 or 7",
-                "capture.fifo_trigger_words = 141: 1..fifo_words, which is 140"}));
+      (Problems{
+          "name = \"a\\nb\": a text of one or more characters without control characters; quoted if it "
+          "could be read as a number, a truth value or null",
+          "image.width = 642: 4..8192, a multiple of 4",
+          "cameras.frame_rate_hz = nan: not a decimal number (such as 29.97, not in quotes); 0.1..1000",
+          "pci.clock_mhz = inf: not a decimal number (such as 29.97, not in quotes); 1..1000",
+          "pci.load.burst_words = 0: 1..1024",
+          "pci.load.interval_us = -0.5: 0..1000000000",
+          "pci.load.access_us = 1000000.5: 0..1000000",
+          "fpga.device = xc4vlx25: must be one of xc2v1000, xc2v1500, xc2v2000, xc2v3000, "
+          "xc2v4000, xc2v6000 or xc2v8000",
+          "fpga.arbitration = lottery: must be one of fixed_priority, round_robin or age",
+          "fpga.priority = result: repeated; each port once",
+          "fpga.priority = \"(no port)\": must be one of left_lut, right_lut, left_pixel, right_pixel, "
+          "result or host",
+          "fpga.pixel_cache = \"2\": must be one of none or word",
+          "ssram.banks.bank0 = {}: repeated key",
+          "ssram.banks.none = {}: a bank's name is [A-Za-z][A-Za-z0-9_-]*, and not none",
+          "ssram.banks.bank3.words = 0: 1..67108864",
+          "ssram.banks.bank4.turnaround_cycles = 0: 1..16",
+          "allocation.disparity = []: a bank, a stripe {rows: [..]} of 2..16 banks, or a list of 1 to 3 of "
+          "them",
+          "matcher.filter.kernel = [[1, 2]]: a square list of lists, 3..31, odd rows, entries "
+          "-32768..32767, sum 0",
+          "matcher.filter.shift = 32: 0..31",
+          "matcher.lr_tolerance = 254: 0..253 or off",
+          "matcher.units = 255: 1..254 or all",
+          "matcher.rows = 17: 1..16",
+          "matcher.cost.sad = 4: unknown key; nearest known key: pci.load",
+          "matcher.cost.census: missing: 3, 5 or 7",
+          "capture.fifo_trigger_words = 141: 1..fifo_words, which is 140"}));
   EXPECT_THROW(require_valid(board), std::invalid_argument);
 }
 

@@ -54,7 +54,7 @@ TEST(BoardPresets, AreTheDefaultBoardConfigWithAFewChanges) {
   auto& priority = two_banks.fpga.arbiter.priority;
   std::rotate(priority.begin(), priority.begin() + 1, priority.end());  // the host comes last
   two_banks.banks.resize(2);
-  const Names pictures = {"bank1", "bank1"};
+  const std::vector<BufferBanks> pictures = {"bank1", "bank1"};
   two_banks.allocation = {pictures, pictures, pictures, "bank0", "bank0"};
   EXPECT_EQ(load_board("two-banks"), two_banks);
   EXPECT_EQ(load_board("two-banks-four-rows"),
@@ -83,8 +83,8 @@ TEST(BoardExtends, TakesBanksFiltersAndListsWhole) {
   EXPECT_EQ(board.banks[1].name, "a");
   EXPECT_EQ(board.banks[1].words, 524288);
   EXPECT_EQ(board.banks[2].kind, memory::BankKind::kZbtFlowThrough);
-  EXPECT_EQ(board.allocation.left_image, (Names{"z"}));
-  EXPECT_EQ(board.allocation.disparity, (Names{"a", "m", "z"}));
+  EXPECT_EQ(board.allocation.left_image, (std::vector<BufferBanks>{"z"}));
+  EXPECT_EQ(board.allocation.disparity, (std::vector<BufferBanks>{"a", "m", "z"}));
   EXPECT_EQ(
       refusal_of("extends: fpl2003\nmatcher: {filter: {shift: 5}}\n"),
       "board.yaml:2:11: matcher.filter.kernel: missing: a square list of lists, 3..31, odd rows, entries "

@@ -95,7 +95,8 @@ KeyCase microseconds_case(const std::string& path, const std::string& max) {
 }
 
 std::vector<KeyCase> key_cases() {
-  const std::string list = "a bank, or a list of 1 to 3 banks";
+  const std::string one = "a bank, a stripe {rows: [..]} of 2..16 banks, or ";
+  const std::string list = one + "a list of 1 to 3 of them";
   const std::string images = list + "; left_image and right_image equally long";
   KeyCase width = integer_case("image.width", 4, 2048);  // beyond: BoardImage of board_rules_test.cpp
   width.refused = {"3", "0", "-4", "641", "642", "643", "8191", "8193", "8196", kTooLong};
@@ -202,8 +203,8 @@ std::vector<KeyCase> key_cases() {
       {"allocation.left_lut",
        {"none", "\"none\"", "bank6", "[bank6]", "[none]"},
        {"null", "[]", "[bank6, bank7]", "{}"},
-       "a bank or none"},
-      {"allocation.right_lut", {"none", "bank7"}, {"~", "[]", "[bank6, bank7]", "{}"}, "a bank or none"},
+       one + "none"},
+      {"allocation.right_lut", {"none", "bank7"}, {"~", "[]", "[bank6, bank7]", "{}"}, one + "none"},
       window,
       integer_case("matcher.disparities", 1, 254),
       {"matcher.filter",
@@ -283,6 +284,10 @@ TEST(BoardKeysTable, ListsEveryKeyOfTheCasesAndOfBanksFiltersAndCosts) {
                                     "ssram.banks.NAME.words",
                                     "ssram.banks.NAME.kind",
                                     "ssram.banks.NAME.turnaround_cycles"};
+  for (const char* const name : {"cas_latency", "row_words", "internal_banks", "activate_cycles",
+                                 "precharge_cycles", "refresh_interval_cycles", "refresh_cycles"}) {
+    for (const std::string of : {"ssram.default.", "ssram.banks.NAME."}) expected.insert(of + name);
+  }
   for (const KeyCase& key : key_cases()) expected.insert(key.path);
   std::set<std::string> listed;
   for (const Key& key : keys()) {

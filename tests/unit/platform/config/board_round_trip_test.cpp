@@ -42,6 +42,12 @@ std::vector<BankConfig> any_banks() {
     const memory::BankTraits& traits = memory::kBankTraits[static_cast<std::size_t>(kind)];
     bank.kind = traits.kind;
     if (traits.has_turnaround) bank.turnaround_cycles = any_int(1, 16);
+    if (traits.kind == memory::BankKind::kSdram) {
+      memory::SdramTiming& timing = bank.sdram.emplace();
+      timing = {any_int(1, 8),  16 << any_int(0, 12),  1 << any_int(0, 3), any_int(0, 63),
+                any_int(0, 63), any_int(600, 1000000), any_int(1, 255)};
+      if (any_int(0, 2) == 0) timing.refresh_interval_cycles.reset();
+    }
     banks.push_back(bank);
   }
   return banks;
@@ -115,16 +121,24 @@ BoardConfig any_board() {
   const auto any_bank = [&board] {
     return board.banks[static_cast<std::size_t>(any_int(0, static_cast<int>(board.banks.size()) - 1))].name;
   };
+  // Striped over banks of one read latency.
+  const auto any_buffer = [&] {
+    const std::vector<memory::SsramBankConfig> banks = ssram_configs(board);
+    std::vector<std::string> stripe;
+    const int latency = memory::read_latency_cycles(*rc::gen::elementOf(banks));
+    for (std::size_t bank = 0; bank < banks.size() && stripe.size() < 16; ++bank) {
+      if (memory::read_latency_cycles(banks[bank]) == latency) stripe.push_back(board.banks[bank].name);
+    }
+    return stripe.size() < 2 || any_int(0, 1) == 0 ? BufferBanks(any_bank()) : BufferBanks(stripe);
+  };
   const auto any_list = [&](int length) {
-    std::vector<std::string> list(static_cast<std::size_t>(length));
-    for (std::string& bank : list) bank = any_bank();
-    return list;
+    return std::vector<BufferBanks>(static_cast<std::size_t>(length), any_buffer());
   };
   const int images = any_int(1, 3);
   board.allocation = {any_list(images), any_list(images), any_list(any_int(1, 3)), std::nullopt,
                       std::nullopt};
-  if (any_int(0, 1) == 1) board.allocation.left_lut = any_bank();
-  if (any_int(0, 1) == 1) board.allocation.right_lut = any_bank();
+  if (any_int(0, 1) == 1) board.allocation.left_lut = any_buffer();
+  if (any_int(0, 1) == 1) board.allocation.right_lut = any_buffer();
   board.matcher.window = 3 + 2 * any_int(0, 14);
   board.matcher.disparities = any_int(1, 254);
   board.matcher.fetch = static_cast<fpga::Fetch>(any_int(0, 1));

@@ -74,7 +74,7 @@ TEST(BoardBanks, TakeTheirWordsTurnaroundAndKind) {
                         words}});
   for (const std::string value : {"zbt", "[sync_burst]", "0"}) {
     const std::string rule =
-        " = " + value + ": must be one of zbt_pipelined, zbt_flow_through, sync_burst or qdr";
+        " = " + value + ": must be one of zbt_pipelined, zbt_flow_through, sync_burst, qdr or sdram";
     expect_refusals(
         {{banks_board("default: {kind: " + value + "}, banks: {a: {}}"),
           "board.yaml:2:25: ssram.default.kind" + rule},
@@ -125,6 +125,124 @@ TEST(BoardBanks, IgnoreATurnaroundOfAnEntryWhoseKindHasNone) {
   EXPECT_EQ(inherits.banks[1].turnaround_cycles, 5);
 }
 
+const std::string kSdram =
+    "kind: sdram, cas_latency: 2, row_words: 256, internal_banks: 4, activate_cycles: 1, precharge_cycles: "
+    "1, ";
+const std::string kRefresh = "refresh_interval_cycles: 625, refresh_cycles: 3";
+
+TEST(BoardBanks, OfSdramHaveItsTiming) {
+  const BoardConfig board = load_text(banks_board("default: {" + kSdram + kRefresh +
+                                                  "}, banks: {a: {}, b: {cas_latency: 3}, c: {kind: qdr}}"));
+  EXPECT_EQ(board.banks[0].sdram, memory::SdramTiming{});
+  EXPECT_EQ(board.banks[1].sdram->cas_latency, 3);
+  EXPECT_EQ(board.banks[2].sdram, std::nullopt);
+  const BoardConfig off = load_text(banks_board("banks: {a: {" + kSdram + "refresh_interval_cycles: off}}"));
+  EXPECT_EQ(off.banks[0].sdram->refresh_interval_cycles, std::nullopt);
+  const auto with = [](const std::string& key, const std::string& value) {
+    std::string timing = kSdram + kRefresh;
+    const std::size_t first = timing.find(key) + key.size() + 2;
+    return banks_board("banks: {a: {" +
+                       timing.replace(first, timing.find_first_of(",", first) - first, value) + "}}");
+  };
+  const auto refusal = [](const std::string& key, const std::string& value, const std::string& rule) {
+    return "ssram.banks.a." + key + " = " + value + ": " + rule;
+  };
+  const auto beyond = [&](const std::string& key, const std::vector<std::string>& values,
+                          const std::string& rule) {
+    for (const std::string& value : values) {
+      const std::string found = refusal_of(with(key, value));
+      EXPECT_EQ(found.substr(found.find(": ") + 2), refusal(key, value, rule));
+    }
+  };
+  beyond("cas_latency", {"0", "9"}, "1..8");
+  beyond("row_words", {"8", "96", "131072"}, "16..65536, a power of two");
+  beyond("internal_banks", {"0", "3", "16"}, "1..8, a power of two");
+  beyond("activate_cycles", {"-1", "64"}, "0..63");
+  beyond("precharge_cycles", {"64"}, "0..63");
+  beyond("refresh_interval_cycles", {"63", "1000001", "0"}, "64..1000000 or off");
+  beyond("refresh_cycles", {"0", "256"}, "1..255");
+}
+
+TEST(BoardBanks, RequireTheTimingOfSdramOnlyWhereTheKindIsSdram) {
+  const std::string required = "; required where the kind is sdram, refused beside another";
+  const std::string of_refresh =
+      "; required where the kind is sdram and refreshes, refused beside off or another kind";
+  expect_refusals(
+      {{banks_board("banks: {a: {" + kSdram + "refresh_interval_cycles: 625}}"),
+        "board.yaml:2:17: ssram.banks.a.refresh_cycles: missing: 1..255" + of_refresh},
+       {banks_board("default: {" + kSdram + "refresh_interval_cycles: 625}, banks: {a: {}}"),
+        "board.yaml:2:9: ssram.default.refresh_cycles: missing: 1..255" + of_refresh},
+       {banks_board("banks: {a: {" + kSdram + "refresh_cycles: 3}}"),
+        "board.yaml:2:17: ssram.banks.a.refresh_interval_cycles: missing: 64..1000000 or off" + required},
+       {banks_board("banks: {a: {kind: qdr, cas_latency: 2}}"),
+        "board.yaml:2:45: ssram.banks.a.cas_latency = 2: only where the kind is sdram, and it is qdr"},
+       {banks_board("banks: {a: {kind: qdr, refresh_interval_cycles: off}}"),
+        "board.yaml:2:57: ssram.banks.a.refresh_interval_cycles = off: only where the kind is sdram, and it "
+        "is qdr"},
+       {banks_board("banks: {a: {" + kSdram + "turnaround_cycles: 2, " + kRefresh + "}}"),
+        "board.yaml:2:145: ssram.banks.a.turnaround_cycles = 2: only where the kind is sync_burst, and it is "
+        "sdram"},
+       {banks_board("banks: {a: {" + kSdram + "refresh_interval_cycles: off, refresh_cycles: 3}}"),
+        "board.yaml:2:172: ssram.banks.a.refresh_cycles = 3: only with a refresh, and "
+        "refresh_interval_cycles is off"},
+       {banks_board("banks: {a: {cas_latency: 3}}"), ""}});
+}
+
+TEST(BoardBanks, OfSdramGrantAnAccessBetweenTwoRefreshes) {
+  const auto text = [](int activate, int interval, int refresh) {
+    return banks_board(
+        fmt::format("banks: {{a: {{kind: sdram, cas_latency: 2, row_words: 16, internal_banks: "
+                    "1, activate_cycles: {}, precharge_cycles: 0, refresh_interval_cycles: {}, "
+                    "refresh_cycles: {}}}}}",
+                    activate, interval, refresh));
+  };
+  const std::string end = ", or no access might ever be granted: a refresh, and the opening of two rows";
+  expect_refusals(
+      {{text(40, 100, 20), ""},
+       {text(40, 99, 20), "board.yaml:2:151: ssram.banks.a.refresh_interval_cycles = 99: at least 100" + end},
+       {text(0, 101, 100), ""},
+       {text(0, 100, 100),
+        "board.yaml:2:150: ssram.banks.a.refresh_interval_cycles = 100: at least 101" + end}});
+}
+
+TEST(BoardStripes, NameTwoToSixteenDifferentBanksOfOneReadLatency) {
+  const auto in = [](const std::string& value) { return kBase + "allocation: {disparity: " + value + "}\n"; };
+  const BoardConfig board = load_text(in("[{rows: [bank4, bank5]}, bank6]"));
+  EXPECT_EQ(board.allocation.disparity,
+            (std::vector<BufferBanks>{BufferBanks(std::vector<std::string>{"bank4", "bank5"}), "bank6"}));
+  EXPECT_EQ(load_text(in("{rows: [bank4, bank5]}")), load_text(in("[{rows: [bank4, bank5]}]")));
+  const std::string rule = "a stripe {rows: [..]} has 2..16 different banks";
+  expect_refusals(
+      {{in("{rows: [bank4]}"), "board.yaml:2:32: allocation.disparity = [bank4]: " + rule},
+       {in("{rows: bank4}"), "board.yaml:2:32: allocation.disparity = bank4: " + rule},
+       {in("{rows: [bank4, bank5, bank4]}"),
+        "board.yaml:2:47: allocation.disparity = bank4: twice in one stripe; " + rule},
+       {in("{rows: [bank4, bank9]}"),
+        "board.yaml:2:40: allocation.disparity = bank9: not a bank of this board; nearest: bank0"},
+       {in("{rows: [bank4, bank5]}"),
+        "--set ssram.banks.bank5: allocation.disparity[0].rows[1] = bank5: its read latency is 1, that of "
+        "bank4 is 2; all banks of a stripe need one",
+        {"ssram.banks.bank5={kind: zbt_flow_through}"}}});
+}
+
+TEST(BoardStripes, HoldTheirRowsInTurn) {
+  const BoardConfig board = load_board(
+      "fpl2003", {"image={width: 8, height: 5}", "allocation.left_lut={rows: [bank0, bank6, bank5]}",
+                  "allocation.right_lut={rows: [bank1, bank2, bank3, bank4, bank5, bank6, bank7]}"});
+  std::vector<std::string> parts;
+  for (const PlacedBuffer& buffer : buffers(board)) {
+    if (buffer.parts > 1)
+      parts.push_back(fmt::format("{} in {}: {}..{}", buffer.label(), buffer.bank,
+                                  buffer.range.first % (1U << 28U) / 4, buffer.range.end % (1U << 28U) / 4));
+  }
+  EXPECT_THAT(parts, ::testing::ElementsAre(
+                         "left_lut.rows[0] in bank0: 10..26", "left_lut.rows[1] in bank6: 0..16",
+                         "left_lut.rows[2] in bank5: 10..18", "right_lut.rows[0] in bank1: 10..18",
+                         "right_lut.rows[1] in bank2: 10..18", "right_lut.rows[2] in bank3: 10..18",
+                         "right_lut.rows[3] in bank4: 10..18", "right_lut.rows[4] in bank5: 18..26",
+                         "right_lut.rows[5] in bank6: 16..16", "right_lut.rows[6] in bank7: 0..0"));
+}
+
 TEST(BoardBanks, AreOneToSixtyFour) {
   std::string banks = "a: {}";
   for (int i = 1; i < 64; ++i) banks += fmt::format(", b{}: {{}}", i);
@@ -147,7 +265,9 @@ TEST(BoardBanks, HaveValidNamesAndKnownKeysOnce) {
   expect_refusals({{banks_board("banks: {a: {}, b: {}, a: {words: 5}}"),
                     "board.yaml:2:31: ssram.banks.a = {words: 5}: repeated key, first at 2:17"},
                    {banks_board("banks: {a: {}, b}"),
-                    "board.yaml:2:24: ssram.banks.b = (nothing): a map of words, kind, turnaround_cycles"},
+                    "board.yaml:2:24: ssram.banks.b = (nothing): a map of words, kind, turnaround_cycles, "
+                    "cas_latency, row_words, internal_banks, activate_cycles, precharge_cycles, "
+                    "refresh_interval_cycles, refresh_cycles"},
                    {banks_board("banks: {a: {wrods: 5}}"),
                     "board.yaml:2:21: ssram.banks.a.wrods = 5: unknown key; nearest known key: "
                     "ssram.banks.a.words"}});
@@ -170,6 +290,7 @@ TEST(BoardBanks, HoldTheirBuffers) {
 }
 
 TEST(BoardAllocation, NamesBanksOfTheBoard) {
+  const std::string list = "a bank, a stripe {rows: [..]} of 2..16 banks, or a list of 1 to 3 of them";
   expect_refusals(
       {{kBase + "allocation: {disparity: [bank4, bonk5], left_lut: bank66, right_image: [x, none]}\n",
         "board.yaml:2:33: allocation.disparity = bonk5: not a bank of this board; nearest: bank5\n"
@@ -177,8 +298,10 @@ TEST(BoardAllocation, NamesBanksOfTheBoard) {
         "board.yaml:2:73: allocation.right_image = x: not a bank of this board\n"
         "board.yaml:2:76: allocation.right_image = none: not a bank of this board"},
        {kBase + "allocation: {disparity: [bank4, [bank5], null]}\n",
-        "board.yaml:2:33: allocation.disparity = [bank5]: a bank, or a list of 1 to 3 banks\n"
-        "board.yaml:2:42: allocation.disparity = null: a bank, or a list of 1 to 3 banks"}});
+        "board.yaml:2:33: allocation.disparity = [bank5]: " + list +
+            "\n"
+            "board.yaml:2:42: allocation.disparity = null: " +
+            list}});
   const std::string head = kBase + "allocation: ";
   EXPECT_EQ(
       load_text(head + "{left_image: bank0, right_image: bank2, disparity: bank4, left_lut: bank6}"),

@@ -90,7 +90,7 @@ board.yaml:5:1: fpga.result_fifo_words: missing: 1..64
 board.yaml:5:1: fpga.pipeline_latency_cycles: missing: 0..1024
 board.yaml:6:1: ssram.banks: missing: a map of 1..64 banks
 board.yaml:6:9: ssram.default.words: missing: 1..67108864
-board.yaml:6:9: ssram.default.kind: missing: zbt_pipelined, zbt_flow_through, sync_burst or qdr)");
+board.yaml:6:9: ssram.default.kind: missing: zbt_pipelined, zbt_flow_through, sync_burst, qdr or sdram)");
 }
 
 TEST(BoardSyntax, RefusesASectionThatIsNoMap) {

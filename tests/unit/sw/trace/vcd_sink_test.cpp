@@ -174,7 +174,8 @@ TEST_F(VcdSinkTest, ABankWithSeparatePortsHasTwoOwners) {
   cycle.cycle = 7;
   cycle.ports[0] = {fpga::Intent::kRequest, true, 0, 4, 0, 0};
   cycle.ports[fpga::kResultGroup] = {fpga::Intent::kRequest, true, 0, 8, 0, 0};
-  cycle.ports[2] = {fpga::Intent::kRequest, false, 1, 4, test::kRequesters.turnaround(), 0};
+  cycle.ports[2] = {
+      fpga::Intent::kRequest, false, 1, 4, test::kRequesters.of_port(memory::kTurnaround, {}), 0};
   test::MadeTrace trace;
   trace.cycles = {cycle};
   const VcdFile file = written(trace);

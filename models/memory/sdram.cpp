@@ -1,0 +1,70 @@
+#include "models/memory/sdram.h"
+
+namespace stereotlm::memory {
+
+std::vector<std::string> problems(const SdramTiming& timing) {
+  std::vector<std::string> found;
+  const auto check_power = [&](const char* field, int value, const kernels::IntegerRule& rule) {
+    if (!rule.allows(value) || !is_power_of_two(value))
+      found.push_back(rule.problem(field, value) + ", a power of two");
+  };
+  kCasLatencyRule.check("cas_latency", timing.cas_latency, found);
+  check_power("row_words", timing.row_words, kRowWordsRule);
+  check_power("internal_banks", timing.internal_banks, kInternalBanksRule);
+  kRowCyclesRule.check("activate_cycles", timing.activate_cycles, found);
+  kRowCyclesRule.check("precharge_cycles", timing.precharge_cycles, found);
+  if (!timing.refresh_interval_cycles) return found;
+  kRefreshIntervalRule.check("refresh_interval_cycles", *timing.refresh_interval_cycles, found);
+  kRefreshCyclesRule.check("refresh_cycles", timing.refresh_cycles, found);
+  if (found.empty() && *timing.refresh_interval_cycles < least_refresh_interval(timing)) {
+    found.push_back("refresh_interval_cycles = " + std::to_string(*timing.refresh_interval_cycles) +
+                    ": must be at least " + std::to_string(least_refresh_interval(timing)) +
+                    ", or no access might ever be granted");
+  }
+  return found;
+}
+
+bool SdramRows::may_access(std::uint64_t cycle, std::uint32_t word) {
+  const std::uint32_t row = word / static_cast<std::uint32_t>(timing_.row_words);
+  std::optional<std::uint32_t>& open = open_[row % static_cast<std::uint32_t>(timing_.internal_banks)];
+  if (open == row) return true;
+  be_busy(cycle, timing_.activate_cycles + (open ? timing_.precharge_cycles : 0), Cause::kRow);
+  open = row;
+  return cycle >= busy_until_;
+}
+
+SdramRows::BusyCycles SdramRows::take_busy_cycles(std::uint64_t end) {
+  pass(end);
+  BusyCycles cycles{};
+  std::size_t left = 0;
+  for (const Busy& busy : busy_) {
+    if (busy.first < end)
+      cycles[static_cast<std::size_t>(busy.cause)] += std::min(busy.end, end) - busy.first;
+    if (busy.end > end) busy_[left++] = {std::max(busy.first, end), busy.end, busy.cause};
+  }
+  busy_.resize(left);
+  return cycles;
+}
+
+// Begins the refreshes of the cycles before `end`. In those that have not been passed yet, nobody has opened
+// a row.
+void SdramRows::pass(std::uint64_t end) {
+  while (next_refresh_ != 0 && std::max(busy_until_, next_refresh_) < end)
+    begin_refresh(std::max(busy_until_, next_refresh_));
+}
+
+void SdramRows::begin_refresh(std::uint64_t cycle) {
+  const bool is_open =
+      std::any_of(open_.begin(), open_.end(), [](const auto& row) { return row.has_value(); });
+  be_busy(cycle, timing_.refresh_cycles + (is_open ? timing_.precharge_cycles : 0), Cause::kRefresh);
+  open_.fill(std::nullopt);
+  next_refresh_ += static_cast<std::uint64_t>(*timing_.refresh_interval_cycles);
+}
+
+void SdramRows::be_busy(std::uint64_t first, int cycles, Cause cause) {
+  busy_until_ = first + static_cast<std::uint64_t>(cycles);
+  cause_ = cause;
+  if (cycles > 0) busy_.push_back({first, busy_until_, cause});
+}
+
+}  // namespace stereotlm::memory
