@@ -62,8 +62,8 @@ class ComputerLoop : private pci::BridgeControl::Host {
   class Window : public pci::PciTarget {
    public:
     Window(ComputerLoop& loop, std::size_t window) : loop_(loop), window_(window) {}
-    std::size_t writable_words(std::uint64_t now_ps, std::uint64_t /*address*/, std::size_t words) override {
-      return window_ == kBridgeSlave ? loop_.bridge_.postable_words(now_ps, words) : words;
+    std::size_t writable_words(std::uint64_t now_ps, std::uint64_t address, std::size_t words) override {
+      return window_ == kBridgeSlave ? loop_.bridge_.postable_words(now_ps, address, words) : words;
     }
     pci::PciAnswer access(std::uint64_t now_ps, const pci::PciAccess& access, std::uint64_t at_ps) override {
       return loop_.access(window_, now_ps, access, at_ps);

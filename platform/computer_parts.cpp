@@ -46,7 +46,7 @@ std::optional<pci::TrafficGeneratorConfig> traffic_config(const BoardConfig& boa
 
 pci::PciBridgeConfig bridge_config(const BoardConfig& board) {
   return {board.bridge.dma_burst_words, board.bridge.posted_words, fpga::kLocalRegisters,
-          buffer_ranges(board)};
+          buffer_ranges(board), static_cast<std::uint64_t>(board.image.width)};
 }
 
 capture::CameraConfig camera_config(const BoardConfig& board) {

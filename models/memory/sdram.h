@@ -54,7 +54,8 @@ std::vector<std::string> problems(const SdramTiming& timing);
 class SdramRows {
  public:
   explicit SdramRows(const SdramTiming& timing)
-      : timing_(timing), next_refresh_(timing.refresh_interval_cycles.value_or(0)) {}
+      : timing_(timing),
+        next_refresh_(static_cast<std::uint64_t>(timing.refresh_interval_cycles.value_or(0))) {}
 
   // To be called for each cycle with a request, before may_access(), in increasing order. A refresh that is
   // due begins. Returns the cause for which nobody is granted in the cycle, if there is one.

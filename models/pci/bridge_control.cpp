@@ -19,21 +19,40 @@ BridgeControl::BridgeControl(const PciBridgeConfig& config, PciSlot& slot, Local
       channels_{{{0, static_cast<std::size_t>(config.dma_burst_words)},
                  {1, static_cast<std::size_t>(config.dma_burst_words)}}},
       posted_(static_cast<std::size_t>(config.posted_words)),
-      words_taken_(config.buffers) {}
+      words_taken_(config.buffers) {
+  pages_.fill({0});
+}
 
 void BridgeControl::observe(BridgeObserver& observer) {
   observer_ = &observer;
   for (DmaChannel& channel : channels_) channel.observe(observer);
 }
 
-std::size_t BridgeControl::postable_words(std::uint64_t now_ps, std::size_t words) const {
-  return std::min(words, free_places(now_ps));
+std::size_t BridgeControl::postable_words(std::uint64_t now_ps, std::uint64_t offset,
+                                          std::size_t words) const {
+  const bool is_striped =
+      offset < bridge::kCoreRegisters && pages_[offset / bridge::kApertureBytes].size() > 1;
+  const std::size_t of_row = is_striped ? (border_behind(offset) - offset) / 4 : words;
+  return std::min({words, of_row, free_places(now_ps)});
 }
 
 std::uint64_t BridgeControl::local_address_of(std::uint64_t offset) const {
   if (offset >= bridge::kCoreRegisters) return config_.core_registers + (offset - bridge::kCoreRegisters);
-  const std::uint32_t page = pages_[static_cast<std::size_t>(offset / bridge::kApertureBytes)];
-  return bridge::local_address(page) + offset % bridge::kApertureBytes;
+  const std::vector<std::uint32_t>& parts = pages_[offset / bridge::kApertureBytes];
+  const std::uint64_t place = offset % bridge::kApertureBytes;
+  if (parts.size() == 1) return bridge::local_address(parts.front()) + place;
+  const std::uint64_t row = place / config_.row_bytes;
+  return bridge::local_address(parts[row % parts.size()]) + row / parts.size() * config_.row_bytes +
+         place % config_.row_bytes;
+}
+
+std::uint64_t BridgeControl::border_behind(std::uint64_t offset) const {
+  if (offset >= bridge::kCoreRegisters) return bridge::kSlaveWindowBytes;
+  const std::uint64_t place = offset % bridge::kApertureBytes;
+  const std::uint64_t aperture = offset - place;
+  const bool is_striped = pages_[offset / bridge::kApertureBytes].size() > 1;
+  return is_striped ? aperture + (place / config_.row_bytes + 1) * config_.row_bytes
+                    : aperture + bridge::kApertureBytes;
 }
 
 // A burst may cross from one aperture into the next, which has a page of its own.
@@ -45,10 +64,7 @@ bool BridgeControl::write(std::uint64_t now_ps, std::uint64_t offset, const unsi
   }
   settle(now_ps);
   for (const std::uint64_t end = offset + 4 * words; offset < end;) {
-    const std::uint64_t border = offset < bridge::kCoreRegisters
-                                     ? (offset / bridge::kApertureBytes + 1) * bridge::kApertureBytes
-                                     : end;
-    const std::uint64_t here = std::min(border, end) - offset;
+    const std::uint64_t here = std::min(border_behind(offset), end) - offset;
     const std::uint64_t address = local_address_of(offset);
     posted_.push(address, data, here / 4);
     count_posted(address, here / 4);
@@ -88,9 +104,7 @@ bool BridgeControl::is_idle() const {
 }
 
 std::optional<std::uint64_t> BridgeControl::bank_address(std::uint64_t offset, std::uint64_t bytes) const {
-  const std::uint64_t last = offset + bytes - 4;
-  if (last >= bridge::kCoreRegisters || offset / bridge::kApertureBytes != last / bridge::kApertureBytes)
-    return std::nullopt;
+  if (offset >= bridge::kCoreRegisters || offset + bytes > border_behind(offset)) return std::nullopt;
   const std::uint64_t address = local_address_of(offset);
   if (address / bridge::kBankBytes != (address + bytes - 4) / bridge::kBankBytes) return std::nullopt;
   return address;
@@ -100,6 +114,8 @@ BridgeControl::Register BridgeControl::decode(std::uint64_t offset) {
   if (offset < bridge::kInterruptStatus)
     return {bridge::kPage, static_cast<std::size_t>((offset - bridge::kPage) / 4)};
   if (offset < bridge::kDmaDescriptor) return {offset, 0};
+  if (offset >= bridge::kNextPage)
+    return {bridge::kNextPage, static_cast<std::size_t>((offset - bridge::kNextPage) / 4)};
   const std::uint64_t in_channels = offset - bridge::kDmaDescriptor;
   return {bridge::kDmaDescriptor + in_channels % bridge::kChannelStride,
           static_cast<std::size_t>(in_channels / bridge::kChannelStride)};
@@ -114,6 +130,7 @@ bool BridgeControl::allows(bool write, std::uint64_t offset) {
     case bridge::kDmaDescriptor:
       return true;
     case bridge::kDmaControl:
+    case bridge::kNextPage:
       return write;
     case bridge::kDmaStatus:
       return !write;
@@ -125,7 +142,7 @@ bool BridgeControl::allows(bool write, std::uint64_t offset) {
 std::uint32_t BridgeControl::read_register(const Register& its) const {
   switch (its.name) {
     case bridge::kPage:
-      return pages_[its.index];
+      return pages_[its.index].front();
     case bridge::kInterruptStatus:
       return interrupt_status_;
     case bridge::kInterruptEnable:
@@ -140,7 +157,10 @@ std::uint32_t BridgeControl::read_register(const Register& its) const {
 void BridgeControl::write_register(std::uint64_t now_ps, const Register& its, std::uint32_t value) {
   switch (its.name) {
     case bridge::kPage:
-      pages_[its.index] = value;
+      pages_[its.index] = {value};
+      return;
+    case bridge::kNextPage:
+      pages_[its.index].push_back(value);
       return;
     case bridge::kInterruptStatus:
       interrupt_status_ &= ~value;

@@ -65,8 +65,9 @@ class BridgeControl final : public PciMasterIf, public PciTarget, public LocalBu
 
   // The slave window. `offset`: a multiple of 4; the words are inside the window.
   //
-  // How many of the `words` words of a write have free places now. STOP# ends the write after these.
-  std::size_t postable_words(std::uint64_t now_ps, std::size_t words) const;
+  // How many of the `words` words of a write have free places now, and lie in the row of the first one if the
+  // picture is striped. STOP# ends the write after these.
+  std::size_t postable_words(std::uint64_t now_ps, std::uint64_t offset, std::size_t words) const;
   // Posts a write. Returns false, without effect, if it has more words than there are free places.
   bool write(std::uint64_t now_ps, std::uint64_t offset, const unsigned char* data, std::size_t words);
   // Begins a read, which ends with Host::slave_read_ended(). `data` must stay until then. To be called if no
@@ -135,6 +136,8 @@ class BridgeControl final : public PciMasterIf, public PciTarget, public LocalBu
   void write_register(std::uint64_t now_ps, const Register& its, std::uint32_t value);
 
   std::uint64_t local_address_of(std::uint64_t offset) const;
+  // The offset behind the last word of the slave window from this one on that leads to contiguous addresses.
+  std::uint64_t border_behind(std::uint64_t offset) const;
   // Counts words from this address on. Words for the core's registers are not counted.
   void count_for_banks(WordsByRange& counts, std::uint64_t address, std::uint64_t words) const {
     if (address < config_.core_registers)
@@ -166,7 +169,8 @@ class BridgeControl final : public PciMasterIf, public PciTarget, public LocalBu
   LocalBusIf& local_bus_;
   Host& host_;
   DmaChannels channels_;
-  std::array<std::uint32_t, bridge::kApertures> pages_{};  // as kPage names them
+  // [aperture][part]: as kPage and kNextPage name them.
+  std::array<std::vector<std::uint32_t>, bridge::kApertures> pages_;
   std::uint32_t interrupt_status_ = 0;
   std::uint32_t interrupt_enable_ = 0;
   bool interrupts_ = false;  // the level of INTA#

@@ -25,6 +25,11 @@
 // | 0x24 + 16 c | kDmaControl      | write  | 1: start. A start while the channel is busy raises        |
 // |             |                  |        | kDmaError                                                 |
 // | 0x28 + 16 c | kDmaStatus       | read   | 1: busy                                                   |
+// | 0x40 + 4 i  | kNextPage        | write  | first word of the next part of aperture i, as kPage       |
+//
+// An aperture may lead to a striped picture (contract 8.2): kPage names the first word of part 0, and ends
+// the list of parts. Each kNextPage adds a part. Row y of the picture then is row floor(y / N) of part y mod
+// N of the N parts. A burst into such an aperture ends with its row.
 //
 // A descriptor is four words in host memory:
 //
@@ -51,7 +56,8 @@ inline constexpr std::uint64_t kDmaDescriptor = 0x20;
 inline constexpr std::uint64_t kDmaControl = 0x24;
 inline constexpr std::uint64_t kDmaStatus = 0x28;
 inline constexpr std::uint64_t kChannelStride = 0x10;
-inline constexpr std::uint64_t kRegisterWindowBytes = 0x40;
+inline constexpr std::uint64_t kNextPage = 0x40;
+inline constexpr std::uint64_t kRegisterWindowBytes = 0x50;
 
 inline constexpr std::uint32_t kDoorbell = 1U << 0U;
 inline constexpr std::uint32_t kDmaDone = 1U << 1U;   // for channel 0; the next higher bit is for channel 1

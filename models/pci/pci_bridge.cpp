@@ -28,8 +28,8 @@ void PciBridge::step() {
   await_step();
 }
 
-std::size_t PciBridge::writable_words(std::uint64_t /*address*/, std::size_t words) const {
-  return control_.postable_words(kernel_time::now_ps(), words);
+std::size_t PciBridge::writable_words(std::uint64_t address, std::size_t words) const {
+  return control_.postable_words(kernel_time::now_ps(), address, words);
 }
 
 void PciBridge::access_slave(tlm::tlm_generic_payload& access, sc_core::sc_time& delay) {

@@ -43,6 +43,7 @@ struct PciBridgeConfig {
   // Byte address of the core's registers on the local bus, behind all banks.
   std::uint64_t core_registers = std::uint64_t{1} << 34U;
   std::vector<AddressRange> buffers = {};  // on the local bus; words for the banks are counted for each
+  std::uint64_t row_bytes = 640;           // of a picture
 };
 
 // A master that loads the bus: it reads the same words again and again. Transfer k = 0, 1, .. requests the

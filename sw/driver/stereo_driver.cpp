@@ -1,5 +1,6 @@
 #include "sw/driver/stereo_driver.h"
 
+#include <algorithm>
 #include <cstring>
 #include <stdexcept>
 #include <utility>
@@ -21,8 +22,7 @@ namespace core_map = fpga::registers;
 constexpr int kToBoard = 0;  // numbers of the DMA channels
 constexpr int kToHost = 1;
 constexpr std::uint64_t kDescriptorBytes = 16;
-constexpr std::uint64_t kChainBytes = 16 * kDescriptorBytes;  // bytes of one channel's chain
-constexpr std::uint64_t kDataStart = 4096;                    // address of the tables, after both chains
+constexpr std::uint64_t kChainsBytes = 4096;  // of both chains, rounded up to a multiple of this
 
 // A capture writes through an aperture, whose page stays as it is.
 static_assert(fpga::kWidthRule.max * fpga::kHeightRule.max <= std::int64_t{bridge_map::kApertureBytes});
@@ -39,9 +39,20 @@ bool captures_to_host(const platform::BoardConfig& board) {
   return board.capture.destination == platform::CaptureDestination::kHostMemory;
 }
 
+// Bytes of a channel's chain. The longest is the copy of a striped pair: a descriptor for each row. Any other
+// has one for each part of two tables.
+std::uint64_t chain_bytes(const platform::BoardConfig& board) {
+  const bool is_striped = !platform::stripes_of(board).empty();
+  const auto descriptors = static_cast<std::uint64_t>(is_striped ? std::max(2 * board.image.height, 32) : 16);
+  return descriptors * kDescriptorBytes;
+}
+
 // Host memory holds, in this order: the chains of both DMA channels, the tables, the ring, the results.
+std::uint64_t tables_start(const platform::BoardConfig& board) {
+  return (2 * chain_bytes(board) + kChainsBytes - 1) / kChainsBytes * kChainsBytes;
+}
 std::uint64_t ring_start(const platform::BoardConfig& board) {
-  return kDataStart + 2 * 4 * image_bytes(board);
+  return tables_start(board) + 2 * 4 * image_bytes(board);
 }
 std::uint64_t results_start(const platform::BoardConfig& board) {
   const int pairs = captures_to_host(board) ? board.capture.host_frames : 0;
@@ -114,13 +125,19 @@ std::string StereoDriver::under_way() const {
 
 void StereoDriver::upload_tables() {
   std::vector<Piece> pieces;
-  std::uint64_t host = kDataStart;
+  std::uint64_t host = tables_start(board_);
+  const std::uint64_t row_bytes = 4 * static_cast<std::uint64_t>(board_.image.width);
   const auto add = [&](const std::optional<std::uint32_t>& lut, const std::vector<std::uint32_t>* table) {
     if (!lut) return;
-    const std::uint64_t bytes = table->size() * 4;
-    std::memcpy(bus_->memory(kDevices.host_memory + host, bytes), table->data(), bytes);
-    pieces.push_back({host, *lut, table->size(), false});
-    host += bytes;
+    const fpga::Placement buffer(buffers_.stripes, *lut, row_bytes / 4);
+    add_parts(buffer, host, false, pieces);
+    const auto* const from = reinterpret_cast<const std::uint8_t*>(table->data());
+    std::uint8_t* to = bus_->memory(kDevices.host_memory + host, table->size() * 4);
+    for (const std::uint64_t row : rows_by_part(buffer)) {
+      std::memcpy(to, from + row * row_bytes, row_bytes);
+      to += row_bytes;
+    }
+    host += table->size() * 4;
   };
   if (buffers_.has_joint_tables) {
     for (const auto& [address, value] : core_map::joint_offsets(joint_offsets_))
@@ -241,8 +258,8 @@ void StereoDriver::arm_capture() {
     right = left + image_bytes(board_);
   } else {
     const auto input = static_cast<std::size_t>(capture % inputs);
-    bus_->write(kBridge + bridge_map::kPage + 0, buffers_.left_images[input]);
-    bus_->write(kBridge + bridge_map::kPage + 4, buffers_.right_images[input]);
+    write_pages(0, buffers_.left_images[input]);
+    write_pages(4, buffers_.right_images[input]);
     left = kDevices.bridge_slave;
     right = left + bridge_map::kApertureBytes;
   }
@@ -265,9 +282,10 @@ void StereoDriver::copy_pair() {
   }
   const auto input = static_cast<std::size_t>(pair % inputs);
   const std::uint64_t host = pair_in_host(pair);
-  start_dma(kToBoard,
-            {{host, buffers_.left_images[input], image_bytes(board_) / 4, false},
-             {host + image_bytes(board_), buffers_.right_images[input], image_bytes(board_) / 4, false}});
+  std::vector<Piece> pieces;
+  add_picture(buffers_.left_images[input], host, pieces);
+  add_picture(buffers_.right_images[input], host + image_bytes(board_), pieces);
+  start_dma(kToBoard, pieces);
 }
 
 void StereoDriver::read_back() {
@@ -275,17 +293,75 @@ void StereoDriver::read_back() {
   if (!begin(Activity::kReadBack, {{Activity::kReadBack, 1, "read_back"}, {Activity::kFrame, 0, "frame"}}))
     return;
   const auto output = static_cast<std::size_t>(frame % buffers_.disparities.size());
-  start_dma(kToHost, {{result_in_host(frame), buffers_.disparities[output], image_bytes(board_) / 4, true}});
+  std::vector<Piece> pieces;
+  add_parts(picture_at(buffers_.disparities[output]), result_in_host(frame), true, pieces);
+  start_dma(kToHost, pieces);
 }
 
 void StereoDriver::end_read_back() {
   const std::uint64_t frame = of(Activity::kReadBack).ended++;
-  deliver_({frame, camera_frames_[static_cast<std::size_t>(frame)],
-            bus_->memory(kDevices.host_memory + result_in_host(frame), image_bytes(board_))});
+  const std::uint8_t* pixels =
+      bus_->memory(kDevices.host_memory + result_in_host(frame), image_bytes(board_));
+  const fpga::Placement buffer =
+      picture_at(buffers_.disparities[static_cast<std::size_t>(frame % buffers_.disparities.size())]);
+  if (buffer.parts().size() > 1) {
+    result_.resize(image_bytes(board_));
+    const auto row_bytes = static_cast<std::uint64_t>(board_.image.width);
+    for (const std::uint64_t row : rows_by_part(buffer)) {
+      std::memcpy(result_.data() + row * row_bytes, pixels, row_bytes);
+      pixels += row_bytes;
+    }
+    pixels = result_.data();
+  }
+  deliver_({frame, camera_frames_[static_cast<std::size_t>(frame)], pixels});
+}
+
+fpga::Placement StereoDriver::picture_at(std::uint32_t base) const {
+  return {buffers_.stripes, base, static_cast<std::uint64_t>(board_.image.width) / 4};
+}
+
+std::vector<std::uint64_t> StereoDriver::rows_by_part(const fpga::Placement& buffer) const {
+  std::vector<std::uint64_t> rows;
+  for (std::size_t part = 0; part < buffer.parts().size(); ++part) {
+    for (auto row = part; row < static_cast<std::size_t>(board_.image.height); row += buffer.parts().size())
+      rows.push_back(row);
+  }
+  return rows;
+}
+
+void StereoDriver::add_parts(const fpga::Placement& buffer, std::uint64_t host, bool to_host,
+                             std::vector<Piece>& pieces) const {
+  for (std::size_t part = 0; part < buffer.parts().size(); ++part) {
+    const std::uint64_t words = buffer.rows_of_part(part, board_.image.height) * buffer.row_words();
+    if (words == 0) continue;
+    pieces.push_back({host, buffer.parts()[part], words, to_host});
+    host += 4 * words;
+  }
+}
+
+// The bridge has no stride: a striped picture takes a descriptor for each row.
+void StereoDriver::add_picture(std::uint32_t base, std::uint64_t host, std::vector<Piece>& pieces) const {
+  const fpga::Placement buffer = picture_at(base);
+  if (buffer.parts().size() == 1) return add_parts(buffer, host, false, pieces);
+  for (const std::uint64_t row : rows_by_part(buffer)) {
+    const std::uint64_t words = buffer.row_words();
+    pieces.push_back(
+        {host + 4 * row * words, static_cast<std::uint32_t>(buffer.address(row, 0) / 4), words, false});
+  }
+}
+
+void StereoDriver::write_pages(std::uint64_t aperture, std::uint32_t base) {
+  const fpga::Placement buffer = picture_at(base);
+  for (std::size_t part = 0; part < buffer.parts().size(); ++part) {
+    if (buffer.rows_of_part(part, board_.image.height) == 0) continue;
+    bus_->write(kBridge + (part == 0 ? bridge_map::kPage : bridge_map::kNextPage) + aperture,
+                buffer.parts()[part]);
+  }
 }
 
 void StereoDriver::start_dma(int channel, const std::vector<Piece>& pieces) {
-  const std::uint64_t chain = kDevices.host_memory + static_cast<std::uint64_t>(channel) * kChainBytes;
+  const std::uint64_t chain =
+      kDevices.host_memory + static_cast<std::uint64_t>(channel) * chain_bytes(board_);
   std::uint8_t* to = bus_->memory(chain, pieces.size() * kDescriptorBytes);
   for (std::size_t piece = 0; piece < pieces.size(); ++piece) {
     const bool last = piece + 1 == pieces.size();

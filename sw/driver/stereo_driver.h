@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "models/fpga/core_ports.h"
+#include "models/fpga/placement.h"
 #include "models/host/program.h"
 #include "models/kernels/joint_table.h"
 #include "platform/config/board_config.h"
@@ -94,6 +95,16 @@ class StereoDriver : public host::Program {
   void read_back();
   void end_read_back();
 
+  fpga::Placement picture_at(std::uint32_t base) const;  // a picture or a result
+  // The rows of a table or a result in the order in which host memory holds them: part by part.
+  std::vector<std::uint64_t> rows_by_part(const fpga::Placement& buffer) const;
+  // Adds a piece for each part that has rows. `host`: of the first part; the others follow.
+  void add_parts(const fpga::Placement& buffer, std::uint64_t host, bool to_host,
+                 std::vector<Piece>& pieces) const;
+  // Adds the pieces of the copy of a picture, which host memory holds row by row.
+  void add_picture(std::uint32_t base, std::uint64_t host, std::vector<Piece>& pieces) const;
+  // Lets an aperture of the bridge lead to a picture. `aperture`: 4 times its number.
+  void write_pages(std::uint64_t aperture, std::uint32_t base);
   void start_dma(int channel, const std::vector<Piece>& pieces);
   std::uint64_t pair_in_host(std::uint64_t capture) const;
   std::uint64_t result_in_host(std::uint64_t frame) const;
@@ -107,6 +118,7 @@ class StereoDriver : public host::Program {
   std::vector<std::uint32_t> joint_table_;  // empty unless the tables are joint
   kernels::JointOffsets joint_offsets_{};
   Deliver deliver_;
+  std::vector<std::uint8_t> result_;  // a striped one, row by row
   host::HostBus* bus_ = nullptr;
 
   platform::DriverObserver* observer_ = nullptr;

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "models/fpga/core_ports.h"
+#include "models/memory/bank_arbiter.h"
 #include "platform/bounds.h"
 #include "platform/computer_parts.h"
 #include "platform/config/board_area.h"

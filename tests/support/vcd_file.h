@@ -51,9 +51,10 @@ class VcdFile {
   void define(std::istringstream& words, const std::string& keyword) {
     std::vector<std::string> parts;
     for (std::string word; words >> word && word != "$end";) parts.push_back(word);
-    if (keyword == "$scope") scope_ = parts.at(1);
+    if (keyword == "$scope") scopes_.push_back((scopes_.empty() ? "" : scopes_.back()) + parts.at(1) + ".");
+    if (keyword == "$upscope") scopes_.pop_back();
     if (keyword != "$var") return;
-    codes_[scope_ + "." + parts.at(3)] = parts.at(2);
+    codes_[scopes_.back() + parts.at(3)] = parts.at(2);
     changes_[parts.at(2)];
   }
   void change(std::istringstream& words, const std::string& word, std::uint64_t time) {
@@ -74,7 +75,7 @@ class VcdFile {
     return digits.substr(std::min(digits.find_first_not_of(first), digits.size() - 1));
   }
 
-  std::string scope_;
+  std::vector<std::string> scopes_;  // that are open, each with those around it: "left_lut.0."
   std::map<std::string, std::string> codes_;
   std::map<std::string, std::map<std::uint64_t, std::string>> changes_;  // [code][time]
   std::vector<std::uint64_t> times_;

@@ -37,8 +37,6 @@
 namespace stereotlm::simulation {
 namespace {
 
-const fpga::Requesters kRequesters{fpga::CorePorts(1)};
-
 using fpga::CycleWindow;
 using fpga::Fidelity;
 using platform::BusBurst;
@@ -71,7 +69,7 @@ class PicturesOfCase : public host::FrameSource {
 };
 
 Case case_of(std::uint64_t seed, bool with_knobs, bool camera) {
-  test::RandomKnobs knobs = with_knobs ? test::RandomKnobs::all() : test::RandomKnobs{};
+  test::RandomKnobs knobs = with_knobs ? test::RandomKnobs::with_section_8() : test::RandomKnobs{};
   knobs.large_images = false;
   if (camera) {
     const test::RandomComputer computer = test::make_random_computer(seed, knobs);
@@ -92,12 +90,13 @@ class KeptCycles : public fpga::CycleObserver {
     writer_.cycle(cycle);
     if (keeps_) cycles.push_back(cycle);
     if (!cycle.frame) return;
-    for (std::size_t port = 0; port < fpga::kGroupCount; ++port)
+    sums.resize(cycle.ports.size());
+    for (std::size_t port = 0; port < sums.size(); ++port)
       sums[port].add(cycle.ports[port].intent, cycle.ports[port].granted);
   }
 
   std::vector<fpga::CoreCycle> cycles;
-  std::array<fpga::PortCycles, fpga::kGroupCount> sums{};  // while frames run
+  std::vector<fpga::PortCycles> sums;  // [port], while frames run
 
  private:
   bool keeps_;
@@ -217,6 +216,10 @@ std::string differing_sums(const KeptBuses& buses, const platform::BoardConfig& 
   return text;
 }
 
+fpga::Requesters requesters_of(const platform::BoardConfig& board) {
+  return fpga::Requesters(platform::core_ports(board));
+}
+
 // What a trace adds up to: cycles by port, "grants" or "waits", and, of waits, bank and culprit.
 using Sums = std::map<std::string, std::uint64_t>;
 
@@ -236,12 +239,12 @@ Sums sums_of(const platform::Statistics& statistics) {
   return sums;
 }
 
-Sums sums_of_perfetto(const std::filesystem::path& path) {
+Sums sums_of_perfetto(const std::filesystem::path& path, const fpga::Requesters& requesters) {
   const std::string bytes = test::read_file(path);
   const test::PerfettoFile file(bytes);
   Sums sums;
-  for (std::size_t requester = 0; requester < kRequesters.size(); ++requester) {
-    const std::string name = kRequesters.name(requester);
+  for (std::size_t requester = 0; requester < requesters.size(); ++requester) {
+    const std::string name = requesters.name(requester);
     for (const test::PerfettoFile::Slice& slice : file.slices_of(name)) {
       const std::size_t waits = slice.name.find(" waits ");
       if (waits == std::string::npos) {
@@ -277,8 +280,9 @@ Sums states_of_vcd(const std::filesystem::path& path, const platform::BoardConfi
   const Clock clock(board.fpga.clock_mhz);
   const test::VcdFile file(test::read_file(path));
   Sums sums;
-  for (std::size_t port = 0; port < fpga::kCoreGroupCount; ++port) {
-    const std::string name = fpga::kPortGroups[port].name;
+  const fpga::CorePorts ports = platform::core_ports(board);
+  for (std::size_t port = 0; port < ports.core_size(); ++port) {
+    const std::string name = ports.name(port);
     if (file.signals().count(name + ".state") == 0) continue;
     const std::map<std::uint64_t, std::string>& states = file.changes(name + ".state");
     for (auto state = states.begin(); state != states.end(); ++state) {
@@ -295,7 +299,7 @@ Sums states_of_vcd(const std::filesystem::path& path, const platform::BoardConfi
 
 Sums states_of(const platform::Statistics& statistics) {
   Sums sums;
-  for (std::size_t port = 0; port < fpga::kCoreGroupCount; ++port) {
+  for (std::size_t port = 0; port + 1 < statistics.ports.size(); ++port) {
     const platform::PortStatistics& its = statistics.ports[port];
     sums[its.name + " accesses"] = its.grants;
     sums[its.name + " waits"] = its.stall_cycles;
@@ -324,7 +328,7 @@ std::string differences(const std::string& name, const Sums& found, const Sums& 
 struct Traced {
   std::vector<platform::FrameRuns> runs;
   std::vector<fpga::CoreCycle> cycles;
-  std::array<fpga::PortCycles, fpga::kGroupCount> sums{};
+  std::vector<fpga::PortCycles> sums;  // [port]
   std::vector<test::LoggedTransaction> log;
   platform::Statistics statistics;
   std::string buses;
@@ -391,17 +395,18 @@ Traced trace(const Case& of, Fidelity fidelity, const CycleWindow& window, bool 
   }
   if (!writes_files) return traced;
   const Sums expected = sums_of(traced.statistics);
-  traced.wrong_files += differences("perfetto", sums_of_perfetto(paths["perfetto"]), expected) +
-                        differences("sqlite", sums_of_sqlite(paths["sqlite"]), expected);
+  traced.wrong_files +=
+      differences("perfetto", sums_of_perfetto(paths["perfetto"], requesters_of(of.board)), expected) +
+      differences("sqlite", sums_of_sqlite(paths["sqlite"]), expected);
   return traced;
 }
 
-std::string text_of(const platform::FrameRuns& frame) {
+std::string text_of(const platform::FrameRuns& frame, const fpga::Requesters& requesters) {
   std::string text = fmt::format("frame {}: {}..{}\n", frame.frame, frame.first_cycle, frame.end_cycle);
   for (const platform::TraceRun& run : frame.runs) {
     text += fmt::format("{} {}..{} {} {} {} {}\n", run.strip, run.first_cycle, run.end_cycle,
-                        kRequesters.name(run.requester), run.bank,
-                        run.by ? kRequesters.name(*run.by) : "granted", run.count);
+                        requesters.name(run.requester), run.bank,
+                        run.by ? requesters.name(*run.by) : "granted", run.count);
   }
   return text;
 }
@@ -412,19 +417,19 @@ std::string text_of(const fpga::CoreCycle& cycle) {
     text += fmt::format(" | {} {} {} {} {} {}", static_cast<int>(port.intent), port.granted, port.bank,
                         port.address, port.by, port.item);
   }
-  return text + fmt::format(" | {} {} {} {} {}\n", static_cast<int>(cycle.host_traffic), cycle.lane_slots[0],
-                            cycle.lane_slots[1], cycle.result_words, cycle.works);
+  return text + fmt::format(" | {} {} {} {}\n", static_cast<int>(cycle.host_traffic),
+                            fmt::join(cycle.lane_slots, " "), cycle.result_words, cycle.works);
 }
 
-std::string text_of(const Traced& traced) {
+std::string text_of(const Traced& traced, const fpga::Requesters& requesters) {
   std::string text;
-  for (const platform::FrameRuns& frame : traced.runs) text += text_of(frame);
+  for (const platform::FrameRuns& frame : traced.runs) text += text_of(frame, requesters);
   for (const fpga::CoreCycle& cycle : traced.cycles) text += text_of(cycle);
   return text + traced.buses + traced.waveform;
 }
 
 // What a window, the whole run or a part of it, adds up to.
-std::string wrong_sums(const Traced& traced, bool whole_run) {
+std::string wrong_sums(const Traced& traced, bool whole_run, const fpga::Requesters& requesters) {
   std::string text;
   const auto compare = [&text](const std::string& name, std::uint64_t found, std::uint64_t expected) {
     if (found != expected) text += fmt::format("{} = {}, expected {}\n", name, found, expected);
@@ -437,10 +442,10 @@ std::string wrong_sums(const Traced& traced, bool whole_run) {
     return cycles;
   };
   const auto& statistics = traced.statistics;
-  for (std::size_t port = 0; port < fpga::kGroupCount; ++port) {
+  for (std::size_t port = 0; port < statistics.ports.size(); ++port) {
     const platform::PortStatistics& of_port = statistics.ports[port];
-    const auto is_of_port = [port](std::size_t requester) {
-      return kRequesters.is_requester(requester) && kRequesters.port_of(requester) == port;
+    const auto is_of_port = [&](std::size_t requester) {
+      return requesters.is_requester(requester) && requesters.port_of(requester) == port;
     };
     compare(of_port.name + " granted in the runs",
             count([&](const auto& run) { return is_of_port(run.requester) && !run.by; }), of_port.grants);
@@ -448,7 +453,7 @@ std::string wrong_sums(const Traced& traced, bool whole_run) {
             count([&](const auto& run) { return is_of_port(run.requester) && run.by; }),
             of_port.stall_cycles);
     if (!whole_run) continue;
-    const fpga::PortCycles& sums = traced.sums[port];
+    const fpga::PortCycles& sums = traced.sums.at(port);
     compare(of_port.name + " granted", sums.granted(), of_port.grants);
     compare(of_port.name + " stalled", sums.stalled(), of_port.stall_cycles);
     compare(of_port.name + " passed", sums.passed(), of_port.passed_cycles);
@@ -464,9 +469,9 @@ std::string wrong_sums(const Traced& traced, bool whole_run) {
   for (const platform::BlameRow& row : statistics.blame) {
     const auto is_of_row = [&](const platform::TraceRun& run) {
       if (!run.by || statistics.banks[run.bank].name != row.bank) return false;
-      const auto name = [](std::size_t requester) {
-        return !kRequesters.is_requester(requester) ? kRequesters.name(requester)
-                                                    : fpga::kPortGroups[kRequesters.port_of(requester)].name;
+      const auto name = [&](std::size_t cause) {
+        return requesters.is_requester(cause) ? requesters.ports().name(requesters.port_of(cause))
+                                              : requesters.name(cause);
       };
       return name(run.requester) == row.port && name(*run.by) == row.by;
     };
@@ -483,6 +488,7 @@ std::string wrong_accesses(const Case& of, const Traced& traced) {
   const std::uint64_t first = traced.cycles.front().cycle;
   const std::uint64_t last = traced.cycles.back().cycle;
   constexpr std::uint64_t kInBank = (std::uint64_t{1} << 28U) - 1;
+  const fpga::CorePorts ports = platform::core_ports(of.board);
   std::vector<std::string> seen;
   for (const test::LoggedTransaction& each : traced.log) {
     const std::uint64_t cycle = clock.edge_at_or_after(each.time_ps + 1) - 1;
@@ -491,12 +497,14 @@ std::string wrong_accesses(const Case& of, const Traced& traced) {
   }
   std::vector<std::string> expected;
   for (const fpga::CoreCycle& cycle : traced.cycles) {
-    for (std::size_t port = 0; port < fpga::kGroupCount; ++port) {
+    for (std::size_t port = 0; port < cycle.ports.size(); ++port) {
       const fpga::PortCycle& access = cycle.ports[port];
       if (!access.granted) continue;
-      const bool write = port == fpga::kHostGroup ? cycle.host_traffic != fpga::HostTraffic::kReadBack
-                                                  : fpga::kPortGroups[port].write;
-      for (const std::string& link : {fmt::format("{}_to_crossbar", fpga::kPortGroups[port].name),
+      const bool write =
+          port == ports.host() ? cycle.host_traffic != fpga::HostTraffic::kReadBack : ports.group(port).write;
+      std::string name = ports.name(port);
+      std::replace(name.begin(), name.end(), '.', '_');
+      for (const std::string& link : {fmt::format("{}_to_crossbar", name),
                                       fmt::format("crossbar_to_{}", of.board.banks[access.bank].name)})
         expected.push_back(fmt::format("{} {} {} {:x}", cycle.cycle, link, write, access.address));
     }
@@ -543,13 +551,14 @@ std::string problems_of(std::uint64_t seed, bool with_knobs, bool camera) {
                                static_cast<std::uint64_t>(of.board.matcher.window));
   }
   std::string problems;
+  const fpga::Requesters requesters = requesters_of(of.board);
   const auto run = [&](Fidelity fidelity) {
     const bool writes_files = fidelity == kEachFidelity[seed % kEachFidelity.size()];  // which takes long
     return [&, fidelity, writes_files]() -> std::string {
       const Traced traced = trace(of, fidelity, window, !whole_run, writes_files);
-      std::string wrong = wrong_sums(traced, whole_run) + traced.wrong_files;
+      std::string wrong = wrong_sums(traced, whole_run, requesters) + traced.wrong_files;
       if (fidelity == Fidelity::kCycle) wrong += wrong_accesses(of, traced);
-      return wrong.empty() ? text_of(traced) : "WRONG\n" + wrong;
+      return wrong.empty() ? text_of(traced, requesters) : "WRONG\n" + wrong;
     };
   };
   std::vector<std::string> texts;

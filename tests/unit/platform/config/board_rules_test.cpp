@@ -1,9 +1,11 @@
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <string>
 
 #include "platform/config/board_yaml.h"
+#include "platform/config/buffer_layout.h"
 #include "tests/unit/platform/config/board_files.h"
 
 namespace stereotlm::platform::testing {
@@ -141,8 +143,7 @@ TEST(BoardBanks, OfSdramHaveItsTiming) {
   const auto with = [](const std::string& key, const std::string& value) {
     std::string timing = kSdram + kRefresh;
     const std::size_t first = timing.find(key) + key.size() + 2;
-    return banks_board("banks: {a: {" +
-                       timing.replace(first, timing.find_first_of(",", first) - first, value) + "}}");
+    return banks_board("banks: {a: {" + timing.replace(first, timing.find(',', first) - first, value) + "}}");
   };
   const auto refusal = [](const std::string& key, const std::string& value, const std::string& rule) {
     return "ssram.banks.a." + key + " = " + value + ": " + rule;
