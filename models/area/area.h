@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -50,6 +51,8 @@ struct Area {
   double block_rams_percent = 0;
   std::int64_t multipliers = 0;
   double multipliers_percent = 0;
+  std::optional<std::int64_t> pins = std::nullopt;  // of a board that names its package
+  std::optional<double> pins_percent = std::nullopt;
 
   bool fits() const {
     return slices_percent <= 100 && block_rams_percent <= 100 && multipliers_percent <= 100;

@@ -63,6 +63,7 @@ struct BridgeConfig {
 
 struct FpgaConfig {
   std::string device = "xc2v6000";
+  std::string package;    // of an xc2v6000, or empty
   double clock_mhz = 40;  // 1..1000
   memory::ArbiterConfig arbiter = fpga::core_arbiter();
   int lane_fifo_slots = 16;          // slots, 1..64

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "models/area/device.h"
+#include "models/area/pins.h"
 #include "models/fpga/core_config.h"
 #include "models/fpga/core_ports.h"
 #include "models/kernels/stereo.h"
@@ -495,6 +496,10 @@ std::vector<Key> make_keys() {
       word(
           "fpga.device", [](B& b) { return &b.fpga.device; }, "the FPGA, for its resources",
           names_in(area::kDevices)),
+      optional(word(
+          "fpga.package", [](B& b) { return &b.fpga.package; },
+          "the package of an xc2v6000, whose user pins the board must not exceed; optional, without it any",
+          names_in(area::kPackages))),
       decimal(
           "fpga.clock_mhz", [](B& b) { return &b.fpga.clock_mhz; },
           "clock of the FPGA core and of the SSRAM banks", "MHz", 1, 1000),

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "platform/config/board_area.h"
 #include "platform/config/board_reader.h"
 #include "platform/config/buffer_layout.h"
 #include "platform/yaml/words.h"
@@ -34,6 +35,7 @@ class RuleChecker {
     if (fits_width && fits_height) check_bank_depths();
     check_list_lengths();
     check_bank_names();
+    check_pins();
     check_stripes();
     check_refreshes();
     check_joint_tables();
@@ -193,6 +195,22 @@ class RuleChecker {
                                     nearest_text(buffer.bank, names)),
                         {buffer.path(), "ssram.banks"}});
     }
+  }
+
+  void check_pins() {
+    const area::Package* const package = area::find_package(board_.fpga.package);
+    if (package == nullptr) return;
+    const std::string device(area::kDeviceWithPackages);
+    const bool has_package = require(board_.fpga.device == device, {"fpga.package", "fpga.device"}, [&] {
+      return fmt::format("fpga.package = {}: only where fpga.device is {}, and it is {}", package->name,
+                         device, board_.fpga.device);
+    });
+    if (!has_package || !is_valid_("ssram.banks")) return;
+    const int pins = pins_of(board_);
+    require(pins <= package->user_pins, {"fpga.package"}, [&] {
+      return fmt::format("fpga.package = {}: {} pins missing: the board needs {}, and it has {}",
+                         package->name, pins - package->user_pins, pins, package->user_pins);
+    });
   }
 
   // A lane waits as long for each part of a buffer.

@@ -5,6 +5,7 @@
 
 #include "platform/bounds.h"
 #include "platform/config/board_yaml.h"
+#include "platform/config/buffer_layout.h"
 #include "sw/cli/allocation_report.h"
 #include "sw/cli/command.h"
 #include "sw/cli/run_options.h"
@@ -159,6 +160,12 @@ void check(const AllocateOptions& options, const BoardConfig& board, process::Pr
     problems.add(fmt::format(
         "--banks = {}: must be 1..{}, the banks of the board; --set 'ssram.banks.NEW={{}}' gives it one more",
         options.most_banks(), board.banks.size()));
+  }
+  for (const platform::PlacedBuffer& buffer : platform::buffers(board)) {
+    if (buffer.parts > 1 && buffer.part == 0) {
+      problems.add(fmt::format("{}: {} = {{rows: ..}}: must be one bank here: allocate places no stripes",
+                               options.board.argument.text(), platform::key_of(buffer.buffer)));
+    }
   }
   const std::uint64_t turn = platform::allocation_period_frames(board);
   const std::uint64_t least = options.source.is_camera() ? 2 * turn : turn;

@@ -47,7 +47,8 @@ void add_new(Names& names, const Names& others) {
 std::vector<PlacedBuffer> buffers_of(const BoardConfig& board, std::uint64_t frame) {
   std::vector<PlacedBuffer> all = platform::buffers(board);
   std::map<platform::Buffer, std::uint64_t> lengths;
-  for (const PlacedBuffer& buffer : all) ++lengths[buffer.buffer];
+  for (const PlacedBuffer& buffer : all)
+    lengths[buffer.buffer] = static_cast<std::uint64_t>(std::max(buffer.index, 0) + 1);
   const auto is_of_another = [&](const PlacedBuffer& buffer) {
     return buffer.index >= 0 && static_cast<std::uint64_t>(buffer.index) != frame % lengths[buffer.buffer];
   };
@@ -60,7 +61,9 @@ Group group_of(const BoardConfig& board, const platform::FrameAccesses& accesses
   group.frames = {frame};
   const std::vector<PlacedBuffer> buffers = buffers_of(board, frame);
   for (const PlacedBuffer& buffer : buffers) {
-    if (buffer.index >= 0) group.lists.emplace_back(platform::name_of(buffer.buffer), Names{buffer.bank});
+    if (buffer.index < 0) continue;
+    if (buffer.part == 0) group.lists.emplace_back(platform::name_of(buffer.buffer), Names{});
+    group.lists.back().second.push_back(buffer.bank);
   }
   for (const ResourceBound& bound : platform::frame_bounds(board, accesses, frame)) {
     Row row{bound.resource, bound.cycles, {}};
@@ -163,7 +166,12 @@ std::string area_lines(const BoardConfig& board) {
       "area of the core: {} of {} slices ({:.2f} %), {} of {} block RAMs, {} of {} multipliers\n{}\n",
       area.slices, device.slices, area.slices_percent, area.block_rams, device.block_rams, area.multipliers,
       device.multipliers, platform::device_text(board));
-  return text;
+  constexpr const char* pins_row = "  {:<16} {:>6} {:>8} {:>8} {:>6}\n";
+  text += "pins\n" + fmt::format(pins_row, "bank", "data", "control", "address", "all");
+  for (const auto& [bank, pins] : platform::bank_pins(board))
+    text += fmt::format(pins_row, bank, pins.data, pins.control, pins.address, pins.all());
+  return text + fmt::format(pins_row, "local bus", "", "", "", area::kLocalBusPins) +
+         fmt::format(pins_row, "clocks, status", "", "", "", area::kOtherPins);
 }
 
 std::string text_of(const BoardBounds& all) {
@@ -206,6 +214,18 @@ Json document_of(const BoardBounds& all) {
                        {"system", *all.bound.system},
                        {"system_limited_by", all.bound.system_limited_by}};
   document["area"] = stats::area_document(all.board);
+  Json banks = Json::array();
+  for (const auto& [bank, pins] : platform::bank_pins(all.board)) {
+    banks.push_back({{"bank", bank},
+                     {"data", pins.data},
+                     {"control", pins.control},
+                     {"address", pins.address},
+                     {"all", pins.all()}});
+  }
+  document["pins"] = {{"banks", std::move(banks)},
+                      {"local_bus", area::kLocalBusPins},
+                      {"other", area::kOtherPins},
+                      {"all", platform::pins_of(all.board)}};
   return document;
 }
 

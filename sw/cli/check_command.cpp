@@ -52,6 +52,7 @@ Json document_of(const std::string& name, const platform::BoardConfig* board,
   document["fits"] = area.fits();
   if (const area::Device* const smallest = area::smallest_device(area))
     document["smallest_device"] = smallest->name;
+  document["pins"] = platform::pins_of(*board);
   return document;
 }
 

@@ -37,7 +37,8 @@ std::string shared_bank_text(const BoardConfig& board, const Explanation& explan
   const std::vector<platform::PlacedBuffer> all = platform::buffers(board);
   const auto in_bank =
       std::count_if(all.begin(), all.end(), [&](const auto& buffer) { return buffer.bank == wait->bank; });
-  if (in_bank < 2) return "";
+  const bool has_stripes = std::any_of(all.begin(), all.end(), [](const auto& b) { return b.parts > 1; });
+  if (in_bank < 2 || has_stripes) return "";
   return fmt::format("{} holds {} buffers: `stereotlm allocate` searches all their placements\n", wait->bank,
                      in_bank);
 }
@@ -114,6 +115,8 @@ std::string line_of(const Explanation::Step& found, const BoardConfig& board,
                                  step.changes_disparities ? " *" : "", step.from, step.to);
   if (its.multipliers != before.multipliers)
     text += fmt::format(", {:+} multipliers", its.multipliers - before.multipliers);
+  if (const int pins = platform::pins_of(step.board) - platform::pins_of(board); pins != 0)
+    text += fmt::format(", {:+} pins", pins);
   if (!its.fits()) text += "  does not fit";
   if (changes_loss) text += now.loses_pixels ? "  loses no pixels" : "  loses pixels";
   if (gained != 0 && std::abs(gained) <= found.rate.uncertainty + now.uncertainty) text += "  ~";

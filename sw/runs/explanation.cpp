@@ -12,6 +12,7 @@
 
 #include "models/fpga/core_ports.h"
 #include "models/fpga/frame_geometry.h"
+#include "platform/config/board_area.h"
 #include "platform/figures.h"
 #include "sw/process/streams.h"
 #include "sw/runs/progress.h"
@@ -218,6 +219,7 @@ void add_changes(const Explanation& explanation, Json& document) {
     change["loses_pixels"] = found.rate.loses_pixels;
     change["sets"] = step.sets;
     change["area"] = stats::area_json(step.board);
+    change["pins"] = platform::pins_of(step.board);
     changes.push_back(std::move(change));
   }
   document["changes"] = std::move(changes);
@@ -471,6 +473,7 @@ Json explanation_document(const platform::BoardConfig& board, const Explanation&
   document["resources"] = resources_json(explanation);
   document["blame"] = blame_json(explanation);
   document["area"] = stats::area_json(board);
+  document["pins"] = platform::pins_of(board);
   add_changes(explanation, document);
   return document;
 }

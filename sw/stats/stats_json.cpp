@@ -378,14 +378,17 @@ std::map<std::string, std::string> values_of(const std::string& text) {
 }  // namespace
 
 Json area_json(const area::Area& area) {
-  return {{"slices", area.slices},
-          {"slices_percent", area.slices_percent},
-          {"luts", area.luts},
-          {"flip_flops", area.flip_flops},
-          {"block_rams", area.block_rams},
-          {"block_rams_percent", area.block_rams_percent},
-          {"multipliers", area.multipliers},
-          {"multipliers_percent", area.multipliers_percent}};
+  Json json = {{"slices", area.slices},
+               {"slices_percent", area.slices_percent},
+               {"luts", area.luts},
+               {"flip_flops", area.flip_flops},
+               {"block_rams", area.block_rams},
+               {"block_rams_percent", area.block_rams_percent},
+               {"multipliers", area.multipliers},
+               {"multipliers_percent", area.multipliers_percent}};
+  if (area.pins) json["pins"] = *area.pins;
+  if (area.pins_percent) json["pins_percent"] = *area.pins_percent;
+  return json;
 }
 
 Json area_json(const platform::BoardConfig& board) {

@@ -64,22 +64,17 @@ struct RandomKnobs {
   // Of computers: captures go to banks of their own, by a local bus in step with the core. The models skip
   // most of their lines.
   bool apart_captures = false;
-  // Of section 8. The models have lanes; stripes and SDRAM are to come.
+  // Of section 8.
   bool sdram = false;
   bool stripes = false;  // and up to 8 banks more
   bool lanes = false;
 
-  // Those that boards can have.
+  // Those of section 7.
   static constexpr RandomKnobs all() { return {true, true, true, true, true, true, true, true, true, true}; }
-  // Those that the core has.
-  static constexpr RandomKnobs with_lanes() {
-    RandomKnobs knobs = all();
-    knobs.lanes = true;
-    return knobs;
-  }
+  // Those of sections 7 and 8: all that boards can have.
   static constexpr RandomKnobs with_section_8() {
-    RandomKnobs knobs = with_lanes();
-    knobs.sdram = knobs.stripes = true;
+    RandomKnobs knobs = all();
+    knobs.lanes = knobs.sdram = knobs.stripes = true;
     return knobs;
   }
 };

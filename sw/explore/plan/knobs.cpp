@@ -52,7 +52,7 @@ class Steps {
       add({"pci.load", "as it is", "none"}, [](BoardConfig& b) { b.pci.load.reset(); });
     for (const Key& key : platform::board_keys()) {
       const bool stays = begins_with(key.path, "image.") || key.path == "fpga.device" ||
-                         key.path == "fpga.tables" ||  // add_tables()
+                         key.path == "fpga.package" || key.path == "fpga.tables" ||  // add_tables()
                          (begins_with(key.path, "pci.load") && !board_.pci.load);
       if (stays || (is_of_computer(key.path) && !camera)) continue;
       std::visit([&](const auto& kind) { add_key(key, kind); }, key.kind);

@@ -23,7 +23,8 @@ using platform::BoardConfig;
 using platform::PlacedBuffer;
 
 bool are_alike(const BankConfig& a, const BankConfig& b) {
-  return a.words == b.words && a.kind == b.kind && a.turnaround_cycles == b.turnaround_cycles;
+  return a.words == b.words && a.kind == b.kind && a.turnaround_cycles == b.turnaround_cycles &&
+         a.sdram == b.sdram;
 }
 
 // The largest number of boards that next() returns for each number of banks. It is large enough to keep the
@@ -127,7 +128,7 @@ BoardConfig placed(const BoardConfig& board, const Placement& placement) {
 bool frames_are_independent(const BoardConfig& board) {
   return memory::find_arbitration_policy(board.fpga.arbiter.policy)->forgets &&
          std::none_of(board.banks.begin(), board.banks.end(),
-                      [](const BankConfig& bank) { return bank.turnaround_cycles > 0; });
+                      [](const BankConfig& bank) { return bank.turnaround_cycles > 0 || bank.sdram; });
 }
 
 BoardConfig board_of_frame(const BoardConfig& board, const Placement& placement, std::uint64_t frame) {

@@ -22,8 +22,8 @@ int banks_used(const Placement& placement);
 // Whether each bank is deep enough for its buffers.
 bool fits(const platform::BoardConfig& board, const Placement& placement);
 
-// Visits every placement of the board's buffers in at most `most_banks` of its banks. Among placements that
-// differ only by an exchange of equal banks (same depth, kind and turnaround), it visits only the one that
+// Visits every placement of the board's buffers, none of which is striped, in at most `most_banks` of its banks. Among placements that
+// differ only by an exchange of equal banks (same depth, kind and timing), it visits only the one that
 // uses the equal banks in the board's order. Placements come in the order of the first buffer's bank, then of
 // the second buffer's bank, and so on. Placements that do not fit are visited too.
 void for_each_placement(const platform::BoardConfig& board, int most_banks,
@@ -33,8 +33,8 @@ void for_each_placement(const platform::BoardConfig& board, int most_banks,
 platform::BoardConfig placed(const platform::BoardConfig& board, const Placement& placement);
 
 // Whether a frame of the core alone leaves no state behind that the next frame could observe. That holds if
-// the arbitration policy forgets, and no bank has turnaround. (Round robin keeps the place of its search; a
-// bank with turnaround keeps the direction of its last access.)
+// the arbitration policy forgets, and no bank has turnaround or is SDRAM. (Round robin keeps the place of its
+// search; a bank with turnaround keeps the direction of its last access, and SDRAM its open rows.)
 bool frames_are_independent(const platform::BoardConfig& board);
 
 // A board that computes only frame number `frame` of the placement: it has only the buffers of that frame.

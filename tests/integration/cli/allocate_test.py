@@ -362,6 +362,12 @@ class Allocate(ProgramTest):
         self.refused_in_one_line(process, "--banks = 8: more than 5000000 different allocations")
         self.assertFalse(self.store.exists())
 
+    def test_stripes_are_refused(self):
+        self.refused(run("allocate", "eight-banks-four-lanes", "--banks", "8", "--out", self.folder / "a.db"),
+                     *(f"eight-banks-four-lanes: allocation.{buffer} = {{rows: ..}}: must be one bank here: "
+                       "allocate places no stripes"
+                       for buffer in ("left_image", "right_image", "disparity", "left_lut")))
+
     def test_wrong_values_are_refused(self):
         board = self.board()
         lines = self.refused(run("allocate", board, "--source", "camra", "--keep-fps", "0"))

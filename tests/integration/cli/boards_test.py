@@ -19,6 +19,9 @@ PRESETS = [
     "half-the-modules",
     "two-banks",
     "two-banks-four-rows",
+    "eight-banks-four-lanes",
+    "seven-banks-130",
+    "sdram",
     "wvga-60hz",
     "megapixel-pci64",
 ]
@@ -28,8 +31,20 @@ SHARED = sets("allocation.left_lut=bank0")  # the bank of every second left pict
 class Check(ProgramTest):
     def test_accepts_every_preset_and_names_the_device_that_it_needs(self):
         for name in PRESETS:
-            device = r"device xc2v6000: fits; the smallest that fits: xc2v[1-8][05]00"
+            device = (r"device xc2v[68]000: fits; the smallest that fits: xc2v[1-8][05]00; "
+                      r"\d+ pins(: ff1152 has 824, ff1517 1104)?")
             self.assertRegex(self.succeeds(run("check", name)), rf"\A{name}: ok: [^\n]*\n(?:{device})\n\Z")
+
+    def test_presets_of_section_8_give_the_rates_that_they_name(self):
+        for name, least in (("eight-banks-four-lanes", 65), ("seven-banks-130", 130), ("sdram", 80)):
+            text = self.succeeds(run("run", name, "--source", "preloaded", "--timing-only", "--frames", "2"))
+            self.assertGreater(float(text.split()[1]), least, name)
+        self.assertTrue(self.succeeds(run("run", "eight-banks-four-lanes", "--source", "preloaded",
+                                          "--timing-only")).splitlines()[0].endswith(
+                                              "614593 cycles a frame, 1 frame"))
+        pins = {name: json.loads(self.succeeds(run("check", name, "--json")))["pins"]
+                for name in ("eight-banks-four-lanes", "seven-banks-130", "sdram")}
+        self.assertEqual(pins, {"eight-banks-four-lanes": 548, "seven-banks-130": 487, "sdram": 172})
 
     def test_remarks_on_a_clock_above_the_papers(self):
         remark = "note: fpga.clock_mhz = 41: above the 40 MHz that the paper's core reached"
@@ -49,7 +64,8 @@ class Check(ProgramTest):
     def test_sums_up_the_board_as_set(self):
         text = self.succeeds(run("check", "fpl2003", *SMALL, *sets("matcher.window=5")))
         self.assertEqual(text, "fpl2003: ok: 32x24, window 5x5, 80 disparities, 8 banks, 40 MHz\n"
-                         "device xc2v6000: fits; the smallest that fits: xc2v1500\n")
+                         "device xc2v6000: fits; the smallest that fits: xc2v1500; "
+                         "548 pins: ff1152 has 824, ff1517 1104\n")
 
     def test_takes_a_path(self):
         for name in ("", "name: mine\n"):
@@ -190,17 +206,25 @@ class Bounds(ProgramTest):
 
     def test_lists_what_the_core_takes_of_its_fpga(self):
         _, lines = self.parts()
-        _, head, *items, whole, last, device = lines
+        pins = lines.index("pins")
+        _, head, *items, whole, last, device = lines[:pins]
         self.assertEqual(head.split(), "parts count LUTs flip-flops block RAMs multipliers".split())
         numbers = [list(map(int, line.split()[-4:])) for line in items]
         self.assertEqual(whole.split(), ["all", *(str(sum(column)) for column in zip(*numbers))])
         area = "7420 of 33792 slices (21.96 %), 17 of 144 block RAMs, 22 of 144 multipliers"
         self.assertEqual(last, f"area of the core: {area}")
-        self.assertEqual(device, "device xc2v6000: fits; the smallest that fits: xc2v1500")
+        self.assertEqual(device, "device xc2v6000: fits; the smallest that fits: xc2v1500; "
+                         "548 pins: ff1152 has 824, ff1517 1104")
         self.assertLessEqual(max(map(len, lines[1:])), 100)
+        _, head, *banks, bus, status = lines[pins:]
+        self.assertEqual(head.split(), "bank data control address all".split())
+        self.assertEqual([line.split() for line in banks],
+                         [[f"bank{number}", "32", "10", "19", "61"] for number in range(8)])
+        self.assertEqual((bus.split(), status.split()), (["local", "bus", "48"], ["clocks,", "status", "12"]))
         _, lines = self.parts("matcher.fetch=line_buffer", "matcher.disparities=254")
-        self.assertRegex(lines[-2], r"^area of the core: \d+ of 33792 slices \(1\d\d\.\d\d %\), ")
-        self.assertEqual(lines[-1], "device xc2v6000: does not fit; the smallest that fits: none")
+        pins = lines.index("pins")
+        self.assertRegex(lines[pins - 2], r"^area of the core: \d+ of 33792 slices \(1\d\d\.\d\d %\), ")
+        self.assertTrue(lines[pins - 1].startswith("device xc2v6000: does not fit; the smallest that fits: none; "))
 
 
 def unwrapped(text):
@@ -277,7 +301,7 @@ class Explain(ProgramTest):
         text = re.sub(r"\n  (?=\w)", " ", text)
         keys = re.findall(r"(?m)^([a-z_]+\.[a-z_.]+)", self.succeeds(run("keys")))
         self.assertGreater(len(keys), 20)
-        no_knobs = {"image.width", "image.height", "fpga.device", "matcher.lr_tolerance"}
+        no_knobs = {"image.width", "image.height", "fpga.device", "fpga.package", "matcher.lr_tolerance"}
         for key in set(keys) - no_knobs:
             if not key.startswith(("pci.load", "ssram.", "matcher.filter.", "matcher.cost.", "allocation.")):
                 self.assertIn(key, text)

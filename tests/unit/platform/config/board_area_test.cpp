@@ -48,11 +48,52 @@ TEST(BoardArea, ChangesOnlyWithTheKeysThatChangeTheStructure) {
 // 7420 slices, 17 block RAMs and 22 multipliers.
 TEST(BoardArea, NamesTheSmallestDeviceThatFits) {
   BoardConfig board;
-  EXPECT_EQ(device_text(board), "device xc2v6000: fits; the smallest that fits: xc2v1500");
+  const std::string pins = "; 548 pins: ff1152 has 824, ff1517 1104";
+  EXPECT_EQ(device_text(board), "device xc2v6000: fits; the smallest that fits: xc2v1500" + pins);
   board.fpga.device = "xc2v1000";
-  EXPECT_EQ(device_text(board), "device xc2v1000: does not fit; the smallest that fits: xc2v1500");
+  EXPECT_EQ(device_text(board), "device xc2v1000: does not fit; the smallest that fits: xc2v1500; 548 pins");
   board.matcher.cost = {kernels::CostKind::kZncc, 0};
-  EXPECT_EQ(device_text(board), "device xc2v1000: does not fit; the smallest that fits: none");
+  EXPECT_EQ(device_text(board), "device xc2v1000: does not fit; the smallest that fits: none; 548 pins");
+  board = BoardConfig();
+  board.fpga.package = "ff1517";
+  EXPECT_EQ(device_text(board),
+            "device xc2v6000: fits; the smallest that fits: xc2v1500; 548 of 1104 pins of ff1517");
+}
+
+TEST(BoardArea, CountsThePinsOfThePackage) {
+  BoardConfig board;
+  EXPECT_FALSE(area_of(board).pins);
+  EXPECT_FALSE(area_of(board).pins_percent);
+  board.fpga.package = "ff1152";
+  EXPECT_EQ(area_of(board).pins, 548);
+  EXPECT_DOUBLE_EQ(area_of(board).pins_percent.value(), 100.0 * 548 / 824);
+}
+
+// 8 * 61 + 60: 512 Ki words have 19 bits of an address.
+TEST(BoardArea, HasThePinsOfEachBankThatHoldsAWord) {
+  BoardConfig board;
+  const std::vector<PinsOfBank> all = bank_pins(board);
+  ASSERT_EQ(all.size(), 8U);
+  EXPECT_EQ(all[2].bank, "bank2");
+  EXPECT_EQ(all[2].pins.data, 32);
+  EXPECT_EQ(all[2].pins.control, 10);
+  EXPECT_EQ(all[2].pins.address, 19);
+  EXPECT_EQ(pins_of(board), 8 * 61 + 60);
+  board.allocation.left_lut = "bank0";
+  EXPECT_EQ(pins_of(board), 7 * 61 + 60);
+  for (const PinsOfBank& bank : bank_pins(board)) EXPECT_NE(bank.bank, "bank6");
+  board.allocation.left_lut.reset();
+  EXPECT_EQ(pins_of(board), 7 * 61 + 60);
+}
+
+TEST(BoardArea, HasNoPinsForAPartOfAStripeWithoutARow) {
+  BoardConfig board;
+  board.allocation.left_lut.reset();
+  board.allocation.right_lut.reset();
+  board.allocation.disparity = {BufferBanks(std::vector<std::string>{"bank4", "bank5", "bank6", "bank7"})};
+  EXPECT_EQ(pins_of(board), 8 * 61 + 60);
+  board.image.height = 3;
+  EXPECT_EQ(pins_of(board), 7 * 61 + 60);
 }
 
 TEST(BoardArea, RemarksOnAClockAboveThePapers) {

@@ -16,7 +16,8 @@ using Names = std::vector<std::string>;
 TEST(BoardPresets, AreTheBoardsOfThisProject) {
   EXPECT_EQ(preset_names(), (Names{"fpl2003", "fpl2003-no-calibration", "fpl2003-line-buffer", "fpl2003-qvga",
                                    "fpl2003-syncburst", "fpl2003-triple", "four-rows", "half-the-modules",
-                                   "two-banks", "two-banks-four-rows", "wvga-60hz", "megapixel-pci64"}));
+                                   "two-banks", "two-banks-four-rows", "eight-banks-four-lanes",
+                                   "seven-banks-130", "sdram", "wvga-60hz", "megapixel-pci64"}));
   for (const std::string& name : preset_names()) {
     EXPECT_EQ(load_board(name).name, name);
     EXPECT_NE(std::string(preset_text(name)).find("name: " + name + '\n'), std::string::npos);
@@ -94,7 +95,8 @@ TEST(BoardExtends, TakesBanksFiltersAndListsWhole) {
 TEST(BoardExtends, NamesAPreset) {
   const std::string presets =
       "; presets: fpl2003, fpl2003-no-calibration, fpl2003-line-buffer, fpl2003-qvga, fpl2003-syncburst, "
-      "fpl2003-triple, four-rows, half-the-modules, two-banks, two-banks-four-rows, wvga-60hz or "
+      "fpl2003-triple, four-rows, half-the-modules, two-banks, two-banks-four-rows, "
+      "eight-banks-four-lanes, seven-banks-130, sdram, wvga-60hz or "
       "megapixel-pci64";
   // Without its preset nothing is said about keys that it would have supplied.
   EXPECT_EQ(refusal_of("extends: fpl2003-tripel\nimage: {width: 5}\n"),

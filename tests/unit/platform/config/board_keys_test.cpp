@@ -166,6 +166,7 @@ std::vector<KeyCase> key_cases() {
        {"xc2v6000", "\"xc2v6000\"", "xc2v1000", "xc2v8000"},
        {"xc4vlx25", "XC2V6000", "null", "[xc2v6000]"},
        "xc2v1000, xc2v1500, xc2v2000, xc2v3000, xc2v4000, xc2v6000 or xc2v8000"},
+      {"fpga.package", {"ff1152", "\"ff1517\""}, {"ff896", "FF1152", "null", "[ff1152]"}, "ff1152 or ff1517"},
       decimal_case("fpga.clock_mhz", "1", "0.999", "1000.001"),
       {"fpga.arbitration",
        {"fixed_priority", "round_robin", "age"},

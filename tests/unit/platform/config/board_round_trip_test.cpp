@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "models/memory/arbitration_policies.h"
+#include "platform/config/board_area.h"
 #include "platform/config/board_yaml.h"
 #include "tests/unit/platform/config/board_files.h"
 
@@ -147,6 +148,8 @@ BoardConfig any_board() {
   if (any_int(0, 2) == 0) board.matcher.filter = any_kernel();
   if (any_int(0, 2) > 0) board.matcher.lr_tolerance = any_int(0, 253);
   set_optional_keys(board);
+  if (pins_of(board) <= area::find_package("ff1517")->user_pins && any_int(0, 1) == 1)
+    board.fpga.package = "ff1517";
   return board;
 }
 
@@ -185,11 +188,14 @@ TEST(BoardRoundTrip, WritesALoadInFullAndNoneNotAtAll) {
 
 TEST(BoardRoundTrip, WritesOptionalKeysOnlyWhereTheyHaveAnEffect) {
   const std::string usual = to_yaml(load_board("fpl2003"));
-  for (const char* const name : {"tables", "pixel_cache", "lanes", "units", "rows", "cost"})
+  for (const char* const name : {"package", "tables", "pixel_cache", "lanes", "units", "rows", "cost"})
     EXPECT_EQ(usual.find(std::string("  ") + name + ":"), std::string::npos) << name;
   EXPECT_EQ(to_yaml(load_board("fpl2003", {"fpga.tables=separate", "fpga.pixel_cache=none", "fpga.lanes=1",
                                            "matcher.units=all", "matcher.rows=1", "matcher.cost=sad"})),
             usual);
+  EXPECT_NE(
+      to_yaml(load_board("fpl2003", {"fpga.package=ff1517"})).find("  device: xc2v6000\n  package: ff1517\n"),
+      std::string::npos);
   const std::string text = to_yaml(load_board(
       "fpl2003",
       {"fpga.tables=joint", "allocation.right_lut=bank6", "fpga.pixel_cache=word", "fpga.lanes=4",

@@ -398,6 +398,23 @@ TEST(BoardRows, AreOneBehindALineBufferAndHaveAPlaceInTheResultQueueEach) {
        {kBase, "--set matcher.rows: fpga.result_fifo_words = 8: at least 16" + end, {"matcher.rows=16"}}});
 }
 
+// 13 banks of 61 pins, 60 of the rest: 853. ff1152 has 824, ff1517 1104.
+TEST(BoardPins, DoNotExceedThePackage) {
+  std::string banks = "ssram: {banks: {";
+  for (int bank = 0; bank < 13; ++bank)
+    banks += fmt::format("{}bank{}: {{kind: zbt_pipelined, words: 524288}}", bank == 0 ? "" : ", ", bank);
+  banks += "}}\nallocation: {disparity: {rows: [bank8, bank9, bank10, bank11, bank12, bank4, bank5]}}\n";
+  const auto in = [&](const std::string& fpga) { return kBase + "fpga: {" + fpga + "}\n" + banks; };
+  EXPECT_EQ(load_text(in("package: ff1517")).fpga.package, "ff1517");
+  EXPECT_EQ(load_text(in("device: xc2v6000")).fpga.package, "");
+  expect_refusals(
+      {{in("package: ff1152"),
+        "board.yaml:2:17: fpga.package = ff1152: 29 pins missing: the board needs 853, and it has 824"},
+       {kBase + "fpga: {device: xc2v8000, package: ff1152}\n",
+        "board.yaml:2:35: fpga.package = ff1152: only where fpga.device is xc2v6000, and it is "
+        "xc2v8000"}});
+}
+
 TEST(BoardLanes, DivideAColumnOfSlots) {
   const auto lanes = [](int count, const std::string& matcher) {
     return matcher_board(matcher) + fmt::format("fpga: {{lanes: {}}}\n", count);

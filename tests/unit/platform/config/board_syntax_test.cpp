@@ -213,7 +213,8 @@ TEST(BoardSyntax, NamesTheNearestPresetForAnUnknownOne) {
       refusal_of_board("fpl2003-qvg", {}),
       "fpl2003-qvg: not a preset, and not a path, which has a / or ends in .yaml; nearest: fpl2003-qvga; "
       "presets: fpl2003, fpl2003-no-calibration, fpl2003-line-buffer, fpl2003-qvga, fpl2003-syncburst, "
-      "fpl2003-triple, four-rows, half-the-modules, two-banks, two-banks-four-rows, wvga-60hz or "
+      "fpl2003-triple, four-rows, half-the-modules, two-banks, two-banks-four-rows, "
+      "eight-banks-four-lanes, seven-banks-130, sdram, wvga-60hz or "
       "megapixel-pci64");
   EXPECT_NE(refusal_of_board("board.yml", {}).find("not a preset"), std::string::npos);
   EXPECT_NE(refusal_of_board("", {}).find("not a preset"), std::string::npos);

@@ -52,6 +52,22 @@ TEST(Placements, AreTheSetPartitionsIfAllBanksAreEqual) {
   }
 }
 
+// The first bank is SDRAM: it is the only one of its kind, and then one of two.
+TEST(Placements, TellSdramApartByItsTiming) {
+  BoardConfig board = fpl2003();
+  board.allocation.left_image = board.allocation.right_image = board.allocation.disparity = {"bank0"};
+  board.allocation.right_lut.reset();
+  EXPECT_EQ(placements_of(board, 1).size(), 1U);
+  board.banks[0].kind = memory::BankKind::kSdram;
+  board.banks[0].sdram = memory::SdramTiming();
+  EXPECT_EQ(placements_of(board, 1).size(), 2U);
+  EXPECT_FALSE(frames_are_independent(board));
+  board.banks[1] = {"bank1", board.banks[0].words, board.banks[0].kind, 0, board.banks[0].sdram};
+  EXPECT_EQ(placements_of(board, 1).size(), 2U);
+  board.banks[1].sdram->row_words = 512;
+  EXPECT_EQ(placements_of(board, 1).size(), 3U);
+}
+
 TEST(Placements, FitIfEachBankHoldsItsBuffers) {
   // Two tables of 307,200 words do not fit into 524,288; a table and two buffers of 76,800 do.
   EXPECT_FALSE(fits(fpl2003(), {0, 1, 2, 3, 4, 5, 6, 6}));

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+#include "models/memory/memory_config.h"
+
+namespace stereotlm::area {
+
+// A package of the XC2V6000, and its user I/O (Xilinx DS031). The other devices' packages are left out.
+struct Package {
+  std::string_view name;
+  int user_pins;
+};
+inline constexpr std::string_view kDeviceWithPackages = "xc2v6000";
+inline constexpr std::array<Package, 2> kPackages = {{{"ff1152", 824}, {"ff1517", 1104}}};
+
+// Returns the package of this name, or null.
+inline const Package* find_package(std::string_view name) {
+  for (const Package& package : kPackages) {
+    if (package.name == name) return &package;
+  }
+  return nullptr;
+}
+
+// The pins of the FPGA that a bank takes. Banks without a buffer take none.
+struct BankPins {
+  int data = 32;     // qdr: 16 each way, a bit on both edges of the clock
+  int control = 10;  // ours: clock, select, commands, 4 byte enables
+  int address = 0;
+
+  int all() const { return data + control + address; }
+};
+
+// The least number of bits that hold `values` different values.
+constexpr int address_bits(std::uint64_t values) {
+  int bits = 0;
+  while ((std::uint64_t{1} << bits) < values) ++bits;
+  return bits;
+}
+
+// The address pins of sdram take the row first, then the column. One more bit of the column says whether all
+// internal banks are meant.
+inline BankPins pins_of(const memory::SsramBankConfig& bank) {
+  BankPins pins;
+  if (!bank.sdram) {
+    pins.address = address_bits(bank.words);
+    return pins;
+  }
+  const auto row_words = static_cast<std::uint64_t>(bank.sdram->row_words);
+  const auto internal_banks = static_cast<std::uint64_t>(bank.sdram->internal_banks);
+  const std::uint64_t rows = (bank.words + row_words * internal_banks - 1) / (row_words * internal_banks);
+  const int row = address_bits(rows);
+  const int column = address_bits(row_words) + 1;
+  pins.address = (row > column ? row : column) + address_bits(internal_banks);
+  return pins;
+}
+
+// Of all boards (ours). The cameras come over PCI.
+inline constexpr int kLocalBusPins = 48;
+inline constexpr int kOtherPins = 12;  // clocks, reset, status
+
+}  // namespace stereotlm::area
