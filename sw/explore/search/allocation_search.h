@@ -22,10 +22,10 @@ int banks_used(const Placement& placement);
 // Whether each bank is deep enough for its buffers.
 bool fits(const platform::BoardConfig& board, const Placement& placement);
 
-// Visits every placement of the board's buffers, none of which is striped, in at most `most_banks` of its banks. Among placements that
-// differ only by an exchange of equal banks (same depth, kind and timing), it visits only the one that
-// uses the equal banks in the board's order. Placements come in the order of the first buffer's bank, then of
-// the second buffer's bank, and so on. Placements that do not fit are visited too.
+// Visits every placement of the board's buffers, none of which is striped, in at most `most_banks` of its
+// banks. Among placements that differ only by an exchange of equal banks (same depth, kind and timing), it
+// visits only the one that uses the equal banks in the board's order. Placements come in the order of the
+// first buffer's bank, then of the second buffer's bank, and so on. Those that do not fit are visited too.
 void for_each_placement(const platform::BoardConfig& board, int most_banks,
                         const std::function<void(const Placement&)>& visit);
 

@@ -175,7 +175,7 @@ class Json(ProgramTest):
         self.assertEqual(document, {
             "schema": 1, "board": "fpl2003", "ok": True, "problems": [], "image": {"width": 32, "height": 24},
             "window": 5, "disparities": 80, "banks": 8, "clock_mhz": 33.5, "device": "xc2v1000",
-            "fits": area["slices"] <= 5120, "smallest_device": "xc2v1500"})
+            "fits": area["slices"] <= 5120, "smallest_device": "xc2v1500", "pins": 548})
         self.assertGreater(area["slices"], 5120)
 
     def test_a_refused_command_prints_no_document(self):

@@ -261,7 +261,7 @@ class Numbers(PageTest):
             rate, gained, _, _, _, step = line.split(None, 5)
             if gained == "+0.000":
                 continue  # a change that saves a bank: the page has it without a gain
-            row = shown[re.sub(", [+-][0-9]+ multipliers", "", step).replace(" *:", ":")]
+            row = shown[re.sub(", [+-][0-9]+ (multipliers|pins)", "", step).replace(" *:", ":")]
             self.assertEqual(f"{number(row['frames_per_second']):.3f}", rate)
             self.assertEqual(row["changes_disparities"], str(" *:" in step).lower())
 
