@@ -11,6 +11,7 @@ import re
 import shlex
 import sqlite3
 import tempfile
+import time
 import unittest
 
 import program
@@ -283,6 +284,52 @@ class Numbers(PageTest):
         self.assertEqual(found, expected)
         name = "banks.bank0.utilization"  # not in the data: follows from busy_cycles
         self.assertEqual(sorted(float(row[name]) for row in rows), sorted(point[name] for point in points))
+
+
+class Lanes(PageTest):
+    """Of four lanes a side, whose ports are one row until the page is asked for every lane."""
+
+    def page(self):
+        out = shared_folder() / "lanes"
+        if not out.exists():
+            made(run("run", "eight-banks-four-lanes", *SCENE, *PRELOADED, "--frames", "2", "--record",
+                     "--out", out))
+        return page_of(out), json.loads((out / "stats.json").read_text())
+
+    def follow(self, text):
+        """Follows the link to the other view, and waits for the text that it begins with."""
+        self.browser.click("#lanes a")
+        end = time.monotonic() + 10
+        while not self.browser.all("footer") or text not in self.browser.text("#lanes"):
+            self.assertLess(time.monotonic(), end)
+
+    def test_are_one_row_with_their_mean(self):
+        page, stats = self.page()
+        self.browser.open(page)
+        ports = {row["name"]: row for row in self.browser.table("ports")}
+        self.assertEqual(list(ports), ["left_lut", "right_lut", "left_pixel", "right_pixel", "result", "host"])
+        for name, row in ports.items():
+            lanes = [port for port in stats["ports"] if port["name"].split(".")[0] == name]
+            self.assertEqual(len(lanes), 1 if name in ("result", "host") else 4)
+            for key in ("grants", "stall_cycles", "starved_cycles"):
+                mean = sum(port[key] for port in lanes) / len(lanes)
+                self.assertAlmostEqual(number(row[key]), mean, places=6)
+        for chart in ("bounds", "blame", "rows"):
+            self.assertNotRegex(self.browser.text(f"#{chart}"), r"(lut|pixel)\.\d")
+        self.assertEqual({text.text for text in self.browser.all("#blame tr:last-child td")}, {"✓"})
+
+    def test_are_a_row_each_if_asked_for(self):
+        page, stats = self.page()
+        self.browser.open(page)
+        self.follow("Each of the 4 lanes")
+        names = [row["name"] for row in self.browser.table("ports")]
+        self.assertEqual(names, [port["name"] for port in stats["ports"]])
+        self.assertIn("left_pixel.3", names)
+        self.follow("one row, with the mean")
+
+    def test_of_boards_with_one_are_not_spoken_of(self):
+        self.browser.open(page_of(core()))
+        self.assertEqual(self.browser.all("#lanes"), [])
 
 
 class Drawing(PageTest):

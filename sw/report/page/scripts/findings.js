@@ -50,7 +50,8 @@ export function blamesInDetail(run) {
       ({port, bank, by, total}) => ({port, bank, by, cycles: total, share: total / run.stats.cycles}));
 }
 
-const causeText = by => by === 'turnaround' ? 'for the turnaround' : `for ${by}`;
+const kCauses = {turnaround: 'the turnaround', row: 'a row to open', refresh: 'a refresh'};
+const causeText = by => `for ${kCauses[by] ?? by}`;
 
 export const blameText = ({port, bank, by, share}) =>
     `${port} waits in ${percent(share)} of all cycles, ${causeText(by)} on ${bank}`;

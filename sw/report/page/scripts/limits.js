@@ -163,11 +163,13 @@ const kPortStates = [
 ];
 const kBankStates = [
   ['busy_cycles', 'busy', '--blue'], ['turnaround_cycles', 'turnaround', '--grey'],
+  ['row_cycles', 'a row opens', '--vermilion'], ['refresh_cycles', 'refresh', '--yellow'],
   ['idle_cycles', 'idle', '--pale']
 ];
 
 // Bars that add up to all cycles of the frames.
-function addStates(page, {id, title, note, items, states, cycles, more = () => []}) {
+function addStates(page, {id, title, note, items, states: all, cycles, more = () => []}) {
+  const states = all.filter(([key]) => items.some(item => item[key] !== undefined));
   const rowOf = item => {
     let end = 0;
     const bars = states.filter(([key]) => item[key] > 0)

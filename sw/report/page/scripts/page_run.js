@@ -5,6 +5,7 @@ import {linesOf, tilesOf} from './data.js';
 import {commandLine, fileName, folded, h, note, textBox} from './dom.js';
 import {answersOf, headlineOf, settingOf, waitingRows} from './findings.js';
 import {count, value} from './format.js';
+import {laneNote, withFoldedLanes} from './lanes.js';
 import {addBankUse, addBounds, addFrames, addPortStates, addRoofline} from './limits.js';
 import {addMemory} from './memory.js';
 import {addPicture} from './picture.js';
@@ -75,7 +76,8 @@ function addConfiguration(page, run) {
   });
 }
 
-export function showRun(page, {run}) {
+export function showRun(page, {run: all}) {
+  const run = withFoldedLanes(all);
   const {stats} = run;
   addHead(page, {
     kind: 'run',
@@ -85,6 +87,7 @@ export function showRun(page, {run}) {
       note(
           `${run.folder} · ${count(stats.frames, 'frame')} · ` +
           (stats.cameras ? 'the whole computer, with cameras' : 'the core alone, fed by an ideal host')),
+      laneNote(all),
       commandLine(run.command)
     ]
   });
@@ -113,5 +116,5 @@ export function showRun(page, {run}) {
 
   const trust = addGroup(page, 'The figures');
   addAudit(trust, run);
-  addConfiguration(trust, run);
+  addConfiguration(trust, all);
 }

@@ -3,6 +3,7 @@ import {addAnswers, addChart, addGroup, addHead, htmlTable} from './card.js';
 import {commandLine} from './dom.js';
 import {kindOfRate, rateOf, resourceText, settingOf, waitsOf, waitText} from './findings.js';
 import {count, gainText, grouped, rate, rateWith, shortened, whole} from './format.js';
+import {laneNote, withFoldedLanes} from './lanes.js';
 import {addFrames, addPortStates} from './limits.js';
 import {addMemory} from './memory.js';
 import {addPicture} from './picture.js';
@@ -58,7 +59,8 @@ const changeText = ([key, x, y]) => `${key}: ${x} → ${y}`;
 const layerOf = (cycles, width) =>
     ({name: 'B, by row', values: cycles, columns: 1, rows: cycles.length, width, height: 1});
 
-export function showTwoRuns(page, {runs: [a, b], difference}) {
+export function showTwoRuns(page, {runs, difference}) {
+  const [a, b] = runs.map(withFoldedLanes);
   const [rateA, rateB] = [rateOf(a), rateOf(b)];
   const settings = settingsOf(difference);
   const isSame = difference.disparities.frames > 0 && difference.disparities.pixels_that_differ === 0;
@@ -67,7 +69,7 @@ export function showTwoRuns(page, {runs: [a, b], difference}) {
     kind: 'two runs',
     name: `A ${a.folder} · B ${b.folder}`,
     headline: headlineOfTwo(a, b, settings),
-    sub: [commandLine(a.command), commandLine(b.command)]
+    sub: [...runs.map(laneNote).slice(0, 1), commandLine(a.command), commandLine(b.command)]
   });
   const {rows} = difference;
   addAnswers(page, [

@@ -43,10 +43,13 @@ const kNamed = {
   result: '--green',
   host: '--purple',
   turnaround: '--grey',
+  row: '--yellow',
+  refresh: '--pale',
 };
 const kOthers = ['--blue', '--vermilion', '--green', '--orange', '--sky', '--purple', '--yellow', '--grey'];
-// The variable of the colour of a port or a cause; `host capture` has that of the host.
-export const namedColour = name => kNamed[name] ?? kNamed[name.split(' ')[0]] ?? '--grey';
+// The variable of the colour of a port or a cause; `host capture` has that of the host,
+// and a lane that of its port group.
+export const namedColour = name => kNamed[name] ?? kNamed[name.split(/[ .]/)[0]] ?? '--grey';
 export const nthColour = number => kOthers[number % kOthers.length];
 
 const kViridis = [

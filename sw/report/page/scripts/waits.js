@@ -15,6 +15,7 @@ const kMostDifferences = 20;
 const kLeastRows = 4;
 const kRowsHeight = 328;
 const kMostBands = 240;
+const kNoCycle = 1e-3;  // a mean over lanes is rounded
 
 const bare = share => percent(share).replace(' %', '');
 
@@ -43,7 +44,7 @@ export function addBlame(page, run) {
         [blameText(row), `${whole(row.cycles)} of ${whole(cycles)} cycles`]);
   };
   const totalOf = port => sum(blames.filter(row => row.port === port.name).map(row => row.cycles));
-  const counterOf = port => totalOf(port) === port.stall_cycles ?
+  const counterOf = port => Math.abs(totalOf(port) - port.stall_cycles) < kNoCycle ?
       h('td', {class: 'good'}, '✓') :
       h('td', {class: 'bad'}, `≠ ${bare(port.stall_cycles / cycles)}`);
   const rowOf = (name, cells, attributes) => h('tr', attributes, h('th', {scope: 'row'}, name), cells);
