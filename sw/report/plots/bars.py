@@ -3,7 +3,7 @@
 import style
 from drawing import HEAD, WIDTH, Drawing, Sheet, in_words, length_of, ticks_of_columns
 from matplotlib.patches import Patch
-from points import PORTS, TURNAROUND, Unusable, counted, natural, short_names, text_of
+from points import OTHER_CAUSES, PORTS, Unusable, counted, natural, short_names, text_of
 from style import SMALL_SIZE
 
 MOST = 16
@@ -22,10 +22,10 @@ STATES = {
     "starved_cycles": ("starved", "#999999"),
     "idle_cycles": ("idle", "#DDDDDD"),
 }
-CAUSES = {by: (by if by == TURNAROUND else f"for {by}", color)
-          for by, color in zip([*PORTS, TURNAROUND],
+CAUSES = {by: (by if by in OTHER_CAUSES else f"for {by}", color)
+          for by, color in zip([*PORTS, *OTHER_CAUSES],
                                [style.ORANGE, style.SKY, style.BLUE, style.GREEN, style.PINK,
-                                                      "#999999", style.BLACK])}
+                                                      "#999999", style.BLACK, "#999933", "#882255"])}
 
 
 class Rows:
@@ -147,8 +147,8 @@ def states(points, options):
 
 
 def stalls(points, options):
-    """The cycles in which each port waits in a frame, point by point, by cause: the port that was granted, or
-    turnaround."""
+    """The cycles in which each port waits in a frame, point by point, by cause: the port that was granted,
+    turnaround, row or refresh. Lanes of a port are one port, with their mean."""
     if not any(points.stall_cycles()):
         raise Unusable("no port waits in any point")
     rows = Rows(points, options, most_stalled=True)

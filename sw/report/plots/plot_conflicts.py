@@ -4,6 +4,7 @@ for banks."""
 
 import json
 import os
+from collections import Counter
 
 import command
 import numpy
@@ -11,6 +12,7 @@ import style
 from drawing import Drawing, Sheet, in_words, ticks_of_columns
 from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.patches import Patch
+from points import OTHER_CAUSES, group_of
 
 PAINT = LinearSegmentedColormap.from_list("paint", [(0.84, 0.37, 0, 0), (0.84, 0.37, 0, 0.95)])  # vermilion
 STALLS = "_stall_cycles"
@@ -20,14 +22,16 @@ BANK_COLORS = [style.BLUE, style.GREEN, style.SKY, style.PINK, style.ORANGE, sty
 
 class Recorded:
     """What a run has recorded. tiles: rows of conflicts.csv; sums, frame: columns of rows.csv, the fill
-    first."""
+    first. The lanes of a port are one port, with their mean."""
 
     def __init__(self, folder):
         with open(os.path.join(folder, "about.json"), encoding="utf-8") as file:
             self.about = json.load(file)
         self.tiles = command.read_table(folder, "conflicts")
-        self.sums, self.frame = (self._columns(command.read_table(folder, name))
-                                 for name in ("sums", "frame"))
+        tables = [command.read_table(folder, name) for name in ("sums", "frame")]
+        ports = [name.removesuffix(STALLS) for name in tables[0][0] if name.endswith(STALLS)]
+        self._lanes = Counter(map(group_of, ports))
+        self.sums, self.frame = map(self._columns, tables)
         path = os.path.join(folder, "picture.raw")
         self.picture = (numpy.fromfile(path, numpy.uint8).reshape(-1, self.about["width"])
                         if os.path.exists(path) else None)
@@ -37,9 +41,16 @@ class Recorded:
         frames = self.about["frames"]
         self.note = f"Board {self.about['board']}; {frames} frame{'s' if frames > 1 else ''}."
 
-    @staticmethod
-    def _columns(rows):
-        return {name: numpy.array([int(row[name] or -1) for row in rows]) for name in rows[0]}
+    def _columns(self, rows):
+        columns = {}
+        for name in rows[0]:
+            values = numpy.array([int(row[name] or -1) for row in rows])
+            port = name.removesuffix(STALLS)
+            if name.endswith(STALLS) and group_of(port) != port:
+                name = group_of(port) + STALLS
+                values = values / self._lanes[group_of(port)]
+            columns[name] = columns[name] + values if name in columns else values
+        return columns
 
     @staticmethod
     def shares(columns):
@@ -56,8 +67,10 @@ class Recorded:
         """{(port, bank, by): cycles}"""
         causes = {}
         for row in self.tiles:
-            key = row["port"], row["bank"], row["by"]
-            causes[key] = causes.get(key, 0) + int(row["cycles"])
+            port = group_of(row["port"])
+            key = port, row["bank"], group_of(row["by"])
+            lanes = self._lanes[port] if port != row["port"] else 1
+            causes[key] = causes.get(key, 0) + int(row["cycles"]) / lanes
         return causes
 
 
@@ -170,7 +183,7 @@ def causes(recorded, options):
                for place in places)
     factor, word = in_words(most / frames)
     sheet = Sheet("Which port waits at which bank, and for whom", options.size, options.format)
-    sheet.legend([(Patch(color=colors[by]), by if by == "turnaround" else f"for {by}") for by in blamed])
+    sheet.legend([(Patch(color=colors[by]), by if by in OTHER_CAUSES else f"for {by}") for by in blamed])
     sheet.note(recorded.note)
     widest = max(style.text_width(f"{port} on {bank}", style.SIZE) for bank, port in places)
     panels = sheet.grid([0.3 + 0.3 * len(places)], 1, widest + 0.3, 0.2)

@@ -24,7 +24,8 @@ BANKS_USED = "banks_used"
 UNITS_USED = "units_used"
 
 PORTS = ["left_lut", "right_lut", "left_pixel", "right_pixel", "result", "host"]
-TURNAROUND = "turnaround"
+LANE_PORTS = PORTS[:4]
+OTHER_CAUSES = ["turnaround", "row", "refresh"]
 LOST_PIXELS = ["cameras.left.dropped_pixels", "cameras.right.dropped_pixels"]
 LARGEST = 1e100  # matplotlib overflows with an axis for greater numbers
 NUMBER = f"must be a number from {-LARGEST:g} to {LARGEST:g}"
@@ -66,6 +67,20 @@ def counted(number, what):
 
 def quoted(name):
     return '"' + name.replace('"', '""') + '"'
+
+
+def mean_of(values):
+    """The mean of the values that there are; None without any. Strange values stay as they are."""
+    there = [value for value in values if value is not None]
+    if len(there) < 2 or not all(map(is_number, there)):
+        return there[0] if there else None
+    return sum(there) / len(there)
+
+
+def group_of(name):
+    """The port group of a port: "left_lut" of "left_lut.3"."""
+    group, _, lane = name.partition(".")
+    return group if group in LANE_PORTS and lane.isdigit() else name
 
 
 def banks_of(allocated):
@@ -176,7 +191,10 @@ class Points:
         return problems
 
     def column(self, name):
-        """The values of a column, of BANKS_USED or of UNITS_USED by place; None for a point without value."""
+        """The values of a column, of BANKS_USED or of UNITS_USED by place; None for a point without value.
+
+        Of a port group "ports.left_lut.grants" has the mean of the lanes.
+        """
         if name not in self._columns:
             if name == BANKS_USED:
                 allocated = [self.column(key) for key in self.names if key.startswith("allocation.")]
@@ -184,13 +202,28 @@ class Points:
             elif name == UNITS_USED:
                 units = zip(self.column("matcher.units"), self.column("matcher.disparities"))
                 self._columns[name] = [disparities if each == "all" else each for each, disparities in units]
+            elif lanes := self._lanes(name):
+                own = self._column(name) if name in self.names else [None] * len(self.hashes)
+                self._columns[name] = [mean_of([value, *others])
+                                       for value, *others in zip(own, *map(self._column, lanes))]
             elif name in self.names:
-                rows = self._rows(f"SELECT {quoted(name)} FROM points WHERE {self._condition} ORDER BY hash",
-                                  *self._values)
-                self._columns[name] = [row[0] for row in rows]
+                self._columns[name] = self._column(name)
             else:
                 self._columns[name] = [None] * len(self.hashes)
         return self._columns[name]
+
+    def _lanes(self, name):
+        """The columns of the lanes of the port group of this column."""
+        ports, _, rest = name.partition(".")
+        port, _, count = rest.partition(".")
+        if ports != "ports" or port not in LANE_PORTS or "." in count:
+            return []
+        return [each for each in self.names if re.fullmatch(rf"ports\.{port}\.\d+\.{count}", each)]
+
+    def _column(self, name):
+        rows = self._rows(f"SELECT {quoted(name)} FROM points WHERE {self._condition} ORDER BY hash",
+                          *self._values)
+        return [row[0] for row in rows]
 
     def rows(self, names, places):
         """The values of these columns at these places, a list for each place."""
@@ -198,15 +231,20 @@ class Points:
         return [[column[place] for column in columns] for place in places]
 
     def blame(self, place):
-        """The stalls of one point: rows (port, bank, by, cycles). by: the port that was granted, or
-        turnaround."""
+        """The stalls of one point: rows (port, bank, by, cycles). by: the port that was granted, turnaround, row
+        or refresh. Ports are port groups; cycles are the mean of the lanes."""
         rows = self._rows("SELECT port, bank, by, cycles FROM blame WHERE hash = ? ORDER BY port, bank, by",
                           self.hashes[place])
         for port, bank, by, cycles in rows:
             if not is_number(cycles):
                 raise Unusable(f"blame of point {self.hashes[place]}: {port}, {bank}, {by}: cycles = "
                                f"{cycles}: {NUMBER}")
-        return rows
+        lanes = int(self.column("fpga.lanes")[place] or 1)
+        sums = {}
+        for port, bank, by, cycles in rows:
+            key = (group_of(port), bank, group_of(by))
+            sums[key] = sums.get(key, 0) + (cycles / lanes if group_of(port) != port else cycles)
+        return [(*key, cycles) for key, cycles in sums.items()]
 
     def stall_cycles(self):
         """The stall cycles of all ports together, by place."""

@@ -307,7 +307,7 @@ class Lanes(PageTest):
         page, stats = self.page()
         self.browser.open(page)
         ports = {row["name"]: row for row in self.browser.table("ports")}
-        self.assertEqual(list(ports), ["left_lut", "right_lut", "left_pixel", "right_pixel", "result", "host"])
+        self.assertEqual(list(ports), "left_lut right_lut left_pixel right_pixel result host".split())
         for name, row in ports.items():
             lanes = [port for port in stats["ports"] if port["name"].split(".")[0] == name]
             self.assertEqual(len(lanes), 1 if name in ("result", "host") else 4)
