@@ -17,7 +17,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kMostBands = 8;  // of rows in the table
-constexpr double kMost = 0.8;          // the share of the stalls that a place must have
+constexpr std::size_t kMostWaits = 24;
+constexpr double kMost = 0.8;  // the share of the stalls that a place must have
 
 template <typename Values>
 std::uint64_t sum_of(const Values& values) {
@@ -174,12 +175,16 @@ std::string conflicts_text(const Json& document) {
   std::string text = fmt::format("core         {} cycles in {} frame{}\n",
                                  document["cycles"].get<std::uint64_t>(), frames, frames == 1 ? "" : "s");
   if (document["waits"].empty()) text += "waits        none\n";
-  for (const Json& wait : document["waits"]) {
+  const std::size_t waits = document["waits"].size();
+  for (std::size_t number = 0; number < std::min(waits, kMostWaits); ++number) {
+    const Json& wait = document["waits"][number];
     text +=
         fmt::format("waits        {}: {} cycles ({:.2f} %), {}\n",
                     stats::wait_text(wait["port"], wait["bank"], wait["by"]),
                     wait["cycles"].get<std::uint64_t>(), wait["cycles_percent"].get<double>(), where(wait));
   }
+  if (waits > kMostWaits)
+    text += fmt::format("waits        {} others, less; all: --json\n", waits - kMostWaits);
   text += "rows              waits %";
   for (const Json& bank : document["rows"].front()["banks"])
     text += fmt::format(" {:>9}", bank["name"].get<std::string>() + " %");

@@ -231,7 +231,7 @@ class Points:
         return [[column[place] for column in columns] for place in places]
 
     def blame(self, place):
-        """The stalls of one point: rows (port, bank, by, cycles). by: the port that was granted, turnaround, row
+        """The stalls of one point: rows (port, bank, by, cycles). by: the port granted, turnaround, row
         or refresh. Ports are port groups; cycles are the mean of the lanes."""
         rows = self._rows("SELECT port, bank, by, cycles FROM blame WHERE hash = ? ORDER BY port, bank, by",
                           self.hashes[place])

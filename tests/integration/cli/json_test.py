@@ -43,6 +43,19 @@ class Json(ProgramTest):
             self.assertEqual((process.returncode, process.stderr), (status, ""))
             self.assertEqual(self.valid("check", process.stdout)["board"], name.decode(errors="replace"))
 
+    def test_boards_with_lanes_stripes_and_sdram_keep_the_schemas(self):
+        shared = sets("allocation.disparity={rows: [bank0, bank5]}")  # results and tables meet there
+        for name, options in (("eight-banks-four-lanes", shared), ("sdram", [])):
+            self.document("check", name)
+            bounds = self.document("bounds", name, *SMALL, *options, *sets("fpga.package=ff1152"))
+            self.assertEqual(bounds["area"]["pins"], bounds["pins"]["all"])
+            found = [self.document(command, name, *SMALL, *PRELOADED, *options, *more)[list_name]
+                     for command, list_name, more in (("explain", "blame", []),
+                                                      ("conflicts", "waits", ["--timing-only"]))]
+            self.assertTrue(all(found), name)
+            document = self.document("run", name, *SMALL, *PRELOADED, *options, "--timing-only")
+            self.assertEqual(all("row_cycles" in bank for bank in document["banks"]), name == "sdram")
+
     def test_bounds_are_those_of_a_run(self):
         document = self.document("bounds", "fpl2003", *SMALL, *SHARED)
         stats = self.small_run()
