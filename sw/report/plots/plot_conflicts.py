@@ -69,8 +69,8 @@ class Recorded:
         for row in self.tiles:
             port = group_of(row["port"])
             key = port, row["bank"], group_of(row["by"])
-            lanes = self._lanes[port] if port != row["port"] else 1
-            causes[key] = causes.get(key, 0) + int(row["cycles"]) / lanes
+            cycles = int(row["cycles"])
+            causes[key] = causes.get(key, 0) + (cycles / self._lanes[port] if port != row["port"] else cycles)
         return causes
 
 
