@@ -43,6 +43,20 @@ std::string shared_bank_text(const BoardConfig& board, const Explanation& explan
                      in_bank);
 }
 
+// What the simulation has to step cycle by cycle (FastForward), which takes longer: "stripes are stepped\n".
+std::string stepped_text(const BoardConfig& board) {
+  bool has_stripes = false;
+  bool has_sdram = false;
+  for (const platform::PlacedBuffer& buffer : platform::buffers(board)) {
+    has_stripes = has_stripes || buffer.parts > 1;
+    for (const platform::BankConfig& bank : board.banks)
+      has_sdram = has_sdram || (bank.name == buffer.bank && bank.kind == memory::BankKind::kSdram);
+  }
+  if (!has_stripes && !has_sdram) return "";
+  return fmt::format("{}{}{} are stepped\n", has_stripes ? "stripes" : "",
+                     has_stripes && has_sdram ? " and " : "", has_sdram ? "sdram banks" : "");
+}
+
 std::string head_text(const BoardConfig& board, const Explanation& explanation) {
   const explore::StoredRow& row = explanation.figures();
   const bool camera = explanation.camera();
@@ -56,7 +70,7 @@ std::string head_text(const BoardConfig& board, const Explanation& explanation) 
          fmt::format("bound {:.3f} frames/s: {}; {} frames simulated{}\n", row.real(of),
                      stats::resource_words(row.text(of + "_limited_by")), explanation.frames(),
                      now.loses_pixels ? "; captures lose pixels" : "") +
-         platform::device_text(board) + '\n' + shared_bank_text(board, explanation);
+         platform::device_text(board) + '\n' + stepped_text(board) + shared_bank_text(board, explanation);
 }
 
 // The table of resources. Resources of one kind with the same values share a line.

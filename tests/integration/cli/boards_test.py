@@ -35,6 +35,16 @@ class Check(ProgramTest):
                       r"\d+ pins(: ff1152 has 824, ff1517 1104)?")
             self.assertRegex(self.succeeds(run("check", name)), rf"\A{name}: ok: [^\n]*\n(?:{device})\n\Z")
 
+    def test_explain_says_what_is_stepped(self):
+        cases = [("eight-banks-four-lanes", [], "\nstripes are stepped\n"),
+                 ("sdram", [], "\nsdram banks are stepped\n"),
+                 ("sdram", sets("allocation.disparity={rows: [bank0, bank1]}"),
+                  "\nstripes and sdram banks are stepped\n")]
+        for name, options, said in cases:
+            text = self.succeeds(run("explain", name, *SMALL, *PRELOADED, *options))
+            self.assertIn(said, text)
+        self.assertNotIn("stepped", self.succeeds(run("explain", "fpl2003", *SMALL, *PRELOADED)))
+
     def test_presets_of_section_8_give_the_rates_that_they_name(self):
         for name, least in (("eight-banks-four-lanes", 65), ("seven-banks-130", 130), ("sdram", 80)):
             text = self.succeeds(run("run", name, "--source", "preloaded", "--timing-only", "--frames", "2"))
