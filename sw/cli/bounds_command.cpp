@@ -71,7 +71,9 @@ Group group_of(const BoardConfig& board, const platform::FrameAccesses& accesses
       row.banks = {*bank};
       row.role = "bank of";
       for (const PlacedBuffer& buffer : buffers) {
-        if (buffer.bank == row.banks.front()) row.role += std::string(" ") + platform::name_of(buffer.buffer);
+        if (buffer.bank != row.banks.front()) continue;
+        row.role += std::string(" ") + platform::name_of(buffer.buffer);
+        if (buffer.parts > 1) row.role += fmt::format(".rows[{}]", buffer.part);
       }
     }
     group.rows.push_back(std::move(row));
@@ -143,9 +145,15 @@ std::string lines_of(const Group& group, const BoardBounds& all) {
   }
   text +=
       fmt::format("\n  {:<{}} {:>14} {:>14} {:>12}\n", "resource", width, "cycles", "frames/s", "headroom %");
-  for (const Row& row : group.rows) {
-    text += fmt::format("  {:<{}} {:>14} {:>14.3f} {:>12.2f}\n", row.label(), width, row.cycles,
-                        all.frames_per_second(row), headroom_percent(row, group));
+  for (auto first = group.rows.begin(), next = first; first != group.rows.end(); first = next) {
+    std::vector<std::string> lanes;
+    for (; next != group.rows.end() && stats::group_text(next->role) == stats::group_text(first->role) &&
+           next->cycles == first->cycles && next->banks == first->banks;
+         ++next)
+      lanes.push_back(next->role);
+    text += fmt::format("  {:<{}} {:>14} {:>14.3f} {:>12.2f}\n",
+                        first->banks.empty() ? stats::ports_text(lanes) : first->label(), width,
+                        first->cycles, all.frames_per_second(*first), headroom_percent(*first, group));
   }
   return text;
 }

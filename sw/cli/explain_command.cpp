@@ -84,9 +84,10 @@ std::string resources_text(const BoardConfig& board, const Explanation& explanat
       fmt::format("  {:>12} {:>8} {:>14}  {}\n", "headroom %", "busy %", "bound frames/s", "resource");
   for (auto first = all.begin(), next = first; first != all.end(); first = next) {
     const std::string kind = std::get<0>(values_of(*first));
-    std::string label = stats::resource_text(first->name);
+    std::vector<std::string> names = {first->name.substr(kind.size())};
     for (++next; next != all.end() && !kind.empty() && values_of(*next) == values_of(*first); ++next)
-      label += ", " + next->name.substr(kind.size());
+      names.push_back(next->name.substr(kind.size()));
+    std::string label = (kind == "port " ? kind : "") + stats::ports_text(names);
     if (first->varies)
       label += fmt::format(", in frame {} of {}", first->frame, platform::allocation_period_frames(board));
     text += fmt::format("  {:>12.2f} {:>8.2f} {:>14.3f}  {}\n", first->headroom_percent, first->busy_percent,
@@ -96,7 +97,7 @@ std::string resources_text(const BoardConfig& board, const Explanation& explanat
 }
 
 std::string blames_text(const Explanation& explanation) {
-  const std::vector<platform::BlameRow>& blames = explanation.blames();
+  const std::vector<platform::BlameRow>& blames = explanation.group_blames();
   std::string text = "who waits for whom, % of the cycles of the frames\n";
   for (std::size_t row = 0; row < blames.size(); ++row) {
     if (row == kMostBlames) return text + "  and others, less\n";

@@ -32,6 +32,7 @@ double mean_of(const std::vector<double>& values) {
 }
 
 const std::string kHost = fpga::kPortGroups[fpga::kHostGroup].name;
+const std::string kResult = fpga::kPortGroups[fpga::kResultGroup].name;
 constexpr double kVisibleLoss = 0.01;     // of the cycles
 constexpr double kVisiblePercent = 0.05;  // of the time of a frame
 constexpr double kLeastHeadroom = 10;     // of a bus in percent; with less it is named beside what waits
@@ -169,6 +170,25 @@ std::string core_waits_text(const Explanation& explanation) {
   return text + busy_bus_text(explanation);
 }
 
+// Blames of ports as those of port groups, the most cycles first. Of a group they are the mean of its lanes.
+std::vector<platform::BlameRow> by_group(const std::vector<platform::BlameRow>& blames, std::uint64_t lanes) {
+  std::vector<platform::BlameRow> all;
+  for (const platform::BlameRow& blame : blames) {
+    const platform::BlameRow of_group = {stats::group_text(blame.port), blame.bank,
+                                         stats::group_text(blame.by), 0};
+    auto row = std::find_if(all.begin(), all.end(), [&](const platform::BlameRow& each) {
+      return each.port == of_group.port && each.bank == of_group.bank && each.by == of_group.by;
+    });
+    if (row == all.end()) row = all.insert(all.end(), of_group);
+    row->cycles += blame.cycles;
+  }
+  for (platform::BlameRow& row : all) {
+    if (row.port != kHost && row.port != kResult) row.cycles /= lanes;
+  }
+  std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.cycles > b.cycles; });
+  return all;
+}
+
 Json resources_json(const Explanation& explanation) {
   Json all = Json::array();
   for (const Explanation::Resource& resource : explanation.resources()) {
@@ -278,6 +298,7 @@ bool Explanation::simulate(PointSimulator simulator) {
     const auto cycles_of_wait = static_cast<std::uint64_t>(find.integer(3));
     blames_.push_back({find.text(0), find.text(1), find.text(2), cycles_of_wait});
   }
+  group_blames_ = by_group(blames_, static_cast<std::uint64_t>(board_.fpga.lanes));
   read_steps();
   const auto cycles = nlohmann::json::parse(figures_->text("frame_cycles")).get<std::vector<double>>();
   compare_resources(cycles);
@@ -420,7 +441,7 @@ void Explanation::share_time(std::vector<double> frame_cycles) {
 }
 
 std::optional<platform::BlameRow> longest_wait(const Explanation& explanation, const std::string& resource) {
-  for (const platform::BlameRow& wait : explanation.blames()) {
+  for (const platform::BlameRow& wait : explanation.group_blames()) {
     if (wait.port != kHost && (resource.empty() || platform::resource_of_bank(wait.bank) == resource))
       return wait;
   }

@@ -102,6 +102,8 @@ class Explanation {
   }
   // Who stalls for whom, the most cycles first.
   const std::vector<platform::BlameRow>& blames() const { return blames_; }
+  // The same, the lanes of a port as one, with the mean of their cycles.
+  const std::vector<platform::BlameRow>& group_blames() const { return group_blames_; }
 
  private:
   Rate rate_of(std::uint64_t number);
@@ -127,6 +129,7 @@ class Explanation {
   std::vector<Resource> resources_;
   Budget budget_;
   std::vector<platform::BlameRow> blames_;
+  std::vector<platform::BlameRow> group_blames_;
 };
 
 // The longest wait of a port of the core, at this resource ("bank bank0") or at any bank. Waits of the host

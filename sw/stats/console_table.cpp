@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "sw/files/text_forms.h"
+
 namespace stereotlm::stats {
 namespace {
 
@@ -127,6 +129,20 @@ std::string accuracy_line(const Accuracy& accuracy) {
 }
 
 }  // namespace
+
+std::string ports_text(const std::vector<std::string>& ports) {
+  std::string text;
+  for (auto first = ports.begin(), next = first; first != ports.end(); first = next) {
+    const std::string group = group_text(*first);
+    std::vector<std::uint64_t> lanes;
+    for (; next != ports.end() && group_text(*next) == group; ++next) {
+      if (*next != group) lanes.push_back(std::stoull(next->substr(group.size() + 1)));
+    }
+    text += (text.empty() ? "" : ", ") + group;
+    if (!lanes.empty()) text += '.' + files::ranges_text(lanes, ",");
+  }
+  return text;
+}
 
 std::string lost_pixels_text(std::uint64_t pixels) {
   if (pixels == 0) return "";

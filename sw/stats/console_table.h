@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "platform/bounds.h"
 #include "platform/config/board_config.h"
@@ -11,13 +12,23 @@
 
 namespace stereotlm::stats {
 
-// Whom a port waits for: "left_pixel", "the turnaround". `by`: as in stats.json.
-inline std::string cause_text(const std::string& by) { return by == "turnaround" ? "the turnaround" : by; }
+// What a port waits for: "left_pixel", "the turnaround", "a row to open". `by`: as in stats.json.
+inline std::string cause_text(const std::string& by) {
+  if (by == "turnaround") return "the turnaround";
+  if (by == "row") return "a row to open";
+  return by == "refresh" ? "a refresh" : by;
+}
 
 // "left_lut on bank0 for left_pixel"
 inline std::string wait_text(const std::string& port, const std::string& bank, const std::string& by) {
   return port + " on " + bank + " for " + cause_text(by);
 }
+
+// The port group of a port: "left_lut" of "left_lut.3".
+inline std::string group_text(const std::string& port) { return port.substr(0, port.find('.')); }
+
+// Ports, the lanes of a group as a range: "left_lut.0-2, result". `ports`: in the order of the board.
+std::string ports_text(const std::vector<std::string>& ports);
 
 // The name of a resource of the bounds, such as "bank bank0", for people: "bank0".
 inline std::string resource_text(const std::string& resource) {

@@ -35,6 +35,21 @@ class Check(ProgramTest):
                       r"\d+ pins(: ff1152 has 824, ff1517 1104)?")
             self.assertRegex(self.succeeds(run("check", name)), rf"\A{name}: ok: [^\n]*\n(?:{device})\n\Z")
 
+    def test_explain_takes_the_lanes_of_a_port_as_one(self):
+        shared = [*SMALL, *PRELOADED, *sets("allocation.disparity={rows: [bank0, bank5]}")]
+        document = json.loads(self.succeeds(run("explain", "eight-banks-four-lanes", *shared, "--json")))
+        waits = {}
+        for row in document["blame"]:
+            group = (row["port"].split(".")[0], row["bank"], row["by"].split(".")[0])
+            lanes = 4 if "." in row["port"] else 1
+            waits[group] = waits.get(group, 0) + row["cycles_percent"] / lanes
+        text = self.succeeds(run("explain", "eight-banks-four-lanes", *shared))
+        found = re.findall(r"(?m)^  (\w+) +on (\w+) +for (\w+) +([\d.]+)$", text)
+        self.assertEqual(len(found), min(5, len(waits)))
+        for port, bank, by, percent in found:
+            self.assertAlmostEqual(float(percent), waits[port, bank, by], delta=0.02)
+        self.assertIn("  port left_lut.0-2, left_pixel.0-2, right_pixel.0-2\n", text)
+
     def test_explain_says_what_is_stepped(self):
         cases = [("eight-banks-four-lanes", [], "\nstripes are stepped\n"),
                  ("sdram", [], "\nsdram banks are stepped\n"),
@@ -203,6 +218,16 @@ class Bounds(ProgramTest):
         frames = [head.split(":")[0] for head, _ in groups]
         self.assertEqual(frames, ["frames 0, 2, 4", "frames 1, 3", "frame 5"])
         self.assertIn("bank5, bank1", groups[0][1])
+
+    def test_has_a_row_for_each_bank_of_a_stripe_and_one_for_lanes_alike(self):
+        ((head, rows),), _ = self.groups(board="eight-banks-four-lanes")
+        self.assertIn("disparity in bank4, bank5, bank6, bank7", head)
+        self.assertEqual([name for name in rows if name.startswith("bank")], [f"bank{n}" for n in range(8)])
+        lanes = [f"port {port}.{which}" for port in ("left_lut", "left_pixel", "right_pixel")
+                 for which in ("0-2", "3")]
+        self.assertEqual([name for name in rows if name.startswith("port")], [*lanes, "port result"])
+        self.assertEqual(rows["port left_lut.0-2"][0], 614416)
+        self.assertEqual(rows["port left_lut.3"][0], 307216)
 
     def test_names_the_part_of_the_computer_that_limits(self):
         parts, last = self.around_the_board()

@@ -84,6 +84,22 @@ class Command(ConflictsTest):
         self.assertEqual(cycles, sorted(cycles, reverse=True), "the longest first")
 
     @program.slow
+    def test_the_lanes_of_a_port_are_one_with_their_mean_in_figures(self):
+        self.succeeds(run("conflicts", "eight-banks-four-lanes", *SMALL, *PRELOADED, "--timing-only", "--out",
+                          self.out, *sets("allocation.disparity={rows: [bank0, bank5]}")))
+        sums = {}
+        for row in self.table("conflicts.csv"):
+            key = (row["port"].split(".")[0], row["bank"], row["by"].split(".")[0])
+            sums[key] = sums.get(key, 0) + int(row["cycles"]) / (4 if "." in row["port"] else 1)
+        causes = {(row["port"], row["bank"], row["by"]): float(row["cycles"])
+                  for row in self.table("causes.csv")}
+        self.assertGreater(len(causes), 2)
+        self.assertLess(len(causes), len({(row["port"], row["bank"], row["by"])
+                                          for row in self.table("conflicts.csv")}))
+        self.assertEqual(set(causes), set(sums))
+        for key, cycles in causes.items():
+            self.assertAlmostEqual(cycles, sums[key])
+
     def test_it_writes_tables_and_figures(self):
         options = ["--format", "png,svg,pdf", "--out", self.out]
         self.succeeds(run("conflicts", *self.scene, *CAPTURES, *options))

@@ -11,7 +11,7 @@ import xml.etree.ElementTree
 
 import program
 from pictures import PYTHON, drawn
-from plots import ALLOCATIONS, ENDINGS, SCRIPTS, SMALL_BOARD, WINDOWS
+from plots import ALLOCATIONS, ENDINGS, LANES, SCRIPTS, SMALL_BOARD, WINDOWS
 from plots import PlotTest, change, make_database, reader, script
 from program import PRELOADED, SMALL, run
 
@@ -155,6 +155,32 @@ class Figures(FigureTest):
         self.shows("disparities", "disparities D")
         self.assertIn("area, % of the slices", " ".join(self.texts("disparities")))
         self.assertEqual(len(self.curves("disparities")), 2 * 6)  # in two panels
+
+    def test_the_lanes_of_a_port_are_one_with_their_mean(self):
+        store = self.sweep(LANES)
+        self.plot("all", store)
+        rows, blame = self.database(store)
+        states = self.table("states")
+        self.assertEqual(len(states), 2 * 4)  # left_lut, both pixel ports, result
+        for row in states:
+            known = rows[row["hash"]]
+            lanes = known["fpga.lanes"]
+            names = [row["port"]]
+            if lanes > 1 and row["port"] != "result":
+                names = [f"{row['port']}.{lane}" for lane in range(lanes)]
+            for count in ("grants", "passed_cycles", "stall_cycles", "starved_cycles"):
+                mean = sum(known[f"ports.{name}.{count}"] for name in names) / len(names)
+                self.assertAlmostEqual(float(row[count]), mean)
+        means = {}
+        for point, port, bank, by, cycles in blame:
+            key = (point, port.split(".")[0], bank, by.split(".")[0])
+            means[key] = means.get(key, 0) + cycles / (rows[point]["fpga.lanes"] if "." in port else 1)
+        found = {(row["hash"], row["port"], row["bank"], row["by"]): float(row["cycles"])
+                 for row in self.table("stalls")}
+        self.assertEqual(set(found), set(means))
+        for key, cycles in found.items():
+            self.assertAlmostEqual(cycles, means[key])
+        self.assertTrue(any("." in port for _, port, *_ in blame))
 
     def test_allocations_have_banks_stalls_and_a_front(self):
         store = self.sweep(ALLOCATIONS)

@@ -1,5 +1,6 @@
 """The pages of `report` in a browser: every chart shown, used and read back."""
 
+import contextlib
 import csv
 import functools
 import io
@@ -19,6 +20,7 @@ from browser import Browser, number
 from plots import make_database, script
 from program import CAMERA_RATES, PRELOADED, SMALL, ProgramTest, run, sets, shared_folder
 from report_data import data_of, with_data
+from selenium.common.exceptions import WebDriverException
 from selenium.webdriver.common.keys import Keys
 
 SCENE = [*SMALL, "--synthetic", "1"]
@@ -297,11 +299,15 @@ class Lanes(PageTest):
         return page_of(out), json.loads((out / "stats.json").read_text())
 
     def follow(self, text):
-        """Follows the link to the other view, and waits for the text that it begins with."""
-        self.browser.click("#lanes a")
-        end = time.monotonic() + 10
-        while not self.browser.all("footer") or text not in self.browser.text("#lanes"):
+        """Follows the link to the other view, and waits until the page is loaded again and has this text."""
+        self.browser.one("#lanes a").click()
+        end = time.monotonic() + 20
+        is_loaded = False
+        while not is_loaded:
             self.assertLess(time.monotonic(), end)
+            with contextlib.suppress(WebDriverException):  # a call while the page is replaced
+                is_loaded = bool(self.browser.all("footer")) and text in self.browser.text("#lanes")
+        self.browser.drawn()
 
     def test_are_one_row_with_their_mean(self):
         page, stats = self.page()

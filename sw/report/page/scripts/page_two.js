@@ -69,7 +69,7 @@ export function showTwoRuns(page, {runs, difference}) {
     kind: 'two runs',
     name: `A ${a.folder} · B ${b.folder}`,
     headline: headlineOfTwo(a, b, settings),
-    sub: [...runs.map(laneNote).slice(0, 1), commandLine(a.command), commandLine(b.command)]
+    sub: [runs.map(laneNote).find(Boolean), commandLine(a.command), commandLine(b.command)]
   });
   const {rows} = difference;
   addAnswers(page, [
