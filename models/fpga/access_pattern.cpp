@@ -38,12 +38,23 @@ void AccessPattern::set_entries(const std::uint32_t* entries) {
   entries_ = entries;
   const bool needed_all_pixels = needs_all_pixels_;
   needs_all_pixels_ = true;
+  is_identity_ = true;
   for (int row = 0; row < geometry_.height; ++row, entries += geometry_.width) {
     if (!(has_cache_ ? set_row_cached(row, entries) : set_row(row, entries))) needs_all_pixels_ = false;
+    is_identity_ = is_identity_ && are_own_sources(row, entries);
   }
   if (needs_all_pixels_ && needed_all_pixels) return;
   slots_.clear();
   count();
+}
+
+bool AccessPattern::are_own_sources(int row, const std::uint32_t* entries) const {
+  std::uint32_t differing = 0;
+  for (int column = 0; column < geometry_.width; ++column) {
+    const std::uint32_t entry = entries[column];
+    differing |= kernels::entry_is_valid(entry) ? entry ^ kernels::make_entry(column, row) : 0;
+  }
+  return differing == 0;
 }
 
 // Returns whether all pixels of the row are accessed.

@@ -34,6 +34,8 @@ class AccessPattern {
   std::uint64_t slots_of_group() const { return 4 * static_cast<std::uint64_t>(geometry_.slots_per_column); }
   // Whether every slot inside the image accesses it.
   bool needs_all_pixels() const { return needs_all_pixels_; }
+  // Whether every valid entry is its own source.
+  bool is_identity() const { return is_identity_; }
   // The first slot, at least four columns after `slot`, that differs from the slot four columns before it:
   // only one of the two accesses its pixel. If there is none, the number of slots. (With a word cache the
   // accesses repeat every four columns at best.)
@@ -69,6 +71,7 @@ class AccessPattern {
   }
   std::uint64_t accesses_of_row(int row, std::uint64_t columns) const;
   void set_all(std::uint64_t* row_bits) const;
+  bool are_own_sources(int row, const std::uint32_t* entries) const;
   bool set_row(int row, const std::uint32_t* entries);
   bool set_row_cached(int row, const std::uint32_t* entries);
   void count();
@@ -81,6 +84,7 @@ class AccessPattern {
   std::vector<std::uint64_t> pixels_;  // [row][word]: pixels that are accessed
   std::vector<std::uint64_t> counts_;  // [row]: their number
   bool needs_all_pixels_ = false;
+  bool is_identity_ = true;
   std::vector<std::uint64_t> passes_before_strip_;  // [strip]: slots inside the image that do not access it
   // Both are empty until the first query: few frames need them.
   mutable std::vector<std::uint64_t> slots_;    // bit i of the sequence: slot i accesses its pixel

@@ -64,6 +64,7 @@ class CoreStepper {
     cycles_ = cycles;
   }
   ConflictRecorder* conflicts() const { return conflicts_; }
+  const Placements& placements() const { return *placements_; }  // of the running frame
   memory::Arbitration& arbitration() { return arbitration_; }
   const memory::Arbitration& arbitration() const { return arbitration_; }
 

@@ -76,7 +76,7 @@ void FrameRun::start_stepped(std::uint64_t cycle, const FrameBases& bases) {
 void FrameRun::start_direct(std::uint64_t cycle, const FrameBases& bases, const AccessPatterns& patterns) {
   patterns_ = &patterns;
   begin(cycle, bases);
-  core_.start_direct_frame(patterns, bases);
+  core_.start_direct_frame(patterns);
 }
 
 void FrameRun::begin(std::uint64_t cycle, const FrameBases& bases) {

@@ -110,6 +110,7 @@ std::size_t Arbitration::cause_of(Port port, PortMask granted) const {
 void Arbitration::share_banks() {
   writes_ = 0;
   placed_ = 0;
+  has_rows_ = false;
   for_each_port(routed_, [this](Port port) {
     if (routes_[port].write) writes_ |= mask_of(port);
     if ((routes_[port].banks & (routes_[port].banks - 1)) != 0 && !has(visitors_, port))
@@ -122,7 +123,10 @@ void Arbitration::share_banks() {
     const PortMask together = ports_on(bank);
     if (together == 0) continue;
     BankArbiter& arbiter = arbiters_[bank];
-    if (arbiter.has_rows()) placed_ |= together;
+    if (arbiter.has_rows()) {
+      placed_ |= together;
+      has_rows_ = true;
+    }
     const Port first = lowest_port(together);
     if (together == mask_of(first) && routes_[first].banks == bank_bit(bank) &&
         (visited_ & bank_bit(bank)) == 0 && arbiter.grants_at_once()) {
@@ -138,6 +142,7 @@ void Arbitration::share_banks() {
   if (!grants_all_) return;
   alone_ = routed_;
   placed_ = 0;
+  has_rows_ = false;
   shared_ = 0;
   shared_banks_.clear();
 }

@@ -45,6 +45,8 @@ class Arbitration {
   }
   // The ports to which place() applies: those with several banks, and those of banks of sdram.
   PortMask placed() const { return placed_; }
+  // Whether a port is routed to a bank of sdram.
+  bool has_rows() const { return has_rows_; }
   // Removes the route of the port, which must not request from now on.
   void unroute(Port port);
   // Routes a port that changes its bank often. Its banks count as shared until the next route() or unroute().
@@ -149,6 +151,7 @@ class Arbitration {
   PortMask routed_ = 0;
   PortMask writes_ = 0;    // ports whose route writes
   PortMask placed_ = 0;    // see placed()
+  bool has_rows_ = false;  // see has_rows()
   PortMask visitors_ = 0;  // ports that have visited banks
   std::uint64_t visited_ = 0;
   std::uint64_t shared_ = 0;  // see shared()

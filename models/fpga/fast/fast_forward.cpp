@@ -22,6 +22,11 @@ std::uint64_t columns_of_window(const FrameGeometry& geometry, std::uint64_t slo
   return 4 + slots_ahead / static_cast<std::uint64_t>(geometry.slots_per_column) + 3;
 }
 
+// After these groups of four columns, all words that were in the queue before them have been written.
+std::uint64_t result_groups(const CoreConfig& config, const FrameGeometry& geometry) {
+  return static_cast<std::uint64_t>((config.result_fifo_words + geometry.rows) / geometry.last_rows + 1);
+}
+
 // The words of TransitionCache::Accesses for both sides.
 std::size_t words_of_accesses(const FrameGeometry& geometry, std::uint64_t slots_ahead) {
   return 2 * ((4 * static_cast<std::uint64_t>(geometry.slots_per_column) + slots_ahead + 63) / 64);
@@ -34,8 +39,8 @@ static_assert(memory::kBankCountRule.max <= 1 << 6U &&
 
 FastForward::FastForward(const CoreConfig& config, memory::Arbitration& arbitration)
     : CoreStepper(config, arbitration),
+      config_(config),
       slots_ahead_(slots_ahead(control().geometry(), config.lane_fifo_slots)),
-      windows_(control().geometry(), columns_of_window(control().geometry(), slots_ahead_)),
       known_(words_of_accesses(control().geometry(), slots_ahead_)),
       no_accesses_(words_of_accesses(control().geometry(), slots_ahead_)),
       accesses_(no_accesses_),
@@ -45,11 +50,11 @@ FastForward::FastForward(const CoreConfig& config, memory::Arbitration& arbitrat
     handled_[lane].slot = control().lane(lane).first_slot();
 }
 
-void FastForward::start_direct_frame(const AccessPatterns& patterns, const FrameBases& bases) {
+void FastForward::start_direct_frame(const AccessPatterns& patterns) {
   start_stepped_frame();
   patterns_ = &patterns;
-  banks_ = 0;
-  for (const std::uint32_t base : bases) banks_ = banks_ << 6U | registers::bank_of(base);
+  find_layout();
+  can_walk_ = follows_from_places();
   for (const Side side : kSides) {
     const AccessPattern* const pattern = &patterns[index_of(side)];
     const std::size_t lane = control().lane_index(side, 0);
@@ -67,6 +72,37 @@ void FastForward::start_stepped_frame() {
   is_walking_ = false;
   varying_ = {};
   assumed_ = {};
+}
+
+// Sets layout_.
+void FastForward::find_layout() {
+  std::vector<std::size_t> banks;
+  for (std::size_t group = 0; group < kCoreGroupCount; ++group) {
+    if (!has_group(config_, group)) continue;
+    const std::vector<std::uint32_t>& parts = placements()[group].parts();
+    banks.push_back(parts.size());
+    for (const std::uint32_t base : parts) banks.push_back(registers::bank_of(base));
+  }
+  auto layout = layouts_.find(banks);
+  if (layout == layouts_.end()) {
+    const FrameGeometry& geometry = control().geometry();
+    const std::uint64_t groups = result_groups(config_, geometry);
+    FrameAreas areas(config_, columns_of_window(geometry, slots_ahead_), 4 * groups, placements());
+    layout = layouts_.emplace(banks, Layout{layouts_.size(), std::move(areas)}).first;
+  }
+  layout_ = &layout->second;
+}
+
+// Whether the places in the frame determine the banks that the ports request. They do not where a striped
+// picture is read through a table that points to other pixels.
+bool FastForward::follows_from_places() const {
+  for (std::size_t lane = 0; lane < control().lanes().size(); ++lane) {
+    const Side side = control().side_of(lane);
+    const bool is_striped = placements()[pixel_group(side)].parts().size() > 1;
+    if (is_striped && control().lane(lane).has_table() && !(*patterns_)[index_of(side)].is_identity())
+      return false;
+  }
+  return true;
 }
 
 void FastForward::settle(std::uint64_t cycle) {
@@ -240,7 +276,7 @@ std::uint64_t FastForward::skip_waiting(std::uint64_t cycle, std::uint64_t end) 
 // Begins to follow transitions, if possible.
 void FastForward::begin_walk(std::uint64_t cycle) {
   if (stepped_) end_stepped(cycle);
-  if (arbitration().placed() != 0) return;  // what the ports request depends on more than the state
+  if (!can_walk_ || arbitration().has_rows()) return;
   room_ = room();
   if (!holds_group(room_)) return;
   if (known_.is_full()) known_.clear();
@@ -445,16 +481,14 @@ Progress FastForward::room_of_area(std::uint64_t cycles) const {
 // Sets area_end_ for the state of the walk.
 void FastForward::set_area() {
   const auto cycles = static_cast<std::uint64_t>(control().geometry().cycles_per_column);
-  const std::uint64_t end =
-      control().match().draining() ? UINT64_MAX : windows_.end_of_area(consumed_ / cycles);
-  area_end_ = end == UINT64_MAX ? UINT64_MAX : end * cycles;
+  area_end_ = layout_->areas.end_of_area(consumed_ / cycles) * cycles;
 }
 
 // Goes on to the next area if no group fits into this one any more. Returns whether it does.
 bool FastForward::change_area() {
   if (area_end_ - consumed_ >= left_of_group_ || !holds_group(room_)) return false;
   const auto cycles = static_cast<std::uint64_t>(control().geometry().cycles_per_column);
-  state_ = known_.with_last_word(state_, windows_.number_of(consumed_ / cycles));
+  state_ = known_.with_last_word(state_, layout_->areas.number_of(consumed_ / cycles));
   set_area();
   return true;
 }
@@ -549,7 +583,7 @@ void FastForward::end_stepped(std::uint64_t cycle) {
   if (stepped.part != control().match().part()) return;
   StateNumber next = state(cycle);
   // A transition of a uniform area is also followed where the area goes on.
-  if (const std::uint64_t area = known_.state(stepped.state).back(); SlotWindows::is_uniform_number(area))
+  if (const std::uint64_t area = known_.state(stepped.state).back(); FrameAreas::is_uniform_number(area))
     next = known_.with_last_word(next, area);
   known_.record(stepped.state, stepped.accesses, requests, next, effect, arbitration());
 }
@@ -571,9 +605,9 @@ FastForward::StateNumber FastForward::state(std::uint64_t cycle) {
   state_words_.clear();
   control().append_state(state_words_);
   arbitration.append_state(cycle, state_words_);
-  state_words_.push_back(banks_ << 32U | host << 2U | varies);
+  state_words_.push_back(layout_->number << 32U | host << 2U | varies);
   state_words_.push_back(arbitration.shared());
-  state_words_.push_back(control().match().draining() ? 0 : windows_.number_of(control().match().columns()));
+  state_words_.push_back(layout_->areas.number_of(control().match().columns()));
   return known_.number_of(state_words_, [this] { return unhandled(); });
 }
 

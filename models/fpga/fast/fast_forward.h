@@ -3,12 +3,13 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <vector>
 
 #include "models/fpga/access_pattern.h"
 #include "models/fpga/core_stepper.h"
-#include "models/fpga/fast/slot_windows.h"
+#include "models/fpga/fast/frame_areas.h"
 #include "models/fpga/fast/transition_cache.h"
 
 namespace stereotlm::fpga {
@@ -34,7 +35,7 @@ class FastForward : public CoreStepper {
   // after start_frame(). The patterns must outlive the frame. The caller guarantees that frames with buffers
   // in the same banks have the same routes and latencies. This and the next function throw std::logic_error
   // if settle() has not been called since the last frame.
-  void start_direct_frame(const AccessPatterns& patterns, const FrameBases& bases);
+  void start_direct_frame(const AccessPatterns& patterns);
   // To be called when a frame starts that the owner steps itself.
   void start_stepped_frame();
   // To be called before the owner changes the route of the host within a frame, and after the last cycle of a
@@ -134,6 +135,8 @@ class FastForward : public CoreStepper {
   void catch_up(std::uint64_t cycle);
   StateNumber walk_varying(StateNumber state, Progress& room);
   StateNumber walk_uniform(StateNumber state, std::uint64_t consumed, Progress& room);
+  void find_layout();
+  bool follows_from_places() const;
   Progress room() const;
   Progress room_of_area(std::uint64_t cycles) const;
   void set_area();
@@ -161,8 +164,16 @@ class FastForward : public CoreStepper {
   // The number of consume-cycles up to this column, from the state of the walk on.
   std::uint64_t cycles_to(std::uint64_t column) const { return column * cycles_of_group() / 4 - consumed_; }
 
+  CoreConfig config_;
   std::uint64_t slots_ahead_;  // of a side: the most slots from the next one of the matcher to one in a lane
-  SlotWindows windows_;
+  // Of frames whose buffers lie in the same banks: [for each port group, the banks of its parts].
+  struct Layout {
+    std::uint64_t number;
+    FrameAreas areas;
+  };
+  std::map<std::vector<std::size_t>, Layout> layouts_;
+  const Layout* layout_ = nullptr;  // of the frame
+  bool can_walk_ = false;           // see follows_from_places()
   TransitionCache known_;
   TransitionCache::Accesses no_accesses_;
   TransitionCache::Accesses accesses_;
@@ -177,13 +188,12 @@ class FastForward : public CoreStepper {
   Progress room_;                    // how far transitions can be followed
   std::uint64_t consumed_ = 0;       // consume-cycles of the frame
   std::uint64_t left_of_group_ = 0;  // consume-cycles to the end of the group
-  std::uint64_t area_end_ = 0;       // consume-cycles of the frame up to the end of the area (SlotWindows)
+  std::uint64_t area_end_ = 0;       // consume-cycles of the frame up to the end of the area (FrameAreas)
   Progress ahead_;                   // see ahead()
   HostGrants host_ahead_;            // words of the host in these cycles, without HostGrants::cycles
   HostWords host_;                   // words that are granted from the next cycle on
   TransitionCache::Log in_order_;    // what has been followed and is not yet handed to the recorder
   bool is_host_routed_ = false;      // by serve_host()
-  std::uint64_t banks_ = 0;          // of the frame's buffers, 6 bits for each port group
   // [side]: the pattern of a side whose accesses vary. Null if all slots inside the image access their
   // pixels, or are assumed to. Null for a side without table: LaneControl itself finds hits of the cache.
   std::array<const AccessPattern*, 2> varying_{};

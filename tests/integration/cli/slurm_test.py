@@ -44,6 +44,7 @@ class SlurmTest(SweepTest):
     def end_jobs(self):
         cluster.say("scancel", f"--user={os.getuid()}")
         wait_until(lambda: not cluster.jobs())
+        wait_until(lambda: not self.programs(""))  # workers can outlive their job for a moment
 
     def command(self, *more, plan=None):
         shards = [] if "--shards" in more else ["--shards", 3]
