@@ -36,6 +36,7 @@ void AccessPattern::set_all(std::uint64_t* row_bits) const {
 
 void AccessPattern::set_entries(const std::uint32_t* entries) {
   entries_ = entries;
+  pixels_of_rows_.clear();
   const bool needed_all_pixels = needs_all_pixels_;
   needs_all_pixels_ = true;
   is_identity_ = true;
@@ -50,10 +51,8 @@ void AccessPattern::set_entries(const std::uint32_t* entries) {
 
 bool AccessPattern::are_own_sources(int row, const std::uint32_t* entries) const {
   std::uint32_t differing = 0;
-  for (int column = 0; column < geometry_.width; ++column) {
-    const std::uint32_t entry = entries[column];
-    differing |= kernels::entry_is_valid(entry) ? entry ^ kernels::make_entry(column, row) : 0;
-  }
+  for (int column = 0; column < geometry_.width; ++column)
+    differing |= entries[column] ^ kernels::make_entry(column, row);
   return differing == 0;
 }
 
@@ -207,19 +206,25 @@ AccessPattern::RowAccesses AccessPattern::table_accesses_of_rows() const {
   return slots;
 }
 
-AccessPattern::RowAccesses AccessPattern::pixel_accesses_of_rows() const {
+const AccessPattern::RowAccesses& AccessPattern::pixel_accesses_of_rows() const {
+  if (!pixels_of_rows_.empty()) return pixels_of_rows_;
   const RowAccesses slots = table_accesses_of_rows();
-  RowAccesses accesses(slots.size(), std::vector<std::uint64_t>(slots.front().size()));
+  pixels_of_rows_.assign(slots.size(), std::vector<std::uint64_t>(slots.front().size()));
+  const auto add = [&](int row, int source, std::uint64_t pixels) {
+    for (std::size_t lane = 0; lane < slots.size(); ++lane)
+      pixels_of_rows_[lane][static_cast<std::size_t>(source)] +=
+          slots[lane][static_cast<std::size_t>(row)] / geometry_.columns_per_strip() * pixels;
+  };
   for (int row = 0; row < geometry_.height; ++row) {
+    if (is_identity_) {
+      add(row, row, counts_[static_cast<std::size_t>(row)]);
+      continue;
+    }
     for (int column = 0; column < geometry_.width; ++column) {
-      if (!needs_pixel(column, row)) continue;
-      const int source = entries_ == nullptr ? row : kernels::entry_row(entry(column, row));
-      for (std::size_t lane = 0; lane < slots.size(); ++lane)
-        accesses[lane][static_cast<std::size_t>(source)] +=
-            slots[lane][static_cast<std::size_t>(row)] / geometry_.columns_per_strip();
+      if (needs_pixel(column, row)) add(row, kernels::entry_row(entry(column, row)), 1);
     }
   }
-  return accesses;
+  return pixels_of_rows_;
 }
 
 }  // namespace stereotlm::fpga

@@ -34,7 +34,7 @@ class AccessPattern {
   std::uint64_t slots_of_group() const { return 4 * static_cast<std::uint64_t>(geometry_.slots_per_column); }
   // Whether every slot inside the image accesses it.
   bool needs_all_pixels() const { return needs_all_pixels_; }
-  // Whether every valid entry is its own source.
+  // Whether every pixel is its own source.
   bool is_identity() const { return is_identity_; }
   // The first slot, at least four columns after `slot`, that differs from the slot four columns before it:
   // only one of the two accesses its pixel. If there is none, the number of slots. (With a word cache the
@@ -58,7 +58,7 @@ class AccessPattern {
   // [lane][row of the buffer]: how often the slots of a frame read the row of the table, and of the image.
   using RowAccesses = std::vector<std::vector<std::uint64_t>>;
   RowAccesses table_accesses_of_rows() const;
-  RowAccesses pixel_accesses_of_rows() const;
+  const RowAccesses& pixel_accesses_of_rows() const;
   std::uint64_t table_accesses() const { return sum_of(table_accesses_); }
   std::uint64_t pixel_accesses() const { return sum_of(pixel_accesses_); }
 
@@ -86,9 +86,10 @@ class AccessPattern {
   bool needs_all_pixels_ = false;
   bool is_identity_ = true;
   std::vector<std::uint64_t> passes_before_strip_;  // [strip]: slots inside the image that do not access it
-  // Both are empty until the first query: few frames need them.
+  // These three are empty until the first query: few frames need them.
   mutable std::vector<std::uint64_t> slots_;    // bit i of the sequence: slot i accesses its pixel
   mutable std::vector<std::uint64_t> changes_;  // the slots that differ from the one four columns before
+  mutable RowAccesses pixels_of_rows_;          // pixel_accesses_of_rows()
   std::vector<std::uint64_t> table_accesses_;   // [lane]
   std::vector<std::uint64_t> pixel_accesses_;   // [lane]
 };

@@ -63,6 +63,9 @@ void FastForward::start_direct_frame(const AccessPatterns& patterns) {
         control().ports().lanes() == 1 && arbitration().is_alone(control().pixel_port(lane));
     (is_assumed ? assumed_ : varying_)[index_of(side)] = pattern;
   }
+  is_regular_ = std::all_of(varying_.begin(), varying_.end(), [](const AccessPattern* pattern) {
+    return pattern == nullptr || pattern->is_identity();
+  });
   tell_assumed();
 }
 
@@ -139,6 +142,7 @@ void FastForward::resolve_accesses(Side side) {
   const AccessPattern* const pattern = std::exchange(assumed_[index_of(side)], nullptr);
   if (pattern == nullptr) return;
   varying_[index_of(side)] = pattern;
+  is_regular_ = is_regular_ && pattern->is_identity();
   const std::size_t lane = control().lane_index(side, 0);
   const std::uint64_t passed = pattern->passes_before(control().lane(lane).handled());
   control().correct_passes(lane, passed);
@@ -316,6 +320,7 @@ std::uint64_t FastForward::walk(std::uint64_t cycle, std::uint64_t end) {
     }
   }
   if (left_of_group_ != cycles_of_group() || end - cycle < cycles_of_group()) return cycle;
+  AreaMark mark;
   for (bool is_over = false; !is_over;) {
     Progress room = room_of_area(end - cycle);
     if (const ConflictRecorder* const conflicts = this->conflicts())
@@ -326,8 +331,37 @@ std::uint64_t FastForward::walk(std::uint64_t cycle, std::uint64_t end) {
     skip(skipped);
     cycle += skipped.cycles;
     const bool is_strip_recorded = record_skipped(cycle, cycles_of_group());
-    is_over = !change_area() && !is_strip_recorded;
+    const bool is_in_next = change_area();
+    is_over = !is_in_next && !is_strip_recorded;
+    if (is_in_next && is_regular_ && conflicts() == nullptr) cycle = repeat_areas(mark, cycle, end);
   }
+  return cycle;
+}
+
+// If the walk has come into the state of the mark, follows again what it has followed since then, as often as
+// the areas repeat: a frame of striped buffers then takes a few strips. Returns the next cycle.
+std::uint64_t FastForward::repeat_areas(AreaMark& mark, std::uint64_t cycle, std::uint64_t end) {
+  const std::size_t area = layout_->areas.index_of(consumed_ / cycles_per_column());
+  const Progress progress{cycle, consumed_, ahead_.words};
+  ++mark.areas;
+  if (mark.is_set && state_ == mark.state) {
+    Progress since = progress;
+    since.subtract(mark.progress);
+    Progress room = room_;
+    room.cycles = end - cycle;
+    const std::uint64_t times = std::min(layout_->areas.repeats(mark.area, area), since.times_in(room));
+    if (times == 0) return cycle;
+    known_.repeat_loop(times);
+    Progress repeated;
+    repeated.add(since, times);
+    skip(repeated);
+    enter_area();
+    mark = {};
+    return cycle + repeated.cycles;
+  }
+  if (mark.areas < mark.next) return cycle;
+  known_.begin_loop();
+  mark = {true, state_, area, progress, 0, 2 * mark.next};
   return cycle;
 }
 
@@ -480,23 +514,25 @@ Progress FastForward::room_of_area(std::uint64_t cycles) const {
 
 // Sets area_end_ for the state of the walk.
 void FastForward::set_area() {
-  const auto cycles = static_cast<std::uint64_t>(control().geometry().cycles_per_column);
-  area_end_ = layout_->areas.end_of_area(consumed_ / cycles) * cycles;
+  area_end_ = layout_->areas.end_of_area(consumed_ / cycles_per_column()) * cycles_per_column();
 }
 
 // Goes on to the next area if no group fits into this one any more. Returns whether it does.
 bool FastForward::change_area() {
   if (area_end_ - consumed_ >= left_of_group_ || !holds_group(room_)) return false;
-  const auto cycles = static_cast<std::uint64_t>(control().geometry().cycles_per_column);
-  state_ = known_.with_last_word(state_, layout_->areas.number_of(consumed_ / cycles));
-  set_area();
+  enter_area();
   return true;
+}
+
+void FastForward::enter_area() {
+  state_ = known_.with_last_word(state_, layout_->areas.number_of(consumed_ / cycles_per_column()));
+  set_area();
 }
 
 // The number of slots of a side that are consumed with these consume-cycles of the frame.
 std::uint64_t FastForward::slots_before(std::uint64_t consumed) const {
   const FrameGeometry& geometry = control().geometry();
-  const auto cycles = static_cast<std::uint64_t>(geometry.cycles_per_column);
+  const std::uint64_t cycles = cycles_per_column();
   const auto slots = static_cast<std::uint64_t>(geometry.slots_per_column);
   return consumed / cycles * slots +
          std::min(consumed % cycles * static_cast<std::uint64_t>(geometry.lanes), slots);
@@ -594,8 +630,8 @@ Progress FastForward::progress(std::uint64_t cycle) const {
 }
 
 FastForward::StateNumber FastForward::state(std::uint64_t cycle) {
-  const std::uint64_t varies = std::uint64_t{varying_[0] != nullptr} | std::uint64_t{varying_[1] != nullptr}
-                                                                           << 1U;
+  const std::uint64_t varies =
+      is_regular_ ? 0 : std::uint64_t{varying_[0] != nullptr} | std::uint64_t{varying_[1] != nullptr} << 1U;
   const memory::Arbitration& arbitration = this->arbitration();
   const memory::Port port = control().ports().host();
   const std::uint64_t host =

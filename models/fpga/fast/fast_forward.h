@@ -140,7 +140,18 @@ class FastForward : public CoreStepper {
   Progress room() const;
   Progress room_of_area(std::uint64_t cycles) const;
   void set_area();
+  void enter_area();
   bool change_area();
+  // A place in a walk, from which areas may repeat. Marks move as in TransitionCache::walk().
+  struct AreaMark {
+    bool is_set = false;
+    StateNumber state = 0;
+    std::size_t area = 0;
+    Progress progress;
+    std::uint64_t areas = 0;  // since the mark
+    std::uint64_t next = 1;   // number of areas after which the mark moves
+  };
+  std::uint64_t repeat_areas(AreaMark& mark, std::uint64_t cycle, std::uint64_t end);
   // Whether a whole group fits into `room`. If not, nothing may be recorded: after a walk up to the last
   // uniform consume-cycle, the state in the cache differs from that of the core.
   bool holds_group(const Progress& room) const { return room.consumed >= cycles_of_group(); }
@@ -153,16 +164,14 @@ class FastForward : public CoreStepper {
   void end_stepped(std::uint64_t cycle);
   Progress progress(std::uint64_t cycle) const;
   StateNumber state(std::uint64_t cycle);
-  // Whether the accesses of the slots vary, from the state of the walk on.
-  bool varies() const {
-    return (varying_[0] != nullptr || varying_[1] != nullptr) && !control().match().draining();
+  // Whether the accesses of the slots matter beside the state of the walk.
+  bool varies() const { return !is_regular_ && !control().match().draining(); }
+  // Consume-cycles of a column, of a group, and up to this column from the state of the walk on.
+  std::uint64_t cycles_per_column() const {
+    return static_cast<std::uint64_t>(control().geometry().cycles_per_column);
   }
-  // The number of consume-cycles of a group.
-  std::uint64_t cycles_of_group() const {
-    return 4 * static_cast<std::uint64_t>(control().geometry().cycles_per_column);
-  }
-  // The number of consume-cycles up to this column, from the state of the walk on.
-  std::uint64_t cycles_to(std::uint64_t column) const { return column * cycles_of_group() / 4 - consumed_; }
+  std::uint64_t cycles_of_group() const { return 4 * cycles_per_column(); }
+  std::uint64_t cycles_to(std::uint64_t column) const { return column * cycles_per_column() - consumed_; }
 
   CoreConfig config_;
   std::uint64_t slots_ahead_;  // of a side: the most slots from the next one of the matcher to one in a lane
@@ -174,6 +183,7 @@ class FastForward : public CoreStepper {
   std::map<std::vector<std::size_t>, Layout> layouts_;
   const Layout* layout_ = nullptr;  // of the frame
   bool can_walk_ = false;           // see follows_from_places()
+  bool is_regular_ = false;         // the numbers of the places determine the accesses of varying_
   TransitionCache known_;
   TransitionCache::Accesses no_accesses_;
   TransitionCache::Accesses accesses_;

@@ -160,6 +160,15 @@ FrameAreas::FrameAreas(const CoreConfig& config, std::uint64_t columns, std::uin
   add_other(division.end());
 }
 
+std::uint64_t FrameAreas::repeats(std::size_t first, std::size_t next) const {
+  const auto is_alike = [](const Area& a, const Area& b) {
+    return a.number == b.number && a.end - a.first == b.end - b.first;
+  };
+  std::size_t alike = 0;
+  while (next + alike < areas_.size() && is_alike(areas_[first + alike], areas_[next + alike])) ++alike;
+  return alike / (next - first);
+}
+
 const FrameAreas::Area& FrameAreas::area_of(std::uint64_t column) const {
   const auto next = std::upper_bound(
       areas_.begin(), areas_.end(), column,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -30,6 +31,12 @@ class FrameAreas {
   static bool is_uniform_number(std::uint64_t number) { return static_cast<std::uint32_t>(number) == 0; }
   // The column with which the area ends: a group of four columns ends there too, or the frame.
   std::uint64_t end_of_area(std::uint64_t column) const { return area_of(column).end; }
+  // The number of the area among all, in their order.
+  std::size_t index_of(std::uint64_t column) const {
+    return static_cast<std::size_t>(&area_of(column) - areas_.data());
+  }
+  // How many times the areas from number `first` up to number `next` are followed by areas that are alike.
+  std::uint64_t repeats(std::size_t first, std::size_t next) const;
 
  private:
   struct Area {

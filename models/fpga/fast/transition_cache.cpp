@@ -189,6 +189,12 @@ TransitionCache::StateNumber TransitionCache::walk(StateNumber first, const Acce
   return state;
 }
 
+void TransitionCache::repeat_loop(std::uint64_t times) {
+  followed_before_loop_.resize(followed_.size());
+  for (const std::uint32_t number : effects_followed_)
+    followed_[number] += (followed_[number] - followed_before_loop_[number]) * times;
+}
+
 void TransitionCache::count_followed(CoreControl& control, memory::Arbitration& arbitration) {
   for (const std::uint32_t number : effects_followed_) {
     control.add(effects_[number]->counts, followed_[number]);

@@ -23,10 +23,10 @@ struct Progress {
   }
   // How many times this progress fits into the limit `room`. `cycles` must not be 0.
   std::uint64_t times_in(const Progress& room) const;
-  void add(const Progress& other) {
-    cycles += other.cycles;
-    consumed += other.consumed;
-    words += other.words;
+  void add(const Progress& other, std::uint64_t times = 1) {
+    cycles += other.cycles * times;
+    consumed += other.consumed * times;
+    words += other.words * times;
   }
   void subtract(const Progress& other, std::uint64_t times = 1) {
     cycles -= other.cycles * times;
@@ -154,6 +154,9 @@ class TransitionCache {
   // Follows recorded transitions with these accesses as far as `room` allows, and reduces `room`. A loop of
   // transitions is repeated in one step. Adds them to `log`, unless that is null. Returns the next state.
   StateNumber walk(StateNumber first, const Accesses& accesses, Progress& room, Log* log = nullptr);
+  // Repeats all transitions that were followed since begin_loop(). Between the two nothing was counted.
+  void begin_loop() { followed_before_loop_ = followed_; }
+  void repeat_loop(std::uint64_t times);
   // Adds the counts of the transitions that were followed since the last call.
   void count_followed(CoreControl& control, memory::Arbitration& arbitration);
 
@@ -188,6 +191,7 @@ class TransitionCache {
   std::vector<const Effect*> effects_;   // [number]
   std::vector<std::uint64_t> followed_;  // [number of the effect]: times not counted yet
   std::vector<std::uint32_t> effects_followed_;
+  std::vector<std::uint64_t> followed_before_loop_;
   std::vector<GroupConflicts> conflicts_;  // [number of the effect]
   std::vector<std::uint64_t> buckets_;
   std::size_t mask_ = 0;  // number of buckets - 1; they are a power of two
