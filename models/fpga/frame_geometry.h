@@ -72,6 +72,16 @@ struct FrameGeometry {
 
   // The row of the first slot of each column of a strip; may lie outside the image.
   int first_row_of(int strip) const { return first_row + strip * rows; }
+  // The strip whose results leave with a column of the matcher; negative before the first.
+  std::int64_t result_strip(std::uint64_t column) const {
+    const auto behind = static_cast<std::int64_t>(column - result_delay_columns);
+    return behind >= 0 ? behind / width : -1 - (-1 - behind) / width;
+  }
+  // The first row of that strip of results, or of the strip of the slots that a column consumes.
+  std::int64_t first_row_at(bool of_results, std::uint64_t column) const {
+    if (of_results) return result_strip(column) * rows;
+    return first_row_of(std::min(static_cast<int>(column / columns_per_strip()), strips - 1));
+  }
   // The slots that a lane has of each column.
   int slots_of_lane(int lane) const { return (slots_per_column - lane + lanes - 1) / lanes; }
   // The slots of a lane that have been consumed after this number of consume-cycles.

@@ -23,7 +23,7 @@ BankArbiter::BankArbiter(const ArbiterConfig& config, const SsramBankConfig& ban
       list_(config.priority),
       ports_(mask_of(list_.size()) - 1),
       has_separate_ports_(has_separate_ports(checked(bank).kind)),
-      has_turnaround_(traits_of(bank.kind).has_turnaround),
+      has_turnaround_(traits_of(bank.kind).has_turnaround || bank.sdram),
       orders_{list_, list_},
       rows_(bank.sdram),
       stats_(list_.size()) {

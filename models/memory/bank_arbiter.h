@@ -142,6 +142,9 @@ class BankArbiter {
   // Whether a request without competitors is granted in its cycle.
   bool grants_at_once() const { return !has_turnaround_ && !rows_; }
   bool has_rows() const { return rows_.has_value(); }
+  // Of sdram; null for any other bank. Not part of append_state().
+  SdramRows* rows() { return rows_ ? &*rows_ : nullptr; }
+  const SdramRows* rows() const { return rows_ ? &*rows_ : nullptr; }
   bool separates_directions() const { return has_separate_ports_; }
 
  private:

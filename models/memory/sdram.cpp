@@ -46,6 +46,22 @@ SdramRows::BusyCycles SdramRows::take_busy_cycles(std::uint64_t end) {
   return cycles;
 }
 
+void SdramRows::set_busy_state(std::uint64_t cycle, std::uint64_t state) {
+  next_refresh_ = next_refresh(cycle, state);
+  busy_until_ = cycle + (state >> 2U);
+  cause_ = (state >> 1U & 1U) != 0 ? Cause::kRefresh : Cause::kRow;
+  busy_.clear();
+  if (busy_until_ != cycle) busy_.push_back({cycle, busy_until_, cause_});
+}
+
+std::uint64_t SdramRows::next_refresh(std::uint64_t cycle, std::uint64_t state) const {
+  const auto interval = static_cast<std::uint64_t>(timing_.refresh_interval_cycles.value_or(0));
+  if (interval == 0) return 0;
+  const bool is_late = (state & 1U) != 0;
+  if (is_late) return (cycle - 1) / interval * interval;
+  return std::max(interval, (cycle + interval - 1) / interval * interval);
+}
+
 // Begins the refreshes of the cycles before `end`. In those that have not been passed yet, nobody has opened
 // a row.
 void SdramRows::pass(std::uint64_t end) {

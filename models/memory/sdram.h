@@ -68,6 +68,22 @@ class SdramRows {
   // just found free. An opening may take no time: then the row is open at once.
   bool may_access(std::uint64_t cycle, std::uint32_t word);
 
+  const SdramTiming& timing() const { return timing_; }
+  std::optional<std::uint32_t> open_row(std::size_t internal_bank) const { return open_[internal_bank]; }
+  void set_open_row(std::size_t internal_bank, std::optional<std::uint32_t> row) {
+    open_[internal_bank] = row;
+  }
+  // What keeps the bank busy from `cycle` on, as a word: take_busy_cycles(cycle) has just been called. With
+  // the open rows it is the state in `cycle`.
+  std::uint64_t busy_state(std::uint64_t cycle) const {
+    const std::uint64_t cycles = busy_until_ > cycle ? busy_until_ - cycle : 0;
+    const bool is_refreshed = cycles != 0 && cause_ == Cause::kRefresh;
+    return cycles << 2U | std::uint64_t{is_refreshed} << 1U | std::uint64_t{next_refresh_ != 0 && next_refresh_ < cycle};
+  }
+  void set_busy_state(std::uint64_t cycle, std::uint64_t state);
+  // The cycle in which the next refresh is due, from busy_state(cycle); it may be late. 0: never.
+  std::uint64_t next_refresh(std::uint64_t cycle, std::uint64_t state) const;
+
   // Returns the cycles before `end` with an opening and with a refresh since the last call: [Cause].
   using BusyCycles = std::array<std::uint64_t, 2>;
   BusyCycles take_busy_cycles(std::uint64_t end);

@@ -45,6 +45,7 @@ FastForward::FastForward(const CoreConfig& config, memory::Arbitration& arbitrat
       no_accesses_(words_of_accesses(control().geometry(), slots_ahead_)),
       accesses_(no_accesses_),
       accesses_before_(no_accesses_),
+      open_rows_(control().geometry()),
       handled_(control().lanes().size()) {
   for (std::size_t lane = 0; lane < handled_.size(); ++lane)
     handled_[lane].slot = control().lane(lane).first_slot();
@@ -77,35 +78,38 @@ void FastForward::start_stepped_frame() {
   assumed_ = {};
 }
 
-// Sets layout_.
+// Sets layout_ and open_rows_. Buffers lie alike in frames if their parts lie in the same banks, and in sdram
+// at the same places among the internal banks.
 void FastForward::find_layout() {
-  std::vector<std::size_t> banks;
+  std::vector<SdramPart> sdram = sdram_parts(config_, placements(), arbitration());
+  std::vector<std::uint64_t> places;
   for (std::size_t group = 0; group < kCoreGroupCount; ++group) {
     if (!has_group(config_, group)) continue;
     const std::vector<std::uint32_t>& parts = placements()[group].parts();
-    banks.push_back(parts.size());
-    for (const std::uint32_t base : parts) banks.push_back(registers::bank_of(base));
+    places.push_back(parts.size());
+    for (const std::uint32_t base : parts) places.push_back(registers::bank_of(base));
   }
-  auto layout = layouts_.find(banks);
+  for (const SdramPart& part : sdram) places.push_back(floor_remainder(part.base, part.turn()));
+  auto layout = layouts_.find(places);
   if (layout == layouts_.end()) {
     const FrameGeometry& geometry = control().geometry();
     const std::uint64_t groups = result_groups(config_, geometry);
-    FrameAreas areas(config_, columns_of_window(geometry, slots_ahead_), 4 * groups, placements());
-    layout = layouts_.emplace(banks, Layout{layouts_.size(), std::move(areas)}).first;
+    FrameAreas areas(config_, columns_of_window(geometry, slots_ahead_), 4 * groups, placements(), sdram);
+    layout = layouts_.emplace(places, Layout{layouts_.size(), std::move(areas)}).first;
   }
   layout_ = &layout->second;
+  open_rows_.start_frame(std::move(sdram), arbitration());
 }
 
-// Whether the places in the frame determine the banks that the ports request. They do not where a striped
-// picture is read through a table that points to other pixels.
+// Whether the places in the frame determine the banks and the rows of sdram that the ports request. They do
+// not where a striped picture, or one in sdram, is read through a table that points to other pixels.
 bool FastForward::follows_from_places() const {
-  for (std::size_t lane = 0; lane < control().lanes().size(); ++lane) {
-    const Side side = control().side_of(lane);
-    const bool is_striped = placements()[pixel_group(side)].parts().size() > 1;
-    if (is_striped && control().lane(lane).has_table() && !(*patterns_)[index_of(side)].is_identity())
+  for (const Side side : kSides) {
+    const memory::Port pixel = control().pixel_port(control().lane_index(side, 0));
+    if (memory::has(arbitration().placed(), pixel) && !(*patterns_)[index_of(side)].is_identity())
       return false;
   }
-  return true;
+  return open_rows_.are_apart();
 }
 
 void FastForward::settle(std::uint64_t cycle) {
@@ -280,7 +284,7 @@ std::uint64_t FastForward::skip_waiting(std::uint64_t cycle, std::uint64_t end) 
 // Begins to follow transitions, if possible.
 void FastForward::begin_walk(std::uint64_t cycle) {
   if (stepped_) end_stepped(cycle);
-  if (!can_walk_ || arbitration().has_rows()) return;
+  if (!can_walk_) return;
   room_ = room();
   if (!holds_group(room_)) return;
   if (known_.is_full()) known_.clear();
@@ -288,6 +292,7 @@ void FastForward::begin_walk(std::uint64_t cycle) {
   consumed_ = control().match().consumed();
   left_of_group_ = control().match().cycles_of_group_left();
   set_area();
+  set_refresh(cycle);
   is_walking_ = true;
   if (ConflictRecorder* const conflicts = this->conflicts()) conflicts->skip_from(cycle);
 }
@@ -303,9 +308,9 @@ void FastForward::leave_walk(std::uint64_t cycle) {
 void FastForward::end_walk(std::uint64_t cycle) {
   leave_walk(cycle);
   if (!holds_group(room_)) return;
-  const TransitionCache::Accesses& accesses = this->accesses();
-  if (host_.words == 0 && known_.find(state_, accesses)) return;
-  stepped_ = {state_, accesses, host_, progress(cycle), control().counts(), control().match().part()};
+  if (host_.words == 0 && find_next(cycle)) return;
+  stepped_ = {state_,          accesses(), host_, progress(cycle), control().counts(), control().match().part(),
+              refresh_left_};
   arbitration().begin_recording();
 }
 
@@ -313,7 +318,7 @@ void FastForward::end_walk(std::uint64_t cycle) {
 std::uint64_t FastForward::walk(std::uint64_t cycle, std::uint64_t end) {
   // A group has at least as many cycles as slots.
   if (left_of_group_ != cycles_of_group() && end - cycle >= left_of_group_) {
-    const auto found = known_.find(state_, accesses());
+    const auto found = find_next(cycle);
     if (found && known_.progress(*found).fits(room_of_area(end - cycle))) {
       cycle += known_.progress(*found).cycles;
       follow(*found, cycle);
@@ -322,7 +327,7 @@ std::uint64_t FastForward::walk(std::uint64_t cycle, std::uint64_t end) {
   if (left_of_group_ != cycles_of_group() || end - cycle < cycles_of_group()) return cycle;
   AreaMark mark;
   for (bool is_over = false; !is_over;) {
-    Progress room = room_of_area(end - cycle);
+    Progress room = room_of_area(std::min(end - cycle, refresh_left_));
     if (const ConflictRecorder* const conflicts = this->conflicts())
       room.consumed = std::min(room.consumed, cycles_to(conflicts->strip_end_column()));
     Progress skipped = room;
@@ -333,9 +338,53 @@ std::uint64_t FastForward::walk(std::uint64_t cycle, std::uint64_t end) {
     const bool is_strip_recorded = record_skipped(cycle, cycles_of_group());
     const bool is_in_next = change_area();
     is_over = !is_in_next && !is_strip_recorded;
-    if (is_in_next && is_regular_ && conflicts() == nullptr) cycle = repeat_areas(mark, cycle, end);
+    if (refresh_left_ == UINT64_MAX) {
+      if (is_in_next && is_regular_ && conflicts() == nullptr) cycle = repeat_areas(mark, cycle, end);
+      continue;
+    }
+    if (!is_over) continue;
+    const auto found = find_next(cycle);
+    is_over = !found || !known_.progress(*found).fits(room_of_area(end - cycle));
+    if (is_over) continue;
+    cycle += known_.progress(*found).cycles;
+    follow(*found, cycle);
   }
   return cycle;
+}
+
+// The transition from `cycle` on to the end of the group, without requests of the host.
+std::optional<TransitionCache::Transition> FastForward::find_next(std::uint64_t cycle) {
+  const TransitionCache::Accesses& accesses = this->accesses();
+  const auto found = known_.find(state_, accesses);
+  if (refresh_left_ == UINT64_MAX || (found && known_.progress(*found).cycles <= refresh_left_)) return found;
+  const auto before_refresh = known_.find_with_last_words(state_, last_words(state_, cycle));
+  return before_refresh ? known_.find(*before_refresh, accesses) : std::nullopt;
+}
+
+// The last words of a state from which a transition with a refresh begins in `cycle`. None of them is 0 but
+// the last.
+const memory::StateWords& FastForward::last_words(StateNumber number, std::uint64_t cycle) {
+  find_refreshes(number, cycle);
+  last_words_.clear();
+  for (const std::int64_t left : refreshes_) last_words_.push_back(static_cast<std::uint64_t>(2 * left + 1));
+  last_words_.push_back(known_.state(number).back());
+  return last_words_;
+}
+
+// Sets refreshes_ for a state in `cycle`.
+void FastForward::find_refreshes(StateNumber number, std::uint64_t cycle) {
+  refreshes_.clear();
+  const auto rows = known_.state(number).begin() + static_cast<std::ptrdiff_t>(rows_place_);
+  open_rows_.append_refreshes(cycle, rows, refreshes_);
+}
+
+// Sets refresh_left_ for the state of the walk in `cycle`.
+void FastForward::set_refresh(std::uint64_t cycle) {
+  refresh_left_ = UINT64_MAX;
+  if (open_rows_.refreshes() == 0) return;
+  find_refreshes(state_, cycle);
+  for (const std::int64_t left : refreshes_)
+    refresh_left_ = std::min(refresh_left_, static_cast<std::uint64_t>(std::max(left, std::int64_t{0})));
 }
 
 // If the walk has come into the state of the mark, follows again what it has followed since then, as often as
@@ -368,7 +417,7 @@ std::uint64_t FastForward::repeat_areas(AreaMark& mark, std::uint64_t cycle, std
 // The transition from `cycle` on, in which the host requests its words.
 std::optional<TransitionCache::Transition> FastForward::find_host(std::uint64_t cycle) {
   std::optional<HostRequests> requests = is_walking_ ? requests_of(host_, cycle) : std::nullopt;
-  if (!requests) return std::nullopt;
+  if (!requests || host_opens_rows()) return std::nullopt;
   const TransitionCache::Accesses& accesses = this->accesses();
   auto found = known_.find(state_, accesses, *requests);
   if (!found) {
@@ -383,7 +432,7 @@ std::optional<TransitionCache::Transition> FastForward::find_host(std::uint64_t 
 // after the last uniform slot the state in the cache differs from that of the core. So it must leave one.
 bool FastForward::fits_host(const TransitionCache::Transition& transition) const {
   const Progress& progress = known_.progress(transition);
-  return progress.fits(room_of_area(UINT64_MAX)) && progress.consumed < room_.consumed;
+  return progress.fits(room_of_area(refresh_left_)) && progress.consumed < room_.consumed;
 }
 
 // The requests of these words from `cycle` on. Nothing if the cache cannot hold them.
@@ -403,13 +452,17 @@ void FastForward::follow(const TransitionCache::Transition& transition, std::uin
   host_ahead_.requests += host.requests;
   state_ = transition.next;
   const std::uint64_t left_of_group = left_of_group_;
-  skip(known_.progress(transition));
+  const Progress& progress = known_.progress(transition);
+  const bool is_refreshed = progress.cycles > refresh_left_;
+  skip(progress);
+  if (is_refreshed) set_refresh(cycle);
   record_skipped(cycle, left_of_group);
   change_area();
 }
 
 void FastForward::skip(const Progress& progress) {
   room_.subtract(progress);
+  if (refresh_left_ != UINT64_MAX) refresh_left_ -= progress.cycles;
   ahead_.add(progress);
   consumed_ += progress.consumed;
   if (progress.consumed < left_of_group_) {
@@ -456,6 +509,7 @@ void FastForward::catch_up(std::uint64_t cycle) {
   control.skip_to(state, ahead_.consumed, ahead_.words);
   correct_marks();
   arbitration.set_state(cycle, state);
+  open_rows_.set_state(cycle, control.match().columns(), state);
   ahead_ = {};
   host_ahead_ = {};
 }
@@ -525,7 +579,7 @@ bool FastForward::change_area() {
 }
 
 void FastForward::enter_area() {
-  state_ = known_.with_last_word(state_, layout_->areas.number_of(consumed_ / cycles_per_column()));
+  state_ = with_area(state_, layout_->areas.number_of(consumed_ / cycles_per_column()));
   set_area();
 }
 
@@ -600,15 +654,18 @@ TransitionCache::Accesses FastForward::unhandled() const {
 void FastForward::end_stepped(std::uint64_t cycle) {
   const Stepped stepped = *stepped_;
   stepped_.reset();
+  arbitration().count_rows(cycle);
   TransitionCache::Effect effect{progress(cycle),
                                  CoreControl::difference(control().counts(), stepped.counts),
                                  arbitration().take_recorded(),
                                  {}};
   effect.progress.subtract(stepped.begin);
+  const bool is_refreshed = effect.progress.cycles > stepped.refresh_left;
   HostRequests requests;
   if (stepped.host.words != 0 && stepped.host.first < cycle) {  // the host has requested
     const std::optional<HostRequests> host = requests_of(stepped.host, stepped.begin.cycles);
     if (!host || effect.progress.cycles > HostRequests::kMostCycles) return;
+    if (is_refreshed || host_opens_rows()) return;
     requests = *host;
     const std::uint64_t end = host_.words != 0 ? cycle : host_.first;  // of the requests
     effect.host.words = stepped.host.words - host_.words;
@@ -620,8 +677,11 @@ void FastForward::end_stepped(std::uint64_t cycle) {
   StateNumber next = state(cycle);
   // A transition of a uniform area is also followed where the area goes on.
   if (const std::uint64_t area = known_.state(stepped.state).back(); FrameAreas::is_uniform_number(area))
-    next = known_.with_last_word(next, area);
-  known_.record(stepped.state, stepped.accesses, requests, next, effect, arbitration());
+    next = with_area(next, area);
+  const StateNumber from =
+      is_refreshed ? known_.with_last_words(stepped.state, last_words(stepped.state, stepped.begin.cycles))
+                   : stepped.state;
+  known_.record(from, stepped.accesses, requests, next, effect, arbitration());
 }
 
 // The progress up to `cycle`. Its beginning is arbitrary: only differences have a meaning.
@@ -638,11 +698,15 @@ FastForward::StateNumber FastForward::state(std::uint64_t cycle) {
       arbitration.is_routed(port) && !is_host_routed_
           ? arbitration.bank_of(port) << 2U | std::uint64_t{arbitration.writes(port)} << 1U | 1U
           : 0;
+  this->arbitration().count_rows(cycle);
   state_words_.clear();
   control().append_state(state_words_);
   arbitration.append_state(cycle, state_words_);
+  rows_place_ = state_words_.size();
+  open_rows_.append_state(cycle, control().match().columns(), state_words_);
   state_words_.push_back(layout_->number << 32U | host << 2U | varies);
   state_words_.push_back(arbitration.shared());
+  state_words_.resize(state_words_.size() + open_rows_.refreshes());  // see refresh_left_
   state_words_.push_back(layout_->areas.number_of(control().match().columns()));
   return known_.number_of(state_words_, [this] { return unhandled(); });
 }

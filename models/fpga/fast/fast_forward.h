@@ -10,6 +10,7 @@
 #include "models/fpga/access_pattern.h"
 #include "models/fpga/core_stepper.h"
 #include "models/fpga/fast/frame_areas.h"
+#include "models/fpga/fast/sdram_parts.h"
 #include "models/fpga/fast/transition_cache.h"
 
 namespace stereotlm::fpga {
@@ -87,7 +88,8 @@ class FastForward : public CoreStepper {
     HostWords host;
     Progress begin;
     CoreControl::Counts counts;
-    std::uint64_t part;  // MatchControl::part()
+    std::uint64_t part;          // MatchControl::part()
+    std::uint64_t refresh_left;  // refresh_left_
   };
 
   template <bool kMayRequest>
@@ -117,6 +119,10 @@ class FastForward : public CoreStepper {
   std::uint64_t marks(std::size_t lane) const;
   void correct_marks();
   void resolve_accesses(Side side);
+  std::optional<TransitionCache::Transition> find_next(std::uint64_t cycle);
+  const memory::StateWords& last_words(StateNumber state, std::uint64_t cycle);
+  void find_refreshes(StateNumber state, std::uint64_t cycle);
+  void set_refresh(std::uint64_t cycle);
   std::optional<TransitionCache::Transition> find_host(std::uint64_t cycle);
   bool fits_host(const TransitionCache::Transition& transition) const;
   void follow(const TransitionCache::Transition& transition, std::uint64_t cycle);
@@ -162,6 +168,15 @@ class FastForward : public CoreStepper {
   TransitionCache::Accesses unhandled() const;
   static std::optional<HostRequests> requests_of(const HostWords& host, std::uint64_t cycle);
   void end_stepped(std::uint64_t cycle);
+  StateNumber with_area(StateNumber state, std::uint64_t area) {
+    if (known_.state(state).back() == area) return state;
+    last_words_.assign(1, area);
+    return known_.with_last_words(state, last_words_);
+  }
+  // Whether the words of the host lie in sdram. Their rows are no part of a state.
+  bool host_opens_rows() const {
+    return arbitration().arbiter(arbitration().bank_of(control().ports().host())).has_rows();
+  }
   Progress progress(std::uint64_t cycle) const;
   StateNumber state(std::uint64_t cycle);
   // Whether the accesses of the slots matter beside the state of the walk.
@@ -175,12 +190,12 @@ class FastForward : public CoreStepper {
 
   CoreConfig config_;
   std::uint64_t slots_ahead_;  // of a side: the most slots from the next one of the matcher to one in a lane
-  // Of frames whose buffers lie in the same banks: [for each port group, the banks of its parts].
+  // Of frames whose buffers lie alike: see find_layout().
   struct Layout {
     std::uint64_t number;
     FrameAreas areas;
   };
-  std::map<std::vector<std::size_t>, Layout> layouts_;
+  std::map<std::vector<std::uint64_t>, Layout> layouts_;
   const Layout* layout_ = nullptr;  // of the frame
   bool can_walk_ = false;           // see follows_from_places()
   bool is_regular_ = false;         // the numbers of the places determine the accesses of varying_
@@ -190,6 +205,9 @@ class FastForward : public CoreStepper {
   TransitionCache::Accesses accesses_before_;
   std::optional<Stepped> stepped_;
   memory::StateWords state_words_;               // of state()
+  memory::StateWords last_words_;                // of last_words()
+  std::vector<std::int64_t> refreshes_;          // of find_refreshes()
+  std::size_t rows_place_ = 0;                   // of the words of open_rows_ in state_words_
   std::vector<const GroupConflicts*> repeated_;  // of record_skipped()
   std::uint64_t skipped_cycles_ = 0;
   // Whether transitions are being followed. The next four are valid then.
@@ -199,6 +217,10 @@ class FastForward : public CoreStepper {
   std::uint64_t consumed_ = 0;       // consume-cycles of the frame
   std::uint64_t left_of_group_ = 0;  // consume-cycles to the end of the group
   std::uint64_t area_end_ = 0;       // consume-cycles of the frame up to the end of the area (FrameAreas)
+  OpenRows open_rows_;
+  // Cycles to the next refresh of a bank of sdram. A transition in which none begins is the same however far
+  // away the next one is. Any other one is recorded from a state with the cycles to the next refreshes.
+  std::uint64_t refresh_left_ = UINT64_MAX;
   Progress ahead_;                   // see ahead()
   HostGrants host_ahead_;            // words of the host in these cycles, without HostGrants::cycles
   HostWords host_;                   // words that are granted from the next cycle on

@@ -1,6 +1,7 @@
 #include "models/fpga/fast/frame_areas.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <utility>
 
@@ -9,26 +10,25 @@ namespace {
 
 using Key = std::vector<std::uint64_t>;
 
-std::uint64_t remainder(std::int64_t number, std::size_t divisor) {
-  const auto signed_divisor = static_cast<std::int64_t>(divisor);
-  return static_cast<std::uint64_t>((number % signed_divisor + signed_divisor) % signed_divisor);
-}
+constexpr std::uint64_t kGroup = 4;  // columns
 
 // Divides the columns of a frame.
 class Division {
  public:
   Division(const CoreConfig& config, std::uint64_t columns, std::uint64_t result_columns,
-           const Placements& placements)
+           const Placements& placements, const std::vector<SdramPart>& sdram)
       : geometry_(config),
         width_(geometry_.columns_per_strip()),
         end_(geometry_.columns + static_cast<std::uint64_t>(geometry_.drain_columns)),
         columns_(columns),
-        result_parts_(placements[kResultGroup].parts().size()) {
-    for (std::size_t group = 0; group < kResultGroup; ++group) {
-      if (has_group(config, group)) reader_parts_.push_back(placements[group].parts().size());
-    }
-    for (int strip = 0; strip < geometry_.strips; ++strip) strips_.push_back(key_of_strip(strip));
-    if (static_cast<std::size_t>(geometry_.rows) % result_parts_ != 0) result_columns_ = result_columns;
+        result_columns_(result_columns),
+        sdram_(sdram) {
+    for (std::size_t group = 0; group < kCoreGroupCount; ++group)
+      parts_[group] = has_group(config, group) ? static_cast<int>(placements[group].parts().size()) : 1;
+    for (const SdramPart& part : sdram)
+      (part.group == kResultGroup ? writes_sdram_ : reads_sdram_) = true;
+    find_changes();
+    find_result_changes();
   }
 
   // Columns that are alike, from `first` up to `end`.
@@ -40,25 +40,37 @@ class Division {
     std::vector<Uniform> found;
     const auto add = [&](std::uint64_t first, std::uint64_t end) {
       if (first != 0) first = group_end_from(first);
-      end -= (end - geometry_.result_delay_columns) % 4;
-      if (end >= first + 8 && end <= end_) found.push_back({first, end});
+      end -= (end - geometry_.result_delay_columns) % kGroup;
+      if (end >= first + 2 * kGroup && end <= end_) found.push_back({first, end});
     };
-    for (std::uint64_t first = 0; first < end_;) {
-      const std::uint64_t change = next_change(first);
-      const std::uint64_t last = change == end_ ? end_ : std::max(first, change - std::min(change, columns_));
-      std::uint64_t from = std::max(first, last_result_change(first) + result_columns_);
-      for (std::uint64_t to = next_result_change(from); to < last; to = next_result_change(from)) {
-        if (from < to) add(from, to);
-        from = to + result_columns_;
+    for (std::size_t change = 0; change + 1 < changes_.size(); ++change) {
+      const std::uint64_t next = changes_[change + 1];
+      // The drain has no slots to look ahead to.
+      const std::uint64_t last = next - std::min(next, next == end_ ? kGroup : columns_);
+      std::uint64_t first = changes_[change];
+      auto result = std::upper_bound(result_changes_.begin(), result_changes_.end(), first);
+      if (result != result_changes_.begin()) first = std::max(first, *(result - 1) + result_columns_);
+      for (; result != result_changes_.end() && *result < last; ++result) {
+        // The open rows are counted from the strip of the results: the next one's at its first column.
+        if (first + kGroup < *result) add(first, *result - kGroup);
+        first = *result + result_columns_;
       }
-      if (from < last) add(from, last);
-      first = change;
+      if (first < last) add(first, last);
     }
     return found;
   }
   Key uniform_key(std::uint64_t column) const {
-    Key key = column < geometry_.columns ? strips_[column / width_] : Key{UINT64_MAX};
-    key.push_back(result_part(column));
+    Key key{UINT64_MAX};
+    if (column < geometry_.columns) {
+      key = strips_[column / width_];
+      if (reads_sdram_) key.push_back(last_of(changes_, column) % width_);
+    }
+    const Key of_results = key_of_results(column);
+    key.insert(key.end(), of_results.begin(), of_results.end());
+    if (writes_sdram_) {
+      const std::uint64_t change = last_of(result_changes_, column);
+      key.push_back(change == 0 ? 0 : (change - geometry_.result_delay_columns) % width_);
+    }
     return key;
   }
 
@@ -67,77 +79,115 @@ class Division {
     return std::min(end, group_end_from((first / width_ + 1) * width_));
   }
   Key key_of_part(std::uint64_t first, std::uint64_t end) const {
-    const std::uint64_t place = first - std::min(first, result_columns_);
-    const std::uint64_t strip = place / width_;
-    Key key{first - strip * width_, end - first, result_part(first)};
+    const std::uint64_t behind = result_changes_.empty() ? 0 : std::min(first, result_columns_);
+    const std::uint64_t strip = (first - behind) / width_;
+    Key key{first - strip * width_, end - first};
+    const auto add = [&key](const Key& more) { key.insert(key.end(), more.begin(), more.end()); };
+    add(key_of_results(first));
     for (std::uint64_t column = strip * width_; column < end + columns_; column += width_) {
       if (column >= geometry_.columns) {
         key.push_back(geometry_.columns - strip * width_);
         break;
       }
-      const Key& of_strip = strips_[column / width_];
-      key.insert(key.end(), of_strip.begin(), of_strip.end());
+      add(strips_[column / width_]);
     }
     return key;
   }
   std::uint64_t end() const { return end_; }
 
  private:
-  // The slots of a strip: those that are empty, and the parts of the buffers that hold the first one's row.
+  // The slots of a strip: those that are empty, and where the buffers have the first one's row.
   Key key_of_strip(int strip) const {
     Key key{0};
     const int first_row = geometry_.first_row_of(strip);
     for (int k = 0; k < geometry_.slots_per_column; ++k)
       key[0] |= std::uint64_t{!geometry_.is_inside(first_row + k)} << k;
-    for (const std::size_t parts : reader_parts_) key.push_back(remainder(first_row, parts));
+    for (std::size_t group = 0; group < kResultGroup; ++group) add_place(group, first_row, key);
     return key;
   }
-  // The number of the strip whose results leave with a column; negative before the first.
-  std::int64_t result_strip(std::uint64_t column) const {
-    const auto behind = static_cast<std::int64_t>(column - geometry_.result_delay_columns);
-    const auto width = static_cast<std::int64_t>(width_);
-    return behind >= 0 ? behind / width : -1 - (-1 - behind) / width;
+  Key key_of_results(std::uint64_t column) const {
+    Key key;
+    add_place(kResultGroup, geometry_.first_row_at(true, column), key);
+    return key;
   }
-  std::uint64_t result_part(std::uint64_t column) const {
-    return remainder(result_strip(column) * geometry_.rows, result_parts_);
+  // Adds where the buffer of a port group has a row.
+  void add_place(std::size_t group, std::int64_t row, Key& key) const {
+    if (parts_[group] > 1) key.push_back(floor_remainder(row, parts_[group]));
+    for (const SdramPart& part : sdram_) {
+      if (part.group == group) key.push_back(floor_remainder(part.word_of(row), part.turn()));
+    }
   }
 
+  // Sets strips_ and changes_.
+  void find_changes() {
+    for (int strip = 0; strip < geometry_.strips; ++strip) {
+      strips_.push_back(key_of_strip(strip));
+      const std::uint64_t first = static_cast<std::uint64_t>(strip) * width_;
+      if (reads_sdram_ || strip == 0 || strips_.back() != *(strips_.end() - 2)) changes_.push_back(first);
+      for (std::size_t group = 0; group < kResultGroup; ++group) {
+        for (int k = 0; k < geometry_.slots_per_column; ++k)
+          add_row_ends(group, geometry_.first_row_of(strip) + k, first, changes_);
+      }
+    }
+    changes_.push_back(geometry_.columns);
+    changes_.push_back(end_);
+    sort(changes_);
+  }
+  void find_result_changes() {
+    for (std::uint64_t first = geometry_.result_delay_columns; first < end_; first += width_) {
+      const std::int64_t row = geometry_.first_row_at(true, first);
+      if (writes_sdram_ || key_of_results(first) != key_of_results(first - 1)) result_changes_.push_back(first);
+      for (int i = 0; i < geometry_.rows; ++i)
+        add_row_ends(kResultGroup, row + i, first, result_changes_);
+    }
+    sort(result_changes_);
+  }
+  // Adds the columns from which on a row of the buffer lies in another row of sdram. `first`: of the strip.
+  void add_row_ends(std::size_t group, std::int64_t row, std::uint64_t first,
+                    std::vector<std::uint64_t>& columns) const {
+    if (row < 0 || row >= geometry_.height) return;
+    for (const SdramPart& part : sdram_) {
+      const auto number = static_cast<std::uint64_t>(part.number);
+      if (part.group != group || floor_remainder(row, part.parts) != number) continue;
+      const auto pixels = static_cast<std::uint64_t>(kPortGroups[group].bytes_per_pixel == 4 ? 1 : 4);
+      auto word = static_cast<std::uint64_t>(part.row_words) -
+                  floor_remainder(part.word_of(row), part.row_words);
+      for (; word * pixels < width_; word += static_cast<std::uint64_t>(part.row_words))
+        columns.push_back(first + word * pixels);
+    }
+  }
+  static void sort(std::vector<std::uint64_t>& columns) {
+    std::sort(columns.begin(), columns.end());
+    columns.erase(std::unique(columns.begin(), columns.end()), columns.end());
+  }
+
+  static std::uint64_t last_of(const std::vector<std::uint64_t>& changes, std::uint64_t column) {
+    const auto next = std::upper_bound(changes.begin(), changes.end(), column);
+    return next == changes.begin() ? 0 : *(next - 1);
+  }
   std::uint64_t group_end_from(std::uint64_t column) const {
-    return std::min(column + (geometry_.result_delay_columns - column) % 4, end_);
-  }
-  // The first column behind this one with other slots.
-  std::uint64_t next_change(std::uint64_t column) const {
-    if (column >= geometry_.columns) return end_;
-    std::size_t strip = column / width_ + 1;
-    while (strip < strips_.size() && strips_[strip] == strips_[strip - 1]) ++strip;
-    return strip * width_;
-  }
-  // The first column from this one on with whose end results go to another strip, and the last one up to it.
-  std::uint64_t next_result_change(std::uint64_t column) const {
-    if (result_columns_ == 0) return UINT64_MAX;
-    return column + remainder(static_cast<std::int64_t>(geometry_.result_delay_columns - column), width_);
-  }
-  std::uint64_t last_result_change(std::uint64_t column) const {
-    return column < geometry_.result_delay_columns || result_columns_ == 0
-               ? 0
-               : column - (column - geometry_.result_delay_columns) % width_;
+    return std::min(column + (geometry_.result_delay_columns - column) % kGroup, end_);
   }
 
   FrameGeometry geometry_;
   std::uint64_t width_;
   std::uint64_t end_;  // of the drain
   std::uint64_t columns_;
-  std::uint64_t result_columns_ = 0;  // 0: all results go to parts in the same way
-  std::vector<std::size_t> reader_parts_;
-  std::size_t result_parts_;
+  std::uint64_t result_columns_;
+  std::array<int, kCoreGroupCount> parts_{};  // [port group]: of its buffer
+  const std::vector<SdramPart>& sdram_;
+  bool reads_sdram_ = false;
+  bool writes_sdram_ = false;
   std::vector<Key> strips_;
+  std::vector<std::uint64_t> changes_;  // the first columns of slots that are not like those before; end_
+  std::vector<std::uint64_t> result_changes_;  // the same of results
 };
 
 }  // namespace
 
 FrameAreas::FrameAreas(const CoreConfig& config, std::uint64_t columns, std::uint64_t result_columns,
-                       const Placements& placements) {
-  const Division division(config, columns, result_columns, placements);
+                       const Placements& placements, const std::vector<SdramPart>& sdram) {
+  const Division division(config, columns, result_columns, placements, sdram);
   std::map<std::pair<bool, Key>, std::uint64_t> numbers;
   const auto add = [&](std::uint64_t first, std::uint64_t end, bool is_uniform, Key key) {
     const std::uint64_t number =

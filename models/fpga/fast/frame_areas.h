@@ -6,21 +6,23 @@
 
 #include "models/fpga/core_config.h"
 #include "models/fpga/frame_geometry.h"
+#include "models/fpga/fast/sdram_parts.h"
 #include "models/fpga/placement.h"
 
 namespace stereotlm::fpga {
 
-// Numbers the places of a frame by the accesses that follow: which slots are empty, and which parts of
-// striped buffers hold the rows. A place is a column of the matcher, in the drain too. The columns are
-// divided into areas. In a uniform area all columns are alike: a group of four columns sees the slots of one
-// strip only, and results of one strip only. Around the ends of strips each column has its own number.
+// Numbers the places of a frame by the accesses that follow: which slots are empty, which parts of striped
+// buffers hold the rows, and which rows of sdram. A place is a column of the matcher, in the drain too. The
+// columns are divided into areas. In a uniform area all columns are alike: a group of four columns sees the
+// slots of one strip only, results of one strip only, and in each row of a buffer one row of sdram only.
+// Around the ends of strips, and where rows of sdram end, each column has its own number.
 class FrameAreas {
  public:
   // `columns`: whose slots can have an effect before a group of four columns ends, from its first one on.
   // `result_columns`: within so many columns the result queue writes all words that it held before.
-  // `placements`: of the frame.
+  // `placements`, `sdram`: of the frame.
   FrameAreas(const CoreConfig& config, std::uint64_t columns, std::uint64_t result_columns,
-             const Placements& placements);
+             const Placements& placements, const std::vector<SdramPart>& sdram);
 
   // If two columns of uniform areas have the same number, the same accesses follow up to the end of the
   // shorter area. If two other columns have the same number, they follow up to the ends of their areas.

@@ -64,14 +64,25 @@ void TransitionCache::clear() {
   buckets_.assign(kFirstBuckets * words_of_bucket(), 0);
 }
 
-TransitionCache::StateNumber TransitionCache::with_last_word(StateNumber number, std::uint64_t last_word) {
-  State state = *states_[number];
-  if (state.back() == last_word) return number;
-  state.back() = last_word;
-  return number_of(state, [this, number] {
+// The state with other last words, up to the next call.
+const TransitionCache::State& TransitionCache::changed(StateNumber number, const State& last_words) {
+  changed_ = *states_[number];
+  std::copy(last_words.begin(), last_words.end(),
+            changed_.end() - static_cast<std::ptrdiff_t>(last_words.size()));
+  return changed_;
+}
+
+TransitionCache::StateNumber TransitionCache::with_last_words(StateNumber number, const State& last_words) {
+  return number_of(changed(number, last_words), [this, number] {
     const auto first = unhandled_.begin() + static_cast<std::ptrdiff_t>(number * words_);
     return Accesses(first, first + static_cast<std::ptrdiff_t>(words_));
   });
+}
+
+std::optional<TransitionCache::StateNumber> TransitionCache::find_with_last_words(StateNumber number,
+                                                                                  const State& last_words) {
+  const auto found = state_numbers_.find(changed(number, last_words));
+  return found == state_numbers_.end() ? std::nullopt : std::optional(found->second);
 }
 
 std::uint32_t TransitionCache::number_of_effect(const Effect& effect,

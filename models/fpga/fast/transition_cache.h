@@ -122,8 +122,9 @@ class TransitionCache {
     }
     return entry->second;
   }
-  // The number of a state that differs from this one in the last word only.
-  StateNumber with_last_word(StateNumber number, std::uint64_t last_word);
+  // The number of a state that differs from this one in the last words only. The second one adds no state.
+  StateNumber with_last_words(StateNumber number, const State& last_words);
+  std::optional<StateNumber> find_with_last_words(StateNumber number, const State& last_words);
   const State& state(StateNumber number) const { return *states_[number]; }
   // The transition from this state with these accesses and requests of the host, if it is recorded.
   std::optional<Transition> find(StateNumber from, const Accesses& accesses, HostRequests host = {}) const;
@@ -173,6 +174,7 @@ class TransitionCache {
   // A bucket of the table: one word with the state's number plus one (0: the bucket is free) and the requests
   // of the host, the accesses of key_, one word with the transition.
   std::size_t words_of_bucket() const { return words_ + 2; }
+  const State& changed(StateNumber number, const State& last_words);
   void set_key(StateNumber from, const Accesses& accesses) const;
   static std::uint64_t first_word_of(StateNumber from, HostRequests host) {
     return std::uint64_t{host.first} << 48U | std::uint64_t{host.words} << 32U |
@@ -185,6 +187,7 @@ class TransitionCache {
   std::size_t words_;  // of the accesses
   std::unordered_map<State, StateNumber, StateHash> state_numbers_;
   std::vector<const State*> states_;      // [number]
+  State changed_;                         // of changed()
   std::vector<std::uint64_t> unhandled_;  // words_ for each state: see number_of()
   mutable Accesses key_;                  // of the look-up that is under way
   std::unordered_map<Effect, std::uint32_t, EffectHash> effect_numbers_;
