@@ -45,7 +45,7 @@ class Arbitration {
   }
   // The ports to which place() applies: those with several banks, and those of banks of sdram.
   PortMask placed() const { return placed_; }
-  // Whether a port is routed to a bank of sdram.
+  // Whether a port is routed to a bank of sdram. False if all requests are granted.
   bool has_rows() const { return has_rows_; }
   // Removes the route of the port, which must not request from now on.
   void unroute(Port port);

@@ -19,6 +19,7 @@ constexpr unsigned kPartBit = 32;
 std::vector<SdramPart> sdram_parts(const CoreConfig& config, const Placements& placements,
                                    const memory::Arbitration& arbitration) {
   std::vector<SdramPart> found;
+  if (!arbitration.has_rows()) return found;
   for (std::size_t group = 0; group < kCoreGroupCount; ++group) {
     if (!has_group(config, group)) continue;
     const Placement& buffer = placements[group];
