@@ -93,11 +93,6 @@ class Arbitration {
   BankArbiter& arbiter(std::size_t bank) { return arbiters_[bank]; }
   const BankArbiter& arbiter(std::size_t bank) const { return arbiters_[bank]; }
 
-  // Counts the row and refresh cycles of sdram before `cycle`.
-  void count_rows(std::uint64_t cycle) {
-    if (!has_rows_) return;
-    for (const SharedBank& shared : shared_banks_) shared.arbiter->count_rows(cycle);
-  }
   // The state that determines all arbitration from `cycle` on, as long as no route changes. Without the rows
   // of sdram: BankArbiter::rows().
   void append_state(std::uint64_t cycle, StateWords& state) const;

@@ -654,7 +654,7 @@ TransitionCache::Accesses FastForward::unhandled() const {
 void FastForward::end_stepped(std::uint64_t cycle) {
   const Stepped stepped = *stepped_;
   stepped_.reset();
-  arbitration().count_rows(cycle);
+  open_rows_.count(cycle);
   TransitionCache::Effect effect{progress(cycle),
                                  CoreControl::difference(control().counts(), stepped.counts),
                                  arbitration().take_recorded(),
@@ -698,7 +698,7 @@ FastForward::StateNumber FastForward::state(std::uint64_t cycle) {
       arbitration.is_routed(port) && !is_host_routed_
           ? arbitration.bank_of(port) << 2U | std::uint64_t{arbitration.writes(port)} << 1U | 1U
           : 0;
-  this->arbitration().count_rows(cycle);
+  open_rows_.count(cycle);
   state_words_.clear();
   control().append_state(state_words_);
   arbitration.append_state(cycle, state_words_);

@@ -60,17 +60,9 @@ class Division {
     return found;
   }
   Key uniform_key(std::uint64_t column) const {
-    Key key{UINT64_MAX};
-    if (column < geometry_.columns) {
-      key = strips_[column / width_];
-      if (reads_sdram_) key.push_back(last_of(changes_, column) % width_);
-    }
-    const Key of_results = key_of_results(column);
-    key.insert(key.end(), of_results.begin(), of_results.end());
-    if (writes_sdram_) {
-      const std::uint64_t change = last_of(result_changes_, column);
-      key.push_back(change == 0 ? 0 : (change - geometry_.result_delay_columns) % width_);
-    }
+    Key key;
+    add_slots(column, key);
+    add_results(column, key);
     return key;
   }
 
@@ -79,51 +71,86 @@ class Division {
     return std::min(end, group_end_from((first / width_ + 1) * width_));
   }
   Key key_of_part(std::uint64_t first, std::uint64_t end) const {
-    const std::uint64_t behind = result_changes_.empty() ? 0 : std::min(first, result_columns_);
-    const std::uint64_t strip = (first - behind) / width_;
-    Key key{first - strip * width_, end - first};
-    const auto add = [&key](const Key& more) { key.insert(key.end(), more.begin(), more.end()); };
-    add(key_of_results(first));
-    for (std::uint64_t column = strip * width_; column < end + columns_; column += width_) {
-      if (column >= geometry_.columns) {
-        key.push_back(geometry_.columns - strip * width_);
-        break;
+    Key key{end - first};
+    const auto add_from = [&](std::uint64_t from, std::uint64_t to, const std::vector<std::uint64_t>& changes,
+                              bool of_results) {
+      (of_results ? add_results(from, key) : add_slots(from, key));
+      auto change = std::upper_bound(changes.begin(), changes.end(), from);
+      for (; change != changes.end() && *change < to; ++change) {
+        key.push_back(*change - from);
+        (of_results ? add_results(*change, key) : add_slots(*change, key));
+        for (const SdramPart& part : sdram_) {
+          if ((part.group == kResultGroup) == of_results)
+            add_signed(origin_row(geometry_, part, *change) - origin_row(geometry_, part, *change - 1), key);
+        }
       }
-      add(strips_[column / width_]);
-    }
+      key.push_back(UINT64_MAX);
+    };
+    add_from(first, end + columns_, changes_, false);
+    const std::uint64_t behind = std::min(first, result_columns_);
+    if (!result_changes_.empty()) add_from(first - behind, end + 1, result_changes_, true);
     return key;
   }
   std::uint64_t end() const { return end_; }
 
  private:
-  // The slots of a strip: those that are empty, and where the buffers have the first one's row.
-  Key key_of_strip(int strip) const {
-    Key key{0};
-    const int first_row = geometry_.first_row_of(strip);
+  static void add_signed(std::int64_t number, Key& key) { key.push_back(static_cast<std::uint64_t>(number)); }
+  // Adds the slots of a column: those that are empty, and where the buffers have the rows of the others.
+  void add_slots(std::uint64_t column, Key& key) const {
+    if (column >= geometry_.columns) {
+      key.push_back(UINT64_MAX);
+      return;
+    }
+    const std::int64_t first_row = geometry_.first_row_at(false, column);
+    std::uint64_t empty = 0;
     for (int k = 0; k < geometry_.slots_per_column; ++k)
-      key[0] |= std::uint64_t{!geometry_.is_inside(first_row + k)} << k;
-    for (std::size_t group = 0; group < kResultGroup; ++group) add_place(group, first_row, key);
-    return key;
+      empty |= std::uint64_t{!geometry_.is_inside(static_cast<int>(first_row) + k)} << k;
+    key.push_back(empty);
+    const Rows rows{first_row, geometry_.slots_per_column, column, column % width_};
+    for (std::size_t group = 0; group < kResultGroup; ++group) add_rows(group, rows, key);
   }
-  Key key_of_results(std::uint64_t column) const {
-    Key key;
-    add_place(kResultGroup, geometry_.first_row_at(true, column), key);
-    return key;
+  // Adds where the results lie that leave with a column.
+  void add_results(std::uint64_t column, Key& key) const {
+    const std::int64_t first_row = geometry_.first_row_at(true, column);
+    const std::uint64_t behind = column - geometry_.result_delay_columns;
+    add_rows(kResultGroup, {first_row, geometry_.rows, column, behind % width_}, key);
   }
-  // Adds where the buffer of a port group has a row.
-  void add_place(std::size_t group, std::int64_t row, Key& key) const {
-    if (parts_[group] > 1) key.push_back(floor_remainder(row, parts_[group]));
+  struct Rows {
+    std::int64_t first;
+    int count;
+    std::uint64_t column;  // of the matcher
+    std::uint64_t place;   // the column of their buffer
+  };
+  // Adds where the buffer of a port group has rows: in which part, and in which row of sdram.
+  void add_rows(std::size_t group, const Rows& rows, Key& key) const {
+    if (parts_[group] > 1) key.push_back(floor_remainder(rows.first, parts_[group]));
     for (const SdramPart& part : sdram_) {
-      if (part.group == group) key.push_back(floor_remainder(part.word_of(row), part.turn()));
+      if (part.group != group) continue;
+      const std::int64_t origin = origin_row(geometry_, part, rows.column);
+      for (std::int64_t row = rows.first; row < rows.first + rows.count; ++row) {
+        if (!is_in(part, row)) continue;
+        const std::int64_t word = part.word_of(row) + static_cast<std::int64_t>(rows.place / pixels_of(group));
+        add_signed(word / part.row_words - origin, key);
+      }
     }
   }
+  bool is_in(const SdramPart& part, std::int64_t row) const {
+    return row >= 0 && row < geometry_.height &&
+           floor_remainder(row, part.parts) == static_cast<std::uint64_t>(part.number);
+  }
+  // Of a word.
+  static std::uint64_t pixels_of(std::size_t group) {
+    return kPortGroups[group].bytes_per_pixel == 4 ? 1 : kernels::kPixelsPerWord;
+  }
 
-  // Sets strips_ and changes_.
   void find_changes() {
+    Key before;
     for (int strip = 0; strip < geometry_.strips; ++strip) {
-      strips_.push_back(key_of_strip(strip));
       const std::uint64_t first = static_cast<std::uint64_t>(strip) * width_;
-      if (reads_sdram_ || strip == 0 || strips_.back() != *(strips_.end() - 2)) changes_.push_back(first);
+      Key key;
+      add_slots(first, key);
+      if (reads_sdram_ || strip == 0 || key != before) changes_.push_back(first);
+      before.swap(key);
       for (std::size_t group = 0; group < kResultGroup; ++group) {
         for (int k = 0; k < geometry_.slots_per_column; ++k)
           add_row_ends(group, geometry_.first_row_of(strip) + k, first, changes_);
@@ -134,26 +161,23 @@ class Division {
     sort(changes_);
   }
   void find_result_changes() {
+    const bool moves = geometry_.rows % parts_[kResultGroup] != 0;
     for (std::uint64_t first = geometry_.result_delay_columns; first < end_; first += width_) {
-      const std::int64_t row = geometry_.first_row_at(true, first);
-      if (writes_sdram_ || key_of_results(first) != key_of_results(first - 1)) result_changes_.push_back(first);
+      if (moves || writes_sdram_) result_changes_.push_back(first);
       for (int i = 0; i < geometry_.rows; ++i)
-        add_row_ends(kResultGroup, row + i, first, result_changes_);
+        add_row_ends(kResultGroup, geometry_.first_row_at(true, first) + i, first, result_changes_);
     }
     sort(result_changes_);
   }
   // Adds the columns from which on a row of the buffer lies in another row of sdram. `first`: of the strip.
   void add_row_ends(std::size_t group, std::int64_t row, std::uint64_t first,
                     std::vector<std::uint64_t>& columns) const {
-    if (row < 0 || row >= geometry_.height) return;
     for (const SdramPart& part : sdram_) {
-      const auto number = static_cast<std::uint64_t>(part.number);
-      if (part.group != group || floor_remainder(row, part.parts) != number) continue;
-      const auto pixels = static_cast<std::uint64_t>(kPortGroups[group].bytes_per_pixel == 4 ? 1 : 4);
-      auto word = static_cast<std::uint64_t>(part.row_words) -
-                  floor_remainder(part.word_of(row), part.row_words);
-      for (; word * pixels < width_; word += static_cast<std::uint64_t>(part.row_words))
-        columns.push_back(first + word * pixels);
+      if (part.group != group || !is_in(part, row)) continue;
+      const std::int64_t left = part.row_words - part.word_of(row) % part.row_words;
+      for (auto word = static_cast<std::uint64_t>(left); word * pixels_of(group) < width_;
+           word += static_cast<std::uint64_t>(part.row_words))
+        columns.push_back(first + word * pixels_of(group));
     }
   }
   static void sort(std::vector<std::uint64_t>& columns) {
@@ -161,10 +185,6 @@ class Division {
     columns.erase(std::unique(columns.begin(), columns.end()), columns.end());
   }
 
-  static std::uint64_t last_of(const std::vector<std::uint64_t>& changes, std::uint64_t column) {
-    const auto next = std::upper_bound(changes.begin(), changes.end(), column);
-    return next == changes.begin() ? 0 : *(next - 1);
-  }
   std::uint64_t group_end_from(std::uint64_t column) const {
     return std::min(column + (geometry_.result_delay_columns - column) % kGroup, end_);
   }
@@ -178,7 +198,6 @@ class Division {
   const std::vector<SdramPart>& sdram_;
   bool reads_sdram_ = false;
   bool writes_sdram_ = false;
-  std::vector<Key> strips_;
   std::vector<std::uint64_t> changes_;  // the first columns of slots that are not like those before; end_
   std::vector<std::uint64_t> result_changes_;  // the same of results
 };

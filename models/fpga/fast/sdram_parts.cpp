@@ -16,6 +16,11 @@ constexpr unsigned kPartBit = 32;
 
 }  // namespace
 
+std::int64_t origin_row(const FrameGeometry& geometry, const SdramPart& part, std::uint64_t column) {
+  const std::int64_t row = geometry.first_row_at(part.group == kResultGroup, column);
+  return floor_divide(part.word_of(row), part.turn()) * part.internal_banks;
+}
+
 std::vector<SdramPart> sdram_parts(const CoreConfig& config, const Placements& placements,
                                    const memory::Arbitration& arbitration) {
   std::vector<SdramPart> found;
@@ -45,12 +50,12 @@ void OpenRows::start_frame(std::vector<SdramPart> parts, memory::Arbitration& ar
     auto bank = std::find_if(banks_.begin(), banks_.end(),
                              [&part](const Bank& other) { return other.number == part.bank; });
     if (bank == banks_.end())
-      bank = banks_.insert(bank, {part.bank, arbitration.arbiter(part.bank).rows(), {}});
+      bank = banks_.insert(bank, {part.bank, &arbitration.arbiter(part.bank), {}});
     bank->parts.push_back(part);
   }
   refreshes_ = 0;
   for (const Bank& bank : banks_) {
-    refreshes_ += bank.rows->timing().refresh_interval_cycles ? 1 : 0;
+    refreshes_ += bank.rows().timing().refresh_interval_cycles ? 1 : 0;
   }
 }
 
@@ -67,17 +72,11 @@ bool OpenRows::are_apart() const {
   return true;
 }
 
-// The row of the sdram from which those of this part are counted at this column of the matcher.
-std::int64_t OpenRows::first_row(const SdramPart& part, std::uint64_t column) const {
-  return floor_divide(part.word_of(geometry_.first_row_at(part.group == kResultGroup, column)), part.turn()) *
-         part.internal_banks;
-}
-
 void OpenRows::append_state(std::uint64_t cycle, std::uint64_t column, memory::StateWords& state) const {
   for (const Bank& bank : banks_) {
-    state.push_back(bank.rows->busy_state(cycle));
-    for (int internal = 0; internal < bank.rows->timing().internal_banks; ++internal) {
-      const auto open = bank.rows->open_row(static_cast<std::size_t>(internal));
+    state.push_back(bank.rows().busy_state(cycle));
+    for (int internal = 0; internal < bank.rows().timing().internal_banks; ++internal) {
+      const auto open = bank.rows().open_row(static_cast<std::size_t>(internal));
       if (!open) {
         state.push_back(kClosed);
         continue;
@@ -88,7 +87,7 @@ void OpenRows::append_state(std::uint64_t cycle, std::uint64_t column, memory::S
         state.push_back(kForeign);
         continue;
       }
-      const auto number = static_cast<std::uint64_t>(*open - first_row(*part, column) + kBias);
+      const auto number = static_cast<std::uint64_t>(*open - origin_row(geometry_, *part, column) + kBias);
       state.push_back(static_cast<std::uint64_t>(part - bank.parts.begin()) << kPartBit | (number + kFirst));
     }
   }
@@ -96,16 +95,16 @@ void OpenRows::append_state(std::uint64_t cycle, std::uint64_t column, memory::S
 
 void OpenRows::set_state(std::uint64_t cycle, std::uint64_t column, memory::StateReader& state) const {
   for (const Bank& bank : banks_) {
-    bank.rows->set_busy_state(cycle, *state++);
-    for (int internal = 0; internal < bank.rows->timing().internal_banks; ++internal) {
+    bank.rows().set_busy_state(cycle, *state++);
+    for (int internal = 0; internal < bank.rows().timing().internal_banks; ++internal) {
       const std::uint64_t word = *state++;
       if (word == kForeign) continue;
       std::optional<std::uint32_t> open;
       if (word != kClosed) {
         const auto number = static_cast<std::int64_t>((word & UINT32_MAX) - kFirst) - kBias;
-        open = static_cast<std::uint32_t>(number + first_row(bank.parts[word >> kPartBit], column));
+        open = static_cast<std::uint32_t>(number + origin_row(geometry_, bank.parts[word >> kPartBit], column));
       }
-      bank.rows->set_open_row(static_cast<std::size_t>(internal), open);
+      bank.rows().set_open_row(static_cast<std::size_t>(internal), open);
     }
   }
 }
@@ -113,9 +112,9 @@ void OpenRows::set_state(std::uint64_t cycle, std::uint64_t column, memory::Stat
 void OpenRows::append_refreshes(std::uint64_t cycle, memory::StateReader state,
                                 std::vector<std::int64_t>& refreshes) const {
   for (const Bank& bank : banks_) {
-    if (const std::uint64_t next = bank.rows->next_refresh(cycle, *state); next != 0)
+    if (const std::uint64_t next = bank.rows().next_refresh(cycle, *state); next != 0)
       refreshes.push_back(static_cast<std::int64_t>(next) - static_cast<std::int64_t>(cycle));
-    state += 1 + bank.rows->timing().internal_banks;
+    state += 1 + bank.rows().timing().internal_banks;
   }
 }
 

@@ -40,6 +40,10 @@ struct SdramPart {
   }
 };
 
+// The row of the sdram from which those of a part are counted at a column of the matcher: the row that holds
+// the first row of the strip, or one before it, in internal bank 0.
+std::int64_t origin_row(const FrameGeometry& geometry, const SdramPart& part, std::uint64_t column);
+
 // Those of the buffers of a frame.
 std::vector<SdramPart> sdram_parts(const CoreConfig& config, const Placements& placements,
                                    const memory::Arbitration& arbitration);
@@ -58,7 +62,11 @@ class OpenRows {
   // The number of banks with refreshes.
   std::size_t refreshes() const { return refreshes_; }
 
-  // `column`: of the matcher. The cycles before `cycle` have been counted: Arbitration::count_rows().
+  // Counts the cycles before `cycle` in which a row was opened, or a bank refreshed.
+  void count(std::uint64_t cycle) {
+    for (const Bank& bank : banks_) bank.arbiter->count_rows(cycle);
+  }
+  // `column`: of the matcher. The cycles before `cycle` have been counted.
   void append_state(std::uint64_t cycle, std::uint64_t column, memory::StateWords& state) const;
   void set_state(std::uint64_t cycle, std::uint64_t column, memory::StateReader& state) const;
   // From the words of a state in `cycle`: the cycles up to the next refresh of each bank that has any,
@@ -69,11 +77,11 @@ class OpenRows {
  private:
   struct Bank {
     std::size_t number;
-    memory::SdramRows* rows;
+    memory::BankArbiter* arbiter;
     std::vector<SdramPart> parts;
-  };
 
-  std::int64_t first_row(const SdramPart& part, std::uint64_t column) const;
+    memory::SdramRows& rows() const { return *arbiter->rows(); }
+  };
 
   FrameGeometry geometry_;
   std::vector<Bank> banks_;
