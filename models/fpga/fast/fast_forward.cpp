@@ -690,8 +690,9 @@ Progress FastForward::progress(std::uint64_t cycle) const {
 }
 
 FastForward::StateNumber FastForward::state(std::uint64_t cycle) {
-  const std::uint64_t varies =
-      is_regular_ ? 0 : std::uint64_t{varying_[0] != nullptr} | std::uint64_t{varying_[1] != nullptr} << 1U;
+  const std::uint64_t varies = std::uint64_t{varying_[0] != nullptr} |
+                               std::uint64_t{varying_[1] != nullptr} << 1U |
+                               std::uint64_t{is_regular_} << 2U;
   const memory::Arbitration& arbitration = this->arbitration();
   const memory::Port port = control().ports().host();
   const std::uint64_t host =
@@ -704,7 +705,7 @@ FastForward::StateNumber FastForward::state(std::uint64_t cycle) {
   arbitration.append_state(cycle, state_words_);
   rows_place_ = state_words_.size();
   open_rows_.append_state(cycle, control().match().columns(), state_words_);
-  state_words_.push_back(layout_->number << 32U | host << 2U | varies);
+  state_words_.push_back(layout_->number << 32U | host << 3U | varies);
   state_words_.push_back(arbitration.shared());
   state_words_.resize(state_words_.size() + open_rows_.refreshes());  // see refresh_left_
   state_words_.push_back(layout_->areas.number_of(control().match().columns()));
