@@ -579,7 +579,7 @@ bool FastForward::change_area() {
 }
 
 void FastForward::enter_area() {
-  state_ = with_area(state_, layout_->areas.number_of(consumed_ / cycles_per_column()));
+  state_ = known_.with_last_word(state_, layout_->areas.number_of(consumed_ / cycles_per_column()));
   set_area();
 }
 
@@ -677,7 +677,7 @@ void FastForward::end_stepped(std::uint64_t cycle) {
   StateNumber next = state(cycle);
   // A transition of a uniform area is also followed where the area goes on.
   if (const std::uint64_t area = known_.state(stepped.state).back(); FrameAreas::is_uniform_number(area))
-    next = with_area(next, area);
+    next = known_.with_last_word(next, area);
   const StateNumber from =
       is_refreshed ? known_.with_last_words(stepped.state, last_words(stepped.state, stepped.begin.cycles))
                    : stepped.state;

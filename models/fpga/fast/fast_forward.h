@@ -168,11 +168,6 @@ class FastForward : public CoreStepper {
   TransitionCache::Accesses unhandled() const;
   static std::optional<HostRequests> requests_of(const HostWords& host, std::uint64_t cycle);
   void end_stepped(std::uint64_t cycle);
-  StateNumber with_area(StateNumber state, std::uint64_t area) {
-    if (known_.state(state).back() == area) return state;
-    last_words_.assign(1, area);
-    return known_.with_last_words(state, last_words_);
-  }
   // Whether the words of the host lie in sdram. Their rows are no part of a state.
   bool host_opens_rows() const {
     return arbitration().arbiter(arbitration().bank_of(control().ports().host())).has_rows();

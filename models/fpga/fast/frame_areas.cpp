@@ -239,10 +239,17 @@ std::uint64_t FrameAreas::repeats(std::size_t first, std::size_t next) const {
 }
 
 const FrameAreas::Area& FrameAreas::area_of(std::uint64_t column) const {
+  const auto holds = [&](std::size_t area) {
+    return area < areas_.size() && areas_[area].first <= column && column < areas_[area].end;
+  };
+  for (const std::size_t area : {last_, last_ + 1}) {
+    if (holds(area)) return areas_[last_ = area];
+  }
   const auto next = std::upper_bound(
       areas_.begin(), areas_.end(), column,
       [](std::uint64_t sought, const Area& area) { return sought < area.first; });
-  return *(next - 1);
+  last_ = static_cast<std::size_t>(next - 1 - areas_.begin());
+  return areas_[last_];
 }
 
 }  // namespace stereotlm::fpga

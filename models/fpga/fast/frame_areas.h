@@ -50,6 +50,7 @@ class FrameAreas {
   const Area& area_of(std::uint64_t column) const;
 
   std::vector<Area> areas_;
+  mutable std::size_t last_ = 0;  // the area that was asked for last: most often it, or the next one, follows
 };
 
 }  // namespace stereotlm::fpga

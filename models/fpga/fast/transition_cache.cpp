@@ -52,6 +52,9 @@ TransitionCache::TransitionCache(std::size_t words) : words_(words), key_(words)
 
 void TransitionCache::clear() {
   states_.clear();
+  plain_.clear();
+  last_changes_.clear();
+  progress_.clear();
   unhandled_.clear();
   state_numbers_.clear();
   effects_.clear();
@@ -60,6 +63,7 @@ void TransitionCache::clear() {
   conflicts_.clear();
   effects_followed_.clear();
   transitions_ = 0;
+  plain_transitions_ = 0;
   mask_ = kFirstBuckets - 1;
   buckets_.assign(kFirstBuckets * words_of_bucket(), 0);
 }
@@ -79,6 +83,14 @@ TransitionCache::StateNumber TransitionCache::with_last_words(StateNumber number
   });
 }
 
+TransitionCache::StateNumber TransitionCache::with_last_word(StateNumber number, std::uint64_t last_word) {
+  if (last_changes_[number].first != last_word) {
+    const StateNumber with_word = with_last_words(number, State{last_word});
+    last_changes_[number] = {last_word, with_word};
+  }
+  return last_changes_[number].second;
+}
+
 std::optional<TransitionCache::StateNumber> TransitionCache::find_with_last_words(StateNumber number,
                                                                                   const State& last_words) {
   const auto found = state_numbers_.find(changed(number, last_words));
@@ -91,6 +103,7 @@ std::uint32_t TransitionCache::number_of_effect(const Effect& effect,
       effect_numbers_.try_emplace(effect, static_cast<std::uint32_t>(effects_.size()));
   if (is_new) {
     effects_.push_back(&entry->first);
+    progress_.push_back(effect.progress);
     followed_.push_back(0);
     conflicts_.push_back(
         {effect.progress.cycles, effect.host.words, arbitration.stalls_of(effect.arbitration)});
@@ -123,22 +136,28 @@ std::size_t TransitionCache::bucket_of(std::uint64_t first_word) const {
 std::optional<TransitionCache::Transition> TransitionCache::find(StateNumber from, const Accesses& accesses,
                                                                  HostRequests host) const {
   set_key(from, accesses);
+  if (is_plain(host)) return find_plain(from);
   const std::size_t bucket = bucket_of(first_word_of(from, host));
   if (buckets_[bucket] == 0) return std::nullopt;
-  const std::uint64_t transition = buckets_[bucket + 1 + words_];
-  return Transition{static_cast<StateNumber>(transition), static_cast<std::uint32_t>(transition >> 32U)};
+  return transition_of(buckets_[bucket + 1 + words_]);
 }
 
 void TransitionCache::record(StateNumber from, const Accesses& accesses, HostRequests host, StateNumber next,
                              const Effect& effect, const memory::Arbitration& arbitration) {
   if (2 * (transitions_ + 1) > mask_) double_buckets();
+  const std::uint64_t transition = std::uint64_t{number_of_effect(effect, arbitration)} << 32U | next;
   set_key(from, accesses);
+  if (is_plain(host)) {
+    if (plain_[from] == kNone) ++plain_transitions_;
+    plain_[from] = transition;
+    return;
+  }
   const std::uint64_t first_word = first_word_of(from, host);
   std::uint64_t* const words = buckets_.data() + bucket_of(first_word);
   if (words[0] == 0) ++transitions_;
   words[0] = first_word;
   std::copy(key_.begin(), key_.end(), words + 1);
-  words[1 + words_] = std::uint64_t{number_of_effect(effect, arbitration)} << 32U | next;
+  words[1 + words_] = transition;
 }
 
 void TransitionCache::double_buckets() {
@@ -159,13 +178,16 @@ void TransitionCache::double_buckets() {
 // there is room.
 TransitionCache::StateNumber TransitionCache::walk(StateNumber first, const Accesses& accesses,
                                                    Progress& room, Log* log) {
+  const bool is_plain =
+      std::all_of(accesses.begin(), accesses.end(), [](std::uint64_t word) { return word == 0; });
+  const auto next = [&](StateNumber from) { return is_plain ? find_plain(from) : find(from, accesses); };
   StateNumber state = first;
   StateNumber mark = state;
   Progress since_mark;
   std::uint64_t steps = 0;
   std::uint64_t mark_after = 1;
-  for (auto transition = find(state, accesses); transition && progress(*transition).fits(room);
-       transition = find(state, accesses)) {
+  for (auto transition = next(state); transition && progress(*transition).fits(room);
+       transition = next(state)) {
     if (transition->next == state) {
       const std::uint64_t times = progress(*transition).times_in(room);
       follow(*transition, times, log);
@@ -181,7 +203,7 @@ TransitionCache::StateNumber TransitionCache::walk(StateNumber first, const Acce
       const std::uint64_t times = since_mark.times_in(room);
       if (times == 0) continue;
       for (std::uint64_t step = 0; step < steps; ++step) {
-        transition = find(state, accesses);
+        transition = next(state);
         follow(*transition, times, log);
         state = transition->next;
       }

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "models/fpga/core_control.h"
@@ -117,6 +119,8 @@ class TransitionCache {
     const auto [entry, is_new] = state_numbers_.try_emplace(state, static_cast<StateNumber>(states_.size()));
     if (is_new) {
       states_.push_back(&entry->first);
+      plain_.push_back(kNone);
+      last_changes_.push_back({entry->first.back(), entry->second});
       const Accesses mask = unhandled();
       unhandled_.insert(unhandled_.end(), mask.begin(), mask.end());
     }
@@ -125,6 +129,7 @@ class TransitionCache {
   // The number of a state that differs from this one in the last words only. The second one adds no state.
   StateNumber with_last_words(StateNumber number, const State& last_words);
   std::optional<StateNumber> find_with_last_words(StateNumber number, const State& last_words);
+  StateNumber with_last_word(StateNumber number, std::uint64_t last_word);
   const State& state(StateNumber number) const { return *states_[number]; }
   // The transition from this state with these accesses and requests of the host, if it is recorded.
   std::optional<Transition> find(StateNumber from, const Accesses& accesses, HostRequests host = {}) const;
@@ -132,9 +137,9 @@ class TransitionCache {
   void record(StateNumber from, const Accesses& accesses, HostRequests host, StateNumber next,
               const Effect& effect, const memory::Arbitration& arbitration);
   void clear();
-  bool is_full() const { return transitions_ >= kMost || states_.size() >= kMostStates; }
+  bool is_full() const { return transitions_ + plain_transitions_ >= kMost || states_.size() >= kMostStates; }
 
-  const Progress& progress(std::uint32_t effect) const { return effects_[effect]->progress; }
+  const Progress& progress(std::uint32_t effect) const { return progress_[effect]; }
   const Progress& progress(const Transition& transition) const { return progress(transition.effect); }
   const HostGrants& host(const Transition& transition) const { return effects_[transition.effect]->host; }
   const GroupConflicts& conflicts(std::uint32_t effect) const { return conflicts_[effect]; }
@@ -170,6 +175,18 @@ class TransitionCache {
   };
 
   static constexpr std::size_t kMostStates = std::size_t{1} << 23U;
+  static constexpr std::uint64_t kNone = UINT64_MAX;
+
+  static Transition transition_of(std::uint64_t word) {
+    return {static_cast<StateNumber>(word), static_cast<std::uint32_t>(word >> 32U)};
+  }
+  // Whether the key set last is without accesses, for a host that requests nothing.
+  bool is_plain(HostRequests host) const {
+    return host.words == 0 && std::all_of(key_.begin(), key_.end(), [](std::uint64_t word) { return word == 0; });
+  }
+  std::optional<Transition> find_plain(StateNumber from) const {
+    return plain_[from] == kNone ? std::nullopt : std::optional(transition_of(plain_[from]));
+  }
 
   // A bucket of the table: one word with the state's number plus one (0: the bucket is free) and the requests
   // of the host, the accesses of key_, one word with the transition.
@@ -188,17 +205,24 @@ class TransitionCache {
   std::unordered_map<State, StateNumber, StateHash> state_numbers_;
   std::vector<const State*> states_;      // [number]
   State changed_;                         // of changed()
+  // [number]: the transition from it without accesses and without requests of the host, as the last word of a
+  // bucket, or kNone. They are not in the table: of regular frames there are no others.
+  std::vector<std::uint64_t> plain_;
+  // [number]: the last call of with_last_word(), its word and its result.
+  std::vector<std::pair<std::uint64_t, StateNumber>> last_changes_;
   std::vector<std::uint64_t> unhandled_;  // words_ for each state: see number_of()
   mutable Accesses key_;                  // of the look-up that is under way
   std::unordered_map<Effect, std::uint32_t, EffectHash> effect_numbers_;
   std::vector<const Effect*> effects_;   // [number]
+  std::vector<Progress> progress_;       // [number]: a copy that lies together
   std::vector<std::uint64_t> followed_;  // [number of the effect]: times not counted yet
   std::vector<std::uint32_t> effects_followed_;
   std::vector<std::uint64_t> followed_before_loop_;
   std::vector<GroupConflicts> conflicts_;  // [number of the effect]
   std::vector<std::uint64_t> buckets_;
   std::size_t mask_ = 0;  // number of buckets - 1; they are a power of two
-  std::size_t transitions_ = 0;
+  std::size_t transitions_ = 0;  // in the table
+  std::size_t plain_transitions_ = 0;
 };
 
 }  // namespace stereotlm::fpga
