@@ -224,8 +224,8 @@ void count_rows(const BoardConfig& board, bool has_table, fpga::Side side, const
   const fpga::CorePorts ports(core);
   const auto height = static_cast<std::size_t>(core.height);
   accesses.reads_of_row.resize(ports.core_size(), std::vector<std::uint64_t>(height));
-  const auto of_table = pattern.table_accesses_of_rows();
-  const auto of_image = pattern.pixel_accesses_of_rows();
+  const auto& of_table = pattern.table_accesses_of_rows();
+  const auto& of_image = pattern.pixel_accesses_of_rows();
   auto& table_words = accesses.touched[fpga::lut_group(side)];
   auto& image_words = accesses.touched[fpga::pixel_group(side)];
   table_words.assign(height, std::vector<bool>(static_cast<std::size_t>(core.width)));

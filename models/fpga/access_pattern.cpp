@@ -192,23 +192,24 @@ std::uint64_t AccessPattern::uniform_until(std::uint64_t slot) const {
   return change == changes_.end() ? geometry_.slots : std::min(*change, geometry_.slots);
 }
 
-AccessPattern::RowAccesses AccessPattern::table_accesses_of_rows() const {
-  RowAccesses slots(table_accesses_.size(),
-                    std::vector<std::uint64_t>(static_cast<std::size_t>(geometry_.height)));
+const AccessPattern::RowAccesses& AccessPattern::table_accesses_of_rows() const {
+  if (!entries_of_rows_.empty()) return entries_of_rows_;
+  entries_of_rows_.assign(table_accesses_.size(),
+                          std::vector<std::uint64_t>(static_cast<std::size_t>(geometry_.height)));
   for (int strip = 0; strip < geometry_.strips; ++strip) {
     for (int k = 0; k < geometry_.slots_per_column; ++k) {
       const int row = geometry_.first_row_of(strip) + k;
       if (geometry_.is_inside(row))
-        slots[static_cast<std::size_t>(k % geometry_.lanes)][static_cast<std::size_t>(row)] +=
+        entries_of_rows_[static_cast<std::size_t>(k % geometry_.lanes)][static_cast<std::size_t>(row)] +=
             geometry_.columns_per_strip();
     }
   }
-  return slots;
+  return entries_of_rows_;
 }
 
 const AccessPattern::RowAccesses& AccessPattern::pixel_accesses_of_rows() const {
   if (!pixels_of_rows_.empty()) return pixels_of_rows_;
-  const RowAccesses slots = table_accesses_of_rows();
+  const RowAccesses& slots = table_accesses_of_rows();
   pixels_of_rows_.assign(slots.size(), std::vector<std::uint64_t>(slots.front().size()));
   const auto add = [&](int row, int source, std::uint64_t pixels) {
     for (std::size_t lane = 0; lane < slots.size(); ++lane)

@@ -57,7 +57,7 @@ class AccessPattern {
   std::uint64_t pixel_accesses(int lane) const { return pixel_accesses_[static_cast<std::size_t>(lane)]; }
   // [lane][row of the buffer]: how often the slots of a frame read the row of the table, and of the image.
   using RowAccesses = std::vector<std::vector<std::uint64_t>>;
-  RowAccesses table_accesses_of_rows() const;
+  const RowAccesses& table_accesses_of_rows() const;
   const RowAccesses& pixel_accesses_of_rows() const;
   std::uint64_t table_accesses() const { return sum_of(table_accesses_); }
   std::uint64_t pixel_accesses() const { return sum_of(pixel_accesses_); }
@@ -86,9 +86,10 @@ class AccessPattern {
   bool needs_all_pixels_ = false;
   bool is_identity_ = true;
   std::vector<std::uint64_t> passes_before_strip_;  // [strip]: slots inside the image that do not access it
-  // These three are empty until the first query: few frames need them.
+  // These four are empty until the first query: few frames need them.
   mutable std::vector<std::uint64_t> slots_;    // bit i of the sequence: slot i accesses its pixel
   mutable std::vector<std::uint64_t> changes_;  // the slots that differ from the one four columns before
+  mutable RowAccesses entries_of_rows_;         // table_accesses_of_rows()
   mutable RowAccesses pixels_of_rows_;          // pixel_accesses_of_rows()
   std::vector<std::uint64_t> table_accesses_;   // [lane]
   std::vector<std::uint64_t> pixel_accesses_;   // [lane]

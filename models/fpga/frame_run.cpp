@@ -148,30 +148,30 @@ void FrameRun::finish() {
 // The slots and words are those of the control, so that an audit can compare them with the geometry. The
 // accesses are those of the tables.
 void FrameRun::count_direct() {
-  const FrameGeometry& geometry = control().geometry();
-  using RowAccesses = AccessPattern::RowAccesses;
-  // `of_rows` is called only for a striped buffer.
+  // `of_rows`: returns [lane][row], the accesses to each row of the buffer; called only if it is striped.
   const auto count = [this](std::size_t group, std::uint64_t accesses, const auto& of_rows) {
     const std::vector<std::uint32_t>& parts = placements_[group].parts();
-    if (parts.size() == 1) {
-      direct_counts_.accesses[registers::bank_of(parts.front())] += accesses;
-      return;
-    }
-    for (const std::vector<std::uint64_t>& of_lane : of_rows()) {
-      for (std::size_t row = 0; row < of_lane.size(); ++row)
-        direct_counts_.accesses[registers::bank_of(parts[row % parts.size()])] += of_lane[row];
+    if (parts.size() == 1) direct_counts_.accesses[registers::bank_of(parts.front())] += accesses;
+    for (std::size_t part = 0; parts.size() > 1 && part < parts.size(); ++part) {
+      std::uint64_t& of_bank = direct_counts_.accesses[registers::bank_of(parts[part])];
+      for (const std::vector<std::uint64_t>& of_lane : of_rows()) {
+        for (std::size_t row = part; row < of_lane.size(); row += parts.size()) of_bank += of_lane[row];
+      }
     }
   };
+  using RowAccesses = AccessPattern::RowAccesses;
   for (const Side side : kSides) {
     const AccessPattern& pattern = (*patterns_)[index_of(side)];
-    if (has_group(config_, lut_group(side)))
-      count(lut_group(side), pattern.table_accesses(), [&] { return pattern.table_accesses_of_rows(); });
-    count(pixel_group(side), pattern.pixel_accesses(), [&] { return pattern.pixel_accesses_of_rows(); });
+    const auto of_entries = [&]() -> const RowAccesses& { return pattern.table_accesses_of_rows(); };
+    const auto of_pixels = [&]() -> const RowAccesses& { return pattern.pixel_accesses_of_rows(); };
+    if (has_group(config_, lut_group(side))) count(lut_group(side), pattern.table_accesses(), of_entries);
+    count(pixel_group(side), pattern.pixel_accesses(), of_pixels);
   }
-  count(kResultGroup, geometry.result_words, [&] {
-    return RowAccesses{std::vector<std::uint64_t>(static_cast<std::size_t>(geometry.height),
-                                                  geometry.columns_per_strip() / 4)};
-  });
+  const Placement& results = placements_[kResultGroup];
+  for (std::size_t part = 0; part < results.parts().size(); ++part) {
+    direct_counts_.accesses[registers::bank_of(results.parts()[part])] +=
+        results.rows_of_part(part, config_.height) * results.row_words();
+  }
   for (std::size_t lane = 0; lane < control().lanes().size(); ++lane)
     direct_counts_.slots[index_of(control().side_of(lane))] += control().lane(lane).taken();
   direct_counts_.packed_words += control().match().words();

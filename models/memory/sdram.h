@@ -78,7 +78,8 @@ class SdramRows {
   std::uint64_t busy_state(std::uint64_t cycle) const {
     const std::uint64_t cycles = busy_until_ > cycle ? busy_until_ - cycle : 0;
     const bool is_refreshed = cycles != 0 && cause_ == Cause::kRefresh;
-    return cycles << 2U | std::uint64_t{is_refreshed} << 1U | std::uint64_t{next_refresh_ != 0 && next_refresh_ < cycle};
+    return cycles << 2U | std::uint64_t{is_refreshed} << 1U |
+           std::uint64_t{next_refresh_ != 0 && next_refresh_ < cycle};
   }
   void set_busy_state(std::uint64_t cycle, std::uint64_t state);
   // The cycle in which the next refresh is due, from busy_state(cycle); it may be late. 0: never.

@@ -309,7 +309,7 @@ void FastForward::end_walk(std::uint64_t cycle) {
   leave_walk(cycle);
   if (!holds_group(room_)) return;
   if (host_.words == 0 && find_next(cycle)) return;
-  stepped_ = {state_,          accesses(), host_, progress(cycle), control().counts(), control().match().part(),
+  stepped_ = {state_,       accesses(), host_, progress(cycle), control().counts(), control().match().part(),
               refresh_left_};
   arbitration().begin_recording();
 }
@@ -691,8 +691,7 @@ Progress FastForward::progress(std::uint64_t cycle) const {
 
 FastForward::StateNumber FastForward::state(std::uint64_t cycle) {
   const std::uint64_t varies = std::uint64_t{varying_[0] != nullptr} |
-                               std::uint64_t{varying_[1] != nullptr} << 1U |
-                               std::uint64_t{is_regular_} << 2U;
+                               std::uint64_t{varying_[1] != nullptr} << 1U | std::uint64_t{is_regular_} << 2U;
   const memory::Arbitration& arbitration = this->arbitration();
   const memory::Port port = control().ports().host();
   const std::uint64_t host =

@@ -216,11 +216,11 @@ class FastForward : public CoreStepper {
   // Cycles to the next refresh of a bank of sdram. A transition in which none begins is the same however far
   // away the next one is. Any other one is recorded from a state with the cycles to the next refreshes.
   std::uint64_t refresh_left_ = UINT64_MAX;
-  Progress ahead_;                   // see ahead()
-  HostGrants host_ahead_;            // words of the host in these cycles, without HostGrants::cycles
-  HostWords host_;                   // words that are granted from the next cycle on
-  TransitionCache::Log in_order_;    // what has been followed and is not yet handed to the recorder
-  bool is_host_routed_ = false;      // by serve_host()
+  Progress ahead_;                 // see ahead()
+  HostGrants host_ahead_;          // words of the host in these cycles, without HostGrants::cycles
+  HostWords host_;                 // words that are granted from the next cycle on
+  TransitionCache::Log in_order_;  // what has been followed and is not yet handed to the recorder
+  bool is_host_routed_ = false;    // by serve_host()
   // [side]: the pattern of a side whose accesses vary. Null if all slots inside the image access their
   // pixels, or are assumed to. Null for a side without table: LaneControl itself finds hits of the cache.
   std::array<const AccessPattern*, 2> varying_{};

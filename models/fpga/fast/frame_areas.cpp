@@ -25,8 +25,7 @@ class Division {
         sdram_(sdram) {
     for (std::size_t group = 0; group < kCoreGroupCount; ++group)
       parts_[group] = has_group(config, group) ? static_cast<int>(placements[group].parts().size()) : 1;
-    for (const SdramPart& part : sdram)
-      (part.group == kResultGroup ? writes_sdram_ : reads_sdram_) = true;
+    for (const SdramPart& part : sdram) (part.group == kResultGroup ? writes_sdram_ : reads_sdram_) = true;
     find_changes();
     find_result_changes();
   }
@@ -50,7 +49,7 @@ class Division {
       std::uint64_t first = changes_[change];
       auto result = std::upper_bound(result_changes_.begin(), result_changes_.end(), first);
       if (result != result_changes_.begin()) first = std::max(first, *(result - 1) + result_columns_);
-      for (; result != result_changes_.end() && *result < last; ++result) {
+      for (; result != result_changes_.end() && *result < last + kGroup; ++result) {
         // The open rows are counted from the strip of the results: the next one's at its first column.
         if (first + kGroup < *result) add(first, *result - kGroup);
         first = *result + result_columns_;
@@ -129,7 +128,8 @@ class Division {
       const std::int64_t origin = origin_row(geometry_, part, rows.column);
       for (std::int64_t row = rows.first; row < rows.first + rows.count; ++row) {
         if (!is_in(part, row)) continue;
-        const std::int64_t word = part.word_of(row) + static_cast<std::int64_t>(rows.place / pixels_of(group));
+        const std::int64_t word =
+            part.word_of(row) + static_cast<std::int64_t>(rows.place / pixels_of(group));
         add_signed(word / part.row_words - origin, key);
       }
     }
@@ -245,9 +245,9 @@ const FrameAreas::Area& FrameAreas::area_of(std::uint64_t column) const {
   for (const std::size_t area : {last_, last_ + 1}) {
     if (holds(area)) return areas_[last_ = area];
   }
-  const auto next = std::upper_bound(
-      areas_.begin(), areas_.end(), column,
-      [](std::uint64_t sought, const Area& area) { return sought < area.first; });
+  const auto next =
+      std::upper_bound(areas_.begin(), areas_.end(), column,
+                       [](std::uint64_t sought, const Area& area) { return sought < area.first; });
   last_ = static_cast<std::size_t>(next - 1 - areas_.begin());
   return areas_[last_];
 }

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "models/fpga/core_config.h"
-#include "models/fpga/frame_geometry.h"
 #include "models/fpga/fast/sdram_parts.h"
+#include "models/fpga/frame_geometry.h"
 #include "models/fpga/placement.h"
 
 namespace stereotlm::fpga {

@@ -49,8 +49,7 @@ void OpenRows::start_frame(std::vector<SdramPart> parts, memory::Arbitration& ar
   for (SdramPart& part : parts) {
     auto bank = std::find_if(banks_.begin(), banks_.end(),
                              [&part](const Bank& other) { return other.number == part.bank; });
-    if (bank == banks_.end())
-      bank = banks_.insert(bank, {part.bank, &arbitration.arbiter(part.bank), {}});
+    if (bank == banks_.end()) bank = banks_.insert(bank, {part.bank, &arbitration.arbiter(part.bank), {}});
     bank->parts.push_back(part);
   }
   refreshes_ = 0;
@@ -102,7 +101,8 @@ void OpenRows::set_state(std::uint64_t cycle, std::uint64_t column, memory::Stat
       std::optional<std::uint32_t> open;
       if (word != kClosed) {
         const auto number = static_cast<std::int64_t>((word & UINT32_MAX) - kFirst) - kBias;
-        open = static_cast<std::uint32_t>(number + origin_row(geometry_, bank.parts[word >> kPartBit], column));
+        open =
+            static_cast<std::uint32_t>(number + origin_row(geometry_, bank.parts[word >> kPartBit], column));
       }
       bank.rows().set_open_row(static_cast<std::size_t>(internal), open);
     }

@@ -182,7 +182,8 @@ class TransitionCache {
   }
   // Whether the key set last is without accesses, for a host that requests nothing.
   bool is_plain(HostRequests host) const {
-    return host.words == 0 && std::all_of(key_.begin(), key_.end(), [](std::uint64_t word) { return word == 0; });
+    return host.words == 0 &&
+           std::all_of(key_.begin(), key_.end(), [](std::uint64_t word) { return word == 0; });
   }
   std::optional<Transition> find_plain(StateNumber from) const {
     return plain_[from] == kNone ? std::nullopt : std::optional(transition_of(plain_[from]));
@@ -203,8 +204,8 @@ class TransitionCache {
 
   std::size_t words_;  // of the accesses
   std::unordered_map<State, StateNumber, StateHash> state_numbers_;
-  std::vector<const State*> states_;      // [number]
-  State changed_;                         // of changed()
+  std::vector<const State*> states_;  // [number]
+  State changed_;                     // of changed()
   // [number]: the transition from it without accesses and without requests of the host, as the last word of a
   // bucket, or kNone. They are not in the table: of regular frames there are no others.
   std::vector<std::uint64_t> plain_;
@@ -220,7 +221,7 @@ class TransitionCache {
   std::vector<std::uint64_t> followed_before_loop_;
   std::vector<GroupConflicts> conflicts_;  // [number of the effect]
   std::vector<std::uint64_t> buckets_;
-  std::size_t mask_ = 0;  // number of buckets - 1; they are a power of two
+  std::size_t mask_ = 0;         // number of buckets - 1; they are a power of two
   std::size_t transitions_ = 0;  // in the table
   std::size_t plain_transitions_ = 0;
 };
