@@ -5,7 +5,11 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <string>
+#include <vector>
 
+#include "models/fpga/fast/sdram_parts.h"
+#include "models/kernels/rectification_table.h"
 #include "platform/bounds.h"
 #include "platform/config/board_area.h"
 #include "platform/config/buffer_layout.h"
@@ -43,21 +47,37 @@ std::string shared_bank_text(const BoardConfig& board, const Explanation& explan
                      in_bank);
 }
 
-// What the simulation has to step cycle by cycle (FastForward), which takes longer: "stripes are stepped\n".
-std::string stepped_text(const BoardConfig& board) {
-  bool has_stripes = false;
-  bool has_sdram = false;
-  for (const platform::PlacedBuffer& buffer : platform::buffers(board)) {
-    has_stripes = has_stripes || buffer.parts > 1;
-    for (const platform::BankConfig& bank : board.banks)
-      has_sdram = has_sdram || (bank.name == buffer.bank && bank.kind == memory::BankKind::kSdram);
+// What has to be simulated cycle by cycle (FastForward), which takes longer.
+std::string stepped_text(const BoardConfig& board, const platform::Tables& tables, bool camera) {
+  const fpga::CoreConfig core = core_config(board);
+  const std::vector<memory::SsramBankConfig> banks = ssram_configs(board);
+  fpga::SdramTimings timings;
+  for (const memory::SsramBankConfig& bank : banks) timings.push_back(bank.sdram ? &*bank.sdram : nullptr);
+  const auto points_elsewhere = [&](fpga::Side side) {
+    const auto& table = side == fpga::Side::kLeft ? tables.left : tables.right;
+    return table && table->entries != kernels::identity_table(table->width, table->height).entries;
+  };
+  std::set<std::string> found;
+  for (std::uint64_t frame = 0; frame < allocation_period_frames(board); ++frame) {
+    const fpga::Placements placements = placements_of(core, buffer_bases(board).of_frame(frame));
+    const std::vector<fpga::SdramPart> sdram = sdram_parts(core, placements, timings);
+    for (const fpga::Side side : fpga::kSides) {
+      const std::size_t group = fpga::pixel_group(side);
+      const bool is_striped = placements[group].parts().size() > 1;
+      const bool is_in_sdram = std::any_of(
+          sdram.begin(), sdram.end(), [group](const fpga::SdramPart& part) { return part.group == group; });
+      if ((is_striped || is_in_sdram) && points_elsewhere(side))
+        found.insert("pictures in stripes or sdram, as their tables point to other pixels");
+    }
+    if (!are_apart(sdram))
+      found.insert("rows of sdram that hold the end of a buffer and the begin of another");
+    if (camera && !sdram.empty()) found.insert("words of the local bus in sdram");
   }
-  if (!has_stripes && !has_sdram) return "";
-  return fmt::format("{}{}{} are stepped\n", has_stripes ? "stripes" : "",
-                     has_stripes && has_sdram ? " and " : "", has_sdram ? "sdram banks" : "");
+  return found.empty() ? "" : fmt::format("simulated cycle by cycle: {}\n", fmt::join(found, "; "));
 }
 
-std::string head_text(const BoardConfig& board, const Explanation& explanation) {
+std::string head_text(const BoardConfig& board, const platform::Tables& tables,
+                      const Explanation& explanation) {
   const explore::StoredRow& row = explanation.figures();
   const bool camera = explanation.camera();
   const std::string of = camera ? "bound.system" : "bound.core";
@@ -70,7 +90,8 @@ std::string head_text(const BoardConfig& board, const Explanation& explanation) 
          fmt::format("bound {:.3f} frames/s: {}; {} frames simulated{}\n", row.real(of),
                      stats::resource_words(row.text(of + "_limited_by")), explanation.frames(),
                      now.loses_pixels ? "; captures lose pixels" : "") +
-         platform::device_text(board) + '\n' + stepped_text(board) + shared_bank_text(board, explanation);
+         platform::device_text(board) + '\n' + stepped_text(board, tables, camera) +
+         shared_bank_text(board, explanation);
 }
 
 // The table of resources. Resources of one kind with the same values share a line.
@@ -219,7 +240,7 @@ int explain(const ExplainOptions& options) {
   if (!explanation.simulate(loaded.simulator())) return kInterrupted;
   process::print(options.json.is_given()
                      ? json_text(runs::explanation_document(*board, explanation))
-                     : head_text(*board, explanation) + resources_text(*board, explanation) +
+                     : head_text(*board, tables, explanation) + resources_text(*board, explanation) +
                            blames_text(explanation) + changes_text(*board, explanation));
   return kDone;
 }

@@ -55,7 +55,6 @@ void FastForward::start_direct_frame(const AccessPatterns& patterns) {
   start_stepped_frame();
   patterns_ = &patterns;
   find_layout();
-  can_walk_ = follows_from_places();
   for (const Side side : kSides) {
     const AccessPattern* const pattern = &patterns[index_of(side)];
     const std::size_t lane = control().lane_index(side, 0);
@@ -78,10 +77,17 @@ void FastForward::start_stepped_frame() {
   assumed_ = {};
 }
 
-// Sets layout_ and open_rows_. Buffers lie alike in frames if their parts lie in the same banks, and in sdram
-// at the same places among the internal banks.
+// Sets can_walk_, layout_ and open_rows_. Buffers lie alike in frames if their parts lie in the same banks,
+// and in sdram at the same places among the internal banks.
 void FastForward::find_layout() {
-  std::vector<SdramPart> sdram = sdram_parts(config_, placements(), arbitration());
+  SdramTimings timings(arbitration().banks());
+  for (std::size_t bank = 0; arbitration().has_rows() && bank < timings.size(); ++bank) {
+    const memory::SdramRows* const rows = arbitration().arbiter(bank).rows();
+    timings[bank] = rows != nullptr ? &rows->timing() : nullptr;
+  }
+  std::vector<SdramPart> sdram = sdram_parts(config_, placements(), timings);
+  can_walk_ = are_apart(sdram) && follows_from_places();
+  if (!can_walk_) return;
   std::vector<std::uint64_t> places;
   for (std::size_t group = 0; group < kCoreGroupCount; ++group) {
     if (!has_group(config_, group)) continue;
@@ -109,7 +115,7 @@ bool FastForward::follows_from_places() const {
     if (memory::has(arbitration().placed(), pixel) && !(*patterns_)[index_of(side)].is_identity())
       return false;
   }
-  return open_rows_.are_apart();
+  return true;
 }
 
 void FastForward::settle(std::uint64_t cycle) {

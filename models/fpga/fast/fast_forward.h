@@ -192,7 +192,7 @@ class FastForward : public CoreStepper {
   };
   std::map<std::vector<std::uint64_t>, Layout> layouts_;
   const Layout* layout_ = nullptr;  // of the frame
-  bool can_walk_ = false;           // see follows_from_places()
+  bool can_walk_ = false;           // transitions can be followed: see find_layout()
   bool is_regular_ = false;         // the numbers of the places determine the accesses of varying_
   TransitionCache known_;
   TransitionCache::Accesses no_accesses_;

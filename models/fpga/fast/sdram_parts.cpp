@@ -22,26 +22,37 @@ std::int64_t origin_row(const FrameGeometry& geometry, const SdramPart& part, st
 }
 
 std::vector<SdramPart> sdram_parts(const CoreConfig& config, const Placements& placements,
-                                   const memory::Arbitration& arbitration) {
+                                   const SdramTimings& timings) {
   std::vector<SdramPart> found;
-  if (!arbitration.has_rows()) return found;
   for (std::size_t group = 0; group < kCoreGroupCount; ++group) {
     if (!has_group(config, group)) continue;
     const Placement& buffer = placements[group];
     for (std::size_t part = 0; part < buffer.parts().size(); ++part) {
       const std::uint32_t base = buffer.parts()[part];
       const std::size_t bank = registers::bank_of(base);
-      const memory::SdramRows* const rows = arbitration.arbiter(bank).rows();
+      const memory::SdramTiming* const timing = timings[bank];
       const auto words =
           static_cast<std::int64_t>(buffer.rows_of_part(part, config.height) * buffer.row_words());
-      if (rows == nullptr || words == 0) continue;
+      if (timing == nullptr || words == 0) continue;
       found.push_back({group, bank, registers::first_word_of(base), words,
                        static_cast<std::int64_t>(buffer.parts().size()), static_cast<std::int64_t>(part),
-                       static_cast<std::int64_t>(buffer.row_words()), rows->timing().row_words,
-                       rows->timing().internal_banks});
+                       static_cast<std::int64_t>(buffer.row_words()), timing->row_words,
+                       timing->internal_banks});
     }
   }
   return found;
+}
+
+bool are_apart(const std::vector<SdramPart>& parts) {
+  for (const SdramPart& part : parts) {
+    const auto shares_row = [&part](const SdramPart& other) {
+      return &other != &part && other.bank == part.bank &&
+             (other.has_row(part.base / part.row_words) ||
+              other.has_row((part.base + part.words - 1) / part.row_words));
+    };
+    if (std::any_of(parts.begin(), parts.end(), shares_row)) return false;
+  }
+  return true;
 }
 
 void OpenRows::start_frame(std::vector<SdramPart> parts, memory::Arbitration& arbitration) {
@@ -56,19 +67,6 @@ void OpenRows::start_frame(std::vector<SdramPart> parts, memory::Arbitration& ar
   for (const Bank& bank : banks_) {
     refreshes_ += bank.rows().timing().refresh_interval_cycles ? 1 : 0;
   }
-}
-
-bool OpenRows::are_apart() const {
-  for (const Bank& bank : banks_) {
-    for (const SdramPart& part : bank.parts) {
-      const auto is_shared = [&part](const SdramPart& other) {
-        return &other != &part && (other.has_row(part.base / part.row_words) ||
-                                   other.has_row((part.base + part.words - 1) / part.row_words));
-      };
-      if (std::any_of(bank.parts.begin(), bank.parts.end(), is_shared)) return false;
-    }
-  }
-  return true;
 }
 
 void OpenRows::append_state(std::uint64_t cycle, std::uint64_t column, memory::StateWords& state) const {

@@ -44,9 +44,12 @@ struct SdramPart {
 // the first row of the strip, or one before it, in internal bank 0.
 std::int64_t origin_row(const FrameGeometry& geometry, const SdramPart& part, std::uint64_t column);
 
-// Those of the buffers of a frame.
+// Those of the buffers of a frame. `timings`: [bank], null for any other kind.
+using SdramTimings = std::vector<const memory::SdramTiming*>;
 std::vector<SdramPart> sdram_parts(const CoreConfig& config, const Placements& placements,
-                                   const memory::Arbitration& arbitration);
+                                   const SdramTimings& timings);
+// Whether each row of the sdram belongs to one part at most, so that its number says what it holds.
+bool are_apart(const std::vector<SdramPart>& parts);
 
 // The state of the banks of sdram in a walk (FastForward). The number of an open row is counted from a place
 // that moves with the strips, so that a state comes again in later strips.
@@ -56,9 +59,6 @@ class OpenRows {
 
   // The buffers of the frame; `arbitration` outlives it.
   void start_frame(std::vector<SdramPart> parts, memory::Arbitration& arbitration);
-  // Whether each row of the sdram belongs to one part at most, so that its number says what it holds.
-  bool are_apart() const;
-
   // The number of banks with refreshes.
   std::size_t refreshes() const { return refreshes_; }
 

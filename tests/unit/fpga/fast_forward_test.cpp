@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <vector>
@@ -89,6 +90,71 @@ TEST_F(FastForwardTest, StepsFewCyclesBesideBurstsOnceTheirGroupsAreRecorded) {
   const std::vector<std::uint64_t> stepped = stepped_cycles(901);
   EXPECT_LT(stepped[0], 50'000U);
   EXPECT_LT(stepped[2], 4000U);
+}
+
+// The number of cycles that are stepped in each of two frames without bursts. Every pixel is its own source.
+std::vector<std::uint64_t> stepped_cycles(const CoreConfig& config,
+                                          const std::vector<memory::SsramBankConfig>& banks,
+                                          const FrameBases& bases) {
+  memory::ArbiterConfig arbiter;
+  arbiter.priority.resize(CorePorts(config).size());
+  std::iota(arbiter.priority.begin(), arbiter.priority.end(), memory::Port{0});
+  memory::Arbitration arbitration(arbiter, banks);
+  FrameRun run(config, banks, arbitration, UINT64_MAX);
+  const AccessPatterns patterns{AccessPattern(FrameGeometry(config), config.pixel_cache),
+                                AccessPattern(FrameGeometry(config), config.pixel_cache)};
+  std::vector<std::uint64_t> stepped;
+  for (int frame = 0; frame < 2; ++frame) {
+    const std::uint64_t begin = run.cycle() - run.skipped_cycles();
+    run.start_direct(run.cycle(), bases, patterns);
+    run.run_ahead(UINT64_MAX);
+    stepped.push_back(run.cycle() - run.skipped_cycles() - begin);
+    run.finish();
+    run.end();
+  }
+  return stepped;
+}
+
+// The preset eight-banks-four-lanes: a frame has 614,593 cycles.
+TEST(FastForwardStripes, StepsFewCyclesOfAFrame) {
+  CoreConfig config;
+  config.lanes = 4;
+  config.joint_tables = true;
+  config.pixel_cache = PixelCache::kWord;
+  FrameBases bases{};
+  const auto stripe = [&config](std::uint32_t first_bank, std::uint32_t word) {
+    std::vector<std::uint32_t> parts;
+    for (std::uint32_t part = 0; part < 4; ++part) parts.push_back(registers::base(first_bank + part, word));
+    config.stripes.push_back(parts);
+    return parts.front();
+  };
+  bases[lut_group(Side::kLeft)] = stripe(0, 0);
+  bases[pixel_group(Side::kLeft)] = stripe(4, 0);
+  bases[pixel_group(Side::kRight)] = stripe(4, 19'200);
+  bases[kResultGroup] = stripe(4, 38'400);
+  const std::vector<std::uint64_t> stepped =
+      stepped_cycles(config, std::vector<memory::SsramBankConfig>(8), bases);
+  EXPECT_LT(stepped[0], 40'000U);
+  EXPECT_LT(stepped[1], 1000U);
+}
+
+// The preset sdram: a frame has 489,172 cycles, and 782 refreshes of both banks, which come at other places in
+// each frame.
+TEST(FastForwardSdram, StepsFewCyclesOfAFrame) {
+  CoreConfig config;
+  config.fetch = Fetch::kLineBuffer;
+  config.joint_tables = true;
+  config.pixel_cache = PixelCache::kWord;
+  memory::SsramBankConfig bank;
+  bank.kind = memory::BankKind::kSdram;
+  bank.sdram = memory::SdramTiming{};
+  FrameBases bases{};
+  bases[kResultGroup] = registers::base(0, 307'200);
+  bases[pixel_group(Side::kLeft)] = registers::base(1, 0);
+  bases[pixel_group(Side::kRight)] = registers::base(1, 76'800);
+  const std::vector<std::uint64_t> stepped = stepped_cycles(config, {bank, bank}, bases);
+  EXPECT_LT(stepped[0], 40'000U);
+  EXPECT_LT(stepped[1], 20'000U);
 }
 
 // A core with random entries whose frames run ahead, or are stepped.
