@@ -116,10 +116,10 @@ std::optional<std::uint64_t> HostPort::serve_uncontended(std::uint64_t horizon_p
 
 // The outcome is counted only by count().
 memory::BankArbiter::Outcome HostPort::decide(std::size_t bank, std::uint64_t cycle, bool write) {
-  const memory::PortMask host = memory::mask_of(port_);
+  memory::BankArbiter& arbiter = arbitration_.arbiter(bank);
   std::array<std::uint32_t, memory::kMostPorts> words;
-  words[port_] = bus_.word_waits() ? first_word() : 0;
-  return arbitration_.arbiter(bank).decide(cycle, host, write ? host : 0, words.data());
+  if (arbiter.has_rows()) words[port_] = bus_.word_waits() ? first_word() : 0;
+  return arbiter.decide(cycle, mask_, write ? mask_ : 0, words.data());
 }
 
 // Moves all data of a burst that has just begun, if no frame can start within the burst and its bank grants

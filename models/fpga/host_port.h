@@ -133,6 +133,7 @@ class HostPort {
   FrameRun& frames_;
   const Clock& clock_;
   memory::Port port_ = frames_.control().ports().host();
+  memory::PortMask mask_ = memory::mask_of(port_);
   bool is_in_step_;  // the clocks of the local bus begin with those of the core
   bool is_only_master_ = false;
   HostRoute burst_;

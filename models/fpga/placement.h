@@ -31,6 +31,7 @@ class Placement {
     for (const std::vector<std::uint32_t>& stripe : stripes) {
       if (stripe.front() == base) parts_ = stripe;
     }
+    is_whole_ = parts_.size() == 1;
     first_address_ = registers::base_address(parts_.front());
   }
 
@@ -55,7 +56,7 @@ class Placement {
   }
   // Its byte address on the crossbar.
   std::uint64_t address(std::uint64_t row, std::uint64_t number) const {
-    if (parts_.size() == 1) return first_address_ + 4 * (row * row_words_ + number);
+    if (is_whole_) return first_address_ + 4 * (row * row_words_ + number);
     return registers::base_address(parts_[row % parts_.size()]) +
            4 * (row / parts_.size() * row_words_ + number);
   }
@@ -63,6 +64,7 @@ class Placement {
 
  private:
   std::vector<std::uint32_t> parts_;  // their bases
+  bool is_whole_ = true;  // in one bank
   std::uint64_t row_words_ = 0;
   std::uint64_t first_address_ = 0;
 };

@@ -89,13 +89,6 @@ void Arbitration::move(Port port, std::size_t bank) {
   shared_banks_[place_of_shared_[bank]].ports |= mask_of(port);
 }
 
-PortMask Arbitration::ports_on(std::size_t bank) const {
-  PortMask ports = 0;
-  for_each_port(routed_,
-                [&](Port port) { ports |= (routes_[port].banks & bank_bit(bank)) != 0 ? mask_of(port) : 0; });
-  return ports;
-}
-
 std::size_t Arbitration::cause_of(Port port, PortMask granted) const {
   const Route& route = routes_[port];
   const bool is_apart = arbiters_[route.bank].separates_directions();
@@ -111,7 +104,10 @@ void Arbitration::share_banks() {
   writes_ = 0;
   placed_ = 0;
   has_rows_ = false;
+  ports_on_ = {};
   for_each_port(routed_, [this](Port port) {
+    for (std::uint64_t banks = routes_[port].banks; banks != 0; banks &= banks - 1)
+      ports_on_[static_cast<std::size_t>(__builtin_ctzll(banks))] |= mask_of(port);
     if (routes_[port].write) writes_ |= mask_of(port);
     if ((routes_[port].banks & (routes_[port].banks - 1)) != 0 && !has(visitors_, port))
       placed_ |= mask_of(port);

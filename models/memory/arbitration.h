@@ -135,7 +135,7 @@ class Arbitration {
   void check_route(Port port, std::size_t bank) const;
   void forget_visits();
   void move(Port port, std::size_t bank);
-  PortMask ports_on(std::size_t bank) const;
+  PortMask ports_on(std::size_t bank) const { return ports_on_[bank]; }
   void share_banks();
   void settle(PortMask ports);
   PortMask arbitrate_shared(std::uint64_t cycle, PortMask requests);
@@ -149,6 +149,7 @@ class Arbitration {
   std::array<Route, kMostPorts> routes_{};
   std::array<std::uint32_t, kMostPorts> words_{};  // [port]: see place()
   PortMask routed_ = 0;
+  std::array<PortMask, 64> ports_on_{};  // [bank]: the ports with a route to it
   PortMask writes_ = 0;    // ports whose route writes
   PortMask placed_ = 0;    // see placed()
   bool has_rows_ = false;  // see has_rows()
