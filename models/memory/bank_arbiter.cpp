@@ -39,6 +39,11 @@ BankArbiter::Outcome BankArbiter::decide(std::uint64_t cycle, PortMask requests,
     throw std::invalid_argument("requests: must be one or more of the ports 0.." +
                                 std::to_string(list_.size() - 1) + ", and no other");
   }
+  // The most frequent case; a frame of the whole computer with timing only then takes 0.97 of the time.
+  if (policy_->advance == nullptr && grants_at_once() && !contend(requests)) {
+    next_cycle_ = cycle + 1;
+    return {requests, requests & writes, requests};
+  }
   // Any number of cycles without request acts as one does.
   if (cycle != next_cycle_) {
     for (PriorityList& order : orders_) advance(order, 0, 0);
