@@ -64,7 +64,7 @@ class Placement {
 
  private:
   std::vector<std::uint32_t> parts_;  // their bases
-  bool is_whole_ = true;  // in one bank
+  bool is_whole_ = true;              // in one bank
   std::uint64_t row_words_ = 0;
   std::uint64_t first_address_ = 0;
 };

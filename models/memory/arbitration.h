@@ -150,10 +150,10 @@ class Arbitration {
   std::array<std::uint32_t, kMostPorts> words_{};  // [port]: see place()
   PortMask routed_ = 0;
   std::array<PortMask, 64> ports_on_{};  // [bank]: the ports with a route to it
-  PortMask writes_ = 0;    // ports whose route writes
-  PortMask placed_ = 0;    // see placed()
-  bool has_rows_ = false;  // see has_rows()
-  PortMask visitors_ = 0;  // ports that have visited banks
+  PortMask writes_ = 0;                  // ports whose route writes
+  PortMask placed_ = 0;                  // see placed()
+  bool has_rows_ = false;                // see has_rows()
+  PortMask visitors_ = 0;                // ports that have visited banks
   std::uint64_t visited_ = 0;
   std::uint64_t shared_ = 0;  // see shared()
   // Uncontended ports: each is alone on a bank that is not shared. They need no arbitration. Their grants are

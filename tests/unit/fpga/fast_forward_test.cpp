@@ -138,8 +138,8 @@ TEST(FastForwardStripes, StepsFewCyclesOfAFrame) {
   EXPECT_LT(stepped[1], 1000U);
 }
 
-// The preset sdram: a frame has 489,172 cycles, and 782 refreshes of both banks, which come at other places in
-// each frame.
+// The preset sdram: a frame has 489,172 cycles, and 782 refreshes of both banks, which come at other places
+// in each frame.
 TEST(FastForwardSdram, StepsFewCyclesOfAFrame) {
   CoreConfig config;
   config.fetch = Fetch::kLineBuffer;
