@@ -1,7 +1,8 @@
 """usage: report.py FOLDER
 
-The folder holds core.db and stripes.db, core_rig.db and stripes_rig.db with the tables of a real rig, and
-sdram.db. Writes banks.png, core.csv, stripes.csv, sdram.csv and README.md beside this script.
+The folder holds core.db and stripes.db, core_rig.db and stripes_rig.db with the tables of a real rig,
+sdram.db, cheap.db, and cheap_60hz.db with cameras. Writes banks.png, the tables (*.csv) and README.md beside
+this script.
 """
 import pathlib
 import sys
@@ -33,7 +34,13 @@ def read(folder):
         return [{"tables": tables, **point} for which, tables in TABLES.items()
                 for point in study.points(folder / f"{name}{which}.db", **columns)]
 
+    cheap = {"name": "name", "core": "frames_per_second.core", "pins": "area.pins", "slices": "area.slices"}
+    computer = {"name": "name", "delivered": "frames_per_second.steady",
+                "lost pixels": "cameras.left.dropped_pixels"}
+    at_60_hz = {point["name"]: point for point in study.points(folder / "cheap_60hz.db", **computer)}
     found = {"core": of_tables("core", core), "stripes": of_tables("stripes", stripes),
+             "cheap": [{**point, **at_60_hz[point["name"]]}
+                       for point in study.points(folder / "cheap.db", **cheap)],
              "sdram": study.points(folder / "sdram.db", **sdram)}
     for point in found["sdram"]:
         for key in KEYS_OF_A_BANK:
@@ -42,6 +49,7 @@ def read(folder):
     for point in found["core"]:
         point["banks"] = sum(map(int, point["name"].split(" + ")))
     found["core"].sort(key=lambda point: [point[key] for key in ("tables", "banks", "name", "lanes")])
+    found["cheap"].sort(key=lambda point: [point["pins"], point["slices"], point["name"]])
     found["stripes"].sort(key=lambda point: [point[key] for key in ("tables", "name")])
     found["sdram"].sort(key=lambda point: [point[key] for key in ("name", "fetch", *KEYS_OF_A_BANK)])
     for name, points in found.items():
@@ -103,6 +111,12 @@ def price_table(found):
                            "slices", "slices for a frame/s"], lines)
 
 
+def cheap_table(found):
+    return study.markdown(["chips", "pins", "slices", "core", "delivered at 60 Hz"],
+                          [[point["name"], point["pins"], f"{point['slices']:,}", f"{point['core']:.1f}",
+                            f"{point['delivered']:.1f}"] for point in found["cheap"]])
+
+
 def sdram_table(found):
     lines = []
     for name in ("disparities", "left pictures", "left table", "all"):
@@ -162,8 +176,18 @@ The paper's board with some of its buffers in SDRAM, tables of the identity, fra
 
 {sdram}
 
+Few chips, for 60 frames a second: line buffers, joint tables and the word cache, tables of the identity
+([cheap.yaml](cheap.yaml), [cheap.csv](cheap.csv)). "40 modules": half of the matcher's difference modules,
+each used twice. With cameras of 60 Hz the captures take accesses too; {lost}.
+
+{cheap}
+
 **Found.**
 
+- **The cheapest memory for 60 frames a second at 7x7**, for the core alone, is one chip of ZBT with 122
+  pins: {zbt_core:.1f} frames a second. Half of the modules do as well. Of SDRAM it takes two chips:
+  {sdram_core:.1f}. With cameras and PCI neither delivers 60; one chip of QDR does, as do two of ZBT or three
+  of SDRAM. A chip is a bank of 32 bits here; one chip for all buffers needs 1,048,576 words.
 - **The matcher sets the steps.** Seven slots of a column take 7, 4, 3, 2, 2, 2 and 1 cycles with one to seven
   lanes. So five and six lanes are no faster than four where banks suffice: {four:.2f} frames a second from
   eight banks. With two rows of results at once a column has eight slots, and half as many strips: eight lanes
@@ -190,8 +214,8 @@ The paper's board with some of its buffers in SDRAM, tables of the identity, fra
 - **SDRAM for disparities costs nothing**: {disparities:.2f} frames a second. A table in it gives
   {table:.2f}, because each slot of a column is in another row of the SDRAM. Rows of 1024 words, which hold a
   row of the table and more, and 8 internal banks, which keep more rows open, are better.
-- **With line buffers all of it may be SDRAM**: {line:.2f} of 128.56 frames a second with a bank for each
-  buffer. The preset `sdram` gets 81.8 from two banks.
+- **With line buffers all eight banks may be SDRAM**: {line:.2f} of 128.56 frames a second. The preset `sdram`
+  has two banks, and gets 81.8.
 """
 
 
@@ -208,8 +232,14 @@ def main():
     def striped(stripes):
         return study.only(found["stripes"], tables="real rig", name=str(stripes))["core"]
 
+    losing = [point["name"] for point in found["cheap"] if point["lost pixels"]]
+    lost = f"pixels are lost on {', '.join(losing)}" if losing else "no board loses pixels"
     text = TEXT.format(identity=banks_table(found, "identity"), rig=banks_table(found, "real rig"),
-                       price=price_table(found), stripes=stripes_table(found), sdram=sdram_table(found),
+                       price=price_table(found), stripes=stripes_table(found),
+                       cheap=cheap_table(found), lost=lost,
+                       zbt_core=study.only(found["cheap"], name="1 ZBT")["core"],
+                       sdram_core=study.only(found["cheap"], name="2 SDRAM")["core"],
+                       sdram=sdram_table(found),
                        four=four, four_rig=four_rig, loss=100 * (1 - four_rig / four),
                        eight=best(found, "identity", 9, 8)["core"], seven=seven, seven_rig=seven_rig,
                        five_rig=striped(5), of_four_rig=striped(4), of_eight_rig=striped(8),
