@@ -70,10 +70,12 @@ std::string stepped_text(const BoardConfig& board, const platform::Tables& table
         found.insert("pictures in stripes or sdram, as their tables point to other pixels");
     }
     if (!are_apart(sdram))
-      found.insert("rows of sdram that hold the end of a buffer and the begin of another");
-    if (camera && !sdram.empty()) found.insert("words of the local bus in sdram");
+      found.insert("rows of sdram that hold the end of one buffer and the start of another");
+    if (camera && !sdram.empty()) found.insert("accesses of captures and of the host in sdram");
   }
-  return found.empty() ? "" : fmt::format("simulated cycle by cycle: {}\n", fmt::join(found, "; "));
+  return found.empty()
+             ? ""
+             : fmt::format("simulated cycle by cycle, which takes longer: {}\n", fmt::join(found, "; "));
 }
 
 std::string head_text(const BoardConfig& board, const platform::Tables& tables,
