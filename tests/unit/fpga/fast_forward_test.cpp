@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "models/fpga/frame_run.h"
+#include "models/kernels/rectification_table.h"
 #include "tests/unit/fpga/core_figures.h"
 #include "tests/unit/fpga/random_core.h"
 
@@ -101,8 +102,10 @@ std::vector<std::uint64_t> stepped_cycles(const CoreConfig& config,
   std::iota(arbiter.priority.begin(), arbiter.priority.end(), memory::Port{0});
   memory::Arbitration arbitration(arbiter, banks);
   FrameRun run(config, banks, arbitration, UINT64_MAX);
-  const AccessPatterns patterns{AccessPattern(FrameGeometry(config), config.pixel_cache),
-                                AccessPattern(FrameGeometry(config), config.pixel_cache)};
+  const kernels::RectificationTable table = kernels::identity_table(config.width, config.height);
+  AccessPatterns patterns{AccessPattern(FrameGeometry(config), config.pixel_cache),
+                          AccessPattern(FrameGeometry(config), config.pixel_cache)};
+  for (AccessPattern& pattern : patterns) pattern.set_entries(table.entries.data());
   std::vector<std::uint64_t> stepped;
   for (int frame = 0; frame < 2; ++frame) {
     const std::uint64_t begin = run.cycle() - run.skipped_cycles();
