@@ -22,6 +22,15 @@ TEST(Pins, OfSsramFollowFromItsWords) {
   }
 }
 
+// 16 data pins each way, with a bit on both edges of the clock.
+TEST(Pins, OfQdrAreThoseOfOtherSsram) {
+  memory::SsramBankConfig bank = bank_of(524288);
+  const int of_zbt = pins_of(bank).all();
+  bank.kind = memory::BankKind::kQdr;
+  EXPECT_EQ(pins_of(bank).data, 32);
+  EXPECT_EQ(pins_of(bank).all(), of_zbt);
+}
+
 // The row and the column share the pins. The column needs one bit more.
 TEST(Pins, OfSdramFollowFromItsRowsAndColumns) {
   const auto address = [](std::uint32_t words, int row_words, int internal_banks) {

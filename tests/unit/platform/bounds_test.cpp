@@ -74,6 +74,21 @@ TEST_F(FrameBounds, AddUpTheAccessesThatShareABank) {
   EXPECT_GT(3 * kReads + kWords + kPipeline, 3 * kReads + 2 + kAfter);
 }
 
+// Six rows of 16 words are read. Four of them can be open, so that two are opened between accesses. In 275
+// cycles a refresh is due four times; one may fall before or behind all of them.
+TEST_F(FrameBounds, CountTheRowsAndTheRefreshesOfSdram) {
+  const uint64_t of_ssram = bound_of("bank bank6").value();
+  BankConfig& bank = board.banks[6];
+  bank.kind = memory::BankKind::kSdram;
+  bank.sdram = memory::SdramTiming{2, 16, 4, 5, 1, 64, 3};
+  EXPECT_EQ(kReads + 2 * 5 + 3 * 3, 275U);
+  EXPECT_EQ(bound_of("bank bank6"), of_ssram + 2 * 5 + 3 * 3);
+  bank.sdram->refresh_interval_cycles = std::nullopt;
+  EXPECT_EQ(bound_of("bank bank6"), of_ssram + 2 * 5);
+  bank.sdram->internal_banks = 8;
+  EXPECT_EQ(bound_of("bank bank6"), of_ssram);
+}
+
 TEST_F(FrameBounds, CountTheReadsOfLineBuffers) {
   board.matcher.fetch = fpga::Fetch::kLineBuffer;
   const uint64_t after = (3 - 1 + 1) + 1 + kPipeline;
