@@ -199,13 +199,16 @@ CountChanges Arbitration::take_recorded() const {
 }
 
 void Arbitration::count_skipped(const CountChanges& changes, std::uint64_t times) {
+  const std::size_t counts = counts_of_bank();
+  auto bank = shared_banks_.begin();
+  std::size_t first = port_count_;  // place of the bank; the changes are in the order of their places
   for (const auto& [place, change] : changes) {
     if (place < port_count_) {
       alone_grants_[place] += change * times;
-    } else {
-      BankArbiter& arbiter = *shared_banks_[(place - port_count_) / counts_of_bank()].arbiter;
-      arbiter.count_skipped((place - port_count_) % counts_of_bank(), change * times);
+      continue;
     }
+    for (; place >= first + counts; first += counts) ++bank;
+    bank->arbiter->count_skipped(place - first, change * times);
   }
 }
 

@@ -660,6 +660,7 @@ TransitionCache::Accesses FastForward::unhandled() const {
 void FastForward::end_stepped(std::uint64_t cycle) {
   const Stepped stepped = *stepped_;
   stepped_.reset();
+  if (stepped.part != control().match().part()) return;
   open_rows_.count(cycle);
   TransitionCache::Effect effect{progress(cycle),
                                  CoreControl::difference(control().counts(), stepped.counts),
@@ -679,7 +680,6 @@ void FastForward::end_stepped(std::uint64_t cycle) {
     if (effect.host.words != 0) effect.host.cycles = host_.first - stepped.begin.cycles;
     if (host_.words != 0) requests.words = HostRequests::kEndless;
   }
-  if (stepped.part != control().match().part()) return;
   StateNumber next = state(cycle);
   // A transition of a uniform area is also followed where the area goes on.
   if (const std::uint64_t area = known_.state(stepped.state).back(); FrameAreas::is_uniform_number(area))
