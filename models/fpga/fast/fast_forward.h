@@ -27,6 +27,9 @@ namespace stereotlm::fpga {
 // pixel. A grant and a pass both take one cycle. Only the counts differ: a pass counts as a grant until
 // resolve_accesses() corrects it. With the tables of a rig transitions then repeat far more often: a frame of
 // the paper's board takes a thirtieth of the time.
+//
+// What a port requests in a striped buffer or in sdram follows from the place in the frame (FrameAreas), and
+// from the open rows (OpenRows). Where it does not, the frame is stepped: see follows_from_places().
 class FastForward : public CoreStepper {
  public:
   // `arbitration` outlives this object. Throws std::invalid_argument if the configuration has problems.
