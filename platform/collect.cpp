@@ -195,7 +195,7 @@ BoardCounters counters_of(const Board& board) {
 
 Statistics collect_statistics(const BoardConfig& config, const Tables& tables, const Board& board,
                               const BoardCounters& counters) {
-  const bool is_cycle = board.core.fidelity() == fpga::Fidelity::kCycle;
+  const bool is_cycle = fpga::steps_cycles(board.core.fidelity());
   return collect_statistics(config, frame_accesses(config, tables), is_cycle ? "cycle" : "fast",
                             board.core.frames().frame_cycles(), counters);
 }

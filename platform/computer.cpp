@@ -8,9 +8,9 @@ constexpr std::size_t kInterrupts = 3;  // of the bridge and of both capture boa
 
 Computer::Computer(const sc_core::sc_module_name& name, const BoardConfig& config,
                    std::uint64_t host_memory_bytes, host::Program& program, capture::CameraSource& left,
-                   capture::CameraSource& right, Binder& binder)
+                   capture::CameraSource& right, Binder& binder, fpga::Fidelity fidelity)
     : sc_module(name),
-      board("board", config, binder),
+      board("board", config, binder, fidelity),
       pci_bus("pci_bus", pci_config(config, host_memory_bytes)),
       bridge("bridge", bridge_config(config)),
       host_memory("host_memory", host_memory_bytes),

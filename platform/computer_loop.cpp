@@ -18,7 +18,7 @@ ComputerLoop::ComputerLoop(const BoardConfig& config, unsigned char* host_memory
       cameras_{capture::CameraControl(camera_config(config), left, captures_[0]),
                capture::CameraControl(camera_config(config), right, captures_[1])},
       host_memory_(host_memory),
-      lines_(pci_bus_, bridge_, board_, captures_, fidelity == fpga::Fidelity::kFast) {
+      lines_(pci_bus_, bridge_, board_, captures_, fpga::has_pixels(fidelity)) {
   board_.local_bus().bind(bridge_.local_bus_master());
   pci_bus_.bind(kHostMemory, host_memory_window_);
   pci_bus_.bind(kBridgeSlave, bridge_slave_);

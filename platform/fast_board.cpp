@@ -22,8 +22,7 @@ FastBoard::FastBoard(const BoardConfig& config, fpga::Fidelity fidelity,
       arbitration_(arbiter_of_ports(config.fpga.arbiter, core_ports(config)), bank_configs_),
       frames_(config_, bank_configs_, arbitration_, stall_timeout_cycles),
       local_bus_({config.bridge.local_clock_mhz, buffer_ranges(config)}, bank_configs_.size(), *this),
-      fast_core_(config_, fidelity == fpga::Fidelity::kFast, frames_, host_port_, local_bus_, *this, clock_,
-                 *this),
+      fast_core_(config_, fpga::has_pixels(fidelity), frames_, host_port_, local_bus_, *this, clock_, *this),
       next_ps_(kNever) {
   host_port_.set_only_master(true);
   for (const memory::SsramBankConfig& bank : bank_configs_) banks_.emplace_back(4 * bank.words);

@@ -60,8 +60,9 @@ std::unique_ptr<ComputerView> make_computer(const sc_core::sc_module_name& name,
                                             std::uint64_t host_memory_bytes, host::Program& program,
                                             capture::CameraSource& left, capture::CameraSource& right,
                                             Binder& binder, fpga::Fidelity fidelity) {
-  if (fidelity == fpga::Fidelity::kCycle)
-    return std::make_unique<Computer>(name, config, host_memory_bytes, program, left, right, binder);
+  if (fpga::steps_cycles(fidelity))
+    return std::make_unique<Computer>(name, config, host_memory_bytes, program, left, right, binder,
+                                      fidelity);
   return std::make_unique<FastComputer>(name, config, host_memory_bytes, program, left, right, binder,
                                         fidelity);
 }

@@ -68,7 +68,7 @@ class FastComputer : public sc_core::sc_module,
   sc_core::sc_event interrupt_changed_{"interrupt_changed"};
 };
 
-// Computer at Fidelity::kCycle, FastComputer at the others.
+// A Computer if `fidelity` steps cycles, else a FastComputer.
 std::unique_ptr<ComputerView> make_computer(const sc_core::sc_module_name& name, const BoardConfig& config,
                                             std::uint64_t host_memory_bytes, host::Program& program,
                                             capture::CameraSource& left, capture::CameraSource& right,

@@ -58,10 +58,10 @@ PreloadedSystem::PreloadedSystem(const sc_core::sc_module_name& name, const Boar
                                  host::FrameSink& sink, Binder& binder, fpga::Fidelity fidelity)
     : sc_module(name),
       board("board", checked(config, tables), binder, fidelity),
-      host("host",
-           {config.image.width, config.image.height, frames, fidelity != fpga::Fidelity::kTiming,
-            buffer_bases(config)},
-           pointer_to(tables.left), pointer_to(tables.right), source, sink) {
+      host(
+          "host",
+          {config.image.width, config.image.height, frames, fpga::has_pixels(fidelity), buffer_bases(config)},
+          pointer_to(tables.left), pointer_to(tables.right), source, sink) {
   binder.bind(host.registers, board.core.registers, "host_to_registers");
   binder.bind(host.memory, board.core.local_bus, "host_to_local_bus");
   board.core.done(done_);

@@ -14,10 +14,17 @@ namespace stereotlm::fpga {
 
 // How the core simulates a frame. Results and times are the same at every fidelity.
 enum class Fidelity : std::uint8_t {
-  kCycle,   // cycle by cycle, every access a transaction
-  kFast,    // data in one step, by direct access; cycles fast-forwarded (FastForward)
-  kTiming,  // as kFast, but without pictures and disparities; a frame that is stepped has both
+  kCycle,        // cycle by cycle, every access a transaction
+  kCycleTiming,  // as kCycle, but no disparities are computed
+  kFast,         // data in one step, by direct access; cycles fast-forwarded (FastForward)
+  kTiming,       // as kFast, but without pictures and disparities
 };
+constexpr bool steps_cycles(Fidelity fidelity) {
+  return fidelity == Fidelity::kCycle || fidelity == Fidelity::kCycleTiming;
+}
+constexpr bool has_pixels(Fidelity fidelity) {
+  return fidelity == Fidelity::kCycle || fidelity == Fidelity::kFast;
+}
 
 enum class Fetch : std::uint8_t {
   kColumn,      // n pixels of a column, one per cycle (paper section 3.2)

@@ -41,8 +41,10 @@ CoreDatapath::SideStages::SideStages(const CoreConfig& config, Side side)
   }
 }
 
-CoreDatapath::CoreDatapath(const CoreConfig& config, memory::Crossbar& crossbar, Binder& binder)
+CoreDatapath::CoreDatapath(const CoreConfig& config, bool has_pixels, memory::Crossbar& crossbar,
+                           Binder& binder)
     : config_(config), crossbar_(crossbar), ports_(config) {
+  if (!has_pixels) blank_matcher_ = std::make_unique<BlankMatcher>("blank_matcher", config);
   for (const SideStages& stages : sides_) {
     for (const Readers& readers : stages.lanes) pixel_readers_.push_back(readers.pixel.get());
   }
@@ -80,7 +82,13 @@ void CoreDatapath::bind_streams() {
       } else {
         slots_out.bind(readers.pixel->slots_in);
       }
-      readers.pixel->pixels_out.bind(stages.filter.pixels_in);
+      if (!blank_matcher_) {
+        readers.pixel->pixels_out.bind(stages.filter.pixels_in);
+      } else if (side == Side::kLeft) {
+        readers.pixel->pixels_out.bind(blank_matcher_->left_in);
+      } else {
+        readers.pixel->pixels_out.bind(blank_matcher_->right_in);
+      }
     }
     StreamOut<PixelColumn>* last_out = &stages.filter.columns_out;
     if (stages.census) {
@@ -97,6 +105,10 @@ void CoreDatapath::bind_streams() {
   cost_array_.tree_out.bind(select_min_tree_.sums_in);
   select_min_chain_.matches_out.bind(lr_check_.right_in);
   select_min_tree_.matches_out.bind(lr_check_.left_in);
+  if (blank_matcher_) {
+    blank_matcher_->right_matches_out.bind(lr_check_.right_in);
+    blank_matcher_->left_matches_out.bind(lr_check_.left_in);
+  }
   lr_check_.disparities_out.bind(result_packer_.disparities_in);
   result_packer_.words_out.bind(result_writer_.words_in);
 }
@@ -123,6 +135,7 @@ void CoreDatapath::start_frame(const FrameBases& bases, const kernels::JointOffs
   cost_array_.start_frame();
   select_min_chain_.start_frame();
   lr_check_.start_frame();
+  if (blank_matcher_) blank_matcher_->start_frame();
   result_packer_.start_frame();
 }
 

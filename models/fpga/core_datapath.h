@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "models/binder.h"
+#include "models/fpga/blank_matcher.h"
 #include "models/fpga/census.h"
 #include "models/fpga/core_config.h"
 #include "models/fpga/core_control.h"
@@ -47,8 +48,9 @@ class CoreDatapath {
     std::unique_ptr<RowBuffer> row_buffer;  // null unless the fetch is kLineBuffer
   };
 
-  // `binder` binds the stages to the crossbar, which outlives this object.
-  CoreDatapath(const CoreConfig& config, memory::Crossbar& crossbar, Binder& binder);
+  // `has_pixels`: whether disparities are computed. `binder` binds the stages to the crossbar, which outlives
+  // this object.
+  CoreDatapath(const CoreConfig& config, bool has_pixels, memory::Crossbar& crossbar, Binder& binder);
 
   // Starts a frame on these buffers, whose banks must exist. `offsets`: without effect unless the tables are
   // joint.
@@ -87,6 +89,7 @@ class CoreDatapath {
   CostArray cost_array_{"cost_array", config_};
   SelectMinChain select_min_chain_{"select_min_chain", config_};
   SelectMinTree select_min_tree_{"select_min_tree"};
+  std::unique_ptr<BlankMatcher> blank_matcher_;  // null if there are pixels
   LrCheck lr_check_{"lr_check", config_};
   ResultPacker result_packer_{"result_packer", config_};
   ResultWriter result_writer_{"result_writer", config_.result_fifo_words};

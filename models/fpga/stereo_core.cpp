@@ -30,7 +30,7 @@ StereoCore::StereoCore(const sc_core::sc_module_name& name, const StereoCoreConf
       clock_(config.core.clock_mhz),
       ports_(config.core),
       crossbar_("crossbar", crossbar_config(config)),
-      datapath_(config_.core, crossbar_, binder) {
+      datapath_(config_.core, has_pixels(config_.fidelity), crossbar_, binder) {
   SC_HAS_PROCESS(StereoCore);
   if (const double banks_mhz = config.memory.banks.front().clock_mhz; banks_mhz != config.core.clock_mhz) {
     throw std::invalid_argument(std::string(this->name()) +
@@ -54,7 +54,7 @@ void StereoCore::start_frame(const FrameStart& start) {
   errors_before_ = datapath_.errors();
   // Cycle 0 is the first that begins at or after the strobe.
   const std::uint64_t cycle = clock_.edge_at_or_after(start.time_ps);
-  is_direct_ = config_.fidelity != Fidelity::kCycle && fast_core_.start_frame(cycle, start);
+  is_direct_ = !steps_cycles(config_.fidelity) && fast_core_.start_frame(cycle, start);
   if (!is_direct_) {
     ++stepped_frames_;
     frames_.start_stepped(cycle, start.bases);
@@ -105,7 +105,7 @@ void StereoCore::stalled(std::uint64_t cycles) {
 }
 
 bool StereoCore::fast_forwards() const {
-  return config_.fidelity != Fidelity::kCycle && (!frames_.is_running() || is_direct_);
+  return !steps_cycles(config_.fidelity) && (!frames_.is_running() || is_direct_);
 }
 
 void StereoCore::catch_up() {

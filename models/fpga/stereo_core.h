@@ -110,7 +110,7 @@ class StereoCore : public sc_core::sc_module, private FastCore::Board {
   CoreDatapath datapath_;
   HostPort host_port_{local_bus_.control(), crossbar_, crossbar_.arbitration(), frames_, clock_};
   FastCore fast_core_{config_.core,
-                      config_.fidelity == Fidelity::kFast,
+                      has_pixels(config_.fidelity),
                       frames_,
                       host_port_,
                       local_bus_.control(),

@@ -16,7 +16,7 @@ struct SadCost : KeyedCost<Keys> {
   static Int16s right(const std::int16_t* pixels) { return load<Int16s>(pixels); }
   static Sum change(Int16s right_pixels, const std::int16_t* left_pixels) {
     const auto a = reinterpret_cast<Bytes>(right_pixels);
-    const auto b = load<Bytes>(left_pixels);
+    const auto b = in_register(load<Bytes>(left_pixels));
     return difference_of_bytes<Keys::kScale>(larger(a, b) - smaller(a, b));
   }
 };

@@ -33,8 +33,9 @@ struct NarrowKeys {
   static Best best_of_none() { return {none(), Int16s{}}; }
   // The smaller sum wins. Of equal sums `best` wins, whose disparity is smaller.
   static Best better(const Best& best, const Best& other) {
-    const auto smaller_sum = (best.key & -kGroup) > other.key;
-    return {smaller_sum ? other.key : best.key, smaller_sum ? other.group : best.group};
+    const Int16s key = in_register(best.key);
+    const auto smaller_sum = (key & -kGroup) > other.key;
+    return {smaller_sum ? other.key : key, smaller_sum ? other.group : best.group};
   }
   static Best better(const Best& best, Kept kept, int group) { return better(best, {kept, int16s(group)}); }
   // Loads the best keys, each from the lane before; none() in the lanes in which `outside` is the largest

@@ -47,6 +47,13 @@ struct ColumnSums {
   }
 };
 
+// Which left windows of a group may be outside the image, in each lane.
+enum class Outside {
+  kNone,
+  kSome,
+  kAllOrNone,
+};
+
 // Matches one group of disparities along a row.
 template <class Cost, int kCount>
 struct Group {
@@ -94,7 +101,7 @@ struct Group {
     }
   }
 
-  template <bool kRightBased, bool kSomeOutside>
+  template <bool kRightBased, Outside kOutside>
   void match(int count) {
     for (std::ptrdiff_t s = 0; s < count; ++s) {
       const auto right = cost.right(columns.right);
@@ -109,9 +116,10 @@ struct Group {
         Kept best;
         for (std::ptrdiff_t j = 0; j < kCount; ++j) {
           Key key = cost.right_key(scores[j], j);
-          if (kSomeOutside) key = Keys::unless(load<Int16s>(outside + j * kLanes), key);
+          if (kOutside == Outside::kSome) key = Keys::unless(load<Int16s>(outside + j * kLanes), key);
           best = j == 0 ? Keys::only(key) : Keys::best_of(best, key);
         }
+        if (kOutside == Outside::kAllOrNone) best = Keys::unless(load<Int16s>(outside), best);
         *right_best = Keys::better(*right_best, best, first);
         ++right_best;
         outside += kLanes;
@@ -136,14 +144,24 @@ struct Group {
 
 template <class Cost, int kCount, bool kRightBased>
 void match_group(const MatchPlan& plan, const MatchMemory& memory, int first, std::int16_t* column_sums) {
-  int inside = plan.first_outside - first - kCount + 1;
-  if (inside < 0) inside = 0;
   const int columns = plan.columns;
-  if (inside > columns || !kRightBased) inside = columns;
   Group<Cost, kCount> group(plan, memory, first, column_sums);
   group.template enter<true>(plan.window - 1);
-  group.template match<kRightBased, false>(inside);
-  group.template match<kRightBased, true>(columns - inside);
+  int matched = 0;  // positions
+  const auto until = [&](int end) {
+    const int begin = matched;
+    if (matched < end) matched = end < columns ? end : columns;
+    return matched - begin;
+  };
+  // The first position at which all left windows of the last segment are outside. Those of the segment before
+  // it follow `columns` positions later.
+  int outside = plan.first_outside - first;
+  if (!kRightBased) outside = columns + kCount;
+  group.template match<kRightBased, Outside::kNone>(until(outside - kCount + 1));
+  for (; matched < columns; outside += columns) {
+    group.template match<kRightBased, Outside::kSome>(until(outside));
+    group.template match<kRightBased, Outside::kAllOrNone>(until(outside + columns - kCount + 1));
+  }
   group.leave();
 }
 

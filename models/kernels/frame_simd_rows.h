@@ -29,52 +29,51 @@ void rectify(const std::uint8_t* source, const std::uint32_t* table, int count, 
   }
 }
 
-// Sums the first row and, with kSecond, the second. Stores the sum in `out` or, with kMore, adds it to `out`.
-template <bool kMore, bool kSecond>
-void add_two_rows(const std::uint8_t* first, const std::uint8_t* second, int width, std::int16_t* out) {
-  std::ptrdiff_t u = 0;
-  for (; u + kLanes <= width; u += kLanes) {
-    Int16s sum = __builtin_convertvector(load<HalfVectorBytes>(first + u), Int16s);
-    if (kSecond) sum += __builtin_convertvector(load<HalfVectorBytes>(second + u), Int16s);
-    if (kMore) sum += load<Int16s>(out + u);
-    store(sum, out + u);
-  }
-  for (; u < width; ++u)
-    out[u] = static_cast<std::int16_t>(first[u] + (kSecond ? second[u] : 0) + (kMore ? out[u] : 0));
+void widen(const std::uint8_t* pixels, int width, std::int16_t* out) {
+  for (std::ptrdiff_t u = 0; u < width; ++u) out[u] = pixels[u];
 }
 
-void add_rows(const std::uint8_t* const* rows, int count, int width, std::int16_t* out) {
-  if (count == 1) {
-    add_two_rows<false, false>(rows[0], nullptr, width, out);
-  } else {
-    add_two_rows<false, true>(rows[0], rows[1], width, out);
-  }
-  for (int row = 2; row + 1 < count; row += 2) add_two_rows<true, true>(rows[row], rows[row + 1], width, out);
-  if (count > 2 && count % 2 != 0) add_two_rows<true, false>(rows[count - 1], nullptr, width, out);
+void add_rows(const std::int16_t* a, const std::int16_t* b, int width, std::int16_t* out) {
+  for (std::ptrdiff_t u = 0; u < width; u += kLanes)
+    store(load<Int16s>(a + u) + load<Int16s>(b + u), out + u);
 }
 
-Int32s level(Int32s sum, int shift) { return larger(smaller(sum >> shift, int32s(127)), int32s(-128)) + 128; }
+// A block of neighbouring output pixels.
+struct FilterBlock {
+  Int16s vectors[kFilterVectors];
+};
 
-void filter_row(const std::int16_t* const* rows, const FilterTaps& taps, int width, std::uint8_t* out) {
-  constexpr int kVectors = 2;
-  for (std::ptrdiff_t u = 0; u < width; u += kVectors * kLanes) {
-    // Sums for the output pixels at even and at odd positions.
-    Int32s even[kVectors] = {};
-    Int32s odd[kVectors] = {};
-    const std::int32_t* weight = taps.weights;
-    for (int row = 0; row < taps.rows; ++row) {
-      const std::int16_t* pixels = rows[row] + u;
-      for (int pair = 0; pair < taps.pairs; ++pair, pixels += 2) {
-        const auto weights = reinterpret_cast<Int16s>(int32s(*weight++));
-        for (std::ptrdiff_t v = 0; v < kVectors; ++v) {
-          even[v] += multiply_pairs(load<Int16s>(pixels + v * kLanes), weights);
-          odd[v] += multiply_pairs(load<Int16s>(pixels + v * kLanes + 1), weights);
-        }
+// Adds up the pixels of one weight, for the output pixels from column u on.
+FilterBlock sum_of_taps(const std::int16_t* const* pixels, int count, std::ptrdiff_t u) {
+  FilterBlock sum{};
+  for (int i = 0; i < count; ++i) {
+    for (std::ptrdiff_t v = 0; v < kFilterVectors; ++v)
+      sum.vectors[v] += load<Int16s>(pixels[i] + u + v * kLanes);
+  }
+  return sum;
+}
+
+void filter_row(const FilterTaps& taps, int width, std::uint8_t* out) {
+  for (std::ptrdiff_t u = 0; u < width; u += kFilterVectors * kLanes) {
+    Int32s low[kFilterVectors] = {};
+    Int32s high[kFilterVectors] = {};
+    const std::int16_t* const* pixels = taps.pixels;
+    for (int i = 0; i < taps.pair_count; ++i) {
+      const WeightPair& pair = taps.pairs[i];
+      const FilterBlock first = sum_of_taps(pixels, pair.first_count, u);
+      pixels += pair.first_count;
+      const FilterBlock second = sum_of_taps(pixels, pair.second_count, u);
+      pixels += pair.second_count;
+      const auto weights = reinterpret_cast<Int16s>(int32s(pair.weights));
+      for (std::ptrdiff_t v = 0; v < kFilterVectors; ++v) {
+        low[v] += multiply_pairs(low_pairs(first.vectors[v], second.vectors[v]), weights);
+        high[v] += multiply_pairs(high_pairs(first.vectors[v], second.vectors[v]), weights);
       }
     }
-    for (std::ptrdiff_t v = 0; v < kVectors; ++v) {
-      const Int16s levels = join_lanes(level(even[v], taps.shift), level(odd[v], taps.shift));
-      store(__builtin_convertvector(levels, HalfVectorBytes), out + u + v * kLanes);
+    for (std::ptrdiff_t v = 0; v < kFilterVectors; ++v) {
+      const Int16s level = pack(low[v] >> taps.shift, high[v] >> taps.shift);
+      const Int16s clamped = larger(smaller(level, int16s(127)), int16s(-128)) + 128;
+      store(__builtin_convertvector(clamped, HalfVectorBytes), out + u + v * kLanes);
     }
   }
 }
@@ -84,47 +83,61 @@ void pair_pixels(const std::uint8_t* entering, const std::uint8_t* leaving, int 
     out[i] = static_cast<std::int16_t>(entering[i] | leaving[i] << 8);
 }
 
-// Images are transposed in blocks of 8 x 8 lanes, with any instruction set.
+// Images are transposed in blocks of 8 positions and 8 lanes; a vector holds kBlocks of them side by side.
 constexpr std::ptrdiff_t kBlock = 8;
-using Block8 = std::uint8_t __attribute__((vector_size(8)));
-using Block16 = std::int16_t __attribute__((vector_size(16)));
+constexpr std::ptrdiff_t kBlocks = kLanes / kBlock;
 
-void transpose(Block16 (&rows)[kBlock]) {
-  Block16 a[kBlock];
-  for (std::ptrdiff_t i = 0; i < 4; ++i) {
-    a[2 * i] = __builtin_shufflevector(rows[i], rows[i + 4], 0, 8, 1, 9, 2, 10, 3, 11);
-    a[2 * i + 1] = __builtin_shufflevector(rows[i], rows[i + 4], 4, 12, 5, 13, 6, 14, 7, 15);
-  }
-  Block16 b[kBlock];
-  for (std::ptrdiff_t i = 0; i < 4; ++i) {
-    b[2 * i] = __builtin_shufflevector(a[i], a[i + 4], 0, 8, 1, 9, 2, 10, 3, 11);
-    b[2 * i + 1] = __builtin_shufflevector(a[i], a[i + 4], 4, 12, 5, 13, 6, 14, 7, 15);
-  }
-  for (std::ptrdiff_t i = 0; i < 4; ++i) {
-    rows[2 * i] = __builtin_shufflevector(b[i], b[i + 4], 0, 8, 1, 9, 2, 10, 3, 11);
-    rows[2 * i + 1] = __builtin_shufflevector(b[i], b[i + 4], 4, 12, 5, 13, 6, 14, 7, 15);
+// Loads 8 values of each array, side by side.
+Int16s load_blocks(const std::int16_t* const* from, std::ptrdiff_t position) {
+  using Block = std::int16_t __attribute__((vector_size(2 * kBlock)));
+  const auto block = [&](std::ptrdiff_t index) { return load<Block>(from[index * kBlock] + position); };
+#if defined(__AVX2__)
+  const auto two_blocks = [&](std::ptrdiff_t first) {
+    return __builtin_shufflevector(block(first), block(first + 1), 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12,
+                                   13, 14, 15);
+  };
+#endif
+#if defined(__AVX512BW__)
+  return reinterpret_cast<Int16s>(
+      _mm512_maskz_inserti64x4(0xFF, _mm512_castsi256_si512(reinterpret_cast<__m256i>(two_blocks(0))),
+                               reinterpret_cast<__m256i>(two_blocks(2)), 1));
+#elif defined(__AVX2__)
+  return two_blocks(0);
+#else
+  return block(0);
+#endif
+}
+
+void transpose_blocks(Int16s (&rows)[kBlock]) {
+  for (int step = 0; step < 3; ++step) {
+    Int16s pairs[kBlock];
+    for (std::ptrdiff_t i = 0; i < kBlock / 2; ++i) {
+      pairs[2 * i] = low_pairs(rows[i], rows[i + kBlock / 2]);
+      pairs[2 * i + 1] = high_pairs(rows[i], rows[i + kBlock / 2]);
+    }
+    for (std::ptrdiff_t i = 0; i < kBlock; ++i) rows[i] = pairs[i];
   }
 }
 
 void to_lanes(const std::int16_t* const* from, int count, std::int16_t* out) {
-  for (std::ptrdiff_t lane = 0; lane < kLanes; lane += kBlock) {
-    for (std::ptrdiff_t i = 0; i < count; i += kBlock) {
-      Block16 rows[kBlock];
-      for (std::ptrdiff_t k = 0; k < kBlock; ++k) rows[k] = load<Block16>(from[lane + k] + i);
-      transpose(rows);
-      for (std::ptrdiff_t k = 0; k < kBlock; ++k) store(rows[k], out + (i + k) * kLanes + lane);
-    }
+  for (std::ptrdiff_t i = 0; i < count; i += kBlock) {
+    Int16s rows[kBlock];
+    for (std::ptrdiff_t k = 0; k < kBlock; ++k) rows[k] = load_blocks(from + k, i);
+    transpose_blocks(rows);
+    for (std::ptrdiff_t k = 0; k < kBlock; ++k) store(rows[k], out + (i + k) * kLanes);
   }
 }
 
 void from_lanes(const std::int16_t* from, int count, std::uint8_t* const* out) {
-  for (std::ptrdiff_t lane = 0; lane < kLanes; lane += kBlock) {
-    for (std::ptrdiff_t i = 0; i < count; i += kBlock) {
-      Block16 rows[kBlock];
-      for (std::ptrdiff_t k = 0; k < kBlock; ++k) rows[k] = load<Block16>(from + (i + k) * kLanes + lane);
-      transpose(rows);
-      for (std::ptrdiff_t k = 0; k < kBlock; ++k)
-        store(__builtin_convertvector(rows[k], Block8), out[lane + k] + i);
+  for (std::ptrdiff_t i = 0; i < count; i += kBlock) {
+    Int16s rows[kBlock];
+    for (std::ptrdiff_t k = 0; k < kBlock; ++k) rows[k] = load<Int16s>(from + (i + k) * kLanes);
+    transpose_blocks(rows);
+    for (std::ptrdiff_t k = 0; k < kBlock; ++k) {
+      const auto bytes = __builtin_convertvector(rows[k], HalfVectorBytes);
+      for (std::ptrdiff_t block = 0; block < kBlocks; ++block)
+        __builtin_memcpy(out[kBlock * block + k] + i, reinterpret_cast<const char*>(&bytes) + kBlock * block,
+                         kBlock);
     }
   }
 }

@@ -77,6 +77,9 @@ struct QuotientKeys {
   static Key unless(Int16s outside, const Key& key) {
     return {smaller(key.even, ~(even_lanes(outside) << 16)), smaller(key.odd, ~(odd_lanes(outside) << 16))};
   }
+  static Kept unless(Int16s outside, const Kept& kept) {
+    return {unless(outside, kept.best), unless(outside, kept.second)};
+  }
   static Best best_of_none() { return none(); }
   static Best better(const Best& a, const Best& b) {
     return {greater(a.best, b.best), greater(greater(a.second, b.second), lesser(a.best, b.best))};

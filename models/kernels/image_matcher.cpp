@@ -205,9 +205,6 @@ void ImageMatcher::decide(const std::uint8_t* left, const std::uint8_t* right, s
 
 void ImageMatcher::run(const std::uint8_t* left, const std::uint8_t* right, std::uint8_t* left_disparity,
                        std::uint8_t* right_disparity) {
-  const auto pixels = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
-  std::fill_n(left_disparity, pixels, kInvalidDisparity);
-  if (plan_.right_based) std::fill_n(right_disparity, pixels, kInvalidDisparity);
   if (windows_across_ < 1 || windows_down_ < 1) return;
   column_sums_.fill(0);
   for (MatchedImage* side : {&left_, &right_}) side->column_statistics.fill(0);

@@ -24,13 +24,24 @@ constexpr int padded_rows(int rows) { return (rows + kFilterBlock - 1) / kFilter
 inline constexpr int kMostFrameLanes = 32;
 inline constexpr int kMostFrameVectorBytes = 2 * kMostFrameLanes;
 
-// Filter taps as pairs of neighbouring columns: weights[row * pairs + p] holds the weight of column 2p in the
-// lower 16 bits and the weight of column 2p + 1 in the upper 16 bits. A weight that does not exist is 0.
+// Simd::filter_row works on blocks of this many vectors of pixels.
+inline constexpr int kFilterVectors = 4;
+inline constexpr int kFilterPadding = kFilterVectors * kMostFrameLanes;
+
+// Two weights of a filter, and the number of pixels that have them. Different weights have different pixels:
+// the pixels of a weight are added up before they are weighted.
+struct WeightPair {
+  std::int32_t weights = 0;  // the first in the lower 16 bits, the second in the upper 16 bits
+  int first_count = 0;
+  int second_count = 0;
+};
 struct FilterTaps {
-  int rows = 0;
-  int pairs = 0;
+  const WeightPair* pairs = nullptr;
+  int pair_count = 0;
+  // Pixels of the first weight of the first pair, then those of its second weight, and so on. Each is the
+  // pixel of the output pixel at column 0; those of the other columns follow it.
+  const std::int16_t* const* pixels = nullptr;
   int shift = 0;
-  const std::int32_t* weights = nullptr;
 };
 
 // How ImageMatcher divides an image among the lanes of a vector. The image is cut into bands of rows, and
@@ -116,11 +127,14 @@ struct Simd {
   void (*rectify)(const std::uint8_t* source, const std::uint32_t* table, int count, int width,
                   std::uint8_t* out);
 
-  // out[u] = sum over the rows of rows[..][u], for `width` pixels.
-  void (*add_rows)(const std::uint8_t* const* rows, int count, int width, std::int16_t* out);
-  // out[u] = clamp(128 + floor(S / 2^shift), 0, 255), where S = sum over the taps of weight * rows[row][u +
-  // column]. Exact if S fits into 32 bits. Reads the rows and writes `out` up to 64 pixels beyond `width`.
-  void (*filter_row)(const std::int16_t* const* rows, const FilterTaps& taps, int width, std::uint8_t* out);
+  // out[u] = pixels[u], for `width` pixels.
+  void (*widen)(const std::uint8_t* pixels, int width, std::int16_t* out);
+  // out[u] = a[u] + b[u], for `width` values. The arrays hold whole vectors.
+  void (*add_rows)(const std::int16_t* a, const std::int16_t* b, int width, std::int16_t* out);
+  // out[u] = clamp(128 + floor(S / 2^shift), 0, 255), where S = sum over the taps of weight * pixel. Exact if
+  // S fits into 32 bits, and the sum of the pixels of each weight into 16 bits. Reads the pixels and writes
+  // `out` up to kFilterPadding pixels beyond `width`.
+  void (*filter_row)(const FilterTaps& taps, int width, std::uint8_t* out);
 
   // out[i] = entering[i] + 256 * leaving[i].
   void (*pair_pixels)(const std::uint8_t* entering, const std::uint8_t* leaving, int width,

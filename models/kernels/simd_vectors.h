@@ -37,6 +37,15 @@ void store(const Vector& vector, void* to) {
   __builtin_memcpy(to, &vector, sizeof vector);
 }
 
+// Returns the vector. Compilers load a vector from memory once for each use, unless it comes from here.
+template <class Vector>
+Vector in_register(Vector vector) {
+#if defined(__SSE2__)
+  asm("" : "+x"(vector));
+#endif
+  return vector;
+}
+
 template <class Vector>
 Vector smaller(Vector a, Vector b) {
   return a < b ? a : b;
@@ -127,5 +136,54 @@ inline Int32s multiply_pairs(Int16s a, Int16s b) {
   return even_lanes(a) * even_lanes(b) + odd_lanes(a) * odd_lanes(b);
 #endif
 }
+
+// Return pairs of a lane of `a` and the same lane of `b`: of half of the lanes, and of the others. pack() puts
+// results of such pairs back in order: of the low pairs and of the high pairs. A result that does not fit into
+// 16 bits becomes the nearest number that does.
+#if defined(__AVX512BW__)
+inline Int16s low_pairs(Int16s a, Int16s b) {
+  return reinterpret_cast<Int16s>(
+      _mm512_unpacklo_epi16(reinterpret_cast<__m512i>(a), reinterpret_cast<__m512i>(b)));
+}
+inline Int16s high_pairs(Int16s a, Int16s b) {
+  return reinterpret_cast<Int16s>(
+      _mm512_unpackhi_epi16(reinterpret_cast<__m512i>(a), reinterpret_cast<__m512i>(b)));
+}
+inline Int16s pack(Int32s low, Int32s high) {
+  return reinterpret_cast<Int16s>(
+      _mm512_packs_epi32(reinterpret_cast<__m512i>(low), reinterpret_cast<__m512i>(high)));
+}
+#elif defined(__AVX2__)
+inline Int16s low_pairs(Int16s a, Int16s b) {
+  return reinterpret_cast<Int16s>(
+      _mm256_unpacklo_epi16(reinterpret_cast<__m256i>(a), reinterpret_cast<__m256i>(b)));
+}
+inline Int16s high_pairs(Int16s a, Int16s b) {
+  return reinterpret_cast<Int16s>(
+      _mm256_unpackhi_epi16(reinterpret_cast<__m256i>(a), reinterpret_cast<__m256i>(b)));
+}
+inline Int16s pack(Int32s low, Int32s high) {
+  return reinterpret_cast<Int16s>(
+      _mm256_packs_epi32(reinterpret_cast<__m256i>(low), reinterpret_cast<__m256i>(high)));
+}
+#else
+inline Int16s low_pairs(Int16s a, Int16s b) {
+  return __builtin_shufflevector(a, b, 0, 8, 1, 9, 2, 10, 3, 11);
+}
+inline Int16s high_pairs(Int16s a, Int16s b) {
+  return __builtin_shufflevector(a, b, 4, 12, 5, 13, 6, 14, 7, 15);
+}
+inline Int16s pack(Int32s low, Int32s high) {
+#if defined(__SSE2__)
+  return reinterpret_cast<Int16s>(
+      _mm_packs_epi32(reinterpret_cast<__m128i>(low), reinterpret_cast<__m128i>(high)));
+#else
+  const auto clamped = [](Int32s lanes) {
+    return reinterpret_cast<Int16s>(larger(smaller(lanes, int32s(32767)), int32s(-32768)));
+  };
+  return __builtin_shufflevector(clamped(low), clamped(high), 0, 2, 4, 6, 8, 10, 12, 14);
+#endif
+}
+#endif
 
 }  // namespace stereotlm::kernels::STEREOTLM_SIMD

@@ -34,7 +34,7 @@ class StereoPipeline {
     const auto pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
     for (PreparedImage* side : {&left_, &right_}) {
       if (filter_) side->filtered.resize(pixels + ImageFilter::kPadding);
-      side->disparity.resize(pixels);
+      side->disparity.resize(pixels, kInvalidDisparity);
     }
   }
 
@@ -70,15 +70,17 @@ class StereoPipeline {
   // Every pixel that has a window has a left-based disparity, which points to a pixel that has a window too.
   // All other pixels are invalid.
   void check(const std::uint32_t* left_table, std::uint8_t* disparity) const {
-    std::fill_n(disparity, left_.disparity.size(), kInvalidDisparity);
     const int windows = width_ - 2 * radius_;  // in a row
-    if (windows <= 0) return;
-    for (int row = radius_; row < height_ - radius_; ++row) {
+    std::ptrdiff_t end = 0;                    // of the pixels that are written
+    for (int row = radius_; row < height_ - radius_ && windows > 0; ++row) {
       const std::ptrdiff_t begin = std::ptrdiff_t{row} * width_ + radius_;
+      std::fill(disparity + end, disparity + begin, kInvalidDisparity);
       simd_.check_row(left_.disparity.data() + begin, tolerance_ ? right_.disparity.data() + begin : nullptr,
                       left_table != nullptr ? left_table + begin : nullptr, windows, tolerance_.value_or(0),
                       disparity + begin);
+      end = begin + windows;
     }
+    std::fill(disparity + end, disparity + left_.disparity.size(), kInvalidDisparity);
   }
 
   int width_;

@@ -81,8 +81,10 @@ std::string read_whole_file(const std::filesystem::path& path, std::uintmax_t mo
   if (error) refuse(path, error.message());
   if (bytes > most_bytes) refuse(path, fmt::format("{} bytes: must be {} at most", bytes, most_bytes));
   std::ifstream file(path, std::ios::binary);
-  std::string content((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  std::string content(bytes, '\0');
+  file.read(content.data(), static_cast<std::streamsize>(bytes));
   if (!file.is_open() || file.bad()) refuse(path, std::strerror(errno));
+  content.resize(static_cast<std::size_t>(file.gcount()));
   return content;
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -50,29 +51,33 @@ std::vector<std::uint8_t> encode_png_gray(const kernels::GrayImage& image) {
 }
 
 std::vector<std::uint8_t> encode_disparity_color_png(const kernels::GrayImage& disparity, int disparities) {
-  std::vector<std::uint8_t> colours;
-  for (const std::uint8_t d : disparity.pixels) {
-    const bool is_valid = d != kernels::kInvalidDisparity;
-    const double level = is_valid && disparities > 1 ? 255.0 * d / (disparities - 1) : 0;
-    const std::uint32_t colour = is_valid ? kTurbo.at(static_cast<std::size_t>(std::lround(level))) : 0;
-    for (const unsigned shift : {0U, 8U, 16U}) colours.push_back(static_cast<std::uint8_t>(colour >> shift));
+  std::array<std::uint32_t, 256> colours{};
+  for (int d = 0; d < kernels::kInvalidDisparity; ++d) {
+    const double level = disparities > 1 ? std::min(255.0, 255.0 * d / (disparities - 1)) : 0;
+    colours[static_cast<std::size_t>(d)] = kTurbo[static_cast<std::size_t>(std::lround(level))];
   }
-  return calib::encode_png(disparity.width, disparity.height, calib::PngPixel::kColour, colours.data());
+  std::vector<std::uint8_t> samples(3 * disparity.pixels.size());
+  auto sample = samples.begin();
+  for (const std::uint8_t d : disparity.pixels) {
+    for (const unsigned shift : {0U, 8U, 16U}) *sample++ = static_cast<std::uint8_t>(colours[d] >> shift);
+  }
+  return calib::encode_png(disparity.width, disparity.height, calib::PngPixel::kColour, samples.data());
 }
 
 std::vector<std::uint8_t> encode_pfm(const kernels::GrayImage& disparity) {
+  std::array<std::uint32_t, 256> bits{};  // of the float for each disparity
+  for (int d = 0; d < 256; ++d) {
+    const float value =
+        d == kernels::kInvalidDisparity ? std::numeric_limits<float>::infinity() : static_cast<float>(d);
+    std::memcpy(&bits[static_cast<std::size_t>(d)], &value, sizeof value);
+  }
   const std::string header = fmt::format("Pf\n{} {}\n-1.0\n", disparity.width, disparity.height);
-  std::vector<std::uint8_t> bytes(header.begin(), header.end());
-  bytes.reserve(bytes.size() + 4 * disparity.pixels.size());
+  std::vector<std::uint8_t> bytes(header.size() + 4 * disparity.pixels.size());
+  auto byte = std::copy(header.begin(), header.end(), bytes.begin());
   for (int y = disparity.height - 1; y >= 0; --y) {
     for (int x = 0; x < disparity.width; ++x) {
-      const int d = disparity.at(x, y);
-      const float value =
-          d == kernels::kInvalidDisparity ? std::numeric_limits<float>::infinity() : static_cast<float>(d);
-      std::uint32_t bits = 0;
-      std::memcpy(&bits, &value, sizeof bits);
       for (unsigned shift = 0; shift < 32; shift += 8)
-        bytes.push_back(static_cast<std::uint8_t>(bits >> shift));
+        *byte++ = static_cast<std::uint8_t>(bits[disparity.at(x, y)] >> shift);
     }
   }
   return bytes;

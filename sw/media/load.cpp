@@ -5,6 +5,7 @@
 #include <cctype>
 #include <cstddef>
 #include <stdexcept>
+#include <utility>
 
 #include "sw/files/whole_file.h"
 #include "sw/media/decode.h"
@@ -59,29 +60,37 @@ std::uint8_t grey_of(const std::uint8_t* bgr) {
   return static_cast<std::uint8_t>((bgr[0] * 3735 + bgr[1] * 19235 + bgr[2] * 9798 + (1 << 14)) >> 15);
 }
 
-kernels::GrayImage to_gray_image(const Picture& picture) {
-  kernels::GrayImage image(picture.width, picture.height);
+kernels::GrayImage to_gray_image(Picture picture) {
+  kernels::GrayImage image;
+  image.width = picture.width;
+  image.height = picture.height;
+  if (picture.channels == 1) {
+    image.pixels = std::move(picture.samples);
+    return image;
+  }
   const auto channels = static_cast<std::size_t>(picture.channels);
-  for (std::size_t i = 0; i < image.pixels.size(); ++i)
-    image.pixels[i] = channels == 1 ? picture.samples[i] : grey_of(&picture.samples[channels * i]);
+  image.pixels.reserve(picture.samples.size() / channels);
+  for (auto pixel = picture.samples.begin(); pixel != picture.samples.end(); pixel += picture.channels)
+    image.pixels.push_back(grey_of(&*pixel));
   return image;
 }
 
 }  // namespace
 
 LoadedGray load_gray(const std::string& path) {
-  const Picture picture = read_picture(path);
-  return {to_gray_image(picture), picture.channels != 1};
+  Picture picture = read_picture(path);
+  const bool is_colour = picture.channels != 1;
+  return {to_gray_image(std::move(picture)), is_colour};
 }
 
 Truth load_truth(const std::string& path, double scale) {
   if (!std::isfinite(scale) || scale <= 0) {
     throw std::invalid_argument("truth scale = " + std::to_string(scale) + ": must be positive and finite");
   }
-  const Picture picture = read_picture(path);
+  Picture picture = read_picture(path);
   if (picture.channels != 1)
     throw std::runtime_error(fmt::format("'{}': 8-bit colour: ground truth must be 8-bit grey", path));
-  return {to_gray_image(picture), scale};
+  return {to_gray_image(std::move(picture)), scale};
 }
 
 const Decoders& decoders() {

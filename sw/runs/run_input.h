@@ -42,9 +42,10 @@ struct RunInput {
   std::unique_ptr<files::OutputFolder> folder;    // null: no result files
 
   // The mode of the simulation.
-  RunMode mode() const {
-    const fpga::Fidelity at_fast = timing_only ? fpga::Fidelity::kTiming : fpga::Fidelity::kFast;
-    return {camera, fast ? at_fast : fpga::Fidelity::kCycle, frames, record || trace != nullptr};
+  RunMode mode() const { return {camera, fidelity(fast), frames, record || trace != nullptr}; }
+  fpga::Fidelity fidelity(bool at_fast) const {
+    if (at_fast) return timing_only ? fpga::Fidelity::kTiming : fpga::Fidelity::kFast;
+    return timing_only ? fpga::Fidelity::kCycleTiming : fpga::Fidelity::kCycle;
   }
 };
 

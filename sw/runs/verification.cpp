@@ -47,7 +47,7 @@ void run_other(const RunInput& input, const process::Child::Tell& tell) {
   Binder binder;
   RunMode mode = input.mode();
   mode.record = false;
-  mode.fidelity = input.fast ? fpga::Fidelity::kCycle : fpga::Fidelity::kFast;
+  mode.fidelity = input.fidelity(!input.fast);
   const auto simulation = make_simulation(input.board, input.tables, *pairs, mode, binder);
   while (!simulation->finished()) {
     for (const Result& result : simulation->advance()) tell(line_of(result, !input.timing_only));

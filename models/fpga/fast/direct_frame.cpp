@@ -92,7 +92,10 @@ bool DirectFrame::read(const kernels::JointOffsets& offsets) {
   const bool is_readable =
       read_tables(offsets) && is_direct(left) && is_direct(right) && is_direct(kResultGroup);
   if (is_readable && pipeline_) {
-    pipeline_->run(buffer(left, true), buffer(right, true), entries_[0], entries_[1], disparities_.data());
+    const auto table = [this](std::size_t side) {
+      return patterns_[side].is_identity() ? nullptr : entries_[side];
+    };
+    pipeline_->run(buffer(left, true), buffer(right, true), table(0), table(1), disparities_.data());
   }
   return is_readable;
 }

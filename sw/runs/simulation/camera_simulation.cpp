@@ -70,7 +70,7 @@ platform::Statistics CameraSimulation::statistics() const {
         fmt::format("statistics of {} frames requested while the core is busy", deliveries_.size()));
   }
   platform::Statistics statistics =
-      platform::collect_statistics(board(), tables(), fidelity_ == fpga::Fidelity::kCycle ? "cycle" : "fast",
+      platform::collect_statistics(board(), tables(), fpga::steps_cycles(fidelity_) ? "cycle" : "fast",
                                    computer_->core().frame_cycles(), counters_, deliveries_);
   if (timeline_) {
     for (std::string& failed : timeline_->failed(statistics)) statistics.failed.push_back(std::move(failed));
@@ -89,7 +89,7 @@ void CameraSimulation::frame_delivered(const driver::DeliveredFrame& frame) {
     if (timeline_) timeline_->mark_end(counters_);
   }
   kernels::GrayImage disparity;
-  if (fidelity_ != fpga::Fidelity::kTiming) {
+  if (fpga::has_pixels(fidelity_)) {
     disparity.width = board().image.width;
     disparity.height = board().image.height;
     const std::ptrdiff_t pixels = std::ptrdiff_t{disparity.width} * disparity.height;

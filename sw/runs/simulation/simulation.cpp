@@ -70,7 +70,7 @@ Simulation::Simulation(const platform::BoardConfig& board, const platform::Table
     : board_(board),
       tables_(tables),
       pairs_(pairs),
-      slice_cycles_(fidelity == fpga::Fidelity::kCycle ? kSliceCycles : kFastSliceCycles),
+      slice_cycles_(fpga::steps_cycles(fidelity) ? kSliceCycles : kFastSliceCycles),
       frames_(frames) {}
 
 std::vector<Result> Simulation::advance() {

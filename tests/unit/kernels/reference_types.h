@@ -8,6 +8,7 @@
 #include "models/kernels/image_filter.h"
 #include "models/kernels/image_matcher.h"
 #include "models/kernels/stereo.h"
+#include "models/kernels/words.h"
 #include "tests/support/random_board.h"
 #include "tests/support/reference_arithmetic.h"
 
@@ -79,7 +80,8 @@ struct Matches {
 inline Matches match(const kernels::GrayImage& left, const kernels::GrayImage& right, int window,
                      int disparities, const kernels::MatchingCost& cost = {}) {
   kernels::ImageMatcher matcher(left.width, left.height, window, disparities, true, cost);
-  Matches matches{left, left};
+  const kernels::GrayImage invalid(left.width, left.height, kernels::kInvalidDisparity);
+  Matches matches{invalid, invalid};
   matcher.run(left.pixels.data(), right.pixels.data(), matches.left_based.pixels.data(),
               matches.right_based.pixels.data());
   return matches;
