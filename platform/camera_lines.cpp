@@ -64,7 +64,7 @@ bool CameraLines::skip(std::uint64_t now_ps, std::uint64_t end_ps) {
   return false;
 }
 
-// The addresses of the line's words on the local bus, if they go to two banks that serve one word a cycle.
+// The addresses of the line's words on the local bus, if their banks serve one word a cycle.
 std::optional<CameraLines::OfSides<std::uint64_t>> CameraLines::bank_addresses() const {
   const std::uint64_t bytes = 4 * words_of_line();
   OfSides<std::uint64_t> addresses{};
@@ -74,7 +74,6 @@ std::optional<CameraLines::OfSides<std::uint64_t>> CameraLines::bank_addresses()
     if (!address || !board_.serves_one_word_per_cycle(*address, bytes)) return std::nullopt;
     addresses[side] = *address;
   }
-  if (memory::bank_of_address(addresses[0]) == memory::bank_of_address(addresses[1])) return std::nullopt;
   return addresses;
 }
 
@@ -114,12 +113,19 @@ void CameraLines::apply(const Line& line, std::uint64_t now_ps, const OfSides<st
     pci_bus_.skip_bursts(kMasters[side], line.sides[side].pci);
   pci_bus_.skip_to({line.pci.last_granted, first + line.pci.free_clock}, line.buses.pci_busy);
   local_bus_.skip_bursts(line.buses.bursts, line.buses.local_busy, first_local + line.idle_clock);
+  bursts_.clear();
+  auto next = addresses;
+  for (const Line::LocalBurst& burst : line.bursts) {
+    bursts_.push_back({next[burst.side], first_local + burst.first_clock, burst.words});
+    next[burst.side] += 4 * burst.words;
+  }
+  board_.skip_writes(bursts_);
   const std::uint64_t words = words_of_line();
   bridge_.skip_posted((bridge_.turn() + line.turns) % pci::bridge::kChannels);
   for (std::size_t side = 0; side < kSides; ++side) {
     const Line::SideLine& of_side = line.sides[side];
     bridge_.count_posted(addresses[side], words);
-    std::uint32_t* const stored = board_.skip_writes(addresses[side], words, first_local, of_side.bursts);
+    std::uint32_t* const stored = board_.count_skipped(addresses[side], words);
     if (has_pixels_) captures_[side].copy_line(stored);
     captures_[side].skip_line(pci_bus_.clock().edge_ps(first + of_side.end_clock), of_side.pci.transactions);
   }
@@ -192,9 +198,8 @@ void CameraLines::narrow_local_bounds(std::uint64_t pci_clock) {
 void CameraLines::record_local_burst() {
   const LocalBurst& burst = local_bus_.burst();
   const std::uint64_t first = local_bus_.request_clock() - record_.local_clock;
-  const bool is_right =
-      memory::bank_of_address(burst.address) == memory::bank_of_address(record_.addresses[1]);
-  record_.line.sides[is_right ? 1 : 0].bursts.push_back({first, burst.words});
+  const bool is_right = burst.address - record_.addresses[1] < 4 * words_of_line();
+  record_.line.bursts.push_back({is_right ? std::size_t{1} : 0, first, burst.words});
   ++record_.line.buses.bursts;
 }
 

@@ -30,8 +30,9 @@ namespace stereotlm::platform {
 //
 // This holds only for lines that nothing else touches:
 // - Bridge, local bus and PCI bus are idle when the line begins, and both boards request then.
-// - The words go to two banks. Each serves one word a cycle, independently of the running frame. The local
-//   bus and the core have the same clock.
+// - The banks of the words serve one word a cycle, whatever the running frame does: it does not use the bank,
+//   or the host comes first. The local bus and the core have the same clock. The frame then runs as the
+//   bursts demand.
 // - Until the last word is stored, no other master requests the PCI bus, and no other block has an event.
 // - No FIFO would run full if the words of a burst left it only at the end of the burst. Else the data clock
 //   in which each word leaves would matter too.
@@ -56,7 +57,7 @@ class CameraLines {
   bool skip(std::uint64_t now_ps, std::uint64_t end_ps);
 
   // While a line is recorded, stepped() is to be called after each event of PCI bus and bridge, and drop()
-  // when something else happens.
+  // when something else happens, unless it is the core that serves words of the line.
   bool is_recording() const { return is_recording_; }
   void stepped(std::uint64_t now_ps, bool is_of_pci_bus);
   void drop() { is_recording_ = false; }
@@ -98,10 +99,16 @@ class CameraLines {
   struct Line {
     struct SideLine {
       pci::PciBusControl::MasterCounts pci;
-      std::uint64_t end_clock = 0;                      // of the PCI bus: its last burst ends
-      std::vector<fpga::HostPort::ServedWords> bursts;  // on the local bus: when its words request their bank
+      std::uint64_t end_clock = 0;  // of the PCI bus: its last burst ends
+    };
+    // A burst on the local bus: its side, and the clock in which its words begin to request their bank.
+    struct LocalBurst {
+      std::size_t side;
+      std::uint64_t first_clock;
+      std::uint64_t words;
     };
     OfSides<SideLine> sides;
+    std::vector<LocalBurst> bursts;
     pci::PciBusControl::Position pci;  // after the line
     BusCounts buses;
     std::size_t turns = 0;         // how often the turn on the local bus was passed on
@@ -165,6 +172,7 @@ class CameraLines {
   std::uint64_t recorded_ = 0;  // lines of which a record was begun
   std::uint64_t unknown_ = 0;   // lines that no record fitted
   std::uint64_t skipped_ = 0;
+  std::vector<fpga::HostPort::SkippedBurst> bursts_;  // of apply()
 };
 
 }  // namespace stereotlm::platform

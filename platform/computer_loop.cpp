@@ -78,7 +78,7 @@ void ComputerLoop::run(std::uint64_t end_ps) {
       const bool is_of_pci_bus = kind == kPciSteps || kind == kPciDecides;
       if (is_of_pci_bus || kind == kLocalBusEnds || kind == kLocalBusChooses) {
         lines_.stepped(now_ps_, is_of_pci_bus);
-      } else {
+      } else if (kind != kCoreDecides) {
         lines_.drop();
       }
     }

@@ -40,9 +40,8 @@ void ComputerView::trace_buses(BusTrace& trace) {
 }
 
 std::uint64_t ComputerView::work_done() {
-  catch_up();
   const ComputerControls of = controls();
-  return of.core.control().work() + words_for_results(of.pci_bus.stats(now_ps()));
+  return of.core.work() + words_for_results(of.pci_bus.stats(now_ps()));
 }
 
 }  // namespace stereotlm::platform

@@ -36,7 +36,10 @@ class ComputerView {
   fpga::FrameRun& core() { return controls().core; }
   // To be called while the core runs no frame.
   ComputerCounters counters() { return controls().counters(board_counters(), now_ps()); }
-  // A measure of progress towards a result. It advances a running frame to the present.
+  // Advances a running frame to the present.
+  virtual void catch_up() = 0;
+  // A measure of progress towards a result. It may be that of an earlier time, unless catch_up() has just
+  // been called.
   std::uint64_t work_done();
   // Hands everything that happens to `timeline`, which outlives the computer. To be called at time 0.
   void record(Timeline& timeline);
@@ -48,7 +51,6 @@ class ComputerView {
   // The time up to which the controls have been stepped.
   virtual std::uint64_t now_ps() const = 0;
   virtual BoardCounters board_counters() = 0;
-  virtual void catch_up() = 0;
 };
 
 }  // namespace stereotlm::platform

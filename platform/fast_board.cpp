@@ -40,13 +40,12 @@ void FastBoard::catch_up(std::uint64_t now_ps) {
 bool FastBoard::serves_one_word_per_cycle(std::uint64_t address, std::uint64_t bytes) const {
   const std::size_t bank = memory::bank_of_address(address);
   return bank < banks_.size() && banks_[bank].holds(address - memory::crossbar_address(bank, 0), bytes) &&
-         host_port_.serves_one_word_per_cycle(bank);
+         host_port_.serves_one_word_per_cycle(bank) &&
+         !fast_core_.is_hazard({address, address + bytes}, true);
 }
 
-std::uint32_t* FastBoard::skip_writes(std::uint64_t address, std::uint64_t words, std::uint64_t cycle,
-                                      const std::vector<fpga::HostPort::ServedWords>& bursts) {
+std::uint32_t* FastBoard::count_skipped(std::uint64_t address, std::uint64_t words) {
   local_bus_.count_words(true, address, words);
-  host_port_.skip_writes(address, words, cycle, bursts);
   count_direct(memory::bank_of_address(address), words);
   changes(address, 4 * words);
   return reinterpret_cast<std::uint32_t*>(direct(address, 4 * words));

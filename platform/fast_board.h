@@ -54,12 +54,14 @@ class FastBoard : private fpga::LocalBusControl::Core,
 
   // To skip bursts that repeat:
   //
-  // Whether bursts to these bytes are served one word a cycle, independently of the running frame.
+  // Whether bursts that write these bytes are served one word a cycle, whatever the running frame does.
   bool serves_one_word_per_cycle(std::uint64_t address, std::uint64_t bytes) const;
-  // Skips such bursts, which write `words` words from `address` on; see HostPort::skip_writes(). Returns
-  // where the caller must write the words.
-  std::uint32_t* skip_writes(std::uint64_t address, std::uint64_t words, std::uint64_t cycle,
-                             const std::vector<fpga::HostPort::ServedWords>& bursts);
+  // See HostPort::skip_writes().
+  void skip_writes(const std::vector<fpga::HostPort::SkippedBurst>& bursts) {
+    host_port_.skip_writes(bursts);
+  }
+  // Counts the words that skipped bursts write, from `address` on. Returns where the caller must write them.
+  std::uint32_t* count_skipped(std::uint64_t address, std::uint64_t words);
 
   // Advances the running frame to `now_ps`, for observers. See StereoCore::catch_up().
   void catch_up(std::uint64_t now_ps);

@@ -64,11 +64,12 @@ void CoreControl::skip_to(memory::StateReader& state, std::uint64_t consumed, st
   result_.skip_to(*state++ >> kHalf, words);
 }
 
-std::uint64_t CoreControl::earliest_last_write(std::uint64_t cycle) const {
+std::uint64_t CoreControl::earliest_last_write(std::uint64_t cycle, std::uint64_t consumed,
+                                               std::uint64_t words) const {
   // The last words enter the queue together when the matcher has consumed all. They are written later.
-  if (const std::uint64_t works = match_.cycles_left(); works > 0)
-    return cycle + works + static_cast<std::uint64_t>(geometry_.last_rows) - 1;
-  return cycle + result_.words_left() - 1;
+  const std::uint64_t works = match_.cycles_left() - consumed * static_cast<std::uint64_t>(geometry_.folds);
+  if (works > 0) return cycle + works + static_cast<std::uint64_t>(geometry_.last_rows) - 1;
+  return cycle + result_.words_left() - words - 1;
 }
 
 }  // namespace stereotlm::fpga

@@ -124,8 +124,7 @@ FrameLatencies FrameRun::route_ports() {
 }
 
 std::uint64_t FrameRun::stalled_cycles() {
-  const Progress& ahead = core_.ahead();
-  const std::uint64_t work = control().work() + ahead.consumed + ahead.words;
+  const std::uint64_t work = this->work();
   const std::uint64_t cycles = work == work_ ? cycle_ - work_cycle_ : 0;
   if (work == work_ && cycles < stall_timeout_cycles_) return 0;
   work_ = work;

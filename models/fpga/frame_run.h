@@ -84,12 +84,17 @@ class FrameRun {
       run_ahead_recorded(end);
     }
   }
+  // As run_ahead(), but may stop earlier: where that costs more than to skip known cycles.
+  void skip_ahead(std::uint64_t end) {
+    if (cycles_ == nullptr) cycle_ = core_.skip_ahead(cycle_, end);
+  }
   // Makes `cycle` the next cycle to run. To be called only while no frame runs.
   void skip_to(std::uint64_t cycle) { cycle_ = cycle; }
   // Serves words of the host in a direct frame, see FastForward.
   FastForward::Served serve_host(const FastForward::Route& route, std::uint64_t first, std::size_t words) {
     return core_.serve_host(cycle_, route, first, words);
   }
+  void serve_series(const std::vector<FastForward::Burst>& bursts) { core_.serve_series(cycle_, bursts); }
   // To be called before the route of the host changes.
   void host_route_changes() { core_.settle(cycle_); }
   // To be called when control().frame_done() becomes true.
@@ -110,8 +115,10 @@ class FrameRun {
   const CoreControl& control() const { return core_.control(); }
   // A lower bound of the cycle in which the last write of the frame is granted.
   std::uint64_t earliest_last_write() const {
-    return control().earliest_last_write(cycle_ - core_.ahead().cycles);
+    return control().earliest_last_write(cycle_, core_.ahead().consumed, core_.ahead().words);
   }
+  // CoreControl::work() in cycle().
+  std::uint64_t work() const { return control().work() + core_.ahead().consumed + core_.ahead().words; }
   // Words written by the frame that was started last.
   std::uint64_t writes() const { return all_writes() - writes_before_; }
   // The finished frames among those of start_direct().
@@ -166,7 +173,7 @@ class FrameRun {
   std::vector<int> latencies_;  // [bank]: read latency, cycles
   FastForward core_;
   std::uint64_t stall_timeout_cycles_;
-  std::uint64_t work_ = 0;        // CoreControl::work() in the last call of stalled_cycles()
+  std::uint64_t work_ = 0;        // work() in the last call of stalled_cycles()
   std::uint64_t work_cycle_ = 0;  // cycle of the last call that found progress, or of the last timeout
   State state_ = State::kIdle;
   std::uint64_t cycle_ = 0;

@@ -158,23 +158,41 @@ void HostPort::serve_in_step(std::uint64_t first_cycle) {
 }
 
 bool HostPort::serves_one_word_per_cycle(std::size_t bank) const {
-  return is_in_step_ && is_only_master_ && !is_contended(bank) && arbitration_.arbiter(bank).grants_at_once();
+  const memory::BankArbiter& arbiter = arbitration_.arbiter(bank);
+  if (!is_in_step_ || !is_only_master_) return false;
+  return is_contended(bank) ? arbiter.grants_first(port_) && frames_.cycles() == nullptr
+                            : arbiter.grants_at_once();
 }
 
-// As in serve_in_step(), each grant after the first one changes the state of the policy as a cycle without
-// request does. So do the cycles between the bursts: one decide() serves all of them.
-void HostPort::skip_writes(std::uint64_t address, std::uint64_t words, std::uint64_t cycle,
-                           const std::vector<ServedWords>& bursts) {
+void HostPort::skip_writes(const std::vector<SkippedBurst>& bursts) {
   const bool in_frame = frames_.is_running();
+  ConflictRecorder* const conflicts = frames_.is_recorded() ? frames_.conflicts() : nullptr;
   count_served(UINT64_MAX, in_frame);
-  served_bank_ = memory::bank_of_address(address);
-  const std::uint64_t end_cycle = cycle + bursts.back().first_cycle + bursts.back().words;
-  count({end_cycle - words, words, decide(served_bank_, cycle + bursts.front().first_cycle, true)}, in_frame);
-  if (!frames_.is_recorded()) return;
-  ConflictRecorder& conflicts = *frames_.conflicts();
-  const HostTraffic traffic = conflicts.traffic_of(true, address);
-  for (const ServedWords& burst : bursts)
-    conflicts.add_served(traffic, served_bank_, cycle + burst.first_cycle, burst.words, true);
+  contended_.clear();
+  for (std::size_t i = 0; i < bursts.size(); ++i) {
+    const SkippedBurst& burst = bursts[i];
+    const std::size_t bank = memory::bank_of_address(burst.address);
+    const HostTraffic traffic =
+        conflicts != nullptr ? conflicts->traffic_of(true, burst.address) : HostTraffic::kCapture;
+    if (is_contended(bank)) {
+      const auto word = static_cast<std::uint32_t>(memory::address_in_bank(burst.address) / 4);
+      contended_.push_back({{bank, true, traffic, word}, burst.first_cycle, burst.words});
+      continue;
+    }
+    if (conflicts != nullptr) conflicts->add_served(traffic, bank, burst.first_cycle, burst.words, true);
+    // As in serve_in_step(), each grant after the first one changes the state of the policy as a cycle
+    // without request does. So do the cycles between the bursts: one decide() serves all words to a bank.
+    const auto is_to_bank = [bank](const SkippedBurst& other) {
+      return memory::bank_of_address(other.address) == bank;
+    };
+    const auto begin = bursts.begin() + static_cast<std::ptrdiff_t>(i);
+    if (std::any_of(bursts.begin(), begin, is_to_bank)) continue;
+    std::uint64_t words = 0;
+    for (auto other = begin; other != bursts.end(); ++other) words += is_to_bank(*other) ? other->words : 0;
+    served_bank_ = bank;
+    count({burst.first_cycle, words, decide(bank, burst.first_cycle, true)}, in_frame);
+  }
+  if (!contended_.empty()) frames_.serve_series(contended_);
 }
 
 // What the burst is for; without meaning unless conflicts are recorded.

@@ -76,17 +76,17 @@ class HostPort {
 
   // To skip bursts that repeat:
   //
-  // Whether bursts to this bank are served one word a cycle, and independently of the frame.
+  // Whether bursts to this bank are served one word a cycle, whatever the frame does.
   bool serves_one_word_per_cycle(std::size_t bank) const;
-  // Words that are served one a cycle, from this cycle on.
-  struct ServedWords {
+  // A burst to such a bank that writes words from this byte address on, one a cycle from this cycle on.
+  struct SkippedBurst {
+    std::uint64_t address;
     std::uint64_t first_cycle;
     std::uint64_t words;
   };
-  // Counts skipped bursts that have written `words` words to such a bank, from byte address `address` on. The
-  // cycles of `bursts` are relative to `cycle`. The running frame cannot have ended by the last of them.
-  void skip_writes(std::uint64_t address, std::uint64_t words, std::uint64_t cycle,
-                   const std::vector<ServedWords>& bursts);
+  // Counts skipped bursts, and runs a frame that uses their banks. They must be in the order of their times.
+  // The running frame cannot end before the last of them.
+  void skip_writes(const std::vector<SkippedBurst>& bursts);
 
   // Finishes the frame, after the cycle in which its last write was granted. Words served before the frame's
   // cycle() belong to it, later ones do not.
@@ -141,7 +141,8 @@ class HostPort {
   bool is_joined_ = false;       // the burst takes part in the arbitration
   bool is_moved_ = false;        // the data of the burst is in place; its words are still to be served
   std::vector<Served> served_;
-  std::size_t served_bank_ = 0;  // bank of all served_
+  std::vector<FastForward::Burst> contended_;  // of skip_writes()
+  std::size_t served_bank_ = 0;                // bank of all served_
   HostTraffic served_traffic_ = HostTraffic::kCapture;
 };
 

@@ -119,7 +119,9 @@ class ImageFilter {
   }
 
   // The last kernel.size rows of the image, with half_ more columns on each side.
-  std::int16_t* row_at(int row) { return rows_[static_cast<std::size_t>(row) % rows_.size()].data(); }
+  std::int16_t* row_at(int row) {
+    return rows_[static_cast<unsigned>(row) % static_cast<unsigned>(rows_.size())].data();
+  }
   void enter(const std::uint8_t* pixels, std::int16_t* row) const {
     simd_.widen(pixels, width_, row + half_);
     std::fill_n(row, half_, row[half_]);

@@ -58,6 +58,11 @@ void draw_contended_captures(RandomBoard& board, SplitMix64& random) {
     image->resize(2);
     for (PlainBuffer& picture : *image) picture = one_of(random, used);
   }
+  if (random.chance(50)) return;
+  // Banks without turnaround then serve each word of the host at once.
+  board.arbitration = PlainArbitration::kFixedPriority;
+  std::stable_partition(board.priority.begin(), board.priority.end(),
+                        [](PlainPort port) { return port == PlainPort::kHost; });
 }
 
 // Pictures are captured into two banks that nothing else uses, line after line.

@@ -86,7 +86,9 @@ std::uint64_t FastCore::advance(std::uint64_t now_ps) {
       return next_check_ps_;
     } else {
       const std::uint64_t most_ps = clock_.edge_ps(frames_.cycle() + kMostCyclesAhead);
-      frames_.run_ahead(clock_.edge_at_or_after(std::min(board_.horizon_ps(), most_ps)));
+      const std::uint64_t end = clock_.edge_at_or_after(std::min(board_.horizon_ps(), most_ps));
+      frames_.skip_ahead(end);
+      if (clock_.edge_ps(frames_.earliest_last_write()) < now_ps) frames_.run_ahead(end);
     }
     if (frames_.control().frame_done()) {
       host_port_.finish_frame();

@@ -95,6 +95,9 @@ class TransitionCache {
              a.host == b.host;
     }
   };
+  struct StateHash {
+    std::size_t operator()(const State& state) const;
+  };
   struct Transition {
     StateNumber next = 0;
     std::uint32_t effect = 0;
@@ -167,9 +170,6 @@ class TransitionCache {
   void count_followed(CoreControl& control, memory::Arbitration& arbitration);
 
  private:
-  struct StateHash {
-    std::size_t operator()(const State& state) const;
-  };
   struct EffectHash {
     std::size_t operator()(const Effect& effect) const;
   };

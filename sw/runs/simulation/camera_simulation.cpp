@@ -99,13 +99,17 @@ void CameraSimulation::frame_delivered(const driver::DeliveredFrame& frame) {
 }
 
 void CameraSimulation::check_progress() {
-  if (const std::uint64_t work = computer_->work_done(); work != last_work_) {
-    last_work_ = work;
-    last_work_at_ = sc_core::sc_time_stamp();
-    return;
-  }
+  const auto has_progressed = [this] {
+    return std::exchange(last_work_, computer_->work_done()) != last_work_;
+  };
   const double idle = (sc_core::sc_time_stamp() - last_work_at_).to_seconds();
-  if (idle < stall_timeout_seconds_) return;
+  bool progressed = has_progressed();
+  if (!progressed && idle >= stall_timeout_seconds_) {
+    computer_->catch_up();
+    progressed = has_progressed();
+  }
+  if (progressed) last_work_at_ = sc_core::sc_time_stamp();
+  if (progressed || idle < stall_timeout_seconds_) return;
   throw std::runtime_error(
       fmt::format("no progress for {:.3f} s of simulated time; delivered: {} of {} frames; the driver waits "
                   "for: {}; {}",

@@ -87,6 +87,7 @@ std::vector<Result> Simulation::advance() {
                     frames_done()));
   }
   if (!finished()) check_progress();
+  if (!new_.empty()) last_ = new_.back();
   return std::move(new_);
 }
 
@@ -131,7 +132,6 @@ void Simulation::add_result(Result result) {
   ++frames_done_;
   result.time_ps = kernel_time::to_ps(sc_core::sc_time_stamp());
   cycles_of_done_ = cycles();
-  last_ = result;
   if (cycles_) {
     cycles_->hand_out(Clock(board_.fpga.clock_mhz).edge_at_or_after(result.time_ps));
     buses_->hand_out(result.time_ps);

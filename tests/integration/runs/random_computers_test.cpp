@@ -239,14 +239,14 @@ std::string problems_of(std::uint64_t seed, const test::RandomKnobs& knobs) {
     Pictures pictures(computer.board);
     const Outcome outcome =
         simulate(board, tables, pictures, static_cast<std::uint64_t>(input.frames), fidelity);
-    const bool with_pixels = fidelity != Fidelity::kTiming;
+    const bool with_pixels = fpga::has_pixels(fidelity);
     std::string text =
         test::differing_lines(figures_of(plain, input, with_pixels), figures_of(outcome, with_pixels));
     for (const std::string& failed : outcome.statistics.failed) text += failed + '\n';
     return text;
   };
-  const std::string text =
-      differences_at({Fidelity::kCycle, Fidelity::kFast, Fidelity::kTiming}, differences);
+  const std::string text = differences_at(
+      {Fidelity::kCycle, Fidelity::kCycleTiming, Fidelity::kFast, Fidelity::kTiming}, differences);
   return text.empty() ? text : text + platform::to_yaml(board);
 }
 
