@@ -147,39 +147,58 @@ void for_each_part(const fpga::Placement& buffer, const FrameAccesses& accesses,
   }
 }
 
-// The accesses of the core and of the host to each bank for frames 0..frames-1. With separate ports it is the
-// larger of the reads and the writes.
-std::vector<std::uint64_t> bank_accesses(const BoardConfig& board, const FrameAccesses& accesses,
-                                         bool pairs_are_written, std::uint64_t frames) {
-  const fpga::CoreConfig core = core_config(board);
-  const fpga::CorePorts ports(core);
-  const fpga::BufferBases buffers = buffer_bases(board);
-  std::vector<std::uint64_t> reads(board.banks.size());
-  std::vector<std::uint64_t> writes(board.banks.size());
-  for (std::uint64_t frame = 0; frame < frames; ++frame) {
-    const fpga::Placements placements = placements_of(core, buffers.of_frame(frame));
+// Accesses to the banks.
+class BankAccesses {
+ public:
+  explicit BankAccesses(const BoardConfig& board)
+      : board_(board), reads_(board.banks.size()), writes_(board.banks.size()) {}
+
+  // Adds those of the core in a frame with these buffers.
+  void add_core(const fpga::Placements& placements, const FrameAccesses& accesses) {
+    const fpga::CorePorts ports(core_config(board_));
     for (std::size_t port = 0; port < accesses.reads.size(); ++port) {
       for_each_part(
           placements[ports.group_of(port)], accesses, port,
-          [&](std::size_t bank, std::size_t /*part*/, std::uint64_t count) { reads[bank] += count; });
+          [&](std::size_t bank, std::size_t /*part*/, std::uint64_t count) { reads_[bank] += count; });
     }
-    const auto add_whole = [&](std::size_t group, std::vector<std::uint64_t>& counts) {
-      const fpga::Placement& buffer = placements[group];
-      for (std::size_t part = 0; part < buffer.parts().size(); ++part)
-        counts[fpga::registers::bank_of(buffer.parts()[part])] +=
-            buffer.rows_of_part(part, board.image.height) * buffer.row_words();
-    };
+    add_writes(placements[fpga::kResultGroup]);
+  }
+  // Adds one for each word of a buffer of 8-bit values.
+  void add_reads(const fpga::Placement& buffer) { add_words(buffer, reads_); }
+  void add_writes(const fpga::Placement& buffer) { add_words(buffer, writes_); }
+  // The fewest cycles that a bank needs: with separate ports for the larger of the reads and the writes.
+  std::uint64_t cycles(std::size_t bank) const {
+    return memory::has_separate_ports(board_.banks[bank].kind) ? std::max(reads_[bank], writes_[bank])
+                                                               : reads_[bank] + writes_[bank];
+  }
+
+ private:
+  void add_words(const fpga::Placement& buffer, std::vector<std::uint64_t>& counts) {
+    for (std::size_t part = 0; part < buffer.parts().size(); ++part)
+      counts[fpga::registers::bank_of(buffer.parts()[part])] +=
+          buffer.rows_of_part(part, board_.image.height) * buffer.row_words();
+  }
+
+  const BoardConfig& board_;
+  std::vector<std::uint64_t> reads_;
+  std::vector<std::uint64_t> writes_;
+};
+
+// The accesses of the core and of the host to each bank for frames 0..frames-1.
+BankAccesses all_accesses(const BoardConfig& board, const FrameAccesses& accesses, bool pairs_are_written,
+                          std::uint64_t frames) {
+  const fpga::CoreConfig core = core_config(board);
+  const fpga::BufferBases buffers = buffer_bases(board);
+  BankAccesses all(board);
+  for (std::uint64_t frame = 0; frame < frames; ++frame) {
+    const fpga::Placements placements = placements_of(core, buffers.of_frame(frame));
+    all.add_core(placements, accesses);
     for (const fpga::Side side : fpga::kSides) {
-      if (pairs_are_written) add_whole(fpga::pixel_group(side), writes);
+      if (pairs_are_written) all.add_writes(placements[fpga::pixel_group(side)]);
     }
-    add_whole(fpga::kResultGroup, writes);
-    add_whole(fpga::kResultGroup, reads);  // by the host
+    all.add_reads(placements[fpga::kResultGroup]);  // by the host
   }
-  for (std::size_t bank = 0; bank < reads.size(); ++bank) {
-    const bool is_beside = memory::has_separate_ports(board.banks[bank].kind);
-    reads[bank] = is_beside ? std::max(reads[bank], writes[bank]) : reads[bank] + writes[bank];
-  }
-  return reads;
+  return all;
 }
 
 // The rows of a bank of sdram that accesses to these groups touch: bit r for row r.
@@ -373,15 +392,16 @@ std::vector<RateBound> computer_bounds(const BoardConfig& board, const FrameAcce
                                        bool whole_pictures, std::optional<std::uint64_t> some_frames) {
   const std::uint64_t frames = some_frames.value_or(allocation_period_frames(board));
   const bool to_host = board.capture.destination == CaptureDestination::kHostMemory;
-  const auto of_banks = bank_accesses(board, accesses, to_host || whole_pictures, frames);
+  const BankAccesses of_banks = all_accesses(board, accesses, to_host || whole_pictures, frames);
   std::vector<RateBound> bounds = {{"camera", camera_rate(board)},
                                    {"pci", pci_rate(board, whole_pictures)},
                                    {"bridge", bridge_rate(board, whole_pictures)}};
-  for (std::size_t bank = 0; bank < of_banks.size(); ++bank) {
-    if (of_banks[bank] == 0) continue;
+  for (std::size_t bank = 0; bank < board.banks.size(); ++bank) {
+    const std::uint64_t cycles = of_banks.cycles(bank);
+    if (cycles == 0) continue;
     bounds.push_back(
         {resource_of_bank(board.banks[bank].name),
-         board.fpga.clock_mhz * 1e6 * static_cast<double>(frames) / static_cast<double>(of_banks[bank])});
+         board.fpga.clock_mhz * 1e6 * static_cast<double>(frames) / static_cast<double>(cycles)});
   }
   return bounds;
 }
@@ -421,10 +441,42 @@ Bound core_bound(const BoardConfig& board, const FrameAccesses& accesses) {
   return bound;
 }
 
+namespace {
+
+// With two buffers on a side, the picture of frame k+1 is captured between the end of frame k-1, which used
+// its buffer, and the beginning of frame k+1. With two buffers for results, that of frame k-1 is read in the
+// same time. Frame k runs in it. What the host does not move while frame k runs, it moves in the gap before
+// it or in the gap behind it, at most one word a cycle. So the words make the frames and gaps together longer
+// by their number, wherever they are moved.
+double contended_rate(const BoardConfig& board, const FrameAccesses& accesses) {
+  const fpga::CoreConfig core = core_config(board);
+  const fpga::BufferBases buffers = buffer_bases(board);
+  const AllocationConfig& allocation = board.allocation;
+  const std::vector<ResourceBound> turn = turn_bounds(board, accesses);
+  std::uint64_t cycles = 0;
+  for (std::size_t frame = 0; frame < turn.size(); ++frame) {
+    // With two buffers the frame before has those of the next one.
+    const fpga::Placements next = placements_of(core, buffers.of_frame(frame + 1));
+    BankAccesses of_frame(board);
+    of_frame.add_core(placements_of(core, buffers.of_frame(frame)), accesses);
+    if (allocation.left_image.size() == 2) of_frame.add_writes(next[fpga::pixel_group(fpga::Side::kLeft)]);
+    if (allocation.right_image.size() == 2) of_frame.add_writes(next[fpga::pixel_group(fpga::Side::kRight)]);
+    if (allocation.disparity.size() == 2) of_frame.add_reads(next[fpga::kResultGroup]);
+    std::uint64_t longest = turn[frame].cycles;
+    for (std::size_t bank = 0; bank < board.banks.size(); ++bank)
+      longest = std::max(longest, of_frame.cycles(bank));
+    cycles += longest;
+  }
+  return board.fpga.clock_mhz * 1e6 * static_cast<double>(turn.size()) / static_cast<double>(cycles);
+}
+
+}  // namespace
+
 double steady_bound(const BoardConfig& board, const FrameAccesses& accesses) {
   Bound bound = core_bound(board, accesses);
   add_system_bound(board, accesses, true, bound);
-  return *bound.system;
+  if (board.capture.destination == CaptureDestination::kHostMemory) return *bound.system;
+  return std::min(*bound.system, contended_rate(board, accesses));
 }
 
 }  // namespace stereotlm::platform

@@ -113,12 +113,7 @@ void CameraLines::apply(const Line& line, std::uint64_t now_ps, const OfSides<st
     pci_bus_.skip_bursts(kMasters[side], line.sides[side].pci);
   pci_bus_.skip_to({line.pci.last_granted, first + line.pci.free_clock}, line.buses.pci_busy);
   local_bus_.skip_bursts(line.buses.bursts, line.buses.local_busy, first_local + line.idle_clock);
-  bursts_.clear();
-  auto next = addresses;
-  for (const Line::LocalBurst& burst : line.bursts) {
-    bursts_.push_back({next[burst.side], first_local + burst.first_clock, burst.words});
-    next[burst.side] += 4 * burst.words;
-  }
+  set_bursts(line, first_local, addresses);
   board_.skip_writes(bursts_);
   const std::uint64_t words = words_of_line();
   bridge_.skip_posted((bridge_.turn() + line.turns) % pci::bridge::kChannels);
@@ -128,6 +123,22 @@ void CameraLines::apply(const Line& line, std::uint64_t now_ps, const OfSides<st
     std::uint32_t* const stored = board_.count_skipped(addresses[side], words);
     if (has_pixels_) captures_[side].copy_line(stored);
     captures_[side].skip_line(pci_bus_.clock().edge_ps(first + of_side.end_clock), of_side.pci.transactions);
+  }
+}
+
+// Sets bursts_ to the bursts of a line that begins before the clock `first_local` of the local bus.
+void CameraLines::set_bursts(const Line& line, std::uint64_t first_local,
+                             const OfSides<std::uint64_t>& addresses) {
+  bursts_.clear();
+  if (!board_.needs_each_burst(addresses[0]) && !board_.needs_each_burst(addresses[1])) {
+    for (std::size_t side = 0; side < kSides; ++side)
+      bursts_.push_back({addresses[side], first_local + line.sides[side].first_clock, words_of_line()});
+    return;
+  }
+  auto next = addresses;
+  for (const Line::LocalBurst& burst : line.bursts) {
+    bursts_.push_back({next[burst.side], first_local + burst.first_clock, burst.words});
+    next[burst.side] += 4 * burst.words;
   }
 }
 
@@ -199,7 +210,9 @@ void CameraLines::record_local_burst() {
   const LocalBurst& burst = local_bus_.burst();
   const std::uint64_t first = local_bus_.request_clock() - record_.local_clock;
   const bool is_right = burst.address - record_.addresses[1] < 4 * words_of_line();
-  record_.line.bursts.push_back({is_right ? std::size_t{1} : 0, first, burst.words});
+  const std::size_t side = is_right ? 1 : 0;
+  if (burst.address == record_.addresses[side]) record_.line.sides[side].first_clock = first;
+  record_.line.bursts.push_back({side, first, burst.words});
   ++record_.line.buses.bursts;
 }
 

@@ -99,7 +99,8 @@ class CameraLines {
   struct Line {
     struct SideLine {
       pci::PciBusControl::MasterCounts pci;
-      std::uint64_t end_clock = 0;  // of the PCI bus: its last burst ends
+      std::uint64_t end_clock = 0;    // of the PCI bus: its last burst ends
+      std::uint64_t first_clock = 0;  // of its first LocalBurst
     };
     // A burst on the local bus: its side, and the clock in which its words begin to request their bank.
     struct LocalBurst {
@@ -140,6 +141,7 @@ class CameraLines {
   const Line* find(const Beginning& beginning) const;
   bool fits_before(const Line& line, std::uint64_t now_ps, std::uint64_t end_ps) const;
   void apply(const Line& line, std::uint64_t now_ps, const OfSides<std::uint64_t>& addresses);
+  void set_bursts(const Line& line, std::uint64_t first_local, const OfSides<std::uint64_t>& addresses);
 
   void begin_record(std::uint64_t now_ps, const Beginning& beginning,
                     const OfSides<std::uint64_t>& addresses);

@@ -41,7 +41,7 @@ bool FastBoard::serves_one_word_per_cycle(std::uint64_t address, std::uint64_t b
   const std::size_t bank = memory::bank_of_address(address);
   return bank < banks_.size() && banks_[bank].holds(address - memory::crossbar_address(bank, 0), bytes) &&
          host_port_.serves_one_word_per_cycle(bank) &&
-         !fast_core_.is_hazard({address, address + bytes}, true);
+         !(host_port_.is_contended(bank) && fast_core_.is_hazard({address, address + bytes}, true));
 }
 
 std::uint32_t* FastBoard::count_skipped(std::uint64_t address, std::uint64_t words) {

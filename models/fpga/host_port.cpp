@@ -169,8 +169,8 @@ void HostPort::skip_writes(const std::vector<SkippedBurst>& bursts) {
   ConflictRecorder* const conflicts = frames_.is_recorded() ? frames_.conflicts() : nullptr;
   count_served(UINT64_MAX, in_frame);
   contended_.clear();
-  for (std::size_t i = 0; i < bursts.size(); ++i) {
-    const SkippedBurst& burst = bursts[i];
+  uncontended_.clear();
+  for (const SkippedBurst& burst : bursts) {
     const std::size_t bank = memory::bank_of_address(burst.address);
     const HostTraffic traffic =
         conflicts != nullptr ? conflicts->traffic_of(true, burst.address) : HostTraffic::kCapture;
@@ -180,17 +180,20 @@ void HostPort::skip_writes(const std::vector<SkippedBurst>& bursts) {
       continue;
     }
     if (conflicts != nullptr) conflicts->add_served(traffic, bank, burst.first_cycle, burst.words, true);
-    // As in serve_in_step(), each grant after the first one changes the state of the policy as a cycle
-    // without request does. So do the cycles between the bursts: one decide() serves all words to a bank.
-    const auto is_to_bank = [bank](const SkippedBurst& other) {
+    const auto served = std::find_if(uncontended_.begin(), uncontended_.end(), [bank](const auto& other) {
       return memory::bank_of_address(other.address) == bank;
-    };
-    const auto begin = bursts.begin() + static_cast<std::ptrdiff_t>(i);
-    if (std::any_of(bursts.begin(), begin, is_to_bank)) continue;
-    std::uint64_t words = 0;
-    for (auto other = begin; other != bursts.end(); ++other) words += is_to_bank(*other) ? other->words : 0;
-    served_bank_ = bank;
-    count({burst.first_cycle, words, decide(bank, burst.first_cycle, true)}, in_frame);
+    });
+    if (served == uncontended_.end()) {
+      uncontended_.push_back(burst);
+    } else {
+      served->words += burst.words;
+    }
+  }
+  // As in serve_in_step(), each grant after the first one changes the state of the policy as a cycle without
+  // request does. So do the cycles between the bursts: one decide() serves all words to a bank.
+  for (const SkippedBurst& served : uncontended_) {
+    served_bank_ = memory::bank_of_address(served.address);
+    count({served.first_cycle, served.words, decide(served_bank_, served.first_cycle, true)}, in_frame);
   }
   if (!contended_.empty()) frames_.serve_series(contended_);
 }

@@ -58,6 +58,7 @@ class HostPort {
   // Whether the burst goes to a bank of the running frame, or another master of the registers may start the
   // next frame as soon as this one ends.
   bool is_contended() const;
+  bool is_contended(std::size_t bank) const;  // the same for any bank
   // Runs the frame and serves the words of the burst until the burst or the frame ends, but for at most
   // FastForward::kMostHostCycles after the waiting word requests.
   void serve_contended();
@@ -113,7 +114,6 @@ class HostPort {
     if (frames_.cycles() != nullptr)
       frames_.cycles()->host_accesses(*next_word(), cycle, cycles, granted, cause);
   }
-  bool is_contended(std::size_t bank) const;
   void move_burst();
   void step_contended(std::uint64_t first_cycle);
   void serve_word(std::uint64_t cycle, std::uint64_t edge_ps);
@@ -141,7 +141,8 @@ class HostPort {
   bool is_joined_ = false;       // the burst takes part in the arbitration
   bool is_moved_ = false;        // the data of the burst is in place; its words are still to be served
   std::vector<Served> served_;
-  std::vector<FastForward::Burst> contended_;  // of skip_writes()
+  std::vector<FastForward::Burst> contended_;  // of skip_writes(), as the next one
+  std::vector<SkippedBurst> uncontended_;      // [bank]: the first burst to it, with the words of all
   std::size_t served_bank_ = 0;                // bank of all served_
   HostTraffic served_traffic_ = HostTraffic::kCapture;
 };

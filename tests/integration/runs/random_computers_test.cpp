@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "models/host/frame_source.h"
+#include "platform/bounds.h"
 #include "platform/config/board_yaml.h"
 #include "sw/explore/plan/points.h"
 #include "sw/process/child.h"
@@ -228,6 +229,18 @@ std::string differences_at(const std::vector<Fidelity>& fidelities,
   return text;
 }
 
+// Whether a run that loses no pixel is faster than its bound.
+std::string above_bound(const platform::BoardConfig& board, const platform::Tables& tables,
+                        const platform::Statistics& statistics) {
+  const auto& steady = statistics.frames_per_second.steady;
+  const auto& cameras = statistics.computer->cameras;
+  const auto loses = [](const platform::CameraStatistics& camera) { return camera.dropped_pixels > 0; };
+  if (!steady || std::any_of(cameras.begin(), cameras.end(), loses)) return "";
+  const double bound = platform::steady_bound(board, platform::frame_accesses(board, tables));
+  const double least = steady->frames_per_second - steady->uncertainty;
+  return least <= bound * (1 + 1e-9) ? "" : fmt::format("{} frames/s, above the bound of {}\n", least, bound);
+}
+
 // Where runs of the models are not what they should be.
 std::string problems_of(std::uint64_t seed, const test::RandomKnobs& knobs) {
   const test::RandomComputer computer = test::make_random_computer(seed, knobs);
@@ -243,7 +256,7 @@ std::string problems_of(std::uint64_t seed, const test::RandomKnobs& knobs) {
     std::string text =
         test::differing_lines(figures_of(plain, input, with_pixels), figures_of(outcome, with_pixels));
     for (const std::string& failed : outcome.statistics.failed) text += failed + '\n';
-    return text;
+    return text + above_bound(board, tables, outcome.statistics);
   };
   const std::string text = differences_at(
       {Fidelity::kCycle, Fidelity::kCycleTiming, Fidelity::kFast, Fidelity::kTiming}, differences);

@@ -356,6 +356,24 @@ TEST_F(SteadyBound, CountsTheWordsThatTheHostMovesInABank) {
   EXPECT_DOUBLE_EQ(bound(), 1e6 * 2 / static_cast<double>(turn));
 }
 
+// While frame 0 runs, the picture of frame 1 comes into the bank of the left table, and the result of the
+// frame before is read from there. What is moved beside frame 1 goes to banks that it does not use.
+TEST_F(SteadyBound, CountsWhatTheHostMovesBesideAFrame) {
+  board.cameras.frame_rate_hz = 400;
+  board.allocation = {{"bank0", "bank1"}, {"bank2"}, {"bank3", "bank1"}, "bank1", "bank4"};
+  const Tables tables = identity_tables(board);
+  const uint64_t frame_0 = reads + words + words;
+  const uint64_t frame_1 = largest(board, tables, 1);
+  ASSERT_GT(frame_0, largest(board, tables, 0));
+  EXPECT_DOUBLE_EQ(bound(), 1e6 * 2 / static_cast<double>(frame_0 + frame_1));
+  // With three buffers, no picture and no result is known to be moved beside a certain frame.
+  board.allocation.left_image = {"bank0", "bank1", "bank0"};
+  board.allocation.disparity = {"bank3", "bank1", "bank3"};
+  Bound others = core_bound(board, tables);
+  add_system_bound(board, frame_accesses(board, tables), true, others);
+  EXPECT_DOUBLE_EQ(bound(), *others.system);
+}
+
 TEST_F(SteadyBound, CountsTheReadsOrTheWritesOfABankWithSeparatePorts) {
   board.allocation = {{"bank0"}, {"bank0"}, {"bank0"}, "bank0", "bank0"};
   board.banks[0].words = 4096;
