@@ -104,7 +104,7 @@ void add_system_bound(const BoardConfig& board, const FrameAccesses& accesses, b
                       Bound& bound);
 
 // An upper bound for the steady rate of a whole computer that loses no pixels: bound.system of core_bound()
-// and add_system_bound(), or a smaller one that counts the words that the host moves in a bank beside a frame.
+// and add_system_bound(), or a smaller one that also counts what the host moves in a bank beside a frame.
 double steady_bound(const BoardConfig& board, const FrameAccesses& accesses);
 
 }  // namespace stereotlm::platform

@@ -28,8 +28,8 @@ namespace stereotlm::platform {
 // FastComputer is the computer at the others.
 class Computer : public sc_core::sc_module, public ComputerView {
  public:
-  // `program`, `left` and `right` outlive the computer. `fidelity` steps cycles. Throws std::invalid_argument if the board has
-  // problems, or `host_memory_bytes` is out of range.
+  // `program`, `left` and `right` outlive the computer. `fidelity`: one that steps cycles. Throws
+  // std::invalid_argument if the board has problems, or `host_memory_bytes` is out of range.
   Computer(const sc_core::sc_module_name& name, const BoardConfig& config, std::uint64_t host_memory_bytes,
            host::Program& program, capture::CameraSource& left, capture::CameraSource& right, Binder& binder,
            fpga::Fidelity fidelity = fpga::Fidelity::kCycle);

@@ -23,8 +23,8 @@ class ImageMatcher {
   ImageMatcher(const ImageMatcher&) = delete;
   ImageMatcher& operator=(const ImageMatcher&) = delete;
 
-  // All arrays have width * height pixels, row-major. Writes the disparities of all pixels that have a window;
-  // without `right_based` only those of the left.
+  // All arrays have width * height pixels, row-major. Writes the disparities of all pixels that have a
+  // window; without `right_based` only those of the left side.
   void run(const std::uint8_t* left, const std::uint8_t* right, std::uint8_t* left_disparity,
            std::uint8_t* right_disparity);
 

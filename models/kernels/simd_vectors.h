@@ -137,9 +137,9 @@ inline Int32s multiply_pairs(Int16s a, Int16s b) {
 #endif
 }
 
-// Return pairs of a lane of `a` and the same lane of `b`: of half of the lanes, and of the others. pack() puts
-// results of such pairs back in order: of the low pairs and of the high pairs. A result that does not fit into
-// 16 bits becomes the nearest number that does.
+// low_pairs() returns pairs of a lane of `a` and the same lane of `b`, for half of the lanes; high_pairs()
+// does for the other half. pack() takes one 32-bit result for each pair, and puts all of them back in the
+// order of the lanes. A result that does not fit into 16 bits becomes the nearest number that does.
 #if defined(__AVX512BW__)
 inline Int16s low_pairs(Int16s a, Int16s b) {
   return reinterpret_cast<Int16s>(

@@ -38,7 +38,7 @@ class SteppedBoard {
         simulation_(runs::make_simulation(
             config_, tables_, pair_,
             {setting.camera, setting.fidelity, std::numeric_limits<std::uint64_t>::max()}, binder_)) {
-    if (setting.fidelity == fpga::Fidelity::kCycle) sc_core::sc_start(sc_core::SC_ZERO_TIME);
+    if (fpga::steps_cycles(setting.fidelity)) sc_core::sc_start(sc_core::SC_ZERO_TIME);
   }
 
   void run_frames(std::uint32_t frames) {

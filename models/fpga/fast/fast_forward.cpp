@@ -235,8 +235,8 @@ FastForward::Served FastForward::serve_host(std::uint64_t& cycle, const Route& r
   return served;
 }
 
-// Sets series_key_ for the state of the walk in `cycle`. Returns false if a series must not be looked up: only
-// where the state determines everything is it the same whenever it comes.
+// Sets series_key_ for the state of the walk in `cycle`. Returns false if a series must not be looked up,
+// because it may differ the next time that it comes in this state.
 bool FastForward::set_series_key(std::uint64_t cycle, const std::vector<Burst>& bursts) {
   if (!is_walking_ || varies() || refresh_left_ != UINT64_MAX || conflicts() != nullptr) return false;
   series_key_.assign(1, state_);
@@ -278,9 +278,14 @@ void FastForward::serve_series(std::uint64_t& cycle, const std::vector<Burst>& b
     series.progress = {cycle, consumed_, ahead_.words};
     series.progress.subtract(progress);
     series.host = {host_ahead_.words - host.words, 0, host_ahead_.requests - host.requests};
-    std::map<std::uint32_t, std::uint64_t> followed;
-    for (const TransitionCache::Followed& one : in_order_) followed[one.effect] += one.times;
-    series.followed = {followed.begin(), followed.end()};
+    series.followed.clear();
+    std::sort(in_order_.begin(), in_order_.end(),
+              [](const auto& a, const auto& b) { return a.effect < b.effect; });
+    for (const TransitionCache::Followed& one : in_order_) {
+      if (series.followed.empty() || series.followed.back().first != one.effect)
+        series.followed.emplace_back(one.effect, 0);
+      series.followed.back().second += one.times;
+    }
   }
   if (conflicts() == nullptr) in_order_.clear();
 }
