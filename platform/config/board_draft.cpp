@@ -81,6 +81,7 @@ void advise_extends(std::vector<Finding>& findings) {
   for (const Finding& finding : findings) {
     if (!finding.missing.empty()) missing += required_count(finding.missing);
   }
+  if (missing == 0) return;
   const std::size_t all = required_count("");
   if (2 * missing <= all) return;
   leave_out_missing(findings);

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <array>
-#include <map>
 #include <stdexcept>
 #include <type_traits>
+#include <unordered_map>
 #include <utility>
 
 #include "models/area/device.h"
@@ -596,7 +596,7 @@ std::vector<Key> keys() {
 
 const Key* find_key(std::string_view path) {
   static const auto kByPath = [] {
-    std::map<std::string_view, const Key*> keys;
+    std::unordered_map<std::string_view, const Key*> keys;
     for (const Key& key : board_keys()) keys[key.path] = &key;
     return keys;
   }();

@@ -1,9 +1,9 @@
 #pragma once
 
 #include <functional>
-#include <map>
 #include <optional>
 #include <string>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -68,7 +68,7 @@ class ValueReader {
   void report_repeated(const YamlNode::Entry& entry, const YamlNode::Entry& first, const std::string& path);
 
   std::vector<Finding>& findings_;
-  std::map<std::string, Place> valid_;  // [path]
+  std::unordered_map<std::string, Place> valid_;  // [path]
 };
 
 // Reads a board from its tree, after the values of the preset and of `--set` were merged into the tree.

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <map>
+#include <string_view>
+#include <unordered_map>
 #include <utility>
 
 #include "platform/config/board_keys.h"
@@ -34,8 +36,17 @@ YamlNode bank_node(const BankConfig& bank, const BankConfig* base) {
 // An optional key is left out where it has its default, so that the text of such a board stays what it was
 // before there was the key. A section that may be absent is written in full.
 bool is_left_out(const Key& key, const YamlNode& value) {
-  static const BoardConfig kDefaults;
-  return key.is_optional && has_key(kDefaults, key) && flow_text(value) == flow_text(key.write(kDefaults));
+  static const auto kDefaults = [] {
+    const BoardConfig defaults;
+    std::unordered_map<std::string_view, std::string> texts;
+    for (const Key& optional : board_keys()) {
+      if (optional.is_optional && optional.write && has_key(defaults, optional))
+        texts[optional.path] = flow_text(optional.write(defaults));
+    }
+    return texts;
+  }();
+  const auto text = kDefaults.find(key.path);
+  return text != kDefaults.end() && flow_text(value) == text->second;
 }
 
 // The section of a board file at this path: "" is the whole board.

@@ -1,7 +1,6 @@
 #include "platform/config/buffer_layout.h"
 
 #include <algorithm>
-#include <map>
 
 #include "models/fpga/register_map.h"
 
@@ -41,16 +40,16 @@ std::vector<PlacedBuffer> buffers(const BoardConfig& board) {
     if (board.fpga.joint_tables && buffer == Buffer::kRightLut) continue;
     visit_buffer(board.allocation, buffer, [&](const auto& banks) { add(all, buffer, banks); });
   }
-  std::map<std::string, std::uint64_t> used;  // [bank]: words
+  std::vector<std::uint64_t> used(board.banks.size() + 1);  // [bank]: words; the last: an unknown bank
   for (PlacedBuffer& buffer : all) {
-    const auto bank = std::find_if(board.banks.begin(), board.banks.end(),
-                                   [&](const BankConfig& one) { return one.name == buffer.bank; });
+    const auto found = std::find_if(board.banks.begin(), board.banks.end(),
+                                    [&](const BankConfig& one) { return one.name == buffer.bank; });
+    const auto bank = static_cast<std::size_t>(found - board.banks.begin());
     const std::uint64_t words = buffer_words(buffer, board.image);
     const std::uint64_t first = fpga::registers::base_address(
-        fpga::registers::base(static_cast<std::uint32_t>(bank - board.banks.begin()),
-                              static_cast<std::uint32_t>(used[buffer.bank])));
+        fpga::registers::base(static_cast<std::uint32_t>(bank), static_cast<std::uint32_t>(used[bank])));
     buffer.range = {first, first + 4 * words};
-    used[buffer.bank] += words;
+    used[bank] += words;
   }
   return all;
 }
