@@ -21,6 +21,7 @@
 #include "sw/explore/plan/points.h"
 #include "sw/process/child.h"
 #include "sw/runs/simulation/camera_simulation.h"
+#include "sw/runs/sources/open_source.h"
 #include "sw/stats/record_csv.h"
 #include "tests/support/board_of_random.h"
 #include "tests/support/fork.h"
@@ -400,6 +401,55 @@ TEST(RandomSteadyRates, AreWithinTheirUncertaintyOfTheRateOfManyFrames) {
   for (std::size_t seed = 0; seed < results.size(); ++seed)
     EXPECT_TRUE(results[seed].ok()) << "seed " << seed << ":\n" << results[seed].text;
 }
+
+// Captures into banks that the frame uses. Over many frames, lines of the cameras and their bursts come again in
+// the same state of the core, and are skipped.
+class LongContendedRun : public testing::TestWithParam<std::vector<std::string>> {};
+
+TEST_P(LongContendedRun, HasTheFiguresOfItsSteps) {
+  std::vector<std::string> keys = {"image={width: 96, height: 64}", "cameras.frame_rate_hz=397.1",
+                                   "ssram.default.words=524288"};
+  keys.insert(keys.end(), GetParam().begin(), GetParam().end());
+  const platform::BoardConfig board = platform::load_board("fpl2003", keys);
+  const auto run = [&](Fidelity fidelity) {
+    const auto pairs = runs::blank_pairs(board);
+    const platform::Tables tables = platform::identity_tables(board);
+    test::MonitoringBinder binder;
+    runs::CameraSimulation simulation(board, tables, *pairs, 40, binder, fidelity);
+    Outcome outcome;
+    while (!simulation.finished()) {
+      for (runs::Result& result : simulation.advance()) outcome.results.push_back(std::move(result));
+    }
+    outcome.statistics = simulation.statistics();
+    return figures_of(outcome, false);
+  };
+  std::array<std::string, 2> figures;  // each in a process of its own
+  for (const bool is_stepped : {false, true}) {
+    process::Child child([&](const process::Child::Tell& tell) {
+      tell(run(is_stepped ? Fidelity::kCycleTiming : Fidelity::kTiming));
+    });
+    figures[is_stepped ? 1 : 0] = child.next().value();
+    child.next();
+  }
+  EXPECT_EQ(test::differing_lines(figures[1], figures[0]), "");
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Allocations, LongContendedRun,
+    testing::Values(std::vector<std::string>{"allocation.left_image=[bank6, bank7]"},
+                    std::vector<std::string>{"allocation.left_image=[bank6, bank7]",
+                                             "fpga.arbitration=round_robin"},
+                    std::vector<std::string>{
+                        "allocation.left_image=[bank6, bank7]",
+                        "fpga.priority=[result, left_lut, host, left_pixel, right_pixel, right_lut]"},
+                    std::vector<std::string>{"allocation.left_image=[bank6, bank7]",
+                                             "ssram.banks.bank6={kind: sync_burst, turnaround_cycles: 2}"},
+                    std::vector<std::string>{"allocation.left_image=[bank6, bank6]",
+                                             "allocation.right_image=[bank6, bank4]"},
+                    std::vector<std::string>{"allocation.left_image=[bank0, bank0]",
+                                             "allocation.right_image=[bank0, bank0]",
+                                             "allocation.disparity=[bank0, bank0]",
+                                             "allocation.left_lut=bank0", "allocation.right_lut=bank0"}));
 
 // Four local clocks per cycle of the FPGA and one word per burst: the clocks between two words cost no cycle.
 TEST(SaturatedLocalBus, StaysBelowItsBound) {
