@@ -402,8 +402,8 @@ TEST(RandomSteadyRates, AreWithinTheirUncertaintyOfTheRateOfManyFrames) {
     EXPECT_TRUE(results[seed].ok()) << "seed " << seed << ":\n" << results[seed].text;
 }
 
-// Captures into banks that the frame uses. Over many frames, lines of the cameras and their bursts come again in
-// the same state of the core, and are skipped.
+// Captures into banks that the frame uses. Over many frames, lines of the cameras and their bursts come again
+// in the same state of the core, and are skipped.
 class LongContendedRun : public testing::TestWithParam<std::vector<std::string>> {};
 
 TEST_P(LongContendedRun, HasTheFiguresOfItsSteps) {
