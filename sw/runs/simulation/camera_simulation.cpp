@@ -100,7 +100,8 @@ void CameraSimulation::frame_delivered(const driver::DeliveredFrame& frame) {
 
 void CameraSimulation::check_progress() {
   const auto has_progressed = [this] {
-    return std::exchange(last_work_, computer_->work_done()) != last_work_;
+    const std::uint64_t work = computer_->work_done();
+    return std::exchange(last_work_, work) != work;
   };
   const double idle = (sc_core::sc_time_stamp() - last_work_at_).to_seconds();
   bool progressed = has_progressed();
