@@ -406,33 +406,43 @@ TEST(RandomSteadyRates, AreWithinTheirUncertaintyOfTheRateOfManyFrames) {
 // in the same state of the core, and are skipped.
 class LongContendedRun : public testing::TestWithParam<std::vector<std::string>> {};
 
-TEST_P(LongContendedRun, HasTheFiguresOfItsSteps) {
-  std::vector<std::string> keys = {"image={width: 96, height: 64}", "cameras.frame_rate_hz=397.1",
-                                   "ssram.default.words=524288"};
-  keys.insert(keys.end(), GetParam().begin(), GetParam().end());
-  const platform::BoardConfig board = platform::load_board("fpl2003", keys);
-  const auto run = [&](Fidelity fidelity) {
-    const auto pairs = runs::blank_pairs(board);
-    const platform::Tables tables = platform::identity_tables(board);
-    test::MonitoringBinder binder;
-    runs::CameraSimulation simulation(board, tables, *pairs, 40, binder, fidelity);
-    Outcome outcome;
-    while (!simulation.finished()) {
-      for (runs::Result& result : simulation.advance()) outcome.results.push_back(std::move(result));
-    }
-    outcome.statistics = simulation.statistics();
-    return figures_of(outcome, false);
-  };
+// The figures of a board with these keys, and with `is_recorded` the rows of its frames.
+std::string figures_of_long_run(const std::vector<std::string>& keys, Fidelity fidelity, bool is_recorded) {
+  std::vector<std::string> all = {"image={width: 96, height: 64}", "cameras.frame_rate_hz=397.1",
+                                  "ssram.default.words=524288"};
+  all.insert(all.end(), keys.begin(), keys.end());
+  const platform::BoardConfig board = platform::load_board("fpl2003", all);
+  const auto pairs = runs::blank_pairs(board);
+  const platform::Tables tables = platform::identity_tables(board);
+  test::MonitoringBinder binder;
+  runs::CameraSimulation simulation(board, tables, *pairs, is_recorded ? 12 : 40, binder, fidelity);
+  if (is_recorded) simulation.record_conflicts();
+  Outcome outcome;
+  std::string rows;
+  while (!simulation.finished()) {
+    for (runs::Result& result : simulation.advance()) outcome.results.push_back(std::move(result));
+    for (const fpga::FrameConflicts& frame : simulation.take_conflicts())
+      rows += stats::rows_csv(board, 0, frame);
+  }
+  outcome.statistics = simulation.statistics();
+  return figures_of(outcome, false) + rows;
+}
+
+void expect_figures_of_steps(const std::vector<std::string>& keys, bool is_recorded) {
   std::array<std::string, 2> figures;  // each in a process of its own
   for (const bool is_stepped : {false, true}) {
     process::Child child([&](const process::Child::Tell& tell) {
-      tell(run(is_stepped ? Fidelity::kCycleTiming : Fidelity::kTiming));
+      tell(figures_of_long_run(keys, is_stepped ? Fidelity::kCycleTiming : Fidelity::kTiming, is_recorded));
     });
     figures[is_stepped ? 1 : 0] = child.next().value();
     child.next();
   }
   EXPECT_EQ(test::differing_lines(figures[1], figures[0]), "");
 }
+
+TEST_P(LongContendedRun, HasTheFiguresOfItsSteps) { expect_figures_of_steps(GetParam(), false); }
+TEST_P(LongContendedRun, HasTheRowsOfItsSteps) { expect_figures_of_steps(GetParam(), true); }
+TEST(LongUncontendedRun, HasTheRowsOfItsSteps) { expect_figures_of_steps({}, true); }
 
 INSTANTIATE_TEST_SUITE_P(
     Allocations, LongContendedRun,
