@@ -201,6 +201,33 @@ BankAccesses all_accesses(const BoardConfig& board, const FrameAccesses& accesse
   return all;
 }
 
+// With two buffers on a side, the picture of frame k+1 is captured between the end of frame k-1, which used
+// its buffer, and the beginning of frame k+1. With two buffers for results, that of frame k-1 is read in the
+// same time. Frame k runs in that time. If frame k uses the bank of these words, it takes a cycle for each of
+// its accesses and for each word, except for words that are moved in the gap before it or behind it. In a gap
+// the host moves at most one word a cycle. So frames and gaps together take at least that many cycles.
+double contended_rate(const BoardConfig& board, const FrameAccesses& accesses) {
+  const fpga::CoreConfig core = core_config(board);
+  const fpga::BufferBases buffers = buffer_bases(board);
+  const AllocationConfig& allocation = board.allocation;
+  const std::vector<ResourceBound> turn = turn_bounds(board, accesses);
+  std::uint64_t cycles = 0;
+  for (std::size_t frame = 0; frame < turn.size(); ++frame) {
+    // With two buffers the frame before has those of the next one.
+    const fpga::Placements next = placements_of(core, buffers.of_frame(frame + 1));
+    BankAccesses of_frame(board);
+    of_frame.add_core(placements_of(core, buffers.of_frame(frame)), accesses);
+    if (allocation.left_image.size() == 2) of_frame.add_writes(next[fpga::pixel_group(fpga::Side::kLeft)]);
+    if (allocation.right_image.size() == 2) of_frame.add_writes(next[fpga::pixel_group(fpga::Side::kRight)]);
+    if (allocation.disparity.size() == 2) of_frame.add_reads(next[fpga::kResultGroup]);
+    std::uint64_t longest = turn[frame].cycles;
+    for (std::size_t bank = 0; bank < board.banks.size(); ++bank)
+      longest = std::max(longest, of_frame.cycles(bank));
+    cycles += longest;
+  }
+  return board.fpga.clock_mhz * 1e6 * static_cast<double>(turn.size()) / static_cast<double>(cycles);
+}
+
 // The rows of a bank of sdram that accesses to these groups touch: bit r for row r.
 std::size_t touched_rows(const BoardConfig& board, const FrameAccesses& accesses,
                          const fpga::Placements& placements, std::size_t bank,
@@ -440,37 +467,6 @@ Bound core_bound(const BoardConfig& board, const FrameAccesses& accesses) {
   bound.core_limited_by = slowest.resource;
   return bound;
 }
-
-namespace {
-
-// With two buffers on a side, the picture of frame k+1 is captured between the end of frame k-1, which used
-// its buffer, and the beginning of frame k+1. With two buffers for results, that of frame k-1 is read in the
-// same time. Frame k runs in it. What the host does not move while frame k runs, it moves in the gap before
-// it or in the gap behind it, at most one word a cycle. So the words make the frames and gaps together longer
-// by their number, wherever they are moved.
-double contended_rate(const BoardConfig& board, const FrameAccesses& accesses) {
-  const fpga::CoreConfig core = core_config(board);
-  const fpga::BufferBases buffers = buffer_bases(board);
-  const AllocationConfig& allocation = board.allocation;
-  const std::vector<ResourceBound> turn = turn_bounds(board, accesses);
-  std::uint64_t cycles = 0;
-  for (std::size_t frame = 0; frame < turn.size(); ++frame) {
-    // With two buffers the frame before has those of the next one.
-    const fpga::Placements next = placements_of(core, buffers.of_frame(frame + 1));
-    BankAccesses of_frame(board);
-    of_frame.add_core(placements_of(core, buffers.of_frame(frame)), accesses);
-    if (allocation.left_image.size() == 2) of_frame.add_writes(next[fpga::pixel_group(fpga::Side::kLeft)]);
-    if (allocation.right_image.size() == 2) of_frame.add_writes(next[fpga::pixel_group(fpga::Side::kRight)]);
-    if (allocation.disparity.size() == 2) of_frame.add_reads(next[fpga::kResultGroup]);
-    std::uint64_t longest = turn[frame].cycles;
-    for (std::size_t bank = 0; bank < board.banks.size(); ++bank)
-      longest = std::max(longest, of_frame.cycles(bank));
-    cycles += longest;
-  }
-  return board.fpga.clock_mhz * 1e6 * static_cast<double>(turn.size()) / static_cast<double>(cycles);
-}
-
-}  // namespace
 
 double steady_bound(const BoardConfig& board, const FrameAccesses& accesses) {
   Bound bound = core_bound(board, accesses);

@@ -57,7 +57,7 @@ class CameraLines {
   bool skip(std::uint64_t now_ps, std::uint64_t end_ps);
 
   // While a line is recorded, stepped() is to be called after each event of PCI bus and bridge, and drop()
-  // when something else happens, unless it is the core that serves words of the line.
+  // after each other event. A step of the core that ends no frame needs neither: it only serves words.
   bool is_recording() const { return is_recording_; }
   void stepped(std::uint64_t now_ps, bool is_of_pci_bus);
   void drop() { is_recording_ = false; }

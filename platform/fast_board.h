@@ -56,7 +56,8 @@ class FastBoard : private fpga::LocalBusControl::Core,
   //
   // Whether bursts that write these bytes are served one word a cycle, whatever the running frame does.
   bool serves_one_word_per_cycle(std::uint64_t address, std::uint64_t bytes) const;
-  // Whether skip_writes() needs each burst to this bank. If not, all bursts of the bank may be given as one.
+  // Whether skip_writes() needs each burst to the bank of this address. If not, all bursts to that bank may
+  // be given as one.
   bool needs_each_burst(std::uint64_t address) const {
     return frames_.is_recorded() || host_port_.is_contended(memory::bank_of_address(address));
   }

@@ -111,9 +111,9 @@ class CoreControl {
   const FrameGeometry& geometry() const { return geometry_; }
   // Whether the last word of the frame has been written.
   bool frame_done() const { return result_.frame_done(); }
-  // A lower bound of the cycle in which the last write of the frame is granted. `cycle` is the next cycle to
-  // run. Before it, the matcher consumes in `consumed` cycles, and `words` are written, that this object does
-  // not know of.
+  // A lower bound of the cycle in which the last write of the frame is granted. `cycle`: the next cycle to
+  // run. `consumed`, `words`: the consume-cycles, and the words written, that were skipped before `cycle` and
+  // are not counted in this object yet.
   std::uint64_t earliest_last_write(std::uint64_t cycle, std::uint64_t consumed, std::uint64_t words) const;
   // The cycles of a port, from the start of each frame to its last write, over all frames.
   const PortCycles& port_cycles(memory::Port port) const { return cycles_[port]; }

@@ -84,7 +84,7 @@ class FrameRun {
       run_ahead_recorded(end);
     }
   }
-  // As run_ahead(), but may stop earlier: where that costs more than to skip known cycles.
+  // As run_ahead(), but steps no cycle: it stops before `end` where a cycle must be stepped.
   void skip_ahead(std::uint64_t end) {
     if (cycles_ == nullptr) cycle_ = core_.skip_ahead(cycle_, end);
   }

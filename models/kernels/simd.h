@@ -28,18 +28,18 @@ inline constexpr int kMostFrameVectorBytes = 2 * kMostFrameLanes;
 inline constexpr int kFilterVectors = 4;
 inline constexpr int kFilterPadding = kFilterVectors * kMostFrameLanes;
 
-// Two weights of a filter, and the number of pixels that have them. Different weights have different pixels:
-// the pixels of a weight are added up before they are weighted.
+// Two weights of a filter. The pixels of each weight are added up before they are weighted.
 struct WeightPair {
   std::int32_t weights = 0;  // the first in the lower 16 bits, the second in the upper 16 bits
-  int first_count = 0;
-  int second_count = 0;
+  int first_count = 0;       // number of pixels with the first weight
+  int second_count = 0;      // number of pixels with the second weight
 };
+// The weights of a filter, and the pixels of a row that they weight.
 struct FilterTaps {
   const WeightPair* pairs = nullptr;
   int pair_count = 0;
-  // Pixels of the first weight of the first pair, then those of its second weight, and so on. Each is the
-  // pixel of the output pixel at column 0; those of the other columns follow it.
+  // The pixels of the first weight of the first pair, then those of its second weight, and so on. Each points
+  // to the pixel for output column 0; the pixels for the further columns follow it.
   const std::int16_t* const* pixels = nullptr;
   int shift = 0;
 };

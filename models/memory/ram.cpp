@@ -22,29 +22,22 @@ void RamTarget::b_transport(tlm::tlm_generic_payload& access, sc_core::sc_time& 
   }
 }
 
-// Moves the enabled bytes. Most accesses are of one whole word: only others need a call.
+// Moves the enabled bytes.
 void RamTarget::move(tlm::tlm_generic_payload& access) {
   unsigned char* const stored = ram_.data() + access.get_address();
   unsigned char* const from = access.is_read() ? stored : access.get_data_ptr();
   unsigned char* const to = access.is_read() ? access.get_data_ptr() : stored;
-  if (access.get_byte_enable_ptr() == nullptr && access.get_data_length() == 4) {
-    std::memcpy(to, from, 4);
-  } else {
-    move_bytes(access, from, to);
-  }
-}
-
-void RamTarget::move_bytes(const tlm::tlm_generic_payload& access, const unsigned char* from,
-                           unsigned char* to) {
   const unsigned length = access.get_data_length();
   const unsigned char* const enables = access.get_byte_enable_ptr();
-  if (enables == nullptr) {
+  if (enables != nullptr) {
+    const unsigned enable_length = access.get_byte_enable_length();
+    for (unsigned byte = 0; byte < length; ++byte) {
+      if (enables[byte % enable_length] == TLM_BYTE_ENABLED) to[byte] = from[byte];
+    }
+  } else if (length == 4) {
+    std::memcpy(to, from, 4);  // without a call, for speed
+  } else {
     std::memcpy(to, from, length);
-    return;
-  }
-  const unsigned enable_length = access.get_byte_enable_length();
-  for (unsigned byte = 0; byte < length; ++byte) {
-    if (enables[byte % enable_length] == TLM_BYTE_ENABLED) to[byte] = from[byte];
   }
 }
 

@@ -67,8 +67,6 @@ class RamTarget : public tlm::tlm_fw_transport_if<> {
 
  private:
   void move(tlm::tlm_generic_payload& access);
-  [[gnu::noinline]] static void move_bytes(const tlm::tlm_generic_payload& access, const unsigned char* from,
-                                           unsigned char* to);
 
   AccessRules rules_;
   sc_core::sc_time read_time_;

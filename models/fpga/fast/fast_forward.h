@@ -54,8 +54,8 @@ class FastForward : public CoreStepper {
   // Runs the cycles from `cycle` up to `end`, `end` not included, or until the frame is done. Returns the
   // next cycle.
   std::uint64_t run_ahead(std::uint64_t cycle, std::uint64_t end);
-  // As run_ahead(), but only skips cycles, and may stop earlier. Only a call of another function takes the
-  // core to the next cycle.
+  // As run_ahead(), but steps no cycle: it stops where a cycle must be stepped. The core itself keeps its
+  // state until another function is called.
   std::uint64_t skip_ahead(std::uint64_t cycle, std::uint64_t end) {
     return is_walking_ && cycle < end ? walk(cycle, end) : cycle;
   }
@@ -233,7 +233,7 @@ class FastForward : public CoreStepper {
   TransitionCache::Accesses accesses_;
   TransitionCache::Accesses accesses_before_;
   std::optional<Stepped> stepped_;
-  // [state, and the bursts as set_series_key() has them].
+  // [key of set_series_key()]
   std::unordered_map<memory::StateWords, Series, TransitionCache::StateHash> series_;
   memory::StateWords series_key_;
   bool is_in_series_ = false;                    // a series is being recorded

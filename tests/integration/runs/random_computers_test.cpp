@@ -230,7 +230,7 @@ std::string differences_at(const std::vector<Fidelity>& fidelities,
   return text;
 }
 
-// Whether a run that loses no pixel is faster than its bound.
+// What is wrong if a run is faster than its bound. A run that loses pixels has none.
 std::string above_bound(const platform::BoardConfig& board, const platform::Tables& tables,
                         const platform::Statistics& statistics) {
   const auto& steady = statistics.frames_per_second.steady;
