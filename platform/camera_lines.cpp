@@ -71,14 +71,10 @@ std::optional<CameraLines::OfSides<std::uint64_t>> CameraLines::bank_addresses()
   for (std::size_t side = 0; side < kSides; ++side) {
     const std::uint64_t offset = captures_[side].line_address() - DeviceMap().bridge_slave;
     const auto address = bridge_.bank_address(offset, bytes);
-    if (!address || !board_.serves_one_word_per_cycle(*address, bytes)) return std::nullopt;
+    if (!address || !board_.serves_one_word_per_cycle(true, *address, bytes)) return std::nullopt;
     addresses[side] = *address;
   }
   return addresses;
-}
-
-CameraLines::BusCounts CameraLines::counts() const {
-  return {pci_bus_.transactions(), pci_bus_.busy_clocks(), local_bus_.bursts(), local_bus_.busy_clocks()};
 }
 
 CameraLines::Beginning CameraLines::beginning(std::uint64_t now_ps) const {
@@ -114,14 +110,14 @@ void CameraLines::apply(const Line& line, std::uint64_t now_ps, const OfSides<st
   pci_bus_.skip_to({line.pci.last_granted, first + line.pci.free_clock}, line.buses.pci_busy);
   local_bus_.skip_bursts(line.buses.bursts, line.buses.local_busy, first_local + line.idle_clock);
   set_bursts(line, first_local, addresses);
-  board_.skip_writes(bursts_);
+  board_.skip_bursts(bursts_);
   const std::uint64_t words = words_of_line();
   bridge_.skip_posted((bridge_.turn() + line.turns) % pci::bridge::kChannels);
   for (std::size_t side = 0; side < kSides; ++side) {
     const Line::SideLine& of_side = line.sides[side];
     bridge_.count_posted(addresses[side], words);
-    std::uint32_t* const stored = board_.count_skipped(addresses[side], words);
-    if (has_pixels_) captures_[side].copy_line(stored);
+    unsigned char* const stored = board_.count_skipped(true, addresses[side], words);
+    if (has_pixels_) captures_[side].copy_line(reinterpret_cast<std::uint32_t*>(stored));
     captures_[side].skip_line(pci_bus_.clock().edge_ps(first + of_side.end_clock), of_side.pci.transactions);
   }
 }
@@ -132,12 +128,12 @@ void CameraLines::set_bursts(const Line& line, std::uint64_t first_local,
   bursts_.clear();
   if (!board_.needs_each_burst(addresses[0]) && !board_.needs_each_burst(addresses[1])) {
     for (std::size_t side = 0; side < kSides; ++side)
-      bursts_.push_back({addresses[side], first_local + line.sides[side].first_clock, words_of_line()});
+      bursts_.push_back({true, addresses[side], first_local + line.sides[side].first_clock, words_of_line()});
     return;
   }
   auto next = addresses;
   for (const Line::LocalBurst& burst : line.bursts) {
-    bursts_.push_back({next[burst.side], first_local + burst.first_clock, burst.words});
+    bursts_.push_back({true, next[burst.side], first_local + burst.first_clock, burst.words});
     next[burst.side] += 4 * burst.words;
   }
 }
@@ -157,7 +153,7 @@ void CameraLines::begin_record(std::uint64_t now_ps, const Beginning& beginning,
     record_.full_checks[side] = captures_[side].fifo().full_checks();
     record_.request_clocks[side] = record_.pci_clock;
   }
-  record_.buses = counts();
+  record_.buses = BusCounts::of(pci_bus_, local_bus_);
   record_.turn = bridge_.turn();
 }
 
@@ -221,11 +217,7 @@ void CameraLines::end_record() {
   is_recording_ = false;
   record_.local_earlier_ps = std::max(record_.local_earlier_ps, phase_tolerance_ps_);
   record_.local_later_ps = std::max(record_.local_later_ps, phase_tolerance_ps_);
-  BusCounts buses = counts();
-  buses.transactions -= record_.buses.transactions;
-  buses.pci_busy -= record_.buses.pci_busy;
-  buses.bursts -= record_.buses.bursts;
-  buses.local_busy -= record_.buses.local_busy;
+  const BusCounts buses = BusCounts::of(pci_bus_, local_bus_).since(record_.buses);
   if (!record_is_whole(buses)) return;
   Line& line = record_.line;
   line.pci = pci_bus_.position();

@@ -9,6 +9,7 @@
 #include "models/capture/capture_control.h"
 #include "models/pci/bridge_control.h"
 #include "models/pci/pci_bus_control.h"
+#include "platform/bus_counts.h"
 #include "platform/computer_parts.h"
 #include "platform/fast_board.h"
 
@@ -71,13 +72,6 @@ class CameraLines {
   template <class T>
   using OfSides = std::array<T, kSides>;  // [left, right]
 
-  // What the two buses of the bridge have done, up to a time or since a time.
-  struct BusCounts {
-    std::uint64_t transactions = 0;  // on the PCI bus, of all masters
-    std::uint64_t pci_busy = 0;      // clocks
-    std::uint64_t bursts = 0;        // on the local bus
-    std::uint64_t local_busy = 0;    // clocks
-  };
   struct Beginning {
     std::size_t last_granted = 0;  // master of the PCI bus
     std::int64_t pci_ps = 0;       // from the time of the requests to the next clock of the PCI bus
@@ -136,7 +130,6 @@ class CameraLines {
   };
 
   std::optional<OfSides<std::uint64_t>> bank_addresses() const;
-  BusCounts counts() const;  // while the local bus is idle
   Beginning beginning(std::uint64_t now_ps) const;
   const Line* find(const Beginning& beginning) const;
   bool fits_before(const Line& line, std::uint64_t now_ps, std::uint64_t end_ps) const;

@@ -18,7 +18,8 @@ ComputerLoop::ComputerLoop(const BoardConfig& config, unsigned char* host_memory
       cameras_{capture::CameraControl(camera_config(config), left, captures_[0]),
                capture::CameraControl(camera_config(config), right, captures_[1])},
       host_memory_(host_memory),
-      lines_(pci_bus_, bridge_, board_, captures_, fpga::has_pixels(fidelity)) {
+      lines_(pci_bus_, bridge_, board_, captures_, fpga::has_pixels(fidelity)),
+      dma_(pci_bus_, bridge_, board_, host_memory, host_memory_bytes) {
   board_.local_bus().bind(bridge_.local_bus_master());
   pci_bus_.bind(kHostMemory, host_memory_window_);
   pci_bus_.bind(kBridgeSlave, bridge_slave_);
@@ -71,8 +72,7 @@ void ComputerLoop::run(std::uint64_t end_ps) {
     }
     now_ps_ = next >> kKindBits;
     const auto kind = static_cast<Kind>(next & ((1U << kKindBits) - 1));
-    // Lines of the cameras whose course is known are skipped instead of stepped.
-    if (kind == kPciDecides && lines_.begins() && lines_.skip(now_ps_, skips_end_ps(end_ps + 1))) continue;
+    if (skip(kind, end_ps + 1)) continue;
     step(kind);
     if (lines_.is_recording()) {
       const bool is_of_pci_bus = kind == kPciSteps || kind == kPciDecides;
@@ -86,6 +86,13 @@ void ComputerLoop::run(std::uint64_t end_ps) {
     if (level && !interrupt_) noticed_ = true;
     interrupt_ = level;
   }
+}
+
+// Skips a line of the cameras or bursts of DMA whose course is known, instead of stepping them. They end before
+// `end_ps`. Nothing is skipped that comes after what the processor is to see.
+bool ComputerLoop::skip(Kind kind, std::uint64_t end_ps) {
+  if (kind == kPciDecides) return lines_.begins() && lines_.skip(now_ps_, skips_end_ps(end_ps));
+  return kind == kLocalBusChooses && !noticed_ && dma_.skip(now_ps_, skips_end_ps(end_ps));
 }
 
 // The end of what can be skipped: the earliest of `end_ps`, the next event of a block other than the PCI bus

@@ -17,6 +17,7 @@
 #include "platform/computer_parts.h"
 #include "platform/computer_view.h"
 #include "platform/config/board_config.h"
+#include "platform/dma_bursts.h"
 #include "platform/fast_board.h"
 
 namespace stereotlm::platform {
@@ -56,6 +57,8 @@ class ComputerLoop : private pci::BridgeControl::Host {
   const pci::PciBusControl& pci_bus() const { return pci_bus_; }
   // Lines of the cameras that were skipped.
   std::uint64_t skipped_lines() const { return lines_.skipped(); }
+  // Bursts of DMA that were skipped.
+  std::uint64_t skipped_dma_bursts() const { return dma_.skipped(); }
 
  private:
   // A window of the PCI bus, whose accesses the loop serves. The controls serve those to registers.
@@ -101,6 +104,7 @@ class ComputerLoop : private pci::BridgeControl::Host {
     return time_ps << kKindBits | kind;
   }
   std::uint64_t next_event() const;
+  bool skip(Kind kind, std::uint64_t end_ps);
   void step(Kind kind);
   std::uint64_t skips_end_ps(std::uint64_t end_ps) const;
   void slave_read_ended(std::uint64_t now_ps, bool ok) override { pci_bus_.answer(now_ps, {now_ps, ok}); }
@@ -118,6 +122,7 @@ class ComputerLoop : private pci::BridgeControl::Host {
   unsigned char* host_memory_;
   std::uint64_t traffic_access_ps_ = 0;  // for which the device of the traffic generator makes the bus wait
   CameraLines lines_;
+  DmaBursts dma_;
   const BusTrace* trace_ = nullptr;
   std::uint64_t now_ps_ = 0;
   pci::PciAccess bridge_read_;

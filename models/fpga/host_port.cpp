@@ -164,7 +164,7 @@ bool HostPort::serves_one_word_per_cycle(std::size_t bank) const {
                             : arbiter.grants_at_once();
 }
 
-void HostPort::skip_writes(const std::vector<SkippedBurst>& bursts) {
+void HostPort::skip_bursts(const std::vector<SkippedBurst>& bursts) {
   const bool in_frame = frames_.is_running();
   ConflictRecorder* const conflicts = frames_.is_recorded() ? frames_.conflicts() : nullptr;
   count_served(UINT64_MAX, in_frame);
@@ -173,10 +173,10 @@ void HostPort::skip_writes(const std::vector<SkippedBurst>& bursts) {
   for (const SkippedBurst& burst : bursts) {
     const std::size_t bank = memory::bank_of_address(burst.address);
     const HostTraffic traffic =
-        conflicts != nullptr ? conflicts->traffic_of(true, burst.address) : HostTraffic::kCapture;
+        conflicts != nullptr ? conflicts->traffic_of(burst.write, burst.address) : HostTraffic::kCapture;
     if (is_contended(bank)) {
       const auto word = static_cast<std::uint32_t>(memory::address_in_bank(burst.address) / 4);
-      contended_.push_back({{bank, true, traffic, word}, burst.first_cycle, burst.words});
+      contended_.push_back({{bank, burst.write, traffic, word}, burst.first_cycle, burst.words});
       continue;
     }
     if (conflicts != nullptr) conflicts->add_served(traffic, bank, burst.first_cycle, burst.words, true);
@@ -193,7 +193,7 @@ void HostPort::skip_writes(const std::vector<SkippedBurst>& bursts) {
   // request does. So do the cycles between the bursts: one decide() serves all words to a bank.
   for (const SkippedBurst& served : uncontended_) {
     served_bank_ = memory::bank_of_address(served.address);
-    count({served.first_cycle, served.words, decide(served_bank_, served.first_cycle, true)}, in_frame);
+    count({served.first_cycle, served.words, decide(served_bank_, served.first_cycle, served.write)}, in_frame);
   }
   if (!contended_.empty()) frames_.serve_series(contended_);
 }

@@ -110,6 +110,25 @@ std::optional<std::uint64_t> BridgeControl::bank_address(std::uint64_t offset, s
   return address;
 }
 
+DmaChannel* BridgeControl::lone_channel() const {
+  if (pci_queue_.front() == nullptr || pci_done_ != 0 || posted_.waits() || read_.under_way) return nullptr;
+  DmaChannel* const channel = pci_queue_.front()->channel;
+  const auto busy = std::count_if(channels_.begin(), channels_.end(),
+                                  [](const DmaChannel& any) { return any.busy(); });
+  return busy == 1 && channel->moves_full_bursts() ? channel : nullptr;
+}
+
+void BridgeControl::skip_dma(std::uint64_t now_ps, DmaChannel& channel, std::size_t bursts) {
+  const BridgeTransfer& local = channel.on_local_bus();
+  const std::size_t words = bursts * local.words.size();
+  stats_.dma_words += words;
+  // The words of the first burst are counted.
+  if (local.write) words_taken_.add(local.address + 4 * local.words.size(), words);
+  channel.skip_bursts(bursts);
+  slot_.request(*this, now_ps);
+  start_on_local_bus(now_ps, channel.on_local_bus());
+}
+
 BridgeControl::Register BridgeControl::decode(std::uint64_t offset) {
   if (offset < bridge::kInterruptStatus)
     return {bridge::kPage, static_cast<std::size_t>((offset - bridge::kPage) / 4)};

@@ -94,7 +94,7 @@ class BridgeControl final : public PciMasterIf, public PciTarget, public LocalBu
   PciBurst begin_burst(std::uint64_t address_clock_ps) override;
   void end_burst(const BurstResult& result) override;
 
-  // To skip posted writes that repeat:
+  // To skip bursts that repeat:
   //
   // If the burst on the local bus is due to end by `now_ps`, ends it and begins the next one.
   void settle(std::uint64_t now_ps) {
@@ -115,6 +115,14 @@ class BridgeControl final : public PciMasterIf, public PciTarget, public LocalBu
     stats_.posted_words += words;
     count_for_banks(words_taken_, address, words);
   }
+
+  // The channel that is about to write a burst on one bus and to read the next one on the other, if both are of
+  // full length, and nothing else is under way or waits in the bridge. Else null. To be called before step()
+  // chooses a burst.
+  DmaChannel* lone_channel() const;
+  // That channel has written this number of bursts, and read as many. The next two begin at `now_ps`. To be
+  // called after PciBusControl::skip_to().
+  void skip_dma(std::uint64_t now_ps, DmaChannel& channel, std::size_t bursts);
 
   const Stats& stats() const { return stats_; }
   // The words for the banks that the bridge has received, posted or by DMA, counted by buffer.

@@ -101,6 +101,24 @@ class DmaChannel {
     return end_descriptor(now_ps);
   }
 
+  // To skip bursts that repeat:
+  //
+  // Whether it writes a burst on one bus while it reads the next one on the other, both of full length.
+  bool moves_full_bursts() const {
+    return pci_.under_way && local_.under_way && pci_.words.size() == burst_words_ &&
+           local_.words.size() == burst_words_;
+  }
+  // The descriptor whose words are moved, and how many of its words are read before this step.
+  const DmaDescriptor& moving() const { return moving_; }
+  std::size_t written() const { return written_; }
+  // This number of bursts has been written, and as many have been read.
+  void skip_bursts(std::size_t bursts) {
+    const std::size_t words = bursts * burst_words_;
+    written_ += words;
+    pci_.address += 4 * words;
+    local_.address += 4 * words;
+  }
+
   unsigned number() const { return number_; }
   BridgeTransfer& on_pci() { return pci_; }
   BridgeTransfer& on_local_bus() { return local_; }

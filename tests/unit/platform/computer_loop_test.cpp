@@ -7,17 +7,22 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
+#include <cstring>
 #include <deque>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "models/capture/camera_timing.h"
 #include "models/capture/capture_registers.h"
+#include "models/fpga/core_ports.h"
 #include "models/fpga/register_map.h"
 #include "models/kernels/gray_image.h"
 #include "models/pci/bridge_registers.h"
@@ -293,6 +298,22 @@ BoardConfig board_of_lines(test::SplitMix64 random) {
   return load_board("fpl2003", keys);
 }
 
+// What the processor and the counters see.
+std::string figures_of(LoopProcessor& processor) {
+  const ComputerCounters counters = processor.computer_counters();
+  std::string text =
+      fmt::format("{} {} {} {} {} {}\n", fmt::join(processor.granted_ps, " "), counters.pci.busy_clocks,
+                  counters.local_bus.bursts, counters.local_bus.busy_clocks, counters.bridge.dma_words,
+                  fmt::join(counters.words.granted, " "));
+  for (const pci::PciBusControl::MasterStats& master : counters.pci.masters)
+    text +=
+        fmt::format("{} {} {} {}\n", master.transactions, master.words, master.wait_clocks, master.retries);
+  for (const ComputerCounters::Camera& camera : counters.cameras)
+    text +=
+        fmt::format("{} {} {}\n", camera.capture.dropped_pixels, camera.capture.bursts, camera.capture.words);
+  return text;
+}
+
 // What two pictures do on a board. If `steps`, the loop stops so often that no line is skipped. Every fourth
 // program writes to the board and reads a register now and then. In some, both pictures go to one bank.
 std::string figures_of_lines(std::uint64_t seed, bool steps, std::uint64_t& skipped) {
@@ -318,17 +339,7 @@ std::string figures_of_lines(std::uint64_t seed, bool steps, std::uint64_t& skip
       processor.write(board + capture_map::kStatus, capture_map::kStatusDone);
   }
   skipped += loop.skipped_lines();
-  const ComputerCounters counters = processor.computer_counters();
-  std::string text = fmt::format("{} {} {} {} {}\n", fmt::join(processor.granted_ps, " "),
-                                 counters.pci.busy_clocks, counters.local_bus.bursts,
-                                 counters.local_bus.busy_clocks, fmt::join(counters.words.granted, " "));
-  for (const pci::PciBusControl::MasterStats& master : counters.pci.masters)
-    text +=
-        fmt::format("{} {} {} {}\n", master.transactions, master.words, master.wait_clocks, master.retries);
-  for (const ComputerCounters::Camera& camera : counters.cameras)
-    text +=
-        fmt::format("{} {} {}\n", camera.capture.dropped_pixels, camera.capture.bursts, camera.capture.words);
-  return text;
+  return figures_of(processor);
 }
 
 TEST(ComputerLoop, GivesTheSameFiguresWithSkippedAsWithSteppedLines) {
@@ -338,6 +349,76 @@ TEST(ComputerLoop, GivesTheSameFiguresWithSkippedAsWithSteppedLines) {
     ASSERT_EQ(figures_of_lines(seed, false, skipped), figures_of_lines(seed, true, stepped)) << seed;
     EXPECT_EQ(stepped, 0U);
   }
+}
+
+// Puts the chain of a channel into host memory, and starts it. It moves words between host memory and bank 7, or
+// bank 2, which a frame uses.
+void start_random_dma(LoopProcessor& processor, test::SplitMix64& random, std::uint32_t channel) {
+  const auto burst = static_cast<std::uint32_t>(processor.config.bridge.dma_burst_words);
+  const std::uint32_t chain = 0x200 * channel;
+  const int descriptors = random.between(1, 3);
+  for (int number = 0; number < descriptors; ++number) {
+    const std::uint32_t words =
+        static_cast<std::uint32_t>(random.between(0, 50)) * burst +
+        static_cast<std::uint32_t>(random.chance(50) ? 0 : random.between(0, static_cast<int>(burst) - 1)) + 1;
+    const std::uint32_t at = chain + 16 * static_cast<std::uint32_t>(number);
+    const std::array<std::uint32_t, 4> descriptor = {
+        0x10000 + 0x400 * static_cast<std::uint32_t>(random.between(0, 500)),
+        (random.chance(60) ? 7U : 2U) << 26U | static_cast<std::uint32_t>(random.between(200'000, 200'999)),
+        words | (random.chance(50) ? pci::bridge::kToPci : 0), number + 1 < descriptors ? at + 16 : 0};
+    std::memcpy(processor.memory.data() + at, descriptor.data(), sizeof descriptor);
+  }
+  processor.write(testing::dma_register(channel, pci::bridge::kDmaDescriptor), chain);
+  processor.write(testing::dma_register(channel, pci::bridge::kDmaControl), 1);
+}
+
+// What chains of DMA do on a board, beside captures or a frame in some of the seeds. If `steps`, the loop stops
+// so often that no burst is skipped.
+std::string figures_of_dma(std::uint64_t seed, bool steps, std::uint64_t& skipped) {
+  test::SplitMix64 random(seed);
+  LoopProcessor processor;
+  processor.config = board_of_lines(random);
+  if (random.chance(50)) {  // the host comes first
+    memory::PriorityList& priority = processor.config.fpga.arbiter.priority;
+    std::rotate(priority.begin(), std::find(priority.begin(), priority.end(), fpga::CorePorts(1).host()),
+                priority.end());
+  }
+  for (std::size_t byte = 0; byte < processor.memory.size(); ++byte)
+    processor.memory[byte] = static_cast<unsigned char>(random.next());
+  // A burst on the local bus takes longer.
+  const auto short_ps =
+      static_cast<std::uint64_t>(1e6 * processor.config.bridge.dma_burst_words /
+                                 std::max(processor.config.pci.clock_mhz, processor.config.bridge.local_clock_mhz));
+  ComputerLoop& loop = processor.loop();
+  if (random.chance(30)) processor.arm(5, 6);
+  if (random.chance(60)) processor.start_core();
+  start_random_dma(processor, random, static_cast<std::uint32_t>(seed % 2));
+  if (random.chance(20)) start_random_dma(processor, random, static_cast<std::uint32_t>(1 - seed % 2));
+  const std::uint64_t pause_ps = random.chance(30) ? 7'000'000 + 1'234'567 * (seed % 100) : kFar;
+  const std::uint64_t end_ps = loop.now_ps() + 4'000'000'000;
+  for (std::uint64_t next_ps = loop.now_ps(); loop.now_ps() < end_ps;) {
+    next_ps = std::min(end_ps, next_ps + pause_ps);
+    while (loop.now_ps() < next_ps) loop.run(steps ? std::min(next_ps, loop.now_ps() + short_ps) : next_ps);
+    processor.read(kCaptures[0] + capture_map::kStatus);
+  }
+  skipped += loop.skipped_dma_bursts();
+  Words words(600);
+  processor.write(testing::page_register(0), 7U << 26U | 200'000U);
+  EXPECT_EQ(processor.access(false, testing::aperture(0), words), pci::BurstEnd::kComplete);
+  return fmt::format("{}\n{}\n{} {}", figures_of(processor), fmt::join(processor.done.words, " "),
+                     std::hash<std::string_view>()({reinterpret_cast<const char*>(processor.memory.data()),
+                                                    processor.memory.size()}),
+                     processor.read(kDevices.bridge_registers + pci::bridge::kInterruptStatus));
+}
+
+TEST(ComputerLoop, GivesTheSameFiguresWithSkippedAsWithSteppedDmaBursts) {
+  std::uint64_t skipped = 0;
+  for (std::uint64_t seed = 0; seed < test::random_computers(200); ++seed) {
+    std::uint64_t stepped = 0;
+    ASSERT_EQ(figures_of_dma(seed, false, skipped), figures_of_dma(seed, true, stepped)) << seed;
+    EXPECT_EQ(stepped, 0U);
+  }
+  EXPECT_GT(skipped, 10U * test::random_computers(200));
 }
 
 TEST_F(ComputerLoopTest, RefusesBurstsOfSeveralWordsToRegisters) {
