@@ -14,7 +14,7 @@ namespace {
 // Each time is rounded to whole ps. So the ends of the two bursts of a step may come closer by this number of
 // ps than those of another step.
 constexpr std::uint64_t kRounding = 4;
-// Contended bursts that are skipped at once. Short series come again in the same state of the core (HostPort).
+// Contended bursts that are skipped at once. Short series come again in the same state of the core.
 constexpr std::uint64_t kMostInSeries = 16;
 
 }  // namespace
@@ -31,7 +31,7 @@ DmaBursts::DmaBursts(pci::PciBusControl& pci_bus, pci::BridgeControl& bridge, Fa
 bool DmaBursts::skip(std::uint64_t now_ps, std::uint64_t end_ps) {
   channel_ = bridge_.lone_channel();
   if (channel_ == nullptr) return false;
-  const auto here = beginning(now_ps);
+  const auto here = beginning();
   if (!here) return false;
   if (*here != beginning_) {
     step_.reset();
@@ -48,9 +48,11 @@ bool DmaBursts::skip(std::uint64_t now_ps, std::uint64_t end_ps) {
   if (request != kNever) end_ps = std::min(end_ps, pci_bus_.clock().edge_ps(request) + 1);
   const std::uint64_t first = pace().edge_at_or_after(now_ps);
   const std::uint64_t end = pace().edge_at_or_after(end_ps);
-  const std::uint64_t bursts_left = (channel_->moving().words - channel_->written()) / channel_->on_pci().words.size();
+  const std::uint64_t bursts_left =
+      (channel_->moving().words - channel_->written()) / channel_->on_pci().words.size();
   if (end <= first || bursts_left < 2) return false;
-  const std::uint64_t most = board_.needs_each_burst(channel_->on_local_bus().address) ? kMostInSeries : UINT64_MAX;
+  const std::uint64_t most =
+      board_.needs_each_burst(channel_->on_local_bus().address) ? kMostInSeries : UINT64_MAX;
   const std::uint64_t steps = std::min({(end - 1 - first) / period(), bursts_left - 1, most});
   if (steps == 0) return false;
   apply(now_ps, steps);
@@ -58,19 +60,18 @@ bool DmaBursts::skip(std::uint64_t now_ps, std::uint64_t end_ps) {
   return true;
 }
 
-// The beginning of the step that the channel takes at `now_ps`; nothing if the step cannot be skipped.
-std::optional<DmaBursts::Beginning> DmaBursts::beginning(std::uint64_t now_ps) const {
-  const std::uint64_t request = pci_bus_.request_clock(kBridge);
-  if (!pci_bus_.decides_next() || request != pci_bus_.clock().edge_at_or_after(now_ps)) return std::nullopt;
+// The beginning of the step that the channel takes now; nothing if the step cannot be skipped.
+std::optional<DmaBursts::Beginning> DmaBursts::beginning() const {
+  const pci::PciBusControl::Position position = pci_bus_.position();
+  if (position.last_granted != kBridge) return std::nullopt;  // another burst may run
   const pci::DmaDescriptor& moving = channel_->moving();
   const std::uint64_t bytes = 4 * moving.words;
   const std::uint64_t in_host_memory = moving.pci_address - DeviceMap().host_memory;  // huge below it
   if (in_host_memory > host_memory_bytes_ || bytes > host_memory_bytes_ - in_host_memory ||
       !board_.serves_one_word_per_cycle(!moving.to_pci, moving.local_address, bytes))
     return std::nullopt;
-  const pci::PciBusControl::Position position = pci_bus_.position();
   return Beginning{memory::bank_of_address(moving.local_address), moving.to_pci, bridge_.turn(),
-                   position.last_granted, position.free_clock > request};
+                   position.free_clock > pci_bus_.request_clock(kBridge)};
 }
 
 // The step that began in the state before_ and has just ended; nothing if others had a bus too, or if steps
@@ -80,7 +81,8 @@ std::optional<DmaBursts::Step> DmaBursts::recorded() const {
   step.buses = BusCounts::of(pci_bus_, local_bus_).since(before_.buses);
   pci::PciBusControl::MasterCounts counts = pci_bus_.counts(kBridge);
   counts.subtract(before_.counts);
-  if (step.buses.transactions != 1 || step.buses.bursts != 1 || counts.words != channel_->on_pci().words.size())
+  if (step.buses.transactions != 1 || step.buses.bursts != 1 ||
+      counts.words != channel_->on_pci().words.size())
     return std::nullopt;
   const Clock& pci = pci_bus_.clock();
   const Clock& local = local_bus_.clock();
@@ -90,9 +92,9 @@ std::optional<DmaBursts::Step> DmaBursts::recorded() const {
   step.first_word = local_bus_.request_clock() - first_local;
   step.wait_clocks = counts.wait_clocks;
   // The bus that ends first must do so too where it begins up to a clock later.
-  const bool keeps_pace =
-      pci_ends_last() ? local.edge_ps(step.local_free + 1) + kRounding <= pci.edge_ps(step.pci_end)
-                      : pci.edge_ps(step.pci_end + 1) + kRounding <= local.edge_ps(step.local_free);
+  const bool keeps_pace = pci_ends_last()
+                              ? local.edge_ps(step.local_free + 1) + kRounding <= pci.edge_ps(step.pci_end)
+                              : pci.edge_ps(step.pci_end + 1) + kRounding <= local.edge_ps(step.local_free);
   return keeps_pace ? std::optional(step) : std::nullopt;
 }
 
@@ -121,12 +123,12 @@ void DmaBursts::apply(std::uint64_t now_ps, std::uint64_t steps) {
                          local.edge_at_or_after(last_ps) + step_->local_free - 1);
   move_words(words, board_.count_skipped(transfer.write, transfer.address, words));
   pci_bus_.skip_bursts(kBridge, {steps, words, steps * step_->wait_clocks, 0, 0});
-  pci_bus_.skip_to({pci_bus_.position().last_granted, pci.edge_at_or_after(last_ps) + step_->pci_end + 1},
+  pci_bus_.skip_to({kBridge, pci.edge_at_or_after(last_ps) + step_->pci_end + 1},
                    steps * step_->buses.pci_busy);
   bridge_.skip_dma(end_ps, *channel_, steps);
 }
 
-// The words of the first burst are in the channel already. In the end it has those of the burst that it writes
+// The channel has the words of the first burst already. In the end it has those of the burst that it writes
 // next.
 void DmaBursts::move_words(std::uint64_t words, unsigned char* in_bank) {
   const bool to_pci = channel_->moving().to_pci;

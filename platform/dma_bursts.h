@@ -46,9 +46,9 @@ class DmaBursts {
 
  private:
   // How a step begins: its bank, whether it reads from the bank, the channel that has the next turn on the
-  // local bus, the master of the PCI bus that was granted last, and whether a burst on the PCI bus ends just
-  // then. Steps that begin alike take the same clocks.
-  using Beginning = std::tuple<std::size_t, bool, std::size_t, std::size_t, bool>;
+  // local bus, and whether a burst on the PCI bus ends just then. Steps that begin alike take the same
+  // clocks.
+  using Beginning = std::tuple<std::size_t, bool, std::size_t, bool>;
   // What a step does. Clocks are counted from the first one at or after its beginning.
   struct Step {
     std::uint64_t pci_end = 0;     // the burst on the PCI bus ends
@@ -64,9 +64,9 @@ class DmaBursts {
     BusCounts buses;
   };
 
-  std::optional<Beginning> beginning(std::uint64_t now_ps) const;
+  std::optional<Beginning> beginning() const;
   std::optional<Step> recorded() const;
-  bool pci_ends_last() const { return std::get<4>(beginning_); }
+  bool pci_ends_last() const { return std::get<3>(beginning_); }
   const Clock& pace() const { return pci_ends_last() ? pci_bus_.clock() : local_bus_.clock(); }
   std::uint64_t period() const { return pci_ends_last() ? step_->pci_end : step_->local_free; }
   void apply(std::uint64_t now_ps, std::uint64_t steps);

@@ -193,7 +193,8 @@ void HostPort::skip_bursts(const std::vector<SkippedBurst>& bursts) {
   // request does. So do the cycles between the bursts: one decide() serves all words to a bank.
   for (const SkippedBurst& served : uncontended_) {
     served_bank_ = memory::bank_of_address(served.address);
-    count({served.first_cycle, served.words, decide(served_bank_, served.first_cycle, served.write)}, in_frame);
+    count({served.first_cycle, served.words, decide(served_bank_, served.first_cycle, served.write)},
+          in_frame);
   }
   if (!contended_.empty()) frames_.serve_series(contended_);
 }

@@ -79,7 +79,8 @@ class HostPort {
   //
   // Whether bursts to this bank are served one word a cycle, whatever the frame does.
   bool serves_one_word_per_cycle(std::size_t bank) const;
-  // A burst to such a bank that reads or writes words from this byte address on, one a cycle from this cycle on.
+  // A burst to such a bank that reads or writes words from this byte address on, one a cycle from this cycle
+  // on.
   struct SkippedBurst {
     bool write;
     std::uint64_t address;

@@ -111,11 +111,10 @@ std::optional<std::uint64_t> BridgeControl::bank_address(std::uint64_t offset, s
 }
 
 DmaChannel* BridgeControl::lone_channel() const {
-  if (pci_queue_.front() == nullptr || pci_done_ != 0 || posted_.waits() || read_.under_way) return nullptr;
-  DmaChannel* const channel = pci_queue_.front()->channel;
-  const auto busy = std::count_if(channels_.begin(), channels_.end(),
-                                  [](const DmaChannel& any) { return any.busy(); });
-  return busy == 1 && channel->moves_full_bursts() ? channel : nullptr;
+  if (pci_queue_.front() == nullptr || read_.under_way) return nullptr;
+  const auto busy =
+      std::count_if(channels_.begin(), channels_.end(), [](const DmaChannel& any) { return any.busy(); });
+  return busy == 1 ? pci_queue_.front()->channel : nullptr;
 }
 
 void BridgeControl::skip_dma(std::uint64_t now_ps, DmaChannel& channel, std::size_t bursts) {

@@ -116,12 +116,11 @@ class BridgeControl final : public PciMasterIf, public PciTarget, public LocalBu
     count_for_banks(words_taken_, address, words);
   }
 
-  // The channel that is about to write a burst on one bus and to read the next one on the other, if both are of
-  // full length, and nothing else is under way or waits in the bridge. Else null. To be called before step()
-  // chooses a burst.
+  // The channel that begins to write a burst on one bus and to read the next one on the other, if nothing
+  // else is under way in the bridge. Else null. To be called before step() chooses a burst.
   DmaChannel* lone_channel() const;
-  // That channel has written this number of bursts, and read as many. The next two begin at `now_ps`. To be
-  // called after PciBusControl::skip_to().
+  // That channel has written this number of bursts of full length, and read as many. The next two begin at
+  // `now_ps`. To be called after PciBusControl::skip_to().
   void skip_dma(std::uint64_t now_ps, DmaChannel& channel, std::size_t bursts);
 
   const Stats& stats() const { return stats_; }

@@ -103,12 +103,7 @@ class DmaChannel {
 
   // To skip bursts that repeat:
   //
-  // Whether it writes a burst on one bus while it reads the next one on the other, both of full length.
-  bool moves_full_bursts() const {
-    return pci_.under_way && local_.under_way && pci_.words.size() == burst_words_ &&
-           local_.words.size() == burst_words_;
-  }
-  // The descriptor whose words are moved, and how many of its words are read before this step.
+  // The descriptor whose words are moved, and the words of it whose write has begun.
   const DmaDescriptor& moving() const { return moving_; }
   std::size_t written() const { return written_; }
   // This number of bursts has been written, and as many have been read.

@@ -302,9 +302,11 @@ BoardConfig board_of_lines(test::SplitMix64 random) {
 std::string figures_of(LoopProcessor& processor) {
   const ComputerCounters counters = processor.computer_counters();
   std::string text =
-      fmt::format("{} {} {} {} {} {}\n", fmt::join(processor.granted_ps, " "), counters.pci.busy_clocks,
+      fmt::format("{} {} {} {} {} {} {}\n", fmt::join(processor.granted_ps, " "), counters.pci.busy_clocks,
                   counters.local_bus.bursts, counters.local_bus.busy_clocks, counters.bridge.dma_words,
-                  fmt::join(counters.words.granted, " "));
+                  fmt::join(counters.words.into_bridge, " "), fmt::join(counters.words.granted, " "));
+  for (const BoardCounters::Bank& bank : counters.board.banks)
+    text += fmt::format("{} {} {}\n", bank.accesses, bank.arbiter.reads(), bank.arbiter.writes());
   for (const pci::PciBusControl::MasterStats& master : counters.pci.masters)
     text +=
         fmt::format("{} {} {} {}\n", master.transactions, master.words, master.wait_clocks, master.retries);
@@ -351,33 +353,44 @@ TEST(ComputerLoop, GivesTheSameFiguresWithSkippedAsWithSteppedLines) {
   }
 }
 
-// Puts the chain of a channel into host memory, and starts it. It moves words between host memory and bank 7, or
-// bank 2, which a frame uses.
-void start_random_dma(LoopProcessor& processor, test::SplitMix64& random, std::uint32_t channel) {
-  const auto burst = static_cast<std::uint32_t>(processor.config.bridge.dma_burst_words);
-  const std::uint32_t chain = 0x200 * channel;
-  const int descriptors = random.between(1, 3);
-  for (int number = 0; number < descriptors; ++number) {
-    const std::uint32_t words =
-        static_cast<std::uint32_t>(random.between(0, 50)) * burst +
-        static_cast<std::uint32_t>(random.chance(50) ? 0 : random.between(0, static_cast<int>(burst) - 1)) + 1;
-    const std::uint32_t at = chain + 16 * static_cast<std::uint32_t>(number);
-    const std::array<std::uint32_t, 4> descriptor = {
-        0x10000 + 0x400 * static_cast<std::uint32_t>(random.between(0, 500)),
-        (random.chance(60) ? 7U : 2U) << 26U | static_cast<std::uint32_t>(random.between(200'000, 200'999)),
-        words | (random.chance(50) ? pci::bridge::kToPci : 0), number + 1 < descriptors ? at + 16 : 0};
+using Descriptors = std::vector<std::array<std::uint32_t, 4>>;  // without the address of the next one
+
+// Puts the chain of a channel into host memory, and starts it.
+void start_dma(LoopProcessor& processor, std::uint32_t channel, Descriptors chain) {
+  std::uint32_t at = 0x200 * channel;
+  processor.write(testing::dma_register(channel, pci::bridge::kDmaDescriptor), at);
+  for (auto& descriptor : chain) {
+    descriptor[3] = &descriptor == &chain.back() ? 0 : at + 16;
     std::memcpy(processor.memory.data() + at, descriptor.data(), sizeof descriptor);
+    at += 16;
   }
-  processor.write(testing::dma_register(channel, pci::bridge::kDmaDescriptor), chain);
   processor.write(testing::dma_register(channel, pci::bridge::kDmaControl), 1);
 }
 
-// What chains of DMA do on a board, beside captures or a frame in some of the seeds. If `steps`, the loop stops
-// so often that no burst is skipped.
+// Descriptors that move words between host memory and bank 7, or bank 2, which a frame uses.
+Descriptors random_chain(const LoopProcessor& processor, test::SplitMix64& random) {
+  const int burst = processor.config.bridge.dma_burst_words;
+  Descriptors chain(static_cast<std::size_t>(random.between(1, 3)));
+  for (auto& descriptor : chain) {
+    const int words = random.between(0, 50) * burst + (random.chance(50) ? burst : random.between(1, burst));
+    const int end = static_cast<int>(processor.memory.size());
+    const int host =
+        random.chance(15) ? end - 4 * burst * random.between(3, 40) : 0x400 * random.between(64, 900);
+    descriptor = {static_cast<std::uint32_t>(host),
+                  random.chance(60) ? 7U << 26U | static_cast<std::uint32_t>(random.between(0, 20'000))
+                                    : 2U << 26U | 200'000U,
+                  static_cast<std::uint32_t>(words) | (random.chance(50) ? pci::bridge::kToPci : 0)};
+  }
+  return chain;
+}
+
+// What chains of DMA do on a board, beside captures or a frame in some of the seeds. If `steps`, the loop
+// stops so often that no burst is skipped.
 std::string figures_of_dma(std::uint64_t seed, bool steps, std::uint64_t& skipped) {
   test::SplitMix64 random(seed);
   LoopProcessor processor;
   processor.config = board_of_lines(random);
+  if (random.chance(30)) processor.config.pci.clock_mhz = 2 * processor.config.bridge.local_clock_mhz;
   if (random.chance(50)) {  // the host comes first
     memory::PriorityList& priority = processor.config.fpga.arbiter.priority;
     std::rotate(priority.begin(), std::find(priority.begin(), priority.end(), fpga::CorePorts(1).host()),
@@ -386,28 +399,41 @@ std::string figures_of_dma(std::uint64_t seed, bool steps, std::uint64_t& skippe
   for (std::size_t byte = 0; byte < processor.memory.size(); ++byte)
     processor.memory[byte] = static_cast<unsigned char>(random.next());
   // A burst on the local bus takes longer.
-  const auto short_ps =
-      static_cast<std::uint64_t>(1e6 * processor.config.bridge.dma_burst_words /
-                                 std::max(processor.config.pci.clock_mhz, processor.config.bridge.local_clock_mhz));
+  const auto short_ps = static_cast<std::uint64_t>(
+      1e6 * processor.config.bridge.dma_burst_words /
+      std::max(processor.config.pci.clock_mhz, processor.config.bridge.local_clock_mhz));
   ComputerLoop& loop = processor.loop();
+  const auto run_to = [&](std::uint64_t time_ps) {
+    for (;;) {
+      while (loop.interrupt()) {
+        processor.write(kDevices.bridge_registers + pci::bridge::kInterruptStatus, pci::bridge::kDoorbell);
+        for (const std::uint64_t board : kCaptures)
+          processor.write(board + capture_map::kStatus,
+                          capture_map::kStatusDone | capture_map::kStatusWordsLost);
+      }
+      if (loop.now_ps() >= time_ps) return;
+      loop.run(steps ? std::min(time_ps, loop.now_ps() + short_ps) : time_ps);
+    }
+  };
+  processor.write(testing::page_register(0), 7U << 26U);
   if (random.chance(30)) processor.arm(5, 6);
   if (random.chance(60)) processor.start_core();
-  start_random_dma(processor, random, static_cast<std::uint32_t>(seed % 2));
-  if (random.chance(20)) start_random_dma(processor, random, static_cast<std::uint32_t>(1 - seed % 2));
+  run_to(loop.now_ps() + static_cast<std::uint64_t>(random.between(0, 300'000'000)));
+  start_dma(processor, static_cast<std::uint32_t>(seed % 2), random_chain(processor, random));
+  run_to(loop.now_ps() + static_cast<std::uint64_t>(random.between(0, 300'000'000)));
+  if (random.chance(30))
+    start_dma(processor, static_cast<std::uint32_t>(1 - seed % 2), random_chain(processor, random));
   const std::uint64_t pause_ps = random.chance(30) ? 7'000'000 + 1'234'567 * (seed % 100) : kFar;
-  const std::uint64_t end_ps = loop.now_ps() + 4'000'000'000;
-  for (std::uint64_t next_ps = loop.now_ps(); loop.now_ps() < end_ps;) {
-    next_ps = std::min(end_ps, next_ps + pause_ps);
-    while (loop.now_ps() < next_ps) loop.run(steps ? std::min(next_ps, loop.now_ps() + short_ps) : next_ps);
-    processor.read(kCaptures[0] + capture_map::kStatus);
+  for (const std::uint64_t end_ps = loop.now_ps() + 4'000'000'000; loop.now_ps() < end_ps;) {
+    run_to(std::min(end_ps, loop.now_ps() + pause_ps));
+    processor.access(false, testing::aperture(0), Words(3));
   }
   skipped += loop.skipped_dma_bursts();
-  Words words(600);
-  processor.write(testing::page_register(0), 7U << 26U | 200'000U);
+  Words words(1000);
   EXPECT_EQ(processor.access(false, testing::aperture(0), words), pci::BurstEnd::kComplete);
   return fmt::format("{}\n{}\n{} {}", figures_of(processor), fmt::join(processor.done.words, " "),
-                     std::hash<std::string_view>()({reinterpret_cast<const char*>(processor.memory.data()),
-                                                    processor.memory.size()}),
+                     std::hash<std::string_view>()(
+                         {reinterpret_cast<const char*>(processor.memory.data()), processor.memory.size()}),
                      processor.read(kDevices.bridge_registers + pci::bridge::kInterruptStatus));
 }
 
@@ -419,6 +445,31 @@ TEST(ComputerLoop, GivesTheSameFiguresWithSkippedAsWithSteppedDmaBursts) {
     EXPECT_EQ(stepped, 0U);
   }
   EXPECT_GT(skipped, 10U * test::random_computers(200));
+}
+
+// A step of the channel takes 35 clocks of the local bus. In one of the runs a frame ends as a step begins. In
+// another one the processor's read reaches the bridge then.
+TEST(ComputerLoop, SkipsNoDmaBurstsBehindWhatTheProcessorSees) {
+  for (std::uint64_t clock = 0; clock < 35; ++clock) {
+    std::array<std::string, 2> figures;  // with skipped and with stepped bursts
+    for (const bool steps : {false, true}) {
+      LoopProcessor processor;
+      processor.config.pci.clock_mhz = 80;
+      processor.config.banks[7].words = 8192;
+      ComputerLoop& loop = processor.loop();
+      processor.start_core();
+      loop.run(loop.now_ps() + clock * kEdgePs);
+      start_dma(processor, 0, {{0x10000, 7U << 26U, 200 * 32, 0}});
+      while (!loop.interrupt()) loop.run(loop.now_ps() + (steps ? 20 * kEdgePs : kFar));
+      processor.write(kDevices.bridge_registers + pci::bridge::kInterruptStatus, pci::bridge::kDoorbell);
+      processor.access(false, testing::aperture(0), Words(3));
+      for (const std::uint64_t end_ps = loop.now_ps() + 1'000'000'000; loop.now_ps() < end_ps;)
+        loop.run(steps ? loop.now_ps() + 20 * kEdgePs : end_ps);
+      EXPECT_EQ(loop.skipped_dma_bursts() != 0, !steps);
+      figures[steps ? 1 : 0] = figures_of(processor);
+    }
+    ASSERT_EQ(figures[0], figures[1]) << clock;
+  }
 }
 
 TEST_F(ComputerLoopTest, RefusesBurstsOfSeveralWordsToRegisters) {
