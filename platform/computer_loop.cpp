@@ -88,8 +88,8 @@ void ComputerLoop::run(std::uint64_t end_ps) {
   }
 }
 
-// Skips a line of the cameras, or bursts of DMA, if their course is known and they end before `end_ps`. Nothing
-// is skipped that comes after what the processor is to see.
+// Skips a line of the cameras, or bursts of DMA, if their course is known and they end before `end_ps`.
+// Nothing is skipped that comes after what the processor is to see.
 bool ComputerLoop::skip(Kind kind, std::uint64_t end_ps) {
   if (kind == kPciDecides) return lines_.begins() && lines_.skip(now_ps_, skips_end_ps(end_ps));
   return kind == kLocalBusChooses && !noticed_ && dma_.skip(now_ps_, skips_end_ps(end_ps));

@@ -447,8 +447,8 @@ TEST(ComputerLoop, GivesTheSameFiguresWithSkippedAsWithSteppedDmaBursts) {
   EXPECT_GT(skipped, 10U * test::random_computers(200));
 }
 
-// A step of the channel takes 35 clocks of the local bus. In one of the runs a frame ends as a step begins. In
-// another one the processor's read reaches the bridge then.
+// A step of the channel takes 35 clocks of the local bus. In one of the runs a frame ends as a step begins.
+// In another one the processor's read reaches the bridge then.
 TEST(ComputerLoop, SkipsNoDmaBurstsBehindWhatTheProcessorSees) {
   for (std::uint64_t clock = 0; clock < 35; ++clock) {
     std::array<std::string, 2> figures;  // with skipped and with stepped bursts
