@@ -1,5 +1,5 @@
-# Installs the package stereotlm for other SystemC projects: libraries, headers below include/stereotlm
-# (include paths start there), and a CMake package that finds SystemC as this project does.
+# Installs the package stereotlm for other SystemC projects: libraries, headers that are included as
+# <stereotlm/..>, the guides, and a CMake package that finds SystemC as this project does.
 include(CMakePackageConfigHelpers)
 
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/stereotlm)
@@ -13,8 +13,12 @@ endforeach()
 install(EXPORT stereotlm_targets NAMESPACE stereotlm:: FILE stereotlmTargets.cmake DESTINATION
   ${package_folder})
 
-install(DIRECTORY models platform DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/stereotlm FILES_MATCHING PATTERN
-  "*.h")
+install(CODE "set(source ${PROJECT_SOURCE_DIR})
+  set(include ${CMAKE_INSTALL_INCLUDEDIR})")
+install(SCRIPT cmake/install_headers.cmake)
+install(FILES LICENSE CHANGELOG.md README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES models/README.md models/contract.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/models)
+install(FILES platform/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/platform)
 
 configure_package_config_file(cmake/stereotlmConfig.cmake.in ${PROJECT_BINARY_DIR}/stereotlmConfig.cmake
   INSTALL_DESTINATION ${package_folder} NO_SET_AND_CHECK_MACRO)

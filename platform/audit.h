@@ -1,7 +1,5 @@
 #pragma once
 
-#include <fmt/format.h>
-
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -24,16 +22,10 @@ class Audit {
   // `compared`, unless null, gets each identity.
   explicit Audit(std::vector<Identity>* compared = nullptr) : compared_(compared) {}
 
-  void equal(const std::string& what, std::uint64_t left, const std::string& as, std::uint64_t right) {
-    if (compared_ != nullptr) compared_->push_back({what, left, as, right});
-    if (left == right) return;
-    fail(fmt::format("{} = {}, but {} = {}", what, left, as, right));
-  }
+  void equal(const std::string& what, std::uint64_t left, const std::string& as, std::uint64_t right);
+  // Of whole numbers, or of `double`.
   template <class Number>
-  void at_most(const std::string& what, Number value, const std::string& as, Number limit) {
-    if (value <= limit) return;
-    fail(fmt::format("{} = {}, but {} = {}", what, value, as, limit));
-  }
+  void at_most(const std::string& what, Number value, const std::string& as, Number limit);
   void fail(std::string message) { failed_.push_back(std::move(message)); }
   const std::vector<std::string>& failed() const { return failed_; }
 

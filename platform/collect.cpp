@@ -1,5 +1,7 @@
 #include "platform/collect.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "platform/audit.h"

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <systemc>
 
 #include "models/binder.h"
@@ -67,11 +66,5 @@ class FastComputer : public sc_core::sc_module,
   pci::BurstResult result_;
   sc_core::sc_event interrupt_changed_{"interrupt_changed"};
 };
-
-// A Computer if `fidelity` steps cycles, else a FastComputer.
-std::unique_ptr<ComputerView> make_computer(const sc_core::sc_module_name& name, const BoardConfig& config,
-                                            std::uint64_t host_memory_bytes, host::Program& program,
-                                            capture::CameraSource& left, capture::CameraSource& right,
-                                            Binder& binder, fpga::Fidelity fidelity);
 
 }  // namespace stereotlm::platform

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "models/kernel_time.h"
-#include "platform/fast_computer.h"
+#include "platform/computer.h"
 
 namespace stereotlm::runs {
 namespace {

@@ -5,8 +5,8 @@
 #include <cstdio>
 #include <systemc>
 
-#include "models/kernels/stereo.h"
-#include "models/memory/ssram_bank.h"
+#include <stereotlm/models/kernels/stereo.h>
+#include <stereotlm/models/memory/ssram_bank.h>
 
 struct MyMaster : sc_core::sc_module {
   tlm_utils::simple_initiator_socket<MyMaster> port{"port"};
