@@ -1,8 +1,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <cstdlib>
+#include <numeric>
 #include <string>
 #include <thread>
 #include <vector>
@@ -146,12 +148,19 @@ RandomBoard board_of(std::uint64_t seed, bool with_knobs) {
   return make_random_board(seed, with_knobs ? RandomKnobs::with_section_8() : RandomKnobs{});
 }
 
+// Of boards that once showed an error which the first boards do not show: results in sdram that begin more than
+// a strip behind the slots.
+constexpr std::array<std::uint64_t, 3> kSeedsOfErrors = {7500, 16441, 17138};
+
 void expect_boards_equal_references(Fidelity fidelity, bool with_knobs, std::uint64_t boards,
                                     Comparison compare = compare_with_references) {
   const std::uint64_t first = from_environment("STEREOTLM_RANDOM_FIRST", 0);
   const std::uint64_t count = random_boards(boards);
+  std::vector<std::uint64_t> seeds(count);
+  std::iota(seeds.begin(), seeds.end(), first);
+  seeds.insert(seeds.end(), kSeedsOfErrors.begin(), kSeedsOfErrors.end());
   std::vector<ChildWork> jobs;
-  for (std::uint64_t seed = first; seed < first + count; ++seed)
+  for (const std::uint64_t seed : seeds)
     jobs.push_back([=] { return compare(board_of(seed, with_knobs), fidelity); });
   const std::vector<ChildResult> results = run_in_children(jobs, processors());
   std::uint64_t hangs = 0;
@@ -159,7 +168,7 @@ void expect_boards_equal_references(Fidelity fidelity, bool with_knobs, std::uin
     if (results[job].text == kHang) {
       ++hangs;
     } else if (!results[job].ok()) {
-      const RandomBoard board = board_of(first + job, with_knobs);
+      const RandomBoard board = board_of(seeds[job], with_knobs);
       ADD_FAILURE() << results[job].text << "\n"
                     << describe(board) << "\n"
                     << platform::to_yaml(board_config(board));
