@@ -158,9 +158,10 @@ void match_group(const MatchPlan& plan, const MatchMemory& memory, int first, st
   int outside = plan.first_outside - first;
   if (!kRightBased) outside = columns + kCount;
   group.template match<kRightBased, Outside::kNone>(until(outside - kCount + 1));
-  for (; matched < columns; outside += columns) {
+  while (matched < columns) {
     group.template match<kRightBased, Outside::kSome>(until(outside));
     group.template match<kRightBased, Outside::kAllOrNone>(until(outside + columns - kCount + 1));
+    outside += columns;
   }
   group.leave();
 }

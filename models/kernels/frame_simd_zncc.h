@@ -88,7 +88,7 @@ struct QuotientKeys {
   static Best load_moved(const Best* best, Int16s outside) {
     const auto moved = [outside](const Key& key) {
       const auto* lanes = reinterpret_cast<const std::int32_t*>(&key);
-      return unless(outside, {load<Int32s>(lanes + kLanes / 2 - 1), key.even});
+      return unless(outside, Key{load<Int32s>(lanes + kLanes / 2 - 1), key.even});
     };
     return {moved(best->best), moved(best->second)};
   }

@@ -5,40 +5,18 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
-#include <functional>
 #include <systemc>
 #include <tlm>
 #include <vector>
 
 #include "models/clock.h"
+#include "models/decision_point.h"
 #include "models/pci/pci_bus_control.h"
 #include "models/pci/pci_config.h"
 #include "models/pci/pci_slot_if.h"
 #include "models/step_event.h"
 
 namespace stereotlm::pci {
-
-// Makes a decision, such as the arbitration of the bus, when nothing else is pending at the current time. The
-// decision thus sees everything that happens at that time, in whatever delta cycle.
-//
-// Two processes that both wait until nothing else is pending would wait for each other. The process of one
-// DecisionPoint, the first in the module hierarchy, therefore serves all DecisionPoints of a simulation.
-class DecisionPoint : public sc_core::sc_module {
- public:
-  DecisionPoint(const sc_core::sc_module_name& name, std::function<void()> decide);
-
-  // Requests the decision at the current time. To be called from a method process.
-  void request();
-
- private:
-  void start_of_simulation() override;
-  void decide_when_settled();
-
-  std::function<void()> decide_;
-  DecisionPoint* leader_ = this;           // the DecisionPoint whose process serves this one
-  std::vector<DecisionPoint*> requested_;  // of the leader: the points that have requested a decision
-  sc_core::sc_event settle_{"settle"};
-};
 
 using PciStopPort = sc_core::sc_port<PciStopIf, 1, sc_core::SC_ZERO_OR_MORE_BOUND>;
 

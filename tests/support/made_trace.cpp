@@ -33,7 +33,7 @@ struct Lane {
 class PlainRun {
  public:
   explicit PlainRun(const platform::BoardConfig& board)
-      : board_(board), core_(platform::core_config(board)), geometry_(core_), random_(1) {}
+      : core_(platform::core_config(board)), geometry_(core_), random_(1) {}
 
   void frame(std::uint64_t number, MadeTrace& trace) {
     lanes_ = {};
@@ -174,7 +174,6 @@ class PlainRun {
     frame_.strip_ends.push_back(cycle_);
   }
 
-  const platform::BoardConfig& board_;
   fpga::CoreConfig core_;
   fpga::FrameGeometry geometry_;
   std::mt19937 random_;

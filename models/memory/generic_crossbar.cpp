@@ -1,0 +1,158 @@
+#include "models/memory/generic_crossbar.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "models/access_rules.h"
+#include "models/checked.h"
+#include "models/kernel_time.h"
+#include "models/memory/memory_config.h"
+
+namespace stereotlm::memory {
+
+GenericCrossbar::GenericCrossbar(const sc_core::sc_module_name& name, const CrossbarConfig& config)
+    : sc_module(name),
+      ports("port", config.arbiter.priority.size()),
+      banks("bank", config.banks.size()),
+      clock_(checked(this->name(), config).banks.front().clock_mhz),
+      states_(ports.size()) {
+  kernel_time::check_resolution();
+  for (const SsramBankConfig& bank : config.banks)
+    arbiters_.emplace_back(config.arbiter, bank).begin_counting(0);
+  for (std::size_t port = 0; port < ports.size(); ++port) {
+    const auto tag = static_cast<int>(port);
+    ports[port].register_b_transport(this, &GenericCrossbar::transport, tag);
+    ports[port].register_transport_dbg(this, &GenericCrossbar::debug, tag);
+  }
+  SC_HAS_PROCESS(GenericCrossbar);
+  SC_METHOD(begin_cycle);
+  sensitive << cycle_;
+  dont_initialize();
+}
+
+ArbiterStats GenericCrossbar::stats(std::size_t bank) const {
+  BankArbiter arbiter = arbiters_[bank];
+  const std::uint64_t end = clock_.edge_at_or_after(kernel_time::now_ps());
+  arbiter.count_rows(end);
+  arbiter.end_counting(end);
+  return arbiter.stats();
+}
+
+void GenericCrossbar::transport(int number, tlm::tlm_generic_payload& access, sc_core::sc_time& delay) {
+  if (const auto status = check(access); status != tlm::TLM_OK_RESPONSE)
+    return refuse(number, access, status);
+  if (delay != sc_core::SC_ZERO_TIME) wait(delay);
+  PortState& port = states_[static_cast<std::size_t>(number)];
+  const std::uint64_t turn = port.arrived++;
+  while (turn != port.served) wait(port.next_turn);
+  port.access = &access;
+  port.done_bytes = 0;
+  port.from_cycle = std::max(first_undecided_, clock_.edge_at_or_after(kernel_time::now_ps()));
+  await_cycle();
+  wait(port.ended);
+  delay = port.delay;
+  ++port.served;
+  port.next_turn.notify(sc_core::SC_ZERO_TIME);
+}
+
+tlm::tlm_response_status GenericCrossbar::check(const tlm::tlm_generic_payload& access) const {
+  const auto status = check_access(access, {crossbar_address(banks.size(), 0), false, true});
+  if (status != tlm::TLM_OK_RESPONSE) return status;
+  const std::uint64_t last = access.get_address() + access.get_data_length() - 4;
+  return bank_of_address(last) == bank_of_address(access.get_address()) ? tlm::TLM_OK_RESPONSE
+                                                                        : tlm::TLM_ADDRESS_ERROR_RESPONSE;
+}
+
+void GenericCrossbar::refuse(int port, tlm::tlm_generic_payload& access, tlm::tlm_response_status status) {
+  access.set_response_status(status);
+  if (std::exchange(has_reported_, true)) return;
+  SC_REPORT_WARNING(
+      "/stereotlm/generic_crossbar",
+      (std::string(ports[static_cast<std::size_t>(port)].name()) + ": " + access.get_response_string() +
+       " for " + std::to_string(access.get_data_length()) + " bytes at address " +
+       std::to_string(access.get_address()) + ": must be whole words in one of " +
+       std::to_string(banks.size()) + " banks (generic_crossbar.h); later refusals are not reported")
+          .c_str());
+}
+
+// Requests the next cycle in which a port requests.
+void GenericCrossbar::await_cycle() {
+  std::uint64_t next = UINT64_MAX;
+  for (const PortState& port : states_) {
+    if (port.access != nullptr) next = std::min(next, port.from_cycle);
+  }
+  cycle_.set(next == UINT64_MAX ? kNever : clock_.edge_ps(next));
+}
+
+void GenericCrossbar::begin_cycle() {
+  cycle_.taken();
+  decision_.request();
+}
+
+void GenericCrossbar::decide() {
+  const std::uint64_t cycle = clock_.edge_at_or_after(kernel_time::now_ps());
+  std::vector<PortMask> requests(banks.size());
+  std::vector<PortMask> writes(banks.size());
+  for (Port port = 0; port < states_.size(); ++port) {
+    const PortState& state = states_[port];
+    if (state.access == nullptr || state.from_cycle > cycle) continue;
+    const std::uint64_t address = state.access->get_address() + state.done_bytes;
+    requests[bank_of_address(address)] |= mask_of(port);
+    if (state.access->is_write()) writes[bank_of_address(address)] |= mask_of(port);
+    words_[port] = static_cast<std::uint32_t>(address_in_bank(address) / 4);
+  }
+  first_undecided_ = cycle + 1;
+  for (std::size_t bank = 0; bank < banks.size(); ++bank) {
+    if (requests[bank] != 0) decide(bank, cycle, requests[bank], writes[bank]);
+  }
+  await_cycle();
+}
+
+void GenericCrossbar::decide(std::size_t bank, std::uint64_t cycle, PortMask requests, PortMask writes) {
+  const BankArbiter::Outcome outcome = arbiters_[bank].decide(cycle, requests, writes, words_.data());
+  arbiters_[bank].count(outcome);
+  for_each_port(requests & ~outcome.granted, [&](Port port) { states_[port].from_cycle = cycle + 1; });
+  for_each_port(outcome.granted & ~writes, [&](Port port) { access_word(states_[port], bank, cycle); });
+  for_each_port(outcome.granted & writes, [&](Port port) { access_word(states_[port], bank, cycle); });
+}
+
+// The next word of the port has been granted in this cycle, which begins now.
+void GenericCrossbar::access_word(PortState& port, std::size_t bank, std::uint64_t cycle) {
+  tlm::tlm_generic_payload& access = *port.access;
+  tlm::tlm_generic_payload word;
+  word.set_command(access.get_command());
+  word.set_address(address_in_bank(access.get_address()) + port.done_bytes);
+  word.set_data_ptr(access.get_data_ptr() + port.done_bytes);
+  word.set_data_length(4);
+  word.set_streaming_width(4);
+  std::array<unsigned char, 4> enables{};
+  if (access.get_byte_enable_ptr() != nullptr) {
+    for (unsigned byte = 0; byte < 4; ++byte)
+      enables[byte] =
+          access.get_byte_enable_ptr()[(port.done_bytes + byte) % access.get_byte_enable_length()];
+    word.set_byte_enable_ptr(enables.data());
+    word.set_byte_enable_length(4);
+  }
+  sc_core::sc_time delay;
+  banks[bank]->b_transport(word, delay);
+  port.done_bytes += 4;
+  port.from_cycle = cycle + 1;
+  if (word.is_response_ok() && port.done_bytes < access.get_data_length()) return;
+  access.set_response_status(word.get_response_status());
+  port.access = nullptr;
+  port.delay =
+      access.is_read() ? delay : kernel_time::to_time(clock_.edge_ps(cycle + 1) - kernel_time::now_ps());
+  port.ended.notify(sc_core::SC_ZERO_TIME);
+}
+
+unsigned GenericCrossbar::debug(int /*port*/, tlm::tlm_generic_payload& access) {
+  const std::uint64_t address = access.get_address();
+  if (bank_of_address(address) >= banks.size()) return 0;
+  access.set_address(address_in_bank(address));
+  const unsigned bytes = banks[bank_of_address(address)]->transport_dbg(access);
+  access.set_address(address);
+  return bytes;
+}
+
+}  // namespace stereotlm::memory

@@ -1,0 +1,91 @@
+#pragma once
+
+#include <tlm_utils/simple_initiator_socket.h>
+#include <tlm_utils/simple_target_socket.h>
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <systemc>
+#include <tlm>
+#include <vector>
+
+#include "models/clock.h"
+#include "models/decision_point.h"
+#include "models/memory/bank_arbiter.h"
+#include "models/memory/crossbar.h"
+#include "models/step_event.h"
+
+namespace stereotlm::memory {
+
+// A crossbar between any initiators of the TLM-2.0 base protocol and the banks, with the arbiters of Crossbar
+// (contract section 2). An initiator knows nothing of requests and grants: its access takes the time that the
+// arbiters give it.
+//
+// An access has any number of words in one bank, at the addresses of crossbar_address(). Its first word
+// requests the bank from the first cycle on that begins at or after the time of the access, each other word
+// from the cycle after the grant of the word before. The arbiters decide about a cycle after everything else
+// that happens at its beginning. A word that is granted accesses the bank in its cycle, by b_transport. With
+// a bank of separate ports the read of a cycle comes before its write.
+//
+// b_transport waits for the grant of the last word. It returns in the cycle of this grant, with the rest of
+// the access as `delay`: of a read up to the time at which its last word is usable, of a write up to the end
+// of the cycle. A port serves one access at a time, in the order in which they arrive. nb_transport is
+// turned into b_transport; its response ends the request too. Debug transport reaches every bank at once.
+// There is no DMI.
+//
+// | access                                                         | response                       |
+// |----------------------------------------------------------------|--------------------------------|
+// | one that breaks a rule of check_access(); byte enables are     | that of check_access()         |
+// | allowed                                                        |                                |
+// | an address in no bank, or words in two banks                   | TLM_ADDRESS_ERROR_RESPONSE     |
+// | a word that its bank refuses: the words behind it are left out | that of the bank               |
+//
+// The first access that the crossbar refuses is reported with SC_REPORT_WARNING (type
+// /stereotlm/generic_crossbar).
+class GenericCrossbar : public sc_core::sc_module {
+ public:
+  sc_core::sc_vector<tlm_utils::simple_target_socket_tagged<GenericCrossbar>> ports;  // [port]
+  sc_core::sc_vector<tlm_utils::simple_initiator_socket<GenericCrossbar>> banks;      // [bank]
+
+  // Throws std::invalid_argument if the configuration has problems.
+  GenericCrossbar(const sc_core::sc_module_name& name, const CrossbarConfig& config);
+
+  const Clock& clock() const { return clock_; }
+  // The counters of a bank, of the cycles that have begun before the present time.
+  ArbiterStats stats(std::size_t bank) const;
+
+ private:
+  // The access that a port serves.
+  struct PortState {
+    std::uint64_t arrived = 0;  // accesses that have taken a turn
+    std::uint64_t served = 0;   // turns that have ended
+    sc_core::sc_event next_turn;
+    tlm::tlm_generic_payload* access = nullptr;
+    unsigned done_bytes = 0;
+    std::uint64_t from_cycle = 0;  // its next word requests from this cycle on
+    sc_core::sc_time delay;        // of the rest, after its last grant
+    sc_core::sc_event ended;
+  };
+
+  void transport(int port, tlm::tlm_generic_payload& access, sc_core::sc_time& delay);
+  unsigned debug(int port, tlm::tlm_generic_payload& access);
+  tlm::tlm_response_status check(const tlm::tlm_generic_payload& access) const;
+  void refuse(int port, tlm::tlm_generic_payload& access, tlm::tlm_response_status status);
+  void begin_cycle();
+  void decide();
+  void decide(std::size_t bank, std::uint64_t cycle, PortMask requests, PortMask writes);
+  void access_word(PortState& port, std::size_t bank, std::uint64_t cycle);
+  void await_cycle();
+
+  Clock clock_;
+  std::vector<BankArbiter> arbiters_;              // [bank]
+  std::deque<PortState> states_;                   // [port]
+  std::uint64_t first_undecided_ = 0;              // cycle
+  std::array<std::uint32_t, kMostPorts> words_{};  // [port]: the word that it requests
+  bool has_reported_ = false;
+  StepEvent cycle_{"cycle"};
+  DecisionPoint decision_{"decision", [this] { decide(); }};
+};
+
+}  // namespace stereotlm::memory

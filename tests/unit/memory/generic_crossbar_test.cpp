@@ -1,0 +1,387 @@
+// The crossbar for any initiators: times of single accesses, what is refused, and random traffic against a
+// plain loop over cycles.
+#include "models/memory/generic_crossbar.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <tlm_utils/simple_initiator_socket.h>
+
+#include <algorithm>
+#include <deque>
+#include <map>
+#include <memory>
+#include <numeric>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "models/kernel_time.h"
+#include "models/memory/ssram_bank.h"
+#include "tests/support/expected_report.h"
+#include "tests/support/monitoring_binder.h"
+#include "tests/support/random_board.h"
+#include "tests/support/test_host.h"
+#include "tests/support/transaction_log.h"
+
+namespace stereotlm::memory {
+namespace {
+
+using sc_core::SC_NS;
+using sc_core::sc_time;
+
+constexpr std::uint64_t kCyclePs = 25'000;
+constexpr std::uint64_t kReport = 1;
+
+PriorityList list_of(std::size_t ports) {
+  PriorityList list(ports);
+  std::iota(list.begin(), list.end(), Port{0});
+  return list;
+}
+
+// Ports, the crossbar and its banks, with a monitor and a log in each link to a bank.
+struct Bench {
+  explicit Bench(const CrossbarConfig& config) : crossbar("crossbar", config) {
+    for (std::size_t bank = 0; bank < config.banks.size(); ++bank) {
+      const std::string name = fmt::format("bank{}", bank);
+      banks.push_back(std::make_unique<SsramBank>(name.c_str(), config.banks[bank]));
+      loggers.push_back(std::make_unique<test::TransactionLogger>((name + "_log").c_str(), name, log));
+      crossbar.banks[bank].bind(loggers.back()->from_initiator);
+      loggers.back()->to_target.bind(banks.back()->port);
+    }
+  }
+  test::TestHost& host(Port port) {
+    const std::string name = fmt::format("host{}", port);
+    hosts.push_back(std::make_unique<test::TestHost>(name.c_str()));
+    binder.bind(hosts.back()->socket, crossbar.ports[port], name);
+    return *hosts.back();
+  }
+
+  test::MonitoringBinder binder;
+  GenericCrossbar crossbar;
+  std::vector<std::unique_ptr<SsramBank>> banks;
+  std::vector<test::LoggedTransaction> log;
+  std::vector<std::unique_ptr<test::TransactionLogger>> loggers;
+  std::vector<std::unique_ptr<test::TestHost>> hosts;
+};
+
+// Runs `body` as a process of an initiator.
+struct Process : sc_core::sc_module {
+  Process(const sc_core::sc_module_name& name, std::function<void()> work)
+      : sc_module(name), body(std::move(work)) {
+    SC_HAS_PROCESS(Process);
+    SC_THREAD(run);
+  }
+  void run() { body(); }
+  std::function<void()> body;
+};
+
+TEST(GenericCrossbar, GivesAnAccessTheCyclesOfItsWords) {
+  Bench bench({{"round_robin", list_of(2)}, {SsramBankConfig{}, {64, BankKind::kZbtFlowThrough, 0, 40}}});
+  test::TestHost& host = bench.host(0);
+  bench.host(1);
+  Process process("process", [&] {
+    // Written in the cycles 2, 3 and 4; the last one ends at 125 ns.
+    auto answer = host.write(crossbar_address(1, 7), 5, sc_time(26, SC_NS));
+    EXPECT_EQ(answer.status, tlm::TLM_OK_RESPONSE);
+    EXPECT_EQ(answer.at, sc_time(75, SC_NS));
+    sc_core::wait(answer.at - sc_core::sc_time_stamp());
+    answer = host.write_words(crossbar_address(1, 8), {6, 7});
+    EXPECT_EQ(answer.at, sc_time(125, SC_NS));
+    sc_core::wait(answer.at - sc_core::sc_time_stamp());
+    // Read in the cycles 5 to 7; the last word is usable a cycle later.
+    answer = host.read_words(crossbar_address(1, 7), 3);
+    EXPECT_EQ(answer.words, (std::vector<std::uint32_t>{5, 6, 7}));
+    EXPECT_EQ(answer.at, sc_time(200, SC_NS));
+    sc_core::wait(answer.at - sc_core::sc_time_stamp());
+    // By nb_transport, in cycle 8.
+    answer = host.access(tlm::TLM_READ_COMMAND, crossbar_address(1, 8));
+    EXPECT_EQ(answer.word, 6U);
+    EXPECT_EQ(answer.at, sc_time(225, SC_NS));
+    EXPECT_EQ(host.debug_read(crossbar_address(1, 7), 3), (std::vector<std::uint32_t>{5, 6, 7}));
+  });
+  sc_core::sc_start(sc_time(300, SC_NS));
+  EXPECT_EQ(bench.log.size(), 7U);
+  const ArbiterStats stats = bench.crossbar.stats(1);
+  EXPECT_EQ(stats.reads(), 4U);
+  EXPECT_EQ(stats.writes(), 3U);
+  EXPECT_EQ(stats.idle_cycles(), 12U - 7U);
+}
+
+TEST(GenericCrossbar, WritesTheBytesThatAreEnabled) {
+  Bench bench({{"fixed_priority", list_of(1)}, {SsramBankConfig{}}});
+  test::TestHost& host = bench.host(0);
+  Process process("process", [&] {
+    std::vector<std::uint32_t> words = {0x11111111, 0x22222222};
+    std::array<unsigned char, 3> enables = {TLM_BYTE_ENABLED, 0, 0};  // again for each three bytes
+    tlm::tlm_generic_payload access;
+    access.set_command(tlm::TLM_WRITE_COMMAND);
+    access.set_address(0);
+    access.set_data_ptr(reinterpret_cast<unsigned char*>(words.data()));
+    access.set_data_length(8);
+    access.set_streaming_width(8);
+    access.set_byte_enable_ptr(enables.data());
+    access.set_byte_enable_length(3);
+    sc_time delay;
+    host.socket->b_transport(access, delay);
+    EXPECT_TRUE(access.is_response_ok());
+  });
+  sc_core::sc_start(sc_time(200, SC_NS));
+  EXPECT_EQ(host.debug_read(0, 2), (std::vector<std::uint32_t>{0x11000011, 0x00220000}));
+}
+
+TEST(GenericCrossbar, RefusesAndReportsOnce) {
+  Bench bench({{"fixed_priority", list_of(1)}, {{16}, {16}}});
+  test::TestHost& host = bench.host(0);
+  Process process("process", [&] {
+    test::ExpectedReport expected("/stereotlm/generic_crossbar", kReport);
+    EXPECT_EQ(host.read(crossbar_address(2, 0)).status, tlm::TLM_ADDRESS_ERROR_RESPONSE);
+    EXPECT_NE(
+        expected.text().find("crossbar.port_0: TLM_ADDRESS_ERROR_RESPONSE for 4 bytes at address 536870912"),
+        std::string::npos)
+        << expected.text();
+    EXPECT_EQ(host.read_words(crossbar_address(1, 0) - 4, 2).status, tlm::TLM_ADDRESS_ERROR_RESPONSE);
+    EXPECT_EQ(bench.log.size(), 0U);
+    // The bank refuses the second word.
+    EXPECT_EQ(host.write_words(crossbar_address(0, 15), {1, 2, 3}).status, tlm::TLM_ADDRESS_ERROR_RESPONSE);
+    EXPECT_EQ(bench.log.size(), 2U);
+  });
+  sc_core::sc_start(sc_time(500, SC_NS));
+}
+
+TEST(GenericCrossbar, RefusesAConfigurationWithProblems) {
+  EXPECT_THROW(GenericCrossbar("crossbar", {{"fixed_priority", {0, 0}}, {SsramBankConfig{}}}),
+               std::invalid_argument);
+}
+
+// Random traffic.
+struct Access {
+  std::uint64_t pause_ps;  // after the end of the access before
+  bool write;
+  std::size_t bank;
+  std::uint32_t word;
+  std::size_t count;
+};
+struct Grant {
+  std::uint64_t cycle;
+  std::size_t bank;
+  bool write;
+  std::uint32_t word;
+};
+bool operator==(const Grant& a, const Grant& b) {
+  return a.cycle == b.cycle && a.bank == b.bank && a.write == b.write && a.word == b.word;
+}
+std::ostream& operator<<(std::ostream& out, const Grant& grant) {
+  return out << fmt::format("cycle {}: bank {} {} {}", grant.cycle, grant.bank,
+                            grant.write ? "write" : "read", grant.word);
+}
+
+struct Traffic {
+  CrossbarConfig config;
+  std::vector<std::vector<Access>> accesses;  // [port]
+};
+
+Traffic draw(std::uint64_t seed) {
+  test::SplitMix64 random(seed);
+  Traffic traffic;
+  const auto ports = static_cast<std::size_t>(random.between(1, 7));
+  traffic.config.arbiter.policy = std::vector<std::string>{"fixed_priority", "round_robin", "age"}[seed % 3];
+  traffic.config.arbiter.priority = list_of(ports);
+  for (std::size_t left = ports; left > 1; --left)
+    std::swap(traffic.config.arbiter.priority[left - 1],
+              traffic.config.arbiter
+                  .priority[static_cast<std::size_t>(random.between(0, static_cast<int>(left) - 1))]);
+  for (int banks = random.between(1, 3); banks > 0; --banks) {
+    SsramBankConfig bank;
+    bank.words = 64;
+    bank.kind = std::array{BankKind::kZbtPipelined, BankKind::kZbtFlowThrough, BankKind::kSyncBurst,
+                           BankKind::kQdr}[static_cast<std::size_t>(random.between(0, 3))];
+    if (bank.kind == BankKind::kSyncBurst) bank.turnaround_cycles = random.between(1, 4);
+    traffic.config.banks.push_back(bank);
+  }
+  for (std::size_t port = 0; port < ports; ++port) {
+    std::vector<Access>& list = traffic.accesses.emplace_back();
+    for (int number = random.between(5, 30); number > 0; --number) {
+      const auto count = static_cast<std::size_t>(random.chance(50) ? 1 : random.between(1, 8));
+      const std::uint64_t pause =
+          random.chance(50) ? 0 : static_cast<std::uint64_t>(random.between(0, 120'000));
+      list.push_back(
+          {pause, random.chance(40),
+           static_cast<std::size_t>(random.between(0, static_cast<int>(traffic.config.banks.size()) - 1)),
+           static_cast<std::uint32_t>(random.between(0, 64 - static_cast<int>(count))), count});
+    }
+  }
+  return traffic;
+}
+
+// What the contract says (section 2, "Banks" and "Arbiter"), cycle by cycle.
+class PlainCrossbar {
+ public:
+  explicit PlainCrossbar(const Traffic& traffic) : traffic_(traffic), ports_(traffic.accesses.size()) {
+    for (const SsramBankConfig& bank : traffic.config.banks) {
+      banks_.push_back(
+          {bank.kind == BankKind::kQdr, bank.turnaround_cycles, read_latency_cycles(bank), {}, {}, {}});
+      for (auto& age : banks_.back().age) age.resize(ports_.size());
+    }
+    for (std::size_t port = 0; port < ports_.size(); ++port) begin(port, 0);
+  }
+
+  std::vector<Grant> grants() {
+    std::vector<Grant> all;
+    for (std::uint64_t cycle = 0; !done(); ++cycle) {
+      for (std::size_t bank = 0; bank < banks_.size(); ++bank) {
+        if (banks_[bank].separate) {
+          decide(bank, cycle, false, true, all);
+          decide(bank, cycle, true, true, all);
+        } else {
+          decide(bank, cycle, false, false, all);
+        }
+      }
+    }
+    return all;
+  }
+  // The most grants of other ports between the request and the grant of a word.
+  std::size_t longest_wait() const { return longest_wait_; }
+
+ private:
+  struct PortState {
+    std::size_t next = 0;  // access
+    std::size_t word = 0;
+    std::uint64_t from_cycle = 0;
+    std::size_t others = 0;
+  };
+  struct Bank {
+    bool separate;
+    int turnaround;
+    int latency;
+    std::array<std::optional<std::uint64_t>, 2> last;     // [write]: cycle of the last grant
+    std::array<std::optional<std::size_t>, 2> last_port;  // [direction]: place in the list, for round robin
+    std::array<std::vector<std::uint64_t>, 2> age;        // [direction][port]
+  };
+
+  bool done() const {
+    for (std::size_t port = 0; port < ports_.size(); ++port)
+      if (ports_[port].next < traffic_.accesses[port].size()) return false;
+    return true;
+  }
+  void begin(std::size_t port, std::uint64_t end_ps) {
+    PortState& state = ports_[port];
+    if (state.next == traffic_.accesses[port].size()) return;
+    const std::uint64_t at_ps = end_ps + traffic_.accesses[port][state.next].pause_ps;
+    state.from_cycle = (at_ps + kCyclePs - 1) / kCyclePs;
+  }
+  void decide(std::size_t number, std::uint64_t cycle, bool writes, bool one_direction,
+              std::vector<Grant>& all) {
+    Bank& bank = banks_[number];
+    const std::size_t direction = one_direction && writes ? 1 : 0;
+    std::vector<std::size_t> asking;  // in the order of the list
+    for (const Port port : traffic_.config.arbiter.priority) {
+      const PortState& state = ports_[port];
+      const bool asks = state.next < traffic_.accesses[port].size() && state.from_cycle <= cycle &&
+                        traffic_.accesses[port][state.next].bank == number &&
+                        (!one_direction || traffic_.accesses[port][state.next].write == writes);
+      if (asks) asking.push_back(port);
+      bank.age[direction][port] = asks ? bank.age[direction][port] + 1 : 0;
+    }
+    if (asking.empty()) return;
+    const Port winner = winner_of(bank, direction, asking);
+    const Access& access = traffic_.accesses[winner][ports_[winner].next];
+    const auto& other = bank.last[access.write ? 0 : 1];
+    if (!bank.separate && other && cycle < *other + static_cast<std::uint64_t>(bank.turnaround) + 1) return;
+    bank.last[access.write ? 1 : 0] = cycle;
+    const PriorityList& list = traffic_.config.arbiter.priority;
+    bank.last_port[direction] =
+        static_cast<std::size_t>(std::find(list.begin(), list.end(), winner) - list.begin());
+    bank.age[direction][winner] = 0;
+    for (const std::size_t port : asking) {
+      longest_wait_ = std::max(longest_wait_, ports_[port].others);
+      if (port != winner) ++ports_[port].others;
+    }
+    PortState& state = ports_[winner];
+    all.push_back({cycle, number, access.write, access.word + static_cast<std::uint32_t>(state.word)});
+    state.others = 0;
+    state.from_cycle = cycle + 1;
+    if (++state.word < access.count) return;
+    state.word = 0;
+    ++state.next;
+    begin(winner, kCyclePs * (cycle + static_cast<std::uint64_t>(access.write ? 1 : bank.latency)));
+  }
+  Port winner_of(const Bank& bank, std::size_t direction, const std::vector<std::size_t>& asking) const {
+    const PriorityList& list = traffic_.config.arbiter.priority;
+    if (traffic_.config.arbiter.policy == "fixed_priority") return asking.front();
+    if (traffic_.config.arbiter.policy == "age") {
+      return *std::max_element(asking.begin(), asking.end(), [&](std::size_t a, std::size_t b) {
+        return bank.age[direction][a] < bank.age[direction][b];
+      });
+    }
+    for (std::size_t step = 0; step < list.size(); ++step) {
+      const std::size_t begin = bank.last_port[direction] ? *bank.last_port[direction] + 1 : 0;
+      const Port port = list[(begin + step) % list.size()];
+      if (std::find(asking.begin(), asking.end(), port) != asking.end()) return port;
+    }
+    return asking.front();
+  }
+
+  const Traffic& traffic_;
+  std::vector<PortState> ports_;
+  std::vector<Bank> banks_;
+  std::size_t longest_wait_ = 0;
+};
+
+class RandomTraffic : public ::testing::TestWithParam<std::uint64_t> {};
+
+// One crossbar for each process: SystemC elaborates once. Ports with even numbers use b_transport, the others
+// nb_transport.
+TEST_P(RandomTraffic, IsGrantedAsInThePlainLoop) {
+  const Traffic traffic = draw(GetParam());
+  Bench bench(traffic.config);
+  std::deque<Process> processes;
+  for (Port port = 0; port < traffic.accesses.size(); ++port) {
+    test::TestHost& host = bench.host(port);
+    processes.emplace_back(fmt::format("process{}", port).c_str(), [&host, &traffic, port] {
+      for (const Access& access : traffic.accesses[port]) {
+        const std::uint64_t address = crossbar_address(access.bank, access.word);
+        sc_core::wait(kernel_time::to_time(access.pause_ps));
+        test::TestHost::Answer answer;
+        if (port % 2 == 1) {
+          answer = host.access(access.write ? tlm::TLM_WRITE_COMMAND : tlm::TLM_READ_COMMAND, address,
+                               std::vector<std::uint32_t>(access.count));
+        } else {
+          answer = access.write ? host.write_words(address, std::vector<std::uint32_t>(access.count))
+                                : host.read_words(address, access.count);
+        }
+        EXPECT_EQ(answer.status, tlm::TLM_OK_RESPONSE);
+        if (answer.at > sc_core::sc_time_stamp()) sc_core::wait(answer.at - sc_core::sc_time_stamp());
+      }
+    });
+  }
+  sc_core::sc_start(sc_time(1, sc_core::SC_MS));
+  PlainCrossbar plain(traffic);
+  const std::vector<Grant> expected = plain.grants();
+  std::vector<Grant> found;
+  for (const test::LoggedTransaction& one : bench.log) {
+    EXPECT_EQ(one.time_ps % kCyclePs, 0U);
+    found.push_back({one.time_ps / kCyclePs, static_cast<std::size_t>(std::stoi(one.link.substr(4))),
+                     one.write, static_cast<std::uint32_t>(one.address / 4)});
+  }
+  ASSERT_EQ(found.size(), expected.size());
+  const auto in_order = [](const Grant& a, const Grant& b) {
+    return std::tie(a.cycle, a.bank, a.write) < std::tie(b.cycle, b.bank, b.write);
+  };
+  std::vector<Grant> sorted = expected;
+  std::sort(sorted.begin(), sorted.end(), in_order);
+  std::sort(found.begin(), found.end(), in_order);
+  for (std::size_t grant = 0; grant < found.size(); ++grant) ASSERT_EQ(found[grant], sorted[grant]);
+  std::uint64_t counted = 0;
+  for (std::size_t bank = 0; bank < traffic.config.banks.size(); ++bank)
+    counted += bench.crossbar.stats(bank).reads() + bench.crossbar.stats(bank).writes();
+  EXPECT_EQ(counted, found.size());
+  // Each other port is granted at most once before a word that waits.
+  if (traffic.config.arbiter.policy == "round_robin") {
+    EXPECT_LE(plain.longest_wait(), traffic.accesses.size() - 1);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Drawn, RandomTraffic, ::testing::Range<std::uint64_t>(0, 60));
+
+}  // namespace
+}  // namespace stereotlm::memory
