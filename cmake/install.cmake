@@ -3,7 +3,7 @@
 include(CMakePackageConfigHelpers)
 
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/stereotlm)
-set(package_libraries kernels area arbitration models yaml config platform)
+set(package_libraries kernels area arbitration models testing yaml config platform)
 
 foreach(library ${package_libraries})
   set_target_properties(stereotlm_${library} PROPERTIES EXPORT_NAME ${library})
@@ -16,12 +16,14 @@ install(EXPORT stereotlm_targets NAMESPACE stereotlm:: FILE stereotlmTargets.cma
 install(CODE "set(source ${PROJECT_SOURCE_DIR})
   set(include ${CMAKE_INSTALL_INCLUDEDIR})")
 install(SCRIPT cmake/install_headers.cmake)
+install(FILES models/testing/gtest_main.cpp DESTINATION ${CMAKE_INSTALL_DATADIR}/stereotlm)
 install(FILES LICENSE CHANGELOG.md README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES models/README.md models/contract.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/models)
 install(FILES platform/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/platform)
 
+set(STEREOTLM_GTEST_MAIN ${CMAKE_INSTALL_DATADIR}/stereotlm/gtest_main.cpp)
 configure_package_config_file(cmake/stereotlmConfig.cmake.in ${PROJECT_BINARY_DIR}/stereotlmConfig.cmake
-  INSTALL_DESTINATION ${package_folder} NO_SET_AND_CHECK_MACRO)
+  INSTALL_DESTINATION ${package_folder} NO_SET_AND_CHECK_MACRO PATH_VARS STEREOTLM_GTEST_MAIN)
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/stereotlmConfigVersion.cmake
   COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/stereotlmConfig.cmake ${PROJECT_BINARY_DIR}/stereotlmConfigVersion.cmake

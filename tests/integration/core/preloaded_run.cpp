@@ -4,9 +4,9 @@
 
 #include <systemc>
 
+#include "models/testing/monitoring_binder.h"
 #include "platform/collect.h"
 #include "platform/preloaded_system.h"
-#include "tests/support/monitoring_binder.h"
 
 namespace stereotlm::test {
 namespace {

@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
+#include "models/testing/expected_report.h"
+#include "models/testing/monitoring_binder.h"
 #include "platform/config/board_yaml.h"
-#include "tests/support/expected_report.h"
-#include "tests/support/monitoring_binder.h"
 #include "tests/support/noise_pairs.h"
 
 namespace stereotlm::simulation {

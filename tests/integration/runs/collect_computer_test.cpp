@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "models/testing/monitoring_binder.h"
 #include "platform/collect.h"
 #include "platform/config/board_yaml.h"
 #include "platform/config/buffer_layout.h"
 #include "sw/runs/simulation/camera_simulation.h"
-#include "tests/support/monitoring_binder.h"
 #include "tests/support/noise_pairs.h"
 
 namespace stereotlm::simulation {

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "models/binder.h"
+#include "models/testing/expected_report.h"
 #include "platform/config/board_yaml.h"
 #include "sw/runs/simulation/simulation.h"
-#include "tests/support/expected_report.h"
 #include "tests/support/noise_pairs.h"
 
 namespace stereotlm::simulation {

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "models/host/frame_source.h"
+#include "models/testing/monitoring_binder.h"
 #include "platform/bounds.h"
 #include "platform/config/board_yaml.h"
 #include "sw/explore/plan/points.h"
@@ -25,7 +26,6 @@
 #include "sw/stats/record_csv.h"
 #include "tests/support/board_of_random.h"
 #include "tests/support/fork.h"
-#include "tests/support/monitoring_binder.h"
 #include "tests/support/plain_computer.h"
 #include "tests/support/plain_conflicts.h"
 #include "tests/support/random_computer.h"

@@ -19,6 +19,8 @@
 #include <vector>
 
 #include "models/clock.h"
+#include "models/kernel_time.h"
+#include "models/testing/probing_binder.h"
 #include "platform/config/board_yaml.h"
 #include "platform/conflicts.h"
 #include "sw/runs/simulation/simulation.h"
@@ -31,7 +33,6 @@
 #include "tests/support/plain_conflicts.h"
 #include "tests/support/random_computer.h"
 #include "tests/support/scratch_folder.h"
-#include "tests/support/transaction_log.h"
 #include "tests/support/vcd_file.h"
 
 namespace stereotlm::simulation {
@@ -328,8 +329,8 @@ std::string differences(const std::string& name, const Sums& found, const Sums& 
 struct Traced {
   std::vector<platform::FrameRuns> runs;
   std::vector<fpga::CoreCycle> cycles;
-  std::vector<fpga::PortCycles> sums;  // [port]
-  std::vector<test::LoggedTransaction> log;
+  std::vector<fpga::PortCycles> sums;                                       // [port]
+  std::vector<std::pair<std::string, std::vector<test::SeenAccess>>> seen;  // of each link
   platform::Statistics statistics;
   std::string buses;
   std::string waveform;  // the text of the vcd
@@ -338,7 +339,7 @@ struct Traced {
 
 Traced trace(const Case& of, Fidelity fidelity, const CycleWindow& window, bool keeps_cycles,
              bool writes_files) {
-  test::LoggingBinder binder;
+  test::ProbingBinder binder("crossbar");
   PicturesOfCase pictures(of);
   const std::unique_ptr<runs::Simulation> simulation = runs::make_simulation(
       of.board, of.tables, pictures, {of.computer.has_value(), fidelity, of.frames, true}, binder);
@@ -379,7 +380,7 @@ Traced trace(const Case& of, Fidelity fidelity, const CycleWindow& window, bool 
   writer.commit();
   traced.cycles = std::move(cycles.cycles);
   traced.sums = cycles.sums;
-  traced.log = binder.log();
+  for (const auto& [link, probe] : binder.probes()) traced.seen.emplace_back(link, probe->accesses());
   traced.statistics = simulation->statistics();
   traced.buses = buses.text();
   if (of.computer && fidelity == Fidelity::kCycle) {
@@ -490,10 +491,12 @@ std::string wrong_accesses(const Case& of, const Traced& traced) {
   constexpr std::uint64_t kInBank = (std::uint64_t{1} << 28U) - 1;
   const fpga::CorePorts ports = platform::core_ports(of.board);
   std::vector<std::string> seen;
-  for (const test::LoggedTransaction& each : traced.log) {
-    const std::uint64_t cycle = clock.edge_at_or_after(each.time_ps + 1) - 1;
-    if (cycle < first || cycle > last) continue;
-    seen.push_back(fmt::format("{} {} {} {:x}", cycle, each.link, each.write, each.address & kInBank));
+  for (const auto& [link, accesses] : traced.seen) {
+    for (const test::SeenAccess& each : accesses) {
+      const std::uint64_t cycle = clock.edge_at_or_after(kernel_time::to_ps(each.begin) + 1) - 1;
+      if (cycle < first || cycle > last) continue;
+      seen.push_back(fmt::format("{} {} {} {:x}", cycle, link, each.write, each.address & kInBank));
+    }
   }
   std::vector<std::string> expected;
   for (const fpga::CoreCycle& cycle : traced.cycles) {

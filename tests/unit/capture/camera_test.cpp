@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "tests/support/expected_report.h"
+#include "models/testing/expected_report.h"
 #include "tests/unit/capture/capture_bench.h"
 
 namespace stereotlm::capture {

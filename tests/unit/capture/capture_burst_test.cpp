@@ -1,6 +1,6 @@
 // The bursts of a capture board on the PCI bus. capture_random_test.cpp compares their times, words and ends
 // with those of the literal board.
-#include "tests/support/expected_report.h"
+#include "models/testing/expected_report.h"
 #include "tests/unit/capture/capture_bench.h"
 
 namespace stereotlm::capture {

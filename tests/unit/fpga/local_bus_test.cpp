@@ -11,9 +11,9 @@
 #include "models/kernel_time.h"
 #include "models/memory/crossbar.h"
 #include "models/memory/ssram_bank.h"
-#include "tests/support/expected_report.h"
-#include "tests/support/monitoring_binder.h"
-#include "tests/support/test_host.h"
+#include "models/testing/expected_report.h"
+#include "models/testing/monitoring_binder.h"
+#include "models/testing/test_host.h"
 #include "tests/unit/fpga/stream_ends.h"
 
 namespace stereotlm::fpga {

@@ -4,8 +4,8 @@
 
 #include <array>
 
-#include "tests/support/monitoring_binder.h"
-#include "tests/support/test_host.h"
+#include "models/testing/monitoring_binder.h"
+#include "models/testing/test_host.h"
 #include "tests/unit/fpga/stream_ends.h"
 
 namespace stereotlm::fpga {

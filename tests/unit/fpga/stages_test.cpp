@@ -9,8 +9,8 @@
 #include "models/fpga/result_writer.h"
 #include "models/kernels/rectification_table.h"
 #include "models/memory/ssram_bank.h"
-#include "tests/support/expected_report.h"
-#include "tests/support/monitoring_binder.h"
+#include "models/testing/expected_report.h"
+#include "models/testing/monitoring_binder.h"
 #include "tests/unit/fpga/random_core.h"
 #include "tests/unit/fpga/stream_ends.h"
 

@@ -15,8 +15,8 @@
 #include "models/kernel_time.h"
 #include "models/kernels/rectification_table.h"
 #include "models/memory/ssram_bank.h"
-#include "tests/support/monitoring_binder.h"
-#include "tests/support/test_host.h"
+#include "models/testing/monitoring_binder.h"
+#include "models/testing/test_host.h"
 #include "tests/unit/fpga/random_core.h"
 #include "tests/unit/fpga/stream_ends.h"
 

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "tests/support/expected_report.h"
+#include "models/testing/expected_report.h"
 #include "tests/support/fork.h"
 #include "tests/unit/fpga/core_figures.h"
 #include "tests/unit/fpga/stereo_core_bench.h"

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "models/kernels/stereo.h"
-#include "tests/support/expected_report.h"
+#include "models/testing/expected_report.h"
 #include "tests/unit/fpga/stereo_core_bench.h"
 
 namespace stereotlm::fpga {

@@ -11,9 +11,9 @@
 
 #include "models/fpga/register_map.h"
 #include "models/memory/ssram_bank.h"
+#include "models/testing/monitoring_binder.h"
+#include "models/testing/test_host.h"
 #include "tests/support/fork.h"
-#include "tests/support/monitoring_binder.h"
-#include "tests/support/test_host.h"
 #include "tests/unit/fpga/core_figures.h"
 #include "tests/unit/fpga/random_core.h"
 

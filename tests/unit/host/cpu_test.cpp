@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "models/host/host_memory.h"
-#include "tests/support/expected_report.h"
-#include "tests/support/monitoring_binder.h"
+#include "models/testing/expected_report.h"
+#include "models/testing/monitoring_binder.h"
 #include "tests/support/scripted_ends.h"
 
 namespace stereotlm::host {

@@ -6,8 +6,8 @@
 #include <memory>
 #include <vector>
 
+#include "models/testing/test_host.h"
 #include "tests/support/refused_access.h"
-#include "tests/support/test_host.h"
 #include "tests/unit/pci/pci_bus_bench.h"
 
 namespace stereotlm::host {

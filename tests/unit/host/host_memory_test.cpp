@@ -8,9 +8,9 @@
 #include <stdexcept>
 #include <vector>
 
-#include "tests/support/monitoring_binder.h"
+#include "models/testing/monitoring_binder.h"
+#include "models/testing/test_host.h"
 #include "tests/support/refused_access.h"
-#include "tests/support/test_host.h"
 
 namespace stereotlm::host {
 namespace {

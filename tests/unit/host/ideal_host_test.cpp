@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "models/fpga/register_map.h"
-#include "tests/support/expected_report.h"
-#include "tests/support/monitoring_binder.h"
+#include "models/testing/expected_report.h"
+#include "models/testing/monitoring_binder.h"
 #include "tests/support/scripted_ends.h"
 
 namespace stereotlm::host {

@@ -9,8 +9,8 @@
 
 #include "models/memory/crossbar.h"
 #include "models/memory/ssram_bank.h"
-#include "tests/support/monitoring_binder.h"
-#include "tests/support/test_host.h"
+#include "models/testing/monitoring_binder.h"
+#include "models/testing/test_host.h"
 #include "tests/unit/memory/ports.h"
 
 namespace stereotlm::memory {

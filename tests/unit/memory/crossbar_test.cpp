@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "tests/support/expected_report.h"
+#include "models/testing/expected_report.h"
 #include "tests/support/scripted_ends.h"
 #include "tests/unit/memory/crossbar_bench.h"
 

@@ -17,11 +17,11 @@
 
 #include "models/kernel_time.h"
 #include "models/memory/ssram_bank.h"
-#include "tests/support/expected_report.h"
-#include "tests/support/monitoring_binder.h"
+#include "models/testing/expected_report.h"
+#include "models/testing/monitoring_binder.h"
+#include "models/testing/probing_binder.h"
+#include "models/testing/test_host.h"
 #include "tests/support/random_board.h"
-#include "tests/support/test_host.h"
-#include "tests/support/transaction_log.h"
 
 namespace stereotlm::memory {
 namespace {
@@ -38,15 +38,13 @@ PriorityList list_of(std::size_t ports) {
   return list;
 }
 
-// Ports, the crossbar and its banks, with a monitor and a log in each link to a bank.
+// Ports, the crossbar and its banks, with a monitor in each link of a port and a probe in each link of a bank.
 struct Bench {
   explicit Bench(const CrossbarConfig& config) : crossbar("crossbar", config) {
     for (std::size_t bank = 0; bank < config.banks.size(); ++bank) {
       const std::string name = fmt::format("bank{}", bank);
       banks.push_back(std::make_unique<SsramBank>(name.c_str(), config.banks[bank]));
-      loggers.push_back(std::make_unique<test::TransactionLogger>((name + "_log").c_str(), name, log));
-      crossbar.banks[bank].bind(loggers.back()->from_initiator);
-      loggers.back()->to_target.bind(banks.back()->port);
+      probes.bind(crossbar.banks[bank], banks.back()->port, name);
     }
   }
   test::TestHost& host(Port port) {
@@ -55,12 +53,14 @@ struct Bench {
     binder.bind(hosts.back()->socket, crossbar.ports[port], name);
     return *hosts.back();
   }
+  const std::vector<test::SeenAccess>& accesses(std::size_t bank) const {
+    return probes.probes()[bank].probe->accesses();
+  }
 
   test::MonitoringBinder binder;
+  test::ProbingBinder probes;
   GenericCrossbar crossbar;
   std::vector<std::unique_ptr<SsramBank>> banks;
-  std::vector<test::LoggedTransaction> log;
-  std::vector<std::unique_ptr<test::TransactionLogger>> loggers;
   std::vector<std::unique_ptr<test::TestHost>> hosts;
 };
 
@@ -100,7 +100,7 @@ TEST(GenericCrossbar, GivesAnAccessTheCyclesOfItsWords) {
     EXPECT_EQ(host.debug_read(crossbar_address(1, 7), 3), (std::vector<std::uint32_t>{5, 6, 7}));
   });
   sc_core::sc_start(sc_time(300, SC_NS));
-  EXPECT_EQ(bench.log.size(), 7U);
+  EXPECT_EQ(bench.accesses(1).size(), 7U);
   const ArbiterStats stats = bench.crossbar.stats(1);
   EXPECT_EQ(stats.reads(), 4U);
   EXPECT_EQ(stats.writes(), 3U);
@@ -140,10 +140,10 @@ TEST(GenericCrossbar, RefusesAndReportsOnce) {
         std::string::npos)
         << expected.text();
     EXPECT_EQ(host.read_words(crossbar_address(1, 0) - 4, 2).status, tlm::TLM_ADDRESS_ERROR_RESPONSE);
-    EXPECT_EQ(bench.log.size(), 0U);
+    EXPECT_EQ(bench.accesses(0).size(), 0U);
     // The bank refuses the second word.
     EXPECT_EQ(host.write_words(crossbar_address(0, 15), {1, 2, 3}).status, tlm::TLM_ADDRESS_ERROR_RESPONSE);
-    EXPECT_EQ(bench.log.size(), 2U);
+    EXPECT_EQ(bench.accesses(0).size(), 2U);
   });
   sc_core::sc_start(sc_time(500, SC_NS));
 }
@@ -358,10 +358,12 @@ TEST_P(RandomTraffic, IsGrantedAsInThePlainLoop) {
   PlainCrossbar plain(traffic);
   const std::vector<Grant> expected = plain.grants();
   std::vector<Grant> found;
-  for (const test::LoggedTransaction& one : bench.log) {
-    EXPECT_EQ(one.time_ps % kCyclePs, 0U);
-    found.push_back({one.time_ps / kCyclePs, static_cast<std::size_t>(std::stoi(one.link.substr(4))),
-                     one.write, static_cast<std::uint32_t>(one.address / 4)});
+  for (std::size_t bank = 0; bank < traffic.config.banks.size(); ++bank) {
+    for (const test::SeenAccess& one : bench.accesses(bank)) {
+      EXPECT_EQ(kernel_time::to_ps(one.begin) % kCyclePs, 0U);
+      found.push_back({kernel_time::to_ps(one.begin) / kCyclePs, bank, one.write,
+                       static_cast<std::uint32_t>(one.address / 4)});
+    }
   }
   ASSERT_EQ(found.size(), expected.size());
   const auto in_order = [](const Grant& a, const Grant& b) {

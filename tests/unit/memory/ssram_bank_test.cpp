@@ -11,8 +11,8 @@
 #include "models/clock.h"
 #include "models/kernel_time.h"
 #include "models/memory/word_access.h"
-#include "tests/support/monitoring_binder.h"
-#include "tests/support/test_host.h"
+#include "models/testing/monitoring_binder.h"
+#include "models/testing/test_host.h"
 
 namespace stereotlm::memory {
 

@@ -12,7 +12,7 @@
 
 #include "models/host/host_memory.h"
 #include "models/pci/pci_bridge.h"
-#include "tests/support/test_host.h"
+#include "models/testing/test_host.h"
 #include "tests/unit/pci/pci_bus_bench.h"
 
 namespace stereotlm::pci {

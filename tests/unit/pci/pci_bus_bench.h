@@ -16,7 +16,7 @@
 #include "models/clock.h"
 #include "models/kernel_time.h"
 #include "models/pci/pci_bus.h"
-#include "tests/support/monitoring_binder.h"
+#include "models/testing/monitoring_binder.h"
 
 namespace stereotlm::pci {
 

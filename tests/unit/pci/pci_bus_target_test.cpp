@@ -2,7 +2,7 @@
 // masters, and their times.
 #include <gtest/gtest.h>
 
-#include "tests/support/expected_report.h"
+#include "models/testing/expected_report.h"
 #include "tests/unit/pci/pci_bus_bench.h"
 
 namespace stereotlm::pci {

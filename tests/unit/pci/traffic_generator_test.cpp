@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/expected_report.h"
+#include "models/testing/expected_report.h"
+#include "models/testing/test_host.h"
 #include "tests/support/refused_access.h"
-#include "tests/support/test_host.h"
 #include "tests/unit/pci/pci_bus_bench.h"
 
 namespace stereotlm::pci {

@@ -429,12 +429,13 @@ std::string figures_of_dma(std::uint64_t seed, bool steps, std::uint64_t& skippe
     processor.access(false, testing::aperture(0), Words(3));
   }
   skipped += loop.skipped_dma_bursts();
-  Words words(1000);
-  EXPECT_EQ(processor.access(false, testing::aperture(0), words), pci::BurstEnd::kComplete);
-  return fmt::format("{}\n{}\n{} {}", figures_of(processor), fmt::join(processor.done.words, " "),
-                     std::hash<std::string_view>()(
-                         {reinterpret_cast<const char*>(processor.memory.data()), processor.memory.size()}),
-                     processor.read(kDevices.bridge_registers + pci::bridge::kInterruptStatus));
+  std::string text = figures_of(processor);
+  text += fmt::format("{}\n",
+                      std::hash<std::string_view>()(
+                          {reinterpret_cast<const char*>(processor.memory.data()), processor.memory.size()}));
+  text += fmt::format("{}\n", processor.read(kDevices.bridge_registers + pci::bridge::kInterruptStatus));
+  EXPECT_EQ(processor.access(false, testing::aperture(0), Words(1000)), pci::BurstEnd::kComplete);
+  return text + fmt::format("{}", fmt::join(processor.done.words, " "));
 }
 
 TEST(ComputerLoop, GivesTheSameFiguresWithSkippedAsWithSteppedDmaBursts) {

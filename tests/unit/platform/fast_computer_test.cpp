@@ -15,10 +15,10 @@
 #include <vector>
 
 #include "models/kernel_time.h"
+#include "models/testing/expected_report.h"
+#include "models/testing/monitoring_binder.h"
 #include "platform/computer.h"
-#include "tests/support/expected_report.h"
 #include "tests/support/fork.h"
-#include "tests/support/monitoring_binder.h"
 #include "tests/support/random_board.h"
 #include "tests/unit/platform/computer_registers.h"
 #include "tests/unit/platform/preloaded_run.h"

@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <systemc>
 
+#include "models/testing/monitoring_binder.h"
 #include "platform/collect.h"
 #include "platform/preloaded_system.h"
-#include "tests/support/monitoring_binder.h"
 
 namespace stereotlm::platform::testing {
 

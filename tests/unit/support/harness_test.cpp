@@ -12,11 +12,11 @@
 #include <systemc>
 #include <thread>
 
-#include "tests/support/expected_report.h"
+#include "models/testing/expected_report.h"
+#include "models/testing/monitoring_binder.h"
+#include "models/testing/test_host.h"
 #include "tests/support/fork.h"
-#include "tests/support/monitoring_binder.h"
 #include "tests/support/scripted_ends.h"
-#include "tests/support/test_host.h"
 
 namespace stereotlm::test {
 namespace {

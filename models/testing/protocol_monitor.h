@@ -5,15 +5,15 @@
 #include <tlm>
 #include <vector>
 
-#include "tests/support/payload_rules.h"
-#include "tests/support/phase_tracker.h"
+#include "models/testing/payload_rules.h"
+#include "models/testing/phase_tracker.h"
 
 namespace stereotlm::test {
 
 // Forwards every call between an initiator and a target unchanged, and checks that both keep the base
 // protocol (IEEE Std 1666-2011, 11 and 14 to 16) and the rules of ProtocolOptions. A violation reads
-// "<monitor> at <time>: <call>: <value found and the rule>". The destructor fails the running test if there
-// are violations: a test that provokes one takes it out first.
+// "<monitor> at <time>: <call>: <value found and the rule>". Those that nobody has
+// taken out are failures (failure.h) when the monitor is destroyed.
 class ProtocolMonitor : public sc_core::sc_module,
                         public tlm::tlm_fw_transport_if<>,
                         public tlm::tlm_bw_transport_if<> {

@@ -4,7 +4,7 @@
 #include <tlm>
 #include <unordered_map>
 
-#include "tests/support/payload_rules.h"
+#include "models/testing/payload_rules.h"
 
 namespace stereotlm::test {
 

@@ -1,4 +1,4 @@
-#include "tests/support/monitoring_binder.h"
+#include "models/testing/monitoring_binder.h"
 
 #include <utility>
 

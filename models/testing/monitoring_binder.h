@@ -5,12 +5,12 @@
 #include <vector>
 
 #include "models/binder.h"
-#include "tests/support/protocol_monitor.h"
+#include "models/testing/protocol_monitor.h"
 
 namespace stereotlm::test {
 
 // Puts a ProtocolMonitor, named "<link>_monitor", into every link. It owns the monitors and must outlive the
-// simulation. Its destructor fails the test if there are violations.
+// simulation. Violations that nobody has taken out are failures (failure.h) when it is destroyed.
 class MonitoringBinder : public Binder {
  public:
   explicit MonitoringBinder(const ProtocolOptions& options = {}) : options_(options) {}

@@ -1,9 +1,9 @@
-#include "tests/support/protocol_monitor.h"
-
-#include <gtest/gtest.h>
+#include "models/testing/protocol_monitor.h"
 
 #include <algorithm>
 #include <utility>
+
+#include "models/testing/failure.h"
 
 namespace stereotlm::test {
 namespace {
@@ -68,7 +68,7 @@ ProtocolMonitor::ProtocolMonitor(const sc_core::sc_module_name& name, const Prot
 }
 
 ProtocolMonitor::~ProtocolMonitor() {
-  for (const auto& violation : violations_) ADD_FAILURE() << violation;
+  for (const auto& violation : violations_) fail(violation);
 }
 
 std::vector<std::string> ProtocolMonitor::take_violations() { return std::exchange(violations_, {}); }

@@ -1,4 +1,4 @@
-#include "tests/support/phase_tracker.h"
+#include "models/testing/phase_tracker.h"
 
 #include <sstream>
 #include <utility>

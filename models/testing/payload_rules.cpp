@@ -1,4 +1,4 @@
-#include "tests/support/payload_rules.h"
+#include "models/testing/payload_rules.h"
 
 #include <algorithm>
 #include <sstream>

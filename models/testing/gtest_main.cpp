@@ -6,7 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "tests/support/expected_report.h"
+#include "models/testing/expected_report.h"
+#include "models/testing/failure.h"
 
 namespace stereotlm::test {
 namespace {
@@ -58,6 +59,7 @@ bool ExpectedReport::takes(const std::string& message_type, const std::string& t
 
 int sc_main(int argc, char** argv) {
   sc_core::sc_report_handler::set_handler(stereotlm::test::handle_report);
+  stereotlm::test::set_failure_handler([](const std::string& text) { ADD_FAILURE() << text; });
   testing::InitGoogleTest(&argc, argv);
   return RUN_ALL_TESTS();
 }

@@ -4,7 +4,7 @@
 
 namespace stereotlm::test {
 
-// Announces a SystemC report. In a test that runs inside sc_main (stereotlm_add_test with SYSTEMC) every
+// Announces a SystemC report. In a test program with gtest_main.cpp every
 // warning, error or fatal report that is not announced fails the running test:
 //
 //   ExpectedReport expected("/stereotlm/fpga/sequencer");

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "models/clock.h"
+#include "models/testing/access_probe.h"
+
+namespace stereotlm::test {
+
+// Checks in which cycles a crossbar has granted the words of an access: "granted in cycle n, and not in n - 1".
+// It compares a probe in front of a port with one in front of a bank.
+class GrantCheck {
+ public:
+  // `bank_base`: what the crossbar adds to the addresses of the bank. All arguments outlive the check.
+  GrantCheck(const Clock& clock, const AccessProbe& port, const AccessProbe& bank, std::uint64_t bank_base)
+      : clock_(clock), port_(port), bank_(bank), bank_base_(bank_base) {}
+
+  // Empty if word number `word` of access number `access` of the port was granted in cycle `cycle`, and was
+  // refused in the cycle before. The latter needs a request in that cycle. Without one the text says that the
+  // check proves nothing; where the first request itself is granted, granted_at_once() is the check.
+  std::string problem(std::size_t access, std::size_t word, std::uint64_t cycle) const {
+    const Times times = times_of(access, word);
+    if (!times.problem.empty()) return times.problem;
+    if (times.granted != cycle) return times.text() + ": must be granted in cycle " + std::to_string(cycle);
+    if (times.requested == cycle)
+      return times.text() + ": no request in cycle " + std::to_string(cycle - 1) + " that was refused";
+    return {};
+  }
+  // Empty if the word was granted in cycle `cycle`, the first one in which it requested.
+  std::string granted_at_once(std::size_t access, std::size_t word, std::uint64_t cycle) const {
+    const Times times = times_of(access, word);
+    if (!times.problem.empty()) return times.problem;
+    if (times.granted == cycle && times.requested == cycle) return {};
+    return times.text() + ": must be both in cycle " + std::to_string(cycle);
+  }
+
+ private:
+  struct Times {
+    std::uint64_t requested = 0;  // cycle
+    std::uint64_t granted = 0;    // cycle
+    std::string problem;          // not empty: there is no such word
+
+    std::string text() const {
+      return "requested in cycle " + std::to_string(requested) + ", granted in cycle " +
+             std::to_string(granted);
+    }
+  };
+  Times times_of(std::size_t access, std::size_t word) const;
+
+  const Clock& clock_;
+  const AccessProbe& port_;
+  const AccessProbe& bank_;
+  std::uint64_t bank_base_;
+};
+
+}  // namespace stereotlm::test
