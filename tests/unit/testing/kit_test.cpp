@@ -1,0 +1,188 @@
+// Probes, scoreboard, traffic and the check of grants: what they see in a module that works, and what they find
+// in one that is broken.
+#include <gtest/gtest-spi.h>
+#include <gtest/gtest.h>
+#include <tlm_utils/simple_target_socket.h>
+
+#include <functional>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "models/memory/generic_crossbar.h"
+#include "models/memory/ssram_bank.h"
+#include "models/testing/access_probe.h"
+#include "models/testing/grant_check.h"
+#include "models/testing/monitoring_binder.h"
+#include "models/testing/scoreboard.h"
+#include "models/testing/test_host.h"
+#include "models/testing/traffic.h"
+
+namespace stereotlm::test {
+namespace {
+
+using sc_core::SC_NS;
+using sc_core::sc_time;
+
+// A memory of 64 words that may forget what is written to one byte.
+struct Memory : sc_core::sc_module {
+  tlm_utils::simple_target_socket<Memory> socket{"socket"};
+  explicit Memory(const sc_core::sc_module_name& name) : sc_module(name) {
+    socket.register_b_transport(this, &Memory::transport);
+  }
+  void transport(tlm::tlm_generic_payload& access, sc_time& delay) {
+    wait(delay + sc_time(5, SC_NS));
+    delay = sc_core::SC_ZERO_TIME;
+    for (unsigned byte = 0; byte < access.get_data_length(); ++byte) {
+      unsigned char& stored = bytes.at(access.get_address() + byte);
+      if (access.is_read()) {
+        access.get_data_ptr()[byte] = stored;
+      } else if (access.get_address() + byte != forgets) {
+        stored = access.get_data_ptr()[byte];
+      }
+    }
+    access.set_response_status(tlm::TLM_OK_RESPONSE);
+  }
+  std::vector<unsigned char> bytes = std::vector<unsigned char>(256);
+  std::uint64_t forgets = UINT64_MAX;
+};
+
+TEST(Scoreboard, ComparesWhatIsReadWithWhatWasWritten) {
+  RandomTraffic from;
+  from.count = 300;
+  from.memory_words = 64;
+  from.most_words = 5;
+  from.longest_pause = sc_time(20, SC_NS);
+  TrafficInitiator blocking("blocking", random_traffic(from));
+  TrafficInitiator other("other", random_traffic(from), TrafficInitiator::Style::kNonBlocking);
+  MonitoringBinder binder;
+  std::vector<std::unique_ptr<Scoreboard>> boards;
+  std::vector<std::unique_ptr<Memory>> memories;
+  for (TrafficInitiator* initiator : {&blocking, &other}) {
+    const std::string name = initiator->name();
+    boards.push_back(std::make_unique<Scoreboard>((name + "_board").c_str()));
+    memories.push_back(std::make_unique<Memory>((name + "_memory").c_str()));
+    binder.bind(initiator->socket(), boards.back()->from_initiator, name);
+    boards.back()->to_target.bind(memories.back()->socket);
+  }
+  sc_core::sc_start();
+  EXPECT_TRUE(blocking.is_done() && other.is_done());
+  EXPECT_EQ(blocking.end(), other.end());
+  for (const auto& board : boards) {
+    EXPECT_EQ(board->accesses().size(), 300U);
+    EXPECT_GT(board->compared(), 1000U);
+  }
+}
+
+TEST(Scoreboard, FindsAByteThatAMemoryForgets) {
+  TestHost host("host");
+  Scoreboard board("board");
+  Memory memory("memory");
+  host.socket.bind(board.from_initiator);
+  board.to_target.bind(memory.socket);
+  memory.forgets = 9;
+  sc_core::sc_spawn([&] {
+    host.write(8, 0x11223344);
+    host.read(12);
+    static TestHost* const initiator = &host;
+    EXPECT_NONFATAL_FAILURE(initiator->read(8), "board at 15 ns: byte 9 = 0: must be 51");
+    host.read(8);  // known now
+  });
+  sc_core::sc_start();
+  EXPECT_EQ(board.compared(), 8U);
+}
+
+TEST(AccessProbe, KeepsTimesWordsAndResponses) {
+  TestHost host("host");
+  AccessProbe probe("probe");
+  memory::SsramBank bank("bank", {16});
+  host.socket.bind(probe.from_initiator);
+  probe.to_target.bind(bank.port);
+  sc_core::sc_start(sc_core::SC_ZERO_TIME);
+  host.write(4, 7, sc_time(10, SC_NS));
+  host.read(4, sc_time(20, SC_NS));
+  host.request(tlm::TLM_READ_COMMAND, 64);
+  ASSERT_EQ(probe.accesses().size(), 3U);
+  const SeenAccess& read = probe.accesses()[1];
+  EXPECT_EQ(read.begin, sc_time(20, SC_NS));
+  EXPECT_EQ(read.end, sc_time(70, SC_NS));
+  EXPECT_FALSE(read.write);
+  EXPECT_EQ(read.words, std::vector<std::uint32_t>{7});
+  EXPECT_TRUE(probe.accesses()[0].write);
+  EXPECT_EQ(probe.accesses()[2].response, tlm::TLM_ADDRESS_ERROR_RESPONSE);
+}
+
+// Two ports of one bank; port 0 comes first.
+TEST(GrantCheck, TellsInWhichCycleAWordWasRequestedAndGranted) {
+  memory::GenericCrossbar crossbar("crossbar", {{"fixed_priority", {0, 1}}, {memory::SsramBankConfig{}}});
+  memory::SsramBank bank("bank", {});
+  TestHost first("first");
+  TestHost second("second");
+  AccessProbe at_first("at_first");
+  AccessProbe at_second("at_second");
+  AccessProbe at_bank("at_bank");
+  first.socket.bind(at_first.from_initiator);
+  at_first.to_target.bind(crossbar.ports[0]);
+  second.socket.bind(at_second.from_initiator);
+  at_second.to_target.bind(crossbar.ports[1]);
+  crossbar.banks[0].bind(at_bank.from_initiator);
+  at_bank.to_target.bind(bank.port);
+  sc_core::sc_spawn([&] { first.write_words(0, {1, 2, 3}); });
+  sc_core::sc_spawn([&] { second.read_words(400, 2); });
+  sc_core::sc_start();
+  const GrantCheck of_first(crossbar.clock(), at_first, at_bank, 0);
+  const GrantCheck of_second(crossbar.clock(), at_second, at_bank, 0);
+  EXPECT_EQ(of_first.granted_at_once(0, 2, 2), "");
+  EXPECT_EQ(of_second.problem(0, 0, 3), "");
+  EXPECT_EQ(of_second.granted_at_once(0, 1, 4), "");
+  EXPECT_EQ(of_second.problem(0, 0, 4),
+            "requested in cycle 0, granted in cycle 3: must be granted in cycle 4");
+  EXPECT_EQ(of_second.problem(0, 1, 4),
+            "requested in cycle 4, granted in cycle 4: no request in cycle 3 that was refused");
+  EXPECT_EQ(of_first.granted_at_once(0, 1, 2),
+            "requested in cycle 1, granted in cycle 1: must be both in cycle 2");
+  EXPECT_EQ(of_first.problem(1, 0, 2), "access 1, word 0: at_first has seen none");
+}
+
+TEST(Traffic, IsReadFromATrace) {
+  std::istringstream csv("pause_ns,direction,address,words\n0,write,0x10,2\n25,read,16,1\n");
+  const std::vector<TrafficAccess> accesses = traffic_of_csv(csv);
+  ASSERT_EQ(accesses.size(), 2U);
+  EXPECT_TRUE(accesses[0].write);
+  EXPECT_EQ(accesses[0].words, 2U);
+  EXPECT_EQ(accesses[0].address, accesses[1].address);
+  EXPECT_EQ(accesses[1].pause, sc_time(25, SC_NS));
+  EXPECT_EQ(strided_traffic(8, 16, 3, false).back().address, 40U);
+}
+
+TEST(Traffic, OfABrokenTraceIsRefusedWithItsLine) {
+  const auto problem = [](const std::string& row) {
+    std::istringstream csv("pause_ns,direction,address,words\n" + row);
+    try {
+      traffic_of_csv(csv);
+    } catch (const std::invalid_argument& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(problem("0,read,0"), "line 2: 3 values: must be pause_ns,direction,address,words");
+  EXPECT_EQ(problem("0,read,0,1\n-1,read,0,1"), "line 3: pause_ns = -1: must be a whole number");
+  EXPECT_EQ(problem("0,fetch,0,1"), "line 2: direction = fetch: must be read or write");
+  EXPECT_EQ(problem("0,read,0x1g,1"), "line 2: address = 0x1g: must be a whole number");
+  EXPECT_EQ(problem("0,read,6,1"), "line 2: address = 6: must be a multiple of 4");
+  EXPECT_EQ(problem("0,read,0,0"), "line 2: words = 0: must be 1 or more");
+  std::istringstream empty;
+  EXPECT_THROW(traffic_of_csv(empty), std::invalid_argument);
+  EXPECT_THROW(random_traffic({}), std::invalid_argument);
+}
+
+TEST(Traffic, FailsTheTestWithAnAccessThatIsRefused) {
+  TrafficInitiator initiator("initiator", strided_traffic(60, 4, 2, true));
+  memory::SsramBank bank("bank", {16});
+  initiator.socket().bind(bank.port);
+  EXPECT_NONFATAL_FAILURE(sc_core::sc_start(), "initiator at 0 s: access 1 at address 64 was refused");
+}
+
+}  // namespace
+}  // namespace stereotlm::test

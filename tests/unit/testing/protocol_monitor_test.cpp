@@ -1,0 +1,353 @@
+// The monitor reports each broken rule of the base protocol, and nothing else: no test of the models would
+// notice that it reports no more. The tests of the modules show that it lets correct calls pass.
+#include "models/testing/protocol_monitor.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <functional>
+#include <memory>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "models/testing/monitoring_binder.h"
+#include "tests/support/scripted_ends.h"
+
+namespace stereotlm::test {
+namespace {
+
+using sc_core::SC_NS;
+using sc_core::sc_time;
+using tlm::BEGIN_REQ;
+using tlm::BEGIN_RESP;
+using tlm::END_REQ;
+using tlm::END_RESP;
+using Payload = tlm::tlm_generic_payload;
+
+// Nothing is freed: the payloads belong to the test.
+class NoFree : public tlm::tlm_mm_interface {
+  void free(Payload*) override {}
+};
+
+// Two correct two-word reads at 0x40, and a target that answers correctly and at once.
+class Link {
+ public:
+  Link() {
+    binder->bind(initiator.socket, target.socket, "link");
+    for (Payload* correct : {&payload, &other}) {
+      correct->set_command(tlm::TLM_READ_COMMAND);
+      correct->set_address(0x40);
+      correct->set_data_ptr(data.data());
+      correct->set_data_length(8);
+      correct->set_streaming_width(8);
+      correct->set_mm(&manager);
+      correct->acquire();
+    }
+    sc_core::sc_start(sc_core::SC_ZERO_TIME);
+  }
+  void transport() { initiator.socket->b_transport(payload, delay); }
+  // The target answers OK after `act`.
+  void target_acts(const std::function<void(Payload&, sc_time&)>& act) {
+    target.on_blocking = [act](Payload& received, sc_time& annotated) {
+      received.set_response_status(tlm::TLM_OK_RESPONSE);
+      act(received, annotated);
+    };
+  }
+  // The target grants 0x0..0x7f for reads, unless `spoil` changes that.
+  bool request_dmi(const std::function<void(tlm::tlm_dmi&)>& spoil) {
+    target.on_dmi = [this, spoil](Payload&, tlm::tlm_dmi& given) {
+      given.set_dmi_ptr(data.data());
+      given.set_start_address(0);
+      given.set_end_address(0x7f);
+      given.allow_read();
+      spoil(given);
+      return true;
+    };
+    return initiator.socket->get_direct_mem_ptr(payload, dmi);
+  }
+  unsigned debug(unsigned bytes) {
+    target.on_debug = [bytes](Payload&) { return bytes; };
+    return initiator.socket->transport_dbg(payload);
+  }
+  // One call of nb_transport, which is accepted, or answered with TLM_UPDATED and a phase.
+  void forward(tlm::tlm_phase_enum phase, int ns = 0, tlm::tlm_phase_enum answer = tlm::UNINITIALIZED_PHASE) {
+    tlm::tlm_phase sent = phase;
+    sc_time annotated(ns, SC_NS);
+    target.on_forward = [answer](Payload&, tlm::tlm_phase& returned, sc_time&) {
+      if (answer != tlm::UNINITIALIZED_PHASE) returned = answer;
+      return answer == tlm::UNINITIALIZED_PHASE ? tlm::TLM_ACCEPTED : tlm::TLM_UPDATED;
+    };
+    initiator.socket->nb_transport_fw(*used, sent, annotated);
+  }
+  // A request, to which the target answers so.
+  void answer_forward(const std::function<tlm::tlm_sync_enum(Payload&, tlm::tlm_phase&, sc_time&)>& answer) {
+    target.on_forward = answer;
+    tlm::tlm_phase sent = BEGIN_REQ;
+    sc_time annotated;
+    initiator.socket->nb_transport_fw(payload, sent, annotated);
+  }
+  void backward(tlm::tlm_phase_enum phase, int ns = 0) {
+    tlm::tlm_phase sent = phase;
+    sc_time annotated(ns, SC_NS);
+    if (phase == BEGIN_RESP) used->set_response_status(tlm::TLM_OK_RESPONSE);
+    target.socket->nb_transport_bw(*used, sent, annotated);
+  }
+  void simulate(const std::function<void()>& body) {
+    sc_core::sc_spawn(body);
+    sc_core::sc_start();
+  }
+
+  std::unique_ptr<MonitoringBinder> binder = std::make_unique<MonitoringBinder>();
+  ScriptedInitiator initiator{"initiator"};
+  ScriptedTarget target{"target"};
+  NoFree manager;
+  std::array<unsigned char, 8> data{};
+  std::array<unsigned char, 8> elsewhere{};
+  Payload payload;
+  Payload other;
+  Payload* used = &payload;  // by forward() and backward()
+  tlm::tlm_dmi dmi;
+  sc_time delay{10, SC_NS};
+};
+
+struct Mistake {
+  const char* violation;
+  std::function<void(Link&)> happen;
+};
+void PrintTo(const Mistake& mistake, std::ostream* out) { *out << mistake.violation; }
+
+// An initiator that spoils its request.
+Mistake request(const char* violation, const std::function<void(Link&)>& spoil) {
+  return {violation, [spoil](Link& link) {
+            spoil(link);
+            link.transport();
+          }};
+}
+// A target that spoils a write with byte enables.
+Mistake answer(const char* violation, const std::function<void(Link&, sc_time&)>& spoil) {
+  return {violation, [spoil](Link& link) {
+            link.payload.set_write();
+            link.payload.set_byte_enable_ptr(link.elsewhere.data());
+            link.payload.set_byte_enable_length(4);
+            link.target_acts([&link, spoil](Payload&, sc_time& annotated) { spoil(link, annotated); });
+            link.transport();
+          }};
+}
+Mistake answer(const char* violation, const std::function<void(Link&)>& spoil) {
+  return answer(violation, [spoil](Link& link, sc_time&) { spoil(link); });
+}
+Mistake grant(const char* violation, const std::function<void(tlm::tlm_dmi&)>& spoil) {
+  return {violation, [spoil](Link& link) { EXPECT_TRUE(link.request_dmi(spoil)); }};
+}
+
+const std::vector<Mistake> kMistakes = {
+    request("command = 3", [](Link& l) { l.payload.set_command(static_cast<tlm::tlm_command>(3)); }),
+    request("data pointer = null", [](Link& l) { l.payload.set_data_ptr(nullptr); }),
+    request("data length = 0", [](Link& l) { l.payload.set_data_length(0); }),
+    request("data length = 6: must be a multiple", [](Link& l) { l.payload.set_data_length(6); }),
+    request("address = 0x42", [](Link& l) { l.payload.set_address(0x42); }),
+    request("streaming width = 0", [](Link& l) { l.payload.set_streaming_width(0); }),
+    request("streaming width = 4: must be at least", [](Link& l) { l.payload.set_streaming_width(4); }),
+    request("streaming width = 9: must be a multiple", [](Link& l) { l.payload.set_streaming_width(9); }),
+    request("byte enable length = 0", [](Link& l) { l.payload.set_byte_enable_ptr(l.elsewhere.data()); }),
+    request("byte enable[1] = 0xf",
+            [](Link& l) {
+              l.elsewhere[1] = 0xf;
+              l.payload.set_byte_enable_ptr(l.elsewhere.data());
+              l.payload.set_byte_enable_length(4);
+            }),
+    request("must be TLM_INCOMPLETE_RESPONSE",
+            [](Link& l) { l.payload.set_response_status(tlm::TLM_OK_RESPONSE); }),
+    request("dmi_allowed = true", [](Link& l) { l.payload.set_dmi_allowed(true); }),
+    request("gp_option = 1", [](Link& l) { l.payload.set_gp_option(tlm::TLM_FULL_PAYLOAD); }),
+    request("reference count = 0", [](Link& l) { l.payload.release(); }),
+
+    answer("response status = 0",
+           [](Link& l) { l.payload.set_response_status(tlm::TLM_INCOMPLETE_RESPONSE); }),
+    answer("response status = 2",
+           [](Link& l) { l.payload.set_response_status(static_cast<tlm::tlm_response_status>(2)); }),
+    answer("command changed", [](Link& l) { l.payload.set_read(); }),
+    answer("address changed from 0x40 to 0x0", [](Link& l) { l.payload.set_address(0); }),
+    answer("data pointer changed", [](Link& l) { l.payload.set_data_ptr(l.elsewhere.data()); }),
+    answer("data length changed", [](Link& l) { l.payload.set_data_length(4); }),
+    answer("streaming width changed", [](Link& l) { l.payload.set_streaming_width(12); }),
+    answer("byte enable pointer changed", [](Link& l) { l.payload.set_byte_enable_ptr(l.data.data()); }),
+    answer("byte enable length changed", [](Link& l) { l.payload.set_byte_enable_length(8); }),
+    answer("data array of a write changed", [](Link& l) { l.data[7] = 1; }),
+    answer("byte enable array changed", [](Link& l) { l.elsewhere[3] = 0xff; }),
+    answer("gp_option changed", [](Link& l) { l.payload.set_gp_option(tlm::TLM_FULL_PAYLOAD_ACCEPTED); }),
+    answer("time fell from 10 ns to 9 ns", [](Link&, sc_time& annotated) { annotated = sc_time(9, SC_NS); }),
+    answer("reference count fell", [](Link& l) { l.payload.release(); }),
+    answer("already in progress",
+           [](Link& l) {
+             l.target.on_blocking = [](Payload& received, sc_time&) {
+               received.set_response_status(tlm::TLM_OK_RESPONSE);
+             };
+             l.payload.set_response_status(tlm::TLM_INCOMPLETE_RESPONSE);
+             l.transport();
+           }),
+
+    grant("DMI range = 0x41..0x7f: must contain the requested address 0x40",
+          [](tlm::tlm_dmi& given) { given.set_start_address(0x41); }),
+    grant("DMI range = 0x0..0x3f: must contain the requested address 0x40",
+          [](tlm::tlm_dmi& given) { given.set_end_address(0x3f); }),
+    grant("must not end before it starts", [](tlm::tlm_dmi& given) { given.set_start_address(0x80); }),
+    grant("DMI pointer = null", [](tlm::tlm_dmi& given) { given.set_dmi_ptr(nullptr); }),
+    {"granted access = 1: must include the requested one",
+     [](Link& l) {
+       l.payload.set_write();
+       l.request_dmi([](auto&) {});
+     }},
+    {"DMI descriptor: must be as after init()",
+     [](Link& l) {
+       l.dmi.set_end_address(0x7f);
+       l.request_dmi([](auto&) {});
+     }},
+    {"the range ends before it starts", [](Link& l) { l.target.socket->invalidate_direct_mem_ptr(6, 5); }},
+    {"returned count = 9: must not exceed the data length, 8", [](Link& l) { l.debug(9); }},
+
+    {"phase END_REQ on the forward path", [](Link& l) { l.forward(BEGIN_REQ), l.forward(END_REQ); }},
+    {"phase BEGIN_REQ from the target", [](Link& l) { l.forward(BEGIN_REQ), l.backward(BEGIN_REQ); }},
+    {"END_REQ after the request has ended",
+     [](Link& l) { l.forward(BEGIN_REQ, 0, END_REQ), l.backward(END_REQ); }},
+    {"a second BEGIN_RESP",
+     [](Link& l) { l.forward(BEGIN_REQ), l.backward(BEGIN_RESP), l.backward(BEGIN_RESP); }},
+    {"END_RESP without BEGIN_RESP", [](Link& l) { l.forward(BEGIN_REQ), l.forward(END_RESP); }},
+    {"phase END_REQ for a transaction that is not in progress", [](Link& l) { l.backward(END_REQ); }},
+    {"BEGIN_REQ for a transaction that is already in progress",
+     [](Link& l) { l.forward(BEGIN_REQ), l.backward(END_REQ), l.forward(BEGIN_REQ); }},
+    {"time 9 ns after 10 ns", [](Link& l) { l.forward(BEGIN_REQ, 10), l.backward(BEGIN_RESP, 9); }},
+    {"one request at a time",
+     [](Link& l) {
+       l.forward(BEGIN_REQ);
+       l.used = &l.other;
+       l.forward(BEGIN_REQ);
+     }},
+    {"one response at a time",
+     [](Link& l) {
+       l.forward(BEGIN_REQ), l.backward(BEGIN_RESP);
+       l.used = &l.other;
+       l.forward(BEGIN_REQ), l.backward(BEGIN_RESP);
+     }},
+    {"TLM_UPDATED for END_RESP",
+     [](Link& l) {
+       l.forward(BEGIN_REQ), l.backward(BEGIN_RESP);
+       l.forward(END_RESP, 0, END_REQ);
+     }},
+    {"nb_transport_bw: data array of a write changed",
+     [](Link& l) {
+       l.payload.set_write();
+       l.forward(BEGIN_REQ);
+       l.data[3] = 1;
+       l.backward(END_REQ);
+     }},
+    {"no memory manager",
+     [](Link& l) {
+       l.payload.set_mm(nullptr);
+       l.forward(BEGIN_REQ);
+     }},
+    {"nb_transport_bw: time passed",
+     [](Link& l) {
+       l.initiator.on_backward = [](auto&, auto&, auto&) {
+         sc_core::wait(sc_core::SC_ZERO_TIME);
+         return tlm::TLM_ACCEPTED;
+       };
+       l.forward(BEGIN_REQ);
+       l.simulate([&l] { l.backward(END_REQ); });
+     }},
+    {"nb_transport_fw: time passed",
+     [](Link& l) {
+       l.simulate([&l] {
+         l.answer_forward([](auto&, auto&, auto&) {
+           sc_core::wait(sc_core::SC_ZERO_TIME);
+           return tlm::TLM_ACCEPTED;
+         });
+       });
+     }},
+    {"nb_transport_fw returned 3: must be a tlm_sync_enum",
+     [](Link& l) {
+       l.answer_forward([](auto&, auto&, auto&) { return static_cast<tlm::tlm_sync_enum>(3); });
+     }},
+    {"TLM_ACCEPTED with phase END_REQ",
+     [](Link& l) {
+       l.answer_forward([](auto&, tlm::tlm_phase& phase, auto&) {
+         phase = END_REQ;
+         return tlm::TLM_ACCEPTED;
+       });
+     }},
+    {"TLM_ACCEPTED with another delay",
+     [](Link& l) {
+       l.answer_forward([](auto&, auto&, sc_time& annotated) {
+         annotated = sc_time(1, SC_NS);
+         return tlm::TLM_ACCEPTED;
+       });
+     }},
+    {"response status = 0: must be OK or an error",
+     [](Link& l) { l.answer_forward([](auto&, auto&, auto&) { return tlm::TLM_COMPLETED; }); }},
+    {"END_REQ: only TLM_ACCEPTED may be returned",
+     [](Link& l) {
+       l.forward(BEGIN_REQ);
+       l.initiator.on_backward = [](auto&, auto&, auto&) { return tlm::TLM_COMPLETED; };
+       l.backward(END_REQ);
+     }},
+    {"TLM_UPDATED with phase END_REQ for BEGIN_RESP",
+     [](Link& l) {
+       l.forward(BEGIN_REQ);
+       l.initiator.on_backward = [](auto&, tlm::tlm_phase& phase, auto&) {
+         phase = END_REQ;
+         return tlm::TLM_UPDATED;
+       };
+       l.backward(BEGIN_RESP);
+     }},
+    {"a phase returned for a transaction that was complete",
+     [](Link& l) {
+       l.answer_forward([&l](auto&, auto&, auto&) {
+         l.initiator.on_backward = [](auto&, auto&, auto&) { return tlm::TLM_COMPLETED; };
+         l.backward(BEGIN_RESP);
+         return tlm::TLM_COMPLETED;
+       });
+     }},
+    {"called from a method process",
+     [](Link& l) {
+       sc_core::sc_spawn_options method;
+       method.spawn_method();
+       sc_core::sc_spawn([&l] { l.transport(); }, "method", &method);
+       sc_core::sc_start();
+     }},
+    {"transport_dbg: data pointer = null",
+     [](Link& l) {
+       l.payload.set_data_ptr(nullptr);
+       l.debug(0);
+     }},
+    {"transport_dbg: command = 3",
+     [](Link& l) {
+       l.payload.set_command(static_cast<tlm::tlm_command>(3));
+       l.debug(0);
+     }},
+    {"transport_dbg: gp_option = 2",
+     [](Link& l) {
+       l.payload.set_gp_option(tlm::TLM_FULL_PAYLOAD_ACCEPTED);
+       l.debug(0);
+     }},
+    {"get_direct_mem_ptr: command = 2: must be read or write in a DMI request",
+     [](Link& l) {
+       l.payload.set_command(tlm::TLM_IGNORE_COMMAND);
+       l.request_dmi([](tlm::tlm_dmi& given) { given.allow_read_write(); });
+     }},
+};
+
+class ProtocolMonitorMistake : public testing::TestWithParam<Mistake> {};
+
+TEST_P(ProtocolMonitorMistake, IsReportedOnce) {
+  Link link;
+  GetParam().happen(link);
+  const std::vector<std::string> violations = link.binder->take_violations();
+  ASSERT_EQ(violations.size(), 1U) << testing::PrintToString(violations);
+  EXPECT_NE(violations[0].find(GetParam().violation), std::string::npos) << violations[0];
+}
+
+INSTANTIATE_TEST_SUITE_P(ProtocolMonitor, ProtocolMonitorMistake, testing::ValuesIn(kMistakes));
+
+}  // namespace
+}  // namespace stereotlm::test
