@@ -16,12 +16,13 @@ install(EXPORT stereotlm_targets NAMESPACE stereotlm:: FILE stereotlmTargets.cma
 install(CODE "set(source ${PROJECT_SOURCE_DIR})
   set(include ${CMAKE_INSTALL_INCLUDEDIR})")
 install(SCRIPT cmake/install_headers.cmake)
-install(FILES models/testing/gtest_main.cpp DESTINATION ${CMAKE_INSTALL_DATADIR}/stereotlm)
 install(FILES LICENSE CHANGELOG.md README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY tests/integration/package/project/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/example)
+install(FILES models/testing/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/models/testing)
 install(FILES models/README.md models/contract.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/models)
 install(FILES platform/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/platform)
 
-set(STEREOTLM_GTEST_MAIN ${CMAKE_INSTALL_DATADIR}/stereotlm/gtest_main.cpp)
+set(STEREOTLM_GTEST_MAIN ${CMAKE_INSTALL_INCLUDEDIR}/stereotlm/models/testing/gtest_main.cpp)
 configure_package_config_file(cmake/stereotlmConfig.cmake.in ${PROJECT_BINARY_DIR}/stereotlmConfig.cmake
   INSTALL_DESTINATION ${package_folder} NO_SET_AND_CHECK_MACRO PATH_VARS STEREOTLM_GTEST_MAIN)
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/stereotlmConfigVersion.cmake

@@ -7,7 +7,7 @@ list(FILTER headers EXCLUDE REGEX
   "_simd|simd_vectors|filter_arithmetic|board_draft|board_reader|camera_lines|dma_bursts|bus_counts")
 list(FILTER headers EXCLUDE REGEX "computer_loop|fast_board|fast_computer")
 message(STATUS "Installing: ${destination}")
-foreach(header IN LISTS headers)
+foreach(header IN LISTS headers ITEMS models/testing/gtest_main.cpp)
   file(READ ${source}/${header} text)
   string(REGEX REPLACE "#include \"(models|platform)/" "#include \"stereotlm/\\1/" text "${text}")
   file(WRITE ${destination}/${header} "${text}")

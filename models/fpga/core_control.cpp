@@ -1,5 +1,7 @@
 #include "models/fpga/core_control.h"
 
+#include <algorithm>
+
 namespace stereotlm::fpga {
 
 CoreControl::CoreControl(const CoreConfig& config)
@@ -64,12 +66,14 @@ void CoreControl::skip_to(memory::StateReader& state, std::uint64_t consumed, st
   result_.skip_to(*state++ >> kHalf, words);
 }
 
-std::uint64_t CoreControl::earliest_last_write(std::uint64_t cycle, std::uint64_t consumed,
-                                               std::uint64_t words) const {
+std::uint64_t CoreControl::earliest_last_write(std::uint64_t cycle, const Unknown& before) const {
+  const auto folds = static_cast<std::uint64_t>(geometry_.folds);
+  const std::uint64_t worked = std::min((before.consumed + 1) * folds - 1, before.cycles);
+  const std::uint64_t to_write = result_.words_left() - before.words - 1;
+  if (match_.cycles_left() <= worked) return cycle + to_write;
   // The last words enter the queue together when the matcher has consumed all. They are written later.
-  const std::uint64_t works = match_.cycles_left() - consumed * static_cast<std::uint64_t>(geometry_.folds);
-  if (works > 0) return cycle + works + static_cast<std::uint64_t>(geometry_.last_rows) - 1;
-  return cycle + result_.words_left() - words - 1;
+  const std::uint64_t works = match_.cycles_left() - worked;
+  return cycle + std::max(works + static_cast<std::uint64_t>(geometry_.last_rows) - 1, to_write);
 }
 
 }  // namespace stereotlm::fpga

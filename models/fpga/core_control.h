@@ -111,10 +111,16 @@ class CoreControl {
   const FrameGeometry& geometry() const { return geometry_; }
   // Whether the last word of the frame has been written.
   bool frame_done() const { return result_.frame_done(); }
-  // A lower bound of the cycle in which the last write of the frame is granted. `cycle`: the next cycle to
-  // run. `consumed`, `words`: the consume-cycles, and the words written, that were skipped before `cycle` and
-  // are not counted in this object yet.
-  std::uint64_t earliest_last_write(std::uint64_t cycle, std::uint64_t consumed, std::uint64_t words) const;
+  // Cycles that this object does not know of: their number, the steps of the matcher that end in them (each of
+  // `folds` cycles), and the words that are written.
+  struct Unknown {
+    std::uint64_t cycles = 0;
+    std::uint64_t consumed = 0;
+    std::uint64_t words = 0;
+  };
+  // A lower bound of the cycle in which the last write of the frame is granted. `cycle` is the next cycle to
+  // run; `before` are cycles before it.
+  std::uint64_t earliest_last_write(std::uint64_t cycle, const Unknown& before) const;
   // The cycles of a port, from the start of each frame to its last write, over all frames.
   const PortCycles& port_cycles(memory::Port port) const { return cycles_[port]; }
   // Cycles in which the matcher worked plus words written, over all frames. The sum grows as long as frames

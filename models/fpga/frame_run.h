@@ -115,7 +115,8 @@ class FrameRun {
   const CoreControl& control() const { return core_.control(); }
   // A lower bound of the cycle in which the last write of the frame is granted.
   std::uint64_t earliest_last_write() const {
-    return control().earliest_last_write(cycle_, core_.ahead().consumed, core_.ahead().words);
+    const Progress& ahead = core_.ahead();
+    return control().earliest_last_write(cycle_, {ahead.cycles, ahead.consumed, ahead.words});
   }
   // CoreControl::work() in cycle().
   std::uint64_t work() const { return control().work() + core_.ahead().consumed + core_.ahead().words; }

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <functional>
 #include <sstream>
+#include <numeric>
 #include <string>
 #include <thread>
 #include <utility>
@@ -277,13 +278,17 @@ class RandomComputers : public testing::TestWithParam<bool> {
       const std::function<std::string(std::uint64_t, const test::RandomKnobs&)>& problems) {
     test::RandomKnobs knobs = GetParam() ? test::RandomKnobs::with_section_8() : test::RandomKnobs{};
     knobs.large_images = false;  // they take minutes under the sanitizers; the random boards have them
+    std::vector<std::uint64_t> seeds(count);
+    std::iota(seeds.begin(), seeds.end(), std::uint64_t{0});
+    // Of computers that once showed an error which the first ones do not show: with steps of the matcher of
+    // several cycles the end of a frame was noticed too late.
+    for (const std::uint64_t seed : {819, 1126, 2616}) seeds.push_back(seed);
     std::vector<test::ChildWork> jobs;
-    for (std::uint64_t seed = 0; seed < count; ++seed)
-      jobs.push_back([&, seed] { return problems(seed, knobs); });
+    for (const std::uint64_t seed : seeds) jobs.push_back([&, seed] { return problems(seed, knobs); });
     const std::vector<test::ChildResult> results =
         test::run_in_children(jobs, processors(), std::chrono::seconds(200));
-    for (std::size_t seed = 0; seed < results.size(); ++seed)
-      EXPECT_TRUE(results[seed].ok()) << "seed " << seed << ":\n" << results[seed].text;
+    for (std::size_t job = 0; job < results.size(); ++job)
+      EXPECT_TRUE(results[job].ok()) << "seed " << seeds[job] << ":\n" << results[job].text;
   }
 };
 
