@@ -1,5 +1,5 @@
-// Probes, scoreboard, traffic and the check of grants: what they see in a module that works, and what they find
-// in one that is broken.
+// Probes, scoreboard, traffic and the check of grants: what they see in a module that works, and what they
+// find in one that is broken.
 #include <gtest/gtest-spi.h>
 #include <gtest/gtest.h>
 #include <tlm_utils/simple_target_socket.h>

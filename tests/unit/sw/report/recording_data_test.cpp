@@ -42,8 +42,9 @@ TEST(RecordingData, MapsOfManyCausesHaveLargerTilesWithTheSameSums) {
     const std::size_t size = tiles["columns"].get<std::size_t>() * tiles["rows"].get<std::size_t>();
     EXPECT_LE(size, RecordingData::kMostTiles);
     EXPECT_LE(size * static_cast<std::size_t>(causes), RecordingData::kMostValues);
-    EXPECT_GT(4 * size * static_cast<std::size_t>(causes),
-              std::min(static_cast<std::size_t>(causes) * RecordingData::kMostTiles, RecordingData::kMostValues));
+    EXPECT_GT(
+        4 * size * static_cast<std::size_t>(causes),
+        std::min(static_cast<std::size_t>(causes) * RecordingData::kMostTiles, RecordingData::kMostValues));
     EXPECT_EQ(tiles["width"].get<int>() * tiles["columns"].get<int>(), 640);
     EXPECT_EQ(tiles["height"].get<int>() * tiles["rows"].get<int>(), 480);
     ASSERT_EQ(json["stalls"].size(), static_cast<std::size_t>(causes));
