@@ -1,9 +1,9 @@
 // A whole board of stereotlm in somebody else's program.
-#include <cstdio>
-
 #include <stereotlm/platform/collect.h>
 #include <stereotlm/platform/config/board_yaml.h>
 #include <stereotlm/platform/preloaded_system.h>
+
+#include <cstdio>
 
 struct OnePair : stereotlm::host::FrameSource, stereotlm::host::FrameSink {
   explicit OnePair(stereotlm::host::StereoPair p) : its_pair(std::move(p)) {}

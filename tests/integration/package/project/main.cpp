@@ -1,12 +1,11 @@
 // A SystemC platform of somebody else: one module of its own in front of a bank of stereotlm.
+#include <stereotlm/models/kernels/stereo.h>
+#include <stereotlm/models/memory/ssram_bank.h>
 #include <tlm_utils/simple_initiator_socket.h>
 
 #include <cstdint>
 #include <cstdio>
 #include <systemc>
-
-#include <stereotlm/models/kernels/stereo.h>
-#include <stereotlm/models/memory/ssram_bank.h>
 
 struct MyMaster : sc_core::sc_module {
   tlm_utils::simple_initiator_socket<MyMaster> port{"port"};

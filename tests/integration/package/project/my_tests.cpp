@@ -1,9 +1,6 @@
 // Three unit tests of a SystemC platform, from the guide of the test kit (models/testing/README.md): the rules
 // of the protocol, the cycles of a crossbar, and the words of a memory.
 #include <gtest/gtest.h>
-#include <tlm_utils/simple_initiator_socket.h>
-
-#include <cstdint>
 #include <stereotlm/models/memory/generic_crossbar.h>
 #include <stereotlm/models/memory/ssram_bank.h>
 #include <stereotlm/models/testing/grant_check.h>
@@ -11,6 +8,9 @@
 #include <stereotlm/models/testing/probing_binder.h>
 #include <stereotlm/models/testing/scoreboard.h>
 #include <stereotlm/models/testing/traffic.h>
+#include <tlm_utils/simple_initiator_socket.h>
+
+#include <cstdint>
 
 namespace {
 
@@ -84,7 +84,8 @@ TEST(Tutorial, TheBankGivesBackWhatRandomTrafficWrote) {
   from.longest_pause = sc_time(200, SC_NS);
   test::TrafficInitiator blocking("blocking", test::random_traffic(from));
   from.seed = 1;
-  test::TrafficInitiator other("other", test::random_traffic(from), test::TrafficInitiator::Style::kNonBlocking);
+  test::TrafficInitiator other("other", test::random_traffic(from),
+                               test::TrafficInitiator::Style::kNonBlocking);
   test::MonitoringBinder binder;
   memory::GenericCrossbar crossbar("crossbar", two_ports());
   test::Scoreboard scoreboard("scoreboard");  // a wrong byte fails the test
