@@ -1,5 +1,5 @@
-# Runs at installation: copies the public headers of `source`/models and platform to `include`/stereotlm. There
-# they include each other as "stereotlm/..", so that no name of theirs can be one of the using project.
+# Runs at installation: copies the public headers of `source`/models and platform to `include`/stereotlm.
+# There they include each other as "stereotlm/..", so that no name of theirs can be one of the using project.
 set(destination $ENV{DESTDIR}${CMAKE_INSTALL_PREFIX}/${include}/stereotlm)
 file(GLOB_RECURSE headers RELATIVE ${source} ${source}/models/*.h ${source}/platform/*.h)
 # The inner loops of the kernels, the reader behind board_yaml.h, and what computer.h makes for fidelity fast.

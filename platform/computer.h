@@ -58,7 +58,7 @@ class Computer : public sc_core::sc_module, public ComputerView {
   sc_core::sc_signal<bool> done_{"done"};
 };
 
-// A Computer if `fidelity` steps cycles, else a FastComputer: the same behaviour, without most of the modules.
+// A Computer if `fidelity` steps cycles, else one with the same behaviour and without most of the modules.
 std::unique_ptr<ComputerView> make_computer(const sc_core::sc_module_name& name, const BoardConfig& config,
                                             std::uint64_t host_memory_bytes, host::Program& program,
                                             capture::CameraSource& left, capture::CameraSource& right,

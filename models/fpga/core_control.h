@@ -111,8 +111,8 @@ class CoreControl {
   const FrameGeometry& geometry() const { return geometry_; }
   // Whether the last word of the frame has been written.
   bool frame_done() const { return result_.frame_done(); }
-  // Cycles that this object does not know of: their number, the steps of the matcher that end in them (each of
-  // `folds` cycles), and the words that are written.
+  // Cycles that this object does not know of: their number, the steps of the matcher that end in them (each
+  // of `folds` cycles), and the words that are written.
   struct Unknown {
     std::uint64_t cycles = 0;
     std::uint64_t consumed = 0;

@@ -8,8 +8,8 @@
 
 namespace stereotlm::test {
 
-// Checks in which cycles a crossbar has granted the words of an access: "granted in cycle n, and not in n - 1".
-// It compares a probe in front of a port with one in front of a bank.
+// Checks in which cycles a crossbar has granted the words of an access: "granted in cycle n, and not in n -
+// 1". It compares a probe in front of a port with one in front of a bank.
 class GrantCheck {
  public:
   // `bank_base`: what the crossbar adds to the addresses of the bank. All arguments outlive the check.

@@ -148,8 +148,8 @@ RandomBoard board_of(std::uint64_t seed, bool with_knobs) {
   return make_random_board(seed, with_knobs ? RandomKnobs::with_section_8() : RandomKnobs{});
 }
 
-// Of boards that once showed an error which the first boards do not show: results in sdram that begin more than
-// a strip behind the slots.
+// Of boards that once showed an error which the first boards do not show: results in sdram that begin more
+// than a strip behind the slots.
 constexpr std::array<std::uint64_t, 3> kSeedsOfErrors = {7500, 16441, 17138};
 
 void expect_boards_equal_references(Fidelity fidelity, bool with_knobs, std::uint64_t boards,

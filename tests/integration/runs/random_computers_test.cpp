@@ -9,8 +9,8 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
-#include <sstream>
 #include <numeric>
+#include <sstream>
 #include <string>
 #include <thread>
 #include <utility>

@@ -38,7 +38,8 @@ PriorityList list_of(std::size_t ports) {
   return list;
 }
 
-// Ports, the crossbar and its banks, with a monitor in each link of a port and a probe in each link of a bank.
+// Ports, the crossbar and its banks, with a monitor in each link of a port and a probe in each link of a
+// bank.
 struct Bench {
   explicit Bench(const CrossbarConfig& config) : crossbar("crossbar", config) {
     for (std::size_t bank = 0; bank < config.banks.size(); ++bank) {

@@ -1,5 +1,5 @@
-// Three unit tests of a SystemC platform, from the guide of the test kit (models/testing/README.md): the rules
-// of the protocol, the cycles of a crossbar, and the words of a memory.
+// Three unit tests of a SystemC platform, from the guide of the test kit (models/testing/README.md): the
+// rules of the protocol, the cycles of a crossbar, and the words of a memory.
 #include <gtest/gtest.h>
 #include <stereotlm/models/memory/generic_crossbar.h>
 #include <stereotlm/models/memory/ssram_bank.h>
