@@ -16,11 +16,12 @@ install(EXPORT stereotlm_targets NAMESPACE stereotlm:: FILE stereotlmTargets.cma
 install(CODE "set(source ${PROJECT_SOURCE_DIR})
   set(include ${CMAKE_INSTALL_INCLUDEDIR})")
 install(SCRIPT cmake/install_headers.cmake)
-install(FILES LICENSE CHANGELOG.md README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
-install(DIRECTORY tests/integration/package/project/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/example)
-install(FILES models/testing/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/models/testing)
-install(FILES models/README.md models/contract.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/models)
-install(FILES platform/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/platform)
+set(guides ${CMAKE_INSTALL_DATADIR}/doc/libstereotlm-dev)
+install(FILES CHANGELOG.md README.md DESTINATION ${guides})
+install(FILES models/README.md models/contract.md DESTINATION ${guides}/models)
+install(FILES models/testing/README.md DESTINATION ${guides}/models/testing)
+install(FILES platform/README.md DESTINATION ${guides}/platform)
+install(DIRECTORY tests/integration/package/project/ DESTINATION ${guides}/example)
 
 set(STEREOTLM_GTEST_MAIN ${CMAKE_INSTALL_INCLUDEDIR}/stereotlm/models/testing/gtest_main.cpp)
 configure_package_config_file(cmake/stereotlmConfig.cmake.in ${PROJECT_BINARY_DIR}/stereotlmConfig.cmake

@@ -1,0 +1,81 @@
+# Man pages, completion of shells, and Debian packages: `cmake --build build/release --target packages`.
+#
+# The packages are stereotlm (the program) and libstereotlm-dev (libraries, headers, guides, example). Man
+# pages need help2man, completion needs Python; without them there are none.
+find_program(STEREOTLM_HELP2MAN help2man)
+find_package(Python3 COMPONENTS Interpreter)
+set(manual ${PROJECT_BINARY_DIR}/${CMAKE_INSTALL_MANDIR}/man1)
+set(completion ${PROJECT_BINARY_DIR}/completion)
+
+# The commands are those that the program lists, so the pages are made once it is built.
+add_custom_target(stereotlm_manual ALL DEPENDS stereotlm
+  COMMAND ${CMAKE_COMMAND} -DHELP2MAN=${STEREOTLM_HELP2MAN} -DPROGRAM=$<TARGET_FILE:stereotlm>
+    -DFOLDER=${manual} -DVERSION=${PROJECT_VERSION} -P ${PROJECT_SOURCE_DIR}/cmake/manual.cmake
+  VERBATIM)
+add_custom_target(stereotlm_completion ALL DEPENDS stereotlm)
+if(Python3_Interpreter_FOUND)
+  add_custom_command(TARGET stereotlm_completion
+    COMMAND Python3::Interpreter ${PROJECT_SOURCE_DIR}/sw/cli/completion.py $<TARGET_FILE:stereotlm>
+      ${completion} VERBATIM)
+  install(FILES ${completion}/stereotlm.bash RENAME stereotlm COMPONENT program
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions OPTIONAL)
+  install(FILES ${completion}/_stereotlm COMPONENT program
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions OPTIONAL)
+  install(FILES ${completion}/stereotlm.fish COMPONENT program
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d OPTIONAL)
+endif()
+if(STEREOTLM_HELP2MAN)
+  install(DIRECTORY ${manual} DESTINATION ${CMAKE_INSTALL_MANDIR} COMPONENT program OPTIONAL)
+endif()
+
+# Debian's policy wants these two files in each package.
+string(TIMESTAMP date "%a, %d %b %Y %H:%M:%S +0000" UTC)
+foreach(package stereotlm libstereotlm-dev)
+  set(component program)
+  if(package STREQUAL libstereotlm-dev)
+    set(component development)
+  endif()
+  set(changelog ${PROJECT_BINARY_DIR}/packages/${package}/changelog)
+  file(WRITE ${changelog} "${package} (${PROJECT_VERSION}) unstable; urgency=medium
+
+  * See CHANGELOG.md.
+
+ -- stereotlm maintainers <maintainers@users.noreply.github.com>  ${date}
+")
+  execute_process(COMMAND gzip -9nf ${changelog} COMMAND_ERROR_IS_FATAL ANY)
+  install(FILES ${changelog}.gz cmake/copyright DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${package}
+    COMPONENT ${component})
+endforeach()
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_CONTACT "stereotlm maintainers <maintainers@users.noreply.github.com>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "cycle-exact model of an FPGA stereo vision board")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_COMPONENTS_ALL program development)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME stereotlm)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION electronics)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS python3)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS python3-matplotlib)
+set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "the program
+ Simulates pairs of pictures on the board of Miyajima and Maruyama (FPL 2003),
+ accounts for each cycle of its memory banks, and searches for allocations of
+ buffers to banks.")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libstereotlm-dev)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SHLIBDEPS OFF)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libsystemc-dev, libfmt-dev, libyaml-cpp-dev")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS "libgtest-dev")
+set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "the SystemC modules
+ Banks, arbiters, crossbars, PCI bus, bridge and the stages of the FPGA as
+ SystemC/TLM-2.0 modules, and a test kit for SystemC modules.")
+include(CPack)
+add_custom_target(packages
+  DEPENDS stereotlm stereotlm_decoders stereotlm_calibration stereotlm_platform stereotlm_testing
+    stereotlm_manual stereotlm_completion
+  COMMAND ${CMAKE_CPACK_COMMAND} --config ${PROJECT_BINARY_DIR}/CPackConfig.cmake -B
+    ${PROJECT_BINARY_DIR}/packages
+  WORKING_DIRECTORY ${PROJECT_BINARY_DIR} VERBATIM USES_TERMINAL)
