@@ -49,15 +49,8 @@ class Camera : public sc_core::sc_module, private FrameReceiver, private FrameCa
   const Stats& stats() const { return control_.stats(); }
 
  private:
-  void begin_frame(const VideoFrame& frame) override { frames_out->push(frame); }
-  bool take(std::uint64_t number) override {
-    try {
-      return control_.take(number);
-    } catch (const std::logic_error& error) {
-      SC_REPORT_ERROR("/stereotlm/camera", (std::string(name()) + ": " + error.what()).c_str());
-      return false;
-    }
-  }
+  void begin_frame(const VideoFrame& frame) override;
+  bool take(std::uint64_t number) override;
   void copy_words(int first, int count, std::uint32_t* to) const override {
     control_.copy_words(first, count, to);
   }

@@ -96,18 +96,7 @@ class TestHost : public sc_core::sc_module, public tlm::tlm_bw_transport_if<> {
   }
 
   tlm::tlm_sync_enum nb_transport_bw(tlm::tlm_generic_payload& payload, tlm::tlm_phase& phase,
-                                     sc_core::sc_time& delay) override {
-    if (phase != tlm::BEGIN_RESP) return tlm::TLM_ACCEPTED;
-    for (Transaction& transaction : transactions_) {
-      if (&transaction.payload == &payload) record(transaction, delay);
-    }
-    answered_.notify(delay);
-    if (ending == Ending::kAccepted) return tlm::TLM_ACCEPTED;
-    payload.release();
-    if (ending == Ending::kCompleted) return tlm::TLM_COMPLETED;
-    phase = tlm::END_RESP;
-    return tlm::TLM_UPDATED;
-  }
+                                     sc_core::sc_time& delay) override;
   void invalidate_direct_mem_ptr(sc_dt::uint64 start, sc_dt::uint64 end) override {
     invalidations.emplace_back(start, end);
   }
