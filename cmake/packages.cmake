@@ -8,15 +8,20 @@ set(manual ${PROJECT_BINARY_DIR}/${CMAKE_INSTALL_MANDIR}/man1)
 set(completion ${PROJECT_BINARY_DIR}/completion)
 
 # The commands are those that the program lists, so the pages are made once it is built.
-add_custom_target(stereotlm_manual ALL DEPENDS stereotlm
-  COMMAND ${CMAKE_COMMAND} -DHELP2MAN=${STEREOTLM_HELP2MAN} -DPROGRAM=$<TARGET_FILE:stereotlm>
-    -DFOLDER=${manual} -DVERSION=${PROJECT_VERSION} -P ${PROJECT_SOURCE_DIR}/cmake/manual.cmake
-  VERBATIM)
-add_custom_target(stereotlm_completion ALL DEPENDS stereotlm)
+set(manual_of_program ${manual}/stereotlm.1.gz)
+if(STEREOTLM_HELP2MAN)
+  add_custom_command(OUTPUT ${manual_of_program} DEPENDS stereotlm cmake/manual.cmake
+    COMMAND ${CMAKE_COMMAND} -DHELP2MAN=${STEREOTLM_HELP2MAN} -DPROGRAM=$<TARGET_FILE:stereotlm>
+      -DFOLDER=${manual} -DVERSION=${PROJECT_VERSION} -P ${PROJECT_SOURCE_DIR}/cmake/manual.cmake
+    VERBATIM)
+  add_custom_target(stereotlm_manual ALL DEPENDS ${manual_of_program})
+  install(DIRECTORY ${manual} DESTINATION ${CMAKE_INSTALL_MANDIR} COMPONENT program OPTIONAL)
+endif()
 if(Python3_Interpreter_FOUND)
-  add_custom_command(TARGET stereotlm_completion
+  add_custom_command(OUTPUT ${completion}/stereotlm.bash DEPENDS stereotlm sw/cli/completion.py
     COMMAND Python3::Interpreter ${PROJECT_SOURCE_DIR}/sw/cli/completion.py $<TARGET_FILE:stereotlm>
       ${completion} VERBATIM)
+  add_custom_target(stereotlm_completion ALL DEPENDS ${completion}/stereotlm.bash)
   install(FILES ${completion}/stereotlm.bash RENAME stereotlm COMPONENT program
     DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions OPTIONAL)
   install(FILES ${completion}/_stereotlm COMPONENT program
@@ -24,10 +29,6 @@ if(Python3_Interpreter_FOUND)
   install(FILES ${completion}/stereotlm.fish COMPONENT program
     DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d OPTIONAL)
 endif()
-if(STEREOTLM_HELP2MAN)
-  install(DIRECTORY ${manual} DESTINATION ${CMAKE_INSTALL_MANDIR} COMPONENT program OPTIONAL)
-endif()
-
 # Debian's policy wants these two files in each package.
 string(TIMESTAMP date "%a, %d %b %Y %H:%M:%S +0000" UTC)
 foreach(package stereotlm libstereotlm-dev)
@@ -75,7 +76,7 @@ set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "the SystemC modules
 include(CPack)
 add_custom_target(packages
   DEPENDS stereotlm stereotlm_decoders stereotlm_calibration stereotlm_platform stereotlm_testing
-    stereotlm_manual stereotlm_completion
+    $<TARGET_NAME_IF_EXISTS:stereotlm_manual> $<TARGET_NAME_IF_EXISTS:stereotlm_completion>
   COMMAND ${CMAKE_CPACK_COMMAND} --config ${PROJECT_BINARY_DIR}/CPackConfig.cmake -B
     ${PROJECT_BINARY_DIR}/packages
   WORKING_DIRECTORY ${PROJECT_BINARY_DIR} VERBATIM USES_TERMINAL)

@@ -204,7 +204,7 @@ void CameraLines::narrow_local_bounds(std::uint64_t pci_clock) {
 
 void CameraLines::record_local_burst() {
   const LocalBurst& burst = local_bus_.burst();
-  const std::uint64_t first = local_bus_.request_clock() - record_.local_clock;
+  const std::uint64_t first = local_bus_.first_request_clock() - record_.local_clock;
   const bool is_right = burst.address - record_.addresses[1] < 4 * words_of_line();
   const std::size_t side = is_right ? 1 : 0;
   if (burst.address == record_.addresses[side]) record_.line.sides[side].first_clock = first;

@@ -14,7 +14,8 @@ namespace {
 // Each time is rounded to whole ps. So the ends of the two bursts of a step may come closer by this number of
 // ps than those of another step.
 constexpr std::uint64_t kRounding = 4;
-// Contended bursts that are skipped at once. Short series come again in the same state of the core.
+// Bursts that are skipped at once where the core needs each of them. Short series come again in the same state
+// of the core.
 constexpr std::uint64_t kMostInSeries = 16;
 
 }  // namespace
@@ -89,7 +90,7 @@ std::optional<DmaBursts::Step> DmaBursts::recorded() const {
   const std::uint64_t first_local = local.edge_at_or_after(before_.now_ps);
   step.pci_end = pci_bus_.position().free_clock - 1 - pci.edge_at_or_after(before_.now_ps);
   step.local_free = local_bus_.idle_clock() + 1 - first_local;
-  step.first_word = local_bus_.request_clock() - first_local;
+  step.first_word = local_bus_.first_request_clock() - first_local;
   step.wait_clocks = counts.wait_clocks;
   // The bus that ends first must do so too where it begins up to a clock later.
   const bool keeps_pace = pci_ends_last()

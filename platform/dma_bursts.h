@@ -26,7 +26,7 @@ namespace stereotlm::platform {
 // This holds only for steps that nothing else touches:
 // - Nothing else is under way in the bridge, on the local bus or on the PCI bus.
 // - The bursts are of full length, and move words between host memory and one bank. The bank serves one word
-//   a cycle, and the running frame does not use it. No conflicts are recorded.
+//   a cycle: the running frame does not use it, or the host has the highest fixed priority.
 // - The bus that ends first ends a clock earlier at least. Then it ends first wherever its clocks lie against
 //   those of the other bus.
 // - Until the last of them ends, no other master requests the PCI bus, and no other block has an event.

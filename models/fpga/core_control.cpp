@@ -68,11 +68,13 @@ void CoreControl::skip_to(memory::StateReader& state, std::uint64_t consumed, st
 
 std::uint64_t CoreControl::earliest_last_write(std::uint64_t cycle, const Unknown& before) const {
   const auto folds = static_cast<std::uint64_t>(geometry_.folds);
-  const std::uint64_t worked = std::min((before.consumed + 1) * folds - 1, before.cycles);
+  // On a step that has not ended the matcher has worked for folds - 1 cycles at most.
+  const std::uint64_t most_worked = std::min((before.consumed + 1) * folds - 1, before.cycles);
   const std::uint64_t to_write = result_.words_left() - before.words - 1;
-  if (match_.cycles_left() <= worked) return cycle + to_write;
-  // The last words enter the queue together when the matcher has consumed all. They are written later.
-  const std::uint64_t works = match_.cycles_left() - worked;
+  if (match_.cycles_left() <= most_worked) return cycle + to_write;
+  // The last words enter the queue together, in the last cycle of the matcher. One is written in each cycle
+  // after it.
+  const std::uint64_t works = match_.cycles_left() - most_worked;
   return cycle + std::max(works + static_cast<std::uint64_t>(geometry_.last_rows) - 1, to_write);
 }
 

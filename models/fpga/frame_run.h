@@ -118,7 +118,7 @@ class FrameRun {
     const Progress& ahead = core_.ahead();
     return control().earliest_last_write(cycle_, {ahead.cycles, ahead.consumed, ahead.words});
   }
-  // CoreControl::work() in cycle().
+  // A number that grows whenever the frame makes progress.
   std::uint64_t work() const { return control().work() + core_.ahead().consumed + core_.ahead().words; }
   // Words written by the frame that was started last.
   std::uint64_t writes() const { return all_writes() - writes_before_; }

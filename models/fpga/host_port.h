@@ -87,7 +87,7 @@ class HostPort {
     std::uint64_t first_cycle;
     std::uint64_t words;
   };
-  // Counts skipped bursts, which must be in the order of their times. If the running frame uses their banks,
+  // Counts skipped bursts, which must be in the order of their times; those to a bank have one direction. If the running frame uses their banks,
   // runs it through the bursts. It cannot end before the last of them.
   void skip_bursts(const std::vector<SkippedBurst>& bursts);
 
@@ -144,7 +144,7 @@ class HostPort {
   bool is_moved_ = false;        // the data of the burst is in place; its words are still to be served
   std::vector<Served> served_;
   std::vector<FastForward::Burst> contended_;  // of skip_bursts(), as the next one
-  std::vector<SkippedBurst> uncontended_;      // [bank]: the first burst to it, with the words of all
+  std::vector<SkippedBurst> uncontended_;      // the first burst to each bank, with the words of all
   std::size_t served_bank_ = 0;                // bank of all served_
   HostTraffic served_traffic_ = HostTraffic::kCapture;
 };

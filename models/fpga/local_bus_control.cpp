@@ -10,7 +10,6 @@
 namespace stereotlm::fpga {
 namespace {
 
-constexpr std::uint64_t kFirstWordClock = 2;  // after the address clock and the decode clock
 constexpr bool is_register(std::uint64_t address) { return address >= kLocalRegisters; }
 
 double checked(double clock_mhz) {
@@ -56,7 +55,7 @@ void LocalBusControl::begin(std::uint64_t now_ps, const LocalBurst& burst) {
   // Bursts often follow each other without a pause.
   address_clock_ = now_ps == free_ps_ ? idle_clock_ + 1 : clock_.edge_at_or_after(now_ps);
   idle_clock_ = kUnknown;
-  request_clock_ = address_clock_ + kFirstWordClock + 1;
+  request_clock_ = first_request_clock();
   request_ps_ = clock_.edge_ps(request_clock_);
   if (is_register(burst.address)) {
     next_ps_ = request_ps_;

@@ -131,8 +131,9 @@ class LocalBusControl final : public LocalBusIf {
 
   // To skip bursts to the banks that repeat:
   const Clock& clock() const { return clock_; }
-  // The last burst, and the number of its idle clock.
+  // The last burst, the first clock in which its first word requests, and the number of its idle clock.
   const LocalBurst& burst() const { return burst_; }
+  std::uint64_t first_request_clock() const { return address_clock_ + kFirstWordClock + 1; }
   std::uint64_t idle_clock() const { return idle_clock_; }
   // The clocks of all bursts, while the bus is idle.
   std::uint64_t busy_clocks() const { return stats_.busy_clocks + idle_clock_ - address_clock_; }
@@ -153,6 +154,7 @@ class LocalBusControl final : public LocalBusIf {
 
  private:
   static constexpr std::uint64_t kUnknown = UINT64_MAX;
+  static constexpr std::uint64_t kFirstWordClock = 2;  // after the address clock and the decode clock
 
   unsigned char* next_data() const { return burst_.data + 4 * next_word_; }
   std::uint64_t next_address() const { return burst_.address + 4 * next_word_; }

@@ -29,11 +29,12 @@ GenericCrossbar::GenericCrossbar(const sc_core::sc_module_name& name, const Cros
   SC_METHOD(begin_cycle);
   sensitive << cycle_;
   dont_initialize();
+  SC_THREAD(access_banks);
 }
 
 ArbiterStats GenericCrossbar::stats(std::size_t bank) const {
   BankArbiter arbiter = arbiters_[bank];
-  const std::uint64_t end = clock_.edge_at_or_after(kernel_time::now_ps());
+  const std::uint64_t end = std::max(first_undecided_, clock_.edge_at_or_after(kernel_time::now_ps()));
   arbiter.count_rows(end);
   arbiter.end_counting(end);
   return arbiter.stats();
@@ -106,15 +107,26 @@ void GenericCrossbar::decide() {
   for (std::size_t bank = 0; bank < banks.size(); ++bank) {
     if (requests[bank] != 0) decide(bank, cycle, requests[bank], writes[bank]);
   }
-  await_cycle();
+  granted_cycle_ = cycle;
+  granted_.empty() ? await_cycle() : accesses_.notify(sc_core::SC_ZERO_TIME);
 }
 
 void GenericCrossbar::decide(std::size_t bank, std::uint64_t cycle, PortMask requests, PortMask writes) {
   const BankArbiter::Outcome outcome = arbiters_[bank].decide(cycle, requests, writes, words_.data());
   arbiters_[bank].count(outcome);
-  for_each_port(requests & ~outcome.granted, [&](Port port) { states_[port].from_cycle = cycle + 1; });
-  for_each_port(outcome.granted & ~writes, [&](Port port) { access_word(states_[port], bank, cycle); });
-  for_each_port(outcome.granted & writes, [&](Port port) { access_word(states_[port], bank, cycle); });
+  for_each_port(requests, [&](Port port) { states_[port].from_cycle = cycle + 1; });
+  for_each_port(outcome.granted & ~writes, [&](Port port) { granted_.emplace_back(port, bank); });
+  for_each_port(outcome.granted & writes, [&](Port port) { granted_.emplace_back(port, bank); });
+}
+
+// A thread: the protocol allows b_transport only there.
+void GenericCrossbar::access_banks() {
+  for (;;) {
+    wait(accesses_);
+    for (const auto& [port, bank] : granted_) access_word(states_[port], bank, granted_cycle_);
+    granted_.clear();
+    await_cycle();
+  }
 }
 
 // The next word of the port has been granted in this cycle, which begins now.
@@ -137,7 +149,6 @@ void GenericCrossbar::access_word(PortState& port, std::size_t bank, std::uint64
   sc_core::sc_time delay;
   banks[bank]->b_transport(word, delay);
   port.done_bytes += 4;
-  port.from_cycle = cycle + 1;
   if (word.is_response_ok() && port.done_bytes < access.get_data_length()) return;
   access.set_response_status(word.get_response_status());
   port.access = nullptr;

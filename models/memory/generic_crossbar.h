@@ -8,6 +8,7 @@
 #include <deque>
 #include <systemc>
 #include <tlm>
+#include <utility>
 #include <vector>
 
 #include "models/clock.h"
@@ -23,16 +24,16 @@ namespace stereotlm::memory {
 // arbiters give it.
 //
 // An access has any number of words in one bank, at the addresses of crossbar_address(). Its first word
-// requests the bank from the first cycle on that begins at or after the time of the access, each other word
+// requests from the first cycle on that begins at or after the time of the access. Each further word requests
 // from the cycle after the grant of the word before. The arbiters decide about a cycle after everything else
-// that happens at its beginning. A word that is granted accesses the bank in its cycle, by b_transport. With
-// a bank of separate ports the read of a cycle comes before its write.
+// that happens at its beginning. A word that is granted accesses the bank in its cycle, by b_transport; a bank
+// must not wait there. With a bank of separate ports the read of a cycle comes before its write.
 //
 // b_transport waits for the grant of the last word. It returns in the cycle of this grant, with the rest of
 // the access as `delay`: of a read up to the time at which its last word is usable, of a write up to the end
 // of the cycle. A port serves one access at a time, in the order in which they arrive. nb_transport is
-// turned into b_transport; its response ends the request too. Debug transport reaches every bank at once.
-// There is no DMI.
+// turned into b_transport: no END_REQ is sent, because BEGIN_RESP implies it. Debug transport reaches every
+// bank at once. There is no DMI.
 //
 // | access                                                         | response                       |
 // |----------------------------------------------------------------|--------------------------------|
@@ -52,7 +53,7 @@ class GenericCrossbar : public sc_core::sc_module {
   GenericCrossbar(const sc_core::sc_module_name& name, const CrossbarConfig& config);
 
   const Clock& clock() const { return clock_; }
-  // The counters of a bank, of the cycles that have begun before the present time.
+  // The counters of a bank, of all cycles before the present time, and of the present one if it is decided.
   ArbiterStats stats(std::size_t bank) const;
 
  private:
@@ -75,14 +76,18 @@ class GenericCrossbar : public sc_core::sc_module {
   void begin_cycle();
   void decide();
   void decide(std::size_t bank, std::uint64_t cycle, PortMask requests, PortMask writes);
+  void access_banks();
   void access_word(PortState& port, std::size_t bank, std::uint64_t cycle);
   void await_cycle();
 
   Clock clock_;
-  std::vector<BankArbiter> arbiters_;              // [bank]
-  std::deque<PortState> states_;                   // [port]
-  std::uint64_t first_undecided_ = 0;              // cycle
-  std::array<std::uint32_t, kMostPorts> words_{};  // [port]: the word that it requests
+  std::vector<BankArbiter> arbiters_;                  // [bank]
+  std::deque<PortState> states_;                       // [port]
+  std::uint64_t first_undecided_ = 0;                  // cycle
+  std::array<std::uint32_t, kMostPorts> words_{};      // [port]: the word that it requests
+  std::vector<std::pair<Port, std::size_t>> granted_;  // port and bank, in the order of their accesses
+  std::uint64_t granted_cycle_ = 0;
+  sc_core::sc_event accesses_{"accesses"};
   bool has_reported_ = false;
   StepEvent cycle_{"cycle"};
   DecisionPoint decision_{"decision", [this] { decide(); }};

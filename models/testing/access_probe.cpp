@@ -43,8 +43,10 @@ void AccessProbe::end(const tlm::tlm_generic_payload& payload, const sc_core::sc
 void AccessProbe::ended(const tlm::tlm_generic_payload& payload, std::uint64_t address,
                         const sc_core::sc_time& begin, const sc_core::sc_time& end) {
   SeenAccess access{begin, end, payload.is_write(), address, {}, payload.get_response_status()};
-  access.words.resize(payload.get_data_length() / 4);
-  std::memcpy(access.words.data(), payload.get_data_ptr(), 4 * access.words.size());
+  if (payload.get_command() != tlm::TLM_IGNORE_COMMAND) {
+    access.words.resize(payload.get_data_length() / 4);
+    std::memcpy(access.words.data(), payload.get_data_ptr(), 4 * access.words.size());
+  }
   accesses_.push_back(std::move(access));
 }
 

@@ -2,16 +2,48 @@
 
 namespace stereotlm::test {
 
+tlm::tlm_sync_enum TestHost::request(tlm::tlm_command command, std::uint64_t address,
+                                     std::vector<std::uint32_t> words, sc_core::sc_time delay) {
+  auto* const transaction = new Transaction(command, address, std::move(words));  // Manager deletes it
+  transaction->set_mm(&manager_);
+  transaction->acquire();
+  tlm::tlm_phase phase = tlm::BEGIN_REQ;
+  const tlm::tlm_sync_enum status = socket->nb_transport_fw(*transaction, phase, delay);
+  if (status == tlm::TLM_COMPLETED) {
+    record(*transaction, delay);
+    transaction->release();
+  } else if (status == tlm::TLM_UPDATED && phase == tlm::BEGIN_RESP) {
+    record(*transaction, delay);
+    last_ = transaction;
+    if (ending != Ending::kAccepted) end_response();
+  }
+  return status;
+}
+
+tlm::tlm_sync_enum TestHost::end_response() {
+  tlm::tlm_phase phase = tlm::END_RESP;
+  sc_core::sc_time delay = answers.back().at - sc_core::sc_time_stamp();
+  const auto status = socket->nb_transport_fw(*last_, phase, delay);
+  last_->release();
+  last_ = nullptr;
+  return status;
+}
+
+void TestHost::record(tlm::tlm_generic_payload& payload, const sc_core::sc_time& delay) {
+  answers.push_back(answer_of(static_cast<const Transaction&>(payload), delay));
+}
+
 // Not inline: the compiler then makes the class's tables for virtual functions only here. Those of g++ and of
 // clang++ cannot stand in for each other.
 tlm::tlm_sync_enum TestHost::nb_transport_bw(tlm::tlm_generic_payload& payload, tlm::tlm_phase& phase,
                                              sc_core::sc_time& delay) {
   if (phase != tlm::BEGIN_RESP) return tlm::TLM_ACCEPTED;
-  for (Transaction& transaction : transactions_) {
-    if (&transaction.payload == &payload) record(transaction, delay);
-  }
+  record(payload, delay);
   answered_.notify(delay);
-  if (ending == Ending::kAccepted) return tlm::TLM_ACCEPTED;
+  if (ending == Ending::kAccepted) {
+    last_ = static_cast<Transaction*>(&payload);
+    return tlm::TLM_ACCEPTED;
+  }
   payload.release();
   if (ending == Ending::kCompleted) return tlm::TLM_COMPLETED;
   phase = tlm::END_RESP;

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <systemc>
 #include <tlm>
 #include <utility>
@@ -43,38 +42,25 @@ class TestHost : public sc_core::sc_module, public tlm::tlm_bw_transport_if<> {
     return block(tlm::TLM_WRITE_COMMAND, address, std::move(words), {});
   }
 
-  // Words by nb_transport, from now + delay on. Does not wait. Returns the target's return value.
+  // Words by nb_transport, from now + delay on. Does not wait. Returns the target's return value. If the target
+  // returns the response at once, it is recorded and, unless `ending` is kAccepted, ended.
   tlm::tlm_sync_enum request(tlm::tlm_command command, std::uint64_t address, std::uint32_t word = 0,
                              const sc_core::sc_time& delay = {}) {
     return request(command, address, std::vector<std::uint32_t>{word}, delay);
   }
   tlm::tlm_sync_enum request(tlm::tlm_command command, std::uint64_t address,
-                             std::vector<std::uint32_t> words, sc_core::sc_time delay = {}) {
-    Transaction& transaction = prepare(command, address, std::move(words));
-    transaction.payload.set_mm(&manager_);
-    transaction.payload.acquire();
-    tlm::tlm_phase phase = tlm::BEGIN_REQ;
-    const tlm::tlm_sync_enum status = socket->nb_transport_fw(transaction.payload, phase, delay);
-    if (status == tlm::TLM_COMPLETED) record(transaction, delay);
-    return status;
-  }
+                             std::vector<std::uint32_t> words, sc_core::sc_time delay = {});
   // Sends END_RESP for the last response, timed at that response, and returns what the target returns. To be
   // called only if `ending` was kAccepted.
-  tlm::tlm_sync_enum end_response() {
-    tlm::tlm_phase phase = tlm::END_RESP;
-    sc_core::sc_time delay =
-        answers.empty() ? sc_core::sc_time() : answers.back().at - sc_core::sc_time_stamp();
-    Transaction& transaction = transactions_.back();
-    const auto status = socket->nb_transport_fw(transaction.payload, phase, delay);
-    transaction.payload.release();
-    return status;
-  }
+  tlm::tlm_sync_enum end_response();
   // In a thread process: request(), and waits until the answer's time.
   Answer access(tlm::tlm_command command, std::uint64_t address, std::uint32_t word = 0) {
     return access(command, address, std::vector<std::uint32_t>{word});
   }
   Answer access(tlm::tlm_command command, std::uint64_t address, std::vector<std::uint32_t> words) {
-    if (request(command, address, std::move(words)) == tlm::TLM_ACCEPTED) sc_core::wait(answered_);
+    const std::size_t answered = answers.size();
+    request(command, address, std::move(words));
+    if (answers.size() == answered) sc_core::wait(answered_);
     return answers.back();
   }
 
@@ -102,43 +88,38 @@ class TestHost : public sc_core::sc_module, public tlm::tlm_bw_transport_if<> {
   }
 
  private:
-  struct Transaction {
-    tlm::tlm_generic_payload payload;
+  struct Transaction : tlm::tlm_generic_payload {
+    Transaction(tlm::tlm_command command, std::uint64_t address, std::vector<std::uint32_t> data)
+        : words(std::move(data)) {
+      const auto bytes = static_cast<unsigned>(words.size() * 4);
+      set_command(command);
+      set_address(address);
+      set_data_ptr(reinterpret_cast<unsigned char*>(words.data()));
+      set_data_length(bytes);
+      set_streaming_width(bytes);
+    }
     std::vector<std::uint32_t> words;
   };
-  // Transactions live as long as the host.
+  // Deletes a transaction of nb_transport once nobody needs it.
   class Manager : public tlm::tlm_mm_interface {
-    void free(tlm::tlm_generic_payload* /*payload*/) override {}
+    void free(tlm::tlm_generic_payload* payload) override { delete static_cast<Transaction*>(payload); }
   };
 
-  Transaction& prepare(tlm::tlm_command command, std::uint64_t address, std::vector<std::uint32_t> words) {
-    Transaction& transaction = transactions_.emplace_back();
-    transaction.words = std::move(words);
-    const auto bytes = static_cast<unsigned>(transaction.words.size() * 4);
-    transaction.payload.set_command(command);
-    transaction.payload.set_address(address);
-    transaction.payload.set_data_ptr(reinterpret_cast<unsigned char*>(transaction.words.data()));
-    transaction.payload.set_data_length(bytes);
-    transaction.payload.set_streaming_width(bytes);
-    return transaction;
-  }
   Answer block(tlm::tlm_command command, std::uint64_t address, std::uint32_t word,
                const sc_core::sc_time& delay) {
     return block(command, address, std::vector<std::uint32_t>{word}, delay);
   }
   Answer block(tlm::tlm_command command, std::uint64_t address, std::vector<std::uint32_t> words,
                sc_core::sc_time delay) {
-    Transaction& transaction = prepare(command, address, std::move(words));
-    socket->b_transport(transaction.payload, delay);
+    Transaction transaction(command, address, std::move(words));
+    socket->b_transport(transaction, delay);
     return answer_of(transaction, delay);
   }
   static Answer answer_of(const Transaction& transaction, const sc_core::sc_time& delay) {
-    return {transaction.payload.get_response_status(), transaction.words.front(),
-            sc_core::sc_time_stamp() + delay, transaction.words};
+    return {transaction.get_response_status(), transaction.words.front(), sc_core::sc_time_stamp() + delay,
+            transaction.words};
   }
-  void record(const Transaction& transaction, const sc_core::sc_time& delay) {
-    answers.push_back(answer_of(transaction, delay));
-  }
+  void record(tlm::tlm_generic_payload& payload, const sc_core::sc_time& delay);
   unsigned debug(tlm::tlm_command command, std::uint64_t address, std::vector<std::uint32_t>& words) {
     tlm::tlm_generic_payload payload;
     payload.set_command(command);
@@ -150,7 +131,7 @@ class TestHost : public sc_core::sc_module, public tlm::tlm_bw_transport_if<> {
   }
 
   Manager manager_;
-  std::deque<Transaction> transactions_;
+  Transaction* last_ = nullptr;  // whose response waits for end_response()
   sc_core::sc_event answered_{"answered"};
 };
 

@@ -14,14 +14,19 @@ namespace {
 // A number of 0..most. std::uniform_int_distribution differs from library to library.
 std::uint64_t draw(std::mt19937_64& random, std::uint64_t most) { return random() % (most + 1); }
 
+void require(bool holds, const char* what, std::uint64_t value, const std::string& rule) {
+  if (!holds) throw std::invalid_argument(what + (" = " + std::to_string(value) + ": must be " + rule));
+}
+
 std::uint64_t number_of(const std::string& text, const char* what, std::size_t line) {
   std::size_t end = 0;
   std::uint64_t number = 0;
-  try {
-    if (text.empty() || text.front() == '-') throw std::invalid_argument(text);
-    number = std::stoull(text, &end, 0);
-  } catch (const std::logic_error&) {
-    end = 0;
+  if (!text.empty() && text.front() >= '0' && text.front() <= '9') {
+    try {
+      number = std::stoull(text, &end, text.rfind("0x", 0) == 0 ? 16 : 10);
+    } catch (const std::logic_error&) {
+      end = 0;
+    }
   }
   if (end == 0 || end != text.size()) {
     throw std::invalid_argument("line " + std::to_string(line) + ": " + what + " = " + text +
@@ -34,6 +39,7 @@ TrafficAccess access_of(const std::string& text, std::size_t line) {
   std::vector<std::string> fields;
   std::istringstream row(text);
   for (std::string field; std::getline(row, field, ',');) fields.push_back(field);
+  if (!fields.empty() && !fields.back().empty() && fields.back().back() == '\r') fields.back().pop_back();
   const auto problem = [&](const std::string& what) {
     return std::invalid_argument("line " + std::to_string(line) + ": " + what);
   };
@@ -56,6 +62,9 @@ TrafficAccess access_of(const std::string& text, std::size_t line) {
 
 std::vector<TrafficAccess> strided_traffic(std::uint64_t first, std::uint64_t stride, std::size_t count,
                                            bool write, std::size_t words) {
+  require(first % 4 == 0, "first", first, "a multiple of 4");
+  require(stride % 4 == 0, "stride", stride, "a multiple of 4");
+  require(words > 0, "words", words, "1 or more");
   std::vector<TrafficAccess> accesses;
   for (std::size_t number = 0; number < count; ++number)
     accesses.push_back({{}, write, first + number * stride, words});
@@ -63,17 +72,17 @@ std::vector<TrafficAccess> strided_traffic(std::uint64_t first, std::uint64_t st
 }
 
 std::vector<TrafficAccess> random_traffic(const RandomTraffic& from) {
-  if (from.most_words == 0 || from.memory_words < from.most_words) {
-    throw std::invalid_argument("most_words = " + std::to_string(from.most_words) +
-                                ": must be 1..memory_words, which is " + std::to_string(from.memory_words));
-  }
+  require(from.first % 4 == 0, "first", from.first, "a multiple of 4");
+  require(from.most_words > 0 && from.most_words <= from.memory_words, "most_words", from.most_words,
+          "1..memory_words, which is " + std::to_string(from.memory_words));
+  require(from.writes_percent <= 100, "writes_percent", from.writes_percent, "0..100");
   std::mt19937_64 random(from.seed);
   std::vector<TrafficAccess> accesses;
   for (std::size_t number = 0; number < from.count; ++number) {
     TrafficAccess access;
     access.words = 1 + draw(random, from.most_words - 1);
     access.address = from.first + 4 * draw(random, from.memory_words - access.words);
-    access.write = draw(random, 99) < static_cast<std::uint64_t>(from.writes_percent);
+    access.write = draw(random, 99) < from.writes_percent;
     const std::uint64_t pause = draw(random, from.longest_pause.value());
     if (draw(random, 1) == 1) access.pause = sc_core::sc_time::from_value(pause);
     accesses.push_back(access);
@@ -115,8 +124,7 @@ void TrafficInitiator::run() {
 
 TestHost::Answer TrafficInitiator::make(const TrafficAccess& access) {
   std::vector<std::uint32_t> words(access.words);
-  std::minstd_rand random(static_cast<std::uint32_t>(access.address + sc_core::sc_time_stamp().value()));
-  for (std::uint32_t& word : words) word = static_cast<std::uint32_t>(random());
+  for (std::uint32_t& word : words) word = static_cast<std::uint32_t>(random_());
   if (style_ == Style::kNonBlocking) {
     return host_.access(access.write ? tlm::TLM_WRITE_COMMAND : tlm::TLM_READ_COMMAND, access.address,
                         std::move(words));

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <istream>
+#include <random>
 #include <systemc>
 #include <vector>
 
@@ -17,7 +18,8 @@ struct TrafficAccess {
   std::size_t words = 1;
 };
 
-// Accesses of `words` words each to addresses that follow each other: `first`, first + stride, ..
+// Accesses of `words` words each to addresses that follow each other: `first`, first + stride, .. Throws
+// std::invalid_argument if a number is out of range.
 std::vector<TrafficAccess> strided_traffic(std::uint64_t first, std::uint64_t stride, std::size_t count,
                                            bool write, std::size_t words = 1);
 
@@ -28,10 +30,10 @@ struct RandomTraffic {
   std::uint64_t first = 0;         // address
   std::uint64_t memory_words = 0;  // behind `first`; at least most_words
   std::size_t most_words = 1;      // of an access
-  int writes_percent = 50;
+  unsigned writes_percent = 50;
   sc_core::sc_time longest_pause;  // half of the accesses have no pause
 };
-// Throws std::invalid_argument unless the accesses have a place.
+// Throws std::invalid_argument if a number is out of range, such as accesses without a place.
 std::vector<TrafficAccess> random_traffic(const RandomTraffic& from);
 
 // A recorded trace: lines `pause in ns,read or write,address,words`, and a first line with these names:
@@ -59,6 +61,7 @@ class TrafficInitiator : public sc_core::sc_module {
   TestHost host_{"host"};
   std::vector<TrafficAccess> accesses_;
   Style style_;
+  std::mt19937_64 random_;  // of the words that are written
   bool is_done_ = false;
   sc_core::sc_time end_;
 };

@@ -58,10 +58,12 @@ _stereotlm() {{
 {cases}
   esac
   if [[ $before == --set ]]; then
-    compopt -o nospace
+    compopt +o filenames -o nospace
     mapfile -t COMPREPLY < <(compgen -S = -W {quoted(' '.join(keys))} -- "$word")
   elif [[ $word == -* ]]; then
     mapfile -t COMPREPLY < <(compgen -W "$options" -- "$word")
+  elif [[ $before == --show ]]; then
+    mapfile -t COMPREPLY < <(compgen -W {quoted(' '.join(presets))} -- "$word")
   elif ((COMP_CWORD == 2)); then
     mapfile -t COMPREPLY < <(compgen -W {quoted(' '.join(presets))} -- "$word"; compgen -f -- "$word")
   else
@@ -80,7 +82,8 @@ def zsh(commands, presets, keys):
     cases = []
     for name, (_, options) in commands.items():
         words = [quoted(f"*{option}[{text(description)}]" + (
-            ":key:_stereotlm_keys" if option == "--set" else ":value:_files" if value else ""))
+            ":key:_stereotlm_keys" if option == "--set" else
+            ":preset:_stereotlm_boards" if option == "--show" else ":value:_files" if value else ""))
             for option, (value, description) in options.items()]
         cases.append(f"    {name}) _arguments -s {' '.join(words)} '*:board or file:_stereotlm_boards' ;;")
     newline = "\n"

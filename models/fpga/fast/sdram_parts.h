@@ -41,7 +41,8 @@ struct SdramPart {
 };
 
 // The row of the sdram from which those of a part are counted at a column of the matcher: the row that holds
-// the first row of the strip, or one before it, in internal bank 0.
+// the first row of the strip, or one before it, in internal bank 0. Before the first results it is that of
+// strip 0 for them.
 std::int64_t origin_row(const FrameGeometry& geometry, const SdramPart& part, std::uint64_t column);
 
 // Those of the buffers of a frame. `timings`: [bank], null for any other kind.

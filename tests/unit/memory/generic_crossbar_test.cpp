@@ -87,6 +87,7 @@ TEST(GenericCrossbar, GivesAnAccessTheCyclesOfItsWords) {
     EXPECT_EQ(answer.at, sc_time(75, SC_NS));
     sc_core::wait(answer.at - sc_core::sc_time_stamp());
     answer = host.write_words(crossbar_address(1, 8), {6, 7});
+    EXPECT_EQ(bench.crossbar.stats(1).idle_cycles(), 5U - 3U);  // of the cycles up to the present one
     EXPECT_EQ(answer.at, sc_time(125, SC_NS));
     sc_core::wait(answer.at - sc_core::sc_time_stamp());
     // Read in the cycles 5 to 7; the last word is usable a cycle later.
@@ -375,8 +376,12 @@ TEST_P(RandomTraffic, IsGrantedAsInThePlainLoop) {
   std::sort(found.begin(), found.end(), in_order);
   for (std::size_t grant = 0; grant < found.size(); ++grant) ASSERT_EQ(found[grant], sorted[grant]);
   std::uint64_t counted = 0;
-  for (std::size_t bank = 0; bank < traffic.config.banks.size(); ++bank)
-    counted += bench.crossbar.stats(bank).reads() + bench.crossbar.stats(bank).writes();
+  for (std::size_t bank = 0; bank < traffic.config.banks.size(); ++bank) {
+    const ArbiterStats stats = bench.crossbar.stats(bank);
+    counted += stats.reads() + stats.writes();
+    EXPECT_EQ(stats.busy_cycles() + stats.turnaround_cycles() + stats.idle_cycles(),
+              1'000'000'000 / kCyclePs);
+  }
   EXPECT_EQ(counted, found.size());
   // Each other port is granted at most once before a word that waits.
   if (traffic.config.arbiter.policy == "round_robin") {

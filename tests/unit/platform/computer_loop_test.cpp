@@ -306,7 +306,8 @@ std::string figures_of(LoopProcessor& processor) {
                   counters.local_bus.bursts, counters.local_bus.busy_clocks, counters.bridge.dma_words,
                   fmt::join(counters.words.into_bridge, " "), fmt::join(counters.words.granted, " "));
   for (const BoardCounters::Bank& bank : counters.board.banks)
-    text += fmt::format("{} {} {}\n", bank.accesses, bank.arbiter.reads(), bank.arbiter.writes());
+    text += fmt::format("{} {}\n", bank.accesses, fmt::join(bank.arbiter.counts(), " "));
+  text += fmt::format("{}\n", fmt::join(processor.loop().board().frames().frame_cycles(), " "));
   for (const pci::PciBusControl::MasterStats& master : counters.pci.masters)
     text +=
         fmt::format("{} {} {} {}\n", master.transactions, master.words, master.wait_clocks, master.retries);

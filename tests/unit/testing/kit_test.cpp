@@ -18,6 +18,7 @@
 #include "models/testing/scoreboard.h"
 #include "models/testing/test_host.h"
 #include "models/testing/traffic.h"
+#include "tests/support/scripted_ends.h"
 
 namespace stereotlm::test {
 namespace {
@@ -93,6 +94,32 @@ TEST(Scoreboard, FindsAByteThatAMemoryForgets) {
   EXPECT_EQ(board.compared(), 8U);
 }
 
+// A target that returns its response at once, as the protocol allows.
+TEST(TestHost, EndsAResponseThatComesWithTheReturn) {
+  TestHost host("host");
+  MonitoringBinder binder;
+  ScriptedTarget target("target");
+  binder.bind(host.socket, target.socket, "link");
+  int ended = 0;
+  target.on_forward = [&](tlm::tlm_generic_payload& payload, tlm::tlm_phase& phase, sc_time& delay) {
+    if (phase == tlm::END_RESP) {
+      ++ended;
+      return tlm::TLM_ACCEPTED;
+    }
+    phase = tlm::BEGIN_RESP;
+    delay = sc_time(7, SC_NS);
+    payload.set_response_status(tlm::TLM_OK_RESPONSE);
+    return tlm::TLM_UPDATED;
+  };
+  sc_core::sc_spawn([&] {
+    EXPECT_EQ(host.access(tlm::TLM_READ_COMMAND, 0).at, sc_time(7, SC_NS));
+    EXPECT_EQ(host.access(tlm::TLM_READ_COMMAND, 4).status, tlm::TLM_OK_RESPONSE);
+  });
+  sc_core::sc_start();
+  EXPECT_EQ(host.answers.size(), 2U);
+  EXPECT_EQ(ended, 2);
+}
+
 TEST(AccessProbe, KeepsTimesWordsAndResponses) {
   TestHost host("host");
   AccessProbe probe("probe");
@@ -139,7 +166,7 @@ TEST(GrantCheck, TellsInWhichCycleAWordWasRequestedAndGranted) {
   EXPECT_EQ(of_second.problem(0, 0, 4),
             "requested in cycle 0, granted in cycle 3: must be granted in cycle 4");
   EXPECT_EQ(of_second.problem(0, 1, 4),
-            "requested in cycle 4, granted in cycle 4: no request in cycle 3 that was refused");
+            "requested in cycle 4, granted in cycle 4: it was refused in no cycle");
   EXPECT_EQ(of_first.granted_at_once(0, 1, 2),
             "requested in cycle 1, granted in cycle 1: must be both in cycle 2");
   EXPECT_EQ(of_first.problem(1, 0, 2), "access 1, word 0: at_first has seen none");
@@ -172,9 +199,14 @@ TEST(Traffic, OfABrokenTraceIsRefusedWithItsLine) {
   EXPECT_EQ(problem("0,read,0x1g,1"), "line 2: address = 0x1g: must be a whole number");
   EXPECT_EQ(problem("0,read,6,1"), "line 2: address = 6: must be a multiple of 4");
   EXPECT_EQ(problem("0,read,0,0"), "line 2: words = 0: must be 1 or more");
+  EXPECT_EQ(problem("0,read, -4,1"), "line 2: address =  -4: must be a whole number");
+  EXPECT_EQ(problem("0,read,010,1"), "line 2: address = 010: must be a multiple of 4");  // ten
+  EXPECT_EQ(problem("0,read,8,1\r"), "");
   std::istringstream empty;
   EXPECT_THROW(traffic_of_csv(empty), std::invalid_argument);
   EXPECT_THROW(random_traffic({}), std::invalid_argument);
+  EXPECT_THROW(strided_traffic(2, 4, 1, false), std::invalid_argument);
+  EXPECT_THROW(strided_traffic(0, 4, 1, false, 0), std::invalid_argument);
 }
 
 TEST(Traffic, FailsTheTestWithAnAccessThatIsRefused) {

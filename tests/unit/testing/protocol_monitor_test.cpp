@@ -330,6 +330,36 @@ const std::vector<Mistake> kMistakes = {
        l.payload.set_gp_option(tlm::TLM_FULL_PAYLOAD_ACCEPTED);
        l.debug(0);
      }},
+    {"transport_dbg: time passed",
+     [](Link& l) {
+       l.target.on_debug = [](Payload&) {
+         sc_core::wait(sc_core::SC_ZERO_TIME);
+         return 8U;
+       };
+       l.simulate([&l] { l.initiator.socket->transport_dbg(l.payload); });
+     }},
+    {"get_direct_mem_ptr: time passed",
+     [](Link& l) {
+       l.simulate([&l] { l.request_dmi([](auto&) { sc_core::wait(sc_core::SC_ZERO_TIME); }); });
+     }},
+    {"get_direct_mem_ptr: gp_option = 2",
+     [](Link& l) {
+       l.payload.set_gp_option(tlm::TLM_FULL_PAYLOAD_ACCEPTED);
+       l.request_dmi([](auto&) {});
+     }},
+    {"nb_transport_fw: the transaction is already in progress",
+     [](Link& l) {
+       l.target.on_blocking = [&l](Payload& received, sc_time&) {
+         l.forward(BEGIN_REQ);
+         received.set_response_status(tlm::TLM_OK_RESPONSE);
+       };
+       l.transport();
+     }},
+    {"nb_transport_fw: reference count = 0",
+     [](Link& l) {
+       l.payload.release();
+       l.forward(BEGIN_REQ);
+     }},
     {"get_direct_mem_ptr: command = 2: must be read or write in a DMI request",
      [](Link& l) {
        l.payload.set_command(tlm::TLM_IGNORE_COMMAND);
