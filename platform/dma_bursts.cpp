@@ -14,8 +14,8 @@ namespace {
 // Each time is rounded to whole ps. So the ends of the two bursts of a step may come closer by this number of
 // ps than those of another step.
 constexpr std::uint64_t kRounding = 4;
-// Bursts that are skipped at once where the core needs each of them. Short series come again in the same state
-// of the core.
+// Bursts that are skipped at once where the core needs each of them. Short series come again in the same
+// state of the core.
 constexpr std::uint64_t kMostInSeries = 16;
 
 }  // namespace

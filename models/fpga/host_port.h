@@ -87,8 +87,8 @@ class HostPort {
     std::uint64_t first_cycle;
     std::uint64_t words;
   };
-  // Counts skipped bursts, which must be in the order of their times; those to a bank have one direction. If the running frame uses their banks,
-  // runs it through the bursts. It cannot end before the last of them.
+  // Counts skipped bursts, which must be in the order of their times. Those to a bank have one direction. If
+  // the running frame uses their banks, runs it through the bursts. It cannot end before the last of them.
   void skip_bursts(const std::vector<SkippedBurst>& bursts);
 
   // Finishes the frame, after the cycle in which its last write was granted. Words served before the frame's

@@ -26,8 +26,8 @@ namespace stereotlm::memory {
 // An access has any number of words in one bank, at the addresses of crossbar_address(). Its first word
 // requests from the first cycle on that begins at or after the time of the access. Each further word requests
 // from the cycle after the grant of the word before. The arbiters decide about a cycle after everything else
-// that happens at its beginning. A word that is granted accesses the bank in its cycle, by b_transport; a bank
-// must not wait there. With a bank of separate ports the read of a cycle comes before its write.
+// that happens at its beginning. A word that is granted accesses the bank in its cycle, by b_transport; a
+// bank must not wait there. With a bank of separate ports the read of a cycle comes before its write.
 //
 // b_transport waits for the grant of the last word. It returns in the cycle of this grant, with the rest of
 // the access as `delay`: of a read up to the time at which its last word is usable, of a write up to the end

@@ -42,8 +42,8 @@ class TestHost : public sc_core::sc_module, public tlm::tlm_bw_transport_if<> {
     return block(tlm::TLM_WRITE_COMMAND, address, std::move(words), {});
   }
 
-  // Words by nb_transport, from now + delay on. Does not wait. Returns the target's return value. If the target
-  // returns the response at once, it is recorded and, unless `ending` is kAccepted, ended.
+  // Words by nb_transport, from now + delay on. Does not wait. Returns the target's return value. If the
+  // target returns the response at once, it is recorded and, unless `ending` is kAccepted, ended.
   tlm::tlm_sync_enum request(tlm::tlm_command command, std::uint64_t address, std::uint32_t word = 0,
                              const sc_core::sc_time& delay = {}) {
     return request(command, address, std::vector<std::uint32_t>{word}, delay);

@@ -18,8 +18,8 @@ constexpr unsigned kPartBit = 32;
 
 std::int64_t origin_row(const FrameGeometry& geometry, const SdramPart& part, std::uint64_t column) {
   const bool of_results = part.group == kResultGroup;
-  // Before the first results the number of the strip is negative, and grows with each strip. FrameAreas begins
-  // no area there, so the origin must not move.
+  // Before the first results the number of the strip is negative, and grows with each strip. FrameAreas
+  // begins no area there, so the origin must not move.
   const std::int64_t row = of_results ? std::max<std::int64_t>(0, geometry.first_row_at(true, column))
                                       : geometry.first_row_at(false, column);
   return floor_divide(part.word_of(row), part.turn()) * part.internal_banks;
