@@ -4,28 +4,25 @@ namespace stereotlm::test {
 
 tlm::tlm_sync_enum TestHost::request(tlm::tlm_command command, std::uint64_t address,
                                      std::vector<std::uint32_t> words, sc_core::sc_time delay) {
-  auto* const transaction = new Transaction(command, address, std::move(words));  // Manager deletes it
-  transaction->set_mm(&manager_);
-  transaction->acquire();
+  Transaction& transaction = transactions_.emplace_back(command, address, std::move(words));
+  transaction.set_mm(&manager_);
+  transaction.acquire();
   tlm::tlm_phase phase = tlm::BEGIN_REQ;
-  const tlm::tlm_sync_enum status = socket->nb_transport_fw(*transaction, phase, delay);
-  if (status == tlm::TLM_COMPLETED) {
-    record(*transaction, delay);
-    transaction->release();
-  } else if (status == tlm::TLM_UPDATED && phase == tlm::BEGIN_RESP) {
-    record(*transaction, delay);
-    last_ = transaction;
-    if (ending != Ending::kAccepted) end_response();
-  }
+  const tlm::tlm_sync_enum status = socket->nb_transport_fw(transaction, phase, delay);
+  const bool has_response =
+      status == tlm::TLM_COMPLETED || (status == tlm::TLM_UPDATED && phase == tlm::BEGIN_RESP);
+  if (has_response) record(transaction, delay);
+  if (has_response && status == tlm::TLM_UPDATED && ending != Ending::kAccepted) end_response();
   return status;
 }
 
 tlm::tlm_sync_enum TestHost::end_response() {
   tlm::tlm_phase phase = tlm::END_RESP;
-  sc_core::sc_time delay = answers.back().at - sc_core::sc_time_stamp();
-  const auto status = socket->nb_transport_fw(*last_, phase, delay);
-  last_->release();
-  last_ = nullptr;
+  sc_core::sc_time delay =
+      answers.empty() ? sc_core::sc_time() : answers.back().at - sc_core::sc_time_stamp();
+  Transaction& transaction = transactions_.back();
+  const auto status = socket->nb_transport_fw(transaction, phase, delay);
+  transaction.release();
   return status;
 }
 
@@ -40,10 +37,7 @@ tlm::tlm_sync_enum TestHost::nb_transport_bw(tlm::tlm_generic_payload& payload, 
   if (phase != tlm::BEGIN_RESP) return tlm::TLM_ACCEPTED;
   record(payload, delay);
   answered_.notify(delay);
-  if (ending == Ending::kAccepted) {
-    last_ = static_cast<Transaction*>(&payload);
-    return tlm::TLM_ACCEPTED;
-  }
+  if (ending == Ending::kAccepted) return tlm::TLM_ACCEPTED;
   payload.release();
   if (ending == Ending::kCompleted) return tlm::TLM_COMPLETED;
   phase = tlm::END_RESP;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <systemc>
 #include <tlm>
 #include <utility>
@@ -100,9 +101,9 @@ class TestHost : public sc_core::sc_module, public tlm::tlm_bw_transport_if<> {
     }
     std::vector<std::uint32_t> words;
   };
-  // Deletes a transaction of nb_transport once nobody needs it.
+  // Transactions of nb_transport live as long as the host: a test may use them after their end.
   class Manager : public tlm::tlm_mm_interface {
-    void free(tlm::tlm_generic_payload* payload) override { delete static_cast<Transaction*>(payload); }
+    void free(tlm::tlm_generic_payload* /*payload*/) override {}
   };
 
   Answer block(tlm::tlm_command command, std::uint64_t address, std::uint32_t word,
@@ -131,7 +132,7 @@ class TestHost : public sc_core::sc_module, public tlm::tlm_bw_transport_if<> {
   }
 
   Manager manager_;
-  Transaction* last_ = nullptr;  // whose response waits for end_response()
+  std::deque<Transaction> transactions_;
   sc_core::sc_event answered_{"answered"};
 };
 
