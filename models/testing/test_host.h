@@ -62,6 +62,8 @@ class TestHost : public sc_core::sc_module, public tlm::tlm_bw_transport_if<> {
     const std::size_t answered = answers.size();
     request(command, address, std::move(words));
     if (answers.size() == answered) sc_core::wait(answered_);
+    if (answers.back().at > sc_core::sc_time_stamp())
+      sc_core::wait(answers.back().at - sc_core::sc_time_stamp());
     return answers.back();
   }
 
