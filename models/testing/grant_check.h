@@ -8,9 +8,9 @@
 
 namespace stereotlm::test {
 
-// Checks in which cycles a crossbar has granted the words of an access: "granted in cycle n, and not in n -
-// 1". It compares a probe in front of a port with one in front of a bank. No other
-// port may access the same words in the same direction between request and response.
+// Checks in which cycle a crossbar has granted a word: in this one, and not in the one before. It compares a
+// probe in front of a port with one in front of a bank. Between request and response no other port may access
+// the same words in the same direction.
 class GrantCheck {
  public:
   // `bank_base`: what the crossbar adds to the addresses of the bank. All arguments outlive the check.
@@ -18,8 +18,8 @@ class GrantCheck {
       : clock_(clock), port_(port), bank_(bank), bank_base_(bank_base) {}
 
   // Empty if word number `word` of access number `access` of the port was granted in cycle `cycle`, and was
-  // refused in the cycle before. The latter needs a request in that cycle. Without one the text says that the
-  // check proves nothing; where the first request itself is granted, granted_at_once() is the check.
+  // refused in the cycle before. Else what is wrong. A word that was granted at its first request was never
+  // refused: granted_at_once() checks it.
   std::string problem(std::size_t access, std::size_t word, std::uint64_t cycle) const {
     const Times times = times_of(access, word);
     if (!times.problem.empty()) return times.problem;

@@ -51,8 +51,8 @@ class TestHost : public sc_core::sc_module, public tlm::tlm_bw_transport_if<> {
   }
   tlm::tlm_sync_enum request(tlm::tlm_command command, std::uint64_t address,
                              std::vector<std::uint32_t> words, sc_core::sc_time delay = {});
-  // Sends END_RESP for the last response, timed at that response, and returns what the target returns. To be
-  // called only if `ending` was kAccepted.
+  // Sends END_RESP for the last response, timed at that response, and returns what the target returns. For a
+  // test whose `ending` is kAccepted.
   tlm::tlm_sync_enum end_response();
   // In a thread process: request(), and waits until the answer's time.
   Answer access(tlm::tlm_command command, std::uint64_t address, std::uint32_t word = 0) {

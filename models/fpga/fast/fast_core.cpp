@@ -76,6 +76,7 @@ std::uint64_t FastCore::advance(std::uint64_t now_ps) {
     if (frames_.is_finishing()) {
       const std::uint64_t end_ps = clock_.edge_ps(frames_.done_cycle());
       if (end_ps > now_ps) return end_ps;
+      if (end_ps < now_ps) fail("the end of the frame was noticed too late");
       end_frame();
       continue;
     }
