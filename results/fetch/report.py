@@ -102,8 +102,8 @@ In the whole computer with three input buffers (`fpl2003-triple`), 7x7, {frames}
   fewer than 100 disparities could have had the full camera rate on the same FPGA.
 
 **Limits.** The area of line buffers is counted from the structure and compared with nothing printed
-([Area](../../models/area/README.md)); a fuller FPGA may not reach its 40 MHz. Tables are the identity: what line
-buffers of *raw* pictures would need with a real rig is another matter (29 lines instead of 7, `stereotlm
+([Area](../../models/area/README.md)); a fuller FPGA may not reach its 40 MHz. Tables are the identity: what
+line buffers of *raw* pictures would need with a real rig is another matter (29 lines instead of 7, `stereotlm
 calibrate`); here rows of *rectified* pictures are kept, and the memories are still read pixel by pixel
 through the tables.
 """
