@@ -27,7 +27,7 @@ const BoardConfig& checked(const BoardConfig& board, const Tables& tables) {
 
 // Runs frames of the core without data. The tables must fit the board.
 void run_frames(fpga::FrameRun& core, const BoardConfig& board, const Tables& tables, std::uint64_t frames,
-                std::uint64_t stall_timeout_cycles) {
+                std::uint64_t stall_timeout_cycles, const KeepGoing& keep_going = {}) {
   const fpga::BufferBases buffers = buffer_bases(board);
   const fpga::AccessPattern pattern(core.control().geometry(), board.fpga.pixel_cache);
   fpga::AccessPatterns patterns{pattern, pattern};
@@ -44,6 +44,7 @@ void run_frames(fpga::FrameRun& core, const BoardConfig& board, const Tables& ta
     }
     core.finish();
     core.end();
+    if (keep_going && !keep_going(frame + 1, core.cycle())) return;
   }
 }
 
@@ -69,12 +70,12 @@ PreloadedSystem::PreloadedSystem(const sc_core::sc_module_name& name, const Boar
 }
 
 Statistics run_core(const BoardConfig& board, const Tables& tables, std::uint64_t frames,
-                    std::uint64_t stall_timeout_cycles) {
+                    const KeepGoing& keep_going, std::uint64_t stall_timeout_cycles) {
   if (frames == 0) throw std::invalid_argument("frames = 0: must be 1 or more");
   check_tables(board, tables);
   memory::Arbitration arbitration = arbitration_of(board);
   fpga::FrameRun core(core_config(board), ssram_configs(board), arbitration, stall_timeout_cycles);
-  run_frames(core, board, tables, frames, stall_timeout_cycles);
+  run_frames(core, board, tables, frames, stall_timeout_cycles, keep_going);
   return collect_statistics(board, frame_accesses(board, tables), "fast", core.frame_cycles(),
                             counters_of(core, arbitration));
 }

@@ -25,9 +25,10 @@ std::string entry_name(const RectificationTable& table, std::size_t index) {
 RectificationTable identity_table(int width, int height) {
   RectificationTable table{width, height, {}};
   if (width > 0 && height > 0)
-    table.entries.reserve(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-  for (int row = 0; row < height; ++row) {
-    for (int column = 0; column < width; ++column) table.entries.push_back(make_entry(column, row));
+    table.entries.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  std::uint32_t* entries = table.entries.data();
+  for (int row = 0; row < height; ++row, entries += width) {
+    for (int column = 0; column < width; ++column) entries[column] = make_entry(column, row);
   }
   return table;
 }

@@ -221,7 +221,8 @@ int allocate(const AllocateOptions& options) {
                              options.keep.number<double>().value_or(kDefaultKeepPercent),
                              options.board.words_without_allocation()};
   report.is_whole = explore::simulate(search, evaluate, sweep, [&line](const explore::SearchProgress& done) {
-    line.show([&done](double seconds) { return runs::progress_text(done, seconds); });
+    line.show(done.done, done.done + done.most_left,
+              [&done](double seconds) { return runs::progress_text(done, seconds); });
     return !process::interrupted();
   });
   line.erase();
@@ -240,9 +241,9 @@ int allocate(const AllocateOptions& options) {
 
 }  // namespace
 
-void add_allocate(CLI::App& program, Action& action) {
+void add_allocate(Commands& commands) {
   add_command(
-      program, action, "allocate", "Find the best allocation of the buffers to banks, and prove it", allocate,
+      commands, "allocate", "Find the best allocation of the buffers to banks, and prove it", allocate,
       "Every different way to place the buffers in at most N banks is tried: placements that differ only\n"
       "by an exchange of banks that are alike count as one, and those that are known to be slower than\n"
       "another of as many banks are not simulated, or not to the end. For each number of banks: how many\n"

@@ -249,9 +249,9 @@ int bounds(const BoardCommandOptions& options) {
 
 }  // namespace
 
-void add_bounds(CLI::App& program, Action& action) {
+void add_bounds(Commands& commands) {
   add_command(
-      program, action, "bounds",
+      commands, "bounds",
       "Say what limits the frame rate: ports, banks, matcher, cameras, buses; and the area", bounds,
       "For each frame until the allocation's lists begin anew, equal ones together: the fewest FPGA cycles\n"
       "that a frame costs each resource alone, the frames a second that follow, and the headroom: the share\n"

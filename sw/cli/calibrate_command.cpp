@@ -575,8 +575,8 @@ int calibrate(const CalibrateOptions& options) {
 
 }  // namespace
 
-void add_calibrate(CLI::App& program, Action& action) {
-  add_command(program, action, "calibrate", "Make a board's tables from pictures of a grid, or draw the grid",
+void add_calibrate(Commands& commands) {
+  add_command(commands, "calibrate", "Make a board's tables from pictures of a grid, or draw the grid",
               calibrate,
               "Pictures in which the grid is not found whole are named and skipped, with their partners; "
               "corners that\n"

@@ -4,6 +4,8 @@
 #include <regex>
 
 #include "platform/config/board_area.h"
+#include "platform/config/board_yaml.h"
+#include "platform/yaml/yaml_tree.h"
 #include "sw/cli/command.h"
 #include "sw/cli/run_options.h"
 
@@ -19,20 +21,25 @@ std::string summary(const std::string& name, const platform::BoardConfig& board)
                      platform::device_text(board));
 }
 
-// The text of a platform::Diagnostic is `key = value: rule`, `key: missing: rule`, or a rule alone. The value
-// ends at the first colon with a blank behind it that is outside of brackets and quotes.
-Json json_of(const platform::Diagnostic& problem) {
-  static const std::regex form(
-      R"(([\w.-]+)(?:: (missing: .*)| = ((?:"[^"]*"|'[^']*'|\[[^\]]*\]|\{(?:[^{}]|\{[^{}]*\})*\}|)"
-      R"([^"'\[\]{}:]|:(?! ))*): (.*)))");
-  Json json = {{"place", problem.place}};
-  std::smatch parts;
-  const bool has_key = std::regex_match(problem.text, parts, form);
-  if (has_key) json["key"] = parts.str(1);
-  if (has_key && parts.length(3) > 0) json["value"] = parts.str(3);
-  json["rule"] = has_key ? parts.str(2) + parts.str(4) : problem.text;
-  json["message"] = problem.text;
-  return json;
+Json json_of(const platform::YamlNode& value) {
+  Json json = value.is_map() ? Json::object() : Json::array();
+  for (const platform::YamlNode& item : value.items) json.push_back(json_of(item));
+  for (const platform::YamlNode::Entry& entry : value.entries) json[entry.key.text] = json_of(entry.value);
+  if (!value.is_scalar()) return json;
+  const auto number = integer_of(value);
+  return number ? Json(*number) : Json(value.text);
+}
+
+// The values of a board by their paths; lists and maps as such.
+Json values_document(const platform::BoardConfig& board) {
+  Json values = Json::object();
+  for (const platform::BoardValue& value : platform::values_of(board)) {
+    std::visit([&](const auto& its) { values[value.path] = its; }, value.value);
+    if (const auto* const text = std::get_if<std::string>(&value.value);
+        text != nullptr && (text->front() == '[' || text->front() == '{'))
+      values[value.path] = json_of(platform::parse_flow_value(*text, platform::Place::kBoard));
+  }
+  return values;
 }
 
 // `board`: null if it has problems.
@@ -40,7 +47,8 @@ Json document_of(const std::string& name, const platform::BoardConfig* board,
                  const process::Problems& problems) {
   Json document = {{"schema", 1}, {"board", name}, {"ok", problems.empty()}};
   Json& list = document["problems"] = Json::array();
-  for (const platform::Diagnostic& problem : problems.diagnostics()) list.push_back(json_of(problem));
+  for (const platform::Diagnostic& problem : problems.diagnostics())
+    list.push_back(cli::document_of(problem));
   if (!problems.empty() || board == nullptr) return document;
   document["image"] = {{"width", board->image.width}, {"height", board->image.height}};
   document["window"] = board->matcher.window;
@@ -53,6 +61,7 @@ Json document_of(const std::string& name, const platform::BoardConfig* board,
   if (const area::Device* const smallest = area::smallest_device(area))
     document["smallest_device"] = smallest->name;
   document["pins"] = platform::pins_of(*board);
+  document["values"] = values_document(*board);
   return document;
 }
 
@@ -72,9 +81,26 @@ int check(const BoardCommandOptions& options) {
 
 }  // namespace
 
-void add_check(CLI::App& program, Action& action) {
+// The text of a platform::Diagnostic is `key = value: rule`, `key: missing: rule`, or a rule alone. The value
+// ends at the first colon with a blank behind it that is outside of brackets and quotes.
+nlohmann::ordered_json document_of(const platform::Diagnostic& problem) {
+  static const std::regex form(
+      R"(([\w.-]+)(?:: (missing: .*)| = ((?:"[^"]*"|'[^']*'|\[[^\]]*\]|\{(?:[^{}]|\{[^{}]*\})*\}|)"
+      R"([^"'\[\]{}:]|:(?! ))*): (.*)))");
+  Json json = {{"place", problem.place}};
+  std::smatch parts;
+  const bool has_key = std::regex_match(problem.text, parts, form);
+  if (has_key) json["key"] = parts.str(1);
+  if (has_key && parts.length(3) > 0) json["value"] = parts.str(3);
+  json["rule"] = has_key ? parts.str(2) + parts.str(4) : problem.text;
+  json["message"] = problem.text;
+  if (problem.is_between_keys) json["between_keys"] = true;
+  return json;
+}
+
+void add_check(Commands& commands) {
   add_command(
-      program, action, "check", "Validate a board and nothing else", check,
+      commands, "check", "Validate a board and nothing else", check,
       "With --json the problems of the board are printed as a list to standard output. The exit status\n"
       "is 2 then too.");
 }

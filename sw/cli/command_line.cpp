@@ -1,11 +1,16 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <exception>
 #include <sstream>
+#include <systemc>
 
 #include "platform/config/board_keys.h"
 #include "sw/cli/command.h"
+#include "sw/process/client.h"
 #include "sw/process/command.h"
+#include "sw/process/problems.h"
+#include "sw/process/streams.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -71,6 +76,21 @@ void check_options(const CLI::App& program) {
 
 }  // namespace
 
+int execute(int argc, const char* const* argv) {
+  try {
+    return parse_command_line(argc, argv)();
+  } catch (const process::Refused& refused) {
+    for (const std::string& line : refused.lines()) process::say_line(line);
+    if (process::client != nullptr) process::client->refuse(refused.problems());
+    return kRefused;
+  } catch (const sc_core::sc_report& report) {
+    process::say("error", fmt::format("the model stopped: {}: {}", report.get_msg_type(), report.get_msg()));
+  } catch (const std::exception& error) {
+    process::say("error", error.what());
+  }
+  return kFailed;
+}
+
 Action parse_command_line(int argc, const char* const* argv) {
   CLI::App program(
       "A SystemC/TLM-2.0 model of the stereo vision board of Miyajima and Maruyama (FPL 2003): runs stereo\n"
@@ -83,11 +103,11 @@ Action parse_command_line(int argc, const char* const* argv) {
   program.footer(
       "Exit status: 0 done; 1 failed after the first simulated cycle; 2 refused before it; 130\n"
       "interrupted.");
-  Action action;
-  for (const auto add :
-       {add_run, add_check, add_boards, add_keys, add_bounds, add_explain, add_calibrate, add_sweep,
-        add_merge, add_allocate, add_plot, add_conflicts, add_diff, add_diagram, add_report, add_paper})
-    add(program, action);
+  Commands commands = {program, argc > 1 ? argv[1] : "", {}};
+  for (const auto add : {add_run, add_check, add_boards, add_keys, add_bounds, add_explain, add_calibrate,
+                         add_sweep, add_merge, add_allocate, add_plot, add_conflicts, add_diff, add_diagram,
+                         add_report, add_paper, add_worker})
+    add(commands);
   for (CLI::App* command : program.get_subcommands({})) command->group("Commands");
   check_first_argument(program, argc, argv);
   try {
@@ -103,7 +123,7 @@ Action parse_command_line(int argc, const char* const* argv) {
     check_options(program);
     process::refuse(fmt::format("{} (see {})", error.what(), help_of(program)));
   }
-  return action;
+  return commands.action;
 }
 
 }  // namespace stereotlm::cli

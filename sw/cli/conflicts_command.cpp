@@ -132,7 +132,7 @@ bool simulate(runs::Simulation& simulation, const runs::RunInput& input, files::
   while (!simulation.finished()) {
     if (process::interrupted()) return false;
     simulation.advance();
-    progress.show([&](double) {
+    progress.show(simulation.frames_done(), simulation.frames(), [&](double) {
       return fmt::format("{}/{} frames simulated", simulation.frames_done(), simulation.frames());
     });
     simulation.take_timeline();
@@ -206,8 +206,8 @@ int conflicts(const ConflictsOptions& options) {
 
 }  // namespace
 
-void add_conflicts(CLI::App& program, Action& action) {
-  add_command(program, action, "conflicts", "Where in the picture, and when, ports wait for banks", conflicts,
+void add_conflicts(Commands& commands) {
+  add_command(commands, "conflicts", "Where in the picture, and when, ports wait for banks", conflicts,
               kConflictsFooter);
 }
 

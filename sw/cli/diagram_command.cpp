@@ -70,9 +70,9 @@ int diagram(const DiagramOptions& options) {
 
 }  // namespace
 
-void add_diagram(CLI::App& program, Action& action) {
-  add_command(program, action, "diagram", "Draw the block diagram of a board, or of a run with its traffic",
-              diagram, kDiagramFooter);
+void add_diagram(Commands& commands) {
+  add_command(commands, "diagram", "Draw the block diagram of a board, or of a run with its traffic", diagram,
+              kDiagramFooter);
 }
 
 }  // namespace stereotlm::cli

@@ -137,8 +137,8 @@ int diff(const DiffOptions& options) {
 
 }  // namespace
 
-void add_diff(CLI::App& program, Action& action) {
-  add_command(program, action, "diff", "Compare two runs, frame by frame and row by row", diff, kDiffFooter);
+void add_diff(Commands& commands) {
+  add_command(commands, "diff", "Compare two runs, frame by frame and row by row", diff, kDiffFooter);
 }
 
 }  // namespace stereotlm::cli

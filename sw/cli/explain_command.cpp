@@ -249,10 +249,9 @@ int explain(const ExplainOptions& options) {
 
 }  // namespace
 
-void add_explain(CLI::App& program, Action& action) {
+void add_explain(Commands& commands) {
   add_command(
-      program, action, "explain", "Say what limits a board, and what each single change gains or costs",
-      explain,
+      commands, "explain", "Say what limits a board, and what each single change gains or costs", explain,
       "The board is simulated, and then once more for each change: one key one step up or down, such as a\n"
       "cycle, a MHz, a place in a queue, a word of a burst, a buffer or a bank. The changes are sorted by\n"
       "their frame rate. FPGA % (of the slices) and RAMs are what a change takes of the FPGA, or frees. A\n"

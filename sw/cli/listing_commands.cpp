@@ -103,12 +103,12 @@ int print_keys(const KeysOptions& options) {
 
 }  // namespace
 
-void add_boards(CLI::App& program, Action& action) {
-  add_command(program, action, "boards", "List the preset boards, or show one", print_boards);
+void add_boards(Commands& commands) {
+  add_command(commands, "boards", "List the preset boards, or show one", print_boards);
 }
 
-void add_keys(CLI::App& program, Action& action) {
-  add_command(program, action, "keys", "List every key of a board file with its meaning, unit and range",
+void add_keys(Commands& commands) {
+  add_command(commands, "keys", "List every key of a board file with its meaning, unit and range",
               print_keys);
 }
 

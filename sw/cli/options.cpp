@@ -83,7 +83,8 @@ CLI::App& add_command(CLI::App& program, const std::string& name, const std::str
                       const std::string& footer) {
   CLI::App* command = program.add_subcommand(name, description);
   command->footer(footer);
-  command->add_flag_callback("--quiet", process::leave_out_notes, "Leave out notes and progress");
+  command->add_flag_callback(
+      "--quiet", [] { process::leave_out_notes(true); }, "Leave out notes and progress");
   return *command;
 }
 

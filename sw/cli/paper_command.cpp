@@ -123,8 +123,9 @@ std::optional<paper::Findings> study(const std::optional<LoadedPair>& given) {
                            : quality(board, given.value().pictures);
   };
   means.keep_going = [&progress](std::uint64_t done, std::uint64_t most_left) {
-    progress.show(
-        [&](double) { return fmt::format("{} boards simulated, {} left at most", done, most_left); });
+    progress.show(done, done + most_left, [&](double) {
+      return fmt::format("{} boards simulated, {} left at most", done, most_left);
+    });
     return !process::interrupted();
   };
   const auto claims = paper::claims(given ? std::optional(given->files) : std::nullopt);
@@ -177,8 +178,8 @@ int compare_with_paper(const PaperOptions& options) {
 
 }  // namespace
 
-void add_paper(CLI::App& program, Action& action) {
-  add_command(program, action, "paper", "Compare the paper's figures with the model's", compare_with_paper,
+void add_paper(Commands& commands) {
+  add_command(commands, "paper", "Compare the paper's figures with the model's", compare_with_paper,
               kPaperFooter);
 }
 

@@ -121,8 +121,8 @@ int plot(const PlotOptions& options) {
 
 }  // namespace
 
-void add_plot(CLI::App& program, Action& action) {
-  add_command(program, action, "plot", "Draw the figures of a sweep", plot, kPlotFooter);
+void add_plot(Commands& commands) {
+  add_command(commands, "plot", "Draw the figures of a sweep", plot, kPlotFooter);
 }
 
 }  // namespace stereotlm::cli

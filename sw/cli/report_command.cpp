@@ -128,9 +128,9 @@ int report(const ReportOptions& options) {
 
 }  // namespace
 
-void add_report(CLI::App& program, Action& action) {
-  add_command(program, action, "report", "Write a page that shows a run, a database, or two runs compared",
-              report, kReportFooter);
+void add_report(Commands& commands) {
+  add_command(commands, "report", "Write a page that shows a run, a database, or two runs compared", report,
+              kReportFooter);
 }
 
 }  // namespace stereotlm::cli

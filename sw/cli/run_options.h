@@ -9,6 +9,7 @@
 #include "platform/config/board_config.h"
 #include "platform/config/tables.h"
 #include "sw/cli/options.h"
+#include "sw/process/client.h"
 #include "sw/process/problems.h"
 #include "sw/runs/run_input.h"
 #include "sw/runs/simulation/simulate_point.h"
@@ -181,7 +182,7 @@ struct RunOptions {
       Option(more, "--save-frames", "",
              "Write the disparities of every frame too: frames/000000.png and so on in the folder of --out, "
              "numbered by camera frame",
-             {goes_with(out, "DIR")});
+             {process::client == nullptr ? goes_with(out, "DIR") : no_rule()});  // a client gets the frames
   Option record = Option(
       more, "--record,--conflicts", "",
       "Write where and when ports wait: rows.csv and conflicts.csv in the folder of --out; with cameras "

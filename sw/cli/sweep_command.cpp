@@ -304,7 +304,8 @@ explore::SweepCounts sweep_here(const SweepCommandOptions& options, const explor
   runs::ProgressLine progress;
   auto next_write = std::chrono::steady_clock::now() + kBetweenCounts;
   const auto show = [&](const explore::SweepCounts& done) {
-    progress.show([&done](double seconds) { return runs::progress_text(done, 0, seconds); });
+    progress.show(done.done(), done.total,
+                  [&done](double seconds) { return runs::progress_text(done, 0, seconds); });
     if (std::chrono::steady_clock::now() >= next_write) {
       write_progress(done, options);
       next_write = std::chrono::steady_clock::now() + kBetweenCounts;
@@ -376,7 +377,8 @@ explore::SweepCounts sweep_on_slurm(const SweepCommandOptions& options, const ex
   std::optional<std::uint64_t> before;
   return sweep.wait([&](const explore::SlurmProgress& now) {
     if (!before) before = now.counts.done();
-    progress.show([&](double seconds) { return line_of(now, *before, seconds); });
+    progress.show(now.counts.done(), now.counts.total,
+                  [&](double seconds) { return line_of(now, *before, seconds); });
     return !process::interrupted();
   });
 }
@@ -394,15 +396,15 @@ int sweep(const SweepCommandOptions& options) {
 
 }  // namespace
 
-void add_merge(CLI::App& program, Action& action) {
+void add_merge(Commands& commands) {
   add_command(
-      program, action, "merge", "Put the points of several databases of sweep into one", merge,
+      commands, "merge", "Put the points of several databases of sweep into one", merge,
       "The bytes of OUT depend on nothing but the points: neither on the number of databases nor on their\n"
       "order. OUT may be one of them. Databases that hold different results of one point are an error.");
 }
 
-void add_sweep(CLI::App& program, Action& action) {
-  add_command(program, action, "sweep", "Simulate all points of a plan, and keep their figures", sweep,
+void add_sweep(Commands& commands) {
+  add_command(commands, "sweep", "Simulate all points of a plan, and keep their figures", sweep,
               kSweepFooter);
 }
 

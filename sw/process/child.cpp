@@ -16,6 +16,8 @@
 #include <new>
 #include <system_error>
 
+#include "sw/process/client.h"
+
 namespace stereotlm::process {
 namespace {
 
@@ -121,6 +123,7 @@ Child::Child(const std::function<void(const Tell& tell)>& work) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(1);  // the parent ended before prctl()
   messages_.close_read_end();
+  client = nullptr;  // only the parent may write to it
   _exit(run_child(work, messages_.write_end()));
 }
 

@@ -13,12 +13,15 @@ namespace stereotlm::process {
 // Thrown to refuse a command before it has done anything (exit status 2). Holds the lines for standard error.
 class Refused : public std::exception {
  public:
-  explicit Refused(std::vector<std::string> lines) : lines_(std::move(lines)) {}
+  Refused(std::vector<std::string> lines, std::vector<platform::Diagnostic> problems)
+      : lines_(std::move(lines)), problems_(std::move(problems)) {}
   const std::vector<std::string>& lines() const { return lines_; }
+  const std::vector<platform::Diagnostic>& problems() const { return problems_; }
   const char* what() const noexcept override { return "the command is refused"; }
 
  private:
   std::vector<std::string> lines_;
+  std::vector<platform::Diagnostic> problems_;
 };
 
 // Collects everything that is wrong with a command, so that one message can report it all.
@@ -66,7 +69,7 @@ class Problems {
 
   // Throws Refused if there are any problems.
   void check() const {
-    if (!lines_.empty()) throw Refused(lines_);
+    if (!lines_.empty()) throw Refused(lines_, diagnostics_);
   }
 
  private:
@@ -75,7 +78,9 @@ class Problems {
 };
 
 // Refuses the command because of one problem.
-[[noreturn]] inline void refuse(const std::string& text) { throw Refused({"stereotlm: error: " + text}); }
+[[noreturn]] inline void refuse(const std::string& text) {
+  throw Refused({"stereotlm: error: " + text}, {{"command line", text}});
+}
 
 // Calls `step`, and refuses the command if it throws, with the message behind the prefix.
 template <typename Step>

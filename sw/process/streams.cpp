@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "sw/process/child.h"
+#include "sw/process/client.h"
 
 namespace stereotlm::process {
 namespace {
@@ -28,6 +29,7 @@ bool notes_left_out = false;
 }  // namespace
 
 void print(std::string_view text) {
+  if (client != nullptr) return client->print(text);
   if (!write_all(STDOUT_FILENO, text.data(), text.size()) && errno != EPIPE)
     throw std::runtime_error(std::string("standard output: ") + std::strerror(errno));
 }
@@ -45,10 +47,11 @@ void say_line(const std::string& line) {
   // The system's text does not name the limit.
   const bool is_of_limit = shown.find(std::strerror(EMFILE)) != std::string::npos;
   if (is_of_limit && shown.find("ulimit") == std::string::npos) shown += " (the limit: ulimit -n)";
+  if (client != nullptr) return client->say(shown);
   std::fprintf(stderr, "%s\n", shown.c_str());
 }
 
-void leave_out_notes() { notes_left_out = true; }
+void leave_out_notes(bool left_out) { notes_left_out = left_out; }
 bool leaves_out_notes() { return notes_left_out; }
 
 std::string coloured(int descriptor, Colour colour, const std::string& text) {
@@ -56,7 +59,9 @@ std::string coloured(int descriptor, Colour colour, const std::string& text) {
     const char* const value = std::getenv(variable);
     return std::string_view(value == nullptr ? "" : value);
   };
-  if (isatty(descriptor) == 0 || !value_of("NO_COLOR").empty() || value_of("TERM") == "dumb") return text;
+  if (client != nullptr || isatty(descriptor) == 0 || !value_of("NO_COLOR").empty() ||
+      value_of("TERM") == "dumb")
+    return text;
   return std::string("\033[") + kCodes[static_cast<std::size_t>(colour)] + "m" + text + "\033[0m";
 }
 

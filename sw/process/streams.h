@@ -6,6 +6,8 @@
 
 namespace stereotlm::process {
 
+// If the process has a client (client.h), what this file prints goes there, without colour.
+
 // Writes to standard output. A reader that has closed its end of the pipe is no error. Throws
 // std::runtime_error if the text cannot be written for another reason, such as a full disk.
 void print(std::string_view text);
@@ -16,8 +18,8 @@ void say(const std::string& kind, const std::string& text);
 // kind is coloured, and a note is left out after leave_out_notes().
 void say_line(const std::string& line);
 
-// From then on, say() leaves out notes, and no progress is shown. Children of the process inherit this.
-void leave_out_notes();
+// Whether say() leaves out notes, and no progress is shown, from then on. Children of the process inherit this.
+void leave_out_notes(bool left_out);
 bool leaves_out_notes();
 
 enum class Colour { kRed, kGreen, kYellow, kDim };

@@ -281,7 +281,8 @@ bool Explanation::simulate(PointSimulator simulator) {
   const bool is_whole = batch_.run(
       points_, [&simulator](const explore::Point& point) { return simulator(point); },
       [&](const explore::SweepCounts& done) {
-        progress.show([&](double) { return fmt::format("{}/{} boards simulated", done.done(), done.total); });
+        progress.show(done.done(), done.total,
+                      [&](double) { return fmt::format("{}/{} boards simulated", done.done(), done.total); });
         return !process::interrupted();
       });
   if (!is_whole) return false;

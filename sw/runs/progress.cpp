@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "sw/process/client.h"
 #include "sw/process/streams.h"
 
 namespace stereotlm::runs {
@@ -64,16 +65,18 @@ std::string progress_text(const explore::SearchProgress& progress, double second
 }
 
 ProgressLine::ProgressLine()
-    : is_shown_(isatty(STDERR_FILENO) != 0 && !process::leaves_out_notes()),
+    : is_shown_((process::client != nullptr || isatty(STDERR_FILENO) != 0) && !process::leaves_out_notes()),
       start_(std::chrono::steady_clock::now()),
       next_(start_ + kBetweenDrawings) {}
 
-void ProgressLine::show(const std::function<std::string(double seconds)>& line) {
+void ProgressLine::show(std::uint64_t done, std::uint64_t of,
+                        const std::function<std::string(double seconds)>& line) {
   if (!is_shown_) return;
   const Time now = std::chrono::steady_clock::now();
   if (now < next_) return;
   next_ = now + kBetweenDrawings;
   std::string text = line(std::chrono::duration<double>(now - start_).count());
+  if (process::client != nullptr) return process::client->progress(done, of, text);
   text.resize(std::min(text.size(), terminal_columns() - 1));  // a wrapped line cannot be overwritten
   const std::size_t columns = text.size();
   if (columns < columns_drawn_) text.append(columns_drawn_ - columns, ' ');

@@ -31,7 +31,8 @@ std::string progress_text(const explore::SweepCounts& counts, std::uint64_t befo
 // most_left is narrowed and 8 boards were simulated.
 std::string progress_text(const explore::SearchProgress& progress, double seconds);
 
-// A progress line on standard error, if that is a terminal and notes are shown. The destructor erases it.
+// A progress line on standard error, if that is a terminal and notes are shown, or for the client of a worker.
+// The destructor erases it.
 class ProgressLine {
  public:
   ProgressLine();
@@ -40,7 +41,8 @@ class ProgressLine {
   ProgressLine& operator=(const ProgressLine&) = delete;
 
   // Redraws the text that `line` returns for the seconds since construction, at most a few times a second.
-  void show(const std::function<std::string(double seconds)>& line);
+  // `done` of `of` pieces of work are done.
+  void show(std::uint64_t done, std::uint64_t of, const std::function<std::string(double seconds)>& line);
   // Erases the line until the next show().
   void erase();
 

@@ -13,6 +13,7 @@
 #include "platform/conflicts.h"
 #include "sw/files/text_forms.h"
 #include "sw/media/encode.h"
+#include "sw/process/client.h"
 #include "sw/process/streams.h"
 #include "sw/runs/simulation/simulate_point.h"
 #include "sw/runs/sources/calibration_library.h"
@@ -40,6 +41,13 @@ void add_pictures(const RunInput& input, const Result& last, files::OutputFolder
   folder.add("depth_color.png",
              calibration_functions().encode_depth_color_png(disparity.width, disparity.height, depths));
   folder.add("depth.ply", calib::point_cloud_ply(geometry, disparity, left));
+}
+
+// Sends a picture to the client of this process.
+void send(const std::string& name, const kernels::GrayImage& image) {
+  process::client->send({name,
+                         {static_cast<std::uint64_t>(image.height), static_cast<std::uint64_t>(image.width)},
+                         std::string(image.pixels.begin(), image.pixels.end())});
 }
 
 void write_files(RunInput& input, platform::Statistics statistics, const Result& last,
@@ -107,7 +115,9 @@ files::OutputContent result_content(std::vector<files::NamedFile> inputs) {
 
 void save_frame(const RunInput& input, const Result& result) {
   if (!input.described.save_frames) return;
-  input.folder->add(frame_file_name(result.number), media::encode_png_gray(result.disparity));
+  const std::string name = frame_file_name(result.number);
+  if (input.folder) return input.folder->add(name, media::encode_png_gray(result.disparity));
+  send(name, result.disparity);
 }
 
 Records::Records(const RunInput& input, Append append) : input_(input), append_(std::move(append)) {
@@ -165,6 +175,7 @@ bool deliver(RunInput& input, const platform::Statistics& statistics, const Resu
   std::optional<stats::Accuracy> accuracy;
   if (input.truth) accuracy = stats::accuracy(last.disparity, *input.truth);
   if (input.folder) write_files(input, statistics, last, accuracy, differences);
+  if (process::client != nullptr && !input.timing_only) send("disparity", last.disparity);
   for (const std::string& identity : statistics.failed)
     process::say("error", "identity does not hold: " + identity);
   const stats::TableExtras extras = extras_of(input, statistics, last, accuracy);

@@ -18,7 +18,8 @@ std::string frame_file_name(std::uint64_t frame);
 // The folder of `run --out`: one result and nothing else. Its mark is run.json. `inputs`: see OutputContent.
 files::OutputContent result_content(std::vector<files::NamedFile> inputs = {});
 
-// With --save-frames: adds the disparities of this frame to the result folder, which deliver() commits.
+// With --save-frames: adds the disparities of this frame to the result folder, which deliver() commits, or
+// sends them to the client.
 // Throws std::runtime_error if they cannot be written.
 void save_frame(const RunInput& input, const Result& result);
 
@@ -50,7 +51,7 @@ void leave_out_verify(RunInput& input);
 // Prints a warning if captures have lost pixels. `subject`: what it begins with.
 void say_lost_pixels(const platform::Statistics& statistics, const std::string& subject = "");
 
-// Writes the result files and prints the table, or with --json the document. `last`: the result of the last
+// Writes the result files, sends the disparities to a client, and prints the table, or with --json the document. `last`: the result of the last
 // frame. `differences`: found by --verify. Prints the differences and the identities that do not hold, and
 // lists them as `failed` in stats.json. Returns true if there are no differences and all identities hold.
 // Throws std::runtime_error if the files cannot be written; an earlier result is then unchanged.

@@ -67,8 +67,9 @@ void Verification::add(const Result& result) { results_.push_back(line_of(result
 std::optional<std::string> Verification::next_of_other(ProgressLine& progress, std::size_t frames_compared) {
   do {
     if (process::interrupted()) throw Interrupted();
-    progress.show(
-        [&](double) { return fmt::format("verifying: {}/{} frames", frames_compared, results_.size()); });
+    progress.show(frames_compared, results_.size(), [&](double) {
+      return fmt::format("verifying: {}/{} frames", frames_compared, results_.size());
+    });
   } while (!other_.has_news(kPollInterval));
   return other_.next();
 }

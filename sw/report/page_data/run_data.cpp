@@ -209,7 +209,8 @@ bool add_repetition(const runs::RecordedRun& run, runs::RunInput& input, Json& d
   while (true) {
     while (!rerun.has_news(kBetweenPolls)) {
       if (process::interrupted()) return false;
-      progress.show([&](double) { return fmt::format("{}/{} frames repeated", frames, run.options.frames); });
+      progress.show(frames, run.options.frames,
+                    [&](double) { return fmt::format("{}/{} frames repeated", frames, run.options.frames); });
     }
     const auto frame = rerun.next();
     if (!frame) break;

@@ -10,6 +10,7 @@
 
 #include "sw/files/text_forms.h"
 #include "sw/media/synthetic_scene.h"
+#include "sw/process/client.h"
 
 namespace stereotlm::runs {
 namespace {
@@ -215,6 +216,38 @@ const host::StereoPair& PairSource::pair(std::uint64_t frame) {
 std::unique_ptr<PairSource> blank_pairs(const platform::BoardConfig& board) {
   return std::make_unique<PairSource>("", 1, [size = board.image](std::uint64_t /*index*/) {
     return host::StereoPair{{size.width, size.height}, {size.width, size.height}};
+  });
+}
+
+std::unique_ptr<PairSource> pairs_of_client(const platform::BoardConfig& board) {
+  const process::Array* const left = process::client->given("left");
+  const process::Array* const right = process::client->given("right");
+  if (left == nullptr || right == nullptr)
+    throw std::runtime_error("arrays left and right: must both be there");
+  const auto shape_text = [](const process::Array& array) {
+    return fmt::format("({})", fmt::join(array.shape, ", "));
+  };
+  if (left->shape != right->shape) {
+    throw std::runtime_error(fmt::format("arrays left and right: shapes {} and {}: must be equal",
+                                         shape_text(*left), shape_text(*right)));
+  }
+  std::vector<std::uint64_t> shape = left->shape;
+  if (shape.size() == 2) shape.insert(shape.begin(), 1);
+  const std::vector<std::uint64_t> of_board = {shape.front(), static_cast<std::uint64_t>(board.image.height),
+                                               static_cast<std::uint64_t>(board.image.width)};
+  if (shape != of_board || shape.front() == 0) {
+    throw std::runtime_error(fmt::format(
+        "arrays left and right: shape {}: must be ({}, {}) or (pairs, {}, {}), as the board's images",
+        shape_text(*left), board.image.height, board.image.width, board.image.height, board.image.width));
+  }
+  const auto picture = [size = board.image](const process::Array& array, std::uint64_t index) {
+    GrayImage image(size.width, size.height);
+    std::copy_n(array.bytes.begin() + static_cast<std::ptrdiff_t>(index * image.pixels.size()),
+                image.pixels.size(), image.pixels.begin());
+    return image;
+  };
+  return std::make_unique<PairSource>("arrays", shape.front(), [=](std::uint64_t index) {
+    return host::StereoPair{picture(*left, index), picture(*right, index)};
   });
 }
 

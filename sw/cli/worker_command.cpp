@@ -1,0 +1,190 @@
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <new>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <stdexcept>
+#include <system_error>
+#include <systemc>
+
+#include "sw/cli/command.h"
+#include "sw/process/child.h"
+#include "sw/process/client.h"
+#include "sw/process/problems.h"
+
+namespace stereotlm::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using process::Array;
+
+constexpr const char* kWorkerFooter =
+    "Requests come by standard input, answers leave by standard output: lines of JSON, and the pixels of\n"
+    "pictures behind them. The module stereotlm of Python works so; sw/python/README.md has the protocol.";
+
+struct Request {
+  std::vector<std::string> arguments;
+  std::string folder;  // to which paths are relative; empty: the worker's
+  std::vector<Array> arrays;
+};
+
+// What is not UTF-8 is replaced.
+std::string line_of(const Json& document) {
+  return document.dump(-1, ' ', false, Json::error_handler_t::replace) + '\n';
+}
+
+// Sends what a command says through the pipe to the worker, which passes it on.
+class Answer : public process::Client {
+ public:
+  Answer(const process::Child::Tell& tell, const std::vector<Array>& given) : tell_(tell), given_(given) {}
+
+  const Array* given(std::string_view name) const override {
+    const auto found =
+        std::find_if(given_.begin(), given_.end(), [&](const Array& array) { return array.name == name; });
+    return found == given_.end() ? nullptr : &*found;
+  }
+  void print(std::string_view text) override { output_ += text; }
+  void say(const std::string& line) override { tell_(line_of({{"message", line}})); }
+  void send(const Array& array) override {
+    tell_(line_of({{"array", array.name}, {"shape", array.shape}}) + array.bytes);
+  }
+  void progress(std::uint64_t done, std::uint64_t of, const std::string& text) override {
+    tell_(line_of({{"done", done}, {"of", of}, {"progress", text}}));
+  }
+  void refuse(const std::vector<platform::Diagnostic>& problems) override {
+    for (const platform::Diagnostic& problem : problems) problems_.push_back(document_of(problem));
+  }
+  void end(int status) { tell_(line_of({{"status", status}, {"output", output_}, {"problems", problems_}})); }
+
+ private:
+  const process::Child::Tell& tell_;
+  const std::vector<Array>& given_;
+  std::string output_;
+  Json problems_ = Json::array();
+};
+
+// The number of bytes of an array of 1 to 3 dimensions. Throws std::runtime_error if it is no such array, or
+// too large.
+std::size_t bytes_of(const Array& array) {
+  constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 32U;
+  std::uint64_t bytes = 1;
+  for (const std::uint64_t length : array.shape) {
+    if (length > kMostBytes || bytes * length > kMostBytes)
+      throw std::runtime_error(fmt::format("array {}: must have at most {} bytes", array.name, kMostBytes));
+    bytes *= length;
+  }
+  return bytes;
+}
+
+// Reads a line, and no byte behind it. Returns false at the end of the file.
+bool read_line(int from, std::string& line) {
+  for (char byte = 0; process::read_all(from, &byte, 1);) {
+    if (byte == '\n') return true;
+    line += byte;
+  }
+  return false;
+}
+
+// Reads the arrays behind the line, too. Throws std::exception if this is no request.
+Request request_of(const std::string& line, int from) {
+  const Json document = Json::parse(line);
+  Request request;
+  document.at("arguments").get_to(request.arguments);
+  request.folder = document.value("folder", "");
+  for (const Json& given : document.value("arrays", Json::array())) {
+    Array array;
+    given.at("name").get_to(array.name);
+    given.at("shape").get_to(array.shape);
+    array.bytes.resize(bytes_of(array));
+    if (!process::read_all(from, array.bytes.data(), array.bytes.size()))
+      throw std::runtime_error(fmt::format("array {}: ends early", array.name));
+    request.arrays.push_back(std::move(array));
+  }
+  return request;
+}
+
+// What becomes of the process after a request.
+enum class Next { kServes, kLeaves, kWasLast };
+
+// Reads a request and executes it.
+Next serve_one(const process::Child::Tell& tell) {
+  std::string line;
+  if (!read_line(STDIN_FILENO, line)) return Next::kWasLast;
+  Request request;
+  Answer answer(tell, request.arrays);
+  process::client = &answer;
+  process::leave_out_notes(false);
+  try {
+    request = request_of(line, STDIN_FILENO);
+  } catch (const std::exception& error) {  // where the next request begins is not known
+    process::say("error", fmt::format("a request of the worker: {}", error.what()));
+    answer.end(kRefused);
+    return Next::kWasLast;
+  }
+  std::vector<const char*> words = {"stereotlm"};
+  for (const std::string& argument : request.arguments) words.push_back(argument.c_str());
+  const auto count = static_cast<int>(words.size());
+  words.push_back(nullptr);
+  std::error_code error;
+  if (!request.folder.empty()) std::filesystem::current_path(request.folder, error);
+  if (error) process::say("error", fmt::format("folder '{}': {}", request.folder, error.message()));
+  answer.end(error ? kRefused : execute(count, words.data()));
+  // SystemC is elaborated once in a process.
+  const bool is_fresh =
+      sc_core::sc_get_status() == sc_core::SC_ELABORATION && sc_core::sc_get_top_level_objects().empty();
+  return is_fresh && !process::interrupted() ? Next::kServes : Next::kLeaves;
+}
+
+// Tells what the client is to get; an empty message if it has sent all its requests.
+void serve_some(const process::Child::Tell& tell) {
+  Next next = Next::kServes;
+  while (next == Next::kServes) next = serve_one(tell);
+  if (next == Next::kWasLast) tell("");
+}
+
+struct WorkerOptions : Options {
+  using Options::Options;
+};
+
+int serve(const WorkerOptions& /*options*/) {
+  if (process::client != nullptr) process::refuse("worker: cannot be a command for a worker");
+  // What libraries print must not get between the documents.
+  const int to = fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3);
+  if (to < 0 || dup2(STDERR_FILENO, STDOUT_FILENO) < 0)
+    throw std::system_error(errno, std::generic_category(), "standard output");
+  const auto write = [to](const std::string& bytes) {
+    return process::write_all(to, bytes.data(), bytes.size());
+  };
+  const auto end = [&write](const std::string& why) {
+    return write(line_of({{"message", "stereotlm: error: " + why}}) +
+                 line_of({{"status", kFailed}, {"output", ""}, {"problems", Json::array()}}));
+  };
+  // Commands are executed by a child, which may crash. It is there before the request.
+  while (true) {
+    bool is_last = false;
+    try {
+      process::Child child(serve_some);
+      while (const auto message = child.next()) {
+        is_last = message->empty();
+        if (!is_last && !write(*message)) return kFailed;
+      }
+    } catch (const std::bad_alloc&) {
+      end("out of memory");
+    } catch (const std::exception& error) {
+      end(error.what());
+    }
+    if (is_last) return kDone;
+  }
+}
+
+}  // namespace
+
+void add_worker(Commands& commands) {
+  add_command(commands, "worker", "Execute commands for another program, over a pipe", serve, kWorkerFooter);
+}
+
+}  // namespace stereotlm::cli

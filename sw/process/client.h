@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "platform/config/board_yaml.h"
+
+namespace stereotlm::process {
+
+// Pixels of 8 bits that a client and a command exchange beside the text.
+struct Array {
+  std::string name;                  // "left"
+  std::vector<std::uint64_t> shape;  // {rows, columns}, or {pictures, rows, columns}
+  std::string bytes;                 // row by row
+};
+
+// Takes the place of the terminal for a command that a worker executes: `stereotlm worker`.
+class Client {
+ public:
+  virtual ~Client() = default;
+
+  // The array that came with the command; nullptr if there is none of this name.
+  virtual const Array* given(std::string_view name) const = 0;
+
+  virtual void print(std::string_view text) = 0;  // what goes to standard output elsewhere
+  virtual void say(const std::string& line) = 0;  // a line for standard error
+  virtual void send(const Array& array) = 0;
+  // `done` of `of` pieces of work are done; `text` is the progress line.
+  virtual void progress(std::uint64_t done, std::uint64_t of, const std::string& text) = 0;
+  // Why the command is refused.
+  virtual void refuse(const std::vector<platform::Diagnostic>& problems) = 0;
+};
+
+// Null unless this process executes a command for a client.
+inline Client* client = nullptr;
+
+}  // namespace stereotlm::process
