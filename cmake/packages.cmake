@@ -1,7 +1,8 @@
 # Man pages, completion of shells, and Debian packages: `cmake --build build/release --target packages`.
 #
-# The packages are stereotlm (the program) and libstereotlm-dev (libraries, headers, guides, example). Man
-# pages need help2man, completion needs Python; without them there are none.
+# The packages are stereotlm (the program), libstereotlm-dev (libraries, headers, guides, example) and
+# python3-stereotlm (the module of Python). Man pages need help2man, completion needs Python; without them
+# there are none.
 find_program(STEREOTLM_HELP2MAN help2man)
 find_package(Python3 COMPONENTS Interpreter)
 set(manual ${PROJECT_BINARY_DIR}/${CMAKE_INSTALL_MANDIR}/man1)
@@ -31,11 +32,9 @@ if(Python3_Interpreter_FOUND)
 endif()
 # Debian's policy wants these two files in each package.
 string(TIMESTAMP date "%a, %d %b %Y %H:%M:%S +0000" UTC)
-foreach(package stereotlm libstereotlm-dev)
-  set(component program)
-  if(package STREQUAL libstereotlm-dev)
-    set(component development)
-  endif()
+foreach(package_and_component stereotlm/program libstereotlm-dev/development python3-stereotlm/python)
+  cmake_path(GET package_and_component PARENT_PATH package)
+  cmake_path(GET package_and_component FILENAME component)
   set(changelog ${PROJECT_BINARY_DIR}/packages/${package}/changelog)
   file(WRITE ${changelog} "${package} (${PROJECT_VERSION}) unstable; urgency=medium
 
@@ -53,7 +52,7 @@ set(CPACK_PACKAGE_CONTACT "stereotlm maintainers <maintainers@users.noreply.gith
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "cycle-exact model of an FPGA stereo vision board")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
-set(CPACK_COMPONENTS_ALL program development)
+set(CPACK_COMPONENTS_ALL program development python)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
@@ -73,6 +72,18 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS "libgtest-dev")
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "the SystemC modules
  Banks, arbiters, crossbars, PCI bus, bridge and the stages of the FPGA as
  SystemC/TLM-2.0 modules, and a test kit for SystemC modules.")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-stereotlm)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_ARCHITECTURE all)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS OFF)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "stereotlm (= ${PROJECT_VERSION}), python3 (>= 3.9), python3-numpy")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS python3-pandas)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS python3-tqdm)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA
+  ${PROJECT_SOURCE_DIR}/cmake/python3-stereotlm/postinst ${PROJECT_SOURCE_DIR}/cmake/python3-stereotlm/prerm)
+set(CPACK_COMPONENT_PYTHON_DESCRIPTION "the module of Python
+ Runs boards on arrays of numpy, and answers in tables of pandas who waits for
+ whom, and what each change of a board would gain.")
 include(CPack)
 add_custom_target(packages
   DEPENDS stereotlm stereotlm_decoders stereotlm_calibration stereotlm_platform stereotlm_testing

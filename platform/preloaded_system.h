@@ -35,8 +35,8 @@ using KeepGoing = std::function<bool(std::uint64_t frames, std::uint64_t cycles)
 // Computes the figures of a board with an ideal host (`--source preloaded`) by a loop over the core's control
 // and the arbiters, without pixels and without SystemC. The figures equal those of PreloadedSystem at
 // Fidelity::kTiming, and take a tenth of the time. A process may call the function any number of times;
-// sweeps do. `keep_going`: called after each frame with the frames and the cycles so far; false ends the run with
-// these frames.
+// sweeps do. `keep_going`: called after each frame with the frames and the cycles so far; false ends the run
+// with these frames.
 //
 // Throws std::invalid_argument if the tables do not fit the board, or `frames` is 0.
 // Throws std::runtime_error if for stall_timeout_cycles the matcher works in no cycle and no result is

@@ -8,6 +8,7 @@
 #include "platform/yaml/yaml_tree.h"
 #include "sw/cli/command.h"
 #include "sw/cli/run_options.h"
+#include "sw/process/client.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -72,6 +73,7 @@ int check(const BoardCommandOptions& options) {
   if (options.json.is_given()) {
     process::print(json_text(
         document_of(options.board.argument.text(), loaded.board ? &*loaded.board : nullptr, problems)));
+    if (process::client != nullptr) process::client->refuse(problems.diagnostics());
     return problems.empty() ? kDone : kRefused;
   }
   problems.check();

@@ -26,11 +26,12 @@ inline constexpr int kInterrupted = 130;
 // done; it has then had no effect.
 using Action = std::function<int()>;
 
-// Executes a command line and returns the exit status. Says on standard error why it is refused or has failed.
+// Executes a command line and returns the exit status. Says on standard error why it is refused or has
+// failed.
 int execute(int argc, const char* const* argv);
 
-// Parses the arguments and returns the action that execute() runs. For --help and --version, the action prints
-// the text. Throws Refused if the arguments are wrong.
+// Parses the arguments and returns the action that execute() runs. For --help and --version, the action
+// prints the text. Throws Refused if the arguments are wrong.
 Action parse_command_line(int argc, const char* const* argv);
 
 // The commands while they are added to the program.

@@ -18,7 +18,8 @@ void say(const std::string& kind, const std::string& text);
 // kind is coloured, and a note is left out after leave_out_notes().
 void say_line(const std::string& line);
 
-// Whether say() leaves out notes, and no progress is shown, from then on. Children of the process inherit this.
+// Whether say() leaves out notes, and no progress is shown, from then on. Children of the process inherit
+// this.
 void leave_out_notes(bool left_out);
 bool leaves_out_notes();
 

@@ -31,8 +31,8 @@ std::string progress_text(const explore::SweepCounts& counts, std::uint64_t befo
 // most_left is narrowed and 8 boards were simulated.
 std::string progress_text(const explore::SearchProgress& progress, double seconds);
 
-// A progress line on standard error, if that is a terminal and notes are shown, or for the client of a worker.
-// The destructor erases it.
+// A progress line on standard error, if that is a terminal and notes are shown, or for the client of a
+// worker. The destructor erases it.
 class ProgressLine {
  public:
   ProgressLine();

@@ -51,10 +51,11 @@ void leave_out_verify(RunInput& input);
 // Prints a warning if captures have lost pixels. `subject`: what it begins with.
 void say_lost_pixels(const platform::Statistics& statistics, const std::string& subject = "");
 
-// Writes the result files, sends the disparities to a client, and prints the table, or with --json the document. `last`: the result of the last
-// frame. `differences`: found by --verify. Prints the differences and the identities that do not hold, and
-// lists them as `failed` in stats.json. Returns true if there are no differences and all identities hold.
-// Throws std::runtime_error if the files cannot be written; an earlier result is then unchanged.
+// Writes the result files, sends the disparities to a client, and prints the table, or with --json the
+// document. `last`: the result of the last frame. `differences`: found by --verify. Prints the differences
+// and the identities that do not hold, and lists them as `failed` in stats.json. Returns true if there are no
+// differences and all identities hold. Throws std::runtime_error if the files cannot be written; an earlier
+// result is then unchanged.
 bool deliver(RunInput& input, const platform::Statistics& statistics, const Result& last,
              const std::vector<std::string>& differences = {});
 

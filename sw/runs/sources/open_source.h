@@ -83,8 +83,8 @@ struct OpenedSource {
   std::vector<std::string> notes;     // for standard error
 };
 
-// The pairs of a client (process/client.h): its arrays `left` and `right`. Throws std::runtime_error if one is
-// missing, or if their shapes do not fit each other or the board.
+// The pairs of a client (process/client.h): its arrays `left` and `right`. Throws std::runtime_error if one
+// is missing, or if their shapes do not fit each other or the board.
 std::unique_ptr<PairSource> pairs_of_client(const platform::BoardConfig& board);
 
 // Opens the source of pictures, checks all its pictures, and reports problems. The caller names at most one

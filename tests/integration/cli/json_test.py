@@ -185,6 +185,12 @@ class Json(ProgramTest):
         changes = ("matcher.window=5", "fpga.clock_mhz=33.5", "fpga.device=xc2v1000")
         document = self.document("check", "fpl2003", *SMALL, *sets(*changes))
         area = self.document("bounds", "fpl2003", *SMALL, *sets(*changes))["area"]
+        values = document.pop("values")
+        self.assertEqual((values["matcher.window"], values["fpga.clock_mhz"]), (5, 33.5))
+        self.assertEqual(values["allocation.left_image"], ["bank0", "bank1"])
+        self.assertEqual((values["ssram.banks.bank7.words"], values["matcher.cost"]), (524288, "sad"))
+        listed = {key["key"] for key in self.document("keys")["keys"]}
+        self.assertEqual({re.sub(r"\.bank\d\.", ".NAME.", key) for key in values} - listed, set())
         self.assertEqual(document, {
             "schema": 1, "board": "fpl2003", "ok": True, "problems": [], "image": {"width": 32, "height": 24},
             "window": 5, "disparities": 80, "banks": 8, "clock_mhz": 33.5, "device": "xc2v1000",

@@ -15,7 +15,7 @@ from program import HEIGHT, PRELOADED, SMALL, WIDTH, ProgramTest, of_plain_user,
 
 COMMANDS = (
     "run check boards keys bounds explain calibrate sweep merge allocate plot conflicts diff diagram report "
-    "paper"
+    "paper worker"
 ).split()
 OPTIONS_OF_RUN = (
     "BOARD,--left,--right,--sequence,--video F [F2],--video-layout,--synthetic,--frames,--truth,"

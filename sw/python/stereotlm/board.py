@@ -1,0 +1,403 @@
+"""Boards, their runs, and the questions that the program answers about them."""
+
+import functools
+import html
+import json
+import os
+import pathlib
+import sqlite3
+import tempfile
+
+import numpy
+
+from stereotlm.worker import Refused, execute
+
+
+def boards():
+    """The preset boards: name -> what it is."""
+    return {board["name"]: board["description"] for board in execute("boards", "--json").document["boards"]}
+
+
+def keys():
+    """A table of the keys of boards: key, meaning, unit, range."""
+    return _table(execute("keys", "--json").document["keys"], columns=["key", "meaning", "unit", "range"])
+
+
+@functools.cache
+def _paths():
+    return [key["key"] for key in execute("keys", "--json").document["keys"]]
+
+
+class _Table(numpy.recarray):
+    """A table without pandas. `attrs` is as in pandas."""
+
+    attrs = {}
+
+
+def _table(rows, document=None, columns=None):
+    """Rows, which are dicts, as a DataFrame. `document` becomes its attrs["document"]."""
+    rows = [dict(_flat(row)) for row in rows]
+    if columns is None:
+        columns = list(dict.fromkeys(name for row in rows for name in row))
+    try:
+        import pandas
+    except ImportError:
+        data = [tuple(row.get(name) for name in columns) for row in rows]
+        kinds = {name: numpy.array([line[i] for line in data]).dtype if _is_plain([line[i] for line in data])
+                 else object for i, name in enumerate(columns)}
+        table = numpy.array(data, dtype=list(kinds.items())).view(_Table)
+    else:
+        table = pandas.DataFrame(rows, columns=columns)
+    table.attrs = {"document": document}
+    return table
+
+
+def _is_plain(values):
+    return len({type(value) for value in values}) == 1 and isinstance(values[0], (bool, int, float, str))
+
+
+def _flat(value, path=""):
+    """(dotted path, value) of what a dict holds. Lists stay as they are."""
+    for name, inner in value.items():
+        if isinstance(inner, dict):
+            yield from _flat(inner, f"{path}{name}.")
+        else:
+            yield path + name, inner
+
+
+def _yaml(value):
+    """The value as a YAML flow value."""
+    if isinstance(value, (numpy.generic, numpy.ndarray)):
+        value = value.tolist()
+    if isinstance(value, float):
+        return numpy.format_float_positional(value, trim="0")
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{key}: {_yaml(inner)}" for key, inner in value.items()) + "}"
+    if isinstance(value, (list, tuple, range)):
+        return "[" + ", ".join(map(_yaml, value)) + "]"
+    return json.dumps(value)
+
+
+def _options(options):
+    """Options of a command: keep_fps=99 is --keep-fps 99, True is a flag, a list an option for each value."""
+    words = []
+    for name, value in options.items():
+        if value is None or value is False:
+            continue
+        for each in value if isinstance(value, (list, tuple)) else [value]:
+            words += ["--" + name.replace("_", "-")] + ([] if each is True else [each])
+    return words
+
+
+class _Section:
+    """The keys of a board below one path, such as board.matcher."""
+
+    def __init__(self, board, path):
+        object.__setattr__(self, "_board", board)
+        object.__setattr__(self, "_path", path)
+
+    def __getattr__(self, name):
+        if name.startswith("_"):
+            raise AttributeError(name)
+        return self._board._get(f"{self._path}.{name}")
+
+    def __setattr__(self, name, value):
+        self._board[f"{self._path}.{name}"] = value
+
+    def __dir__(self):
+        return self._board._names(self._path + ".")
+
+    def __repr__(self):
+        values = self._board.values
+        return "\n".join(f"{path}: {values[path]}" for path in values if path.startswith(self._path + "."))
+
+
+class Board:
+    """A board. Its keys are attributes, `board.matcher.window`, and items, `board["matcher.window"]`.
+
+    A value that breaks the rule of its key is refused when it is assigned. Rules between keys are checked by
+    each command, and by check(): several keys can be changed one after the other.
+    """
+
+    def __init__(self, board="fpl2003", sets=None, calibration=None):
+        """`board`: a preset (see boards()) or the path of a board file. `sets`: values of keys.
+        `calibration`: the path of a calibration, whose tables take the place of the identity.
+
+        Raises Refused for a board that has problems.
+        """
+        set_ = object.__setattr__  # a plain assignment sets a key
+        set_(self, "board", os.fspath(board))
+        set_(self, "calibration", calibration)
+        set_(self, "_sets", {})
+        set_(self, "_values", None)
+        self._add(sets or {})
+        self.check()
+
+    # Keys.
+
+    @property
+    def sets(self):
+        """The keys that were set, as in --set KEY=VALUE."""
+        return [f"{path}={text}" for path, text in self._sets.items()]
+
+    @property
+    def values(self):
+        """All keys with their values, by their paths. If keys contradict each other, the values before they
+        did, and those that were set since."""
+        if self._values is None:
+            self._problems(self._sets)
+        return dict(self._values)
+
+    def changed(self, sets):
+        """A copy with other values: a dict, or a list of "KEY=VALUE" as in the tables of explain() and
+        allocate()."""
+        copy = self._copy()
+        copy._add(sets)
+        copy.check()
+        return copy
+
+    def check(self):
+        """Raises Refused with all problems of the board."""
+        problems = self._problems(self._sets)
+        if problems:
+            raise Refused(problems)
+
+    def __getitem__(self, path):
+        try:
+            return self.values[path]
+        except KeyError:
+            raise KeyError(f"{path}: not a key of this board: see stereotlm.keys()") from None
+
+    def __setitem__(self, path, value):
+        # What was set below the path is replaced, too.
+        sets = {name: text for name, text in self._sets.items() if not f"{name}.".startswith(f"{path}.")}
+        sets[path] = _yaml(value)
+        last = self._values
+        own = [problem for problem in self._problems(sets)
+               if f"{problem.key}.".startswith(f"{path}.") and not problem.between_keys]
+        if own:
+            object.__setattr__(self, "_values", last)
+            raise Refused(own)
+        object.__setattr__(self, "_sets", sets)
+        if self._values is last:
+            object.__setattr__(self, "_values", {**(last or {}), path: value})
+
+    def __getattr__(self, name):
+        if name.startswith("_"):
+            raise AttributeError(name)
+        return self._get(name)
+
+    def __setattr__(self, name, value):
+        self[name] = value
+
+    def __dir__(self):
+        return [*super().__dir__(), *self._names("")]
+
+    def __repr__(self):
+        return f"Board({self.board!r}, {self.sets})"
+
+    def _copy(self):
+        copy = Board.__new__(Board)
+        for name in ("board", "calibration", "_values"):
+            object.__setattr__(copy, name, getattr(self, name))
+        object.__setattr__(copy, "_sets", dict(self._sets))
+        return copy
+
+    def _add(self, sets):
+        pairs = sets.items() if isinstance(sets, dict) else (each.split("=", 1) for each in sets)
+        for path, value in pairs:
+            self._sets.pop(path, None)  # later ones come last
+            self._sets[path] = _yaml(value) if isinstance(sets, dict) else value
+
+    def _get(self, path):
+        values = self.values
+        if path in values:
+            return values[path]
+        if any(name.startswith(path + ".") for name in (*values, *_paths())):
+            return _Section(self, path)
+        raise AttributeError(f"{path}: not a key of this board: see stereotlm.keys()")
+
+    def _names(self, beginning):
+        return sorted({path.removeprefix(beginning).split(".")[0] for path in self.values
+                       if path.startswith(beginning)})
+
+    def _problems(self, sets):
+        """The problems of the board with these values. If there are none, its values are known."""
+        try:
+            document = execute("check", *self._words(sets), "--json").document
+        except Refused as refused:
+            return refused.problems
+        object.__setattr__(self, "_values", document["values"])
+        return []
+
+    def _words(self, sets=None):
+        words = [self.board]
+        for path, text in (self._sets if sets is None else sets).items():
+            words += ["--set", f"{path}={text}"]
+        return words + (["--calibration", self.calibration] if self.calibration else [])
+
+    # Commands.
+
+    def run(self, left=None, right=None, **options):
+        """Simulates the board on pictures. Returns a Run.
+
+        `left`, `right`: arrays of uint8, (rows, columns) for one pair or (pairs, rows, columns) for as many,
+        or the paths of two files. Without pictures only times and counts are simulated. `options`: those of
+        `stereotlm run`: frames=3, source="preloaded", synthetic=1, truth="truth.png", out="folder".
+        """
+        arrays = {}
+        if left is not None or right is not None:
+            if all(isinstance(side, (str, os.PathLike)) for side in (left, right)):
+                options = {"left": left, "right": right, **options}
+            else:
+                arrays = {name: side for name, side in (("left", left), ("right", right)) if side is not None}
+        if not arrays and not {"left", "sequence", "video", "synthetic"} & options.keys():
+            options["timing_only"] = True
+        if any(numpy.ndim(array) == 3 for array in arrays.values()) and not options.get("timing_only"):
+            options["save_frames"] = True
+        answer = execute("run", *self._words(), *_options(options), "--json", arrays=arrays)
+        return Run(self._copy(), options, answer)
+
+    def bounds(self):
+        """Limits of the frame rate without a simulation, and the area: the document of `stereotlm bounds`."""
+        return execute("bounds", *self._words(), "--json").document
+
+    def explain(self, **options):
+        """A table of single changes, and what each gains: the best first. `sets` are for changed().
+
+        attrs["document"] has what limits the board, its resources, and who waits for whom.
+        """
+        document = execute("explain", *self._words(), *_options(options), "--json").document
+        return _table(document["changes"], document)
+
+    def conflicts(self, left=None, right=None, **options):
+        """A table of who waits for whom at which bank. `left`, `right`, `options`: as for run().
+
+        attrs["document"] has the waits and accesses by rows of the picture.
+        """
+        if left is None and not {"sequence", "video", "synthetic"} & options.keys():
+            options["timing_only"] = True
+        arrays = {} if left is None else {"left": left, "right": right}
+        document = execute("conflicts", *self._words(), *_options(options), "--json", arrays=arrays).document
+        return _table(document["waits"], document)
+
+    def allocate(self, banks, out=None, **options):
+        """A table of the best allocation of the buffers for each number of banks. `sets` are for changed().
+
+        `banks`: the most banks to use. `out`: the path of a database that is continued. `options`: those of
+        `stereotlm allocate`. attrs["document"] has the best of all.
+        """
+        with tempfile.TemporaryDirectory() as folder:
+            words = ["--banks", banks, "--out", out or pathlib.Path(folder) / "boards.db"]
+            document = execute("allocate", *self._words(), *words, *_options(options), "--json").document
+        return _table(document["banks"], document)
+
+    def sweep(self, vary=None, out=None, source="preloaded", frames=None, zip=None, where=None, sample=None,
+              **options):
+        """Simulates the board with all combinations of values, without pixels. Returns a table of the points.
+
+        `vary`: {"matcher.window": [5, 7], "fpga.clock_mhz": range(20, 81, 20)}. `zip`: dicts of keys that
+        move together. `where`: SQL expressions that must hold. `sample`: {"points": 100, "seed": 1}. `out`:
+        the path of a database that is continued; the table then has all its points. `options`: jobs=2.
+        """
+        run = {"source": source, "frames": frames, "calibration": self.calibration}
+        lists = {"vary": vary, "zip": zip, "where": where, "sample": sample}
+        moved = {path for keys in [vary or {}, *(zip or [])] for path in keys}
+        plan = {"board": self.board, "run": {name: value for name, value in run.items() if value is not None}}
+        plan.update({name: value for name, value in lists.items() if value})
+        text = "".join(f"{name}: {_yaml(value)}\n" for name, value in plan.items())
+        fixed = [f"{path}: {value}" for path, value in self._sets.items() if path not in moved]
+        if fixed:
+            text += "set: {" + ", ".join(fixed) + "}\n"
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "plan.yaml"
+            file.write_text(text, encoding="utf-8")
+            database = out or pathlib.Path(folder) / "points.db"
+            execute("sweep", file, "--out", database, *_options(options))
+            return _points(database, [path for keys in [vary or {}, *(zip or [])] for path in keys])
+
+    def chart(self, source="camera"):
+        """The memory chart of the board as SVG."""
+        return _chart(self._words(), source=source)
+
+    def _repr_html_(self):
+        return f"<p>{html.escape(repr(self))}</p>{self.chart()}"
+
+
+def _points(database, varied):
+    """The points of a database of sweep: first the keys that vary, then the figures, then the other keys."""
+    connection = sqlite3.connect(database)
+    try:
+        connection.row_factory = sqlite3.Row
+        order = ", ".join(f'"{path}"' for path in varied) or "1"
+        rows = [dict(row) for row in connection.execute(f"SELECT * FROM points ORDER BY {order}")]
+        fixed = [name for name, in connection.execute("SELECT * FROM keys") if name not in varied]
+    finally:
+        connection.close()
+    hidden = {"hash", "version", "config", *varied, *fixed}
+    figures = [name for name in (rows[0] if rows else []) if name not in hidden]
+    return _table(rows, columns=[*varied, *figures, *fixed])
+
+
+def _chart(words, **options):
+    with tempfile.TemporaryDirectory() as folder:
+        file = pathlib.Path(folder) / "chart.svg"
+        execute("diagram", *words, "--out", file, *_options(options))
+        return file.read_text(encoding="utf-8")
+
+
+class Run:
+    """A run: its disparities and its counts.
+
+    statistics: the figures of stats.json (sw/report/README.md), as a dict.
+    disparity: the disparities of the last frame, (rows, columns); None if only times were simulated.
+    disparities: those of all frames, (frames, rows, columns), if the pictures were several pairs; else None.
+    frame_numbers: the number of the camera's frame for each of disparities.
+    messages: what the program says about the run.
+    """
+
+    def __init__(self, board, options, answer):
+        self.board = board
+        self.messages = answer.messages
+        self.statistics = answer.document
+        self._options = options
+        self.disparity = answer.arrays.pop("disparity", None)
+        self.frame_numbers = [int(pathlib.Path(name).stem) for name in answer.arrays]
+        self.disparities = numpy.stack(list(answer.arrays.values())) if answer.arrays else None
+
+    @property
+    def frames_per_second(self):
+        """The rates of the core, and with cameras of the system, as in stats.json."""
+        return self.statistics["frames_per_second"]
+
+    @property
+    def banks(self):
+        """A table of the accesses and cycles of each bank."""
+        return _table(self.statistics["banks"])
+
+    @property
+    def ports(self):
+        """A table of the grants and waits of each port."""
+        return _table(self.statistics["ports"])
+
+    @property
+    def blame(self):
+        """A table of who waits for whom at which bank: port, bank, by, cycles."""
+        return _table(self.statistics["blame"], columns=["port", "bank", "by", "cycles"])
+
+    def chart(self):
+        """The memory chart of the board with the traffic of the run, as SVG."""
+        names = ("source", "frames", "fidelity")
+        options = {name: self._options[name] for name in names if name in self._options}
+        options["frames"] = self.statistics["frames"]
+        with tempfile.TemporaryDirectory() as folder:
+            out = pathlib.Path(folder) / "run"  # pixels change no count
+            execute("run", *self.board._words(), *_options({**options, "timing_only": True, "out": out}))
+            return _chart([out])
+
+    def __repr__(self):
+        rates = ", ".join(f"{name} {value:.3f}" for name, value in self.frames_per_second.items())
+        return f"Run of {self.statistics['board']}: {self.statistics['frames']} frames, frames/s: {rates}"
+
+    def _repr_html_(self):
+        return f"<p>{html.escape(repr(self))}</p>{self.chart()}"

@@ -1,0 +1,214 @@
+"""Commands of the program, executed by the process `stereotlm worker`. README.md has the protocol."""
+
+import contextlib
+import dataclasses
+import json
+import math
+import os
+import pathlib
+import shutil
+import subprocess
+import threading
+import warnings
+
+import numpy
+
+
+@dataclasses.dataclass(frozen=True)
+class Problem:
+    """Why a command is refused."""
+
+    place: str  # file:line:column, --set KEY, a preset, or "command line"
+    rule: str  # the rule that is broken
+    message: str  # key, value and rule
+    key: str = ""
+    value: str = ""
+    between_keys: bool = False  # the rule involves several keys: each of them could be changed
+
+    def __str__(self):
+        return self.message if self.place == "command line" else f"{self.place}: {self.message}"
+
+
+class Refused(ValueError):
+    """A command is refused before it does anything. Each of its `problems` names place, value and rule."""
+
+    def __init__(self, problems):
+        super().__init__("\n".join(map(str, problems)))
+        self.problems = list(problems)
+
+
+class Failed(RuntimeError):
+    """A command has failed while it worked."""
+
+
+class WorkerDied(RuntimeError):
+    """The worker has ended, for example because it was killed. The next command starts another one."""
+
+
+@dataclasses.dataclass
+class Answer:
+    output: str  # what the command prints
+    arrays: dict  # name -> array of 8 bits
+    messages: list  # lines: "stereotlm: note: .."
+
+    @property
+    def document(self):
+        """The document that a command prints with --json."""
+        return json.loads(self.output)
+
+
+def _program():
+    folders = pathlib.Path(__file__).resolve().parents
+    # PREFIX/lib/python3/dist-packages/stereotlm/worker.py, or sw/python/stereotlm/worker.py of the sources
+    places = [folders[4] / "bin" / "stereotlm", folders[3] / "build" / "release" / "bin" / "stereotlm"]
+    named = os.environ.get("STEREOTLM_PROGRAM")
+    for program in filter(None, [named, *filter(pathlib.Path.is_file, places), shutil.which("stereotlm")]):
+        return str(program)
+    raise FileNotFoundError(
+        f"the program stereotlm is neither {places[0]} nor in PATH: STEREOTLM_PROGRAM can name it")
+
+
+class _Bar:
+    """The progress of a command, by tqdm. Nothing without tqdm."""
+
+    def __init__(self, shown):
+        self._bar = None
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")  # in a notebook without widgets the bar is text
+                from tqdm.auto import tqdm
+        except ImportError:
+            shown = False
+        form = "{percentage:3.0f}%|{bar}| {desc}"
+        self._make = (lambda: tqdm(bar_format=form, leave=False)) if shown else None
+
+    def show(self, done, of, text):
+        if self._make is None:
+            return
+        if self._bar is None:
+            self._bar = self._make()
+        self._bar.total, self._bar.n = of, done
+        self._bar.set_description_str(text)
+
+    def close(self):
+        if self._bar is not None:
+            self._bar.close()
+
+
+class Worker:
+    """A process that executes commands, one after the other. Threads may share it."""
+
+    def __init__(self, program=None):
+        """`program`: the path of the program stereotlm; by default as the module's text says."""
+        self._program = program
+        self._process = None
+        self._lock = threading.RLock()
+        os.register_at_fork(after_in_child=self._forget)
+
+    def execute(self, *arguments, arrays=None, progress=True):
+        """Executes the command of these words, with arrays of 8 bits by their names. Returns an Answer.
+
+        Raises Refused, Failed or WorkerDied. Warnings of the program become warnings of Python. If it is
+        interrupted (KeyboardInterrupt), the worker is ended.
+        """
+        with self._lock:
+            bar = _Bar(progress)
+            try:
+                self._send([str(argument) for argument in arguments], arrays or {})
+                return self._receive(bar)
+            except (BrokenPipeError, EOFError):
+                raise WorkerDied(f"the worker has {self._end()}: the command is lost") from None
+            except (Refused, Failed):
+                raise
+            except BaseException:  # what follows in the pipe is not known
+                self.close()
+                raise
+            finally:
+                bar.close()
+
+    def close(self):
+        """Ends the process."""
+        with self._lock:
+            if self._process is not None:
+                self._process.kill()
+                self._end()
+
+    @property
+    def pid(self):
+        """The number of the process; None if there is none yet."""
+        return self._process.pid if self._process else None
+
+    def _forget(self):
+        self._process = None
+        self._lock = threading.RLock()
+
+    def _end(self):
+        """How the process has ended."""
+        process, self._process = self._process, None
+        with contextlib.suppress(BrokenPipeError):
+            process.stdin.close()
+        process.stdout.close()
+        status = process.wait()
+        return f"been ended by signal {-status}" if status < 0 else f"ended with status {status}"
+
+    def _send(self, arguments, arrays):
+        pixels = {name: _pixels(name, array) for name, array in arrays.items()}
+        if self._process is not None and self._process.poll() is not None:
+            self._end()  # while it had nothing to do: nothing is lost
+        if self._process is None:
+            # A session of its own: Ctrl-C is for this process, which then ends the worker.
+            self._process = subprocess.Popen([self._program or _program(), "worker"], stdin=subprocess.PIPE,
+                                             stdout=subprocess.PIPE, start_new_session=True)
+        request = {"arguments": arguments, "folder": os.getcwd(),
+                   "arrays": [{"name": name, "shape": array.shape} for name, array in pixels.items()]}
+        stream = self._process.stdin
+        stream.write(json.dumps(request).encode() + b"\n")
+        for array in pixels.values():
+            stream.write(array.tobytes())
+        stream.flush()
+
+    def _receive(self, bar):
+        answer = Answer("", {}, [])
+        while True:
+            part = json.loads(self._bytes(self._process.stdout.readline()))
+            if "array" in part:
+                size = math.prod(part["shape"])
+                data = self._bytes(self._process.stdout.read(size), size)
+                answer.arrays[part["array"]] = numpy.frombuffer(data, numpy.uint8).reshape(part["shape"])
+            elif "progress" in part:
+                bar.show(part["done"], part["of"], part["progress"])
+            elif "message" in part:
+                answer.messages.append(part["message"])
+            else:
+                break
+        answer.output = part["output"]
+        for message in answer.messages:
+            if message.startswith("stereotlm: warning: "):
+                warnings.warn(message.removeprefix("stereotlm: warning: "), stacklevel=4)
+        if part["status"] == 2:
+            problems = [Problem(**problem) for problem in part["problems"]]
+            raise Refused(problems or [Problem("command line", text, text) for text in answer.messages])
+        if part["status"] != 0:
+            raise Failed("\n".join(message.removeprefix("stereotlm: error: ") for message in answer.messages))
+        return answer
+
+    @staticmethod
+    def _bytes(data, size=1):
+        if len(data) < size:
+            raise EOFError
+        return data
+
+
+def _pixels(name, array):
+    array = numpy.asarray(array)
+    if array.dtype != numpy.uint8:
+        raise TypeError(f"{name}: {array.dtype}: must be an array of uint8")
+    return array
+
+
+_shared = Worker()
+
+
+def execute(*arguments, arrays=None, progress=True):
+    """Executes a command by the worker that all boards share. See Worker.execute()."""
+    return _shared.execute(*arguments, arrays=arrays, progress=progress)

@@ -1,0 +1,461 @@
+"""The module stereotlm of Python, and the worker behind it."""
+
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import types
+import unittest
+import unittest.mock
+import warnings
+
+import numpy
+import pandas
+
+import program
+from program import HEIGHT, PRELOADED, PROGRAM, SMALL, WIDTH, ProgramTest, run, sets
+
+SOURCES = pathlib.Path(__file__).resolve().parents[3]
+os.environ["STEREOTLM_PROGRAM"] = PROGRAM
+sys.path.insert(0, str(SOURCES / "sw" / "python"))
+import stereotlm  # noqa: E402
+from stereotlm import worker  # noqa: E402
+
+SMALL_SETS = {"image.width": WIDTH, "image.height": HEIGHT}
+ALONE = {"source": "preloaded"}
+
+
+def small_board(**sections):
+    """A board with small images. A key is section__key."""
+    return stereotlm.Board(sets={**SMALL_SETS, **{name.replace("__", "."): value
+                                                  for name, value in sections.items()}})
+
+
+def read_pfm(path):
+    """Disparities of a result folder."""
+    head, size, _, data = path.read_bytes().split(b"\n", 3)
+    width, height = map(int, size.split())
+    assert head == b"Pf"
+    found = numpy.frombuffer(data, "<f4").reshape(height, width)[::-1]
+    return numpy.where(numpy.isinf(found), 255, found)
+
+
+class PythonTest(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        pixels = (path.read_bytes()[-WIDTH * HEIGHT:] for path in (self.left, self.right))
+        self.arrays = [numpy.frombuffer(side, numpy.uint8).reshape(HEIGHT, WIDTH) for side in pixels]
+
+    def refusal(self, action):
+        with self.assertRaises(stereotlm.Refused) as refused:
+            action()
+        return refused.exception
+
+
+class Boards(PythonTest):
+    def test_keys_are_attributes_and_items(self):
+        board = stereotlm.Board("fpl2003")
+        self.assertEqual((board.matcher.window, board["matcher.window"]), (7, 7))
+        self.assertEqual(board.allocation.left_image, ["bank0", "bank1"])
+        self.assertEqual(board.ssram.banks.bank3.kind, "zbt_pipelined")
+        board.matcher.window = numpy.int64(9)
+        board.fpga.clock_mhz = 0.000125 * 8000
+        board.allocation.left_image = ["bank1", "bank0"]
+        board.matcher.cost = {"census": 5}
+        self.assertEqual(board.values["matcher.window"], 9)
+        self.assertEqual((board.fpga.clock_mhz, board.matcher.cost), (1, {"census": 5}))
+        self.assertEqual(board.allocation.left_image, ["bank1", "bank0"])
+        self.assertIn("window", dir(board.matcher))
+        self.assertIn("matcher", dir(board))
+        self.assertIn("matcher.window: 9", repr(board.matcher))
+        with self.assertRaisesRegex(AttributeError, "matcher.windw: not a key"):
+            board.matcher.windw  # noqa: B018
+
+    def test_a_value_is_refused_with_place_value_and_rule(self):
+        board = stereotlm.Board("fpl2003")
+        for key, value, text in (("matcher.window", 6, "matcher.window = 6: 3..31, odd"),
+                                 ("matcher.windw", 5, "unknown key; nearest known key: matcher.window"),
+                                 ("matcher.window", "seven", 'matcher.window = "seven": not an integer')):
+            before = board.values
+            error = self.refusal(lambda: board.__setitem__(key, value))  # noqa: B023
+            self.assertIn(text, str(error))
+            self.assertEqual(error.problems[0].place, f"--set {key}")
+            self.assertEqual((board.values, board.sets), (before, []))
+        self.assertEqual((error.problems[0].value, error.problems[0].rule[-10:]), ('"seven"', "3..31, odd"))
+        self.assertIn("nope: not a preset", str(self.refusal(lambda: stereotlm.Board("nope"))))
+
+    def test_keys_that_contradict_each_other_are_refused_by_commands(self):
+        board = stereotlm.Board("fpl2003")
+        board.allocation.left_lut = "bank5"
+        board.ssram.banks = {f"bank{i}": {} for i in range(5)}  # without bank5 .. bank7
+        problems = self.refusal(lambda: board.run(**ALONE)).problems
+        self.assertIn("allocation.left_lut", [problem.key for problem in problems])
+        self.assertEqual(board.allocation.left_lut, "bank5")
+        board.allocation.left_lut = board.allocation.right_lut = "bank4"
+        board.allocation.disparity = ["bank3", "bank3"]
+        board.fpga.tables = "joint"
+        board.check()
+        self.assertGreater(board.run(**ALONE).frames_per_second["core"], 5)
+
+    def test_a_value_takes_the_place_of_those_below_it(self):
+        board = stereotlm.Board("fpl2003")
+        board.pci.load.burst_words = 100  # refused by check(): the rest of pci.load is missing
+        self.assertIn("pci.load.interval_us: missing", str(self.refusal(board.check)))
+        board.pci.load = "none"
+        board.check()
+        self.assertEqual(board.sets, ['pci.load="none"'])
+
+    def test_lists(self):
+        self.assertIn("fpl2003", stereotlm.boards())
+        keys = stereotlm.keys()
+        self.assertEqual(list(keys.columns), ["key", "meaning", "unit", "range"])
+        self.assertIn("matcher.window", set(keys.key))
+
+    def test_charts(self):
+        for shown in (small_board(), small_board().run(*self.arrays)):
+            self.assertIn("<svg", shown._repr_html_())
+        self.assertIn("system", repr(small_board().run()))
+
+
+class Runs(PythonTest):
+    def test_a_run_is_that_of_the_command(self):
+        for options in ([], PRELOADED):
+            self.succeeds(run("run", "fpl2003", *SMALL, *options, *self.pair, "--out", self.out))
+            found = small_board().run(*self.arrays, **(ALONE if options else {}))
+            stats = self.stats()
+            self.assertEqual({key: found.statistics[key] for key in stats}, stats)
+            self.assertTrue((found.disparity == read_pfm(self.out / "disparity.pfm")).all())
+            self.assertIsNone(found.disparities)
+
+    def test_files_and_other_sources(self):
+        board = small_board()
+        of_arrays = board.run(*self.arrays, **ALONE)
+        of_files = board.run(self.left, str(self.right), **ALONE)
+        self.assertTrue((of_files.disparity == of_arrays.disparity).all())
+        self.assertEqual(board.run(synthetic=1, **ALONE).disparity.shape, (HEIGHT, WIDTH))
+        found = board.run(self.left, self.right, out=self.out, **ALONE)
+        self.assertEqual(found.statistics["frames"], self.stats()["frames"])
+        self.assertIn("does not go with arrays", str(self.refusal(
+            lambda: board.run(*self.arrays, out=self.folder / "other"))))
+
+    def test_a_stack_is_a_sequence(self):
+        pairs = [numpy.stack([numpy.roll(side, shift, 1) for shift in range(3)]) for side in self.arrays]
+        board = small_board()
+        found = board.run(*pairs, **ALONE)
+        self.assertEqual((found.disparities.shape, found.frame_numbers), ((3, HEIGHT, WIDTH), [0, 1, 2]))
+        for i in range(3):
+            one = board.run(pairs[0][i], pairs[1][i], **ALONE)
+            self.assertTrue((found.disparities[i] == one.disparity).all())
+        slow = small_board(fpga__clock_mhz=1, cameras__frame_rate_hz=1000)
+        dropped = slow.run(*pairs, frames=4)
+        self.assertEqual(len(dropped.disparities), 4)
+        self.assertGreater(dropped.frame_numbers[-1], 3)  # the cameras were faster
+
+    def test_tables(self):
+        found = small_board(allocation__left_lut="bank0").run(**ALONE)
+        self.assertEqual(list(found.banks.name), [f"bank{i}" for i in range(8)])
+        self.assertEqual(found.banks.reads.sum(), sum(bank["reads"] for bank in found.statistics["banks"]))
+        self.assertEqual((found.blame.port[0], found.blame.by[0]), ("left_lut", "left_pixel"))
+        self.assertEqual(found.ports.stall_cycles[0], found.blame.cycles[0])
+        self.assertEqual(list(small_board().run(**ALONE).blame.columns), ["port", "bank", "by", "cycles"])
+
+    def test_arrays_that_do_not_fit(self):
+        board = small_board()
+        left, right = self.arrays
+        for pair, text in (((left[:, 1:], right), "shapes (24, 31) and (24, 32): must be equal"),
+                           ((left[1:], right[1:]), "shape (23, 32): must be (24, 32) or (pairs, 24, 32)"),
+                           ((left, None), "must both be there"),
+                           ((left[None, None], right[None, None]), "shape (1, 1, 24, 32)"),
+                           ((left[None][:0], right[None][:0]), "shape (0, 24, 32)")):
+            self.assertIn(text, str(self.refusal(lambda: board.run(*pair))))  # noqa: B023
+        with self.assertRaisesRegex(TypeError, "left: float64: must be an array of uint8"):
+            board.run(left / 2, right)
+        self.assertIn("arrays, --synthetic: a run has one source",
+                      str(self.refusal(lambda: board.run(left, right, synthetic=1))))
+
+    def test_options_that_there_are_not(self):
+        self.assertIn("--frams: unknown option; nearest: --frames",
+                      str(self.refusal(lambda: small_board().run(frams=1))))
+
+    def test_warnings_are_warnings(self):
+        board = stereotlm.Board(sets={
+            "image": {"width": 64, "height": 16}, "cameras.frame_rate_hz": 800, "fpga.clock_mhz": 4,
+            "capture.fifo_words": 16, "capture.fifo_trigger_words": 4, "bridge.posted_words": 16,
+            "fpga.priority": ["result", "left_pixel", "right_pixel", "left_lut", "right_lut", "host"],
+            "matcher.filter": "none", "matcher.disparities": 4, "ssram.banks": {"A": {}}, "allocation": {
+                "left_image": ["A", "A"], "right_image": ["A", "A"], "disparity": "A", "left_lut": "none",
+                "right_lut": "none"}})
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            board.run()
+        self.assertIn("pixels", str(caught[0].message))
+
+
+class Commands(PythonTest):
+    def test_explain_conflicts_and_bounds_are_those_of_the_commands(self):
+        shared = {"allocation__left_lut": "bank0"}
+        board = small_board(**shared)
+        words = [*SMALL, *sets("allocation.left_lut=bank0")]
+        document = json.loads(self.succeeds(run("explain", "fpl2003", *words, *PRELOADED, "--json")))
+        found = board.explain(**ALONE)
+        self.assertEqual(found.attrs["document"], document)
+        self.assertEqual(list(found.key), [change["key"] for change in document["changes"]])
+        best = board.changed(found.sets[0])
+        self.assertEqual(best.run(frames=6, **ALONE).frames_per_second["core"], found.frames_per_second[0])
+        document = json.loads(self.succeeds(run("conflicts", "fpl2003", *words, *self.pair, "--json")))
+        self.assertEqual(board.conflicts(*self.arrays).attrs["document"], document)
+        self.assertEqual(list(board.conflicts().cycles), [wait["cycles"] for wait in document["waits"]])
+        document = json.loads(self.succeeds(run("bounds", "fpl2003", *words, "--json")))
+        self.assertEqual(board.bounds(), document)
+
+    def test_allocate(self):
+        database = self.folder / "boards.db"
+        found = small_board().allocate(4, out=database, frames=2, **ALONE)
+        self.assertEqual(list(found.banks), [1, 2, 3, 4])
+        best = small_board().changed(found.sets[3]).run(frames=2, **ALONE)
+        self.assertEqual(best.frames_per_second["core"], found["frames_per_second.core"][3])
+        self.assertTrue(database.is_file())
+        self.assertIn("--banks = 9", str(self.refusal(lambda: small_board().allocate(9))))
+
+    def test_sweep(self):
+        board = small_board(matcher__window=9)
+        found = board.sweep({"matcher.window": [7, 5], "fpga.clock_mhz": range(20, 41, 20)},
+                            where=["matcher.window < 7 OR fpga.clock_mhz < 30"],
+                            out=self.folder / "points.db")
+        self.assertEqual(list(found.columns[:2]), ["matcher.window", "fpga.clock_mhz"])
+        self.assertEqual(list(found["matcher.window"]), [5, 5, 7])
+        self.assertEqual(list(found["fpga.clock_mhz"]), [20, 40, 20])
+        board.matcher.window = 5
+        board.fpga.clock_mhz = 40
+        rate = board.run(frames=2, **ALONE).frames_per_second["core"]
+        self.assertEqual(found["frames_per_second.core"][1], rate)
+        self.assertEqual(len(board.sweep(zip=[{"matcher.window": [5, 7], "matcher.rows": [1, 2]}])), 2)
+        self.assertIn('matcher.window = 6', str(self.refusal(lambda: board.sweep({"matcher.window": [6]}))))
+
+    def test_tables_without_pandas(self):
+        with unittest.mock.patch.dict(sys.modules, {"pandas": None}):
+            banks = small_board(allocation__left_lut="bank0").run(**ALONE)
+            table = banks.banks
+            self.assertIsInstance(table, numpy.ndarray)
+            self.assertEqual(list(table["name"]), [f"bank{i}" for i in range(8)])
+            self.assertEqual(table["reads"].dtype.kind, "i")
+            self.assertEqual(list(table.dtype.names), list(banks.statistics["banks"][0]))
+            self.assertEqual(len(small_board().run(**ALONE).blame), 0)
+            explained = small_board().explain(**ALONE)
+            self.assertEqual(explained.attrs["document"]["board"], "fpl2003")
+            self.assertEqual(list(explained["key"])[0], explained.attrs["document"]["changes"][0]["key"])
+        self.assertIsInstance(small_board().run(**ALONE).banks, pandas.DataFrame)
+
+    def test_progress_is_shown_by_tqdm(self):
+        bars = []
+
+        class Bar:
+            def __init__(self, **_):
+                self.total, self.n, self.shown, self.closed = None, 0, [], False
+                bars.append(self)
+
+            def set_description_str(self, text):
+                self.shown.append((self.n, self.total, text))
+
+            def close(self):
+                self.closed = True
+
+        fake = types.SimpleNamespace(tqdm=Bar)
+        with unittest.mock.patch.dict(sys.modules, {"tqdm": fake, "tqdm.auto": fake}):
+            stereotlm.Board("fpl2003").run(frames=6, fidelity="cycle", **ALONE)
+        self.assertTrue(bars[0].closed)
+        done, of, text = bars[0].shown[-1]
+        self.assertEqual(of, 6)
+        self.assertRegex(text, r"/6 frames .* M cycles/s")
+        self.assertEqual(sorted(bars[0].shown), bars[0].shown)
+        with unittest.mock.patch.dict(sys.modules, {"tqdm": None, "tqdm.auto": None}):
+            self.assertEqual(small_board().run(frames=3, **ALONE).statistics["frames"], 3)
+
+
+class Workers(PythonTest):
+    def setUp(self):
+        super().setUp()
+        self.worker = stereotlm.Worker()
+        self.addCleanup(self.worker.close)
+
+    def children(self, pid):
+        return [int(child) for child in pathlib.Path(f"/proc/{pid}/task/{pid}/children").read_text().split()]
+
+    def while_it_works(self, action):
+        """Calls action(pid of the worker) while a command is executed; what the command has raised."""
+        raised = []
+        long = ["run", "fpl2003", *PRELOADED, "--synthetic", 1, "--fidelity", "cycle", "--frames", 1000]
+
+        def work():
+            try:
+                self.worker.execute(*long, progress=False)
+            except Exception as error:  # noqa: BLE001
+                raised.append(error)
+
+        thread = threading.Thread(target=work)
+        thread.start()
+        busy = lambda child: int(pathlib.Path(f"/proc/{child}/stat").read_text().split()[13]) > 20  # 0.2 s
+        program.wait_until(lambda: self.worker.pid and any(map(busy, self.children(self.worker.pid))))
+        action(self.worker.pid)
+        thread.join()
+        return raised[0]
+
+    def works(self):
+        self.assertEqual(self.worker.execute("boards", "--show", "fpl2003").output[0], "#")
+
+    def test_one_that_is_killed_is_an_exception_and_the_next_command_works(self):
+        self.works()
+        error = self.while_it_works(lambda pid: os.kill(pid, signal.SIGKILL))
+        self.assertIsInstance(error, stereotlm.WorkerDied)
+        self.assertIn("ended by signal 9", str(error))
+        self.works()
+        os.kill(self.worker.pid, signal.SIGKILL)
+        time.sleep(0.1)
+        self.works()  # no command is lost
+
+    def test_a_command_that_is_killed_is_an_exception_and_the_worker_works_on(self):
+        self.works()
+        pid = self.worker.pid
+        error = self.while_it_works(lambda pid: os.kill(self.children(pid)[0], signal.SIGKILL))
+        self.assertIsInstance(error, stereotlm.Failed)
+        self.assertIn("signal 9 (Killed)", str(error))
+        self.works()
+        self.assertEqual(self.worker.pid, pid)
+
+    def test_ctrl_c_ends_the_command(self):
+        script = self.file("long.py", f"""
+import sys
+sys.path.insert(0, {str(SOURCES / "sw" / "python")!r})
+import stereotlm
+board = stereotlm.Board("fpl2003")
+print("begins", stereotlm.worker._shared.pid, flush=True)
+try:
+    board.run(frames=1000, synthetic=1, source="preloaded", fidelity="cycle")
+except KeyboardInterrupt:
+    print("interrupted", stereotlm.worker._shared.pid, board.run(source="preloaded").statistics["frames"])
+""")
+        process = subprocess.Popen([sys.executable, "-B", script], stdout=subprocess.PIPE, text=True)
+        self.addCleanup(process.kill)
+        worker_pid = int(process.stdout.readline().split()[1])
+        time.sleep(0.5)
+        process.send_signal(signal.SIGINT)
+        self.assertEqual(process.communicate(timeout=60)[0], "interrupted None 1\n")
+        self.assertFalse(os.path.exists(f"/proc/{worker_pid}"))
+
+    def test_commands_do_not_change_later_ones(self):
+        colour = self.file("colour.ppm", b"P6 32 24 255\n" + bytes(2304))
+        note = ["run", "fpl2003", *SMALL, *PRELOADED, "--left", colour, "--right", self.right]
+        self.assertEqual(self.worker.execute("check", "fpl2003", "--quiet").messages, [])
+        self.assertIn("note: --left", self.worker.execute(*note).messages[0])
+        self.assertEqual(self.worker.execute(*note, "--quiet").messages, [])
+        self.assertIn("note: --left", self.worker.execute(*note).messages[0])
+
+    def test_paths_are_relative_to_the_folder_of_the_process(self):
+        self.addCleanup(os.chdir, os.getcwd())
+        self.works()
+        self.file("board.yaml", "extends: fpl2003\nname: mine\n")
+        os.chdir(self.folder)
+        self.assertIn("./board.yaml: ok", self.worker.execute("check", "./board.yaml").output)
+
+    def test_threads_share_one(self):
+        found = []
+        board = small_board()
+        work = lambda: found.append(board.run(**ALONE).statistics)
+        threads = [threading.Thread(target=work) for _ in range(8)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertEqual(found, [found[0]] * 8)
+
+    def test_a_forked_process_has_its_own(self):
+        board = small_board()
+        here = worker._shared.pid
+        read, write = os.pipe()
+        child = os.fork()
+        if child == 0:
+            board.run(**ALONE)
+            os.write(write, str(worker._shared.pid).encode())
+            worker._shared.close()
+            os._exit(0)
+        os.waitpid(child, 0)
+        self.assertNotEqual(int(os.read(read, 20)), here)
+        self.assertEqual(board.run(**ALONE).statistics["frames"], 1)
+        self.assertEqual(worker._shared.pid, here)
+
+    def test_a_failure_is_an_exception(self):
+        with self.assertRaisesRegex(stereotlm.Failed, "no space|File too large|full"):
+            plan = self.file("plan.yaml", "board: fpl2003\nvary: {matcher.window: [3, 5]}\n")
+            self.worker.execute("sweep", plan, "--out", "/dev/full")
+
+    def test_a_program_that_is_not_there(self):
+        with unittest.mock.patch.dict(os.environ, {"PATH": "/", "STEREOTLM_PROGRAM": ""}), \
+                unittest.mock.patch.object(worker, "__file__", "/a/b/c/d/e/worker.py"), \
+                self.assertRaisesRegex(FileNotFoundError, "STEREOTLM_PROGRAM"):
+            stereotlm.Worker().execute("boards")
+
+
+class Protocol(ProgramTest):
+    def answers(self, data):
+        """Lines of the worker's answers to these bytes, and its exit status."""
+        process = subprocess.run([PROGRAM, "worker"], input=data, capture_output=True, check=False,
+                                 timeout=60)
+        self.assertEqual(process.stderr, b"")
+        return [json.loads(line) for line in process.stdout.splitlines()], process.returncode
+
+    def test_no_request_is_no_answer(self):
+        self.assertEqual(self.answers(b""), ([], 0))
+
+    def test_requests_follow_each_other(self):
+        lines, status = self.answers(b'{"arguments": ["boards", "--show", "sdram"]}\n{"arguments": ["rn"]}\n')
+        self.assertEqual([line.get("status") for line in lines], [0, None, 2])
+        self.assertIn("unknown command", lines[1]["message"])
+        self.assertIn("'rn': unknown command", lines[2]["problems"][0]["message"])
+        self.assertEqual(status, 0)
+
+    def test_a_request_that_cannot_be_read_is_the_last(self):
+        big = b'{"arguments": ["boards"], "arrays": [{"name": "left", "shape": [65536, 65536, 2]}]}\n'
+        for request, text in ((b"boards\n", "parse error"), (b"[]\n", "a request of the worker"),
+                              (b'{"arguments": "boards"}\n', "must be array"),
+                              (b'{"arguments": [], "arrays": [{"name": "left", "shape": [400]}]}\nxx',
+                               "array left: ends early"),
+                              (big, "array left: must have at most 4294967296 bytes")):
+            lines, status = self.answers(request + b'{"arguments": ["boards"]}\n')
+            self.assertEqual([line.get("status") for line in lines], [None, 2], request)
+            self.assertIn(text, lines[0]["message"])
+            self.assertEqual(status, 0)
+
+    def test_a_folder_that_is_not_there_and_a_worker_in_a_worker(self):
+        lines, status = self.answers(b'{"arguments": ["boards"], "folder": "/none"}\n'
+                                     b'{"arguments": ["worker"]}\n')
+        self.assertEqual([line.get("status") for line in lines], [None, 2, None, 2])
+        self.assertIn("folder '/none': No such file", lines[0]["message"])
+        self.assertIn("cannot be a command for a worker", lines[2]["message"])
+
+
+class Notebook(unittest.TestCase):
+    @program.slow
+    def test_it_runs_from_a_fresh_kernel_and_prints_what_it_shows(self):
+        import nbclient
+        import nbformat
+        folder = SOURCES / "results" / "notebook"
+        notebook = nbformat.reads((folder / "board.ipynb").read_text(), as_version=4)
+        texts = lambda: [output.get("text") for cell in notebook.cells if cell.cell_type == "code"
+                         for output in cell.outputs if output.get("name") == "stdout"]
+        shown = texts()
+        with tempfile.TemporaryDirectory() as scratch, \
+                unittest.mock.patch.dict(os.environ, {"JUPYTER_DATA_DIR": scratch, "IPYTHONDIR": scratch,
+                                                      "PYTHONPATH": str(SOURCES / "sw" / "python")}):
+            nbclient.NotebookClient(notebook, timeout=300, kernel_name="python3",
+                                    resources={"metadata": {"path": str(folder)}}).execute()
+        self.assertTrue(shown)
+        self.assertEqual(texts(), shown)
+
+
+if __name__ == "__main__":
+    program.main()
