@@ -1,4 +1,5 @@
-# Man pages, completion of shells, and Debian packages: `cmake --build build/release --target packages`.
+# Man pages, completion of shells, JSON Schemas, and Debian packages: `cmake --build build/release --target
+# packages`.
 #
 # The packages are stereotlm (the program), libstereotlm-dev (libraries, headers, guides, example) and
 # python3-stereotlm (the module of Python). Man pages need help2man, completion needs Python; without them
@@ -30,6 +31,16 @@ if(Python3_Interpreter_FOUND)
   install(FILES ${completion}/stereotlm.fish COMPONENT program
     DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d OPTIONAL)
 endif()
+# The JSON Schemas of board files and plans, for editors.
+set(schemas ${PROJECT_BINARY_DIR}/schemas)
+file(MAKE_DIRECTORY ${schemas})
+foreach(name board plan)
+  set(schema ${schemas}/${name}.schema.json)
+  add_custom_command(OUTPUT ${schema} DEPENDS stereotlm
+    COMMAND stereotlm keys --schema ${name} > ${schema} VERBATIM)
+  add_custom_target(stereotlm_schema_of_${name} ALL DEPENDS ${schema})
+  install(FILES ${schema} DESTINATION ${CMAKE_INSTALL_DATADIR}/stereotlm/schemas COMPONENT program OPTIONAL)
+endforeach()
 # Debian's policy wants these two files in each package.
 string(TIMESTAMP date "%a, %d %b %Y %H:%M:%S +0000" UTC)
 foreach(package_and_component stereotlm/program libstereotlm-dev/development python3-stereotlm/python)
@@ -87,7 +98,8 @@ set(CPACK_COMPONENT_PYTHON_DESCRIPTION "the module of Python
 include(CPack)
 add_custom_target(packages
   DEPENDS stereotlm stereotlm_decoders stereotlm_calibration stereotlm_platform stereotlm_testing
-    $<TARGET_NAME_IF_EXISTS:stereotlm_manual> $<TARGET_NAME_IF_EXISTS:stereotlm_completion>
+    stereotlm_schema_of_board stereotlm_schema_of_plan $<TARGET_NAME_IF_EXISTS:stereotlm_manual>
+    $<TARGET_NAME_IF_EXISTS:stereotlm_completion>
   COMMAND ${CMAKE_CPACK_COMMAND} --config ${PROJECT_BINARY_DIR}/CPackConfig.cmake -B
     ${PROJECT_BINARY_DIR}/packages
   WORKING_DIRECTORY ${PROJECT_BINARY_DIR} VERBATIM USES_TERMINAL)

@@ -25,7 +25,6 @@ namespace {
 
 using Entry = YamlNode::Entry;
 
-constexpr std::size_t kMaximumBuffers = 3;  // entries of an image or disparity list
 const std::string kRefreshCycles = "refresh_cycles";
 
 // The value of a key's field. The accessors need a board that is not const.
@@ -50,6 +49,7 @@ Key integer(const char* path, int* (*field)(BoardConfig&), std::string meaning, 
 Key integer_or(const char* none, const char* path, std::optional<int>* (*field)(BoardConfig&),
                const char* meaning, const char* unit, const IntegerRule& rule) {
   Key made = {path, meaning, unit, {}, rule.text() + " or " + none, rule};
+  made.no_number = none;
   made.write = [none, field](const BoardConfig& board) {
     const std::optional<int> number = value_of(field, board);
     return number ? YamlNode::plain(std::to_string(*number)) : YamlNode::word(none);
@@ -253,7 +253,7 @@ std::optional<BufferBanks> read_buffer(ValueReader& values, const Key& key, cons
 void read_banks(ValueReader& values, const Key& key, const YamlNode& node, std::vector<BufferBanks>& list) {
   const std::vector<YamlNode> single = {node};
   const std::vector<YamlNode>& items = node.is_list() ? node.items : single;
-  if (items.empty() || items.size() > kMaximumBuffers) return values.report(key.path, node, key.rule_text);
+  if (items.empty() || items.size() > kMostBuffers) return values.report(key.path, node, key.rule_text);
   const std::size_t before = values.finding_count();
   list.clear();
   for (const YamlNode& item : items) {

@@ -55,7 +55,10 @@ struct Key {
   // it. Null for `pci.load`, for a part of the value of another key, and for a key of a bank.
   std::function<YamlNode(const BoardConfig&)> write = nullptr;
   std::function<void(ValueReader&, const Key&, const YamlNode::Entry& entry, BoardConfig&)> read = nullptr;
+  std::string no_number = "";  // the word that an integer may be instead, such as "off"; empty: none
 };
+
+inline constexpr std::size_t kMostBuffers = 3;  // entries of an image or disparity list
 
 // All keys, in the order in which the writer of board files writes them.
 const std::vector<Key>& board_keys();

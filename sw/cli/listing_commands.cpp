@@ -6,6 +6,7 @@
 #include "platform/config/board_keys.h"
 #include "platform/config/board_yaml.h"
 #include "sw/cli/command.h"
+#include "sw/cli/key_schema.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -63,6 +64,13 @@ int print_boards(const BoardsOptions& options) {
 struct KeysOptions : Options {
   using Options::Options;
 
+  void check_together(process::Problems& problems) override {
+    if (schema.is_given() && json.is_given()) problems.add("--schema: does not go with --json");
+  }
+
+  Option schema =
+      Option(this, "--schema", "board|plan", "Print the JSON Schema of board files, or of plans, for editors",
+             {one_of({"board", "plan"})});
   JsonOption json{this};
 };
 
@@ -97,7 +105,10 @@ std::string keys_text() {
 }
 
 int print_keys(const KeysOptions& options) {
-  process::print(options.json.is_given() ? keys_json() : keys_text());
+  process::print(options.schema.is_given()
+                     ? json_text(options.schema.text() == "board" ? board_schema() : plan_schema())
+                 : options.json.is_given() ? keys_json()
+                                           : keys_text());
   return kDone;
 }
 

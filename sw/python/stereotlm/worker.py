@@ -80,13 +80,13 @@ class _Bar:
         except ImportError:
             shown = False
         form = "{percentage:3.0f}%|{bar}| {desc}"
-        self._make = (lambda: tqdm(bar_format=form, leave=False)) if shown else None
+        self._make = (lambda of: tqdm(total=of, bar_format=form, leave=False)) if shown else None
 
     def show(self, done, of, text):
         if self._make is None:
             return
         if self._bar is None:
-            self._bar = self._make()
+            self._bar = self._make(of)
         self._bar.total, self._bar.n = of, done
         self._bar.set_description_str(text)
 
