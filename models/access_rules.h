@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <tlm>
 
 namespace stereotlm {
@@ -36,6 +37,14 @@ inline tlm::tlm_response_status check_access(const tlm::tlm_generic_payload& acc
   if (address % 4 != 0 || address > rules.end || length > rules.end - address)
     return tlm::TLM_ADDRESS_ERROR_RESPONSE;
   return tlm::TLM_OK_RESPONSE;
+}
+
+// "a read or write of whole words of 4 bytes, below address 64, without byte enables".
+inline std::string text_of(const AccessRules& rules) {
+  return std::string("a read or write of ") + (rules.one_word ? "one word" : "whole words") +
+         " of 4 bytes at a multiple of 4" +
+         (rules.end == UINT64_MAX ? "" : ", below address " + std::to_string(rules.end)) +
+         (rules.byte_enables ? "" : ", without byte enables");
 }
 
 // The rules of 32-bit registers at the byte addresses 0, 4, .. below `end`.

@@ -43,7 +43,7 @@ void CaptureBoard::step() {
 }
 
 void CaptureBoard::access_registers(tlm::tlm_generic_payload& access, sc_core::sc_time& delay) {
-  pci::access_registers(control_, registers::kEnd, access, delay);
+  pci::access_registers(control_, registers::kEnd, access, delay, refusals_);
   follow();
 }
 

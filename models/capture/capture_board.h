@@ -12,6 +12,7 @@
 #include "models/capture/capture_registers.h"
 #include "models/interrupt.h"
 #include "models/pci/pci_slot_if.h"
+#include "models/refusals.h"
 #include "models/step_event.h"
 #include "models/stream.h"
 
@@ -79,6 +80,7 @@ class CaptureBoard : public sc_core::sc_module, private CapturePartnerIf, privat
   const sc_core::sc_event& changed_event() const override { return interrupt_changed_; }
 
   CaptureControl control_;
+  Refusals refusals_{*this};
   StepEvent step_due_{"step_due"};
   sc_core::sc_event interrupt_changed_{"interrupt_changed"};
   bool interrupt_before_ = false;

@@ -38,8 +38,13 @@ tlm::tlm_response_status LocalBus::check(const tlm::tlm_generic_payload& access)
 }
 
 void LocalBus::b_transport(tlm::tlm_generic_payload& access, sc_core::sc_time&) {
+  refuse(access, tlm::TLM_GENERIC_ERROR_RESPONSE);
+}
+
+void LocalBus::refuse(tlm::tlm_generic_payload& access, tlm::tlm_response_status status) {
   control_.count_error();
-  access.set_response_status(tlm::TLM_GENERIC_ERROR_RESPONSE);
+  access.set_response_status(status);
+  refusals_.report(access, "whole words of 4 bytes by nb_transport, in one bank or one word of a register");
 }
 
 tlm::tlm_sync_enum LocalBus::nb_transport_fw(tlm::tlm_generic_payload& access, tlm::tlm_phase& phase,
@@ -54,8 +59,7 @@ tlm::tlm_sync_enum LocalBus::nb_transport_fw(tlm::tlm_generic_payload& access, t
     return tlm::TLM_ACCEPTED;
   }
   if (const tlm::tlm_response_status status = check(access); status != tlm::TLM_OK_RESPONSE) {
-    control_.count_error();
-    access.set_response_status(status);
+    refuse(access, status);
     return tlm::TLM_COMPLETED;
   }
   begin(access, delay);

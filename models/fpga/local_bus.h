@@ -9,6 +9,7 @@
 #include "models/fpga/local_bus_control.h"
 #include "models/kernel_time.h"
 #include "models/memory/word_access.h"
+#include "models/refusals.h"
 #include "models/stream.h"
 
 namespace stereotlm::fpga {
@@ -68,6 +69,7 @@ class LocalBus : public sc_core::sc_module,
   }
 
   tlm::tlm_response_status check(const tlm::tlm_generic_payload& access) const;
+  void refuse(tlm::tlm_generic_payload& access, tlm::tlm_response_status status);
   void begin(tlm::tlm_generic_payload& access, const sc_core::sc_time& delay);
   void run_registers();
   void await_register();
@@ -80,6 +82,7 @@ class LocalBus : public sc_core::sc_module,
   void end_burst_at(std::uint64_t end_ps, bool ok) override;
 
   LocalBusControl control_;
+  Refusals refusals_{*this};
   memory::WordAccess memory_access_{memory};
   memory::WordAccess register_access_{registers};
   tlm::tlm_generic_payload* burst_ = nullptr;  // the burst under way, until END_RESP

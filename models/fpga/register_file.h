@@ -7,6 +7,7 @@
 #include <tlm>
 
 #include "models/fpga/core_registers.h"
+#include "models/refusals.h"
 #include "models/stream.h"
 
 namespace stereotlm::fpga {
@@ -51,6 +52,7 @@ class RegisterFile : public sc_core::sc_module, private CoreRegisters::Starter {
   CoreRegisters control_{*this};
   sc_core::sc_event done_changed_{"done_changed"};
   Stats stats_;
+  Refusals refusals_{*this};
 };
 
 }  // namespace stereotlm::fpga

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "models/pci/pci_slot_if.h"
+#include "models/refusals.h"
 
 namespace stereotlm::host {
 
@@ -48,6 +49,7 @@ class HostBridge : public sc_core::sc_module, private pci::PciMasterIf {
   pci::PciBurst burst_;  // the requested or running burst
   pci::BurstResult result_;
   std::vector<std::uint32_t> words_;
+  Refusals refusals_{*this};
 };
 
 }  // namespace stereotlm::host

@@ -52,7 +52,8 @@ void Crossbar::PortTarget::route(std::size_t bank, bool write, tlm::tlm_blocking
 void Crossbar::PortTarget::b_transport(tlm::tlm_generic_payload& access, sc_core::sc_time& delay) {
   const std::uint64_t address = access.get_address();
   const std::uint64_t offset = address - bank_base_;
-  if ((granted_ & port_) == 0 || offset > kOffsetMask || access.get_command() != command_) {
+  if ((granted_ & port_) == 0 || offset > kOffsetMask || access.get_command() != command_ ||
+      access.get_data_length() > 4) {
     crossbar_.refuse(access);
     return;
   }
@@ -76,9 +77,11 @@ unsigned char* Crossbar::direct(std::uint64_t address, std::uint64_t bytes) {
   return dmi.get_dmi_ptr() + (first - dmi.get_start_address());
 }
 
-void Crossbar::refuse(tlm::tlm_generic_payload& access) const {
-  access.set_response_status(has_bank(access.get_address()) ? tlm::TLM_GENERIC_ERROR_RESPONSE
-                                                            : tlm::TLM_ADDRESS_ERROR_RESPONSE);
+void Crossbar::refuse(tlm::tlm_generic_payload& access) {
+  access.set_response_status(!has_bank(access.get_address()) ? tlm::TLM_ADDRESS_ERROR_RESPONSE
+                             : access.get_data_length() > 4  ? tlm::TLM_BURST_ERROR_RESPONSE
+                                                             : tlm::TLM_GENERIC_ERROR_RESPONSE);
+  refusals_.report(access, "one word by b_transport, along the port's route, in a cycle with a grant");
 }
 
 unsigned Crossbar::debug(tlm::tlm_generic_payload& access) {

@@ -12,6 +12,7 @@
 #include "models/memory/arbitration.h"
 #include "models/memory/direct_banks.h"
 #include "models/memory/memory_config.h"
+#include "models/refusals.h"
 
 namespace stereotlm::memory {
 
@@ -93,7 +94,7 @@ class Crossbar : public sc_core::sc_module, public DirectBanks {
     std::uint64_t bank_base_ = 0;  // first address of the bank to which the port is directed
     tlm::tlm_blocking_transport_if<>* bank_port_ = nullptr;  // looked up once, for speed
   };
-  void refuse(tlm::tlm_generic_payload& access) const;
+  void refuse(tlm::tlm_generic_payload& access);
   unsigned debug(tlm::tlm_generic_payload& access);
   bool has_bank(std::uint64_t address) const { return bank_of_address(address) < banks.size(); }
 
@@ -102,6 +103,7 @@ class Crossbar : public sc_core::sc_module, public DirectBanks {
   // Grants of the current cycle that are not yet used: ports 0..63, then the others. A stage changes one
   // word.
   std::array<std::uint64_t, 2> granted_{};
+  Refusals refusals_{*this};
 };
 
 }  // namespace stereotlm::memory

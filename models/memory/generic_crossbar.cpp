@@ -41,8 +41,13 @@ ArbiterStats GenericCrossbar::stats(std::size_t bank) const {
 }
 
 void GenericCrossbar::transport(int number, tlm::tlm_generic_payload& access, sc_core::sc_time& delay) {
-  if (const auto status = check(access); status != tlm::TLM_OK_RESPONSE)
-    return refuse(number, access, status);
+  const auto status = check(access);
+  access.set_response_status(status);
+  if (status != tlm::TLM_OK_RESPONSE) {
+    return refusals_.report(access,
+                            "whole words of 4 bytes, in one of " + std::to_string(banks.size()) + " banks",
+                            ports[static_cast<std::size_t>(number)].basename());
+  }
   if (delay != sc_core::SC_ZERO_TIME) wait(delay);
   PortState& port = states_[static_cast<std::size_t>(number)];
   const std::uint64_t turn = port.arrived++;
@@ -63,18 +68,6 @@ tlm::tlm_response_status GenericCrossbar::check(const tlm::tlm_generic_payload& 
   const std::uint64_t last = access.get_address() + access.get_data_length() - 4;
   return bank_of_address(last) == bank_of_address(access.get_address()) ? tlm::TLM_OK_RESPONSE
                                                                         : tlm::TLM_ADDRESS_ERROR_RESPONSE;
-}
-
-void GenericCrossbar::refuse(int port, tlm::tlm_generic_payload& access, tlm::tlm_response_status status) {
-  access.set_response_status(status);
-  if (std::exchange(has_reported_, true)) return;
-  SC_REPORT_WARNING(
-      "/stereotlm/generic_crossbar",
-      (std::string(ports[static_cast<std::size_t>(port)].name()) + ": " + access.get_response_string() +
-       " for " + std::to_string(access.get_data_length()) + " bytes at address " +
-       std::to_string(access.get_address()) + ": must be whole words in one of " +
-       std::to_string(banks.size()) + " banks (generic_crossbar.h); later refusals are not reported")
-          .c_str());
 }
 
 // Requests the next cycle in which a port requests.

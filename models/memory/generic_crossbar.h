@@ -15,6 +15,7 @@
 #include "models/decision_point.h"
 #include "models/memory/bank_arbiter.h"
 #include "models/memory/crossbar.h"
+#include "models/refusals.h"
 #include "models/step_event.h"
 
 namespace stereotlm::memory {
@@ -42,8 +43,7 @@ namespace stereotlm::memory {
 // | an address in no bank, or words in two banks                   | TLM_ADDRESS_ERROR_RESPONSE     |
 // | a word that its bank refuses: the words behind it are left out | that of the bank               |
 //
-// The first access that the crossbar refuses is reported with SC_REPORT_WARNING (type
-// /stereotlm/generic_crossbar).
+// The first access that the crossbar refuses is reported (refusals.h).
 class GenericCrossbar : public sc_core::sc_module {
  public:
   sc_core::sc_vector<tlm_utils::simple_target_socket_tagged<GenericCrossbar>> ports;  // [port]
@@ -72,7 +72,6 @@ class GenericCrossbar : public sc_core::sc_module {
   void transport(int port, tlm::tlm_generic_payload& access, sc_core::sc_time& delay);
   unsigned debug(int port, tlm::tlm_generic_payload& access);
   tlm::tlm_response_status check(const tlm::tlm_generic_payload& access) const;
-  void refuse(int port, tlm::tlm_generic_payload& access, tlm::tlm_response_status status);
   void begin_cycle();
   void decide();
   void decide(std::size_t bank, std::uint64_t cycle, PortMask requests, PortMask writes);
@@ -88,7 +87,7 @@ class GenericCrossbar : public sc_core::sc_module {
   std::vector<std::pair<Port, std::size_t>> granted_;  // port and bank, in the order of their accesses
   std::uint64_t granted_cycle_ = 0;
   sc_core::sc_event accesses_{"accesses"};
-  bool has_reported_ = false;
+  Refusals refusals_{*this};
   StepEvent cycle_{"cycle"};
   DecisionPoint decision_{"decision", [this] { decide(); }};
 };

@@ -10,16 +10,15 @@ void RamTarget::b_transport(tlm::tlm_generic_payload& access, sc_core::sc_time& 
   access.set_response_status(status);
   if (status != tlm::TLM_OK_RESPONSE) {
     ++stats_.errors;
+    refusals_.report(access, rules_);
     return;
   }
   access.set_dmi_allowed(true);
   move(access);
-  if (access.is_read()) {
-    ++stats_.reads;
-    delay += read_time_;
-  } else {
-    ++stats_.writes;
-  }
+  const unsigned words = access.get_data_length() / 4;
+  (access.is_read() ? stats_.reads : stats_.writes) += words;
+  if (access.is_read()) delay += read_time_;
+  if (words > 1) delay += word_time_ * (words - 1);
 }
 
 // Moves the enabled bytes.

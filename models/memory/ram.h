@@ -8,6 +8,7 @@
 #include <tlm>
 
 #include "models/access_rules.h"
+#include "models/refusals.h"
 
 namespace stereotlm::memory {
 
@@ -38,22 +39,28 @@ class Ram {
 };
 
 // The base-protocol target that SsramBank and HostMemory bind to their sockets. b_transport never waits. A
-// read adds `read_time` to `delay`, a write nothing. nb_transport_fw has the same effect and returns
-// TLM_COMPLETED. An access that breaks the rules has the response of check_access(), and no effect. Debug
-// transport takes any length. DMI grants the whole memory, for reads and writes, and is never revoked.
+// read adds `read_time` to `delay`, and each word behind the first adds `word_time` to both. nb_transport_fw
+// has the same effect and returns TLM_COMPLETED. An access that breaks the rules has the response of
+// check_access(), and no effect; the first one is reported (refusals.h). Debug transport takes any length. DMI grants the whole memory, for reads and writes, and is never revoked.
 class RamTarget : public tlm::tlm_fw_transport_if<> {
  public:
   // Debug transport and DMI are not counted.
   struct Stats {
-    std::uint64_t reads = 0;  // transactions
+    std::uint64_t reads = 0;  // words
     std::uint64_t writes = 0;
     std::uint64_t errors = 0;  // refused accesses
   };
 
   // `rules.end` is the number of bytes. `report`: the type of the SC_REPORT_ERROR for a phase other than
-  // BEGIN_REQ.
-  RamTarget(const AccessRules& rules, const sc_core::sc_time& read_time, const char* report)
-      : rules_(rules), read_time_(read_time), report_(report), ram_(rules.end) {}
+  // BEGIN_REQ. `owner`: the module, which outlives this object.
+  RamTarget(const AccessRules& rules, const sc_core::sc_time& read_time, const sc_core::sc_time& word_time,
+            const char* report, const sc_core::sc_object& owner)
+      : rules_(rules),
+        read_time_(read_time),
+        word_time_(word_time),
+        report_(report),
+        refusals_(owner),
+        ram_(rules.end) {}
 
   void b_transport(tlm::tlm_generic_payload& access, sc_core::sc_time& delay) override;
   tlm::tlm_sync_enum nb_transport_fw(tlm::tlm_generic_payload& access, tlm::tlm_phase& phase,
@@ -70,7 +77,9 @@ class RamTarget : public tlm::tlm_fw_transport_if<> {
 
   AccessRules rules_;
   sc_core::sc_time read_time_;
+  sc_core::sc_time word_time_;
   const char* report_;
+  Refusals refusals_;
   Ram ram_;
   Stats stats_;
 };

@@ -12,8 +12,9 @@
 
 namespace stereotlm::memory {
 
-// One synchronous SRAM bank, or one of SDRAM (RamTarget): one 32-bit word per access, with or without byte
-// enables. A read takes the time until its reader can use the word. The arbiter in front of the bank decides
+// One synchronous SRAM bank, or one of SDRAM (RamTarget): 32-bit words, with or without byte enables. A read
+// takes the time until its reader can use the word. A burst takes a cycle more for each further word; it knows
+// no arbiter and no rows of SDRAM, which are the arbiter's. The arbiter in front of the bank decides
 // which port may access it. A bank with separate ports also has one socket: if a cycle has a read and a
 // write, the initiators read first. Words are in the byte order of the host computer.
 class SsramBank : public sc_core::sc_module {
@@ -26,7 +27,9 @@ class SsramBank : public sc_core::sc_module {
   SsramBank(const sc_core::sc_module_name& name, const SsramBankConfig& config)
       : sc_module(name),
         config_(checked(this->name(), config)),
-        target_({std::uint64_t{config.words} * 4, true, true}, read_time(config), "/stereotlm/ssram_bank") {
+        target_({std::uint64_t{config.words} * 4, false, true},
+                cycles_time(config, read_latency_cycles(config)), cycles_time(config, 1),
+                "/stereotlm/ssram_bank", *this) {
     port.bind(target_);
   }
 
@@ -36,10 +39,9 @@ class SsramBank : public sc_core::sc_module {
   const std::uint32_t* words() const { return reinterpret_cast<const std::uint32_t*>(target_.ram().data()); }
 
  private:
-  static sc_core::sc_time read_time(const SsramBankConfig& config) {
+  static sc_core::sc_time cycles_time(const SsramBankConfig& config, int cycles) {
     kernel_time::check_resolution();
-    const auto cycles = static_cast<std::uint64_t>(read_latency_cycles(config));
-    return kernel_time::to_time(Clock(config.clock_mhz).edge_ps(cycles));
+    return kernel_time::to_time(Clock(config.clock_mhz).edge_ps(static_cast<std::uint64_t>(cycles)));
   }
 
   SsramBankConfig config_;

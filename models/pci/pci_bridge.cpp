@@ -51,6 +51,7 @@ void PciBridge::access_slave(tlm::tlm_generic_payload& access, sc_core::sc_time&
     }
   }
   access.set_response_status(status);
+  if (status != tlm::TLM_OK_RESPONSE) refusals_.report(access, AccessRules{bridge::kSlaveWindowBytes});
 }
 
 // Waits until the words have arrived. Returns false if the read was refused.
@@ -69,7 +70,7 @@ void PciBridge::slave_read_ended(std::uint64_t /*now_ps*/, bool ok) {
 }
 
 void PciBridge::access_registers(tlm::tlm_generic_payload& access, sc_core::sc_time& delay) {
-  pci::access_registers(control_, bridge::kRegisterWindowBytes, access, delay);
+  pci::access_registers(control_, bridge::kRegisterWindowBytes, access, delay, refusals_);
   await_step();
 }
 

@@ -12,6 +12,7 @@
 #include "models/pci/bridge_control.h"
 #include "models/pci/pci_config.h"
 #include "models/pci/pci_slot_if.h"
+#include "models/refusals.h"
 #include "models/step_event.h"
 
 namespace stereotlm::pci {
@@ -76,6 +77,7 @@ class PciBridge : public sc_core::sc_module,
   };
 
   BridgeControl control_;
+  Refusals refusals_{*this};
   StepEvent step_{"next_step"};
   sc_core::sc_event interrupt_changed_{"interrupt_changed"};
   bool reads_ = false;  // a read of the slave window is under way

@@ -12,6 +12,7 @@
 #include "models/access_rules.h"
 #include "models/kernel_time.h"
 #include "models/pci/pci_slot.h"
+#include "models/refusals.h"
 
 // The sockets between the PCI bus and its masters and targets.
 namespace stereotlm::pci {
@@ -74,7 +75,7 @@ class PciStopIf : public virtual sc_core::sc_interface {
 // Makes the access of a transaction to the registers of a control, which lie below `end`. Responses: those of
 // check_access(), and TLM_COMMAND_ERROR_RESPONSE if the register does not have this direction.
 inline void access_registers(PciTarget& registers, std::uint64_t end, tlm::tlm_generic_payload& access,
-                             const sc_core::sc_time& delay) {
+                             const sc_core::sc_time& delay, Refusals& refusals) {
   tlm::tlm_response_status status = check_access(access, registers_below(end));
   const bool is_one_word = status == tlm::TLM_OK_RESPONSE;
   std::uint32_t word = 0;
@@ -88,6 +89,7 @@ inline void access_registers(PciTarget& registers, std::uint64_t end, tlm::tlm_g
   if (ok && access.is_read()) std::memcpy(access.get_data_ptr(), &word, 4);
   if (is_one_word && !ok) status = tlm::TLM_COMMAND_ERROR_RESPONSE;
   access.set_response_status(status);
+  if (status != tlm::TLM_OK_RESPONSE) refusals.report(access, registers_below(end));
 }
 
 }  // namespace stereotlm::pci

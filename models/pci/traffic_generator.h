@@ -15,6 +15,7 @@
 #include "models/pci/pci_config.h"
 #include "models/pci/pci_slot_if.h"
 #include "models/pci/traffic_control.h"
+#include "models/refusals.h"
 
 namespace stereotlm::pci {
 
@@ -45,13 +46,15 @@ class TrafficGenerator : public sc_core::sc_module {
     tlm::tlm_response_status status = check_access(access, {});
     if (access.is_write()) status = tlm::TLM_COMMAND_ERROR_RESPONSE;
     access.set_response_status(status);
-    if (status != tlm::TLM_OK_RESPONSE) return;
+    if (status != tlm::TLM_OK_RESPONSE)
+      return refusals_.report(access, "a read of whole words of 4 bytes, without byte enables");
     std::memset(access.get_data_ptr(), 0, access.get_data_length());
     delay += kernel_time::to_time(access_ps_);
   }
 
   TrafficControl control_;
   std::uint64_t access_ps_;
+  Refusals refusals_{*this};
 };
 
 }  // namespace stereotlm::pci

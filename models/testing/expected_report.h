@@ -12,7 +12,8 @@ namespace stereotlm::test {
 //
 // An announcement covers `count` reports of this message type, of any of the three severities. The test fails
 // if more reports come, or if fewer have come when the announcement goes out of scope. An announced report
-// keeps its effect: SystemC throws an error and aborts at a fatal one. Info reports are ignored.
+// keeps its effect: SystemC throws an error and aborts at a fatal one. Info reports are ignored, and those
+// of a type whose actions the test has set to SC_DO_NOTHING.
 class ExpectedReport {
  public:
   explicit ExpectedReport(std::string message_type, int count = 1);

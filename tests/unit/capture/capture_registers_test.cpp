@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "models/capture/capture_fifo.h"
+#include "models/testing/expected_report.h"
 #include "tests/support/refused_access.h"
 #include "tests/unit/capture/capture_bench.h"
 
@@ -36,6 +37,7 @@ TEST_F(CaptureRegisters, AreZeroAtFirstAndKeepTheBufferAddress) {
 }
 
 TEST_F(CaptureRegisters, RefuseIncorrectAccessesWithoutEffect) {
+  const test::ExpectedReport refusal("/stereotlm/refused_access");
   build();
   std::vector<test::RefusedAccess> refused;
   for (const auto command : {tlm::TLM_READ_COMMAND, tlm::TLM_WRITE_COMMAND}) {

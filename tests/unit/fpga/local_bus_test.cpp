@@ -91,6 +91,7 @@ TEST_F(LocalBusTest, CountsTheWordsWrittenToEachBuffer) {
 }
 
 TEST_F(LocalBusTest, TransfersTheOtherWordsBesideOneThatIsRefused) {
+  const test::ExpectedReport refusal("/stereotlm/refused_access");
   host.request(TLM_WRITE_COMMAND, (kWords - 1) * 4, Words{8, 9});
   grant(3 * kLocalPs);
   grant(4 * kLocalPs);
@@ -111,6 +112,7 @@ TEST_F(LocalBusTest, TransfersTheOtherWordsBesideOneThatIsRefused) {
 }
 
 TEST_F(LocalBusTest, AnswersABurstAsTheFirstOfItsRefusedWords) {
+  const test::ExpectedReport refusal("/stereotlm/refused_access");
   // A register that cannot be read, registers that can, and an address after the last.
   host.request(TLM_READ_COMMAND, kLocalRegisters + registers::kControl, Words(registers::kEnd / 4 + 1));
   run_until(20);
@@ -120,6 +122,7 @@ TEST_F(LocalBusTest, AnswersABurstAsTheFirstOfItsRefusedWords) {
 }
 
 TEST_F(LocalBusTest, RefusesAtOnceAccessesThatAreNoBurst) {
+  const test::ExpectedReport refusal("/stereotlm/refused_access", 2);
   const auto status = [this](tlm::tlm_command command, std::uint64_t address, std::size_t words) {
     EXPECT_EQ(host.request(command, address, Words(words)), tlm::TLM_COMPLETED);
     return host.answers.back().status;

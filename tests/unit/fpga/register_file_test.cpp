@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include "models/testing/expected_report.h"
 #include "models/testing/monitoring_binder.h"
 #include "models/testing/test_host.h"
 #include "tests/unit/fpga/stream_ends.h"
@@ -74,6 +75,7 @@ TEST_F(RegisterFileTest, DrivesTheInterruptAtTheEndOfAFrameAndAtItsAcknowledgeme
 }
 
 TEST_F(RegisterFileTest, RefusesAccessesThatAreNotOneWordOfARegister) {
+  const test::ExpectedReport refusal("/stereotlm/refused_access");
   struct Access {
     std::uint64_t address = registers::kLeftImageBase;
     unsigned length = 4;

@@ -59,6 +59,7 @@ class LutReaderTest : public StageTest<LutReader> {
 };
 
 TEST_F(LutReaderTest, TakesARefusedAccessForAnEntryThatIsNotValid) {
+  const test::ExpectedReport refusal("/stereotlm/refused_access");
   preload(9, kernels::make_entry(5, 1));
   stage.start_frame(Placement({}, 0, 8), {});
   stage.slots_in->push({1, 1, false, kAt});  // the last word of the bank
@@ -85,6 +86,7 @@ class PixelReaderTest : public StageTest<PixelReader> {
 };
 
 TEST_F(PixelReaderTest, ReadsZeroWhereAnAccessIsRefused) {
+  const test::ExpectedReport refusal("/stereotlm/refused_access");
   stage.start_frame(Placement({}, 9, 2));  // one word before the end of the bank
   stage.slots_in->push({3, 0, false, kAt});
   EXPECT_EQ(stage.errors(), 0U);
@@ -128,6 +130,7 @@ TEST_F(ResultWriterTest, ReportsAWriteFromAnEmptyQueue) {
 }
 
 TEST_F(ResultWriterTest, CountsWordsThatMemoryRefuses) {
+  const test::ExpectedReport refusal("/stereotlm/refused_access");
   for (std::uint32_t word = 4; word <= 10; ++word) {
     write(word);
     EXPECT_EQ(stage.errors(), word < 10 ? 0U : 1U);

@@ -5,6 +5,7 @@
 
 #include <stdexcept>
 
+#include "models/testing/expected_report.h"
 #include "tests/support/reference_arithmetic.h"
 #include "tests/unit/fpga/stereo_core_bench.h"
 
@@ -128,6 +129,7 @@ TEST_P(StereoCoreBases, MustLieInABankThatTheBoardHas) {
 }
 
 TEST_P(StereoCoreBases, RaiseErrorBehindABanksEndAndTheFrameEnds) {
+  const test::ExpectedReport refusal("/stereotlm/refused_access");
   build(small_board());
   // The last word of the buffer of 8 x 6 pixels lies just inside, then just outside.
   const auto last_fit = static_cast<std::uint32_t>(kWords - 8 * 6 * tested().bytes_per_pixel / 4);

@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "models/testing/expected_report.h"
 #include "models/testing/test_host.h"
 #include "tests/support/refused_access.h"
 #include "tests/unit/pci/pci_bus_bench.h"
@@ -103,6 +104,7 @@ TEST_F(HostBridgeTest, ContinuesAReadThatTheLatencyTimerCut) {
 }
 
 TEST_F(HostBridgeTest, AnswersAMasterAbortAsAnAddressErrorAndATargetErrorAsAGenericError) {
+  const test::ExpectedReport refusal("/stereotlm/refused_access");
   build();
   simulate([this] {
     EXPECT_EQ(cpu.read(kBase + PciBusBench::kBytes).status, tlm::TLM_ADDRESS_ERROR_RESPONSE);
@@ -142,6 +144,7 @@ TEST_F(HostBridgeTest, ServesANonBlockingProcessor) {
 }
 
 TEST_F(HostBridgeTest, RefusesAccessesThatABurstCannotCarry) {
+  const test::ExpectedReport refusal("/stereotlm/refused_access");
   test::ProtocolOptions options;
   options.whole_words = false;
   build(options);

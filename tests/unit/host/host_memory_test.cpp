@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "models/testing/expected_report.h"
 #include "models/testing/monitoring_binder.h"
 #include "models/testing/test_host.h"
 #include "tests/support/refused_access.h"
@@ -88,6 +89,7 @@ TEST_F(HostMemoryTest, MovesTheEnabledBytesOnly) {
 }
 
 TEST_F(HostMemoryTest, RefusesIncorrectAccesses) {
+  const test::ExpectedReport refusal("/stereotlm/refused_access");
   test::ProtocolOptions options;
   options.whole_words = false;
   build(options);

@@ -6,6 +6,7 @@
 #include <tuple>
 #include <vector>
 
+#include "models/testing/expected_report.h"
 #include "tests/support/scripted_ends.h"
 #include "tests/unit/memory/crossbar_bench.h"
 
@@ -164,6 +165,7 @@ TEST_F(CrossbarRevoked, IsNullForWordsThatCanOnlyBeRead) {
 class CrossbarAim : public CrossbarBench {};
 
 TEST_F(CrossbarAim, LeadsAnAccessOnlyIfThePortIsGranted) {
+  const test::ExpectedReport refusal("/stereotlm/refused_access");
   crossbar->aim(port::kHost, kFlowThrough, true);
   const auto write = [this] { return at(port::kHost).write(crossbar_address(kFlowThrough, 2), 9).status; };
   EXPECT_EQ(write(), tlm::TLM_GENERIC_ERROR_RESPONSE);

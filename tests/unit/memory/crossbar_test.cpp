@@ -43,6 +43,7 @@ struct Refused {
 class RefusedAccess : public CrossbarBench, public testing::WithParamInterface<Refused> {};
 
 TEST_P(RefusedAccess, ReachesNoBank) {
+  const test::ExpectedReport refusal("/stereotlm/refused_access");
   const Refused& access = GetParam();
   route(port::kLeftPixel, kPipelined, false);
   route(port::kResult, kFlowThrough, true);
@@ -67,6 +68,7 @@ INSTANTIATE_TEST_SUITE_P(Crossbar, RefusedAccess, testing::ValuesIn(kRefused),
                          [](const auto& suite) { return std::string(suite.param.name); });
 
 TEST_F(CrossbarPorts, RefuseTheSecondAccessOnOneGrant) {
+  const test::ExpectedReport refusal("/stereotlm/refused_access");
   route(port::kLeftPixel, kPipelined, false);
   for (const std::uint64_t cycle : {0U, 1U}) {
     arbitrate(cycle, kLeft);
@@ -77,7 +79,24 @@ TEST_F(CrossbarPorts, RefuseTheSecondAccessOnOneGrant) {
   EXPECT_EQ(accesses(kPipelined), 2U);
 }
 
+// A grant is for one word.
+TEST_F(CrossbarPorts, RefuseABurstAndKeepTheGrant) {
+  test::ExpectedReport refusal("/stereotlm/refused_access");
+  route(port::kLeftPixel, kPipelined, false);
+  arbitrate(0, kLeft);
+  EXPECT_EQ(at(port::kLeftPixel).read_words(crossbar_address(kPipelined, 0), 2).status,
+            tlm::TLM_BURST_ERROR_RESPONSE);
+  EXPECT_NE(
+      refusal.text().find("crossbar: TLM_BURST_ERROR_RESPONSE for a read of 8 bytes at address 0: must be "
+                          "one word by b_transport"),
+      std::string::npos)
+      << refusal.text();
+  EXPECT_EQ(accesses(kPipelined), 0U);
+  EXPECT_EQ(at(port::kLeftPixel).read(crossbar_address(kPipelined, 0)).status, tlm::TLM_OK_RESPONSE);
+}
+
 TEST_F(CrossbarPorts, ReachTheLastWordOfTheLastBankAndPassOnItsErrorsBeyond) {
+  const test::ExpectedReport refusal("/stereotlm/refused_access");
   route(port::kLeftPixel, kBurst, false);
   arbitrate(0, kLeft);
   EXPECT_EQ(at(port::kLeftPixel).read(crossbar_address(kBurst, kWords - 1)).status, tlm::TLM_OK_RESPONSE);

@@ -135,15 +135,16 @@ TEST(GenericCrossbar, RefusesAndReportsOnce) {
   Bench bench({{"fixed_priority", list_of(1)}, {{16}, {16}}});
   test::TestHost& host = bench.host(0);
   Process process("process", [&] {
-    test::ExpectedReport expected("/stereotlm/generic_crossbar", kReport);
+    test::ExpectedReport expected("/stereotlm/refused_access", kReport);
     EXPECT_EQ(host.read(crossbar_address(2, 0)).status, tlm::TLM_ADDRESS_ERROR_RESPONSE);
     EXPECT_NE(
-        expected.text().find("crossbar.port_0: TLM_ADDRESS_ERROR_RESPONSE for 4 bytes at address 536870912"),
+        expected.text().find("crossbar.port_0: TLM_ADDRESS_ERROR_RESPONSE for a read of 4 bytes at address "
+                             "536870912: must be whole words of 4 bytes, in one of 2 banks"),
         std::string::npos)
         << expected.text();
     EXPECT_EQ(host.read_words(crossbar_address(1, 0) - 4, 2).status, tlm::TLM_ADDRESS_ERROR_RESPONSE);
     EXPECT_EQ(bench.accesses(0).size(), 0U);
-    // The bank refuses the second word.
+    const test::ExpectedReport of_bank("/stereotlm/refused_access");  // refuses the second word
     EXPECT_EQ(host.write_words(crossbar_address(0, 15), {1, 2, 3}).status, tlm::TLM_ADDRESS_ERROR_RESPONSE);
     EXPECT_EQ(bench.accesses(0).size(), 2U);
   });

@@ -11,6 +11,7 @@
 #include "models/clock.h"
 #include "models/kernel_time.h"
 #include "models/memory/word_access.h"
+#include "models/testing/expected_report.h"
 #include "models/testing/monitoring_binder.h"
 #include "models/testing/test_host.h"
 
@@ -105,6 +106,7 @@ TEST_F(SsramBankTest, HoldsZerosAtFirstAndThenEachWordByItself) {
 }
 
 TEST_F(SsramBankTest, AnswersTheLastWordAndRefusesTheNextAddress) {
+  const test::ExpectedReport refusal("/stereotlm/refused_access");
   build();
   EXPECT_EQ(host.write((kWords - 1) * 4, 0).status, tlm::TLM_OK_RESPONSE);
   EXPECT_EQ(host.write(kWords * 4, 1).status, tlm::TLM_ADDRESS_ERROR_RESPONSE);
@@ -113,7 +115,8 @@ TEST_F(SsramBankTest, AnswersTheLastWordAndRefusesTheNextAddress) {
   EXPECT_EQ(bank->stats().errors, 3U);
 }
 
-TEST_F(SsramBankTest, RefusesAnAddressThatIsNotAlignedAndALengthOtherThanFour) {
+TEST_F(SsramBankTest, RefusesAnAddressThatIsNotAlignedAndALengthThatIsNotWholeWords) {
+  test::ExpectedReport refusal("/stereotlm/refused_access");
   build();
   payload.set_command(tlm::TLM_WRITE_COMMAND);
   data.fill(0xFF);
@@ -122,16 +125,35 @@ TEST_F(SsramBankTest, RefusesAnAddressThatIsNotAlignedAndALengthOtherThanFour) {
     expect_refused(tlm::TLM_ADDRESS_ERROR_RESPONSE);
     expect_violations(1);
   }
+  EXPECT_EQ(
+      refusal.text(),
+      "bank: TLM_ADDRESS_ERROR_RESPONSE for a write of 4 bytes at address 1: must be a read or write of "
+      "whole words of 4 bytes at a multiple of 4, below address 64; later refusals are not reported");
   payload.set_address(4);
   payload.set_streaming_width(8);
-  for (const unsigned length : {1U, 3U, 5U, 8U}) {
+  for (const unsigned length : {1U, 3U, 5U}) {
     payload.set_data_length(length);
     expect_refused(tlm::TLM_BURST_ERROR_RESPONSE);
-    expect_violations(length == 8 ? 0 : 1);
+    expect_violations(1);
   }
 }
 
+TEST_F(SsramBankTest, TakesBurstsOfOneCycleAWord) {
+  const test::ExpectedReport refusal("/stereotlm/refused_access");
+  build({kWords, BankKind::kZbtPipelined, 0, 40});
+  const sc_time cycle(25, sc_core::SC_NS);
+  EXPECT_EQ(host.write_words(8, {1, 2, 3, 4}).at, 3 * cycle);
+  const TestHost::Answer answer = host.read_words(12, 3);
+  EXPECT_EQ(answer.at, (2 + 2) * cycle);  // the latency is 2 cycles
+  EXPECT_EQ(answer.words, (std::vector<std::uint32_t>{2, 3, 4}));
+  EXPECT_EQ(bank->stats().writes, 4U);
+  EXPECT_EQ(bank->stats().reads, 3U);
+  EXPECT_EQ(host.read_words((kWords - 1) * 4, 2).status, tlm::TLM_ADDRESS_ERROR_RESPONSE);
+  EXPECT_EQ(host.read(8).word, 1U);
+}
+
 TEST_F(SsramBankTest, RefusesAStreamingWidthBelowTheWord) {
+  const test::ExpectedReport refusal("/stereotlm/refused_access");
   test::ProtocolOptions streaming;
   streaming.whole_words = false;
   build({kWords}, streaming);
@@ -143,6 +165,7 @@ TEST_F(SsramBankTest, RefusesAStreamingWidthBelowTheWord) {
 }
 
 TEST_F(SsramBankTest, RefusesByteEnablesOfLengthZeroAndACommandThatNeitherReadsNorWrites) {
+  const test::ExpectedReport refusal("/stereotlm/refused_access");
   build();
   payload.set_byte_enable_ptr(enables.data());
   payload.set_byte_enable_length(0);
@@ -205,6 +228,7 @@ TEST_F(SsramBankTest, OffersAndGrantsDirectAccessToTheWholeBankAndNotBeyond) {
 }
 
 TEST_F(SsramBankTest, CompletesANonBlockingAccessAtOnce) {
+  const test::ExpectedReport refusal("/stereotlm/refused_access");
   build();
   EXPECT_EQ(host.request(tlm::TLM_WRITE_COMMAND, 8, 77, sc_time(1, sc_core::SC_NS)), tlm::TLM_COMPLETED);
   EXPECT_EQ(host.request(tlm::TLM_READ_COMMAND, 8), tlm::TLM_COMPLETED);
@@ -221,6 +245,7 @@ TEST(SsramBank, RefusesAConfigurationWithProblems) {
 }
 
 TEST_F(SsramBankTest, ServesAWordAccessRepeatedly) {
+  const test::ExpectedReport refusal("/stereotlm/refused_access");
   build();
   WordAccess access(host.socket);
   sc_time delay;

@@ -1,5 +1,6 @@
 // The bridge as a target: posted writes, reads, registers, interrupts.
 #include "models/pci/posted_writes.h"
+#include "models/testing/expected_report.h"
 #include "tests/unit/pci/pci_bridge_bench.h"
 
 namespace stereotlm::pci {
@@ -83,6 +84,7 @@ TEST_F(PciBridgeSlave, ReadsBehindTheWritesPostedBefore) {
 }
 
 TEST_F(PciBridgeSlave, AnswersAReadThatTheBoardRefusesWithAnError) {
+  const test::ExpectedReport refusal("/stereotlm/refused_access");
   build();
   local.refused_address = 0;
   EXPECT_EQ(burst(false, kSlave, 1).result.end, BurstEnd::kTargetError);
@@ -123,6 +125,7 @@ TEST_F(PciBridgeSlave, RaisesTheInterruptWhileAnEnabledStatusBitIsSet) {
 }
 
 TEST_F(PciBridgeSlave, RefusesRegisterAccessesThatDoNotExist) {
+  const test::ExpectedReport refusal("/stereotlm/refused_access");
   build();
   const Script refused[] = {{true, bridge::kDmaStatus, 1},
                             {false, bridge::kDmaControl, 1},

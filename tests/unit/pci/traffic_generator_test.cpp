@@ -45,6 +45,7 @@ TEST_F(TrafficGeneratorTest, ReportsATargetThatAnswersWithAnError) {
 }
 
 TEST(TrafficGeneratorDevice, ReadsAsZerosAfterItsAccessTimeAndRefusesOtherAccesses) {
+  const test::ExpectedReport refusal("/stereotlm/refused_access");
   test::ProtocolOptions options;
   options.whole_words = false;
   test::MonitoringBinder binder(options);

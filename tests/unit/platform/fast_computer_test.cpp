@@ -275,6 +275,7 @@ class RandomProgram {
 };
 
 TEST(FastComputer, EndsEachAccessAndRaisesEachInterruptAtTheTimesOfComputer) {
+  sc_core::sc_report_handler::set_actions("/stereotlm/refused_access", sc_core::SC_DO_NOTHING);
   for (std::uint64_t seed = 0; seed < 12; ++seed) {
     BoardConfig board = fast_cameras();
     if (seed % 2 == 1) board.pci.load = PciLoadConfig{8, 3, 1, 0.5};
@@ -291,6 +292,7 @@ TEST(FastComputer, EndsEachAccessAndRaisesEachInterruptAtTheTimesOfComputer) {
 
 // Each access that a target refuses, in both directions.
 TEST(FastComputer, RefusesTheAccessesThatComputerRefuses) {
+  sc_core::sc_report_handler::set_actions("/stereotlm/refused_access", sc_core::SC_DO_NOTHING);
   BoardConfig board = fast_cameras();
   board.pci.load = PciLoadConfig{2, 1e9, 1e9, 0.1};
   const auto script = [](LoggedBus& bus) {
@@ -316,6 +318,7 @@ TEST(FastComputer, RefusesTheAccessesThatComputerRefuses) {
 
 // A program polls, while another process has events of its own between those of the computer.
 TEST(FastComputer, RunsBesideOtherProcesses) {
+  sc_core::sc_report_handler::set_actions("/stereotlm/refused_access", sc_core::SC_DO_NOTHING);
   const auto log = [](Fidelity fidelity) {
     return test::run_for_text([fidelity] {
       RunningComputer running(fidelity, RandomProgram(100));

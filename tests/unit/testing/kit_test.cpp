@@ -13,6 +13,7 @@
 #include "models/memory/generic_crossbar.h"
 #include "models/memory/ssram_bank.h"
 #include "models/testing/access_probe.h"
+#include "models/testing/expected_report.h"
 #include "models/testing/grant_check.h"
 #include "models/testing/monitoring_binder.h"
 #include "models/testing/scoreboard.h"
@@ -121,6 +122,7 @@ TEST(TestHost, EndsAResponseThatComesWithTheReturn) {
 }
 
 TEST(AccessProbe, KeepsTimesWordsAndResponses) {
+  const test::ExpectedReport refusal("/stereotlm/refused_access");
   TestHost host("host");
   AccessProbe probe("probe");
   memory::SsramBank bank("bank", {16});
@@ -210,6 +212,7 @@ TEST(Traffic, OfABrokenTraceIsRefusedWithItsLine) {
 }
 
 TEST(Traffic, FailsTheTestWithAnAccessThatIsRefused) {
+  const test::ExpectedReport refusal("/stereotlm/refused_access");
   TrafficInitiator initiator("initiator", strided_traffic(60, 4, 2, true));
   memory::SsramBank bank("bank", {16});
   initiator.socket().bind(bank.port);
