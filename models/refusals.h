@@ -17,8 +17,8 @@ class Refusals {
   // `target`: the module that refuses; it outlives this object.
   explicit Refusals(const sc_core::sc_object& target) : target_(target) {}
 
-  // Reports the access, unless one has been reported before. `rule`: what the target takes. `socket`: its name
-  // in the module, if there are several.
+  // Reports the access, unless one has been reported before. `rule`: what the target takes. `socket`: its
+  // name in the module, if there are several.
   void report(const tlm::tlm_generic_payload& access, const std::string& rule,
               const std::string& socket = "") {
     if (has_reported_) return;

@@ -62,8 +62,12 @@ tlm::tlm_sync_enum LocalBus::nb_transport_fw(tlm::tlm_generic_payload& access, t
     refuse(access, status);
     return tlm::TLM_COMPLETED;
   }
+  is_beginning_ = true;
   begin(access, delay);
-  return tlm::TLM_ACCEPTED;
+  is_beginning_ = false;
+  if (burst_ != nullptr) return tlm::TLM_ACCEPTED;
+  delay = end_delay_;
+  return tlm::TLM_COMPLETED;
 }
 
 void LocalBus::begin(tlm::tlm_generic_payload& access, const sc_core::sc_time& delay) {
@@ -112,13 +116,18 @@ bool LocalBus::transfer(memory::WordAccess& through, bool write, std::uint64_t a
 void LocalBus::end_burst_at(std::uint64_t end_ps, bool /*ok*/) {
   tlm::tlm_generic_payload& access = *burst_;
   access.set_response_status(status_);
-  responding_ = true;
-  tlm::tlm_phase phase = tlm::BEGIN_RESP;
   sc_core::sc_time delay = kernel_time::to_time(end_ps) - sc_core::sc_time_stamp();
-  const tlm::tlm_sync_enum answer = bus->nb_transport_bw(access, phase, delay);
-  if (answer == tlm::TLM_COMPLETED || (answer == tlm::TLM_UPDATED && phase == tlm::END_RESP)) {
-    responding_ = false;
+  if (is_beginning_) {  // nb_transport_bw may not be called within nb_transport_fw
+    end_delay_ = delay;
     burst_ = nullptr;
+  } else {
+    responding_ = true;
+    tlm::tlm_phase phase = tlm::BEGIN_RESP;
+    const tlm::tlm_sync_enum answer = bus->nb_transport_bw(access, phase, delay);
+    if (answer == tlm::TLM_COMPLETED || (answer == tlm::TLM_UPDATED && phase == tlm::END_RESP)) {
+      responding_ = false;
+      burst_ = nullptr;
+    }
   }
   access.release();
 }

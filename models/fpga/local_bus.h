@@ -20,7 +20,8 @@ namespace stereotlm::fpga {
 //
 // - BEGIN_REQ stands for the address clock: the first clock that begins at or after the annotated time.
 // - BEGIN_RESP stands for the end of the idle clock after the last word, when the bus is free. The next
-//   BEGIN_REQ comes after END_RESP (or TLM_COMPLETED).
+//   BEGIN_REQ comes after END_RESP (or TLM_COMPLETED). Where the end of a burst is known at BEGIN_REQ, it is
+//   answered with TLM_COMPLETED and the time until then.
 //
 // | refused at BEGIN_REQ                                                              | response           |
 // |-----------------------------------------------------------------------------------|--------------------|
@@ -87,6 +88,8 @@ class LocalBus : public sc_core::sc_module,
   memory::WordAccess register_access_{registers};
   tlm::tlm_generic_payload* burst_ = nullptr;  // the burst under way, until END_RESP
   bool responding_ = false;                    // between BEGIN_RESP and END_RESP
+  bool is_beginning_ = false;                  // in nb_transport_fw
+  sc_core::sc_time end_delay_;                 // of a burst that has ended there
   tlm::tlm_response_status status_ = tlm::TLM_OK_RESPONSE;
   sc_core::sc_event request_event_{"request"};
   sc_core::sc_event register_event_{"register"};

@@ -41,7 +41,8 @@ class Ram {
 // The base-protocol target that SsramBank and HostMemory bind to their sockets. b_transport never waits. A
 // read adds `read_time` to `delay`, and each word behind the first adds `word_time` to both. nb_transport_fw
 // has the same effect and returns TLM_COMPLETED. An access that breaks the rules has the response of
-// check_access(), and no effect; the first one is reported (refusals.h). Debug transport takes any length. DMI grants the whole memory, for reads and writes, and is never revoked.
+// check_access(), and no effect; the first one is reported (refusals.h). Debug transport takes any length.
+// DMI grants the whole memory, for reads and writes, and is never revoked.
 class RamTarget : public tlm::tlm_fw_transport_if<> {
  public:
   // Debug transport and DMI are not counted.

@@ -13,8 +13,8 @@
 namespace stereotlm::memory {
 
 // One synchronous SRAM bank, or one of SDRAM (RamTarget): 32-bit words, with or without byte enables. A read
-// takes the time until its reader can use the word. A burst takes a cycle more for each further word; it knows
-// no arbiter and no rows of SDRAM, which are the arbiter's. The arbiter in front of the bank decides
+// takes the time until its reader can use the word. A burst takes a cycle more for each further word; it
+// knows no arbiter and no rows of SDRAM, which are the arbiter's. The arbiter in front of the bank decides
 // which port may access it. A bank with separate ports also has one socket: if a cycle has a read and a
 // write, the initiators read first. Words are in the byte order of the host computer.
 class SsramBank : public sc_core::sc_module {

@@ -67,6 +67,16 @@ void check_full_or_minimal_option(const tlm::tlm_generic_payload& payload, Probl
   }
 }
 
+// The defaults that an initiator sets with TLM_FULL_PAYLOAD.
+void check_response_fields(const tlm::tlm_generic_payload& payload, Problems& problems) {
+  if (payload.get_response_status() != tlm::TLM_INCOMPLETE_RESPONSE) {
+    problems.push_back("response status = " + payload.get_response_string() +
+                       ": must be TLM_INCOMPLETE_RESPONSE with TLM_FULL_PAYLOAD (14.8 e, f)");
+  }
+  if (payload.is_dmi_allowed())
+    problems.emplace_back("dmi_allowed = true: must be false with TLM_FULL_PAYLOAD (14.8 e, f)");
+}
+
 }  // namespace
 
 Problems request_problems(const tlm::tlm_generic_payload& payload, const ProtocolOptions& options) {
@@ -105,8 +115,9 @@ Problems request_problems(const tlm::tlm_generic_payload& payload, const Protoco
   return problems;
 }
 
-Problems response_problems(const tlm::tlm_generic_payload& payload) {
+Problems response_problems(const tlm::tlm_generic_payload& payload, const ProtocolOptions& options) {
   if (is_final_response(payload.get_response_status())) return {};
+  if (!options.final_status && payload.get_response_status() == tlm::TLM_INCOMPLETE_RESPONSE) return {};
   return {"response status = " + std::to_string(payload.get_response_status()) +
           ": must be OK or an error in a response (14.17)"};
 }
@@ -121,6 +132,12 @@ Problems debug_request_problems(const tlm::tlm_generic_payload& payload) {
     problems.emplace_back("data pointer = null: must point to the data (11.3.4 l)");
   }
   check_full_or_minimal_option(payload, problems);
+  if (payload.get_gp_option() == tlm::TLM_FULL_PAYLOAD) {
+    check_response_fields(payload, problems);
+    check_byte_enables(payload, problems);
+    if (payload.get_streaming_width() == 0)
+      problems.emplace_back("streaming width = 0: must be positive (14.15 f)");
+  }
   return problems;
 }
 
@@ -137,6 +154,13 @@ Problems dmi_request_problems(const tlm::tlm_generic_payload& payload, const tlm
                        ": must be read or write in a DMI request (11.2.4)");
   }
   check_full_or_minimal_option(payload, problems);
+  if (payload.get_gp_option() == tlm::TLM_FULL_PAYLOAD) {
+    check_response_fields(payload, problems);
+    if (payload.get_byte_enable_ptr() != nullptr || payload.get_byte_enable_length() != 0 ||
+        payload.get_streaming_width() != 0) {
+      problems.emplace_back("byte enables or streaming width: must be 0 with TLM_FULL_PAYLOAD (14.8 e)");
+    }
+  }
   const tlm::tlm_dmi fresh;
   if (dmi.get_dmi_ptr() != fresh.get_dmi_ptr() || dmi.get_start_address() != fresh.get_start_address() ||
       dmi.get_end_address() != fresh.get_end_address() ||
@@ -178,17 +202,18 @@ PayloadSnapshot::PayloadSnapshot(const tlm::tlm_generic_payload& payload)
       byte_enables_(payload.get_byte_enable_ptr()),
       byte_enable_length_(payload.get_byte_enable_length()),
       gp_option_(payload.get_gp_option()) {
-  if (command_ == tlm::TLM_WRITE_COMMAND && data_ != nullptr) written_.assign(data_, data_ + data_length_);
+  if (command_ != tlm::TLM_READ_COMMAND && data_ != nullptr) written_.assign(data_, data_ + data_length_);
   if (byte_enables_ != nullptr) enables_.assign(byte_enables_, byte_enables_ + byte_enable_length_);
 }
 
-Problems PayloadSnapshot::changes(const tlm::tlm_generic_payload& payload) const {
+Problems PayloadSnapshot::changes(const tlm::tlm_generic_payload& payload,
+                                  const ProtocolOptions& options) const {
   Problems problems;
   const auto check = [&problems](bool same, const char* what) {
     if (!same) problems.push_back(std::string(what) + " changed: only the initiator may set it (14.7)");
   };
   check(payload.get_command() == command_, "command");
-  if (payload.get_address() != address_) {
+  if (options.fixed_address && payload.get_address() != address_) {
     problems.push_back("address changed from " + hex(address_) + " to " + hex(payload.get_address()) +
                        ": a target may not modify it (14.7)");
   }
@@ -197,11 +222,30 @@ Problems PayloadSnapshot::changes(const tlm::tlm_generic_payload& payload) const
   check(payload.get_streaming_width() == streaming_width_, "streaming width");
   check(payload.get_byte_enable_ptr() == byte_enables_, "byte enable pointer");
   check(payload.get_byte_enable_length() == byte_enable_length_, "byte enable length");
-  check(std::equal(written_.begin(), written_.end(), data_), "data array of a write");
+  check(std::equal(written_.begin(), written_.end(), data_), "data array of a write or an ignored command");
   check(std::equal(enables_.begin(), enables_.end(), byte_enables_), "byte enable array");
   const bool accepted =
       gp_option_ == tlm::TLM_FULL_PAYLOAD && payload.get_gp_option() == tlm::TLM_FULL_PAYLOAD_ACCEPTED;
   check(accepted || payload.get_gp_option() == gp_option_, "gp_option");
+  return problems;
+}
+
+ResponseSnapshot::ResponseSnapshot(const tlm::tlm_generic_payload& payload)
+    : status_(payload.get_response_status()),
+      dmi_allowed_(payload.is_dmi_allowed()),
+      data_(payload.get_data_ptr()) {
+  if (payload.is_read() && data_ != nullptr) read_.assign(data_, data_ + payload.get_data_length());
+}
+
+Problems ResponseSnapshot::changes(const tlm::tlm_generic_payload& payload) const {
+  Problems problems;
+  const auto check = [&problems](bool same, const char* what) {
+    if (!same) problems.push_back(std::string(what) + " changed after the response was sent (14.7 g)");
+  };
+  check(payload.get_response_status() == status_, "response status");
+  check(dmi_allowed_ || !payload.is_dmi_allowed(),
+        "dmi_allowed");  // an interconnect above may clear it (14.7 h)
+  check(std::equal(read_.begin(), read_.end(), data_), "data array of a read");
   return problems;
 }
 

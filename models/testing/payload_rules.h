@@ -11,6 +11,12 @@ struct ProtocolOptions {
   // Data length, streaming width and address are whole 32-bit words, as on every memory-mapped socket here,
   // and the streaming width is at least the data length. Without it streaming bursts are allowed too (14.15).
   bool whole_words = true;
+  // The address stays as it was sent, as above a target. Without it an interconnect below may translate it
+  // in place (14.7 d, e).
+  bool fixed_address = true;
+  // A response has a final status. Without it TLM_INCOMPLETE_RESPONSE is an answer too: what acted as the
+  // target did not attempt the command (14.17 e).
+  bool final_status = true;
 };
 
 // One sentence per broken rule: the value found, the rule, and its clause of IEEE Std 1666-2011.
@@ -20,7 +26,7 @@ using Problems = std::vector<std::string>;
 Problems request_problems(const tlm::tlm_generic_payload& payload, const ProtocolOptions& options);
 
 // Rules for the payload that a target returns with its response.
-Problems response_problems(const tlm::tlm_generic_payload& payload);
+Problems response_problems(const tlm::tlm_generic_payload& payload, const ProtocolOptions& options);
 
 Problems debug_request_problems(const tlm::tlm_generic_payload& payload);
 Problems debug_answer_problems(const tlm::tlm_generic_payload& payload, unsigned int bytes);
@@ -36,7 +42,7 @@ class PayloadSnapshot {
  public:
   explicit PayloadSnapshot(const tlm::tlm_generic_payload& payload);
   sc_dt::uint64 address() const { return address_; }
-  Problems changes(const tlm::tlm_generic_payload& payload) const;
+  Problems changes(const tlm::tlm_generic_payload& payload, const ProtocolOptions& options) const;
 
  private:
   tlm::tlm_command command_;
@@ -49,6 +55,19 @@ class PayloadSnapshot {
   tlm::tlm_gp_option gp_option_;
   std::vector<unsigned char> written_;
   std::vector<unsigned char> enables_;
+};
+
+// What a target may set until it has sent its response, and nobody after that (14.7 g).
+class ResponseSnapshot {
+ public:
+  explicit ResponseSnapshot(const tlm::tlm_generic_payload& payload);
+  Problems changes(const tlm::tlm_generic_payload& payload) const;
+
+ private:
+  tlm::tlm_response_status status_;
+  bool dmi_allowed_;
+  const unsigned char* data_;
+  std::vector<unsigned char> read_;
 };
 
 }  // namespace stereotlm::test

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <systemc>
 #include <tlm>
 #include <unordered_map>
@@ -37,6 +38,9 @@ class PhaseTracker {
     State state;
     sc_core::sc_time time;  // of the last call or return
     PayloadSnapshot sent;
+    std::optional<ResponseSnapshot> answered = {};
+    bool spoilt = false;    // a change is reported once
+    unsigned extended = 0;  // the ignorable phase that came last
   };
   using Payload = tlm::tlm_generic_payload;
 
@@ -46,7 +50,10 @@ class PhaseTracker {
                     Problems& problems);
   void advance(Transaction& transaction, const sc_core::sc_time& time, Problems& problems) const;
   void finish(const Payload& payload);
-  void check_unchanged(const Payload& payload, const Transaction& transaction, Problems& problems) const;
+  void check_unchanged(const Payload& payload, Transaction& transaction, Problems& problems) const;
+  void extended_phase(const Payload& payload, const Call& call, Problems& problems);
+  Problems extended_return(const Payload& payload, const Call& answer, tlm::tlm_sync_enum status,
+                           bool forward);
 
   ProtocolOptions options_;
   std::unordered_map<const Payload*, Transaction> transactions_;

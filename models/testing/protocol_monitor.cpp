@@ -32,20 +32,25 @@ class Hold {
   Payload* payload_;
 };
 
-// Lists a payload while its b_transport call is in progress, also if the callee throws.
+// Lists a call while it is in progress, also if the callee throws. Calls of other processes may end first.
+template <typename Item>
 class Listed {
  public:
-  Listed(std::vector<const Payload*>& list, const Payload& payload) : list_(list), payload_(&payload) {
-    list_.push_back(payload_);
-  }
-  ~Listed() { list_.erase(std::find(list_.begin(), list_.end(), payload_)); }
+  Listed(std::vector<Item>& list, Item item) : list_(list), item_(item) { list_.push_back(item); }
+  ~Listed() { list_.erase(std::find(list_.begin(), list_.end(), item_)); }
   Listed(const Listed&) = delete;
   Listed& operator=(const Listed&) = delete;
 
  private:
-  std::vector<const Payload*>& list_;
-  const Payload* payload_;
+  std::vector<Item>& list_;
+  Item item_;
 };
+
+using Process = const sc_core::sc_process_b*;
+Process this_process() { return sc_core::sc_get_current_process_b(); }
+bool contains(const std::vector<Process>& list) {
+  return std::find(list.begin(), list.end(), this_process()) != list.end();
+}
 
 // The time and delta cycle of a call that must not wait.
 struct Moment {
@@ -79,19 +84,24 @@ void ProtocolMonitor::b_transport(Payload& payload, sc_core::sc_time& delay) {
   if (payload.has_mm() && payload.get_ref_count() == 0) {
     report(kCall, "reference count = 0: the initiator must acquire a managed transaction (14.5 t)");
   }
-  if (phases_.in_progress(payload) ||
-      std::find(blocking_.begin(), blocking_.end(), &payload) != blocking_.end()) {
+  if (contains(forward_) || contains(backward_))
+    report(kCall, "called within nb_transport: not permitted (11.1.2.4 f)");
+  if (phases_.in_progress(payload) || in_b_transport(payload)) {
     report(kCall, "the transaction is already in progress on this link (15.2.10 c)");
   }
   report(kCall, request_problems(payload, options_));
 
   const PayloadSnapshot sent(payload);
   const sc_core::sc_time start = sc_core::sc_time_stamp() + delay;
-  const Listed listed(blocking_, payload);
+  const Listed<Blocking> listed(blocking_, {&payload, this_process()});
+  const bool managed = payload.has_mm();
   const Hold hold(payload);
   const int references = hold.others();
   to_target->b_transport(payload, delay);
 
+  if (!managed && payload.has_mm()) {
+    report(kCall, "memory manager set: what has set it must remove it before it returns (14.5 j)");
+  }
   if (hold.others() < references) {
     report(kCall, "reference count fell: the target released more than it acquired (14.5)");
   }
@@ -100,20 +110,22 @@ void ProtocolMonitor::b_transport(Payload& payload, sc_core::sc_time& delay) {
                       (sc_core::sc_time_stamp() + delay).to_string() +
                       ": a callee must not take back time (11.1.1.4)");
   }
-  report(kCall, sent.changes(payload));
-  report(kCall, response_problems(payload));
+  report(kCall, sent.changes(payload, options_));
+  report(kCall, response_problems(payload, options_));
 }
 
 tlm::tlm_sync_enum ProtocolMonitor::nb_transport_fw(Payload& payload, tlm::tlm_phase& phase,
                                                     sc_core::sc_time& delay) {
   constexpr const char* kCall = "nb_transport_fw";
-  if (phase == tlm::BEGIN_REQ && std::find(blocking_.begin(), blocking_.end(), &payload) != blocking_.end()) {
+  if (phase == tlm::BEGIN_REQ && in_b_transport(payload)) {
     report(kCall, "the transaction is already in progress on this link (15.2.10 c)");
   }
   check_non_blocking(kCall, payload);
   const Moment moment;
   const PhaseTracker::Call call{phase, sc_core::sc_time_stamp() + delay};
+  if (contains(backward_)) report(kCall, "called within nb_transport_bw: not permitted (11.1.2.4 c)");
   report(kCall, phases_.forward_call(payload, call));
+  const Listed<Process> listed(forward_, this_process());
   const Hold hold(payload);
   const auto status = to_target->nb_transport_fw(payload, phase, delay);
   if (moment.passed()) report(kCall, "time passed: a non-blocking callee must not wait (11.1.2.4)");
@@ -127,7 +139,12 @@ tlm::tlm_sync_enum ProtocolMonitor::nb_transport_bw(Payload& payload, tlm::tlm_p
   check_non_blocking(kCall, payload);
   const Moment moment;
   const PhaseTracker::Call call{phase, sc_core::sc_time_stamp() + delay};
+  if (contains(forward_)) report(kCall, "called within nb_transport_fw: not permitted (11.1.2.4 c)");
+  if (std::any_of(blocking_.begin(), blocking_.end(),
+                  [](const Blocking& other) { return other.second == this_process(); }))
+    report(kCall, "called within b_transport: not permitted (11.1.1.4 j)");
   report(kCall, phases_.backward_call(payload, call));
+  const Listed<Process> listed(backward_, this_process());
   const Hold hold(payload);
   const auto status = from_initiator->nb_transport_bw(payload, phase, delay);
   if (moment.passed()) report(kCall, "time passed: a non-blocking callee must not wait (11.1.2.4)");
@@ -142,7 +159,7 @@ bool ProtocolMonitor::get_direct_mem_ptr(Payload& payload, tlm::tlm_dmi& dmi) {
   const Moment moment;
   const bool granted = to_target->get_direct_mem_ptr(payload, dmi);
   if (moment.passed()) report(kCall, "time passed: the callee must not wait (11.2.4)");
-  report(kCall, sent.changes(payload));
+  report(kCall, sent.changes(payload, options_));
   report(kCall, dmi_answer_problems(payload, sent.address(), granted, dmi));
   return granted;
 }
@@ -154,7 +171,7 @@ unsigned int ProtocolMonitor::transport_dbg(Payload& payload) {
   const Moment moment;
   const unsigned int bytes = to_target->transport_dbg(payload);
   if (moment.passed()) report(kCall, "time passed: the callee must not wait (11.3.4)");
-  report(kCall, sent.changes(payload));
+  report(kCall, sent.changes(payload, options_));
   report(kCall, debug_answer_problems(payload, bytes));
   return bytes;
 }
@@ -162,6 +179,11 @@ unsigned int ProtocolMonitor::transport_dbg(Payload& payload) {
 void ProtocolMonitor::invalidate_direct_mem_ptr(sc_dt::uint64 start, sc_dt::uint64 end) {
   if (start > end) report("invalidate_direct_mem_ptr", "the range ends before it starts (11.2.7)");
   from_initiator->invalidate_direct_mem_ptr(start, end);
+}
+
+bool ProtocolMonitor::in_b_transport(const Payload& payload) const {
+  return std::any_of(blocking_.begin(), blocking_.end(),
+                     [&payload](const Blocking& call) { return call.first == &payload; });
 }
 
 void ProtocolMonitor::check_non_blocking(const char* call, const Payload& payload) {

@@ -3,6 +3,7 @@
 #include <string>
 #include <systemc>
 #include <tlm>
+#include <utility>
 #include <vector>
 
 #include "models/testing/payload_rules.h"
@@ -37,13 +38,20 @@ class ProtocolMonitor : public sc_core::sc_module,
   void invalidate_direct_mem_ptr(sc_dt::uint64 start, sc_dt::uint64 end) override;
 
  private:
+  using Process = const sc_core::sc_process_b*;
+  using Blocking = std::pair<const tlm::tlm_generic_payload*, Process>;
+
+  bool in_b_transport(const tlm::tlm_generic_payload& payload) const;
   void check_non_blocking(const char* call, const tlm::tlm_generic_payload& payload);
   void report(const char* call, const Problems& problems);
   void report(const char* call, const std::string& problem);
 
   ProtocolOptions options_;
   PhaseTracker phases_;
-  std::vector<const tlm::tlm_generic_payload*> blocking_;  // in b_transport now
+  // The calls in progress.
+  std::vector<Blocking> blocking_;
+  std::vector<Process> forward_;
+  std::vector<Process> backward_;
   std::vector<std::string> violations_;
 };
 

@@ -35,12 +35,12 @@ inline void expect_refused(tlm::tlm_initiator_socket<32>& socket, const RefusedA
     payload.set_byte_enable_length(static_cast<unsigned>(access.byte_enables));
   }
   sc_core::sc_time delay;
-  const sc_core::sc_time now = sc_core::sc_time_stamp();
+  const sc_dt::uint64 now = sc_core::sc_time_stamp().value();
   socket->b_transport(payload, delay);
   EXPECT_EQ(payload.get_response_status(), access.response)
       << "command " << access.command << " at " << access.address << ", length " << access.length
       << ", streaming width " << access.streaming_width << ", byte enables " << access.byte_enables;
-  EXPECT_EQ(sc_core::sc_time_stamp() + delay, now);
+  EXPECT_EQ((sc_core::sc_time_stamp() + delay).value(), now);
   EXPECT_EQ(words, before);
 }
 
