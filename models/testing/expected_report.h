@@ -15,6 +15,7 @@ namespace stereotlm::test {
 // keeps its effect: SystemC throws an error and aborts at a fatal one. Info reports are ignored.
 class ExpectedReport {
  public:
+  // `count`: the number of reports, at least 1.
   explicit ExpectedReport(std::string message_type, int count = 1);
   ~ExpectedReport();
   ExpectedReport(const ExpectedReport&) = delete;

@@ -22,9 +22,11 @@ Problems request_problems(const tlm::tlm_generic_payload& payload, const Protoco
 // Rules for the payload that a target returns with its response.
 Problems response_problems(const tlm::tlm_generic_payload& payload);
 
+// Rules for transport_dbg, and for the number of bytes that it returns.
 Problems debug_request_problems(const tlm::tlm_generic_payload& payload);
 Problems debug_answer_problems(const tlm::tlm_generic_payload& payload, unsigned int bytes);
 
+// Rules for get_direct_mem_ptr.
 Problems dmi_request_problems(const tlm::tlm_generic_payload& payload, const tlm::tlm_dmi& dmi);
 // `address` is the requested address; an interconnect may have translated the address in the payload.
 Problems dmi_answer_problems(const tlm::tlm_generic_payload& payload, sc_dt::uint64 address, bool granted,
@@ -34,9 +36,9 @@ Problems dmi_answer_problems(const tlm::tlm_generic_payload& payload, sc_dt::uin
 // of a write and the byte enables: arrays whose pointers are not null must be valid.
 class PayloadSnapshot {
  public:
-  explicit PayloadSnapshot(const tlm::tlm_generic_payload& payload);
-  sc_dt::uint64 address() const { return address_; }
-  Problems changes(const tlm::tlm_generic_payload& payload) const;
+  explicit PayloadSnapshot(const tlm::tlm_generic_payload& payload);  // taken at the request
+  sc_dt::uint64 address() const { return address_; }                  // as requested
+  Problems changes(const tlm::tlm_generic_payload& payload) const;    // a sentence for each changed field
 
  private:
   tlm::tlm_command command_;
