@@ -5,7 +5,7 @@
 
 namespace stereotlm {
 
-using InitiatorSocket = tlm::tlm_initiator_socket<32>;
+using InitiatorSocket = tlm::tlm_initiator_socket<32>;   // of 32 bits, of the base protocol
 using TargetSocket = tlm::tlm_base_target_socket_b<32>;  // also the base of optional target sockets
 
 // Binds a memory-mapped initiator to its target; the default does so directly. A test or a tracer overrides

@@ -13,6 +13,7 @@ namespace stereotlm {
 // DecisionPoint, the first in the module hierarchy, therefore serves all DecisionPoints of a simulation.
 class DecisionPoint : public sc_core::sc_module {
  public:
+  // `decide` makes the decision.
   DecisionPoint(const sc_core::sc_module_name& name, std::function<void()> decide);
 
   // Requests the decision at the current time. To be called from a method process.

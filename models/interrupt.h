@@ -10,7 +10,7 @@ namespace stereotlm {
 // process that is sensitive to changed_event().
 class InterruptIf : public virtual sc_core::sc_interface {
  public:
-  virtual bool is_asserted() const = 0;
+  virtual bool is_asserted() const = 0;  // the level of the line, now
   // Notified in the delta cycle after the level may have changed.
   virtual const sc_core::sc_event& changed_event() const = 0;
 };

@@ -7,11 +7,12 @@
 // a time: it begins after the end of the one before.
 namespace stereotlm {
 
+// A burst of consecutive words in one direction.
 struct LocalBurst {
-  bool write = false;
+  bool write = false;             // to the FPGA; else from it
   std::uint64_t address = 0;      // byte address of the first word
   unsigned char* data = nullptr;  // 32-bit words to write, or their places; the master keeps them to the end
-  std::size_t words = 0;
+  std::size_t words = 0;          // at least 1
 };
 
 // The FPGA's end of the local bus, called by the bridge.

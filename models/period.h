@@ -4,12 +4,12 @@
 
 namespace stereotlm {
 
-__extension__ typedef unsigned __int128 Wide;
+__extension__ typedef unsigned __int128 Wide;  // an integer of 0..2^128 - 1
 
 // A decimal number as an exact fraction.
 struct DecimalNumber {
-  Wide numerator = 0;
-  Wide denominator = 1;
+  Wide numerator = 0;    // integer
+  Wide denominator = 1;  // at least 1
 };
 
 // Returns the decimal number from which `value` was parsed, taken to be the shortest one that parses to the
@@ -58,6 +58,7 @@ class PeriodCounter {
   // A period of numerator / denominator ps, at least 4 ps. The numerator is below 2^127.
   PeriodCounter(Wide numerator, Wide denominator);
 
+  // The periods in a time.
   struct Count {
     std::uint64_t whole = 0;  // whole periods
     // Whether a time up to 1 ps longer or shorter would have as many. If not, `whole` may be wrong by one.

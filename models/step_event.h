@@ -11,7 +11,7 @@ namespace stereotlm {
 // The event of a module whose control (plain C++) names the time of its next step.
 class StepEvent : public sc_core::sc_event {
  public:
-  explicit StepEvent(const char* name) : sc_event(name) {}
+  explicit StepEvent(const char* name) : sc_event(name) {}  // of a module, for its process
 
   // Notifies the event at `next_ps`, which must not be in the past, and at no other time; kNever: not at all.
   // To be called after each call of the control.

@@ -9,7 +9,7 @@ namespace stereotlm {
 template <class Beat>
 class StreamIf : public virtual sc_core::sc_interface {
  public:
-  virtual void push(const Beat& beat) = 0;
+  virtual void push(const Beat& beat) = 0;  // takes a beat, now
 };
 
 // The output of a stream. It binds to one input: `stage.pixels_out.bind(next.pixels_in)`.
@@ -20,6 +20,7 @@ using StreamOut = sc_core::sc_port<StreamIf<Beat>>;
 template <class Beat, class Owner, void (Owner::*Take)(const Beat&)>
 class StreamIn : public sc_core::sc_export<StreamIf<Beat>> {
  public:
+  // `owner`: the module of the member function.
   StreamIn(const char* name, Owner* owner) : sc_core::sc_export<StreamIf<Beat>>(name), receiver_(owner) {
     this->bind(receiver_);
   }

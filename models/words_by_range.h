@@ -16,6 +16,7 @@ namespace stereotlm {
 // buffer with it. Plain C++.
 class WordsByRange {
  public:
+  // No range overlaps another.
   explicit WordsByRange(std::vector<AddressRange> ranges)
       : ranges_(std::move(ranges)), words_(ranges_.size() + 1), latest_(ranges_.size()) {}
 

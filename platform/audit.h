@@ -9,10 +9,10 @@ namespace stereotlm::platform {
 
 // An identity, with both sides.
 struct Identity {
-  std::string what;
-  std::uint64_t left = 0;
-  std::string as;
-  std::uint64_t right = 0;
+  std::string what;         // name of the left value
+  std::uint64_t left = 0;   // value
+  std::string as;           // name of the right value
+  std::uint64_t right = 0;  // value
 };
 
 // Checks identities between counters (contract section 6), and collects a message for each that does not
@@ -22,6 +22,7 @@ class Audit {
   // `compared`, unless null, gets each identity.
   explicit Audit(std::vector<Identity>* compared = nullptr) : compared_(compared) {}
 
+  // Fails unless both are equal.
   void equal(const std::string& what, std::uint64_t left, const std::string& as, std::uint64_t right);
   // Of whole numbers, or of `double`.
   template <class Number>

@@ -25,7 +25,7 @@ class Board : public sc_core::sc_module {
       binder.bind(core.banks[bank], banks[bank].port, "crossbar_to_" + config.banks[bank].name);
   }
 
-  fpga::StereoCore core;
+  fpga::StereoCore core;                        // with the sockets of the board
   sc_core::sc_vector<memory::SsramBank> banks;  // in the order of the configuration
 
  private:

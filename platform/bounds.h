@@ -23,7 +23,7 @@ struct FrameAccesses {
   std::array<std::vector<std::vector<bool>>, fpga::kCoreGroupCount> touched;
 };
 
-FrameAccesses frame_accesses(const BoardConfig& board, const Tables& tables);
+FrameAccesses frame_accesses(const BoardConfig& board, const Tables& tables);  // of one frame
 
 // A lower bound for the length of a frame: the cycles that one resource of the core needs for it, pipeline
 // latency included.
@@ -44,8 +44,8 @@ FrameAccesses frame_accesses(const BoardConfig& board, const Tables& tables);
 //
 // The last writes store the words that the last column completes, one for each row of the last strip.
 struct ResourceBound {
-  std::string resource;  // "port left_lut", "bank bank0", "matcher"
-  std::uint64_t cycles = 0;
+  std::string resource;      // "port left_lut", "bank bank0", "matcher"
+  std::uint64_t cycles = 0;  // of a frame, at least
 };
 
 // The resource of a bank, and the bank of a resource; nullopt if the resource is no bank.
@@ -88,8 +88,8 @@ inline Bound core_bound(const BoardConfig& board, const Tables& tables) {
 // With `whole_pictures` false, the words that the capture boards write are not counted: a run that drops
 // pixels moves fewer.
 struct RateBound {
-  std::string resource;  // "camera", "pci", "bridge", "bank bank0"
-  double frames_per_second = 0;
+  std::string resource;          // "camera", "pci", "bridge", "bank bank0"
+  double frames_per_second = 0;  // at most
 };
 
 // The bounds of the computer, in the order of the table at RateBound: over whole turns of the allocation's

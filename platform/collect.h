@@ -24,20 +24,21 @@ namespace stereotlm::platform {
 // Counters of a board's modules, summed over the finished frames. They must be taken between two frames,
 // because the modules count during a frame. The cost of taking them does not depend on the number of frames.
 struct BoardCounters {
+  // The counters of a bank.
   struct Bank {
-    memory::ArbiterStats arbiter;
-    std::uint64_t accesses = 0;  // accesses that reached the bank, including those that it refused
+    memory::ArbiterStats arbiter;  // grants and stalls
+    std::uint64_t accesses = 0;    // accesses that reached the bank, including those that it refused
   };
-  std::size_t frames = 0;
+  std::size_t frames = 0;                   // finished
   std::vector<fpga::PortCycles> ports;      // [port]
   std::vector<Bank> banks;                  // in the order of the configuration
   std::array<std::uint64_t, 2> issued{};    // [side]: slots that the sequencer has issued
   std::array<std::uint64_t, 2> consumed{};  // [side]: slots that the matcher has consumed
-  std::uint64_t packed_words = 0;
-  std::uint64_t written_words = 0;
+  std::uint64_t packed_words = 0;           // result words that were packed
+  std::uint64_t written_words = 0;          // result words that were written
 };
 
-BoardCounters counters_of(const Board& board);
+BoardCounters counters_of(const Board& board);  // of all finished frames
 // The counters of a core without stages and without a host: all its frames work directly on memory.
 BoardCounters counters_of(const fpga::FrameRun& frames, const memory::Arbitration& arbitration);
 
@@ -67,18 +68,19 @@ struct ComputerCounters {
     std::vector<std::uint64_t> on_bus;       // words of the burst on the local bus that are not granted yet
     std::vector<std::uint64_t> granted;      // words granted to the host port
   };
+  // A camera and its capture board.
   struct Camera {
     std::uint64_t frames = 0;  // frames that have begun
     bool undecided = false;    // the last frame began just now, and it is not decided whether it is captured
-    capture::CaptureControl::Stats capture;
+    capture::CaptureControl::Stats capture;  // counts of the capture board
   };
 
-  BoardCounters board;
-  pci::PciBusControl::Stats pci;
-  pci::BridgeControl::Stats bridge;
-  fpga::LocalBusControl::Stats local_bus;
-  Words words;
-  std::array<Camera, 2> cameras;  // left, right
+  BoardCounters board;                     // core, banks and ports
+  pci::PciBusControl::Stats pci;           // of the PCI bus
+  pci::BridgeControl::Stats bridge;        // of the bridge
+  fpga::LocalBusControl::Stats local_bus;  // of the local bus
+  Words words;                             // on their way to the board
+  std::array<Camera, 2> cameras;           // left, right
 };
 
 // What the PCI masters have transferred for results. The words of the traffic generator do not count.

@@ -34,16 +34,16 @@ class Computer : public sc_core::sc_module, public ComputerView {
            host::Program& program, capture::CameraSource& left, capture::CameraSource& right, Binder& binder,
            fpga::Fidelity fidelity = fpga::Fidelity::kCycle);
 
-  Board board;
-  pci::PciBus pci_bus;
-  pci::PciBridge bridge;
-  host::HostMemory host_memory;
-  host::HostBridge host_bridge;
-  host::Cpu cpu;
-  capture::Camera left_camera;
-  capture::Camera right_camera;
-  capture::CaptureBoard left_capture;
-  capture::CaptureBoard right_capture;
+  Board board;                          // the FPGA board
+  pci::PciBus pci_bus;                  // with the slots of PciMaster and the windows of PciTargetWindow
+  pci::PciBridge bridge;                // from the PCI bus to the FPGA board
+  host::HostMemory host_memory;         // at DeviceMap::host_memory
+  host::HostBridge host_bridge;         // from the processor to the PCI bus
+  host::Cpu cpu;                        // runs the program
+  capture::Camera left_camera;          // of the left side
+  capture::Camera right_camera;         // of the right side
+  capture::CaptureBoard left_capture;   // of the left camera
+  capture::CaptureBoard right_capture;  // of the right camera
   // Null on a board without `pci.load`. Such a bus has no master kTrafficGenerator.
   std::unique_ptr<pci::TrafficGenerator> traffic_generator;
 

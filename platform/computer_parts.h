@@ -25,13 +25,14 @@ enum PciTargetWindow : std::size_t {
   kRightRegisters,
   kTrafficDevice
 };
-inline constexpr std::array<const char*, 6> kPciTargetNames = {
+inline constexpr std::array<const char*, 6> kPciTargetNames = {  // in the order of PciTargetWindow
     "host_memory", "bridge", "bridge_registers", "left_capture", "right_capture", "load"};
 
+// Masters, windows and timing of the PCI bus.
 pci::PciBusConfig pci_config(const BoardConfig& board, std::uint64_t host_memory_bytes);
-pci::PciBridgeConfig bridge_config(const BoardConfig& board);
-capture::CameraConfig camera_config(const BoardConfig& board);
-capture::CaptureBoardConfig capture_config(const BoardConfig& board);
+pci::PciBridgeConfig bridge_config(const BoardConfig& board);          // the counted buffers included
+capture::CameraConfig camera_config(const BoardConfig& board);         // of both sides
+capture::CaptureBoardConfig capture_config(const BoardConfig& board);  // of both sides
 // Nothing on a board without `pci.load`. Such a bus has no master kTrafficGenerator.
 std::optional<pci::TrafficGeneratorConfig> traffic_config(const BoardConfig& board);
 

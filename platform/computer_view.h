@@ -17,10 +17,10 @@ namespace stereotlm::platform {
 
 // The controls of a computer's blocks: Computer has them in its modules, FastComputer in its loop.
 struct ComputerControls {
-  pci::PciBusControl& pci_bus;
-  pci::BridgeControl& bridge;
-  fpga::LocalBusControl& local_bus;
-  fpga::FrameRun& core;
+  pci::PciBusControl& pci_bus;                           // with its masters and targets
+  pci::BridgeControl& bridge;                            // with its DMA channels
+  fpga::LocalBusControl& local_bus;                      // at the FPGA
+  fpga::FrameRun& core;                                  // its frames
   std::array<capture::CaptureControl*, 2> captures;      // left, right
   std::array<const capture::CameraControl*, 2> cameras;  // left, right
 
@@ -33,7 +33,7 @@ class ComputerView {
  public:
   virtual ~ComputerView() = default;
 
-  fpga::FrameRun& core() { return controls().core; }
+  fpga::FrameRun& core() { return controls().core; }  // the frames, to observe and to record them
   // To be called while the core runs no frame.
   ComputerCounters counters() { return controls().counters(board_counters(), now_ps()); }
   // Advances a running frame to the present.

@@ -17,7 +17,7 @@ namespace stereotlm::platform {
 
 // Sums of what was recorded of stalls, over the frames.
 struct ConflictSums {
-  std::uint64_t frames = 0;
+  std::uint64_t frames = 0;  // recorded
   // Of the strips.
   std::uint64_t cycles = 0;
   std::vector<std::uint64_t> stalls;    // [requester]
@@ -33,10 +33,11 @@ struct ConflictSums {
 // The ConflictRecorder of a board, with the sums of all that it has handed out.
 class Conflicts {
  public:
+  // `most_tiles`: those of a frame that are recorded.
   explicit Conflicts(const BoardConfig& board, std::size_t most_tiles = fpga::ConflictRecorder::kMostTiles);
 
-  fpga::ConflictRecorder& recorder() { return recorder_; }
-  const fpga::ConflictRecorder& recorder() const { return recorder_; }
+  fpga::ConflictRecorder& recorder() { return recorder_; }              // to be given to the core
+  const fpga::ConflictRecorder& recorder() const { return recorder_; }  // as recorded up to now
 
   // See ConflictRecorder::take_frames().
   std::vector<fpga::FrameConflicts> take_frames();

@@ -23,14 +23,14 @@ class PreloadedSystem : public sc_core::sc_module {
                   std::uint64_t frames, host::FrameSource& source, host::FrameSink& sink, Binder& binder,
                   fpga::Fidelity fidelity = fpga::Fidelity::kCycle);
 
-  Board board;
-  host::IdealHost host;
+  Board board;           // core and banks
+  host::IdealHost host;  // writes inputs, reads results
 
  private:
   sc_core::sc_signal<bool> done_{"done"};
 };
 
-using KeepGoing = std::function<bool(std::uint64_t frames, std::uint64_t cycles)>;
+using KeepGoing = std::function<bool(std::uint64_t frames, std::uint64_t cycles)>;  // see run_core()
 
 // Computes the figures of a board with an ideal host (`--source preloaded`) by a loop over the core's control
 // and the arbiters, without pixels and without SystemC. The figures equal those of PreloadedSystem at

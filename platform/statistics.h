@@ -12,36 +12,39 @@ namespace stereotlm::platform {
 // Statistics, at the end of this header, has the figures of one run, as `stats.json` lists them (contract
 // section 6). Counters of banks and ports are sums over the frames, and cover only the counted cycles of
 // contract section 2.
+// BankStatistics has the counters of a bank.
 struct BankStatistics {
-  std::string name;
-  std::uint64_t reads = 0;
-  std::uint64_t writes = 0;
-  std::uint64_t busy_cycles = 0;
-  std::uint64_t turnaround_cycles = 0;
-  std::uint64_t idle_cycles = 0;
-  std::uint64_t contended_cycles = 0;
-  double utilization = 0;           // busy_cycles / cycles, 0..1
-  double megabytes_per_second = 0;  // 10^6 bytes per second: 4 * (reads + writes) * clock_mhz / cycles
-  int ports = 1;                    // accesses that the bank can serve in a cycle
+  std::string name;                     // in the board file
+  std::uint64_t reads = 0;              // granted
+  std::uint64_t writes = 0;             // granted
+  std::uint64_t busy_cycles = 0;        // with one or more accesses granted
+  std::uint64_t turnaround_cycles = 0;  // without a grant because of turnaround
+  std::uint64_t idle_cycles = 0;        // all other cycles
+  std::uint64_t contended_cycles = 0;   // with two or more requests for one port of the bank
+  double utilization = 0;               // busy_cycles / cycles, 0..1
+  double megabytes_per_second = 0;      // 10^6 bytes per second: 4 * (reads + writes) * clock_mhz / cycles
+  int ports = 1;                        // accesses that the bank can serve in a cycle
   std::optional<std::uint64_t> row_cycles = std::nullopt;      // of sdram only: rows were being opened
   std::optional<std::uint64_t> refresh_cycles = std::nullopt;  // of sdram only
 };
 
+// The counters of a port. Each counted cycle is of one kind.
 struct PortStatistics {
-  std::string name;
-  std::uint64_t grants = 0;
-  std::uint64_t stall_cycles = 0;
-  std::uint64_t passed_cycles = 0;
-  std::uint64_t idle_cycles = 0;
-  std::uint64_t blocked_cycles = 0;
-  std::uint64_t starved_cycles = 0;
+  std::string name;                  // "left_lut", "left_lut.0"
+  std::uint64_t grants = 0;          // cycles with an access granted
+  std::uint64_t stall_cycles = 0;    // cycles with a request that was not granted
+  std::uint64_t passed_cycles = 0;   // cycles with a slot taken or handled without an access
+  std::uint64_t idle_cycles = 0;     // cycles with nothing to do (contract section 2)
+  std::uint64_t blocked_cycles = 0;  // cycles in which its lane could take no slot
+  std::uint64_t starved_cycles = 0;  // all other cycles
 };
 
+// The stall cycles of a port at a bank with one cause.
 struct BlameRow {
-  std::string port;  // the victim
-  std::string bank;
-  std::string by;  // the port that was granted, or "turnaround", "row" or "refresh"
-  std::uint64_t cycles = 0;
+  std::string port;          // the victim
+  std::string bank;          // requested by the port
+  std::string by;            // the port that was granted, or "turnaround", "row" or "refresh"
+  std::uint64_t cycles = 0;  // more than 0
 };
 
 // The rate of a whole computer without its start-up. L is allocation_period_frames(). The first L deliveries
@@ -54,6 +57,7 @@ struct SteadyRate {
   std::uint64_t frames = 0;  // of the window
 };
 
+// The frame rates of a run.
 struct FramesPerSecond {
   double core = 0;  // frames / the time that the core runs
   // The other rates belong to a whole computer; nullopt for a board without a computer.
@@ -64,21 +68,23 @@ struct FramesPerSecond {
 // Upper bounds for the rates `core` and `steady` of FramesPerSecond over whole turns of the allocation's
 // lists, and the resource that sets each of them.
 struct Bound {
-  double core = 0;
-  std::string core_limited_by;
-  std::optional<double> system;
-  std::string system_limited_by;
+  double core = 0;                // frames per second
+  std::string core_limited_by;    // such as "port left_lut", "bank bank0"
+  std::optional<double> system;   // frames per second
+  std::string system_limited_by;  // such as "camera", "pci"; empty without a computer
 };
 
+// The counters of a PCI master.
 struct PciMasterStatistics {
-  std::string name;
-  std::uint64_t transactions = 0;
-  std::uint64_t words = 0;
-  std::uint64_t wait_clocks = 0;  // clocks from each request to its address clock, summed
+  std::string name;                // of kPciMasterNames
+  std::uint64_t transactions = 0;  // bursts
+  std::uint64_t words = 0;         // transferred
+  std::uint64_t wait_clocks = 0;   // clocks from each request to its address clock, summed
 };
 
+// The counters of a camera and its capture board.
 struct CameraStatistics {
-  std::string name;
+  std::string name;                      // "left" or "right"
   std::uint64_t frames = 0;              // frames that have begun
   std::uint64_t captured_frames = 0;     // frames taken by a capture
   std::uint64_t dropped_frames = 0;      // the sum of the three reasons below
@@ -88,40 +94,42 @@ struct CameraStatistics {
   std::uint64_t dropped_by_partner = 0;  // reason: the other side could not start
 };
 
+// Of several values; each percentile is one of them.
 struct Percentiles {
-  double min = 0;
-  double p50 = 0;
-  double p95 = 0;
-  double p99 = 0;
-  double max = 0;
+  double min = 0;  // the least
+  double p50 = 0;  // half of the values are not greater
+  double p95 = 0;  // 95 % of the values are not greater
+  double p99 = 0;  // 99 % of the values are not greater
+  double max = 0;  // the greatest
 };
 
 // The computer around the board, from time 0 to the last delivery.
 struct ComputerStatistics {
-  std::uint64_t pci_clocks = 0;
-  std::uint64_t pci_busy_clocks = 0;  // address, wait and data clocks among them
-  std::vector<PciMasterStatistics> pci_masters;
-  std::uint64_t posted_words = 0;  // words that masters wrote into the bridge
-  std::uint64_t dma_words = 0;     // words that the bridge's DMA moved
-  std::uint64_t local_clocks = 0;
-  std::uint64_t local_busy_clocks = 0;    // local clocks other than idle ones
-  std::vector<CameraStatistics> cameras;  // left, right
-  Percentiles capture_to_host_ms;         // time from the first pixel of a capture to its delivery
+  std::uint64_t pci_clocks = 0;                  // whole clocks since time 0
+  std::uint64_t pci_busy_clocks = 0;             // address, wait and data clocks among them
+  std::vector<PciMasterStatistics> pci_masters;  // in the order of PciMaster
+  std::uint64_t posted_words = 0;                // words that masters wrote into the bridge
+  std::uint64_t dma_words = 0;                   // words that the bridge's DMA moved
+  std::uint64_t local_clocks = 0;                // whole clocks since time 0
+  std::uint64_t local_busy_clocks = 0;           // local clocks other than idle ones
+  std::vector<CameraStatistics> cameras;         // left, right
+  Percentiles capture_to_host_ms;                // time from the first pixel of a capture to its delivery
 };
 
+// The figures of one run.
 struct Statistics {
-  std::string board;
-  std::string fidelity;
-  std::uint64_t frames = 0;
-  std::uint64_t cycles = 0;                 // counted cycles, summed over the frames
-  std::vector<std::uint64_t> frame_cycles;  // length of each frame, including the pipeline latency
-  FramesPerSecond frames_per_second;
-  Bound bound;
-  std::vector<BankStatistics> banks;  // in the order of the board file
-  std::vector<PortStatistics> ports;  // in the order of memory::Port
-  std::vector<BlameRow> blame;        // sorted by port, bank, by (ports first), without zero rows
-  std::optional<ComputerStatistics> computer;
-  area::Area area;
+  std::string board;                           // name of the board
+  std::string fidelity;                        // "cycle" or "fast"
+  std::uint64_t frames = 0;                    // finished
+  std::uint64_t cycles = 0;                    // counted cycles, summed over the frames
+  std::vector<std::uint64_t> frame_cycles;     // length of each frame, including the pipeline latency
+  FramesPerSecond frames_per_second;           // of the core, and of the computer
+  Bound bound;                                 // of the rates
+  std::vector<BankStatistics> banks;           // in the order of the board file
+  std::vector<PortStatistics> ports;           // in the order of memory::Port
+  std::vector<BlameRow> blame;                 // sorted by port, bank, by (ports first), without zero rows
+  std::optional<ComputerStatistics> computer;  // nullopt: a board without a computer
+  area::Area area;                             // of the core
   std::vector<std::string> failed;  // identities that do not hold, each with both sides; empty in a valid run
 };
 

@@ -28,7 +28,7 @@ namespace stereotlm::platform {
 // the last frame that was delivered.
 class Timeline : public pci::BridgeObserver, public fpga::FrameObserver, public DriverObserver {
  public:
-  explicit Timeline(const BoardConfig& board);
+  explicit Timeline(const BoardConfig& board);  // it has no events at first
   Timeline(const Timeline&) = delete;
   Timeline& operator=(const Timeline&) = delete;
 

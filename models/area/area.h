@@ -22,9 +22,9 @@ namespace stereotlm::area {
 
 // All parts of one kind, such as the column modules.
 struct Item {
-  std::string name;
-  std::int64_t count = 0;
-  Resources all;  // of all `count` parts
+  std::string name;        // what the parts are, in messages and results
+  std::int64_t count = 0;  // of parts
+  Resources all;           // of all `count` parts
 
   // The number of places that the parts take. A place holds a LUT and a flip-flop, which need not belong to
   // each other.
@@ -42,23 +42,23 @@ inline constexpr double kSlicesPerLutEquivalent = 0.6218;
 // The resources of all items together. Percentages are shares of the device: the core does not fit if one of
 // them is above 100.
 struct Area {
-  std::int64_t lut_equivalents = 0;
-  std::int64_t slices = 0;  // rounded up
-  double slices_percent = 0;
-  std::int64_t luts = 0;
-  std::int64_t flip_flops = 0;
-  std::int64_t block_rams = 0;
-  double block_rams_percent = 0;
-  std::int64_t multipliers = 0;
-  double multipliers_percent = 0;
-  std::optional<std::int64_t> pins = std::nullopt;  // of a board that names its package
-  std::optional<double> pins_percent = std::nullopt;
+  std::int64_t lut_equivalents = 0;                   // places of a LUT and a flip-flop
+  std::int64_t slices = 0;                            // rounded up
+  double slices_percent = 0;                          // of the device's slices
+  std::int64_t luts = 0;                              // as in Resources
+  std::int64_t flip_flops = 0;                        // as in Resources
+  std::int64_t block_rams = 0;                        // of 18 kbit
+  double block_rams_percent = 0;                      // of the device's block RAMs
+  std::int64_t multipliers = 0;                       // of 18 x 18 bit
+  double multipliers_percent = 0;                     // of the device's multipliers
+  std::optional<std::int64_t> pins = std::nullopt;    // of a board that names its package
+  std::optional<double> pins_percent = std::nullopt;  // of the package's user pins
 
-  bool fits() const {
+  bool fits() const {  // whether the device has enough slices, block RAMs and multipliers
     return slices_percent <= 100 && block_rams_percent <= 100 && multipliers_percent <= 100;
   }
 };
-Area total(const std::vector<Item>& items, const Device& device);
+Area total(const std::vector<Item>& items, const Device& device);  // the sum, and its shares of the device
 
 // The smallest device of the family that holds the area; null if none does.
 const Device* smallest_device(const Area& area);

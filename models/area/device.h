@@ -9,8 +9,8 @@ namespace stereotlm::area {
 // The resources of an FPGA (Xilinx DS031). A slice holds two 4-input look-up tables and the two flip-flops
 // behind them.
 struct Device {
-  std::string_view name;
-  std::int64_t slices;
+  std::string_view name;     // in board files: "xc2v6000"
+  std::int64_t slices;       // of two look-up tables and two flip-flops each
   std::int64_t block_rams;   // of 18 kbit
   std::int64_t multipliers;  // 18 x 18 bit
 };

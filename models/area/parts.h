@@ -8,16 +8,17 @@
 // The resources that parts of a circuit take on a Virtex-II FPGA (Xilinx DS031).
 namespace stereotlm::area {
 
-inline constexpr int kPixelBits = 8;
-inline constexpr std::int64_t kMostPixel = 255;
+inline constexpr int kPixelBits = 8;             // of a grey level
+inline constexpr std::int64_t kMostPixel = 255;  // the greatest grey level
 
+// The numbers of the device's elements that a part takes.
 struct Resources {
-  std::int64_t luts = 0;        // 4-input look-up tables
-  std::int64_t flip_flops = 0;  // each shares the place of the LUT in front of it, if there is one
-  std::int64_t block_rams = 0;  // of 18 kbit, dual port
-  std::int64_t multipliers = 0;
+  std::int64_t luts = 0;         // 4-input look-up tables
+  std::int64_t flip_flops = 0;   // each shares the place of the LUT in front of it, if there is one
+  std::int64_t block_rams = 0;   // of 18 kbit, dual port
+  std::int64_t multipliers = 0;  // of 18 x 18 bit
 
-  Resources& operator+=(const Resources& other) {
+  Resources& operator+=(const Resources& other) {  // adds number by number
     luts += other.luts;
     flip_flops += other.flip_flops;
     block_rams += other.block_rams;
@@ -25,15 +26,15 @@ struct Resources {
     return *this;
   }
 };
-inline Resources operator+(Resources one, const Resources& other) { return one += other; }
-inline Resources operator*(std::int64_t count, const Resources& each) {
+inline Resources operator+(Resources one, const Resources& other) { return one += other; }  // sum
+inline Resources operator*(std::int64_t count, const Resources& each) {  // of `count` equal parts
   return {count * each.luts, count * each.flip_flops, count * each.block_rams, count * each.multipliers};
 }
 
 // The values that a number may take; low <= 0 <= high.
 struct Range {
-  std::int64_t low = 0;
-  std::int64_t high = 0;
+  std::int64_t low = 0;   // the least value
+  std::int64_t high = 0;  // the greatest value
 };
 
 // The fewest bits that hold 0..largest; 0 bits for 0.
@@ -50,6 +51,7 @@ inline int bits_of(Range range) {
   return 1 + std::max(bits_of(range.high), bits_of(-range.low - 1));
 }
 
+// part / whole, rounded up.
 constexpr std::int64_t ceil_of(std::int64_t part, std::int64_t whole) { return (part + whole - 1) / whole; }
 
 // An adder or a subtracter: one LUT on the carry chain for each bit of the result.

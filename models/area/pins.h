@@ -10,9 +10,10 @@ namespace stereotlm::area {
 
 // A package of the XC2V6000, and its user I/O (Xilinx DS031). The other devices' packages are left out.
 struct Package {
-  std::string_view name;
-  int user_pins;
+  std::string_view name;  // in board files: "ff1152"
+  int user_pins;          // I/O for the user's design
 };
+// The device for which a board may name a package, and its packages.
 inline constexpr std::string_view kDeviceWithPackages = "xc2v6000";
 inline constexpr std::array<Package, 2> kPackages = {{{"ff1152", 824}, {"ff1517", 1104}}};
 
@@ -28,9 +29,9 @@ inline const Package* find_package(std::string_view name) {
 struct BankPins {
   int data = 32;     // qdr: 16 each way, a bit on both edges of the clock
   int control = 10;  // ours: clock, select, commands, 4 byte enables
-  int address = 0;
+  int address = 0;   // bits of a word's address; of sdram see pins_of()
 
-  int all() const { return data + control + address; }
+  int all() const { return data + control + address; }  // the sum of the three
 };
 
 // The least number of bits that hold `values` different values.

@@ -27,10 +27,10 @@ class FrameCameraIf : public virtual sc_core::sc_interface, public FrameCamera {
 // not the running one or has been taken already.
 class Camera : public sc_core::sc_module, private FrameReceiver, private FrameCameraIf {
  public:
-  using Stats = CameraControl::Stats;
+  using Stats = CameraControl::Stats;  // frames begun, triggers ignored
 
-  StreamOut<VideoFrame> frames_out{"frames_out"};
-  sc_core::sc_export<FrameCameraIf> link{"link"};
+  StreamOut<VideoFrame> frames_out{"frames_out"};  // each frame, at its beginning
+  sc_core::sc_export<FrameCameraIf> link{"link"};  // for the capture board
 
   // `source` outlives the camera. Throws std::invalid_argument if the configuration has problems or the
   // kernel's time resolution is not 1 ps.
@@ -44,9 +44,9 @@ class Camera : public sc_core::sc_module, private FrameReceiver, private FrameCa
     if (control_.next_ps() == kNever) dont_initialize();
   }
 
-  const CameraControl& control() const { return control_; }
-  const CameraTiming& timing() const { return control_.timing(); }
-  const Stats& stats() const { return control_.stats(); }
+  const CameraControl& control() const { return control_; }         // the rules behind the sockets
+  const CameraTiming& timing() const { return control_.timing(); }  // when frames begin and pixels arrive
+  const Stats& stats() const { return control_.stats(); }           // up to now
 
  private:
   void begin_frame(const VideoFrame& frame) override;

@@ -27,9 +27,10 @@ class CameraSource {
 // steps are the beginnings of frames. Plain C++.
 class CameraControl : public FrameCamera {
  public:
+  // What the camera has counted since time 0.
   struct Stats {
-    std::uint64_t frames = 0;  // frames that have begun
-    std::uint64_t ignored_triggers = 0;
+    std::uint64_t frames = 0;            // frames that have begun
+    std::uint64_t ignored_triggers = 0;  // as described at Camera
   };
 
   // `source` and `board` outlive the camera. Throws std::invalid_argument if the configuration has problems.
@@ -85,8 +86,8 @@ class CameraControl : public FrameCamera {
     next_ps_ = begin_ps;
   }
 
-  const CameraTiming& timing() const { return timing_; }
-  const Stats& stats() const { return stats_; }
+  const CameraTiming& timing() const { return timing_; }  // when frames begin and pixels arrive
+  const Stats& stats() const { return stats_; }           // up to the last step
 
  private:
   CameraTiming timing_;

@@ -9,8 +9,8 @@ namespace stereotlm::capture {
 
 // A frame begins, at begin_ps.
 struct VideoFrame {
-  std::uint64_t number = 0;  // 0 for the camera's first frame
-  std::uint64_t begin_ps = 0;
+  std::uint64_t number = 0;              // 0 for the camera's first frame
+  std::uint64_t begin_ps = 0;            // when it begins
   const CameraTiming* timing = nullptr;  // timing of its pixels; lives as long as the camera
 };
 
@@ -18,7 +18,7 @@ struct VideoFrame {
 class FrameReceiver {
  public:
   virtual ~FrameReceiver() = default;
-  virtual void begin_frame(const VideoFrame& frame) = 0;
+  virtual void begin_frame(const VideoFrame& frame) = 0;  // called when a frame begins
 };
 
 // A camera, called by a capture board.

@@ -21,8 +21,8 @@ class CameraTiming {
   explicit CameraTiming(const CameraConfig& config)
       : CameraTiming(config, decimal_of(checked("camera", config).frame_rate_hz)) {}
 
-  int width() const { return width_; }
-  int height() const { return height_; }
+  int width() const { return width_; }    // pixels
+  int height() const { return height_; }  // pixels
 
   // Time from 0 to the beginning of frame `number` of a free-running camera. A frame lasts frame_ps(1).
   std::uint64_t frame_ps(std::uint64_t number) const { return frame_.times(number); }
@@ -31,8 +31,8 @@ class CameraTiming {
     return step_.times(row_steps_ * static_cast<std::uint64_t>(row) +
                        kPixelSteps * static_cast<std::uint64_t>(column));
   }
-  std::uint64_t row_ps(int row) const { return pixel_ps(0, row); }
-  std::uint64_t last_pixel_ps() const { return pixel_ps(width_ - 1, height_ - 1); }
+  std::uint64_t row_ps(int row) const { return pixel_ps(0, row); }  // arrival of the first pixel of a row
+  std::uint64_t last_pixel_ps() const { return pixel_ps(width_ - 1, height_ - 1); }  // of the last pixel
   // Returns how many pixels of a row have arrived when `since_begin_ps` have passed since the beginning of
   // the frame. A pixel that arrives at that very time counts. Two roundings of up to half a ps can make the
   // count uncertain: then the loops correct it.

@@ -34,12 +34,13 @@ class CapturePartnerIf : public virtual sc_core::sc_interface, public CapturePar
 // time before its request; the end of a burst that does not run; a result that the burst cannot have.
 class CaptureBoard : public sc_core::sc_module, private CapturePartnerIf, private InterruptIf {
  public:
-  using Stats = CaptureControl::Stats;
+  using Stats = CaptureControl::Stats;  // counts since time 0
 
-  tlm_utils::simple_target_socket<CaptureBoard> registers{"registers"};
+  tlm_utils::simple_target_socket<CaptureBoard> registers{"registers"};  // capture_registers.h
+  // A slot of the bus, which the board masters.
   pci::PciMasterPort pci{"pci", [this] { follow(); },
                          [this](const std::exception& error) { report(error.what()); }};
-  InterruptOut interrupt{"interrupt"};
+  InterruptOut interrupt{"interrupt"};               // INTA#
   sc_core::sc_port<FrameCameraIf> camera{"camera"};  // whose frames come in at frames_in
   // The cameras that the board triggers: any number, or none.
   sc_core::sc_port<FrameCameraIf, 0, sc_core::SC_ZERO_OR_MORE_BOUND> triggered{"triggered"};
@@ -52,12 +53,12 @@ class CaptureBoard : public sc_core::sc_module, private CapturePartnerIf, privat
   void take_frame(const VideoFrame& frame);
 
  public:
-  StreamIn<VideoFrame, CaptureBoard, &CaptureBoard::take_frame> frames_in{"frames_in", this};
+  StreamIn<VideoFrame, CaptureBoard, &CaptureBoard::take_frame> frames_in{"frames_in", this};  // of `camera`
 
   // Throws std::invalid_argument if the configuration has problems.
   CaptureBoard(const sc_core::sc_module_name& name, const CaptureBoardConfig& config);
 
-  CaptureControl& control() { return control_; }
+  CaptureControl& control() { return control_; }  // the rules behind the sockets
   // Counts up to the current time.
   Stats stats() const;
   // The last capture that has ended; none before the first one ends.

@@ -35,18 +35,19 @@ class CaptureControl : public FrameReceiver,
   // Each camera frame is counted as started, or as dropped for one reason. It is counted only 1 ps after it
   // begins.
   struct Stats {
-    std::uint64_t started_frames = 0;
+    std::uint64_t started_frames = 0;      // frames that were taken
     std::uint64_t captured_frames = 0;     // captures that have ended
     std::uint64_t dropped_not_armed = 0;   // frames for which this board was not armed
     std::uint64_t dropped_busy = 0;        // frames that began while a capture was running
     std::uint64_t dropped_by_partner = 0;  // frames that the other board could not take
-    std::uint64_t dropped_pixels = 0;
-    std::uint64_t bursts = 0;            // bursts granted
-    std::uint64_t words = 0;             // words written
-    std::uint64_t lost_words = 0;        // words of bursts that ended with an error
-    std::uint64_t bus_errors = 0;        // bursts that ended with master abort or target error
-    std::uint64_t refused_accesses = 0;  // refused register accesses
+    std::uint64_t dropped_pixels = 0;      // pixels that found the FIFO full
+    std::uint64_t bursts = 0;              // bursts granted
+    std::uint64_t words = 0;               // words written
+    std::uint64_t lost_words = 0;          // words of bursts that ended with an error
+    std::uint64_t bus_errors = 0;          // bursts that ended with master abort or target error
+    std::uint64_t refused_accesses = 0;    // refused register accesses
 
+    // The sum of the three reasons.
     std::uint64_t dropped_frames() const { return dropped_not_armed + dropped_busy + dropped_by_partner; }
   };
 
@@ -79,7 +80,7 @@ class CaptureControl : public FrameReceiver,
   // The level of the interrupt. Writes, steps and ends of bursts change it.
   bool interrupt() const { return done_ || words_lost_; }
 
-  void begin_frame(const VideoFrame& frame) override;
+  void begin_frame(const VideoFrame& frame) override;  // 1 ps later the board decides about it
   bool can_start(std::uint64_t frame, std::uint64_t begin_ps) override;
   // These throw std::logic_error for a grant that was not requested, or for a time before its request, and
   // for the end of a burst that does not run or cannot have this result.
@@ -101,7 +102,7 @@ class CaptureControl : public FrameReceiver,
   // Skips the next line, whose words have left in `bursts` bursts. The last burst ended at `now_ps`.
   void skip_line(std::uint64_t now_ps, std::uint64_t bursts);
 
-  bool capturing() const { return capturing_; }
+  bool capturing() const { return capturing_; }  // whether a capture is under way
   // Whether a frame has begun in this very ps, and is neither started nor dropped yet.
   bool undecided() const { return decision_ps_ != kNever; }
   // The last capture that has ended; none before the first one ends.

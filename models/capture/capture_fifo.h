@@ -18,8 +18,8 @@ namespace stereotlm::capture {
 
 // Consecutive words of a frame, also over ends of lines. Word 0 has the frame's first pixels.
 struct FrameWords {
-  int first = 0;
-  int count = 0;
+  int first = 0;  // number of the first word in the frame
+  int count = 0;  // words
 };
 
 // Computes which words the FIFO of a CaptureBoard holds at each time, and when it requests the bus (contract
@@ -84,7 +84,7 @@ class CaptureFifo {
 
   // The following functions give the state at the time of the last advance(), transfer() or lose().
 
-  std::uint64_t now_ps() const { return now_ps_; }
+  std::uint64_t now_ps() const { return now_ps_; }  // the time of that call
   // Returns the time at which the FIFO requests the bus or the frame finishes; the present if that time has
   // passed. Not to be called while a burst runs.
   std::uint64_t next_ps() const {
@@ -122,8 +122,8 @@ class CaptureFifo {
   }
   // A span of time: `first_ps` included, `end_ps` not.
   struct Span {
-    std::uint64_t first_ps = 0;
-    std::uint64_t end_ps = 0;
+    std::uint64_t first_ps = 0;  // included
+    std::uint64_t end_ps = 0;    // not included
   };
   // The span around `time_ps` in which the numbers of words begun and of words complete stay the same. Some
   // pixels of `row` have arrived at `time_ps`, but none of the next row, which exists.

@@ -7,12 +7,12 @@ namespace stereotlm::capture {
 
 // A capture, from the frame that it takes to its last word.
 struct Capture {
-  std::uint64_t frame = 0;  // number of the camera frame
-  std::uint64_t begin_ps = 0;
-  std::uint64_t end_ps = 0;
-  std::uint64_t dropped_pixels = 0;
-  std::uint64_t lost_words = 0;
-  std::uint64_t words = 0;  // words written
+  std::uint64_t frame = 0;           // number of the camera frame
+  std::uint64_t begin_ps = 0;        // when the frame began
+  std::uint64_t end_ps = 0;          // when the capture ended
+  std::uint64_t dropped_pixels = 0;  // pixels that found the FIFO full
+  std::uint64_t lost_words = 0;      // words that the bus did not take
+  std::uint64_t words = 0;           // words written
 };
 
 // Why a capture board does not take a frame of its camera.
@@ -22,7 +22,7 @@ enum class DropReason : std::uint8_t { kNotArmed, kBusy, kPartner };
 class CaptureObserver {
  public:
   virtual ~CaptureObserver() = default;
-  virtual void frame_begun(std::uint64_t frame, std::uint64_t begin_ps) = 0;
+  virtual void frame_begun(std::uint64_t frame, std::uint64_t begin_ps) = 0;  // a frame of the camera begins
   // One of these follows, 1 ps after the beginning of the frame.
   virtual void frame_dropped(std::uint64_t frame, std::uint64_t begin_ps, DropReason reason) = 0;
   virtual void capture_begun(std::uint64_t frame, std::uint64_t begin_ps) = 0;

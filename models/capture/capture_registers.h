@@ -25,21 +25,21 @@
 // capture that runs or is armed cannot be cancelled.
 namespace stereotlm::capture::registers {
 
-inline constexpr std::uint64_t kControl = 0x00;
-inline constexpr std::uint64_t kStatus = 0x04;
-inline constexpr std::uint64_t kBufferAddress = 0x08;
-inline constexpr std::uint64_t kFrameNumberLow = 0x0c;
-inline constexpr std::uint64_t kFrameNumberHigh = 0x10;
-inline constexpr std::uint64_t kDroppedPixels = 0x14;
-inline constexpr std::uint64_t kLostWords = 0x18;
-inline constexpr std::uint64_t kEnd = 0x1c;
+inline constexpr std::uint64_t kControl = 0x00;          // write: kControlArm, kControlTrigger
+inline constexpr std::uint64_t kStatus = 0x04;           // kStatusArmed and the others
+inline constexpr std::uint64_t kBufferAddress = 0x08;    // bus address of the next capture's buffer
+inline constexpr std::uint64_t kFrameNumberLow = 0x0c;   // bits 31..0 of the last capture's frame number
+inline constexpr std::uint64_t kFrameNumberHigh = 0x10;  // bits 63..32
+inline constexpr std::uint64_t kDroppedPixels = 0x14;    // pixels of the last capture that the FIFO dropped
+inline constexpr std::uint64_t kLostWords = 0x18;        // words of the last capture that were lost
+inline constexpr std::uint64_t kEnd = 0x1c;              // behind the last register
 
-inline constexpr std::uint32_t kControlArm = 1U << 0U;
-inline constexpr std::uint32_t kControlTrigger = 1U << 1U;
-inline constexpr std::uint32_t kStatusArmed = 1U << 0U;
-inline constexpr std::uint32_t kStatusCapturing = 1U << 1U;
-inline constexpr std::uint32_t kStatusDone = 1U << 2U;
-inline constexpr std::uint32_t kStatusWordsLost = 1U << 3U;
-inline constexpr std::uint32_t kStatusArmRefused = 1U << 4U;
+inline constexpr std::uint32_t kControlArm = 1U << 0U;        // arms a capture
+inline constexpr std::uint32_t kControlTrigger = 1U << 1U;    // triggers the cameras on demand
+inline constexpr std::uint32_t kStatusArmed = 1U << 0U;       // a capture is armed
+inline constexpr std::uint32_t kStatusCapturing = 1U << 1U;   // a capture is under way
+inline constexpr std::uint32_t kStatusDone = 1U << 2U;        // a capture has ended; cleared by writing 1
+inline constexpr std::uint32_t kStatusWordsLost = 1U << 3U;   // words were lost; cleared by writing 1
+inline constexpr std::uint32_t kStatusArmRefused = 1U << 4U;  // an arming was refused; cleared by writing 1
 
 }  // namespace stereotlm::capture::registers

@@ -31,6 +31,7 @@ class AccessPattern {
     const auto place = static_cast<std::size_t>(column);
     return (pixels_of_row(row)[place / 64] >> place % 64 & 1U) != 0;
   }
+  // The slots of four columns.
   std::uint64_t slots_of_group() const { return 4 * static_cast<std::uint64_t>(geometry_.slots_per_column); }
   // Whether every slot inside the image accesses it.
   bool needs_all_pixels() const { return needs_all_pixels_; }

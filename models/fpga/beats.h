@@ -13,8 +13,8 @@ namespace stereotlm::fpga {
 
 // A slot of the sequence: the rectified pixel to fetch.
 struct Slot {
-  int column = 0;
-  int row = 0;
+  int column = 0;       // of the image
+  int row = 0;          // may lie outside the image
   bool empty = false;   // outside the image: no access
   sc_core::sc_time at;  // start of its cycle, from now
 };
@@ -31,9 +31,9 @@ using kernels::PixelColumn;
 
 // The outputs of the window modules for one column.
 struct WindowSums {
-  int row = 0;
-  const std::int32_t* sums = nullptr;  // padded lanes, valid during the push
-  int lanes = 0;
+  int row = 0;                                    // of the strip
+  const std::int32_t* sums = nullptr;             // padded lanes, valid during the push
+  int lanes = 0;                                  // padded number of candidates
   const kernels::ColumnScores* scores = nullptr;  // compared in place of the sums, unless null
   int candidates = 0;                             // lanes 0..candidates-1 have windows inside both images
   bool left_valid = false;                        // valid bit of the left pixel in the middle of the window
@@ -41,24 +41,26 @@ struct WindowSums {
 
 // Unit A's result for a right pixel.
 struct RightMatch {
-  int row = 0;
-  std::uint8_t disparity = kernels::kInvalidDisparity;
+  int row = 0;                                          // of the strip
+  std::uint8_t disparity = kernels::kInvalidDisparity;  // of the pixel, or kInvalidDisparity
 };
 
 // Unit B's result for a left pixel.
 struct LeftMatch {
-  int row = 0;
-  std::uint8_t disparity = kernels::kInvalidDisparity;
-  bool left_valid = false;
+  int row = 0;                                          // of the strip
+  std::uint8_t disparity = kernels::kInvalidDisparity;  // of the pixel, or kInvalidDisparity
+  bool left_valid = false;                              // valid bit of the pixel's table entry
 };
 
+// A checked disparity of a left pixel.
 struct Disparity {
-  int row = 0;
-  std::uint8_t value = kernels::kInvalidDisparity;
+  int row = 0;                                      // of the strip
+  std::uint8_t value = kernels::kInvalidDisparity;  // kInvalidDisparity if it failed the check
 };
 
+// Four disparities of a row.
 struct ResultWord {
-  std::uint32_t word = 0;
+  std::uint32_t word = 0;   // the lowest column in the lowest byte
   std::uint64_t place = 0;  // in the disparity buffer, in words
 };
 

@@ -14,7 +14,7 @@ namespace stereotlm::fpga {
 // takes filtered columns, and passes on columns of census bits.
 class Census : public sc_core::sc_module {
  public:
-  StreamOut<PixelColumn> columns_out{"columns_out"};
+  StreamOut<PixelColumn> columns_out{"columns_out"};  // census bits
 
  private:
   void take(const PixelColumn& column) {
@@ -24,7 +24,7 @@ class Census : public sc_core::sc_module {
   }
 
  public:
-  StreamIn<PixelColumn, Census, &Census::take> columns_in{"columns_in", this};
+  StreamIn<PixelColumn, Census, &Census::take> columns_in{"columns_in", this};  // filtered pixels
 
   // The cost of `config` must be kCensus.
   Census(const sc_core::sc_module_name& name, const CoreConfig& config)
@@ -36,7 +36,7 @@ class Census : public sc_core::sc_module {
     start_frame();
   }
 
-  void start_frame() {
+  void start_frame() {  // to be called before the first column of a frame
     census_.start_frame(first_row_);
     columns_to_skip_ = filter_half_;
   }

@@ -19,13 +19,14 @@ enum class Fidelity : std::uint8_t {
   kFast,         // data in one step, by direct access; cycles fast-forwarded (FastForward)
   kTiming,       // as kFast, but without pictures and disparities
 };
-constexpr bool steps_cycles(Fidelity fidelity) {
+constexpr bool steps_cycles(Fidelity fidelity) {  // whether each cycle is stepped
   return fidelity == Fidelity::kCycle || fidelity == Fidelity::kCycleTiming;
 }
-constexpr bool has_pixels(Fidelity fidelity) {
+constexpr bool has_pixels(Fidelity fidelity) {  // whether disparities are computed
   return fidelity == Fidelity::kCycle || fidelity == Fidelity::kFast;
 }
 
+// How the pixels of a window are fetched.
 enum class Fetch : std::uint8_t {
   kColumn,      // n pixels of a column, one per cycle (paper section 3.2)
   kLineBuffer,  // one pixel per cycle, older rows from block RAM
@@ -37,8 +38,8 @@ enum class PixelCache : std::uint8_t {
   kWord,  // keeps the last word that was read, for each slot of a column
 };
 
-inline constexpr kernels::IntegerRule kWidthRule{4, 8192, 4};
-inline constexpr kernels::IntegerRule kHeightRule{1, 8192};
+inline constexpr kernels::IntegerRule kWidthRule{4, 8192, 4};  // without a look-up table
+inline constexpr kernels::IntegerRule kHeightRule{1, 8192};    // without a look-up table
 // With a look-up table: its entries hold coordinates of 11 bits.
 inline constexpr kernels::IntegerRule kWidthWithTableRule{4, 2048, 4};
 inline constexpr kernels::IntegerRule kHeightWithTableRule{1, 2048};
@@ -58,14 +59,14 @@ struct CoreConfig {
   int disparities = 80;      // D: candidates, kDisparitiesRule
   std::optional<int> units;  // U: window modules, kUnitsRule, at most D; nullopt: one for each candidate
   int rows = 1;              // R: rows of results computed at once, kRowsRule; more than 1 only with kColumn
-  kernels::MatchingCost cost;
+  kernels::MatchingCost cost;                                     // of the matcher
   std::optional<kernels::FilterKernel> filter = kernels::log7();  // nullopt: no filter
-  Fetch fetch = Fetch::kColumn;
+  Fetch fetch = Fetch::kColumn;                                   // the order of the slots
   std::optional<int> lr_tolerance = 0;  // kLrToleranceRule; nullopt: no left-right check
   bool left_table = true;               // false: the side has no look-up table
-  bool right_table = true;
-  bool joint_tables = false;  // one table for both sides, which both have one then (contract 7.3)
-  PixelCache pixel_cache = PixelCache::kNone;
+  bool right_table = true;              // false: the side has no look-up table
+  bool joint_tables = false;            // one table for both sides, which both have one then (contract 7.3)
+  PixelCache pixel_cache = PixelCache::kNone;  // of each lane
   // The striped buffers (contract 8.2), each as the bases of its parts: bits 31..26 bank, 25..0 first word.
   // All banks of a buffer differ, and have one read latency.
   std::vector<std::vector<std::uint32_t>> stripes;
@@ -86,6 +87,7 @@ inline int folds_of(const CoreConfig& config) { return folds_of(config.dispariti
 inline bool has_units_for(std::optional<int> units, int disparities) {
   return !units || *units <= disparities;
 }
+// Several rows or lanes only with kColumn; each row has a place in the result queue.
 inline bool can_fetch_rows(Fetch fetch, int rows) { return fetch == Fetch::kColumn || rows == 1; }
 inline bool can_queue_rows(int result_fifo_words, int rows) { return result_fifo_words >= rows; }
 inline bool can_divide_columns(Fetch fetch, int lanes) { return fetch == Fetch::kColumn || lanes == 1; }

@@ -13,6 +13,7 @@
 
 namespace stereotlm::fpga {
 
+// The sides of the stereo rig: left 0, right 1.
 enum class Side : std::uint8_t { kLeft, kRight };
 inline constexpr std::array<Side, 2> kSides = {Side::kLeft, Side::kRight};
 constexpr std::size_t index_of(Side side) { return static_cast<std::size_t>(side); }
@@ -23,17 +24,17 @@ enum class PortStage : std::uint8_t { kLutReader, kPixelReader, kResultWriter, k
 // A port group: the ports of the FPGA on the SSRAM banks with the same stage and side. It has a port for each
 // lane, or a single one. In a frame all ports of a group access one buffer, in one direction.
 struct PortGroup {
-  const char* name;  // in board files, results and messages
-  PortStage stage;
-  Side side;                      // of readers; without meaning for other stages
-  const char* buffer;             // name of the buffer
-  std::uint64_t base_register;    // register_map.h: bank and first word of the buffer
-  std::uint64_t bytes_per_pixel;  // of the buffer
-  bool write;                     // direction of all accesses
-  bool (*exists)(const CoreConfig&);
+  const char* name;                   // in board files, results and messages
+  PortStage stage;                    // what the port serves
+  Side side;                          // of readers; without meaning for other stages
+  const char* buffer;                 // name of the buffer
+  std::uint64_t base_register;        // register_map.h: bank and first word of the buffer
+  std::uint64_t bytes_per_pixel;      // of the buffer
+  bool write;                         // direction of all accesses
+  bool (*exists)(const CoreConfig&);  // whether a core of this configuration has it
 };
 
-constexpr bool always(const CoreConfig& /*config*/) { return true; }
+constexpr bool always(const CoreConfig& /*config*/) { return true; }  // for groups that every core has
 
 // All port groups, in the order in which results list their ports. Masks, routes, buffers, blame, counts,
 // board files and reports follow from this table. The groups of the core come first; the last one is the
@@ -51,8 +52,8 @@ inline constexpr std::array kPortGroups = {
               true, always},
     PortGroup{"host", PortStage::kLocalBus, Side::kLeft, "", 0, 0, false, always},
 };
-inline constexpr std::size_t kGroupCount = kPortGroups.size();
-inline constexpr std::size_t kCoreGroupCount = kGroupCount - 1;
+inline constexpr std::size_t kGroupCount = kPortGroups.size();  // the groups of the core and that of the host
+inline constexpr std::size_t kCoreGroupCount = kGroupCount - 1;  // the groups of the core
 
 // Index of the port group of a stage; the side distinguishes the readers.
 constexpr std::size_t group_of(PortStage stage, Side side = Side::kLeft) {
@@ -60,16 +61,17 @@ constexpr std::size_t group_of(PortStage stage, Side side = Side::kLeft) {
   while (kPortGroups[group].stage != stage || kPortGroups[group].side != side) ++group;
   return group;
 }
+// Port groups: of the readers of tables and of pixels, of the result writer, of the host.
 constexpr std::size_t lut_group(Side side) { return group_of(PortStage::kLutReader, side); }
 constexpr std::size_t pixel_group(Side side) { return group_of(PortStage::kPixelReader, side); }
 inline constexpr std::size_t kResultGroup = group_of(PortStage::kResultWriter);
 inline constexpr std::size_t kHostGroup = group_of(PortStage::kLocalBus);
 static_assert(kHostGroup == kCoreGroupCount, "the host's group is the last one");
 
-constexpr bool has_group(const CoreConfig& config, std::size_t group) {
+constexpr bool has_group(const CoreConfig& config, std::size_t group) {  // whether it exists
   return kPortGroups[group].exists(config);
 }
-constexpr bool has_table(const CoreConfig& config, Side side) {
+constexpr bool has_table(const CoreConfig& config, Side side) {  // whether the side has a look-up table
   return side == Side::kLeft ? config.left_table : config.right_table;
 }
 
@@ -85,22 +87,24 @@ class CorePorts {
     return CorePorts(static_cast<int>((ports - 1) / kReaderGroups));
   }
 
-  std::size_t size() const { return core_size() + 1; }
+  std::size_t size() const { return core_size() + 1; }                  // ports, the host's included
   std::size_t core_size() const { return kReaderGroups * lanes_ + 1; }  // without the host's port
   std::size_t lanes() const { return lanes_; }                          // on each side
+  // The ports of a lane: for its table, and for its picture.
   memory::Port lut(Side side, std::size_t lane) const { return lut_group(side) * lanes_ + lane; }
   memory::Port pixel(Side side, std::size_t lane) const { return pixel_group(side) * lanes_ + lane; }
-  memory::Port result() const { return kReaderGroups * lanes_; }
-  memory::Port host() const { return core_size(); }
+  memory::Port result() const { return kReaderGroups * lanes_; }  // of the results
+  memory::Port host() const { return core_size(); }               // of the local bus
   // The only port of a group, or that of a lane.
   memory::Port port(std::size_t group, std::size_t lane = 0) const {
     return group < kReaderGroups ? group * lanes_ + lane : core_size() - (kHostGroup - group);
   }
 
-  std::size_t group_of(memory::Port port) const {
+  std::size_t group_of(memory::Port port) const {  // index of its port group
     return port < kReaderGroups * lanes_ ? port / lanes_ : kHostGroup - (host() - port);
   }
-  const PortGroup& group(memory::Port port) const { return kPortGroups[group_of(port)]; }
+  const PortGroup& group(memory::Port port) const { return kPortGroups[group_of(port)]; }  // its port group
+  // 0 for a port whose group has no other.
   std::size_t lane_of(memory::Port port) const { return port < result() ? port % lanes_ : 0; }
   // "left_lut", or with several lanes "left_lut.0".
   std::string name(memory::Port port) const {
@@ -142,11 +146,11 @@ using FrameBases = std::array<std::uint32_t, kCoreGroupCount>;
 // them: bits 31..26 bank, 25..0 first word; of a striped buffer those of its first part. The buffers of a
 // list are used in turn, frame by frame.
 struct BufferBases {
-  std::vector<std::uint32_t> left_images;
-  std::vector<std::uint32_t> right_images;  // as many as left_images
-  std::vector<std::uint32_t> disparities;
-  std::optional<std::uint32_t> left_lut;  // nullopt: the side has no table of its own
-  std::optional<std::uint32_t> right_lut;
+  std::vector<std::uint32_t> left_images;           // a list, used in turn
+  std::vector<std::uint32_t> right_images;          // as many as left_images
+  std::vector<std::uint32_t> disparities;           // a list, used in turn
+  std::optional<std::uint32_t> left_lut;            // nullopt: the side has no table of its own
+  std::optional<std::uint32_t> right_lut;           // nullopt: the side has no table of its own
   std::vector<std::vector<std::uint32_t>> stripes;  // CoreConfig::stripes
   bool has_joint_tables = false;  // left_lut is one table for both sides; right_lut is nullopt
 

@@ -11,9 +11,9 @@ namespace stereotlm::fpga {
 
 // A start strobe, with the values of the registers at its time.
 struct FrameStart {
-  FrameBases bases{};
-  kernels::JointOffsets joint_offsets{};
-  std::uint64_t time_ps = 0;  // of the strobe, now or later
+  FrameBases bases{};                     // where the frame's buffers lie
+  kernels::JointOffsets joint_offsets{};  // of joint tables; else without meaning
+  std::uint64_t time_ps = 0;              // of the strobe, now or later
 };
 
 // The registers of register_map.h: start strobe, status, bases and offsets of a frame. Plain C++.
@@ -37,7 +37,7 @@ class CoreRegisters {
   std::uint32_t read(std::uint64_t address) const;
   void write(std::uint64_t time_ps, std::uint64_t address, std::uint32_t value);
 
-  void refuse_start();
+  void refuse_start();  // raises error; to be called within Starter::start_frame()
   // To be called when the frame has ended. `error`: memory refused an access, or the result may differ from
   // that at Fidelity::kCycle.
   void finish_frame(std::uint64_t frame_cycles, bool error);

@@ -20,20 +20,22 @@ namespace stereotlm::fpga {
 // is complete. The number of modules has no effect here: all candidates are computed when the last fold ends.
 class CostArray : public sc_core::sc_module {
  public:
-  StreamOut<WindowSums> chain_out{"chain_out"};
-  StreamOut<WindowSums> tree_out{"tree_out"};
+  StreamOut<WindowSums> chain_out{"chain_out"};  // to unit A
+  StreamOut<WindowSums> tree_out{"tree_out"};    // to unit B
 
  private:
   void take_left(const PixelColumn& column) { left_ = column; }
   void take_right(const PixelColumn& column);
 
  public:
+  // A column of the left side, then one of the right side.
   StreamIn<PixelColumn, CostArray, &CostArray::take_left> left_in{"left_in", this};
   StreamIn<PixelColumn, CostArray, &CostArray::take_right> right_in{"right_in", this};
 
+  // The configuration has no problems.
   CostArray(const sc_core::sc_module_name& name, const CoreConfig& config);
 
-  void start_frame();
+  void start_frame();  // to be called before the first column of a frame
 
  private:
   struct Row {

@@ -20,6 +20,7 @@ inline bool begins_word(int column) { return column % kernels::kPixelsPerWord ==
 // The slots of a frame (contract section 2, "Slots" and "Matcher"): strips of columns, and the delay of a
 // result behind its slots.
 struct FrameGeometry {
+  // The configuration has no problems.
   explicit FrameGeometry(const CoreConfig& config)
       : width(config.width),
         height(config.height),
@@ -47,8 +48,8 @@ struct FrameGeometry {
                           static_cast<std::uint64_t>((height - 1) / rows) * columns_per_strip()),
         result_words(columns_per_strip() * static_cast<std::uint64_t>(height) / 4) {}
 
-  int width;
-  int height;
+  int width;              // pixels
+  int height;             // pixels
   int radius;             // r
   int half;               // h: half width of the filter and the cost together
   int rows;               // R: rows of results of a strip
@@ -58,7 +59,7 @@ struct FrameGeometry {
   int slots_per_column;   // K: lane p has those with k mod P = p
   int cycles_per_column;  // G: consume-cycles of a column. Number g takes slot gP + p of every lane p
   int lead_strips;        // strips before the first row of results can begin
-  int strips;
+  int strips;             // of the frame, the leading ones included
   int first_row;      // first row of strip 0; may lie above the image. Each strip begins `rows` further down
   int drain_columns;  // C_d of the contract
   std::uint64_t columns;         // of all strips
@@ -103,13 +104,14 @@ struct FrameGeometry {
     const std::uint64_t in_strip = word - strip_row * words_of_row;
     return (strip_row + in_strip % rows_inside) * words_of_row + in_strip / rows_inside;
   }
-  std::uint64_t columns_per_strip() const { return static_cast<std::uint64_t>(width); }
+  std::uint64_t columns_per_strip() const { return static_cast<std::uint64_t>(width); }  // W
 };
 
 // A place in the sequence of the slots of one lane in a frame.
 class SlotCursor {
  public:
   SlotCursor() = default;
+  // At the first slot of the lane.
   SlotCursor(const FrameGeometry& geometry, int lane)
       : width_(geometry.width),
         height_(geometry.height),
@@ -120,13 +122,13 @@ class SlotCursor {
         row_(strip_row_),
         left_(geometry.columns * static_cast<std::uint64_t>(slots_per_column_)) {}
 
-  bool done() const { return left_ == 0; }
-  int column() const { return column_; }
-  int row() const { return row_; }  // may lie outside the image
+  bool done() const { return left_ == 0; }  // whether the sequence has ended
+  int column() const { return column_; }    // of the slot
+  int row() const { return row_; }          // may lie outside the image
   // See FrameGeometry::is_inside().
   bool empty() const { return !is_row_of_image(row(), height_); }
 
-  void advance() {
+  void advance() {  // to the next slot
     --left_;
     row_ += step_;
     if (++k_ < slots_per_column_) return;
@@ -137,7 +139,7 @@ class SlotCursor {
     }
     row_ = strip_row_;
   }
-  void advance(std::uint64_t slots) {
+  void advance(std::uint64_t slots) {  // by this many slots
     left_ -= slots;
     const std::uint64_t slot = static_cast<std::uint64_t>(k_) + slots;
     const std::uint64_t column =

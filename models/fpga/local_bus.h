@@ -41,19 +41,19 @@ class LocalBus : public sc_core::sc_module,
                  private LocalBusMasterIf,
                  private LocalBusControl::Core {
  public:
-  using Stats = LocalBusControl::Stats;
+  using Stats = LocalBusControl::Stats;  // counts since time 0
 
-  tlm::tlm_target_socket<32> bus{"bus"};
-  tlm_utils::simple_initiator_socket<LocalBus> memory{"memory"};
-  tlm_utils::simple_initiator_socket<LocalBus> registers{"registers"};
+  tlm::tlm_target_socket<32> bus{"bus"};                                // from the bridge
+  tlm_utils::simple_initiator_socket<LocalBus> memory{"memory"};        // to the banks, through the crossbar
+  tlm_utils::simple_initiator_socket<LocalBus> registers{"registers"};  // to the registers of the core
   // Pushes a route before the first word of a burst to a bank, and after its last word.
   StreamOut<HostRoute> route_out{"route_out"};
 
   // Throws std::invalid_argument if the clock or the number of banks is out of range.
   LocalBus(const sc_core::sc_module_name& name, const LocalBusConfig& config, std::size_t banks);
 
-  LocalBusControl& control() { return control_; }
-  const LocalBusControl& control() const { return control_; }
+  LocalBusControl& control() { return control_; }              // the timing behind the sockets
+  const LocalBusControl& control() const { return control_; }  // the timing behind the sockets
   // Notified when the first word of a burst begins to request.
   const sc_core::sc_event& request_event() const { return request_event_; }
   // Counts up to the current time.

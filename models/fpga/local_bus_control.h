@@ -14,9 +14,9 @@ namespace stereotlm::fpga {
 
 // A burst on the local bus. Each time is that at which a clock of the bus begins.
 struct EndedLocalBurst {
-  bool write = false;
-  std::uint64_t address = 0;  // on the local bus
-  std::uint64_t words = 0;
+  bool write = false;            // else a read
+  std::uint64_t address = 0;     // on the local bus
+  std::uint64_t words = 0;       // transferred
   std::uint64_t address_ps = 0;  // the address clock
   std::uint64_t data_ps = 0;     // the decode clock
   std::uint64_t end_ps = 0;      // the idle clock
@@ -32,6 +32,7 @@ class LocalBusObserver {
   virtual void local_burst_ended(const EndedLocalBurst& burst) = 0;
 };
 
+// The configuration of a LocalBus.
 struct LocalBusConfig {
   double clock_mhz = 40;                   // of the local bus, 1..1000
   std::vector<AddressRange> buffers = {};  // on the local bus; words written are counted for each
@@ -42,10 +43,10 @@ inline constexpr std::uint64_t kLocalRegisters = std::uint64_t{1} << 34U;
 
 // The route of a burst to a bank: its bank, direction and words. Without `bank`: the burst has ended.
 struct HostRoute {
-  std::optional<std::size_t> bank;
-  bool write = false;
-  std::uint64_t first = 0;  // byte address on the crossbar
-  std::uint64_t end = 0;    // byte address after the burst
+  std::optional<std::size_t> bank;  // nullopt: the burst has ended
+  bool write = false;               // else a read
+  std::uint64_t first = 0;          // byte address on the crossbar
+  std::uint64_t end = 0;            // byte address after the burst
 };
 
 // The timing of the FPGA's end of the local bus (contract section 3, "Bridge"), and its counters. Plain C++.
@@ -61,15 +62,17 @@ struct HostRoute {
 // whoever grants the host port calls access(), or move_words() and count_granted().
 class LocalBusControl final : public LocalBusIf {
  public:
+  // What the bus has counted since time 0.
   struct Stats {
-    std::uint64_t bursts = 0;
-    std::uint64_t words_read = 0;     // from the banks
-    std::uint64_t words_written = 0;  // to the banks
-    std::uint64_t register_accesses = 0;
-    std::uint64_t errors = 0;       // refused words and bursts
-    std::uint64_t clocks = 0;       // whole clocks since time 0
-    std::uint64_t busy_clocks = 0;  // clocks of bursts, but not their idle clocks
+    std::uint64_t bursts = 0;             // that were not refused
+    std::uint64_t words_read = 0;         // from the banks
+    std::uint64_t words_written = 0;      // to the banks
+    std::uint64_t register_accesses = 0;  // words from and to registers
+    std::uint64_t errors = 0;             // refused words and bursts
+    std::uint64_t clocks = 0;             // whole clocks since time 0
+    std::uint64_t busy_clocks = 0;        // clocks of bursts, but not their idle clocks
   };
+  // Why a burst is refused.
   enum class Refusal : std::uint8_t {
     kNone,
     kAddress,  // no multiple of 4, or of no bank or register

@@ -14,7 +14,7 @@ namespace stereotlm::fpga {
 // of the slots, and passes on filtered columns. Without a filter it only collects the columns.
 class LogFilter : public sc_core::sc_module {
  public:
-  StreamOut<PixelColumn> columns_out{"columns_out"};
+  StreamOut<PixelColumn> columns_out{"columns_out"};  // filtered columns, top first
 
  private:
   void take(const MaskedPixel& pixel) {
@@ -22,15 +22,16 @@ class LogFilter : public sc_core::sc_module {
   }
 
  public:
-  StreamIn<MaskedPixel, LogFilter, &LogFilter::take> pixels_in{"pixels_in", this};
+  StreamIn<MaskedPixel, LogFilter, &LogFilter::take> pixels_in{"pixels_in", this};  // in slot order
 
+  // The configuration has no problems.
   LogFilter(const sc_core::sc_module_name& name, const CoreConfig& config)
       : sc_module(name),
         first_row_(FrameGeometry(config).first_row),
         filter_(config.width, config.height, FrameGeometry(config).slots_per_column, config.rows,
                 config.filter) {}
 
-  void start_frame() { filter_.start_frame(first_row_); }
+  void start_frame() { filter_.start_frame(first_row_); }  // to be called before the first slot of a frame
 
  private:
   int first_row_;

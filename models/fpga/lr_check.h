@@ -17,7 +17,7 @@ namespace stereotlm::fpga {
 // of the frame on. Each of the R rows has its own check. Results of rows outside the image are dropped here.
 class LrCheck : public sc_core::sc_module {
  public:
-  StreamOut<Disparity> disparities_out{"disparities_out"};
+  StreamOut<Disparity> disparities_out{"disparities_out"};  // in the order of the columns; row by row in each
 
  private:
   void take_right(const RightMatch& match) { right_ = match.disparity; }
@@ -29,16 +29,17 @@ class LrCheck : public sc_core::sc_module {
   }
 
  public:
-  StreamIn<RightMatch, LrCheck, &LrCheck::take_right> right_in{"right_in", this};
-  StreamIn<LeftMatch, LrCheck, &LrCheck::take_left> left_in{"left_in", this};
+  StreamIn<RightMatch, LrCheck, &LrCheck::take_right> right_in{"right_in", this};  // of unit A
+  StreamIn<LeftMatch, LrCheck, &LrCheck::take_left> left_in{"left_in", this};      // then of B
 
+  // The configuration has no problems.
   LrCheck(const sc_core::sc_module_name& name, const CoreConfig& config)
       : sc_module(name),
         geometry_(config),
         checks_(static_cast<std::size_t>(config.rows),
                 kernels::LrCheck(config.disparities, config.lr_tolerance)) {}
 
-  void start_frame() {
+  void start_frame() {  // to be called before the first column of a frame
     for (kernels::LrCheck& check : checks_) check.start_frame();
     // A result leaves result_delay_columns columns after its own column. The filter and the window, which lie
     // before this stage, cause a part of that delay.

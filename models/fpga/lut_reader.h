@@ -18,8 +18,8 @@ namespace stereotlm::fpga {
 // decides when a slot comes: one that is not empty comes in the cycle in which its access is granted.
 class LutReader : public sc_core::sc_module {
  public:
-  tlm_utils::simple_initiator_socket<LutReader> port{"port"};
-  StreamOut<TableEntry> entries_out{"entries_out"};
+  tlm_utils::simple_initiator_socket<LutReader> port{"port"};  // to the banks
+  StreamOut<TableEntry> entries_out{"entries_out"};            // of the left side with joint tables
   // With joint tables: the entries of the right side. Else unbound.
   sc_core::sc_port<StreamIf<TableEntry>, 1, sc_core::SC_ZERO_OR_MORE_BOUND> right_entries_out{
       "right_entries_out"};
@@ -44,8 +44,9 @@ class LutReader : public sc_core::sc_module {
   }
 
  public:
-  StreamIn<Slot, LutReader, &LutReader::take> slots_in{"slots_in", this};
+  StreamIn<Slot, LutReader, &LutReader::take> slots_in{"slots_in", this};  // of its lane
 
+  // `has_joint_tables`: it reads for both sides.
   LutReader(const sc_core::sc_module_name& name, bool has_joint_tables)
       : sc_module(name), has_joint_tables_(has_joint_tables) {}
 

@@ -25,21 +25,22 @@ namespace stereotlm::fpga {
 // word needs no access. All words are forgotten where a strip begins.
 class PixelReader : public sc_core::sc_module {
  public:
-  tlm_utils::simple_initiator_socket<PixelReader> port{"port"};
-  StreamOut<MaskedPixel> pixels_out{"pixels_out"};
+  tlm_utils::simple_initiator_socket<PixelReader> port{"port"};  // to the banks
+  StreamOut<MaskedPixel> pixels_out{"pixels_out"};               // to the filter of its side
 
  private:
   void store_entry(const TableEntry& entry);
   void take(const Slot& slot);
 
  public:
+  // From the LUT reader with a table, from the sequencer without one.
   StreamIn<TableEntry, PixelReader, &PixelReader::store_entry> entries_in{"entries_in", this};
   StreamIn<Slot, PixelReader, &PixelReader::take> slots_in{"slots_in", this};
 
   // `lane`: its number on its side.
   PixelReader(const sc_core::sc_module_name& name, const CoreConfig& config, int lane);
 
-  void start_frame(const Placement& image);
+  void start_frame(const Placement& image);  // `image`: where the frame's picture lies
   // Whether the entry that arrived last needs an access for its pixel.
   bool needs_access() const { return needs_access_; }
   // The oldest waiting entry; without meaning if none waits.

@@ -18,8 +18,8 @@ class Placement {
  public:
   // A 32-bit word of a bank.
   struct Word {
-    std::size_t bank;
-    std::uint32_t word;
+    std::size_t bank;    // its number
+    std::uint32_t word;  // number in the bank
   };
 
   Placement() = default;
@@ -35,7 +35,7 @@ class Placement {
     first_address_ = registers::base_address(parts_.front());
   }
 
-  const std::vector<std::uint32_t>& parts() const { return parts_; }
+  const std::vector<std::uint32_t>& parts() const { return parts_; }  // their bases, part 0 first
   // The number of rows in a part, of a buffer of `height` rows.
   std::uint64_t rows_of_part(std::size_t part, int height) const {
     return (static_cast<std::uint64_t>(height) - part + parts_.size() - 1) / parts_.size();
@@ -60,7 +60,7 @@ class Placement {
     return registers::base_address(parts_[row % parts_.size()]) +
            4 * (row / parts_.size() * row_words_ + number);
   }
-  std::uint64_t row_words() const { return row_words_; }
+  std::uint64_t row_words() const { return row_words_; }  // 32-bit words of a row
 
  private:
   std::vector<std::uint32_t> parts_;  // their bases

@@ -24,9 +24,10 @@ namespace stereotlm::fpga {
 // | a read of a write-only register, a write of a read-only one, any other command | command error      |
 class RegisterFile : public sc_core::sc_module, private CoreRegisters::Starter {
  public:
+  // Register accesses since time 0.
   struct Stats {
-    std::uint64_t reads = 0;
-    std::uint64_t writes = 0;
+    std::uint64_t reads = 0;   // that were allowed
+    std::uint64_t writes = 0;  // that were allowed
     std::uint64_t errors = 0;  // refused accesses
   };
 
@@ -36,7 +37,7 @@ class RegisterFile : public sc_core::sc_module, private CoreRegisters::Starter {
   sc_core::sc_out<bool> done{"done"};  // the interrupt: high from the end of a frame until it is acknowledged
   StreamOut<FrameStart> start_out{"start_out"};
 
-  explicit RegisterFile(const sc_core::sc_module_name& name);
+  explicit RegisterFile(const sc_core::sc_module_name& name);  // all registers are 0
 
   // To be called by the receiver of start_out to refuse the strobe.
   void refuse_start() { control_.refuse_start(); }

@@ -35,30 +35,31 @@
 // start the next frame.
 namespace stereotlm::fpga::registers {
 
-inline constexpr std::uint64_t kControl = 0x00;
-inline constexpr std::uint64_t kStatus = 0x04;
-inline constexpr std::uint64_t kFrameCyclesLow = 0x08;
-inline constexpr std::uint64_t kFrameCyclesHigh = 0x0c;
-inline constexpr std::uint64_t kLeftImageBase = 0x10;
-inline constexpr std::uint64_t kRightImageBase = 0x14;
-inline constexpr std::uint64_t kDisparityBase = 0x18;
-inline constexpr std::uint64_t kLeftLutBase = 0x1c;
-inline constexpr std::uint64_t kRightLutBase = 0x20;
-inline constexpr std::uint64_t kLeftColumns = 0x24;
-inline constexpr std::uint64_t kLeftRows = 0x28;
-inline constexpr std::uint64_t kRightColumns = 0x2c;
-inline constexpr std::uint64_t kRightRows = 0x30;
-inline constexpr std::uint64_t kEnd = 0x34;
+inline constexpr std::uint64_t kControl = 0x00;          // write: kControlStart, kControlAcknowledge
+inline constexpr std::uint64_t kStatus = 0x04;           // read: kStatusBusy, kStatusDone, kStatusError
+inline constexpr std::uint64_t kFrameCyclesLow = 0x08;   // read: bits 31..0 of the last frame's cycles
+inline constexpr std::uint64_t kFrameCyclesHigh = 0x0c;  // read: bits 63..32
+inline constexpr std::uint64_t kLeftImageBase = 0x10;    // base of the left picture
+inline constexpr std::uint64_t kRightImageBase = 0x14;   // base of the right picture
+inline constexpr std::uint64_t kDisparityBase = 0x18;    // base of the results
+inline constexpr std::uint64_t kLeftLutBase = 0x1c;      // base of the left table, or of the joint table
+inline constexpr std::uint64_t kRightLutBase = 0x20;     // base of the right table
+inline constexpr std::uint64_t kLeftColumns = 0x24;      // offset of the left side's displacements, in pixels
+inline constexpr std::uint64_t kLeftRows = 0x28;         // offset of the left side's displacements, in pixels
+inline constexpr std::uint64_t kRightColumns = 0x2c;  // offset of the right side's displacements, in pixels
+inline constexpr std::uint64_t kRightRows = 0x30;     // offset of the right side's displacements, in pixels
+inline constexpr std::uint64_t kEnd = 0x34;           // behind the last register
 
-inline constexpr std::uint32_t kControlStart = 1U << 0U;
-inline constexpr std::uint32_t kControlAcknowledge = 1U << 1U;
-inline constexpr std::uint32_t kStatusBusy = 1U << 0U;
-inline constexpr std::uint32_t kStatusDone = 1U << 1U;
-inline constexpr std::uint32_t kStatusError = 1U << 2U;
+inline constexpr std::uint32_t kControlStart = 1U << 0U;        // starts a frame
+inline constexpr std::uint32_t kControlAcknowledge = 1U << 1U;  // clears done and error
+inline constexpr std::uint32_t kStatusBusy = 1U << 0U;          // a frame is under way
+inline constexpr std::uint32_t kStatusDone = 1U << 1U;          // a frame has ended; the interrupt
+inline constexpr std::uint32_t kStatusError = 1U << 2U;  // a strobe ignored, an access refused, or a hazard
 
+// A value to be written to a register.
 struct RegisterValue {
-  std::uint64_t address;
-  std::uint32_t value;
+  std::uint64_t address;  // byte address
+  std::uint32_t value;    // 32 bits
 };
 // The values of the registers for the offsets of joint tables.
 constexpr std::array<RegisterValue, 4> joint_offsets(const kernels::JointOffsets& offsets) {
@@ -72,6 +73,7 @@ constexpr std::array<RegisterValue, 4> joint_offsets(const kernels::JointOffsets
 constexpr std::uint32_t base(std::uint32_t bank, std::uint32_t first_word) {
   return bank << 26U | first_word;
 }
+// Bank and word in the value of a base register.
 constexpr std::uint32_t bank_of(std::uint32_t base) { return base >> 26U; }
 constexpr std::uint32_t first_word_of(std::uint32_t base) { return base & 0x03FF'FFFFU; }
 // The byte address on the crossbar that the value stands for.

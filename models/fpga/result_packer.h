@@ -14,7 +14,7 @@ namespace stereotlm::fpga {
 // Packs four disparities of a row to a word, the lowest column in the lowest byte (contract 1.5).
 class ResultPacker : public sc_core::sc_module {
  public:
-  StreamOut<ResultWord> words_out{"words_out"};
+  StreamOut<ResultWord> words_out{"words_out"};  // with their places in the disparity buffer
 
  private:
   void take(const Disparity& disparity) {
@@ -29,14 +29,16 @@ class ResultPacker : public sc_core::sc_module {
   }
 
  public:
+  // Of each column the rows of its strip that lie inside the image.
   StreamIn<Disparity, ResultPacker, &ResultPacker::take> disparities_in{"disparities_in", this};
 
+  // The configuration has no problems.
   ResultPacker(const sc_core::sc_module_name& name, const CoreConfig& config)
       : sc_module(name),
         words_of_row_(static_cast<std::uint64_t>(config.width / kernels::kPixelsPerWord)),
         rows_(static_cast<std::size_t>(config.rows)) {}
 
-  void start_frame() {
+  void start_frame() {  // to be called before the first disparity of a frame
     for (std::size_t row = 0; row < rows_.size(); ++row) rows_[row] = {0, 0, row * words_of_row_};
   }
   // The number of words, over all frames.

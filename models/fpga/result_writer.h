@@ -18,7 +18,7 @@ namespace stereotlm::fpga {
 // CoreControl decides in which cycle a word is written.
 class ResultWriter : public sc_core::sc_module {
  public:
-  tlm_utils::simple_initiator_socket<ResultWriter> port{"port"};
+  tlm_utils::simple_initiator_socket<ResultWriter> port{"port"};  // to the banks
 
  private:
   void store(const ResultWord& word) {
@@ -30,14 +30,14 @@ class ResultWriter : public sc_core::sc_module {
   }
 
  public:
-  StreamIn<ResultWord, ResultWriter, &ResultWriter::store> words_in{"words_in", this};
+  StreamIn<ResultWord, ResultWriter, &ResultWriter::store> words_in{"words_in", this};  // into the queue
 
   // `fifo_words`: depth of the queue. Throws std::invalid_argument outside kResultFifoRule.
   ResultWriter(const sc_core::sc_module_name& name, int fifo_words)
       : sc_module(name),
         fifo_words_(static_cast<std::size_t>(kResultFifoRule.required("result_fifo_words", fifo_words))) {}
 
-  void start_frame(const Placement& disparities) {
+  void start_frame(const Placement& disparities) {  // `disparities`: where the frame's results go
     disparities_ = disparities;
     stored_ = 0;
     written_ = 0;

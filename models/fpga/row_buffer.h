@@ -17,7 +17,7 @@ namespace stereotlm::fpga {
 // frames.
 class RowBuffer : public sc_core::sc_module {
  public:
-  StreamOut<PixelColumn> columns_out{"columns_out"};
+  StreamOut<PixelColumn> columns_out{"columns_out"};  // the last n rows of each column
 
  private:
   void take(const PixelColumn& pixel) {
@@ -32,8 +32,9 @@ class RowBuffer : public sc_core::sc_module {
   }
 
  public:
-  StreamIn<PixelColumn, RowBuffer, &RowBuffer::take> columns_in{"columns_in", this};
+  StreamIn<PixelColumn, RowBuffer, &RowBuffer::take> columns_in{"columns_in", this};  // one row
 
+  // The configuration has no problems.
   RowBuffer(const sc_core::sc_module_name& name, const CoreConfig& config)
       : sc_module(name),
         newest_row_(static_cast<std::size_t>(config.window - 1)),
@@ -41,7 +42,7 @@ class RowBuffer : public sc_core::sc_module {
         values_(static_cast<std::size_t>(config.width * config.window) * pixel_bytes_),
         valid_(static_cast<std::size_t>(config.width)) {}
 
-  void start_frame() { column_ = 0; }
+  void start_frame() { column_ = 0; }  // to be called before the first pixel of a frame
 
  private:
   std::size_t newest_row_;  // n - 1

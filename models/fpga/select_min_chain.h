@@ -15,7 +15,7 @@ namespace stereotlm::fpga {
 // each of the R rows. With each column of window sums the match of the right pixel D-1 columns back leaves.
 class SelectMinChain : public sc_core::sc_module {
  public:
-  StreamOut<RightMatch> matches_out{"matches_out"};
+  StreamOut<RightMatch> matches_out{"matches_out"};  // of the right pixel D-1 columns back
 
  private:
   void take(const WindowSums& window) {
@@ -25,8 +25,10 @@ class SelectMinChain : public sc_core::sc_module {
   }
 
  public:
+  // Of each column a beat for each of the R rows.
   StreamIn<WindowSums, SelectMinChain, &SelectMinChain::take> sums_in{"sums_in", this};
 
+  // The configuration has no problems.
   SelectMinChain(const sc_core::sc_module_name& name, const CoreConfig& config) : sc_module(name) {
     const bool has_scores = kernels::ColumnScorer::is_needed(config.window, config.cost);
     for (int row = 0; row < config.rows; ++row) {
@@ -38,7 +40,7 @@ class SelectMinChain : public sc_core::sc_module {
     }
   }
 
-  void start_frame() {
+  void start_frame() {  // to be called before the first column of a frame
     for (auto& chain : chains_) chain.start_frame();
     for (auto& chain : score_chains_) chain.start_frame();
   }

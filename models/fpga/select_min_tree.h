@@ -12,7 +12,7 @@ namespace stereotlm::fpga {
 // of window sums the match of its left pixel leaves.
 class SelectMinTree : public sc_core::sc_module {
  public:
-  StreamOut<LeftMatch> matches_out{"matches_out"};
+  StreamOut<LeftMatch> matches_out{"matches_out"};  // of the left pixel of each column
 
  private:
   void take(const WindowSums& window) {
@@ -23,9 +23,10 @@ class SelectMinTree : public sc_core::sc_module {
   }
 
  public:
+  // Of each column a beat for each of the R rows.
   StreamIn<WindowSums, SelectMinTree, &SelectMinTree::take> sums_in{"sums_in", this};
 
-  explicit SelectMinTree(const sc_core::sc_module_name& name) : sc_module(name) {}
+  explicit SelectMinTree(const sc_core::sc_module_name& name) : sc_module(name) {}  // it has no state
 };
 
 }  // namespace stereotlm::fpga

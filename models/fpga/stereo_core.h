@@ -20,11 +20,12 @@
 
 namespace stereotlm::fpga {
 
+// The configuration of a StereoCore.
 struct StereoCoreConfig {
-  CoreConfig core;
-  memory::CrossbarConfig memory = {core_arbiter(), {}};
-  LocalBusConfig local_bus;
-  Fidelity fidelity = Fidelity::kCycle;
+  CoreConfig core;                                       // the stages
+  memory::CrossbarConfig memory = {core_arbiter(), {}};  // arbiters and banks
+  LocalBusConfig local_bus;                              // clock and counted buffers
+  Fidelity fidelity = Fidelity::kCycle;                  // how frames are simulated
   std::uint64_t stall_timeout_cycles = std::uint64_t{1}
                                        << 26U;  // cycles without progress after which a frame stalls
 };
@@ -60,12 +61,12 @@ class StereoCore : public sc_core::sc_module, private FastCore::Board {
   // problems, if the banks have another clock than the core, or if the arbiters do not have all ports.
   StereoCore(const sc_core::sc_module_name& name, const StereoCoreConfig& config, Binder& binder);
 
-  Fidelity fidelity() const { return config_.fidelity; }
-  const memory::Crossbar& crossbar() const { return crossbar_; }
-  const CoreDatapath& datapath() const { return datapath_; }
-  const RegisterFile& register_file() const { return register_file_; }
-  LocalBus& local_bus_port() { return local_bus_; }
-  const LocalBus& local_bus_port() const { return local_bus_; }
+  Fidelity fidelity() const { return config_.fidelity; }                // as configured
+  const memory::Crossbar& crossbar() const { return crossbar_; }        // between the stages and the banks
+  const CoreDatapath& datapath() const { return datapath_; }            // the stages
+  const RegisterFile& register_file() const { return register_file_; }  // registers of the core
+  LocalBus& local_bus_port() { return local_bus_; }                     // the core's end of the local bus
+  const LocalBus& local_bus_port() const { return local_bus_; }         // the core's end of the local bus
   // The frames, to observe and to record them.
   FrameRun& frames() { return frames_; }
   const FrameRun& frames() const { return frames_; }

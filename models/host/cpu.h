@@ -13,8 +13,9 @@
 
 namespace stereotlm::host {
 
-inline constexpr kernels::IntegerRule kInterruptCountRule{1, 64};
+inline constexpr kernels::IntegerRule kInterruptCountRule{1, 64};  // of CpuConfig::interrupts
 
+// The configuration of a Cpu.
 struct CpuConfig {
   int interrupts = 1;             // interrupt inputs, kInterruptCountRule
   std::uint64_t memory_base = 0;  // bus address of the first byte of host_memory
@@ -29,9 +30,9 @@ struct CpuConfig {
 // the program ends, and the exception is reported with SC_REPORT_ERROR (type /stereotlm/cpu).
 class Cpu : public sc_core::sc_module, private HostBus {
  public:
-  tlm_utils::simple_initiator_socket<Cpu> bus{"bus"};
-  tlm_utils::simple_initiator_socket<Cpu> host_memory{"host_memory"};
-  sc_core::sc_vector<InterruptIn> interrupts;
+  tlm_utils::simple_initiator_socket<Cpu> bus{"bus"};                  // for register accesses
+  tlm_utils::simple_initiator_socket<Cpu> host_memory{"host_memory"};  // for DMI
+  sc_core::sc_vector<InterruptIn> interrupts;                          // INTA# of each device
 
   // `program` outlives the processor. Throws std::invalid_argument if the number of interrupt inputs breaks
   // kInterruptCountRule.

@@ -6,9 +6,10 @@
 
 namespace stereotlm::host {
 
+// The pictures of both cameras, of one size.
 struct StereoPair {
-  kernels::GrayImage left;
-  kernels::GrayImage right;
+  kernels::GrayImage left;   // 8-bit grey
+  kernels::GrayImage right;  // 8-bit grey
 };
 
 // Supplies the input pictures of a simulation, frame by frame.

@@ -30,10 +30,10 @@ namespace stereotlm::host {
 // Words transferred before an error stay transferred. There is no DMI, and debug transport reaches nothing.
 class HostBridge : public sc_core::sc_module, private pci::PciMasterIf {
  public:
-  tlm_utils::simple_target_socket<HostBridge> cpu{"cpu"};
-  pci::PciMasterPort pci{"pci"};
+  tlm_utils::simple_target_socket<HostBridge> cpu{"cpu"};  // from the processor
+  pci::PciMasterPort pci{"pci"};                           // to a slot of the bus
 
-  explicit HostBridge(const sc_core::sc_module_name& name);
+  explicit HostBridge(const sc_core::sc_module_name& name);  // all its sockets must be bound
 
  private:
   void transport(tlm::tlm_generic_payload& access, sc_core::sc_time& delay);

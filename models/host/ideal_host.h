@@ -16,12 +16,13 @@
 
 namespace stereotlm::host {
 
+// The configuration of an IdealHost.
 struct IdealHostConfig {
-  int width = 0;   // pixels
-  int height = 0;  // pixels
-  std::uint64_t frames = 1;
-  bool pixels = true;  // false: no pictures are requested or loaded, and results are empty
-  fpga::BufferBases buffers;
+  int width = 0;              // pixels
+  int height = 0;             // pixels
+  std::uint64_t frames = 1;   // to be run
+  bool pixels = true;         // false: no pictures are requested or loaded, and results are empty
+  fpga::BufferBases buffers;  // where pictures, tables and results lie
 };
 
 // Runs frames on a core without a modelled computer (contract section 2, `preloaded`). The tables are in
@@ -33,9 +34,9 @@ struct IdealHostConfig {
 // finished() stays false. Where errors are not thrown, it goes on after a refused access.
 class IdealHost : public sc_core::sc_module {
  public:
-  tlm_utils::simple_initiator_socket<IdealHost> registers{"registers"};
-  tlm_utils::simple_initiator_socket<IdealHost> memory{"memory"};
-  sc_core::sc_in<bool> done{"done"};
+  tlm_utils::simple_initiator_socket<IdealHost> registers{"registers"};  // of the core
+  tlm_utils::simple_initiator_socket<IdealHost> memory{"memory"};        // the banks, by debug transport
+  sc_core::sc_in<bool> done{"done"};                                     // interrupt of the core
 
   // The tables, `source` and `sink` outlive the host. A side without rectification has a null table. Joint
   // tables need both tables, which the host joins. Throws std::invalid_argument if a list of buffers is
@@ -45,8 +46,8 @@ class IdealHost : public sc_core::sc_module {
             const kernels::RectificationTable* left_table, const kernels::RectificationTable* right_table,
             FrameSource& source, FrameSink& sink);
 
-  std::uint64_t frames_done() const { return frames_done_; }
-  bool finished() const { return frames_done_ == config_.frames; }
+  std::uint64_t frames_done() const { return frames_done_; }        // whose results have been taken
+  bool finished() const { return frames_done_ == config_.frames; }  // whether all frames are done
 
  private:
   void run();

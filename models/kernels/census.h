@@ -18,6 +18,7 @@ namespace stereotlm::kernels {
 // column u - h leave, h rows further up. The 2h rows above the new ones come from line memories.
 class CensusColumns {
  public:
+  // `cost` is kCensus. `rows_per_column`: pixels of a column. `rows_per_strip`: R of contract 7.2.
   CensusColumns(int width, int height, int rows_per_column, int rows_per_strip, const MatchingCost& cost)
       : half_(cost.half()),
         rows_(rows_per_column),
@@ -64,6 +65,7 @@ class CensusColumns {
 // Computes the census bits of whole images (contract 7.6); used by ImageMatcher.
 class CensusTransform {
  public:
+  // `cost` is kCensus. Images have width x height pixels.
   CensusTransform(int width, int height, const MatchingCost& cost, const Simd& simd = best_simd())
       : width_(width),
         height_(height),
@@ -97,6 +99,7 @@ class CensusTransform {
       simd_.census_row(rows.data(), half_, width_, out.data());
     }
   }
+  // Width * height bytes, row-major.
   const std::uint8_t* plane(int byte) const { return planes_[static_cast<std::size_t>(byte)].data(); }
 
  private:

@@ -7,8 +7,8 @@ namespace stereotlm::kernels {
 // A score of the cost `zncc` (contract 7.6), without the variance that all candidates of a window have in
 // common: covariance * |covariance| / variance, an exact fraction.
 struct Correlation {
-  std::int64_t covariance = 0;
-  std::int64_t variance = 1;  // at least 1. Where a variance is 0 the covariance is 0 too.
+  std::int64_t covariance = 0;  // its sign is that of the correlation
+  std::int64_t variance = 1;    // at least 1. Where a variance is 0 the covariance is 0 too.
 };
 
 // Covariances and variances are below 2^34, so that the products have less than 103 bits.
@@ -23,8 +23,8 @@ inline bool is_greater(const Correlation& a, const Correlation& b) {
 
 // The sums of the pixels of a window, and of their squares.
 struct PixelSums {
-  std::int64_t pixels = 0;
-  std::int64_t squares = 0;
+  std::int64_t pixels = 0;   // the sum of the pixels
+  std::int64_t squares = 0;  // the sum of their squares
 
   // N * squares - pixels^2, for N pixels; 1 instead of 0.
   std::int64_t variance(std::int64_t count) const {

@@ -10,9 +10,9 @@
 
 namespace stereotlm::kernels {
 
-inline constexpr IntegerRule kKernelSizeRule{3, 31, 2};
-inline constexpr IntegerRule kKernelEntryRule{-32768, 32767};
-inline constexpr IntegerRule kShiftRule{0, 31};
+inline constexpr IntegerRule kKernelSizeRule{3, 31, 2};        // rows, and columns
+inline constexpr IntegerRule kKernelEntryRule{-32768, 32767};  // a weight
+inline constexpr IntegerRule kShiftRule{0, 31};                // bits
 
 // An integer convolution kernel of contract 1.2. The filtered image is clamp(128 + floor(S / 2^shift), 0,
 // 255), where S is the correlation of the kernel with the image, whose coordinates are clamped to the image.

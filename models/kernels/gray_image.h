@@ -8,11 +8,12 @@ namespace stereotlm::kernels {
 
 // An 8-bit grey image, row-major, without padding. Positions are (column, row); (0, 0) is top left.
 struct GrayImage {
-  int width = 0;   // pixels
-  int height = 0;  // pixels
-  std::vector<std::uint8_t> pixels;
+  int width = 0;                     // pixels
+  int height = 0;                    // pixels
+  std::vector<std::uint8_t> pixels;  // width * height, row by row from the top
 
   GrayImage() = default;
+  // All pixels are `fill`.
   GrayImage(int width_pixels, int height_pixels, std::uint8_t fill = 0)
       : width(width_pixels),
         height(height_pixels),

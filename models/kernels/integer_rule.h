@@ -9,11 +9,11 @@ namespace stereotlm::kernels {
 
 // The allowed values of an integer field: min, min + step, .. up to max.
 struct IntegerRule {
-  std::int64_t min;
-  std::int64_t max;
-  std::int64_t step = 1;
+  std::int64_t min;       // the least value
+  std::int64_t max;       // the greatest value
+  std::int64_t step = 1;  // between allowed values
 
-  constexpr bool allows(std::int64_t value) const {
+  constexpr bool allows(std::int64_t value) const {  // whether the value keeps the rule
     return value >= min && value <= max && (value - min) % step == 0;
   }
 

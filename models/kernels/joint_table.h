@@ -17,8 +17,8 @@ inline constexpr int kJointRows = 128;
 
 // Added to all displacements of a side, in pixels.
 struct JointOffset {
-  int columns = 0;
-  int rows = 0;
+  int columns = 0;  // pixels to the right
+  int rows = 0;     // pixels downwards
 
   friend bool operator==(const JointOffset& a, const JointOffset& b) {
     return a.columns == b.columns && a.rows == b.rows;
@@ -27,9 +27,10 @@ struct JointOffset {
 };
 using JointOffsets = std::array<JointOffset, 2>;  // left, right
 
+// The joined table, and what its displacements are relative to.
 struct JointTable {
   std::vector<std::uint32_t> words;  // row-major, one for each pixel
-  JointOffsets offsets;
+  JointOffsets offsets;              // of both sides
 };
 
 // Why two tables cannot be joined: a text for each side and coordinate whose displacements need a larger
@@ -55,9 +56,11 @@ constexpr std::uint32_t entry_of_joint_half(std::uint32_t half, int column, int 
   return make_entry(coordinate(column, half & 0xFFU, kJointColumns, offset.columns),
                     coordinate(row, half >> 8U & 0x7FU, kJointRows, offset.rows));
 }
+// The entry of the left side. `word`: that of pixel (column, row).
 constexpr std::uint32_t left_entry(std::uint32_t word, int column, int row, const JointOffsets& offsets) {
   return entry_of_joint_half(word >> 16U, column, row, offsets[0]);
 }
+// The entry of the right side. `word`: that of pixel (column, row).
 constexpr std::uint32_t right_entry(std::uint32_t word, int column, int row, const JointOffsets& offsets) {
   return entry_of_joint_half(word & 0xFFFFU, column, row, offsets[1]);
 }

@@ -5,8 +5,8 @@
 // The allowed values of the parameters of contract section 1.
 namespace stereotlm::kernels {
 
-inline constexpr IntegerRule kWindowRule{3, 31, 2};
-inline constexpr IntegerRule kDisparitiesRule{1, 254};
-inline constexpr IntegerRule kLrToleranceRule{0, 253};
+inline constexpr IntegerRule kWindowRule{3, 31, 2};     // n, pixels
+inline constexpr IntegerRule kDisparitiesRule{1, 254};  // D, candidates
+inline constexpr IntegerRule kLrToleranceRule{0, 253};  // difference of two disparities
 
 }  // namespace stereotlm::kernels

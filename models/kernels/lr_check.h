@@ -23,9 +23,10 @@ inline bool left_right_consistent(std::uint8_t left_based, std::uint8_t right_ba
 // for it.
 class LrCheck {
  public:
+  // `disparities`: D. `tolerance`: nullopt for `off`.
   LrCheck(int disparities, std::optional<int> tolerance) : delay_(disparities - 1), tolerance_(tolerance) {}
 
-  void start_frame() { time_ = 0; }
+  void start_frame() { time_ = 0; }  // to be called before the first column of a frame
 
   // Steps one column. `left_based`: unit B's disparity of the left pixel of this column. `left_valid`:
   // whether that pixel's own table entry is valid. `right_based`: unit A's disparity of the right pixel

@@ -18,11 +18,12 @@ enum class CostKind : std::uint8_t {
   kCensus,  // sum of the Hamming distances of the pixels' census bits; the smallest wins
 };
 
-inline constexpr IntegerRule kCensusSizeRule{3, 7, 2};
-inline constexpr int kMostPixelBytes = 6;  // 7 * 7 - 1 bits
+inline constexpr IntegerRule kCensusSizeRule{3, 7, 2};  // rows, and columns
+inline constexpr int kMostPixelBytes = 6;               // 7 * 7 - 1 bits
 
+// A kind of cost with its parameter.
 struct MatchingCost {
-  CostKind kind = CostKind::kSad;
+  CostKind kind = CostKind::kSad;  // what is summed
   int census_size = 0;  // c: rows and columns of the neighbourhood, kCensusSizeRule; 0 unless kCensus
 
   // The rows and columns beyond the window that the cost reads on each side, in pixels.

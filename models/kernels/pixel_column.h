@@ -6,8 +6,8 @@ namespace stereotlm::kernels {
 
 // A pixel with the valid bit of its table entry.
 struct MaskedPixel {
-  std::uint8_t value = 0;
-  bool valid = false;
+  std::uint8_t value = 0;  // grey level; 0 unless valid
+  bool valid = false;      // the pixel has a source
 };
 
 // The largest number of rows of a column: n + R - 1.

@@ -14,9 +14,10 @@ namespace stereotlm::kernels {
 inline constexpr std::uint32_t kEntryValid = 0x8000'0000U;
 inline constexpr std::uint32_t kEntryUnusedBits = 0x7800'F800U;
 
-constexpr std::uint32_t make_entry(int column, int row) {
+constexpr std::uint32_t make_entry(int column, int row) {  // valid, with this source
   return kEntryValid | static_cast<std::uint32_t>(row) << 16U | static_cast<std::uint32_t>(column);
 }
+// What the entry says: whether the pixel has a source, and where.
 constexpr bool entry_is_valid(std::uint32_t entry) { return (entry & kEntryValid) != 0; }
 constexpr int entry_row(std::uint32_t entry) { return static_cast<int>(entry >> 16U & 0x7FFU); }
 constexpr int entry_column(std::uint32_t entry) { return static_cast<int>(entry & 0x7FFU); }
@@ -24,9 +25,9 @@ constexpr int entry_column(std::uint32_t entry) { return static_cast<int>(entry 
 // The look-up table of one camera: entries row-major, width x height of the rectified image, which is also
 // the size of the source.
 struct RectificationTable {
-  int width = 0;   // pixels
-  int height = 0;  // pixels
-  std::vector<std::uint32_t> entries;
+  int width = 0;                       // pixels
+  int height = 0;                      // pixels
+  std::vector<std::uint32_t> entries;  // width * height
 };
 
 // Returns a table in which every pixel is its own source, as on a board without calibration.

@@ -13,7 +13,7 @@
 namespace stereotlm::kernels {
 
 inline constexpr std::int32_t kNoCandidate = std::numeric_limits<std::int32_t>::max();  // a key
-constexpr std::uint8_t disparity_of(std::int32_t key) {
+constexpr std::uint8_t disparity_of(std::int32_t key) {  // kInvalidDisparity for kNoCandidate
   return key == kNoCandidate ? kInvalidDisparity : static_cast<std::uint8_t>(key & 0xFF);
 }
 
@@ -24,6 +24,7 @@ inline std::uint8_t select_min_tree(const std::int32_t* window_sums, int candida
                                     const Simd& simd = best_simd()) {
   return disparity_of(simd.smallest_key(window_sums, candidates, lanes));
 }
+// The same for scores, of which the greatest wins.
 inline std::uint8_t select_min_tree(const ColumnScores& scores, int candidates) {
   if (candidates == 0) return kInvalidDisparity;
   int best = 0;
@@ -39,6 +40,7 @@ inline std::uint8_t select_min_tree(const ColumnScores& scores, int candidates) 
 // disparities-1 columns back: right-based matching.
 class SelectMinChain {
  public:
+  // `disparities`: D.
   explicit SelectMinChain(int disparities, const Simd& simd = best_simd())
       : simd_(simd),
         disparities_(disparities),
@@ -48,7 +50,7 @@ class SelectMinChain {
     start_frame();
   }
 
-  void start_frame() {
+  void start_frame() {  // to be called before the first column of a frame
     held_.fill(kNoCandidate);
     next_.fill(kNoCandidate);
   }
@@ -74,10 +76,10 @@ class SelectMinChain {
 // The same chain for scores. If two scores are equal, module d keeps the score of module d-1 here too.
 class ScoreChain {
  public:
-  explicit ScoreChain(int disparities) : held_(static_cast<std::size_t>(disparities)) {}
+  explicit ScoreChain(int disparities) : held_(static_cast<std::size_t>(disparities)) {}  // `disparities`: D
 
-  void start_frame() { std::fill(held_.begin(), held_.end(), Held{}); }
-  std::uint8_t step(const ColumnScores& scores, int candidates) {
+  void start_frame() { std::fill(held_.begin(), held_.end(), Held{}); }  // before the first column of a frame
+  std::uint8_t step(const ColumnScores& scores, int candidates) {        // as SelectMinChain::step()
     for (std::size_t d = held_.size(); d-- > 0;) {
       const Held before = d > 0 ? held_[d - 1] : Held{};
       held_[d] = before;

@@ -14,11 +14,11 @@ namespace stereotlm::kernels {
 
 // The parameters of the arithmetic of contract sections 1 and 7.6.
 struct StereoConfig {
-  int window = 7;        // n: kWindowRule
-  int disparities = 80;  // D: kDisparitiesRule
-  std::optional<FilterKernel> filter = log7();
-  std::optional<int> lr_tolerance = 0;  // kLrToleranceRule; nullopt: no check
-  MatchingCost cost{};
+  int window = 7;                               // n: kWindowRule
+  int disparities = 80;                         // D: kDisparitiesRule
+  std::optional<FilterKernel> filter = log7();  // nullopt: no filter
+  std::optional<int> lr_tolerance = 0;          // kLrToleranceRule; nullopt: no check
+  MatchingCost cost{};                          // of two windows
 };
 
 // Every broken rule as `field = value: rule`.

@@ -12,10 +12,10 @@ namespace stereotlm::memory {
 
 // Stall cycles of a port.
 struct Stall {
-  Port port = 0;
-  std::size_t bank = 0;  // number among Arbitration::shared_bank()
-  std::size_t by = 0;    // the port that was granted, or another cause (ArbiterStats)
-  std::uint64_t cycles = 0;
+  Port port = 0;             // that stalls
+  std::size_t bank = 0;      // number among Arbitration::shared_bank()
+  std::size_t by = 0;        // the port that was granted, or another cause (ArbiterStats)
+  std::uint64_t cycles = 0;  // stalled
 };
 
 // Arbitrates all banks (contract section 2): each port is routed to a bank, whose arbiter decides on its
@@ -24,6 +24,7 @@ struct Stall {
 // crossbar, and by the core to skip cycles (fpga::FastForward, fpga::HostPort). Plain C++, no SystemC.
 class Arbitration {
  public:
+  // Throws std::invalid_argument if one of the configurations has problems.
   Arbitration(const ArbiterConfig& arbiter, const std::vector<SsramBankConfig>& banks);
 
   // The rule that a route of this port to this bank breaks: "port = 7: must be 0..5". Empty if both exist.

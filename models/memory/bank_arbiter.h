@@ -47,6 +47,7 @@ class ArbiterStats {
     kFirstGrants,  // then those of the other ports, then the blame
   };
 
+  // `ports`: of the priority list.
   explicit ArbiterStats(std::size_t ports)
       : ports_(ports), counts_(kFirstGrants + ports * (1 + ports + kOtherCauses)) {}
 
@@ -67,8 +68,8 @@ class ArbiterStats {
   // Stall cycles of a port. `by`: the port that was granted in them, or another cause.
   std::uint64_t blame(Port port, std::size_t by) const { return counts_[blame_place(port, by)]; }
 
-  std::size_t grants_place(Port port) const { return kFirstGrants + port; }
-  std::size_t blame_place(Port port, std::size_t by) const {
+  std::size_t grants_place(Port port) const { return kFirstGrants + port; }  // place of the grants of a port
+  std::size_t blame_place(Port port, std::size_t by) const {                 // place of the stalls of a port
     const std::size_t cause = by < kMostPorts ? by : ports_ + (by - kMostPorts);
     return kFirstGrants + ports_ + port * (ports_ + kOtherCauses) + cause;
   }
@@ -81,8 +82,8 @@ class ArbiterStats {
     return std::pair{of_blame / causes, by < ports_ ? by : kMostPorts + (by - ports_)};
   }
 
-  const std::vector<std::uint64_t>& counts() const { return counts_; }  // [place]
-  void add(std::size_t place, std::uint64_t change) { counts_[place] += change; }
+  const std::vector<std::uint64_t>& counts() const { return counts_; }             // [place]
+  void add(std::size_t place, std::uint64_t change) { counts_[place] += change; }  // to one counter
 
  private:
   std::size_t ports_;
@@ -100,10 +101,10 @@ class BankArbiter {
   // One cycle: the ports that requested, those of them that would write, and those that were granted. At most
   // one is granted, with separate ports at most one in each direction. If none is, there is a cause.
   struct Outcome {
-    PortMask requests = 0;
-    PortMask writes = 0;
-    PortMask granted = 0;
-    std::size_t cause = kTurnaround;
+    PortMask requests = 0;            // ports that requested
+    PortMask writes = 0;              // those of them that would write
+    PortMask granted = 0;             // those of them that were granted
+    std::size_t cause = kTurnaround;  // why none was granted; else without meaning
   };
 
   // Takes kind and turnaround of the bank. Throws std::invalid_argument if one of the configurations has
@@ -145,7 +146,7 @@ class BankArbiter {
   bool grants_first(Port port) const {
     return grants_at_once() && policy_->advance == nullptr && list_.front() == port;
   }
-  bool has_rows() const { return rows_.has_value(); }
+  bool has_rows() const { return rows_.has_value(); }  // whether the bank is of sdram
   // Of sdram; null for any other bank. Not part of append_state().
   SdramRows* rows() { return rows_ ? &*rows_ : nullptr; }
   const SdramRows* rows() const { return rows_ ? &*rows_ : nullptr; }

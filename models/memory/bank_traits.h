@@ -8,6 +8,7 @@
 
 namespace stereotlm::memory {
 
+// The kinds of banks, as kBankTraits describes them.
 enum class BankKind : std::uint8_t { kZbtPipelined, kZbtFlowThrough, kSyncBurst, kQdr, kSdram };
 
 // Range of `turnaround_cycles` of a bank whose kind has turnaround.
@@ -15,7 +16,7 @@ inline constexpr kernels::IntegerRule kTurnaroundRule{1, 16};
 
 // The properties of one kind of bank.
 struct BankTraits {
-  BankKind kind;
+  BankKind kind;     // its index in the table
   const char* name;  // in board files
   // From the grant of a read to the cycle in which its reader can use the word. Of sdram it is cas_latency
   // (SdramTiming), and this is 0.
@@ -40,6 +41,7 @@ constexpr const BankTraits& traits_of(BankKind kind) { return kBankTraits[static
 // Whether the bank has a port for reads and another for writes. Each of them serves one access in a cycle.
 constexpr bool has_separate_ports(BankKind kind) { return traits_of(kind).ports == 2; }
 
+// Whether the table has this kind.
 constexpr bool is_bank_kind(BankKind kind) { return static_cast<std::size_t>(kind) < kBankTraits.size(); }
 
 static_assert(

@@ -16,8 +16,9 @@
 
 namespace stereotlm::memory {
 
+// The configuration of a Crossbar or a GenericCrossbar.
 struct CrossbarConfig {
-  ArbiterConfig arbiter;
+  ArbiterConfig arbiter;               // of each bank
   std::vector<SsramBankConfig> banks;  // [bank]; all banks have the same clock
 };
 
@@ -61,8 +62,8 @@ class Crossbar : public sc_core::sc_module, public DirectBanks {
     granted_ = {static_cast<std::uint64_t>(granted), static_cast<std::uint64_t>(granted >> 64U)};
     return granted;
   }
-  Arbitration& arbitration() { return arbitration_; }
-  const Arbitration& arbitration() const { return arbitration_; }
+  Arbitration& arbitration() { return arbitration_; }              // routes, arbiters and statistics
+  const Arbitration& arbitration() const { return arbitration_; }  // routes, arbiters and statistics
 
   unsigned char* direct(std::uint64_t address, std::uint64_t bytes) override;
   void allow_access(Port port) override { grant(mask_of(port)); }

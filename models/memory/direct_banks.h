@@ -12,7 +12,7 @@ namespace stereotlm::memory {
 // Direct access to the words of the banks, by their byte addresses on the crossbar. Plain C++.
 class DirectBanks {
  public:
-  explicit DirectBanks(std::size_t banks) : direct_accesses_(banks) {}
+  explicit DirectBanks(std::size_t banks) : direct_accesses_(banks) {}  // `banks`: their number
   virtual ~DirectBanks() = default;
 
   // Returns a pointer to these bytes, for immediate use only; null if the bank does not grant direct access,

@@ -52,7 +52,7 @@ class GenericCrossbar : public sc_core::sc_module {
   // Throws std::invalid_argument if the configuration has problems.
   GenericCrossbar(const sc_core::sc_module_name& name, const CrossbarConfig& config);
 
-  const Clock& clock() const { return clock_; }
+  const Clock& clock() const { return clock_; }  // of all banks
   // The counters of a bank, of all cycles before the present time, and of the present one if it is decided.
   ArbiterStats stats(std::size_t bank) const;
 

@@ -12,17 +12,18 @@
 
 namespace stereotlm::memory {
 
-inline constexpr kernels::IntegerRule kBankWordsRule{1, std::int64_t{1} << 26};
-inline constexpr kernels::IntegerRule kBankCountRule{1, 64};
+inline constexpr kernels::IntegerRule kBankWordsRule{1, std::int64_t{1} << 26};  // 32-bit words of a bank
+inline constexpr kernels::IntegerRule kBankCountRule{1, 64};                     // banks of a crossbar
 
 // A byte address on the crossbar: bits 28 and up are the bank, the lower bits the byte in that bank.
 inline constexpr unsigned kBankAddressBits = 28;
 constexpr std::uint64_t crossbar_address(std::uint64_t bank, std::uint64_t word) {
   return bank << kBankAddressBits | word << 2U;
 }
-constexpr std::uint64_t address_in_bank(std::uint64_t address) {
+constexpr std::uint64_t address_in_bank(std::uint64_t address) {  // the byte in its bank
   return address & ((std::uint64_t{1} << kBankAddressBits) - 1);
 }
+// The bank of an address.
 constexpr std::uint64_t bank_of_address(std::uint64_t address) { return address >> kBankAddressBits; }
 
 // The index of a port on the banks: 0 .. n-1. The module that owns the ports names them (fpga/core_ports.h).
@@ -53,8 +54,9 @@ void for_each_port(PortMask ports, const Visit& visit) {
     visit(static_cast<Port>(64 + __builtin_ctzll(high)));
 }
 
-using PriorityList = std::vector<Port>;
+using PriorityList = std::vector<Port>;  // the first port comes first
 
+// The configuration of the arbiter of a bank.
 struct ArbiterConfig {
   std::string policy = "fixed_priority";  // a name of arbitration_policies()
   PriorityList priority;                  // all ports, each once; the policy says what the order means
@@ -62,8 +64,8 @@ struct ArbiterConfig {
 
 // A bank: SSRAM, or SDRAM in its place.
 struct SsramBankConfig {
-  std::uint32_t words = 524288;  // 32-bit words, kBankWordsRule
-  BankKind kind = BankKind::kZbtPipelined;
+  std::uint32_t words = 524288;                     // 32-bit words, kBankWordsRule
+  BankKind kind = BankKind::kZbtPipelined;          // kBankTraits has its properties
   int turnaround_cycles = 0;                        // kTurnaroundRule if the kind has turnaround, else 0
   double clock_mhz = 40;                            // clock of the bank, 1..1000
   std::optional<SdramTiming> sdram = std::nullopt;  // of this kind only, which needs it

@@ -21,9 +21,9 @@ class Ram {
     if (data_ == nullptr) throw std::bad_alloc();
   }
 
-  std::uint64_t bytes() const { return bytes_; }
-  unsigned char* data() { return data_.get(); }
-  const unsigned char* data() const { return data_.get(); }
+  std::uint64_t bytes() const { return bytes_; }             // size
+  unsigned char* data() { return data_.get(); }              // byte 0
+  const unsigned char* data() const { return data_.get(); }  // byte 0
   // Whether all these bytes are inside the memory.
   bool holds(std::uint64_t address, std::uint64_t length) const {
     return address <= bytes_ && length <= bytes_ - address;
@@ -47,8 +47,8 @@ class RamTarget : public tlm::tlm_fw_transport_if<> {
  public:
   // Debug transport and DMI are not counted.
   struct Stats {
-    std::uint64_t reads = 0;  // words
-    std::uint64_t writes = 0;
+    std::uint64_t reads = 0;   // words
+    std::uint64_t writes = 0;  // words
     std::uint64_t errors = 0;  // refused accesses
   };
 
@@ -69,9 +69,9 @@ class RamTarget : public tlm::tlm_fw_transport_if<> {
   unsigned transport_dbg(tlm::tlm_generic_payload& access) override;
   bool get_direct_mem_ptr(tlm::tlm_generic_payload& access, tlm::tlm_dmi& dmi) override;
 
-  const Stats& stats() const { return stats_; }
-  const Ram& ram() const { return ram_; }
-  Ram& ram() { return ram_; }
+  const Stats& stats() const { return stats_; }  // up to now
+  const Ram& ram() const { return ram_; }        // the bytes
+  Ram& ram() { return ram_; }                    // the bytes
 
  private:
   void move(tlm::tlm_generic_payload& access);

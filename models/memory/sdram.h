@@ -11,13 +11,14 @@
 
 namespace stereotlm::memory {
 
-inline constexpr kernels::IntegerRule kCasLatencyRule{1, 8};
-inline constexpr kernels::IntegerRule kRowWordsRule{16, 65536};  // a power of two
-inline constexpr kernels::IntegerRule kInternalBanksRule{1, 8};  // a power of two
-inline constexpr kernels::IntegerRule kRowCyclesRule{0, 63};     // to activate or to precharge
-inline constexpr kernels::IntegerRule kRefreshIntervalRule{64, 1000000};
-inline constexpr kernels::IntegerRule kRefreshCyclesRule{1, 255};
+inline constexpr kernels::IntegerRule kCasLatencyRule{1, 8};              // cycles
+inline constexpr kernels::IntegerRule kRowWordsRule{16, 65536};           // a power of two
+inline constexpr kernels::IntegerRule kInternalBanksRule{1, 8};           // a power of two
+inline constexpr kernels::IntegerRule kRowCyclesRule{0, 63};              // to activate or to precharge
+inline constexpr kernels::IntegerRule kRefreshIntervalRule{64, 1000000};  // cycles
+inline constexpr kernels::IntegerRule kRefreshCyclesRule{1, 255};         // cycles
 
+// Whether the number is 1, 2, 4, ..
 constexpr bool is_power_of_two(std::int64_t number) { return number > 0 && (number & (number - 1)) == 0; }
 
 // The timing of a bank of SDR SDRAM, in cycles of the core's clock (contract 8.3). The defaults are those of
@@ -53,6 +54,7 @@ std::vector<std::string> problems(const SdramTiming& timing);
 // access. Plain C++; part of BankArbiter.
 class SdramRows {
  public:
+  // All rows are closed. The configuration has no problems.
   explicit SdramRows(const SdramTiming& timing)
       : timing_(timing),
         next_refresh_(static_cast<std::uint64_t>(timing.refresh_interval_cycles.value_or(0))) {}
@@ -68,7 +70,8 @@ class SdramRows {
   // just found free. An opening may take no time: then the row is open at once.
   bool may_access(std::uint64_t cycle, std::uint32_t word);
 
-  const SdramTiming& timing() const { return timing_; }
+  const SdramTiming& timing() const { return timing_; }  // as configured
+  // Sets or returns the open row of an internal bank. nullopt: none is open.
   std::optional<std::uint32_t> open_row(std::size_t internal_bank) const { return open_[internal_bank]; }
   void set_open_row(std::size_t internal_bank, std::optional<std::uint32_t> row) {
     open_[internal_bank] = row;
@@ -81,7 +84,7 @@ class SdramRows {
     return cycles << 2U | std::uint64_t{is_refreshed} << 1U |
            std::uint64_t{next_refresh_ != 0 && next_refresh_ < cycle};
   }
-  void set_busy_state(std::uint64_t cycle, std::uint64_t state);
+  void set_busy_state(std::uint64_t cycle, std::uint64_t state);  // takes over what busy_state() returned
   // The cycle in which the next refresh is due, from busy_state(cycle); it may be late. 0: never.
   std::uint64_t next_refresh(std::uint64_t cycle, std::uint64_t state) const;
 

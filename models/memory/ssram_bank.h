@@ -19,9 +19,9 @@ namespace stereotlm::memory {
 // write, the initiators read first. Words are in the byte order of the host computer.
 class SsramBank : public sc_core::sc_module {
  public:
-  using Stats = RamTarget::Stats;
+  using Stats = RamTarget::Stats;  // accesses since time 0
 
-  tlm::tlm_target_socket<32> port{"port"};
+  tlm::tlm_target_socket<32> port{"port"};  // from the arbiter
 
   // Throws std::invalid_argument if the configuration has problems.
   SsramBank(const sc_core::sc_module_name& name, const SsramBankConfig& config)
@@ -33,8 +33,8 @@ class SsramBank : public sc_core::sc_module {
     port.bind(target_);
   }
 
-  const SsramBankConfig& config() const { return config_; }
-  const Stats& stats() const { return target_.stats(); }
+  const SsramBankConfig& config() const { return config_; }  // as given
+  const Stats& stats() const { return target_.stats(); }     // up to now
   // The stored words, for the owner of the bank.
   const std::uint32_t* words() const { return reinterpret_cast<const std::uint32_t*>(target_.ram().data()); }
 

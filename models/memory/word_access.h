@@ -9,6 +9,7 @@ namespace stereotlm::memory {
 // Makes the 32-bit accesses of one initiator socket, with one transaction object that is set up once.
 class WordAccess {
  public:
+  // `socket` outlives this object.
   explicit WordAccess(tlm::tlm_initiator_socket<32>& socket) : socket_(socket) {
     access_.set_data_ptr(reinterpret_cast<unsigned char*>(&word_));
     access_.set_data_length(4);
@@ -25,12 +26,12 @@ class WordAccess {
     word_ = 0;
     return transport(tlm::TLM_READ_COMMAND, address, delay);
   }
-  bool write(std::uint64_t address, std::uint32_t word, sc_core::sc_time& delay) {
+  bool write(std::uint64_t address, std::uint32_t word, sc_core::sc_time& delay) {  // as read()
     word_ = word;
     return transport(tlm::TLM_WRITE_COMMAND, address, delay);
   }
-  std::uint32_t word() const { return word_; }
-  tlm::tlm_response_status status() const { return access_.get_response_status(); }
+  std::uint32_t word() const { return word_; }  // last word read or written
+  tlm::tlm_response_status status() const { return access_.get_response_status(); }  // of the last access
 
  private:
   bool transport(tlm::tlm_command command, std::uint64_t address, sc_core::sc_time& delay) {

@@ -43,29 +43,29 @@
 // A channel stops at an error. When it raises kDmaError, its last words may still be under way.
 namespace stereotlm::pci::bridge {
 
-inline constexpr int kApertures = 4;
-inline constexpr std::uint64_t kApertureBytes = std::uint64_t{1} << 26U;  // holds the largest picture
-inline constexpr std::uint64_t kCoreRegisters = kApertures * kApertureBytes;
-inline constexpr std::uint64_t kSlaveWindowBytes = kCoreRegisters + 4096;
+inline constexpr int kApertures = 4;                                          // of the slave window
+inline constexpr std::uint64_t kApertureBytes = std::uint64_t{1} << 26U;      // holds the largest picture
+inline constexpr std::uint64_t kCoreRegisters = kApertures * kApertureBytes;  // behind the apertures
+inline constexpr std::uint64_t kSlaveWindowBytes = kCoreRegisters + 4096;     // size of the slave window
 
-inline constexpr int kChannels = 2;
-inline constexpr std::uint64_t kPage = 0x00;
-inline constexpr std::uint64_t kInterruptStatus = 0x10;
-inline constexpr std::uint64_t kInterruptEnable = 0x14;
-inline constexpr std::uint64_t kDmaDescriptor = 0x20;
-inline constexpr std::uint64_t kDmaControl = 0x24;
-inline constexpr std::uint64_t kDmaStatus = 0x28;
-inline constexpr std::uint64_t kChannelStride = 0x10;
-inline constexpr std::uint64_t kNextPage = 0x40;
-inline constexpr std::uint64_t kRegisterWindowBytes = 0x50;
+inline constexpr int kChannels = 2;                      // DMA channels
+inline constexpr std::uint64_t kPage = 0x00;             // of aperture 0; that of aperture i is 4 i bytes on
+inline constexpr std::uint64_t kInterruptStatus = 0x10;  // pending interrupts
+inline constexpr std::uint64_t kInterruptEnable = 0x14;  // interrupts that raise INTA#
+inline constexpr std::uint64_t kDmaDescriptor = 0x20;    // of channel 0
+inline constexpr std::uint64_t kDmaControl = 0x24;       // of channel 0
+inline constexpr std::uint64_t kDmaStatus = 0x28;        // of channel 0
+inline constexpr std::uint64_t kChannelStride = 0x10;    // from a register of channel 0 to that of channel 1
+inline constexpr std::uint64_t kNextPage = 0x40;         // of aperture 0; that of aperture i is 4 i bytes on
+inline constexpr std::uint64_t kRegisterWindowBytes = 0x50;  // behind the last register
 
-inline constexpr std::uint32_t kDoorbell = 1U << 0U;
+inline constexpr std::uint32_t kDoorbell = 1U << 0U;  // the FPGA's interrupt has risen
 inline constexpr std::uint32_t kDmaDone = 1U << 1U;   // for channel 0; the next higher bit is for channel 1
 inline constexpr std::uint32_t kDmaError = 1U << 3U;  // for channel 0; the next higher bit is for channel 1
-inline constexpr std::uint32_t kPostedError = 1U << 5U;  // the local bus refused a posted write
-inline constexpr std::uint32_t kAllInterrupts = (1U << 6U) - 1;
+inline constexpr std::uint32_t kPostedError = 1U << 5U;          // the local bus refused a posted write
+inline constexpr std::uint32_t kAllInterrupts = (1U << 6U) - 1;  // every bit of kInterruptStatus
 
-inline constexpr std::uint32_t kToPci = 1U << 31U;
+inline constexpr std::uint32_t kToPci = 1U << 31U;  // in word 2 of a descriptor: from the board to PCI
 
 // The byte address on the local bus of a word on the board, given by bank and word as in the registers.
 constexpr std::uint64_t local_address(std::uint32_t board_word) {

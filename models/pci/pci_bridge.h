@@ -32,21 +32,21 @@ class PciBridge : public sc_core::sc_module,
                   private LocalBusIf,
                   private BridgeControl::Host {
  public:
-  using Stats = BridgeControl::Stats;
+  using Stats = BridgeControl::Stats;  // counts since time 0
 
-  tlm_utils::simple_target_socket<PciBridge> slave{"slave"};
-  tlm_utils::simple_target_socket<PciBridge> registers{"registers"};
-  sc_core::sc_export<PciStopIf> stop{"stop"};                    // STOP# of the slave window
-  PciMasterPort pci{"pci", [this] { await_step(); }};            // bus mastering of the DMA channels
-  tlm_utils::simple_initiator_socket<PciBridge> local{"local"};  // to fpga/local_bus.h
+  tlm_utils::simple_target_socket<PciBridge> slave{"slave"};  // slave window: apertures and core registers
+  tlm_utils::simple_target_socket<PciBridge> registers{"registers"};  // register window
+  sc_core::sc_export<PciStopIf> stop{"stop"};                         // STOP# of the slave window
+  PciMasterPort pci{"pci", [this] { await_step(); }};                 // bus mastering of the DMA channels
+  tlm_utils::simple_initiator_socket<PciBridge> local{"local"};       // to fpga/local_bus.h
   sc_core::sc_in<bool> doorbell{"doorbell"};  // from the FPGA; its rising edge raises kDoorbell
   InterruptOut interrupt{"interrupt"};        // INTA#
 
   // Throws std::invalid_argument if the configuration has problems.
   PciBridge(const sc_core::sc_module_name& name, const PciBridgeConfig& config);
 
-  BridgeControl& control() { return control_; }
-  const Stats& stats() const { return control_.stats(); }
+  BridgeControl& control() { return control_; }            // the rules behind the sockets
+  const Stats& stats() const { return control_.stats(); }  // up to now
 
  private:
   // These serve the slave window and the register window.

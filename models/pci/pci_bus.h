@@ -18,7 +18,7 @@
 
 namespace stereotlm::pci {
 
-using PciStopPort = sc_core::sc_port<PciStopIf, 1, sc_core::SC_ZERO_OR_MORE_BOUND>;
+using PciStopPort = sc_core::sc_port<PciStopIf, 1, sc_core::SC_ZERO_OR_MORE_BOUND>;  // of a target
 
 // A PCI bus of 32 or 64 bits (contract sections 3 and 7.10). Targets see addresses relative to their window.
 //
@@ -52,8 +52,8 @@ using PciStopPort = sc_core::sc_port<PciStopIf, 1, sc_core::SC_ZERO_OR_MORE_BOUN
 // asked.
 class PciBus : public sc_core::sc_module {
  public:
-  using MasterStats = PciBusControl::MasterStats;
-  using Stats = PciBusControl::Stats;
+  using MasterStats = PciBusControl::MasterStats;  // of one slot
+  using Stats = PciBusControl::Stats;              // of all slots
 
   sc_core::sc_vector<PciSlotExport> slots;  // [master]; an unused slot may stay unbound
   sc_core::sc_vector<tlm_utils::simple_initiator_socket<PciBus>> targets;  // [window]
@@ -62,8 +62,8 @@ class PciBus : public sc_core::sc_module {
   // Throws std::invalid_argument if the configuration has problems.
   PciBus(const sc_core::sc_module_name& name, const PciBusConfig& config);
 
-  PciBusControl& control() { return control_; }
-  const Clock& clock() const { return control_.clock(); }
+  PciBusControl& control() { return control_; }            // the rules behind the sockets
+  const Clock& clock() const { return control_.clock(); }  // of the bus
   // Counts up to the current time.
   Stats stats() const { return control_.stats(kernel_time::now_ps()); }
 

@@ -18,13 +18,13 @@ namespace stereotlm::pci {
 struct EndedPciBurst {
   std::size_t master = 0;             // its slot
   std::optional<std::size_t> window;  // none: a master abort
-  bool write = false;
-  std::uint64_t address = 0;     // on the bus
-  std::uint64_t words = 0;       // transferred
-  std::uint64_t request_ps = 0;  // the first clock that could have been granted to the master
-  std::uint64_t address_ps = 0;  // the address clock
-  std::uint64_t data_ps = 0;     // the clock after the address clock
-  std::uint64_t end_ps = 0;      // the idle clock
+  bool write = false;                 // else a read
+  std::uint64_t address = 0;          // on the bus
+  std::uint64_t words = 0;            // transferred
+  std::uint64_t request_ps = 0;       // the first clock that could have been granted to the master
+  std::uint64_t address_ps = 0;       // the address clock
+  std::uint64_t data_ps = 0;          // the clock after the address clock
+  std::uint64_t end_ps = 0;           // the idle clock
 };
 
 // Receives the bursts of the PCI bus, for traces. Plain C++.
@@ -38,6 +38,7 @@ class PciBusObserver {
 // The arbitration, the timing and the counters of PciBus, whose comment describes them. Plain C++.
 class PciBusControl {
  public:
+  // Counts of a master since time 0.
   struct MasterCounts {
     std::uint64_t transactions = 0;  // bursts, counted at their end
     std::uint64_t words = 0;         // words transferred
@@ -45,19 +46,22 @@ class PciBusControl {
     std::uint64_t retries = 0;       // bursts that the target disconnected before the first word
     std::uint64_t aborts = 0;        // bursts that ended with kMasterAbort or kTargetError
 
+    // All members, to add and subtract them.
     static constexpr std::array kAll = {&MasterCounts::transactions, &MasterCounts::words,
                                         &MasterCounts::wait_clocks, &MasterCounts::retries,
                                         &MasterCounts::aborts};
-    void add(const MasterCounts& other) {
+    void add(const MasterCounts& other) {  // count by count
       for (const auto count : kAll) this->*count += other.*count;
     }
-    void subtract(const MasterCounts& other) {
+    void subtract(const MasterCounts& other) {  // count by count
       for (const auto count : kAll) this->*count -= other.*count;
     }
   };
+  // The counts of a slot.
   struct MasterStats : MasterCounts {
-    std::string name;
+    std::string name;  // as configured
   };
+  // What the bus has counted since time 0.
   struct Stats {
     std::uint64_t clocks = 0;          // whole clocks since time 0
     std::uint64_t busy_clocks = 0;     // address, wait and data clocks among them
@@ -103,10 +107,10 @@ class PciBusControl {
   std::uint64_t earliest_request_beside(Masters masters) const;
   // The state between two bursts.
   struct Position {
-    std::size_t last_granted = 0;
-    std::uint64_t free_clock = 0;
+    std::size_t last_granted = 0;  // slot
+    std::uint64_t free_clock = 0;  // the first clock in which the bus is free
   };
-  Position position() const { return {last_granted_, free_clock_}; }
+  Position position() const { return {last_granted_, free_clock_}; }  // between two bursts
   // What has been done up to the end of the last burst, by one master or by all.
   const MasterCounts& counts(std::size_t master) const { return master_stats_[master]; }
   std::uint64_t transactions() const;

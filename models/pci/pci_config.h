@@ -9,17 +9,17 @@
 
 namespace stereotlm::pci {
 
-inline constexpr kernels::IntegerRule kLatencyTimerRule{0, 255};
-inline constexpr kernels::IntegerRule kWaitClocksRule{0, 255};
-inline constexpr kernels::IntegerRule kWidthRule{32, 64, 32};
-inline constexpr kernels::IntegerRule kMasterCountRule{1, 64};
-inline constexpr kernels::IntegerRule kAddressRule{0, (std::int64_t{1} << 32) - 4, 4};
-inline constexpr kernels::IntegerRule kWindowBytesRule{4, std::int64_t{1} << 31, 4};
-inline constexpr kernels::IntegerRule kDmaBurstRule{1, 1024};
-inline constexpr kernels::IntegerRule kPostedWordsRule{1, 4096};
-inline constexpr kernels::IntegerRule kLoadBurstRule{1, 1024};
-inline constexpr kernels::IntegerRule kLoadTimeRule{0, 1'000'000'000'000'000};  // 1000 s
-inline constexpr kernels::IntegerRule kLoadAccessRule{0, 1'000'000'000'000};    // 1 s
+inline constexpr kernels::IntegerRule kLatencyTimerRule{0, 255};  // clocks
+inline constexpr kernels::IntegerRule kWaitClocksRule{0, 255};    // clocks
+inline constexpr kernels::IntegerRule kWidthRule{32, 64, 32};     // bits of the data bus
+inline constexpr kernels::IntegerRule kMasterCountRule{1, 64};    // slots
+inline constexpr kernels::IntegerRule kAddressRule{0, (std::int64_t{1} << 32) - 4, 4};  // bytes
+inline constexpr kernels::IntegerRule kWindowBytesRule{4, std::int64_t{1} << 31, 4};    // bytes
+inline constexpr kernels::IntegerRule kDmaBurstRule{1, 1024};                           // 32-bit words
+inline constexpr kernels::IntegerRule kPostedWordsRule{1, 4096};                        // 32-bit words
+inline constexpr kernels::IntegerRule kLoadBurstRule{1, 1024};                          // 32-bit words
+inline constexpr kernels::IntegerRule kLoadTimeRule{0, 1'000'000'000'000'000};          // 1000 s
+inline constexpr kernels::IntegerRule kLoadAccessRule{0, 1'000'000'000'000};            // 1 s
 
 // A range of addresses that belongs to one target.
 struct PciWindow {
@@ -28,6 +28,7 @@ struct PciWindow {
   int wait_clocks = 0;      // clocks between the address clock and the first word, kWaitClocksRule
 };
 
+// The configuration of a PciBus.
 struct PciBusConfig {
   double clock_mhz = 33.333;         // 1..1000
   int latency_timer_clocks = 64;     // latency timer of every master, kLatencyTimerRule
@@ -36,6 +37,7 @@ struct PciBusConfig {
   int width_bits = 32;               // of the data bus, kWidthRule
 };
 
+// The configuration of a PciBridge.
 struct PciBridgeConfig {
   int dma_burst_words =
       32;  // longest burst of a DMA channel and of posted writes on the local bus, kDmaBurstRule

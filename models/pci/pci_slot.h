@@ -14,13 +14,14 @@ namespace stereotlm::pci {
 
 // The burst for which a master uses its grant.
 struct PciBurst {
-  bool write = true;
+  bool write = true;          // else a read
   std::uint64_t address = 0;  // address of the first byte, a multiple of 4
   // The words to write, or a buffer of as many words as are to be read. The master owns this vector, and does
   // not touch it until the end of the burst.
   std::vector<std::uint32_t>* words = nullptr;
 };
 
+// Why a burst has ended.
 enum class BurstEnd : std::uint8_t {
   kComplete,      // all words were transferred
   kLatencyTimer,  // the latency timer has expired and another master waits
@@ -28,18 +29,18 @@ enum class BurstEnd : std::uint8_t {
   kMasterAbort,   // no target at this address; no word was transferred
   kTargetError,   // the target responded with an error; no word was transferred
 };
-constexpr bool is_error(BurstEnd end) {
+constexpr bool is_error(BurstEnd end) {  // master abort or target error
   return end == BurstEnd::kMasterAbort || end == BurstEnd::kTargetError;
 }
 
 // The result of a burst. Word i was transferred in bus clock first_data_clock + i / words_per_clock, and left
 // its sender at the end of that clock.
 struct BurstResult {
-  BurstEnd end = BurstEnd::kComplete;
-  std::size_t words = 0;  // words transferred
-  std::uint64_t first_data_clock = 0;
-  std::uint64_t end_ps = 0;         // time of the call of end_burst()
-  std::size_t words_per_clock = 1;  // 2 on a bus of 64 bits
+  BurstEnd end = BurstEnd::kComplete;  // why the burst has ended
+  std::size_t words = 0;               // words transferred
+  std::uint64_t first_data_clock = 0;  // number of the bus clock of word 0
+  std::uint64_t end_ps = 0;            // time of the call of end_burst()
+  std::size_t words_per_clock = 1;     // 2 on a bus of 64 bits
 
   // The number of words that were transferred in earlier clocks than this one.
   std::size_t words_before(std::uint64_t clock) const {
@@ -75,15 +76,15 @@ class PciSlot {
 // When a target has responded to an access, and how.
 struct PciAnswer {
   std::uint64_t time_ps = 0;  // kNever: not yet
-  bool ok = true;
+  bool ok = true;             // whether it takes the access without an error
 };
 
 // The access of a burst. Its address is relative to the target's window.
 struct PciAccess {
-  bool write = true;
-  std::uint64_t address = 0;
-  std::uint32_t* words = nullptr;
-  std::size_t count = 0;
+  bool write = true;               // else a read
+  std::uint64_t address = 0;       // of the first byte
+  std::uint32_t* words = nullptr;  // to write, or places for the words read
+  std::size_t count = 0;           // words
 };
 
 // A target of the bus, called by the bus.

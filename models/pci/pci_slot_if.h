@@ -17,6 +17,7 @@
 // The sockets between the PCI bus and its masters and targets.
 namespace stereotlm::pci {
 
+// A slot of the bus for the port of a master.
 class PciSlotIf : public virtual sc_core::sc_interface, public PciSlot {
  public:
   using PciSlot::request;
@@ -29,6 +30,7 @@ class PciSlotIf : public virtual sc_core::sc_interface, public PciSlot {
 // std::runtime_error of the control goes to `report`. `then` is called after the end of a burst.
 class PciMasterPort : public sc_core::sc_port<PciSlotIf>, public PciSlot, private PciMasterIf {
  public:
+  // `report` must be given for a control that throws.
   explicit PciMasterPort(const char* name, std::function<void()> then = {},
                          std::function<void(const std::exception&)> report = {})
       : sc_port(name), then_(std::move(then)), report_(std::move(report)) {}
@@ -63,7 +65,7 @@ class PciMasterPort : public sc_core::sc_port<PciSlotIf>, public PciSlot, privat
   std::function<void(const std::exception&)> report_;
   PciMasterIf* control_ = nullptr;
 };
-using PciSlotExport = sc_core::sc_export<PciSlotIf>;
+using PciSlotExport = sc_core::sc_export<PciSlotIf>;  // of a slot
 
 // STOP#, which the base protocol has no phase for. A target without it takes bursts of any length.
 class PciStopIf : public virtual sc_core::sc_interface {

@@ -25,6 +25,7 @@ namespace stereotlm::pci {
 // is the last one.
 class TrafficGenerator : public sc_core::sc_module {
  public:
+  // To a slot of the bus.
   PciMasterPort pci{"pci", {}, [this](const std::exception& error) { report(error.what()); }};
   // The device, which stays unbound if the master reads from another target. A read of whole words without
   // byte enables returns zeros after access_ps. Other accesses are refused with the responses of

@@ -11,12 +11,12 @@ namespace stereotlm::test {
 // An access that a probe has seen. Times are absolute: that at which it was requested, and that of its
 // response.
 struct SeenAccess {
-  sc_core::sc_time begin;
-  sc_core::sc_time end;
-  bool write = false;
-  std::uint64_t address = 0;
-  std::vector<std::uint32_t> words;
-  tlm::tlm_response_status response = tlm::TLM_INCOMPLETE_RESPONSE;
+  sc_core::sc_time begin;                                            // of the request
+  sc_core::sc_time end;                                              // of the response
+  bool write = false;                                                // else a read
+  std::uint64_t address = 0;                                         // as the initiator requested it
+  std::vector<std::uint32_t> words;                                  // written, or read
+  tlm::tlm_response_status response = tlm::TLM_INCOMPLETE_RESPONSE;  // of the target
 };
 
 // Stands in a link of the base protocol: forwards every call unchanged, takes no time, and keeps each access
@@ -25,10 +25,10 @@ class AccessProbe : public sc_core::sc_module,
                     public tlm::tlm_fw_transport_if<>,
                     public tlm::tlm_bw_transport_if<> {
  public:
-  tlm::tlm_target_socket<32> from_initiator{"from_initiator"};
-  tlm::tlm_initiator_socket<32> to_target{"to_target"};
+  tlm::tlm_target_socket<32> from_initiator{"from_initiator"};  // from the initiator of the link
+  tlm::tlm_initiator_socket<32> to_target{"to_target"};         // to the target of the link
 
-  explicit AccessProbe(const sc_core::sc_module_name& name);
+  explicit AccessProbe(const sc_core::sc_module_name& name);  // both sockets must be bound
 
   // In the order of their responses.
   const std::vector<SeenAccess>& accesses() const { return accesses_; }

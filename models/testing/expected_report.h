@@ -16,6 +16,7 @@ namespace stereotlm::test {
 // of a type whose actions the test has set to SC_DO_NOTHING.
 class ExpectedReport {
  public:
+  // `count`: the number of reports, at least 1.
   explicit ExpectedReport(std::string message_type, int count = 1);
   ~ExpectedReport();
   ExpectedReport(const ExpectedReport&) = delete;

@@ -11,6 +11,6 @@ namespace stereotlm::test {
 using FailureHandler = std::function<void(const std::string& text)>;
 void set_failure_handler(FailureHandler handler);
 
-void fail(const std::string& text);
+void fail(const std::string& text);  // gives a failure to the handler
 
 }  // namespace stereotlm::test

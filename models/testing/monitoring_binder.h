@@ -13,7 +13,7 @@ namespace stereotlm::test {
 // simulation. Violations that nobody has taken out are failures (failure.h) when it is destroyed.
 class MonitoringBinder : public Binder {
  public:
-  explicit MonitoringBinder(const ProtocolOptions& options = {}) : options_(options) {}
+  explicit MonitoringBinder(const ProtocolOptions& options = {}) : options_(options) {}  // rules of all links
 
   void bind(InitiatorSocket& from, TargetSocket& to, const std::string& link) override;
 

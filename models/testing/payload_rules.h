@@ -28,9 +28,11 @@ Problems request_problems(const tlm::tlm_generic_payload& payload, const Protoco
 // Rules for the payload that a target returns with its response.
 Problems response_problems(const tlm::tlm_generic_payload& payload, const ProtocolOptions& options);
 
+// Rules for transport_dbg, and for the number of bytes that it returns.
 Problems debug_request_problems(const tlm::tlm_generic_payload& payload);
 Problems debug_answer_problems(const tlm::tlm_generic_payload& payload, unsigned int bytes);
 
+// Rules for get_direct_mem_ptr.
 Problems dmi_request_problems(const tlm::tlm_generic_payload& payload, const tlm::tlm_dmi& dmi);
 // `address` is the requested address; an interconnect may have translated the address in the payload.
 Problems dmi_answer_problems(const tlm::tlm_generic_payload& payload, sc_dt::uint64 address, bool granted,
@@ -40,8 +42,9 @@ Problems dmi_answer_problems(const tlm::tlm_generic_payload& payload, sc_dt::uin
 // of a write and the byte enables: arrays whose pointers are not null must be valid.
 class PayloadSnapshot {
  public:
-  explicit PayloadSnapshot(const tlm::tlm_generic_payload& payload);
-  sc_dt::uint64 address() const { return address_; }
+  explicit PayloadSnapshot(const tlm::tlm_generic_payload& payload);  // taken at the request
+  sc_dt::uint64 address() const { return address_; }                  // as requested
+  // A sentence for each changed field.
   Problems changes(const tlm::tlm_generic_payload& payload, const ProtocolOptions& options) const;
 
  private:

@@ -14,10 +14,11 @@ namespace stereotlm::test {
 // broken rule it continues from the last call, so that one mistake is reported once.
 class PhaseTracker {
  public:
-  explicit PhaseTracker(const ProtocolOptions& options) : options_(options) {}
+  explicit PhaseTracker(const ProtocolOptions& options) : options_(options) {}  // on a new link
 
+  // The arguments of a call of nb_transport.
   struct Call {
-    tlm::tlm_phase phase;
+    tlm::tlm_phase phase;   // BEGIN_REQ and the others
     sc_core::sc_time time;  // sc_time_stamp() plus the annotated delay
   };
   // `answer`: phase and time as the callee returns them.
@@ -28,7 +29,7 @@ class PhaseTracker {
   Problems backward_return(const tlm::tlm_generic_payload& payload, const Call& call, const Call& answer,
                            tlm::tlm_sync_enum status);
 
-  bool in_progress(const tlm::tlm_generic_payload& payload) const {
+  bool in_progress(const tlm::tlm_generic_payload& payload) const {  // whether it has no END_RESP yet
     return transactions_.count(&payload) != 0;
   }
 

@@ -14,11 +14,13 @@ namespace stereotlm::test {
 // must outlive the simulation.
 class ProbingBinder : public Binder {
  public:
+  // A link with a probe.
   struct Probe {
-    std::string link;
-    std::unique_ptr<AccessProbe> probe;
+    std::string link;                    // its name
+    std::unique_ptr<AccessProbe> probe;  // in the link
   };
 
+  // `of_links`: a text in the names of the links; empty: every link.
   explicit ProbingBinder(std::string of_links = "") : of_links_(std::move(of_links)) {}
 
   void bind(InitiatorSocket& from, TargetSocket& to, const std::string& link) override {

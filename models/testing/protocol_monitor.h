@@ -19,9 +19,10 @@ class ProtocolMonitor : public sc_core::sc_module,
                         public tlm::tlm_fw_transport_if<>,
                         public tlm::tlm_bw_transport_if<> {
  public:
-  tlm::tlm_target_socket<32> from_initiator{"from_initiator"};
-  tlm::tlm_initiator_socket<32> to_target{"to_target"};
+  tlm::tlm_target_socket<32> from_initiator{"from_initiator"};  // from the initiator of the link
+  tlm::tlm_initiator_socket<32> to_target{"to_target"};         // to the target of the link
 
+  // Both sockets must be bound. `options`: the rules of this link.
   explicit ProtocolMonitor(const sc_core::sc_module_name& name, const ProtocolOptions& options = {});
   ~ProtocolMonitor() override;
 

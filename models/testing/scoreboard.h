@@ -12,7 +12,7 @@ namespace stereotlm::test {
 // "<scoreboard> at <time>: byte <address> = <value>: must be <value>".
 class Scoreboard : public AccessProbe {
  public:
-  using AccessProbe::AccessProbe;
+  using AccessProbe::AccessProbe;  // knows no byte at first
 
   // The number of bytes that were compared.
   std::uint64_t compared() const { return compared_; }

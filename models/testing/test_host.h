@@ -13,33 +13,36 @@ namespace stereotlm::test {
 // debug transport, and DMI. It ends each response of nb_transport by `ending`, and records the answer.
 class TestHost : public sc_core::sc_module, public tlm::tlm_bw_transport_if<> {
  public:
+  // The response to an access.
   struct Answer {
-    tlm::tlm_response_status status = tlm::TLM_INCOMPLETE_RESPONSE;
-    std::uint32_t word = 0;
-    sc_core::sc_time at;               // absolute
-    std::vector<std::uint32_t> words;  // of a burst, `word` first
+    tlm::tlm_response_status status = tlm::TLM_INCOMPLETE_RESPONSE;  // of the target
+    std::uint32_t word = 0;                                          // read, or written
+    sc_core::sc_time at;                                             // absolute
+    std::vector<std::uint32_t> words;                                // of a burst, `word` first
   };
+  // The return value to BEGIN_RESP.
   enum class Ending { kCompleted, kUpdated, kAccepted };  // the return value to BEGIN_RESP
 
-  tlm::tlm_initiator_socket<32> socket{"socket"};
-  Ending ending = Ending::kCompleted;
-  std::vector<Answer> answers;  // of nb_transport, in the order of their arrival
-  std::vector<std::pair<sc_dt::uint64, sc_dt::uint64>> invalidations;
+  tlm::tlm_initiator_socket<32> socket{"socket"};  // to the target
+  Ending ending = Ending::kCompleted;              // of the responses to come
+  std::vector<Answer> answers;                     // of nb_transport, in the order of their arrival
+  std::vector<std::pair<sc_dt::uint64, sc_dt::uint64>> invalidations;  // first and last address of each
 
+  // The socket must be bound to a target.
   explicit TestHost(const sc_core::sc_module_name& name) : sc_module(name) { socket.bind(*this); }
 
   // One word by b_transport, at now + delay.
   Answer read(std::uint64_t address, const sc_core::sc_time& delay = {}) {
     return block(tlm::TLM_READ_COMMAND, address, 0, delay);
   }
-  Answer write(std::uint64_t address, std::uint32_t word, const sc_core::sc_time& delay = {}) {
+  Answer write(std::uint64_t address, std::uint32_t word, const sc_core::sc_time& delay = {}) {  // as read()
     return block(tlm::TLM_WRITE_COMMAND, address, word, delay);
   }
   // Words by b_transport.
   Answer read_words(std::uint64_t address, std::size_t count) {
     return block(tlm::TLM_READ_COMMAND, address, std::vector<std::uint32_t>(count), {});
   }
-  Answer write_words(std::uint64_t address, std::vector<std::uint32_t> words) {
+  Answer write_words(std::uint64_t address, std::vector<std::uint32_t> words) {  // as read_words()
     return block(tlm::TLM_WRITE_COMMAND, address, std::move(words), {});
   }
 
@@ -49,6 +52,7 @@ class TestHost : public sc_core::sc_module, public tlm::tlm_bw_transport_if<> {
                              const sc_core::sc_time& delay = {}) {
     return request(command, address, std::vector<std::uint32_t>{word}, delay);
   }
+  // As above, for a burst.
   tlm::tlm_sync_enum request(tlm::tlm_command command, std::uint64_t address,
                              std::vector<std::uint32_t> words, sc_core::sc_time delay = {});
   // Sends END_RESP for the last response, timed at that response, and returns what the target returns. For a
@@ -58,6 +62,7 @@ class TestHost : public sc_core::sc_module, public tlm::tlm_bw_transport_if<> {
   Answer access(tlm::tlm_command command, std::uint64_t address, std::uint32_t word = 0) {
     return access(command, address, std::vector<std::uint32_t>{word});
   }
+  // As above, for a burst.
   Answer access(tlm::tlm_command command, std::uint64_t address, std::vector<std::uint32_t> words) {
     const std::size_t answered = answers.size();
     request(command, address, std::move(words));
@@ -67,16 +72,18 @@ class TestHost : public sc_core::sc_module, public tlm::tlm_bw_transport_if<> {
     return answers.back();
   }
 
+  // Returns the number of bytes written.
   unsigned debug_write(std::uint64_t address, const std::vector<std::uint32_t>& words) {
     std::vector<std::uint32_t> copy = words;
     return debug(tlm::TLM_WRITE_COMMAND, address, copy);
   }
+  // Returns the words that the target gave.
   std::vector<std::uint32_t> debug_read(std::uint64_t address, std::size_t count) {
     std::vector<std::uint32_t> words(count);
     words.resize(debug(tlm::TLM_READ_COMMAND, address, words) / 4);
     return words;
   }
-  bool dmi(std::uint64_t address, tlm::tlm_dmi& dmi) {
+  bool dmi(std::uint64_t address, tlm::tlm_dmi& dmi) {  // whether DMI is granted for a read at this address
     tlm::tlm_generic_payload payload;
     payload.set_command(tlm::TLM_READ_COMMAND);
     payload.set_address(address);

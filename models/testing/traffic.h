@@ -12,10 +12,10 @@ namespace stereotlm::test {
 
 // One access of an initiator: it begins `pause` after the response of the one before.
 struct TrafficAccess {
-  sc_core::sc_time pause;
-  bool write = false;
+  sc_core::sc_time pause;     // since the response of the one before
+  bool write = false;         // else a read
   std::uint64_t address = 0;  // of the first byte, a multiple of 4
-  std::size_t words = 1;
+  std::size_t words = 1;      // of 32 bits
 };
 
 // Accesses of `words` words each to addresses that follow each other: `first`, first + stride, .. Throws
@@ -25,12 +25,12 @@ std::vector<TrafficAccess> strided_traffic(std::uint64_t first, std::uint64_t st
 
 // What random_traffic() draws from. Every seed gives the same accesses on every machine.
 struct RandomTraffic {
-  std::uint64_t seed = 0;
-  std::size_t count = 100;
+  std::uint64_t seed = 0;          // of the random numbers
+  std::size_t count = 100;         // accesses
   std::uint64_t first = 0;         // address
   std::uint64_t memory_words = 0;  // behind `first`; at least most_words
   std::size_t most_words = 1;      // of an access
-  unsigned writes_percent = 50;
+  unsigned writes_percent = 50;    // of the accesses
   sc_core::sc_time longest_pause;  // half of the accesses have no pause
 };
 // Throws std::invalid_argument if a number is out of range, such as accesses without a place.
@@ -45,13 +45,15 @@ std::vector<TrafficAccess> traffic_of_csv(std::istream& csv);
 // that it writes are random. An access that is refused is a failure (failure.h).
 class TrafficInitiator : public sc_core::sc_module {
  public:
+  // The interface: b_transport or nb_transport.
   enum class Style { kBlocking, kNonBlocking };
 
+  // The words that it writes follow from a fixed seed.
   TrafficInitiator(const sc_core::sc_module_name& name, std::vector<TrafficAccess> accesses,
                    Style style = Style::kBlocking);
 
-  tlm::tlm_initiator_socket<32>& socket() { return host_.socket; }
-  bool is_done() const { return is_done_; }
+  tlm::tlm_initiator_socket<32>& socket() { return host_.socket; }  // to be bound to a target
+  bool is_done() const { return is_done_; }      // whether all accesses have their responses
   sc_core::sc_time end() const { return end_; }  // of the last response
 
  private:

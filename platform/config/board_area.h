@@ -25,10 +25,10 @@ inline std::vector<area::Item> area_items(const BoardConfig& board) {
 
 // The pins of each bank that holds a word of a buffer.
 struct PinsOfBank {
-  std::string bank;
-  area::BankPins pins;
+  std::string bank;     // name of the bank
+  area::BankPins pins;  // those of the FPGA that it takes
 };
-inline std::vector<PinsOfBank> bank_pins(const BoardConfig& board) {
+inline std::vector<PinsOfBank> bank_pins(const BoardConfig& board) {  // in the order of the board file
   const std::vector<memory::SsramBankConfig> configs = ssram_configs(board);
   const std::vector<PlacedBuffer> all = buffers(board);
   std::vector<PinsOfBank> pins;
@@ -41,13 +41,13 @@ inline std::vector<PinsOfBank> bank_pins(const BoardConfig& board) {
   }
   return pins;
 }
-inline int pins_of(const BoardConfig& board) {
+inline int pins_of(const BoardConfig& board) {  // of the banks, the local bus, clocks and status
   int pins = area::kLocalBusPins + area::kOtherPins;
   for (const PinsOfBank& bank : bank_pins(board)) pins += bank.pins.all();
   return pins;
 }
 
-inline area::Area area_of(const BoardConfig& board) {
+inline area::Area area_of(const BoardConfig& board) {  // of the core, as shares of the board's device
   area::Area area = area::total(area_items(board), device_of(board));
   if (const area::Package* const package = area::find_package(board.fpga.package)) {
     area.pins = pins_of(board);

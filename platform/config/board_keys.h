@@ -24,13 +24,14 @@ struct Key;
 // sweeps and knobs follow from it. If a board has no `pci.load`, `field` of a key below `pci.load` throws
 // std::bad_optional_access.
 struct IntegerKey {
-  int* (*field)(BoardConfig&);
+  int* (*field)(BoardConfig&);  // the value in a board
 };
 
+// A key whose value is a decimal number.
 struct DecimalKey {
-  double min;
-  double max;
-  double* (*field)(BoardConfig&);
+  double min;                      // least value
+  double max;                      // greatest value
+  double* (*field)(BoardConfig&);  // the value in a board
 
   bool allows(double value) const { return value >= min && value <= max; }  // false for NaN
 };
@@ -38,11 +39,12 @@ struct DecimalKey {
 // A key whose value is one of a few words. If the board's value is none of them, `get` returns the value as a
 // text for messages. `set` uses the index of the word in `words`.
 struct WordKey {
-  std::vector<std::string> words;
-  std::function<std::string(const BoardConfig&)> get;
-  std::function<void(BoardConfig&, int)> set;
+  std::vector<std::string> words;                      // the allowed words
+  std::function<std::string(const BoardConfig&)> get;  // the word of the board
+  std::function<void(BoardConfig&, int)> set;          // index in `words`
 };
 
+// A key of board files.
 struct Key {
   std::string path;     // dotted; NAME stands for a bank's name
   std::string meaning;  // one line
@@ -110,23 +112,24 @@ const std::vector<std::string>& bank_kind_names();
 // A key of `ssram.default` and of a bank that is required for banks of one kind, and without effect for all
 // others. In one entry with another kind it is an error.
 struct BankTimingKey {
-  const char* name;
-  memory::BankKind kind;
-  const char* meaning;
-  const char* unit;
-  IntegerRule rule;
-  bool is_power_of_two;
-  bool may_be_off;  // 0 stands for off
-  int (*get)(const BankConfig&);
-  void (*set)(BankConfig&, int);
+  const char* name;               // last part of the path
+  memory::BankKind kind;          // which banks need it
+  const char* meaning;            // one line
+  const char* unit;               // empty: none
+  IntegerRule rule;               // allowed values
+  bool is_power_of_two;           // whether only 1, 2, 4, .. are allowed
+  bool may_be_off;                // 0 stands for off
+  int (*get)(const BankConfig&);  // the value in a bank
+  void (*set)(BankConfig&, int);  // sets the value in a bank
 
   std::string rule_text() const;  // of the value
 };
-const std::vector<BankTimingKey>& bank_timing_keys();
+const std::vector<BankTimingKey>& bank_timing_keys();  // in the order of board files
 // Whether the bank needs the key: refresh_cycles only with a refresh.
 bool needs_key(const BankConfig& bank, const BankTimingKey& key);
 
+// For messages about is_bank_name().
 inline constexpr const char* kBankNameRule = "a bank's name is [A-Za-z][A-Za-z0-9_-]*, and not none";
-bool is_bank_name(std::string_view name);
+bool is_bank_name(std::string_view name);  // whether the name keeps kBankNameRule
 
 }  // namespace stereotlm::platform

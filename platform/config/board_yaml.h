@@ -23,10 +23,11 @@ struct Diagnostic {
 // any.
 class BoardError : public std::runtime_error {
  public:
-  static constexpr std::size_t kMostLines = 20;
+  static constexpr std::size_t kMostLines = 20;  // of what()
 
+  // `diagnostics`: at least one. `note`: a last line, or empty.
   explicit BoardError(std::vector<Diagnostic> diagnostics, const std::string& note = "");
-  const std::vector<Diagnostic>& diagnostics() const { return diagnostics_; }
+  const std::vector<Diagnostic>& diagnostics() const { return diagnostics_; }  // all problems
 
  private:
   std::vector<Diagnostic> diagnostics_;
@@ -49,8 +50,8 @@ std::string to_yaml(const BoardConfig& board);
 
 // One value of a board.
 struct BoardValue {
-  std::string path;  // "image.width", "ssram.banks.bank0.words"
-  std::variant<std::int64_t, double, std::string> value;
+  std::string path;                                       // "image.width", "ssram.banks.bank0.words"
+  std::variant<std::int64_t, double, std::string> value;  // a number, or text
 };
 
 // Every value of a valid board with its path, in the order of to_yaml(). Lists, words and filters are text as
@@ -64,8 +65,8 @@ std::vector<std::string> sets_between(const BoardConfig& from, const BoardConfig
 
 // A board file that is compiled in.
 struct Preset {
-  std::string_view name;
-  std::string_view text;
+  std::string_view name;  // for load_board() and `extends`
+  std::string_view text;  // of the file
 };
 
 // All presets, `fpl2003` first.

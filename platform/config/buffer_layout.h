@@ -51,11 +51,11 @@ decltype(auto) visit_buffer(All& all, Buffer buffer, const Visit& visit) {
 
 // One buffer, and the bank that holds it; or a part of a striped buffer.
 struct PlacedBuffer {
-  Buffer buffer;
+  Buffer buffer;     // of which list, or which table
   int index;         // index in its list; -1: a table
   std::string bank;  // name
   int part = 0;      // row y of the buffer is in part y mod `parts`
-  int parts = 1;
+  int parts = 1;     // 1: in one bank
   // Its addresses on the local bus. Buffers that share a bank begin at word 0, and follow each other in the
   // order of buffers() (contract 1.5). Without meaning if the board has no such bank.
   AddressRange range = {};

@@ -10,8 +10,8 @@ namespace stereotlm::platform {
 
 // The look-up tables of a board. A side without LUT port has no table.
 struct Tables {
-  std::optional<kernels::RectificationTable> left;
-  std::optional<kernels::RectificationTable> right;
+  std::optional<kernels::RectificationTable> left;   // nullopt: the side has no buffer for a table
+  std::optional<kernels::RectificationTable> right;  // nullopt: the side has no buffer for a table
 };
 
 // The tables of a board that is not calibrated: every entry is its own source (contract 1.1).

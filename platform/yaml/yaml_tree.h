@@ -12,30 +12,31 @@ namespace stereotlm::platform {
 // The place at which a value was written. A source overrides those with lower numbers: presets that a board
 // extends, the board itself, then each `--set` in its order.
 struct Place {
-  static constexpr int kPreset = 0;
-  static constexpr int kBoard = 1;
-  static constexpr int kFirstSet = 2;
+  static constexpr int kPreset = 0;    // Place::source of presets
+  static constexpr int kBoard = 1;     // Place::source of a board file
+  static constexpr int kFirstSet = 2;  // Place::source of the first `--set`
 
-  int source = kBoard;
-  int line = 1;    // from 1
-  int column = 1;  // from 1, in characters
+  int source = kBoard;  // kPreset, kBoard, or kFirstSet and above
+  int line = 1;         // from 1
+  int column = 1;       // from 1, in characters
 };
 
 // A YAML value as it was written. Nothing is converted, keys may repeat, and each value has its place.
 struct YamlNode {
+  // What the value is.
   enum class Kind { kNull, kScalar, kList, kMap };
   enum class Style { kUsual, kOther };  // yaml_text() writes maps in block style, lists in flow style
   struct Entry;
 
-  static YamlNode map(const Place& place = {});
-  static YamlNode list(std::vector<YamlNode> items);
+  static YamlNode map(const Place& place = {});       // without entries
+  static YamlNode list(std::vector<YamlNode> items);  // of these items
   // A scalar that is not in quotes.
   static YamlNode plain(std::string text, const Place& place = {});
   // A scalar that every reader of YAML reads back as this text. It is in quotes where needed.
   static YamlNode word(const std::string& text);
 
-  Kind kind = Kind::kNull;
-  Place place;
+  Kind kind = Kind::kNull;      // of the value
+  Place place;                  // where it was written
   std::string text;             // text of a scalar; of a null `~`, `null`, or nothing
   bool quoted = false;          // a scalar in quotes, or a block scalar
   Style style = Style::kUsual;  // of a parsed value always kUsual
@@ -43,9 +44,9 @@ struct YamlNode {
   std::vector<YamlNode> items;  // values of a list
   std::vector<Entry> entries;   // entries of a map, in the order of the text
 
-  bool is_map() const { return kind == Kind::kMap; }
-  bool is_list() const { return kind == Kind::kList; }
-  bool is_scalar() const { return kind == Kind::kScalar; }
+  bool is_map() const { return kind == Kind::kMap; }        // also if it is empty
+  bool is_list() const { return kind == Kind::kList; }      // also if it is empty
+  bool is_scalar() const { return kind == Kind::kScalar; }  // with a text
   // Whether this is a scalar with that text, with or without quotes.
   bool is(std::string_view word) const { return is_scalar() && text == word; }
 
@@ -57,9 +58,10 @@ struct YamlNode {
   YamlNode& add(YamlNode key, YamlNode value);
 };
 
+// A key of a map with its value.
 struct YamlNode::Entry {
-  YamlNode key;
-  YamlNode value;
+  YamlNode key;    // may repeat in the map
+  YamlNode value;  // of the key
 };
 
 // Calls `visit` with the value and with each value and key in it.
@@ -76,9 +78,10 @@ void for_each_node(YamlNode& node, const Visit& visit) {
 // A text is not one YAML document. what() is the rule that it breaks.
 class YamlError : public std::runtime_error {
  public:
+  // `error_place`: of the first broken rule.
   YamlError(const Place& error_place, const std::string& rule)
       : std::runtime_error(rule), place(error_place) {}
-  Place place;
+  Place place;  // of the first broken rule
 };
 
 // Parses one YAML document. `source`: Place::source of all values. Throws YamlError for the first error of
