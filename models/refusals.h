@@ -31,6 +31,7 @@ class Refusals {
                              "; later refusals are not reported";
     SC_REPORT_WARNING("/stereotlm/refused_access", text.c_str());
   }
+  // The same, for a target with these rules.
   void report(const tlm::tlm_generic_payload& access, const AccessRules& rules) {
     if (!has_reported_) report(access, text_of(rules));
   }

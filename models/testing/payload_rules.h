@@ -63,7 +63,8 @@ class PayloadSnapshot {
 // What a target may set until it has sent its response, and nobody after that (14.7 g).
 class ResponseSnapshot {
  public:
-  explicit ResponseSnapshot(const tlm::tlm_generic_payload& payload);
+  explicit ResponseSnapshot(const tlm::tlm_generic_payload& payload);  // taken at the response
+  // A sentence for each changed field.
   Problems changes(const tlm::tlm_generic_payload& payload) const;
 
  private:
