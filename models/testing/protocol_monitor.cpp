@@ -108,7 +108,7 @@ void ProtocolMonitor::b_transport(Payload& payload, sc_core::sc_time& delay) {
   if (sc_core::sc_time_stamp() + delay < start) {
     report(kCall, "time fell from " + start.to_string() + " to " +
                       (sc_core::sc_time_stamp() + delay).to_string() +
-                      ": a callee must not take back time (11.1.1.4)");
+                      ": a callee must not take back time (15.2.7 d)");
   }
   report(kCall, sent.changes(payload, options_));
   report(kCall, response_problems(payload, options_));
