@@ -183,6 +183,19 @@ struct Traffic {
   std::vector<std::vector<Access>> accesses;  // [port]
 };
 
+SdramTiming draw_sdram(test::SplitMix64& random) {
+  SdramTiming sdram;
+  sdram.cas_latency = random.between(1, 3);
+  sdram.row_words = 16;
+  sdram.internal_banks = 1 << random.between(0, 1);  // 64 words: more rows than there are banks
+  sdram.activate_cycles = random.between(0, 3);
+  sdram.precharge_cycles = random.between(0, 3);
+  sdram.refresh_interval_cycles = random.between(64, 100);
+  sdram.refresh_cycles = random.between(1, 12);
+  if (random.chance(30)) sdram.refresh_interval_cycles = std::nullopt;
+  return sdram;
+}
+
 Traffic draw(std::uint64_t seed) {
   test::SplitMix64 random(seed);
   Traffic traffic;
@@ -197,7 +210,8 @@ Traffic draw(std::uint64_t seed) {
     SsramBankConfig bank;
     bank.words = 64;
     bank.kind = std::array{BankKind::kZbtPipelined, BankKind::kZbtFlowThrough, BankKind::kSyncBurst,
-                           BankKind::kQdr}[static_cast<std::size_t>(random.between(0, 3))];
+                           BankKind::kQdr, BankKind::kSdram}[static_cast<std::size_t>(random.between(0, 4))];
+    if (bank.kind == BankKind::kSdram) bank.sdram = draw_sdram(random);
     if (bank.kind == BankKind::kSyncBurst) bank.turnaround_cycles = random.between(1, 4);
     traffic.config.banks.push_back(bank);
   }
@@ -221,8 +235,16 @@ class PlainCrossbar {
  public:
   explicit PlainCrossbar(const Traffic& traffic) : traffic_(traffic), ports_(traffic.accesses.size()) {
     for (const SsramBankConfig& bank : traffic.config.banks) {
-      banks_.push_back(
-          {bank.kind == BankKind::kQdr, bank.turnaround_cycles, read_latency_cycles(bank), {}, {}, {}});
+      banks_.push_back({bank.kind == BankKind::kQdr,
+                        bank.turnaround_cycles,
+                        read_latency_cycles(bank),
+                        bank.sdram,
+                        {},
+                        {},
+                        {},
+                        {},
+                        0,
+                        1});
       for (auto& age : banks_.back().age) age.resize(ports_.size());
     }
     for (std::size_t port = 0; port < ports_.size(); ++port) begin(port, 0);
@@ -256,10 +278,40 @@ class PlainCrossbar {
     bool separate;
     int turnaround;
     int latency;
+    std::optional<SdramTiming> sdram;
     std::array<std::optional<std::uint64_t>, 2> last;     // [write]: cycle of the last grant
     std::array<std::optional<std::size_t>, 2> last_port;  // [direction]: place in the list, for round robin
     std::array<std::vector<std::uint64_t>, 2> age;        // [direction][port]
+    std::map<std::uint32_t, std::uint32_t> open;          // row of each internal bank (section 8.3)
+    std::uint64_t busy_until;                             // with a refresh or a row
+    std::uint64_t next_refresh;
   };
+
+  static void refresh_if_due(Bank& bank, std::uint64_t cycle) {
+    if (!bank.sdram || !bank.sdram->refresh_interval_cycles || cycle < bank.busy_until) return;
+    if (cycle < bank.next_refresh * static_cast<std::uint64_t>(*bank.sdram->refresh_interval_cycles)) return;
+    ++bank.next_refresh;
+    bank.busy_until = cycle + static_cast<std::uint64_t>(bank.sdram->refresh_cycles) +
+                      static_cast<std::uint64_t>(bank.open.empty() ? 0 : bank.sdram->precharge_cycles);
+    bank.open.clear();
+  }
+  // Whether the bank must open the row of this word first, and does so.
+  static bool opens_row(Bank& bank, std::uint32_t word, std::uint64_t cycle) {
+    if (!bank.sdram) return false;
+    const std::uint32_t row = word / static_cast<std::uint32_t>(bank.sdram->row_words);
+    const std::uint32_t internal = row % static_cast<std::uint32_t>(bank.sdram->internal_banks);
+    const auto open = bank.open.find(internal);
+    if (open != bank.open.end() && open->second == row) return false;
+    bank.busy_until = cycle + static_cast<std::uint64_t>(bank.sdram->activate_cycles) +
+                      static_cast<std::uint64_t>(open == bank.open.end() ? 0 : bank.sdram->precharge_cycles);
+    bank.open[internal] = row;
+    return cycle < bank.busy_until;
+  }
+  static bool turns_round(const Bank& bank, bool write, std::uint64_t cycle) {
+    const auto& other = bank.last[write ? 0 : 1];
+    const int lost = !bank.sdram ? bank.turnaround : write ? bank.sdram->cas_latency : 0;
+    return !bank.separate && other && cycle < *other + static_cast<std::uint64_t>(lost) + 1;
+  }
 
   bool done() const {
     for (std::size_t port = 0; port < ports_.size(); ++port)
@@ -275,6 +327,7 @@ class PlainCrossbar {
   void decide(std::size_t number, std::uint64_t cycle, bool writes, bool one_direction,
               std::vector<Grant>& all) {
     Bank& bank = banks_[number];
+    refresh_if_due(bank, cycle);
     const std::size_t direction = one_direction && writes ? 1 : 0;
     std::vector<std::size_t> asking;  // in the order of the list
     for (const Port port : traffic_.config.arbiter.priority) {
@@ -285,11 +338,11 @@ class PlainCrossbar {
       if (asks) asking.push_back(port);
       bank.age[direction][port] = asks ? bank.age[direction][port] + 1 : 0;
     }
-    if (asking.empty()) return;
+    if (asking.empty() || cycle < bank.busy_until) return;
     const Port winner = winner_of(bank, direction, asking);
     const Access& access = traffic_.accesses[winner][ports_[winner].next];
-    const auto& other = bank.last[access.write ? 0 : 1];
-    if (!bank.separate && other && cycle < *other + static_cast<std::uint64_t>(bank.turnaround) + 1) return;
+    const auto word = access.word + static_cast<std::uint32_t>(ports_[winner].word);
+    if (opens_row(bank, word, cycle) || turns_round(bank, access.write, cycle)) return;
     bank.last[access.write ? 1 : 0] = cycle;
     const PriorityList& list = traffic_.config.arbiter.priority;
     bank.last_port[direction] =
@@ -300,7 +353,7 @@ class PlainCrossbar {
       if (port != winner) ++ports_[port].others;
     }
     PortState& state = ports_[winner];
-    all.push_back({cycle, number, access.write, access.word + static_cast<std::uint32_t>(state.word)});
+    all.push_back({cycle, number, access.write, word});
     state.others = 0;
     state.from_cycle = cycle + 1;
     if (++state.word < access.count) return;
@@ -380,7 +433,8 @@ TEST_P(RandomTraffic, IsGrantedAsInThePlainLoop) {
   for (std::size_t bank = 0; bank < traffic.config.banks.size(); ++bank) {
     const ArbiterStats stats = bench.crossbar.stats(bank);
     counted += stats.reads() + stats.writes();
-    EXPECT_EQ(stats.busy_cycles() + stats.turnaround_cycles() + stats.idle_cycles(),
+    EXPECT_EQ(stats.busy_cycles() + stats.turnaround_cycles() + stats.row_cycles() + stats.refresh_cycles() +
+                  stats.idle_cycles(),
               1'000'000'000 / kCyclePs);
   }
   EXPECT_EQ(counted, found.size());
