@@ -7,8 +7,10 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <map>
 #include <numeric>
 #include <optional>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -280,6 +282,101 @@ TEST(FastForward, GrantsBurstsInTheCyclesOfItsSteps) {
     }
   }
 }
+
+// FrameRun::earliest_last_write(), which tells the fast core how long it need not look whether the frame has ended.
+struct LastWrite {
+  const char* name;
+  int units;
+  int rows;
+  bool shares_banks;  // ports wait: the matcher does not work in every cycle
+};
+void PrintTo(const LastWrite& core, std::ostream* out) { *out << core.name; }
+
+class EarliestLastWrite : public testing::TestWithParam<LastWrite> {
+ protected:
+  EarliestLastWrite() {
+    config.width = 32;
+    config.height = 24;
+    config.disparities = 16;
+    config.units = GetParam().units;
+    config.rows = GetParam().rows;
+    std::uint32_t bank = 0;
+    for (std::uint32_t& base : bases) base = registers::base(GetParam().shares_banks ? 0 : bank++, 0);
+    arbiter.priority.resize(CorePorts(config).size());
+    std::iota(arbiter.priority.begin(), arbiter.priority.end(), memory::Port{0});
+  }
+  // Steps a frame: the bound at the beginning of each cycle.
+  void step_frame() {
+    memory::Arbitration arbitration(arbiter, banks);
+    FrameRun run(config, banks, arbitration, UINT64_MAX);
+    const AccessPattern pattern(FrameGeometry(config), config.pixel_cache);
+    const AccessPatterns patterns{pattern, pattern};
+    run.start_direct(0, bases, patterns);
+    while (!run.control().frame_done()) {
+      bounds[run.cycle()] = run.earliest_last_write();
+      const std::uint64_t writes = run.writes();
+      run.step(false);
+      if (run.writes() > writes) last_write = run.cycle() - 1;
+    }
+    run.finish();
+    done_after_write = run.done_cycle() - last_write;
+  }
+  // Runs a frame ahead, with a word of the host every `pause` cycles: the bounds behind each word, of which the
+  // core knows the state only of an earlier cycle.
+  void run_beside_host(std::uint64_t pause) {
+    bounds.clear();
+    memory::Arbitration arbitration(arbiter, banks);
+    FrameRun run(config, banks, arbitration, UINT64_MAX);
+    const AccessPattern pattern(FrameGeometry(config), config.pixel_cache);
+    const AccessPatterns patterns{pattern, pattern};
+    run.start_direct(0, bases, patterns);
+    for (std::uint64_t cycle = pause; !run.control().frame_done(); cycle += pause) {
+      const FastForward::Served served = run.serve_host({0, true}, cycle, 1);
+      if (served.words != 0) cycle = served.last_cycle + 1;
+      bounds[run.cycle()] = run.earliest_last_write();
+    }
+    run.finish();
+    last_write = run.done_cycle() - done_after_write;
+  }
+
+  CoreConfig config;
+  FrameBases bases{};
+  memory::ArbiterConfig arbiter;
+  std::vector<memory::SsramBankConfig> banks = std::vector<memory::SsramBankConfig>(5);
+  std::map<std::uint64_t, std::uint64_t> bounds;  // [cycle]
+  std::uint64_t last_write = 0;
+  std::uint64_t done_after_write = 0;  // cycles
+};
+
+TEST_P(EarliestLastWrite, IsNeverLateAndExactAtTheEnd) {
+  step_frame();
+  const std::uint64_t folds = folds_of(config);
+  for (const auto& [cycle, bound] : bounds) {
+    if (cycle > last_write) continue;
+    ASSERT_LE(bound, last_write) << "in cycle " << cycle;
+    // Where no port waits, all that is unknown is the place within a step.
+    if (!GetParam().shares_banks && cycle > 200) {
+      ASSERT_GE(bound + folds, last_write) << "in cycle " << cycle;
+    }
+  }
+  EXPECT_EQ(bounds[last_write], last_write);
+  for (const std::uint64_t pause : {5U, 7U, 100U}) {
+    run_beside_host(pause);
+    for (const auto& [cycle, bound] : bounds) {
+      if (cycle <= last_write) {
+        ASSERT_LE(bound, last_write) << "in cycle " << cycle << ", pause " << pause;
+      }
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Cores, EarliestLastWrite,
+                         testing::Values(LastWrite{"OneCycleAStep", 16, 1, false},
+                                         LastWrite{"SixteenCyclesAStep", 1, 1, false},
+                                         LastWrite{"ThreeCyclesAStep", 6, 1, true},
+                                         LastWrite{"FourRows", 16, 4, false},
+                                         LastWrite{"FourRowsOfSixCyclesAStep", 3, 4, true}),
+                         [](const auto& core) { return core.param.name; });
 
 }  // namespace
 }  // namespace stereotlm::fpga
