@@ -283,7 +283,8 @@ TEST(FastForward, GrantsBurstsInTheCyclesOfItsSteps) {
   }
 }
 
-// FrameRun::earliest_last_write(), which tells the fast core how long it need not look whether the frame has ended.
+// FrameRun::earliest_last_write(), which tells the fast core how long it need not look whether the frame has
+// ended.
 struct LastWrite {
   const char* name;
   int units;
@@ -321,8 +322,8 @@ class EarliestLastWrite : public testing::TestWithParam<LastWrite> {
     run.finish();
     done_after_write = run.done_cycle() - last_write;
   }
-  // Runs a frame ahead, with a word of the host every `pause` cycles: the bounds behind each word, of which the
-  // core knows the state only of an earlier cycle.
+  // Runs a frame ahead, with a word of the host every `pause` cycles: the bounds behind each word, of which
+  // the core knows the state only of an earlier cycle.
   void run_beside_host(std::uint64_t pause) {
     bounds.clear();
     memory::Arbitration arbitration(arbiter, banks);
@@ -350,7 +351,7 @@ class EarliestLastWrite : public testing::TestWithParam<LastWrite> {
 
 TEST_P(EarliestLastWrite, IsNeverLateAndExactAtTheEnd) {
   step_frame();
-  const std::uint64_t folds = folds_of(config);
+  const auto folds = static_cast<std::uint64_t>(folds_of(config));
   for (const auto& [cycle, bound] : bounds) {
     if (cycle > last_write) continue;
     ASSERT_LE(bound, last_write) << "in cycle " << cycle;
