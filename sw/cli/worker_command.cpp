@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <new>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <stdexcept>
 #include <system_error>
 #include <systemc>
@@ -37,7 +36,13 @@ std::string line_of(const Json& document) {
   return document.dump(-1, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 
-// Sends what a command says through the pipe to the worker, which passes it on.
+// What the process that executes commands tells the worker: this byte, then what the client is to get.
+constexpr char kBegins = 'b';   // a request
+constexpr char kPart = 'p';     // a part of its answer
+constexpr char kEnds = 'e';     // the last part
+constexpr char kWasLast = 'l';  // there is no further request
+
+// Tells the worker what a command says.
 class Answer : public process::Client {
  public:
   Answer(const process::Child::Tell& tell, const std::vector<Array>& given) : tell_(tell), given_(given) {}
@@ -48,27 +53,30 @@ class Answer : public process::Client {
     return found == given_.end() ? nullptr : &*found;
   }
   void print(std::string_view text) override { output_ += text; }
-  void say(const std::string& line) override { tell_(line_of({{"message", line}})); }
+  void say(const std::string& line) override { tell(kPart, {{"message", line}}); }
   void send(const Array& array) override {
-    tell_(line_of({{"array", array.name}, {"shape", array.shape}}) + array.bytes);
+    tell(kPart, {{"array", array.name}, {"shape", array.shape}}, array.bytes);
   }
   void progress(std::uint64_t done, std::uint64_t of, const std::string& text) override {
-    tell_(line_of({{"done", done}, {"of", of}, {"progress", text}}));
+    tell(kPart, {{"done", done}, {"of", of}, {"progress", text}});
   }
   void refuse(const std::vector<platform::Diagnostic>& problems) override {
     for (const platform::Diagnostic& problem : problems) problems_.push_back(document_of(problem));
   }
-  void end(int status) { tell_(line_of({{"status", status}, {"output", output_}, {"problems", problems_}})); }
+  void end(int status) { tell(kEnds, {{"status", status}, {"output", output_}, {"problems", problems_}}); }
 
  private:
+  void tell(char what, const Json& document, const std::string& bytes = "") {
+    tell_(what + line_of(document) + bytes);
+  }
+
   const process::Child::Tell& tell_;
   const std::vector<Array>& given_;
   std::string output_;
   Json problems_ = Json::array();
 };
 
-// The number of bytes of an array of 1 to 3 dimensions. Throws std::runtime_error if it is no such array, or
-// too large.
+// The number of bytes of an array. Throws std::runtime_error if it is too large.
 std::size_t bytes_of(const Array& array) {
   constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 32U;
   std::uint64_t bytes = 1;
@@ -107,13 +115,14 @@ Request request_of(const std::string& line, int from) {
   return request;
 }
 
-// What becomes of the process after a request.
-enum class Next { kServes, kLeaves, kWasLast };
-
-// Reads a request and executes it.
-Next serve_one(const process::Child::Tell& tell) {
+// Reads a request and executes it. Returns whether the process can execute another one.
+bool serve_one(const process::Child::Tell& tell) {
   std::string line;
-  if (!read_line(STDIN_FILENO, line)) return Next::kWasLast;
+  if (!read_line(STDIN_FILENO, line)) {
+    tell({kWasLast});
+    return false;
+  }
+  tell({kBegins});
   Request request;
   Answer answer(tell, request.arrays);
   process::client = &answer;
@@ -123,7 +132,8 @@ Next serve_one(const process::Child::Tell& tell) {
   } catch (const std::exception& error) {  // where the next request begins is not known
     process::say("error", fmt::format("a request of the worker: {}", error.what()));
     answer.end(kRefused);
-    return Next::kWasLast;
+    tell({kWasLast});
+    return false;
   }
   std::vector<const char*> words = {"stereotlm"};
   for (const std::string& argument : request.arguments) words.push_back(argument.c_str());
@@ -136,14 +146,7 @@ Next serve_one(const process::Child::Tell& tell) {
   // SystemC is elaborated once in a process.
   const bool is_fresh =
       sc_core::sc_get_status() == sc_core::SC_ELABORATION && sc_core::sc_get_top_level_objects().empty();
-  return is_fresh && !process::interrupted() ? Next::kServes : Next::kLeaves;
-}
-
-// Tells what the client is to get; an empty message if it has sent all its requests.
-void serve_some(const process::Child::Tell& tell) {
-  Next next = Next::kServes;
-  while (next == Next::kServes) next = serve_one(tell);
-  if (next == Next::kWasLast) tell("");
+  return is_fresh && !process::interrupted();
 }
 
 struct WorkerOptions : Options {
@@ -156,28 +159,33 @@ int serve(const WorkerOptions& /*options*/) {
   const int to = fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3);
   if (to < 0 || dup2(STDERR_FILENO, STDOUT_FILENO) < 0)
     throw std::system_error(errno, std::generic_category(), "standard output");
+  bool is_open = false;  // a request, whose answer has not ended
   const auto write = [to](const std::string& bytes) {
     return process::write_all(to, bytes.data(), bytes.size());
   };
-  const auto end = [&write](const std::string& why) {
-    return write(line_of({{"message", "stereotlm: error: " + why}}) +
-                 line_of({{"status", kFailed}, {"output", ""}, {"problems", Json::array()}}));
+  const auto end = [&](const std::string& why) {
+    if (!is_open) throw std::runtime_error(why);
+    is_open = false;
+    write(line_of({{"message", "stereotlm: error: " + why}}) +
+          line_of({{"status", kFailed}, {"output", ""}, {"problems", Json::array()}}));
   };
   // Commands are executed by a child, which may crash. It is there before the request.
   while (true) {
-    bool is_last = false;
     try {
-      process::Child child(serve_some);
-      while (const auto message = child.next()) {
-        is_last = message->empty();
-        if (!is_last && !write(*message)) return kFailed;
+      process::Child child([](const process::Child::Tell& tell) {
+        while (serve_one(tell)) {
+        }
+      });
+      while (const auto told = child.next()) {
+        if (told->front() == kWasLast) return kDone;
+        is_open = told->front() != kEnds;
+        if (!write(told->substr(1))) return kFailed;
       }
     } catch (const std::bad_alloc&) {
       end("out of memory");
     } catch (const std::exception& error) {
       end(error.what());
     }
-    if (is_last) return kDone;
   }
 }
 

@@ -232,7 +232,7 @@ std::unique_ptr<PairSource> pairs_of_client(const platform::BoardConfig& board) 
                                          shape_text(*left), shape_text(*right)));
   }
   std::vector<std::uint64_t> shape = left->shape;
-  if (shape.size() == 2) shape.insert(shape.begin(), 1);
+  if (shape.size() != 3) shape.insert(shape.begin(), 1);
   const std::vector<std::uint64_t> of_board = {shape.front(), static_cast<std::uint64_t>(board.image.height),
                                                static_cast<std::uint64_t>(board.image.width)};
   if (shape != of_board || shape.front() == 0) {

@@ -171,6 +171,8 @@ class Runs(PythonTest):
                            ((left[1:], right[1:]), "shape (23, 32): must be (24, 32) or (pairs, 24, 32)"),
                            ((left, None), "must both be there"),
                            ((left[None, None], right[None, None]), "shape (1, 1, 24, 32)"),
+                           ((left[0], right[0]), "shape (32)"),
+                           ((numpy.uint8(1), numpy.uint8(1)), "shape ()"),
                            ((left[None][:0], right[None][:0]), "shape (0, 24, 32)")):
             self.assertIn(text, str(self.refusal(lambda: board.run(*pair))))  # noqa: B023
         with self.assertRaisesRegex(TypeError, "left: float64: must be an array of uint8"):
@@ -326,6 +328,14 @@ class Workers(PythonTest):
         self.assertIn("signal 9 (Killed)", str(error))
         self.works()
         self.assertEqual(self.worker.pid, pid)
+
+    def test_an_idle_one_whose_process_for_commands_is_killed_begins_anew(self):
+        self.works()
+        pid = self.worker.pid
+        os.kill(self.children(pid)[0], signal.SIGKILL)
+        program.wait_until(lambda: self.worker._process.poll() is not None)
+        self.works()
+        self.assertNotEqual(self.worker.pid, pid)
 
     def test_ctrl_c_ends_the_command(self):
         script = self.file("long.py", f"""
