@@ -455,15 +455,16 @@ class Notebook(unittest.TestCase):
         import nbformat
         folder = SOURCES / "results" / "notebook"
         notebook = nbformat.reads((folder / "board.ipynb").read_text(), as_version=4)
-        texts = lambda: [output.get("text") for cell in notebook.cells if cell.cell_type == "code"
-                         for output in cell.outputs if output.get("name") == "stdout"]
+        # A kernel may divide what a cell prints.
+        texts = lambda: ["".join(output.text for output in cell.outputs if output.get("name") == "stdout")
+                         for cell in notebook.cells if cell.cell_type == "code"]
         shown = texts()
         with tempfile.TemporaryDirectory() as scratch, \
                 unittest.mock.patch.dict(os.environ, {"JUPYTER_DATA_DIR": scratch, "IPYTHONDIR": scratch,
                                                       "PYTHONPATH": str(SOURCES / "sw" / "python")}):
             nbclient.NotebookClient(notebook, timeout=300, kernel_name="python3",
                                     resources={"metadata": {"path": str(folder)}}).execute()
-        self.assertTrue(shown)
+        self.assertTrue(any(shown))
         self.assertEqual(texts(), shown)
 
 
