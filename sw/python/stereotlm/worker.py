@@ -71,24 +71,26 @@ def _program():
 class _Bar:
     """The progress of a command, by tqdm. Nothing without tqdm."""
 
-    def __init__(self, shown):
+    def __init__(self, is_shown):
+        self._is_shown = is_shown
         self._bar = None
+
+    def show(self, done, of, text):
+        if self._is_shown and self._bar is None:
+            self._begin(of)
+        if self._bar is not None:
+            self._bar.total, self._bar.n = of, done
+            self._bar.set_description_str(text)
+
+    def _begin(self, of):
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")  # in a notebook without widgets the bar is text
                 from tqdm.auto import tqdm
         except ImportError:
-            shown = False
-        form = "{percentage:3.0f}%|{bar}| {desc}"
-        self._make = (lambda of: tqdm(total=of, bar_format=form, leave=False)) if shown else None
-
-    def show(self, done, of, text):
-        if self._make is None:
-            return
-        if self._bar is None:
-            self._bar = self._make(of)
-        self._bar.total, self._bar.n = of, done
-        self._bar.set_description_str(text)
+            self._is_shown = False
+        else:
+            self._bar = tqdm(total=of, bar_format="{percentage:3.0f}%|{bar}| {desc}", leave=False)
 
     def close(self):
         if self._bar is not None:
@@ -111,10 +113,11 @@ class Worker:
         Raises Refused, Failed or WorkerDied. Warnings of the program become warnings of Python. If it is
         interrupted (KeyboardInterrupt), the worker is ended.
         """
+        pixels = {name: _pixels(name, array) for name, array in (arrays or {}).items()}
         with self._lock:
             bar = _Bar(progress)
             try:
-                self._send([str(argument) for argument in arguments], arrays or {})
+                self._send([str(argument) for argument in arguments], pixels)
                 return self._receive(bar)
             except (BrokenPipeError, EOFError):
                 raise WorkerDied(f"the worker has {self._end()}: the command is lost") from None
@@ -151,8 +154,7 @@ class Worker:
         status = process.wait()
         return f"been ended by signal {-status}" if status < 0 else f"ended with status {status}"
 
-    def _send(self, arguments, arrays):
-        pixels = {name: _pixels(name, array) for name, array in arrays.items()}
+    def _send(self, arguments, pixels):
         if self._process is not None and self._process.poll() is not None:
             self._end()  # while it had nothing to do: nothing is lost
         if self._process is None:
