@@ -13,7 +13,8 @@ there is tqdm.
 """
 
 from stereotlm.board import Board, Run, boards, keys
-from stereotlm.worker import Failed, Problem, Refused, Worker, WorkerDied, execute
+from stereotlm.worker import Answer, Failed, Problem, Refused, Worker, WorkerDied, execute
 
-__all__ = ["Board", "Failed", "Problem", "Refused", "Run", "Worker", "WorkerDied", "boards", "execute",
+__version__ = "0.1.0"
+__all__ = ["Answer", "Board", "Failed", "Problem", "Refused", "Run", "Worker", "WorkerDied", "boards", "execute",
            "keys"]

@@ -28,6 +28,9 @@ def _paths():
     return [key["key"] for key in execute("keys", "--json").document["keys"]]
 
 
+CONFLICTS = ["port", "bank", "by", "cycles", "cycles_percent", "before_first_row"]
+
+
 class _Table(numpy.recarray):
     """A table without pandas. `attrs` is as in pandas."""
 
@@ -79,13 +82,14 @@ def _yaml(value):
 
 
 def _options(options):
-    """Options of a command: keep_fps=99 is --keep-fps 99, True is a flag, a list an option for each value."""
+    """Options of a command: keep_fps=99 is --keep-fps=99, True is a flag, a list an option for each value."""
     words = []
     for name, value in options.items():
-        if value is None or value is False:
-            continue
+        if isinstance(value, numpy.ndarray):
+            raise TypeError(f"{name}: an array: must be a number, a text or a path")
         for each in value if isinstance(value, (list, tuple)) else [value]:
-            words += ["--" + name.replace("_", "-")] + ([] if each is True else [each])
+            if each is not None and each is not False:
+                words.append("--" + name.replace("_", "-") + ("" if each is True else f"={each}"))
     return words
 
 
@@ -104,8 +108,17 @@ class _Section:
     def __setattr__(self, name, value):
         self._board[f"{self._path}.{name}"] = value
 
+    def __getitem__(self, name):
+        return self._board[f"{self._path}.{name}"]
+
+    def __setitem__(self, name, value):
+        self._board[f"{self._path}.{name}"] = value
+
+    def __iter__(self):
+        return iter(self._board._names(self._path + "."))
+
     def __dir__(self):
-        return self._board._names(self._path + ".")
+        return list(self)
 
     def __repr__(self):
         values = self._board.values
@@ -115,13 +128,14 @@ class _Section:
 class Board:
     """A board. Its keys are attributes, `board.matcher.window`, and items, `board["matcher.window"]`.
 
-    A value that breaks the rule of its key is refused when it is assigned. Rules between keys are checked by
-    each command, and by check(): several keys can be changed one after the other.
+    A value that breaks the rule of its key is refused when it is assigned. Rules between keys, such as that
+    the bank of a buffer exists, are checked by each command, and by check(): several keys can be changed one
+    after the other. Iteration gives the paths of the keys.
     """
 
     def __init__(self, board="fpl2003", sets=None, calibration=None):
-        """`board`: a preset (see boards()) or the path of a board file. `sets`: values of keys.
-        `calibration`: the path of a calibration, whose tables take the place of the identity.
+        """`board`: a preset (see boards()) or the path of a board file. `sets`: values of keys, by their dotted
+        paths. `calibration`: the path of a calibration, whose tables take the place of the identity.
 
         Raises Refused for a board that has problems.
         """
@@ -149,8 +163,8 @@ class Board:
         return dict(self._values)
 
     def changed(self, sets):
-        """A copy with other values: a dict, or a list of "KEY=VALUE" as in the tables of explain() and
-        allocate()."""
+        """A copy with other values: a dict by dotted paths, or a list of "KEY=VALUE" as in the tables of
+        explain() and allocate()."""
         copy = self._copy()
         copy._add(sets)
         copy.check()
@@ -164,9 +178,20 @@ class Board:
 
     def __getitem__(self, path):
         try:
-            return self.values[path]
-        except KeyError:
-            raise KeyError(f"{path}: not a key of this board: see stereotlm.keys()") from None
+            return self._get(path)
+        except AttributeError as error:
+            raise KeyError(str(error)) from None
+
+    def __iter__(self):
+        return iter(self.values)
+
+    def __contains__(self, path):
+        return path in self.values
+
+    def __eq__(self, other):
+        return isinstance(other, Board) and (self.values, self.calibration) == (other.values, other.calibration)
+
+    __hash__ = None  # a board can be changed
 
     def __setitem__(self, path, value):
         # What was set below the path is replaced, too.
@@ -243,7 +268,11 @@ class Board:
 
         `left`, `right`: arrays of uint8, (rows, columns) for one pair or (pairs, rows, columns) for as many,
         or the paths of two files. Without pictures only times and counts are simulated. `options`: those of
-        `stereotlm run`: frames=3, source="preloaded", synthetic=1, truth="truth.png", out="folder".
+        `stereotlm run`: frames=100, synthetic=1, fidelity="cycle", truth="truth.png"; with files instead of
+        arrays out="folder", which `stereotlm report` reads.
+
+        By default the whole computer with its cameras runs until it has delivered as many frames as there are
+        pairs. source="preloaded" is the core alone.
         """
         arrays = {}
         if left is not None or right is not None:
@@ -271,7 +300,9 @@ class Board:
         return _table(document["changes"], document)
 
     def conflicts(self, left=None, right=None, **options):
-        """A table of who waits for whom at which bank. `left`, `right`, `options`: as for run().
+        """A table of who waits for whom at which bank: one row for each port, bank and cause.
+
+        `left`, `right`, `options`: as for run(), without out.
 
         attrs["document"] has the waits and accesses by rows of the picture.
         """
@@ -279,13 +310,15 @@ class Board:
             options["timing_only"] = True
         arrays = {} if left is None else {"left": left, "right": right}
         document = execute("conflicts", *self._words(), *_options(options), "--json", arrays=arrays).document
-        return _table(document["waits"], document)
+        return _table(document["waits"], document, CONFLICTS)
 
     def allocate(self, banks, out=None, **options):
         """A table of the best allocation of the buffers for each number of banks. `sets` are for changed().
 
-        `banks`: the most banks to use. `out`: the path of a database that is continued. `options`: those of
-        `stereotlm allocate`. attrs["document"] has the best of all.
+        `banks`: the most banks to use; numbers in which the buffers do not fit have no rate. `out`: the path
+        of a database that is continued. `options`: those of `stereotlm allocate`. By default the whole
+        computer is searched, which may take minutes; source="preloaded" is the core alone.
+        attrs["document"] has the best of all.
         """
         with tempfile.TemporaryDirectory() as folder:
             words = ["--banks", banks, "--out", out or pathlib.Path(folder) / "boards.db"]
@@ -296,6 +329,8 @@ class Board:
               **options):
         """Simulates the board with all combinations of values, without pixels. Returns a table of the points.
 
+        The table has the keys that vary, then status and reason, the frame rates, the other figures and the
+        other keys. By default the core alone is simulated; source="camera" is the whole computer.
         `vary`: {"matcher.window": [5, 7], "fpga.clock_mhz": range(20, 81, 20)}. `zip`: dicts of keys that
         move together. `where`: SQL expressions that must hold. `sample`: {"points": 100, "seed": 1}. `out`:
         the path of a database that is continued; the table then has all its points. `options`: jobs=2.
@@ -313,7 +348,10 @@ class Board:
             file = pathlib.Path(folder) / "plan.yaml"
             file.write_text(text, encoding="utf-8")
             database = out or pathlib.Path(folder) / "points.db"
-            execute("sweep", file, "--out", database, *_options(options))
+            try:
+                execute("sweep", file, "--out", database, *_options(options))
+            except Refused as refused:  # the file is not the user's
+                raise Refused([problem.elsewhere(str(file), "the plan") for problem in refused.problems]) from None
             return _points(database, [path for keys in [vary or {}, *(zip or [])] for path in keys])
 
     def chart(self, source="camera"):
@@ -335,7 +373,9 @@ def _points(database, varied):
     finally:
         connection.close()
     hidden = {"hash", "version", "config", *varied, *fixed}
+    first = ("status", "reason", "frames_per_second", "bound")
     figures = [name for name in (rows[0] if rows else []) if name not in hidden]
+    figures.sort(key=lambda name: next((i for i, head in enumerate(first) if name.startswith(head)), len(first)))
     return _table(rows, columns=[*varied, *figures, *fixed])
 
 
@@ -349,8 +389,9 @@ def _chart(words, **options):
 class Run:
     """A run: its disparities and its counts.
 
-    statistics: the figures of stats.json (sw/report/README.md), as a dict.
-    disparity: the disparities of the last frame, (rows, columns); None if only times were simulated.
+    statistics: all figures, as a dict; keys as in the file stats.json that `stereotlm run --out` writes.
+    disparity: the disparities of the last frame, (rows, columns), 255 without an answer; None if only times
+    were simulated.
     disparities: those of all frames, (frames, rows, columns), if the pictures were several pairs; else None.
     frame_numbers: the number of the camera's frame for each of disparities.
     messages: what the program says about the run.
@@ -367,7 +408,8 @@ class Run:
 
     @property
     def frames_per_second(self):
-        """The rates of the core, and with cameras of the system, as in stats.json."""
+        """Rates by their names: "core": while the core works; with cameras "system": delivered frames since
+        power-up, and from about 14 frames on "steady": delivered frames without the beginning."""
         return self.statistics["frames_per_second"]
 
     @property
@@ -397,7 +439,8 @@ class Run:
 
     def __repr__(self):
         rates = ", ".join(f"{name} {value:.3f}" for name, value in self.frames_per_second.items())
-        return f"Run of {self.statistics['board']}: {self.statistics['frames']} frames, frames/s: {rates}"
+        frames = self.statistics["frames"]
+        return f"Run of {self.statistics['board']}: {frames} frame{'s' * (frames != 1)}, frames/s: {rates}"
 
     def _repr_html_(self):
         return f"<p>{html.escape(repr(self))}</p>{self.chart()}"

@@ -25,6 +25,11 @@ class Problem:
     value: str = ""
     between_keys: bool = False  # the rule involves several keys: each of them could be changed
 
+    def elsewhere(self, path, name):
+        """The same with another name for a file."""
+        return dataclasses.replace(self, place=self.place.replace(path, name),
+                                   message=self.message.replace(path, name))
+
     def __str__(self):
         return self.message if self.place == "command line" else f"{self.place}: {self.message}"
 
@@ -33,8 +38,8 @@ class Refused(ValueError):
     """A command is refused before it does anything. Each of its `problems` names place, value and rule."""
 
     def __init__(self, problems):
-        super().__init__("\n".join(map(str, problems)))
-        self.problems = list(problems)
+        self.problems = list(dict.fromkeys(problems))  # each once
+        super().__init__("\n".join(map(str, self.problems)))
 
 
 class Failed(RuntimeError):
@@ -47,6 +52,8 @@ class WorkerDied(RuntimeError):
 
 @dataclasses.dataclass
 class Answer:
+    """What a command has said."""
+
     output: str  # what the command prints
     arrays: dict  # name -> array of 8 bits
     messages: list  # lines: "stereotlm: note: .."

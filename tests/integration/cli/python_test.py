@@ -110,6 +110,19 @@ class Boards(PythonTest):
         board.check()
         self.assertEqual(board.sets, ['pci.load="none"'])
 
+    def test_boards_and_sections_are_maps(self):
+        board = small_board()
+        self.assertIn("matcher.window", board)
+        self.assertNotIn("matcher", board)
+        self.assertEqual(list(board)[:2], ["name", "image.width"])
+        self.assertEqual(board["matcher"]["window"], board.ssram["banks"].bank1.words and 7)
+        self.assertEqual(list(board.ssram.banks), [f"bank{i}" for i in range(8)])
+        board.matcher["window"] = 5
+        self.assertNotEqual(board, small_board())
+        self.assertEqual(board, small_board(matcher__window=5))
+        with self.assertRaisesRegex(KeyError, "nope: not a key"):
+            board["nope"]  # noqa: B018
+
     def test_lists(self):
         self.assertIn("fpl2003", stereotlm.boards())
         keys = stereotlm.keys()
@@ -177,12 +190,17 @@ class Runs(PythonTest):
             self.assertIn(text, str(self.refusal(lambda: board.run(*pair))))  # noqa: B023
         with self.assertRaisesRegex(TypeError, "left: float64: must be an array of uint8"):
             board.run(left / 2, right)
+        with self.assertRaisesRegex(TypeError, "truth: an array: must be a number, a text or a path"):
+            board.run(left, right, truth=left)
         self.assertIn("arrays, --synthetic: a run has one source",
                       str(self.refusal(lambda: board.run(left, right, synthetic=1))))
 
     def test_options_that_there_are_not(self):
         self.assertIn("--frams: unknown option; nearest: --frames",
                       str(self.refusal(lambda: small_board().run(frams=1))))
+        self.assertEqual(len(self.refusal(lambda: small_board().run(frams=[1, 2])).problems), 1)
+        with self.assertRaises(stereotlm.Refused):
+            small_board().run(synthetic=True)  # it takes a number
 
     def test_warnings_are_warnings(self):
         board = stereotlm.Board(sets={
@@ -212,6 +230,7 @@ class Commands(PythonTest):
         document = json.loads(self.succeeds(run("conflicts", "fpl2003", *words, *self.pair, "--json")))
         self.assertEqual(board.conflicts(*self.arrays).attrs["document"], document)
         self.assertEqual(list(board.conflicts().cycles), [wait["cycles"] for wait in document["waits"]])
+        self.assertEqual(list(small_board().conflicts(**ALONE).cycles), [])
         document = json.loads(self.succeeds(run("bounds", "fpl2003", *words, "--json")))
         self.assertEqual(board.bounds(), document)
 
@@ -229,7 +248,8 @@ class Commands(PythonTest):
         found = board.sweep({"matcher.window": [7, 5], "fpga.clock_mhz": range(20, 41, 20)},
                             where=["matcher.window < 7 OR fpga.clock_mhz < 30"],
                             out=self.folder / "points.db")
-        self.assertEqual(list(found.columns[:2]), ["matcher.window", "fpga.clock_mhz"])
+        self.assertEqual(list(found.columns[:5]), ["matcher.window", "fpga.clock_mhz", "status", "reason",
+                                                   "frames_per_second.core"])
         self.assertEqual(list(found["matcher.window"]), [5, 5, 7])
         self.assertEqual(list(found["fpga.clock_mhz"]), [20, 40, 20])
         board.matcher.window = 5
@@ -237,7 +257,8 @@ class Commands(PythonTest):
         rate = board.run(frames=2, **ALONE).frames_per_second["core"]
         self.assertEqual(found["frames_per_second.core"][1], rate)
         self.assertEqual(len(board.sweep(zip=[{"matcher.window": [5, 7], "matcher.rows": [1, 2]}])), 2)
-        self.assertIn('matcher.window = 6', str(self.refusal(lambda: board.sweep({"matcher.window": [6]}))))
+        self.assertRegex(str(self.refusal(lambda: board.sweep({"matcher.window": [6]}))),
+                         "^the plan:3:.*: matcher.window = 6: 3..31, odd$")
 
     def test_tables_without_pandas(self):
         with unittest.mock.patch.dict(sys.modules, {"pandas": None}):
@@ -402,6 +423,9 @@ except KeyboardInterrupt:
         with self.assertRaisesRegex(stereotlm.Failed, "no space|File too large|full"):
             plan = self.file("plan.yaml", "board: fpl2003\nvary: {matcher.window: [3, 5]}\n")
             self.worker.execute("sweep", plan, "--out", "/dev/full")
+
+    def test_the_version_is_that_of_the_program(self):
+        self.assertEqual(self.worker.execute("--version").output, f"stereotlm {stereotlm.__version__}\n")
 
     def test_a_program_that_is_not_there(self):
         with unittest.mock.patch.dict(os.environ, {"PATH": "/", "STEREOTLM_PROGRAM": ""}), \
