@@ -13,15 +13,13 @@ endforeach()
 install(EXPORT stereotlm_targets NAMESPACE stereotlm:: FILE stereotlmTargets.cmake DESTINATION
   ${package_folder})
 
-install(CODE "set(source ${PROJECT_SOURCE_DIR})
-  set(include ${CMAKE_INSTALL_INCLUDEDIR})")
-install(SCRIPT cmake/install_headers.cmake)
 set(guides ${CMAKE_INSTALL_DATADIR}/doc/libstereotlm-dev)
-install(FILES CHANGELOG.md README.md DESTINATION ${guides})
-install(FILES models/README.md models/PROMISES.md models/contract.md DESTINATION ${guides}/models)
-install(FILES models/testing/README.md DESTINATION ${guides}/models/testing)
-install(FILES platform/README.md DESTINATION ${guides}/platform)
+install(CODE "set(source ${PROJECT_SOURCE_DIR})
+  set(include ${CMAKE_INSTALL_INCLUDEDIR})
+  set(guides ${guides})")
+install(SCRIPT cmake/install_headers.cmake)
 install(DIRECTORY tests/integration/package/project/ DESTINATION ${guides}/example)
+install(SCRIPT cmake/install_guides.cmake)
 
 set(STEREOTLM_GTEST_MAIN ${CMAKE_INSTALL_INCLUDEDIR}/stereotlm/models/testing/gtest_main.cpp)
 configure_package_config_file(cmake/stereotlmConfig.cmake.in ${PROJECT_BINARY_DIR}/stereotlmConfig.cmake

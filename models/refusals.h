@@ -1,5 +1,6 @@
 #pragma once
 
+#include <sstream>
 #include <string>
 #include <systemc>
 #include <tlm>
@@ -14,26 +15,26 @@ namespace stereotlm {
 //   sc_core::sc_report_handler::set_actions("/stereotlm/refused_access", sc_core::SC_DO_NOTHING);
 class Refusals {
  public:
-  // `target`: the module that refuses; it outlives this object.
+  // `target`: the module or socket that refuses; it outlives this object.
   explicit Refusals(const sc_core::sc_object& target) : target_(target) {}
 
-  // Reports the access, unless one has been reported before. `rule`: what the target takes. `socket`: its
-  // name in the module, if there are several.
-  void report(const tlm::tlm_generic_payload& access, const std::string& rule,
-              const std::string& socket = "") {
+  // Reports the access, unless one has been reported before. `rule`: the one that it breaks.
+  void report(const tlm::tlm_generic_payload& access, const std::string& rule) {
     if (has_reported_) return;
     has_reported_ = true;
-    const std::string target = std::string(target_.name()) + (socket.empty() ? "" : '.' + socket);
-    const char* const command = access.is_read() ? "a read" : access.is_write() ? "a write" : "a command";
-    const std::string text = target + ": " + access.get_response_string() + " for " + command + " of " +
-                             std::to_string(access.get_data_length()) + " bytes at address " +
-                             std::to_string(access.get_address()) + ": must be " + rule +
-                             "; later refusals are not reported";
-    SC_REPORT_WARNING("/stereotlm/refused_access", text.c_str());
+    std::ostringstream text;
+    text << target_.name() << ": " << access.get_response_string() << " for "
+         << (access.is_read()    ? "a read of "
+             : access.is_write() ? "a write of "
+                                 : "a command with ")
+         << access.get_data_length() << " bytes at address 0x" << std::hex << access.get_address() << ": "
+         << rule << "; later refusals are not reported";
+    SC_REPORT_WARNING("/stereotlm/refused_access", text.str().c_str());
   }
-  // The same, for a target with these rules.
-  void report(const tlm::tlm_generic_payload& access, const AccessRules& rules) {
-    if (!has_reported_) report(access, text_of(rules));
+  // The same. `rules`: those of the target; `other`: what the access breaks if it keeps them.
+  void report(const tlm::tlm_generic_payload& access, const AccessRules& rules, const char* other = "") {
+    const BrokenRule broken = broken_rule(access, rules);
+    report(access, broken.response == tlm::TLM_OK_RESPONSE ? other : broken.text);
   }
 
  private:

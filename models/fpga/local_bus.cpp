@@ -44,7 +44,10 @@ void LocalBus::b_transport(tlm::tlm_generic_payload& access, sc_core::sc_time&) 
 void LocalBus::refuse(tlm::tlm_generic_payload& access, tlm::tlm_response_status status) {
   control_.count_error();
   access.set_response_status(status);
-  refusals_.report(access, "whole words of 4 bytes by nb_transport, in one bank or one word of a register");
+  refusals_.report(access, AccessRules{},
+                   status == tlm::TLM_GENERIC_ERROR_RESPONSE
+                       ? "must come by nb_transport"
+                       : "all words must be in one bank, or in the registers");
 }
 
 tlm::tlm_sync_enum LocalBus::nb_transport_fw(tlm::tlm_generic_payload& access, tlm::tlm_phase& phase,

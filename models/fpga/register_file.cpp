@@ -22,7 +22,8 @@ void RegisterFile::transport(tlm::tlm_generic_payload& access, sc_core::sc_time&
   access.set_response_status(status);
   if (status != tlm::TLM_OK_RESPONSE) {
     ++stats_.errors;
-    return refusals_.report(access, registers_below(registers::kEnd));
+    return refusals_.report(access, registers_below(registers::kEnd),
+                            "the register does not have this direction");
   }
   std::uint32_t value = 0;
   if (access.is_read()) {

@@ -24,7 +24,7 @@ void HostBridge::transport(tlm::tlm_generic_payload& access, sc_core::sc_time& d
   }
   access.set_response_status(status);
   if (status != tlm::TLM_OK_RESPONSE)
-    refusals_.report(access, text_of(AccessRules{}) + ", to a target of the PCI bus that takes it");
+    refusals_.report(access, AccessRules{}, "no target of the PCI bus takes it");
 }
 
 tlm::tlm_response_status HostBridge::transfer(tlm::tlm_generic_payload& access) {

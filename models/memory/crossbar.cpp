@@ -14,10 +14,13 @@ constexpr std::uint64_t kOffsetMask = (std::uint64_t{1} << kBankAddressBits) - 1
 std::vector<std::string> problems(const CrossbarConfig& config) {
   auto found = problems(config.arbiter);
   kBankCountRule.check("banks", static_cast<std::int64_t>(config.banks.size()), found);
-  for (const SsramBankConfig& bank : config.banks) {
-    for (const std::string& problem : problems(bank)) found.push_back(problem);
+  for (std::size_t number = 0; number < config.banks.size(); ++number) {
+    const SsramBankConfig& bank = config.banks[number];
+    const std::string name = "banks[" + std::to_string(number) + "]: ";
+    for (const std::string& problem : problems(bank)) found.push_back(name + problem);
     if (bank.clock_mhz != config.banks.front().clock_mhz) {
-      found.push_back("clock_mhz = " + std::to_string(bank.clock_mhz) + ": must be the same for all banks");
+      found.push_back(name + "clock_mhz = " + std::to_string(bank.clock_mhz) +
+                      ": must be the same for all banks");
     }
   }
   return found;
@@ -81,7 +84,8 @@ void Crossbar::refuse(tlm::tlm_generic_payload& access) {
   access.set_response_status(!has_bank(access.get_address()) ? tlm::TLM_ADDRESS_ERROR_RESPONSE
                              : access.get_data_length() > 4  ? tlm::TLM_BURST_ERROR_RESPONSE
                                                              : tlm::TLM_GENERIC_ERROR_RESPONSE);
-  refusals_.report(access, "one word by b_transport, along the port's route, in a cycle with a grant");
+  refusals_.report(access,
+                   "must be one word by b_transport, along the port's route, in a cycle with a grant");
 }
 
 unsigned Crossbar::debug(tlm::tlm_generic_payload& access) {

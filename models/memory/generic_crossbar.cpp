@@ -10,13 +10,18 @@
 #include "models/memory/memory_config.h"
 
 namespace stereotlm::memory {
+namespace {
+
+constexpr AccessRules kRules = {UINT64_MAX, false, true};  // those of each bank come on top
+
+}  // namespace
 
 GenericCrossbar::GenericCrossbar(const sc_core::sc_module_name& name, const CrossbarConfig& config)
     : sc_module(name),
       ports("port", config.arbiter.priority.size()),
       banks("bank", config.banks.size()),
-      clock_(checked(this->name(), config).banks.front().clock_mhz),
-      states_(ports.size()) {
+      clock_(checked(this->name(), config).banks.front().clock_mhz) {
+  for (const auto& port : ports) states_.emplace_back(port);
   kernel_time::check_resolution();
   for (const SsramBankConfig& bank : config.banks)
     arbiters_.emplace_back(config.arbiter, bank).begin_counting(0);
@@ -33,7 +38,7 @@ GenericCrossbar::GenericCrossbar(const sc_core::sc_module_name& name, const Cros
 }
 
 ArbiterStats GenericCrossbar::stats(std::size_t bank) const {
-  BankArbiter arbiter = arbiters_[bank];
+  BankArbiter arbiter = arbiters_.at(bank);
   const std::uint64_t end = std::max(first_undecided_, clock_.edge_at_or_after(kernel_time::now_ps()));
   arbiter.count_rows(end);
   arbiter.end_counting(end);
@@ -43,13 +48,15 @@ ArbiterStats GenericCrossbar::stats(std::size_t bank) const {
 void GenericCrossbar::transport(int number, tlm::tlm_generic_payload& access, sc_core::sc_time& delay) {
   const auto status = check(access);
   access.set_response_status(status);
+  PortState& port = states_[static_cast<std::size_t>(number)];
   if (status != tlm::TLM_OK_RESPONSE) {
-    return refusals_.report(access,
-                            "whole words of 4 bytes, in one of " + std::to_string(banks.size()) + " banks",
-                            ports[static_cast<std::size_t>(number)].basename());
+    return port.refusals.report(
+        access, kRules,
+        bank_of_address(access.get_address()) < banks.size()
+            ? "all words must be in one bank"
+            : "there is no such bank (crossbar_address(): the bank is in bits 28 and up)");
   }
   if (delay != sc_core::SC_ZERO_TIME) wait(delay);
-  PortState& port = states_[static_cast<std::size_t>(number)];
   const std::uint64_t turn = port.arrived++;
   while (turn != port.served) wait(port.next_turn);
   port.access = &access;
@@ -63,11 +70,12 @@ void GenericCrossbar::transport(int number, tlm::tlm_generic_payload& access, sc
 }
 
 tlm::tlm_response_status GenericCrossbar::check(const tlm::tlm_generic_payload& access) const {
-  const auto status = check_access(access, {crossbar_address(banks.size(), 0), false, true});
+  const auto status = check_access(access, kRules);
   if (status != tlm::TLM_OK_RESPONSE) return status;
+  const std::size_t bank = bank_of_address(access.get_address());
   const std::uint64_t last = access.get_address() + access.get_data_length() - 4;
-  return bank_of_address(last) == bank_of_address(access.get_address()) ? tlm::TLM_OK_RESPONSE
-                                                                        : tlm::TLM_ADDRESS_ERROR_RESPONSE;
+  return bank < banks.size() && bank_of_address(last) == bank ? tlm::TLM_OK_RESPONSE
+                                                              : tlm::TLM_ADDRESS_ERROR_RESPONSE;
 }
 
 // Requests the next cycle in which a port requests.
@@ -144,6 +152,7 @@ void GenericCrossbar::access_word(PortState& port, std::size_t bank, std::uint64
   port.done_bytes += 4;
   if (word.is_response_ok() && port.done_bytes < access.get_data_length()) return;
   access.set_response_status(word.get_response_status());
+  if (!word.is_response_ok()) port.refusals.report(access, "its bank has refused a word");
   port.access = nullptr;
   port.delay =
       access.is_read() ? delay : kernel_time::to_time(clock_.edge_ps(cycle + 1) - kernel_time::now_ps());

@@ -43,7 +43,7 @@ namespace stereotlm::memory {
 // | an address in no bank, or words in two banks                   | TLM_ADDRESS_ERROR_RESPONSE     |
 // | a word that its bank refuses: the words behind it are left out | that of the bank               |
 //
-// The first access that the crossbar refuses is reported (refusals.h).
+// The first access of each port that the crossbar refuses is reported (refusals.h).
 class GenericCrossbar : public sc_core::sc_module {
  public:
   sc_core::sc_vector<tlm_utils::simple_target_socket_tagged<GenericCrossbar>> ports;  // [port]
@@ -59,6 +59,8 @@ class GenericCrossbar : public sc_core::sc_module {
  private:
   // The access that a port serves.
   struct PortState {
+    explicit PortState(const sc_core::sc_object& socket) : refusals(socket) {}
+
     std::uint64_t arrived = 0;  // accesses that have taken a turn
     std::uint64_t served = 0;   // turns that have ended
     sc_core::sc_event next_turn;
@@ -67,6 +69,7 @@ class GenericCrossbar : public sc_core::sc_module {
     std::uint64_t from_cycle = 0;  // its next word requests from this cycle on
     sc_core::sc_time delay;        // of the rest, after its last grant
     sc_core::sc_event ended;
+    Refusals refusals;
   };
 
   void transport(int port, tlm::tlm_generic_payload& access, sc_core::sc_time& delay);
@@ -87,7 +90,6 @@ class GenericCrossbar : public sc_core::sc_module {
   std::vector<std::pair<Port, std::size_t>> granted_;  // port and bank, in the order of their accesses
   std::uint64_t granted_cycle_ = 0;
   sc_core::sc_event accesses_{"accesses"};
-  Refusals refusals_{*this};
   StepEvent cycle_{"cycle"};
   DecisionPoint decision_{"decision", [this] { decide(); }};
 };

@@ -48,8 +48,8 @@ std::vector<std::string> problems(const ArbiterConfig& config) {
   for (Port port = 0; port < ports; ++port) {
     const auto times = std::count(config.priority.begin(), config.priority.end(), port);
     if (times != 1) {
-      found.push_back("priority = port " + std::to_string(port) + " " + std::to_string(times) +
-                      " times: must name each port once");
+      found.push_back("priority: port " + std::to_string(port) + " is named " + std::to_string(times) +
+                      " times: must be once");
     }
   }
   return found;

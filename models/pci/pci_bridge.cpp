@@ -51,7 +51,10 @@ void PciBridge::access_slave(tlm::tlm_generic_payload& access, sc_core::sc_time&
     }
   }
   access.set_response_status(status);
-  if (status != tlm::TLM_OK_RESPONSE) refusals_.report(access, AccessRules{bridge::kSlaveWindowBytes});
+  if (status != tlm::TLM_OK_RESPONSE) {
+    refusals_.report(access, {bridge::kSlaveWindowBytes},
+                     access.is_read() ? "the local bus has refused a word" : "more words than can be posted");
+  }
 }
 
 // Waits until the words have arrived. Returns false if the read was refused.

@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <systemc>
 #include <utility>
 #include <vector>
@@ -32,6 +34,17 @@ void handle_report(const sc_core::sc_report& report, const sc_core::sc_actions& 
       report, actions & ~static_cast<sc_core::sc_actions>(sc_core::SC_DISPLAY));
 }
 
+// Says what to do where a second test of a process makes modules.
+class OneTestAProcess : public testing::EmptyTestEventListener {
+  void OnTestPartResult(const testing::TestPartResult& result) override {
+    if (!result.failed() || std::strstr(result.message(), "(E529)") == nullptr) return;
+    std::fputs(
+        "note: SystemC elaborates once in a process: run each test in one of its own, by ctest with "
+        "gtest_discover_tests(), or by --gtest_filter=TEST\n",
+        stderr);
+  }
+};
+
 }  // namespace
 
 ExpectedReport::ExpectedReport(std::string message_type, int count)
@@ -61,6 +74,7 @@ int sc_main(int argc, char** argv) {
   sc_core::sc_report_handler::set_handler(stereotlm::test::handle_report);
   stereotlm::test::set_failure_handler([](const std::string& text) { ADD_FAILURE() << text; });
   testing::InitGoogleTest(&argc, argv);
+  testing::UnitTest::GetInstance()->listeners().Append(new stereotlm::test::OneTestAProcess);
   return RUN_ALL_TESTS();
 }
 

@@ -16,5 +16,5 @@ from stereotlm.board import Board, Run, boards, keys
 from stereotlm.worker import Answer, Failed, Problem, Refused, Worker, WorkerDied, execute
 
 __version__ = "0.1.0"
-__all__ = ["Answer", "Board", "Failed", "Problem", "Refused", "Run", "Worker", "WorkerDied", "boards", "execute",
-           "keys"]
+__all__ = ["Answer", "Board", "Failed", "Problem", "Refused", "Run", "Worker", "WorkerDied", "boards",
+           "execute", "keys"]

@@ -134,8 +134,8 @@ class Board:
     """
 
     def __init__(self, board="fpl2003", sets=None, calibration=None):
-        """`board`: a preset (see boards()) or the path of a board file. `sets`: values of keys, by their dotted
-        paths. `calibration`: the path of a calibration, whose tables take the place of the identity.
+        """`board`: a preset (see boards()) or the path of a board file. `sets`: values of keys, by their
+        dotted paths. `calibration`: the path of a calibration, whose tables take the place of the identity.
 
         Raises Refused for a board that has problems.
         """
@@ -189,7 +189,8 @@ class Board:
         return path in self.values
 
     def __eq__(self, other):
-        return isinstance(other, Board) and (self.values, self.calibration) == (other.values, other.calibration)
+        return isinstance(other, Board) and self.values == other.values and \
+            self.calibration == other.calibration
 
     __hash__ = None  # a board can be changed
 
@@ -351,7 +352,7 @@ class Board:
             try:
                 execute("sweep", file, "--out", database, *_options(options))
             except Refused as refused:  # the file is not the user's
-                raise Refused([problem.elsewhere(str(file), "the plan") for problem in refused.problems]) from None
+                raise Refused(each.elsewhere(str(file), "the plan") for each in refused.problems) from None
             return _points(database, [path for keys in [vary or {}, *(zip or [])] for path in keys])
 
     def chart(self, source="camera"):
@@ -375,7 +376,7 @@ def _points(database, varied):
     hidden = {"hash", "version", "config", *varied, *fixed}
     first = ("status", "reason", "frames_per_second", "bound")
     figures = [name for name in (rows[0] if rows else []) if name not in hidden]
-    figures.sort(key=lambda name: next((i for i, head in enumerate(first) if name.startswith(head)), len(first)))
+    figures.sort(key=lambda name: [not name.startswith(head) for head in first])
     return _table(rows, columns=[*varied, *figures, *fixed])
 
 

@@ -87,7 +87,7 @@ TEST_F(CrossbarPorts, RefuseABurstAndKeepTheGrant) {
   EXPECT_EQ(at(port::kLeftPixel).read_words(crossbar_address(kPipelined, 0), 2).status,
             tlm::TLM_BURST_ERROR_RESPONSE);
   EXPECT_NE(
-      refusal.text().find("crossbar: TLM_BURST_ERROR_RESPONSE for a read of 8 bytes at address 0: must be "
+      refusal.text().find("crossbar: TLM_BURST_ERROR_RESPONSE for a read of 8 bytes at address 0x0: must be "
                           "one word by b_transport"),
       std::string::npos)
       << refusal.text();

@@ -46,8 +46,8 @@ TEST(ArbiterConfig, RefusesAnUnknownPolicyAndAListThatDoesNotNameEachPortOnce) {
   ArbiterConfig config = arbiter_of("lottery");
   config.priority[0] = port::kResult;
   EXPECT_THAT(problems(config), ElementsAre(StartsWith("policy = lottery: must be one of fixed_priority, "),
-                                            "priority = port 4 2 times: must name each port once",
-                                            "priority = port 5 0 times: must name each port once"));
+                                            "priority: port 4 is named 2 times: must be once",
+                                            "priority: port 5 is named 0 times: must be once"));
 }
 
 TEST(ArbiterConfig, HasOneToSixtySixPorts) {

@@ -8,6 +8,7 @@
 #include <ostream>
 #include <stdexcept>
 
+#include "models/access_rules.h"
 #include "models/clock.h"
 #include "models/kernel_time.h"
 #include "models/memory/word_access.h"
@@ -125,10 +126,9 @@ TEST_F(SsramBankTest, RefusesAnAddressThatIsNotAlignedAndALengthThatIsNotWholeWo
     expect_refused(tlm::TLM_ADDRESS_ERROR_RESPONSE);
     expect_violations(1);
   }
-  EXPECT_EQ(
-      refusal.text(),
-      "bank: TLM_ADDRESS_ERROR_RESPONSE for a write of 4 bytes at address 1: must be a read or write of "
-      "whole words of 4 bytes at a multiple of 4, below address 64; later refusals are not reported");
+  EXPECT_EQ(refusal.text(),
+            "bank: TLM_ADDRESS_ERROR_RESPONSE for a write of 4 bytes at address 0x1: the address must be a "
+            "multiple of 4; later refusals are not reported");
   payload.set_address(4);
   payload.set_streaming_width(8);
   for (const unsigned length : {1U, 3U, 5U}) {
@@ -162,6 +162,42 @@ TEST_F(SsramBankTest, RefusesAStreamingWidthBelowTheWord) {
   payload.set_streaming_width(4);
   transport();
   EXPECT_EQ(payload.get_response_status(), tlm::TLM_OK_RESPONSE);
+}
+
+TEST_F(SsramBankTest, RefusesANullDataPointer) {
+  const test::ExpectedReport refusal("/stereotlm/refused_access");
+  build();
+  payload.set_data_ptr(nullptr);
+  expect_refused(tlm::TLM_GENERIC_ERROR_RESPONSE);
+  expect_violations(1);
+}
+
+// The report names the first rule that an access breaks.
+TEST(AccessRules, NamesTheFirstRuleThatAnAccessBreaks) {
+  std::array<unsigned char, 8> data{};
+  tlm::tlm_generic_payload access;
+  access.set_command(tlm::TLM_IGNORE_COMMAND);
+  access.set_byte_enable_ptr(data.data());
+  access.set_address(66);
+  AccessRules rules = {64, true, false};
+  std::vector<std::string> named;
+  const auto name = [&] { named.emplace_back(broken_rule(access, rules).text); };
+  name(), access.set_read();
+  name(), access.set_data_ptr(data.data());
+  name(), access.set_data_length(8);
+  name(), rules.one_word = false;
+  name(), access.set_streaming_width(8);
+  name(), rules.byte_enables = true;
+  name(), access.set_byte_enable_length(4);
+  name(), access.set_address(60);
+  name(), access.set_address(56);
+  name();
+  EXPECT_EQ(named, (std::vector<std::string>{
+                       "must be a read or a write", "the data pointer must not be null",
+                       "the length must be whole words of 4 bytes", "the length must be one word of 4 bytes",
+                       "the streaming width must be at least the length", "byte enables are not taken",
+                       "the length of the byte enables must not be 0", "the address must be a multiple of 4",
+                       "all bytes must be in the target", ""}));
 }
 
 TEST_F(SsramBankTest, RefusesByteEnablesOfLengthZeroAndACommandThatNeitherReadsNorWrites) {
