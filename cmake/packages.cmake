@@ -2,7 +2,7 @@
 # packages`.
 #
 # The packages are stereotlm (the program), libstereotlm-dev (libraries, headers, guides, example) and
-# python3-stereotlm (the module of Python). Man pages need help2man, completion needs Python; without them
+# python3-stereotlm (the Python module). Man pages need help2man, completion needs Python; without them
 # there are none.
 find_program(STEREOTLM_HELP2MAN help2man)
 find_package(Python3 COMPONENTS Interpreter)
@@ -92,7 +92,7 @@ set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS python3-pandas)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS python3-tqdm)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA
   ${PROJECT_SOURCE_DIR}/cmake/python3-stereotlm/postinst ${PROJECT_SOURCE_DIR}/cmake/python3-stereotlm/prerm)
-set(CPACK_COMPONENT_PYTHON_DESCRIPTION "the module of Python
+set(CPACK_COMPONENT_PYTHON_DESCRIPTION "the Python module
  Runs boards on arrays of numpy, and answers in tables of pandas who waits for
  whom, and what each change of a board would gain.")
 include(CPack)

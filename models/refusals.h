@@ -19,7 +19,7 @@ class Refusals {
   explicit Refusals(const sc_core::sc_object& target) : target_(target) {}
 
   // Reports the access, unless one has been reported before. `rule`: the one that it breaks.
-  void report(const tlm::tlm_generic_payload& access, const std::string& rule) {
+  void report(const tlm::tlm_generic_payload& access, const char* rule) {
     if (has_reported_) return;
     has_reported_ = true;
     std::ostringstream text;
@@ -33,6 +33,7 @@ class Refusals {
   }
   // The same. `rules`: those of the target; `other`: what the access breaks if it keeps them.
   void report(const tlm::tlm_generic_payload& access, const AccessRules& rules, const char* other = "") {
+    if (has_reported_) return;
     const BrokenRule broken = broken_rule(access, rules);
     report(access, broken.response == tlm::TLM_OK_RESPONSE ? other : broken.text);
   }

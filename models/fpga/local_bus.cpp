@@ -38,16 +38,15 @@ tlm::tlm_response_status LocalBus::check(const tlm::tlm_generic_payload& access)
 }
 
 void LocalBus::b_transport(tlm::tlm_generic_payload& access, sc_core::sc_time&) {
-  refuse(access, tlm::TLM_GENERIC_ERROR_RESPONSE);
+  control_.count_error();
+  access.set_response_status(tlm::TLM_GENERIC_ERROR_RESPONSE);
+  refusals_.report(access, "must come by nb_transport");
 }
 
 void LocalBus::refuse(tlm::tlm_generic_payload& access, tlm::tlm_response_status status) {
   control_.count_error();
   access.set_response_status(status);
-  refusals_.report(access, AccessRules{},
-                   status == tlm::TLM_GENERIC_ERROR_RESPONSE
-                       ? "must come by nb_transport"
-                       : "all words must be in one bank, or in the registers");
+  refusals_.report(access, AccessRules{}, "all words must be in one bank, or in the registers");
 }
 
 tlm::tlm_sync_enum LocalBus::nb_transport_fw(tlm::tlm_generic_payload& access, tlm::tlm_phase& phase,
@@ -65,9 +64,14 @@ tlm::tlm_sync_enum LocalBus::nb_transport_fw(tlm::tlm_generic_payload& access, t
     refuse(access, status);
     return tlm::TLM_COMPLETED;
   }
-  is_beginning_ = true;
-  begin(access, delay);
-  is_beginning_ = false;
+  {
+    const struct Beginning {  // also if a bank throws
+      explicit Beginning(bool& its) : is(its) { is = true; }
+      ~Beginning() { is = false; }
+      bool& is;
+    } beginning(is_beginning_);
+    begin(access, delay);
+  }
   if (burst_ != nullptr) return tlm::TLM_ACCEPTED;
   delay = end_delay_;
   return tlm::TLM_COMPLETED;

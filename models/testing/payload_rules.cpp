@@ -193,7 +193,7 @@ Problems dmi_answer_problems(const tlm::tlm_generic_payload& payload, sc_dt::uin
   return problems;
 }
 
-PayloadSnapshot::PayloadSnapshot(const tlm::tlm_generic_payload& payload)
+PayloadSnapshot::PayloadSnapshot(const tlm::tlm_generic_payload& payload, bool uses_data, bool uses_enables)
     : command_(payload.get_command()),
       address_(payload.get_address()),
       data_(payload.get_data_ptr()),
@@ -202,8 +202,10 @@ PayloadSnapshot::PayloadSnapshot(const tlm::tlm_generic_payload& payload)
       byte_enables_(payload.get_byte_enable_ptr()),
       byte_enable_length_(payload.get_byte_enable_length()),
       gp_option_(payload.get_gp_option()) {
-  if (command_ != tlm::TLM_READ_COMMAND && data_ != nullptr) written_.assign(data_, data_ + data_length_);
-  if (byte_enables_ != nullptr) enables_.assign(byte_enables_, byte_enables_ + byte_enable_length_);
+  if (uses_data && command_ != tlm::TLM_READ_COMMAND && data_ != nullptr)
+    written_.assign(data_, data_ + data_length_);
+  if (uses_enables && byte_enables_ != nullptr)
+    enables_.assign(byte_enables_, byte_enables_ + byte_enable_length_);
 }
 
 Problems PayloadSnapshot::changes(const tlm::tlm_generic_payload& payload,

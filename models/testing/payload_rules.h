@@ -42,8 +42,10 @@ Problems dmi_answer_problems(const tlm::tlm_generic_payload& payload, sc_dt::uin
 // of a write and the byte enables: arrays whose pointers are not null must be valid.
 class PayloadSnapshot {
  public:
-  explicit PayloadSnapshot(const tlm::tlm_generic_payload& payload);  // taken at the request
-  sc_dt::uint64 address() const { return address_; }                  // as requested
+  // Taken at the request. A request that does not use an array may have a pointer to what is not there.
+  explicit PayloadSnapshot(const tlm::tlm_generic_payload& payload, bool uses_data = true,
+                           bool uses_enables = true);
+  sc_dt::uint64 address() const { return address_; }  // as requested
   // A sentence for each changed field.
   Problems changes(const tlm::tlm_generic_payload& payload, const ProtocolOptions& options) const;
 

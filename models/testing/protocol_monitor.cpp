@@ -155,7 +155,7 @@ tlm::tlm_sync_enum ProtocolMonitor::nb_transport_bw(Payload& payload, tlm::tlm_p
 bool ProtocolMonitor::get_direct_mem_ptr(Payload& payload, tlm::tlm_dmi& dmi) {
   constexpr const char* kCall = "get_direct_mem_ptr";
   report(kCall, dmi_request_problems(payload, dmi));
-  const PayloadSnapshot sent(payload);
+  const PayloadSnapshot sent(payload, false, false);
   const Moment moment;
   const bool granted = to_target->get_direct_mem_ptr(payload, dmi);
   if (moment.passed()) report(kCall, "time passed: the callee must not wait (11.2.4)");
@@ -167,7 +167,7 @@ bool ProtocolMonitor::get_direct_mem_ptr(Payload& payload, tlm::tlm_dmi& dmi) {
 unsigned int ProtocolMonitor::transport_dbg(Payload& payload) {
   constexpr const char* kCall = "transport_dbg";
   report(kCall, debug_request_problems(payload));
-  const PayloadSnapshot sent(payload);
+  const PayloadSnapshot sent(payload, true, payload.get_gp_option() != tlm::TLM_MIN_PAYLOAD);
   const Moment moment;
   const unsigned int bytes = to_target->transport_dbg(payload);
   if (moment.passed()) report(kCall, "time passed: the callee must not wait (11.3.4)");

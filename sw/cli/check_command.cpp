@@ -49,7 +49,7 @@ Json document_of(const std::string& name, const platform::BoardConfig* board,
   Json document = {{"schema", 1}, {"board", name}, {"ok", problems.empty()}};
   Json& list = document["problems"] = Json::array();
   for (const platform::Diagnostic& problem : problems.diagnostics())
-    list.push_back(cli::document_of(problem));
+    list.push_back(problem_document(problem));
   if (!problems.empty() || board == nullptr) return document;
   document["image"] = {{"width", board->image.width}, {"height", board->image.height}};
   document["window"] = board->matcher.window;
@@ -84,11 +84,12 @@ int check(const BoardCommandOptions& options) {
 }  // namespace
 
 // The text of a platform::Diagnostic is `key = value: rule`, `key: missing: rule`, or a rule alone. The value
-// ends at the first colon with a blank behind it that is outside of brackets and quotes.
-nlohmann::ordered_json document_of(const platform::Diagnostic& problem) {
+// ends at the first colon with a blank behind it that is outside of brackets and quotes; a shortened one
+// ends in `...`.
+nlohmann::ordered_json problem_document(const platform::Diagnostic& problem) {
   static const std::regex form(
       R"(([\w.-]+)(?:: (missing: .*)| = ((?:"[^"]*"|'[^']*'|\[[^\]]*\]|\{(?:[^{}]|\{[^{}]*\})*\}|)"
-      R"([^"'\[\]{}:]|:(?! ))*): (.*)))");
+      R"([^"'\[\]{}:]|:(?! ))*|.*?[.]{3}): (.*)))");
   Json json = {{"place", problem.place}};
   std::smatch parts;
   const bool has_key = std::regex_match(problem.text, parts, form);

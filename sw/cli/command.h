@@ -94,7 +94,7 @@ std::string with_coloured_words(std::string text, std::size_t from,
 std::string json_text(const nlohmann::ordered_json& document);
 
 // The parts of a problem of a board: place, key, value and rule, as in `check --json`.
-nlohmann::ordered_json document_of(const platform::Diagnostic& problem);
+nlohmann::ordered_json problem_document(const platform::Diagnostic& problem);
 
 // Prints a note that the command was interrupted, and returns kInterrupted. `what`: what that means.
 int interrupted(const std::string& what);

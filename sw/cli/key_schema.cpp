@@ -180,7 +180,8 @@ Json assignments(const Wrap& wrap) {
           fmt::format("^ssram[.]banks[.]{}{}$", kBankNamePattern, rest.empty() ? "" : "[.]" + rest.substr(1));
       schema["patternProperties"][pattern] = wrap(reference(path));
     } else {
-      schema["properties"][path] = wrap(reference(path));
+      const bool is_section = platform::find_key(path) == nullptr && path != kBanksPath;
+      schema["properties"][path] = wrap(is_section ? whole_map_of(path) : reference(path));
     }
   }
   schema["additionalProperties"] = false;
@@ -203,6 +204,7 @@ Json board_schema() {
 
 Json plan_schema() {
   const Json text = {{"type", "string"}, {"minLength", 1}};
+  const Json condition = {{"type", {"string", "number", "boolean"}}};
   const Json number = {{"type", "number"}};
   const Json range = {{"type", "object"},
                       {"properties", {{"from", number}, {"to", number}, {"step", number}}},
@@ -229,7 +231,7 @@ Json plan_schema() {
         {"set", assignments([](const Json& value) { return value; })},
         {"vary", varied},
         {"zip", {{"type", "array"}, {"items", varied}}},
-        {"where", either(text, {{"type", "array"}, {"items", text}})},
+        {"where", either(condition, {{"type", "array"}, {"items", condition}})},
         {"sample",
          {{"type", "object"},
           {"properties",

@@ -150,7 +150,7 @@ void say_what_is_not_seen(const runs::RunInput& input) {
 }
 
 // Whether a client has sent pictures.
-bool come_as_arrays() {
+bool has_arrays() {
   return process::client != nullptr &&
          (process::client->given("left") != nullptr || process::client->given("right") != nullptr);
 }
@@ -158,7 +158,7 @@ bool come_as_arrays() {
 // Sets what the options say of the run. `pairs`: the length of the source of pictures.
 void describe(const RunOptions& options, std::uint64_t pairs, runs::RunInput& input) {
   const bool has_end =
-      options.pictures.sequence.is_given() || options.pictures.video.is_given() || come_as_arrays();
+      options.pictures.sequence.is_given() || options.pictures.video.is_given() || has_arrays();
   input.camera = options.source.is_camera();
   input.fast = options.fidelity.text() != "cycle";
   input.timing_only = options.timing_only.is_given();
@@ -294,7 +294,7 @@ bool PictureOptions::check_together(process::Problems& problems, bool may_be_mis
 
 std::vector<std::string> PictureOptions::sources_given() const {
   std::vector<std::string> names;
-  if (come_as_arrays()) names.emplace_back("arrays");
+  if (has_arrays()) names.emplace_back("arrays");
   if (left.is_given() || right.is_given()) names.push_back(left.is_given() ? "--left" : "--right");
   for (const Option* option : {&sequence, &video, &synthetic}) {
     if (option->is_given()) names.push_back(option->name());
@@ -321,7 +321,7 @@ bool RunOptions::has_board_only() const {
 void RunOptions::check_together(const std::string& command, process::Problems& problems) const {
   const bool has_pictures = pictures.check_together(problems, timing_only.is_given());
   trace.check_together(problems);
-  if (come_as_arrays() && out.is_given())
+  if (has_arrays() && out.is_given())
     problems.add(
         "--out: does not go with arrays: the folder names the files of its pictures: must be a run of files");
   if (truth.file.is_given() && pictures.synthetic.is_given())
@@ -347,7 +347,7 @@ runs::RunInput RunOptions::load() const {
   runs::InputPictures& named = input.described;
   named = pictures.named();
   problems.attempt("", [&] { opened = runs::open_source(named, its, problems); });
-  if (come_as_arrays() && its != nullptr)
+  if (has_arrays() && its != nullptr)
     problems.attempt("", [&] { opened.pairs = runs::pairs_of_client(*its); });
   if (calibration)
     opened.files.insert(opened.files.end(), calibration->files.begin(), calibration->files.end());

@@ -23,11 +23,11 @@ using process::Array;
 
 constexpr const char* kWorkerFooter =
     "Requests come by standard input, answers leave by standard output: lines of JSON, and the pixels of\n"
-    "pictures behind them. The module stereotlm of Python works so; sw/python/README.md has the protocol.";
+    "pictures behind them. The Python module stereotlm uses this protocol: sw/python/README.md.";
 
 struct Request {
   std::vector<std::string> arguments;
-  std::string folder;  // to which paths are relative; empty: the worker's
+  std::filesystem::path folder;  // to which paths are relative
   std::vector<Array> arrays;
 };
 
@@ -38,6 +38,7 @@ std::string line_of(const Json& document) {
 
 // What the process that executes commands tells the worker: this byte, then what the client is to get.
 constexpr char kBegins = 'b';   // a request
+constexpr char kRead = 'r';     // the request is read whole
 constexpr char kPart = 'p';     // a part of its answer
 constexpr char kEnds = 'e';     // the last part
 constexpr char kWasLast = 'l';  // there is no further request
@@ -61,7 +62,7 @@ class Answer : public process::Client {
     tell(kPart, {{"done", done}, {"of", of}, {"progress", text}});
   }
   void refuse(const std::vector<platform::Diagnostic>& problems) override {
-    for (const platform::Diagnostic& problem : problems) problems_.push_back(document_of(problem));
+    for (const platform::Diagnostic& problem : problems) problems_.push_back(problem_document(problem));
   }
   void end(int status) { tell(kEnds, {{"status", status}, {"output", output_}, {"problems", problems_}}); }
 
@@ -102,7 +103,8 @@ Request request_of(const std::string& line, int from) {
   const Json document = Json::parse(line);
   Request request;
   document.at("arguments").get_to(request.arguments);
-  request.folder = document.value("folder", "");
+  static const std::filesystem::path of_worker = std::filesystem::current_path();
+  request.folder = of_worker / document.value("folder", "");
   for (const Json& given : document.value("arrays", Json::array())) {
     Array array;
     given.at("name").get_to(array.name);
@@ -135,14 +137,16 @@ bool serve_one(const process::Child::Tell& tell) {
     tell({kWasLast});
     return false;
   }
+  tell({kRead});
   std::vector<const char*> words = {"stereotlm"};
   for (const std::string& argument : request.arguments) words.push_back(argument.c_str());
   const auto count = static_cast<int>(words.size());
   words.push_back(nullptr);
   std::error_code error;
-  if (!request.folder.empty()) std::filesystem::current_path(request.folder, error);
-  if (error) process::say("error", fmt::format("folder '{}': {}", request.folder, error.message()));
+  std::filesystem::current_path(request.folder, error);
+  if (error) process::say("error", fmt::format("folder '{}': {}", request.folder.string(), error.message()));
   answer.end(error ? kRefused : execute(count, words.data()));
+  process::client = nullptr;
   // SystemC is elaborated once in a process.
   const bool is_fresh =
       sc_core::sc_get_status() == sc_core::SC_ELABORATION && sc_core::sc_get_top_level_objects().empty();
@@ -159,15 +163,16 @@ int serve(const WorkerOptions& /*options*/) {
   const int to = fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3);
   if (to < 0 || dup2(STDERR_FILENO, STDOUT_FILENO) < 0)
     throw std::system_error(errno, std::generic_category(), "standard output");
-  bool is_open = false;  // a request, whose answer has not ended
+  char last = kEnds;  // what was told
   const auto write = [to](const std::string& bytes) {
     return process::write_all(to, bytes.data(), bytes.size());
   };
   const auto end = [&](const std::string& why) {
-    if (!is_open) throw std::runtime_error(why);
-    is_open = false;
+    if (last == kEnds) throw std::runtime_error(why);  // there is no request to answer
     write(line_of({{"message", "stereotlm: error: " + why}}) +
           line_of({{"status", kFailed}, {"output", ""}, {"problems", Json::array()}}));
+    if (last == kBegins) throw std::runtime_error(why);  // where the next request begins is not known
+    last = kEnds;
   };
   // Commands are executed by a child, which may crash. It is there before the request.
   while (true) {
@@ -178,7 +183,7 @@ int serve(const WorkerOptions& /*options*/) {
       });
       while (const auto told = child.next()) {
         if (told->front() == kWasLast) return kDone;
-        is_open = told->front() != kEnds;
+        last = told->front();
         if (!write(told->substr(1))) return kFailed;
       }
     } catch (const std::bad_alloc&) {

@@ -48,7 +48,9 @@ void run_other(const RunInput& input, const process::Child::Tell& tell) {
   RunMode mode = input.mode();
   mode.record = false;
   mode.fidelity = input.fidelity(!input.fast);
-  const auto simulation = make_simulation(input.board, input.tables, *pairs, mode, binder);
+  // Pairs of a client cannot be opened again; this process has a copy of them.
+  const auto simulation =
+      make_simulation(input.board, input.tables, pairs ? *pairs : *input.pairs, mode, binder);
   while (!simulation->finished()) {
     for (const Result& result : simulation->advance()) tell(line_of(result, !input.timing_only));
   }

@@ -78,7 +78,7 @@ def _yaml(value):
         return "{" + ", ".join(f"{key}: {_yaml(inner)}" for key, inner in value.items()) + "}"
     if isinstance(value, (list, tuple, range)):
         return "[" + ", ".join(map(_yaml, value)) + "]"
-    return json.dumps(value)
+    return json.dumps(value, ensure_ascii=False)
 
 
 def _options(options):
@@ -91,6 +91,19 @@ def _options(options):
             if each is not None and each is not False:
                 words.append("--" + name.replace("_", "-") + ("" if each is True else f"={each}"))
     return words
+
+
+def _pictures(left, right, options):
+    """(arrays, options) of a command that takes pictures: as arrays, as paths, or none."""
+    arrays = {}
+    if left is not None or right is not None:
+        if any(isinstance(side, (str, os.PathLike)) for side in (left, right)):
+            options = {"left": left, "right": right, **options}
+        else:
+            arrays = {name: side for name, side in (("left", left), ("right", right)) if side is not None}
+    elif not {"left", "sequence", "video", "synthetic"} & options.keys():
+        options = {"timing_only": True, **options}
+    return arrays, options
 
 
 class _Section:
@@ -114,8 +127,11 @@ class _Section:
     def __setitem__(self, name, value):
         self._board[f"{self._path}.{name}"] = value
 
+    def keys(self):
+        return self._board._names(self._path + ".")
+
     def __iter__(self):
-        return iter(self._board._names(self._path + "."))
+        return iter(self.keys())
 
     def __dir__(self):
         return list(self)
@@ -181,6 +197,9 @@ class Board:
             return self._get(path)
         except AttributeError as error:
             raise KeyError(str(error)) from None
+
+    def keys(self):
+        return self.values.keys()
 
     def __iter__(self):
         return iter(self.values)
@@ -275,14 +294,7 @@ class Board:
         By default the whole computer with its cameras runs until it has delivered as many frames as there are
         pairs. source="preloaded" is the core alone.
         """
-        arrays = {}
-        if left is not None or right is not None:
-            if all(isinstance(side, (str, os.PathLike)) for side in (left, right)):
-                options = {"left": left, "right": right, **options}
-            else:
-                arrays = {name: side for name, side in (("left", left), ("right", right)) if side is not None}
-        if not arrays and not {"left", "sequence", "video", "synthetic"} & options.keys():
-            options["timing_only"] = True
+        arrays, options = _pictures(left, right, options)
         if any(numpy.ndim(array) == 3 for array in arrays.values()) and not options.get("timing_only"):
             options["save_frames"] = True
         answer = execute("run", *self._words(), *_options(options), "--json", arrays=arrays)
@@ -307,9 +319,7 @@ class Board:
 
         attrs["document"] has the waits and accesses by rows of the picture.
         """
-        if left is None and not {"sequence", "video", "synthetic"} & options.keys():
-            options["timing_only"] = True
-        arrays = {} if left is None else {"left": left, "right": right}
+        arrays, options = _pictures(left, right, options)
         document = execute("conflicts", *self._words(), *_options(options), "--json", arrays=arrays).document
         return _table(document["waits"], document, CONFLICTS)
 
@@ -429,9 +439,10 @@ class Run:
         return _table(self.statistics["blame"], columns=["port", "bank", "by", "cycles"])
 
     def chart(self):
-        """The memory chart of the board with the traffic of the run, as SVG."""
-        names = ("source", "frames", "fidelity")
-        options = {name: self._options[name] for name in names if name in self._options}
+        """The memory chart of the board with the traffic of the run, as SVG. The run is simulated again."""
+        of_pictures = {"left", "right", "sequence", "video", "video_layout", "synthetic", "truth", "truth_scale",
+                       "save_frames", "verify", "record", "trace", "trace_window"}
+        options = {name: value for name, value in self._options.items() if name not in of_pictures}
         options["frames"] = self.statistics["frames"]
         with tempfile.TemporaryDirectory() as folder:
             out = pathlib.Path(folder) / "run"  # pixels change no count

@@ -1,7 +1,7 @@
 """Commands of the program, executed by the process `stereotlm worker`. README.md has the protocol."""
 
-import contextlib
 import dataclasses
+import io
 import json
 import math
 import os
@@ -111,8 +111,8 @@ class Worker:
         """`program`: the path of the program stereotlm; by default as the module's text says."""
         self._program = program
         self._process = None
+        self._answers = None
         self._lock = threading.RLock()
-        os.register_at_fork(after_in_child=self._forget)
 
     def execute(self, *arguments, arrays=None, progress=True):
         """Executes the command of these words, with arrays of 8 bits by their names. Returns an Answer.
@@ -148,16 +148,11 @@ class Worker:
         """The number of the process; None if there is none yet."""
         return self._process.pid if self._process else None
 
-    def _forget(self):
-        self._process = None
-        self._lock = threading.RLock()
-
     def _end(self):
         """How the process has ended."""
         process, self._process = self._process, None
-        with contextlib.suppress(BrokenPipeError):
-            process.stdin.close()
-        process.stdout.close()
+        process.stdin.close()
+        self._answers.close()
         status = process.wait()
         return f"been ended by signal {-status}" if status < 0 else f"ended with status {status}"
 
@@ -166,24 +161,33 @@ class Worker:
             self._end()  # while it had nothing to do: nothing is lost
         if self._process is None:
             # A session of its own: Ctrl-C is for this process, which then ends the worker.
-            self._process = subprocess.Popen([self._program or _program(), "worker"], stdin=subprocess.PIPE,
-                                             stdout=subprocess.PIPE, start_new_session=True)
+            # No buffer in front of the pipe: a process that is forked meanwhile would send it again.
+            self._process = subprocess.Popen([self._program or _program(), "worker"], bufsize=0,
+                                             stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+                                             start_new_session=True)
+            self._answers = io.BufferedReader(self._process.stdout)
         request = {"arguments": arguments, "folder": os.getcwd(),
                    "arrays": [{"name": name, "shape": array.shape} for name, array in pixels.items()]}
-        stream = self._process.stdin
-        stream.write(json.dumps(request).encode() + b"\n")
-        for array in pixels.values():
-            stream.write(array.tobytes())
-        stream.flush()
+        line = json.dumps(request, ensure_ascii=False).encode() + b"\n"  # raises before a byte is sent
+        for data in (line, *(array.tobytes() for array in pixels.values())):
+            left = memoryview(data)
+            while left:
+                left = left[self._process.stdin.write(left):]
 
     def _receive(self, bar):
         answer = Answer("", {}, [])
         while True:
-            part = json.loads(self._bytes(self._process.stdout.readline()))
+            line = self._answers.readline()
+            if not line.endswith(b"\n"):
+                raise EOFError
+            part = json.loads(line)
             if "array" in part:
                 size = math.prod(part["shape"])
-                data = self._bytes(self._process.stdout.read(size), size)
-                answer.arrays[part["array"]] = numpy.frombuffer(data, numpy.uint8).reshape(part["shape"])
+                data = self._answers.read(size)
+                if len(data) < size:
+                    raise EOFError
+                array = numpy.frombuffer(bytearray(data), numpy.uint8)
+                answer.arrays[part["array"]] = array.reshape(part["shape"])
             elif "progress" in part:
                 bar.show(part["done"], part["of"], part["progress"])
             elif "message" in part:
@@ -201,12 +205,6 @@ class Worker:
             raise Failed("\n".join(message.removeprefix("stereotlm: error: ") for message in answer.messages))
         return answer
 
-    @staticmethod
-    def _bytes(data, size=1):
-        if len(data) < size:
-            raise EOFError
-        return data
-
 
 def _pixels(name, array):
     array = numpy.asarray(array)
@@ -216,6 +214,15 @@ def _pixels(name, array):
 
 
 _shared = Worker()
+
+
+def _begin_anew():
+    """In a forked process, whose parent has the worker."""
+    global _shared
+    _shared = Worker()
+
+
+os.register_at_fork(after_in_child=_begin_anew)
 
 
 def execute(*arguments, arrays=None, progress=True):

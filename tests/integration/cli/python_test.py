@@ -73,6 +73,11 @@ class Boards(PythonTest):
         self.assertIn("window", dir(board.matcher))
         self.assertIn("matcher", dir(board))
         self.assertIn("matcher.window: 9", repr(board.matcher))
+        board.name = "é: x 😀"
+        self.assertEqual(board.values["name"], "é: x 😀")
+        for long in ("x" * 60, {"kernel": [[1] * 7] * 7, "shift": 3}, ["none"] * 20):
+            with self.assertRaises(stereotlm.Refused):
+                board.matcher.filter = long
         with self.assertRaisesRegex(AttributeError, "matcher.windw: not a key"):
             board.matcher.windw  # noqa: B018
 
@@ -133,6 +138,8 @@ class Boards(PythonTest):
         for shown in (small_board(), small_board().run(*self.arrays)):
             self.assertIn("<svg", shown._repr_html_())
         self.assertIn("system", repr(small_board().run()))
+        of_set = small_board().run(**ALONE, set=["matcher.window=5"])
+        self.assertNotEqual(of_set.chart(), small_board().run(**ALONE).chart())
 
 
 class Runs(PythonTest):
@@ -144,6 +151,10 @@ class Runs(PythonTest):
             self.assertEqual({key: found.statistics[key] for key in stats}, stats)
             self.assertTrue((found.disparity == read_pfm(self.out / "disparity.pfm")).all())
             self.assertIsNone(found.disparities)
+
+    def test_pairs_of_arrays_are_verified(self):
+        found = small_board().run(*[numpy.stack([side, side[::-1]]) for side in self.arrays], verify=True)
+        self.assertIn("agree in every figure, time and pixel of 2 frames", found.messages[-1])
 
     def test_files_and_other_sources(self):
         board = small_board()
@@ -231,6 +242,9 @@ class Commands(PythonTest):
         self.assertEqual(board.conflicts(*self.arrays).attrs["document"], document)
         self.assertEqual(list(board.conflicts().cycles), [wait["cycles"] for wait in document["waits"]])
         self.assertEqual(list(small_board().conflicts(**ALONE).cycles), [])
+        self.assertEqual(board.conflicts(self.left, self.right).attrs["document"],
+                         board.conflicts(*self.arrays).attrs["document"])
+        self.assertIn("must both be there", str(self.refusal(lambda: board.conflicts(right=self.arrays[1]))))
         document = json.loads(self.succeeds(run("bounds", "fpl2003", *words, "--json")))
         self.assertEqual(board.bounds(), document)
 
@@ -338,7 +352,7 @@ class Workers(PythonTest):
         self.assertIn("ended by signal 9", str(error))
         self.works()
         os.kill(self.worker.pid, signal.SIGKILL)
-        time.sleep(0.1)
+        program.wait_until(lambda: self.worker._process.poll() is not None)
         self.works()  # no command is lost
 
     def test_a_command_that_is_killed_is_an_exception_and_the_worker_works_on(self):
@@ -364,8 +378,8 @@ import sys
 sys.path.insert(0, {str(SOURCES / "sw" / "python")!r})
 import stereotlm
 board = stereotlm.Board("fpl2003")
-print("begins", stereotlm.worker._shared.pid, flush=True)
 try:
+    print("begins", stereotlm.worker._shared.pid, flush=True)
     board.run(frames=1000, synthetic=1, source="preloaded", fidelity="cycle")
 except KeyboardInterrupt:
     print("interrupted", stereotlm.worker._shared.pid, board.run(source="preloaded").statistics["frames"])
@@ -373,7 +387,8 @@ except KeyboardInterrupt:
         process = subprocess.Popen([sys.executable, "-B", script], stdout=subprocess.PIPE, text=True)
         self.addCleanup(process.kill)
         worker_pid = int(process.stdout.readline().split()[1])
-        time.sleep(0.5)
+        busy = lambda child: int(pathlib.Path(f"/proc/{child}/stat").read_text().split()[13]) > 20  # 0.2 s
+        program.wait_until(lambda: any(map(busy, self.children(worker_pid))))
         process.send_signal(signal.SIGINT)
         self.assertEqual(process.communicate(timeout=60)[0], "interrupted None 1\n")
         self.assertFalse(os.path.exists(f"/proc/{worker_pid}"))
@@ -393,6 +408,11 @@ except KeyboardInterrupt:
         os.chdir(self.folder)
         self.assertIn("./board.yaml: ok", self.worker.execute("check", "./board.yaml").output)
 
+    def test_text_that_is_no_text_is_refused_and_nothing_is_sent(self):
+        with self.assertRaises(UnicodeEncodeError):
+            self.worker.execute("check", "/tmp/\udcff.yaml")
+        self.works()
+
     def test_threads_share_one(self):
         found = []
         board = small_board()
@@ -410,10 +430,13 @@ except KeyboardInterrupt:
         read, write = os.pipe()
         child = os.fork()
         if child == 0:
-            board.run(**ALONE)
-            os.write(write, str(worker._shared.pid).encode())
-            worker._shared.close()
-            os._exit(0)
+            try:
+                board.run(**ALONE)
+                os.write(write, str(worker._shared.pid).encode())
+                worker._shared.close()
+            finally:
+                os._exit(0)
+        os.close(write)
         os.waitpid(child, 0)
         self.assertNotEqual(int(os.read(read, 20)), here)
         self.assertEqual(board.run(**ALONE).statistics["frames"], 1)
@@ -470,6 +493,26 @@ class Protocol(ProgramTest):
         self.assertEqual([line.get("status") for line in lines], [None, 2, None, 2])
         self.assertIn("folder '/none': No such file", lines[0]["message"])
         self.assertIn("cannot be a command for a worker", lines[2]["message"])
+
+    def test_a_folder_is_that_of_its_request_alone(self):
+        self.file("b.yaml", "extends: fpl2003\nname: b\n")
+        there = json.dumps({"arguments": ["check", "./b.yaml"], "folder": str(self.folder)}).encode()
+        lines, _ = self.answers(there + b'\n{"arguments": ["check", "./b.yaml"]}\n' + there + b"\n")
+        self.assertEqual([line["status"] for line in lines if "status" in line], [0, 2, 0])
+
+    def test_a_process_that_dies_while_it_reads_arrays_ends_the_worker(self):
+        process = subprocess.Popen([PROGRAM, "worker"], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+                                   stderr=subprocess.PIPE)
+        self.addCleanup(self.close, process)
+        process.stdin.write(b'{"arguments": ["boards"], "arrays": [{"name": "left", "shape": [9, 9]}]}\nx')
+        process.stdin.flush()
+        children = pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children")
+        program.wait_until(children.read_text)
+        time.sleep(0.2)  # it reads
+        os.kill(int(children.read_text()), signal.SIGKILL)
+        out, _ = process.communicate(b"y" * 80 + b'\n{"arguments": ["boards"]}\n', timeout=60)
+        self.assertEqual([json.loads(line).get("status") for line in out.splitlines()], [None, 1])
+        self.assertEqual(process.returncode, 1)
 
 
 class Notebook(unittest.TestCase):

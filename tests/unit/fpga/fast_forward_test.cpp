@@ -283,7 +283,7 @@ TEST(FastForward, GrantsBurstsInTheCyclesOfItsSteps) {
   }
 }
 
-// FrameRun::earliest_last_write(), which tells the fast core how long it need not look whether the frame has
+// FrameRun::earliest_last_write(), which tells the fast core when it has to check next whether the frame has
 // ended.
 struct LastWrite {
   const char* name;

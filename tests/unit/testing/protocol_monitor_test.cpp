@@ -526,6 +526,19 @@ TEST(ProtocolMonitor, LetsIgnorablePhasesPass) {
   EXPECT_EQ(link.binder->take_violations(), std::vector<std::string>());
 }
 
+// Requests that use no array may have pointers to what is not there any more.
+TEST(ProtocolMonitor, ReadsNoArrayThatARequestDoesNotUse) {
+  Link link;
+  auto* const nowhere = reinterpret_cast<unsigned char*>(8);
+  link.payload.set_write();
+  link.payload.set_byte_enable_ptr(nowhere);
+  link.payload.set_byte_enable_length(8);
+  link.debug(0);
+  link.payload.set_data_ptr(nowhere);
+  EXPECT_TRUE(link.request_dmi([](tlm::tlm_dmi& given) { given.allow_read_write(); }));
+  EXPECT_EQ(link.binder->take_violations(), std::vector<std::string>());
+}
+
 // Above an interconnect that translates addresses, or that does not attempt a command.
 TEST(ProtocolMonitor, MayStandAboveAnInterconnect) {
   Link link({true, false, false});
