@@ -49,6 +49,7 @@ inline BrokenRule broken_rule(const tlm::tlm_generic_payload& access, const Acce
     return {tlm::TLM_ADDRESS_ERROR_RESPONSE, "all bytes must be in the target"};
   return {};
 }
+// Its response alone.
 inline tlm::tlm_response_status check_access(const tlm::tlm_generic_payload& access,
                                              const AccessRules& rules) {
   return broken_rule(access, rules).response;

@@ -31,9 +31,6 @@ std::optional<Number> number_of(std::string_view text) {
 // Reports a problem if the option breaks the rule.
 using Rule = std::function<void(const Option& option, process::Problems& problems)>;
 
-inline Rule no_rule() {
-  return [](const Option& /*option*/, process::Problems& /*problems*/) {};
-}
 // The option must be given. `what`: what its value is.
 Rule required(const std::string& what);
 // The following rules hold for the value of an option that is given.

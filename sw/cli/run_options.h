@@ -182,7 +182,7 @@ struct RunOptions {
       Option(more, "--save-frames", "",
              "Write the disparities of every frame too: frames/000000.png and so on in the folder of --out, "
              "numbered by camera frame",
-             {process::client == nullptr ? goes_with(out, "DIR") : no_rule()});  // a client gets the frames
+             process::client == nullptr ? std::vector<Rule>{goes_with(out, "DIR")} : std::vector<Rule>{});
   Option record = Option(
       more, "--record,--conflicts", "",
       "Write where and when ports wait: rows.csv and conflicts.csv in the folder of --out; with cameras "

@@ -440,8 +440,8 @@ class Run:
 
     def chart(self):
         """The memory chart of the board with the traffic of the run, as SVG. The run is simulated again."""
-        of_pictures = {"left", "right", "sequence", "video", "video_layout", "synthetic", "truth", "truth_scale",
-                       "save_frames", "verify", "record", "trace", "trace_window"}
+        of_pictures = {"left", "right", "sequence", "video", "video_layout", "synthetic", "truth", "verify",
+                       "truth_scale", "save_frames", "record", "trace", "trace_window"}
         options = {name: value for name, value in self._options.items() if name not in of_pictures}
         options["frames"] = self.statistics["frames"]
         with tempfile.TemporaryDirectory() as folder:
