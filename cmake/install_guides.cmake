@@ -3,7 +3,7 @@ set(destination $ENV{DESTDIR}${CMAKE_INSTALL_PREFIX}/${guides})
 set(names CHANGELOG.md models/README.md models/PROMISES.md models/contract.md models/testing/README.md
   platform/README.md)
 message(STATUS "Installing: ${destination}")
-configure_file(${source}/cmake/installed_guides.md ${destination}/README.md COPYONLY)
+configure_file(${source}/cmake/installed_guides.md.in ${destination}/README.md COPYONLY)
 foreach(name IN LISTS names)
   configure_file(${source}/${name} ${destination}/${name} COPYONLY)
 endforeach()

@@ -15,7 +15,7 @@ struct AccessRules {
 // The first rule that an access breaks.
 struct BrokenRule {
   tlm::tlm_response_status response = tlm::TLM_OK_RESPONSE;  // that of the access; OK: it breaks none
-  const char* text = "";                                     // the rule
+  const char* text = "";                                     // text of the rule
 };
 
 // | rule                                                             | response otherwise             |

@@ -10,9 +10,9 @@ namespace stereotlm::platform {
 // An identity, with both sides.
 struct Identity {
   std::string what;         // name of the left value
-  std::uint64_t left = 0;   // value
+  std::uint64_t left = 0;   // value of the left side
   std::string as;           // name of the right value
-  std::uint64_t right = 0;  // value
+  std::uint64_t right = 0;  // value of the right side
 };
 
 // Checks identities between counters (contract section 6), and collects a message for each that does not

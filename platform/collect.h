@@ -29,7 +29,7 @@ struct BoardCounters {
     memory::ArbiterStats arbiter;  // grants and stalls
     std::uint64_t accesses = 0;    // accesses that reached the bank, including those that it refused
   };
-  std::size_t frames = 0;                   // finished
+  std::size_t frames = 0;                   // finished frames
   std::vector<fpga::PortCycles> ports;      // [port]
   std::vector<Bank> banks;                  // in the order of the configuration
   std::array<std::uint64_t, 2> issued{};    // [side]: slots that the sequencer has issued
@@ -78,9 +78,9 @@ struct ComputerCounters {
   BoardCounters board;                     // core, banks and ports
   pci::PciBusControl::Stats pci;           // of the PCI bus
   pci::BridgeControl::Stats bridge;        // of the bridge
-  fpga::LocalBusControl::Stats local_bus;  // of the local bus
+  fpga::LocalBusControl::Stats local_bus;  // counts of the local bus
   Words words;                             // on their way to the board
-  std::array<Camera, 2> cameras;           // left, right
+  std::array<Camera, 2> cameras;           // the left one, then the right one
 };
 
 // What the PCI masters have transferred for results. The words of the traffic generator do not count.

@@ -42,8 +42,8 @@ class Computer : public sc_core::sc_module, public ComputerView {
   host::Cpu cpu;                        // runs the program
   capture::Camera left_camera;          // of the left side
   capture::Camera right_camera;         // of the right side
-  capture::CaptureBoard left_capture;   // of the left camera
-  capture::CaptureBoard right_capture;  // of the right camera
+  capture::CaptureBoard left_capture;   // capture board of the left camera
+  capture::CaptureBoard right_capture;  // capture board of the right camera
   // Null on a board without `pci.load`. Such a bus has no master kTrafficGenerator.
   std::unique_ptr<pci::TrafficGenerator> traffic_generator;
 

@@ -31,8 +31,8 @@ inline constexpr std::array<const char*, 6> kPciTargetNames = {  // in the order
 // Masters, windows and timing of the PCI bus.
 pci::PciBusConfig pci_config(const BoardConfig& board, std::uint64_t host_memory_bytes);
 pci::PciBridgeConfig bridge_config(const BoardConfig& board);          // the counted buffers included
-capture::CameraConfig camera_config(const BoardConfig& board);         // of both sides
-capture::CaptureBoardConfig capture_config(const BoardConfig& board);  // of both sides
+capture::CameraConfig camera_config(const BoardConfig& board);         // for both cameras
+capture::CaptureBoardConfig capture_config(const BoardConfig& board);  // for both capture boards
 // Nothing on a board without `pci.load`. Such a bus has no master kTrafficGenerator.
 std::optional<pci::TrafficGeneratorConfig> traffic_config(const BoardConfig& board);
 

@@ -22,7 +22,7 @@ struct ComputerControls {
   fpga::LocalBusControl& local_bus;                      // at the FPGA
   fpga::FrameRun& core;                                  // its frames
   std::array<capture::CaptureControl*, 2> captures;      // left, right
-  std::array<const capture::CameraControl*, 2> cameras;  // left, right
+  std::array<const capture::CameraControl*, 2> cameras;  // the left one, then the right one
 
   // `board`: the counters of the board at `now_ps`, up to which the controls have been stepped.
   ComputerCounters counters(BoardCounters board, std::uint64_t now_ps) const;

@@ -24,8 +24,8 @@ struct DeviceMap {
   std::uint64_t host_memory = 0x0000'0000;        // grows upwards from 0
   std::uint64_t bridge_slave = 0xC000'0000;       // 256 MiB of apertures, then 4 KiB of core registers
   std::uint64_t bridge_registers = 0xE000'0000;   // pages, interrupts, DMA
-  std::uint64_t left_capture = 0xE100'0000;       // of the left camera
-  std::uint64_t right_capture = 0xE100'1000;      // of the right camera
+  std::uint64_t left_capture = 0xE100'0000;       // capture board of the left camera
+  std::uint64_t right_capture = 0xE100'1000;      // capture board of the right camera
   std::uint64_t traffic_generator = 0xE200'0000;  // only with `pci.load`
 };
 

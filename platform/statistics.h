@@ -15,8 +15,8 @@ namespace stereotlm::platform {
 // BankStatistics has the counters of a bank.
 struct BankStatistics {
   std::string name;                     // in the board file
-  std::uint64_t reads = 0;              // granted
-  std::uint64_t writes = 0;             // granted
+  std::uint64_t reads = 0;              // granted reads
+  std::uint64_t writes = 0;             // granted writes
   std::uint64_t busy_cycles = 0;        // with one or more accesses granted
   std::uint64_t turnaround_cycles = 0;  // without a grant because of turnaround
   std::uint64_t idle_cycles = 0;        // all other cycles
@@ -41,7 +41,7 @@ struct PortStatistics {
 
 // The stall cycles of a port at a bank with one cause.
 struct BlameRow {
-  std::string port;          // the victim
+  std::string port;          // port that waits
   std::string bank;          // requested by the port
   std::string by;            // the port that was granted, or "turnaround", "row" or "refresh"
   std::uint64_t cycles = 0;  // more than 0
@@ -78,7 +78,7 @@ struct Bound {
 struct PciMasterStatistics {
   std::string name;                // of kPciMasterNames
   std::uint64_t transactions = 0;  // bursts
-  std::uint64_t words = 0;         // transferred
+  std::uint64_t words = 0;         // transferred words
   std::uint64_t wait_clocks = 0;   // clocks from each request to its address clock, summed
 };
 
@@ -96,11 +96,11 @@ struct CameraStatistics {
 
 // Of several values; each percentile is one of them.
 struct Percentiles {
-  double min = 0;  // the least
+  double min = 0;  // the least value
   double p50 = 0;  // half of the values are not greater
   double p95 = 0;  // 95 % of the values are not greater
   double p99 = 0;  // 99 % of the values are not greater
-  double max = 0;  // the greatest
+  double max = 0;  // the greatest value
 };
 
 // The computer around the board, from time 0 to the last delivery.
@@ -112,7 +112,7 @@ struct ComputerStatistics {
   std::uint64_t dma_words = 0;                   // words that the bridge's DMA moved
   std::uint64_t local_clocks = 0;                // whole clocks since time 0
   std::uint64_t local_busy_clocks = 0;           // local clocks other than idle ones
-  std::vector<CameraStatistics> cameras;         // left, right
+  std::vector<CameraStatistics> cameras;         // the left one, then the right one
   Percentiles capture_to_host_ms;                // time from the first pixel of a capture to its delivery
 };
 
@@ -120,16 +120,16 @@ struct ComputerStatistics {
 struct Statistics {
   std::string board;                           // name of the board
   std::string fidelity;                        // "cycle" or "fast"
-  std::uint64_t frames = 0;                    // finished
+  std::uint64_t frames = 0;                    // finished frames
   std::uint64_t cycles = 0;                    // counted cycles, summed over the frames
   std::vector<std::uint64_t> frame_cycles;     // length of each frame, including the pipeline latency
-  FramesPerSecond frames_per_second;           // of the core, and of the computer
+  FramesPerSecond frames_per_second;           // rates of the core and of the computer
   Bound bound;                                 // of the rates
   std::vector<BankStatistics> banks;           // in the order of the board file
   std::vector<PortStatistics> ports;           // in the order of memory::Port
   std::vector<BlameRow> blame;                 // sorted by port, bank, by (ports first), without zero rows
   std::optional<ComputerStatistics> computer;  // nullopt: a board without a computer
-  area::Area area;                             // of the core
+  area::Area area;                             // area of the core
   std::vector<std::string> failed;  // identities that do not hold, each with both sides; empty in a valid run
 };
 

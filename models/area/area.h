@@ -49,7 +49,7 @@ struct Area {
   std::int64_t flip_flops = 0;                        // as in Resources
   std::int64_t block_rams = 0;                        // of 18 kbit
   double block_rams_percent = 0;                      // of the device's block RAMs
-  std::int64_t multipliers = 0;                       // of 18 x 18 bit
+  std::int64_t multipliers = 0;                       // multipliers of 18 x 18 bits
   double multipliers_percent = 0;                     // of the device's multipliers
   std::optional<std::int64_t> pins = std::nullopt;    // of a board that names its package
   std::optional<double> pins_percent = std::nullopt;  // of the package's user pins

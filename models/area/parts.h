@@ -16,7 +16,7 @@ struct Resources {
   std::int64_t luts = 0;         // 4-input look-up tables
   std::int64_t flip_flops = 0;   // each shares the place of the LUT in front of it, if there is one
   std::int64_t block_rams = 0;   // of 18 kbit, dual port
-  std::int64_t multipliers = 0;  // of 18 x 18 bit
+  std::int64_t multipliers = 0;  // multipliers of 18 x 18 bits
 
   Resources& operator+=(const Resources& other) {  // adds number by number
     luts += other.luts;

@@ -46,7 +46,7 @@ class Camera : public sc_core::sc_module, private FrameReceiver, private FrameCa
 
   const CameraControl& control() const { return control_; }         // the rules behind the sockets
   const CameraTiming& timing() const { return control_.timing(); }  // when frames begin and pixels arrive
-  const Stats& stats() const { return control_.stats(); }           // up to now
+  const Stats& stats() const { return control_.stats(); }           // counts up to the present time
 
  private:
   void begin_frame(const VideoFrame& frame) override;

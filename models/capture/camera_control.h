@@ -87,7 +87,7 @@ class CameraControl : public FrameCamera {
   }
 
   const CameraTiming& timing() const { return timing_; }  // when frames begin and pixels arrive
-  const Stats& stats() const { return stats_; }           // up to the last step
+  const Stats& stats() const { return stats_; }           // counts up to the last step
 
  private:
   CameraTiming timing_;

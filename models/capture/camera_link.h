@@ -10,7 +10,7 @@ namespace stereotlm::capture {
 // A frame begins, at begin_ps.
 struct VideoFrame {
   std::uint64_t number = 0;              // 0 for the camera's first frame
-  std::uint64_t begin_ps = 0;            // when it begins
+  std::uint64_t begin_ps = 0;            // time of its begin
   const CameraTiming* timing = nullptr;  // timing of its pixels; lives as long as the camera
 };
 

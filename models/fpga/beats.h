@@ -31,7 +31,7 @@ using kernels::PixelColumn;
 
 // The outputs of the window modules for one column.
 struct WindowSums {
-  int row = 0;                                    // of the strip
+  int row = 0;                                    // row in the strip
   const std::int32_t* sums = nullptr;             // padded lanes, valid during the push
   int lanes = 0;                                  // padded number of candidates
   const kernels::ColumnScores* scores = nullptr;  // compared in place of the sums, unless null
@@ -41,20 +41,20 @@ struct WindowSums {
 
 // Unit A's result for a right pixel.
 struct RightMatch {
-  int row = 0;                                          // of the strip
+  int row = 0;                                          // row in the strip
   std::uint8_t disparity = kernels::kInvalidDisparity;  // of the pixel, or kInvalidDisparity
 };
 
 // Unit B's result for a left pixel.
 struct LeftMatch {
-  int row = 0;                                          // of the strip
+  int row = 0;                                          // row in the strip
   std::uint8_t disparity = kernels::kInvalidDisparity;  // of the pixel, or kInvalidDisparity
   bool left_valid = false;                              // valid bit of the pixel's table entry
 };
 
 // A checked disparity of a left pixel.
 struct Disparity {
-  int row = 0;                                      // of the strip
+  int row = 0;                                      // row in the strip
   std::uint8_t value = kernels::kInvalidDisparity;  // kInvalidDisparity if it failed the check
 };
 

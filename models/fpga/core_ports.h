@@ -94,7 +94,7 @@ class CorePorts {
   memory::Port lut(Side side, std::size_t lane) const { return lut_group(side) * lanes_ + lane; }
   memory::Port pixel(Side side, std::size_t lane) const { return pixel_group(side) * lanes_ + lane; }
   memory::Port result() const { return kReaderGroups * lanes_; }  // of the results
-  memory::Port host() const { return core_size(); }               // of the local bus
+  memory::Port host() const { return core_size(); }               // port of the local bus
   // The only port of a group, or that of a lane.
   memory::Port port(std::size_t group, std::size_t lane = 0) const {
     return group < kReaderGroups ? group * lanes_ + lane : core_size() - (kHostGroup - group);

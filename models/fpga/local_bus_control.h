@@ -14,12 +14,12 @@ namespace stereotlm::fpga {
 
 // A burst on the local bus. Each time is that at which a clock of the bus begins.
 struct EndedLocalBurst {
-  bool write = false;            // else a read
+  bool write = false;            // true: a write; false: a read
   std::uint64_t address = 0;     // on the local bus
-  std::uint64_t words = 0;       // transferred
-  std::uint64_t address_ps = 0;  // the address clock
+  std::uint64_t words = 0;       // transferred words
+  std::uint64_t address_ps = 0;  // time of the address clock
   std::uint64_t data_ps = 0;     // the decode clock
-  std::uint64_t end_ps = 0;      // the idle clock
+  std::uint64_t end_ps = 0;      // time of the idle clock
   std::uint64_t free_ps = 0;     // the clock after the idle clock
 };
 
@@ -44,7 +44,7 @@ inline constexpr std::uint64_t kLocalRegisters = std::uint64_t{1} << 34U;
 // The route of a burst to a bank: its bank, direction and words. Without `bank`: the burst has ended.
 struct HostRoute {
   std::optional<std::size_t> bank;  // nullopt: the burst has ended
-  bool write = false;               // else a read
+  bool write = false;               // true: a write; false: a read
   std::uint64_t first = 0;          // byte address on the crossbar
   std::uint64_t end = 0;            // byte address after the burst
 };
@@ -64,9 +64,9 @@ class LocalBusControl final : public LocalBusIf {
  public:
   // What the bus has counted since time 0.
   struct Stats {
-    std::uint64_t bursts = 0;             // that were not refused
+    std::uint64_t bursts = 0;             // bursts that were not refused
     std::uint64_t words_read = 0;         // from the banks
-    std::uint64_t words_written = 0;      // to the banks
+    std::uint64_t words_written = 0;      // words written to the banks
     std::uint64_t register_accesses = 0;  // words from and to registers
     std::uint64_t errors = 0;             // refused words and bursts
     std::uint64_t clocks = 0;             // whole clocks since time 0

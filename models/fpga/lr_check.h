@@ -30,7 +30,7 @@ class LrCheck : public sc_core::sc_module {
 
  public:
   StreamIn<RightMatch, LrCheck, &LrCheck::take_right> right_in{"right_in", this};  // of unit A
-  StreamIn<LeftMatch, LrCheck, &LrCheck::take_left> left_in{"left_in", this};      // then of B
+  StreamIn<LeftMatch, LrCheck, &LrCheck::take_left> left_in{"left_in", this};      // then those of B
 
   // The configuration has no problems.
   LrCheck(const sc_core::sc_module_name& name, const CoreConfig& config)

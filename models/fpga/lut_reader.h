@@ -18,7 +18,7 @@ namespace stereotlm::fpga {
 // decides when a slot comes: one that is not empty comes in the cycle in which its access is granted.
 class LutReader : public sc_core::sc_module {
  public:
-  tlm_utils::simple_initiator_socket<LutReader> port{"port"};  // to the banks
+  tlm_utils::simple_initiator_socket<LutReader> port{"port"};  // link to the banks
   StreamOut<TableEntry> entries_out{"entries_out"};            // of the left side with joint tables
   // With joint tables: the entries of the right side. Else unbound.
   sc_core::sc_port<StreamIf<TableEntry>, 1, sc_core::SC_ZERO_OR_MORE_BOUND> right_entries_out{

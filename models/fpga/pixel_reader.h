@@ -25,7 +25,7 @@ namespace stereotlm::fpga {
 // word needs no access. All words are forgotten where a strip begins.
 class PixelReader : public sc_core::sc_module {
  public:
-  tlm_utils::simple_initiator_socket<PixelReader> port{"port"};  // to the banks
+  tlm_utils::simple_initiator_socket<PixelReader> port{"port"};  // link to the banks
   StreamOut<MaskedPixel> pixels_out{"pixels_out"};               // to the filter of its side
 
  private:

@@ -26,8 +26,8 @@ class RegisterFile : public sc_core::sc_module, private CoreRegisters::Starter {
  public:
   // Register accesses since time 0.
   struct Stats {
-    std::uint64_t reads = 0;   // that were allowed
-    std::uint64_t writes = 0;  // that were allowed
+    std::uint64_t reads = 0;   // allowed reads
+    std::uint64_t writes = 0;  // allowed writes
     std::uint64_t errors = 0;  // refused accesses
   };
 

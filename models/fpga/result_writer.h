@@ -18,7 +18,7 @@ namespace stereotlm::fpga {
 // CoreControl decides in which cycle a word is written.
 class ResultWriter : public sc_core::sc_module {
  public:
-  tlm_utils::simple_initiator_socket<ResultWriter> port{"port"};  // to the banks
+  tlm_utils::simple_initiator_socket<ResultWriter> port{"port"};  // link to the banks
 
  private:
   void store(const ResultWord& word) {

@@ -22,7 +22,7 @@ namespace stereotlm::fpga {
 
 // The configuration of a StereoCore.
 struct StereoCoreConfig {
-  CoreConfig core;                                       // the stages
+  CoreConfig core;                                       // configuration of the stages
   memory::CrossbarConfig memory = {core_arbiter(), {}};  // arbiters and banks
   LocalBusConfig local_bus;                              // clock and counted buffers
   Fidelity fidelity = Fidelity::kCycle;                  // how frames are simulated
@@ -61,9 +61,9 @@ class StereoCore : public sc_core::sc_module, private FastCore::Board {
   // problems, if the banks have another clock than the core, or if the arbiters do not have all ports.
   StereoCore(const sc_core::sc_module_name& name, const StereoCoreConfig& config, Binder& binder);
 
-  Fidelity fidelity() const { return config_.fidelity; }                // as configured
+  Fidelity fidelity() const { return config_.fidelity; }                // the configured fidelity
   const memory::Crossbar& crossbar() const { return crossbar_; }        // between the stages and the banks
-  const CoreDatapath& datapath() const { return datapath_; }            // the stages
+  const CoreDatapath& datapath() const { return datapath_; }            // the modules of the stages
   const RegisterFile& register_file() const { return register_file_; }  // registers of the core
   LocalBus& local_bus_port() { return local_bus_; }                     // the core's end of the local bus
   const LocalBus& local_bus_port() const { return local_bus_; }         // the core's end of the local bus

@@ -32,7 +32,7 @@ class HostMemory : public sc_core::sc_module {
   // The stored bytes, for the owner of the memory.
   unsigned char* data() { return target_.ram().data(); }
 
-  const Stats& stats() const { return target_.stats(); }  // up to now
+  const Stats& stats() const { return target_.stats(); }  // counts up to the present time
 
  private:
   memory::RamTarget target_;

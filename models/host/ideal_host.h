@@ -20,7 +20,7 @@ namespace stereotlm::host {
 struct IdealHostConfig {
   int width = 0;              // pixels
   int height = 0;             // pixels
-  std::uint64_t frames = 1;   // to be run
+  std::uint64_t frames = 1;   // frames to run
   bool pixels = true;         // false: no pictures are requested or loaded, and results are empty
   fpga::BufferBases buffers;  // where pictures, tables and results lie
 };
@@ -34,7 +34,7 @@ struct IdealHostConfig {
 // finished() stays false. Where errors are not thrown, it goes on after a refused access.
 class IdealHost : public sc_core::sc_module {
  public:
-  tlm_utils::simple_initiator_socket<IdealHost> registers{"registers"};  // of the core
+  tlm_utils::simple_initiator_socket<IdealHost> registers{"registers"};  // to the registers of the core
   tlm_utils::simple_initiator_socket<IdealHost> memory{"memory"};        // the banks, by debug transport
   sc_core::sc_in<bool> done{"done"};                                     // interrupt of the core
 

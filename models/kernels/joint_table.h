@@ -30,7 +30,7 @@ using JointOffsets = std::array<JointOffset, 2>;  // left, right
 // The joined table, and what its displacements are relative to.
 struct JointTable {
   std::vector<std::uint32_t> words;  // row-major, one for each pixel
-  JointOffsets offsets;              // of both sides
+  JointOffsets offsets;              // offsets of both sides
 };
 
 // Why two tables cannot be joined: a text for each side and coordinate whose displacements need a larger

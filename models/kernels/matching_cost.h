@@ -23,7 +23,7 @@ inline constexpr int kMostPixelBytes = 6;               // 7 * 7 - 1 bits
 
 // A kind of cost with its parameter.
 struct MatchingCost {
-  CostKind kind = CostKind::kSad;  // what is summed
+  CostKind kind = CostKind::kSad;  // measure of difference that is summed
   int census_size = 0;  // c: rows and columns of the neighbourhood, kCensusSizeRule; 0 unless kCensus
 
   // The rows and columns beyond the window that the cost reads on each side, in pixels.

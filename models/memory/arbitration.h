@@ -12,7 +12,7 @@ namespace stereotlm::memory {
 
 // Stall cycles of a port.
 struct Stall {
-  Port port = 0;             // that stalls
+  Port port = 0;             // port that stalls
   std::size_t bank = 0;      // number among Arbitration::shared_bank()
   std::size_t by = 0;        // the port that was granted, or another cause (ArbiterStats)
   std::uint64_t cycles = 0;  // stalled

@@ -83,7 +83,7 @@ class ArbiterStats {
   }
 
   const std::vector<std::uint64_t>& counts() const { return counts_; }             // [place]
-  void add(std::size_t place, std::uint64_t change) { counts_[place] += change; }  // to one counter
+  void add(std::size_t place, std::uint64_t change) { counts_[place] += change; }  // changes one counter
 
  private:
   std::size_t ports_;

@@ -22,8 +22,8 @@ class Ram {
   }
 
   std::uint64_t bytes() const { return bytes_; }             // size
-  unsigned char* data() { return data_.get(); }              // byte 0
-  const unsigned char* data() const { return data_.get(); }  // byte 0
+  unsigned char* data() { return data_.get(); }              // the first byte
+  const unsigned char* data() const { return data_.get(); }  // the first byte
   // Whether all these bytes are inside the memory.
   bool holds(std::uint64_t address, std::uint64_t length) const {
     return address <= bytes_ && length <= bytes_ - address;
@@ -69,9 +69,9 @@ class RamTarget : public tlm::tlm_fw_transport_if<> {
   unsigned transport_dbg(tlm::tlm_generic_payload& access) override;
   bool get_direct_mem_ptr(tlm::tlm_generic_payload& access, tlm::tlm_dmi& dmi) override;
 
-  const Stats& stats() const { return stats_; }  // up to now
-  const Ram& ram() const { return ram_; }        // the bytes
-  Ram& ram() { return ram_; }                    // the bytes
+  const Stats& stats() const { return stats_; }  // counts up to the present time
+  const Ram& ram() const { return ram_; }        // the stored bytes
+  Ram& ram() { return ram_; }                    // the stored bytes
 
  private:
   void move(tlm::tlm_generic_payload& access);

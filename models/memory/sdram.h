@@ -70,7 +70,7 @@ class SdramRows {
   // just found free. An opening may take no time: then the row is open at once.
   bool may_access(std::uint64_t cycle, std::uint32_t word);
 
-  const SdramTiming& timing() const { return timing_; }  // as configured
+  const SdramTiming& timing() const { return timing_; }  // the configured timing
   // Sets or returns the open row of an internal bank. nullopt: none is open.
   std::optional<std::uint32_t> open_row(std::size_t internal_bank) const { return open_[internal_bank]; }
   void set_open_row(std::size_t internal_bank, std::optional<std::uint32_t> row) {

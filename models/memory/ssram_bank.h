@@ -33,8 +33,8 @@ class SsramBank : public sc_core::sc_module {
     port.bind(target_);
   }
 
-  const SsramBankConfig& config() const { return config_; }  // as given
-  const Stats& stats() const { return target_.stats(); }     // up to now
+  const SsramBankConfig& config() const { return config_; }  // the given configuration
+  const Stats& stats() const { return target_.stats(); }     // counts up to the present time
   // The stored words, for the owner of the bank.
   const std::uint32_t* words() const { return reinterpret_cast<const std::uint32_t*>(target_.ram().data()); }
 

@@ -26,7 +26,7 @@ class WordAccess {
     word_ = 0;
     return transport(tlm::TLM_READ_COMMAND, address, delay);
   }
-  bool write(std::uint64_t address, std::uint32_t word, sc_core::sc_time& delay) {  // as read()
+  bool write(std::uint64_t address, std::uint32_t word, sc_core::sc_time& delay) {  // the same for a write
     word_ = word;
     return transport(tlm::TLM_WRITE_COMMAND, address, delay);
   }

@@ -124,7 +124,7 @@ class BridgeControl final : public PciMasterIf, public PciTarget, public LocalBu
   // `now_ps`. To be called after PciBusControl::skip_to().
   void skip_dma(std::uint64_t now_ps, DmaChannel& channel, std::size_t bursts);
 
-  const Stats& stats() const { return stats_; }  // up to the last call
+  const Stats& stats() const { return stats_; }  // counts up to the last call
   // The words for the banks that the bridge has received, posted or by DMA, counted by buffer.
   const WordsByRange& words_taken() const { return words_taken_; }
   // The part of words_taken() that still waits in the bridge for the local bus.

@@ -46,7 +46,7 @@ class PciBridge : public sc_core::sc_module,
   PciBridge(const sc_core::sc_module_name& name, const PciBridgeConfig& config);
 
   BridgeControl& control() { return control_; }            // the rules behind the sockets
-  const Stats& stats() const { return control_.stats(); }  // up to now
+  const Stats& stats() const { return control_.stats(); }  // counts up to the present time
 
  private:
   // These serve the slave window and the register window.

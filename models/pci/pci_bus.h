@@ -63,7 +63,7 @@ class PciBus : public sc_core::sc_module {
   PciBus(const sc_core::sc_module_name& name, const PciBusConfig& config);
 
   PciBusControl& control() { return control_; }            // the rules behind the sockets
-  const Clock& clock() const { return control_.clock(); }  // of the bus
+  const Clock& clock() const { return control_.clock(); }  // the clock of the bus
   // Counts up to the current time.
   Stats stats() const { return control_.stats(kernel_time::now_ps()); }
 

@@ -18,13 +18,13 @@ namespace stereotlm::pci {
 struct EndedPciBurst {
   std::size_t master = 0;             // its slot
   std::optional<std::size_t> window;  // none: a master abort
-  bool write = false;                 // else a read
+  bool write = false;                 // true: a write; false: a read
   std::uint64_t address = 0;          // on the bus
-  std::uint64_t words = 0;            // transferred
+  std::uint64_t words = 0;            // transferred words
   std::uint64_t request_ps = 0;       // the first clock that could have been granted to the master
-  std::uint64_t address_ps = 0;       // the address clock
+  std::uint64_t address_ps = 0;       // time of the address clock
   std::uint64_t data_ps = 0;          // the clock after the address clock
-  std::uint64_t end_ps = 0;           // the idle clock
+  std::uint64_t end_ps = 0;           // time of the idle clock
 };
 
 // Receives the bursts of the PCI bus, for traces. Plain C++.
@@ -50,16 +50,16 @@ class PciBusControl {
     static constexpr std::array kAll = {&MasterCounts::transactions, &MasterCounts::words,
                                         &MasterCounts::wait_clocks, &MasterCounts::retries,
                                         &MasterCounts::aborts};
-    void add(const MasterCounts& other) {  // count by count
+    void add(const MasterCounts& other) {  // adds each counter
       for (const auto count : kAll) this->*count += other.*count;
     }
-    void subtract(const MasterCounts& other) {  // count by count
+    void subtract(const MasterCounts& other) {  // subtracts each counter
       for (const auto count : kAll) this->*count -= other.*count;
     }
   };
   // The counts of a slot.
   struct MasterStats : MasterCounts {
-    std::string name;  // as configured
+    std::string name;  // name in the configuration
   };
   // What the bus has counted since time 0.
   struct Stats {

@@ -14,7 +14,7 @@ namespace stereotlm::pci {
 
 // The burst for which a master uses its grant.
 struct PciBurst {
-  bool write = true;          // else a read
+  bool write = true;          // true: a write; false: a read
   std::uint64_t address = 0;  // address of the first byte, a multiple of 4
   // The words to write, or a buffer of as many words as are to be read. The master owns this vector, and does
   // not touch it until the end of the burst.
@@ -81,7 +81,7 @@ struct PciAnswer {
 
 // The access of a burst. Its address is relative to the target's window.
 struct PciAccess {
-  bool write = true;               // else a read
+  bool write = true;               // true: a write; false: a read
   std::uint64_t address = 0;       // of the first byte
   std::uint32_t* words = nullptr;  // to write, or places for the words read
   std::size_t count = 0;           // words

@@ -13,10 +13,10 @@ namespace stereotlm::test {
 struct SeenAccess {
   sc_core::sc_time begin;                                            // of the request
   sc_core::sc_time end;                                              // of the response
-  bool write = false;                                                // else a read
+  bool write = false;                                                // true: a write; false: a read
   std::uint64_t address = 0;                                         // as the initiator requested it
-  std::vector<std::uint32_t> words;                                  // written, or read
-  tlm::tlm_response_status response = tlm::TLM_INCOMPLETE_RESPONSE;  // of the target
+  std::vector<std::uint32_t> words;                                  // words written or read
+  tlm::tlm_response_status response = tlm::TLM_INCOMPLETE_RESPONSE;  // response of the target
 };
 
 // Stands in a link of the base protocol: forwards every call unchanged, takes no time, and keeps each access

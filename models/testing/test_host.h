@@ -15,7 +15,7 @@ class TestHost : public sc_core::sc_module, public tlm::tlm_bw_transport_if<> {
  public:
   // The response to an access.
   struct Answer {
-    tlm::tlm_response_status status = tlm::TLM_INCOMPLETE_RESPONSE;  // of the target
+    tlm::tlm_response_status status = tlm::TLM_INCOMPLETE_RESPONSE;  // response of the target
     std::uint32_t word = 0;                                          // read, or written
     sc_core::sc_time at;                                             // absolute
     std::vector<std::uint32_t> words;                                // of a burst, `word` first
@@ -35,7 +35,7 @@ class TestHost : public sc_core::sc_module, public tlm::tlm_bw_transport_if<> {
   Answer read(std::uint64_t address, const sc_core::sc_time& delay = {}) {
     return block(tlm::TLM_READ_COMMAND, address, 0, delay);
   }
-  Answer write(std::uint64_t address, std::uint32_t word, const sc_core::sc_time& delay = {}) {  // as read()
+  Answer write(std::uint64_t address, std::uint32_t word, const sc_core::sc_time& delay = {}) {  // a word
     return block(tlm::TLM_WRITE_COMMAND, address, word, delay);
   }
   // Words by b_transport.

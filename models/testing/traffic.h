@@ -13,7 +13,7 @@ namespace stereotlm::test {
 // One access of an initiator: it begins `pause` after the response of the one before.
 struct TrafficAccess {
   sc_core::sc_time pause;     // since the response of the one before
-  bool write = false;         // else a read
+  bool write = false;         // true: a write; false: a read
   std::uint64_t address = 0;  // of the first byte, a multiple of 4
   std::size_t words = 1;      // of 32 bits
 };

@@ -47,7 +47,7 @@ inline int pins_of(const BoardConfig& board) {  // of the banks, the local bus, 
   return pins;
 }
 
-inline area::Area area_of(const BoardConfig& board) {  // of the core, as shares of the board's device
+inline area::Area area_of(const BoardConfig& board) {  // area of the core, as shares of the board's device
   area::Area area = area::total(area_items(board), device_of(board));
   if (const area::Package* const package = area::find_package(board.fpga.package)) {
     area.pins = pins_of(board);

@@ -28,7 +28,7 @@ struct YamlNode {
   enum class Style { kUsual, kOther };  // yaml_text() writes maps in block style, lists in flow style
   struct Entry;
 
-  static YamlNode map(const Place& place = {});       // without entries
+  static YamlNode map(const Place& place = {});       // a map without entries
   static YamlNode list(std::vector<YamlNode> items);  // of these items
   // A scalar that is not in quotes.
   static YamlNode plain(std::string text, const Place& place = {});
@@ -44,9 +44,9 @@ struct YamlNode {
   std::vector<YamlNode> items;  // values of a list
   std::vector<Entry> entries;   // entries of a map, in the order of the text
 
-  bool is_map() const { return kind == Kind::kMap; }        // also if it is empty
-  bool is_list() const { return kind == Kind::kList; }      // also if it is empty
-  bool is_scalar() const { return kind == Kind::kScalar; }  // with a text
+  bool is_map() const { return kind == Kind::kMap; }        // true for an empty one too
+  bool is_list() const { return kind == Kind::kList; }      // true for an empty one too
+  bool is_scalar() const { return kind == Kind::kScalar; }  // true for a scalar with a text
   // Whether this is a scalar with that text, with or without quotes.
   bool is(std::string_view word) const { return is_scalar() && text == word; }
 
