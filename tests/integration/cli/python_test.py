@@ -120,7 +120,8 @@ class Boards(PythonTest):
         self.assertIn("matcher.window", board)
         self.assertNotIn("matcher", board)
         self.assertEqual(list(board)[:2], ["name", "image.width"])
-        self.assertEqual(board["matcher"]["window"], board.ssram["banks"].bank1.words and 7)
+        self.assertEqual((board["matcher"]["window"], board.ssram["banks"].bank1.words), (7, 524288))
+        self.assertEqual(dict(board.fpga)["lanes"], 1)
         self.assertEqual(list(board.ssram.banks), [f"bank{i}" for i in range(8)])
         board.matcher["window"] = 5
         self.assertNotEqual(board, small_board())
