@@ -1,7 +1,11 @@
 # The API reference, by Doxygen: `cmake --build build/release --target docs` writes build/release/docs/html. A
 # public name without a comment is an error.
-find_package(Doxygen)
-if(NOT Doxygen_FOUND OR NOT Python3_Interpreter_FOUND)
+find_package(Doxygen QUIET)
+if(NOT Doxygen_FOUND)
+  stereotlm_target_without_tool(docs doxygen)
+  return()
+elseif(NOT Python3_Interpreter_FOUND)
+  stereotlm_target_without_tool(docs python3)
   return()
 endif()
 # Doxygen reads the headers as they are installed, so that it shows how to include them.

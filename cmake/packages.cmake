@@ -3,9 +3,17 @@
 #
 # The packages are stereotlm (the program), libstereotlm-dev (libraries, headers, guides, example) and
 # python3-stereotlm (the Python module). Man pages need help2man, completion needs Python; without them
-# there are none.
+# there are none, and no packages.
 find_program(STEREOTLM_HELP2MAN help2man)
 find_package(Python3 COMPONENTS Interpreter)
+
+# A target that says which tool was not there when the build folder was configured.
+function(stereotlm_target_without_tool target tool)
+  add_custom_target(${target}
+    COMMAND ${CMAKE_COMMAND} -E echo
+      "${target}: ${tool} was not found. Install it (./setup packages), then configure again."
+    COMMAND ${CMAKE_COMMAND} -E false VERBATIM)
+endfunction()
 set(manual ${PROJECT_BINARY_DIR}/${CMAKE_INSTALL_MANDIR}/man1)
 set(completion ${PROJECT_BINARY_DIR}/completion)
 
@@ -96,10 +104,16 @@ set(CPACK_COMPONENT_PYTHON_DESCRIPTION "the Python module
  Runs boards on arrays of numpy, and answers in tables of pandas who waits for
  whom, and what each change of a board would gain.")
 include(CPack)
+if(NOT STEREOTLM_HELP2MAN)
+  stereotlm_target_without_tool(packages help2man)
+  return()
+elseif(NOT Python3_Interpreter_FOUND)
+  stereotlm_target_without_tool(packages python3)
+  return()
+endif()
 add_custom_target(packages
   DEPENDS stereotlm stereotlm_decoders stereotlm_calibration stereotlm_platform stereotlm_testing
-    stereotlm_schema_of_board stereotlm_schema_of_plan $<TARGET_NAME_IF_EXISTS:stereotlm_manual>
-    $<TARGET_NAME_IF_EXISTS:stereotlm_completion>
+    stereotlm_schema_of_board stereotlm_schema_of_plan stereotlm_manual stereotlm_completion
   COMMAND ${CMAKE_CPACK_COMMAND} --config ${PROJECT_BINARY_DIR}/CPackConfig.cmake -B
     ${PROJECT_BINARY_DIR}/packages
   WORKING_DIRECTORY ${PROJECT_BINARY_DIR} VERBATIM USES_TERMINAL)

@@ -1,5 +1,12 @@
-find_package(GTest REQUIRED)
-find_package(rapidcheck REQUIRED)
+# The tests, and what they are made with. Without the libraries that they need, the rest is built alone.
+foreach(library GTest rapidcheck benchmark)
+  find_package(${library} QUIET)
+  if(NOT ${library}_FOUND)
+    message(NOTICE "-- Tests are not built: ${library} is not installed. "
+      "To have them: ./setup tests, then configure again.")
+    return()
+  endif()
+endforeach()
 include(GoogleTest)
 
 set(STEREOTLM_TEST_OPTIONS "" CACHE STRING "Compiler options of the test programs, behind all others")
@@ -55,3 +62,5 @@ function(stereotlm_add_test name)
   gtest_discover_tests(${name} PROPERTIES LABELS "${arg_LABELS}" TIMEOUT ${arg_TIMEOUT} COST "${cost}"
     DISCOVERY_TIMEOUT 60)
 endfunction()
+
+add_subdirectory(${PROJECT_SOURCE_DIR}/tests ${PROJECT_BINARY_DIR}/tests)

@@ -8,6 +8,7 @@ and exits with 1 if there is any, with 2 if ROOT is not such a tree.
 
 import pathlib
 import re
+import subprocess
 import sys
 
 # Folder -> folders whose files it may include.
@@ -180,12 +181,10 @@ def check_reach(file, files):
 
 def check(root):
     """Every broken rule of the tree as (path, line, what)."""
-    paths = sorted(
-        path.relative_to(root).as_posix()
-        for folder in MAY_INCLUDE
-        for path in (root / folder).rglob("*")
-        if path.suffix in SUFFIXES and path.is_file()
-    )
+    patterns = [f"{folder}/*{suffix}" for folder in MAY_INCLUDE for suffix in SUFFIXES]
+    listed = subprocess.run(["git", "ls-files", "-z", "--", *patterns], cwd=root, stdout=subprocess.PIPE,
+                            text=True, check=True)
+    paths = sorted(filter(None, listed.stdout.split("\0")))
     files = {path: File(root, path) for path in paths}
     for file in files.values():
         findings = list(check_includes(file, files)) + list(check_reach(file, files))

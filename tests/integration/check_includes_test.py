@@ -76,21 +76,27 @@ class CheckIncludes(unittest.TestCase):
             def write(path, text):
                 (root / path).parent.mkdir(parents=True, exist_ok=True)
                 (root / path).write_text(text, encoding="utf-8")
+                git("add", path)
+
+            def git(*arguments):
+                subprocess.run(["git", "-C", root, *arguments], check=True)
 
             def program():
                 command = [sys.executable, check_includes.__file__, root]
                 done = subprocess.run(command, capture_output=True, text=True, check=False)
                 return done.returncode, done.stdout
 
+            git("init", "-q")
             for path, text in GOOD.items():
                 write(path, text)
+            (root / "models/scratch.h").write_text("no pragma, and not tracked")
             self.assertEqual(program(), (0, ""))
             for path, text, finding in BROKEN:
                 with self.subTest(path=path, text=text):
                     write(path, PRAGMA + text if path.endswith(".h") else text)
                     (found,) = [f"{path}:{line}: {what}" for path, line, what in check_includes.check(root)]
                     self.assertIn(finding, found)
-                    (root / path).unlink()
+                    git("rm", "-q", "-f", path)
             write("models/kernels/a.h", "#include <cstdint>\n#pragma once\n")
             status, out = program()
             self.assertEqual((status, out.count("\n")), (1, 1))

@@ -4,7 +4,6 @@ import copy
 import itertools
 import json
 import os
-import pathlib
 import re
 import sys
 import unittest
@@ -14,10 +13,10 @@ import yaml
 
 import program
 from program import PROGRAM, ProgramTest, run, sets
+from tracked_files import ROOT, tracked
 
-SOURCES = pathlib.Path(__file__).resolve().parents[3]
 os.environ["STEREOTLM_PROGRAM"] = PROGRAM
-sys.path.insert(0, str(SOURCES / "sw" / "python"))
+sys.path.insert(0, str(ROOT / "sw" / "python"))
 import stereotlm  # noqa: E402
 from stereotlm.board import _yaml  # noqa: E402
 
@@ -71,8 +70,8 @@ class Schemas(ProgramTest):
         return jsonschema.Draft202012Validator(self.schemas[name]).is_valid(document)
 
     def test_files_of_the_project_are_valid(self):
-        files = [("board", path) for path in sorted((SOURCES / "platform" / "boards").glob("*.yaml"))]
-        files += [("plan", path) for path in sorted((SOURCES / "results").glob("*/*.yaml"))]
+        files = [("board", path) for path in tracked("platform/boards/*.yaml")]
+        files += [("plan", path) for path in tracked("results/*/*.yaml")]
         self.assertGreater(len(files), 30)
         for name, path in files:
             document = yaml.load(path.read_text(), Loader)

@@ -1,7 +1,6 @@
 """sweep and merge: plans, their databases, what is continued and what is refused."""
 
 import os
-import pathlib
 import re
 import shlex
 import signal
@@ -9,6 +8,7 @@ import sqlite3
 
 import program
 from program import HEIGHT, WIDTH, ProgramTest, Terminal, run, wait_until
+from tracked_files import tracked
 
 PLAN = f"""
 board: fpl2003
@@ -24,9 +24,7 @@ IMPOSSIBLE = 6  # the two image lists of different lengths
 OK = POINTS - IMPOSSIBLE
 MORE = PLAN.replace("[3, 5, 7]", "[7, 9]")  # 4 points that PLAN has, and 4 others
 
-RESULTS = pathlib.Path(__file__).resolve().parents[3] / "results"
-# results/demo is where ./demo and the README write.
-STUDIES = sorted(plan for plan in RESULTS.glob("*/*.yaml") if plan.parent.name != "demo")
+STUDIES = tracked("results/*/*.yaml")
 
 
 class SweepTest(ProgramTest):
@@ -152,7 +150,7 @@ class Studies(SweepTest):
                     "two_banks"}
         self.assertLessEqual(expected, names)
         for plan in STUDIES:
-            with self.subTest(plan=plan.relative_to(RESULTS)):
+            with self.subTest(plan=plan):
                 store = self.folder / f"{plan.parent.name}_{plan.stem}.db"
                 said = self.succeeds(self.sweep("--shard", "0/1000000", plan=plan, store=store))
                 self.assertIn("1 ok, 0 impossible, 0 failed", said)
