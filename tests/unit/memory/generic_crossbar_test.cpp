@@ -151,6 +151,120 @@ TEST(GenericCrossbar, RefusesAndReportsOnce) {
   sc_core::sc_start(sc_time(500, SC_NS));
 }
 
+// Waits until `ns` after the start of the simulation.
+void wait_until(int ns) { sc_core::wait(sc_time(ns, SC_NS) - sc_core::sc_time_stamp()); }
+
+sc_core::sc_process_handle spawn(const char* name, const std::function<void()>& work) {
+  return sc_core::sc_spawn(work, name);
+}
+
+TEST(GenericCrossbar, DropsTheWordsOfAKilledProcessThatAreNotGranted) {
+  Bench bench({{"fixed_priority", list_of(1)}, {SsramBankConfig{}}});
+  test::TestHost& host = bench.host(0);
+  test::ExpectedReport lost("/stereotlm/lost_access");
+  auto victim = spawn("victim", [&] { host.write_words(8, {1, 2, 3, 4}); });
+  Process process("process", [&] {
+    wait_until(30);  // words are granted at 0 ns, 25 ns, 50 ns, ..
+    victim.kill();
+    const auto answer = host.read_words(8, 3);
+    EXPECT_EQ(answer.words, (std::vector<std::uint32_t>{1, 2, 0}));
+    EXPECT_EQ(answer.at, sc_time(50 + 4 * 25, SC_NS));
+  });
+  sc_core::sc_start();
+  EXPECT_EQ(lost.text(),
+            "crossbar.port_0: a write of 16 bytes at address 0x8 is lost: its process victim was killed or "
+            "reset while it waited; 8 of 16 bytes were granted");
+  EXPECT_EQ(bench.accesses(0).size(), 5U);
+}
+
+TEST(GenericCrossbar, ServesThoseBehindAProcessThatIsKilledBeforeItsTurn) {
+  Bench bench({{"fixed_priority", list_of(1)}, {SsramBankConfig{}}});
+  test::TestHost& host = bench.host(0);
+  const test::ExpectedReport lost("/stereotlm/lost_access", 2);
+  std::vector<sc_time> ends;
+  const auto write = [&] { ends.push_back(host.write_words(8, {1, 2, 3, 4}).at); };
+  spawn("first", write);
+  auto in_queue = spawn("in_queue", write);
+  spawn("last", write);
+  auto before_its_time = spawn("before_its_time", [&] { host.read(8, sc_time(150, SC_NS)); });
+  Process process("process", [&] {
+    wait_until(30);
+    in_queue.kill();
+    before_its_time.kill();
+  });
+  sc_core::sc_start();
+  EXPECT_EQ(ends, (std::vector<sc_time>{sc_time(100, SC_NS), sc_time(200, SC_NS)}));
+  EXPECT_EQ(bench.accesses(0).size(), 8U);
+}
+
+TEST(GenericCrossbar, StopsTheSimulationWhereALostAccessIsToThrow) {
+  Bench bench({{"fixed_priority", list_of(1)}, {SsramBankConfig{}}});
+  test::TestHost& host = bench.host(0);
+  const test::ExpectedReport lost("/stereotlm/lost_access");
+  sc_core::sc_report_handler::set_actions("/stereotlm/lost_access", sc_core::SC_THROW);
+  auto victim = spawn("victim", [&] { host.read(8, sc_time(1, sc_core::SC_US)); });
+  Process process("process", [&] {
+    wait_until(30);
+    victim.kill();
+  });
+  sc_core::sc_start();
+  EXPECT_EQ(sc_core::sc_get_status(), sc_core::SC_STOPPED);
+  EXPECT_EQ(sc_core::sc_time_stamp(), sc_time(30, SC_NS));
+}
+
+class RandomEnds : public ::testing::TestWithParam<std::uint64_t> {};
+
+// Processes write words of their own and read them back, two at each port, while others are killed and reset
+// at any time, in any delta cycle.
+TEST_P(RandomEnds, LeaveEachPortInOrder) {
+  sc_core::sc_report_handler::set_actions("/stereotlm/lost_access", sc_core::SC_DO_NOTHING);
+  constexpr std::size_t kProcesses = 6;
+  test::SplitMix64 random(GetParam());
+  Bench bench({{"round_robin", list_of(3)}, {{64, BankKind::kSyncBurst, 1, 133}}});
+  for (Port port = 0; port < 3; ++port) bench.host(port);
+  std::array<std::size_t, kProcesses> done{};
+  std::uint32_t value = 0;
+  const auto work = [&](std::size_t number) {
+    test::TestHost& host = *bench.hosts[number / 2];
+    for (;;) {
+      const std::vector<std::uint32_t> words = {++value, ++value, ++value};
+      const sc_time written = host.write_words(16 * number, words).at;
+      if (number % 3 != 0) sc_core::wait(written - sc_core::sc_time_stamp());
+      const auto answer = host.read_words(16 * number, 3);
+      EXPECT_EQ(answer.words, words);
+      sc_core::wait(answer.at - sc_core::sc_time_stamp());
+      ++done[number];
+    }
+  };
+  std::array<sc_core::sc_process_handle, kProcesses> processes;
+  const auto start = [&](std::size_t number) {
+    processes[number] = sc_core::sc_spawn([&work, number] { work(number); });
+  };
+  for (std::size_t number = 0; number < kProcesses; ++number) start(number);
+  Process process("process", [&] {
+    for (int end = 0; end < 300; ++end) {
+      sc_core::wait(sc_core::SC_ZERO_TIME);  // SystemC 2.3.4 kills no process that has not begun
+      const int cycle = static_cast<int>(kernel_time::now_ps() / 7519) + random.between(0, 6);
+      const std::uint64_t at_ps = bench.crossbar.clock().edge_ps(static_cast<std::uint64_t>(cycle));
+      if (random.chance(50) && at_ps > kernel_time::now_ps())
+        sc_core::wait(kernel_time::to_time(at_ps - kernel_time::now_ps()));
+      for (int deltas = random.between(0, 8); deltas > 0; --deltas) sc_core::wait(sc_core::SC_ZERO_TIME);
+      const auto number = static_cast<std::size_t>(random.between(0, kProcesses - 1));
+      if (random.chance(50)) {
+        processes[number].reset();
+      } else {
+        processes[number].kill();
+        start(number);
+      }
+    }
+    done = {};
+  });
+  sc_core::sc_start(sc_time(100, sc_core::SC_US));
+  for (const std::size_t count : done) EXPECT_GT(count, 10U);
+}
+
+INSTANTIATE_TEST_SUITE_P(Drawn, RandomEnds, ::testing::Range<std::uint64_t>(0, 6));
+
 TEST(GenericCrossbar, RefusesAConfigurationWithProblems) {
   EXPECT_THROW(GenericCrossbar("crossbar", {{"fixed_priority", {0, 0}}, {SsramBankConfig{}}}),
                std::invalid_argument);

@@ -83,6 +83,44 @@ TEST_F(PciBridgeSlave, ReadsBehindTheWritesPostedBefore) {
   EXPECT_EQ(dut->stats().slave_reads, 2U);
 }
 
+TEST_F(PciBridgeSlave, EndsTheReadOfAKilledProcessBeforeTheNextOne) {
+  test::ExpectedReport lost("/stereotlm/lost_access");
+  build();
+  local.held = true;
+  std::vector<std::vector<std::uint32_t>> read;
+  const auto start_read = [&](std::uint64_t address) {
+    return sc_core::sc_spawn([&, address] {
+      std::vector<std::uint32_t> words(2);
+      tlm::tlm_generic_payload access;
+      access.set_command(tlm::TLM_READ_COMMAND);
+      access.set_address(address);
+      access.set_data_ptr(reinterpret_cast<unsigned char*>(words.data()));
+      access.set_data_length(8);
+      access.set_streaming_width(8);
+      sc_core::sc_time delay;
+      bench->bus->targets[1]->b_transport(access, delay);
+      EXPECT_EQ(access.get_response_status(), tlm::TLM_OK_RESPONSE);
+      read.push_back(words);
+    });
+  };
+  auto victim = start_read(16);
+  start_read(24);
+  start_read(32);
+  sc_core::sc_spawn([&] {
+    sc_core::wait(100, sc_core::SC_NS);
+    victim.kill();
+    sc_core::wait(100, sc_core::SC_NS);
+    local.release();
+  });
+  run(5);
+  EXPECT_NE(lost.text().find("bridge.slave: a read of 8 bytes at address 0x10 is lost: its process thread_p"),
+            std::string::npos)
+      << lost.text();
+  ASSERT_EQ(local.bursts.size(), 3U);
+  EXPECT_EQ(read, (std::vector<std::vector<std::uint32_t>>{local.bursts[1].words, local.bursts[2].words}));
+  EXPECT_EQ(local.bursts[2].address, 32U);
+}
+
 TEST_F(PciBridgeSlave, AnswersAReadThatTheBoardRefusesWithAnError) {
   const test::ExpectedReport refusal("/stereotlm/refused_access");
   build();
