@@ -22,7 +22,7 @@ GenericCrossbar::GenericCrossbar(const sc_core::sc_module_name& name, const Cros
       banks("bank", config.banks.size()),
       clock_(checked(this->name(), config).banks.front().clock_mhz) {
   for (const auto& port : ports) states_.emplace_back(port);
-  kernel_time::check_resolution();
+  kernel_time::check_resolution(*this);
   for (const SsramBankConfig& bank : config.banks)
     arbiters_.emplace_back(config.arbiter, bank).begin_counting(0);
   for (std::size_t port = 0; port < ports.size(); ++port) {

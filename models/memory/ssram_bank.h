@@ -30,7 +30,7 @@ class SsramBank : public sc_core::sc_module {
         target_({std::uint64_t{config.words} * 4, false, true}, "/stereotlm/ssram_bank", *this,
                 RamTarget::Timing{Clock(config.clock_mhz),
                                   static_cast<std::uint64_t>(read_latency_cycles(config))}) {
-    kernel_time::check_resolution();
+    kernel_time::check_resolution(*this);
     port.bind(target_);
   }
 

@@ -10,7 +10,7 @@ namespace stereotlm::pci {
 PciBridge::PciBridge(const sc_core::sc_module_name& name, const PciBridgeConfig& config)
     : sc_module(name), control_(checked(this->name(), config), pci, *this, *this) {
   SC_HAS_PROCESS(PciBridge);
-  kernel_time::check_resolution();
+  kernel_time::check_resolution(*this);
   slave.register_b_transport(this, &PciBridge::access_slave);
   registers.register_b_transport(this, &PciBridge::access_registers);
   local.register_nb_transport_bw(this, &PciBridge::respond);

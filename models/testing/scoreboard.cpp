@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "models/kernel_time.h"
 #include "models/testing/failure.h"
 
 namespace stereotlm::test {
@@ -19,8 +20,8 @@ void Scoreboard::ended(const tlm::tlm_generic_payload& payload, std::uint64_t ad
     if (payload.is_read() && !is_new) {
       ++compared_;
       if (known->second != value) {
-        fail(std::string(name()) + " at " + end.to_string() + ": byte " + std::to_string(place) + " = " +
-             std::to_string(value) + ": must be " + std::to_string(known->second));
+        fail(std::string(name()) + " at " + kernel_time::text_of(end) + ": byte " + std::to_string(place) +
+             " = " + std::to_string(value) + ": must be " + std::to_string(known->second));
       }
     }
     known->second = value;

@@ -153,8 +153,14 @@ TEST_F(CameraTest, RefusesAConfigurationWithProblems) {
 TEST(CameraResolution, MustBeOnePicosecond) {
   sc_core::sc_set_time_resolution(10, sc_core::SC_PS);
   NoiseSource source(8, 5);
-  EXPECT_THROW(Camera("refused", CameraConfig{8, 5, 25, CameraTrigger::kFreeRunning}, source),
-               std::invalid_argument);
+  try {
+    const Camera camera("refused", CameraConfig{8, 5, 25, CameraTrigger::kFreeRunning}, source);
+    ADD_FAILURE() << "not refused";
+  } catch (const std::invalid_argument& refusal) {
+    EXPECT_STREQ(refusal.what(),
+                 "refused: time resolution = 10 ps: must be 1 ps, SystemC's default: leave "
+                 "sc_set_time_resolution() out, or call it with (1, SC_PS)");
+  }
 }
 
 }  // namespace
