@@ -28,7 +28,7 @@ class AccessQueue {
         places.erase(place);
         queue_.next_turn_.notify(sc_core::SC_ZERO_TIME);
       }
-      if (!has_ended_) report();
+      if (!has_ended_ && done_ < access_.get_data_length()) report();
     }
     Place(const Place&) = delete;
     Place& operator=(const Place&) = delete;
@@ -43,8 +43,8 @@ class AccessQueue {
       queue_.places_.push_back(this);
       while (queue_.places_.front() != this) sc_core::wait(queue_.next_turn_);
     }
-    // The number of bytes whose transfer has been granted, for the report.
-    void set_granted(unsigned bytes) { granted_ = bytes; }
+    // The number of bytes that have been transferred. A process that ends after all of them loses nothing.
+    void set_done(unsigned bytes) { done_ = bytes; }
     // The access has its response.
     void end() { has_ended_ = true; }
 
@@ -52,8 +52,8 @@ class AccessQueue {
     void report() const {
       const std::string text = std::string(queue_.target_.name()) + ": " + access_text(access_) +
                                " is lost: its process " + sc_core::sc_get_current_process_handle().name() +
-                               " was killed or reset while it waited; " + std::to_string(granted_) + " of " +
-                               std::to_string(access_.get_data_length()) + " bytes were granted";
+                               " was killed or reset while it waited; " + std::to_string(done_) + " of " +
+                               std::to_string(access_.get_data_length()) + " bytes had been transferred";
       try {
         SC_REPORT_WARNING("/stereotlm/lost_access", text.c_str());
       } catch (const sc_core::sc_report& report) {
@@ -65,7 +65,7 @@ class AccessQueue {
 
     AccessQueue& queue_;
     const tlm::tlm_generic_payload& access_;
-    unsigned granted_ = 0;
+    unsigned done_ = 0;  // bytes
     bool has_ended_ = false;
   };
 

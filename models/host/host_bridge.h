@@ -42,7 +42,7 @@ class HostBridge : public sc_core::sc_module, private pci::PciMasterIf {
  private:
   void transport(tlm::tlm_generic_payload& access, sc_core::sc_time& delay);
   tlm::tlm_response_status transfer(tlm::tlm_generic_payload& access, AccessQueue::Place& place);
-  void run_burst(const pci::PciBurst& burst);
+  void run_burst(const pci::PciBurst& burst, AccessQueue::Place& place);
   pci::PciBurst begin_burst(std::uint64_t address_clock_ps) override;
   void end_burst(const pci::BurstResult& result) override;
 
@@ -51,6 +51,7 @@ class HostBridge : public sc_core::sc_module, private pci::PciMasterIf {
   pci::PciBurst burst_;   // that the next grant is for; without words: it has been granted, or is dropped
   bool is_ended_ = true;  // all that have been granted
   pci::BurstResult result_;
+  unsigned done_bytes_ = 0;  // of the access that is served
   std::vector<std::uint32_t> words_;
   Refusals refusals_{*this};
 };

@@ -67,8 +67,7 @@ void GenericCrossbar::transport(int number, tlm::tlm_generic_payload& access, sc
   try {
     while (port.access != nullptr) wait(port.ended);
   } catch (...) {  // the process is killed or reset
-    place.set_granted(port.granted_bytes);
-    if (port.access == nullptr) place.end();
+    place.set_done(port.granted_bytes);
     port.access = nullptr;
     await_cycle();
     throw;

@@ -67,7 +67,6 @@ bool PciBridge::read_slave(std::uint64_t offset, unsigned char* data, std::size_
   while (reads_) wait(read_ended_);  // the read of an access that is lost
   reads_ = true;
   read_bytes_.resize(words * 4);
-  place.set_granted(static_cast<unsigned>(words * 4));
   control_.read(kernel_time::now_ps(), offset, read_bytes_.data(), words);
   await_step();
   while (reads_) wait(read_ended_);

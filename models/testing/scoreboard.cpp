@@ -7,6 +7,17 @@
 
 namespace stereotlm::test {
 
+void Scoreboard::b_transport(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay) {
+  const std::uint64_t address = payload.get_address();
+  try {
+    AccessProbe::b_transport(payload, delay);
+  } catch (...) {  // the process is killed or reset: any of its bytes may have been written
+    for (unsigned byte = 0; payload.is_write() && byte < payload.get_data_length(); ++byte)
+      bytes_.erase(address + byte);
+    throw;
+  }
+}
+
 void Scoreboard::ended(const tlm::tlm_generic_payload& payload, std::uint64_t address,
                        const sc_core::sc_time& begin, const sc_core::sc_time& end) {
   AccessProbe::ended(payload, address, begin, end);

@@ -154,7 +154,7 @@ TEST_F(HostBridgeTest, DropsTheBurstOfAKilledProcessThatIsNotGranted) {
   });
   EXPECT_EQ(lost.text(),
             "bridge: a write of 4 bytes at address 0x10004 is lost: its process victim was killed or reset "
-            "while it waited; 0 of 4 bytes were granted");
+            "while it waited; 0 of 4 bytes had been transferred");
   ASSERT_EQ(target().accesses.size(), 2U);
   EXPECT_EQ(target().accesses[1].words, (Words{5, 6, 7}));
 }

@@ -173,7 +173,7 @@ TEST(GenericCrossbar, DropsTheWordsOfAKilledProcessThatAreNotGranted) {
   sc_core::sc_start();
   EXPECT_EQ(lost.text(),
             "crossbar.port_0: a write of 16 bytes at address 0x8 is lost: its process victim was killed or "
-            "reset while it waited; 8 of 16 bytes were granted");
+            "reset while it waited; 8 of 16 bytes had been transferred");
   EXPECT_EQ(bench.accesses(0).size(), 5U);
 }
 
