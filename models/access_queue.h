@@ -51,14 +51,15 @@ class AccessQueue {
    private:
     void report() const {
       const std::string text = std::string(queue_.target_.name()) + ": " + access_text(access_) +
-                               " is lost: its process " + sc_core::sc_get_current_process_handle().name() +
-                               " was killed or reset while it waited; " + std::to_string(done_) + " of " +
-                               std::to_string(access_.get_data_length()) + " bytes had been transferred";
+                               " is lost: kill(), reset() or an exception has taken its process " +
+                               sc_core::sc_get_current_process_handle().name() + " out of b_transport; " +
+                               std::to_string(done_) + " of " + std::to_string(access_.get_data_length()) +
+                               " bytes had been transferred";
       try {
         SC_REPORT_WARNING("/stereotlm/lost_access", text.c_str());
       } catch (const sc_core::sc_report& report) {
-        // Nothing may be thrown while SystemC ends a process: where warnings are thrown, this one stops the
-        // simulation.
+        // Nothing may be thrown while SystemC ends a process. Where the warning is set to throw, it stops the
+        // simulation instead.
         sc_core::sc_report_handler::default_handler(report, sc_core::SC_DISPLAY | sc_core::SC_STOP);
       }
     }

@@ -48,8 +48,8 @@ class HostBridge : public sc_core::sc_module, private pci::PciMasterIf {
 
   AccessQueue queue_{*this};
   sc_core::sc_event ended_{"ended"};
-  pci::PciBurst burst_;   // that the next grant is for; without words: it has been granted, or is dropped
-  bool is_ended_ = true;  // all that have been granted
+  pci::PciBurst burst_;   // requested and not granted; without words: none
+  bool is_ended_ = true;  // the burst that was granted last
   pci::BurstResult result_;
   unsigned done_bytes_ = 0;  // of the access that is served
   std::vector<std::uint32_t> words_;

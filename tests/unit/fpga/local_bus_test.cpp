@@ -155,8 +155,6 @@ TEST_F(LocalBusTest, RefusesATransactionWithoutMemoryManager) {
   EXPECT_EQ(host.socket->nb_transport_fw(payload, phase, delay), tlm::TLM_COMPLETED);
   EXPECT_EQ(payload.get_response_status(), tlm::TLM_GENERIC_ERROR_RESPONSE);
   EXPECT_NE(refusal.text().find("must have a memory manager (set_mm())"), std::string::npos);
-  EXPECT_EQ(bus.stats().errors, 1U);
-  EXPECT_EQ(bus.stats().bursts, 0U);
   EXPECT_EQ(binder.take_violations().size(), 1U);
 }
 

@@ -165,9 +165,10 @@ TEST(GenericCrossbar, DropsTheWordsOfAKilledProcessThatAreNotGranted) {
     EXPECT_EQ(answer.at, sc_time(50 + 4 * 25, SC_NS));
   });
   sc_core::sc_start();
-  EXPECT_EQ(lost.text(),
-            "crossbar.port_0: a write of 16 bytes at address 0x8 is lost: its process victim was killed or "
-            "reset while it waited; 8 of 16 bytes had been transferred");
+  EXPECT_EQ(
+      lost.text(),
+      "crossbar.port_0: a write of 16 bytes at address 0x8 is lost: kill(), reset() or an exception has "
+      "taken its process victim out of b_transport; 8 of 16 bytes had been transferred");
   EXPECT_EQ(bench.accesses(0).size(), 5U);
 }
 
@@ -188,7 +189,6 @@ TEST(GenericCrossbar, ServesThoseBehindAProcessThatIsKilledBeforeItsTurn) {
   });
   sc_core::sc_start();
   EXPECT_EQ(ends, (std::vector<sc_time>{sc_time(100, SC_NS), sc_time(200, SC_NS)}));
-  EXPECT_EQ(bench.accesses(0).size(), 8U);
 }
 
 TEST(GenericCrossbar, StopsTheSimulationWhereALostAccessIsToThrow) {
@@ -213,7 +213,7 @@ TEST_P(RandomEnds, LeaveEachPortInOrder) {
   sc_core::sc_report_handler::set_actions("/stereotlm/lost_access", sc_core::SC_DO_NOTHING);
   constexpr std::size_t kProcesses = 6;
   test::SplitMix64 random(GetParam());
-  Bench bench({{"round_robin", list_of(3)}, {{64, BankKind::kSyncBurst, 1, 133}}});
+  Bench bench({{"round_robin", list_of(3)}, {{64, BankKind::kSyncBurst, 1, 40}}});
   std::deque<test::Scoreboard> scoreboards;
   for (Port port = 0; port < 3; ++port) {
     scoreboards.emplace_back(fmt::format("scoreboard{}", port).c_str())
@@ -238,25 +238,20 @@ TEST_P(RandomEnds, LeaveEachPortInOrder) {
       ++done[number];
     }
   };
-  std::array<sc_core::sc_process_handle, kProcesses> processes;
-  const auto start = [&](std::size_t number) {
-    processes[number] = sc_core::sc_spawn([&work, number] { work(number); });
-  };
-  for (std::size_t number = 0; number < kProcesses; ++number) start(number);
+  const auto start = [&](std::size_t number) { return sc_core::sc_spawn([&work, number] { work(number); }); };
+  std::vector<sc_core::sc_process_handle> processes;
+  for (std::size_t number = 0; number < kProcesses; ++number) processes.push_back(start(number));
   Process process("process", [&] {
     for (int end = 0; end < 300; ++end) {
       sc_core::wait(sc_core::SC_ZERO_TIME);  // SystemC 2.3.4 kills no process that has not begun
-      const int cycle = static_cast<int>(kernel_time::now_ps() / 7519) + random.between(0, 6);
-      const std::uint64_t at_ps = bench.crossbar.clock().edge_ps(static_cast<std::uint64_t>(cycle));
-      if (random.chance(50) && at_ps > kernel_time::now_ps())
-        sc_core::wait(kernel_time::to_time(at_ps - kernel_time::now_ps()));
+      sc_core::wait(random.between(0, 3) * sc_time(25, SC_NS));
       for (int deltas = random.between(0, 8); deltas > 0; --deltas) sc_core::wait(sc_core::SC_ZERO_TIME);
       const auto number = static_cast<std::size_t>(random.between(0, kProcesses - 1));
       if (random.chance(50)) {
         processes[number].reset();
       } else {
         processes[number].kill();
-        start(number);
+        processes[number] = start(number);
       }
     }
     done = {};
