@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <memory>
+#include <deque>
 #include <string>
 #include <vector>
 
@@ -15,8 +15,6 @@
 
 namespace stereotlm::memory {
 namespace {
-
-using Style = test::TrafficInitiator::Style;
 
 std::vector<SsramBankConfig> banks_at(double mhz) {
   return {{64, BankKind::kZbtPipelined, 0, mhz},
@@ -33,10 +31,9 @@ class ClockedCrossbar {
   explicit ClockedCrossbar(double mhz)
       : crossbar_(sc_core::sc_gen_unique_name("crossbar"),
                   {{"round_robin", {0, 1, 2, 3, 4, 5}}, banks_at(mhz)}) {
-    for (const SsramBankConfig& bank : banks_at(mhz)) {
-      banks_.push_back(std::make_unique<SsramBank>(sc_core::sc_gen_unique_name("bank"), bank));
-      crossbar_.banks[banks_.size() - 1].bind(banks_.back()->port);
-    }
+    for (const SsramBankConfig& bank : banks_at(mhz))
+      crossbar_.banks[banks_.size()].bind(
+          banks_.emplace_back(sc_core::sc_gen_unique_name("bank"), bank).port);
     for (const int first_cycle : {1, 500, 500, 1000, 1500, 1500}) {
       std::vector<test::TrafficAccess> accesses;
       for (std::size_t bank = 0; bank < banks_.size(); ++bank) {
@@ -44,20 +41,23 @@ class ClockedCrossbar {
         accesses.insert(accesses.end(), here.begin(), here.end());
       }
       accesses.front().pause = sc_core::sc_time((first_cycle - 0.5) / mhz, sc_core::SC_US);
-      ports_.push_back(std::make_unique<test::TrafficInitiator>(
-          sc_core::sc_gen_unique_name("initiator"), accesses,
-          first_cycle < 1000 ? Style::kBlocking : Style::kNonBlocking));
-      ports_.back()->socket().bind(crossbar_.ports[ports_.size() - 1]);
+      using Style = test::TrafficInitiator::Style;
+      auto& socket = crossbar_.ports[ports_.size()];
+      ports_
+          .emplace_back(sc_core::sc_gen_unique_name("initiator"), accesses,
+                        first_cycle < 1000 ? Style::kBlocking : Style::kNonBlocking)
+          .socket()
+          .bind(socket);
     }
   }
 
-  // The cycle with which each port ends, 0 if none begins at that time; and of each bank the contended cycles,
-  // the grants and the blame.
+  // The cycle with which each port ends, 0 if none begins at that time; and the contended cycles, the grants
+  // and the blame of each bank.
   std::vector<std::uint64_t> figures() const {
     std::vector<std::uint64_t> figures;
-    for (const auto& port : ports_) {
-      EXPECT_TRUE(port->is_done());
-      const std::uint64_t end_ps = kernel_time::to_ps(port->end());
+    for (const test::TrafficInitiator& port : ports_) {
+      EXPECT_TRUE(port.is_done());
+      const std::uint64_t end_ps = kernel_time::to_ps(port.end());
       const std::uint64_t cycle = crossbar_.clock().edge_at_or_after(end_ps);
       figures.push_back(crossbar_.clock().edge_ps(cycle) == end_ps ? cycle : 0);
     }
@@ -72,8 +72,8 @@ class ClockedCrossbar {
 
  private:
   GenericCrossbar crossbar_;
-  std::vector<std::unique_ptr<SsramBank>> banks_;
-  std::vector<std::unique_ptr<test::TrafficInitiator>> ports_;
+  std::deque<SsramBank> banks_;
+  std::deque<test::TrafficInitiator> ports_;
 };
 
 TEST(GenericCrossbar, TakesTheSameCyclesAtEveryClock) {
@@ -83,12 +83,12 @@ TEST(GenericCrossbar, TakesTheSameCyclesAtEveryClock) {
     jobs.emplace_back([child]() -> std::string {
       std::vector<double> mhz = {40};
       for (int step = child; step <= 3000; step += kChildren) mhz.push_back((1000 + 333 * step) / 1000.0);
-      std::vector<std::unique_ptr<ClockedCrossbar>> crossbars;
-      for (const double clock : mhz) crossbars.push_back(std::make_unique<ClockedCrossbar>(clock));
+      std::deque<ClockedCrossbar> crossbars;
+      for (const double clock : mhz) crossbars.emplace_back(clock);
       sc_core::sc_start();
       std::string differing;
       for (std::size_t number = 1; number < mhz.size(); ++number)
-        if (crossbars[number]->figures() != crossbars[0]->figures())
+        if (crossbars[number].figures() != crossbars[0].figures())
           differing += fmt::format(" {}", mhz[number]);
       return differing.empty() ? "" : "other figures than at 40 MHz at" + differing;
     });

