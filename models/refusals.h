@@ -1,11 +1,11 @@
 #pragma once
 
-#include <sstream>
 #include <string>
 #include <systemc>
 #include <tlm>
 
 #include "models/access_rules.h"
+#include "models/access_text.h"
 
 namespace stereotlm {
 
@@ -22,14 +22,9 @@ class Refusals {
   void report(const tlm::tlm_generic_payload& access, const char* rule) {
     if (has_reported_) return;
     has_reported_ = true;
-    std::ostringstream text;
-    text << target_.name() << ": " << access.get_response_string() << " for "
-         << (access.is_read()    ? "a read of "
-             : access.is_write() ? "a write of "
-                                 : "a command with ")
-         << access.get_data_length() << " bytes at address 0x" << std::hex << access.get_address() << ": "
-         << rule << "; later refusals are not reported";
-    SC_REPORT_WARNING("/stereotlm/refused_access", text.str().c_str());
+    const std::string text = std::string(target_.name()) + ": " + access.get_response_string() + " for " +
+                             access_text(access) + ": " + rule + "; later refusals are not reported";
+    SC_REPORT_WARNING("/stereotlm/refused_access", text.c_str());
   }
   // The same. `rules`: those of the target; `other`: what the access breaks if it keeps them.
   void report(const tlm::tlm_generic_payload& access, const AccessRules& rules, const char* other = "") {

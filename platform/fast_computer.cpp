@@ -17,7 +17,7 @@ FastComputer::FastComputer(const sc_core::sc_module_name& name, const BoardConfi
       host_bridge("host_bridge"),
       cpu("cpu", {1, DeviceMap().host_memory}, program),
       loop_(config, host_memory.data(), host_memory_bytes, left, right, fidelity) {
-  kernel_time::check_resolution();
+  kernel_time::check_resolution(*this);
   binder.bind(cpu.bus, host_bridge.cpu, "cpu_to_host_bridge");
   binder.bind(cpu.host_memory, host_memory.port, "cpu_to_host_memory");
   host_bridge.pci.bind(*this);

@@ -36,7 +36,7 @@ class Camera : public sc_core::sc_module, private FrameReceiver, private FrameCa
   // kernel's time resolution is not 1 ps.
   Camera(const sc_core::sc_module_name& name, const CameraConfig& config, CameraSource& source)
       : sc_module(name), control_(config, source, *this) {
-    kernel_time::check_resolution();
+    kernel_time::check_resolution(*this);
     link.bind(*this);
     SC_HAS_PROCESS(Camera);
     SC_METHOD(step);

@@ -8,6 +8,7 @@ namespace stereotlm::capture {
 
 CaptureBoard::CaptureBoard(const sc_core::sc_module_name& name, const CaptureBoardConfig& config)
     : sc_module(name), control_(config) {
+  kernel_time::check_resolution(*this);
   SC_HAS_PROCESS(CaptureBoard);
   SC_METHOD(step);
   sensitive << step_due_;

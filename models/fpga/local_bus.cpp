@@ -17,7 +17,7 @@ LocalBurst burst_of(const tlm::tlm_generic_payload& access) {
 LocalBus::LocalBus(const sc_core::sc_module_name& name, const LocalBusConfig& config, std::size_t banks)
     : sc_module(name), control_(config, banks, *this) {
   SC_HAS_PROCESS(LocalBus);
-  kernel_time::check_resolution();
+  kernel_time::check_resolution(*this);
   control_.bind(*this);
   bus.bind(*this);
   SC_THREAD(run_registers);
@@ -38,15 +38,13 @@ tlm::tlm_response_status LocalBus::check(const tlm::tlm_generic_payload& access)
 }
 
 void LocalBus::b_transport(tlm::tlm_generic_payload& access, sc_core::sc_time&) {
-  control_.count_error();
-  access.set_response_status(tlm::TLM_GENERIC_ERROR_RESPONSE);
-  refusals_.report(access, "must come by nb_transport");
+  refuse(access, tlm::TLM_GENERIC_ERROR_RESPONSE, "must come by nb_transport");
 }
 
-void LocalBus::refuse(tlm::tlm_generic_payload& access, tlm::tlm_response_status status) {
+void LocalBus::refuse(tlm::tlm_generic_payload& access, tlm::tlm_response_status status, const char* rule) {
   control_.count_error();
   access.set_response_status(status);
-  refusals_.report(access, AccessRules{}, "all words must be in one bank, or in the registers");
+  refusals_.report(access, rule);
 }
 
 tlm::tlm_sync_enum LocalBus::nb_transport_fw(tlm::tlm_generic_payload& access, tlm::tlm_phase& phase,
@@ -61,7 +59,15 @@ tlm::tlm_sync_enum LocalBus::nb_transport_fw(tlm::tlm_generic_payload& access, t
     return tlm::TLM_ACCEPTED;
   }
   if (const tlm::tlm_response_status status = check(access); status != tlm::TLM_OK_RESPONSE) {
-    refuse(access, status);
+    const BrokenRule broken = broken_rule(access, {});
+    refuse(access, status,
+           broken.response != tlm::TLM_OK_RESPONSE ? broken.text
+                                                   : "all words must be in one bank, or in the registers");
+    return tlm::TLM_COMPLETED;
+  }
+  if (!access.has_mm()) {  // the bus keeps a reference until the response
+    refuse(access, tlm::TLM_GENERIC_ERROR_RESPONSE,
+           "by nb_transport it must have a memory manager (set_mm())");
     return tlm::TLM_COMPLETED;
   }
   {

@@ -30,6 +30,7 @@ namespace stereotlm::fpga {
 // | 2^28 bytes of its bank's addresses                                                |                    |
 // | byte enables                                                                      | byte enable error  |
 // | neither read nor write                                                            | command error      |
+// | no memory manager                                                                 | generic error      |
 //
 // If a bank or register refuses a word, the burst has the response of the first such word; the other words
 // are transferred. Debug transport reaches banks without a burst. There is no DMI, and b_transport is
@@ -70,7 +71,7 @@ class LocalBus : public sc_core::sc_module,
   }
 
   tlm::tlm_response_status check(const tlm::tlm_generic_payload& access) const;
-  void refuse(tlm::tlm_generic_payload& access, tlm::tlm_response_status status);
+  void refuse(tlm::tlm_generic_payload& access, tlm::tlm_response_status status, const char* rule);
   void begin(tlm::tlm_generic_payload& access, const sc_core::sc_time& delay);
   void run_registers();
   void await_register();

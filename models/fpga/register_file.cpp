@@ -8,6 +8,7 @@
 namespace stereotlm::fpga {
 
 RegisterFile::RegisterFile(const sc_core::sc_module_name& name) : sc_module(name) {
+  kernel_time::check_resolution(*this);
   SC_HAS_PROCESS(RegisterFile);
   SC_METHOD(drive_done);
   sensitive << done_changed_;

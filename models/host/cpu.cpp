@@ -2,22 +2,17 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <cstdio>
 #include <exception>
 #include <optional>
 #include <string>
+
+#include "models/access_text.h"
 
 namespace stereotlm::host {
 namespace {
 
 constexpr char kCpuReport[] = "/stereotlm/cpu";
 constexpr int kStackBytes = 1 << 20;  // large, because the program is not written to run in a coroutine
-
-std::string hex(std::uint64_t value) {
-  char text[24];
-  std::snprintf(text, sizeof text, "0x%llx", static_cast<unsigned long long>(value));
-  return text;
-}
 
 std::string text_of(tlm::tlm_response_status status) {
   tlm::tlm_generic_payload payload;

@@ -7,6 +7,7 @@
 #include <tlm>
 #include <vector>
 
+#include "models/access_queue.h"
 #include "models/pci/pci_slot_if.h"
 #include "models/refusals.h"
 
@@ -28,6 +29,9 @@ namespace stereotlm::host {
 // | neither read nor write                                         | TLM_COMMAND_ERROR_RESPONSE     |
 //
 // Words transferred before an error stay transferred. There is no DMI, and debug transport reaches nothing.
+//
+// If a process is killed or reset during its access, the access is lost, and reported (AccessQueue). A burst
+// that has been granted the bus runs to its end, before the next access; any other is dropped.
 class HostBridge : public sc_core::sc_module, private pci::PciMasterIf {
  public:
   tlm_utils::simple_target_socket<HostBridge> cpu{"cpu"};  // from the processor
@@ -37,17 +41,17 @@ class HostBridge : public sc_core::sc_module, private pci::PciMasterIf {
 
  private:
   void transport(tlm::tlm_generic_payload& access, sc_core::sc_time& delay);
-  tlm::tlm_response_status transfer(tlm::tlm_generic_payload& access);
+  tlm::tlm_response_status transfer(tlm::tlm_generic_payload& access, AccessQueue::Place& place);
+  void run_burst(const pci::PciBurst& burst, AccessQueue::Place& place);
   pci::PciBurst begin_burst(std::uint64_t address_clock_ps) override;
   void end_burst(const pci::BurstResult& result) override;
 
-  // Processes take numbered turns. A mutex could be taken again and again by one process that never pauses.
-  std::uint64_t arrived_ = 0;  // accesses that have taken a turn
-  std::uint64_t served_ = 0;   // turns that have ended
-  sc_core::sc_event next_turn_{"next_turn"};
+  AccessQueue queue_{*this};
   sc_core::sc_event ended_{"ended"};
-  pci::PciBurst burst_;  // the requested or running burst
+  pci::PciBurst burst_;   // requested and not granted; without words: none
+  bool is_ended_ = true;  // the burst that was granted last
   pci::BurstResult result_;
+  unsigned done_bytes_ = 0;  // of the access that is served
   std::vector<std::uint32_t> words_;
   Refusals refusals_{*this};
 };

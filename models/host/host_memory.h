@@ -25,7 +25,7 @@ class HostMemory : public sc_core::sc_module {
   HostMemory(const sc_core::sc_module_name& name, std::uint64_t bytes)
       : sc_module(name),
         target_({kHostMemoryRule.required(std::string(this->name()) + ": bytes", bytes), false, true},
-                sc_core::SC_ZERO_TIME, sc_core::SC_ZERO_TIME, "/stereotlm/host_memory", *this) {
+                "/stereotlm/host_memory", *this) {
     port.bind(target_);
   }
 

@@ -3,7 +3,15 @@
 #include <algorithm>
 #include <cstring>
 
+#include "models/kernel_time.h"
+
 namespace stereotlm::memory {
+
+RamTarget::RamTarget(const AccessRules& rules, const char* report, const sc_core::sc_object& owner,
+                     const std::optional<Timing>& timing)
+    : rules_(rules), report_(report), refusals_(owner), timing_(timing), ram_(rules.end) {
+  if (timing) read_time_ = kernel_time::to_time(timing->clock.edge_ps(timing->read_cycles));
+}
 
 void RamTarget::b_transport(tlm::tlm_generic_payload& access, sc_core::sc_time& delay) {
   const tlm::tlm_response_status status = check_access(access, rules_);
@@ -15,10 +23,24 @@ void RamTarget::b_transport(tlm::tlm_generic_payload& access, sc_core::sc_time& 
   }
   access.set_dmi_allowed(true);
   move(access);
-  const unsigned words = access.get_data_length() / 4;
+  const std::uint64_t words = access.get_data_length() / 4;
   (access.is_read() ? stats_.reads : stats_.writes) += words;
-  if (access.is_read()) delay += read_time_;
-  if (words > 1) delay += word_time_ * (words - 1);
+  if (!timing_) return;
+  const std::uint64_t cycles = words - 1 + (access.is_read() ? timing_->read_cycles : 0);
+  if (cycles == timing_->read_cycles && timing_->clock.has_whole_period()) {
+    delay += read_time_;  // at any time; for speed
+  } else if (cycles != 0) {
+    delay += time_of(cycles, delay);
+  }
+}
+
+// The time of these cycles of an access at `delay` from now.
+sc_core::sc_time RamTarget::time_of(std::uint64_t cycles, const sc_core::sc_time& delay) {
+  const Clock& clock = timing_->clock;
+  const std::uint64_t at_ps = kernel_time::now_ps() + kernel_time::to_ps(delay);
+  // Mostly the access begins with the edge after that of the one before.
+  if (clock.edge_ps(++first_edge_) != at_ps) first_edge_ = clock.edge_at_or_after(at_ps);
+  return kernel_time::to_time(clock.edge_ps(first_edge_ + cycles) - clock.edge_ps(first_edge_));
 }
 
 // Moves the enabled bytes.

@@ -4,10 +4,12 @@
 #include <cstdlib>
 #include <memory>
 #include <new>
+#include <optional>
 #include <systemc>
 #include <tlm>
 
 #include "models/access_rules.h"
+#include "models/clock.h"
 #include "models/refusals.h"
 
 namespace stereotlm::memory {
@@ -38,11 +40,11 @@ class Ram {
   std::unique_ptr<unsigned char[], Free> data_;
 };
 
-// The base-protocol target that SsramBank and HostMemory bind to their sockets. b_transport never waits. A
-// read adds `read_time` to `delay`, and each word behind the first adds `word_time` to both. nb_transport_fw
-// has the same effect and returns TLM_COMPLETED. An access that breaks the rules has the response of
-// check_access(), and no effect; the first one is reported (refusals.h). Debug transport takes any length.
-// DMI grants the whole memory, for reads and writes, and is never revoked.
+// The base-protocol target that SsramBank and HostMemory bind to their sockets. b_transport never waits; it
+// adds the time of the access to `delay` (Timing). nb_transport_fw has the same effect and returns
+// TLM_COMPLETED. An access that breaks the rules has the response of check_access(), and no effect; the first
+// one is reported (refusals.h). Debug transport takes any length. DMI grants the whole memory, for reads and
+// writes, and is never revoked.
 class RamTarget : public tlm::tlm_fw_transport_if<> {
  public:
   // Debug transport and DMI are not counted.
@@ -52,16 +54,17 @@ class RamTarget : public tlm::tlm_fw_transport_if<> {
     std::uint64_t errors = 0;  // refused accesses
   };
 
+  // The cycles of an access. It takes the time from the first edge of the clock at or after its beginning to
+  // the edge that is so many cycles later: an access that begins with an edge ends with one.
+  struct Timing {
+    Clock clock;
+    std::uint64_t read_cycles;  // of the first word of a read; each further word takes one cycle more
+  };
+
   // `rules.end` is the number of bytes. `report`: the type of the SC_REPORT_ERROR for a phase other than
-  // BEGIN_REQ. `owner`: the module, which outlives this object.
-  RamTarget(const AccessRules& rules, const sc_core::sc_time& read_time, const sc_core::sc_time& word_time,
-            const char* report, const sc_core::sc_object& owner)
-      : rules_(rules),
-        read_time_(read_time),
-        word_time_(word_time),
-        report_(report),
-        refusals_(owner),
-        ram_(rules.end) {}
+  // BEGIN_REQ. `owner`: the module, which outlives this object. Without `timing` accesses take no time.
+  RamTarget(const AccessRules& rules, const char* report, const sc_core::sc_object& owner,
+            const std::optional<Timing>& timing = std::nullopt);
 
   void b_transport(tlm::tlm_generic_payload& access, sc_core::sc_time& delay) override;
   tlm::tlm_sync_enum nb_transport_fw(tlm::tlm_generic_payload& access, tlm::tlm_phase& phase,
@@ -75,12 +78,14 @@ class RamTarget : public tlm::tlm_fw_transport_if<> {
 
  private:
   void move(tlm::tlm_generic_payload& access);
+  sc_core::sc_time time_of(std::uint64_t cycles, const sc_core::sc_time& delay);
 
   AccessRules rules_;
-  sc_core::sc_time read_time_;
-  sc_core::sc_time word_time_;
   const char* report_;
   Refusals refusals_;
+  std::optional<Timing> timing_;
+  sc_core::sc_time read_time_;    // of a read of a word at time 0
+  std::uint64_t first_edge_ = 0;  // of the last access
   Ram ram_;
   Stats stats_;
 };

@@ -27,9 +27,10 @@ class SsramBank : public sc_core::sc_module {
   SsramBank(const sc_core::sc_module_name& name, const SsramBankConfig& config)
       : sc_module(name),
         config_(checked(this->name(), config)),
-        target_({std::uint64_t{config.words} * 4, false, true},
-                cycles_time(config, read_latency_cycles(config)), cycles_time(config, 1),
-                "/stereotlm/ssram_bank", *this) {
+        target_({std::uint64_t{config.words} * 4, false, true}, "/stereotlm/ssram_bank", *this,
+                RamTarget::Timing{Clock(config.clock_mhz),
+                                  static_cast<std::uint64_t>(read_latency_cycles(config))}) {
+    kernel_time::check_resolution(*this);
     port.bind(target_);
   }
 
@@ -39,11 +40,6 @@ class SsramBank : public sc_core::sc_module {
   const std::uint32_t* words() const { return reinterpret_cast<const std::uint32_t*>(target_.ram().data()); }
 
  private:
-  static sc_core::sc_time cycles_time(const SsramBankConfig& config, int cycles) {
-    kernel_time::check_resolution();
-    return kernel_time::to_time(Clock(config.clock_mhz).edge_ps(static_cast<std::uint64_t>(cycles)));
-  }
-
   SsramBankConfig config_;
   RamTarget target_;
 };

@@ -1,5 +1,7 @@
 #include "models/pci/pci_bridge.h"
 
+#include <cstring>
+
 #include "models/checked.h"
 #include "models/kernel_time.h"
 
@@ -8,7 +10,7 @@ namespace stereotlm::pci {
 PciBridge::PciBridge(const sc_core::sc_module_name& name, const PciBridgeConfig& config)
     : sc_module(name), control_(checked(this->name(), config), pci, *this, *this) {
   SC_HAS_PROCESS(PciBridge);
-  kernel_time::check_resolution();
+  kernel_time::check_resolution(*this);
   slave.register_b_transport(this, &PciBridge::access_slave);
   registers.register_b_transport(this, &PciBridge::access_registers);
   local.register_nb_transport_bw(this, &PciBridge::respond);
@@ -37,18 +39,19 @@ void PciBridge::access_slave(tlm::tlm_generic_payload& access, sc_core::sc_time&
   if (status != tlm::TLM_OK_RESPONSE) {
     control_.count_error();
   } else {
-    if (delay != sc_core::SC_ZERO_TIME) wait(delay);
-    delay = sc_core::SC_ZERO_TIME;
+    AccessQueue::Place place(queue_, access);
+    place.await_time(delay);
     const std::uint64_t offset = access.get_address();
     const std::size_t words = access.get_data_length() / 4;
     if (access.is_read()) {
-      if (!read_slave(offset, access.get_data_ptr(), words)) status = tlm::TLM_GENERIC_ERROR_RESPONSE;
+      if (!read_slave(offset, access.get_data_ptr(), words, place)) status = tlm::TLM_GENERIC_ERROR_RESPONSE;
     } else {
       const std::uint64_t now_ps = kernel_time::now_ps();
       if (!control_.write(now_ps, offset, access.get_data_ptr(), words))
         status = tlm::TLM_BURST_ERROR_RESPONSE;
       await_step();
     }
+    place.end();
   }
   access.set_response_status(status);
   if (status != tlm::TLM_OK_RESPONSE) {
@@ -58,11 +61,16 @@ void PciBridge::access_slave(tlm::tlm_generic_payload& access, sc_core::sc_time&
 }
 
 // Waits until the words have arrived. Returns false if the read was refused.
-bool PciBridge::read_slave(std::uint64_t offset, unsigned char* data, std::size_t words) {
+bool PciBridge::read_slave(std::uint64_t offset, unsigned char* data, std::size_t words,
+                           AccessQueue::Place& place) {
+  place.await_turn();
+  while (reads_) wait(read_ended_);  // the read of an access that is lost
   reads_ = true;
-  control_.read(kernel_time::now_ps(), offset, data, words);
+  read_bytes_.resize(words * 4);
+  control_.read(kernel_time::now_ps(), offset, read_bytes_.data(), words);
   await_step();
   while (reads_) wait(read_ended_);
+  if (read_ok_) std::memcpy(data, read_bytes_.data(), read_bytes_.size());
   return read_ok_;
 }
 

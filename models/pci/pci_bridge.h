@@ -7,7 +7,9 @@
 #include <cstdint>
 #include <systemc>
 #include <tlm>
+#include <vector>
 
+#include "models/access_queue.h"
 #include "models/interrupt.h"
 #include "models/pci/bridge_control.h"
 #include "models/pci/pci_config.h"
@@ -21,7 +23,9 @@ namespace stereotlm::pci {
 // sockets of a BridgeControl. Its registers and descriptors are in bridge_registers.h.
 //
 // - The bridge takes as many words of a posted write as it has free places at the address clock (`stop`).
-// - A read of the slave window blocks until its words have arrived.
+// - A read of the slave window blocks until its words have arrived. Reads of several processes are served in
+//   the order in which they arrive. If a process is killed or reset while it waits, its access is lost, and
+//   reported (AccessQueue); a read that is under way runs to its end, before the next one.
 //
 // These accesses have an error response and no effect: a register access that is not one aligned word or has
 // the wrong direction, a slave access outside the window, and a posted write of more words than there are
@@ -52,7 +56,7 @@ class PciBridge : public sc_core::sc_module,
   // These serve the slave window and the register window.
   std::size_t writable_words(std::uint64_t address, std::size_t words) const override;
   void access_slave(tlm::tlm_generic_payload& access, sc_core::sc_time& delay);
-  bool read_slave(std::uint64_t offset, unsigned char* data, std::size_t words);
+  bool read_slave(std::uint64_t offset, unsigned char* data, std::size_t words, AccessQueue::Place& place);
   void slave_read_ended(std::uint64_t now_ps, bool ok) override;
   void access_registers(tlm::tlm_generic_payload& access, sc_core::sc_time& delay);
 
@@ -80,8 +84,10 @@ class PciBridge : public sc_core::sc_module,
   Refusals refusals_{*this};
   StepEvent step_{"next_step"};
   sc_core::sc_event interrupt_changed_{"interrupt_changed"};
-  bool reads_ = false;  // a read of the slave window is under way
+  AccessQueue queue_{slave};  // of reads
+  bool reads_ = false;        // a read of the slave window is under way
   bool read_ok_ = false;
+  std::vector<unsigned char> read_bytes_;
   sc_core::sc_event read_ended_{"read_ended"};
   Manager manager_;
   tlm::tlm_generic_payload burst_{&manager_};  // on the local bus

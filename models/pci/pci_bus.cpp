@@ -19,7 +19,7 @@ PciBus::PciBus(const sc_core::sc_module_name& name, const PciBusConfig& config)
       targets("target", config.windows.size()),
       stops("stop", config.windows.size()),
       control_(checked(this->name(), config)) {
-  kernel_time::check_resolution();
+  kernel_time::check_resolution(*this);
   SC_HAS_PROCESS(PciBus);
   for (std::size_t master = 0; master < slots.size(); ++master)
     slots[master].bind(slots_.emplace_back(*this, master));

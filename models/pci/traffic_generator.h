@@ -35,6 +35,7 @@ class TrafficGenerator : public sc_core::sc_module {
   // Throws std::invalid_argument if the configuration has problems.
   TrafficGenerator(const sc_core::sc_module_name& name, const TrafficGeneratorConfig& config)
       : sc_module(name), control_(checked(this->name(), config)), access_ps_(config.access_ps) {
+    kernel_time::check_resolution(*this);
     device.register_b_transport(this, &TrafficGenerator::respond);
   }
 

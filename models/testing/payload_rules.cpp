@@ -1,18 +1,13 @@
 #include "models/testing/payload_rules.h"
 
 #include <algorithm>
-#include <sstream>
+
+#include "models/access_text.h"
 
 namespace stereotlm::test {
 namespace {
 
 constexpr unsigned int kWordBytes = 4;
-
-std::string hex(sc_dt::uint64 value) {
-  std::ostringstream text;
-  text << "0x" << std::hex << value;
-  return text.str();
-}
 
 bool transfers_data(const tlm::tlm_generic_payload& payload) {
   return payload.get_command() != tlm::TLM_IGNORE_COMMAND;

@@ -3,6 +3,8 @@
 #include <sstream>
 #include <utility>
 
+#include "models/kernel_time.h"
+
 namespace stereotlm::test {
 namespace {
 
@@ -241,7 +243,8 @@ void PhaseTracker::answer_phase(const Payload& payload, Transaction& transaction
 
 void PhaseTracker::advance(Transaction& transaction, const sc_core::sc_time& time, Problems& problems) const {
   if (time < transaction.time) {
-    problems.push_back("time " + time.to_string() + " after " + transaction.time.to_string() +
+    problems.push_back("time " + kernel_time::text_of(time) + " after " +
+                       kernel_time::text_of(transaction.time) +
                        ": a transaction's time must not run backwards (15.2.7 c)");
   }
   transaction.time = time;

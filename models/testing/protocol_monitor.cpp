@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "models/kernel_time.h"
 #include "models/testing/failure.h"
 
 namespace stereotlm::test {
@@ -106,8 +107,8 @@ void ProtocolMonitor::b_transport(Payload& payload, sc_core::sc_time& delay) {
     report(kCall, "reference count fell: the target released more than it acquired (14.5)");
   }
   if (sc_core::sc_time_stamp() + delay < start) {
-    report(kCall, "time fell from " + start.to_string() + " to " +
-                      (sc_core::sc_time_stamp() + delay).to_string() +
+    report(kCall, "time fell from " + kernel_time::text_of(start) + " to " +
+                      kernel_time::text_of(sc_core::sc_time_stamp() + delay) +
                       ": a callee must not take back time (15.2.7 d)");
   }
   report(kCall, sent.changes(payload, options_));
@@ -200,8 +201,8 @@ void ProtocolMonitor::report(const char* call, const Problems& problems) {
 
 void ProtocolMonitor::report(const char* call, const std::string& problem) {
   if (violations_.size() == kViolationsKept) return;
-  violations_.push_back(std::string(name()) + " at " + sc_core::sc_time_stamp().to_string() + ": " + call +
-                        ": " + problem);
+  violations_.push_back(std::string(name()) + " at " + kernel_time::text_of(sc_core::sc_time_stamp()) + ": " +
+                        call + ": " + problem);
 }
 
 }  // namespace stereotlm::test

@@ -2,9 +2,21 @@
 
 #include <string>
 
+#include "models/kernel_time.h"
 #include "models/testing/failure.h"
 
 namespace stereotlm::test {
+
+void Scoreboard::b_transport(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay) {
+  const std::uint64_t address = payload.get_address();
+  try {
+    AccessProbe::b_transport(payload, delay);
+  } catch (...) {  // the process is killed or reset: any of its bytes may have been written
+    for (unsigned byte = 0; payload.is_write() && byte < payload.get_data_length(); ++byte)
+      bytes_.erase(address + byte);
+    throw;
+  }
+}
 
 void Scoreboard::ended(const tlm::tlm_generic_payload& payload, std::uint64_t address,
                        const sc_core::sc_time& begin, const sc_core::sc_time& end) {
@@ -19,8 +31,8 @@ void Scoreboard::ended(const tlm::tlm_generic_payload& payload, std::uint64_t ad
     if (payload.is_read() && !is_new) {
       ++compared_;
       if (known->second != value) {
-        fail(std::string(name()) + " at " + end.to_string() + ": byte " + std::to_string(place) + " = " +
-             std::to_string(value) + ": must be " + std::to_string(known->second));
+        fail(std::string(name()) + " at " + kernel_time::text_of(end) + ": byte " + std::to_string(place) +
+             " = " + std::to_string(value) + ": must be " + std::to_string(known->second));
       }
     }
     known->second = value;

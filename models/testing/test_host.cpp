@@ -27,7 +27,9 @@ tlm::tlm_sync_enum TestHost::end_response() {
 }
 
 void TestHost::record(tlm::tlm_generic_payload& payload, const sc_core::sc_time& delay) {
-  answers.push_back(answer_of(static_cast<const Transaction&>(payload), delay));
+  auto& transaction = static_cast<Transaction&>(payload);
+  transaction.answer = answer_of(transaction, delay);
+  answers.push_back(*transaction.answer);
 }
 
 // Not inline: the compiler then makes the class's tables for virtual functions only here. Those of g++ and of

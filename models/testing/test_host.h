@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <optional>
 #include <systemc>
 #include <tlm>
 #include <utility>
@@ -64,12 +65,12 @@ class TestHost : public sc_core::sc_module, public tlm::tlm_bw_transport_if<> {
   }
   // As above, for a burst.
   Answer access(tlm::tlm_command command, std::uint64_t address, std::vector<std::uint32_t> words) {
-    const std::size_t answered = answers.size();
     request(command, address, std::move(words));
-    if (answers.size() == answered) sc_core::wait(answered_);
-    if (answers.back().at > sc_core::sc_time_stamp())
-      sc_core::wait(answers.back().at - sc_core::sc_time_stamp());
-    return answers.back();
+    const Transaction& transaction = transactions_.back();
+    while (!transaction.answer) sc_core::wait(answered_);
+    const Answer answer = *transaction.answer;
+    if (answer.at > sc_core::sc_time_stamp()) sc_core::wait(answer.at - sc_core::sc_time_stamp());
+    return answer;
   }
 
   // Returns the number of bytes written.
@@ -109,6 +110,7 @@ class TestHost : public sc_core::sc_module, public tlm::tlm_bw_transport_if<> {
       set_streaming_width(bytes);
     }
     std::vector<std::uint32_t> words;
+    std::optional<Answer> answer;
   };
   // Transactions of nb_transport live as long as the host: a test may use them after their end.
   class Manager : public tlm::tlm_mm_interface {

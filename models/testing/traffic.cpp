@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "models/kernel_time.h"
 #include "models/testing/failure.h"
 
 namespace stereotlm::test {
@@ -112,7 +113,7 @@ void TrafficInitiator::run() {
     wait(access.pause);
     const TestHost::Answer answer = make(access);
     if (answer.status != tlm::TLM_OK_RESPONSE) {
-      fail(std::string(name()) + " at " + sc_core::sc_time_stamp().to_string() + ": access " +
+      fail(std::string(name()) + " at " + kernel_time::text_of(sc_core::sc_time_stamp()) + ": access " +
            std::to_string(&access - accesses_.data()) + " at address " + std::to_string(access.address) +
            " was refused");
     }

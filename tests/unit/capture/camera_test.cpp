@@ -1,6 +1,7 @@
 #include "models/capture/camera.h"
 
 #include <stdexcept>
+#include <string>
 
 #include "models/testing/expected_report.h"
 #include "tests/unit/capture/capture_bench.h"
@@ -153,8 +154,15 @@ TEST_F(CameraTest, RefusesAConfigurationWithProblems) {
 TEST(CameraResolution, MustBeOnePicosecond) {
   sc_core::sc_set_time_resolution(10, sc_core::SC_PS);
   NoiseSource source(8, 5);
-  EXPECT_THROW(Camera("refused", CameraConfig{8, 5, 25, CameraTrigger::kFreeRunning}, source),
-               std::invalid_argument);
+  std::string text;
+  try {
+    const Camera camera("refused", CameraConfig{8, 5, 25, CameraTrigger::kFreeRunning}, source);
+  } catch (const std::invalid_argument& refusal) {
+    text = refusal.what();
+  }
+  EXPECT_EQ(text,
+            "refused: time resolution = 10 ps: must be 1 ps, SystemC's default: leave "
+            "sc_set_time_resolution() out, or call it with (1, SC_PS)");
 }
 
 }  // namespace

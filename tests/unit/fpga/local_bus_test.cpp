@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <functional>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "models/fpga/register_file.h"
@@ -137,6 +139,23 @@ TEST_F(LocalBusTest, RefusesAtOnceAccessesThatAreNoBurst) {
   EXPECT_EQ(host.request(TLM_READ_COMMAND, crossbar_address(1, 0) - 4, 0), tlm::TLM_ACCEPTED);
   grant(3 * kLocalPs);
   EXPECT_EQ(host.read(0).status, tlm::TLM_GENERIC_ERROR_RESPONSE);  // blocking transport
+}
+
+TEST_F(LocalBusTest, RefusesATransactionWithoutMemoryManager) {
+  test::ExpectedReport refusal("/stereotlm/refused_access");
+  tlm::tlm_generic_payload payload;
+  std::array<unsigned char, 4> data{};
+  payload.set_command(TLM_READ_COMMAND);
+  payload.set_address(crossbar_address(1, 0));
+  payload.set_data_ptr(data.data());
+  payload.set_data_length(4);
+  payload.set_streaming_width(4);
+  tlm::tlm_phase phase = tlm::BEGIN_REQ;
+  sc_time delay;
+  EXPECT_EQ(host.socket->nb_transport_fw(payload, phase, delay), tlm::TLM_COMPLETED);
+  EXPECT_EQ(payload.get_response_status(), tlm::TLM_GENERIC_ERROR_RESPONSE);
+  EXPECT_NE(refusal.text().find("must have a memory manager (set_mm())"), std::string::npos);
+  EXPECT_EQ(binder.take_violations().size(), 1U);
 }
 
 TEST_F(LocalBusTest, ReachesBanksByDebugTransport) {

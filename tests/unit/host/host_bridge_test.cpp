@@ -134,6 +134,64 @@ TEST_F(HostBridgeTest, ServesProcessesInTheOrderOfTheirAccesses) {
   EXPECT_EQ(stats().words, 9U);
 }
 
+TEST_F(HostBridgeTest, DropsTheBurstOfAKilledProcessThatIsNotGranted) {
+  build();
+  test::ExpectedReport lost("/stereotlm/lost_access");
+  bench->masters[0]->bursts = {pci::read_of(20)};
+  bench->request_at(0);
+  auto victim = sc_core::sc_spawn([this] {
+    sc_core::wait(kernel_time::to_time(edge(2)));
+    cpu.write(kBase + 4, 1);
+  });
+  simulate([&] {
+    sc_core::wait(kernel_time::to_time(edge(5)));
+    victim.kill();
+    sc_core::wait(kernel_time::to_time(edge(60) - edge(5)));
+    write_words();
+  });
+  EXPECT_NE(lost.text().find("bridge: a write of 4 bytes at address 0x10004 is lost: "), std::string::npos);
+  ASSERT_EQ(target().accesses.size(), 2U);
+  EXPECT_EQ(target().accesses[1].words, (Words{5, 6, 7}));
+}
+
+TEST_F(HostBridgeTest, EndsTheBurstOfAKilledProcessThatIsGrantedBeforeTheNextOne) {
+  build();
+  const test::ExpectedReport lost("/stereotlm/lost_access", 2);
+  auto victim = sc_core::sc_spawn([this] { cpu.write_words(kBase, {1, 2}); });
+  auto in_queue = sc_core::sc_spawn([this] { cpu.write(kBase + 4, 9); });
+  simulate([&] {
+    sc_core::wait(kernel_time::to_time(edge(3)));
+    victim.kill();
+    in_queue.kill();
+    write_words();
+    EXPECT_EQ(kernel_time::now_ps(), edge((1 + kWait + 2 + 1) + 1 + kWait + 3));
+  });
+  ASSERT_EQ(target().accesses.size(), 2U);
+  EXPECT_EQ(target().accesses[0].words, (Words{1, 2}));
+  EXPECT_EQ(target().accesses[1].words, (Words{5, 6, 7}));
+}
+
+// A process is reset in each clock of its access, before and after all else that happens as the clock begins.
+TEST_F(HostBridgeTest, ServesAProcessThatIsReset) {
+  sc_core::sc_report_handler::set_actions("/stereotlm/lost_access", sc_core::SC_DO_NOTHING);
+  build();
+  bool is_last = false;
+  auto victim = sc_core::sc_spawn([&] {
+    do {
+      EXPECT_EQ(cpu.read_words(kBase + 0x20, 3).words, pci::words_from(0x20, 3));
+    } while (!is_last);
+  });
+  simulate([&] {
+    for (std::uint64_t clock = 1; clock < 200; clock += 7) {
+      sc_core::wait(kernel_time::to_time(edge(clock)) - sc_core::sc_time_stamp());
+      for (std::uint64_t deltas = clock % 5; deltas > 0; --deltas) sc_core::wait(sc_core::SC_ZERO_TIME);
+      victim.reset();
+    }
+    is_last = true;
+  });
+  EXPECT_TRUE(victim.terminated());
+}
+
 TEST_F(HostBridgeTest, ServesANonBlockingProcessor) {
   build();
   simulate([this] {

@@ -20,6 +20,7 @@
 #include "models/testing/expected_report.h"
 #include "models/testing/monitoring_binder.h"
 #include "models/testing/probing_binder.h"
+#include "models/testing/scoreboard.h"
 #include "models/testing/test_host.h"
 #include "tests/support/random_board.h"
 
@@ -149,6 +150,110 @@ TEST(GenericCrossbar, RefusesAndReportsOnce) {
     EXPECT_EQ(bench.accesses(0).size(), 2U);
   });
   sc_core::sc_start(sc_time(500, SC_NS));
+}
+
+TEST(GenericCrossbar, DropsTheWordsOfAKilledProcessThatAreNotGranted) {
+  Bench bench({{"fixed_priority", list_of(1)}, {SsramBankConfig{}}});
+  test::TestHost& host = bench.host(0);
+  test::ExpectedReport lost("/stereotlm/lost_access");
+  auto victim = sc_core::sc_spawn([&] { host.write_words(8, {1, 2, 3, 4}); }, "victim");
+  Process process("process", [&] {
+    sc_core::wait(30, SC_NS);  // words are granted at 0 ns, 25 ns, 50 ns, ..
+    victim.kill();
+    const auto answer = host.read_words(8, 3);
+    EXPECT_EQ(answer.words, (std::vector<std::uint32_t>{1, 2, 0}));
+    EXPECT_EQ(answer.at, sc_time(50 + 4 * 25, SC_NS));
+  });
+  sc_core::sc_start();
+  EXPECT_EQ(
+      lost.text(),
+      "crossbar.port_0: a write of 16 bytes at address 0x8 is lost: kill(), reset() or an exception has "
+      "taken its process victim out of b_transport; 8 of 16 bytes had been transferred");
+}
+
+TEST(GenericCrossbar, ServesThoseBehindAProcessThatIsKilledBeforeItsTurn) {
+  Bench bench({{"fixed_priority", list_of(1)}, {SsramBankConfig{}}});
+  test::TestHost& host = bench.host(0);
+  const test::ExpectedReport lost("/stereotlm/lost_access", 2);
+  std::vector<sc_time> ends;
+  const auto write = [&] { ends.push_back(host.write_words(8, {1, 2, 3, 4}).at); };
+  sc_core::sc_spawn(write);
+  auto in_queue = sc_core::sc_spawn(write);
+  sc_core::sc_spawn(write);
+  auto before_its_time = sc_core::sc_spawn([&] { host.read(8, sc_time(150, SC_NS)); });
+  Process process("process", [&] {
+    sc_core::wait(30, SC_NS);
+    in_queue.kill();
+    before_its_time.kill();
+  });
+  sc_core::sc_start();
+  EXPECT_EQ(ends, (std::vector<sc_time>{sc_time(100, SC_NS), sc_time(200, SC_NS)}));
+}
+
+TEST(GenericCrossbar, StopsTheSimulationWhereALostAccessIsToThrow) {
+  Bench bench({{"fixed_priority", list_of(1)}, {SsramBankConfig{}}});
+  test::TestHost& host = bench.host(0);
+  const test::ExpectedReport lost("/stereotlm/lost_access");
+  sc_core::sc_report_handler::set_actions("/stereotlm/lost_access", sc_core::SC_THROW);
+  auto victim = sc_core::sc_spawn([&] { host.read(8, sc_time(1, sc_core::SC_US)); });
+  Process process("process", [&] {
+    sc_core::wait(30, SC_NS);
+    victim.kill();
+  });
+  sc_core::sc_start();
+  EXPECT_EQ(sc_core::sc_time_stamp(), sc_time(30, SC_NS));
+}
+
+// Two processes at each port write words of their own and read them back, behind a scoreboard, while others
+// are killed and reset at any time, in any delta cycle.
+TEST(GenericCrossbar, ServesAllWhileProcessesEndAtAnyTime) {
+  sc_core::sc_report_handler::set_actions("/stereotlm/lost_access", sc_core::SC_DO_NOTHING);
+  constexpr std::size_t kProcesses = 6;
+  test::SplitMix64 random(1);
+  Bench bench({{"round_robin", list_of(3)}, {{64, BankKind::kSyncBurst, 1, 40}}});
+  std::deque<test::Scoreboard> scoreboards;
+  for (Port port = 0; port < 3; ++port) {
+    scoreboards.emplace_back(fmt::format("scoreboard{}", port).c_str())
+        .to_target.bind(bench.crossbar.ports[port]);
+    bench.hosts.push_back(std::make_unique<test::TestHost>(fmt::format("host{}", port).c_str()));
+    bench.binder.bind(bench.hosts.back()->socket, scoreboards.back().from_initiator,
+                      fmt::format("link{}", port));
+  }
+  bool is_last = false;
+  std::uint32_t value = 0;
+  const auto work = [&](std::size_t number) {
+    test::TestHost& host = *bench.hosts[number / 2];
+    do {
+      const std::vector<std::uint32_t> words = {++value, ++value, ++value};
+      const sc_time written = host.write_words(16 * number, words).at;
+      if (number % 3 != 0) sc_core::wait(written - sc_core::sc_time_stamp());
+      const auto answer = number % 3 == 1
+                              ? host.access(tlm::TLM_READ_COMMAND, 16 * number, std::vector<std::uint32_t>(3))
+                              : host.read_words(16 * number, 3);
+      EXPECT_EQ(answer.words, words);
+      if (number % 3 != 1) sc_core::wait(answer.at - sc_core::sc_time_stamp());
+    } while (!is_last);
+  };
+  const auto start = [&](std::size_t number) { return sc_core::sc_spawn([&work, number] { work(number); }); };
+  std::vector<sc_core::sc_process_handle> processes;
+  for (std::size_t number = 0; number < kProcesses; ++number) processes.push_back(start(number));
+  Process process("process", [&] {
+    for (int end = 0; end < 2000; ++end) {
+      sc_core::wait(sc_core::SC_ZERO_TIME);  // SystemC 2.3.4 kills no process that has not begun
+      sc_core::wait(random.between(0, 3) * sc_time(25, SC_NS));
+      for (int deltas = random.between(0, 8); deltas > 0; --deltas) sc_core::wait(sc_core::SC_ZERO_TIME);
+      const auto number = static_cast<std::size_t>(random.between(0, kProcesses - 1));
+      if (random.chance(50)) {
+        processes[number].reset();
+      } else {
+        processes[number].kill();
+        processes[number] = start(number);
+      }
+    }
+    is_last = true;
+  });
+  sc_core::sc_start();
+  for (const auto& started : processes) EXPECT_TRUE(started.terminated());
 }
 
 TEST(GenericCrossbar, RefusesAConfigurationWithProblems) {

@@ -4,9 +4,11 @@
 
 #include <array>
 #include <cmath>
+#include <locale>
 #include <memory>
 #include <ostream>
 #include <stdexcept>
+#include <string>
 
 #include "models/access_rules.h"
 #include "models/clock.h"
@@ -150,6 +152,34 @@ TEST_F(SsramBankTest, TakesBurstsOfOneCycleAWord) {
   EXPECT_EQ(bank->stats().reads, 3U);
   EXPECT_EQ(host.read_words((kWords - 1) * 4, 2).status, tlm::TLM_ADDRESS_ERROR_RESPONSE);
   EXPECT_EQ(host.read(8).word, 1U);
+}
+
+// Period and latency are no whole ps.
+TEST_F(SsramBankTest, EndsWithAnEdgeOfTheClockWhatBeginsWithOne) {
+  build({kWords, BankKind::kZbtPipelined, 0, 48});
+  const auto edge = [](std::uint64_t number) { return kernel_time::to_time(Clock(48).edge_ps(number)); };
+  for (std::uint64_t first = 0; first < 99; ++first) {
+    EXPECT_EQ(host.read(8, edge(first)).at, edge(first + 2));
+    host.request(tlm::TLM_WRITE_COMMAND, 8, std::vector<std::uint32_t>(5), edge(first));
+    EXPECT_EQ(host.answers.back().at, edge(first + 4));
+  }
+}
+
+TEST_F(SsramBankTest, IsReportedWithoutSeparatorsInALocaleThatGroupsDigits) {
+  struct Grouping : std::numpunct<char> {
+    char do_thousands_sep() const override { return '.'; }
+    std::string do_grouping() const override { return "\3"; }
+  };
+  std::locale::global(std::locale(std::locale(), new Grouping));
+  test::ExpectedReport refusal("/stereotlm/refused_access");
+  build();
+  sc_core::sc_start(sc_time(1'234'567, sc_core::SC_PS));
+  payload.set_address(0x7ffd'e068'981a);
+  transport();
+  EXPECT_NE(refusal.text().find("a read of 4 bytes at address 0x7ffde068981a: "), std::string::npos);
+  EXPECT_EQ(binder->take_violations().at(0).find("host_to_bank_monitor at 1234567 ps: b_transport: address = "
+                                                 "0x7ffde068981a: "),
+            0U);
 }
 
 TEST_F(SsramBankTest, RefusesAStreamingWidthBelowTheWord) {

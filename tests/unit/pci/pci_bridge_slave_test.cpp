@@ -1,4 +1,5 @@
 // The bridge as a target: posted writes, reads, registers, interrupts.
+#include "models/memory/word_access.h"
 #include "models/pci/posted_writes.h"
 #include "models/testing/expected_report.h"
 #include "tests/unit/pci/pci_bridge_bench.h"
@@ -81,6 +82,34 @@ TEST_F(PciBridgeSlave, ReadsBehindTheWritesPostedBefore) {
   ASSERT_EQ(local.bursts.size(), 4U);  // a word each, then the read
   EXPECT_TRUE(local.bursts[2].write);
   EXPECT_EQ(dut->stats().slave_reads, 2U);
+}
+
+TEST_F(PciBridgeSlave, EndsTheReadOfAKilledProcessBeforeTheNextOne) {
+  test::ExpectedReport lost("/stereotlm/lost_access");
+  build();
+  local.held = true;
+  std::vector<std::uint32_t> read;
+  const auto start_read = [&](std::uint64_t address) {
+    return sc_core::sc_spawn([&, address] {
+      memory::WordAccess access(bench->bus->targets[1]);
+      sc_core::sc_time delay;
+      EXPECT_TRUE(access.read(address, delay));
+      read.push_back(access.word());
+    });
+  };
+  auto victim = start_read(16);
+  start_read(24);
+  start_read(32);
+  sc_core::sc_spawn([&] {
+    sc_core::wait(100, sc_core::SC_NS);
+    victim.kill();
+    sc_core::wait(100, sc_core::SC_NS);
+    local.release();
+  });
+  run(5);
+  EXPECT_NE(lost.text().find("bridge.slave: a read of 4 bytes at address 0x10 is lost"), std::string::npos);
+  ASSERT_EQ(local.bursts.size(), 3U);
+  EXPECT_EQ(read, (std::vector<std::uint32_t>{word_at(24), word_at(32)}));
 }
 
 TEST_F(PciBridgeSlave, AnswersAReadThatTheBoardRefusesWithAnError) {
