@@ -88,7 +88,7 @@ void check_options(const CLI::App& command, std::vector<std::string> words) {
   const auto add = [&](const std::string& problem) {
     problems.add(fmt::format("{} (see stereotlm {} --help)", problem, command.get_name()));
   };
-  words.emplace_back();
+  words.emplace_back();  // behind the last one
   for (std::size_t i = 0; i + 1 < words.size() && words[i] != "--"; ++i) {
     if (!is_option(words[i])) continue;
     const std::string name = words[i].substr(0, words[i].find('='));

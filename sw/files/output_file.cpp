@@ -96,7 +96,8 @@ void check_is_another(const fs::path& file, const std::vector<NamedFile>& others
 
 std::optional<std::string> result_folder_problem(const fs::path& path) {
   std::error_code error;
-  fs::path inner = fs::weakly_canonical(fs::absolute(path), error);
+  fs::path inner = fs::absolute(path, error);
+  if (!error) inner = fs::weakly_canonical(inner, error);
   for (; !error && inner.has_relative_path(); inner = inner.parent_path()) {
     const fs::path folder = inner.parent_path();
     if (is_result(folder / kResultMark))

@@ -111,7 +111,7 @@ class CommandLine(ProgramTest):
         self.assertEqual(problem, "stereotlm: error: --out 'x': must end in .yaml")
         self.refused(run(*offset, "-.5", "--out", "x.yaml"), "--disparity-offset = -.5: must be auto or an")
         self.refused_in_one_line(run("check", "fpl2003", "--calibration=-x"), "--calibration '-x'")
-        self.refused(run("run", "--out", "--json"), "must be --out DIR, or --out=--json if --json is the value")
+        self.refused(run("run", "--out", "--json"), "be --out DIR, or --out=--json if --json is the value")
         self.succeeds(run(*self.run_arguments("--out=--json"), cwd=self.folder))
         self.is_in(self.folder, "--json", "left.pgm", "right.pgm")
         self.assertIn("Usage", self.succeeds(run("run", "--bogus", "--help")))
