@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <exception>
 #include <sstream>
+#include <string_view>
 #include <systemc>
 
 #include "platform/config/board_keys.h"
@@ -56,9 +57,10 @@ std::string help_of(const CLI::App& program) {
   return "stereotlm " + (commands.empty() ? "" : commands.front()->get_name() + " ") + "--help";
 }
 
-// Whether the parser takes the word for an option: not "-", and no number.
+// Whether the word looks like an option: "-" and a number do not.
 bool is_option(const std::string& word) {
-  return word.size() > 1 && word[0] == '-' && !number_of<double>(word);
+  constexpr std::string_view kOfNumber = "0123456789.";
+  return word.size() > 1 && word[0] == '-' && kOfNumber.find(word[1]) == std::string_view::npos;
 }
 
 // What the option lacks: a value; empty if it has one, or is a flag. `word`: the option as typed. `next`: the

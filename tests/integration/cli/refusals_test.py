@@ -99,7 +99,7 @@ class CommandLine(ProgramTest):
         with self.unchanged(self.folder):
             for command, of in options.items():
                 for option, takes_value in of.items():
-                    words = [[option, "--quiet"], [option, "-5x"], [option, ""], [option]] * takes_value
+                    words = [[option, "--quiet"], [option, "-x"], [option, ""], [option]] * takes_value
                     for each in [[f"{option}=", "--quiet"], *words]:
                         process = run(command, *each, cwd=self.folder)
                         self.refused(process, f"error: {each[0]}: a value is missing: must be {option}",
