@@ -425,7 +425,7 @@ class Outputs(ProgramTest):
         writers = {command("x")[0] for command in commands.values()}
         self.assertEqual(writers, {"merge", "diff"} | {name for name, of in parsed_options().items()
                                                        if "--out" in of})
-        folders = (self.a, self.folder / "link", self.a / "frames", self.a / "none", self.b / ".." / "a")
+        folders = (self.a, self.folder / "link" / "frames", self.b / ".." / "a" / "none")
         for name, command in commands.items():
             ending = name if name in self.writers else ""
             for folder in filter(pathlib.Path.exists, folders) if name == "calibrate" else folders:
