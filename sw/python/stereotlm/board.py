@@ -10,7 +10,7 @@ import tempfile
 
 import numpy
 
-from stereotlm.worker import Refused, execute
+from stereotlm.worker import Problem, Refused, execute
 
 
 def boards():
@@ -85,6 +85,9 @@ def _options(options):
     """Options of a command: keep_fps=99 is --keep-fps=99, True is a flag, a list an option for each value."""
     words = []
     for name, value in options.items():
+        if name == "help":
+            text = f"help = {value}: is no option here: see help(stereotlm.Board)"
+            raise Refused([Problem("command line", text, text)])
         if isinstance(value, numpy.ndarray):
             raise TypeError(f"{name}: an array: must be a number, a text or a path")
         for each in value if isinstance(value, (list, tuple)) else [value]:
@@ -276,10 +279,9 @@ class Board:
         return []
 
     def _words(self, sets=None):
-        words = [self.board]
-        for path, text in (self._sets if sets is None else sets).items():
-            words += ["--set", f"{path}={text}"]
-        return words + (["--calibration", self.calibration] if self.calibration else [])
+        words = [f"./{self.board}" if self.board.startswith("-") else self.board]  # not an option
+        words += [f"--set={path}={text}" for path, text in (self._sets if sets is None else sets).items()]
+        return words + _options({"calibration": self.calibration})
 
     # Commands.
 
@@ -331,9 +333,8 @@ class Board:
         computer is searched, which may take minutes; source="preloaded" is the core alone.
         attrs["document"] has the best of all.
         """
-        with tempfile.TemporaryDirectory() as folder:
-            words = ["--banks", banks, "--out", out or pathlib.Path(folder) / "boards.db"]
-            document = execute("allocate", *self._words(), *words, *_options(options), "--json").document
+        words = _options({"banks": banks, "out": out, **options})
+        document = execute("allocate", *self._words(), *words, "--json").document
         return _table(document["banks"], document)
 
     def sweep(self, vary=None, out=None, source="preloaded", frames=None, zip=None, where=None, sample=None,
@@ -358,9 +359,9 @@ class Board:
         with tempfile.TemporaryDirectory() as folder:
             file = pathlib.Path(folder) / "plan.yaml"
             file.write_text(text, encoding="utf-8")
-            database = out or pathlib.Path(folder) / "points.db"
+            database = pathlib.Path(folder) / "points.db" if out is None else out
             try:
-                execute("sweep", file, "--out", database, *_options(options))
+                execute("sweep", file, *_options({"out": database, **options}))
             except Refused as refused:  # the file is not the user's
                 raise Refused(each.elsewhere(str(file), "the plan") for each in refused.problems) from None
             return _points(database, [path for keys in [vary or {}, *(zip or [])] for path in keys])
