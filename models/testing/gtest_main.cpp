@@ -1,6 +1,9 @@
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -10,6 +13,7 @@
 
 #include "models/testing/expected_report.h"
 #include "models/testing/failure.h"
+#include "models/testing/protocol_monitor.h"
 
 namespace stereotlm::test {
 namespace {
@@ -45,6 +49,39 @@ class OneTestAProcess : public testing::EmptyTestEventListener {
   }
 };
 
+// Fails the program with what monitors find that outlive their test.
+class EndOfTests : public testing::Environment {
+  void TearDown() override { fail_at_end(); }
+};
+
+// A test that calls exit() leaves its monitors as they are. A process that it has forked has copies of them.
+pid_t test_process = 0;
+void end_process() {
+  if (getpid() != test_process || !fail_at_end()) return;
+  std::fflush(nullptr);
+  std::_Exit(EXIT_FAILURE);
+}
+
+// A crash would lose the violations, which may tell its cause. The handler that was there before comes next.
+constexpr std::array kCrashes = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT};
+std::array<struct sigaction, kCrashes.size()> earlier_handlers;
+void say_violations(int signal, siginfo_t* info, void* /*context*/) {
+  for (std::size_t crash = 0; crash < kCrashes.size(); ++crash)
+    sigaction(kCrashes[crash], &earlier_handlers[crash], nullptr);
+  write_violations(STDERR_FILENO);
+  if (info->si_code <= 0) raise(signal);  // a process has sent it; a fault comes again
+}
+
+void watch_end_of_process() {
+  test_process = getpid();
+  std::atexit(end_process);
+  struct sigaction action {};
+  action.sa_sigaction = say_violations;
+  action.sa_flags = SA_SIGINFO | SA_ONSTACK;
+  for (std::size_t crash = 0; crash < kCrashes.size(); ++crash)
+    sigaction(kCrashes[crash], &action, &earlier_handlers[crash]);
+}
+
 }  // namespace
 
 ExpectedReport::ExpectedReport(std::string message_type, int count)
@@ -75,6 +112,8 @@ int sc_main(int argc, char** argv) {
   stereotlm::test::set_failure_handler([](const std::string& text) { ADD_FAILURE() << text; });
   testing::InitGoogleTest(&argc, argv);
   testing::UnitTest::GetInstance()->listeners().Append(new stereotlm::test::OneTestAProcess);
+  testing::AddGlobalTestEnvironment(new stereotlm::test::EndOfTests);
+  stereotlm::test::watch_end_of_process();
   return RUN_ALL_TESTS();
 }
 

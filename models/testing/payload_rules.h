@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <systemc>
 #include <tlm>
 #include <vector>
 
@@ -17,6 +18,9 @@ struct ProtocolOptions {
   // A response has a final status. Without it TLM_INCOMPLETE_RESPONSE is an answer too: what acted as the
   // target did not attempt the command (14.17 e).
   bool final_status = true;
+  // Each access ends before the simulation does. Without it an access may be under way when a test ends the
+  // simulation.
+  bool all_end = true;
 };
 
 // One sentence per broken rule: the value found, the rule, and its clause of IEEE Std 1666-2011.
@@ -27,6 +31,14 @@ Problems request_problems(const tlm::tlm_generic_payload& payload, const Protoco
 
 // Rules for the payload that a target returns with its response.
 Problems response_problems(const tlm::tlm_generic_payload& payload, const ProtocolOptions& options);
+
+// An access that has not ended.
+struct OpenAccess {
+  sc_dt::uint64 address;   // as requested
+  sc_core::sc_time begin;  // of the request
+};
+// The rule that the access breaks if the simulation ends.
+std::string open_problem(const OpenAccess& access);
 
 // Rules for transport_dbg, and for the number of bytes that it returns.
 Problems debug_request_problems(const tlm::tlm_generic_payload& payload);

@@ -1,6 +1,9 @@
 #include "models/testing/protocol_monitor.h"
 
+#include <unistd.h>
+
 #include <algorithm>
+#include <tuple>
 #include <utility>
 
 #include "models/testing/failure.h"
@@ -64,19 +67,62 @@ bool in_method_process() {
   return process != nullptr && process->proc_kind() == sc_core::SC_METHOD_PROC_;
 }
 
+// The monitors that exist. Never destroyed: a monitor may be a static object.
+std::vector<ProtocolMonitor*>& monitors() {
+  static auto* const all = new std::vector<ProtocolMonitor*>;
+  return *all;
+}
+
 }  // namespace
 
 ProtocolMonitor::ProtocolMonitor(const sc_core::sc_module_name& name, const ProtocolOptions& options)
     : sc_module(name), options_(options), phases_(options) {
   from_initiator.bind(*this);
   to_target.bind(*this);
+  monitors().push_back(this);
 }
 
 ProtocolMonitor::~ProtocolMonitor() {
-  for (const auto& violation : violations_) fail(violation);
+  monitors().erase(std::find(monitors().begin(), monitors().end(), this));
+  fail_all();
 }
 
 std::vector<std::string> ProtocolMonitor::take_violations() { return std::exchange(violations_, {}); }
+
+std::vector<std::string> ProtocolMonitor::open_accesses() const {
+  std::vector<std::pair<const char*, OpenAccess>> open;
+  for (const Blocking& call : blocking_) open.emplace_back("b_transport", call.access);
+  for (const OpenAccess& access : phases_.open_accesses()) open.emplace_back("nb_transport", access);
+  std::sort(open.begin(), open.end(), [](const auto& a, const auto& b) {
+    return std::tie(a.second.begin, a.second.address) < std::tie(b.second.begin, b.second.address);
+  });
+  std::vector<std::string> texts;
+  for (const auto& [call, access] : open) texts.push_back(text(call, open_problem(access)));
+  return texts;
+}
+
+bool ProtocolMonitor::fail_all() {
+  std::vector<std::string> failures = take_violations();
+  if (options_.all_end && !std::exchange(has_ended_, true)) {
+    for (std::string& access : open_accesses()) failures.push_back(std::move(access));
+  }
+  for (const std::string& failure : failures) fail(failure);
+  return !failures.empty();
+}
+
+bool fail_at_end() {
+  bool has_failed = false;
+  for (ProtocolMonitor* const monitor : monitors()) has_failed |= monitor->fail_all();
+  return has_failed;
+}
+
+void write_violations(int descriptor) noexcept {
+  for (const ProtocolMonitor* const monitor : monitors()) {
+    for (const std::string& violation : monitor->violations_) {
+      if (write(descriptor, violation.data(), violation.size()) < 0 || write(descriptor, "\n", 1) < 0) return;
+    }
+  }
+}
 
 void ProtocolMonitor::b_transport(Payload& payload, sc_core::sc_time& delay) {
   constexpr const char* kCall = "b_transport";
@@ -93,7 +139,7 @@ void ProtocolMonitor::b_transport(Payload& payload, sc_core::sc_time& delay) {
 
   const PayloadSnapshot sent(payload);
   const sc_core::sc_time start = sc_core::sc_time_stamp() + delay;
-  const Listed<Blocking> listed(blocking_, {&payload, this_process()});
+  const Listed<Blocking> listed(blocking_, {&payload, this_process(), {sent.address(), start}});
   const bool managed = payload.has_mm();
   const Hold hold(payload);
   const int references = hold.others();
@@ -141,7 +187,7 @@ tlm::tlm_sync_enum ProtocolMonitor::nb_transport_bw(Payload& payload, tlm::tlm_p
   const PhaseTracker::Call call{phase, sc_core::sc_time_stamp() + delay};
   if (contains(forward_)) report(kCall, "called within nb_transport_fw: not permitted (11.1.2.4 c)");
   if (std::any_of(blocking_.begin(), blocking_.end(),
-                  [](const Blocking& other) { return other.second == this_process(); }))
+                  [](const Blocking& other) { return other.process == this_process(); }))
     report(kCall, "called within b_transport: not permitted (11.1.1.4 j)");
   report(kCall, phases_.backward_call(payload, call));
   const Listed<Process> listed(backward_, this_process());
@@ -183,7 +229,7 @@ void ProtocolMonitor::invalidate_direct_mem_ptr(sc_dt::uint64 start, sc_dt::uint
 
 bool ProtocolMonitor::in_b_transport(const Payload& payload) const {
   return std::any_of(blocking_.begin(), blocking_.end(),
-                     [&payload](const Blocking& call) { return call.first == &payload; });
+                     [&payload](const Blocking& call) { return call.payload == &payload; });
 }
 
 void ProtocolMonitor::check_non_blocking(const char* call, const Payload& payload) {
@@ -200,8 +246,11 @@ void ProtocolMonitor::report(const char* call, const Problems& problems) {
 
 void ProtocolMonitor::report(const char* call, const std::string& problem) {
   if (violations_.size() == kViolationsKept) return;
-  violations_.push_back(std::string(name()) + " at " + sc_core::sc_time_stamp().to_string() + ": " + call +
-                        ": " + problem);
+  violations_.push_back(text(call, problem));
+}
+
+std::string ProtocolMonitor::text(const char* call, const std::string& problem) const {
+  return std::string(name()) + " at " + sc_core::sc_time_stamp().to_string() + ": " + call + ": " + problem;
 }
 
 }  // namespace stereotlm::test

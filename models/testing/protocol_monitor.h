@@ -3,7 +3,6 @@
 #include <string>
 #include <systemc>
 #include <tlm>
-#include <utility>
 #include <vector>
 
 #include "models/testing/payload_rules.h"
@@ -14,7 +13,8 @@ namespace stereotlm::test {
 // Forwards every call between an initiator and a target unchanged, and checks that both keep the base
 // protocol (IEEE Std 1666-2011, 11 and 14 to 16) and the rules of ProtocolOptions. A violation reads
 // "<monitor> at <time>: <call>: <value found and the rule>". Those that nobody has
-// taken out are failures (failure.h) when the monitor is destroyed.
+// taken out are failures (failure.h) when the monitor is destroyed. So is each access that is open then: one
+// without return from b_transport, or without END_RESP.
 class ProtocolMonitor : public sc_core::sc_module,
                         public tlm::tlm_fw_transport_if<>,
                         public tlm::tlm_bw_transport_if<> {
@@ -28,6 +28,8 @@ class ProtocolMonitor : public sc_core::sc_module,
 
   // Returns and removes the violations, of which the first hundred are kept.
   std::vector<std::string> take_violations();
+  // The accesses that are open, in the order of their begin, as violations.
+  std::vector<std::string> open_accesses() const;
 
   void b_transport(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay) override;
   tlm::tlm_sync_enum nb_transport_fw(tlm::tlm_generic_payload& payload, tlm::tlm_phase& phase,
@@ -40,10 +42,22 @@ class ProtocolMonitor : public sc_core::sc_module,
 
  private:
   using Process = const sc_core::sc_process_b*;
-  using Blocking = std::pair<const tlm::tlm_generic_payload*, Process>;
+  // A call of b_transport in progress.
+  struct Blocking {
+    const tlm::tlm_generic_payload* payload;
+    Process process;
+    OpenAccess access;
+    bool operator==(const Blocking& other) const {
+      return payload == other.payload && process == other.process;
+    }
+  };
 
+  friend bool fail_at_end();
+  friend void write_violations(int descriptor) noexcept;
   bool in_b_transport(const tlm::tlm_generic_payload& payload) const;
   void check_non_blocking(const char* call, const tlm::tlm_generic_payload& payload);
+  bool fail_all();
+  std::string text(const char* call, const std::string& problem) const;
   void report(const char* call, const Problems& problems);
   void report(const char* call, const std::string& problem);
 
@@ -54,6 +68,14 @@ class ProtocolMonitor : public sc_core::sc_module,
   std::vector<Process> forward_;
   std::vector<Process> backward_;
   std::vector<std::string> violations_;
+  bool has_ended_ = false;  // the open accesses are failures already
 };
+
+// Fails with the violations and the open accesses of all monitors that exist. Returns whether there were any.
+// For the end of a test program, of which a monitor may be a static object, or be deleted by nobody.
+// gtest_main.cpp calls it.
+bool fail_at_end();
+// Writes the violations of all monitors that exist to a file, for a handler of a signal that ends the process.
+void write_violations(int descriptor) noexcept;
 
 }  // namespace stereotlm::test

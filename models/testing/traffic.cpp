@@ -1,5 +1,7 @@
 #include "models/testing/traffic.h"
 
+#include <algorithm>
+#include <charconv>
 #include <random>
 #include <sstream>
 #include <stdexcept>
@@ -18,45 +20,74 @@ void require(bool holds, const char* what, std::uint64_t value, const std::strin
   if (!holds) throw std::invalid_argument(what + (" = " + std::to_string(value) + ": must be " + rule));
 }
 
-std::uint64_t number_of(const std::string& text, const char* what, std::size_t line) {
-  std::size_t end = 0;
-  std::uint64_t number = 0;
-  if (!text.empty() && text.front() >= '0' && text.front() <= '9') {
-    try {
-      number = std::stoull(text, &end, text.rfind("0x", 0) == 0 ? 16 : 10);
-    } catch (const std::logic_error&) {
-      end = 0;
+constexpr const char* kColumns = "pause_ns,direction,address,words";
+constexpr std::uint64_t kMostWords = UINT32_MAX / 4;  // a payload counts its bytes in 32 bits
+
+// A line of a trace, for its messages.
+class TraceLine {
+ public:
+  TraceLine(const std::string& text, std::size_t number) : number_(number) {
+    std::istringstream cells(text + ',');
+    for (std::string cell; std::getline(cells, cell, ',');) {
+      constexpr const char* kBlanks = " \t\r";
+      cell.erase(0, cell.find_first_not_of(kBlanks));
+      cells_.push_back(cell.erase(cell.find_last_not_of(kBlanks) + 1));
     }
   }
-  if (end == 0 || end != text.size()) {
-    throw std::invalid_argument("line " + std::to_string(line) + ": " + what + " = " + text +
-                                ": must be a whole number");
-  }
-  return number;
-}
 
-TrafficAccess access_of(const std::string& text, std::size_t line) {
-  std::vector<std::string> fields;
-  std::istringstream row(text);
-  for (std::string field; std::getline(row, field, ',');) fields.push_back(field);
-  if (!fields.empty() && !fields.back().empty() && fields.back().back() == '\r') fields.back().pop_back();
-  const auto problem = [&](const std::string& what) {
-    return std::invalid_argument("line " + std::to_string(line) + ": " + what);
-  };
-  if (fields.size() != 4)
-    throw problem(std::to_string(fields.size()) + " values: must be pause_ns,direction,address,words");
-  TrafficAccess access;
-  access.pause =
-      sc_core::sc_time(static_cast<double>(number_of(fields[0], "pause_ns", line)), sc_core::SC_NS);
-  if (fields[1] != "read" && fields[1] != "write")
-    throw problem("direction = " + fields[1] + ": must be read or write");
-  access.write = fields[1] == "write";
-  access.address = number_of(fields[2], "address", line);
-  if (access.address % 4 != 0) throw problem("address = " + fields[2] + ": must be a multiple of 4");
-  access.words = number_of(fields[3], "words", line);
-  if (access.words == 0) throw problem("words = 0: must be 1 or more");
-  return access;
-}
+  bool is_blank() const { return cells_.size() == 1 && cells_[0].empty(); }
+  std::string text() const {
+    std::string text;
+    for (const std::string& cell : cells_) text += (text.empty() ? "" : ",") + cell;
+    return text;
+  }
+
+  TrafficAccess access() const {
+    if (cells_.size() != 4) fail(std::to_string(cells_.size()) + " values: must be " + kColumns);
+    const sc_core::sc_time ns(1, sc_core::SC_NS);
+    TrafficAccess access;
+    access.pause =
+        sc_core::sc_time::from_value(integer(0, "pause_ns", 0, UINT64_MAX / ns.value()) * ns.value());
+    access.write = cells_[1] == "write";
+    if (!access.write && cells_[1] != "read") fail("direction = " + cells_[1] + ": must be read or write");
+    access.address = integer(2, "address", 0, UINT64_MAX);
+    if (access.address % 4 != 0) fail("address = " + cells_[2] + ": must be a multiple of 4");
+    access.words = integer(3, "words", 1, kMostWords);
+    if (access.words - 1 > (UINT64_MAX - access.address) / 4)
+      fail("address = " + cells_[2] + ": the access must end at 2^64 or before it");
+    return access;
+  }
+
+  // Characters that a reader does not see are shown as their bytes.
+  [[noreturn]] void fail(const std::string& problem) const {
+    std::string text = "line " + std::to_string(number_) + ": ";
+    for (const char byte : problem) {
+      const bool is_visible = byte >= ' ' && byte <= '~';
+      constexpr const char* kDigits = "0123456789abcdef";
+      const auto value = static_cast<unsigned char>(byte);
+      text +=
+          is_visible ? std::string(1, byte) : std::string("\\x") + kDigits[value / 16] + kDigits[value % 16];
+    }
+    throw std::invalid_argument(text);
+  }
+
+ private:
+  std::uint64_t integer(std::size_t cell, const char* name, std::uint64_t least, std::uint64_t most) const {
+    const std::string& text = cells_[cell];
+    const bool is_hex = text.rfind("0x", 0) == 0;
+    std::uint64_t number = 0;
+    const auto [end, error] =
+        std::from_chars(text.data() + (is_hex ? 2 : 0), text.data() + text.size(), number, is_hex ? 16 : 10);
+    if (error != std::errc() || end != text.data() + text.size() || number < least || number > most) {
+      fail(std::string(name) + " = " + text + ": must be an integer of " + std::to_string(least) + ".." +
+           std::to_string(most));
+    }
+    return number;
+  }
+
+  std::size_t number_;
+  std::vector<std::string> cells_;  // without blanks around them
+};
 
 }  // namespace
 
@@ -64,7 +95,7 @@ std::vector<TrafficAccess> strided_traffic(std::uint64_t first, std::uint64_t st
                                            bool write, std::size_t words) {
   require(first % 4 == 0, "first", first, "a multiple of 4");
   require(stride % 4 == 0, "stride", stride, "a multiple of 4");
-  require(words > 0, "words", words, "1 or more");
+  require(words > 0 && words <= kMostWords, "words", words, "1.." + std::to_string(kMostWords));
   std::vector<TrafficAccess> accesses;
   for (std::size_t number = 0; number < count; ++number)
     accesses.push_back({{}, write, first + number * stride, words});
@@ -73,8 +104,11 @@ std::vector<TrafficAccess> strided_traffic(std::uint64_t first, std::uint64_t st
 
 std::vector<TrafficAccess> random_traffic(const RandomTraffic& from) {
   require(from.first % 4 == 0, "first", from.first, "a multiple of 4");
-  require(from.most_words > 0 && from.most_words <= from.memory_words, "most_words", from.most_words,
-          "1..memory_words, which is " + std::to_string(from.memory_words));
+  const std::uint64_t places = (UINT64_MAX - from.first) / 4 + 1;
+  require(from.memory_words <= places, "memory_words", from.memory_words, "0.." + std::to_string(places));
+  const std::uint64_t most_words = std::min(from.memory_words, kMostWords);
+  require(from.most_words > 0 && from.most_words <= most_words, "most_words", from.most_words,
+          "1.." + std::to_string(most_words) + ", which memory_words limits too");
   require(from.writes_percent <= 100, "writes_percent", from.writes_percent, "0..100");
   std::mt19937_64 random(from.seed);
   std::vector<TrafficAccess> accesses;
@@ -91,12 +125,19 @@ std::vector<TrafficAccess> random_traffic(const RandomTraffic& from) {
 }
 
 std::vector<TrafficAccess> traffic_of_csv(std::istream& csv) {
+  constexpr const char* kByteOrderMark = "\xEF\xBB\xBF";
   std::vector<TrafficAccess> accesses;
-  std::size_t line = 1;
-  std::string text;
-  if (!std::getline(csv, text) || text != "pause_ns,direction,address,words")
-    throw std::invalid_argument("line 1: " + text + ": must be pause_ns,direction,address,words");
-  while (std::getline(csv, text)) accesses.push_back(access_of(text, ++line));
+  bool has_columns = false;
+  std::size_t number = 1;
+  for (std::string text; std::getline(csv, text); ++number) {
+    if (number == 1 && text.rfind(kByteOrderMark, 0) == 0) text.erase(0, 3);
+    const TraceLine line(text, number);
+    if (!has_columns && line.text() != kColumns) line.fail(line.text() + ": must be " + kColumns);
+    if (has_columns && !line.is_blank()) accesses.push_back(line.access());
+    has_columns = true;
+  }
+  if (csv.bad() || !has_columns)
+    TraceLine("", number).fail(has_columns ? "cannot be read" : std::string("missing: must be ") + kColumns);
   return accesses;
 }
 
