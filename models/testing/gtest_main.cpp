@@ -2,7 +2,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -51,35 +50,22 @@ class OneTestAProcess : public testing::EmptyTestEventListener {
 
 // Fails the program with what monitors find that outlive their test.
 class EndOfTests : public testing::Environment {
-  void TearDown() override { fail_at_end(); }
+  void TearDown() override { ProtocolMonitor::fail_at_end(); }
 };
 
-// A test that calls exit() leaves its monitors as they are. A process that it has forked has copies of them.
-pid_t test_process = 0;
+// A test may call exit(). A process that it has forked has only copies of the monitors.
+const pid_t tests = getpid();
 void end_process() {
-  if (getpid() != test_process || !fail_at_end()) return;
+  if (getpid() != tests || !ProtocolMonitor::fail_at_end()) return;
   std::fflush(nullptr);
   std::_Exit(EXIT_FAILURE);
 }
 
-// A crash would lose the violations, which may tell its cause. The handler that was there before comes next.
-constexpr std::array kCrashes = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT};
-std::array<struct sigaction, kCrashes.size()> earlier_handlers;
-void say_violations(int signal, siginfo_t* info, void* /*context*/) {
-  for (std::size_t crash = 0; crash < kCrashes.size(); ++crash)
-    sigaction(kCrashes[crash], &earlier_handlers[crash], nullptr);
-  write_violations(STDERR_FILENO);
-  if (info->si_code <= 0) raise(signal);  // a process has sent it; a fault comes again
-}
-
-void watch_end_of_process() {
-  test_process = getpid();
-  std::atexit(end_process);
-  struct sigaction action {};
-  action.sa_sigaction = say_violations;
-  action.sa_flags = SA_SIGINFO | SA_ONSTACK;
-  for (std::size_t crash = 0; crash < kCrashes.size(); ++crash)
-    sigaction(kCrashes[crash], &action, &earlier_handlers[crash]);
+// A crash loses no violation: it may tell the cause.
+void end_by(int signal) {
+  std::signal(signal, SIG_DFL);
+  ProtocolMonitor::write_all(STDERR_FILENO);
+  std::raise(signal);
 }
 
 }  // namespace
@@ -113,7 +99,12 @@ int sc_main(int argc, char** argv) {
   testing::InitGoogleTest(&argc, argv);
   testing::UnitTest::GetInstance()->listeners().Append(new stereotlm::test::OneTestAProcess);
   testing::AddGlobalTestEnvironment(new stereotlm::test::EndOfTests);
-  stereotlm::test::watch_end_of_process();
+  std::atexit(stereotlm::test::end_process);
+  for (const int crash : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT}) {
+    struct sigaction earlier {};  // that of a sanitizer stays
+    sigaction(crash, nullptr, &earlier);
+    if (earlier.sa_handler == SIG_DFL) std::signal(crash, stereotlm::test::end_by);
+  }
   return RUN_ALL_TESTS();
 }
 

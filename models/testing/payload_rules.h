@@ -18,8 +18,7 @@ struct ProtocolOptions {
   // A response has a final status. Without it TLM_INCOMPLETE_RESPONSE is an answer too: what acted as the
   // target did not attempt the command (14.17 e).
   bool final_status = true;
-  // Each access ends before the simulation does. Without it an access may be under way when a test ends the
-  // simulation.
+  // Each access ends before the simulation. Without it one may be under way when a test ends the simulation.
   bool all_end = true;
 };
 
@@ -32,13 +31,8 @@ Problems request_problems(const tlm::tlm_generic_payload& payload, const Protoco
 // Rules for the payload that a target returns with its response.
 Problems response_problems(const tlm::tlm_generic_payload& payload, const ProtocolOptions& options);
 
-// An access that has not ended.
-struct OpenAccess {
-  sc_dt::uint64 address;   // as requested
-  sc_core::sc_time begin;  // of the request
-};
-// The rule that the access breaks if the simulation ends.
-std::string open_problem(const OpenAccess& access);
+// The rule that an access breaks if it has not ended at the end of the simulation.
+std::string open_problem(sc_dt::uint64 address, const sc_core::sc_time& begin);
 
 // Rules for transport_dbg, and for the number of bytes that it returns.
 Problems debug_request_problems(const tlm::tlm_generic_payload& payload);

@@ -156,13 +156,6 @@ Problems PhaseTracker::backward_return(const Payload& payload, const Call& call,
   return problems;
 }
 
-std::vector<OpenAccess> PhaseTracker::open_accesses() const {
-  std::vector<OpenAccess> open;
-  for (const auto& [payload, transaction] : transactions_)
-    open.push_back({transaction.sent.address(), transaction.begin});
-  return open;
-}
-
 PhaseTracker::Transaction* PhaseTracker::find(const Payload& payload) {
   const auto found = transactions_.find(&payload);
   return found == transactions_.end() ? nullptr : &found->second;

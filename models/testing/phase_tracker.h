@@ -4,7 +4,6 @@
 #include <systemc>
 #include <tlm>
 #include <unordered_map>
-#include <vector>
 
 #include "models/testing/payload_rules.h"
 
@@ -33,7 +32,6 @@ class PhaseTracker {
   bool in_progress(const tlm::tlm_generic_payload& payload) const {  // whether it has no END_RESP yet
     return transactions_.count(&payload) != 0;
   }
-  std::vector<OpenAccess> open_accesses() const;  // those without END_RESP, in no particular order
 
  private:
   enum class State { kRequest, kRequestEnded, kResponse };
@@ -41,7 +39,6 @@ class PhaseTracker {
     State state;
     sc_core::sc_time time;  // of the last call or return
     PayloadSnapshot sent;
-    sc_core::sc_time begin = time;
     std::optional<ResponseSnapshot> answered = {};
     bool spoilt = false;    // a change is reported once
     unsigned extended = 0;  // the ignorable phase that came last

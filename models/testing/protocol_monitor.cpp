@@ -1,9 +1,7 @@
 #include "models/testing/protocol_monitor.h"
 
-#include <unistd.h>
-
 #include <algorithm>
-#include <tuple>
+#include <cstdio>
 #include <utility>
 
 #include "models/testing/failure.h"
@@ -67,7 +65,7 @@ bool in_method_process() {
   return process != nullptr && process->proc_kind() == sc_core::SC_METHOD_PROC_;
 }
 
-// The monitors that exist. Never destroyed: a monitor may be a static object.
+// The monitors that exist. It is never destroyed, because a monitor may be a static object.
 std::vector<ProtocolMonitor*>& monitors() {
   static auto* const all = new std::vector<ProtocolMonitor*>;
   return *all;
@@ -87,42 +85,29 @@ ProtocolMonitor::~ProtocolMonitor() {
   fail_all();
 }
 
-std::vector<std::string> ProtocolMonitor::take_violations() { return std::exchange(violations_, {}); }
-
-std::vector<std::string> ProtocolMonitor::open_accesses() const {
-  std::vector<std::pair<const char*, OpenAccess>> open;
-  for (const Blocking& call : blocking_) open.emplace_back("b_transport", call.access);
-  for (const OpenAccess& access : phases_.open_accesses()) open.emplace_back("nb_transport", access);
-  std::sort(open.begin(), open.end(), [](const auto& a, const auto& b) {
-    return std::tie(a.second.begin, a.second.address) < std::tie(b.second.begin, b.second.address);
-  });
-  std::vector<std::string> texts;
-  for (const auto& [call, access] : open) texts.push_back(text(call, open_problem(access)));
-  return texts;
-}
-
 bool ProtocolMonitor::fail_all() {
-  std::vector<std::string> failures = take_violations();
-  if (options_.all_end && !std::exchange(has_ended_, true)) {
-    for (std::string& access : open_accesses()) failures.push_back(std::move(access));
+  const bool all_end = std::exchange(options_.all_end, false);  // an open access fails once
+  for (const auto& [payload, begun] : begun_) {
+    const bool is_blocking = in_b_transport(*payload);
+    if (all_end && (is_blocking || phases_.in_progress(*payload)))
+      report(is_blocking ? "b_transport" : "nb_transport", open_problem(begun.first, begun.second));
   }
+  const std::vector<std::string> failures = take_violations();
   for (const std::string& failure : failures) fail(failure);
   return !failures.empty();
 }
 
-bool fail_at_end() {
-  bool has_failed = false;
-  for (ProtocolMonitor* const monitor : monitors()) has_failed |= monitor->fail_all();
-  return has_failed;
+bool ProtocolMonitor::fail_at_end() {
+  return std::count_if(monitors().begin(), monitors().end(), [](auto* each) { return each->fail_all(); }) > 0;
 }
 
-void write_violations(int descriptor) noexcept {
+void ProtocolMonitor::write_all(int descriptor) {
   for (const ProtocolMonitor* const monitor : monitors()) {
-    for (const std::string& violation : monitor->violations_) {
-      if (write(descriptor, violation.data(), violation.size()) < 0 || write(descriptor, "\n", 1) < 0) return;
-    }
+    for (const std::string& violation : monitor->violations_) dprintf(descriptor, "%s\n", violation.c_str());
   }
 }
+
+std::vector<std::string> ProtocolMonitor::take_violations() { return std::exchange(violations_, {}); }
 
 void ProtocolMonitor::b_transport(Payload& payload, sc_core::sc_time& delay) {
   constexpr const char* kCall = "b_transport";
@@ -139,11 +124,13 @@ void ProtocolMonitor::b_transport(Payload& payload, sc_core::sc_time& delay) {
 
   const PayloadSnapshot sent(payload);
   const sc_core::sc_time start = sc_core::sc_time_stamp() + delay;
-  const Listed<Blocking> listed(blocking_, {&payload, this_process(), {sent.address(), start}});
+  const Listed<Blocking> listed(blocking_, {&payload, this_process()});
+  begun_[&payload] = {sent.address(), start};
   const bool managed = payload.has_mm();
   const Hold hold(payload);
   const int references = hold.others();
   to_target->b_transport(payload, delay);
+  begun_.erase(&payload);
 
   if (!managed && payload.has_mm()) {
     report(kCall, "memory manager set: what has set it must remove it before it returns (14.5 j)");
@@ -171,11 +158,13 @@ tlm::tlm_sync_enum ProtocolMonitor::nb_transport_fw(Payload& payload, tlm::tlm_p
   const PhaseTracker::Call call{phase, sc_core::sc_time_stamp() + delay};
   if (contains(backward_)) report(kCall, "called within nb_transport_bw: not permitted (11.1.2.4 c)");
   report(kCall, phases_.forward_call(payload, call));
+  if (phase == tlm::BEGIN_REQ) begun_[&payload] = {payload.get_address(), call.time};
   const Listed<Process> listed(forward_, this_process());
   const Hold hold(payload);
   const auto status = to_target->nb_transport_fw(payload, phase, delay);
   if (moment.passed()) report(kCall, "time passed: a non-blocking callee must not wait (11.1.2.4)");
   report(kCall, phases_.forward_return(payload, call, {phase, sc_core::sc_time_stamp() + delay}, status));
+  if (!phases_.in_progress(payload)) begun_.erase(&payload);
   return status;
 }
 
@@ -187,7 +176,7 @@ tlm::tlm_sync_enum ProtocolMonitor::nb_transport_bw(Payload& payload, tlm::tlm_p
   const PhaseTracker::Call call{phase, sc_core::sc_time_stamp() + delay};
   if (contains(forward_)) report(kCall, "called within nb_transport_fw: not permitted (11.1.2.4 c)");
   if (std::any_of(blocking_.begin(), blocking_.end(),
-                  [](const Blocking& other) { return other.process == this_process(); }))
+                  [](const Blocking& other) { return other.second == this_process(); }))
     report(kCall, "called within b_transport: not permitted (11.1.1.4 j)");
   report(kCall, phases_.backward_call(payload, call));
   const Listed<Process> listed(backward_, this_process());
@@ -195,6 +184,7 @@ tlm::tlm_sync_enum ProtocolMonitor::nb_transport_bw(Payload& payload, tlm::tlm_p
   const auto status = from_initiator->nb_transport_bw(payload, phase, delay);
   if (moment.passed()) report(kCall, "time passed: a non-blocking callee must not wait (11.1.2.4)");
   report(kCall, phases_.backward_return(payload, call, {phase, sc_core::sc_time_stamp() + delay}, status));
+  if (!phases_.in_progress(payload)) begun_.erase(&payload);
   return status;
 }
 
@@ -229,7 +219,7 @@ void ProtocolMonitor::invalidate_direct_mem_ptr(sc_dt::uint64 start, sc_dt::uint
 
 bool ProtocolMonitor::in_b_transport(const Payload& payload) const {
   return std::any_of(blocking_.begin(), blocking_.end(),
-                     [&payload](const Blocking& call) { return call.payload == &payload; });
+                     [&payload](const Blocking& call) { return call.first == &payload; });
 }
 
 void ProtocolMonitor::check_non_blocking(const char* call, const Payload& payload) {
@@ -246,11 +236,8 @@ void ProtocolMonitor::report(const char* call, const Problems& problems) {
 
 void ProtocolMonitor::report(const char* call, const std::string& problem) {
   if (violations_.size() == kViolationsKept) return;
-  violations_.push_back(text(call, problem));
-}
-
-std::string ProtocolMonitor::text(const char* call, const std::string& problem) const {
-  return std::string(name()) + " at " + sc_core::sc_time_stamp().to_string() + ": " + call + ": " + problem;
+  violations_.push_back(std::string(name()) + " at " + sc_core::sc_time_stamp().to_string() + ": " + call +
+                        ": " + problem);
 }
 
 }  // namespace stereotlm::test

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <map>
 #include <string>
 #include <systemc>
 #include <tlm>
+#include <utility>
 #include <vector>
 
 #include "models/testing/payload_rules.h"
@@ -28,8 +30,12 @@ class ProtocolMonitor : public sc_core::sc_module,
 
   // Returns and removes the violations, of which the first hundred are kept.
   std::vector<std::string> take_violations();
-  // The accesses that are open, in the order of their begin, as violations.
-  std::vector<std::string> open_accesses() const;
+  // Fails with the violations and the open accesses of all monitors that exist, as if they were destroyed.
+  // Returns whether there were any. gtest_main.cpp calls it at the end of the program, which a monitor may
+  // outlive.
+  static bool fail_at_end();
+  // Writes the violations of all monitors to a file. For a handler of a signal that ends the process.
+  static void write_all(int descriptor);
 
   void b_transport(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay) override;
   tlm::tlm_sync_enum nb_transport_fw(tlm::tlm_generic_payload& payload, tlm::tlm_phase& phase,
@@ -42,22 +48,11 @@ class ProtocolMonitor : public sc_core::sc_module,
 
  private:
   using Process = const sc_core::sc_process_b*;
-  // A call of b_transport in progress.
-  struct Blocking {
-    const tlm::tlm_generic_payload* payload;
-    Process process;
-    OpenAccess access;
-    bool operator==(const Blocking& other) const {
-      return payload == other.payload && process == other.process;
-    }
-  };
+  using Blocking = std::pair<const tlm::tlm_generic_payload*, Process>;
 
-  friend bool fail_at_end();
-  friend void write_violations(int descriptor) noexcept;
+  bool fail_all();
   bool in_b_transport(const tlm::tlm_generic_payload& payload) const;
   void check_non_blocking(const char* call, const tlm::tlm_generic_payload& payload);
-  bool fail_all();
-  std::string text(const char* call, const std::string& problem) const;
   void report(const char* call, const Problems& problems);
   void report(const char* call, const std::string& problem);
 
@@ -65,17 +60,10 @@ class ProtocolMonitor : public sc_core::sc_module,
   PhaseTracker phases_;
   // The calls in progress.
   std::vector<Blocking> blocking_;
+  std::map<const tlm::tlm_generic_payload*, std::pair<sc_dt::uint64, sc_core::sc_time>> begun_;  // and where
   std::vector<Process> forward_;
   std::vector<Process> backward_;
   std::vector<std::string> violations_;
-  bool has_ended_ = false;  // the open accesses are failures already
 };
-
-// Fails with the violations and the open accesses of all monitors that exist. Returns whether there were any.
-// For the end of a test program, of which a monitor may be a static object, or be deleted by nobody.
-// gtest_main.cpp calls it.
-bool fail_at_end();
-// Writes the violations of all monitors that exist to a file, for a handler of a signal that ends the process.
-void write_violations(int descriptor) noexcept;
 
 }  // namespace stereotlm::test

@@ -23,71 +23,62 @@ void require(bool holds, const char* what, std::uint64_t value, const std::strin
 constexpr const char* kColumns = "pause_ns,direction,address,words";
 constexpr std::uint64_t kMostWords = UINT32_MAX / 4;  // a payload counts its bytes in 32 bits
 
-// A line of a trace, for its messages.
-class TraceLine {
- public:
-  TraceLine(const std::string& text, std::size_t number) : number_(number) {
-    std::istringstream cells(text + ',');
-    for (std::string cell; std::getline(cells, cell, ',');) {
-      constexpr const char* kBlanks = " \t\r";
-      cell.erase(0, cell.find_first_not_of(kBlanks));
-      cells_.push_back(cell.erase(cell.find_last_not_of(kBlanks) + 1));
-    }
+// Shows characters that a reader does not see as their bytes.
+[[noreturn]] void refuse(std::size_t line, const std::string& problem) {
+  constexpr const char* kDigits = "0123456789abcdef";
+  std::string text = "line " + std::to_string(line) + ": ";
+  for (const char byte : problem) {
+    const auto value = static_cast<unsigned char>(byte);
+    text += byte >= ' ' && byte <= '~' ? std::string(1, byte)
+                                       : std::string("\\x") + kDigits[value / 16] + kDigits[value % 16];
   }
+  throw std::invalid_argument(text);
+}
 
-  bool is_blank() const { return cells_.size() == 1 && cells_[0].empty(); }
-  std::string text() const {
-    std::string text;
-    for (const std::string& cell : cells_) text += (text.empty() ? "" : ",") + cell;
-    return text;
+// The values of a line, without the blanks around them.
+std::vector<std::string> values_of(const std::string& text) {
+  constexpr const char* kBlanks = " \t\r";
+  std::vector<std::string> values;
+  std::istringstream row(text + ',');
+  for (std::string value; std::getline(row, value, ',');) {
+    value.erase(0, value.find_first_not_of(kBlanks));
+    values.push_back(value.erase(value.find_last_not_of(kBlanks) + 1));
   }
+  return values;
+}
 
-  TrafficAccess access() const {
-    if (cells_.size() != 4) fail(std::to_string(cells_.size()) + " values: must be " + kColumns);
-    const sc_core::sc_time ns(1, sc_core::SC_NS);
-    TrafficAccess access;
-    access.pause =
-        sc_core::sc_time::from_value(integer(0, "pause_ns", 0, UINT64_MAX / ns.value()) * ns.value());
-    access.write = cells_[1] == "write";
-    if (!access.write && cells_[1] != "read") fail("direction = " + cells_[1] + ": must be read or write");
-    access.address = integer(2, "address", 0, UINT64_MAX);
-    if (access.address % 4 != 0) fail("address = " + cells_[2] + ": must be a multiple of 4");
-    access.words = integer(3, "words", 1, kMostWords);
-    if (access.words - 1 > (UINT64_MAX - access.address) / 4)
-      fail("address = " + cells_[2] + ": the access must end at 2^64 or before it");
-    return access;
+std::uint64_t number_of(const std::string& text, const char* what, std::size_t line, std::uint64_t least,
+                        std::uint64_t most) {
+  const bool is_hex = text.rfind("0x", 0) == 0;
+  const char* const end = text.data() + text.size();
+  std::uint64_t number = 0;
+  const auto result = std::from_chars(text.data() + (is_hex ? 2 : 0), end, number, is_hex ? 16 : 10);
+  if (result.ec != std::errc() || result.ptr != end || number < least || number > most) {
+    refuse(line, std::string(what) + " = " + text + ": must be an integer of " + std::to_string(least) +
+                     ".." + std::to_string(most));
   }
+  return number;
+}
 
-  // Characters that a reader does not see are shown as their bytes.
-  [[noreturn]] void fail(const std::string& problem) const {
-    std::string text = "line " + std::to_string(number_) + ": ";
-    for (const char byte : problem) {
-      const bool is_visible = byte >= ' ' && byte <= '~';
-      constexpr const char* kDigits = "0123456789abcdef";
-      const auto value = static_cast<unsigned char>(byte);
-      text +=
-          is_visible ? std::string(1, byte) : std::string("\\x") + kDigits[value / 16] + kDigits[value % 16];
-    }
-    throw std::invalid_argument(text);
-  }
-
- private:
-  std::uint64_t integer(std::size_t cell, const char* name, std::uint64_t least, std::uint64_t most) const {
-    const std::string& text = cells_[cell];
-    const bool is_hex = text.rfind("0x", 0) == 0;
-    std::uint64_t number = 0;
-    const auto [end, error] =
-        std::from_chars(text.data() + (is_hex ? 2 : 0), text.data() + text.size(), number, is_hex ? 16 : 10);
-    if (error != std::errc() || end != text.data() + text.size() || number < least || number > most) {
-      fail(std::string(name) + " = " + text + ": must be an integer of " + std::to_string(least) + ".." +
-           std::to_string(most));
-    }
-    return number;
-  }
-
-  std::size_t number_;
-  std::vector<std::string> cells_;  // without blanks around them
-};
+TrafficAccess access_of(const std::vector<std::string>& values, std::size_t line) {
+  const std::uint64_t ns = sc_core::sc_time(1, sc_core::SC_NS).value();
+  if (ns == 0)
+    throw std::invalid_argument("time resolution = " + sc_core::sc_get_time_resolution().to_string() +
+                                ": must be 1 ns or finer for pause_ns");
+  if (values.size() != 4) refuse(line, std::to_string(values.size()) + " values: must be " + kColumns);
+  TrafficAccess access;
+  access.pause =
+      sc_core::sc_time::from_value(ns * number_of(values[0], "pause_ns", line, 0, UINT64_MAX / ns));
+  access.write = values[1] == "write";
+  if (!access.write && values[1] != "read")
+    refuse(line, "direction = " + values[1] + ": must be read or write");
+  access.address = number_of(values[2], "address", line, 0, UINT64_MAX);
+  if (access.address % 4 != 0) refuse(line, "address = " + values[2] + ": must be a multiple of 4");
+  access.words = number_of(values[3], "words", line, 1, kMostWords);
+  if (access.words - 1 > (UINT64_MAX - access.address) / 4)
+    refuse(line, "address = " + values[2] + ": the access must end at 2^64 or before it");
+  return access;
+}
 
 }  // namespace
 
@@ -125,19 +116,17 @@ std::vector<TrafficAccess> random_traffic(const RandomTraffic& from) {
 }
 
 std::vector<TrafficAccess> traffic_of_csv(std::istream& csv) {
-  constexpr const char* kByteOrderMark = "\xEF\xBB\xBF";
   std::vector<TrafficAccess> accesses;
-  bool has_columns = false;
-  std::size_t number = 1;
-  for (std::string text; std::getline(csv, text); ++number) {
-    if (number == 1 && text.rfind(kByteOrderMark, 0) == 0) text.erase(0, 3);
-    const TraceLine line(text, number);
-    if (!has_columns && line.text() != kColumns) line.fail(line.text() + ": must be " + kColumns);
-    if (has_columns && !line.is_blank()) accesses.push_back(line.access());
-    has_columns = true;
+  std::size_t line = 0;
+  for (std::string text; std::getline(csv, text);) {
+    if (++line == 1 && text.rfind("\xEF\xBB\xBF", 0) == 0) text.erase(0, 3);  // byte order mark
+    const std::vector<std::string> values = values_of(text);
+    if (line > 1 && values != std::vector<std::string>(1))
+      accesses.push_back(access_of(values, line));
+    else if (line == 1 && values != values_of(kColumns))
+      refuse(1, text + ": must be " + kColumns);
   }
-  if (csv.bad() || !has_columns)
-    TraceLine("", number).fail(has_columns ? "cannot be read" : std::string("missing: must be ") + kColumns);
+  if (line == 0 || csv.bad()) refuse(line + 1, "cannot be read: must be " + std::string(kColumns));
   return accesses;
 }
 

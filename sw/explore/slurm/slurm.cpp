@@ -103,6 +103,8 @@ std::string run(const Words& words) {
     }
     if (!line.empty()) said += (said.empty() ? "" : "; ") + line;
   }
+  if (said.find("job array") != std::string::npos)
+    said += ": needs fewer --shards: each index is below MaxArraySize of the cluster (scontrol show config)";
   if (said.empty()) said = fmt::format("has ended with status {}", end.status);
   throw SlurmError(program + ": " + said);
 }
@@ -317,24 +319,13 @@ void SlurmSweep::submit_round() {
   if (!jobs_.empty()) end_round(missing);
   Words behind;
   if (!missing.empty()) {
-    const std::string job = submit_array(missing);
+    const std::string job =
+        submit("task.sh", "shard_%a.log", {"--array=" + files::ranges_text(missing, ",")});
     progress_.waiting += missing.size();
     say_(fmt::format("job {}: {} of {}", job, shards_text(missing), sweep_.shards));
     behind = {"--dependency=afterany:" + job};
   }
   say_(fmt::format("job {}: the merge into {}", submit("merge.sh", kMergeLog, behind), store_));
-}
-
-std::string SlurmSweep::submit_array(const std::vector<std::uint64_t>& shards) {
-  try {
-    return submit("task.sh", "shard_%a.log", {"--array=" + files::ranges_text(shards, ",")});
-  } catch (const SlurmError& error) {
-    if (std::string_view(error.what()).find("array") == std::string_view::npos) throw;
-    throw SlurmError(fmt::format(
-        "{}: --shards = {}: must be at most MaxArraySize of the cluster (scontrol show config), so that shard {} "
-        "has an index below it",
-        error.what(), sweep_.shards, shards.back()));
-  }
 }
 
 // Throws at round number kMostLosses that has ended without a further point.

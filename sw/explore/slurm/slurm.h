@@ -79,7 +79,6 @@ class SlurmSweep {
   void refresh();
   void submit_round();
   void end_round(const std::vector<std::uint64_t>& missing);
-  std::string submit_array(const std::vector<std::uint64_t>& shards);
   std::string submit(const std::string& script, const std::string& log,
                      const std::vector<std::string>& options);
   void cancel();

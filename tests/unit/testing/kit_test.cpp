@@ -219,7 +219,8 @@ TEST(Traffic, OfABrokenTraceIsRefusedWithItsLine) {
             "line 2: address = \\xc2\\xa08" + address);
   EXPECT_THROW(random_traffic({}), std::invalid_argument);
   EXPECT_THROW(random_traffic({0, 1, 4, UINT64_MAX / 4 + 1, 1, 50, {}}), std::invalid_argument);
-  EXPECT_THROW(random_traffic({0, 1, 0, UINT64_MAX / 8, 1U << 30U, 50, {}}), std::invalid_argument);
+  EXPECT_THROW(random_traffic({0, 1, 0, UINT64_MAX / 8, std::size_t{1} << 30U, 50, {}}),
+               std::invalid_argument);
   EXPECT_THROW(strided_traffic(0, 4, 1, false, std::size_t{1} << 30U), std::invalid_argument);
   EXPECT_THROW(strided_traffic(2, 4, 1, false), std::invalid_argument);
   EXPECT_THROW(strided_traffic(0, 4, 1, false, 0), std::invalid_argument);
@@ -230,6 +231,13 @@ TEST(Traffic, KeepsEachPauseExactly) {
     std::istringstream csv("pause_ns,direction,address,words\n" + std::to_string(pause) + ",read,0,1");
     EXPECT_EQ(traffic_of_csv(csv).at(0).pause.value(), pause * 1000);
   }
+}
+
+TEST(Traffic, NeedsATimeResolutionInWhichAPauseIsExact) {
+  const ExpectedReport coarse("default time unit changed to time resolution");
+  sc_core::sc_set_time_resolution(10, SC_NS);
+  std::istringstream csv("pause_ns,direction,address,words\n5,read,0,1\n");
+  EXPECT_THROW(traffic_of_csv(csv), std::invalid_argument);
 }
 
 TEST(Traffic, IsReadWithCharactersThatNobodySees) {
@@ -249,7 +257,7 @@ TEST(Traffic, NamesWhatItFindsInPlaceOfItsColumns) {
     return std::string();
   };
   const std::string rule = "must be pause_ns,direction,address,words";
-  EXPECT_EQ(problem(""), "line 1: missing: " + rule);
+  EXPECT_EQ(problem(""), "line 1: cannot be read: " + rule);
   EXPECT_EQ(problem("0,read,0,1"), "line 1: 0,read,0,1: " + rule);
   EXPECT_EQ(problem({"p\0a\0", 4}), "line 1: p\\x00a\\x00: " + rule);  // UTF-16
   EXPECT_EQ(problem("pause_ns,direction,address,words\r0"),
