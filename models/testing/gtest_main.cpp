@@ -48,23 +48,18 @@ class OneTestAProcess : public testing::EmptyTestEventListener {
   }
 };
 
-// Fails the program with what monitors find that outlive their test.
-class EndOfTests : public testing::Environment {
-  void TearDown() override { ProtocolMonitor::fail_at_end(); }
-};
-
-// A test may call exit(). A process that it has forked has only copies of the monitors.
-const pid_t tests = getpid();
+// A monitor may outlive its test, or the test calls exit(). A process that it has forked has only copies.
+const pid_t first_process = getpid();
 void end_process() {
-  if (getpid() != tests || !ProtocolMonitor::fail_at_end()) return;
+  if (getpid() != first_process || !ProtocolMonitor::fail_at_end()) return;
   std::fflush(nullptr);
   std::_Exit(EXIT_FAILURE);
 }
 
-// A crash loses no violation: it may tell the cause.
+// A violation may tell the cause of the crash.
 void end_by(int signal) {
   std::signal(signal, SIG_DFL);
-  ProtocolMonitor::write_all(STDERR_FILENO);
+  ProtocolMonitor::fail_at_end();
   std::raise(signal);
 }
 
@@ -98,7 +93,6 @@ int sc_main(int argc, char** argv) {
   stereotlm::test::set_failure_handler([](const std::string& text) { ADD_FAILURE() << text; });
   testing::InitGoogleTest(&argc, argv);
   testing::UnitTest::GetInstance()->listeners().Append(new stereotlm::test::OneTestAProcess);
-  testing::AddGlobalTestEnvironment(new stereotlm::test::EndOfTests);
   std::atexit(stereotlm::test::end_process);
   for (const int crash : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT}) {
     struct sigaction earlier {};  // that of a sanitizer stays

@@ -1,7 +1,6 @@
 #include "models/testing/protocol_monitor.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <utility>
 
 #include "models/testing/failure.h"
@@ -99,12 +98,6 @@ bool ProtocolMonitor::fail_all() {
 
 bool ProtocolMonitor::fail_at_end() {
   return std::count_if(monitors().begin(), monitors().end(), [](auto* each) { return each->fail_all(); }) > 0;
-}
-
-void ProtocolMonitor::write_all(int descriptor) {
-  for (const ProtocolMonitor* const monitor : monitors()) {
-    for (const std::string& violation : monitor->violations_) dprintf(descriptor, "%s\n", violation.c_str());
-  }
 }
 
 std::vector<std::string> ProtocolMonitor::take_violations() { return std::exchange(violations_, {}); }

@@ -31,11 +31,8 @@ class ProtocolMonitor : public sc_core::sc_module,
   // Returns and removes the violations, of which the first hundred are kept.
   std::vector<std::string> take_violations();
   // Fails with the violations and the open accesses of all monitors that exist, as if they were destroyed.
-  // Returns whether there were any. gtest_main.cpp calls it at the end of the program, which a monitor may
-  // outlive.
+  // Returns whether there were any. gtest_main.cpp calls it when the program ends or crashes.
   static bool fail_at_end();
-  // Writes the violations of all monitors to a file. For a handler of a signal that ends the process.
-  static void write_all(int descriptor);
 
   void b_transport(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay) override;
   tlm::tlm_sync_enum nb_transport_fw(tlm::tlm_generic_payload& payload, tlm::tlm_phase& phase,

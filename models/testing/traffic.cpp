@@ -62,9 +62,7 @@ std::uint64_t number_of(const std::string& text, const char* what, std::size_t l
 
 TrafficAccess access_of(const std::vector<std::string>& values, std::size_t line) {
   const std::uint64_t ns = sc_core::sc_time(1, sc_core::SC_NS).value();
-  if (ns == 0)
-    throw std::invalid_argument("time resolution = " + sc_core::sc_get_time_resolution().to_string() +
-                                ": must be 1 ns or finer for pause_ns");
+  if (ns == 0) refuse(line, "pause_ns: needs a time resolution of 1 ns or finer");
   if (values.size() != 4) refuse(line, std::to_string(values.size()) + " values: must be " + kColumns);
   TrafficAccess access;
   access.pause =
