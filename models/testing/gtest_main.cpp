@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -10,6 +12,7 @@
 
 #include "models/testing/expected_report.h"
 #include "models/testing/failure.h"
+#include "models/testing/protocol_monitor.h"
 
 namespace stereotlm::test {
 namespace {
@@ -45,6 +48,21 @@ class OneTestAProcess : public testing::EmptyTestEventListener {
   }
 };
 
+// A monitor may outlive its test, or the test calls exit(). A process that it has forked has only copies.
+const pid_t first_process = getpid();
+void end_process() {
+  if (getpid() != first_process || !ProtocolMonitor::fail_at_end()) return;
+  std::fflush(nullptr);
+  std::_Exit(EXIT_FAILURE);
+}
+
+// A violation may tell the cause of the crash.
+void end_by(int signal) {
+  std::signal(signal, SIG_DFL);
+  ProtocolMonitor::fail_at_end();
+  std::raise(signal);
+}
+
 }  // namespace
 
 ExpectedReport::ExpectedReport(std::string message_type, int count)
@@ -75,6 +93,12 @@ int sc_main(int argc, char** argv) {
   stereotlm::test::set_failure_handler([](const std::string& text) { ADD_FAILURE() << text; });
   testing::InitGoogleTest(&argc, argv);
   testing::UnitTest::GetInstance()->listeners().Append(new stereotlm::test::OneTestAProcess);
+  std::atexit(stereotlm::test::end_process);
+  for (const int crash : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT}) {
+    struct sigaction earlier {};  // that of a sanitizer stays
+    sigaction(crash, nullptr, &earlier);
+    if (earlier.sa_handler == SIG_DFL) std::signal(crash, stereotlm::test::end_by);
+  }
   return RUN_ALL_TESTS();
 }
 

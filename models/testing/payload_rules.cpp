@@ -117,6 +117,11 @@ Problems response_problems(const tlm::tlm_generic_payload& payload, const Protoc
           ": must be OK or an error in a response (14.17)"};
 }
 
+std::string open_problem(sc_dt::uint64 address, const sc_core::sc_time& begin) {
+  return "the access to address " + hex(address) + " that began at " + begin.to_string() +
+         " is open: must end before the simulation does";
+}
+
 Problems debug_request_problems(const tlm::tlm_generic_payload& payload) {
   Problems problems;
   if (!is_command(payload.get_command())) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <systemc>
 #include <tlm>
 #include <vector>
 
@@ -17,6 +18,8 @@ struct ProtocolOptions {
   // A response has a final status. Without it TLM_INCOMPLETE_RESPONSE is an answer too: what acted as the
   // target did not attempt the command (14.17 e).
   bool final_status = true;
+  // Each access ends before the simulation. Without it one may be under way when a test ends the simulation.
+  bool all_end = true;
 };
 
 // One sentence per broken rule: the value found, the rule, and its clause of IEEE Std 1666-2011.
@@ -27,6 +30,9 @@ Problems request_problems(const tlm::tlm_generic_payload& payload, const Protoco
 
 // Rules for the payload that a target returns with its response.
 Problems response_problems(const tlm::tlm_generic_payload& payload, const ProtocolOptions& options);
+
+// The rule that an access breaks if it has not ended at the end of the simulation.
+std::string open_problem(sc_dt::uint64 address, const sc_core::sc_time& begin);
 
 // Rules for transport_dbg, and for the number of bytes that it returns.
 Problems debug_request_problems(const tlm::tlm_generic_payload& payload);

@@ -65,16 +65,40 @@ bool in_method_process() {
   return process != nullptr && process->proc_kind() == sc_core::SC_METHOD_PROC_;
 }
 
+// The monitors that exist. It is never destroyed, because a monitor may be a static object.
+std::vector<ProtocolMonitor*>& monitors() {
+  static auto* const all = new std::vector<ProtocolMonitor*>;
+  return *all;
+}
+
 }  // namespace
 
 ProtocolMonitor::ProtocolMonitor(const sc_core::sc_module_name& name, const ProtocolOptions& options)
     : sc_module(name), options_(options), phases_(options) {
   from_initiator.bind(*this);
   to_target.bind(*this);
+  monitors().push_back(this);
 }
 
 ProtocolMonitor::~ProtocolMonitor() {
-  for (const auto& violation : violations_) fail(violation);
+  monitors().erase(std::find(monitors().begin(), monitors().end(), this));
+  fail_all();
+}
+
+bool ProtocolMonitor::fail_all() {
+  const bool all_end = std::exchange(options_.all_end, false);  // an open access fails once
+  for (const auto& [payload, begun] : begun_) {
+    const bool is_blocking = in_b_transport(*payload);
+    if (all_end && (is_blocking || phases_.in_progress(*payload)))
+      report(is_blocking ? "b_transport" : "nb_transport", open_problem(begun.first, begun.second));
+  }
+  const std::vector<std::string> failures = take_violations();
+  for (const std::string& failure : failures) fail(failure);
+  return !failures.empty();
+}
+
+bool ProtocolMonitor::fail_at_end() {
+  return std::count_if(monitors().begin(), monitors().end(), [](auto* each) { return each->fail_all(); }) > 0;
 }
 
 std::vector<std::string> ProtocolMonitor::take_violations() { return std::exchange(violations_, {}); }
@@ -95,10 +119,12 @@ void ProtocolMonitor::b_transport(Payload& payload, sc_core::sc_time& delay) {
   const PayloadSnapshot sent(payload);
   const sc_core::sc_time start = sc_core::sc_time_stamp() + delay;
   const Listed<Blocking> listed(blocking_, {&payload, this_process()});
+  begun_[&payload] = {sent.address(), start};
   const bool managed = payload.has_mm();
   const Hold hold(payload);
   const int references = hold.others();
   to_target->b_transport(payload, delay);
+  begun_.erase(&payload);
 
   if (!managed && payload.has_mm()) {
     report(kCall, "memory manager set: what has set it must remove it before it returns (14.5 j)");
@@ -126,11 +152,13 @@ tlm::tlm_sync_enum ProtocolMonitor::nb_transport_fw(Payload& payload, tlm::tlm_p
   const PhaseTracker::Call call{phase, sc_core::sc_time_stamp() + delay};
   if (contains(backward_)) report(kCall, "called within nb_transport_bw: not permitted (11.1.2.4 c)");
   report(kCall, phases_.forward_call(payload, call));
+  if (phase == tlm::BEGIN_REQ) begun_[&payload] = {payload.get_address(), call.time};
   const Listed<Process> listed(forward_, this_process());
   const Hold hold(payload);
   const auto status = to_target->nb_transport_fw(payload, phase, delay);
   if (moment.passed()) report(kCall, "time passed: a non-blocking callee must not wait (11.1.2.4)");
   report(kCall, phases_.forward_return(payload, call, {phase, sc_core::sc_time_stamp() + delay}, status));
+  if (!phases_.in_progress(payload)) begun_.erase(&payload);
   return status;
 }
 
@@ -150,6 +178,7 @@ tlm::tlm_sync_enum ProtocolMonitor::nb_transport_bw(Payload& payload, tlm::tlm_p
   const auto status = from_initiator->nb_transport_bw(payload, phase, delay);
   if (moment.passed()) report(kCall, "time passed: a non-blocking callee must not wait (11.1.2.4)");
   report(kCall, phases_.backward_return(payload, call, {phase, sc_core::sc_time_stamp() + delay}, status));
+  if (!phases_.in_progress(payload)) begun_.erase(&payload);
   return status;
 }
 

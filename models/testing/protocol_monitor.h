@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <string>
 #include <systemc>
 #include <tlm>
@@ -14,7 +15,8 @@ namespace stereotlm::test {
 // Forwards every call between an initiator and a target unchanged, and checks that both keep the base
 // protocol (IEEE Std 1666-2011, 11 and 14 to 16) and the rules of ProtocolOptions. A violation reads
 // "<monitor> at <time>: <call>: <value found and the rule>". Those that nobody has
-// taken out are failures (failure.h) when the monitor is destroyed.
+// taken out are failures (failure.h) when the monitor is destroyed. So is each access that is open then: one
+// without return from b_transport, or without END_RESP.
 class ProtocolMonitor : public sc_core::sc_module,
                         public tlm::tlm_fw_transport_if<>,
                         public tlm::tlm_bw_transport_if<> {
@@ -28,6 +30,9 @@ class ProtocolMonitor : public sc_core::sc_module,
 
   // Returns and removes the violations, of which the first hundred are kept.
   std::vector<std::string> take_violations();
+  // Fails with the violations and the open accesses of all monitors that exist, as if they were destroyed.
+  // Returns whether there were any. gtest_main.cpp calls it when the program ends or crashes.
+  static bool fail_at_end();
 
   void b_transport(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay) override;
   tlm::tlm_sync_enum nb_transport_fw(tlm::tlm_generic_payload& payload, tlm::tlm_phase& phase,
@@ -42,6 +47,7 @@ class ProtocolMonitor : public sc_core::sc_module,
   using Process = const sc_core::sc_process_b*;
   using Blocking = std::pair<const tlm::tlm_generic_payload*, Process>;
 
+  bool fail_all();
   bool in_b_transport(const tlm::tlm_generic_payload& payload) const;
   void check_non_blocking(const char* call, const tlm::tlm_generic_payload& payload);
   void report(const char* call, const Problems& problems);
@@ -51,6 +57,7 @@ class ProtocolMonitor : public sc_core::sc_module,
   PhaseTracker phases_;
   // The calls in progress.
   std::vector<Blocking> blocking_;
+  std::map<const tlm::tlm_generic_payload*, std::pair<sc_dt::uint64, sc_core::sc_time>> begun_;  // and where
   std::vector<Process> forward_;
   std::vector<Process> backward_;
   std::vector<std::string> violations_;

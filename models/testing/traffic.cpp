@@ -1,5 +1,7 @@
 #include "models/testing/traffic.h"
 
+#include <algorithm>
+#include <charconv>
 #include <random>
 #include <sstream>
 #include <stdexcept>
@@ -19,43 +21,61 @@ void require(bool holds, const char* what, std::uint64_t value, const std::strin
   if (!holds) throw std::invalid_argument(what + (" = " + std::to_string(value) + ": must be " + rule));
 }
 
-std::uint64_t number_of(const std::string& text, const char* what, std::size_t line) {
-  std::size_t end = 0;
-  std::uint64_t number = 0;
-  if (!text.empty() && text.front() >= '0' && text.front() <= '9') {
-    try {
-      number = std::stoull(text, &end, text.rfind("0x", 0) == 0 ? 16 : 10);
-    } catch (const std::logic_error&) {
-      end = 0;
-    }
+constexpr const char* kColumns = "pause_ns,direction,address,words";
+constexpr std::uint64_t kMostWords = UINT32_MAX / 4;  // a payload counts its bytes in 32 bits
+
+// Shows characters that a reader does not see as their bytes.
+[[noreturn]] void refuse(std::size_t line, const std::string& problem) {
+  constexpr const char* kDigits = "0123456789abcdef";
+  std::string text = "line " + std::to_string(line) + ": ";
+  for (const char byte : problem) {
+    const auto value = static_cast<unsigned char>(byte);
+    text += byte >= ' ' && byte <= '~' ? std::string(1, byte)
+                                       : std::string("\\x") + kDigits[value / 16] + kDigits[value % 16];
   }
-  if (end == 0 || end != text.size()) {
-    throw std::invalid_argument("line " + std::to_string(line) + ": " + what + " = " + text +
-                                ": must be a whole number");
+  throw std::invalid_argument(text);
+}
+
+// The values of a line, without the blanks around them.
+std::vector<std::string> values_of(const std::string& text) {
+  constexpr const char* kBlanks = " \t\r";
+  std::vector<std::string> values;
+  std::istringstream row(text + ',');
+  for (std::string value; std::getline(row, value, ',');) {
+    value.erase(0, value.find_first_not_of(kBlanks));
+    values.push_back(value.erase(value.find_last_not_of(kBlanks) + 1));
+  }
+  return values;
+}
+
+std::uint64_t number_of(const std::string& text, const char* what, std::size_t line, std::uint64_t least,
+                        std::uint64_t most) {
+  const bool is_hex = text.rfind("0x", 0) == 0;
+  const char* const end = text.data() + text.size();
+  std::uint64_t number = 0;
+  const auto result = std::from_chars(text.data() + (is_hex ? 2 : 0), end, number, is_hex ? 16 : 10);
+  if (result.ec != std::errc() || result.ptr != end || number < least || number > most) {
+    refuse(line, std::string(what) + " = " + text + ": must be an integer of " + std::to_string(least) +
+                     ".." + std::to_string(most));
   }
   return number;
 }
 
-TrafficAccess access_of(const std::string& text, std::size_t line) {
-  std::vector<std::string> fields;
-  std::istringstream row(text);
-  for (std::string field; std::getline(row, field, ',');) fields.push_back(field);
-  if (!fields.empty() && !fields.back().empty() && fields.back().back() == '\r') fields.back().pop_back();
-  const auto problem = [&](const std::string& what) {
-    return std::invalid_argument("line " + std::to_string(line) + ": " + what);
-  };
-  if (fields.size() != 4)
-    throw problem(std::to_string(fields.size()) + " values: must be pause_ns,direction,address,words");
+TrafficAccess access_of(const std::vector<std::string>& values, std::size_t line) {
+  const std::uint64_t ns = sc_core::sc_time(1, sc_core::SC_NS).value();
+  if (ns == 0) refuse(line, "pause_ns: needs a time resolution of 1 ns or finer");
+  if (values.size() != 4) refuse(line, std::to_string(values.size()) + " values: must be " + kColumns);
   TrafficAccess access;
   access.pause =
-      sc_core::sc_time(static_cast<double>(number_of(fields[0], "pause_ns", line)), sc_core::SC_NS);
-  if (fields[1] != "read" && fields[1] != "write")
-    throw problem("direction = " + fields[1] + ": must be read or write");
-  access.write = fields[1] == "write";
-  access.address = number_of(fields[2], "address", line);
-  if (access.address % 4 != 0) throw problem("address = " + fields[2] + ": must be a multiple of 4");
-  access.words = number_of(fields[3], "words", line);
-  if (access.words == 0) throw problem("words = 0: must be 1 or more");
+      sc_core::sc_time::from_value(ns * number_of(values[0], "pause_ns", line, 0, UINT64_MAX / ns));
+  access.write = values[1] == "write";
+  if (!access.write && values[1] != "read")
+    refuse(line, "direction = " + values[1] + ": must be read or write");
+  access.address = number_of(values[2], "address", line, 0, UINT64_MAX);
+  if (access.address % 4 != 0) refuse(line, "address = " + values[2] + ": must be a multiple of 4");
+  access.words = number_of(values[3], "words", line, 1, kMostWords);
+  if (access.words - 1 > (UINT64_MAX - access.address) / 4)
+    refuse(line, "address = " + values[2] + ": the access must end at 2^64 or before it");
   return access;
 }
 
@@ -65,7 +85,7 @@ std::vector<TrafficAccess> strided_traffic(std::uint64_t first, std::uint64_t st
                                            bool write, std::size_t words) {
   require(first % 4 == 0, "first", first, "a multiple of 4");
   require(stride % 4 == 0, "stride", stride, "a multiple of 4");
-  require(words > 0, "words", words, "1 or more");
+  require(words > 0 && words <= kMostWords, "words", words, "1.." + std::to_string(kMostWords));
   std::vector<TrafficAccess> accesses;
   for (std::size_t number = 0; number < count; ++number)
     accesses.push_back({{}, write, first + number * stride, words});
@@ -74,8 +94,11 @@ std::vector<TrafficAccess> strided_traffic(std::uint64_t first, std::uint64_t st
 
 std::vector<TrafficAccess> random_traffic(const RandomTraffic& from) {
   require(from.first % 4 == 0, "first", from.first, "a multiple of 4");
-  require(from.most_words > 0 && from.most_words <= from.memory_words, "most_words", from.most_words,
-          "1..memory_words, which is " + std::to_string(from.memory_words));
+  const std::uint64_t places = (UINT64_MAX - from.first) / 4 + 1;
+  require(from.memory_words <= places, "memory_words", from.memory_words, "0.." + std::to_string(places));
+  const std::uint64_t most_words = std::min(from.memory_words, kMostWords);
+  require(from.most_words > 0 && from.most_words <= most_words, "most_words", from.most_words,
+          "1.." + std::to_string(most_words) + ", which memory_words limits too");
   require(from.writes_percent <= 100, "writes_percent", from.writes_percent, "0..100");
   std::mt19937_64 random(from.seed);
   std::vector<TrafficAccess> accesses;
@@ -93,11 +116,16 @@ std::vector<TrafficAccess> random_traffic(const RandomTraffic& from) {
 
 std::vector<TrafficAccess> traffic_of_csv(std::istream& csv) {
   std::vector<TrafficAccess> accesses;
-  std::size_t line = 1;
-  std::string text;
-  if (!std::getline(csv, text) || text != "pause_ns,direction,address,words")
-    throw std::invalid_argument("line 1: " + text + ": must be pause_ns,direction,address,words");
-  while (std::getline(csv, text)) accesses.push_back(access_of(text, ++line));
+  std::size_t line = 0;
+  for (std::string text; std::getline(csv, text);) {
+    if (++line == 1 && text.rfind("\xEF\xBB\xBF", 0) == 0) text.erase(0, 3);  // byte order mark
+    const std::vector<std::string> values = values_of(text);
+    if (line > 1 && values != std::vector<std::string>(1))
+      accesses.push_back(access_of(values, line));
+    else if (line == 1 && values != values_of(kColumns))
+      refuse(1, text + ": must be " + kColumns);
+  }
+  if (line == 0 || csv.bad()) refuse(line + 1, "cannot be read: must be " + std::string(kColumns));
   return accesses;
 }
 

@@ -1,10 +1,16 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <filesystem>
+#include <stdexcept>
+
 #include "models/binder.h"
 #include "platform/bounds.h"
 #include "platform/preloaded_system.h"
 #include "sw/cli/command.h"
 #include "sw/cli/run_options.h"
+#include "sw/files/whole_file.h"
+#include "sw/process/child.h"
 #include "sw/runs/progress.h"
 #include "sw/runs/run_input.h"
 #include "sw/runs/run_results.h"
@@ -13,6 +19,7 @@
 namespace stereotlm::cli {
 namespace {
 
+namespace fs = std::filesystem;
 using runs::Simulation;
 
 // What a run has found.
@@ -34,7 +41,8 @@ Outcome simulate(const runs::RunInput& input, runs::Verification* verification) 
   process::attempt_or_refuse("the board cannot be built: ", [&] {
     simulation = runs::make_simulation(input.board, input.tables, *input.pairs, input.mode(), binder);
   });
-  if (input.trace_window) simulation->trace(*input.trace_window, *input.trace, *input.trace);
+  if (input.trace && input.trace->window())
+    simulation->trace(input.trace->window()->cycles, *input.trace, *input.trace);
   const std::uint64_t frame_cycles = assumed_frame_cycles(input);
   runs::Records records(input, [&input](const std::string& name, const std::string& text) {
     input.folder->append(name, text);
@@ -93,6 +101,57 @@ Outcome count_cycles(const runs::RunInput& input) {
   return outcome;
 }
 
+// Prints a note about each trace that will be large. A child process traces a sample of the run without pixels:
+// some frames, or with a window cycles behind the fill of one. The whole is larger in proportion.
+void say_large_traces(runs::RunInput& input, const TraceOptions& options) {
+  constexpr double kLarge = 200e6;  // bytes
+  constexpr std::uint64_t kFrames = 64;
+  constexpr std::uint64_t kCycles = 8192;
+  std::optional<trace::TraceWindow> window = input.trace->window();
+  if (window && window->around_longest_wait) return;  // shows few cycles
+  const files::TemporaryFolder folder;
+  process::Child child([&](const process::Child::Tell& tell) {
+    std::vector<trace::TraceFile> files = options.traces();
+    for (std::size_t i = 0; i < files.size(); ++i) files[i].path = folder.path() / std::to_string(i);
+    const auto all = static_cast<double>(input.frames);
+    const std::uint64_t begin = assumed_frame_cycles(input) / 8;
+    const fpga::CycleWindow whole = window.value_or(trace::TraceWindow()).cycles;
+    const std::uint64_t frame = whole.frame.value_or(0) % platform::allocation_period_frames(input.board);
+    if (window) window->cycles = {frame, fpga::CycleWindow::Unit::kCycles, begin, begin + kCycles - 1};
+    static_cast<void>(input.trace.release());  // its files are those of the parent
+    input.trace = std::make_unique<trace::Trace>(files, input.board, window);
+    input.pairs = runs::blank_pairs(input.board);
+    input.fast = input.timing_only = true;
+    input.record = input.described.save_frames = false;
+    input.frames = window ? frame + 1 : std::min(input.frames, kFrames);
+    process::leave_out_notes(true);
+    const Outcome outcome = simulate(input, nullptr);
+    if (outcome.frames_done < input.frames) return;  // interrupted
+    input.trace->complete();
+    input.trace->commit();
+    double size = all / static_cast<double>(input.frames);  // of the whole, in samples
+    if (window) {
+      const auto of_frame = static_cast<double>(outcome.statistics.frame_cycles.back());
+      const bool has_rows = whole.unit == fpga::CycleWindow::Unit::kRows;
+      const double unit = has_rows ? of_frame / input.board.image.height : 1;  // cycles
+      size = std::min((static_cast<double>(whole.last) + 1) * unit, whole.frame ? of_frame : of_frame * all);
+      size -= static_cast<double>(whole.first) * unit;
+      size /= std::min<double>(kCycles, of_frame - static_cast<double>(begin));
+    }
+    for (const trace::TraceFile& file : files)
+      tell(fmt::to_string(size * static_cast<double>(fs::file_size(file.path))));
+  });
+  for (const std::string& trace : options.files.texts()) {
+    const auto bytes = child.next();
+    if (!bytes) return;
+    if (std::stod(*bytes) < kLarge) continue;
+    process::say("note", fmt::format("--trace '{}': will take about {:.0f} MB{}: fewer --frames, or a short "
+                                     "--trace-window such as frame=F,rows=A..B, make it smaller",
+                                     trace, std::stod(*bytes) / 1e6,
+                                     fs::path(trace).extension() == ".fst" ? " before it is FST" : ""));
+  }
+}
+
 struct RunCommandOptions : Options {
   using Options::Options;
   void check_together(process::Problems& problems) override { run.check_together("run", problems); }
@@ -102,6 +161,11 @@ struct RunCommandOptions : Options {
 
 int run(const RunCommandOptions& options) {
   runs::RunInput input = options.run.load();
+  try {
+    if (input.trace) say_large_traces(input, options.run.trace);
+  } catch (const std::runtime_error& error) {  // a run that fails says so again
+    process::say("note", fmt::format("--trace: the size of the traces is not known: {}", error.what()));
+  }
   std::optional<runs::Verification> verification;
   if (options.run.verify.is_given()) verification.emplace(input);
   const Outcome outcome = has_counts_only(input, verification.has_value())

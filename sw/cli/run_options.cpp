@@ -100,9 +100,7 @@ void load_truth(const RunOptions& options, const platform::BoardConfig* board, r
 
 void open_traces(const RunOptions& options, runs::RunInput& input) {
   const std::vector<trace::TraceFile> files = options.trace.traces();
-  const auto window = options.trace.window();
   if (files.empty()) return;
-  if (window) input.trace_window = window->cycles;
   for (const trace::TraceFile& file : files) {
     const fs::path folder = trace::outputs_of(file).front().parent_path();
     if (!options.out.is_given() || !lies_in(folder, options.out.text())) continue;
@@ -110,7 +108,7 @@ void open_traces(const RunOptions& options, runs::RunInput& input) {
         "'{}': inside the result folder '{}', which is replaced whole: must lie outside the folder of --out",
         file.path, options.out.text()));
   }
-  input.trace = std::make_unique<trace::Trace>(files, input.board, window);
+  input.trace = std::make_unique<trace::Trace>(files, input.board, options.trace.window());
 }
 
 // Prints how well the rows of the rectified pictures match. A poor match gives a warning: the calibration

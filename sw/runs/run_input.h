@@ -31,15 +31,14 @@ struct RunInput {
   bool camera = true;                 // --source camera, else preloaded
   bool fast = true;                   // --fidelity fast, else cycle
   bool timing_only = false;
-  bool record = false;                            // --record
-  bool json = false;                              // --json
-  std::unique_ptr<trace::Trace> trace;            // null: no --trace
-  std::optional<fpga::CycleWindow> trace_window;  // --trace-window
-  std::uint64_t frames = 1;                       // frames to deliver
-  std::optional<media::Truth> truth;              // ground truth of the pair that the last frame shows
-  std::vector<files::NamedFile> inputs;           // the files that it is read from
-  RecordedOptions described;                      // content of run.json; `frames` as requested
-  std::unique_ptr<files::OutputFolder> folder;    // null: no result files
+  bool record = false;                          // --record
+  bool json = false;                            // --json
+  std::unique_ptr<trace::Trace> trace;          // null: no --trace
+  std::uint64_t frames = 1;                     // frames to deliver
+  std::optional<media::Truth> truth;            // ground truth of the pair that the last frame shows
+  std::vector<files::NamedFile> inputs;         // the files that it is read from
+  RecordedOptions described;                    // content of run.json; `frames` as requested
+  std::unique_ptr<files::OutputFolder> folder;  // null: no result files
 
   // The mode of the simulation.
   RunMode mode() const { return {camera, fidelity(fast), frames, record || trace != nullptr}; }

@@ -122,24 +122,19 @@ class PerfettoFile {
 
   // Describes a track, and its group if that is new. Returns the uuid of the track.
   std::uint64_t add(TrackGroup group, std::size_t rank, const std::string& name, const std::string& unit) {
-    const auto place = static_cast<std::size_t>(group);
-    if (groups_[place] == 0) {
-      groups_[place] = ++last_uuid_;
-      ProtoMessage message = described(groups_[place], kProcessUuid, place, kTrackGroupNames[place]);
+    const auto below = [this](std::uint64_t parent, std::uint64_t& uuid, std::size_t its_rank,
+                              const std::string& its_name) {
+      if (uuid != 0) return uuid;
+      ProtoMessage message = described(uuid = ++last_uuid_, parent, its_rank, its_name);
       message.integer(descriptor::kChildOrder, descriptor::kByRank);
       write(ProtoMessage().text(packet::kTrackDescriptor, message));
-    }
-    std::uint64_t parent = groups_[place];
-    if (const std::size_t point = name.find('.'); group == TrackGroup::kPorts && point != std::string::npos) {
-      std::uint64_t& ports = port_groups_[name.substr(0, point)];
-      if (ports == 0) {
-        ports = ++last_uuid_;
-        ProtoMessage message = described(ports, parent, rank, name.substr(0, point));
-        message.integer(descriptor::kChildOrder, descriptor::kByRank);
-        write(ProtoMessage().text(packet::kTrackDescriptor, message));
-      }
-      parent = ports;
-    }
+      return uuid;
+    };
+    const auto place = static_cast<std::size_t>(group);
+    std::uint64_t parent = below(kProcessUuid, groups_[place], place, kTrackGroupNames[place]);
+    const std::string ports = name.substr(0, name.find('.'));
+    if (group == TrackGroup::kPorts && ports != name)
+      parent = below(parent, port_groups_[ports], rank, ports);
     ProtoMessage track = described(++last_uuid_, parent, rank, name);
     if (!unit.empty()) track.text(descriptor::kCounter, ProtoMessage().text(descriptor::kUnitName, unit));
     write(ProtoMessage().text(packet::kTrackDescriptor, track));

@@ -59,7 +59,7 @@ std::vector<std::filesystem::path> outputs_of(const TraceFile& file) {
 Trace::Trace(const std::vector<TraceFile>& files, const platform::BoardConfig& board,
              const std::optional<TraceWindow>& window)
     : clock_(board.fpga.clock_mhz),
-      has_window_(window),
+      window_(window),
       is_of_frame_(window && window->cycles.frame),
       is_of_wait_(window && window->around_longest_wait) {
   for (const TraceFile& file : files) sinks_.push_back(file.format->make_sink(file.path, board));
@@ -87,7 +87,12 @@ void Trace::level(const platform::QueueLevel& level) {
   is_of_frame_ || is_of_wait_ ? levels_.push_back(level) : write(&TraceSink::level, level);
 }
 
-void Trace::frame(const platform::FrameRuns& frame) { write(&TraceSink::frame, frame); }
+void Trace::frame(const platform::FrameRuns& frame) {
+  const fpga::CycleWindow cycles = window_.value_or(TraceWindow()).cycles;
+  if (cycles.frame ? frame.frame == cycles.frame
+                   : frame.first_cycle <= cycles.last && frame.end_cycle > cycles.first)
+    write(&TraceSink::frame, frame);
+}
 
 void Trace::events(const platform::TimelineRecords& records) {
   for (const platform::TimelineEvent& event : records.events) write(&TraceSink::event, event);
@@ -95,7 +100,7 @@ void Trace::events(const platform::TimelineRecords& records) {
 
 void Trace::complete() {
   const bool has_wait = wait_.cycles() != 0;
-  if (has_window_ && is_empty_)
+  if (window_ && is_empty_)
     process::say("note", "--trace-window: has no cycle in which a frame ran or the host accessed a bank");
   else if (is_of_wait_ && !has_wait)
     process::say("note", "--trace-window: no port waits in it");

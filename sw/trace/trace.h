@@ -75,11 +75,12 @@ class Trace : public fpga::CycleObserver, public platform::BusObserver {
   // All functions throw std::runtime_error, with the name of the file, if one cannot be written.
   Trace(const std::vector<TraceFile>& files, const platform::BoardConfig& board,
         const std::optional<TraceWindow>& window);
+  const std::optional<TraceWindow>& window() const { return window_; }
 
   void cycle(const fpga::CoreCycle& cycle) override;
   void burst(const platform::BusBurst& burst) override;
   void level(const platform::QueueLevel& level) override;
-  void frame(const platform::FrameRuns& frame);
+  void frame(const platform::FrameRuns& frame);  // left out if the window has none of its cycles
   void events(const platform::TimelineRecords& records);
   // Ends the traces and makes the files durable, under other names. To be called after everything above.
   void complete();
@@ -95,7 +96,7 @@ class Trace : public fpga::CycleObserver, public platform::BusObserver {
 
   std::vector<std::unique_ptr<TraceSink>> sinks_;
   Clock clock_;
-  bool has_window_;
+  std::optional<TraceWindow> window_;
   bool is_of_frame_;
   bool is_of_wait_;
   bool is_empty_ = true;  // no cycle has come

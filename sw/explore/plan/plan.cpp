@@ -421,7 +421,12 @@ class PlanReader {
     }
     const auto [from, to, step] = numbers;
     const std::int64_t distance = to - from;
-    if (step <= 0 || distance < 0 || distance % step != 0 || distance / step >= kMostValues) {
+    if (step == 0 || (distance != 0 && (distance < 0) != (step < 0))) {
+      report(fmt::format("{}.step", name), node.find("step")->value,
+             distance < 0 ? "must be below 0: to is below from" : "must be above 0: to is not below from");
+      return std::nullopt;
+    }
+    if (distance % step != 0 || distance / step >= kMostValues) {
       report(name, node,
              fmt::format("to must be from plus a number of steps, at most {} values", kMostValues));
       return std::nullopt;
@@ -536,7 +541,7 @@ class PlanReader {
     };
     const std::size_t before = findings_.size();
     read("points", 1, plan_.product_, sample.points);
-    read("seed", 0, std::numeric_limits<std::int64_t>::max(), sample.seed);
+    read("seed", 0, std::numeric_limits<std::int64_t>::max() - 1, sample.seed);  // see integer_of()
     if (findings_.size() == before) plan_.sample_ = sample;
   }
 

@@ -103,6 +103,8 @@ std::string run(const Words& words) {
     }
     if (!line.empty()) said += (said.empty() ? "" : "; ") + line;
   }
+  if (said.find("job array") != std::string::npos)
+    said += ": needs fewer --shards: each index is below MaxArraySize of the cluster (scontrol show config)";
   if (said.empty()) said = fmt::format("has ended with status {}", end.status);
   throw SlurmError(program + ": " + said);
 }

@@ -49,8 +49,10 @@ class CsvLines {
       const std::size_t size = text.find('\n');
       ++line_;
       if (size == std::string_view::npos) fail("must end with a newline");
-      const std::string_view next = text.substr(0, size);
+      std::string_view next = text.substr(0, size);
       text.remove_prefix(size + 1);
+      if (!next.empty() && next.back() == '\r') next.remove_suffix(1);               // an editor has added it
+      if (line_ == 1 && next.substr(0, 3) == "\xEF\xBB\xBF") next.remove_prefix(3);  // byte order mark
       if (line_ == 1) {
         if (next != head_) fail(fmt::format("must be the head '{}'", head_));
         continue;

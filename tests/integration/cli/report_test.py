@@ -190,6 +190,15 @@ class RecordedFiles(ReportTest):
         self.refuses_all(self.TABLES, ["report", self.run, "--quick", "--out", self.page])
         self.assertFalse(self.page.exists())
 
+    def test_tables_that_an_editor_has_saved_are_read(self):
+        command = ["report", self.run, "--quick", "--out", self.page]
+        self.succeeds(run(*command))
+        before = self.page.read_text()
+        for path in self.run.glob("*.csv"):
+            path.write_bytes(b"\xef\xbb\xbf" + path.read_bytes().replace(b"\n", b"\r\n"))
+        self.succeeds(run(*command))
+        self.assertEqual(self.page.read_text(), before)
+
     def test_wrong_figures_are_refused_by_every_command(self):
         right = shutil.copytree(self.run, self.folder / "right")
         rows = [("stats.json", *row) for row in self.STATS]

@@ -172,6 +172,11 @@ class Interrupted(SlurmTest):
         self.assertIn(f"{kept} there already", self.succeeds(self.launch(plan=self.slow)))
         self.assert_whole()
 
+    def test_more_shards_than_a_job_array_has_name_the_limit(self):
+        many = self.file("many.yaml", SLOW.replace("to: 19", "to: 60"))  # 102 points
+        self.refused_in_one_line(self.launch("--shards", 102, plan=many),
+                                 "needs fewer --shards: each index is below MaxArraySize")
+
     def test_a_killed_command_given_again_waits_for_its_jobs(self):
         process = self.begin_points()
         self.refused_in_one_line(self.launch(plan=self.slow), "points.db.shards: another process waits")

@@ -51,7 +51,7 @@ class CameraSimulationTest : public testing::Test {
     return "";
   }
 
-  test::MonitoringBinder binder;
+  test::MonitoringBinder binder{{true, true, true, false}};  // ends in the middle of its traffic
   platform::BoardConfig board;
   platform::Tables tables;
   test::NoisePairs pairs{64, 48};

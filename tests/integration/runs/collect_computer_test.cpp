@@ -39,7 +39,7 @@ class CollectComputer : public testing::Test {
       {"image.width=32", "image.height=24", "matcher.disparities=8", "cameras.frame_rate_hz=1000"});
   platform::Tables tables = platform::identity_tables(board);
   test::NoisePairs pairs{32, 24};
-  test::MonitoringBinder binder;
+  test::MonitoringBinder binder{{true, true, true, false}};  // ends in the middle of its traffic
   runs::CameraSimulation simulation{board, tables, pairs, 5, binder};
   ComputerCounters counters;
   std::vector<Delivery> deliveries = {

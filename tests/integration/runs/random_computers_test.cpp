@@ -61,7 +61,7 @@ struct Outcome {
 
 Outcome simulate(const platform::BoardConfig& board, const platform::Tables& tables, host::FrameSource& pairs,
                  std::uint64_t frames, Fidelity fidelity) {
-  test::MonitoringBinder binder;
+  test::MonitoringBinder binder{{true, true, true, false}};  // ends in the middle of its traffic
   runs::CameraSimulation simulation(board, tables, pairs, frames, binder, fidelity);
   simulation.core().record_rows();
   simulation.record_timeline();
@@ -330,7 +330,7 @@ std::string conflicts_that_differ(std::uint64_t seed, const test::RandomKnobs& k
   const test::PlainCycleResult core = test::run_plain_computer(input).core;
   const auto differences = [&](Fidelity fidelity) {
     Pictures pictures(computer.board);
-    test::MonitoringBinder binder;
+    test::MonitoringBinder binder{{true, true, true, false}};  // ends in the middle of its traffic
     runs::CameraSimulation simulation(board, tables, pictures, static_cast<std::uint64_t>(input.frames),
                                       binder, fidelity);
     simulation.record_conflicts();
@@ -367,7 +367,7 @@ std::string steady_problems(std::uint64_t seed) {
   const platform::Tables tables = test::board_tables(computer.board);
   const auto run = [&](std::uint64_t frames) {
     Pictures pictures(computer.board);
-    test::MonitoringBinder binder;
+    test::MonitoringBinder binder{{true, true, true, false}};  // ends in the middle of its traffic
     runs::CameraSimulation simulation(board, tables, pictures, frames, binder, Fidelity::kTiming);
     while (!simulation.finished()) simulation.advance();
     return simulation.statistics();
@@ -419,7 +419,7 @@ std::string figures_of_long_run(const std::vector<std::string>& keys, Fidelity f
   const platform::BoardConfig board = platform::load_board("fpl2003", all);
   const auto pairs = runs::blank_pairs(board);
   const platform::Tables tables = platform::identity_tables(board);
-  test::MonitoringBinder binder;
+  test::MonitoringBinder binder{{true, true, true, false}};  // ends in the middle of its traffic
   runs::CameraSimulation simulation(board, tables, *pairs, is_recorded ? 12 : 40, binder, fidelity);
   if (is_recorded) simulation.record_conflicts();
   Outcome outcome;

@@ -63,7 +63,7 @@ class LocalBusTest : public testing::Test {
     EXPECT_EQ(binder.take_violations().size(), violations);
   }
 
-  test::MonitoringBinder binder;
+  test::MonitoringBinder binder{{true, true, true, false}};  // ends in the middle of its traffic
   TestHost host{"host"};
   TestHost unused{"unused"};
   memory::SsramBank bank{"bank", {kWords, memory::BankKind::kZbtPipelined, 0, 40}};

@@ -99,6 +99,7 @@ TEST_P(StereoCoreStarved, IsReportedWithItsWaitsAsSoonAsItsTimeoutHasPassed) {
   StereoCoreConfig board = small_board();
   board.memory.banks.assign(kBankCount, {65'536});
   board.stall_timeout_cycles = 2 * 8192;  // checked every 8192 cycles
+  binder = test::MonitoringBinder({true, true, true, false});
   build(board);
   start();
   at(edge(1), [this] { memory.access(TLM_WRITE_COMMAND, crossbar_address(kLeft, 1000), Words(40'000)); });

@@ -71,6 +71,8 @@ TEST_F(PciBridgeSlave, CountsWordsForEachBuffer) {
   burst(true, kSlave, 8);
   EXPECT_EQ(dut->control().words_taken().words(), (std::vector<std::uint64_t>{5, 1, 2}));
   EXPECT_EQ(dut->control().words_held().words(), (std::vector<std::uint64_t>{1, 1, 2}));
+  local.release();
+  run(5);
 }
 
 TEST_F(PciBridgeSlave, ReadsBehindTheWritesPostedBefore) {

@@ -128,7 +128,7 @@ struct RunningComputer {
   ScriptedProgram program;
   CountedPictures left;
   CountedPictures right;
-  test::MonitoringBinder binder;
+  test::MonitoringBinder binder{{true, true, true, false}};  // ends in the middle of its traffic
   std::unique_ptr<ComputerView> computer;
 };
 

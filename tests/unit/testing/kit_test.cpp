@@ -195,20 +195,73 @@ TEST(Traffic, OfABrokenTraceIsRefusedWithItsLine) {
     }
     return std::string();
   };
+  const std::string pause = ": must be an integer of 0..18446744073709551";
+  const std::string address = ": must be an integer of 0..18446744073709551615";
+  const std::string words = ": must be an integer of 1..1073741823";
   EXPECT_EQ(problem("0,read,0"), "line 2: 3 values: must be pause_ns,direction,address,words");
-  EXPECT_EQ(problem("0,read,0,1\n-1,read,0,1"), "line 3: pause_ns = -1: must be a whole number");
+  EXPECT_EQ(problem("0,read,0,1,"), "line 2: 5 values: must be pause_ns,direction,address,words");
+  EXPECT_EQ(problem("0,read,0,1\n\n-1,read,0,1"), "line 4: pause_ns = -1" + pause);
   EXPECT_EQ(problem("0,fetch,0,1"), "line 2: direction = fetch: must be read or write");
-  EXPECT_EQ(problem("0,read,0x1g,1"), "line 2: address = 0x1g: must be a whole number");
   EXPECT_EQ(problem("0,read,6,1"), "line 2: address = 6: must be a multiple of 4");
-  EXPECT_EQ(problem("0,read,0,0"), "line 2: words = 0: must be 1 or more");
-  EXPECT_EQ(problem("0,read, -4,1"), "line 2: address =  -4: must be a whole number");
   EXPECT_EQ(problem("0,read,010,1"), "line 2: address = 010: must be a multiple of 4");  // ten
-  EXPECT_EQ(problem("0,read,8,1\r"), "");
-  std::istringstream empty;
-  EXPECT_THROW(traffic_of_csv(empty), std::invalid_argument);
+  for (const char* const none : {"", "-1", "+1", "1.0", "1e3", "18446744073709552", "18446744073709551615"})
+    EXPECT_EQ(problem(std::string(none) + ",read,0,1"), "line 2: pause_ns = " + std::string(none) + pause);
+  for (const char* const none : {"0x1g", "0x", "0x-4", "-4", "0x10000000000000000", "18446744073709551616"})
+    EXPECT_EQ(problem("0,read, " + std::string(none) + ",1"),
+              "line 2: address = " + std::string(none) + address);
+  for (const char* const none : {"0", "1073741824", "18446744073709551615"})
+    EXPECT_EQ(problem("0,read,0," + std::string(none)), "line 2: words = " + std::string(none) + words);
+  EXPECT_EQ(problem("0,read,0xfffffffffffffff8,2"), "");
+  EXPECT_EQ(problem("0,read,0xfffffffffffffff8,3"),
+            "line 2: address = 0xfffffffffffffff8: the access must end at 2^64 or before it");
+  EXPECT_EQ(problem("0,read,\xC2\xA0"
+                    "8,1"),
+            "line 2: address = \\xc2\\xa08" + address);
   EXPECT_THROW(random_traffic({}), std::invalid_argument);
+  EXPECT_THROW(random_traffic({0, 1, 4, UINT64_MAX / 4 + 1, 1, 50, {}}), std::invalid_argument);
+  EXPECT_THROW(random_traffic({0, 1, 0, UINT64_MAX / 8, std::size_t{1} << 30U, 50, {}}),
+               std::invalid_argument);
+  EXPECT_THROW(strided_traffic(0, 4, 1, false, std::size_t{1} << 30U), std::invalid_argument);
   EXPECT_THROW(strided_traffic(2, 4, 1, false), std::invalid_argument);
   EXPECT_THROW(strided_traffic(0, 4, 1, false, 0), std::invalid_argument);
+}
+
+TEST(Traffic, KeepsEachPauseExactly) {
+  for (const std::uint64_t pause : {9'007'199'254'740'993, 9'223'372'036'854'776, 18'446'744'073'709'551}) {
+    std::istringstream csv("pause_ns,direction,address,words\n" + std::to_string(pause) + ",read,0,1");
+    EXPECT_EQ(traffic_of_csv(csv).at(0).pause.value(), pause * 1000);
+  }
+}
+
+TEST(Traffic, NeedsATimeResolutionInWhichAPauseIsExact) {
+  const ExpectedReport coarse("default time unit changed to time resolution");
+  sc_core::sc_set_time_resolution(10, SC_NS);
+  std::istringstream csv("pause_ns,direction,address,words\n5,read,0,1\n");
+  EXPECT_THROW(traffic_of_csv(csv), std::invalid_argument);
+}
+
+TEST(Traffic, IsReadWithCharactersThatNobodySees) {
+  std::istringstream csv(
+      "\xEF\xBB\xBFpause_ns, direction,address,words\r\n0,\twrite , 0x10,2\r\n\r\n25,read,16,1\r\n \r\n");
+  EXPECT_EQ(traffic_of_csv(csv).size(), 2U);
+}
+
+TEST(Traffic, NamesWhatItFindsInPlaceOfItsColumns) {
+  const auto problem = [](const std::string& text) {
+    std::istringstream csv(text);
+    try {
+      traffic_of_csv(csv);
+    } catch (const std::invalid_argument& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  const std::string rule = "must be pause_ns,direction,address,words";
+  EXPECT_EQ(problem(""), "line 1: cannot be read: " + rule);
+  EXPECT_EQ(problem("0,read,0,1"), "line 1: 0,read,0,1: " + rule);
+  EXPECT_EQ(problem({"p\0a\0", 4}), "line 1: p\\x00a\\x00: " + rule);  // UTF-16
+  EXPECT_EQ(problem("pause_ns,direction,address,words\r0"),
+            "line 1: pause_ns,direction,address,words\\x0d0: " + rule);
 }
 
 TEST(Traffic, FailsTheTestWithAnAccessThatIsRefused) {

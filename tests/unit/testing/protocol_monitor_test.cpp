@@ -2,16 +2,23 @@
 // notice that it reports no more. The tests of the modules show that it lets correct calls pass.
 #include "models/testing/protocol_monitor.h"
 
+#include <gtest/gtest-spi.h>
 #include <gtest/gtest.h>
 
 #include <array>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <ostream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "models/testing/monitoring_binder.h"
+#include "tests/support/fork.h"
 #include "tests/support/scripted_ends.h"
 
 namespace stereotlm::test {
@@ -36,7 +43,8 @@ class NoFree : public tlm::tlm_mm_interface {
 // Two correct two-word reads at 0x40, and a target that answers correctly and at once.
 class Link {
  public:
-  explicit Link(const ProtocolOptions& options = {}) : binder(std::make_unique<MonitoringBinder>(options)) {
+  explicit Link(const ProtocolOptions& options = {true, true, true, false})
+      : binder(std::make_unique<MonitoringBinder>(options)) {
     binder->bind(initiator.socket, target.socket, "link");
     for (Payload* correct : {&payload, &other}) {
       correct->set_command(tlm::TLM_READ_COMMAND);
@@ -541,13 +549,106 @@ TEST(ProtocolMonitor, ReadsNoArrayThatARequestDoesNotUse) {
 
 // Above an interconnect that translates addresses, or that does not attempt a command.
 TEST(ProtocolMonitor, MayStandAboveAnInterconnect) {
-  Link link({true, false, false});
+  Link link({true, false, false, false});
   link.target_acts([](Payload& received, auto&) {
     received.set_address(0);
     received.set_response_status(tlm::TLM_INCOMPLETE_RESPONSE);
   });
   link.transport();
   EXPECT_EQ(link.binder->take_violations(), std::vector<std::string>());
+}
+
+// A target that never returns, in a simulation that ends because nothing is left to happen, or is stopped.
+TEST(ProtocolMonitor, FailsWithAnAccessByBTransportThatNeverEnds) {
+  for (const bool stops : {false, true}) {
+    const auto simulate = [stops] {
+      static auto* const link = new Link(ProtocolOptions{});
+      sc_core::sc_event never;
+      link->target_acts([&](Payload& received, auto&) {
+        received.set_address(0);  // of an interconnect
+        sc_core::wait(never);
+      });
+      sc_core::sc_spawn([] { link->transport(); });
+      sc_core::sc_spawn([stops] {
+        sc_core::wait(sc_time(30, SC_NS));
+        if (stops) sc_core::sc_stop();
+      });
+      sc_core::sc_start();
+      EXPECT_NONFATAL_FAILURE(link->binder.reset(),
+                              "link_monitor at 30 ns: b_transport: the access to address 0x40 that began at "
+                              "10 ns is open: must end before the simulation does");
+      return std::string();
+    };
+    EXPECT_EQ(run_for_text(simulate), "");
+  }
+}
+
+// Each without another part of the handshake. The payload may be gone at the end.
+TEST(ProtocolMonitor, FailsWithEachAccessByNbTransportThatNeverEnds) {
+  static auto* const link = new Link(ProtocolOptions{});
+  link->forward(BEGIN_REQ, 2, END_REQ);
+  link->backward(BEGIN_RESP, 3);
+  auto gone = std::make_unique<Payload>();
+  gone->deep_copy_from(link->other);
+  gone->set_address(0x44);
+  gone->set_data_ptr(link->data.data());
+  gone->set_mm(&link->manager);
+  gone->acquire();
+  link->used = gone.get();
+  link->forward(BEGIN_REQ, 1);
+  gone.reset();
+  testing::TestPartResultArray failures;
+  {
+    const testing::ScopedFakeTestPartResultReporter reporter(&failures);
+    link->binder.reset();
+  }
+  ASSERT_EQ(failures.size(), 2);
+  const std::string text =
+      std::string(failures.GetTestPartResult(0).message()) + '\n' + failures.GetTestPartResult(1).message();
+  for (const char* const access : {"0x40 that began at 2 ns", "0x44 that began at 1 ns"})
+    EXPECT_NE(text.find(std::string("link_monitor at 0 s: nb_transport: the access to address ") + access +
+                        " is open: must end before the simulation does"),
+              std::string::npos)
+        << text;
+}
+
+TEST(ProtocolMonitor, AllowsOpenAccessesAtTheEndOfATestThatSaysSo) {
+  Link link({true, true, true, false});
+  link.forward(BEGIN_REQ);
+  EXPECT_FALSE(ProtocolMonitor::fail_at_end());
+}
+
+// What ends in a process of its own: this test, which is told how by the environment.
+[[noreturn]] void end_with_an_open_access(const std::string& ending) {
+  static auto* const link = new Link(ProtocolOptions{});
+  link->payload.set_data_length(0);
+  link->forward(BEGIN_REQ);
+  if (ending == "exit") std::exit(0);
+  std::raise(ending == "abort" ? SIGABRT : SIGSEGV);
+  std::abort();
+}
+
+TEST(ProtocolMonitor, FailsTheProgramHoweverItEnds) {
+  constexpr const char* kEnding = "ENDING_OF_MONITOR";
+  if (const char* const ending = std::getenv(kEnding)) {
+    if (ending != std::string("return")) end_with_an_open_access(ending);
+    static auto* const link = new Link(ProtocolOptions{});  // deleted by nobody
+    link->payload.set_data_length(0);
+    link->forward(BEGIN_REQ);
+    return;
+  }
+  for (const std::string ending : {"return", "exit", "abort", "fault"}) {
+    const std::string command = std::string(kEnding) + "=" + ending + " " +
+                                std::filesystem::read_symlink("/proc/self/exe").string() +
+                                " --gtest_filter=ProtocolMonitor.FailsTheProgramHoweverItEnds 2>&1";
+    std::FILE* const program = popen(command.c_str(), "r");
+    std::string text;
+    for (int byte = std::fgetc(program); byte != EOF; byte = std::fgetc(program))
+      text += static_cast<char>(byte);
+    EXPECT_NE(pclose(program), 0) << ending;
+    EXPECT_NE(text.find("link_monitor at 0 s: nb_transport_fw: data length = 0"), std::string::npos) << text;
+    EXPECT_NE(text.find("is open: must end before the simulation does"), std::string::npos) << text;
+  }
 }
 
 }  // namespace

@@ -145,6 +145,7 @@ TEST(Plan, GivesItsPointsTheBoardWithTheirValues) {
       {clocks, 4, 1, {"fpga.clock_mhz=40"}},
       {clocks, 4, 2, {"fpga.clock_mhz=40.1"}},
       {clocks, 4, 3, {"fpga.clock_mhz=40.2"}},
+      {"vary: {fpga.clock_mhz: {from: 40.1, to: 39.6, step: -0.25}}\n", 3, 2, {"fpga.clock_mhz=39.6"}},
       {kinds, 4, 0, {bursts + "1}", "ssram.banks.bank0.turnaround_cycles=2"}},
       {kinds, 4, 2, {bursts + "3}", "ssram.banks.bank0.turnaround_cycles=2"}},
       {"vary: {pci.load.burst_words: [1, 8], pci.load.interval_us: [10]}\n",
@@ -355,6 +356,8 @@ TEST(PlanRefusals, NameThePlaceTheValueAndTheRule) {
        {"zip:\n  - {image.width: [320, 640], image.height: [240]}\n",
         {"zip: image.height: 1 values; must be as many as image.width has, 2"}},
        {"vary: {matcher.window: [3, 5]}\nsample: {points: 3, seed: 1}\n", {":3:18: sample.points = 3: 1..2"}},
+       {"vary: {matcher.window: [3, 5]}\nsample: {points: 2, seed: 9223372036854775808}\n",
+        {"sample.seed = 9223372036854775808: 0..9223372036854775806"}},
        {"sample: {points: 1}\n", {"sample.seed: missing: 0.."}}});
 }
 
@@ -436,14 +439,21 @@ TEST(PlanRefusals, CountTheRefusedValuesOfARangeAndNameOneThatDoesNotEnd) {
       {"run.source", "{from: 1, to: 3, step: 1}",
        "3 of 3 values refused, the first: run.source = 1: preloaded"},
       {"matcher.disparities", "{from: 1, to: 4, step: 2}", ends},
-      {"matcher.disparities", "{from: 4, to: 1, step: 1}", ends},
-      {"matcher.disparities", "{from: 1, to: 4, step: 0}", ends},
+      {"matcher.disparities", "{from: 4, to: 1, step: -2}", ends},
       {"matcher.disparities", "{from: 1, to: 1000002, step: 1}", ends}};
   for (const auto& [key, range, text] : cases) {
     expect_refusals({{fmt::format("vary: {{{}: {}}}\n", key, range),
                       {fmt::format("vary: {} = {}: {}", key, range, text)}}});
   }
   EXPECT_EQ(plan_of("vary: {matcher.window: {from: 3, to: 31, step: 2}}\n").size(), 15U);
+  for (const auto& [range, rule] :
+       {std::pair("{from: 4, to: 1, step: 1}", "step = 1: must be below 0: to is below from"),
+        std::pair("{from: 4.5, to: 1, step: 0}", "step = 0: must be below 0: to is below from"),
+        std::pair("{from: 1, to: 4, step: -1}", "step = -1: must be above 0: to is not below from"),
+        std::pair("{from: 1, to: 1, step: 0}", "step = 0: must be above 0: to is not below from")}) {
+    expect_refusals({{fmt::format("vary: {{matcher.disparities: {}}}\n", range),
+                      {fmt::format("vary: matcher.disparities.{}", rule)}}});
+  }
 }
 
 TEST(PlanRefusals, AreForRangesWhoseNumbersAreMissingOrHaveTooManyDigits) {
