@@ -23,6 +23,7 @@ namespace stereotlm::cli {
 struct LoadedBoard {
   std::optional<platform::BoardConfig> board;         // nullopt if it has problems
   std::optional<runs::CalibrationInput> calibration;  // nullopt if none was given, or if it has problems
+  std::string file_text;                              // what the board file holds; empty for a preset
 
   // The following are only for a board without problems.
   platform::Tables tables() const { return runs::tables_of(*board, calibration); }

@@ -98,13 +98,32 @@ bool read_line(int from, std::string& line) {
   return false;
 }
 
+// The bytes whose values are the codes of the characters. Throws std::runtime_error for a code above 255.
+std::string bytes_of_codes(const std::string& utf8) {
+  std::string bytes;
+  for (std::size_t i = 0; i < utf8.size(); ++i) {
+    const auto first = static_cast<unsigned char>(utf8[i]);
+    if (first > 0xC3U) throw std::runtime_error("encoding = latin-1: characters must be U+0000 to U+00FF");
+    bytes += first < 0x80U ? utf8[i] : static_cast<char>((first & 3U) << 6U | (utf8[++i] & 0x3FU));
+  }
+  return bytes;
+}
+
 // Reads the arrays behind the line, too. Throws std::exception if this is no request.
 Request request_of(const std::string& line, int from) {
   const Json document = Json::parse(line);
   Request request;
   document.at("arguments").get_to(request.arguments);
+  auto folder = document.value("folder", "");
+  const std::string encoding = document.value("encoding", "utf-8");
+  if (encoding == "latin-1") {
+    for (std::string& argument : request.arguments) argument = bytes_of_codes(argument);
+    folder = bytes_of_codes(folder);
+  } else if (encoding != "utf-8") {
+    throw std::runtime_error(fmt::format("encoding = {}: must be utf-8 or latin-1", encoding));
+  }
   static const std::filesystem::path of_worker = std::filesystem::current_path();
-  request.folder = of_worker / document.value("folder", "");
+  request.folder = of_worker / folder;
   for (const Json& given : document.value("arrays", Json::array())) {
     Array array;
     given.at("name").get_to(array.name);
@@ -115,6 +134,18 @@ Request request_of(const std::string& line, int from) {
     request.arrays.push_back(std::move(array));
   }
   return request;
+}
+
+// Whether a text has a NUL character, at which the system would end it. Says so.
+bool refuse_nul(const Request& request) {
+  std::vector<std::string> texts = request.arguments;
+  texts.push_back(request.folder);
+  const auto found = std::find_if(texts.begin(), texts.end(), [](const std::string& text) {
+    return text.find('\0') != std::string::npos;
+  });
+  if (found == texts.end()) return false;
+  process::say("error", fmt::format("'{}..': a NUL character follows: must not be in a text", found->c_str()));
+  return true;
 }
 
 // Reads a request and executes it. Returns whether the process can execute another one.
@@ -143,9 +174,13 @@ bool serve_one(const process::Child::Tell& tell) {
   const auto count = static_cast<int>(words.size());
   words.push_back(nullptr);
   std::error_code error;
-  std::filesystem::current_path(request.folder, error);
-  if (error) process::say("error", fmt::format("folder '{}': {}", request.folder.string(), error.message()));
-  answer.end(error ? kRefused : execute(count, words.data()));
+  bool is_refused = refuse_nul(request);
+  if (!is_refused) std::filesystem::current_path(request.folder, error);
+  if (error) {
+    process::say("error", fmt::format("folder '{}': {}", request.folder.string(), error.message()));
+    is_refused = true;
+  }
+  answer.end(is_refused ? kRefused : execute(count, words.data()));
   process::client = nullptr;
   // SystemC is elaborated once in a process.
   const bool is_fresh =
