@@ -176,7 +176,8 @@ void describe(const RunOptions& options, std::uint64_t pairs, runs::RunInput& in
   run.truth_scale = options.truth.scale();
   run.save_frames = options.save_frames.is_given();
   run.record = input.record;
-  run_json(run);  // throws now, instead of after the run, if a path cannot be recorded
+  // Throws now, instead of after the run, if a path cannot be recorded.
+  if (options.out.is_given()) run_json(run);
 }
 
 }  // namespace
@@ -194,14 +195,15 @@ std::vector<std::string> BoardOptions::words_without_allocation() const {
 LoadedBoard BoardOptions::load(process::Problems& problems) const {
   LoadedBoard loaded;
   problems.attempt("", [&] {
-    platform::BoardDraft draft(argument.text(), process::sent_file(runs::kBoardFile));
+    const auto text = sent.find(runs::kBoardFile);
+    platform::BoardDraft draft(argument.text(), text == sent.end() ? nullptr : &text->second);
     for (const std::string& set : sets.texts()) draft.set(set);
     loaded.board = draft.read();
     loaded.file_text = draft.file_text();
   });
   if (calibration.is_given()) {
-    loaded.calibration =
-        runs::load_calibration(calibration.text(), loaded.board ? &*loaded.board : nullptr, problems);
+    loaded.calibration = runs::load_calibration(calibration.text(), loaded.board ? &*loaded.board : nullptr,
+                                                problems, calibration.name(), sent);
   }
   return loaded;
 }

@@ -88,6 +88,8 @@ struct SweepCommandOptions : Options {
                              {{"--out", out.text()}, {"PLAN", plan.text()}, {"--known", known.text()}});
   }
 
+  process::FileContents sent = process::sent_files(
+      {runs::kPlanFile, runs::kBoardFile, runs::kCalibrationFile, runs::kLeftLutFile, runs::kRightLutFile});
   Option plan = Option(this, "PLAN", " ", "The plan's file", {required("the path of a plan")});
   Option out = Option(this, "--out", "DB", "The database to write, or to continue",
                       {required("the database to write, or to continue")});
@@ -195,7 +197,7 @@ std::optional<runs::CalibrationInput> calibration_of(const SweepCommandOptions& 
                                 ? "--calibration"
                                 : fmt::format("{}: {}", plan.calibration_place(), explore::kCalibrationPath);
   process::Problems problems;
-  auto calibration = runs::load_calibration(path, nullptr, problems, named);
+  auto calibration = runs::load_calibration(path, nullptr, problems, named, options.sent);
   if (calibration) {
     const calib::Rig& rig = calibration->calibration->rig;
     const auto problem = plan.use_calibration(runs::sha256_of(calibration->tables), rig.width, rig.height,
@@ -381,8 +383,12 @@ explore::SweepCounts sweep_on_slurm(const SweepCommandOptions& options, const ex
 int sweep(const SweepCommandOptions& options) {
   std::optional<explore::Plan> loaded;
   process::attempt_or_refuse("", [&] {
-    loaded = explore::Plan::load(options.plan.text(), options.board.text(),
-                                 process::sent_file(runs::kPlanFile), process::sent_file(runs::kBoardFile));
+    const auto sent = [&options](const char* name) {
+      const auto found = options.sent.find(name);
+      return found == options.sent.end() ? nullptr : &found->second;
+    };
+    loaded = explore::Plan::load(options.plan.text(), options.board.text(), sent(runs::kPlanFile),
+                                 sent(runs::kBoardFile));
   });
   explore::Plan& plan = *loaded;
   const auto calibration = calibration_of(options, plan);

@@ -144,7 +144,8 @@ bool refuse_nul(const Request& request) {
     return text.find('\0') != std::string::npos;
   });
   if (found == texts.end()) return false;
-  process::say("error", fmt::format("'{}..': a NUL character follows: must not be in a text", found->c_str()));
+  process::say("error",
+               fmt::format("'{}..': a NUL character follows: must not be in a text", found->c_str()));
   return true;
 }
 

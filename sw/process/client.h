@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <initializer_list>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -36,11 +38,17 @@ class Client {
 // Null unless this process executes a command for a client.
 inline Client* client = nullptr;
 
-// The content of an input file that the client has sent, so that the file is not read. `name`: what the file
-// is, such as "board.yaml". nullptr if it was not sent.
-inline const std::string* sent_file(std::string_view name) {
-  const Array* const array = client == nullptr ? nullptr : client->given(name);
-  return array == nullptr ? nullptr : &array->bytes;
+// Contents of input files by their names, such as "board.yaml".
+using FileContents = std::map<std::string, std::string>;
+
+// Those of the named files whose contents the client has sent, so that they are not read.
+inline FileContents sent_files(std::initializer_list<const char*> names) {
+  FileContents sent;
+  for (const char* const name : names) {
+    const Array* const array = client == nullptr ? nullptr : client->given(name);
+    if (array != nullptr) sent[name] = array->bytes;
+  }
+  return sent;
 }
 
 }  // namespace stereotlm::process

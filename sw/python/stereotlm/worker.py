@@ -81,7 +81,7 @@ def _checked(program, name):
     """The path of a program. Raises FileNotFoundError, with the name, if it is not that of this module."""
     from stereotlm import __version__
     try:
-        end = subprocess.run([program, "--version"], stdin=subprocess.DEVNULL, capture_output=True, timeout=60,
+        end = subprocess.run([program, "--version"], stdin=subprocess.DEVNULL, capture_output=True, timeout=20,
                              check=False)
         said = end.stdout.decode(errors="replace").strip()
         if said == f"stereotlm {__version__}":
@@ -222,7 +222,8 @@ class Worker:
                 warnings.warn(message.removeprefix("stereotlm: warning: "), stacklevel=4)
         if part["status"] == 2:
             problems = [Problem(**problem) for problem in part["problems"]]
-            raise Refused(problems or [Problem("command line", text, text) for text in answer.messages])
+            texts = [message.removeprefix("stereotlm: error: ") for message in answer.messages]
+            raise Refused(problems or [Problem("command line", text, text) for text in texts])
         if part["status"] != 0:
             raise Failed("\n".join(message.removeprefix("stereotlm: error: ") for message in answer.messages))
         return answer

@@ -8,7 +8,6 @@
 #include "calib/tables.h"
 #include "sw/files/text_forms.h"
 #include "sw/files/whole_file.h"
-#include "sw/process/client.h"
 #include "sw/process/command.h"
 #include "sw/runs/sources/calibration_library.h"
 
@@ -19,12 +18,6 @@ namespace fs = std::filesystem;
 
 InputFile described(const fs::path& path, const std::string& content) {
   return {fs::absolute(path).string(), files::sha256_hex(content.data(), content.size())};
-}
-
-// What the client has sent under the name, else what the file holds.
-std::string content_of(const char* name, const fs::path& path, std::uintmax_t most_bytes) {
-  const std::string* const sent = process::sent_file(name);
-  return sent != nullptr ? *sent : files::read_whole_file(path, most_bytes);
 }
 
 kernels::RectificationTable parse_table(const fs::path& path, const std::string& content,
@@ -94,19 +87,26 @@ files::OutputContent calibration_content(const RigFiles& files, bool makes_pictu
 }
 
 std::optional<CalibrationInput> load_calibration(const std::string& path, const platform::BoardConfig* board,
-                                                 process::Problems& problems, const std::string& named) {
+                                                 process::Problems& problems, const std::string& named,
+                                                 const process::FileContents& sent) {
   bool is_right = true;
   const auto attempt = [&](const auto& step) { is_right &= problems.attempt(named + ' ', step); };
   const auto at_path = [&path](const std::string& problem) {
     return std::runtime_error(fmt::format("'{}': {}", path, problem));
   };
   CalibrationInput input;
+  const auto content_of = [&](const char* name, const fs::path& file,
+                              std::uintmax_t most_bytes) -> const std::string& {
+    const auto found = sent.find(name);
+    return input.contents[name] =
+               found == sent.end() ? files::read_whole_file(file, most_bytes) : found->second;
+  };
   attempt([&] {
     const RigFiles files = rig_files(path);
     for (const fs::path& file : {files.calibration, files.left_lut, files.right_lut}) {
       input.files.push_back({named, file.string()});
     }
-    const std::string& content = input.contents[kCalibrationFile] =
+    const std::string& content =
         content_of(kCalibrationFile, files.calibration, calib::kMostCalibrationBytes);
     input.described.file = described(files.calibration, content);
     try {
@@ -122,17 +122,16 @@ std::optional<CalibrationInput> load_calibration(const std::string& path, const 
     const calib::Calibration& calibration = *input.calibration;
     const auto load_table = [&](const char* name, const fs::path& file, const std::string& sha256,
                                 InputFile& table) {
-      const std::string& bytes = input.contents[name] =
-          content_of(name, file, calib::lut_byte_count(calibration.rig.width, calibration.rig.height));
-      return parse_table(file, bytes, calibration.rig, sha256, table);
+      const std::size_t bytes = calib::lut_byte_count(calibration.rig.width, calibration.rig.height);
+      return parse_table(file, content_of(name, file, bytes), calibration.rig, sha256, table);
     };
     attempt([&] {
-      input.tables.left = load_table(kLeftLutFile, files.left_lut, calibration.left_lut_sha256,
-                                     input.described.left_lut);
+      input.tables.left =
+          load_table(kLeftLutFile, files.left_lut, calibration.left_lut_sha256, input.described.left_lut);
     });
     attempt([&] {
-      input.tables.right = load_table(kRightLutFile, files.right_lut, calibration.right_lut_sha256,
-                                      input.described.right_lut);
+      input.tables.right =
+          load_table(kRightLutFile, files.right_lut, calibration.right_lut_sha256, input.described.right_lut);
     });
   });
   if (!is_right) return std::nullopt;

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <filesystem>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -10,6 +9,7 @@
 #include "platform/config/board_config.h"
 #include "platform/config/tables.h"
 #include "sw/files/output_folder.h"
+#include "sw/process/client.h"
 #include "sw/process/problems.h"
 #include "sw/runs/run_json.h"
 #include "sw/runs/sources/open_source.h"
@@ -49,18 +49,20 @@ inline constexpr const char* kRightLutFile = "calibration_right.lut";
 struct CalibrationInput {
   std::shared_ptr<const calib::Calibration> calibration;  // never null
   platform::Tables tables;
-  InputCalibration described;    // for run.json
-  std::vector<NamedFile> files;  // the files that were read
-  std::map<std::string, std::string> contents;  // of the files, by the names above
+  InputCalibration described;      // for run.json
+  std::vector<NamedFile> files;    // the files that were read
+  process::FileContents contents;  // of these files, by the names above
 };
 
 // Loads a calibration and checks that it fits the board. Reports all problems and returns nullopt if there
 // are any: a damaged file, pictures of another size than the board's, tables that were not written with the
 // calibration, a side without table on the board, tables that cannot be joined for a board with joint tables.
-// `board`: null if unknown; the fit is then not checked. `named`: the option in messages.
+// `board`: null if unknown; the fit is then not checked. `named`: the option in messages. `sent`: contents of
+// files, by the names above, which are then not read.
 std::optional<CalibrationInput> load_calibration(const std::string& path, const platform::BoardConfig* board,
                                                  process::Problems& problems,
-                                                 const std::string& named = "--calibration");
+                                                 const std::string& named = "--calibration",
+                                                 const process::FileContents& sent = {});
 
 // The SHA-256 over both tables. It identifies a calibration.
 std::string sha256_of(const platform::Tables& tables);
