@@ -70,7 +70,7 @@ Json document_of(const std::string& name, const platform::BoardConfig* board,
 void send_files(const LoadedBoard& loaded, const process::FileContents& sent) {
   process::FileContents files;
   if (loaded.calibration) files = loaded.calibration->contents;
-  if (!loaded.file_text.empty()) files[runs::kBoardFile] = loaded.file_text;
+  if (!loaded.file_text.empty()) files["board.yaml"] = loaded.file_text;
   for (const auto& [name, bytes] : files) {
     if (sent.count(name) == 0) process::client->send({name, {bytes.size()}, bytes});
   }

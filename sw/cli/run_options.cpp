@@ -195,7 +195,7 @@ std::vector<std::string> BoardOptions::words_without_allocation() const {
 LoadedBoard BoardOptions::load(process::Problems& problems) const {
   LoadedBoard loaded;
   problems.attempt("", [&] {
-    const auto text = sent.find(runs::kBoardFile);
+    const auto text = sent.find("board.yaml");
     platform::BoardDraft draft(argument.text(), text == sent.end() ? nullptr : &text->second);
     for (const std::string& set : sets.texts()) draft.set(set);
     loaded.board = draft.read();

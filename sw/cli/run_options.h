@@ -45,8 +45,7 @@ struct BoardOptions {
 
   Options* of;
   std::string beside_board = "";  // what BOARD may be beside a board
-  process::FileContents sent = process::sent_files(
-      {runs::kBoardFile, runs::kCalibrationFile, runs::kLeftLutFile, runs::kRightLutFile});
+  process::FileContents sent = process::sent_files();
   Option argument = Option(
       of, "BOARD", " ",
       "A preset (see stereotlm boards), or the path of a board file: has a / or ends in .yaml" + beside_board,

@@ -88,8 +88,7 @@ struct SweepCommandOptions : Options {
                              {{"--out", out.text()}, {"PLAN", plan.text()}, {"--known", known.text()}});
   }
 
-  process::FileContents sent = process::sent_files(
-      {runs::kPlanFile, runs::kBoardFile, runs::kCalibrationFile, runs::kLeftLutFile, runs::kRightLutFile});
+  process::FileContents sent = process::sent_files();
   Option plan = Option(this, "PLAN", " ", "The plan's file", {required("the path of a plan")});
   Option out = Option(this, "--out", "DB", "The database to write, or to continue",
                       {required("the database to write, or to continue")});
@@ -334,8 +333,8 @@ explore::ShardedSweep sharded(const SweepCommandOptions& options, const explore:
                               const std::optional<runs::CalibrationInput>& calibration) {
   explore::ShardedSweep sweep;
   if (calibration) sweep.files = calibration->contents;
-  sweep.files[runs::kPlanFile] = plan.text();
-  if (!plan.board_text().empty()) sweep.files[runs::kBoardFile] = plan.board_text();
+  sweep.files["plan.yaml"] = plan.text();
+  if (!plan.board_text().empty()) sweep.files["board.yaml"] = plan.board_text();
   sweep.banks = plan.banks();
   sweep.version = process::kVersion;
   sweep.points = plan.size();
@@ -387,8 +386,8 @@ int sweep(const SweepCommandOptions& options) {
       const auto found = options.sent.find(name);
       return found == options.sent.end() ? nullptr : &found->second;
     };
-    loaded = explore::Plan::load(options.plan.text(), options.board.text(), sent(runs::kPlanFile),
-                                 sent(runs::kBoardFile));
+    loaded =
+        explore::Plan::load(options.plan.text(), options.board.text(), sent("plan.yaml"), sent("board.yaml"));
   });
   explore::Plan& plan = *loaded;
   const auto calibration = calibration_of(options, plan);

@@ -136,19 +136,6 @@ Request request_of(const std::string& line, int from) {
   return request;
 }
 
-// Whether a text has a NUL character, at which the system would end it. Says so.
-bool refuse_nul(const Request& request) {
-  std::vector<std::string> texts = request.arguments;
-  texts.push_back(request.folder);
-  const auto found = std::find_if(texts.begin(), texts.end(), [](const std::string& text) {
-    return text.find('\0') != std::string::npos;
-  });
-  if (found == texts.end()) return false;
-  process::say("error",
-               fmt::format("'{}..': a NUL character follows: must not be in a text", found->c_str()));
-  return true;
-}
-
 // Reads a request and executes it. Returns whether the process can execute another one.
 bool serve_one(const process::Child::Tell& tell) {
   std::string line;
@@ -174,14 +161,17 @@ bool serve_one(const process::Child::Tell& tell) {
   for (const std::string& argument : request.arguments) words.push_back(argument.c_str());
   const auto count = static_cast<int>(words.size());
   words.push_back(nullptr);
+  std::vector<std::string> texts = request.arguments;
+  texts.push_back(request.folder);
+  const auto nul = std::find_if(texts.begin(), texts.end(),
+                                [](const std::string& text) { return text.find('\0') != std::string::npos; });
   std::error_code error;
-  bool is_refused = refuse_nul(request);
-  if (!is_refused) std::filesystem::current_path(request.folder, error);
-  if (error) {
-    process::say("error", fmt::format("folder '{}': {}", request.folder.string(), error.message()));
-    is_refused = true;
-  }
-  answer.end(is_refused ? kRefused : execute(count, words.data()));
+  if (nul == texts.end()) std::filesystem::current_path(request.folder, error);
+  if (nul != texts.end())
+    process::say("error",
+                 fmt::format("'{}..': a NUL character follows: must not be in a text", nul->c_str()));
+  if (error) process::say("error", fmt::format("folder '{}': {}", request.folder.string(), error.message()));
+  answer.end(error || nul != texts.end() ? kRefused : execute(count, words.data()));
   process::client = nullptr;
   // SystemC is elaborated once in a process.
   const bool is_fresh =

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <initializer_list>
 #include <map>
 #include <string>
 #include <string_view>
@@ -38,13 +37,14 @@ class Client {
 // Null unless this process executes a command for a client.
 inline Client* client = nullptr;
 
-// Contents of input files by their names, such as "board.yaml".
+// Contents of input files by their names.
 using FileContents = std::map<std::string, std::string>;
 
-// Those of the named files whose contents the client has sent, so that they are not read.
-inline FileContents sent_files(std::initializer_list<const char*> names) {
+// Those that the client has sent, so that the files are not read.
+inline FileContents sent_files() {
   FileContents sent;
-  for (const char* const name : names) {
+  for (const char* const name :
+       {"plan.yaml", "board.yaml", "calibration.yaml", "calibration_left.lut", "calibration_right.lut"}) {
     const Array* const array = client == nullptr ? nullptr : client->given(name);
     if (array != nullptr) sent[name] = array->bytes;
   }

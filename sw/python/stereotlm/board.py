@@ -42,11 +42,6 @@ class _Table(numpy.recarray):
         super().__array_finalize__(source)
         self.attrs = dict(getattr(source, "attrs", {}))
 
-    def __deepcopy__(self, memo):
-        table = super().__deepcopy__(memo)
-        table.attrs = copy.deepcopy(self.attrs, memo)
-        return table
-
     def __reduce__(self):
         make, arguments, state = super().__reduce__()
         return make, arguments, (state, self.attrs)
@@ -274,10 +269,6 @@ class Board:
         # A tuple, which is replaced whole: (path -> value as YAML of the keys that were set, path -> value)
         set_(self, "_state", (sets, answer.document["values"]))
 
-    def _copy(self):
-        """The board as it is, whatever another thread changes."""
-        return copy.copy(self)
-
     def _tables(self):
         return {name: its.tobytes() for name, its in self._files.items() if name != "board.yaml"}
 
@@ -295,10 +286,13 @@ class Board:
 
     def _execute(self, command, *words, sets=None, arrays=None):
         """Executes a command for the board, or for the board with other keys set."""
-        options = [] if self.calibration is None else ["--calibration", self.calibration]
+        options = self._calibration_words()
         for path, text in (self._state[0] if sets is None else sets).items():
             options += ["--set", f"{path}={text}"]
         return execute(command, self.board, *options, *words, arrays={**self._files, **(arrays or {})})
+
+    def _calibration_words(self):
+        return [] if self.calibration is None else ["--calibration", self.calibration]
 
     # Commands.
 
@@ -313,7 +307,7 @@ class Board:
         By default the whole computer with its cameras runs until it has delivered as many frames as there are
         pairs. source="preloaded" is the core alone.
         """
-        board = self._copy()
+        board = copy.copy(self)  # whatever another thread changes
         arrays, options = _pictures(left, right, copy.deepcopy(options))
         changes = [options.pop(name, None) for name in ("set", "calibration")]
         if any(changes):
@@ -369,11 +363,9 @@ class Board:
         move together. `where`: SQL expressions that must hold. `sample`: {"points": 100, "seed": 1}. `out`:
         the path of a database that is continued; the table then has all its points. `options`: jobs=2.
         """
-        words = [] if self.calibration is None else ["--calibration", self.calibration]
-        is_file = "board.yaml" in self._files
-        if is_file:
-            words += ["--board", self.board]  # a path need not be UTF-8, as a plan must be
-        plan = {"board": None if is_file else self.board,
+        # A path need not be UTF-8, as a plan must be.
+        words = ["--board", self.board] if "board.yaml" in self._files else []
+        plan = {"board": None if words else self.board,
                 "run": {"source": source} if frames is None else {"source": source, "frames": frames},
                 "vary": vary, "zip": zip, "where": where, "sample": sample}
         text = "".join(f"{name}: {_yaml(value, name)}\n" for name, value in plan.items() if value is not None)
@@ -386,7 +378,8 @@ class Board:
         with tempfile.TemporaryDirectory() as folder:
             # An absolute path: for sqlite3, ":memory:" is no file.
             database = pathlib.Path(out or pathlib.Path(folder) / "points.db").absolute()
-            execute("sweep", "the plan", "--out", database, *words, *_options(options), arrays=files)
+            words += ["--out", database, *self._calibration_words(), *_options(options)]
+            execute("sweep", "the plan", *words, arrays=files)
             return _points(database, varied)
 
     def chart(self, source="camera"):
@@ -399,12 +392,10 @@ class Board:
 
 def _with(sets, more):
     """The keys that were set, path -> value as YAML, with more of them: as for Board.changed()."""
-    if isinstance(more, str):
-        more = [more]
-    if not isinstance(more, dict):
-        more = dict(each.partition("=")[::2] for each in more)
-    else:
+    if isinstance(more, dict):
         more = {path: _yaml(value, path) for path, value in more.items()}
+    else:
+        more = dict(each.partition("=")[::2] for each in ([more] if isinstance(more, str) else more))
     return {**{path: text for path, text in sets.items() if path not in more}, **more}
 
 

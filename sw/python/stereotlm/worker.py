@@ -33,12 +33,8 @@ class Refused(ValueError):
     """A command is refused before it does anything. Each of its `problems` names place, value and rule."""
 
     def __init__(self, problems):
-        super().__init__(list(dict.fromkeys(problems)))  # each once
-
-    @property
-    def problems(self):
-        """A list of Problem."""
-        return self.args[0]
+        self.problems = list(dict.fromkeys(problems))  # each once
+        super().__init__(self.problems)  # from which a copy is made
 
     def __str__(self):
         return "\n".join(map(str, self.problems))
@@ -81,17 +77,14 @@ def _checked(program, name):
     """The path of a program. Raises FileNotFoundError, with the name, if it is not that of this module."""
     from stereotlm import __version__
     try:
-        end = subprocess.run([program, "--version"], stdin=subprocess.DEVNULL, capture_output=True, timeout=20,
-                             check=False)
-        said = end.stdout.decode(errors="replace").strip()
-        if said == f"stereotlm {__version__}":
-            return program
+        said = subprocess.run([program, "--version"], stdin=subprocess.DEVNULL, capture_output=True, timeout=20,
+                              check=False).stdout.decode(errors="replace").strip()
         cause = f"with --version it prints {said[:40]!r}"
-    except subprocess.TimeoutExpired:
-        cause = "with --version it does not end"
-    except (OSError, ValueError) as error:
-        cause = getattr(error, "strerror", None) or str(error)
-    raise FileNotFoundError(f"{name} = {program}: {cause}: must be the program stereotlm {__version__}")
+    except (OSError, subprocess.TimeoutExpired) as error:
+        said, cause = "", getattr(error, "strerror", "with --version it does not end")
+    if said != f"stereotlm {__version__}":
+        raise FileNotFoundError(f"{name} = {program}: {cause}: must be the program stereotlm {__version__}")
+    return program
 
 
 class _Bar:

@@ -20,8 +20,8 @@ InputFile described(const fs::path& path, const std::string& content) {
   return {fs::absolute(path).string(), files::sha256_hex(content.data(), content.size())};
 }
 
-kernels::RectificationTable parse_table(const fs::path& path, const std::string& content,
-                                        const calib::Rig& rig, const std::string& sha256, InputFile& file) {
+kernels::RectificationTable load_table(const fs::path& path, const std::string& content,
+                                       const calib::Rig& rig, const std::string& sha256, InputFile& file) {
   file = described(path, content);
   if (file.sha256 != sha256) {
     throw std::runtime_error(
@@ -95,19 +95,18 @@ std::optional<CalibrationInput> load_calibration(const std::string& path, const 
     return std::runtime_error(fmt::format("'{}': {}", path, problem));
   };
   CalibrationInput input;
-  const auto content_of = [&](const char* name, const fs::path& file,
-                              std::uintmax_t most_bytes) -> const std::string& {
-    const auto found = sent.find(name);
-    return input.contents[name] =
-               found == sent.end() ? files::read_whole_file(file, most_bytes) : found->second;
+  input.contents = sent;
+  const auto content_of = [&](const char* name, const fs::path& file, std::size_t most_bytes) {
+    if (input.contents.count(name) == 0) input.contents[name] = files::read_whole_file(file, most_bytes);
+    return input.contents[name];
   };
   attempt([&] {
     const RigFiles files = rig_files(path);
     for (const fs::path& file : {files.calibration, files.left_lut, files.right_lut}) {
       input.files.push_back({named, file.string()});
     }
-    const std::string& content =
-        content_of(kCalibrationFile, files.calibration, calib::kMostCalibrationBytes);
+    const std::string content =
+        content_of("calibration.yaml", files.calibration, calib::kMostCalibrationBytes);
     input.described.file = described(files.calibration, content);
     try {
       input.calibration = std::make_shared<const calib::Calibration>(calib::parse_calibration(content));
@@ -120,18 +119,16 @@ std::optional<CalibrationInput> load_calibration(const std::string& path, const 
       throw at_path(error.what());
     }
     const calib::Calibration& calibration = *input.calibration;
-    const auto load_table = [&](const char* name, const fs::path& file, const std::string& sha256,
-                                InputFile& table) {
-      const std::size_t bytes = calib::lut_byte_count(calibration.rig.width, calibration.rig.height);
-      return parse_table(file, content_of(name, file, bytes), calibration.rig, sha256, table);
-    };
+    const std::size_t bytes = calib::lut_byte_count(calibration.rig.width, calibration.rig.height);
     attempt([&] {
       input.tables.left =
-          load_table(kLeftLutFile, files.left_lut, calibration.left_lut_sha256, input.described.left_lut);
+          load_table(files.left_lut, content_of("calibration_left.lut", files.left_lut, bytes),
+                     calibration.rig, calibration.left_lut_sha256, input.described.left_lut);
     });
     attempt([&] {
       input.tables.right =
-          load_table(kRightLutFile, files.right_lut, calibration.right_lut_sha256, input.described.right_lut);
+          load_table(files.right_lut, content_of("calibration_right.lut", files.right_lut, bytes),
+                     calibration.rig, calibration.right_lut_sha256, input.described.right_lut);
     });
   });
   if (!is_right) return std::nullopt;

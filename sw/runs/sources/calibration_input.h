@@ -38,27 +38,20 @@ RigFiles rig_files(const std::string& calibration);
 files::OutputContent calibration_content(const RigFiles& files, bool makes_pictures,
                                          const std::vector<files::NamedFile>& inputs = {});
 
-// Names under which a client sends the contents of input files, in place of those that the options name.
-inline constexpr const char* kBoardFile = "board.yaml";
-inline constexpr const char* kPlanFile = "plan.yaml";
-inline constexpr const char* kCalibrationFile = "calibration.yaml";
-inline constexpr const char* kLeftLutFile = "calibration_left.lut";
-inline constexpr const char* kRightLutFile = "calibration_right.lut";
-
 // A calibration that a command has loaded: the file of --calibration and the tables beside it.
 struct CalibrationInput {
   std::shared_ptr<const calib::Calibration> calibration;  // never null
   platform::Tables tables;
   InputCalibration described;      // for run.json
   std::vector<NamedFile> files;    // the files that were read
-  process::FileContents contents;  // of these files, by the names above
+  process::FileContents contents;  // of these files, as process::sent_files() names them
 };
 
 // Loads a calibration and checks that it fits the board. Reports all problems and returns nullopt if there
 // are any: a damaged file, pictures of another size than the board's, tables that were not written with the
 // calibration, a side without table on the board, tables that cannot be joined for a board with joint tables.
-// `board`: null if unknown; the fit is then not checked. `named`: the option in messages. `sent`: contents of
-// files, by the names above, which are then not read.
+// `board`: null if unknown; the fit is then not checked. `named`: the option in messages. `sent`: files that
+// are not read.
 std::optional<CalibrationInput> load_calibration(const std::string& path, const platform::BoardConfig* board,
                                                  process::Problems& problems,
                                                  const std::string& named = "--calibration",

@@ -1,8 +1,13 @@
 """The module stereotlm of Python, and the worker behind it."""
 
+import concurrent.futures
+import copy
+import decimal
 import json
 import os
 import pathlib
+import pickle
+import shutil
 import signal
 import subprocess
 import sys
@@ -143,6 +148,103 @@ class Boards(PythonTest):
         self.assertNotEqual(of_set.chart(), small_board().run(**ALONE).chart())
 
 
+class Files(PythonTest):
+    """What a board is made of is read once, when it is made."""
+
+    def answers(self, board):
+        """What each command says about a board, and all points of a sweep."""
+        return [board.values, board.bounds(), board.run(**ALONE).statistics,
+                board.explain(**ALONE).attrs["document"], board.conflicts(**ALONE).attrs["document"],
+                board.allocate(3, **ALONE).attrs["document"], board.chart(), board.run(**ALONE).chart(),
+                board.sweep({"matcher.rows": [1, 2]}).to_json()]
+
+    def test_a_board_file_that_is_changed_and_a_change_of_the_folder_have_no_effect(self):
+        self.addCleanup(os.chdir, os.getcwd())
+        os.chdir(self.folder)
+        text = f"extends: fpl2003\nimage: {{width: {WIDTH}, height: {HEIGHT}}}\nmatcher: {{window: 5}}\n"
+        path = self.file("b.yaml", text)
+        board = stereotlm.Board("./b.yaml", {"matcher.disparities": 40})
+        before = self.answers(board)
+        path.write_text(text.replace("5}", "9}"))
+        (self.folder / "other").mkdir()
+        os.chdir("other")
+        self.assertEqual(self.answers(board), before)
+        path.unlink()
+        self.assertEqual(self.answers(pickle.loads(pickle.dumps(board))), before)
+        board.matcher.rows = 2
+        self.assertEqual((board.matcher.window, board.changed({"fpga.lanes": 4}).matcher.window), (5, 5))
+        self.assertEqual(board.run(synthetic=1, out=self.out, **ALONE).board, board)
+        self.assertIn("window: 5", (self.out / "config.yaml").read_text())
+        self.assertEqual(board.board, str(path))
+
+    def test_a_calibration_that_is_changed_has_no_effect(self):
+        self.addCleanup(os.chdir, os.getcwd())
+        rig = self.copy_of_rig()
+        os.chdir(self.folder)
+        board = stereotlm.Board(calibration="rig.yaml")
+        disparity = board.run(synthetic=1, **ALONE).disparity
+        for path in (rig, self.folder / "rig_left.lut", self.folder / "rig_right.lut"):
+            path.write_bytes(b"damaged")
+        os.chdir("/")
+        run = board.run(synthetic=1, out=self.out, **ALONE)
+        self.assertTrue((run.disparity == disparity).all())
+        self.assertEqual(self.run_json()["calibration"]["path"], str(rig))
+        self.assertEqual(list(board.sweep({"fpga.clock_mhz": [20]}, frames=1).status), ["ok"])
+        self.assertEqual(board, board.changed({"name": "fpl2003"}))
+        self.assertNotEqual(board, stereotlm.Board())
+        for again in (lambda: board.changed({}, calibration=rig), lambda: board.run(calibration=rig)):
+            self.assertIn("rig.yaml", str(self.refusal(again)))
+
+    def test_a_board_shows_what_it_runs(self):
+        board = small_board()
+        board.allocation.left_image.append("bank7")
+        board.values["matcher.cost"] = "zncc"
+        self.assertEqual((board.allocation.left_image, board.matcher.cost), (["bank0", "bank1"], "sad"))
+        run = board.run(set=["matcher.window=5"], **ALONE)
+        self.assertEqual((run.board, run.board.matcher.window), (small_board(matcher__window=5), 5))
+        self.assertEqual(run.statistics, run.board.run(**ALONE).statistics)
+
+    def test_a_change_by_another_thread_is_no_part_of_a_run(self):
+        board = small_board()
+        runs = []
+        thread = threading.Thread(target=lambda: runs.extend(board.run(**ALONE) for _ in range(20)))
+        thread.start()
+        while thread.is_alive():
+            board.matcher.window = 3 if board.matcher.window == 9 else 9
+        thread.join()
+        self.assertEqual([run.board.run(**ALONE).statistics for run in runs], [run.statistics for run in runs])
+        self.assertEqual(len(runs), 20)
+
+    def test_pipes_and_devices_are_refused(self):
+        os.mkfifo(self.folder / "pipe.yaml")
+        pipe = str(self.folder / "pipe.yaml")
+        for make in (lambda: stereotlm.Board("/dev/stdin"), lambda: stereotlm.Board(pipe),
+                     lambda: stereotlm.Board(calibration=pipe), lambda: small_board().run(pipe, pipe),
+                     lambda: stereotlm.execute("sweep", pipe, "--out", self.out),
+                     lambda: small_board().sweep({}, known=pipe),
+                     lambda: stereotlm.execute("merge", self.out, pipe),
+                     lambda: stereotlm.execute("plot", pipe, "--out", self.out)):
+            self.assertIn("must be a regular file", str(self.refusal(make)))
+
+    def test_a_folder_whose_name_is_not_utf_8(self):
+        self.addCleanup(os.chdir, os.getcwd())
+        before = small_board().run(*self.arrays, **ALONE).statistics
+        folder = os.fsencode(self.folder) + b"/\xff\xc3"
+        os.mkdir(folder)
+        os.chdir(folder)
+        pathlib.Path("b.yaml").write_text(f"extends: fpl2003\nimage: {{width: {WIDTH}, height: {HEIGHT}}}\n")
+        for path in ("./b.yaml", os.fsdecode(folder) + "/b.yaml", folder + b"/b.yaml", pathlib.Path("b.yaml")):
+            board = stereotlm.Board(path)
+            self.assertEqual(board.run(*self.arrays, **ALONE).statistics, before)
+        self.answers(board)
+        board.run(synthetic=1, out="out")
+        self.assertEqual(len(board.sweep({"matcher.window": [5, 7]}, out="points.db")), 2)
+        pair = [shutil.copy(side, ".") for side in (self.left, self.right)]
+        self.assertEqual(board.run(*pair, **ALONE).statistics, before)
+        self.assertIn("run.json cannot name it", str(self.refusal(lambda: board.run(*pair, out="out"))))
+        self.assertEqual(len(os.listdir(b".")), 5)
+
+
 class Runs(PythonTest):
     def test_a_run_is_that_of_the_command(self):
         for options in ([], PRELOADED):
@@ -275,6 +377,28 @@ class Commands(PythonTest):
         self.assertRegex(str(self.refusal(lambda: board.sweep({"matcher.window": [6]}))),
                          "^the plan:3:.*: matcher.window = 6: 3..31, odd$")
 
+    def test_values_of_other_libraries(self):
+        board = small_board()
+        table = board.sweep({"matcher.window": [5, 7], "matcher.rows": [1, 2]})
+        for values in (table["matcher.window"], pandas.Index([5, 7]), {7, 5}, {7: 0, 5: 0}.keys(), range(5, 8, 2),
+                       [decimal.Decimal("5"), numpy.uint8(7)], numpy.array([5, 7]), (w for w in (5, 7))):
+            self.assertEqual(list(board.sweep({"matcher.window": values})["matcher.window"]), [5, 7])
+        clocks = board.sweep({"fpga.clock_mhz": [decimal.Decimal("39.9"), decimal.Decimal("1E+2")]})
+        self.assertEqual(list(clocks["fpga.clock_mhz"]), [39.9, 100])
+        both = table[["matcher.window", "matcher.rows"]]
+        self.assertEqual(len(board.sweep(zip=[both.iloc[[0, 3]]], where=pandas.Series(["matcher.rows < 2"]))), 1)
+        board.matcher.window = table["matcher.window"][3]
+        self.assertEqual(board.matcher.window, 7)
+        with self.assertRaisesRegex(TypeError, "vary.matcher.window = b'5': must be a number or a text"):
+            board.sweep({"matcher.window": [b"5"]})
+        with self.assertRaisesRegex(TypeError, "ssram.banks.b = <.*: must be a number"):
+            board.ssram.banks = {"b": object()}
+        self.addCleanup(os.chdir, os.getcwd())
+        os.chdir(self.folder)
+        for name in (":memory:", "file:x?mode=memory"):
+            self.assertEqual(len(board.sweep({"matcher.window": [5, 7]}, out=name)), 2)
+            self.assertTrue((self.folder / name).is_file())
+
     def test_tables_without_pandas(self):
         with unittest.mock.patch.dict(sys.modules, {"pandas": None}):
             banks = small_board(allocation__left_lut="bank0").run(**ALONE)
@@ -287,6 +411,10 @@ class Commands(PythonTest):
             explained = small_board().explain(**ALONE)
             self.assertEqual(explained.attrs["document"]["board"], "fpl2003")
             self.assertEqual(list(explained["key"])[0], explained.attrs["document"]["changes"][0]["key"])
+            for same in (copy.copy(explained), copy.deepcopy(explained), explained.copy(), explained[:],
+                         pickle.loads(pickle.dumps(explained))):
+                self.assertEqual((same.attrs, list(same)), (explained.attrs, list(explained)))
+            self.assertEqual(banks.banks.attrs, {"document": None})
         self.assertIsInstance(small_board().run(**ALONE).banks, pandas.DataFrame)
 
     def test_progress_is_shown_by_tqdm(self):
@@ -409,6 +537,12 @@ except KeyboardInterrupt:
         os.chdir(self.folder)
         self.assertIn("./board.yaml: ok", self.worker.execute("check", "./board.yaml").output)
 
+    def test_a_nul_is_refused_and_nothing_is_executed(self):
+        for words in (["check", "fpl2003\0"], ["boards\0--show", "x"], ["run", "fpl2003", "--source=camera\0"]):
+            with self.assertRaisesRegex(stereotlm.Refused, "^'.*': a NUL character follows: must not be in"):
+                self.worker.execute(*words)
+        self.works()
+
     def test_text_that_is_no_text_is_refused_and_nothing_is_sent(self):
         with self.assertRaises(UnicodeEncodeError):
             self.worker.execute("check", "/tmp/\ud8ff.yaml")
@@ -448,6 +582,16 @@ except KeyboardInterrupt:
             plan = self.file("plan.yaml", "board: fpl2003\nvary: {matcher.window: [3, 5]}\n")
             self.worker.execute("sweep", plan, "--out", "/dev/full")
 
+    def test_exceptions_keep_their_text_through_copies_and_processes(self):
+        refused = self.refusal(lambda: stereotlm.Board("nope"))
+        for error in (refused, stereotlm.Failed("it has failed"), stereotlm.WorkerDied("it has died")):
+            for same in (copy.copy(error), copy.deepcopy(error), pickle.loads(pickle.dumps(error))):
+                self.assertEqual((type(same), str(same), vars(same)), (type(error), str(error), vars(error)))
+        self.assertEqual(pickle.loads(pickle.dumps(refused)).problems, refused.problems)
+        with concurrent.futures.ProcessPoolExecutor(1) as pool, \
+                self.assertRaisesRegex(stereotlm.Refused, "^nope: not a preset"):
+            pool.submit(stereotlm.Board, "nope").result()
+
     def test_the_version_is_that_of_the_program(self):
         self.assertEqual(self.worker.execute("--version").output, f"stereotlm {stereotlm.__version__}\n")
 
@@ -456,6 +600,18 @@ except KeyboardInterrupt:
                 unittest.mock.patch.object(worker, "__file__", "/a/b/c/d/e/worker.py"), \
                 self.assertRaisesRegex(FileNotFoundError, "STEREOTLM_PROGRAM"):
             stereotlm.Worker().execute("boards")
+
+    def test_a_program_that_is_not_stereotlm(self):
+        old = self.file("old", "#!/bin/sh\necho stereotlm 0.0.9\n")
+        old.chmod(0o755)
+        for path, cause in ((self.folder / "none", "No such file"), (self.left, "Permission denied"),
+                            (self.folder, "Permission denied"), ("/bin/true", "it prints 'true"),
+                            (old, "it prints 'stereotlm 0.0.9'")):
+            rule = f"{path}: .*{cause}.*: must be the program stereotlm {stereotlm.__version__}$"
+            with unittest.mock.patch.dict(os.environ, {"STEREOTLM_PROGRAM": str(path)}):
+                for made, name in ((None, "STEREOTLM_PROGRAM"), (str(path), "program")):
+                    with self.assertRaisesRegex(FileNotFoundError, f"^{name} = {rule}"):
+                        stereotlm.Worker(made).execute("boards")
 
 
 class Protocol(ProgramTest):
@@ -482,6 +638,8 @@ class Protocol(ProgramTest):
                               (b'{"arguments": "boards"}\n', "must be array"),
                               (b'{"arguments": [], "arrays": [{"name": "left", "shape": [400]}]}\nxx',
                                "array left: ends early"),
+                              (b'{"arguments": [], "encoding": "utf-16"}\n', "must be utf-8 or latin-1"),
+                              ('{"arguments": ["€"], "encoding": "latin-1"}\n'.encode(), "U+0000 to U+00FF"),
                               (big, "array left: must have at most 4294967296 bytes")):
             lines, status = self.answers(request + b'{"arguments": ["boards"]}\n')
             self.assertEqual([line.get("status") for line in lines], [None, 2], request)
