@@ -24,8 +24,8 @@ std::string path_problem(const std::string& path);
 class BoardDraft {
  public:
   // `board` as for load_board(). `text`: what the board file holds, if it has been read already; else null.
-  // Throws BoardError for an unknown preset, a file that cannot be read and a syntax error. read() reports all
-  // other problems.
+  // Throws BoardError for an unknown preset, a file that cannot be read and a syntax error. read() reports
+  // all other problems.
   explicit BoardDraft(const std::string& board, const std::string* text = nullptr);
 
   // What the board file holds; empty for a preset.

@@ -101,7 +101,7 @@ def _yaml(value, name):
     try:
         return json.dumps(value, ensure_ascii=False)
     except TypeError:
-        raise TypeError(f"{name} = {value!r}: must be a number or a text, or a list or a dict of them") from None
+        raise TypeError(f"{name} = {value!r}: must be a number, a text, a list or a dict") from None
 
 
 def _options(options):

@@ -77,8 +77,9 @@ def _checked(program, name):
     """The path of a program. Raises FileNotFoundError, with the name, if it is not that of this module."""
     from stereotlm import __version__
     try:
-        said = subprocess.run([program, "--version"], stdin=subprocess.DEVNULL, capture_output=True, timeout=20,
-                              check=False).stdout.decode(errors="replace").strip()
+        end = subprocess.run([program, "--version"], stdin=subprocess.DEVNULL, capture_output=True,
+                             timeout=20, check=False)
+        said = end.stdout.decode(errors="replace").strip()
         cause = f"with --version it prints {said[:40]!r}"
     except (OSError, subprocess.TimeoutExpired) as error:
         said, cause = "", getattr(error, "strerror", "with --version it does not end")
