@@ -21,8 +21,11 @@ class Client {
  public:
   virtual ~Client() = default;
 
-  // The array that came with the command; nullptr if there is none of this name.
-  virtual const Array* given(std::string_view name) const = 0;
+  // The array that came with the command; nullptr if there is none of this name. A command asks for all that
+  // it takes while its options are checked.
+  virtual const Array* given(std::string_view name) = 0;
+  // Throws Refused if there is an array for which the command has not asked.
+  virtual void check_given() const = 0;
 
   virtual void print(std::string_view text) = 0;  // what goes to standard output elsewhere
   virtual void say(const std::string& line) = 0;  // a line for standard error

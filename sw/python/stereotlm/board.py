@@ -6,11 +6,10 @@ import json
 import os
 import pathlib
 import sqlite3
-import tempfile
 
 import numpy
 
-from stereotlm.worker import Refused, execute
+from stereotlm.worker import Refused, execute, temporary_folder
 
 
 def boards():
@@ -331,7 +330,7 @@ class Board:
         computer is searched, which may take minutes; source="preloaded" is the core alone.
         attrs["document"] has the best of all.
         """
-        with tempfile.TemporaryDirectory() as folder:
+        with temporary_folder() as folder:
             words = ["--banks", banks, "--out", out or pathlib.Path(folder) / "boards.db"]
             document = execute("allocate", *self._words(), *words, *_options(options), "--json").document
         return _table(document["banks"], document)
@@ -355,7 +354,7 @@ class Board:
         fixed = [f"{path}: {value}" for path, value in self._sets.items() if path not in moved]
         if fixed:
             text += "set: {" + ", ".join(fixed) + "}\n"
-        with tempfile.TemporaryDirectory() as folder:
+        with temporary_folder() as folder:
             file = pathlib.Path(folder) / "plan.yaml"
             file.write_text(text, encoding="utf-8")
             database = out or pathlib.Path(folder) / "points.db"
@@ -391,7 +390,7 @@ def _points(database, varied):
 
 
 def _chart(words, **options):
-    with tempfile.TemporaryDirectory() as folder:
+    with temporary_folder() as folder:
         file = pathlib.Path(folder) / "chart.svg"
         execute("diagram", *words, "--out", file, *_options(options))
         return file.read_text(encoding="utf-8")
@@ -444,7 +443,7 @@ class Run:
                        "truth_scale", "save_frames", "record", "trace", "trace_window"}
         options = {name: value for name, value in self._options.items() if name not in of_pictures}
         options["frames"] = self.statistics["frames"]
-        with tempfile.TemporaryDirectory() as folder:
+        with temporary_folder() as folder:
             out = pathlib.Path(folder) / "run"  # pixels change no count
             execute("run", *self.board._words(), *_options({**options, "timing_only": True, "out": out}))
             return _chart([out])
