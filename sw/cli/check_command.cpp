@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <map>
 #include <nlohmann/json.hpp>
 #include <regex>
 
@@ -66,10 +67,21 @@ Json document_of(const std::string& name, const platform::BoardConfig* board,
   return document;
 }
 
+// Sends the client the content of each file that was read, so that it can give the same to other commands.
+void send_files(const LoadedBoard& loaded) {
+  std::map<std::string, std::string> files;
+  if (loaded.calibration) files = loaded.calibration->contents;
+  if (!loaded.file_text.empty()) files[runs::kBoardFile] = loaded.file_text;
+  for (const auto& [name, bytes] : files) {
+    if (process::sent_file(name) == nullptr) process::client->send({name, {bytes.size()}, bytes});
+  }
+}
+
 int check(const BoardCommandOptions& options) {
   process::Problems problems;
   const LoadedBoard loaded = options.board.load(problems);
   if (problems.empty()) loaded.say_clock_remark();
+  if (problems.empty() && process::client != nullptr) send_files(loaded);
   if (options.json.is_given()) {
     process::print(json_text(
         document_of(options.board.argument.text(), loaded.board ? &*loaded.board : nullptr, problems)));

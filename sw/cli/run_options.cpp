@@ -13,6 +13,7 @@
 
 #include "calib/calibration.h"
 #include "platform/config/board_area.h"
+#include "platform/config/board_draft.h"
 #include "platform/config/board_keys.h"
 #include "platform/config/board_yaml.h"
 #include "sw/files/text_forms.h"
@@ -193,7 +194,12 @@ std::vector<std::string> BoardOptions::words_without_allocation() const {
 
 LoadedBoard BoardOptions::load(process::Problems& problems) const {
   LoadedBoard loaded;
-  problems.attempt("", [&] { loaded.board = platform::load_board(argument.text(), sets.texts()); });
+  problems.attempt("", [&] {
+    platform::BoardDraft draft(argument.text(), process::sent_file(runs::kBoardFile));
+    for (const std::string& set : sets.texts()) draft.set(set);
+    loaded.board = draft.read();
+    loaded.file_text = draft.file_text();
+  });
   if (calibration.is_given()) {
     loaded.calibration =
         runs::load_calibration(calibration.text(), loaded.board ? &*loaded.board : nullptr, problems);
@@ -343,8 +349,9 @@ runs::RunInput RunOptions::load() const {
   process::Problems problems;
   runs::RunInput input;
   runs::OpenedSource opened;
-  auto [loaded, calibration] = board.load(problems);
-  const platform::BoardConfig* const its = loaded ? &*loaded : nullptr;
+  const LoadedBoard loaded = board.load(problems);
+  const std::optional<runs::CalibrationInput>& calibration = loaded.calibration;
+  const platform::BoardConfig* const its = loaded.board ? &*loaded.board : nullptr;
   runs::InputPictures& named = input.described;
   named = pictures.named();
   problems.attempt("", [&] { opened = runs::open_source(named, its, problems); });
@@ -361,8 +368,8 @@ runs::RunInput RunOptions::load() const {
       input.folder = std::make_unique<files::OutputFolder>(out.text(), runs::result_content(input.inputs));
     });
   problems.check();
-  input.board = *loaded;
-  problems.attempt("", [&, &calibration = calibration] {
+  input.board = *loaded.board;
+  problems.attempt("", [&] {
     input.tables = runs::tables_of(input.board, calibration);
     if (calibration) {
       input.calibration = calibration->calibration;

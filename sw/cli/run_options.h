@@ -23,6 +23,7 @@ namespace stereotlm::cli {
 struct LoadedBoard {
   std::optional<platform::BoardConfig> board;         // nullopt if it has problems
   std::optional<runs::CalibrationInput> calibration;  // nullopt if none was given, or if it has problems
+  std::string file_text;                              // what the board file holds; empty for a preset
 
   // The following are only for a board without problems.
   platform::Tables tables() const { return runs::tables_of(*board, calibration); }
@@ -35,6 +36,10 @@ struct LoadedBoard {
 
 // The argument BOARD and the options --set and --calibration, which all commands that take a board share.
 struct BoardOptions {
+  BoardOptions(Options* of_command, const std::string& beside = "") : of(of_command), beside_board(beside) {
+    runs::ask_for_board_files();
+  }
+
   // Whether --set or --calibration is given.
   bool changes_board() const { return sets.is_given() || calibration.is_given(); }
   // BOARD and the options as typed, as words of a command line, without --set of an allocation.
@@ -43,7 +48,7 @@ struct BoardOptions {
   LoadedBoard load(process::Problems& problems) const;
 
   Options* of;
-  std::string beside_board = "";  // what BOARD may be beside a board
+  std::string beside_board;  // what BOARD may be beside a board
   Option argument = Option(
       of, "BOARD", " ",
       "A preset (see stereotlm boards), or the path of a board file: has a / or ends in .yaml" + beside_board,

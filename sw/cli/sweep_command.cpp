@@ -16,6 +16,7 @@
 #include "sw/explore/sweep/sweep.h"
 #include "sw/files/text_forms.h"
 #include "sw/files/whole_file.h"
+#include "sw/process/client.h"
 #include "sw/process/command.h"
 #include "sw/runs/progress.h"
 #include "sw/runs/simulation/simulate_point.h"
@@ -50,6 +51,8 @@ struct SweepCommandOptions : Options {
   using Options::Options;
 
   void check_together(process::Problems& problems) override {
+    runs::ask_for_board_files();
+    process::sent_file(runs::kPlanFile);
     const auto refuse_given = [&problems](const Option& option, const char* rule) {
       if (option.is_given()) problems.add(fmt::format("{}: {}", option.name(), rule));
     };
@@ -330,15 +333,9 @@ explore::SweepCounts sweep_here(const SweepCommandOptions& options, const explor
 explore::ShardedSweep sharded(const SweepCommandOptions& options, const explore::Plan& plan,
                               const std::optional<runs::CalibrationInput>& calibration) {
   explore::ShardedSweep sweep;
-  sweep.files["plan.yaml"] = files::read_whole_file(plan.path());
-  if (platform::is_board_file(plan.board())) sweep.files["board.yaml"] = files::read_whole_file(plan.board());
-  if (calibration) {
-    const runs::InputCalibration& described = calibration->described;
-    for (const auto& [name, file] : {std::pair("calibration.yaml", described.file),
-                                     std::pair("calibration_left.lut", described.left_lut),
-                                     std::pair("calibration_right.lut", described.right_lut)})
-      sweep.files[name] = files::read_whole_file(file.path);
-  }
+  if (calibration) sweep.files = calibration->contents;
+  sweep.files[runs::kPlanFile] = plan.text();
+  if (!plan.board_text().empty()) sweep.files[runs::kBoardFile] = plan.board_text();
   sweep.banks = plan.banks();
   sweep.version = process::kVersion;
   sweep.points = plan.size();
@@ -385,8 +382,10 @@ explore::SweepCounts sweep_on_slurm(const SweepCommandOptions& options, const ex
 
 int sweep(const SweepCommandOptions& options) {
   std::optional<explore::Plan> loaded;
-  process::attempt_or_refuse(
-      "", [&] { loaded = explore::Plan::load(options.plan.text(), options.board.text()); });
+  process::attempt_or_refuse("", [&] {
+    loaded = explore::Plan::load(options.plan.text(), options.board.text(),
+                                 process::sent_file(runs::kPlanFile), process::sent_file(runs::kBoardFile));
+  });
   explore::Plan& plan = *loaded;
   const auto calibration = calibration_of(options, plan);
   const explore::SweepCounts counts = options.is_slurm() ? sweep_on_slurm(options, plan, calibration)

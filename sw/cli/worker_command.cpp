@@ -130,15 +130,36 @@ bool read_line(int from, std::string& line) {
   return !line.empty();
 }
 
+// The bytes whose values are the codes of the characters. Throws std::runtime_error for a code above 255.
+std::string bytes_of_codes(const std::string& utf8) {
+  std::string bytes;
+  for (std::size_t i = 0; i < utf8.size(); ++i) {
+    const auto first = static_cast<unsigned char>(utf8[i]);
+    if (first > 0xC3U) throw std::runtime_error("encoding = latin-1: characters must be U+0000 to U+00FF");
+    bytes += first < 0x80U ? utf8[i] : static_cast<char>((first & 3U) << 6U | (utf8[++i] & 0x3FU));
+  }
+  return bytes;
+}
+
 // Reads the arrays behind the line, too. Throws std::runtime_error if this is no request.
 Request request_of(const std::string& line, int from) {
   const Json document = files::parse_json(line);
   if (!document.is_object()) throw std::runtime_error("must be a JSON object");
   Request request;
+  const auto text_of = [&](const char* key, const char* missing) {
+    return document.contains(key) ? value_of<std::string>(document, key, "a text") : missing;
+  };
   request.arguments = value_of<std::vector<std::string>>(document, "arguments", "a list of texts");
+  std::string folder = text_of("folder", "");
+  const std::string encoding = text_of("encoding", "utf-8");
+  if (encoding == "latin-1") {
+    for (std::string& argument : request.arguments) argument = bytes_of_codes(argument);
+    folder = bytes_of_codes(folder);
+  } else if (encoding != "utf-8") {
+    throw std::runtime_error(fmt::format("encoding = {}: must be utf-8 or latin-1", encoding));
+  }
   static const std::filesystem::path of_worker = std::filesystem::current_path();
-  request.folder = of_worker;
-  if (document.contains("folder")) request.folder /= value_of<std::string>(document, "folder", "a text");
+  request.folder = of_worker / folder;
   if (!document.contains("arrays")) return request;
   for (const Json& given : value_of<std::vector<Json>>(document, "arrays", "a list of arrays")) {
     auto [array, bytes] = array_of(given);
@@ -151,6 +172,19 @@ Request request_of(const std::string& line, int from) {
     request.arrays.push_back(std::move(array));
   }
   return request;
+}
+
+// Whether a text has a NUL character, at which the system would end it. Says so.
+bool refuse_nul(const Request& request) {
+  std::vector<std::string> texts = request.arguments;
+  texts.push_back(request.folder);
+  const auto found = std::find_if(texts.begin(), texts.end(), [](const std::string& text) {
+    return text.find('\0') != std::string::npos;
+  });
+  if (found == texts.end()) return false;
+  process::say("error",
+               fmt::format("'{}..': a NUL character follows: must not be in a text", found->c_str()));
+  return true;
 }
 
 // Reads a request and executes it. Returns whether the process can execute another one.
@@ -179,9 +213,13 @@ bool serve_one(const process::Child::Tell& tell) {
   const auto count = static_cast<int>(words.size());
   words.push_back(nullptr);
   std::error_code error;
-  std::filesystem::current_path(request.folder, error);
-  if (error) process::say("error", fmt::format("folder '{}': {}", request.folder.string(), error.message()));
-  answer.end(error ? kRefused : execute(count, words.data()));
+  bool is_refused = refuse_nul(request);
+  if (!is_refused) std::filesystem::current_path(request.folder, error);
+  if (error) {
+    process::say("error", fmt::format("folder '{}': {}", request.folder.string(), error.message()));
+    is_refused = true;
+  }
+  answer.end(is_refused ? kRefused : execute(count, words.data()));
   process::client = nullptr;
   // SystemC is elaborated once in a process.
   const bool is_fresh =

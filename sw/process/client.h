@@ -39,4 +39,11 @@ class Client {
 // Null unless this process executes a command for a client.
 inline Client* client = nullptr;
 
+// The content of an input file that the client has sent, so that the file is not read. `name`: what the file
+// is, such as "board.yaml". nullptr if it was not sent.
+inline const std::string* sent_file(std::string_view name) {
+  const Array* const array = client == nullptr ? nullptr : client->given(name);
+  return array == nullptr ? nullptr : &array->bytes;
+}
+
 }  // namespace stereotlm::process

@@ -28,11 +28,6 @@ class Problem:
     value: str = ""
     between_keys: bool = False  # the rule involves several keys: each of them could be changed
 
-    def elsewhere(self, path, name):
-        """The same with another name for a file."""
-        return dataclasses.replace(self, place=self.place.replace(path, name),
-                                   message=self.message.replace(path, name))
-
     def __str__(self):
         return self.message if self.place == "command line" else f"{self.place}: {self.message}"
 
@@ -41,8 +36,15 @@ class Refused(ValueError):
     """A command is refused before it does anything. Each of its `problems` names place, value and rule."""
 
     def __init__(self, problems):
-        self.problems = list(dict.fromkeys(problems))  # each once
-        super().__init__("\n".join(map(str, self.problems)))
+        super().__init__(list(dict.fromkeys(problems)))  # each once
+
+    @property
+    def problems(self):
+        """A list of Problem."""
+        return self.args[0]
+
+    def __str__(self):
+        return "\n".join(map(str, self.problems))
 
 
 class Failed(RuntimeError):
@@ -73,9 +75,26 @@ def _program():
     places = [folders[4] / "bin" / "stereotlm", folders[3] / "build" / "release" / "bin" / "stereotlm"]
     named = os.environ.get("STEREOTLM_PROGRAM")
     for program in filter(None, [named, *filter(pathlib.Path.is_file, places), shutil.which("stereotlm")]):
-        return str(program)
+        return _checked(str(program), "STEREOTLM_PROGRAM" if named else "the program stereotlm")
     raise FileNotFoundError(
         f"the program stereotlm is neither {places[0]} nor in PATH: STEREOTLM_PROGRAM can name it")
+
+
+def _checked(program, name):
+    """The path of a program. Raises FileNotFoundError, with the name, if it is not that of this module."""
+    from stereotlm import __version__
+    try:
+        end = subprocess.run([program, "--version"], stdin=subprocess.DEVNULL, capture_output=True, timeout=60,
+                             check=False)
+        said = end.stdout.decode(errors="replace").strip()
+        if said == f"stereotlm {__version__}":
+            return program
+        cause = f"with --version it prints {said[:40]!r}"
+    except subprocess.TimeoutExpired:
+        cause = "with --version it does not end"
+    except (OSError, ValueError) as error:
+        cause = getattr(error, "strerror", None) or str(error)
+    raise FileNotFoundError(f"{name} = {program}: {cause}: must be the program stereotlm {__version__}")
 
 
 class _Bar:
@@ -141,10 +160,12 @@ class Worker:
         interrupted (KeyboardInterrupt), the worker is ended.
         """
         pixels = {name: _pixels(name, array) for name, array in (arrays or {}).items()}
-        with self._lock:
+        words = [_word(argument) for argument in arguments]
+        folder = _word(os.getcwd())
+        with self._lock:  # from here on it does not matter what other threads change
             bar = _Bar(progress)
             try:
-                self._send([str(argument) for argument in arguments], pixels)
+                self._send(words, folder, pixels)
                 return self._receive(bar)
             except (BrokenPipeError, EOFError):
                 raise WorkerDied(f"the worker has {self._end()}: the command is lost") from None
@@ -176,21 +197,22 @@ class Worker:
         status = process.wait()
         return f"been ended by signal {-status}" if status < 0 else f"ended with status {status}"
 
-    def _send(self, arguments, pixels):
+    def _send(self, arguments, folder, pixels):
         if self._process is not None and self._process.poll() is not None:
             self._end()  # while it had nothing to do: nothing is lost
         if self._process is None:
             # A session of its own: Ctrl-C is for this process, which then ends the worker.
             # No buffer in front of the pipe: a process that is forked meanwhile would send it again.
-            self._process = subprocess.Popen([self._program or _program(), "worker"], bufsize=0,
+            program = _checked(self._program, "program") if self._program else _program()
+            self._process = subprocess.Popen([program, "worker"], bufsize=0,
                                              stdin=subprocess.PIPE, stdout=subprocess.PIPE,
                                              start_new_session=True)
             _pipes.update((self._process.stdin, self._process.stdout))
             self._answers = io.BufferedReader(self._process.stdout)
-        request = {"arguments": arguments, "folder": os.getcwd(),
-                   "arrays": [{"name": name, "shape": array.shape} for name, array in pixels.items()]}
-        line = json.dumps(request, ensure_ascii=False).encode() + b"\n"  # raises before a byte is sent
-        for data in (line, *(array.tobytes() for array in pixels.values())):
+        request = {"arguments": arguments, "folder": folder, "encoding": "latin-1",
+                   "arrays": [{"name": name, "shape": shape} for name, (shape, _) in pixels.items()]}
+        line = json.dumps(request).encode() + b"\n"
+        for data in (line, *(data for _, data in pixels.values())):
             left = memoryview(data)
             while left:
                 left = left[self._process.stdin.write(left):]
@@ -227,11 +249,18 @@ class Worker:
         return answer
 
 
+def _word(argument):
+    """A word of a command. Each character stands for a byte, because a path need not be UTF-8."""
+    is_path = isinstance(argument, (bytes, os.PathLike))
+    return os.fsencode(argument if is_path else str(argument)).decode("latin-1")
+
+
 def _pixels(name, array):
+    """(shape, bytes) of an array."""
     array = numpy.asarray(array)
     if array.dtype != numpy.uint8:
         raise TypeError(f"{name}: {array.dtype}: must be an array of uint8")
-    return array
+    return array.shape, array.tobytes()
 
 
 def _leave():

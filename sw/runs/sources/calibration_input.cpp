@@ -8,6 +8,7 @@
 #include "calib/tables.h"
 #include "sw/files/text_forms.h"
 #include "sw/files/whole_file.h"
+#include "sw/process/client.h"
 #include "sw/process/command.h"
 #include "sw/runs/sources/calibration_library.h"
 
@@ -20,9 +21,14 @@ InputFile described(const fs::path& path, const std::string& content) {
   return {fs::absolute(path).string(), files::sha256_hex(content.data(), content.size())};
 }
 
-kernels::RectificationTable load_table(const fs::path& path, const calib::Rig& rig, const std::string& sha256,
-                                       InputFile& file) {
-  const std::string content = files::read_whole_file(path, calib::lut_byte_count(rig.width, rig.height));
+// What the client has sent under the name, else what the file holds.
+std::string content_of(const char* name, const fs::path& path, std::uintmax_t most_bytes) {
+  const std::string* const sent = process::sent_file(name);
+  return sent != nullptr ? *sent : files::read_whole_file(path, most_bytes);
+}
+
+kernels::RectificationTable parse_table(const fs::path& path, const std::string& content,
+                                        const calib::Rig& rig, const std::string& sha256, InputFile& file) {
   file = described(path, content);
   if (file.sha256 != sha256) {
     throw std::runtime_error(
@@ -102,7 +108,8 @@ std::optional<CalibrationInput> load_calibration(const std::string& path, const 
     for (const fs::path& file : {files.calibration, files.left_lut, files.right_lut}) {
       input.files.push_back({named, file.string()});
     }
-    const std::string content = files::read_whole_file(files.calibration, calib::kMostCalibrationBytes);
+    const std::string& content = input.contents[kCalibrationFile] =
+        content_of(kCalibrationFile, files.calibration, calib::kMostCalibrationBytes);
     input.described.file = described(files.calibration, content);
     try {
       input.calibration = std::make_shared<const calib::Calibration>(calib::parse_calibration(content));
@@ -117,12 +124,18 @@ std::optional<CalibrationInput> load_calibration(const std::string& path, const 
       throw at_path(error.what());
     }
     const calib::Calibration& calibration = *input.calibration;
+    const auto load_table = [&](const char* name, const fs::path& file, const std::string& sha256,
+                                InputFile& table) {
+      const std::string& bytes = input.contents[name] =
+          content_of(name, file, calib::lut_byte_count(calibration.rig.width, calibration.rig.height));
+      return parse_table(file, bytes, calibration.rig, sha256, table);
+    };
     attempt([&] {
-      input.tables.left =
-          load_table(files.left_lut, calibration.rig, calibration.left_lut_sha256, input.described.left_lut);
+      input.tables.left = load_table(kLeftLutFile, files.left_lut, calibration.left_lut_sha256,
+                                     input.described.left_lut);
     });
     attempt([&] {
-      input.tables.right = load_table(files.right_lut, calibration.rig, calibration.right_lut_sha256,
+      input.tables.right = load_table(kRightLutFile, files.right_lut, calibration.right_lut_sha256,
                                       input.described.right_lut);
     });
   });

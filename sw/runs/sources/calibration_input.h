@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -9,6 +10,7 @@
 #include "platform/config/board_config.h"
 #include "platform/config/tables.h"
 #include "sw/files/output_folder.h"
+#include "sw/process/client.h"
 #include "sw/process/problems.h"
 #include "sw/runs/run_json.h"
 #include "sw/runs/sources/open_source.h"
@@ -37,12 +39,25 @@ RigFiles rig_files(const std::string& calibration);
 files::OutputContent calibration_content(const RigFiles& files, bool makes_pictures,
                                          const std::vector<files::NamedFile>& inputs = {});
 
+// Names under which a client sends the contents of input files, in place of those that the options name.
+inline constexpr const char* kBoardFile = "board.yaml";
+inline constexpr const char* kPlanFile = "plan.yaml";
+inline constexpr const char* kCalibrationFile = "calibration.yaml";
+inline constexpr const char* kLeftLutFile = "calibration_left.lut";
+inline constexpr const char* kRightLutFile = "calibration_right.lut";
+// Lets the client send those of a board. To be called while options are checked: see Client::given().
+inline void ask_for_board_files() {
+  for (const char* name : {kBoardFile, kCalibrationFile, kLeftLutFile, kRightLutFile})
+    process::sent_file(name);
+}
+
 // A calibration that a command has loaded: the file of --calibration and the tables beside it.
 struct CalibrationInput {
   std::shared_ptr<const calib::Calibration> calibration;  // never null
   platform::Tables tables;
-  InputCalibration described;    // for run.json
-  std::vector<NamedFile> files;  // the files that were read
+  InputCalibration described;                   // for run.json
+  std::vector<NamedFile> files;                 // the files that were read
+  std::map<std::string, std::string> contents;  // of the files, by the names above
 };
 
 // Loads a calibration and checks that it fits the board. Reports all problems and returns nullopt if there

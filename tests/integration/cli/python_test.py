@@ -411,7 +411,7 @@ except KeyboardInterrupt:
 
     def test_text_that_is_no_text_is_refused_and_nothing_is_sent(self):
         with self.assertRaises(UnicodeEncodeError):
-            self.worker.execute("check", "/tmp/\udcff.yaml")
+            self.worker.execute("check", "/tmp/\ud8ff.yaml")
         self.works()
 
     def test_threads_share_one(self):
@@ -497,8 +497,8 @@ class Protocol(ProgramTest):
 
     def test_a_folder_is_that_of_its_request_alone(self):
         self.file("b.yaml", "extends: fpl2003\nname: b\n")
-        there = json.dumps({"arguments": ["check", "./b.yaml"], "folder": str(self.folder)}).encode()
-        lines, _ = self.answers(there + b'\n{"arguments": ["check", "./b.yaml"]}\n' + there + b"\n")
+        there = json.dumps({"arguments": ["bounds", "./b.yaml"], "folder": str(self.folder)}).encode()
+        lines, _ = self.answers(there + b'\n{"arguments": ["bounds", "./b.yaml"]}\n' + there + b"\n")
         self.assertEqual([line["status"] for line in lines if "status" in line], [0, 2, 0])
 
     def test_a_process_that_dies_while_it_reads_arrays_ends_the_worker(self):
