@@ -98,12 +98,7 @@ AsideFile::AsideFile(fs::path file, std::string name) : file_(std::move(file)), 
     if (lock_ < 0) fail(errno, path_);
     const bool is_locked = flock(lock_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
     if (!is_locked || !is_open_at(lock_, path_)) fail(EBUSY, path_);
-    try {
-      remover_.emplace("/bin/rm -f -- \"$1\"", std::vector<std::string>{fs::absolute(path_)}, lock_);
-    } catch (const std::system_error& /*error*/) {
-      unlink(path_.c_str());
-      throw;
-    }
+    remover_.emplace("/bin/rm -f -- \"$1\"", std::vector<std::string>{fs::absolute(path_)}, lock_);
   });
 }
 

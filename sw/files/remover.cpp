@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <signal.h>
-#include <spawn.h>
 #include <sys/file.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -16,32 +15,23 @@ namespace stereotlm::files {
 
 Remover::Remover(const std::string& script, const std::vector<std::string>& words, int lock) {
   constexpr const char* kShell = "/bin/sh";
-  constexpr int kOfLock = 3;
   const std::string command = "read -r _ || { " + script + "; }";  // read fails at the end of the pipe
   std::vector<const char*> arguments = {"stereotlm-remover", "-c", command.c_str(), kShell};
   for (const std::string& word : words) arguments.push_back(word.c_str());
   arguments.push_back(nullptr);
   std::array<int, 2> pipe = {-1, -1};
-  if (pipe2(pipe.data(), O_CLOEXEC) != 0) fail(errno, kShell);
-  alive_ = pipe[1];
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_adddup2(&actions, pipe[0], STDIN_FILENO);
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-  posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
-  if (lock >= 0) posix_spawn_file_actions_adddup2(&actions, lock, kOfLock);
-  posix_spawnattr_t attributes;
-  posix_spawnattr_init(&attributes);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSID);
-  const int error = posix_spawn(&shell_, kShell, &actions, &attributes,
-                                const_cast<char* const*>(arguments.data()), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  posix_spawnattr_destroy(&attributes);
-  close(pipe[0]);
-  if (error != 0) {
-    close(alive_);
-    fail(error, kShell);
+  if (pipe2(pipe.data(), O_CLOEXEC) != 0 || (shell_ = fork()) < 0) fail(errno, kShell);
+  if (shell_ == 0) {
+    setsid();
+    dup2(pipe[0], STDIN_FILENO);
+    const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
+    for (const int descriptor : {STDOUT_FILENO, STDERR_FILENO}) dup2(nowhere, descriptor);
+    if (lock >= 0) static_cast<void>(dup(lock));  // the shell inherits the copy
+    execv(kShell, const_cast<char* const*>(arguments.data()));
+    _exit(1);
   }
+  close(pipe[0]);
+  alive_ = pipe[1];
 }
 
 Remover::~Remover() {
