@@ -20,9 +20,16 @@ Remover::Remover(const std::string& script, const std::vector<std::string>& word
   for (const std::string& word : words) arguments.push_back(word.c_str());
   arguments.push_back(nullptr);
   std::array<int, 2> pipe = {-1, -1};
-  if (pipe2(pipe.data(), O_CLOEXEC) != 0 || (shell_ = fork()) < 0) fail(errno, kShell);
+  if (pipe2(pipe.data(), O_CLOEXEC) != 0) fail(errno, kShell);
+  sigset_t all;
+  sigset_t before;
+  sigfillset(&all);
+  sigprocmask(SIG_SETMASK, &all, &before);  // the shell would not survive a signal that comes too early
+  shell_ = fork();
   if (shell_ == 0) {
     setsid();
+    for (const int ignored : {SIGHUP, SIGINT, SIGQUIT, SIGTERM}) signal(ignored, SIG_IGN);
+    sigprocmask(SIG_SETMASK, &before, nullptr);
     dup2(pipe[0], STDIN_FILENO);
     const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
     for (const int descriptor : {STDOUT_FILENO, STDERR_FILENO}) dup2(nowhere, descriptor);
@@ -30,6 +37,9 @@ Remover::Remover(const std::string& script, const std::vector<std::string>& word
     execv(kShell, const_cast<char* const*>(arguments.data()));
     _exit(1);
   }
+  const int error = errno;
+  sigprocmask(SIG_SETMASK, &before, nullptr);
+  if (shell_ < 0) fail(error, kShell);
   close(pipe[0]);
   alive_ = pipe[1];
 }
