@@ -152,8 +152,9 @@ void say_what_is_not_seen(const runs::RunInput& input) {
 
 // Whether a client has sent pictures.
 bool has_arrays() {
-  return process::client != nullptr &&
-         (process::client->given("left") != nullptr || process::client->given("right") != nullptr);
+  if (process::client == nullptr) return false;
+  const bool has_left = process::client->given("left") != nullptr;
+  return process::client->given("right") != nullptr || has_left;
 }
 
 // Sets what the options say of the run. `pairs`: the length of the source of pictures.

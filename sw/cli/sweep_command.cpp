@@ -88,7 +88,7 @@ struct SweepCommandOptions : Options {
                              {{"--out", out.text()}, {"PLAN", plan.text()}, {"--known", known.text()}});
   }
 
-  process::FileContents sent = process::sent_files();
+  process::FileContents sent = process::sent_files({"plan.yaml"});
   Option plan = Option(this, "PLAN", " ", "The plan's file", {required("the path of a plan")});
   Option out = Option(this, "--out", "DB", "The database to write, or to continue",
                       {required("the database to write, or to continue")});
@@ -324,7 +324,7 @@ explore::SweepCounts sweep_here(const SweepCommandOptions& options, const explor
   } catch (const std::exception& error) {
     const bool is_of_plan = dynamic_cast<const explore::ConditionError*>(&error) != nullptr;
     throw std::runtime_error(
-        error.what() +
+        process::text_of(error) +
         kept_text(options.out.text(), is_of_plan ? "correct the plan" : "run the same command to resume"));
   }
 }
@@ -368,7 +368,7 @@ explore::SweepCounts sweep_on_slurm(const SweepCommandOptions& options, const ex
   } catch (const sqlite::DatabaseError& error) {
     process::refuse(fmt::format("--out {}", error.what()));
   } catch (const std::exception& error) {
-    process::refuse(fmt::format("--launcher slurm: {}", error.what()));
+    process::refuse(fmt::format("--launcher slurm: {}", process::text_of(error)));
   }
   std::optional<std::uint64_t> before;
   return sweep.wait([&](const explore::SlurmProgress& now) {

@@ -10,11 +10,10 @@ import os
 import pathlib
 import re
 import sqlite3
-import tempfile
 
 import numpy
 
-from stereotlm.worker import Refused, execute
+from stereotlm.worker import Refused, execute, temporary_folder
 
 
 def boards():
@@ -348,7 +347,7 @@ class Board:
         computer is searched, which may take minutes; source="preloaded" is the core alone.
         attrs["document"] has the best of all.
         """
-        with tempfile.TemporaryDirectory() as folder:
+        with temporary_folder() as folder:
             words = ["--banks", banks, "--out", out or pathlib.Path(folder) / "boards.db"]
             document = self._execute("allocate", *words, *_options(options), "--json").document
         return _table(document["banks"], document)
@@ -375,7 +374,7 @@ class Board:
         if fixed:
             text += "set: {" + ", ".join(fixed) + "}\n"
         files = {**self._files, "plan.yaml": numpy.frombuffer(text.encode(), numpy.uint8)}
-        with tempfile.TemporaryDirectory() as folder:
+        with temporary_folder() as folder:
             # An absolute path: for sqlite3, ":memory:" is no file.
             database = pathlib.Path(out or pathlib.Path(folder) / "points.db").absolute()
             words += ["--out", database, *self._calibration_words(), *_options(options)]
@@ -418,7 +417,7 @@ def _points(database, varied):
 
 def _chart(draw, **options):
     """What diagram draws. `draw`: executes it for what it draws."""
-    with tempfile.TemporaryDirectory() as folder:
+    with temporary_folder() as folder:
         file = pathlib.Path(folder) / "chart.svg"
         draw("diagram", "--out", file, *_options(options))
         return file.read_text(encoding="utf-8")
@@ -471,7 +470,7 @@ class Run:
                        "truth_scale", "save_frames", "record", "trace", "trace_window"}
         options = {name: value for name, value in self._options.items() if name not in of_pictures}
         options["frames"] = self.statistics["frames"]
-        with tempfile.TemporaryDirectory() as folder:
+        with temporary_folder() as folder:
             out = pathlib.Path(folder) / "run"  # pixels change no count
             self.board._execute("run", *_options({**options, "timing_only": True, "out": out}))
             return _chart(lambda command, *words: execute(command, out, *words))

@@ -1,5 +1,6 @@
 """Commands of the program, executed by the process `stereotlm worker`. README.md has the protocol."""
 
+import contextlib
 import dataclasses
 import io
 import json
@@ -8,8 +9,10 @@ import os
 import pathlib
 import shutil
 import subprocess
+import tempfile
 import threading
 import warnings
+import weakref
 
 import numpy
 
@@ -117,6 +120,22 @@ class _Bar:
             self._bar.close()
 
 
+@contextlib.contextmanager
+def temporary_folder():
+    """A folder for temporary files. It is removed even if this process is killed."""
+    folder = tempfile.mkdtemp(prefix="stereotlm_")
+    # The shell waits for a line or the end of the pipe. Processes that were killed may still write for a moment.
+    script = 'read -r _; for i in 1 2 3 4 5 6 7 8 9; do /bin/rm -rf -- "$1" && break; sleep 0.1; done'
+    words = ["stereotlm-remover", "-c", script, "/bin/sh", folder]
+    with subprocess.Popen(words, executable="/bin/sh", bufsize=0, stdin=subprocess.PIPE,
+                          stderr=subprocess.DEVNULL, start_new_session=True) as remover:
+        _pipes.add(remover.stdin)
+        try:
+            yield folder
+        finally:
+            remover.stdin.write(b"\n")
+
+
 class Worker:
     """A process that executes commands, one after the other. Threads may share it."""
 
@@ -126,6 +145,7 @@ class Worker:
         self._process = None
         self._answers = None
         self._lock = threading.RLock()
+        _workers.add(self)
 
     def execute(self, *arguments, arrays=None, progress=True):
         """Executes the command of these words, with arrays of 8 bits by their names. Returns an Answer.
@@ -181,6 +201,7 @@ class Worker:
             self._process = subprocess.Popen([program, "worker"], bufsize=0,
                                              stdin=subprocess.PIPE, stdout=subprocess.PIPE,
                                              start_new_session=True)
+            _pipes.update((self._process.stdin, self._process.stdout))
             self._answers = io.BufferedReader(self._process.stdout)
         request = {"arguments": arguments, "folder": folder, "encoding": "latin-1",
                    "arrays": [{"name": name, "shape": shape} for name, (shape, _) in pixels.items()]}
@@ -237,16 +258,21 @@ def _pixels(name, array):
     return array.shape, array.tobytes()
 
 
+def _leave():
+    """In a forked process: leaves workers and folders to its parent, whose end only closed pipes show."""
+    null = os.open(os.devnull, os.O_RDWR)
+    for pipe in list(_pipes):
+        if not pipe.closed:
+            os.dup2(null, pipe.fileno(), inheritable=False)
+    os.close(null)
+    for worker in list(_workers):
+        worker._process, worker._lock = None, threading.RLock()
+
+
+_pipes = weakref.WeakSet()  # to workers, and to shells that remove folders
+_workers = weakref.WeakSet()
+os.register_at_fork(after_in_child=_leave)
 _shared = Worker()
-
-
-def _begin_anew():
-    """In a forked process, whose parent has the worker."""
-    global _shared
-    _shared = Worker()
-
-
-os.register_at_fork(after_in_child=_begin_anew)
 
 
 def execute(*arguments, arrays=None, progress=True):

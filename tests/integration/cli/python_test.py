@@ -7,6 +7,7 @@ import json
 import os
 import pathlib
 import pickle
+import resource
 import shutil
 import signal
 import subprocess
@@ -636,18 +637,59 @@ class Protocol(ProgramTest):
         self.assertEqual(status, 0)
 
     def test_a_request_that_cannot_be_read_is_the_last(self):
-        big = b'{"arguments": ["boards"], "arrays": [{"name": "left", "shape": [65536, 65536, 2]}]}\n'
-        for request, text in ((b"boards\n", "parse error"), (b"[]\n", "a request of the worker"),
-                              (b'{"arguments": "boards"}\n', "must be array"),
-                              (b'{"arguments": [], "arrays": [{"name": "left", "shape": [400]}]}\nxx',
-                               "array left: ends early"),
-                              (b'{"arguments": [], "encoding": "utf-16"}\n', "must be utf-8 or latin-1"),
-                              ('{"arguments": ["€"], "encoding": "latin-1"}\n'.encode(), "U+0000 to U+00FF"),
-                              (big, "array left: must have at most 4294967296 bytes")):
+        of_shape = lambda shape: (b'{"arguments": ["boards"], "arrays": [{"name": "left", "shape": %b}]}\n'
+                                  % shape)
+        integers = "must be a list of integers, 0 or more"
+        most = "must have at most 4294967296 bytes"
+        for request, text in ((b"boards\n", "a request of the worker: not JSON from column 1 on"),
+                              (b'{"arguments": [}\n', "not JSON from column 16 on"), (b"\xff\n", "not JSON"),
+                              (b"1e999\n", "a number is too large"), (b"[]\n", "must be a JSON object"),
+                              (b"{}\n", "arguments: missing: must be a list of texts"),
+                              (b'{"arguments": "boards"}\n', 'arguments = "boards": must be a list of texts'),
+                              (b'{"arguments": [5]}\n', "arguments = [5]: must be a list of texts"),
+                              (b'{"arguments": [], "folder": 5}\n', "folder = 5: must be a text"),
+                              (b'{"arguments": [], "arrays": 5}\n', "arrays = 5: must be a list of arrays"),
+                              (b'{"arguments": [], "arrays": [5]}\n', "name: missing: must be a text"),
+                              (of_shape(b"400") + b"xx", "shape = 400: must be a list of integers"),
+                              (of_shape(b"[400]") + b"xx", "array left: ends early"),
+                              (of_shape(b"[1.5]"), f"array left: shape = [1.5]: {integers}"),
+                              (of_shape(b"[-1]"), f"shape = [-1]: {integers}"),
+                              (of_shape(b"[true]"), f"shape = [true]: {integers}"),
+                              (of_shape(b"[65536,65536,2]"), f"shape = [65536,65536,2]: {most}"),
+                              (of_shape(b"[4294967296,4294967296]"), most),  # 2^64
+                              (of_shape(b"[18446744073709551615]"), most),
+                              (of_shape(b"[18446744073709551616]"), integers),
+                              (b'{"arguments": [], "arrays": [{"name": "a", "shape": [1]}, '
+                               b'{"name": "a", "shape": [1]}]}\nxy', "array a: sent twice")):
             lines, status = self.answers(request + b'{"arguments": ["boards"]}\n')
             self.assertEqual([line.get("status") for line in lines], [None, 2], request)
             self.assertIn(text, lines[0]["message"])
             self.assertEqual(status, 0)
+
+    def test_arrays_that_the_command_does_not_take_are_refused(self):
+        request = (b'{"arguments": ["%b"], "arrays": [{"name": "left", "shape": [2]}, '
+                   b'{"name": "third", "shape": [0, 5]}]}\nxy')
+        lines, status = self.answers(request % b"boards" + request % b'run", "fpl2003' +
+                                     b'{"arguments": ["boards"]}\n')
+        self.assertEqual([line["status"] for line in lines if "status" in line], [2, 2, 0])
+        takes = "array {}: the command takes no array of this name"
+        problems = [[problem["rule"] for problem in line["problems"]] for line in lines if "problems" in line]
+        self.assertEqual(problems, [[takes.format("left"), takes.format("third")], [takes.format("third")], []])
+
+    def test_the_last_line_needs_no_newline(self):
+        lines, status = self.answers(b'{"arguments": ["boards"]}\n{"arguments": ["boards"]}')
+        self.assertEqual(([line["status"] for line in lines], status), ([0, 0], 0))
+
+    def test_too_little_memory_is_no_fault_of_the_request(self):
+        if program.HAS_ADDRESS_SANITIZER:
+            self.skipTest("the sanitizer needs more")
+        few = lambda: resource.setrlimit(resource.RLIMIT_AS, (1 << 31, 1 << 31))
+        request = b'{"arguments": ["run", "fpl2003"], "arrays": [{"name": "left", "shape": [4294967296]}]}\n'
+        process = subprocess.run([PROGRAM, "worker"], input=request, capture_output=True, check=False,
+                                 preexec_fn=few, timeout=60)
+        lines = [json.loads(line) for line in process.stdout.splitlines()]
+        self.assertEqual([line.get("message", line.get("status")) for line in lines],
+                         ["stereotlm: error: out of memory", 1])
 
     def test_a_folder_that_is_not_there_and_a_worker_in_a_worker(self):
         lines, status = self.answers(b'{"arguments": ["boards"], "folder": "/none"}\n'
