@@ -118,7 +118,10 @@ std::string read_text_file(const std::string& path, const std::string& kind) {
   const auto refuse = [&path](const std::string& rule) { throw BoardError({{path, rule}}); };
   constexpr std::size_t kLargestBytes = std::size_t{1} << 20;
   std::error_code error;
-  if (std::filesystem::is_directory(path, error)) refuse("a folder, not a " + kind);
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  if (std::filesystem::is_directory(status)) refuse("a folder, not a " + kind);
+  // A pipe or a device may have no end.
+  if (!error && !std::filesystem::is_regular_file(status)) refuse("must be a regular file");
   std::ifstream file(path, std::ios::binary);
   if (!file) refuse(fmt::format("cannot be read: {}", std::strerror(errno)));
   std::string text(kLargestBytes + 1, '\0');
@@ -170,26 +173,29 @@ bool is_board_file(const std::string& board) {
           board.compare(board.size() - ending.size(), ending.size(), ending) == 0);
 }
 
-BoardDraft::BoardDraft(const std::string& board) {
-  std::string text;
+BoardDraft::BoardDraft(const std::string& board, const std::string* text) {
   std::error_code none;
   const std::vector<std::string> names = preset_names();
-  if (std::find(names.begin(), names.end(), board) != names.end()) {
+  std::string preset;
+  if (text != nullptr) {
+    board_name_ = board;
+    file_text_ = *text;
+  } else if (std::find(names.begin(), names.end(), board) != names.end()) {
     board_name_ = "preset " + board;
-    text = preset_text(board);
+    preset = preset_text(board);
   } else if (const std::filesystem::path inside = std::filesystem::path(board) / "config.yaml";
              std::filesystem::is_regular_file(inside, none)) {
     fail(board, fmt::format("a folder, not a board file; its board is {}", inside.string()));
   } else if (is_board_file(board)) {
     board_name_ = board;
-    text = read_text_file(board, "board file");
+    file_text_ = read_text_file(board, "board file");
   } else {
     fail(board.empty() ? "(empty)" : board,
          fmt::format("not a preset, and not a path, which has a / or ends in .yaml{}; presets: {}",
                      nearest_text(board, names), listed(names)));
   }
   try {
-    tree_ = parse_yaml(text, Place::kBoard);
+    tree_ = parse_yaml(preset.empty() ? file_text_ : preset, Place::kBoard);
   } catch (const YamlError& error) {
     fail(place_text(error.place), error.what());
   }

@@ -23,9 +23,13 @@ std::string path_problem(const std::string& path);
 // file.
 class BoardDraft {
  public:
-  // `board` as for load_board(). Throws BoardError for an unknown preset, a file that cannot be read and a
-  // syntax error. read() reports all other problems.
-  explicit BoardDraft(const std::string& board);
+  // `board` as for load_board(). `text`: what the board file holds, if it has been read already; else null.
+  // Throws BoardError for an unknown preset, a file that cannot be read and a syntax error. read() reports
+  // all other problems.
+  explicit BoardDraft(const std::string& board, const std::string* text = nullptr);
+
+  // What the board file holds; empty for a preset.
+  const std::string& file_text() const { return file_text_; }
 
   // Replaces a value. `assignment` is `path=value` as in `--set`.
   void set(const std::string& assignment);
@@ -68,6 +72,7 @@ class BoardDraft {
   Place next_place() const { return {Place::kFirstSet + static_cast<int>(sources_.size()), 1, 1}; }
 
   std::string board_name_;       // name of the file or preset, for messages
+  std::string file_text_;        // see file_text()
   std::vector<Source> sources_;  // origins of replaced values, by Place::source - Place::kFirstSet
   YamlNode tree_;
   bool has_extends_ = false;

@@ -66,10 +66,21 @@ Json document_of(const std::string& name, const platform::BoardConfig* board,
   return document;
 }
 
+// Sends the client the content of each file that was read, so that it can send the same to other commands.
+void send_files(const LoadedBoard& loaded, const process::FileContents& sent) {
+  process::FileContents files;
+  if (loaded.calibration) files = loaded.calibration->contents;
+  if (!loaded.file_text.empty()) files["board.yaml"] = loaded.file_text;
+  for (const auto& [name, bytes] : files) {
+    if (sent.count(name) == 0) process::client->send({name, {bytes.size()}, bytes});
+  }
+}
+
 int check(const BoardCommandOptions& options) {
   process::Problems problems;
   const LoadedBoard loaded = options.board.load(problems);
   if (problems.empty()) loaded.say_clock_remark();
+  if (problems.empty() && process::client != nullptr) send_files(loaded, options.board.sent);
   if (options.json.is_given()) {
     process::print(json_text(
         document_of(options.board.argument.text(), loaded.board ? &*loaded.board : nullptr, problems)));

@@ -114,7 +114,9 @@ void check_options(const CLI::App& command, std::vector<std::string> words) {
 
 int execute(int argc, const char* const* argv) {
   try {
-    return parse_command_line(argc, argv)();
+    const Action action = parse_command_line(argc, argv);
+    if (process::client != nullptr) process::client->check_given();
+    return action();
   } catch (const process::Refused& refused) {
     for (const std::string& line : refused.lines()) process::say_line(line);
     if (process::client != nullptr) process::client->refuse(refused.problems());
@@ -122,7 +124,7 @@ int execute(int argc, const char* const* argv) {
   } catch (const sc_core::sc_report& report) {
     process::say("error", fmt::format("the model stopped: {}: {}", report.get_msg_type(), report.get_msg()));
   } catch (const std::exception& error) {
-    process::say("error", error.what());
+    process::say("error", process::text_of(error));
   }
   return kFailed;
 }

@@ -13,6 +13,7 @@
 
 #include "calib/calibration.h"
 #include "platform/config/board_area.h"
+#include "platform/config/board_draft.h"
 #include "platform/config/board_keys.h"
 #include "platform/config/board_yaml.h"
 #include "sw/files/text_forms.h"
@@ -149,8 +150,9 @@ void say_what_is_not_seen(const runs::RunInput& input) {
 
 // Whether a client has sent pictures.
 bool has_arrays() {
-  return process::client != nullptr &&
-         (process::client->given("left") != nullptr || process::client->given("right") != nullptr);
+  if (process::client == nullptr) return false;
+  const bool has_left = process::client->given("left") != nullptr;
+  return process::client->given("right") != nullptr || has_left;
 }
 
 // Sets what the options say of the run. `pairs`: the length of the source of pictures.
@@ -173,7 +175,8 @@ void describe(const RunOptions& options, std::uint64_t pairs, runs::RunInput& in
   run.truth_scale = options.truth.scale();
   run.save_frames = options.save_frames.is_given();
   run.record = input.record;
-  run_json(run);  // throws now, instead of after the run, if a path cannot be recorded
+  // Throws now, instead of after the run, if a path cannot be recorded.
+  if (options.out.is_given()) run_json(run);
 }
 
 }  // namespace
@@ -190,10 +193,16 @@ std::vector<std::string> BoardOptions::words_without_allocation() const {
 
 LoadedBoard BoardOptions::load(process::Problems& problems) const {
   LoadedBoard loaded;
-  problems.attempt("", [&] { loaded.board = platform::load_board(argument.text(), sets.texts()); });
+  problems.attempt("", [&] {
+    const auto text = sent.find("board.yaml");
+    platform::BoardDraft draft(argument.text(), text == sent.end() ? nullptr : &text->second);
+    for (const std::string& set : sets.texts()) draft.set(set);
+    loaded.board = draft.read();
+    loaded.file_text = draft.file_text();
+  });
   if (calibration.is_given()) {
-    loaded.calibration =
-        runs::load_calibration(calibration.text(), loaded.board ? &*loaded.board : nullptr, problems);
+    loaded.calibration = runs::load_calibration(calibration.text(), loaded.board ? &*loaded.board : nullptr,
+                                                problems, calibration.name(), sent);
   }
   return loaded;
 }
@@ -340,8 +349,9 @@ runs::RunInput RunOptions::load() const {
   process::Problems problems;
   runs::RunInput input;
   runs::OpenedSource opened;
-  auto [loaded, calibration] = board.load(problems);
-  const platform::BoardConfig* const its = loaded ? &*loaded : nullptr;
+  const LoadedBoard loaded = board.load(problems);
+  const std::optional<runs::CalibrationInput>& calibration = loaded.calibration;
+  const platform::BoardConfig* const its = loaded.board ? &*loaded.board : nullptr;
   runs::InputPictures& named = input.described;
   named = pictures.named();
   problems.attempt("", [&] { opened = runs::open_source(named, its, problems); });
@@ -358,8 +368,8 @@ runs::RunInput RunOptions::load() const {
       input.folder = std::make_unique<files::OutputFolder>(out.text(), runs::result_content(input.inputs));
     });
   problems.check();
-  input.board = *loaded;
-  problems.attempt("", [&, &calibration = calibration] {
+  input.board = *loaded.board;
+  problems.attempt("", [&] {
     input.tables = runs::tables_of(input.board, calibration);
     if (calibration) {
       input.calibration = calibration->calibration;

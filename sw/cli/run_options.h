@@ -23,6 +23,7 @@ namespace stereotlm::cli {
 struct LoadedBoard {
   std::optional<platform::BoardConfig> board;         // nullopt if it has problems
   std::optional<runs::CalibrationInput> calibration;  // nullopt if none was given, or if it has problems
+  std::string file_text;                              // what the board file holds; empty for a preset
 
   // The following are only for a board without problems.
   platform::Tables tables() const { return runs::tables_of(*board, calibration); }
@@ -44,6 +45,7 @@ struct BoardOptions {
 
   Options* of;
   std::string beside_board = "";  // what BOARD may be beside a board
+  process::FileContents sent = process::sent_files();
   Option argument = Option(
       of, "BOARD", " ",
       "A preset (see stereotlm boards), or the path of a board file: has a / or ends in .yaml" + beside_board,

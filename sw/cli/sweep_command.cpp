@@ -16,6 +16,7 @@
 #include "sw/explore/sweep/sweep.h"
 #include "sw/files/text_forms.h"
 #include "sw/files/whole_file.h"
+#include "sw/process/client.h"
 #include "sw/process/command.h"
 #include "sw/runs/progress.h"
 #include "sw/runs/simulation/simulate_point.h"
@@ -87,6 +88,7 @@ struct SweepCommandOptions : Options {
                              {{"--out", out.text()}, {"PLAN", plan.text()}, {"--known", known.text()}});
   }
 
+  process::FileContents sent = process::sent_files({"plan.yaml"});
   Option plan = Option(this, "PLAN", " ", "The plan's file", {required("the path of a plan")});
   Option out = Option(this, "--out", "DB", "The database to write, or to continue",
                       {required("the database to write, or to continue")});
@@ -188,7 +190,7 @@ std::optional<runs::CalibrationInput> calibration_of(const SweepCommandOptions& 
                                 ? "--calibration"
                                 : fmt::format("{}: {}", plan.calibration_place(), explore::kCalibrationPath);
   process::Problems problems;
-  auto calibration = runs::load_calibration(path, nullptr, problems, named);
+  auto calibration = runs::load_calibration(path, nullptr, problems, named, options.sent);
   if (calibration) {
     const calib::Rig& rig = calibration->calibration->rig;
     const auto problem = plan.use_calibration(runs::sha256_of(calibration->tables), rig.width, rig.height,
@@ -318,7 +320,7 @@ explore::SweepCounts sweep_here(const SweepCommandOptions& options, const explor
   } catch (const std::exception& error) {
     const bool is_of_plan = dynamic_cast<const explore::ConditionError*>(&error) != nullptr;
     throw std::runtime_error(
-        error.what() +
+        process::text_of(error) +
         kept_text(options.out.text(), is_of_plan ? "correct the plan" : "run the same command to resume"));
   }
 }
@@ -326,15 +328,9 @@ explore::SweepCounts sweep_here(const SweepCommandOptions& options, const explor
 explore::ShardedSweep sharded(const SweepCommandOptions& options, const explore::Plan& plan,
                               const std::optional<runs::CalibrationInput>& calibration) {
   explore::ShardedSweep sweep;
-  sweep.files["plan.yaml"] = files::read_whole_file(plan.path());
-  if (platform::is_board_file(plan.board())) sweep.files["board.yaml"] = files::read_whole_file(plan.board());
-  if (calibration) {
-    const runs::InputCalibration& described = calibration->described;
-    for (const auto& [name, file] : {std::pair("calibration.yaml", described.file),
-                                     std::pair("calibration_left.lut", described.left_lut),
-                                     std::pair("calibration_right.lut", described.right_lut)})
-      sweep.files[name] = files::read_whole_file(file.path);
-  }
+  if (calibration) sweep.files = calibration->contents;
+  sweep.files["plan.yaml"] = plan.text();
+  if (!plan.board_text().empty()) sweep.files["board.yaml"] = plan.board_text();
   sweep.banks = plan.banks();
   sweep.version = process::kVersion;
   sweep.points = plan.size();
@@ -368,7 +364,7 @@ explore::SweepCounts sweep_on_slurm(const SweepCommandOptions& options, const ex
   } catch (const sqlite::DatabaseError& error) {
     process::refuse(fmt::format("--out {}", error.what()));
   } catch (const std::exception& error) {
-    process::refuse(fmt::format("--launcher slurm: {}", error.what()));
+    process::refuse(fmt::format("--launcher slurm: {}", process::text_of(error)));
   }
   std::optional<std::uint64_t> before;
   return sweep.wait([&](const explore::SlurmProgress& now) {
@@ -381,8 +377,14 @@ explore::SweepCounts sweep_on_slurm(const SweepCommandOptions& options, const ex
 
 int sweep(const SweepCommandOptions& options) {
   std::optional<explore::Plan> loaded;
-  process::attempt_or_refuse(
-      "", [&] { loaded = explore::Plan::load(options.plan.text(), options.board.text()); });
+  process::attempt_or_refuse("", [&] {
+    const auto sent = [&options](const char* name) {
+      const auto found = options.sent.find(name);
+      return found == options.sent.end() ? nullptr : &found->second;
+    };
+    loaded =
+        explore::Plan::load(options.plan.text(), options.board.text(), sent("plan.yaml"), sent("board.yaml"));
+  });
   explore::Plan& plan = *loaded;
   const auto calibration = calibration_of(options, plan);
   const explore::SweepCounts counts = options.is_slurm() ? sweep_on_slurm(options, plan, calibration)

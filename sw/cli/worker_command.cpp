@@ -1,16 +1,20 @@
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <new>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <stdexcept>
 #include <system_error>
 #include <systemc>
 
 #include "sw/cli/command.h"
+#include "sw/files/text_forms.h"
 #include "sw/process/child.h"
 #include "sw/process/client.h"
 #include "sw/process/problems.h"
@@ -48,10 +52,19 @@ class Answer : public process::Client {
  public:
   Answer(const process::Child::Tell& tell, const std::vector<Array>& given) : tell_(tell), given_(given) {}
 
-  const Array* given(std::string_view name) const override {
+  const Array* given(std::string_view name) override {
+    asked_for_.emplace(name);
     const auto found =
         std::find_if(given_.begin(), given_.end(), [&](const Array& array) { return array.name == name; });
     return found == given_.end() ? nullptr : &*found;
+  }
+  void check_given() const override {
+    process::Problems problems;
+    for (const Array& array : given_) {
+      if (asked_for_.count(array.name) == 0)
+        problems.add(fmt::format("array {}: the command takes no array of this name", array.name));
+    }
+    problems.check();
   }
   void print(std::string_view text) override { output_ += text; }
   void say(const std::string& line) override { tell(kPart, {{"message", line}}); }
@@ -73,44 +86,88 @@ class Answer : public process::Client {
 
   const process::Child::Tell& tell_;
   const std::vector<Array>& given_;
+  std::set<std::string> asked_for_;  // names
   std::string output_;
   Json problems_ = Json::array();
 };
 
-// The number of bytes of an array. Throws std::runtime_error if it is too large.
-std::size_t bytes_of(const Array& array) {
-  constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 32U;
-  std::uint64_t bytes = 1;
-  for (const std::uint64_t length : array.shape) {
-    if (length > kMostBytes || bytes * length > kMostBytes)
-      throw std::runtime_error(fmt::format("array {}: must have at most {} bytes", array.name, kMostBytes));
-    bytes *= length;
+// The value of a key of a request. Throws std::runtime_error if it is missing or of another type.
+template <typename Value>
+Value value_of(const Json& object, const char* key, const char* rule) {
+  try {
+    return object.at(key).get<Value>();
+  } catch (const Json::exception& /*error*/) {
+    const std::string found = object.contains(key) ? " = " + object[key].dump() : ": missing";
+    throw std::runtime_error(fmt::format("{}{}: must be {}", key, found, rule));
   }
-  return bytes;
 }
 
-// Reads a line, and no byte behind it. Returns false at the end of the file.
+// An array without its bytes, and their number. Throws std::runtime_error.
+std::pair<Array, std::size_t> array_of(const Json& given) {
+  constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 32U;
+  Array array = {value_of<std::string>(given, "name", "a text"), {}, ""};
+  std::uint64_t bytes = 1;
+  for (const Json& length : value_of<std::vector<Json>>(given, "shape", "a list of integers")) {
+    const auto refuse = [&](const std::string& rule) {
+      throw std::runtime_error(
+          fmt::format("array {}: shape = {}: must {}", array.name, given["shape"].dump(), rule));
+    };
+    if (!length.is_number_unsigned()) refuse("be a list of integers, 0 or more");
+    array.shape.push_back(length);
+    if (array.shape.back() > kMostBytes / std::max<std::uint64_t>(bytes, 1))
+      refuse(fmt::format("have at most {} bytes", kMostBytes));
+    bytes *= array.shape.back();
+  }
+  return {array, bytes};
+}
+
+// Reads a line, and no byte behind it. The last one may lack its newline. Returns false at the end of the file.
 bool read_line(int from, std::string& line) {
   for (char byte = 0; process::read_all(from, &byte, 1);) {
     if (byte == '\n') return true;
     line += byte;
   }
-  return false;
+  return !line.empty();
 }
 
-// Reads the arrays behind the line, too. Throws std::exception if this is no request.
+// The bytes whose values are the codes of the characters. Throws std::runtime_error for a code above 255.
+std::string bytes_of_codes(const std::string& utf8) {
+  std::string bytes;
+  for (std::size_t i = 0; i < utf8.size(); ++i) {
+    const auto first = static_cast<unsigned char>(utf8[i]);
+    if (first > 0xC3U) throw std::runtime_error("encoding = latin-1: characters must be U+0000 to U+00FF");
+    bytes += first < 0x80U ? utf8[i] : static_cast<char>((first & 3U) << 6U | (utf8[++i] & 0x3FU));
+  }
+  return bytes;
+}
+
+// Reads the arrays behind the line, too. Throws std::runtime_error if this is no request.
 Request request_of(const std::string& line, int from) {
-  const Json document = Json::parse(line);
+  const Json document = files::parse_json(line);
+  if (!document.is_object()) throw std::runtime_error("must be a JSON object");
   Request request;
-  document.at("arguments").get_to(request.arguments);
+  const auto text_of = [&](const char* key, const char* missing) {
+    return document.contains(key) ? value_of<std::string>(document, key, "a text") : missing;
+  };
+  request.arguments = value_of<std::vector<std::string>>(document, "arguments", "a list of texts");
+  std::string folder = text_of("folder", "");
+  const std::string encoding = text_of("encoding", "utf-8");
+  if (encoding == "latin-1") {
+    for (std::string& argument : request.arguments) argument = bytes_of_codes(argument);
+    folder = bytes_of_codes(folder);
+  } else if (encoding != "utf-8") {
+    throw std::runtime_error(fmt::format("encoding = {}: must be utf-8 or latin-1", encoding));
+  }
   static const std::filesystem::path of_worker = std::filesystem::current_path();
-  request.folder = of_worker / document.value("folder", "");
-  for (const Json& given : document.value("arrays", Json::array())) {
-    Array array;
-    given.at("name").get_to(array.name);
-    given.at("shape").get_to(array.shape);
-    array.bytes.resize(bytes_of(array));
-    if (!process::read_all(from, array.bytes.data(), array.bytes.size()))
+  request.folder = of_worker / folder;
+  if (!document.contains("arrays")) return request;
+  for (const Json& given : value_of<std::vector<Json>>(document, "arrays", "a list of arrays")) {
+    auto [array, bytes] = array_of(given);
+    for (const Array& other : request.arrays) {
+      if (other.name == array.name) throw std::runtime_error(fmt::format("array {}: sent twice", array.name));
+    }
+    array.bytes.resize(bytes);
+    if (!process::read_all(from, array.bytes.data(), bytes))
       throw std::runtime_error(fmt::format("array {}: ends early", array.name));
     request.arrays.push_back(std::move(array));
   }
@@ -131,7 +188,7 @@ bool serve_one(const process::Child::Tell& tell) {
   process::leave_out_notes(false);
   try {
     request = request_of(line, STDIN_FILENO);
-  } catch (const std::exception& error) {  // where the next request begins is not known
+  } catch (const std::runtime_error& error) {  // where the next request begins is not known
     process::say("error", fmt::format("a request of the worker: {}", error.what()));
     answer.end(kRefused);
     tell({kWasLast});
@@ -142,15 +199,31 @@ bool serve_one(const process::Child::Tell& tell) {
   for (const std::string& argument : request.arguments) words.push_back(argument.c_str());
   const auto count = static_cast<int>(words.size());
   words.push_back(nullptr);
+  std::vector<std::string> texts = request.arguments;
+  texts.push_back(request.folder);
+  const auto nul = std::find_if(texts.begin(), texts.end(),
+                                [](const std::string& text) { return text.find('\0') != std::string::npos; });
   std::error_code error;
-  std::filesystem::current_path(request.folder, error);
+  if (nul == texts.end()) std::filesystem::current_path(request.folder, error);
+  if (nul != texts.end())
+    process::say("error",
+                 fmt::format("'{}..': a NUL character follows: must not be in a text", nul->c_str()));
   if (error) process::say("error", fmt::format("folder '{}': {}", request.folder.string(), error.message()));
-  answer.end(error ? kRefused : execute(count, words.data()));
+  answer.end(error || nul != texts.end() ? kRefused : execute(count, words.data()));
   process::client = nullptr;
   // SystemC is elaborated once in a process.
   const bool is_fresh =
       sc_core::sc_get_status() == sc_core::SC_ELABORATION && sc_core::sc_get_top_level_objects().empty();
   return is_fresh && !process::interrupted();
+}
+
+// Waits until child.next() would return soon. Returns false if the client has closed its end of the pipe `to`.
+bool wait_for_news(const process::Child& child, int to) {
+  std::array<pollfd, 2> watched = {{{child.descriptor(), POLLIN, 0}, {to, 0, 0}}};
+  while (poll(watched.data(), watched.size(), -1) < 0) {
+    if (errno != EINTR) throw std::system_error(errno, std::generic_category(), "poll");
+  }
+  return watched[1].revents == 0;
 }
 
 struct WorkerOptions : Options {
@@ -181,15 +254,16 @@ int serve(const WorkerOptions& /*options*/) {
         while (serve_one(tell)) {
         }
       });
-      while (const auto told = child.next()) {
+      while (true) {
+        if (!wait_for_news(child, to)) return kFailed;
+        const auto told = child.next();
+        if (!told) break;
         if (told->front() == kWasLast) return kDone;
         last = told->front();
         if (!write(told->substr(1))) return kFailed;
       }
-    } catch (const std::bad_alloc&) {
-      end("out of memory");
     } catch (const std::exception& error) {
-      end(error.what());
+      end(process::text_of(error));
     }
   }
 }

@@ -120,7 +120,7 @@ AsideFile::AsideFile(fs::path file, std::string name) : file_(std::move(file)), 
     const fs::path path = aside_of(file_);
     lock_ = open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
     if (lock_ >= 0) {  // another process is writing it, or was killed
-      const bool is_written = flock(lock_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+      const bool is_written = !lock_soon(lock_);
       if (!is_written) unlink(path.c_str());
       close(std::exchange(lock_, -1));
       if (is_written) fail(EBUSY, path);
@@ -131,12 +131,14 @@ AsideFile::AsideFile(fs::path file, std::string name) : file_(std::move(file)), 
     if (lock_ < 0) fail(errno, path_);
     const bool is_locked = flock(lock_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
     if (!is_locked || !is_open_at(lock_, path_)) fail(EBUSY, path_);
+    remover_.emplace("/bin/rm -f -- \"$1\"", std::vector<std::string>{fs::absolute(path_)}, lock_);
   });
 }
 
 AsideFile::~AsideFile() {
   std::error_code ignored;
   if (!path_.empty()) fs::remove(path_, ignored);
+  remover_.reset();
   if (lock_ >= 0) close(lock_);
 }
 
@@ -166,6 +168,7 @@ void AsideFile::take_place(bool replaces) {
     }
   });
   path_.clear();
+  remover_.reset();
 }
 
 FileKind marked_kind(std::string called, std::vector<std::pair<std::size_t, std::string>> marks) {

@@ -36,7 +36,7 @@ std::filesystem::path linked_file(const std::filesystem::path& path);
 void check_is_another(const std::filesystem::path& file, const std::vector<NamedFile>& others);
 
 // New content for a file, in a hidden file in the same folder. The destructor removes the hidden file. If the
-// process is killed, the next process that writes the same file replaces the hidden file. All functions throw
+// process is killed, a Remover does, and the next process that writes the same file. All functions throw
 // std::runtime_error with the name of the file, not of the hidden one, and the cause. The constructor also
 // throws while another process writes the file.
 class AsideFile {
@@ -72,6 +72,7 @@ class AsideFile {
   std::filesystem::path path_;  // empty after take_place()
   std::optional<NewFile> new_;  // nullopt after complete()
   int lock_ = -1;               // descriptor of the hidden file, which is locked while this process has it
+  std::optional<Remover> remover_;
   std::string buffer_;
 };
 

@@ -43,9 +43,8 @@ OutputFolder::OutputFolder(const fs::path& dir, OutputContent content)
   if (const auto problem = result_folder_problem(content_.mark == kResultMark ? dir_ : aside()))
     refuse(*problem);
   try {
-    create_folders();
-    while (!try_lock()) {
-    }
+    do create_folders();
+    while (!try_lock());
     check_aside();
     repair();
     check_earlier();
@@ -71,16 +70,19 @@ void OutputFolder::create_folders() {
   if (!fs::is_directory(dir_)) refuse("not a folder");
 }
 
-// Returns false if another run has removed the folder of unfinished files before it was locked: try again.
+// Returns false if another run has removed a folder before it was locked: try again.
 bool OutputFolder::try_lock() {
   if (is_there(aside()) && !is_folder(aside()))
     refuse(fmt::format("holds '{}', which is no folder", content_.aside));
-  owns_aside_ = fs::create_directory(aside());
+  std::error_code error;
+  owns_aside_ = fs::create_directory(aside(), error);
+  if (error == std::errc::no_such_file_or_directory) return false;
+  if (error) throw std::system_error(error);
   lock_ = open(aside().c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
   if (lock_ < 0 && errno == ENOENT) return false;
   if (lock_ < 0) throw std::system_error(errno, std::generic_category());
   // On a file system without locks a second run is not refused.
-  if (flock(lock_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+  if (!lock_soon(lock_)) {
     owns_aside_ = false;
     refuse("in use by another run");
   }
@@ -163,6 +165,11 @@ void OutputFolder::check_inputs() const {
 
 void OutputFolder::start_aside() {
   owns_aside_ = true;
+  std::vector<std::string> words = {aside()};
+  words.insert(words.end(), created_.rbegin(), created_.rend());
+  // As discard() does, but `earlier` is there during a commit, which the next run completes or undoes.
+  remover_.emplace("[ -e \"$1\"/earlier ] || { /bin/rm -rf -- \"$1\"; shift; /bin/rmdir -- \"$@\"; }", words,
+                   lock_);
   for (const fs::path& name : entries(aside())) fs::remove_all(aside() / name);
   fs::create_directory(made());
   write_whole_file(aside() / kProbe, "can this folder be written to?");
@@ -281,6 +288,7 @@ void OutputFolder::discard() noexcept {
   for (auto path = created_.rbegin(); path != created_.rend() && !committed_; ++path)
     fs::remove(*path, ignored);  // a folder into which the user has put something stays
   created_.clear();
+  remover_.reset();
   if (lock_ >= 0) close(lock_);
   lock_ = -1;
 }

@@ -36,7 +36,8 @@ struct OutputContent {
 // Only files that were there when the object was made are replaced.
 //
 // New files are written to DIR/.partial (inside DIR, so that DIR may be a mount point). commit() moves them
-// into place. If a run was killed in its commit, the next constructor completes that commit, or undoes it if
+// into place. If a run is killed before its commit, a Remover removes what the object has created. If it was
+// killed in its commit, the next constructor completes that commit, or undoes it if
 // not all earlier files had been moved away. While the object exists, DIR/.partial is locked, so that a
 // second run is refused.
 class OutputFolder {
@@ -92,6 +93,7 @@ class OutputFolder {
   int lock_ = -1;                                // descriptor of DIR/.partial
   bool owns_aside_ = false;                      // this object removes DIR/.partial
   bool committed_ = false;
+  std::optional<Remover> remover_;
 };
 
 }  // namespace stereotlm::files

@@ -135,4 +135,16 @@ std::string json_text(const nlohmann::ordered_json& document, bool replaces) {
   return text + "\n";
 }
 
+Json parse_json(const std::string& text) {
+  try {
+    return Json::parse(text);
+  } catch (const Json::parse_error& error) {
+    const std::string_view before = std::string_view(text).substr(0, error.byte == 0 ? 0 : error.byte - 1);
+    const auto line = static_cast<std::size_t>(1 + std::count(before.begin(), before.end(), '\n'));
+    throw JsonError(line, fmt::format("not JSON from column {} on", before.size() - before.rfind('\n')));
+  } catch (const Json::out_of_range& /*error*/) {
+    throw JsonError(1, "a number is too large");
+  }
+}
+
 }  // namespace stereotlm::files

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -33,5 +34,14 @@ std::string ranges_text(const std::vector<std::uint64_t>& numbers, const std::st
 // newline at the end. With `replaces`, bytes that are not UTF-8 are replaced; else a string with such bytes
 // throws std::invalid_argument. A number that is not finite throws it always.
 std::string json_text(const nlohmann::ordered_json& document, bool replaces = false);
+
+// A text is not JSON, or has a number that is too large for it.
+struct JsonError : std::runtime_error {
+  JsonError(std::size_t at_line, const std::string& what) : std::runtime_error(what), line(at_line) {}
+  std::size_t line;  // from 1
+};
+
+// Parses a JSON document. Throws JsonError.
+nlohmann::ordered_json parse_json(const std::string& text);
 
 }  // namespace stereotlm::files

@@ -2,9 +2,12 @@
 
 #include <filesystem>
 #include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "sw/files/remover.h"
 
 namespace stereotlm::files {
 
@@ -58,7 +61,8 @@ bool is_file(const std::filesystem::path& path);
 bool is_folder(const std::filesystem::path& path);
 
 // A new folder for temporary files, in the folder that the first of the environment variables TMPDIR, TMP,
-// TEMP and TEMPDIR names that is set; if none is set, in /tmp. The destructor removes it.
+// TEMP and TEMPDIR names that is set; if none is set, in /tmp. The destructor removes it, and so does the end
+// of this process.
 class TemporaryFolder {
  public:
   TemporaryFolder();  // throws std::runtime_error with the place if it cannot be created
@@ -70,6 +74,7 @@ class TemporaryFolder {
 
  private:
   std::filesystem::path path_;
+  std::optional<Remover> remover_;
 };
 
 }  // namespace stereotlm::files

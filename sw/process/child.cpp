@@ -17,6 +17,7 @@
 #include <system_error>
 
 #include "sw/process/client.h"
+#include "sw/process/problems.h"
 
 namespace stereotlm::process {
 namespace {
@@ -48,7 +49,7 @@ int run_child(const std::function<void(const Child::Tell&)>& work, int to) {
     send(to, Kind::kOutOfMemory, "");
     return 1;
   } catch (const std::exception& error) {
-    failure = error.what();
+    failure = text_of(error);
   } catch (...) {
     failure = "an exception of an unknown type";
   }
@@ -56,7 +57,7 @@ int run_child(const std::function<void(const Child::Tell&)>& work, int to) {
   return 1;
 }
 
-std::string text_of(int status) {
+std::string text_of_end(int status) {
   if (!WIFSIGNALED(status))
     return fmt::format("the process ended with status {} before its work was done", WEXITSTATUS(status));
   return fmt::format("the process was ended by signal {} ({})", WTERMSIG(status),
@@ -66,7 +67,7 @@ std::string text_of(int status) {
 }  // namespace
 
 ChildDied::ChildDied(int status)
-    : std::runtime_error(text_of(status)),
+    : std::runtime_error(text_of_end(status)),
       how_(WIFSIGNALED(status)
                ? fmt::format("ended with signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status)))
                : fmt::format("ended with exit status {}", WEXITSTATUS(status))),
@@ -111,17 +112,23 @@ void Pipe::close_end(std::size_t end) {
   ends_[end] = -1;
 }
 
-Child::Child(const std::function<void(const Tell& tell)>& work) {
+pid_t fork_bound() {
   const pid_t parent = getpid();
   std::fflush(nullptr);  // otherwise both processes would write the contents of the buffers
-  pid_ = fork();
-  if (pid_ < 0) throw_errno("fork");
+  const pid_t forked = fork();
+  if (forked < 0) throw_errno("fork");
+  if (forked > 0) return forked;
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (getppid() != parent) _exit(1);  // the parent ended before prctl()
+  return 0;
+}
+
+Child::Child(const std::function<void(const Tell& tell)>& work) {
+  pid_ = fork_bound();
   if (pid_ > 0) {
     messages_.close_write_end();
     return;
   }
-  prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (getppid() != parent) _exit(1);  // the parent ended before prctl()
   messages_.close_read_end();
   client = nullptr;  // only the parent may write to it
   _exit(run_child(work, messages_.write_end()));

@@ -50,6 +50,10 @@ class Pipe {
   std::array<int, 2> ends_{-1, -1};
 };
 
+// Forks a process that is killed when the thread that calls this ends; the main thread ends with this process.
+// Returns what fork() returns. Throws std::system_error if the system cannot fork.
+pid_t fork_bound();
+
 // A child process that does one piece of work and sends messages about it. Simulations run in such processes,
 // because a process can elaborate SystemC only once. A fork starts faster than a program, because all
 // libraries are already loaded. The child is killed when this process ends.

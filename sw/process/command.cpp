@@ -4,7 +4,6 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <signal.h>
-#include <spawn.h>
 #include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -17,6 +16,7 @@
 #include <system_error>
 
 #include "models/fpga/core_config.h"
+#include "sw/process/child.h"
 #include "sw/process/streams.h"
 
 namespace stereotlm::process {
@@ -62,36 +62,16 @@ class MemoryFile {
   int descriptor_;
 };
 
-class SpawnSetup {
- public:
-  SpawnSetup(int out, int errors) {
-    posix_spawn_file_actions_init(&actions_);
-    posix_spawn_file_actions_addopen(&actions_, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-    posix_spawn_file_actions_adddup2(&actions_, out, STDOUT_FILENO);
-    posix_spawn_file_actions_adddup2(&actions_, errors, STDERR_FILENO);
-    posix_spawnattr_init(&attributes_);
-    posix_spawnattr_setpgroup(&attributes_, 0);
-    sigset_t ignored_here;  // ignored in this process; reset to their default, which ends the program
-    sigemptyset(&ignored_here);
-    sigaddset(&ignored_here, SIGPIPE);
-    sigaddset(&ignored_here, SIGXFSZ);
-    posix_spawnattr_setsigdefault(&attributes_, &ignored_here);
-    posix_spawnattr_setflags(&attributes_, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGDEF);
-  }
-  ~SpawnSetup() {
-    posix_spawn_file_actions_destroy(&actions_);
-    posix_spawnattr_destroy(&attributes_);
-  }
-  SpawnSetup(const SpawnSetup&) = delete;
-  SpawnSetup& operator=(const SpawnSetup&) = delete;
-
-  const posix_spawn_file_actions_t* actions() const { return &actions_; }
-  const posix_spawnattr_t* attributes() const { return &attributes_; }
-
- private:
-  posix_spawn_file_actions_t actions_{};
-  posix_spawnattr_t attributes_{};
-};
+// Becomes the program, in a forked process. Returns if that fails.
+void become(char* const* arguments, char* const* variables, int out, int errors) {
+  setpgid(0, 0);
+  dup2(open("/dev/null", O_RDONLY | O_CLOEXEC), STDIN_FILENO);
+  dup2(out, STDOUT_FILENO);
+  dup2(errors, STDERR_FILENO);
+  // Ignored in this process.
+  for (const int ended_by : {SIGPIPE, SIGXFSZ}) signal(ended_by, SIG_DFL);
+  execvpe(arguments[0], arguments, variables);
+}
 
 std::vector<char*> shown_variables(const std::vector<std::string>& hidden) {
   std::vector<char*> shown;
@@ -128,13 +108,20 @@ CommandEnd run_command(const std::vector<std::string>& words, const std::vector<
                        bool ends_if_interrupted) {
   const MemoryFile out;
   const MemoryFile errors;
-  const SpawnSetup setup(out.descriptor(), errors.descriptor());
   std::vector<char*> arguments;
   for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);
-  pid_t pid = -1;
-  const int error = posix_spawnp(&pid, arguments[0], setup.actions(), setup.attributes(), arguments.data(),
-                                 shown_variables(hidden).data());
+  const std::vector<char*> variables = shown_variables(hidden);
+  Pipe failure;  // the program closes it when it begins
+  const pid_t pid = fork_bound();
+  if (pid == 0) {
+    become(arguments.data(), variables.data(), out.descriptor(), errors.descriptor());
+    write_all(failure.write_end(), &errno, sizeof errno);
+    _exit(1);
+  }
+  failure.close_write_end();
+  int error = 0;
+  if (read_all(failure.read_end(), &error, sizeof error)) waitpid(pid, nullptr, 0);
   if (error == ENOENT) throw CommandMissing(words[0] + ": not found in PATH");
   if (error != 0) fail(error, words[0].c_str());
   int status = 0;

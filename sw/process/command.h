@@ -29,9 +29,9 @@ struct CommandEnd {
 
 // Runs the program words[0], searched in PATH, with the other words as arguments, without a shell, and waits
 // for its end. Its standard input is empty. Its environment is that of this process without the variables
-// whose names begin with one of `hidden`. Ctrl-C in a terminal does not reach the program.
-// `ends_if_interrupted`: interrupted() ends the program with SIGTERM. Throws CommandMissing and
-// std::system_error.
+// whose names begin with one of `hidden`. Ctrl-C in a terminal does not reach the program. It is
+// killed when this process ends. `ends_if_interrupted`: interrupted() ends it with SIGTERM. Throws
+// CommandMissing and std::system_error.
 CommandEnd run_command(const std::vector<std::string>& words, const std::vector<std::string>& hidden = {},
                        bool ends_if_interrupted = false);
 

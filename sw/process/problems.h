@@ -1,6 +1,8 @@
 #pragma once
 
 #include <exception>
+#include <filesystem>
+#include <new>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -24,6 +26,15 @@ class Refused : public std::exception {
   std::vector<platform::Diagnostic> problems_;
 };
 
+// What has failed, as users are told. The texts of the C++ library name its own functions.
+inline std::string text_of(const std::exception& error) {
+  if (dynamic_cast<const std::bad_alloc*>(&error) != nullptr) return "out of memory";
+  const auto* const of_file = dynamic_cast<const std::filesystem::filesystem_error*>(&error);
+  if (of_file == nullptr) return error.what();
+  const std::string path = of_file->path1().empty() ? "." : of_file->path1().string();
+  return "'" + path + "': " + of_file->code().message();
+}
+
 // Collects everything that is wrong with a command, so that one message can report it all.
 class Problems {
  public:
@@ -45,8 +56,10 @@ class Problems {
       return true;
     } catch (const platform::BoardError& error) {
       add(error);
+    } catch (const std::bad_alloc&) {  // no problem of the command
+      throw;
     } catch (const std::exception& error) {
-      add(prefix + error.what());
+      add(prefix + text_of(error));
     }
     return false;
   }

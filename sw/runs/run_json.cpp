@@ -100,15 +100,20 @@ struct Writer {
 struct Reader {
   template <typename Value>
   void required(const char* key, Value& value) {
-    read(document.at(key), value);
+    if (!document.contains(key)) throw std::runtime_error(std::string(key) + ": missing");
+    given(key, value);
   }
   template <typename Value>
   void given(const char* key, Value& value, bool /*is_given*/ = true) {
-    if (document.contains(key)) read(document[key], value);
+    try {
+      if (document.contains(key)) read(document[key], value);
+    } catch (const Json::exception& /*error*/) {
+      throw std::runtime_error(fmt::format("{} = {}", key, document[key].dump()));
+    }
   }
   template <typename Value>
   void given(const char* key, std::optional<Value>& value) {
-    if (document.contains(key)) read(document[key], value.emplace());
+    if (document.contains(key)) given(key, value.emplace());
   }
 
   const Json document;
@@ -163,14 +168,13 @@ std::string run_json(const RecordedOptions& options) {
 
 RecordedOptions parse_run_json(const std::string& text) {
   RecordedOptions options;
-  std::string written;
   try {
-    Reader reader{Json::parse(text)};
+    Reader reader{files::parse_json(text)};
     each_key(reader, options);
-    written = run_json(options);
-  } catch (const Json::exception& error) {
+  } catch (const std::runtime_error& error) {
     throw std::runtime_error(fmt::format("must be as run writes it: {}", error.what()));
   }
+  const std::string written = run_json(options);
   if (written != text) {
     const auto end = std::mismatch(text.begin(), text.end(), written.begin(), written.end()).first;
     throw std::runtime_error(

@@ -29,6 +29,10 @@ Database::Database(const std::string& path, Access access, std::chrono::millisec
                    const std::string& name)
     : path_(name.empty() ? path : name) {
   const std::string file = access == Access::kMemory ? ":memory:" : absolute(path);
+  std::error_code none;
+  const std::filesystem::file_status status = std::filesystem::status(file, none);
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
+    throw DatabaseError(path_ + ": must be a regular file");  // SQLite would wait for a pipe
   // One thread uses the connection, so that SQLite needs no mutex.
   const int flags = kFlags[static_cast<std::size_t>(access)] | SQLITE_OPEN_NOMUTEX;
   const int code = sqlite3_open_v2(file.c_str(), &handle_, flags, nullptr);

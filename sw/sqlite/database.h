@@ -28,8 +28,8 @@ class Database {
   static constexpr std::chrono::milliseconds kBusyTimeout = std::chrono::minutes(1);
 
   // With kMemory the database is a new one in memory, and `path` is its name in messages. Otherwise `path` is
-  // the path of a file, even if it is ":memory:" or begins with "file:". `name`: the file in messages, if
-  // that is not its path.
+  // the path of a regular file, even if it is ":memory:" or begins with "file:". `name`: the file in
+  // messages, if that is not its path.
   Database(const std::string& path, Access access, std::chrono::milliseconds busy_timeout = kBusyTimeout,
            const std::string& name = "");
   ~Database();

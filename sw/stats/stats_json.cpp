@@ -165,12 +165,9 @@ class StatsReader {
  public:
   explicit StatsReader(const std::string& text) {
     try {
-      document_ = Json::parse(text);
-    } catch (const Json::exception& error) {
-      const auto* const syntax = dynamic_cast<const Json::parse_error*>(&error);
-      throw std::runtime_error(fmt::format("{}: must be as run writes it: {}",
-                                           line_at(text, syntax == nullptr ? 0 : syntax->byte),
-                                           error.what()));
+      document_ = files::parse_json(text);
+    } catch (const files::JsonError& error) {
+      throw std::runtime_error(fmt::format("{}: must be as run writes it: {}", error.line, error.what()));
     }
     if (!document_.is_object()) throw std::runtime_error("1: must be as run writes it: a JSON object");
     check_same(text, files::json_text(document_));
@@ -366,12 +363,8 @@ std::optional<Accuracy> read_accuracy(const StatsReader& reader) {
 // Every value by its path. Paths are sorted as text: entry 10 of a list comes before entry 2.
 std::map<std::string, std::string> values_of(const std::string& text) {
   std::map<std::string, std::string> values;
-  try {
-    const nlohmann::json flat = nlohmann::json::parse(text).flatten();
-    for (const auto& [path, value] : flat.items()) values[path] = value.dump();
-  } catch (const nlohmann::json::exception& error) {
-    throw std::runtime_error(fmt::format("statistics that are not JSON: {}", error.what()));
-  }
+  const nlohmann::json flat = nlohmann::json(files::parse_json(text)).flatten();
+  for (const auto& [path, value] : flat.items()) values[path] = value.dump();
   return values;
 }
 

@@ -139,12 +139,14 @@ std::optional<std::string> Plan::table_problem(const platform::BoardConfig& boar
 
 class PlanReader {
  public:
-  PlanReader(const std::string& path, const std::string& board) : plan_(path, board) {}
+  PlanReader(const std::string& path, const std::string& board, const std::string* board_text)
+      : plan_(path, board), board_text_(board_text) {}
 
-  Plan read() {
+  Plan read(const std::string* text) {
     YamlNode tree;
+    plan_.text_ = text != nullptr ? *text : platform::read_text_file(plan_.path_, "plan");
     try {
-      tree = platform::parse_yaml(platform::read_text_file(plan_.path_, "plan"), Place::kBoard);
+      tree = platform::parse_yaml(plan_.text_, Place::kBoard);
     } catch (const platform::YamlError& error) {
       report(error.place, error.what());
       fail();
@@ -221,13 +223,15 @@ class PlanReader {
   void read_base(const Entries& sections, const YamlNode& tree) {
     if (const YamlNode* run = find(sections, "run")) read_run(*run);
     const YamlNode* const board = find(sections, "board");
-    if (board == nullptr) return report(tree.place, "board: missing: a preset, or the path of a board file");
-    if (!board->is_scalar() || board->text.empty())
-      return report("board", *board, "a preset, or the path of a board file");
     const bool is_option = !plan_.board_.empty();
+    if (board == nullptr && !is_option)
+      return report(tree.place, "board: missing: a preset, or the path of a board file");
+    if (board != nullptr && (!board->is_scalar() || board->text.empty()))
+      return report("board", *board, "a preset, or the path of a board file");
+    const Place place = board == nullptr ? tree.place : board->place;
     if (!is_option) plan_.board_ = board->text;
     try {
-      plan_.base_.emplace(plan_.board_);
+      plan_.base_.emplace(plan_.board_, board_text_);
     } catch (const platform::BoardError& error) {
       for (const Diagnostic& problem : error.diagnostics()) {
         // The problem is in the name of the board, or in a line of its file.
@@ -235,7 +239,7 @@ class PlanReader {
         const std::string text = fmt::format("board = {}: {}", plan_.board_, problem.text);
         add({!is_of_name ? problem
              : is_option ? Diagnostic{"--board", text}
-                         : Diagnostic{place_text(board->place), text}});
+                         : Diagnostic{place_text(place), text}});
       }
       return;
     }
@@ -254,7 +258,7 @@ class PlanReader {
     base = plan_.base_->read_with_problems();
     add(base.problems);
     if (!base.problems.empty()) return;
-    for (const platform::BankConfig& bank : base.board.banks) take_bank(bank.name, board->place);
+    for (const platform::BankConfig& bank : base.board.banks) take_bank(bank.name, place);
     plan_.base_board_ = std::move(base.board);
   }
 
@@ -546,11 +550,15 @@ class PlanReader {
   }
 
   Plan plan_;
+  const std::string* board_text_;  // see Plan::load()
   std::vector<Diagnostic> findings_;
   std::map<std::string, Place> places_;       // [path that occurs in the plan]
   std::map<std::string, std::string> banks_;  // [name without_case()]: name
 };
 
-Plan Plan::load(const std::string& path, const std::string& board) { return PlanReader(path, board).read(); }
+Plan Plan::load(const std::string& path, const std::string& board, const std::string* text,
+                const std::string* board_text) {
+  return PlanReader(path, board, board_text).read(text);
+}
 
 }  // namespace stereotlm::explore

@@ -32,9 +32,11 @@ struct PlanValues {
 // points. Each point is made from its number, so that memory does not grow with the number of points.
 class Plan {
  public:
-  // Reads a plan file. `board`: a board in place of the one that the plan names; empty: none. Throws
+  // Reads a plan file. `board`: a board in place of the one that the plan names; empty: none. `text` and
+  // `board_text`: what the files of plan and board hold, if they have been read already; else null. Throws
   // platform::BoardError with all that is wrong, and the number of points that the plan would have.
-  static Plan load(const std::string& path, const std::string& board = "");
+  static Plan load(const std::string& path, const std::string& board = "", const std::string* text = nullptr,
+                   const std::string* board_text = nullptr);
 
   // The number of points before conditions leave out some.
   std::uint64_t size() const { return sample_ ? sample_->points : product_; }
@@ -47,7 +49,10 @@ class Plan {
   // Names of all banks of all points, sorted.
   const std::vector<std::string>& banks() const { return banks_; }
   const std::string& path() const { return path_; }
+  const std::string& text() const { return text_; }    // what the plan file holds
   const std::string& board() const { return board_; }  // name of a preset, or path of a board file
+  // What the board file holds; empty for a preset.
+  const std::string& board_text() const { return base_->file_text(); }
 
   // Path of the calibration that the section `run` names; empty: none. calibration_place() is the place of
   // that value in the plan.
@@ -89,6 +94,7 @@ class Plan {
                                            const std::function<bool(const char*)>& is_checked) const;
 
   std::string path_;
+  std::string text_;
   std::string board_;
   std::string calibration_;
   std::string calibration_place_;

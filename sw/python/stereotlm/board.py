@@ -1,16 +1,19 @@
 """Boards, their runs, and the questions that the program answers about them."""
 
+import collections.abc
+import copy
+import decimal
 import functools
 import html
 import json
 import os
 import pathlib
+import re
 import sqlite3
-import tempfile
 
 import numpy
 
-from stereotlm.worker import Problem, Refused, execute
+from stereotlm.worker import Problem, Refused, execute, temporary_folder
 
 
 def boards():
@@ -32,9 +35,19 @@ CONFLICTS = ["port", "bank", "by", "cycles", "cycles_percent", "before_first_row
 
 
 class _Table(numpy.recarray):
-    """A table without pandas. `attrs` is as in pandas."""
+    """A table without pandas. `attrs` is as in pandas: parts and copies of the table have it, too."""
 
-    attrs = {}
+    def __array_finalize__(self, source):
+        super().__array_finalize__(source)
+        self.attrs = dict(getattr(source, "attrs", {}))
+
+    def __reduce__(self):
+        make, arguments, state = super().__reduce__()
+        return make, arguments, (state, self.attrs)
+
+    def __setstate__(self, state):
+        array, self.attrs = state
+        super().__setstate__(array)
 
 
 def _table(rows, document=None, columns=None):
@@ -68,17 +81,26 @@ def _flat(value, path=""):
             yield path + name, inner
 
 
-def _yaml(value):
-    """The value as a YAML flow value."""
-    if isinstance(value, (numpy.generic, numpy.ndarray)):
+def _yaml(value, name):
+    """The value of the key `name` as a YAML flow value."""
+    if hasattr(value, "tolist"):  # of numpy or pandas
         value = value.tolist()
     if isinstance(value, float):
         return numpy.format_float_positional(value, trim="0")
-    if isinstance(value, dict):
-        return "{" + ", ".join(f"{key}: {_yaml(inner)}" for key, inner in value.items()) + "}"
-    if isinstance(value, (list, tuple, range)):
-        return "[" + ", ".join(map(_yaml, value)) + "]"
-    return json.dumps(value, ensure_ascii=False)
+    if isinstance(value, decimal.Decimal):
+        return f"{value:f}"
+    if hasattr(value, "items"):
+        word = lambda key: key if re.fullmatch(r"[\w.-]+", key) else _yaml(key, name)
+        return "{" + ", ".join(f"{word(str(key))}: {_yaml(inner, f'{name}.{key}')}"
+                               for key, inner in value.items()) + "}"
+    if isinstance(value, collections.abc.Set):
+        value = sorted(value, key=lambda each: (str(type(each)), each))
+    if isinstance(value, collections.abc.Iterable) and not isinstance(value, (str, bytes)):
+        return "[" + ", ".join(_yaml(each, name) for each in value) + "]"
+    try:
+        return json.dumps(value, ensure_ascii=False)
+    except TypeError:
+        raise TypeError(f"{name} = {value!r}: must be a number, a text, a list or a dict") from None
 
 
 def _options(options):
@@ -150,6 +172,8 @@ class Board:
     A value that breaks the rule of its key is refused when it is assigned. Rules between keys, such as that
     the bank of a buffer exists, are checked by each command, and by check(): several keys can be changed one
     after the other. Iteration gives the paths of the keys.
+
+    The files of a board and of its calibration are read once, when the object is made.
     """
 
     def __init__(self, board="fpl2003", sets=None, calibration=None):
@@ -158,42 +182,32 @@ class Board:
 
         Raises Refused for a board that has problems.
         """
-        set_ = object.__setattr__  # a plain assignment sets a key
-        set_(self, "board", os.fspath(board))
-        set_(self, "calibration", calibration)
-        set_(self, "_sets", {})
-        set_(self, "_values", None)
-        self._add(sets or {})
-        self.check()
+        self._begin(os.fsdecode(board), calibration, _with({}, sets or {}), {})
 
     # Keys.
 
     @property
     def sets(self):
         """The keys that were set, as in --set KEY=VALUE."""
-        return [f"{path}={text}" for path, text in self._sets.items()]
+        return [f"{path}={text}" for path, text in self._state[0].items()]
 
     @property
     def values(self):
-        """All keys with their values, by their paths. If keys contradict each other, the values before they
-        did, and those that were set since."""
-        if self._values is None:
-            self._problems(self._sets)
-        return dict(self._values)
+        """A copy of all keys with their values, by their paths. If keys contradict each other, the values
+        before they did, and those that were set since."""
+        return copy.deepcopy(self._state[1])
 
-    def changed(self, sets):
+    def changed(self, sets, calibration=None):
         """A copy with other values: a dict by dotted paths, or a list of "KEY=VALUE" as in the tables of
-        explain() and allocate()."""
-        copy = self._copy()
-        copy._add(sets)
-        copy.check()
-        return copy
+        explain() and allocate(). `calibration`: the path of another one."""
+        files = {name: its for name, its in self._files.items() if not calibration or name == "board.yaml"}
+        changed = Board.__new__(Board)
+        changed._begin(self.board, calibration or self.calibration, _with(self._state[0], sets), files)
+        return changed
 
     def check(self):
         """Raises Refused with all problems of the board."""
-        problems = self._problems(self._sets)
-        if problems:
-            raise Refused(problems)
+        self._execute("check", "--json")
 
     def __getitem__(self, path):
         try:
@@ -211,24 +225,24 @@ class Board:
         return path in self.values
 
     def __eq__(self, other):
-        return isinstance(other, Board) and self.values == other.values and \
-            self.calibration == other.calibration
+        return isinstance(other, Board) and self.values == other.values and self._tables() == other._tables()
 
     __hash__ = None  # a board can be changed
 
     def __setitem__(self, path, value):
+        last, values = self._state
         # What was set below the path is replaced, too.
-        sets = {name: text for name, text in self._sets.items() if not f"{name}.".startswith(f"{path}.")}
-        sets[path] = _yaml(value)
-        last = self._values
-        own = [problem for problem in self._problems(sets)
-               if f"{problem.key}.".startswith(f"{path}.") and not problem.between_keys]
-        if own:
-            object.__setattr__(self, "_values", last)
-            raise Refused(own)
-        object.__setattr__(self, "_sets", sets)
-        if self._values is last:
-            object.__setattr__(self, "_values", {**(last or {}), path: value})
+        sets = {name: text for name, text in last.items() if not f"{name}.".startswith(f"{path}.")}
+        sets[path] = _yaml(value, path)
+        try:
+            values = self._execute("check", "--json", sets=sets).document["values"]
+        except Refused as refused:
+            own = [problem for problem in refused.problems
+                   if f"{problem.key}.".startswith(f"{path}.") and not problem.between_keys]
+            if own:
+                raise Refused(own) from None
+            values = {**values, path: copy.deepcopy(value)}
+        object.__setattr__(self, "_state", (sets, values))
 
     def __getattr__(self, name):
         if name.startswith("_"):
@@ -244,18 +258,21 @@ class Board:
     def __repr__(self):
         return f"Board({self.board!r}, {self.sets})"
 
-    def _copy(self):
-        copy = Board.__new__(Board)
-        for name in ("board", "calibration", "_values"):
-            object.__setattr__(copy, name, getattr(self, name))
-        object.__setattr__(copy, "_sets", dict(self._sets))
-        return copy
+    def _begin(self, board, calibration, sets, files):
+        """Reads what is not in `files`, and checks everything. Paths become absolute."""
+        set_ = object.__setattr__  # a plain assignment sets a key
+        path = str(pathlib.Path(board).absolute())
+        set_(self, "board", board)
+        set_(self, "calibration", calibration and str(pathlib.Path(os.fsdecode(calibration)).absolute()))
+        set_(self, "_files", files)  # name -> content; each command gets them
+        answer = self._execute("check", "--json", sets=sets)
+        set_(self, "_files", {**files, **answer.arrays})
+        set_(self, "board", path if "board.yaml" in self._files else board)
+        # A tuple, which is replaced whole: (path -> value as YAML of the keys that were set, path -> value)
+        set_(self, "_state", (sets, answer.document["values"]))
 
-    def _add(self, sets):
-        pairs = sets.items() if isinstance(sets, dict) else (each.split("=", 1) for each in sets)
-        for path, value in pairs:
-            self._sets.pop(path, None)  # later ones come last
-            self._sets[path] = _yaml(value) if isinstance(sets, dict) else value
+    def _tables(self):
+        return {name: its.tobytes() for name, its in self._files.items() if name != "board.yaml"}
 
     def _get(self, path):
         values = self.values
@@ -269,19 +286,15 @@ class Board:
         return sorted({path.removeprefix(beginning).split(".")[0] for path in self.values
                        if path.startswith(beginning)})
 
-    def _problems(self, sets):
-        """The problems of the board with these values. If there are none, its values are known."""
-        try:
-            document = execute("check", *self._words(sets), "--json").document
-        except Refused as refused:
-            return refused.problems
-        object.__setattr__(self, "_values", document["values"])
-        return []
+    def _execute(self, command, *words, sets=None, arrays=None):
+        """Executes a command for the board, or for the board with other keys set."""
+        board = f"./{self.board}" if self.board.startswith("-") else self.board  # not an option
+        options = self._calibration_words()
+        options += [f"--set={path}={text}" for path, text in (self._state[0] if sets is None else sets).items()]
+        return execute(command, board, *options, *words, arrays={**self._files, **(arrays or {})})
 
-    def _words(self, sets=None):
-        words = [f"./{self.board}" if self.board.startswith("-") else self.board]  # not an option
-        words += [f"--set={path}={text}" for path, text in (self._sets if sets is None else sets).items()]
-        return words + _options({"calibration": self.calibration})
+    def _calibration_words(self):
+        return [] if self.calibration is None else ["--calibration", self.calibration]
 
     # Commands.
 
@@ -296,22 +309,26 @@ class Board:
         By default the whole computer with its cameras runs until it has delivered as many frames as there are
         pairs. source="preloaded" is the core alone.
         """
-        arrays, options = _pictures(left, right, options)
+        board = copy.copy(self)  # whatever another thread changes
+        arrays, options = _pictures(left, right, copy.deepcopy(options))
+        changes = [options.pop(name, None) for name in ("set", "calibration")]
+        if any(changes):
+            board = board.changed(changes[0] or [], changes[1])
         if any(numpy.ndim(array) == 3 for array in arrays.values()) and not options.get("timing_only"):
             options["save_frames"] = True
-        answer = execute("run", *self._words(), *_options(options), "--json", arrays=arrays)
-        return Run(self._copy(), options, answer)
+        answer = board._execute("run", *_options(options), "--json", arrays=arrays)
+        return Run(board, options, answer)
 
     def bounds(self):
         """Limits of the frame rate without a simulation, and the area: the document of `stereotlm bounds`."""
-        return execute("bounds", *self._words(), "--json").document
+        return self._execute("bounds", "--json").document
 
     def explain(self, **options):
         """A table of single changes, and what each gains: the best first. `sets` are for changed().
 
         attrs["document"] has what limits the board, its resources, and who waits for whom.
         """
-        document = execute("explain", *self._words(), *_options(options), "--json").document
+        document = self._execute("explain", *_options(options), "--json").document
         return _table(document["changes"], document)
 
     def conflicts(self, left=None, right=None, **options):
@@ -322,7 +339,7 @@ class Board:
         attrs["document"] has the waits and accesses by rows of the picture.
         """
         arrays, options = _pictures(left, right, options)
-        document = execute("conflicts", *self._words(), *_options(options), "--json", arrays=arrays).document
+        document = self._execute("conflicts", *_options(options), "--json", arrays=arrays).document
         return _table(document["waits"], document, CONFLICTS)
 
     def allocate(self, banks, out=None, **options):
@@ -334,7 +351,7 @@ class Board:
         attrs["document"] has the best of all.
         """
         words = _options({"banks": banks, "out": out, **options})
-        document = execute("allocate", *self._words(), *words, "--json").document
+        document = self._execute("allocate", *words, "--json").document
         return _table(document["banks"], document)
 
     def sweep(self, vary=None, out=None, source="preloaded", frames=None, zip=None, where=None, sample=None,
@@ -347,31 +364,40 @@ class Board:
         move together. `where`: SQL expressions that must hold. `sample`: {"points": 100, "seed": 1}. `out`:
         the path of a database that is continued; the table then has all its points. `options`: jobs=2.
         """
-        run = {"source": source, "frames": frames, "calibration": self.calibration}
-        lists = {"vary": vary, "zip": zip, "where": where, "sample": sample}
-        moved = {path for keys in [vary or {}, *(zip or [])] for path in keys}
-        plan = {"board": self.board, "run": {name: value for name, value in run.items() if value is not None}}
-        plan.update({name: value for name, value in lists.items() if value})
-        text = "".join(f"{name}: {_yaml(value)}\n" for name, value in plan.items())
-        fixed = [f"{path}: {value}" for path, value in self._sets.items() if path not in moved]
+        # A path need not be UTF-8, as a plan must be.
+        words = ["--board", self.board] if "board.yaml" in self._files else []
+        plan = {"board": None if words else self.board,
+                "run": {"source": source} if frames is None else {"source": source, "frames": frames},
+                "vary": vary, "zip": zip, "where": where, "sample": sample}
+        text = "".join(f"{name}: {_yaml(value, name)}\n" for name, value in plan.items() if value is not None)
+        groups = [{} if vary is None else vary, *([] if zip is None else zip)]
+        varied = [path for keys in groups for path in keys]
+        fixed = [f"{path}: {value}" for path, value in self._state[0].items() if path not in varied]
         if fixed:
             text += "set: {" + ", ".join(fixed) + "}\n"
-        with tempfile.TemporaryDirectory() as folder:
-            file = pathlib.Path(folder) / "plan.yaml"
-            file.write_text(text, encoding="utf-8")
-            database = pathlib.Path(folder) / "points.db" if out is None else out
-            try:
-                execute("sweep", file, *_options({"out": database, **options}))
-            except Refused as refused:  # the file is not the user's
-                raise Refused(each.elsewhere(str(file), "the plan") for each in refused.problems) from None
-            return _points(database, [path for keys in [vary or {}, *(zip or [])] for path in keys])
+        files = {**self._files, "plan.yaml": numpy.frombuffer(text.encode(), numpy.uint8)}
+        with temporary_folder() as folder:
+            # An absolute path: for sqlite3, ":memory:" is no file.
+            database = pathlib.Path(folder) / "points.db" if out is None else out and pathlib.Path(out).absolute()
+            words += [*self._calibration_words(), *_options({"out": database, **options})]
+            execute("sweep", "the plan", *words, arrays=files)
+            return _points(database, varied)
 
     def chart(self, source="camera"):
         """The memory chart of the board as SVG."""
-        return _chart(self._words(), source=source)
+        return _chart(self._execute, source=source)
 
     def _repr_html_(self):
         return f"<p>{html.escape(repr(self))}</p>{self.chart()}"
+
+
+def _with(sets, more):
+    """The keys that were set, path -> value as YAML, with more of them: as for Board.changed()."""
+    if isinstance(more, dict):
+        more = {path: _yaml(value, path) for path, value in more.items()}
+    else:
+        more = dict(each.partition("=")[::2] for each in ([more] if isinstance(more, str) else more))
+    return {**{path: text for path, text in sets.items() if path not in more}, **more}
 
 
 def _points(database, varied):
@@ -391,10 +417,11 @@ def _points(database, varied):
     return _table(rows, columns=[*varied, *figures, *fixed])
 
 
-def _chart(words, **options):
-    with tempfile.TemporaryDirectory() as folder:
+def _chart(draw, **options):
+    """What diagram draws. `draw`: executes it for what it draws."""
+    with temporary_folder() as folder:
         file = pathlib.Path(folder) / "chart.svg"
-        execute("diagram", *words, "--out", file, *_options(options))
+        draw("diagram", "--out", file, *_options(options))
         return file.read_text(encoding="utf-8")
 
 
@@ -445,10 +472,10 @@ class Run:
                        "truth_scale", "save_frames", "record", "trace", "trace_window"}
         options = {name: value for name, value in self._options.items() if name not in of_pictures}
         options["frames"] = self.statistics["frames"]
-        with tempfile.TemporaryDirectory() as folder:
+        with temporary_folder() as folder:
             out = pathlib.Path(folder) / "run"  # pixels change no count
-            execute("run", *self.board._words(), *_options({**options, "timing_only": True, "out": out}))
-            return _chart([out])
+            self.board._execute("run", *_options({**options, "timing_only": True, "out": out}))
+            return _chart(lambda command, *words: execute(command, out, *words))
 
     def __repr__(self):
         rates = ", ".join(f"{name} {value:.3f}" for name, value in self.frames_per_second.items())

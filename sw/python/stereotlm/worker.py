@@ -1,5 +1,6 @@
 """Commands of the program, executed by the process `stereotlm worker`. README.md has the protocol."""
 
+import contextlib
 import dataclasses
 import io
 import json
@@ -8,8 +9,10 @@ import os
 import pathlib
 import shutil
 import subprocess
+import tempfile
 import threading
 import warnings
+import weakref
 
 import numpy
 
@@ -25,11 +28,6 @@ class Problem:
     value: str = ""
     between_keys: bool = False  # the rule involves several keys: each of them could be changed
 
-    def elsewhere(self, path, name):
-        """The same with another name for a file."""
-        return dataclasses.replace(self, place=self.place.replace(path, name),
-                                   message=self.message.replace(path, name))
-
     def __str__(self):
         return self.message if self.place == "command line" else f"{self.place}: {self.message}"
 
@@ -39,7 +37,10 @@ class Refused(ValueError):
 
     def __init__(self, problems):
         self.problems = list(dict.fromkeys(problems))  # each once
-        super().__init__("\n".join(map(str, self.problems)))
+        super().__init__(self.problems)  # from which a copy is made
+
+    def __str__(self):
+        return "\n".join(map(str, self.problems))
 
 
 class Failed(RuntimeError):
@@ -70,9 +71,24 @@ def _program():
     places = [folders[4] / "bin" / "stereotlm", folders[3] / "build" / "release" / "bin" / "stereotlm"]
     named = os.environ.get("STEREOTLM_PROGRAM")
     for program in filter(None, [named, *filter(pathlib.Path.is_file, places), shutil.which("stereotlm")]):
-        return str(program)
+        return _checked(str(program), "STEREOTLM_PROGRAM" if named else "the program stereotlm")
     raise FileNotFoundError(
         f"the program stereotlm is neither {places[0]} nor in PATH: STEREOTLM_PROGRAM can name it")
+
+
+def _checked(program, name):
+    """The path of a program. Raises FileNotFoundError, with the name, if it is not that of this module."""
+    from stereotlm import __version__
+    try:
+        end = subprocess.run([program, "--version"], stdin=subprocess.DEVNULL, capture_output=True,
+                             timeout=20, check=False)
+        said = end.stdout.decode(errors="replace").strip()
+        cause = f"with --version it prints {said[:40]!r}"
+    except (OSError, subprocess.TimeoutExpired) as error:
+        said, cause = "", getattr(error, "strerror", "with --version it does not end")
+    if said != f"stereotlm {__version__}":
+        raise FileNotFoundError(f"{name} = {program}: {cause}: must be the program stereotlm {__version__}")
+    return program
 
 
 class _Bar:
@@ -104,6 +120,22 @@ class _Bar:
             self._bar.close()
 
 
+@contextlib.contextmanager
+def temporary_folder():
+    """A folder for temporary files. It is removed even if this process is killed."""
+    folder = tempfile.mkdtemp(prefix="stereotlm_")
+    # The shell waits for a line or the end of the pipe. Processes that were killed may still write for a moment.
+    script = 'read -r _; for i in 1 2 3 4 5 6 7 8 9; do /bin/rm -rf -- "$1" && break; sleep 0.1; done'
+    words = ["stereotlm-remover", "-c", script, "/bin/sh", folder]
+    with subprocess.Popen(words, executable="/bin/sh", bufsize=0, stdin=subprocess.PIPE,
+                          stderr=subprocess.DEVNULL, start_new_session=True) as remover:
+        _pipes.add(remover.stdin)
+        try:
+            yield folder
+        finally:
+            remover.stdin.write(b"\n")
+
+
 class Worker:
     """A process that executes commands, one after the other. Threads may share it."""
 
@@ -113,6 +145,7 @@ class Worker:
         self._process = None
         self._answers = None
         self._lock = threading.RLock()
+        _workers.add(self)
 
     def execute(self, *arguments, arrays=None, progress=True):
         """Executes the command of these words, with arrays of 8 bits by their names. Returns an Answer.
@@ -121,10 +154,12 @@ class Worker:
         interrupted (KeyboardInterrupt), the worker is ended.
         """
         pixels = {name: _pixels(name, array) for name, array in (arrays or {}).items()}
-        with self._lock:
+        words = [_word(argument) for argument in arguments]
+        folder = _word(os.getcwd())
+        with self._lock:  # from here on it does not matter what other threads change
             bar = _Bar(progress)
             try:
-                self._send([str(argument) for argument in arguments], pixels)
+                self._send(words, folder, pixels)
                 return self._receive(bar)
             except (BrokenPipeError, EOFError):
                 raise WorkerDied(f"the worker has {self._end()}: the command is lost") from None
@@ -156,20 +191,22 @@ class Worker:
         status = process.wait()
         return f"been ended by signal {-status}" if status < 0 else f"ended with status {status}"
 
-    def _send(self, arguments, pixels):
+    def _send(self, arguments, folder, pixels):
         if self._process is not None and self._process.poll() is not None:
             self._end()  # while it had nothing to do: nothing is lost
         if self._process is None:
             # A session of its own: Ctrl-C is for this process, which then ends the worker.
             # No buffer in front of the pipe: a process that is forked meanwhile would send it again.
-            self._process = subprocess.Popen([self._program or _program(), "worker"], bufsize=0,
+            program = _checked(self._program, "program") if self._program else _program()
+            self._process = subprocess.Popen([program, "worker"], bufsize=0,
                                              stdin=subprocess.PIPE, stdout=subprocess.PIPE,
                                              start_new_session=True)
+            _pipes.update((self._process.stdin, self._process.stdout))
             self._answers = io.BufferedReader(self._process.stdout)
-        request = {"arguments": arguments, "folder": os.getcwd(),
-                   "arrays": [{"name": name, "shape": array.shape} for name, array in pixels.items()]}
-        line = json.dumps(request, ensure_ascii=False).encode() + b"\n"  # raises before a byte is sent
-        for data in (line, *(array.tobytes() for array in pixels.values())):
+        request = {"arguments": arguments, "folder": folder, "encoding": "latin-1",
+                   "arrays": [{"name": name, "shape": shape} for name, (shape, _) in pixels.items()]}
+        line = json.dumps(request).encode() + b"\n"
+        for data in (line, *(data for _, data in pixels.values())):
             left = memoryview(data)
             while left:
                 left = left[self._process.stdin.write(left):]
@@ -200,29 +237,42 @@ class Worker:
                 warnings.warn(message.removeprefix("stereotlm: warning: "), stacklevel=4)
         if part["status"] == 2:
             problems = [Problem(**problem) for problem in part["problems"]]
-            raise Refused(problems or [Problem("command line", text, text) for text in answer.messages])
+            texts = [message.removeprefix("stereotlm: error: ") for message in answer.messages]
+            raise Refused(problems or [Problem("command line", text, text) for text in texts])
         if part["status"] != 0:
             raise Failed("\n".join(message.removeprefix("stereotlm: error: ") for message in answer.messages))
         return answer
 
 
+def _word(argument):
+    """A word of a command. Each character stands for a byte, because a path need not be UTF-8."""
+    is_path = isinstance(argument, (bytes, os.PathLike))
+    return os.fsencode(argument if is_path else str(argument)).decode("latin-1")
+
+
 def _pixels(name, array):
+    """(shape, bytes) of an array."""
     array = numpy.asarray(array)
     if array.dtype != numpy.uint8:
         raise TypeError(f"{name}: {array.dtype}: must be an array of uint8")
-    return array
+    return array.shape, array.tobytes()
 
 
+def _leave():
+    """In a forked process: leaves workers and folders to its parent, whose end only closed pipes show."""
+    null = os.open(os.devnull, os.O_RDWR)
+    for pipe in list(_pipes):
+        if not pipe.closed:
+            os.dup2(null, pipe.fileno(), inheritable=False)
+    os.close(null)
+    for worker in list(_workers):
+        worker._process, worker._lock = None, threading.RLock()
+
+
+_pipes = weakref.WeakSet()  # to workers, and to shells that remove folders
+_workers = weakref.WeakSet()
+os.register_at_fork(after_in_child=_leave)
 _shared = Worker()
-
-
-def _begin_anew():
-    """In a forked process, whose parent has the worker."""
-    global _shared
-    _shared = Worker()
-
-
-os.register_at_fork(after_in_child=_begin_anew)
 
 
 def execute(*arguments, arrays=None, progress=True):

@@ -133,6 +133,8 @@ class Points:
         self.varied = self._varied()
 
     def _open(self):
+        if os.path.exists(self.path) and not os.path.isfile(self.path) and not os.path.isdir(self.path):
+            raise Unusable(f"{self.path}: must be a regular file")  # SQLite would wait for a pipe
         try:
             with open(self.path, "rb"):
                 pass

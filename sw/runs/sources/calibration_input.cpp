@@ -20,9 +20,8 @@ InputFile described(const fs::path& path, const std::string& content) {
   return {fs::absolute(path).string(), files::sha256_hex(content.data(), content.size())};
 }
 
-kernels::RectificationTable load_table(const fs::path& path, const calib::Rig& rig, const std::string& sha256,
-                                       InputFile& file) {
-  const std::string content = files::read_whole_file(path, calib::lut_byte_count(rig.width, rig.height));
+kernels::RectificationTable load_table(const fs::path& path, const std::string& content,
+                                       const calib::Rig& rig, const std::string& sha256, InputFile& file) {
   file = described(path, content);
   if (file.sha256 != sha256) {
     throw std::runtime_error(
@@ -31,6 +30,8 @@ kernels::RectificationTable load_table(const fs::path& path, const calib::Rig& r
   }
   try {
     return calib::parse_lut(content, rig.width, rig.height);
+  } catch (const std::bad_alloc&) {
+    throw;
   } catch (const std::exception& error) {
     throw std::runtime_error(fmt::format("'{}': {}", path.string(), error.what()));
   }
@@ -88,19 +89,26 @@ files::OutputContent calibration_content(const RigFiles& files, bool makes_pictu
 }
 
 std::optional<CalibrationInput> load_calibration(const std::string& path, const platform::BoardConfig* board,
-                                                 process::Problems& problems, const std::string& named) {
+                                                 process::Problems& problems, const std::string& named,
+                                                 const process::FileContents& sent) {
   bool is_right = true;
   const auto attempt = [&](const auto& step) { is_right &= problems.attempt(named + ' ', step); };
   const auto at_path = [&path](const std::string& problem) {
     return std::runtime_error(fmt::format("'{}': {}", path, problem));
   };
   CalibrationInput input;
+  input.contents = sent;
+  const auto content_of = [&](const char* name, const fs::path& file, std::size_t most_bytes) {
+    if (input.contents.count(name) == 0) input.contents[name] = files::read_whole_file(file, most_bytes);
+    return input.contents[name];
+  };
   attempt([&] {
     const RigFiles files = rig_files(path);
     for (const fs::path& file : {files.calibration, files.left_lut, files.right_lut}) {
       input.files.push_back({named, file.string()});
     }
-    const std::string content = files::read_whole_file(files.calibration, calib::kMostCalibrationBytes);
+    const std::string content =
+        content_of("calibration.yaml", files.calibration, calib::kMostCalibrationBytes);
     input.described.file = described(files.calibration, content);
     try {
       input.calibration = std::make_shared<const calib::Calibration>(calib::parse_calibration(content));
@@ -109,17 +117,22 @@ std::optional<CalibrationInput> load_calibration(const std::string& path, const 
           board != nullptr ? platform::calibration_size_problem(*board, rig.width, rig.height) : std::nullopt;
       if (!problem && board != nullptr) problem = platform::calibration_buffer_problem(*board);
       if (problem) throw std::runtime_error(*problem);
+    } catch (const std::bad_alloc&) {
+      throw;
     } catch (const std::exception& error) {
       throw at_path(error.what());
     }
     const calib::Calibration& calibration = *input.calibration;
+    const std::size_t bytes = calib::lut_byte_count(calibration.rig.width, calibration.rig.height);
     attempt([&] {
       input.tables.left =
-          load_table(files.left_lut, calibration.rig, calibration.left_lut_sha256, input.described.left_lut);
+          load_table(files.left_lut, content_of("calibration_left.lut", files.left_lut, bytes),
+                     calibration.rig, calibration.left_lut_sha256, input.described.left_lut);
     });
     attempt([&] {
-      input.tables.right = load_table(files.right_lut, calibration.rig, calibration.right_lut_sha256,
-                                      input.described.right_lut);
+      input.tables.right =
+          load_table(files.right_lut, content_of("calibration_right.lut", files.right_lut, bytes),
+                     calibration.rig, calibration.right_lut_sha256, input.described.right_lut);
     });
   });
   if (!is_right) return std::nullopt;

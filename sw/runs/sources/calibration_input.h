@@ -9,6 +9,7 @@
 #include "platform/config/board_config.h"
 #include "platform/config/tables.h"
 #include "sw/files/output_folder.h"
+#include "sw/process/client.h"
 #include "sw/process/problems.h"
 #include "sw/runs/run_json.h"
 #include "sw/runs/sources/open_source.h"
@@ -41,17 +42,20 @@ files::OutputContent calibration_content(const RigFiles& files, bool makes_pictu
 struct CalibrationInput {
   std::shared_ptr<const calib::Calibration> calibration;  // never null
   platform::Tables tables;
-  InputCalibration described;    // for run.json
-  std::vector<NamedFile> files;  // the files that were read
+  InputCalibration described;      // for run.json
+  std::vector<NamedFile> files;    // the files that were read
+  process::FileContents contents;  // of these files, as process::sent_files() names them
 };
 
 // Loads a calibration and checks that it fits the board. Reports all problems and returns nullopt if there
 // are any: a damaged file, pictures of another size than the board's, tables that were not written with the
 // calibration, a side without table on the board, tables that cannot be joined for a board with joint tables.
-// `board`: null if unknown; the fit is then not checked. `named`: the option in messages.
+// `board`: null if unknown; the fit is then not checked. `named`: the option in messages. `sent`: files that
+// are not read.
 std::optional<CalibrationInput> load_calibration(const std::string& path, const platform::BoardConfig* board,
                                                  process::Problems& problems,
-                                                 const std::string& named = "--calibration");
+                                                 const std::string& named = "--calibration",
+                                                 const process::FileContents& sent = {});
 
 // The SHA-256 over both tables. It identifies a calibration.
 std::string sha256_of(const platform::Tables& tables);

@@ -1,9 +1,15 @@
 """The module stereotlm of Python, and the worker behind it."""
 
+import concurrent.futures
 import contextlib
+import copy
+import decimal
 import json
 import os
 import pathlib
+import pickle
+import resource
+import shutil
 import signal
 import subprocess
 import sys
@@ -142,6 +148,105 @@ class Boards(PythonTest):
         self.assertIn("system", repr(small_board().run()))
         of_set = small_board().run(**ALONE, set=["matcher.window=5"])
         self.assertNotEqual(of_set.chart(), small_board().run(**ALONE).chart())
+
+
+class Files(PythonTest):
+    """What a board is made of is read once, when it is made."""
+
+    def answers(self, board):
+        """What each command says about a board, and all points of a sweep."""
+        return [board.values, board.bounds(), board.run(**ALONE).statistics,
+                board.explain(**ALONE).attrs["document"], board.conflicts(**ALONE).attrs["document"],
+                board.allocate(3, **ALONE).attrs["document"], board.chart(), board.run(**ALONE).chart(),
+                board.sweep({"matcher.rows": [1, 2]}).to_json()]
+
+    def test_a_board_file_that_is_changed_and_a_change_of_the_folder_have_no_effect(self):
+        self.addCleanup(os.chdir, os.getcwd())
+        os.chdir(self.folder)
+        text = f"extends: fpl2003\nimage: {{width: {WIDTH}, height: {HEIGHT}}}\nmatcher: {{window: 5}}\n"
+        path = self.file("b.yaml", text)
+        board = stereotlm.Board("./b.yaml", {"matcher.disparities": 40})
+        before = self.answers(board)
+        path.write_text(text.replace("5}", "9}"))
+        (self.folder / "other").mkdir()
+        os.chdir("other")
+        self.assertEqual(self.answers(board), before)
+        path.unlink()
+        self.assertEqual(self.answers(pickle.loads(pickle.dumps(board))), before)
+        board.matcher.rows = 2
+        self.assertEqual((board.matcher.window, board.changed({"fpga.lanes": 4}).matcher.window), (5, 5))
+        self.assertEqual(board.run(synthetic=1, out=self.out, **ALONE).board, board)
+        self.assertIn("window: 5", (self.out / "config.yaml").read_text())
+        self.assertEqual(board.board, str(path))
+
+    def test_a_calibration_that_is_changed_has_no_effect(self):
+        self.addCleanup(os.chdir, os.getcwd())
+        rig = self.copy_of_rig()
+        os.chdir(self.folder)
+        board = stereotlm.Board(calibration="rig.yaml")
+        disparity = board.run(synthetic=1, **ALONE).disparity
+        for path in (rig, self.folder / "rig_left.lut", self.folder / "rig_right.lut"):
+            path.write_bytes(b"damaged")
+        os.chdir("/")
+        run = board.run(synthetic=1, out=self.out, **ALONE)
+        self.assertTrue((run.disparity == disparity).all())
+        self.assertEqual(self.run_json()["calibration"]["path"], str(rig))
+        self.assertEqual(list(board.sweep({"fpga.clock_mhz": [20]}, frames=1).status), ["ok"])
+        self.assertEqual(board, board.changed({"name": "fpl2003"}))
+        self.assertNotEqual(board, stereotlm.Board())
+        for again in (lambda: board.changed({}, calibration=rig), lambda: board.run(calibration=rig)):
+            self.assertIn("rig.yaml", str(self.refusal(again)))
+
+    def test_a_board_shows_what_it_runs(self):
+        board = small_board()
+        board.allocation.left_image.append("bank7")
+        board.values["matcher.cost"] = "zncc"
+        self.assertEqual((board.allocation.left_image, board.matcher.cost), (["bank0", "bank1"], "sad"))
+        run = board.run(set=["matcher.window=5"], **ALONE)
+        self.assertEqual((run.board, run.board.matcher.window), (small_board(matcher__window=5), 5))
+        self.assertEqual(run.statistics, run.board.run(**ALONE).statistics)
+
+    def test_a_change_by_another_thread_is_no_part_of_a_run(self):
+        board = small_board()
+        runs = []
+        thread = threading.Thread(target=lambda: runs.extend(board.run(**ALONE) for _ in range(20)))
+        thread.start()
+        while thread.is_alive():
+            board.matcher.window = 3 if board.matcher.window == 9 else 9
+        thread.join()
+        self.assertEqual(len(runs), 20)
+        for run in runs:
+            self.assertEqual(run.board.run(**ALONE).statistics, run.statistics)
+
+    def test_pipes_and_devices_are_refused(self):
+        os.mkfifo(self.folder / "pipe.yaml")
+        pipe = str(self.folder / "pipe.yaml")
+        for make in (lambda: stereotlm.Board("/dev/stdin"), lambda: stereotlm.Board(pipe),
+                     lambda: stereotlm.Board(calibration=pipe), lambda: small_board().run(pipe, pipe),
+                     lambda: stereotlm.execute("sweep", pipe, "--out", self.out),
+                     lambda: small_board().sweep({}, known=pipe),
+                     lambda: stereotlm.execute("merge", self.out, pipe),
+                     lambda: stereotlm.execute("plot", pipe, "--out", self.out)):
+            self.assertIn("must be a regular file", str(self.refusal(make)))
+
+    def test_a_folder_whose_name_is_not_utf_8(self):
+        self.addCleanup(os.chdir, os.getcwd())
+        before = small_board().run(*self.arrays, **ALONE).statistics
+        folder = os.fsencode(self.folder) + b"/\xff\xc3"
+        os.mkdir(folder)
+        os.chdir(folder)
+        pathlib.Path("b.yaml").write_text(f"extends: fpl2003\nimage: {{width: {WIDTH}, height: {HEIGHT}}}\n")
+        for path in ("./b.yaml", os.fsdecode(folder + b"/b.yaml"), folder + b"/b.yaml",
+                     pathlib.Path("b.yaml")):
+            board = stereotlm.Board(path)
+            self.assertEqual(board.run(*self.arrays, **ALONE).statistics, before)
+        self.answers(board)
+        board.run(synthetic=1, out="out")
+        self.assertEqual(len(board.sweep({"matcher.window": [5, 7]}, out="points.db")), 2)
+        pair = [shutil.copy(side, ".") for side in (self.left, self.right)]
+        self.assertEqual(board.run(*pair, **ALONE).statistics, before)
+        self.assertIn("run.json cannot name it", str(self.refusal(lambda: board.run(*pair, out="out"))))
+        self.assertEqual(len(os.listdir(b".")), 5)
 
 
 class Runs(PythonTest):
@@ -303,6 +408,29 @@ class Commands(PythonTest):
         self.assertRegex(str(self.refusal(lambda: board.sweep({"matcher.window": [6]}))),
                          "^the plan:3:.*: matcher.window = 6: 3..31, odd$")
 
+    def test_values_of_other_libraries(self):
+        board = small_board()
+        table = board.sweep({"matcher.window": [5, 7], "matcher.rows": [1, 2]})
+        for values in (table["matcher.window"], pandas.Index([5, 7]), {7, 5}, {7: 0, 5: 0}.keys(),
+                       [decimal.Decimal("5"), numpy.uint8(7)], numpy.array([5, 7]), (w for w in (5, 7))):
+            self.assertEqual(list(board.sweep({"matcher.window": values})["matcher.window"]), [5, 7])
+        clocks = board.sweep({"fpga.clock_mhz": [decimal.Decimal("39.9"), decimal.Decimal("1E+2")]})
+        self.assertEqual(list(clocks["fpga.clock_mhz"]), [39.9, 100])
+        both = table[["matcher.window", "matcher.rows"]]
+        where = pandas.Series(["matcher.rows < 2"])
+        self.assertEqual(len(board.sweep(zip=[both.iloc[[0, 3]]], where=where)), 1)
+        board.matcher.window = table["matcher.window"][3]
+        self.assertEqual(board.matcher.window, 7)
+        with self.assertRaisesRegex(TypeError, "vary.matcher.window = b'5': must be a number, a text"):
+            board.sweep({"matcher.window": [b"5"]})
+        with self.assertRaisesRegex(TypeError, "ssram.banks.b = <.*: must be a number"):
+            board.ssram.banks = {"b": object()}
+        self.addCleanup(os.chdir, os.getcwd())
+        os.chdir(self.folder)
+        for name in (":memory:", "file:x?mode=memory"):
+            self.assertEqual(len(board.sweep({"matcher.window": [5, 7]}, out=name)), 2)
+            self.assertTrue((self.folder / name).is_file())
+
     def test_tables_without_pandas(self):
         with unittest.mock.patch.dict(sys.modules, {"pandas": None}):
             banks = small_board(allocation__left_lut="bank0").run(**ALONE)
@@ -315,6 +443,10 @@ class Commands(PythonTest):
             explained = small_board().explain(**ALONE)
             self.assertEqual(explained.attrs["document"]["board"], "fpl2003")
             self.assertEqual(list(explained["key"])[0], explained.attrs["document"]["changes"][0]["key"])
+            for same in (copy.copy(explained), copy.deepcopy(explained), explained.copy(), explained[:],
+                         pickle.loads(pickle.dumps(explained))):
+                self.assertEqual((same.attrs, list(same)), (explained.attrs, list(explained)))
+            self.assertEqual(banks.banks.attrs, {"document": None})
         self.assertIsInstance(small_board().run(**ALONE).banks, pandas.DataFrame)
 
     def test_progress_is_shown_by_tqdm(self):
@@ -437,9 +569,15 @@ except KeyboardInterrupt:
         os.chdir(self.folder)
         self.assertIn("./board.yaml: ok", self.worker.execute("check", "./board.yaml").output)
 
+    def test_a_nul_is_refused_and_nothing_is_executed(self):
+        for words in (["check", "fpl2003\0"], ["boards\0--show"], ["run", "fpl2003", "--source=camera\0"]):
+            with self.assertRaisesRegex(stereotlm.Refused, "^'.*': a NUL character follows: must not be in"):
+                self.worker.execute(*words)
+        self.works()
+
     def test_text_that_is_no_text_is_refused_and_nothing_is_sent(self):
         with self.assertRaises(UnicodeEncodeError):
-            self.worker.execute("check", "/tmp/\udcff.yaml")
+            self.worker.execute("check", "/tmp/\ud8ff.yaml")
         self.works()
 
     def test_threads_share_one(self):
@@ -476,6 +614,16 @@ except KeyboardInterrupt:
             plan = self.file("plan.yaml", "board: fpl2003\nvary: {matcher.window: [3, 5]}\n")
             self.worker.execute("sweep", plan, "--out", "/dev/full")
 
+    def test_exceptions_keep_their_text_through_copies_and_processes(self):
+        refused = self.refusal(lambda: stereotlm.Board("nope"))
+        for error in (refused, stereotlm.Failed("it has failed"), stereotlm.WorkerDied("it has died")):
+            for same in (copy.copy(error), copy.deepcopy(error), pickle.loads(pickle.dumps(error))):
+                self.assertEqual((type(same), str(same), vars(same)), (type(error), str(error), vars(error)))
+        self.assertEqual(pickle.loads(pickle.dumps(refused)).problems, refused.problems)
+        with concurrent.futures.ProcessPoolExecutor(1) as pool, \
+                self.assertRaisesRegex(stereotlm.Refused, "^nope: not a preset"):
+            pool.submit(stereotlm.Board, "nope").result()
+
     def test_the_version_is_that_of_the_program(self):
         self.assertEqual(self.worker.execute("--version").output, f"stereotlm {stereotlm.__version__}\n")
 
@@ -484,6 +632,18 @@ except KeyboardInterrupt:
                 unittest.mock.patch.object(worker, "__file__", "/a/b/c/d/e/worker.py"), \
                 self.assertRaisesRegex(FileNotFoundError, "STEREOTLM_PROGRAM"):
             stereotlm.Worker().execute("boards")
+
+    def test_a_program_that_is_not_stereotlm(self):
+        old = self.file("old", "#!/bin/sh\necho stereotlm 0.0.9\n")
+        old.chmod(0o755)
+        for path, cause in ((self.folder / "none", "No such file"), (self.left, "Permission denied"),
+                            (self.folder, "Permission denied"), ("/bin/true", "it prints 'true"),
+                            (old, "it prints 'stereotlm 0.0.9'")):
+            rule = f"{path}: .*{cause}.*: must be the program stereotlm {stereotlm.__version__}$"
+            with unittest.mock.patch.dict(os.environ, {"STEREOTLM_PROGRAM": str(path)}):
+                for made, name in ((None, "STEREOTLM_PROGRAM"), (str(path), "program")):
+                    with self.assertRaisesRegex(FileNotFoundError, f"^{name} = {rule}"):
+                        stereotlm.Worker(made).execute("boards")
 
 
 class Protocol(ProgramTest):
@@ -505,16 +665,59 @@ class Protocol(ProgramTest):
         self.assertEqual(status, 0)
 
     def test_a_request_that_cannot_be_read_is_the_last(self):
-        big = b'{"arguments": ["boards"], "arrays": [{"name": "left", "shape": [65536, 65536, 2]}]}\n'
-        for request, text in ((b"boards\n", "parse error"), (b"[]\n", "a request of the worker"),
-                              (b'{"arguments": "boards"}\n', "must be array"),
-                              (b'{"arguments": [], "arrays": [{"name": "left", "shape": [400]}]}\nxx',
-                               "array left: ends early"),
-                              (big, "array left: must have at most 4294967296 bytes")):
+        of_shape = lambda shape: (b'{"arguments": ["boards"], "arrays": [{"name": "left", "shape": %b}]}\n'
+                                  % shape)
+        integers = "must be a list of integers, 0 or more"
+        most = "must have at most 4294967296 bytes"
+        for request, text in ((b"boards\n", "a request of the worker: not JSON from column 1 on"),
+                              (b'{"arguments": [}\n', "not JSON from column 16 on"), (b"\xff\n", "not JSON"),
+                              (b"1e999\n", "a number is too large"), (b"[]\n", "must be a JSON object"),
+                              (b"{}\n", "arguments: missing: must be a list of texts"),
+                              (b'{"arguments": "boards"}\n', 'arguments = "boards": must be a list of texts'),
+                              (b'{"arguments": [5]}\n', "arguments = [5]: must be a list of texts"),
+                              (b'{"arguments": [], "folder": 5}\n', "folder = 5: must be a text"),
+                              (b'{"arguments": [], "arrays": 5}\n', "arrays = 5: must be a list of arrays"),
+                              (b'{"arguments": [], "arrays": [5]}\n', "name: missing: must be a text"),
+                              (of_shape(b"400") + b"xx", "shape = 400: must be a list of integers"),
+                              (of_shape(b"[400]") + b"xx", "array left: ends early"),
+                              (of_shape(b"[1.5]"), f"array left: shape = [1.5]: {integers}"),
+                              (of_shape(b"[-1]"), f"shape = [-1]: {integers}"),
+                              (of_shape(b"[true]"), f"shape = [true]: {integers}"),
+                              (of_shape(b"[65536,65536,2]"), f"shape = [65536,65536,2]: {most}"),
+                              (of_shape(b"[4294967296,4294967296]"), most),  # 2^64
+                              (of_shape(b"[18446744073709551615]"), most),
+                              (of_shape(b"[18446744073709551616]"), integers),
+                              (b'{"arguments": [], "arrays": [{"name": "a", "shape": [1]}, '
+                               b'{"name": "a", "shape": [1]}]}\nxy', "array a: sent twice")):
             lines, status = self.answers(request + b'{"arguments": ["boards"]}\n')
             self.assertEqual([line.get("status") for line in lines], [None, 2], request)
             self.assertIn(text, lines[0]["message"])
             self.assertEqual(status, 0)
+
+    def test_arrays_that_the_command_does_not_take_are_refused(self):
+        request = (b'{"arguments": ["%b"], "arrays": [{"name": "left", "shape": [2]}, '
+                   b'{"name": "third", "shape": [0, 5]}]}\nxy')
+        lines, status = self.answers(request % b"boards" + request % b'run", "fpl2003' +
+                                     b'{"arguments": ["boards"]}\n')
+        self.assertEqual([line["status"] for line in lines if "status" in line], [2, 2, 0])
+        takes = "array {}: the command takes no array of this name"
+        problems = [[problem["rule"] for problem in line["problems"]] for line in lines if "problems" in line]
+        self.assertEqual(problems, [[takes.format("left"), takes.format("third")], [takes.format("third")], []])
+
+    def test_the_last_line_needs_no_newline(self):
+        lines, status = self.answers(b'{"arguments": ["boards"]}\n{"arguments": ["boards"]}')
+        self.assertEqual(([line["status"] for line in lines], status), ([0, 0], 0))
+
+    def test_too_little_memory_is_no_fault_of_the_request(self):
+        if program.HAS_ADDRESS_SANITIZER:
+            self.skipTest("the sanitizer needs more")
+        few = lambda: resource.setrlimit(resource.RLIMIT_AS, (1 << 31, 1 << 31))
+        request = b'{"arguments": ["run", "fpl2003"], "arrays": [{"name": "left", "shape": [4294967296]}]}\n'
+        process = subprocess.run([PROGRAM, "worker"], input=request, capture_output=True, check=False,
+                                 preexec_fn=few, timeout=60)
+        lines = [json.loads(line) for line in process.stdout.splitlines()]
+        self.assertEqual([line.get("message", line.get("status")) for line in lines],
+                         ["stereotlm: error: out of memory", 1])
 
     def test_a_folder_that_is_not_there_and_a_worker_in_a_worker(self):
         lines, status = self.answers(b'{"arguments": ["boards"], "folder": "/none"}\n'
@@ -525,8 +728,8 @@ class Protocol(ProgramTest):
 
     def test_a_folder_is_that_of_its_request_alone(self):
         self.file("b.yaml", "extends: fpl2003\nname: b\n")
-        there = json.dumps({"arguments": ["check", "./b.yaml"], "folder": str(self.folder)}).encode()
-        lines, _ = self.answers(there + b'\n{"arguments": ["check", "./b.yaml"]}\n' + there + b"\n")
+        there = json.dumps({"arguments": ["bounds", "./b.yaml"], "folder": str(self.folder)}).encode()
+        lines, _ = self.answers(there + b'\n{"arguments": ["bounds", "./b.yaml"]}\n' + there + b"\n")
         self.assertEqual([line["status"] for line in lines if "status" in line], [0, 2, 0])
 
     def test_a_process_that_dies_while_it_reads_arrays_ends_the_worker(self):

@@ -231,8 +231,10 @@ class Pictures(ProgramTest):
         path = self.folder / f"left_{strange}.png"
         pair, folder = ["--left", path, "--right", self.right], ["--sequence", self.folder]
         for options, name in (pair, path), (folder, path.name):
-            process = run("run", "fpl2003", *SMALL, *PRELOADED, *options, errors="surrogateescape")
+            command = ["run", "fpl2003", *SMALL, *PRELOADED, *options]
+            process = run(*command, "--out", self.out, errors="surrogateescape")
             self.refused_in_one_line(process, f"error: {options[0]} '{name}': a path that is not UTF-8")
+            self.succeeds(run(*command))
 
 
 class Environment(ProgramTest):
