@@ -200,9 +200,10 @@ class Board:
     def changed(self, sets, calibration=None):
         """A copy with other values: a dict by dotted paths, or a list of "KEY=VALUE" as in the tables of
         explain() and allocate(). `calibration`: the path of another one."""
-        files = {name: its for name, its in self._files.items() if not calibration or name == "board.yaml"}
+        files = {name: its for name, its in self._files.items() if calibration is None or name == "board.yaml"}
         changed = Board.__new__(Board)
-        changed._begin(self.board, calibration or self.calibration, _with(self._state[0], sets), files)
+        changed._begin(self.board, self.calibration if calibration is None else calibration,
+                       _with(self._state[0], sets), files)
         return changed
 
     def check(self):
@@ -289,8 +290,8 @@ class Board:
     def _execute(self, command, *words, sets=None, arrays=None):
         """Executes a command for the board, or for the board with other keys set."""
         board = f"./{self.board}" if self.board.startswith("-") else self.board  # not an option
-        options = self._calibration_words()
-        options += [f"--set={path}={text}" for path, text in (self._state[0] if sets is None else sets).items()]
+        sets = self._state[0] if sets is None else sets
+        options = [*self._calibration_words(), *(f"--set={path}={text}" for path, text in sets.items())]
         return execute(command, board, *options, *words, arrays={**self._files, **(arrays or {})})
 
     def _calibration_words(self):
@@ -312,7 +313,7 @@ class Board:
         board = copy.copy(self)  # whatever another thread changes
         arrays, options = _pictures(left, right, copy.deepcopy(options))
         changes = [options.pop(name, None) for name in ("set", "calibration")]
-        if any(changes):
+        if changes != [None, None]:
             board = board.changed(changes[0] or [], changes[1])
         if any(numpy.ndim(array) == 3 for array in arrays.values()) and not options.get("timing_only"):
             options["save_frames"] = True
@@ -378,7 +379,8 @@ class Board:
         files = {**self._files, "plan.yaml": numpy.frombuffer(text.encode(), numpy.uint8)}
         with temporary_folder() as folder:
             # An absolute path: for sqlite3, ":memory:" is no file.
-            database = pathlib.Path(folder) / "points.db" if out is None else out and pathlib.Path(out).absolute()
+            database = pathlib.Path(folder) / "points.db" if out is None else out
+            database = database and pathlib.Path(database).absolute()
             words += [*self._calibration_words(), *_options({"out": database, **options})]
             execute("sweep", "the plan", *words, arrays=files)
             return _points(database, varied)
