@@ -118,8 +118,9 @@ cv::Mat drawn(const kernels::RectificationTable& table, const Moves& moves, doub
 }
 
 std::string caption(const std::string& name, const Moves& moves, double arrows) {
+  const auto shown = [](double offset) { return std::round(10 * offset) / 10 + 0.0; };  // no "-0.0"
   return fmt::format("{} without its offset ({:+.1f}, {:+.1f}) px; arrows {:g} times as long", name,
-                     moves.offset.x, moves.offset.y, arrows);
+                     shown(moves.offset.x), shown(moves.offset.y), arrows);
 }
 
 constexpr int kMostLines = 31;

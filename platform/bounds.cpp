@@ -434,10 +434,10 @@ std::vector<RateBound> computer_bounds(const BoardConfig& board, const FrameAcce
 }
 
 void add_system_bound(const BoardConfig& board, const FrameAccesses& accesses, bool whole_pictures,
-                      Bound& bound) {
+                      Bound& bound, std::optional<std::uint64_t> frames) {
   bound.system = bound.core;
   bound.system_limited_by = bound.core_limited_by;
-  for (const RateBound& part : computer_bounds(board, accesses, whole_pictures)) {
+  for (const RateBound& part : computer_bounds(board, accesses, whole_pictures, frames)) {
     if (part.frames_per_second >= *bound.system) continue;
     bound.system = part.frames_per_second;
     bound.system_limited_by = part.resource;
@@ -454,16 +454,19 @@ std::vector<ResourceBound> turn_bounds(const BoardConfig& board, const FrameAcce
   return turn;
 }
 
-Bound core_bound(const BoardConfig& board, const FrameAccesses& accesses) {
+Bound core_bound(const BoardConfig& board, const FrameAccesses& accesses,
+                 std::optional<std::uint64_t> some_frames) {
   const std::vector<ResourceBound> turn = turn_bounds(board, accesses);
+  const std::uint64_t frames = some_frames.value_or(turn.size());
   std::uint64_t total = 0;
   ResourceBound slowest;
-  for (const ResourceBound& frame : turn) {
-    total += frame.cycles;
-    if (frame.cycles > slowest.cycles) slowest = frame;
+  for (std::uint64_t frame = 0; frame < frames; ++frame) {
+    const ResourceBound& its = turn[frame % turn.size()];
+    total += its.cycles;
+    if (its.cycles > slowest.cycles) slowest = its;
   }
   Bound bound;
-  bound.core = board.fpga.clock_mhz * 1e6 * static_cast<double>(turn.size()) / static_cast<double>(total);
+  bound.core = board.fpga.clock_mhz * 1e6 * static_cast<double>(frames) / static_cast<double>(total);
   bound.core_limited_by = slowest.resource;
   return bound;
 }

@@ -66,9 +66,10 @@ std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const FrameAcc
 // cycles. If several need as many, it is the last of them in the order of frame_bounds().
 std::vector<ResourceBound> turn_bounds(const BoardConfig& board, const FrameAccesses& accesses);
 
-// The upper bound for the frame rate of the core over whole turns of the allocation's lists, and the resource
-// that limits the slowest frame of a turn.
-Bound core_bound(const BoardConfig& board, const FrameAccesses& accesses);
+// The upper bound for the frame rate of the core over whole turns of the allocation's lists, or over frames
+// 0..frames-1; and the resource that limits the slowest of these frames.
+Bound core_bound(const BoardConfig& board, const FrameAccesses& accesses,
+                 std::optional<std::uint64_t> frames = std::nullopt);
 inline Bound core_bound(const BoardConfig& board, const Tables& tables) {
   return core_bound(board, frame_accesses(board, tables));
 }
@@ -99,9 +100,9 @@ std::vector<RateBound> computer_bounds(const BoardConfig& board, const FrameAcce
                                        std::optional<std::uint64_t> frames = std::nullopt);
 
 // Sets bound.system to the least of bound.core and the bounds of computer_bounds(), and
-// bound.system_limited_by to its resource.
+// bound.system_limited_by to its resource. `frames`: as for core_bound() and computer_bounds().
 void add_system_bound(const BoardConfig& board, const FrameAccesses& accesses, bool whole_pictures,
-                      Bound& bound);
+                      Bound& bound, std::optional<std::uint64_t> frames = std::nullopt);
 
 // An upper bound for the steady rate of a whole computer that loses no pixels: bound.system of core_bound()
 // and add_system_bound(), or a smaller one that also counts what the host moves in a bank beside a frame.

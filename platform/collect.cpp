@@ -143,17 +143,11 @@ void audit_captures(const ComputerStatistics& computer, const ComputerCounters& 
 void audit_rates(const BoardConfig& config, const FrameAccesses& accesses, bool whole_pictures,
                  const Statistics& statistics, Audit& audit) {
   constexpr double kRoundingFactor = 1 + 1e-9;  // rates are rounded quotients
-  const std::vector<ResourceBound> turn = turn_bounds(config, accesses);
-  std::uint64_t cycles = 0;
-  for (std::uint64_t frame = 0; frame < statistics.frames; ++frame)
-    cycles += turn[frame % turn.size()].cycles;
-  const double frames = static_cast<double>(statistics.frames);
-  double bound = config.fpga.clock_mhz * 1e6 * frames / static_cast<double>(cycles);
-  for (const RateBound& part : computer_bounds(config, accesses, whole_pictures, statistics.frames))
-    bound = std::min(bound, part.frames_per_second);
+  Bound of_frames = statistics.bound;
+  add_system_bound(config, accesses, whole_pictures, of_frames, statistics.frames);
   const FramesPerSecond& rate = statistics.frames_per_second;
   audit.at_most("frames_per_second.system", *rate.system, "the bound of these frames",
-                bound * kRoundingFactor);
+                *of_frames.system * kRoundingFactor);
   if (!rate.steady) return;
   audit.at_most("frames_per_second.steady - steady_uncertainty",
                 rate.steady->frames_per_second - rate.steady->uncertainty, "bound.system",
@@ -220,7 +214,7 @@ Statistics collect_statistics(const BoardConfig& config, const FrameAccesses& ac
   audit_arbiters(config, counters, audit);
   audit_flow(fpga::FrameGeometry(core_config(config)), counters, audit);
   if (statistics.frames > 0) {
-    statistics.bound = core_bound(config, accesses);
+    statistics.bound = core_bound(config, accesses, statistics.frames);
     audit_frames(statistics.frame_cycles, turn_bounds(config, accesses), audit);
   }
   statistics.failed = audit.failed();
@@ -240,8 +234,6 @@ Statistics collect_statistics(const BoardConfig& config, const Tables& tables, c
   Statistics statistics = collect_statistics(config, accesses, fidelity, frame_cycles, counters.board);
   const bool whole_pictures =
       counters.cameras[0].capture.dropped_pixels + counters.cameras[1].capture.dropped_pixels == 0;
-  add_system_bound(config, accesses, whole_pictures, statistics.bound);
-
   ComputerStatistics& around = statistics.computer.emplace();
   around.pci_clocks = counters.pci.clocks;
   around.pci_busy_clocks = counters.pci.busy_clocks;
@@ -255,6 +247,14 @@ Statistics collect_statistics(const BoardConfig& config, const Tables& tables, c
   around.cameras = {camera_statistics("left", counters.cameras[0]),
                     camera_statistics("right", counters.cameras[1])};
   derive_delivery_figures(deliveries, allocation_period_frames(config), statistics);
+  if (statistics.frames_per_second.steady) {
+    Bound of_turns = core_bound(config, accesses);
+    add_system_bound(config, accesses, whole_pictures, of_turns);
+    statistics.bound.system = of_turns.system;
+    statistics.bound.system_limited_by = of_turns.system_limited_by;
+  } else {
+    add_system_bound(config, accesses, whole_pictures, statistics.bound, statistics.frames);
+  }
 
   Audit audit;
   audit.equal("frames delivered", deliveries.size(), "frames of the core", statistics.frames);

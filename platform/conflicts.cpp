@@ -4,6 +4,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "platform/config/board_keys.h"
 #include "platform/config/buffer_layout.h"
 
 namespace stereotlm::platform {
@@ -56,9 +57,9 @@ void ConflictSums::check_tiles(const fpga::Requesters& requesters, const Statist
           port_name(requesters, cause[2]) == row.by)
         cycles_of_row += stalled;
     }
-    audit.equal(
-        "recorded: " + row.port + " on " + row.bank + " because of " + row.by + ": stalls in the tiles",
-        cycles_of_row, "blame", row.cycles);
+    audit.equal("recorded: " + row.port + " on " + bank_text(row.bank) + " because of " + row.by +
+                    ": stalls in the tiles",
+                cycles_of_row, "blame", row.cycles);
     blamed += row.cycles;
   }
   for (const auto& [cause, stalled] : blame) in_tiles += stalled;

@@ -65,12 +65,12 @@ struct FramesPerSecond {
   std::optional<SteadyRate> steady;  // nullopt where fewer than 2 * L frames are delivered
 };
 
-// Upper bounds for the rates `core` and `steady` of FramesPerSecond over whole turns of the allocation's
-// lists, and the resource that sets each of them.
+// Upper bounds for the rates of FramesPerSecond, and the resource that sets each of them. Those of a run are
+// of the frames that the rates are of (contract section 6).
 struct Bound {
-  double core = 0;                // frames per second
-  std::string core_limited_by;    // such as "port left_lut", "bank bank0"
-  std::optional<double> system;   // frames per second
+  double core = 0;               // frames per second
+  std::string core_limited_by;   // such as "port left_lut", "bank bank0"
+  std::optional<double> system;  // of the steady rate, or of the rate from power-up if there is no steady one
   std::string system_limited_by;  // such as "camera", "pci"; empty without a computer
 };
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <regex>
 #include <stdexcept>
 #include <type_traits>
 #include <unordered_map>
@@ -690,6 +691,11 @@ bool is_bank_name(std::string_view name) {
   return !name.empty() && letter(name[0]) && name != "none" &&
          std::all_of(name.begin(), name.end(),
                      [&](char c) { return letter(c) || (c >= '0' && c <= '9') || c == '_' || c == '-'; });
+}
+
+std::string bank_text(const std::string& name) {
+  static const std::regex parts(kPartNames, std::regex::ECMAScript | std::regex::icase);
+  return std::regex_match(name, parts) ? "bank " + name : name;
 }
 
 }  // namespace stereotlm::platform

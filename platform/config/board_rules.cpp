@@ -234,7 +234,7 @@ class RuleChecker {
       require(part.parts == 1 || cycles == of_first, {part.path(), kind}, [&] {
         return fmt::format(
             "{} = {}: its read latency is {}, that of {} is {}; all banks of a stripe need one", part.path(),
-            part.bank, cycles, board_.banks[first].name, of_first);
+            part.bank, cycles, bank_text(board_.banks[first].name), of_first);
       });
     }
   }

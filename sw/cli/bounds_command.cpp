@@ -23,12 +23,18 @@ using platform::ResourceBound;
 using Json = nlohmann::ordered_json;
 using Names = std::vector<std::string>;
 
+std::string text_of(const Names& banks) {
+  Names texts;
+  for (const std::string& bank : banks) texts.push_back(platform::bank_text(bank));
+  return fmt::format("{}", fmt::join(texts, ", "));
+}
+
 struct Row {
   std::string role;  // "port left_lut"; for a bank its buffers, "bank of left_image left_lut"
   std::uint64_t cycles = 0;
   Names banks;  // banks with this role; empty for a port
 
-  std::string label() const { return banks.empty() ? role : fmt::format("{}", fmt::join(banks, ", ")); }
+  std::string label() const { return banks.empty() ? role : text_of(banks); }
 };
 
 // Frames whose bounds differ only in the names of banks.
@@ -140,7 +146,7 @@ std::string lines_of(const Group& group, const BoardBounds& all) {
       (group.frames.size() == 1 ? "frame " : "frames ") + files::ranges_text(group.frames, ", ");
   const char* separator = ": ";
   for (const auto& [name, banks] : group.lists) {
-    text += fmt::format("{}{} in {}", separator, name, fmt::join(banks, ", "));
+    text += fmt::format("{}{} in {}", separator, name, text_of(banks));
     separator = "; ";
   }
   text +=
@@ -177,7 +183,8 @@ std::string area_lines(const BoardConfig& board) {
   constexpr const char* pins_row = "  {:<16} {:>6} {:>8} {:>8} {:>6}\n";
   text += "pins\n" + fmt::format(pins_row, "bank", "data", "control", "address", "all");
   for (const auto& [bank, pins] : platform::bank_pins(board))
-    text += fmt::format(pins_row, bank, pins.data, pins.control, pins.address, pins.all());
+    text +=
+        fmt::format(pins_row, platform::bank_text(bank), pins.data, pins.control, pins.address, pins.all());
   return text + fmt::format(pins_row, "local bus", "", "", "", area::kLocalBusPins) +
          fmt::format(pins_row, "clocks, status", "", "", "", area::kOtherPins);
 }
@@ -188,10 +195,15 @@ std::string text_of(const BoardBounds& all) {
   text += fmt::format("the whole computer, with all masters\n  {:<16} {:>14}\n", "resource", "frames/s");
   for (const platform::RateBound& part : all.computer)
     text += fmt::format("  {:<16} {:>14.3f}\n", stats::resource_text(part.resource), part.frames_per_second);
-  text += fmt::format("bound of the core: {:.3f} frames/s, limited by {}\n", all.bound.core,
-                      stats::resource_text(all.bound.core_limited_by));
-  text += fmt::format("bound of the computer: {:.3f} frames/s, limited by {}\n", *all.bound.system,
-                      stats::resource_text(all.bound.system_limited_by));
+  const std::uint64_t turn = platform::allocation_period_frames(all.board);
+  const auto bound_line = [&](const char* whole, double bound, const std::string& limited_by) {
+    const bool differs = all.groups.size() > 1 || (turn > 1 && platform::bank_of_resource(limited_by));
+    return fmt::format("bound of the {}: {:.3f} frames/s{}, limited by {}\n", whole, bound,
+                       differs ? fmt::format(" over whole turns of {} frames", turn) : "",
+                       stats::resource_text(limited_by));
+  };
+  text += bound_line("core", all.bound.core, all.bound.core_limited_by);
+  text += bound_line("computer", *all.bound.system, all.bound.system_limited_by);
   return text + area_lines(all.board);
 }
 
@@ -256,7 +268,8 @@ void add_bounds(Commands& commands) {
       "For each frame until the allocation's lists begin anew, equal ones together: the fewest FPGA cycles\n"
       "that a frame costs each resource alone, the frames a second that follow, and the headroom: the share\n"
       "of the slowest resource's time that it does not need. Then what cameras, PCI bus and bridge allow\n"
-      "with --source camera as long as no pixel is dropped. Last an estimate of what the core takes of its\n"
+      "with --source camera as long as no pixel is dropped, and the bounds of the core and the computer\n"
+      "over whole turns of these lists. Last an estimate of what the core takes of its\n"
       "FPGA. Tables, where the board has them, are the identity, or those of --calibration.");
 }
 

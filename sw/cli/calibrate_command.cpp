@@ -54,9 +54,11 @@ std::string rows_text(const RowError& error) {
 }
 
 std::string camera_text(const calib::CameraModel& camera) {
+  auto distortion = camera.distortion;
+  for (double& each : distortion) each = files::without_minus_zero(each, 4);
   return fmt::format("focal length {:.1f}, {:.1f} px, centre ({:.1f}, {:.1f}), distortion {:.4f}",
                      camera.matrix(0, 0), camera.matrix(1, 1), camera.matrix(0, 2), camera.matrix(1, 2),
-                     fmt::join(camera.distortion, " "));
+                     fmt::join(distortion, " "));
 }
 
 std::string pairs_text(const calib::CalibrationResult& result, std::size_t pictures) {

@@ -43,8 +43,8 @@ std::string shared_bank_text(const BoardConfig& board, const Explanation& explan
       std::count_if(all.begin(), all.end(), [&](const auto& buffer) { return buffer.bank == wait->bank; });
   const bool has_stripes = std::any_of(all.begin(), all.end(), [](const auto& b) { return b.parts > 1; });
   if (in_bank < 2 || has_stripes) return "";
-  return fmt::format("{} holds {} buffers: `stereotlm allocate` searches all their placements\n", wait->bank,
-                     in_bank);
+  return fmt::format("{} holds {} buffers: `stereotlm allocate` searches all their placements\n",
+                     platform::bank_text(wait->bank), in_bank);
 }
 
 // What has to be simulated cycle by cycle (FastForward), which takes longer.
@@ -107,13 +107,17 @@ std::string resources_text(const BoardConfig& board, const Explanation& explanat
       fmt::format("  {:>12} {:>8} {:>14}  {}\n", "headroom %", "busy %", "bound frames/s", "resource");
   for (auto first = all.begin(), next = first; first != all.end(); first = next) {
     const std::string kind = std::get<0>(values_of(*first));
-    std::vector<std::string> names = {first->name.substr(kind.size())};
+    const auto name_of = [&kind](const Explanation::Resource& resource) {
+      return kind == "port " ? resource.name.substr(kind.size()) : stats::resource_text(resource.name);
+    };
+    std::vector<std::string> names = {name_of(*first)};
     for (++next; next != all.end() && !kind.empty() && values_of(*next) == values_of(*first); ++next)
-      names.push_back(next->name.substr(kind.size()));
+      names.push_back(name_of(*next));
     std::string label = (kind == "port " ? kind : "") + stats::ports_text(names);
     if (first->varies)
       label += fmt::format(", in frame {} of {}", first->frame, platform::allocation_period_frames(board));
-    text += fmt::format("  {:>12.2f} {:>8.2f} {:>14.3f}  {}\n", first->headroom_percent, first->busy_percent,
+    text += fmt::format("  {:>12.2f} {:>8.2f} {:>14.3f}  {}\n",
+                        files::without_minus_zero(first->headroom_percent, 2), first->busy_percent,
                         first->frames_per_second, label);
   }
   return text;
@@ -124,8 +128,9 @@ std::string blames_text(const Explanation& explanation) {
   std::string text = "who waits for whom, % of the cycles of the frames\n";
   for (std::size_t row = 0; row < blames.size(); ++row) {
     if (row == kMostBlames) return text + "  and others, less\n";
-    text += fmt::format("  {:<12} on {:<12} for {:<14} {:>8.3f}\n", blames[row].port, blames[row].bank,
-                        stats::cause_text(blames[row].by), explanation.percent_of_cycles(blames[row].cycles));
+    text += fmt::format("  {:<12} on {:<12} for {:<14} {:>8.3f}\n", blames[row].port,
+                        platform::bank_text(blames[row].bank), stats::cause_text(blames[row].by),
+                        explanation.percent_of_cycles(blames[row].cycles));
   }
   return blames.empty() ? "no port waits for another\n" : text;
 }
@@ -146,11 +151,13 @@ std::string line_of(const Explanation::Step& found, const BoardConfig& board,
       saved > -kLeastSavedPercent && step.knob != kBankLess)
     return "";
   const double gained = found.rate.frames_per_second - now.frames_per_second;
-  std::string text = fmt::format("  {:>8.3f} {:>+8.3f} {:>+8.2f} {:>6} {:>4}  {}{}: {} -> {}",
-                                 found.rate.frames_per_second, gained, explanation.gained_percent(found),
-                                 its.slices == before.slices ? "0" : fmt::format("{:+.2f}", slices_percent),
-                                 signed_text(its.block_rams - before.block_rams), step.knob,
-                                 step.changes_disparities ? " *" : "", step.from, step.to);
+  std::string text = fmt::format(
+      "  {:>8.3f} {:>+8.3f} {:>+8.2f} {:>6} {:>4}  {}{}: {} -> {}", found.rate.frames_per_second,
+      files::without_minus_zero(gained, 3), files::without_minus_zero(explanation.gained_percent(found), 2),
+      its.slices == before.slices ? "0"
+                                  : fmt::format("{:+.2f}", files::without_minus_zero(slices_percent, 2)),
+      signed_text(its.block_rams - before.block_rams), step.knob, step.changes_disparities ? " *" : "",
+      step.from, step.to);
   if (its.multipliers != before.multipliers)
     text += fmt::format(", {:+} multipliers", its.multipliers - before.multipliers);
   if (const int pins = platform::pins_of(step.board) - platform::pins_of(board); pins != 0)

@@ -103,6 +103,10 @@ std::string base64(const void* bytes, std::size_t size) {
   return text;
 }
 
+double without_minus_zero(double number, int decimals) {
+  return std::abs(number) < 0.5 * std::pow(10, -decimals) ? 0 : number;
+}
+
 std::string shell_word(const std::string& word) {
   constexpr const char* kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=:,./@%";
   if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;

@@ -29,6 +29,9 @@ std::string shell_command(const std::vector<std::string>& words);
 // Ascending numbers with runs of them as ranges: "0, 2-5, 9" with the separator ", ".
 std::string ranges_text(const std::vector<std::uint64_t>& numbers, const std::string& separator);
 
+// The number, or 0 if it is shown as 0 with so many decimals: so it is not shown as "-0.00".
+double without_minus_zero(double number, int decimals);
+
 // The text of a JSON document in the form of the result files: keys in insertion order, two spaces of indent,
 // a container without containers on one line, numbers as the shortest decimals that read back equal, a
 // newline at the end. With `replaces`, bytes that are not UTF-8 are replaced; else a string with such bytes

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "models/area/area.h"
+#include "sw/files/text_forms.h"
 #include "sw/stats/accuracy.h"
 
 namespace stereotlm::paper {
@@ -45,9 +46,9 @@ std::string modelled_text(const Claim& claim, double modelled) {
 // The deviation, if there is one; in points if the printed value is a percentage.
 std::string deviation_text(const Claim& claim, const CaseFinding& finding) {
   if (claim.quantity == Quantity::kSlices)
-    return fmt::format("{:+.2f} points", finding.modelled - finding.of.printed);
+    return fmt::format("{:+.2f} points", files::without_minus_zero(finding.modelled - finding.of.printed, 2));
   const auto percent = deviation_percent(claim, finding);
-  return percent ? fmt::format("{:+.2f} %", *percent) : "";
+  return percent ? fmt::format("{:+.2f} %", files::without_minus_zero(*percent, 2)) : "";
 }
 
 std::string confirmed_text(const ClaimFinding& found) {
@@ -330,7 +331,8 @@ std::string costs_remarks(const ClaimFinding& found) {
   for (const CostRow& row : cost_rows(found)) {
     const bool is_first = row.cost == "sad";
     const auto change = [&](double Quality::*share) {
-      return is_first ? std::string() : fmt::format("{:+.3f}", row.change.*share);
+      return is_first ? std::string()
+                      : fmt::format("{:+.3f}", files::without_minus_zero(row.change.*share, 3));
     };
     text +=
         fmt::format("| {} | {} | {:.3f} | {:.3f} | {} | {} | {:.2f} | {} |\n", row.scene, row.cost,

@@ -186,14 +186,15 @@ std::string conflicts_text(const Json& document) {
   if (waits > kMostWaits)
     text += fmt::format("waits        {} others, less; all: --json\n", waits - kMostWaits);
   text += "rows              waits %";
-  for (const Json& bank : document["rows"].front()["banks"])
-    text += fmt::format(" {:>9}", bank["name"].get<std::string>() + " %");
+  const auto head_of = [](const Json& bank) { return platform::bank_text(bank["name"]) + " %"; };
+  for (const Json& bank : document["rows"].front()["banks"]) text += fmt::format(" {:>9}", head_of(bank));
   text += '\n';
   for (const Json& band : document["rows"]) {
     const std::string rows = range_text(band, "row");
     text += fmt::format("{:<15} {:>9.2f}", rows.empty() ? "fill" : rows, band["waits_percent"].get<double>());
     for (const Json& bank : band["banks"])
-      text += fmt::format(" {:>9.2f}", bank["accesses_percent"].get<double>());
+      text += fmt::format(" {:>{}.2f}", bank["accesses_percent"].get<double>(),
+                          std::max<std::size_t>(9, head_of(bank).size()));
     text += '\n';
   }
   return text;

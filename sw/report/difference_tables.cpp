@@ -73,7 +73,7 @@ std::string cause(const JudgedRun& a, const JudgedRun& b, bool b_is_faster) {
   if (largest.second >= more / 2) {
     const auto& [port, bank, by] = largest.first;
     return fmt::format("in {} {} waits {:.0f} cycles a frame more on {} for {}", b_is_faster ? "A" : "B",
-                       port, largest.second, bank, stats::cause_text(by));
+                       port, largest.second, platform::bank_text(bank), stats::cause_text(by));
   }
   return fmt::format("a frame takes {:.0f} cycles in A, limited by {}, and {:.0f} in B, limited by {}",
                      cycles_a_frame(a.stats), stats::resource_text(a.stats.at("bound").at("core_limited_by")),

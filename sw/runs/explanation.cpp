@@ -14,6 +14,7 @@
 #include "models/fpga/frame_geometry.h"
 #include "platform/config/board_area.h"
 #include "platform/figures.h"
+#include "sw/files/text_forms.h"
 #include "sw/process/streams.h"
 #include "sw/runs/progress.h"
 #include "sw/stats/console_table.h"
@@ -91,7 +92,7 @@ std::string lost_pixels_text(const Explanation& explanation) {
                   row.lost_pixels(), explanation.frames());
   for (const platform::BlameRow& wait : explanation.blames()) {
     if (wait.port == kHost && explanation.percent_of_cycles(wait.cycles) > 100 * kVisibleLoss)
-      return wait.bank + text + "; " + wait_of(explanation, wait);
+      return platform::bank_text(wait.bank) + text + "; " + wait_of(explanation, wait);
   }
   const std::vector<Explanation::Resource>& all = explanation.resources();
   const auto busy_of = [&all](const char* name) {
@@ -113,7 +114,8 @@ std::string lost_pixels_text(const Explanation& explanation) {
 std::string waits_text(const Explanation& explanation) {
   const std::string cost = fmt::format("all waits cost {:.2f} % of the time", explanation.budget().waits);
   const auto wait = longest_wait(explanation);
-  return wait ? fmt::format("waits at {}: {}; {}", wait->bank, wait_of(explanation, *wait), cost)
+  return wait ? fmt::format("waits at {}: {}; {}", platform::bank_text(wait->bank),
+                            wait_of(explanation, *wait), cost)
               : "waits for banks: " + cost;
 }
 
@@ -145,7 +147,7 @@ std::string queues_text(const Explanation& explanation) {
         percent);
   }
   return fmt::format("the queues of the core and the latencies of its banks, which cost {:.2f} % of the time",
-                     explanation.budget().queues);
+                     files::without_minus_zero(explanation.budget().queues, 2));
 }
 
 std::string core_waits_text(const Explanation& explanation) {
@@ -395,7 +397,7 @@ void Explanation::add_resource(const Resource& found) {
 
 void Explanation::compare_resources(const std::vector<double>& frame_cycles) {
   const double clock_hz = board_.fpga.clock_mhz * 1e6;
-  const double stretch = clock_hz / mean_of(frame_cycles) / now_.frames_per_second;
+  const double stretch = run_.camera ? clock_hz / mean_of(frame_cycles) / now_.frames_per_second : 1;
   for (std::size_t frame = 0; frame < std::min(bounds_.size(), frame_cycles.size()); ++frame) {
     for (const platform::ResourceBound& bound : bounds_[frame]) {
       if (run_.camera && platform::bank_of_resource(bound.resource))

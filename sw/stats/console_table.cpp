@@ -20,9 +20,10 @@ double share(std::uint64_t part, std::uint64_t whole) {
   return whole == 0 ? 0 : static_cast<double>(part) / static_cast<double>(whole);
 }
 
-std::string bound_line(const char* name, double bound, const std::string& limited_by) {
-  return fmt::format("{:<14} {:>8.3f} frames/s   limited by {}\n", name, bound,
-                     shortened(resource_text(limited_by), 48));
+std::string bound_line(const char* name, double bound, const std::string& limited_by,
+                       const std::string& frames = "") {
+  return fmt::format("{:<14} {:>8.3f} frames/s{}   limited by {}\n", name, bound, frames,
+                     shortened(resource_text(limited_by), 48 - frames.size()));
 }
 
 std::string rate_lines(const platform::Statistics& statistics) {
@@ -44,7 +45,8 @@ std::string computer_rate_lines(const platform::Statistics& statistics) {
                   : " frames/s   from power-up; too few frames for a steady rate";
   return fmt::format("{:<14} {:>8.3f}{}\n", "computer",
                      rate.steady ? rate.steady->frames_per_second : *rate.system, rest) +
-         bound_line("computer bound", *statistics.bound.system, statistics.bound.system_limited_by);
+         bound_line("computer bound", *statistics.bound.system, statistics.bound.system_limited_by,
+                    turns_text(statistics));
 }
 
 std::string pci_lines(const platform::ComputerStatistics& computer, const platform::BoardConfig& board) {
@@ -90,12 +92,13 @@ std::string computer_lines(const platform::ComputerStatistics& computer, const p
 
 std::string bank_lines(const platform::Statistics& statistics, double clock_mhz) {
   std::size_t width = 12;
-  for (const auto& bank : statistics.banks) width = std::max(width, shortened(bank.name).size());
+  const auto name_of = [](const auto& bank) { return shortened(platform::bank_text(bank.name)); };
+  for (const auto& bank : statistics.banks) width = std::max(width, name_of(bank).size());
   std::string text = fmt::format("{:<{}} {:>14} {:>14} {:>7} {:>9} {:>9}\n", "bank", width, "reads", "writes",
                                  "busy %", "MB/s", "peak MB/s");
   for (const auto& bank : statistics.banks) {
-    text += fmt::format("{:<{}} {:>14} {:>14} {:>7.2f} {:>9.2f} {:>9.2f}\n", shortened(bank.name), width,
-                        bank.reads, bank.writes, 100 * bank.utilization, bank.megabytes_per_second,
+    text += fmt::format("{:<{}} {:>14} {:>14} {:>7.2f} {:>9.2f} {:>9.2f}\n", name_of(bank), width, bank.reads,
+                        bank.writes, 100 * bank.utilization, bank.megabytes_per_second,
                         bank.ports * kBytesPerWord * clock_mhz);
   }
   return text;
@@ -112,9 +115,10 @@ std::string wait_lines(const platform::Statistics& statistics,
                                  wait_text(longest->port, shortened(longest->bank, 12), longest->by),
                                  longest->cycles, 100 * share(longest->cycles, statistics.cycles));
   if (waitless_frames_per_second) {
-    text += fmt::format("{:<12} {:>10.3f} frames/s   of {:.3f}, which the core reaches without waits\n",
-                        "waits cost", *waitless_frames_per_second - statistics.frames_per_second.core,
-                        *waitless_frames_per_second);
+    text += fmt::format(
+        "{:<12} {:>10.3f} frames/s   of {:.3f}, which the core reaches without waits\n", "waits cost",
+        files::without_minus_zero(*waitless_frames_per_second - statistics.frames_per_second.core, 3),
+        *waitless_frames_per_second);
   }
   return text;
 }

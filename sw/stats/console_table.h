@@ -7,6 +7,7 @@
 
 #include "platform/bounds.h"
 #include "platform/config/board_config.h"
+#include "platform/config/board_keys.h"
 #include "platform/statistics.h"
 #include "sw/stats/accuracy.h"
 
@@ -21,7 +22,7 @@ inline std::string cause_text(const std::string& by) {
 
 // "left_lut on bank0 for left_pixel"
 inline std::string wait_text(const std::string& port, const std::string& bank, const std::string& by) {
-  return port + " on " + bank + " for " + cause_text(by);
+  return port + " on " + platform::bank_text(bank) + " for " + cause_text(by);
 }
 
 // The port group of a port: "left_lut" of "left_lut.3".
@@ -30,9 +31,10 @@ inline std::string group_text(const std::string& port) { return port.substr(0, p
 // Ports, the lanes of a group as a range: "left_lut.0-2, result". `ports`: in the order of the board.
 std::string ports_text(const std::vector<std::string>& ports);
 
-// The name of a resource of the bounds, such as "bank bank0", for people: "bank0".
+// The name of a resource of the bounds, such as "bank bank0", for people: "bank0". "bank matcher" stays.
 inline std::string resource_text(const std::string& resource) {
-  return platform::bank_of_resource(resource).value_or(resource);
+  const std::optional<std::string> bank = platform::bank_of_resource(resource);
+  return bank ? platform::bank_text(*bank) : resource;
 }
 
 // The same in a sentence: "the matcher", "the cameras", "bank0".
@@ -42,6 +44,13 @@ inline std::string resource_words(const std::string& resource) {
   if (resource == "pci") return "the PCI bus";
   if (resource == "bridge") return "the PCI bridge";
   return resource_text(resource);
+}
+
+// Says behind the bound of the computer that it is of whole turns (contract section 6), where the rate from
+// power-up, which is of other frames, is above it. Else empty.
+inline const char* turns_text(const platform::Statistics& run) {
+  const bool is_above = run.frames_per_second.system.value_or(0) > run.bound.system.value_or(0);
+  return is_above ? " over whole turns" : "";
 }
 
 // What the table shows beside the statistics.

@@ -331,7 +331,7 @@ class Rows {
                                "cycles");
     }
     for (std::size_t bank = 0; bank < board.banks.size(); ++bank) {
-      const std::string& name = board.bank_name(bank);
+      const std::string& name = board.bank_texts[bank];
       const bool is_separate = board.has_separate_ports(bank);
       banks_.push_back({{file, TrackGroup::kBanks, 5 * bank, is_separate ? name + " reads" : name}});
       banks_.push_back({{file, TrackGroup::kBanks, 5 * bank + 1, name + " writes"}});
@@ -395,7 +395,7 @@ class Rows {
       }
       write_run(ports_[run->requester], *run,
                 fmt::format("{} {} x{}", board_.requesters.writes(run->requester) ? "writes" : "reads",
-                            board_.bank_name(run->bank), run->count),
+                            board_.bank_texts[run->bank], run->count),
                 flows);
       write_run(banks_[bank_track(board_, run->bank, run->requester)], *run,
                 fmt::format("{} x{}", board_.requester_names[run->requester], run->count), {});
@@ -458,7 +458,7 @@ class Cycles {
       ports_.emplace_back(file, TrackGroup::kPorts, 3 * requester + 1,
                           board.requester_names[requester] + " cycles");
     for (std::size_t bank = 0; bank < board.banks.size(); ++bank) {
-      const std::string& name = board.bank_name(bank);
+      const std::string& name = board.bank_texts[bank];
       const std::string first = board.has_separate_ports(bank) ? " read cycles" : " cycles";
       banks_.emplace_back(file, TrackGroup::kBanks, 5 * bank + 2, name + first);
       banks_.emplace_back(file, TrackGroup::kBanks, 5 * bank + 3, name + " write cycles");
@@ -638,7 +638,7 @@ class Computer {
       bus.waits.free_at(request).slice(request, address, fmt::format("{} waits", burst.master), {});
     PerfettoTrack& track = bus.bursts.free_at(address);
     track.begin(address,
-                fmt::format("{} {} {}", burst.master, burst.write ? "writes" : "reads", burst.target),
+                fmt::format("{} {} {}", burst.master, burst.write ? "writes" : "reads", target_text(burst)),
                 {{"address", burst.address}, {"words", burst.words}});
     track.slice(address, data, "address", {});
     if (data < end) track.slice(data, end, "data", {});

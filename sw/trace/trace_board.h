@@ -12,8 +12,11 @@
 #include "models/clock.h"
 #include "models/fpga/core_ports.h"
 #include "models/fpga/frame_geometry.h"
+#include "models/fpga/local_bus_control.h"
 #include "models/fpga/record/conflict_recorder.h"
 #include "platform/config/board_config.h"
+#include "platform/config/board_keys.h"
+#include "platform/trace_records.h"
 
 namespace stereotlm::trace {
 
@@ -34,6 +37,7 @@ struct TraceBoard {
         requesters(platform::core_ports(board)) {
     for (std::size_t requester = 0; requester < requesters.causes(); ++requester)
       requester_names.push_back(requesters.name(requester));
+    for (const platform::BankConfig& bank : banks) bank_texts.push_back(platform::bank_text(bank.name));
   }
 
   std::uint64_t ps(std::uint64_t cycle) const { return clock.edge_ps(cycle); }
@@ -41,7 +45,7 @@ struct TraceBoard {
   // The name of the slice of a wait.
   std::string wait_text(std::size_t requester, std::uint64_t cycles, std::size_t by, std::size_t bank) const {
     return fmt::format("{} waits {} cycle{} for {} on {}", requester_names[requester], cycles,
-                       cycles == 1 ? "" : "s", requester_names[by], bank_name(bank));
+                       cycles == 1 ? "" : "s", requester_names[by], bank_texts[bank]);
   }
   // Whether two ports can be granted in one cycle: one that reads and one that writes.
   bool has_separate_ports(std::size_t bank) const { return memory::has_separate_ports(banks[bank].kind); }
@@ -96,8 +100,15 @@ struct TraceBoard {
   std::vector<platform::BankConfig> banks;
   fpga::Requesters requesters;
   std::vector<std::string> requester_names;  // [requester], then the other causes
+  std::vector<std::string> bank_texts;       // [bank]: its name in a text
 
   const fpga::CorePorts& ports() const { return requesters.ports(); }
 };
+
+// The name of the target of a burst, in a text.
+inline std::string target_text(const platform::BusBurst& burst) {
+  const bool is_bank = burst.bus == platform::BusBurst::Bus::kLocal && burst.address < fpga::kLocalRegisters;
+  return is_bank ? platform::bank_text(burst.target) : burst.target;
+}
 
 }  // namespace stereotlm::trace

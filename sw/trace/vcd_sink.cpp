@@ -71,7 +71,8 @@ struct Signals {
     unsigned request_bits = 1;
     while (board.ports().size() >> request_bits != 0) ++request_bits;
     for (std::size_t bank = 0; bank < board.banks.size(); ++bank) {
-      const std::string& name = board.bank_name(bank);
+      std::string name = board.bank_texts[bank];
+      std::replace(name.begin(), name.end(), ' ', '_');
       banks.push_back(add(Group::kBanks, name, "requests", request_bits, 0));
       const bool is_separate = board.has_separate_ports(bank);
       add_words(Group::kBanks, name, {{is_separate ? "read_owner" : "owner", "-"}});
@@ -395,7 +396,7 @@ class VcdSink : public TraceSink {
     for (const char* intent : {"waits", "passes", "idle", "blocked", "starved"})
       intents_.push_back(signals_.word(intent));
     for (const std::string& name : board_.requester_names) requesters_.push_back(signals_.word(name));
-    for (const platform::BankConfig& bank : board_.banks) banks_.push_back(signals_.word(bank.name));
+    for (const std::string& bank : board_.bank_texts) banks_.push_back(signals_.word(bank));
     for (const char* traffic : {"capture", "upload", "read-back"})
       traffics_.push_back(signals_.word(traffic));
   }
@@ -425,7 +426,7 @@ class VcdSink : public TraceSink {
     stream.add(burst.address_ps, first + kBusOwner, signals_.word(burst.master));
     stream.add(burst.address_ps, first + kPhase, signals_.word("address"));
     stream.add(burst.address_ps, first + kDirection, access_word(burst.write));
-    stream.add(burst.address_ps, first + kTarget, signals_.word(burst.target));
+    stream.add(burst.address_ps, first + kTarget, signals_.word(target_text(burst)));
     stream.add(burst.address_ps, first + kBusAddress, static_cast<std::uint32_t>(address));
     stream.add(burst.data_ps, first + kPhase, signals_.word("data"));
     for (std::uint32_t signal = first; signal <= first + kBusAddress; ++signal)

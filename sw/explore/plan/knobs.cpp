@@ -93,8 +93,10 @@ class Steps {
     if (!left || !right) return;
     if (!board_.fpga.joint_tables) {
       for (const platform::BufferBanks& banks : {*left, *right}) {
-        const std::string in = fmt::format("{}", fmt::join(banks.banks, ", "));
-        add_best({"fpga.tables", "separate", "joint in " + in}, [&](BoardConfig& b) {
+        std::string in;
+        for (const std::string& bank : banks.banks)
+          in += (in.empty() ? "joint in " : ", ") + platform::bank_text(bank);
+        add_best({"fpga.tables", "separate", in}, [&](BoardConfig& b) {
           b.fpga.joint_tables = true;
           b.allocation.left_lut = b.allocation.right_lut = banks;
         });
@@ -110,7 +112,8 @@ class Steps {
       return buffers_in(bank.name) == 0 && can_hold(bank, right_lut);
     });
     if (free != board_.banks.end()) separate.allocation.right_lut = free->name;
-    const std::string to = "separate, right_lut in " + separate.allocation.right_lut->banks.front();
+    const std::string to =
+        "separate, right_lut in " + platform::bank_text(separate.allocation.right_lut->banks.front());
     add_best({"fpga.tables", "joint", to}, [&](BoardConfig& b) { b = separate; });
   }
 
@@ -218,10 +221,11 @@ class Steps {
     const std::size_t size = board_.allocation.left_image.size();
     for (const std::string& left : quiet_banks(Buffer::kLeftImage)) {
       for (const std::string& right : quiet_banks(Buffer::kRightImage)) {
-        lengthen(pairs, size, left + " and " + right, [&](BoardConfig& b) {
-          b.allocation.left_image.push_back(left);
-          b.allocation.right_image.push_back(right);
-        });
+        lengthen(pairs, size, platform::bank_text(left) + " and " + platform::bank_text(right),
+                 [&](BoardConfig& b) {
+                   b.allocation.left_image.push_back(left);
+                   b.allocation.right_image.push_back(right);
+                 });
       }
     }
     add({pairs, counted(size), counted(size - 1)}, [](BoardConfig& b) {
@@ -231,7 +235,8 @@ class Steps {
     const std::string results = key_of(Buffer::kDisparity);
     const std::size_t count = board_.allocation.disparity.size();
     for (const std::string& bank : quiet_banks(Buffer::kDisparity))
-      lengthen(results, count, bank, [&](BoardConfig& b) { b.allocation.disparity.push_back(bank); });
+      lengthen(results, count, platform::bank_text(bank),
+               [&](BoardConfig& b) { b.allocation.disparity.push_back(bank); });
     add({results, counted(count), counted(count - 1)},
         [](BoardConfig& b) { b.allocation.disparity.pop_back(); });
   }
@@ -244,7 +249,7 @@ class Steps {
     while (std::any_of(board_.banks.begin(), board_.banks.end(), is_name)) name += '_';
     for (const PlacedBuffer& buffer : platform::buffers(board_)) {
       if (buffers_in(buffer.bank) < 2) continue;
-      const std::string from = fmt::format("{} in {}", buffer.label(), buffer.bank);
+      const std::string from = fmt::format("{} in {}", buffer.label(), platform::bank_text(buffer.bank));
       const auto move_to = [&](const std::string& bank, const std::string& to, const auto& prepare) {
         add_best({"a bank more", from, to}, [&](BoardConfig& b) {
           prepare(b);
@@ -255,7 +260,7 @@ class Steps {
       for (const BankConfig& bank : board_.banks) {
         if (buffers_in(bank.name) > 0 || !can_hold(bank, buffer)) continue;
         is_held = true;
-        move_to(bank.name, "in " + bank.name, [](BoardConfig& /*board*/) {});
+        move_to(bank.name, "in " + platform::bank_text(bank.name), [](BoardConfig& /*board*/) {});
       }
       if (is_held) continue;
       move_to(name, "in a new bank", [&](BoardConfig& b) {
@@ -269,7 +274,8 @@ class Steps {
     for (const BankConfig& left : board_.banks) {
       for (const BankConfig& taking : board_.banks) {
         if (left.name == taking.name || buffers_in(left.name) == 0 || buffers_in(taking.name) == 0) continue;
-        add_best({"a bank less", left.name, "into " + taking.name}, [&](BoardConfig& b) {
+        const std::string into = "into " + platform::bank_text(taking.name);
+        add_best({"a bank less", platform::bank_text(left.name), into}, [&](BoardConfig& b) {
           for (const PlacedBuffer& buffer : platform::buffers(board_)) {
             if (buffer.bank == left.name) move_buffer(b, buffer, taking.name);
           }

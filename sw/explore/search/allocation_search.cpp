@@ -164,7 +164,7 @@ std::string allocation_text(const platform::BoardConfig& board) {
   std::optional<platform::Buffer> last;
   for (const PlacedBuffer& buffer : platform::buffers(board)) {
     if (buffer.buffer != last) text += (text.empty() ? "" : ", ") + std::string(name_of(buffer.buffer));
-    text += ' ' + buffer.bank;
+    text += ' ' + platform::bank_text(buffer.bank);
     last = buffer.buffer;
   }
   return text;

@@ -306,7 +306,8 @@ Lines subtitle_of(const ChartView& view) {
   }
   lines.push_back(fmt::format("{}; {}", text, count_of(static_cast<int>(view.run->frames), "frame")));
   lines.push_back(
-      fmt::format("bound {} frames/s, set by {}", rate_text(bound.system.value_or(bound.core)),
+      fmt::format("bound {} frames/s{}, set by {}", rate_text(bound.system.value_or(bound.core)),
+                  stats::turns_text(*view.run),
                   stats::resource_words(bound.system ? bound.system_limited_by : bound.core_limited_by)));
   return lines;
 }
@@ -412,7 +413,10 @@ class Chart {
     for (const ChartLink& link : links) {
       Edge edge;
       edge.link = link;
-      const std::string ends = fmt::format("{} - {}", name_of_block(link.from), name_of_block(link.to));
+      const std::string from = name_of_block(link.from);
+      const std::string to = name_of_block(link.to);
+      const bool is_to_bank = link.to.compare(0, 5, "bank-") == 0;
+      const std::string ends = fmt::format("{} - {}", from, is_to_bank ? platform::bank_text(to) : to);
       edge.label = short_number(link.peak);
       edge.title = fmt::format("{}: peak {} MB/s", ends, edge.label);
       if (run_ != nullptr) {
@@ -574,13 +578,13 @@ class Chart {
       busy = fmt::format("busy {} %", measured(busy_percent));
     }
     open_block("bank-" + bank.name,
-               fmt::format("{}: {}\n{}, {}{}{}", bank.name, rate, size, kind,
+               fmt::format("{}: {}\n{}, {}{}{}", platform::bank_text(bank.name), rate, size, kind,
                            busy.empty() ? "" : "\n" + busy + " of the cycles", held),
                bank.box, busy.empty() ? "memory" : "free");
     const std::string load = load_colour(busy_percent, 100);
     if (!busy.empty()) blocks_ += rect_element(bank.box, 4, paint("fill", load) + " fill-opacity=\"0.2\"");
     const double rate_width = text_width(rate, kNote.size, kNote.bold);
-    blocks_ += text_element(bank.name, kName, left, y, width - rate_width - 8) +
+    blocks_ += text_element(platform::bank_text(bank.name), kName, left, y, width - rate_width - 8) +
                text_element(rate, kNote, right, y + 1.5, width, "end");
     y += kNameStep;
     if (!busy.empty()) {

@@ -87,19 +87,26 @@ Json banks_of(const BoardConfig& board) {
   return all;
 }
 
-Json bounds_of(const BoardConfig& board, const platform::Tables& tables, bool camera) {
+// Of the frames that the rate of the run is of: whole turns, or without a steady rate its own frames.
+Json bounds_of(const BoardConfig& board, const platform::Tables& tables, const platform::Statistics& run) {
   const platform::FrameAccesses accesses = platform::frame_accesses(board, tables);
+  const std::uint64_t turn = platform::allocation_period_frames(board);
+  const std::uint64_t frames = run.frames_per_second.steady ? turn : run.frames;
   Json core = Json::array();
-  for (std::uint64_t frame = 0; frame < platform::allocation_period_frames(board); ++frame) {
+  for (std::uint64_t frame = 0; frame < std::min(turn, frames); ++frame) {
     Json resources = Json::array();
     for (const platform::ResourceBound& bound : platform::frame_bounds(board, accesses, frame))
       resources.push_back({{"resource", bound.resource}, {"cycles", bound.cycles}});
     core.push_back(std::move(resources));
   }
   Json bounds = {{"core", std::move(core)}};
-  if (!camera) return bounds;
+  if (!run.computer) return bounds;
   bounds["computer"] = Json::array();
-  for (const platform::RateBound& bound : platform::computer_bounds(board, accesses, true)) {
+  const bool whole_pictures =
+      std::all_of(run.computer->cameras.begin(), run.computer->cameras.end(),
+                  [](const platform::CameraStatistics& camera) { return camera.dropped_pixels == 0; });
+  for (const platform::RateBound& bound :
+       platform::computer_bounds(board, accesses, whole_pictures, frames)) {
     bounds["computer"].push_back(
         {{"resource", bound.resource}, {"frames_per_second", bound.frames_per_second}});
   }
@@ -188,7 +195,7 @@ Json run_data(const runs::RecordedRun& run, const platform::Tables& tables) {
       {"config_yaml", read("config.yaml")},
       {"settings", settings_of(board)},
       {"banks", banks_of(board)},
-      {"bounds", bounds_of(board, tables, run.options.source == "camera")},
+      {"bounds", bounds_of(board, tables, run.statistics)},
       {"area", area_data(board)},
       {"identities", identities_of(run)},
       {"memory_chart", memory_chart_svg({board, run.statistics.computer.has_value(), &run.statistics})}};

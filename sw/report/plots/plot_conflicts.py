@@ -4,6 +4,7 @@ for banks."""
 
 import json
 import os
+import re
 from collections import Counter
 
 import command
@@ -39,6 +40,7 @@ class Recorded:
         self.banks = [name for name in shares if not name.endswith(STALLS) and shares[name].any()]
         self.waiting = [name for name in shares if name.endswith(STALLS) and shares[name].any()]
         frames = self.about["frames"]
+        self._is_part = re.compile(self.about.get("part_names", "(?!)"), re.IGNORECASE).fullmatch
         self.note = f"Board {self.about['board']}; {frames} frame{'s' if frames > 1 else ''}."
 
     def _columns(self, rows):
@@ -63,6 +65,14 @@ class Recorded:
                     amounts[bank] = amounts.get(bank, 0) + column
         return {name: 100 * amount / numpy.maximum(columns["cycles"], 1) for name, amount in amounts.items()}
 
+    def bank_text(self, bank):
+        """The name of a bank in a figure: "bank matcher" where the model has a part of this name."""
+        return f"bank {bank}" if self._is_part(bank) else bank
+
+    def name_of(self, column):
+        """The name in a figure of a column of shares()."""
+        return column[: -len(STALLS)] + " waits" if column.endswith(STALLS) else self.bank_text(column)
+
     def causes(self):
         """{(port, bank, by): cycles}"""
         causes = {}
@@ -72,10 +82,6 @@ class Recorded:
             cycles = int(row["cycles"])
             causes[key] = causes.get(key, 0) + (cycles / self._lanes[port] if port != row["port"] else cycles)
         return causes
-
-
-def name_of(column):
-    return column[: -len(STALLS)] + " waits" if column.endswith(STALLS) else column
 
 
 def bank_rows(recorded, options):
@@ -96,7 +102,7 @@ def bank_rows(recorded, options):
     axes.invert_yaxis()
     axes.grid(False)
     axes.set_ylabel("row of the picture")
-    axes.set_xticks([number + 0.5 for number in range(len(columns))], [name_of(name) for name in columns],
+    axes.set_xticks([number + 0.5 for number in range(len(columns))], map(recorded.name_of, columns),
                     rotation=30, ha="right", fontsize=style.SMALL_SIZE)
     for number in range(1, len(columns)):
         axes.axvline(number, color="white", linewidth=1 if number != len(recorded.banks) else 4)
@@ -142,9 +148,10 @@ def time_line(recorded, options):
                   options.format)
     colors = {bank: BANK_COLORS[number % len(BANK_COLORS)] for number, bank in enumerate(recorded.banks)}
     waiting = {name: style.COLORS[number % len(style.COLORS)] for number, name in enumerate(recorded.waiting)}
-    sheet.legend([(style.line_handle(color, "", style.DASHES[number // len(BANK_COLORS) % 4]), bank)
+    sheet.legend([(style.line_handle(color, "", style.DASHES[number // len(BANK_COLORS) % 4]),
+                   recorded.bank_text(bank))
                   for number, (bank, color) in enumerate(colors.items())])
-    sheet.legend([(Patch(color=color), name_of(name)) for name, color in waiting.items()])
+    sheet.legend([(Patch(color=color), recorded.name_of(name)) for name, color in waiting.items()])
     sheet.note(f"Frame {recorded.about['frame']}, the one with the most cycles, by rows of results; the "
                f"first step "
                "is the time before the first results. " + recorded.note)
@@ -185,7 +192,8 @@ def causes(recorded, options):
     sheet = Sheet("Which port waits at which bank, and for whom", options.size, options.format)
     sheet.legend([(Patch(color=colors[by]), by if by in OTHER_CAUSES else f"for {by}") for by in blamed])
     sheet.note(recorded.note)
-    widest = max(style.text_width(f"{port} on {bank}", style.SIZE) for bank, port in places)
+    names = [f"{port} on {recorded.bank_text(bank)}" for bank, port in places]
+    widest = max(style.text_width(name, style.SIZE) for name in names)
     panels = sheet.grid([0.3 + 0.3 * len(places)], 1, widest + 0.3, 0.2)
     for number, (bank, port) in enumerate(places):
         at = 0
@@ -193,7 +201,7 @@ def causes(recorded, options):
             width = lost.get((port, bank, by), 0) / frames / factor
             panels[0].barh(number, width, 0.6, at, color=colors[by], linewidth=0)
             at += width
-    panels[0].set_yticks(range(len(places)), [f"{port} on {bank}" for bank, port in places])
+    panels[0].set_yticks(range(len(places)), names)
     panels[0].set_ylim(len(places) - 0.4, -0.6)
     panels[0].grid(False, axis="y")
     ticks_of_columns(panels, most / frames / factor)

@@ -70,8 +70,8 @@ def table1(folder, options):
                             linewidth=1,
                             zorder=3)
         if row["verdict"] != "confirmed":
-            deviations.annotate(f"{percent:+.2f} %", (x, percent), (8, -3), textcoords="offset points",
-                                fontsize=8)
+            deviations.annotate(f"{round(percent, 2) + 0.0:+.2f} %", (x, percent), (8, -3),
+                                textcoords="offset points", fontsize=8)
     most = max(abs(percent) + half for percent, half in zip(percents, halves))
     rule_panel(deviations, tolerance, 1.15 * most, "model less\npaper, %", "window n, pixels (of n x n)", xs)
     return sheet

@@ -215,6 +215,21 @@ class Bounds(ProgramTest):
         self.assertLess(alone["bank1"][0], shared["bank0"][0])
         self.assertTrue(last.endswith("limited by bank0"), last)
 
+    def test_are_of_whole_turns_and_those_of_a_run_of_its_frames(self):
+        shared = sets("allocation.left_lut=bank1")  # the bank of the second left picture
+        said = r".*: ([\d.]+) frames/s over whole turns of 2 frames, limited by bank1"
+        of_turn = float(re.fullmatch(said, self.groups(*SMALL[1::2], *shared[1::2])[1])[1])
+        for frames, limited_by in ((1, "matcher"), (2, "bank bank1"), (3, "bank bank1")):
+            out = self.folder / str(frames)
+            self.succeeds(run("run", "fpl2003", *SMALL, *PRELOADED, *shared, "--timing-only", "--frames",
+                              frames, "--out", out))
+            bound = self.stats(out)["bound"]
+            self.assertLessEqual(self.stats(out)["frames_per_second"]["core"], bound["core"])
+            self.assertEqual((bound["core_limited_by"], round(bound["core"], 3) == of_turn),
+                             (limited_by, frames == 2))
+            self.succeeds(run("diagram", out, "--out", self.folder / "chart.svg"))
+            self.assertIn(f"bound {bound['core']:.1f} frames/s,", (self.folder / "chart.svg").read_text())
+
     def test_groups_the_frames_that_differ_in_the_names_of_banks_only(self):
         ((head, rows),), _ = self.groups(board="fpl2003-triple")
         self.assertTrue(head.startswith("frames 0-5: left_image in bank0, bank1, bank8; "), head)
@@ -281,6 +296,9 @@ def explained(*options):
 class Explain(ProgramTest):
     def explain(self, *options):
         return self.succeeds(explained(*options))
+
+    def test_shows_no_negative_zero(self):
+        self.assertNotRegex(self.explain(), r"-0\.0+ ")  # cameras limit the board
 
     def rows(self, text):
         """(rate, gained, key, to, FPGA %) of the changes."""

@@ -837,6 +837,17 @@ class Answers(PageTest):
         self.opened(core(), self.steps(("fpga.arbitration", "age", "round_robin", 0.9, {})))
         self.assertIn("no single change gains 1 %", self.answer("What to change first?"))
 
+    def test_a_bank_is_told_from_a_part_of_its_name(self):
+        names = sets("ssram.banks={matcher: {}, camera: {}, pci: {}}",
+                     "allocation={left_image: matcher, right_image: camera, disparity: [pci, pci], "
+                     "left_lut: matcher, right_lut: camera}")
+        self.browser.open(page_of(shared_run("names", *PRELOADED, *names, "--frames", "2")))
+        self.assertIn("bank matcher", self.answer("What limits?"))
+        self.assertIn("for left_pixel on bank matcher", self.answer("Who waits for whom?"))
+        for chart in ("bounds", "banks", "blame", "roofline", "memory"):
+            self.assertIn("bank matcher", self.browser.text(f"#{chart}"), chart)
+        self.assertRegex(self.browser.text("#bounds"), r"bank camera[\d.]+\s*matcher[\d.]+\s*left_lut")
+
     def test_a_change_that_reaches_another_limit_says_so(self):
         def change(run):
             run["bounds"]["computer"] = [{"resource": "camera", "frames_per_second": 29.97}]

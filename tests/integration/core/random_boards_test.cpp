@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,6 +10,7 @@
 #include <thread>
 #include <vector>
 
+#include "platform/bounds.h"
 #include "platform/config/board_yaml.h"
 #include "platform/conflicts.h"
 #include "platform/preloaded_system.h"
@@ -136,6 +138,26 @@ std::string compare_core_run_with_references(const RandomBoard& board, Fidelity 
   return text;
 }
 
+// Rates of the core that are above the bound of their frames, and bounds that are of other frames.
+std::string rates_above_bounds(const RandomBoard& board, Fidelity /*its own*/) {
+  std::string text;
+  const platform::BoardConfig config = board_config(board);
+  const platform::Tables tables = board_tables(board);
+  const platform::FrameAccesses accesses = platform::frame_accesses(config, tables);
+  double cycles = 0;
+  for (std::uint64_t frame = 0; frame < 6; ++frame) {
+    std::uint64_t most = 0;
+    for (const auto& each : frame_bounds(config, accesses, frame)) most = std::max(most, each.cycles);
+    cycles += static_cast<double>(most);
+    const platform::Statistics found = platform::run_core(config, tables, frame + 1);
+    const double rate = found.frames_per_second.core;
+    const double bound = config.fpga.clock_mhz * 1e6 * (static_cast<double>(frame) + 1) / cycles;
+    if (rate > found.bound.core || found.bound.core != bound)
+      text += fmt::format("{} frames: {} above {}, or not {}\n", frame + 1, rate, found.bound.core, bound);
+  }
+  return text;
+}
+
 using Comparison = std::string (*)(const RandomBoard& board, Fidelity fidelity);
 
 // Boards without the knobs of contract section 7, or with the knobs that the models have.
@@ -192,6 +214,10 @@ TEST_P(RandomBoards, EqualThePlainCycleLoopWithoutPixels) {
 
 TEST_P(RandomBoards, EqualThePlainCycleLoopInALoopOfTheirOwn) {
   expect_boards_equal_references(Fidelity::kTiming, GetParam(), 1000, compare_core_run_with_references);
+}
+
+TEST_P(RandomBoards, AreNeverFasterThanTheBoundOfTheirFrames) {
+  expect_boards_equal_references(Fidelity::kTiming, GetParam(), 50, rates_above_bounds);
 }
 
 TEST_P(RandomBoards, HaveTheRowsOfThePlainCycleLoop) {

@@ -1,5 +1,5 @@
 // What to change first, of all single changes of the board, and what a change takes.
-import {fixed, sameWithin, signed, whole} from './format.js';
+import {bankText, fixed, sameWithin, signed, whole} from './format.js';
 
 const kWorthwhile = 0.01;  // least gain of a change worth naming, of the present rate
 const kFreeSlices = 1;     // percent of the FPGA that a change may take and still need nothing new
@@ -34,7 +34,7 @@ export const hasEffect = (step, board) => step.loses_pixels !== board.loses_pixe
 // A change in words: matcher.rows: 1 → 2.
 export function shortStepText({key, from, to, idle_banks: idle}) {
   const moved = key === 'a bank more' && /^(.*) in (.*)$/.exec(from);
-  if (moved) return `${moved[1]}: ${moved[2]} → ${idle?.[0] ?? 'a new bank'}`;
+  if (moved) return `${moved[1]}: ${moved[2]} → ${idle?.length ? bankText(idle[0]) : 'a new bank'}`;
   return `${kKeyTexts[key] ?? key}: ${from} → ${to}`;
 }
 
@@ -77,7 +77,8 @@ export function priceText(step, board) {
   const idle = step.idle_banks ?? [];
   return parts.join(', ') +
       (idle.length ?
-           `: it uses ${idle.join(' and ')}, which ${idle.length === 1 ? 'holds' : 'hold'} nothing` :
+           `: it uses ${idle.map(bankText).join(' and ')}, which ${
+               idle.length === 1 ? 'holds' : 'hold'} nothing` :
            '');
 }
 

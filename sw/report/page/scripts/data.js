@@ -1,5 +1,5 @@
 // What a recording holds (README.md), as the charts ask for it.
-import {sum} from './format.js';
+import {bankText, sum} from './format.js';
 
 // The rows of a table {names, rows} as objects.
 export const objectsOf = ({names, rows}) =>
@@ -39,7 +39,7 @@ export function tilesOf({recording}) {
   const {tiles} = recording;
   const maps = recording.stalls.map(
       ({port, bank, by, tiles: values}) =>
-          ({...tiles, name: `${port} on ${bank} for ${by}`, values, total: sum(values)}));
+          ({...tiles, name: `${port} on ${bankText(bank)} for ${by}`, values, total: sum(values)}));
   const some = maps.filter(({total}) => total > 0).sort((a, b) => b.total - a.total);
   if (some.length < 2) return some;
   const all = some[0].values.map((_, tile) => sum(some.map(({values}) => values[tile])));

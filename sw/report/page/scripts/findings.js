@@ -1,7 +1,9 @@
 // What a run shows, in plain words: what limits, who waits for whom, where, what to change first, its price.
 import {adviceOf, gainOf, limitReached, priceText, stepText} from './advice.js';
 import {linesOf, rowsText, tilesOf} from './data.js';
-import {capital, count, fixed, gainText, kRates, percent, rate, rateWith, sum, whole} from './format.js';
+import {
+  bankText, capital, count, fixed, gainText, kRates, percent, rate, rateWith, sum, whole
+} from './format.js';
 
 const kLeastShare = 0.0005;  // of all cycles that a port waits, to be named
 const kFewTiles = 0.35;      // a share of the tiles that is named if it holds half of the waits
@@ -34,7 +36,8 @@ const kResources = {
   pci: 'the PCI bus',
   bridge: 'the PCI bridge'
 };
-export const resourceText = name => kResources[name] ?? name.replace(/^(bank|port) /, '');
+export const resourceText = name => kResources[name] ??
+    (name.startsWith('bank ') ? bankText(name.slice(5)) : name.replace(/^port /, ''));
 // "bank2 sets", "the cameras set"
 export const withVerb = (name, verb) => `${resourceText(name)} ${verb}${name === 'camera' ? '' : 's'}`;
 
@@ -54,7 +57,7 @@ const kCauses = {turnaround: 'the turnaround', row: 'a row to open', refresh: 'a
 const causeText = by => `for ${kCauses[by] ?? by}`;
 
 export const blameText = ({port, bank, by, share}) =>
-    `${port} waits in ${percent(share)} of all cycles, ${causeText(by)} on ${bank}`;
+    `${port} waits in ${percent(share)} of all cycles, ${causeText(by)} on ${bankText(bank)}`;
 
 // The ports that wait, the most first: {port, cycles, share, causes: its waits, the most first}.
 export function waitsOf(run) {
@@ -74,9 +77,10 @@ export function waitText({port, share, causes}) {
   const isOneBank = causes.every(({bank}) => bank === causes[0].bank);
   const named = causes.slice(0, kMostCauses).filter((cause, i) => i === 0 || cause.share >= kLeastShare);
   const texts = named.map(
-      ({bank, by, share: part}) => `${percent(part)} ${causeText(by)}${isOneBank ? '' : ` on ${bank}`}`);
+      ({bank, by, share: part}) =>
+          `${percent(part)} ${causeText(by)}${isOneBank ? '' : ` on ${bankText(bank)}`}`);
   return `${port} waits in ${percent(share)} of all cycles: ${texts.join(', ')}${
-      named.length < causes.length ? ' and less' : ''}${isOneBank ? `, on ${causes[0].bank}` : ''}`;
+      named.length < causes.length ? ' and less' : ''}${isOneBank ? `, on ${bankText(causes[0].bank)}` : ''}`;
 }
 
 const lostPixels = run => sum((run.stats.cameras ?? []).map(camera => camera.dropped_pixels));
@@ -137,7 +141,7 @@ function whoWaits(run) {
     const all = sum(waits.map(row => row.cycles));
     return [`Hardly anybody: all ports together wait ${count(all, 'cycle')} of ${whole(run.stats.cycles)}.`];
   }
-  const placeText = ({by, bank}) => `${causeText(by)} on ${bank}`;
+  const placeText = ({by, bank}) => `${causeText(by)} on ${bankText(bank)}`;
   const others = waits.slice(1, 3).map(
       ({port, share, causes}) =>
           `${port} ${percent(share)}, ${causes.length === 1 ? '' : 'mostly '}${placeText(causes[0])}`);

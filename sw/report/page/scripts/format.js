@@ -3,8 +3,10 @@
 export const kPsOfMs = 1e9;
 
 // Digits are grouped from 10,000 on.
+// What is shown as zero has no sign.
 export const fixed = (number, digits) => number.toLocaleString(
-    'en-US', {minimumFractionDigits: digits, maximumFractionDigits: digits, useGrouping: 'min2'});
+    'en-US', {minimumFractionDigits: digits, maximumFractionDigits: digits, useGrouping: 'min2',
+              signDisplay: 'negative'});
 export const whole = number => fixed(Math.round(number), 0);
 // A text with its counts as numbers of the page.
 export const grouped = text => text.replace(/(?<![\w.])\d{5,}(?![\w.])/g, digits => whole(Number(digits)));
@@ -21,7 +23,9 @@ export const kRates = [['steady', 'steady'], ['system', 'from power-up'], ['core
 // With what a finite run leaves open, if that can be seen.
 export const rateWith = (number, uncertainty = 0) =>
     rate(number) + (uncertainty < 0.005 ? '' : ` ± ${rate(uncertainty)}`);
-export const signed = (number, text) => `${number < 0 ? '−' : '+'}${text(Math.abs(number))}`;
+const isShownAsZero = text => !/[1-9]/.test(text);
+export const signed = (number, text) =>
+    `${number < 0 && !isShownAsZero(text(Math.abs(number))) ? '−' : '+'}${text(Math.abs(number))}`;
 // A gain, as a share of what there was.
 export const gainText = gain => Math.abs(gain) < 0.0005 ? '≈ 0' : signed(gain, percent);
 export const sameWithin = (a, b, share) => Math.abs(a / b - 1) <= share;
@@ -42,6 +46,11 @@ export const shortened = any => typeof any === 'number' ? +any.toPrecision(9) : 
 
 // A value of a table: every digit that it has.
 export const value = any => any === null || any === undefined ? '' : String(any);
+
+// A bank that has the name of a part of the model is shown as `bank matcher`.
+let partNames;
+export const setPartNames = names => partNames = new RegExp(`^(${names})$`, 'i');
+export const bankText = name => partNames.test(name) ? `bank ${name}` : name;
 
 export const capital = text => text.charAt(0).toUpperCase() + text.slice(1);
 

@@ -5,7 +5,7 @@ import {drawBars, drawColumns} from './bars.js';
 import {addChart, legend} from './card.js';
 import {s} from './dom.js';
 import {kindOfSteps, rateOf, resourceText, settingOf, withVerb} from './findings.js';
-import {fixed, inMs, least, most, percent, rate, tableOf, whole} from './format.js';
+import {bankText, fixed, inMs, least, most, percent, rate, tableOf, whole} from './format.js';
 import {axisBelow, axisLeft, cut, drawing, numeric} from './plot.js';
 import {mark} from './tooltip.js';
 
@@ -46,7 +46,9 @@ export function addBounds(page, run) {
         each.cycles &&
             `${whole(each.cycles)} cycles a frame${
                 turn > 1 ? `, in frame ${each.frame} of each ${turn}` : ''}`,
-        `the run reaches ${percent(now / each.frames_per_second)} of it`
+        turn > 1 && each.cycles ?
+            `frame ${each.frame} of the run takes ${whole(run.stats.frame_cycles[each.frame])} cycles` :
+            `the run reaches ${percent(now / each.frames_per_second)} of it`
       ].filter(Boolean)
     }],
     texts: [rate(each.frames_per_second)]
@@ -95,7 +97,7 @@ export function addRoofline(page, run) {
   const share = here.megapixels_per_second / roofAt;
   const isNamed = ({step}) => step === first || step === largest;
   const linesOf = each =>
-      [each.board, `${fixed(each.accesses_per_pixel, 2)} accesses of ${each.bank} a pixel`,
+      [each.board, `${fixed(each.accesses_per_pixel, 2)} accesses of ${bankText(each.bank)} a pixel`,
        `${fixed(each.megapixels_per_second, 2)} Mpixels/s, ` +
            `${rate(each.frames_per_second)} frames/s, ${kind}`];
   const draw = (host, width) => {
@@ -135,14 +137,14 @@ export function addRoofline(page, run) {
             {x: at + (isLeft ? -11 : 11), y: below, 'text-anchor': isLeft ? 'end' : 'start', class: 'halo'},
             cut(each.board, isLeft ? at - 11 : inner - at - 11)));
     }
-    const label = `roof: ${here.bank} at ${here.clock_mhz} MHz`;
+    const label = `roof: ${bankText(here.bank)} at ${here.clock_mhz} MHz`;
     plot.append(
         s('text', {x: inner, y: -10, 'text-anchor': 'end', class: 'label halo'}, cut(label, inner - 150)));
   };
   addChart(page, {
     id: 'roofline',
     draw,
-    title: `${here.bank} works at ${percent(share)} of its roof: ` +
+    title: `${bankText(here.bank)} works at ${percent(share)} of its roof: ` +
         (by.startsWith('bank') ? 'fewer accesses are the way up' :
              share > kNearRoof ? `a faster ${resourceText(by).replace('the ', '')} needs fewer accesses too` :
                                  withVerb(by, 'limit')),
@@ -168,7 +170,8 @@ const kBankStates = [
 ];
 
 // Bars that add up to all cycles of the frames.
-function addStates(page, {id, title, note, items, states: all, cycles, more = () => []}) {
+function addStates(
+    page, {id, title, note, items, states: all, cycles, textOf = name => name, more = () => []}) {
   const states = all.filter(([key]) => items.some(item => item[key] !== undefined));
   const rowOf = item => {
     let end = 0;
@@ -178,11 +181,11 @@ function addStates(page, {id, title, note, items, states: all, cycles, more = ()
                             to: end += item[key],
                             colour,
                             lines: [
-                              `${item.name}: ${name} ${percent(item[key] / cycles, 2)}`,
+                              `${textOf(item.name)}: ${name} ${percent(item[key] / cycles, 2)}`,
                               `${whole(item[key])} cycles`, ...more(item)
                             ]
                           }));
-    return {name: item.name, bars, texts: [percent(item[states[0][0]] / cycles)]};
+    return {name: textOf(item.name), bars, texts: [percent(item[states[0][0]] / cycles)]};
   };
   addChart(page, {
     id,
@@ -221,11 +224,12 @@ export function addBankUse(page, {stats, banks}) {
     items: stats.banks,
     states: kBankStates,
     cycles: stats.cycles,
-    title: `${busiest.name} is busy in ${percent(busiest.utilization)} of the cycles` +
+    title: `${bankText(busiest.name)} is busy in ${percent(busiest.utilization)} of the cycles` +
         (unused.length === 0     ? '' :
-             unused.length === 1 ? `; ${unused[0].name} is never used` :
+             unused.length === 1 ? `; ${bankText(unused[0].name)} is never used` :
                                    `; ${unused.length} of ${stats.banks.length} banks are never used`),
     note: 'How busy each bank is in all cycles of the frames.',
+    textOf: bankText,
     more: bank =>
         [`${whole(bank.reads)} reads, ${whole(bank.writes)} writes, ` +
              `in ${whole(bank.contended_cycles)} cycles a port waits`,

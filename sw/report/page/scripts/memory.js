@@ -2,7 +2,7 @@
 import {addChart} from './card.js';
 import {choice, controls, h} from './dom.js';
 import {settingOf} from './findings.js';
-import {fixed, percent, signed} from './format.js';
+import {bankText, fixed, percent, signed} from './format.js';
 import {isDark, whenThemeChanges} from './theme.js';
 import {linkMarks, mark} from './tooltip.js';
 
@@ -90,7 +90,7 @@ function trafficText(run, links) {
   const fullest = shares.indexOf(Math.max(...shares));
   const {name, megabytes_per_second: rate} = run.stats.banks[fullest];
   return {
-    title: `${name} carries ${fixed(rate, 1)} MB/s, ${percent(shares[fullest])} of its peak`,
+    title: `${bankText(name)} carries ${fixed(rate, 1)} MB/s, ${percent(shares[fullest])} of its peak`,
     numbers: () => [
         ['from', 'to', 'megabytes_per_second', 'peak', 'percent'],
         links.map(({from, to, rate: its, peak}) => [from, to, its, peak, 100 * its / peak])]

@@ -3,7 +3,7 @@ import {drawBars} from './bars.js';
 import {addChart, addLeftOut, legend} from './card.js';
 import {commandLine, h, note, s} from './dom.js';
 import {blamesInDetail, blamesOf, blameText, settingOf, waitingRows, waitsOf, waitText} from './findings.js';
-import {count, least, most, percent, signed, sum, whole} from './format.js';
+import {bankText, count, least, most, percent, signed, sum, whole} from './format.js';
 import {lastRow, linesOf, rowsText} from './data.js';
 import {
     addBrush, axisBelow, axisLeft, cut, drawing, layeredDrawing, numeric, textWidth, Zoom,
@@ -32,10 +32,11 @@ export function addBlame(page, run) {
     });
     return;
   }
-  const causes = [...new Set(blames.map(row => `${row.bank} · ${row.by}`))];
+  const placeOf = ({bank, by}) => `${bankText(bank)} · ${by}`;
+  const causes = [...new Set(blames.map(placeOf))];
   const highest = most(blames.map(row => row.share));
   const cellOf = (port, cause) => {
-    const row = blames.find(each => each.port === port.name && `${each.bank} · ${each.by}` === cause);
+    const row = blames.find(each => each.port === port.name && placeOf(each) === cause);
     if (!row) return h('td', {class: 'empty'});
     const colour = heat(0.15 + 0.85 * row.share / highest);
     const style = `background:${css(colour)};color:${inkOn(colour)}`;
@@ -72,7 +73,7 @@ export function addBlameDifference(page, a, b) {
   const all = new Map();
   for (const [run, side] of [[a, 'a'], [b, 'b']]) {
     for (const {port, bank, by, cycles} of blamesInDetail(run)) {
-      const text = `${port} on ${bank} for ${by}`;
+      const text = `${port} on ${bankText(bank)} for ${by}`;
       if (!all.has(text)) all.set(text, {text, port, bank, by, a: 0, b: 0});
       all.get(text)[side] += cycles;
     }
@@ -114,7 +115,7 @@ function columnsOf(run, {accesses, stalls}) {
   const used = [...new Set(accesses.map(({bank}) => bank))].map(name => {
     const parts = accesses.filter(({bank}) => bank === name);
     return {
-      name,
+      name: bankText(name),
       what: 'makes accesses',
       values: parts[0].values.map((_, line) => sum(parts.map(part => part.values[line]))),
       fill: sum(parts.map(part => part.fill)),
@@ -124,7 +125,7 @@ function columnsOf(run, {accesses, stalls}) {
   });
   const waits = stalls.map(({port, bank, by, values, fill}) => ({
                              name: `${port} · ${by}`,
-                             what: `waits on ${bank}`,
+                             what: `waits on ${bankText(bank)}`,
                              values,
                              fill,
                              most: 1,

@@ -1,5 +1,6 @@
 #include "sw/files/text_forms.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -48,6 +49,12 @@ TEST(Sha256, RefusesAFileThatCannotBeRead) {
   EXPECT_EQ(test::message_of([&] { sha256_file(missing); }),
             "'" + missing + "': cannot be read: No such file or directory");
   EXPECT_THAT(test::message_of([&] { sha256_file(scratch.path()); }), HasSubstr("Is a directory"));
+}
+
+TEST(WithoutMinusZero, HasNoSignWhereOnlyZerosAreShown) {
+  for (const double number : {-0.0, -1e-14, -0.004999, 0.004999})
+    EXPECT_EQ(fmt::format("{:.2f}", without_minus_zero(number, 2)), "0.00");
+  for (const double number : {-0.005001, 0.005001, -7.25}) EXPECT_EQ(without_minus_zero(number, 2), number);
 }
 
 TEST(RangesText, JoinsSuccessiveNumbers) {

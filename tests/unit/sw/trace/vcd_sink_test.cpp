@@ -186,6 +186,16 @@ TEST_F(VcdSinkTest, ABankWithSeparatePortsHasTwoOwners) {
   EXPECT_EQ(file.at("left_pixel.waits_for", ps(7)), "turnaround");
 }
 
+TEST_F(VcdSinkTest, SignalsOfABankAndOfAPartOfItsNameDiffer) {
+  const std::vector<std::string> names = {"pci", "bank_pci", "matcher", "left_lut", "left-lane", "Local_Bus"};
+  board_.banks.resize(names.size());
+  for (std::size_t bank = 0; bank < names.size(); ++bank) board_.banks[bank].name = names[bank];
+  board_.allocation = {{"pci"}, {"pci"}, {"bank_pci"}, "pci", "pci"};
+  const VcdFile file = written({});
+  for (const std::string& name : names) EXPECT_EQ(file.signals().count("bank_" + name + ".owner"), 1) << name;
+  EXPECT_EQ(file.signals().count("pci.owner"), 1);
+}
+
 TEST_F(VcdSinkTest, AnAbsentPortHasNoSignals) {
   board_.allocation.left_lut.reset();
   const VcdFile file = written({});
