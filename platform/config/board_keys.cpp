@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <regex>
 #include <stdexcept>
 #include <type_traits>
 #include <unordered_map>
@@ -694,8 +693,10 @@ bool is_bank_name(std::string_view name) {
 }
 
 std::string bank_text(const std::string& name) {
-  static const std::regex parts(kPartNames, std::regex::ECMAScript | std::regex::icase);
-  return std::regex_match(name, parts) ? "bank " + name : name;
+  const std::string bank = "bank";
+  const bool is_numbered = name.size() > bank.size() && name.compare(0, bank.size(), bank) == 0 &&
+                           name.find_first_not_of("0123456789", bank.size()) == std::string::npos;
+  return is_numbered ? name : bank + ' ' + name;
 }
 
 }  // namespace stereotlm::platform

@@ -132,13 +132,9 @@ bool needs_key(const BankConfig& bank, const BankTimingKey& key);
 inline constexpr const char* kBankNameRule = "a bank's name is [A-Za-z][A-Za-z0-9_-]*, and not none";
 bool is_bank_name(std::string_view name);  // whether the name keeps kBankNameRule
 
-// What the model calls its own parts: a regular expression for a whole name, without regard to case. Texts,
-// tables and figures write a bank of such a name as `bank NAME`. Files, JSON and databases keep the name.
-inline constexpr const char* kPartNames =
-    "(bank[_-])*((left|right)([_-](lut|pixel|image|lane|camera|capture))?|results?|disparity|matcher|filter|"
-    "host([_-](memory|bridge|capture|upload|read[_-]back))?|core|fpga|cpu|board|computer|cameras?|capture|"
-    "pci([_-](bus|bridge))?|(bridge[_-])?registers|bridge|local([_-]bus)?|bus|dma|load|posted|turnaround|row|"
-    "refresh|idle|none|banks?)";
-std::string bank_text(const std::string& name);  // the name of a bank in a text, by this rule
+// The name of a bank in texts, tables, figures and waveforms, so that it is told from a part of the model:
+// `bank` and a number as it is, such as "bank0"; any other name behind `bank`, such as "bank matcher". Files,
+// JSON and databases keep the name.
+std::string bank_text(const std::string& name);
 
 }  // namespace stereotlm::platform

@@ -153,7 +153,6 @@ std::optional<NamedBytes> figures_of(const ConflictsOptions& options, const runs
   nlohmann::ordered_json about = {{"board", board.name},          {"width", board.image.width},
                                   {"height", board.image.height}, {"clock_mhz", board.fpga.clock_mhz},
                                   {"frames", shown.frames},       {"frame", shown.longest}};
-  about["part_names"] = platform::kPartNames;
   NamedBytes files = {
       {kMark, conflicts_csv},
       {"sums.csv", head + stats::rows_csv(board, 0, shown.sums)},

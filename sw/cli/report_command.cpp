@@ -117,7 +117,7 @@ int report(const ReportOptions& options) {
   std::optional<Json> data = data_of(options, problems);
   if (process::interrupted()) return interrupted("no page is written");
   problems.check();
-  Json whole = {{"format", 2}, {"version", process::kVersion}, {"part_names", platform::kPartNames}};
+  Json whole = {{"format", 2}, {"version", process::kVersion}};
   whole.update(*data);
   const std::string page = report::html_page(whole);
   file->write(page);

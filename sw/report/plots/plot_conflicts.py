@@ -40,7 +40,6 @@ class Recorded:
         self.banks = [name for name in shares if not name.endswith(STALLS) and shares[name].any()]
         self.waiting = [name for name in shares if name.endswith(STALLS) and shares[name].any()]
         frames = self.about["frames"]
-        self._is_part = re.compile(self.about.get("part_names", "(?!)"), re.IGNORECASE).fullmatch
         self.note = f"Board {self.about['board']}; {frames} frame{'s' if frames > 1 else ''}."
 
     def _columns(self, rows):
@@ -65,9 +64,10 @@ class Recorded:
                     amounts[bank] = amounts.get(bank, 0) + column
         return {name: 100 * amount / numpy.maximum(columns["cycles"], 1) for name, amount in amounts.items()}
 
-    def bank_text(self, bank):
-        """The name of a bank in a figure: "bank matcher" where the model has a part of this name."""
-        return f"bank {bank}" if self._is_part(bank) else bank
+    @staticmethod
+    def bank_text(bank):
+        """The name of a bank in a figure, as bank_text() of platform/config/board_keys.h."""
+        return bank if re.fullmatch(r"bank\d+", bank) else f"bank {bank}"
 
     def name_of(self, column):
         """The name in a figure of a column of shares()."""

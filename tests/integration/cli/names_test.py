@@ -1,4 +1,4 @@
-"""Banks with the names of parts of the model: outputs are those of a board with other names."""
+"""Banks with the names of parts of the model: outputs are those of a board with the usual names."""
 
 import re
 import sqlite3

@@ -94,7 +94,7 @@ function whatLimits(run) {
     bank: () => {
       const bank = run.banks.find(each => each.name === name);
       const busy = run.stats.banks.find(each => each.name === name);
-      const title = /^bank/i.test(name) ? name : `Bank ${name}`;
+      const title = capital(bankText(name));
       const held = bank.buffers.join(', ') || 'no buffer';
       return `${title} holds ${held}, and is busy in ${percent(busy.utilization)} of the cycles`;
     },

@@ -47,10 +47,8 @@ export const shortened = any => typeof any === 'number' ? +any.toPrecision(9) : 
 // A value of a table: every digit that it has.
 export const value = any => any === null || any === undefined ? '' : String(any);
 
-// A bank that has the name of a part of the model is shown as `bank matcher`.
-let partNames;
-export const setPartNames = names => partNames = new RegExp(`^(${names})$`, 'i');
-export const bankText = name => partNames.test(name) ? `bank ${name}` : name;
+// The name of a bank, as bank_text() of platform/config/board_keys.h: bank0, but `bank matcher`.
+export const bankText = name => /^bank\d+$/.test(name) ? name : `bank ${name}`;
 
 export const capital = text => text.charAt(0).toUpperCase() + text.slice(1);
 

@@ -1,6 +1,5 @@
 // Shows the data of the page.
 import {h} from './dom.js';
-import {setPartNames} from './format.js';
 import {showDatabase} from './page_database.js';
 import {showRun} from './page_run.js';
 import {showTwoRuns} from './page_two.js';
@@ -12,7 +11,6 @@ const bytes = Uint8Array.from(atob(text), letter => letter.charCodeAt(0));
 const data =
     await new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream('deflate'))).json();
 const page = document.getElementById('page');
-setPartNames(data.part_names);
 startTooltips();
 ({run: showRun, two_runs: showTwoRuns, database: showDatabase})[data.kind](page, data);
 page.append(

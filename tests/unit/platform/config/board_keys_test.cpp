@@ -4,14 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cctype>
 #include <set>
 #include <string>
 #include <variant>
 #include <vector>
 
-#include "models/memory/bank_arbiter.h"
-#include "platform/computer_parts.h"
 #include "tests/unit/platform/config/board_files.h"
 
 namespace stereotlm::platform::testing {
@@ -326,24 +323,9 @@ TEST(BoardKeysTable, GivesTheRangesThatMessagesGive) {
 }
 
 TEST(BankText, TellsABankFromAPartOfTheModelOfTheSameName) {
-  std::set<std::string> names = {"matcher",   "camera",    "cameras",      "pci",        "core",
-                                 "local_bus", "left_lane", "host_capture", "left_image", "right_image",
-                                 "registers", "bridge",    "disparity",    "posted",     "filter",
-                                 "idle",      "None"};
-  for (const fpga::PortGroup& group : fpga::kPortGroups) names.insert(group.name);
-  for (const std::size_t cause : {memory::kTurnaround, memory::kRow, memory::kRefresh})
-    names.insert(memory::name_of_cause(cause));
-  names.insert(kPciMasterNames.begin(), kPciMasterNames.end());
-  names.insert(kPciTargetNames.begin(), kPciTargetNames.end());
-  for (std::string name : names) {
-    EXPECT_EQ(bank_text("bank_" + name), "bank bank_" + name) << "bank_pci is that of pci in waveforms";
-    std::transform(name.begin(), name.end(), name.begin(),
-                   [](char c) { return c == '_' ? '-' : toupper(c); });
+  for (const char* name : {"bank0", "bank17"}) EXPECT_EQ(bank_text(name), name);
+  for (const std::string name : {"matcher", "pci", "bank", "bank_pci", "bank0b", "Bank0", "frame0"})
     EXPECT_EQ(bank_text(name), "bank " + name);
-  }
-  for (const char* other :
-       {"bank0", "Bank_A", "image", "left_picture", "ram-1", "matcher2", "my_pci", "hosts"})
-    EXPECT_EQ(bank_text(other), other);
 }
 
 }  // namespace
