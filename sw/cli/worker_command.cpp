@@ -136,7 +136,8 @@ std::string bytes_of_codes(const std::string& utf8) {
   for (std::size_t i = 0; i < utf8.size(); ++i) {
     const auto first = static_cast<unsigned char>(utf8[i]);
     if (first > 0xC3U) throw std::runtime_error("encoding = latin-1: characters must be U+0000 to U+00FF");
-    bytes += first < 0x80U ? utf8[i] : static_cast<char>((first & 3U) << 6U | (utf8[++i] & 0x3FU));
+    const auto second = static_cast<unsigned char>(first < 0x80U ? 0 : utf8[++i]);
+    bytes += static_cast<char>(first < 0x80U ? first : (first & 3U) << 6U | (second & 0x3FU));
   }
   return bytes;
 }
