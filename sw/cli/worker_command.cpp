@@ -121,7 +121,7 @@ std::pair<Array, std::size_t> array_of(const Json& given) {
   return {array, bytes};
 }
 
-// Reads a line, and no byte behind it. The last one may lack its newline. Returns false at the end of the file.
+// Reads a line, and no byte behind it. The last one needs no newline. Returns false at the end of the file.
 bool read_line(int from, std::string& line) {
   for (char byte = 0; process::read_all(from, &byte, 1);) {
     if (byte == '\n') return true;
@@ -218,7 +218,7 @@ bool serve_one(const process::Child::Tell& tell) {
   return is_fresh && !process::interrupted();
 }
 
-// Waits until child.next() would return soon. Returns false if the client has closed its end of the pipe `to`.
+// Waits until child.next() would return soon. Returns false if the client has closed its end of `to`.
 bool wait_for_news(const process::Child& child, int to) {
   std::array<pollfd, 2> watched = {{{child.descriptor(), POLLIN, 0}, {to, 0, 0}}};
   while (poll(watched.data(), watched.size(), -1) < 0) {

@@ -81,7 +81,8 @@ class Commands(EndedTest):
         self.ended([*LONG, "--out", "new/out", "--trace", "perfetto:t.pftrace"], 2, signal.SIGQUIT)
         self.ended([*LONG, *PRELOADED, "--verify"], 1)
         self.ended(["conflicts", "fpl2003", "--synthetic", 1, *FRAMES, "--out", "c"], 1)
-        self.ended(["calibrate", "--synthetic", 3, "--grid", "7x5", "--square-mm", 30, "--out", "rig.yaml"], 1)
+        rig = ["--synthetic", 3, "--grid", "7x5", "--square-mm", 30]
+        self.ended(["calibrate", *rig, "--out", "rig.yaml"], 1)
 
     def test_searches(self):
         self.ended(["explain", "fpl2003", *FRAMES], 2)

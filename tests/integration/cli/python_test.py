@@ -674,7 +674,8 @@ class Protocol(ProgramTest):
         self.assertEqual([line["status"] for line in lines if "status" in line], [2, 2, 0])
         takes = "array {}: the command takes no array of this name"
         problems = [[problem["rule"] for problem in line["problems"]] for line in lines if "problems" in line]
-        self.assertEqual(problems, [[takes.format("left"), takes.format("third")], [takes.format("third")], []])
+        left, third = takes.format("left"), takes.format("third")
+        self.assertEqual(problems, [[left, third], [third], []])
 
     def test_the_last_line_needs_no_newline(self):
         lines, status = self.answers(b'{"arguments": ["boards"]}\n{"arguments": ["boards"]}')
