@@ -45,9 +45,8 @@ struct AllocateOptions : Options {
                        "Say how few banks keep so much of the best frame rate (default 99)",
                        {number<double>("a percentage above 0 and at most 100",
                                        [](double percent) { return percent > 0 && percent <= 100; })});
-  Option out =
-      Option(this, "--out", "DB", "The database of the boards that are simulated, written or continued",
-             {required("the database to write, or to continue")});
+  Option out = Option(this, "--out", "DB",
+                      "The database of the boards that are simulated, written or continued (default: none)");
   Option write = Option(this, "--write", "F.yaml", "Write the board with the best allocation as a board file",
                         {ends_in(".yaml")});
   JsonOption json{this};
@@ -182,8 +181,6 @@ int allocate(const AllocateOptions& options) {
   if (board) check(options, *board, problems);
   auto written = board ? open_written(options, *board, problems) : nullptr;
   problems.check();
-  explore::SweepOptions sweep;
-  sweep.store = options.out.text();
   const platform::Tables tables = loaded.tables();
   const bool camera = options.source.is_camera();
   const int banks = options.most_banks();
@@ -201,6 +198,12 @@ int allocate(const AllocateOptions& options) {
   process::catch_interrupts();
   std::vector<std::string> names;
   for (const platform::BankConfig& bank : board->banks) names.push_back(bank.name);
+  std::optional<files::TemporaryFolder> unkept;  // of the database without --out
+  explore::SweepOptions sweep;
+  process::attempt_or_refuse("", [&] {
+    if (!options.out.is_given()) unkept.emplace();
+    sweep.store = unkept ? (unkept->path() / "boards.db").string() : options.out.text();
+  });
   process::attempt_or_refuse("--out ", [&] {
     const explore::StoreLock lock(sweep.store);
     explore::Store(sweep.store, sweep.version).check_banks(names);
@@ -216,7 +219,7 @@ int allocate(const AllocateOptions& options) {
   AllocationReport report = {search,
                              *board,
                              bound,
-                             sweep.store,
+                             options.out.text(),
                              banks,
                              options.keep.number<double>().value_or(kDefaultKeepPercent),
                              options.board.words_without_allocation()};
@@ -236,7 +239,9 @@ int allocate(const AllocateOptions& options) {
   }
   process::print(options.json.is_given() ? json_text(allocation_report_document(report))
                                          : allocation_report_text(report));
-  return process::interrupted() ? interrupted("run the same command to resume") : kDone;
+  if (!process::interrupted()) return kDone;
+  return interrupted(unkept ? "nothing is kept: give --out DB to resume later"
+                            : "run the same command to resume");
 }
 
 }  // namespace
@@ -252,7 +257,8 @@ void add_allocate(Commands& commands) {
       "lose pixels does not count. Last the command that runs the best allocation: the fastest of those\n"
       "with the fewest banks that tie.\n"
       "Ctrl-C ends the search: the best so far is printed, and written by --write, with the most that\n"
-      "another allocation can be better. DB is continued: the same command resumes.\n"
+      "another allocation can be better. DB is continued: the same command resumes. Without --out\n"
+      "nothing is kept.\n"
       "--write replaces an earlier file only if it is the same board with another allocation.");
 }
 

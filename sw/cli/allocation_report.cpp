@@ -205,10 +205,11 @@ std::string not_counted_text(const AllocationReport& report) {
   if (losing > 0)
     text += fmt::format("{} of those simulated to the end lose pixels, and do not count.\n", losing);
   if (failed > 0) {
-    text += fmt::format(
-        "{} could not be simulated, and do not count. The first:\n  {}\nTo try again:\n"
-        "  sqlite3 {} \"DELETE FROM points WHERE status = 'failed'\"\n",
-        failed, report.search.first_failure(), files::shell_word(report.store));
+    text += fmt::format("{} could not be simulated, and do not count. The first:\n  {}\n", failed,
+                        report.search.first_failure());
+    if (!report.store.empty())
+      text += fmt::format("To try again:\n  sqlite3 {} \"DELETE FROM points WHERE status = 'failed'\"\n",
+                          files::shell_word(report.store));
   }
   return text;
 }

@@ -22,7 +22,7 @@ struct AllocationReport {
   const explore::AllocationSearch& search;
   const platform::BoardConfig& board;
   explore::AllocationSearch::BoundOf bound;  // that of the search
-  std::string store;                         // path of the database
+  std::string store;                         // path of the database; empty: it is not kept
   int most_banks = 0;
   double keep_percent = 0;
   std::vector<std::string> board_words;          // the board on a command line, without its allocation

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <exception>
 #include <sstream>
+#include <string_view>
 #include <systemc>
 
 #include "platform/config/board_keys.h"
@@ -56,22 +57,57 @@ std::string help_of(const CLI::App& program) {
   return "stereotlm " + (commands.empty() ? "" : commands.front()->get_name() + " ") + "--help";
 }
 
-// Throws Refused for options that the parsed command does not have.
-void check_options(const CLI::App& program) {
+// Whether the word looks like an option: "-" and a number do not.
+bool is_option(const std::string& word) {
+  constexpr std::string_view kOfNumber = "0123456789.";
+  return word.size() > 1 && word[0] == '-' && kOfNumber.find(word[1]) == std::string_view::npos;
+}
+
+// What the option lacks: a value; empty if it has one, or is a flag. `word`: the option as typed. `next`: the
+// word behind it, which the parser would take for the value even if it is another option.
+std::string value_problem(const CLI::Option& option, const std::string& word, const std::string& next) {
+  const std::string name = word.substr(0, word.find('='));
+  const bool has_equals = name != word;
+  const bool is_flag = option.get_items_expected_min() == 0;
+  const bool is_before_option = !has_equals && is_option(next);
+  const bool has_value = has_equals ? name.size() + 1 < word.size() : !next.empty() && !is_before_option;
+  if (has_value || (is_flag && !has_equals)) return "";
+  return fmt::format("{}: a value is missing: must be {}{}{}", word, name,
+                     is_flag ? "" : ' ' + option.get_option_text(),
+                     is_before_option ? fmt::format(", or {0}={1} if {1} is the value", name, next) : "");
+}
+
+// Throws Refused for options without a value, and for options that the command does not have, unless these
+// are beside --help. `words`: those behind the command.
+void check_options(const CLI::App& command, std::vector<std::string> words) {
+  std::vector<std::string> known;
+  for (const CLI::Option* option : command.get_options()) {
+    for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+  }
   process::Problems problems;
-  for (const CLI::App* command : program.get_subcommands()) {
-    std::vector<std::string> known;
-    for (const CLI::Option* option : command->get_options()) {
-      for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+  bool lacks_value = false;
+  bool has_help = false;
+  const auto add = [&](const std::string& problem) {
+    problems.add(fmt::format("{} (see stereotlm {} --help)", problem, command.get_name()));
+  };
+  words.emplace_back();  // behind the last one
+  for (std::size_t i = 0; i + 1 < words.size() && words[i] != "--"; ++i) {
+    if (!is_option(words[i])) continue;
+    const std::string name = words[i].substr(0, words[i].find('='));
+    const CLI::Option* const option = command.get_option_no_throw(name);
+    if (option == nullptr) {
+      add(fmt::format("{}: unknown option{}", name, platform::nearest_text(name, known)));
+      continue;
     }
-    for (const std::string& argument : command->remaining()) {
-      if (argument.empty() || argument[0] != '-') continue;
-      const std::string name = argument.substr(0, argument.find('='));
-      problems.add(fmt::format("{}: unknown option{} (see {})", name, platform::nearest_text(name, known),
-                               help_of(program)));
+    has_help = has_help || option == command.get_help_ptr();
+    if (const std::string problem = value_problem(*option, words[i], words[i + 1]); !problem.empty()) {
+      lacks_value = true;
+      add(problem);
+    } else if (name == words[i] && option->get_items_expected_min() > 0) {
+      ++i;  // behind the value
     }
   }
-  problems.check();
+  if (lacks_value || !has_help) problems.check();
 }
 
 }  // namespace
@@ -112,6 +148,8 @@ Action parse_command_line(int argc, const char* const* argv) {
     add(commands);
   for (CLI::App* command : program.get_subcommands({})) command->group("Commands");
   check_first_argument(program, argc, argv);
+  if (commands.called[0] != '-')
+    check_options(*program.get_subcommand(commands.called), {argv + 2, argv + argc});
   try {
     program.parse(argc, argv);
   } catch (const CLI::Success& request) {
@@ -122,7 +160,6 @@ Action parse_command_line(int argc, const char* const* argv) {
       return kDone;
     };
   } catch (const CLI::ParseError& error) {
-    check_options(program);
     process::refuse(fmt::format("{} (see {})", error.what(), help_of(program)));
   }
   return commands.action;

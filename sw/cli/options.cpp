@@ -62,6 +62,8 @@ void Options::check_usage() {
   problems.check();
 }
 
+constexpr int kMostWords = 1'000'000;  // of a list; the parser takes a larger number for no limit
+
 Option::Option(Options* of, const std::string& name, const std::string& value, const std::string& meaning,
                const std::vector<Rule>& rules, Takes takes)
     : name_(name.substr(0, name.find(','))) {
@@ -76,7 +78,9 @@ Option::Option(Options* of, const std::string& name, const std::string& value, c
                                              : command.add_option(name, texts_, meaning);
   option->option_text(value)->each([this](const std::string& /*word*/) { is_given_ = true; });
   if (takes == Takes::kOneOrTwo) option->expected(1, 2);
-  if (takes == Takes::kRepeated) option->allow_extra_args(false);
+  if (takes == Takes::kList) option->expected(1, kMostWords);
+  // With extra arguments the parser would read "[a]" as a list, and "[]" as no value.
+  if (!option->get_positional()) option->allow_extra_args(false);
 }
 
 CLI::App& add_command(CLI::App& program, const std::string& name, const std::string& description,

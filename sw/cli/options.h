@@ -77,7 +77,8 @@ class Options {
 // and the option is given again for each further one.
 enum class Takes { kOne, kOneOrTwo, kList, kRepeated };
 
-// An option of the command line. Its values are kept as typed, so that messages can quote them.
+// An option of the command line. Its values are kept as typed, so that messages can quote them. A command
+// line with an option whose value is missing or empty is refused.
 class Option {
  public:
   // Adds the option to the command of `of`. If `of` is null, no command has the option, and it is never

@@ -92,7 +92,7 @@ int plot(const PlotOptions& options) {
   const files::TemporaryFolder drawings;
   std::unique_ptr<files::OutputFolder> folder;
   std::string problem = "--out: missing: the folder of the figures";
-  if (options.out.is_given() && !options.out.text().empty()) {
+  if (options.out.is_given()) {
     try {
       files::OutputContent content{"--out", "", {"figure of plot", is_made}, kRule, {kNames}};
       content.inputs = {{"DB", options.database.text()}};

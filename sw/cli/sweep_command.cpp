@@ -64,7 +64,7 @@ struct SweepCommandOptions : Options {
       refuse_given(shards, "goes with --launcher slurm");
       refuse_given(sbatch, "goes with --launcher slurm");
     }
-    if (progress.text().empty()) return;
+    if (!progress.is_given()) return;
     // It is replaced, and must therefore not be another file of the user.
     problems.attempt("--progress ", [this] { progress_file(); });
   }
@@ -98,13 +98,10 @@ struct SweepCommandOptions : Options {
                         "Only every N-th point, from number I on (0 .. N-1); see stereotlm merge",
                         {valid("I/N with I in 0 .. N-1, such as 0/4",
                                [](const std::string& text) { return shard_of(text).has_value(); })});
-  Option board = Option(this, "--board", "BOARD", "In place of the board that the plan names", {not_empty});
-  Option calibration =
-      Option(this, "--calibration", "F", "In place of the calibration that the plan names", {not_empty});
-  Option known =
-      Option(this, "--known", "DB2", "A database, only read, whose points are not run either", {not_empty});
-  Option progress =
-      Option(this, "--progress", "F", "Keep in this file how many points are done", {not_empty});
+  Option board = Option(this, "--board", "BOARD", "In place of the board that the plan names");
+  Option calibration = Option(this, "--calibration", "F", "In place of the calibration that the plan names");
+  Option known = Option(this, "--known", "DB2", "A database, only read, whose points are not run either");
+  Option progress = Option(this, "--progress", "F", "Keep in this file how many points are done");
   Option launcher = Option(this, "--launcher", "WHERE", "Where it runs: local, the default, or slurm",
                            {one_of({"local", "slurm"})});
   Option shards = Option(this, "--shards", "N", "With slurm: the tasks of the job array (default 16)",
@@ -122,9 +119,6 @@ struct SweepCommandOptions : Options {
   static Rule is_within(std::uint64_t most) {
     return number<Number>("1.." + std::to_string(most),
                           [most](Number count) { return count >= 1 && count <= most; });
-  }
-  static void not_empty(const Option& option, process::Problems& problems) {
-    if (option.is_given() && option.text().empty()) problems.add(option.name() + ": empty");
   }
 };
 
@@ -283,7 +277,9 @@ void prepare(const SweepCommandOptions& options, const explore::SweepOptions& sw
                     most == 0 ? "raise it" : fmt::format("lower --jobs to {}, or raise the limit", most)));
   }
   process::attempt_or_refuse("--known ", [&] {
-    if (options.known.is_given()) const explore::StoredRow known(sweep.known, sweep.version);
+    if (!options.known.is_given()) return;
+    files::check_is_another(sweep.known, {{"--out", sweep.store}});
+    const explore::StoredRow known(sweep.known, sweep.version);
   });
   try {
     const explore::StoreLock lock(sweep.store);

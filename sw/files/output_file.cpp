@@ -52,11 +52,23 @@ fs::path aside_of(const fs::path& file) {
 bool is_same(const fs::path& a, const fs::path& b) {
   std::error_code none;
   if (fs::equivalent(a, b, none)) return true;
+  const auto whole = [](const fs::path& path) {
+    return fs::weakly_canonical(linked_file(fs::absolute(path)));
+  };
+  try {
+    return whole(a) == whole(b);
+  } catch (const std::system_error& /*error*/) {
+    return false;
+  }
+}
+
+// Whether the file is a run.json that `run` has written.
+bool is_result(const fs::path& file) {
   std::error_code error;
-  const fs::path whole_a = fs::weakly_canonical(fs::absolute(a), error);
-  if (error) return false;
-  const fs::path whole_b = fs::weakly_canonical(fs::absolute(b), error);
-  return !error && whole_a == whole_b;
+  if (!fs::is_regular_file(file, error)) return false;
+  std::string head(64, '\0');
+  std::ifstream(file).read(head.data(), static_cast<std::streamsize>(head.size()));
+  return head.find(R"("command": "run",)") != std::string::npos;
 }
 
 }  // namespace
@@ -72,6 +84,27 @@ fs::path linked_file(const fs::path& path) {
   if (error && error != std::errc::no_such_file_or_directory && error != std::errc::not_a_directory)
     fail(error.value(), path);
   return file;
+}
+
+void check_is_another(const fs::path& file, const std::vector<NamedFile>& others) {
+  for (const NamedFile& other : others) {
+    if (!other.path.empty() && is_same(file, other.path))
+      throw std::runtime_error(
+          fmt::format("'{}': is the file of {}: must be another", file.string(), other.option));
+  }
+}
+
+std::optional<std::string> result_folder_problem(const fs::path& path) {
+  std::error_code error;
+  fs::path inner = fs::absolute(path, error);
+  if (!error) inner = fs::weakly_canonical(inner, error);
+  for (; !error && inner.has_relative_path(); inner = inner.parent_path()) {
+    const fs::path folder = inner.parent_path();
+    if (is_result(folder / kResultMark))
+      return fmt::format("the result folder '{}' of run holds nothing else: must lie elsewhere",
+                         folder.string());
+  }
+  return std::nullopt;
 }
 
 void rename_to_new(const fs::path& from, const fs::path& to) {
@@ -154,15 +187,10 @@ FileKind marked_kind(std::string called, std::vector<std::pair<std::size_t, std:
 OutputFile::OutputFile(const fs::path& path, FileKind kind, const std::vector<NamedFile>& others)
     : name_(path.string()), kind_(std::move(kind)) {
   path_ = named(name_, [&path] { return linked_file(path); });
-  for (const NamedFile& other : others) {
-    if (!other.path.empty() && is_same(path_, other.path))
-      refuse(fmt::format("is the file of {}: must be another", other.option));
-  }
+  check_is_another(path, others);
+  if (const auto problem = result_folder_problem(path_)) refuse(*problem);
   was_there_ = check();
   const fs::path folder = folder_of(path_);
-  std::error_code error;
-  if (fs::is_regular_file(folder / kResultMark, error))
-    refuse("in a result folder of run, which holds nothing else: must lie elsewhere");
   if (faccessat(AT_FDCWD, folder.c_str(), W_OK | X_OK, AT_EACCESS) != 0)
     refuse(errno == ENOENT ? "there is no such folder"
                            : "cannot be written: " + std::generic_category().message(errno));

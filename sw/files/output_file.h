@@ -16,6 +16,10 @@ namespace stereotlm::files {
 // The file by which a result folder of `run` is known.
 inline constexpr const char* kResultMark = "run.json";
 
+// Why nothing may be written to the path: a result folder of `run` is above it, which holds nothing else.
+// nullopt if none is. The path need not exist.
+std::optional<std::string> result_folder_problem(const std::filesystem::path& path);
+
 // A file that an option or an argument of a command names, directly or by its folder.
 struct NamedFile {
   std::string option;
@@ -26,6 +30,10 @@ struct NamedFile {
 
 // Follows symbolic links to a file, which need not exist, and returns its path. Throws std::system_error.
 std::filesystem::path linked_file(const std::filesystem::path& path);
+
+// Throws std::runtime_error if the file, which need not exist, is one of `others`, also by symbolic or hard
+// links. An empty path is no file.
+void check_is_another(const std::filesystem::path& file, const std::vector<NamedFile>& others);
 
 // New content for a file, in a hidden file in the same folder. The destructor removes the hidden file. If the
 // process is killed, a Remover does, and the next process that writes the same file. All functions throw

@@ -39,6 +39,9 @@ OutputFolder::OutputFolder(const fs::path& dir, OutputContent content)
     : dir_(dir.empty() ? dir : fs::absolute(dir)), content_(std::move(content)) {
   if (dir_.empty()) refuse("must be named");
   if (!dir_.has_filename()) dir_ = dir_.parent_path();
+  // Only `run` writes into a result folder.
+  if (const auto problem = result_folder_problem(content_.mark == kResultMark ? dir_ : aside()))
+    refuse(*problem);
   try {
     do create_folders();
     while (!try_lock());

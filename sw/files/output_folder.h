@@ -43,9 +43,9 @@ struct OutputContent {
 class OutputFolder {
  public:
   // Creates DIR and its missing parents. Completes or undoes the commit of a killed run. Throws
-  // std::runtime_error, without other changes, if DIR is not writable or in use, if an input would be
-  // replaced, or if files are there that the command does not write (see OutputContent::others_stay) or that
-  // OutputContent::kind does not accept.
+  // std::runtime_error, without other changes, if DIR is not writable or in use, lies in a result folder of
+  // `run` or is one of another command, if an input would be replaced, or if files are there that the command
+  // does not write (see OutputContent::others_stay) or that OutputContent::kind does not accept.
   OutputFolder(const std::filesystem::path& dir, OutputContent content);
   // Without commit(): removes everything that this object has created. Earlier files are unchanged.
   ~OutputFolder();

@@ -436,11 +436,15 @@ double StoredRow::real(const std::string& column) const {
 }
 
 std::string behind_links(const std::string& store) {
+  std::string path;
   try {
-    return files::linked_file(store).string();
+    path = files::linked_file(store).string();
   } catch (const std::system_error& error) {
     throw sqlite::DatabaseError(fmt::format("{}: cannot be opened: {}", store, error.code().message()));
   }
+  if (const auto problem = files::result_folder_problem(path))
+    throw sqlite::DatabaseError(fmt::format("{}: {}", store, *problem));
+  return path;
 }
 
 // Uses a lock of the open file description. A lock of the process would end as soon as the process closed any

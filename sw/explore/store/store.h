@@ -133,7 +133,8 @@ class StoredRow {
 void merge_stores(const std::vector<std::string>& inputs, const std::string& store,
                   bool (*is_interrupted)() = nullptr);
 
-// Follows the symbolic links in the path of a store, and returns the path of the file. Throws DatabaseError.
+// Follows the symbolic links in the path of a store to write, and returns the path of the file. Throws
+// DatabaseError, also for a file in a result folder of `run`.
 std::string behind_links(const std::string& store);
 
 // The file of a store was removed or replaced while it was in use. The points that were added to it are lost.

@@ -13,7 +13,7 @@ import sqlite3
 
 import numpy
 
-from stereotlm.worker import Refused, execute, temporary_folder
+from stereotlm.worker import Problem, Refused, execute, temporary_folder
 
 
 def boards():
@@ -107,6 +107,9 @@ def _options(options):
     """Options of a command: keep_fps=99 is --keep-fps=99, True is a flag, a list an option for each value."""
     words = []
     for name, value in options.items():
+        if name == "help":
+            text = f"help = {value}: is no option here: see help(stereotlm.Board)"
+            raise Refused([Problem("command line", text, text)])
         if isinstance(value, numpy.ndarray):
             raise TypeError(f"{name}: an array: must be a number, a text or a path")
         for each in value if isinstance(value, (list, tuple)) else [value]:
@@ -285,13 +288,11 @@ class Board:
 
     def _execute(self, command, *words, sets=None, arrays=None):
         """Executes a command for the board, or for the board with other keys set."""
-        options = self._calibration_words()
-        for path, text in (self._state[0] if sets is None else sets).items():
-            options += ["--set", f"{path}={text}"]
-        return execute(command, self.board, *options, *words, arrays={**self._files, **(arrays or {})})
+        board = f"./{self.board}" if self.board.startswith("-") else self.board  # not an option
+        options = _options({"calibration": self.calibration})
+        options += [f"--set={path}={text}" for path, text in (self._state[0] if sets is None else sets).items()]
+        return execute(command, board, *options, *words, arrays={**self._files, **(arrays or {})})
 
-    def _calibration_words(self):
-        return [] if self.calibration is None else ["--calibration", self.calibration]
 
     # Commands.
 
@@ -347,9 +348,8 @@ class Board:
         computer is searched, which may take minutes; source="preloaded" is the core alone.
         attrs["document"] has the best of all.
         """
-        with temporary_folder() as folder:
-            words = ["--banks", banks, "--out", out or pathlib.Path(folder) / "boards.db"]
-            document = self._execute("allocate", *words, *_options(options), "--json").document
+        words = _options({"banks": banks, "out": out, **options})
+        document = self._execute("allocate", *words, "--json").document
         return _table(document["banks"], document)
 
     def sweep(self, vary=None, out=None, source="preloaded", frames=None, zip=None, where=None, sample=None,
@@ -362,9 +362,7 @@ class Board:
         move together. `where`: SQL expressions that must hold. `sample`: {"points": 100, "seed": 1}. `out`:
         the path of a database that is continued; the table then has all its points. `options`: jobs=2.
         """
-        # A path need not be UTF-8, as a plan must be.
-        words = ["--board", self.board] if "board.yaml" in self._files else []
-        plan = {"board": None if words else self.board,
+        plan = {"board": None if "board.yaml" in self._files else self.board,
                 "run": {"source": source} if frames is None else {"source": source, "frames": frames},
                 "vary": vary, "zip": zip, "where": where, "sample": sample}
         text = "".join(f"{name}: {_yaml(value, name)}\n" for name, value in plan.items() if value is not None)
@@ -375,10 +373,13 @@ class Board:
             text += "set: {" + ", ".join(fixed) + "}\n"
         files = {**self._files, "plan.yaml": numpy.frombuffer(text.encode(), numpy.uint8)}
         with temporary_folder() as folder:
-            # An absolute path: for sqlite3, ":memory:" is no file.
-            database = pathlib.Path(out or pathlib.Path(folder) / "points.db").absolute()
-            words += ["--out", database, *self._calibration_words(), *_options(options)]
-            execute("sweep", "the plan", *words, arrays=files)
+            database = pathlib.Path(folder) / "points.db" if out is None else out
+            if database != "":  # which the program refuses
+                database = pathlib.Path(os.fsdecode(database)).absolute()  # for sqlite3, ":memory:" is no file
+            words = {"out": database, "calibration": self.calibration, **options}
+            if "board.yaml" in self._files:
+                words["board"] = self.board  # a path need not be UTF-8, as a plan must be
+            execute("sweep", "the plan", *_options(words), arrays=files)
             return _points(database, varied)
 
     def chart(self, source="camera"):

@@ -9,6 +9,7 @@ import argparse
 import csv
 import errno
 import os
+import pathlib
 import re
 import signal
 import sys
@@ -105,6 +106,10 @@ def folder_problem(folder):
     try:
         if os.path.lexists(folder) and os.listdir(folder):
             return "must be empty: move away what it holds, or give another folder"
+        for above in pathlib.Path(os.path.realpath(folder)).parents:
+            mark = above / "run.json"  # as in result_folder_problem() of sw/files
+            if mark.is_file() and b'"command": "run",' in mark.read_bytes()[:64]:
+                return f"the result folder '{above}' of run holds nothing else: must lie elsewhere"
     except OSError as error:
         return f"cannot be written to: {error.strerror}"
     return ""

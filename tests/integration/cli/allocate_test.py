@@ -3,6 +3,7 @@
 import contextlib
 import itertools
 import json
+import os
 import pathlib
 import re
 import shlex
@@ -269,6 +270,27 @@ class Allocate(ProgramTest):
         self.assertNotIn("are the same, pixel by pixel", out)
         self.assertEqual(self.rates_of(*self.pasted(out)[1]), found)
 
+    def test_without_out_it_prints_the_same_and_keeps_nothing(self):
+        command = ["allocate", self.board(BURST), "--banks", 2]
+        temporary = self.folder / "temporary"
+        temporary.mkdir()
+        here = {"cwd": temporary, "env": {**os.environ, "TMPDIR": str(temporary)}}
+        for options in (PRELOADED, [*PRELOADED, "--json"]):
+            with self.unchanged(self.folder):
+                said = self.succeeds(run(*command, *options, **here))
+            self.assertEqual(said, self.succeeds(run(*command, *options, "--out", self.store)))
+        for number in (signal.SIGINT, signal.SIGTERM):
+            process = self.start("allocate", *LONG, "--banks", 3, **here)
+            wait_until(lambda: list(temporary.glob("stereotlm_*/boards.db")))
+            process.send_signal(number)
+            out, errors = process.communicate(timeout=60)
+            self.assertEqual(process.returncode, 130)
+            self.assertIn("note: interrupted: nothing is kept: give --out DB to resume later\n", errors)
+            self.assertIn("Interrupted", out)
+            self.is_in(temporary)
+        nowhere = {"env": {**os.environ, "TMPDIR": str(temporary / "none")}}
+        self.refused_in_one_line(run(*command, **nowhere), f"TMPDIR = {temporary / 'none'}: must be a folder")
+
     def test_an_interrupted_search_is_resumed_to_the_same_result(self):
         whole = self.succeeds(self.allocate(banks=3))
         for part in ("substr(hash, 1, 1) < '8'", "substr(hash, 1, 1) > '2'"):
@@ -371,7 +393,7 @@ class Allocate(ProgramTest):
     def test_wrong_values_are_refused(self):
         board = self.board()
         lines = self.refused(run("allocate", board, "--source", "camra", "--keep-fps", "0"))
-        wrong = ("--banks: missing", "--source = camra", "--keep-fps = 0: must be", "--out: missing")
+        wrong = ("--banks: missing", "--source = camra", "--keep-fps = 0: must be")
         for line, text in zip(lines, wrong, strict=True):
             self.assertIn(text, line)
         for frames, rule in (("0", "1..1000000"), ("x", "1..1000000")):

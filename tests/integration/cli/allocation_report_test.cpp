@@ -51,6 +51,16 @@ TEST_F(InterruptedSearch, RoundsUpWhatIsPossible) {
   EXPECT_EQ(allocation_report_document(report())["best"]["possible_frames_per_second"], 20.00001);
 }
 
+TEST_F(InterruptedSearch, NamesTheDatabaseToTryAgainIfItIsKept) {
+  search.record(search.next().front(), AllocationOutcome{0, 0, 0, false, "out of luck"});
+  AllocationReport kept = report();
+  EXPECT_THAT(allocation_report_text(kept),
+              HasSubstr(": out of luck\nTo try again:\n  sqlite3 found.db \"DELETE FROM points"));
+  kept.store = "";
+  EXPECT_THAT(allocation_report_text(kept),
+              AllOf(HasSubstr(": out of luck\n"), Not(HasSubstr("To try again"))));
+}
+
 TEST_F(InterruptedSearch, MayHaveProvedItsBest) {
   search.record(search.next().front(), AllocationOutcome{1000, 20.00001, 0, false, ""});
   EXPECT_THAT(allocation_report_text(report()),

@@ -140,7 +140,7 @@ class Boards(ProgramTest):
 
     def test_refuses_an_unknown_name_with_the_nearest(self):
         presets = "presets: fpl2003, "
-        for name, text in (("fpl2003-trible", "nearest: fpl2003-triple; "), ("", ""), ("bumblebee", "")):
+        for name, text in (("fpl2003-trible", "nearest: fpl2003-triple; "), ("bumblebee", "")):
             text = f"--show = {name}: not a preset; {text}{presets}"
             self.refused_in_one_line(run("boards", "--show", name), text)
 

@@ -167,7 +167,7 @@ class Command(ConflictsTest):
             ([*self.scene, "--size", "5x5"], "--size: goes with --out DIR"),
             ([recorded, "--frames", "2"], "a run is repeated as it was: no option of run goes with it"),
             ([recorded, *SHARED], "a run is repeated as it was"),
-            ([recorded, "--out", recorded], "must be empty or hold only files that conflicts has written"),
+            ([recorded, "--out", recorded], "of run holds nothing else: must lie elsewhere"),
             ([recorded, "--format", "gif", "--out", self.out], "--format = gif: must be png, svg, pdf"),
             ([recorded, "--size", "1x5", "--out", self.out], "--size = 1x5: must be WIDTHxHEIGHT in inches"),
         ], lambda *arguments: run("conflicts", *arguments))

@@ -85,7 +85,7 @@ class Refusals(PlotTest):
             "--out: missing: the folder of the figures",
         ])
         window = "matcher.window:max"
-        for wrong in ("", "matcher.window", window, "matcher.window:least,bound.core:max",
+        for wrong in ("matcher.window", window, "matcher.window:least,bound.core:max",
                       f"{window},matcher.window:min", f"{window},bound.core:max,run.source:min"):
             process = run("plot", self.store, "--out", self.out, "--pareto", wrong)
             self.refused_in_one_line(process, f"--pareto = {wrong}: must be two columns")
@@ -179,6 +179,9 @@ class Refusals(PlotTest):
         os.link(database, self.folder / "given" / "window.csv")
         process = run("plot", self.folder / "given" / "window.csv", "--out", self.folder / "given")
         self.refused_in_one_line(process, "lies in it and would be replaced")
+        self.file("result/run.json", '{"schema": 1, "command": "run", "version": "0.1.0"}')
+        self.refused_in_one_line(script("plot_window.py", self.store, "--out", self.folder / "result/new"),
+                                 f"the result folder '{self.folder / 'result'}' of run holds nothing else")
         for out, problem in ((self.left, "not a folder"), ("/proc/none/out", "cannot be written to")):
             self.refused_in_one_line(run("plot", self.store, "--out", out), f"--out '{out}': {problem}")
 

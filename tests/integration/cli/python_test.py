@@ -1,6 +1,7 @@
 """The module stereotlm of Python, and the worker behind it."""
 
 import concurrent.futures
+import contextlib
 import copy
 import decimal
 import json
@@ -319,6 +320,32 @@ class Runs(PythonTest):
         with self.assertRaises(stereotlm.Refused):
             small_board().run(synthetic=True)  # it takes a number
 
+    def test_values_are_no_options(self):
+        board = small_board()
+        for option in ("out", "truth", "left", "right", "frames", "timing_only"):
+            text = f"--{option.replace('_', '-')}=: a value is missing"
+            self.assertIn(text, str(self.refusal(lambda: board.run(**{option: ""}))))  # noqa: B023
+        for value in (True, False, ""):
+            self.assertIn("help = ", str(self.refusal(lambda: board.run(help=value))))  # noqa: B023
+        for words in (["--help"], ["-h"], ["--json"], [""], ["fpl2003", {"--help": 1}],
+                      ["fpl2003", {}, ""], ["fpl2003", {}, "--json"]):
+            self.refusal(lambda: stereotlm.Board(*words))  # noqa: B023
+        self.refusal(lambda: board.__setitem__("--help", 1))
+        for command in (board.explain, board.conflicts, lambda **options: board.allocate(1, **options),
+                        board.sweep, lambda **options: board.chart(**options)):
+            self.assertRaises((stereotlm.Refused, TypeError), command, help=True)
+        for command in (board.allocate, board.sweep):
+            self.refusal(lambda: command(1 if command == board.allocate else None, out=""))  # noqa: B023
+        self.refusal(lambda: board.allocate("--json"))
+        self.file("-board.yaml", (SOURCES / "platform/boards/fpl2003.yaml").read_text())
+        with contextlib.chdir(self.folder):
+            self.assertEqual(stereotlm.Board("-board.yaml").values, stereotlm.Board().values)
+            self.succeeds(run("run", "fpl2003", *SMALL, *PRELOADED, "--timing-only", "--out", "a"))
+            with self.unchanged(self.folder):
+                for action in (lambda: board.run(out="a/b"), lambda: board.sweep(out="a/b"),
+                               lambda: board.allocate(1, out="a/b", **ALONE)):
+                    self.assertIn("of run holds nothing else", str(self.refusal(action)))
+
     def test_warnings_are_warnings(self):
         board = stereotlm.Board(sets={
             "image": {"width": 64, "height": 16}, "cameras.frame_rate_hz": 800, "fpga.clock_mhz": 4,
@@ -361,6 +388,7 @@ class Commands(PythonTest):
         best = small_board().changed(found.sets[3]).run(frames=2, **ALONE)
         self.assertEqual(best.frames_per_second["core"], found["frames_per_second.core"][3])
         self.assertTrue(database.is_file())
+        self.assertTrue(small_board().allocate(4, frames=2, **ALONE).equals(found))
         self.assertIn("--banks = 9", str(self.refusal(lambda: small_board().allocate(9))))
 
     def test_sweep(self):

@@ -3,15 +3,21 @@
 load_test.cpp has every reason against a picture, result_folder_test.cpp every one against a folder.
 """
 
+import functools
 import os
+import pathlib
 import resource
 import shutil
 import signal
+import sys
 import time
 
 import program
 from pictures import pgm
-from program import HEIGHT, PRELOADED, SMALL, WIDTH, ProgramTest, of_plain_user, run, sets
+from program import HEIGHT, PRELOADED, PROGRAM, SMALL, WIDTH, ProgramTest, of_plain_user, run, sets
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "sw/cli"))
+import completion  # noqa: E402
 
 COMMANDS = (
     "run check boards keys bounds explain calibrate sweep merge allocate plot conflicts diff diagram report "
@@ -22,7 +28,15 @@ OPTIONS_OF_RUN = (
     "--truth-scale,--set,--out,--save-frames,--record,--fidelity fast|cycle,--timing-only,--verify,--trace "
     "FORMAT:FILE,--trace-window,default 1"
 )
-NO_INTEGERS = ("-1", "1.5", "x", "", "18446744073709551616")
+SMALL_KEYS = "{image.width: 32, image.height: 24}"
+NO_INTEGERS = ("-1", "1.5", "x", "18446744073709551616")
+
+
+def parsed_options():
+    """Command -> option -> whether it takes a value, as the parser of each command says."""
+    commands = completion.entries(completion.said(PROGRAM, "--help"), "Commands")
+    options = {name: completion.options_of(completion.said(PROGRAM, name, "--help")) for name, _ in commands}
+    return {name: {option: takes for option, (takes, _) in of.items()} for name, of in options.items()}
 
 
 class Help(ProgramTest):
@@ -78,6 +92,36 @@ class CommandLine(ProgramTest):
             if option != "--set":
                 self.refused_in_one_line(run("run", "fpl2003", option, "1", option, "1"), option)
 
+    def test_each_option_that_takes_a_value_needs_one(self):
+        options = parsed_options()
+        self.assertEqual(sorted(options), sorted(COMMANDS))
+        self.assertGreater(sum(map(len, options.values())), 100)
+        with self.unchanged(self.folder):
+            for command, of in options.items():
+                for option, takes_value in of.items():
+                    words = [[option, "--quiet"], [option, "-x"], [option, ""], [option]] * takes_value
+                    for each in [[f"{option}=", "--quiet"], *words]:
+                        process = run(command, *each, cwd=self.folder)
+                        self.refused(process, f"error: {each[0]}: a value is missing: must be {option}",
+                                     f"(see stereotlm {command} --help)")
+
+    def test_values_may_begin_with_a_dash(self):
+        offset = ["calibrate", "--synthetic", "1", "--grid", "9x6", "--square-mm", "25", "--disparity-offset"]
+        (problem, _) = self.refused(run(*offset, "-5", "--out", "x"))
+        self.assertEqual(problem, "stereotlm: error: --out 'x': must end in .yaml")
+        self.refused(run(*offset, "-.5", "--out", "x.yaml"), "--disparity-offset = -.5: must be auto or an")
+        self.refused_in_one_line(run("check", "fpl2003", "--calibration=-x"), "--calibration '-x'")
+        self.refused(run("run", "--out", "--json"), "be --out DIR, or --out=--json if --json is the value")
+        self.succeeds(run(*self.run_arguments("--out=--json"), cwd=self.folder))
+        self.is_in(self.folder, "--json", "left.pgm", "right.pgm")
+        self.assertIn("Usage", self.succeeds(run("run", "--bogus", "--help")))
+
+    def test_values_are_as_they_are_typed(self):
+        calibrate = ["calibrate", "--grid", "9x6", "--square-mm", "25", "--out", self.folder / "rig.yaml"]
+        for name in ("[]", "{}", "[a,b]", "[9]"):
+            lines = self.refused(run(*calibrate, "--left", name, "--right", self.right, cwd=self.folder))
+            self.assertEqual([line.split(": ")[2] for line in lines], [f"--left '{name}'"])
+
     def test_a_board_is_needed(self):
         for command in ("run", "check", "bounds"):
             self.refused(run(command), "stereotlm: error: BOARD: missing")
@@ -86,12 +130,12 @@ class CommandLine(ProgramTest):
     def test_wrong_values_are_refused_with_the_rule(self):
         truth = [*self.pair, "--truth", self.left]
         for before, option, rule, *values in (
-            (self.pair, "--source", "camera or preloaded", "foo", "Preloaded", ""),
-            (self.pair, "--fidelity", "fast or cycle", "foo", "Preloaded", ""),
+            (self.pair, "--source", "camera or preloaded", "foo", "Preloaded"),
+            (self.pair, "--fidelity", "fast or cycle", "foo", "Preloaded"),
             (self.pair, "--frames", "an integer, 1 or more", "0", "+1", " 1", "1e3", "0x10", *NO_INTEGERS),
-            (truth, "--truth-scale", "a number above 0", "0", "-1", "nan", "inf", "x", "", "1e400", "2x"),
+            (truth, "--truth-scale", "a number above 0", "0", "-1", "nan", "inf", "x", "1e400", "2x"),
             ([], "--synthetic", "an integer, 0..2^64-1", *NO_INTEGERS),
-            (["--video", "a"], "--video-layout", "two, side_by_side or top_bottom", "three", "", "Two"),
+            (["--video", "a"], "--video-layout", "two, side_by_side or top_bottom", "three", "Two"),
         ):
             run_it = ["run", "fpl2003", *before, option]
             self.all_refused(([*run_it, value], f"{option} = {value}: must be {rule}") for value in values)
@@ -301,8 +345,8 @@ class Outputs(ProgramTest):
         self.a, self.b, self.store = self.folder / "a", self.folder / "b", self.folder / "sweep.db"
         for folder in (self.a, self.b):
             self.succeeds(run(*run_it, folder))
-        plan = self.file("plan.yaml", "board: fpl2003\nset: {image.width: 32, image.height: 24}\n")
-        self.succeeds(run("sweep", plan, "--out", self.store))
+        self.sweep = ["sweep", self.file("plan.yaml", f"board: fpl2003\nset: {SMALL_KEYS}\n"), "--out"]
+        self.succeeds(run(*self.sweep, self.store))
         traced = ["run", "fpl2003", *SMALL, *PRELOADED, "--timing-only", "--trace-window", "frame=0"]
         allocate = ["allocate", "fpl2003", *SMALL, *PRELOADED, "--banks", "8", "--out",
                     self.folder / "search.db"]
@@ -319,7 +363,7 @@ class Outputs(ProgramTest):
             ".yaml": [*allocate, "--write"],
             ".pdf": [*grid],
             ".grid.svg": [*grid],
-            ".progress": ["sweep", plan, "--out", self.store, "--progress"],
+            ".progress": [*self.sweep, self.store, "--progress"],
         }
 
     def command(self, ending, path):
@@ -358,13 +402,57 @@ class Outputs(ProgramTest):
                                              f"'{path}': exists, and is not known as a ",
                                              "which alone is replaced: move it away, or give another file")
 
+    def test_no_output_without_a_value_is_written(self):
+        scene = ["fpl2003", *SMALL, *PRELOADED, "--timing-only"]
+        commands = [words for words in self.writers.values() if str(words[-1]).startswith("--")]
+        for words in (*commands, self.sweep, ["run", *scene, "--out"], ["conflicts", *scene, "--out"],
+                      ["plot", self.store, "--out"]):
+            for ending in ([f"{words[-1]}=", "--quiet"], [words[-1], "--quiet"]):
+                with self.subTest(words=words), self.unchanged(self.folder):
+                    process = run(*words[:-1], *ending, cwd=self.folder)
+                    self.refused_in_one_line(process, f"{ending[0]}: a value is missing")
+
     def test_files_of_a_result_folder_are_refused(self):
-        for ending in self.writers:
-            with self.subTest(ending=ending), self.unchanged(self.folder):
-                self.refused_in_one_line(run(*self.command(ending, self.a / f"new{ending}")), "result folder")
+        (self.folder / "link").symlink_to(self.a)
+        (self.a / "frames").mkdir()
+        scene = ["fpl2003", *SMALL, *PRELOADED, "--timing-only"]
+        calibrate = ["calibrate", "--synthetic", "1", "--grid", "9x6", "--square-mm", "25", "--out"]
+        commands = {ending: functools.partial(self.command, ending) for ending in self.writers}
+        for words in (self.sweep, ["sweep", "--launcher", "slurm", *self.sweep[1:]], ["run", *scene, "--out"],
+                      ["allocate", *scene[:-1], "--banks", "1", "--out"], ["conflicts", *scene, "--out"],
+                      ["plot", self.store, "--out"], ["paper", "--out"]):
+            commands[" ".join(map(str, words))] = lambda path, words=words: [*words, path]
+        commands["merge"] = lambda path: ["merge", path, self.store]
+        commands["calibrate"] = lambda path: [*calibrate, f"{path}.yaml"]
+        writers = {command("x")[0] for command in commands.values()}
+        self.assertEqual(writers, {"merge", "diff"} | {name for name, of in parsed_options().items()
+                                                       if "--out" in of})
+        folders = (self.a, self.folder / "link" / "frames", self.b / ".." / "a" / "none")
+        for name, command in commands.items():
+            ending = name if name in self.writers else ""
+            for folder in filter(pathlib.Path.exists, folders) if name == "calibrate" else folders:
+                with self.subTest(name=name, folder=folder), self.unchanged(self.folder):
+                    self.refused_in_one_line(run(*command(folder / f"new{ending}")),
+                                             f"the result folder '{self.a}' of run holds nothing else")
         with self.unchanged(self.folder):
+            for name in ("conflicts", "plot", "paper"):
+                words = next(key for key in commands if key.startswith(f"{name} "))
+                self.refused_in_one_line(run(*commands[words](self.a)), f"result folder '{self.a}' of run")
+            self.refused_in_one_line(run(*calibrate, self.a / "rig.yaml"), f"result folder '{self.a}' of run")
             for ending, name in ((".csv", "rows.csv"), (".yaml", "config.yaml")):
                 self.refused_in_one_line(run(*self.command(ending, self.a / name)), f"'{self.a / name}': ")
+
+    def test_the_known_database_is_another_one(self):
+        links = [self.folder / name for name in ("soft.db", "hard.db", "to_new.db")]
+        links[0].symlink_to(self.store)
+        links[1].hardlink_to(self.store)
+        links[2].symlink_to("new.db")
+        new = self.folder / "new.db"
+        for out, known in ((self.store, self.store), *((self.store, link) for link in links[:2]),
+                           *((link, self.store) for link in links[:2]), (links[2], new), (new, links[2])):
+            with self.subTest(out=out, known=known), self.unchanged(self.folder):
+                self.refused_in_one_line(run(*self.sweep, out, "--known", known),
+                                         f"--known '{known}': is the file of --out: must be another")
 
     def test_an_fst_needs_no_other_name_in_its_folder(self):
         (self.folder / "own.fst.vcd").mkdir()

@@ -73,7 +73,6 @@ class Sequence(SourceTest):
         rule = ": a sequence must be a readable folder"
         self.refused_sequence(self.folder / "none", f"none': No such file or directory{rule}")
         self.refused_sequence(self.left, f"left.pgm': Not a directory{rule}")
-        self.refused_sequence("", f"'': No such file or directory{rule}")
         folder = self.sequence(0)
         shutil.copy(self.left, folder / "left.png")
         pairs = "no pictures: a sequence must have pairs left_*.png and right_*.png"

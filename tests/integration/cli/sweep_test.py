@@ -246,7 +246,7 @@ class Refusals(SweepTest):
             self.refused(self.sweep("--board", "fpl2004"), "fpl2004: not a preset")
             options = ("--known", "--progress", "--board")
             empty = self.sweep(*(word for option in options for word in (option, "")))
-            self.refused(empty, *(f"{option}: empty" for option in options))
+            self.refused(empty, *(f"{option}: a value is missing" for option in options))
             self.refused(run("sweep"), "PLAN: missing", "--out: missing")
             self.refused(run("merge"), "OUT: missing", "DB: missing")
 

@@ -118,7 +118,7 @@ class Refusals(TraceTest):
              "a.gtkw' is the file of two traces"),
             ([*base, "--trace-window", "frame=0"], "--trace-window: goes with --trace FORMAT:FILE"),
             *(([*base, *window, text], f"--trace-window = '{text}': {forms}")
-              for text in ("", "3", "frame=", "frame=-1", "rows=1..2", "frame=0,rows=2..1", "frame=0,rows=1",
+              for text in ("3", "frame=", "frame=-1", "rows=1..2", "frame=0,rows=2..1", "frame=0,rows=1",
                            "cycles=1..x", "frame=0,frame=0", "frame=0,rows=1..2,cycles=1..2", "lines=1..2",
                            "longest-wait", "longest-wait,frame=0", "frame=0,longest-wait,rows=1..2",
                            "frame=0,longest-wait=1", "frame=0,longest-wait,longest-wait")),

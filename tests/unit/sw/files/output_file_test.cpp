@@ -112,15 +112,29 @@ TEST_F(OutputFileTest, MustNotBeAnotherFileOfTheCommand) {
   const std::vector<NamedFile> input = {{"PLAN", ""}, {"BOARD", path_.string()}};
   for (const fs::path& path : {path_, link, hard_link, scratch_.path() / "." / "file"})
     EXPECT_EQ(refusal(path, input), "'" + path.string() + "': is the file of BOARD: must be another");
-  const std::vector<NamedFile> output = {{"--out", (scratch_.path() / "." / "new").string()}};
-  EXPECT_THAT(refusal(scratch_.path() / "new", output), ::testing::HasSubstr("is the file of --out"));
+  fs::create_symlink("new", scratch_.path() / "to_new");
+  for (const char* const name : {"new", "to_new"}) {
+    const std::vector<NamedFile> output = {{"--out", (scratch_.path() / "." / name).string()}};
+    EXPECT_THAT(refusal(scratch_.path() / "new", output), ::testing::HasSubstr("is the file of --out"));
+    EXPECT_THAT(refusal(scratch_.path() / "to_new", output), ::testing::HasSubstr("is the file of --out"));
+  }
 }
 
 TEST_F(OutputFileTest, MustNotLieInAResultFolder) {
-  test::write_file(scratch_.path() / "a" / "run.json", "{}");
-  EXPECT_THAT(refusal(scratch_.path() / "a" / "file"), ::testing::HasSubstr("in a result folder of run"));
+  const fs::path a = scratch_.path() / "a";
+  for (const char* const other : {"", "{}", R"({"command": "train", "run": 1})"}) {
+    test::write_file(a / "run.json", other);
+    EXPECT_NO_THROW(OutputFile(a / "file", kKind)) << other;
+  }
+  test::write_file(a / "run.json", R"({"schema": 1, "command": "run", "version": "0.1.0"})");
   fs::create_symlink("a", scratch_.path() / "b");
-  EXPECT_THAT(refusal(scratch_.path() / "b" / "file"), ::testing::HasSubstr("in a result folder of run"));
+  fs::create_symlink("a/new", scratch_.path() / "c");
+  for (const char* const name : {"a/file", "b/file", "a/none/deep/file", "b/../a/file", "c", "a/run.json"}) {
+    EXPECT_EQ(refusal(scratch_.path() / name), "'" + (scratch_.path() / name).string() +
+                                                   "': the result folder '" + a.string() +
+                                                   "' of run holds nothing else: must lie elsewhere");
+  }
+  EXPECT_NO_THROW(OutputFile(scratch_.path() / "a_b", kKind));
 }
 
 TEST_F(OutputFileTest, IsNotWrittenBesideAJournalOfAnotherDatabase) {
