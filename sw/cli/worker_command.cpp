@@ -159,7 +159,8 @@ Request request_of(const std::string& line, int from) {
   } else if (encoding != "utf-8") {
     throw std::runtime_error(fmt::format("encoding = {}: must be utf-8 or latin-1", encoding));
   }
-  static const std::filesystem::path of_worker = std::filesystem::current_path();
+  static std::error_code error;  // the folder may have been removed
+  static const std::filesystem::path of_worker = std::filesystem::current_path(error);
   request.folder = of_worker / folder;
   if (!document.contains("arrays")) return request;
   for (const Json& given : value_of<std::vector<Json>>(document, "arrays", "a list of arrays")) {

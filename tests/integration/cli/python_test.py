@@ -575,6 +575,18 @@ except KeyboardInterrupt:
                 self.worker.execute(*words)
         self.works()
 
+    def test_the_folder_in_which_one_began_may_be_removed(self):
+        self.addCleanup(os.chdir, os.getcwd())
+        (self.folder / "gone").mkdir()
+        os.chdir(self.folder / "gone")
+        self.works()
+        os.chdir("/")
+        (self.folder / "gone").rmdir()
+        pid = self.worker.pid
+        for _ in range(3):
+            self.worker.execute("run", "fpl2003", *SMALL, *PRELOADED, "--timing-only")
+        self.assertEqual(self.worker.pid, pid)
+
     def test_text_that_is_no_text_is_refused_and_nothing_is_sent(self):
         with self.assertRaises(UnicodeEncodeError):
             self.worker.execute("check", "/tmp/\ud8ff.yaml")
