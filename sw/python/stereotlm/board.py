@@ -290,7 +290,8 @@ class Board:
         """Executes a command for the board, or for the board with other keys set."""
         board = f"./{self.board}" if self.board.startswith("-") else self.board  # not an option
         options = _options({"calibration": self.calibration})
-        options += [f"--set={path}={text}" for path, text in (self._state[0] if sets is None else sets).items()]
+        sets = self._state[0] if sets is None else sets
+        options += [f"--set={path}={text}" for path, text in sets.items()]
         return execute(command, board, *options, *words, arrays={**self._files, **(arrays or {})})
 
 
@@ -374,8 +375,8 @@ class Board:
         files = {**self._files, "plan.yaml": numpy.frombuffer(text.encode(), numpy.uint8)}
         with temporary_folder() as folder:
             database = pathlib.Path(folder) / "points.db" if out is None else out
-            if database != "":  # which the program refuses
-                database = pathlib.Path(os.fsdecode(database)).absolute()  # for sqlite3, ":memory:" is no file
+            if database != "":  # which the program refuses; for sqlite3, ":memory:" is no file
+                database = pathlib.Path(os.fsdecode(database)).absolute()
             words = {"out": database, "calibration": self.calibration, **options}
             if "board.yaml" in self._files:
                 words["board"] = self.board  # a path need not be UTF-8, as a plan must be
