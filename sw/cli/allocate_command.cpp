@@ -79,6 +79,7 @@ std::optional<ComparedPixels> compare_pixels(const BoardConfig& board, const pla
     if (best.tied == 0) continue;
     const auto run =
         runs::simulate_pixels(explore::placed(board, best.witness), tables, *pairs, compared.frames);
+    if (process::interrupted()) return std::nullopt;
     if (compared.allocations++ == 0) {
       first = run.disparities_sha256;
       first_witness = &best.witness;

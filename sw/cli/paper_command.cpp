@@ -101,9 +101,10 @@ Pictures synthetic_pictures(const platform::BoardConfig& board, std::uint64_t se
   return {std::move(pairs), std::move(truth)};
 }
 
-// The accuracy of a board's disparities for the first pair of the pictures.
+// The accuracy of a board's disparities for the first pair of the pictures. Zero after an interrupt.
 paper::Quality quality(const platform::BoardConfig& board, const Pictures& pictures) {
   const auto run = runs::simulate_pixels(board, runs::tables_of(board, std::nullopt), *pictures.pairs, 1);
+  if (process::interrupted()) return {};
   const stats::Accuracy found = stats::accuracy(run.last, pictures.truth);
   if (!found.bad_1_percent) throw std::runtime_error("the board answers no pixel whose disparity is known");
   return {*found.bad_1_percent, found.answered_percent.value()};

@@ -121,7 +121,7 @@ std::pair<Array, std::size_t> array_of(const Json& given) {
   return {array, bytes};
 }
 
-// Reads a line, and no byte behind it. The last one may lack its newline. Returns false at the end of the file.
+// Reads a line, and no byte behind it. The last one needs no newline. Returns false at the end of the file.
 bool read_line(int from, std::string& line) {
   for (char byte = 0; process::read_all(from, &byte, 1);) {
     if (byte == '\n') return true;
@@ -136,7 +136,8 @@ std::string bytes_of_codes(const std::string& utf8) {
   for (std::size_t i = 0; i < utf8.size(); ++i) {
     const auto first = static_cast<unsigned char>(utf8[i]);
     if (first > 0xC3U) throw std::runtime_error("encoding = latin-1: characters must be U+0000 to U+00FF");
-    bytes += first < 0x80U ? utf8[i] : static_cast<char>((first & 3U) << 6U | (utf8[++i] & 0x3FU));
+    const auto second = static_cast<unsigned char>(first < 0x80U ? 0 : utf8[++i]);
+    bytes += static_cast<char>(first < 0x80U ? first : (first & 3U) << 6U | (second & 0x3FU));
   }
   return bytes;
 }
@@ -158,7 +159,8 @@ Request request_of(const std::string& line, int from) {
   } else if (encoding != "utf-8") {
     throw std::runtime_error(fmt::format("encoding = {}: must be utf-8 or latin-1", encoding));
   }
-  static const std::filesystem::path of_worker = std::filesystem::current_path();
+  static std::error_code error;  // the folder may have been removed
+  static const std::filesystem::path of_worker = std::filesystem::current_path(error);
   request.folder = of_worker / folder;
   if (!document.contains("arrays")) return request;
   for (const Json& given : value_of<std::vector<Json>>(document, "arrays", "a list of arrays")) {
@@ -217,7 +219,7 @@ bool serve_one(const process::Child::Tell& tell) {
   return is_fresh && !process::interrupted();
 }
 
-// Waits until child.next() would return soon. Returns false if the client has closed its end of the pipe `to`.
+// Waits until child.next() would return soon. Returns false if the client has closed its end of `to`.
 bool wait_for_news(const process::Child& child, int to) {
   std::array<pollfd, 2> watched = {{{child.descriptor(), POLLIN, 0}, {to, 0, 0}}};
   while (poll(watched.data(), watched.size(), -1) < 0) {

@@ -50,8 +50,8 @@ class Pipe {
   std::array<int, 2> ends_{-1, -1};
 };
 
-// Forks a process that is killed when the thread that calls this ends; the main thread ends with this process.
-// Returns what fork() returns. Throws std::system_error if the system cannot fork.
+// Forks a process that is killed when this one ends. To be called on the main thread: the end of the thread
+// counts. Returns what fork() returns. Throws std::system_error if the system cannot fork.
 pid_t fork_bound();
 
 // A child process that does one piece of work and sends messages about it. Simulations run in such processes,

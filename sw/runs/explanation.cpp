@@ -306,7 +306,7 @@ bool Explanation::simulate(PointSimulator simulator) {
   const auto cycles = nlohmann::json::parse(figures_->text("frame_cycles")).get<std::vector<double>>();
   compare_resources(cycles);
   share_time(cycles);
-  return true;
+  return !process::interrupted();
 }
 
 Explanation::Rate Explanation::rate_of(std::uint64_t number) {

@@ -21,7 +21,8 @@
 namespace stereotlm::explore {
 namespace {
 
-constexpr int kPollMs = 20;  // between two calls of keep_going
+constexpr int kPollMs = 20;                // between two calls of keep_going
+constexpr std::chrono::seconds kGrace{1};  // for points that have begun, after keep_going has returned false
 
 std::uint64_t points_of(const Points& points, const SweepOptions& options) {
   return points.size > options.shard ? (points.size - options.shard - 1) / options.shards + 1 : 0;
@@ -263,11 +264,17 @@ class Sweep {
  private:
   void run_points(const StoreLock& lock, const std::function<bool(const SweepCounts&)>& keep_going) {
     for (std::size_t place = 0; place < workers_.size(); ++place) start_worker(place);
+    auto end = std::chrono::steady_clock::time_point::max();
     while (
         std::any_of(workers_.begin(), workers_.end(), [](const auto& worker) { return worker != nullptr; })) {
-      if (!keep_going(state_.claims.counts())) state_.claims.stop();
+      const auto now = std::chrono::steady_clock::now();
+      if (!keep_going(state_.claims.counts())) {
+        state_.claims.stop();
+        end = std::min(end, now + kGrace);
+      }
       wait();
       lock.check();
+      if (now > end) workers_.clear();  // ends them
     }
     keep_going(state_.claims.counts());
     lock.check();

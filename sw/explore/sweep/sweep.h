@@ -73,7 +73,8 @@ struct SweepOptions {
 inline constexpr int kMostDeaths = 3;
 
 // Simulates all points that the stores do not have. `keep_going` is called several times a second with the
-// progress; after it has returned false no further point is begun. At the end merge_stores() gives the store
+// progress; after it has returned false no further point is begun, and those that do not end within a second
+// are given up. At the end merge_stores() gives the store
 // its final form, whose bytes depend only on its points. A point whose worker dies is begun again,
 // until it counts as failed after kMostDeaths deaths; the reason in its row then says how to try it again.
 // Throws DatabaseError, also if another sweep uses the store; StoreGone (store.h) once the file of the

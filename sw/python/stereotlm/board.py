@@ -200,10 +200,9 @@ class Board:
     def changed(self, sets, calibration=None):
         """A copy with other values: a dict by dotted paths, or a list of "KEY=VALUE" as in the tables of
         explain() and allocate(). `calibration`: the path of another one."""
-        files = {name: its for name, its in self._files.items() if calibration is None or name == "board.yaml"}
+        files = {name: its for name, its in self._files.items() if not calibration or name == "board.yaml"}
         changed = Board.__new__(Board)
-        changed._begin(self.board, self.calibration if calibration is None else calibration,
-                       _with(self._state[0], sets), files)
+        changed._begin(self.board, calibration or self.calibration, _with(self._state[0], sets), files)
         return changed
 
     def check(self):
@@ -290,12 +289,11 @@ class Board:
     def _execute(self, command, *words, sets=None, arrays=None):
         """Executes a command for the board, or for the board with other keys set."""
         board = f"./{self.board}" if self.board.startswith("-") else self.board  # not an option
+        options = _options({"calibration": self.calibration})
         sets = self._state[0] if sets is None else sets
-        options = [*self._calibration_words(), *(f"--set={path}={text}" for path, text in sets.items())]
+        options += [f"--set={path}={text}" for path, text in sets.items()]
         return execute(command, board, *options, *words, arrays={**self._files, **(arrays or {})})
 
-    def _calibration_words(self):
-        return [] if self.calibration is None else ["--calibration", self.calibration]
 
     # Commands.
 
@@ -313,7 +311,7 @@ class Board:
         board = copy.copy(self)  # whatever another thread changes
         arrays, options = _pictures(left, right, copy.deepcopy(options))
         changes = [options.pop(name, None) for name in ("set", "calibration")]
-        if changes != [None, None]:
+        if any(changes):
             board = board.changed(changes[0] or [], changes[1])
         if any(numpy.ndim(array) == 3 for array in arrays.values()) and not options.get("timing_only"):
             options["save_frames"] = True
@@ -365,9 +363,7 @@ class Board:
         move together. `where`: SQL expressions that must hold. `sample`: {"points": 100, "seed": 1}. `out`:
         the path of a database that is continued; the table then has all its points. `options`: jobs=2.
         """
-        # A path need not be UTF-8, as a plan must be.
-        words = ["--board", self.board] if "board.yaml" in self._files else []
-        plan = {"board": None if words else self.board,
+        plan = {"board": None if "board.yaml" in self._files else self.board,
                 "run": {"source": source} if frames is None else {"source": source, "frames": frames},
                 "vary": vary, "zip": zip, "where": where, "sample": sample}
         text = "".join(f"{name}: {_yaml(value, name)}\n" for name, value in plan.items() if value is not None)
@@ -378,11 +374,13 @@ class Board:
             text += "set: {" + ", ".join(fixed) + "}\n"
         files = {**self._files, "plan.yaml": numpy.frombuffer(text.encode(), numpy.uint8)}
         with temporary_folder() as folder:
-            # An absolute path: for sqlite3, ":memory:" is no file.
             database = pathlib.Path(folder) / "points.db" if out is None else out
-            database = database and pathlib.Path(database).absolute()
-            words += [*self._calibration_words(), *_options({"out": database, **options})]
-            execute("sweep", "the plan", *words, arrays=files)
+            if database != "":  # which the program refuses; for sqlite3, ":memory:" is no file
+                database = pathlib.Path(os.fsdecode(database)).absolute()
+            words = {"out": database, "calibration": self.calibration, **options}
+            if "board.yaml" in self._files:
+                words["board"] = self.board  # a path need not be UTF-8, as a plan must be
+            execute("sweep", "the plan", *_options(words), arrays=files)
             return _points(database, varied)
 
     def chart(self, source="camera"):

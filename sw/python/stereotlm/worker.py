@@ -124,7 +124,7 @@ class _Bar:
 def temporary_folder():
     """A folder for temporary files. It is removed even if this process is killed."""
     folder = tempfile.mkdtemp(prefix="stereotlm_")
-    # The shell waits for a line or the end of the pipe. Processes that were killed may still write for a moment.
+    # The shell waits for a line or the end of the pipe. Killed processes may still write for a moment.
     script = 'read -r _; for i in 1 2 3 4 5 6 7 8 9; do /bin/rm -rf -- "$1" && break; sleep 0.1; done'
     words = ["stereotlm-remover", "-c", script, "/bin/sh", folder]
     with subprocess.Popen(words, executable="/bin/sh", bufsize=0, stdin=subprocess.PIPE,

@@ -214,11 +214,11 @@ bool add_repetition(const runs::RecordedRun& run, runs::RunInput& input, Json& d
   std::uint64_t frames = 0;
   std::uint64_t last = 0;  // camera frame
   while (true) {
-    while (!rerun.has_news(kBetweenPolls)) {
+    do {
       if (process::interrupted()) return false;
       progress.show(frames, run.options.frames,
                     [&](double) { return fmt::format("{}/{} frames repeated", frames, run.options.frames); });
-    }
+    } while (!rerun.has_news(kBetweenPolls));
     const auto frame = rerun.next();
     if (!frame) break;
     ++frames;

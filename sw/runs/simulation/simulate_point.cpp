@@ -1,6 +1,7 @@
 #include "sw/runs/simulation/simulate_point.h"
 
 #include <algorithm>
+#include <chrono>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <optional>
@@ -15,6 +16,7 @@
 #include "sw/explore/sweep/sweep.h"
 #include "sw/files/text_forms.h"
 #include "sw/process/child.h"
+#include "sw/process/streams.h"
 #include "sw/runs/simulation/camera_simulation.h"
 #include "sw/runs/simulation/simulation.h"
 #include "sw/runs/sources/open_source.h"
@@ -37,12 +39,16 @@ Json document_of(const platform::Statistics& statistics) {
   return stats::stats_document(statistics, std::nullopt);
 }
 
-// Does the work in a child process, because SystemC is elaborated once in a process. Returns its document.
+// Does the work in a child process, because SystemC is elaborated once in a process. Returns its document;
+// null after an interrupt.
 Json in_child(const std::function<Json()>& work) {
   process::Child child([&work](const process::Child::Tell& tell) {
     const auto bytes = Json::to_cbor(work());
     tell(std::string(bytes.begin(), bytes.end()));
   });
+  while (!child.has_news(std::chrono::milliseconds(20))) {
+    if (process::interrupted()) return nullptr;
+  }
   const std::string bytes = child.next().value();
   child.next();
   return Json::from_cbor(bytes);
@@ -107,6 +113,7 @@ std::map<std::string, double> core_time(const platform::BoardConfig& board, cons
     take();
     return times_ps;
   });
+  if (document.is_null()) return {};
   auto times = document.get<std::map<std::string, double>>();
   double whole = 0;
   for (const auto& [why, time] : times) whole += time;
@@ -132,6 +139,7 @@ PixelRun simulate_pixels(const platform::BoardConfig& board, const platform::Tab
             {"cycles", std::accumulate(cycles.begin(), cycles.end(), std::uint64_t{0})},
             {"last", Json::binary(simulation->last().disparity.pixels)}};
   });
+  if (document.is_null()) return {};
   PixelRun run = {document.at("sha256"), document.at("cycles"), {board.image.width, board.image.height}};
   run.last.pixels = document.at("last").get_binary();
   return run;

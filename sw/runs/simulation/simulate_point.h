@@ -38,7 +38,7 @@ class PointSimulator {
 
 // How the core of a whole computer spends its time in the window of the steady rate: shares, which sum to 1.
 // Key "": in frames. Each other key: waiting for the next start, by reason (sw/report/README.md, Time line).
-// The run of `frames` frames must have a steady rate. Throws as PointSimulator does.
+// The run of `frames` frames must have a steady rate. Empty after an interrupt. Throws as PointSimulator.
 std::map<std::string, double> core_time(const platform::BoardConfig& board, const platform::Tables& tables,
                                         std::uint64_t frames);
 
@@ -49,8 +49,8 @@ struct PixelRun {
   kernels::GrayImage last;         // disparities of the last frame
 };
 
-// Simulates frames of the core alone, with pixels, in a child process at fidelity fast. Throws as
-// PointSimulator does.
+// Simulates frames of the core alone, with pixels, in a child process at fidelity fast. Empty after an
+// interrupt. Throws as PointSimulator does.
 PixelRun simulate_pixels(const platform::BoardConfig& board, const platform::Tables& tables,
                          host::FrameSource& pairs, std::uint64_t frames);
 

@@ -575,6 +575,18 @@ except KeyboardInterrupt:
                 self.worker.execute(*words)
         self.works()
 
+    def test_the_folder_in_which_one_began_may_be_removed(self):
+        self.addCleanup(os.chdir, os.getcwd())
+        (self.folder / "gone").mkdir()
+        os.chdir(self.folder / "gone")
+        self.works()
+        os.chdir("/")
+        (self.folder / "gone").rmdir()
+        pid = self.worker.pid
+        for _ in range(3):
+            self.worker.execute("run", "fpl2003", *SMALL, *PRELOADED, "--timing-only")
+        self.assertEqual(self.worker.pid, pid)
+
     def test_text_that_is_no_text_is_refused_and_nothing_is_sent(self):
         with self.assertRaises(UnicodeEncodeError):
             self.worker.execute("check", "/tmp/\ud8ff.yaml")
@@ -702,7 +714,8 @@ class Protocol(ProgramTest):
         self.assertEqual([line["status"] for line in lines if "status" in line], [2, 2, 0])
         takes = "array {}: the command takes no array of this name"
         problems = [[problem["rule"] for problem in line["problems"]] for line in lines if "problems" in line]
-        self.assertEqual(problems, [[takes.format("left"), takes.format("third")], [takes.format("third")], []])
+        left, third = takes.format("left"), takes.format("third")
+        self.assertEqual(problems, [[left, third], [third], []])
 
     def test_the_last_line_needs_no_newline(self):
         lines, status = self.answers(b'{"arguments": ["boards"]}\n{"arguments": ["boards"]}')

@@ -94,7 +94,7 @@ class Schemas(ProgramTest):
                 section = section.setdefault(each, {})
             section[name] = value
             try:
-                stereotlm.execute("check", "fpl2003", *sets(f"{key}={_yaml(value)}"), "--json")
+                stereotlm.execute("check", "fpl2003", *sets(f"{key}={_yaml(value, key)}"), "--json")
                 problems = []
             except stereotlm.Refused as refused:
                 problems = refused.problems
