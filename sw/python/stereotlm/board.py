@@ -200,9 +200,10 @@ class Board:
     def changed(self, sets, calibration=None):
         """A copy with other values: a dict by dotted paths, or a list of "KEY=VALUE" as in the tables of
         explain() and allocate(). `calibration`: the path of another one."""
-        files = {name: its for name, its in self._files.items() if not calibration or name == "board.yaml"}
+        files = {name: its for name, its in self._files.items() if calibration is None or name == "board.yaml"}
         changed = Board.__new__(Board)
-        changed._begin(self.board, calibration or self.calibration, _with(self._state[0], sets), files)
+        changed._begin(self.board, self.calibration if calibration is None else calibration,
+                       _with(self._state[0], sets), files)
         return changed
 
     def check(self):
@@ -294,7 +295,6 @@ class Board:
         options += [f"--set={path}={text}" for path, text in sets.items()]
         return execute(command, board, *options, *words, arrays={**self._files, **(arrays or {})})
 
-
     # Commands.
 
     def run(self, left=None, right=None, **options):
@@ -311,7 +311,7 @@ class Board:
         board = copy.copy(self)  # whatever another thread changes
         arrays, options = _pictures(left, right, copy.deepcopy(options))
         changes = [options.pop(name, None) for name in ("set", "calibration")]
-        if any(changes):
+        if changes != [None, None]:
             board = board.changed(changes[0] or [], changes[1])
         if any(numpy.ndim(array) == 3 for array in arrays.values()) and not options.get("timing_only"):
             options["save_frames"] = True
