@@ -57,9 +57,10 @@ class ProtocolMonitor : public sc_core::sc_module,
   PhaseTracker phases_;
   // The calls in progress.
   std::vector<Blocking> blocking_;
-  std::map<const tlm::tlm_generic_payload*, std::pair<sc_dt::uint64, sc_core::sc_time>> begun_;  // and where
   std::vector<Process> forward_;
   std::vector<Process> backward_;
+  // Address and time of the requests of the accesses in progress.
+  std::map<const tlm::tlm_generic_payload*, std::pair<sc_dt::uint64, sc_core::sc_time>> begun_;
   std::vector<std::string> violations_;
 };
 

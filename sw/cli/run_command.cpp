@@ -101,8 +101,8 @@ Outcome count_cycles(const runs::RunInput& input) {
   return outcome;
 }
 
-// Prints a note about each trace that will be large. A child process traces a sample of the run without pixels:
-// some frames, or with a window cycles behind the fill of one. The whole is larger in proportion.
+// Prints a note about each trace that will be large. A child process traces a sample of the run, without
+// pixels: some frames, or with a window some cycles of a frame. The whole is larger in proportion.
 void say_large_traces(runs::RunInput& input, const TraceOptions& options) {
   constexpr double kLarge = 200e6;  // bytes
   constexpr std::uint64_t kFrames = 64;

@@ -7,7 +7,8 @@ import signal
 import sqlite3
 
 import program
-from program import (CAMERA_RATES, CYCLE, PRELOADED, PROGRESS, SMALL, ProgramTest, Terminal, run, sets, wait_until)
+from program import (CAMERA_RATES, CYCLE, PRELOADED, PROGRESS, SMALL, ProgramTest, Terminal, run, sets,
+                     wait_until)
 
 CONTENDED = sets("allocation.left_lut=bank0", "allocation.left_image=[bank0, bank0]")
 TIMING = ["--timing-only", *CONTENDED]
@@ -113,13 +114,13 @@ class Sizes(TraceTest):
 
     def estimates(self, formats, *options):
         """[format]: the bytes that the notes before a long run say."""
-        process = self.start("run", "fpl2003", *SMALL, *TIMING, *options, "--frames", self.FRAMES, *trace(*formats),
-                             cwd=self.folder)
+        process = self.start("run", "fpl2003", *SMALL, *TIMING, *options, "--frames", self.FRAMES,
+                             *trace(*formats), cwd=self.folder)
         found = {}
         for form in formats:
             note = process.stderr.readline()
-            self.assertRegex(note, rf"note: --trace '{form}:run.{form}': will take about \d+ MB: fewer --frames, "
-                             "or a short --trace-window such as frame=F,rows=A..B, make it smaller\n")
+            self.assertRegex(note, rf"note: --trace '{form}:run.{form}': will take about \d+ MB: fewer "
+                             "--frames, or a short --trace-window such as frame=F,rows=A..B, make it smaller\n")
             found[form] = int(re.search(r"(\d+) MB", note)[1]) * 1e6
         self.close(process)
         return found

@@ -230,13 +230,21 @@ std::string wait_key(const std::string& requester, const std::string& bank, cons
   return fmt::format("{} waits on {} for {}", port_of(requester), bank, port_of(by));
 }
 
-Sums sums_of(const platform::Statistics& statistics) {
+// The frames of the window.
+Sums sums_of(const std::vector<platform::FrameRuns>& frames, const CycleWindow& window,
+             const platform::BoardConfig& board) {
+  const fpga::Requesters requesters = requesters_of(board);
   Sums sums;
-  for (const platform::PortStatistics& port : statistics.ports) {
-    if (port.grants != 0) sums[port.name + " grants"] = port.grants;
+  for (const platform::FrameRuns& frame : frames) {
+    if (window.frame ? frame.frame != window.frame
+                     : frame.end_cycle <= window.first || frame.first_cycle > window.last)
+      continue;
+    for (const platform::TraceRun& run : frame.runs) {
+      const std::string name = requesters.name(run.requester);
+      sums[run.by ? wait_key(name, board.banks[run.bank].name, requesters.name(*run.by))
+                  : port_of(name) + " grants"] += run.count;
+    }
   }
-  for (const platform::BlameRow& row : statistics.blame)
-    sums[wait_key(row.port, row.bank, row.by)] = row.cycles;
   return sums;
 }
 
@@ -395,7 +403,7 @@ Traced trace(const Case& of, Fidelity fidelity, const CycleWindow& window, bool 
         differences("vcd", states_of_vcd(paths["vcd"], of.board), states_of(traced.statistics));
   }
   if (!writes_files) return traced;
-  const Sums expected = sums_of(traced.statistics);
+  const Sums expected = sums_of(traced.runs, window, of.board);
   traced.wrong_files +=
       differences("perfetto", sums_of_perfetto(paths["perfetto"], requesters_of(of.board)), expected) +
       differences("sqlite", sums_of_sqlite(paths["sqlite"]), expected);
