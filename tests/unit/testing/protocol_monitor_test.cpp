@@ -14,7 +14,6 @@
 #include <memory>
 #include <ostream>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "models/testing/monitoring_binder.h"
