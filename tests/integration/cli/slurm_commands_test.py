@@ -112,12 +112,6 @@ class Commands(SlurmCommands):
         self.assertEqual((self.commands / "cancelled").read_text(), "1\n")
         self.assertFalse(self.shards.exists())
 
-    def test_a_refused_array_names_the_shards_and_the_limit(self):
-        said = "sbatch: error: Batch job submission failed: Invalid job array specification"
-        self.write("sbatch", f"#!/bin/sh\necho '{said}' >&2; exit 1\n")
-        self.refused_in_one_line(self.launch(), "Invalid job array specification: needs fewer --shards: each "
-                                 "index is below MaxArraySize of the cluster")
-
     def test_commands_that_keep_failing_end_the_waiting(self):
         fail = '[ ! -e "$FAKE/queue" ] || { echo "squeue: error: no answer" >&2; exit 1; }\n'
         self.write("squeue", SQUEUE + fail)
