@@ -182,7 +182,7 @@ class Board:
 
         Raises Refused for a board that has problems.
         """
-        self._begin(os.fsdecode(board), calibration, _with({}, sets or {}), {})
+        self._begin(os.fsdecode(board), calibration, _with({}, {} if sets is None else sets), {})
 
     # Keys.
 
@@ -310,9 +310,9 @@ class Board:
         """
         board = copy.copy(self)  # whatever another thread changes
         arrays, options = _pictures(left, right, copy.deepcopy(options))
-        changes = [options.pop(name, None) for name in ("set", "calibration")]
-        if changes != [None, None]:
-            board = board.changed(changes[0] or [], changes[1])
+        sets, calibration = (options.pop(name, None) for name in ("set", "calibration"))
+        if sets is not None or calibration is not None:
+            board = board.changed([] if sets is None else sets, calibration)
         if any(numpy.ndim(array) == 3 for array in arrays.values()) and not options.get("timing_only"):
             options["save_frames"] = True
         answer = board._execute("run", *_options(options), "--json", arrays=arrays)
