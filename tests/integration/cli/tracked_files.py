@@ -19,7 +19,7 @@ class ReadsOnlyTracked:
     """An audit hook. Raises AssertionError where the script lists a folder of the project, or names any other
     file of it: opens it, or gives it to a process.
 
-    Python's own import lists folders and reads its caches.
+    Python's own import lists folders and reads its caches; libraries list those of sys.path.
     """
 
     def __init__(self, root=ROOT):
@@ -30,7 +30,8 @@ class ReadsOnlyTracked:
     def __call__(self, event, arguments):
         if event in ("os.listdir", "os.scandir"):
             path = self.in_project(arguments[0])
-            if path and sys._getframe(1).f_globals.get("__name__") != "importlib._bootstrap_external":
+            is_import = sys._getframe(1).f_globals.get("__name__") == "importlib._bootstrap_external"
+            if path and path not in sys.path and not is_import:
                 raise AssertionError(f"{path}: a test lists this folder: use tracked()")
         elif event == "open":
             self.check(arguments[0])
