@@ -118,10 +118,7 @@ std::string read_text_file(const std::string& path, const std::string& kind) {
   const auto refuse = [&path](const std::string& rule) { throw BoardError({{path, rule}}); };
   constexpr std::size_t kLargestBytes = std::size_t{1} << 20;
   std::error_code error;
-  const std::filesystem::file_status status = std::filesystem::status(path, error);
-  if (std::filesystem::is_directory(status)) refuse("a folder, not a " + kind);
-  // A pipe or a device may have no end.
-  if (!error && !std::filesystem::is_regular_file(status)) refuse("must be a regular file");
+  if (std::filesystem::is_directory(path, error)) refuse("a folder, not a " + kind);
   std::ifstream file(path, std::ios::binary);
   if (!file) refuse(fmt::format("cannot be read: {}", std::strerror(errno)));
   std::string text(kLargestBytes + 1, '\0');

@@ -34,7 +34,7 @@ class BoardError : public std::runtime_error {
 };
 
 // Returns the whole text of a file. `kind` is the kind of file in messages, such as "board file". Throws
-// BoardError if it is no regular file, cannot be read or is larger than 1 MiB.
+// BoardError if it cannot be read or is larger than 1 MiB.
 std::string read_text_file(const std::string& path, const std::string& kind);
 
 // Loads a board (contract section 4). `board` is the path of a board file if it has a `/` or ends in `.yaml`,

@@ -382,6 +382,7 @@ int sweep(const SweepCommandOptions& options) {
       const auto found = options.sent.find(name);
       return found == options.sent.end() ? nullptr : &found->second;
     };
+    if (sent("plan.yaml") == nullptr) check_no_pipe_of_client(options.plan.text());
     loaded =
         explore::Plan::load(options.plan.text(), options.board.text(), sent("plan.yaml"), sent("board.yaml"));
   });

@@ -368,7 +368,7 @@ class Allocate(ProgramTest):
                        f"UPDATE points SET status = 'failed', reason = 'out of luck' WHERE {in_a}")
             said = self.succeeds(self.allocate("--source", source, banks=2))
             self.assertRegex(said, r" 1 +2 +2 +")
-            where = ", ".join(f"{name} a" for name in BUFFERS)
+            where = ", ".join(f"{name} bank a" for name in BUFFERS)
             first = f"1 could not be simulated, and do not count. The first:\n  {where}: out of luck"
             self.assertIn(f"{first}\nTo try again:\n", said)
             again = re.search(r'sqlite3 (\S+) "(.*)"', said)
