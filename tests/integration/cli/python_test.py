@@ -677,6 +677,7 @@ class Protocol(ProgramTest):
                               (b"1e999\n", "a number is too large"), (b"[]\n", "must be a JSON object"),
                               (b"{}\n", "arguments: missing: must be a list of texts"),
                               (b'{"arguments": [5]}\n', "arguments = [5]: must be a list of texts"),
+                              (b'{"arrays": %b}\n' % (b"[" * 10**5 + b"]" * 10**5), "nested too deeply"),
                               (b'{"arguments": [], "folder": 5}\n', "folder = 5: must be a text"),
                               (b'{"arguments": [], "encoding": "x"}\n', "encoding = x: must be utf-8 or lat"),
                               (b'{"arguments": ["\\u0100"], "encoding": "latin-1"}\n', "must be U+0000 to"),

@@ -426,13 +426,11 @@ class Outputs(ProgramTest):
                 self.refused_in_one_line(run(*arguments), f"the result folder '{self.a}' of run holds noth")
 
     def test_the_known_database_is_another_one(self):
-        links = [self.folder / name for name in ("soft.db", "hard.db", "to_new.db")]
-        links[0].symlink_to(self.store)
-        links[1].hardlink_to(self.store)
-        links[2].symlink_to("new.db")
-        new = self.folder / "new.db"
-        for out, known in ((self.store, self.store), *((self.store, link) for link in links[:2]),
-                           *((link, self.store) for link in links[:2]), (links[2], new), (new, links[2])):
+        soft, hard, to_new, new = (self.folder / f"{name}.db" for name in ("soft", "hard", "to_new", "new"))
+        soft.symlink_to(self.store)
+        hard.hardlink_to(self.store)
+        to_new.symlink_to(new.name)
+        for out, known in ((self.store, self.store), (self.store, soft), (hard, self.store), (new, to_new)):
             with self.subTest(out=out, known=known), self.unchanged(self.folder):
                 self.refused_in_one_line(run(*self.sweep, out, "--known", known),
                                          f"--known '{known}': is the file of --out: must be another")
