@@ -46,7 +46,11 @@ class EndedTest(ProgramTest):
 
     def begin(self, words, others, **options):
         """The process of these words, once it has started so many others, or one of this text."""
-        calm = lambda: resource.setrlimit(resource.RLIMIT_CORE, (0, 0))  # SIGQUIT would write a file
+        def calm():
+            resource.setrlimit(resource.RLIMIT_CORE, (0, 0))  # SIGQUIT would write a file
+            for number in (signal.SIGHUP, signal.SIGINT, signal.SIGQUIT):  # a background job may ignore them
+                signal.signal(number, signal.SIG_DFL)
+
         process = subprocess.Popen(list(map(str, words)), env=self.environment, cwd=self.work,
                                    **{"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL,
                                       "preexec_fn": calm, **options})
