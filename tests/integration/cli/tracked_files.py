@@ -19,7 +19,7 @@ class ReadsOnlyTracked:
     """An audit hook. Raises AssertionError where the script lists a folder of the project, or names any other
     file of it: opens it, or gives it to a process.
 
-    Python's own import lists folders and reads its caches.
+    Python itself lists the folders of modules, and reads its caches.
     """
 
     def __init__(self, root=ROOT):
@@ -30,8 +30,7 @@ class ReadsOnlyTracked:
     def __call__(self, event, arguments):
         if event in ("os.listdir", "os.scandir"):
             path = self.in_project(arguments[0])
-            caller = sys._getframe(1).f_globals.get("__name__", "")
-            if path and not caller.startswith("importlib."):
+            if path and not path.startswith(tuple(filter(None, sys.path))):
                 raise AssertionError(f"{path}: a test lists this folder: use tracked()")
         elif event == "open":
             self.check(arguments[0])
