@@ -200,7 +200,8 @@ class Board:
     def changed(self, sets, calibration=None):
         """A copy with other values: a dict by dotted paths, or a list of "KEY=VALUE" as in the tables of
         explain() and allocate(). `calibration`: the path of another one."""
-        files = {name: its for name, its in self._files.items() if calibration is None or name == "board.yaml"}
+        files = {name: its for name, its in self._files.items()
+                 if calibration is None or name == "board.yaml"}
         changed = Board.__new__(Board)
         changed._begin(self.board, self.calibration if calibration is None else calibration,
                        _with(self._state[0], sets), files)

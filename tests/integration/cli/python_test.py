@@ -686,7 +686,7 @@ class Protocol(ProgramTest):
                               (with_array(one + b"," + one) + b"xy", "array a: sent twice"),
                               (of_shape(b"400") + b"xx", "shape = 400: must be a list of integers"),
                               (of_shape(b"[400]") + b"xx", "array left: ends early"),
-                              (of_shape(b"[1.5]"), "array left: shape = [1.5]: must be a list of integers, 0"),
+                              (of_shape(b"[1.5]"), "array left: shape = [1.5]: must be a list of integers"),
                               (of_shape(b"[-1]"), "shape = [-1]: must be a list of integers, 0 or more"),
                               (of_shape(b"[65536,65537]"), "must have at most 4294967296 bytes"),
                               (of_shape(b"[4294967296,4294967296]"), "must have at most 4294967296 bytes"),

@@ -14,7 +14,8 @@ import time
 
 import program
 from pictures import pgm
-from program import HEIGHT, PRELOADED, PROGRAM, SMALL, WIDTH, ProgramTest, of_plain_user, run, sets, wait_until
+from program import (HEIGHT, PRELOADED, PROGRAM, SMALL, WIDTH, ProgramTest, of_plain_user, run, sets,
+                     wait_until)
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "sw/cli"))
 import completion  # noqa: E402

@@ -120,9 +120,9 @@ class Sizes(TraceTest):
             self.close(process)
             self.traced(*trace(*formats), *real, "--frames", frames, source=source)
             for form, note in zip(formats, notes, strict=True):
-                said = re.fullmatch(rf"stereotlm: note: --trace '{form}:run.{form}': will take about (\d+) MB: "
-                                    "fewer --frames, or a short --trace-window such as frame=F,rows=A..B, "
-                                    "make it smaller\n", note)
+                said = re.fullmatch(rf"stereotlm: note: --trace '{form}:run.{form}': will take about (\d+) "
+                                    "MB: fewer --frames, or a short --trace-window such as "
+                                    "frame=F,rows=A..B, make it smaller\n", note)
                 size = (self.folder / f"run.{form}").stat().st_size * many / frames
                 self.assertLess(abs(int(said[1]) * 1e6 / size - 1), 0.3, (form, source, frames))
 

@@ -28,10 +28,10 @@ def in_project(path):
 
 
 def watch(event, arguments):
-    """An audit hook. Raises AssertionError where the script lists a folder of the project, or names a file of it
-    that git does not track: opens it, or gives it to a process.
+    """An audit hook. Raises AssertionError where the script lists a folder of the project, or names a file of
+    it that git does not track: opens it, or gives it to a process.
 
-    Python's own import lists folders and reads its caches; libraries list those of sys.path.
+    Python itself lists the folders of modules, and reads its caches.
     """
     names = arguments[1] if event == "subprocess.Popen" else arguments[:1] if event == "open" else []
     for path in filter(None, map(in_project, names)):
@@ -39,8 +39,7 @@ def watch(event, arguments):
             raise AssertionError(f"{path}: a test reads this file, which git does not track")
     if event in ("os.listdir", "os.scandir"):
         path = in_project(arguments[0])
-        caller = sys._getframe(1).f_globals.get("__name__", "")
-        if path and path not in sys.path and not caller.startswith("importlib."):
+        if path and not path.startswith(tuple(filter(None, sys.path))):
             raise AssertionError(f"{path}: a test lists this folder: use tracked()")
 
 
