@@ -224,6 +224,7 @@ class Files(PythonTest):
         for make in (lambda: stereotlm.Board("/dev/stdin"), lambda: stereotlm.Board(pipe),
                      lambda: stereotlm.Board(calibration=pipe), lambda: small_board().run(pipe, pipe),
                      lambda: stereotlm.execute("sweep", pipe, "--out", self.out),
+                     lambda: small_board().sweep({}, board=pipe),
                      lambda: small_board().sweep({}, known=pipe),
                      lambda: stereotlm.execute("merge", self.out, pipe),
                      lambda: stereotlm.execute("plot", pipe, "--out", self.out)):
