@@ -63,51 +63,39 @@ bool is_option(const std::string& word) {
   return word.size() > 1 && word[0] == '-' && kOfNumber.find(word[1]) == std::string_view::npos;
 }
 
-// What the option lacks: a value; empty if it has one, or is a flag. `word`: the option as typed. `next`: the
-// word behind it, which the parser would take for the value even if it is another option.
-std::string value_problem(const CLI::Option& option, const std::string& word, const std::string& next) {
-  const std::string name = word.substr(0, word.find('='));
-  const bool has_equals = name != word;
-  const bool is_flag = option.get_items_expected_min() == 0;
-  const bool is_before_option = !has_equals && is_option(next);
-  const bool has_value = has_equals ? name.size() + 1 < word.size() : !next.empty() && !is_before_option;
-  if (has_value || (is_flag && !has_equals)) return "";
-  return fmt::format("{}: a value is missing: must be {}{}{}", word, name,
-                     is_flag ? "" : ' ' + option.get_option_text(),
-                     is_before_option ? fmt::format(", or {0}={1} if {1} is the value", name, next) : "");
-}
-
-// Throws Refused for options without a value, and for options that the command does not have, unless these
-// are beside --help. `words`: those behind the command.
+// Throws Refused for options that the command does not have, and for those without a value: the parser would
+// take the option behind one for its value. `words`: those behind the command.
 void check_options(const CLI::App& command, std::vector<std::string> words) {
   std::vector<std::string> known;
   for (const CLI::Option* option : command.get_options()) {
     for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
   }
   process::Problems problems;
-  bool lacks_value = false;
-  bool has_help = false;
-  const auto add = [&](const std::string& problem) {
-    problems.add(fmt::format("{} (see stereotlm {} --help)", problem, command.get_name()));
-  };
   words.emplace_back();  // behind the last one
   for (std::size_t i = 0; i + 1 < words.size() && words[i] != "--"; ++i) {
     if (!is_option(words[i])) continue;
+    const std::string& next = words[i + 1];
     const std::string name = words[i].substr(0, words[i].find('='));
+    const bool has_equals = name != words[i];
     const CLI::Option* const option = command.get_option_no_throw(name);
+    const bool is_flag = option != nullptr && option->get_items_expected_min() == 0;
+    std::string problem;
     if (option == nullptr) {
-      add(fmt::format("{}: unknown option{}", name, platform::nearest_text(name, known)));
-      continue;
-    }
-    has_help = has_help || option == command.get_help_ptr();
-    if (const std::string problem = value_problem(*option, words[i], words[i + 1]); !problem.empty()) {
-      lacks_value = true;
-      add(problem);
-    } else if (name == words[i] && option->get_items_expected_min() > 0) {
+      problem = "unknown option" + platform::nearest_text(name, known);
+    } else if (has_equals ? words[i].size() == name.size() + 1
+                          : !is_flag && (next.empty() || is_option(next))) {
+      problem = "a value is missing: must be " + name;
+      if (!is_flag) problem += ' ' + option->get_option_text();
+      if (!has_equals && !next.empty())
+        problem += fmt::format(", or {0}={1} if {1} is the value", name, next);
+    } else if (!has_equals && !is_flag) {
       ++i;  // behind the value
     }
+    if (!problem.empty())
+      problems.add(fmt::format("{}: {} (see stereotlm {} --help)", option == nullptr ? name : words[i],
+                               problem, command.get_name()));
   }
-  if (lacks_value || !has_help) problems.check();
+  problems.check();
 }
 
 }  // namespace

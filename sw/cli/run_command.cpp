@@ -126,7 +126,6 @@ void say_large_traces(runs::RunInput& input, const TraceOptions& options) {
     input.frames = window ? frame + 1 : std::min(input.frames, kFrames);
     process::leave_out_notes(true);
     const Outcome outcome = simulate(input, nullptr);
-    if (outcome.frames_done < input.frames) return;  // interrupted
     input.trace->complete();
     input.trace->commit();
     double size = all / static_cast<double>(input.frames);  // of the whole, in samples
@@ -134,20 +133,20 @@ void say_large_traces(runs::RunInput& input, const TraceOptions& options) {
       const auto of_frame = static_cast<double>(outcome.statistics.frame_cycles.back());
       const bool has_rows = whole.unit == fpga::CycleWindow::Unit::kRows;
       const double unit = has_rows ? of_frame / input.board.image.height : 1;  // cycles
-      size = std::min((static_cast<double>(whole.last) + 1) * unit, whole.frame ? of_frame : of_frame * all);
-      size -= static_cast<double>(whole.first) * unit;
+      const double most = whole.frame ? of_frame : of_frame * all;
+      size = std::min((static_cast<double>(whole.last) + 1) * unit, most) -
+             static_cast<double>(whole.first) * unit;
       size /= std::min<double>(kCycles, of_frame - static_cast<double>(begin));
     }
     for (const trace::TraceFile& file : files)
       tell(fmt::to_string(size * static_cast<double>(fs::file_size(file.path))));
   });
   for (const std::string& trace : options.files.texts()) {
-    const auto bytes = child.next();
-    if (!bytes) return;
-    if (std::stod(*bytes) < kLarge) continue;
+    const double bytes = std::stod(child.next().value());
+    if (bytes < kLarge) continue;
     process::say("note", fmt::format("--trace '{}': will take about {:.0f} MB{}: fewer --frames, or a short "
                                      "--trace-window such as frame=F,rows=A..B, make it smaller",
-                                     trace, std::stod(*bytes) / 1e6,
+                                     trace, bytes / 1e6,
                                      fs::path(trace).extension() == ".fst" ? " before it is FST" : ""));
   }
 }

@@ -191,20 +191,22 @@ std::vector<std::string> BoardOptions::words_without_allocation() const {
   return words;
 }
 
-void check_no_pipe_of_client(const std::string& path) {
+const std::string* sent_content(const process::FileContents& sent, const std::string& name,
+                                const std::string& path) {
+  if (const auto found = sent.find(name); found != sent.end()) return &found->second;
   std::error_code none;
   const fs::file_type type = fs::status(path, none).type();
   if (process::client != nullptr && (type == fs::file_type::fifo || type == fs::file_type::character))
     throw std::runtime_error(path + ": must be a regular file");
+  return nullptr;
 }
 
 LoadedBoard BoardOptions::load(process::Problems& problems) const {
   LoadedBoard loaded;
   problems.attempt("", [&] {
-    const auto text = sent.find("board.yaml");
     const std::string& path = argument.text();
-    if (text == sent.end() && platform::is_board_file(path)) check_no_pipe_of_client(path);
-    platform::BoardDraft draft(path, text == sent.end() ? nullptr : &text->second);
+    platform::BoardDraft draft(path,
+                               sent_content(sent, "board.yaml", platform::is_board_file(path) ? path : ""));
     for (const std::string& set : sets.texts()) draft.set(set);
     loaded.board = draft.read();
     loaded.file_text = draft.file_text();

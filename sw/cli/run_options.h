@@ -34,9 +34,11 @@ struct LoadedBoard {
   void say_clock_remark() const;
 };
 
-// Throws std::runtime_error if a client names a pipe or a device, on which it cannot write while it waits for
+// What the client has sent as the content of the file `name`; null if `path` is to be read. Throws
+// std::runtime_error if a client names a pipe or a device there, on which it cannot write while it waits for
 // the answer. On the command line both can be read.
-void check_no_pipe_of_client(const std::string& path);
+const std::string* sent_content(const process::FileContents& sent, const std::string& name,
+                                const std::string& path);
 
 // The argument BOARD and the options --set and --calibration, which all commands that take a board share.
 struct BoardOptions {

@@ -378,13 +378,10 @@ explore::SweepCounts sweep_on_slurm(const SweepCommandOptions& options, const ex
 int sweep(const SweepCommandOptions& options) {
   std::optional<explore::Plan> loaded;
   process::attempt_or_refuse("", [&] {
-    const auto sent = [&options](const char* name) {
-      const auto found = options.sent.find(name);
-      return found == options.sent.end() ? nullptr : &found->second;
-    };
-    if (sent("plan.yaml") == nullptr) check_no_pipe_of_client(options.plan.text());
-    loaded =
-        explore::Plan::load(options.plan.text(), options.board.text(), sent("plan.yaml"), sent("board.yaml"));
+    const std::string& plan = options.plan.text();
+    const std::string& board = options.board.text();
+    loaded = explore::Plan::load(plan, board, sent_content(options.sent, "plan.yaml", plan),
+                                 sent_content(options.sent, "board.yaml", board));
   });
   explore::Plan& plan = *loaded;
   const auto calibration = calibration_of(options, plan);

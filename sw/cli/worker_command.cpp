@@ -133,11 +133,13 @@ bool read_line(int from, std::string& line) {
 // The bytes whose values are the codes of the characters. Throws std::runtime_error for a code above 255.
 std::string bytes_of_codes(const std::string& utf8) {
   std::string bytes;
-  for (std::size_t i = 0; i < utf8.size(); ++i) {
-    const auto first = static_cast<unsigned char>(utf8[i]);
-    if (first > 0xC3U) throw std::runtime_error("encoding = latin-1: characters must be U+0000 to U+00FF");
-    const auto second = static_cast<unsigned char>(first < 0x80U ? 0 : utf8[++i]);
-    bytes += static_cast<char>(first < 0x80U ? first : (first & 3U) << 6U | (second & 0x3FU));
+  for (const char each : utf8) {
+    const auto code = static_cast<unsigned char>(each);
+    if (code > 0xC3U) throw std::runtime_error("encoding = latin-1: characters must be U+0000 to U+00FF");
+    if (code >= 0x80U && code < 0xC0U)  // the second byte of a character
+      bytes.back() = static_cast<char>((bytes.back() & 3) << 6 | (code & 0x3F));
+    else
+      bytes += each;
   }
   return bytes;
 }
@@ -201,17 +203,18 @@ bool serve_one(const process::Child::Tell& tell) {
   for (const std::string& argument : request.arguments) words.push_back(argument.c_str());
   const auto count = static_cast<int>(words.size());
   words.push_back(nullptr);
+  std::string problem;
   std::vector<std::string> texts = request.arguments;
   texts.push_back(request.folder);
-  const auto nul = std::find_if(texts.begin(), texts.end(),
-                                [](const std::string& text) { return text.find('\0') != std::string::npos; });
+  for (const std::string& text : texts) {
+    if (text.find('\0') != std::string::npos)
+      problem = fmt::format("'{}..': a NUL character follows: must not be in a text", text.c_str());
+  }
   std::error_code error;
-  if (nul == texts.end()) std::filesystem::current_path(request.folder, error);
-  if (nul != texts.end())
-    process::say("error",
-                 fmt::format("'{}..': a NUL character follows: must not be in a text", nul->c_str()));
-  if (error) process::say("error", fmt::format("folder '{}': {}", request.folder.string(), error.message()));
-  answer.end(error || nul != texts.end() ? kRefused : execute(count, words.data()));
+  std::filesystem::current_path(request.folder, error);
+  if (error) problem = fmt::format("folder '{}': {}", request.folder.string(), error.message());
+  if (!problem.empty()) process::say("error", problem);
+  answer.end(problem.empty() ? execute(count, words.data()) : kRefused);
   process::client = nullptr;
   // SystemC is elaborated once in a process.
   const bool is_fresh =

@@ -140,8 +140,13 @@ std::string json_text(const nlohmann::ordered_json& document, bool replaces) {
 }
 
 Json parse_json(const std::string& text) {
+  constexpr int kMostDepth = 100;  // copies and texts of a document need stack for each level
+  const auto check = [](int depth, Json::parse_event_t /*event*/, const Json& /*value*/) {
+    if (depth > kMostDepth) throw JsonError(1, "nested too deeply");
+    return true;
+  };
   try {
-    return Json::parse(text);
+    return Json::parse(text, check);
   } catch (const Json::parse_error& error) {
     const std::string_view before = std::string_view(text).substr(0, error.byte == 0 ? 0 : error.byte - 1);
     const auto line = static_cast<std::size_t>(1 + std::count(before.begin(), before.end(), '\n'));

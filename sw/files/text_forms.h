@@ -38,7 +38,7 @@ double without_minus_zero(double number, int decimals);
 // throws std::invalid_argument. A number that is not finite throws it always.
 std::string json_text(const nlohmann::ordered_json& document, bool replaces = false);
 
-// A text is not JSON, or has a number that is too large for it.
+// A text is not JSON, has a number that is too large for it, or is nested more than 100 deep.
 struct JsonError : std::runtime_error {
   JsonError(std::size_t at_line, const std::string& what) : std::runtime_error(what), line(at_line) {}
   std::size_t line;  // from 1

@@ -20,6 +20,7 @@
 namespace stereotlm::explore {
 namespace {
 
+using platform::bank_text;
 using platform::BankConfig;
 using platform::BoardConfig;
 using platform::Buffer;
@@ -94,8 +95,7 @@ class Steps {
     if (!board_.fpga.joint_tables) {
       for (const platform::BufferBanks& banks : {*left, *right}) {
         std::string in;
-        for (const std::string& bank : banks.banks)
-          in += (in.empty() ? "joint in " : ", ") + platform::bank_text(bank);
+        for (const std::string& bank : banks.banks) in += (in.empty() ? "joint in " : ", ") + bank_text(bank);
         add_best({"fpga.tables", "separate", in}, [&](BoardConfig& b) {
           b.fpga.joint_tables = true;
           b.allocation.left_lut = b.allocation.right_lut = banks;
@@ -113,7 +113,7 @@ class Steps {
     });
     if (free != board_.banks.end()) separate.allocation.right_lut = free->name;
     const std::string to =
-        "separate, right_lut in " + platform::bank_text(separate.allocation.right_lut->banks.front());
+        "separate, right_lut in " + bank_text(separate.allocation.right_lut->banks.front());
     add_best({"fpga.tables", "joint", to}, [&](BoardConfig& b) { b = separate; });
   }
 
@@ -221,11 +221,10 @@ class Steps {
     const std::size_t size = board_.allocation.left_image.size();
     for (const std::string& left : quiet_banks(Buffer::kLeftImage)) {
       for (const std::string& right : quiet_banks(Buffer::kRightImage)) {
-        lengthen(pairs, size, platform::bank_text(left) + " and " + platform::bank_text(right),
-                 [&](BoardConfig& b) {
-                   b.allocation.left_image.push_back(left);
-                   b.allocation.right_image.push_back(right);
-                 });
+        lengthen(pairs, size, bank_text(left) + " and " + bank_text(right), [&](BoardConfig& b) {
+          b.allocation.left_image.push_back(left);
+          b.allocation.right_image.push_back(right);
+        });
       }
     }
     add({pairs, counted(size), counted(size - 1)}, [](BoardConfig& b) {
@@ -235,7 +234,7 @@ class Steps {
     const std::string results = key_of(Buffer::kDisparity);
     const std::size_t count = board_.allocation.disparity.size();
     for (const std::string& bank : quiet_banks(Buffer::kDisparity))
-      lengthen(results, count, platform::bank_text(bank),
+      lengthen(results, count, bank_text(bank),
                [&](BoardConfig& b) { b.allocation.disparity.push_back(bank); });
     add({results, counted(count), counted(count - 1)},
         [](BoardConfig& b) { b.allocation.disparity.pop_back(); });
@@ -249,7 +248,7 @@ class Steps {
     while (std::any_of(board_.banks.begin(), board_.banks.end(), is_name)) name += '_';
     for (const PlacedBuffer& buffer : platform::buffers(board_)) {
       if (buffers_in(buffer.bank) < 2) continue;
-      const std::string from = fmt::format("{} in {}", buffer.label(), platform::bank_text(buffer.bank));
+      const std::string from = fmt::format("{} in {}", buffer.label(), bank_text(buffer.bank));
       const auto move_to = [&](const std::string& bank, const std::string& to, const auto& prepare) {
         add_best({"a bank more", from, to}, [&](BoardConfig& b) {
           prepare(b);
@@ -260,7 +259,7 @@ class Steps {
       for (const BankConfig& bank : board_.banks) {
         if (buffers_in(bank.name) > 0 || !can_hold(bank, buffer)) continue;
         is_held = true;
-        move_to(bank.name, "in " + platform::bank_text(bank.name), [](BoardConfig& /*board*/) {});
+        move_to(bank.name, "in " + bank_text(bank.name), [](BoardConfig& /*board*/) {});
       }
       if (is_held) continue;
       move_to(name, "in a new bank", [&](BoardConfig& b) {
@@ -274,8 +273,8 @@ class Steps {
     for (const BankConfig& left : board_.banks) {
       for (const BankConfig& taking : board_.banks) {
         if (left.name == taking.name || buffers_in(left.name) == 0 || buffers_in(taking.name) == 0) continue;
-        const std::string into = "into " + platform::bank_text(taking.name);
-        add_best({"a bank less", platform::bank_text(left.name), into}, [&](BoardConfig& b) {
+        const std::string into = "into " + bank_text(taking.name);
+        add_best({"a bank less", bank_text(left.name), into}, [&](BoardConfig& b) {
           for (const PlacedBuffer& buffer : platform::buffers(board_)) {
             if (buffer.bank == left.name) move_buffer(b, buffer, taking.name);
           }

@@ -467,7 +467,7 @@ StoreLock::StoreLock(const std::string& store, std::chrono::milliseconds busy_ti
     range.l_len = 1;
     const bool is_locked = fcntl(file_, F_OFD_SETLK, &range) == 0;
     const int error = is_locked ? EAGAIN : errno;
-    if (is_locked && files::is_open_at(file_, path_)) return;  // else the file was replaced meanwhile
+    if (is_locked && files::is_open_at(file_, path_)) break;  // else the file was replaced meanwhile
     close(file_);
     if (error != EAGAIN && error != EACCES)
       throw sqlite::DatabaseError(fmt::format("{}: cannot be locked: {}", store, std::strerror(error)));
@@ -475,6 +475,8 @@ StoreLock::StoreLock(const std::string& store, std::chrono::milliseconds busy_ti
       throw sqlite::DatabaseError(
           store + ": another process is at work on it: wait for its end, or give another file");
   }
+  const std::string remove_empty = "[ -s \"$1\" ] || /bin/rm -f -- \"$1\" \"$1-journal\"";
+  if (is_made_) remover_.emplace(remove_empty, Names{fs::absolute(path_)}, file_);
 }
 
 void StoreLock::check() const {

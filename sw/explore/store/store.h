@@ -13,6 +13,7 @@
 #include "platform/config/board_config.h"
 #include "platform/config/board_yaml.h"
 #include "platform/statistics.h"
+#include "sw/files/remover.h"
 #include "sw/sqlite/database.h"
 
 namespace stereotlm::explore {
@@ -152,8 +153,8 @@ class StoreLock {
   // How long the constructor waits: the processes of a sweep that was killed take a moment to end.
   static constexpr std::chrono::milliseconds kBusyTimeout{3000};
 
-  // Makes an empty file if there is none. The destructor removes this file if it is still empty. Throws
-  // DatabaseError, also if another process holds the lock.
+  // Makes an empty file if there is none. The destructor, or the end of this process, removes this file if it
+  // is still empty. Throws DatabaseError, also if another process holds the lock.
   explicit StoreLock(const std::string& store, std::chrono::milliseconds busy_timeout = kBusyTimeout);
   ~StoreLock();
   StoreLock(const StoreLock&) = delete;
@@ -167,6 +168,7 @@ class StoreLock {
   std::string path_;  // of the file behind all symbolic links
   int file_ = -1;
   bool is_made_ = false;  // this lock has made the file
+  std::optional<files::Remover> remover_;
 };
 
 }  // namespace stereotlm::explore

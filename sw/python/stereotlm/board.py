@@ -182,7 +182,7 @@ class Board:
 
         Raises Refused for a board that has problems.
         """
-        self._begin(os.fsdecode(board), calibration, _with({}, sets or {}), {})
+        self._begin(os.fsdecode(board), calibration, _with({}, {} if sets is None else sets), {})
 
     # Keys.
 
@@ -200,7 +200,8 @@ class Board:
     def changed(self, sets, calibration=None):
         """A copy with other values: a dict by dotted paths, or a list of "KEY=VALUE" as in the tables of
         explain() and allocate(). `calibration`: the path of another one."""
-        files = {name: its for name, its in self._files.items() if calibration is None or name == "board.yaml"}
+        files = {name: its for name, its in self._files.items()
+                 if calibration is None or name == "board.yaml"}
         changed = Board.__new__(Board)
         changed._begin(self.board, self.calibration if calibration is None else calibration,
                        _with(self._state[0], sets), files)
@@ -310,9 +311,9 @@ class Board:
         """
         board = copy.copy(self)  # whatever another thread changes
         arrays, options = _pictures(left, right, copy.deepcopy(options))
-        changes = [options.pop(name, None) for name in ("set", "calibration")]
-        if changes != [None, None]:
-            board = board.changed(changes[0] or [], changes[1])
+        sets, calibration = (options.pop(name, None) for name in ("set", "calibration"))
+        if sets is not None or calibration is not None:
+            board = board.changed([] if sets is None else sets, calibration)
         if any(numpy.ndim(array) == 3 for array in arrays.values()) and not options.get("timing_only"):
             options["save_frames"] = True
         answer = board._execute("run", *_options(options), "--json", arrays=arrays)

@@ -30,9 +30,7 @@ kernels::RectificationTable load_table(const fs::path& path, const std::string& 
   }
   try {
     return calib::parse_lut(content, rig.width, rig.height);
-  } catch (const std::bad_alloc&) {
-    throw;
-  } catch (const std::exception& error) {
+  } catch (const std::runtime_error& error) {
     throw std::runtime_error(fmt::format("'{}': {}", path.string(), error.what()));
   }
 }
@@ -117,9 +115,7 @@ std::optional<CalibrationInput> load_calibration(const std::string& path, const 
           board != nullptr ? platform::calibration_size_problem(*board, rig.width, rig.height) : std::nullopt;
       if (!problem && board != nullptr) problem = platform::calibration_buffer_problem(*board);
       if (problem) throw std::runtime_error(*problem);
-    } catch (const std::bad_alloc&) {
-      throw;
-    } catch (const std::exception& error) {
+    } catch (const std::runtime_error& error) {
       throw at_path(error.what());
     }
     const calib::Calibration& calibration = *input.calibration;

@@ -206,9 +206,7 @@ const host::StereoPair& PairSource::pair(std::uint64_t frame) {
   try {
     // Loads on a separate thread: the caller may be a SystemC process, whose stack is too small for decoders.
     held_.push_front({index, std::async(std::launch::async, [&] { return load_(index); }).get()});
-  } catch (const std::bad_alloc&) {
-    throw;
-  } catch (const std::exception& error) {
+  } catch (const std::runtime_error& error) {
     throw std::runtime_error(option_ + ' ' + error.what());
   }
   if (held_.size() > kHeld) held_.pop_back();

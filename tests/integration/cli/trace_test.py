@@ -7,8 +7,7 @@ import signal
 import sqlite3
 
 import program
-from program import (CAMERA_RATES, CYCLE, PRELOADED, PROGRESS, SMALL, ProgramTest, Terminal, run, sets,
-                     wait_until)
+from program import (CAMERA_RATES, PRELOADED, PROGRESS, SMALL, ProgramTest, Terminal, run, sets, wait_until)
 
 CONTENDED = sets("allocation.left_lut=bank0", "allocation.left_image=[bank0, bank0]")
 TIMING = ["--timing-only", *CONTENDED]
@@ -99,7 +98,6 @@ class Files(TraceTest):
         self.traced(*trace("perfetto", "sqlite"))  # removes what the killed run has left
         self.is_in(self.folder, "left.pgm", "right.pgm", "run.perfetto", "run.sqlite")
 
-
     def test_of_a_window_have_only_the_rows_of_its_frames(self):
         for window, frames in (("frame=1", [(1,)]), ("frame=2,rows=0..0", [(2,)]), ("cycles=0..0", [(0,)]),
                                ("cycles=0..9999999", [(0,), (1,), (2,)])):
@@ -110,34 +108,23 @@ class Files(TraceTest):
 
 
 class Sizes(TraceTest):
-    FRAMES = 10**7
-
-    def estimates(self, formats, *options):
-        """[format]: the bytes that the notes before a long run say."""
-        process = self.start("run", "fpl2003", *SMALL, *TIMING, *options, "--frames", self.FRAMES,
-                             *trace(*formats), cwd=self.folder)
-        found = {}
-        for form in formats:
-            note = process.stderr.readline()
-            self.assertRegex(note, rf"note: --trace '{form}:run.{form}': will take about \d+ MB: fewer "
-                             "--frames, or a short --trace-window such as frame=F,rows=A..B, make it smaller\n")
-            found[form] = int(re.search(r"(\d+) MB", note)[1]) * 1e6
-        self.close(process)
-        return found
-
     def test_that_are_large_are_said_before_the_run(self):
-        for source in (PRELOADED, CAMERA_RATES):
-            for fidelity in ([], CYCLE):
-                for frames, formats, real, window in (
-                    (64, ("perfetto", "sqlite"), [], []),
-                    (1, ("perfetto", "vcd", "sqlite"), ["--trace-window", "frame=0"],
-                     ["--trace-window", f"cycles=0..{10**15}"])):
-                    with self.subTest(source=source, fidelity=fidelity, frames=frames):
-                        found = self.estimates(formats, *source, *fidelity, *window)
-                        self.traced(*trace(*formats), *real, "--frames", frames, *fidelity, source=source)
-                        for form in formats:
-                            size = (self.folder / f"run.{form}").stat().st_size * self.FRAMES / frames
-                            self.assertLess(abs(found[form] / size - 1), 0.3, form)
+        many, rows, cycles = 10**7, ("perfetto", "sqlite"), ("perfetto", "vcd", "sqlite")
+        for source, frames, formats, real, window in (
+                (PRELOADED, 64, rows, [], []), (CAMERA_RATES, 64, rows, [], []),
+                *((source, 1, cycles, ["--trace-window", "frame=0"],
+                   ["--trace-window", f"cycles=0..{10**15}"]) for source in (PRELOADED, CAMERA_RATES))):
+            process = self.start("run", "fpl2003", *SMALL, *TIMING, *source, *window, "--frames", many,
+                                 *trace(*formats), cwd=self.folder)
+            notes = [process.stderr.readline() for _ in formats]
+            self.close(process)
+            self.traced(*trace(*formats), *real, "--frames", frames, source=source)
+            for form, note in zip(formats, notes, strict=True):
+                said = re.fullmatch(rf"stereotlm: note: --trace '{form}:run.{form}': will take about (\d+) "
+                                    "MB: fewer --frames, or a short --trace-window such as "
+                                    "frame=F,rows=A..B, make it smaller\n", note)
+                size = (self.folder / f"run.{form}").stat().st_size * many / frames
+                self.assertLess(abs(int(said[1]) * 1e6 / size - 1), 0.3, (form, source, frames))
 
     def test_that_are_not_known_let_the_run_begin(self):
         arguments = self.run_arguments("--trace", f"sqlite:{self.folder / 'run.sqlite'}")
