@@ -26,8 +26,6 @@ class Clock {
     return edge;
   }
 
-  // Whether edge k lies at k times a whole number of ps.
-  bool has_whole_period() const { return period_.is_whole(); }
   // Whether all edges of both clocks lie at the same times.
   bool has_edges_of(const Clock& other) const { return period_ == other.period_; }
   // The number of phases that the edges of this clock have against those of `other`. A phase is a multiple of
