@@ -2,7 +2,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -51,16 +50,11 @@ class OneTestAProcess : public testing::EmptyTestEventListener {
 // A monitor may outlive its test, or the test calls exit(). A process that it has forked has only copies.
 const pid_t first_process = getpid();
 void end_process() {
-  if (getpid() != first_process || !ProtocolMonitor::fail_at_end()) return;
+  if (getpid() != first_process) return;
+  ProtocolMonitor::fail_at_end();
+  if (!testing::UnitTest::GetInstance()->Failed()) return;
   std::fflush(nullptr);
   std::_Exit(EXIT_FAILURE);
-}
-
-// A violation may tell the cause of the crash.
-void end_by(int signal) {
-  std::signal(signal, SIG_DFL);
-  ProtocolMonitor::fail_at_end();
-  std::raise(signal);
 }
 
 }  // namespace
@@ -94,11 +88,6 @@ int sc_main(int argc, char** argv) {
   testing::InitGoogleTest(&argc, argv);
   testing::UnitTest::GetInstance()->listeners().Append(new stereotlm::test::OneTestAProcess);
   std::atexit(stereotlm::test::end_process);
-  for (const int crash : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT}) {
-    struct sigaction earlier {};  // that of a sanitizer stays
-    sigaction(crash, nullptr, &earlier);
-    if (earlier.sa_handler == SIG_DFL) std::signal(crash, stereotlm::test::end_by);
-  }
   return RUN_ALL_TESTS();
 }
 
