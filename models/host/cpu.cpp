@@ -14,12 +14,6 @@ namespace {
 constexpr char kCpuReport[] = "/stereotlm/cpu";
 constexpr int kStackBytes = 1 << 20;  // large, because the program is not written to run in a coroutine
 
-std::string text_of(tlm::tlm_response_status status) {
-  tlm::tlm_generic_payload payload;
-  payload.set_response_status(status);
-  return payload.get_response_string();
-}
-
 }  // namespace
 
 Cpu::Cpu(const sc_core::sc_module_name& name, const CpuConfig& config, Program& program)
@@ -69,7 +63,7 @@ void Cpu::write(std::uint64_t address, std::uint32_t value) {
 void Cpu::end_access(bool ok, const char* what, std::uint64_t address, const sc_core::sc_time& delay) {
   accessed_ = true;
   if (delay != sc_core::SC_ZERO_TIME) wait(delay);
-  if (!ok) throw BusError(std::string(what) + " of " + hex(address) + ": " + text_of(access_.status()));
+  if (!ok) throw BusError(std::string(what) + " of " + hex(address) + ": " + access_.status_text());
 }
 
 bool Cpu::interrupted() const {

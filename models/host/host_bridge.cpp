@@ -21,9 +21,7 @@ void HostBridge::transport(tlm::tlm_generic_payload& access, sc_core::sc_time& d
     };
     queue_.serve(access, delay, serve, drop);
   }
-  access.set_response_status(status);
-  if (status != tlm::TLM_OK_RESPONSE)
-    refusals_.report(access, AccessRules{}, "no target of the PCI bus takes it");
+  refusals_.respond(access, status, {}, "no target of the PCI bus takes it");
 }
 
 tlm::tlm_response_status HostBridge::transfer(tlm::tlm_generic_payload& access) {

@@ -46,16 +46,11 @@ ArbiterStats GenericCrossbar::stats(std::size_t bank) const {
 }
 
 void GenericCrossbar::transport(int number, tlm::tlm_generic_payload& access, sc_core::sc_time& delay) {
-  const auto status = check(access);
   PortState& port = states_[static_cast<std::size_t>(number)];
-  if (status != tlm::TLM_OK_RESPONSE) {
-    access.set_response_status(status);
-    return port.refusals.report(
-        access, kRules,
-        bank_of_address(access.get_address()) < banks.size()
-            ? "all words must be in one bank"
-            : "there is no such bank (crossbar_address(): the bank is in bits 28 and up)");
-  }
+  const char* const other = bank_of_address(access.get_address()) < banks.size()
+                                ? "all words must be in one bank"
+                                : "there is no such bank (crossbar_address(): the bank is in bits 28 and up)";
+  if (!port.refusals.respond(access, check(access), kRules, other)) return;
   const auto serve = [&] {
     port.access = &access;
     port.done_bytes = 0;

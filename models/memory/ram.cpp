@@ -8,11 +8,8 @@
 namespace stereotlm::memory {
 
 void RamTarget::b_transport(tlm::tlm_generic_payload& access, sc_core::sc_time& delay) {
-  const tlm::tlm_response_status status = check_access(access, rules_);
-  access.set_response_status(status);
-  if (status != tlm::TLM_OK_RESPONSE) {
+  if (!refusals_.respond(access, check_access(access, rules_), rules_)) {
     ++stats_.errors;
-    refusals_.report(access, rules_);
     return;
   }
   access.set_dmi_allowed(true);

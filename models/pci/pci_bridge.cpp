@@ -43,11 +43,8 @@ void PciBridge::access_slave(tlm::tlm_generic_payload& access, sc_core::sc_time&
     const auto serve = [&] { status = access.is_read() ? read_slave(access) : write_slave(access); };
     queue.serve(access, delay, serve, [] { return 0U; });
   }
-  access.set_response_status(status);
-  if (status != tlm::TLM_OK_RESPONSE) {
-    refusals_.report(access, {bridge::kSlaveWindowBytes},
-                     access.is_read() ? "the local bus has refused a word" : "more words than can be posted");
-  }
+  refusals_.respond(access, status, {bridge::kSlaveWindowBytes},
+                    access.is_read() ? "the local bus has refused a word" : "more words than can be posted");
 }
 
 tlm::tlm_response_status PciBridge::write_slave(const tlm::tlm_generic_payload& access) {

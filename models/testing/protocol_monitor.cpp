@@ -87,7 +87,8 @@ ProtocolMonitor::~ProtocolMonitor() {
 
 void ProtocolMonitor::fail_all() {
   if (std::exchange(options_.all_end, false)) {  // an open access fails once
-    for (const Blocking& call : blocking_) report("b_transport", open_problem(call.address, call.begin));
+    for (const auto& [payload, process, address, begin] : blocking_)
+      report("b_transport", open_problem(address, begin));
     report("nb_transport", phases_.open_problems());
   }
   for (const std::string& violation : take_violations()) fail(violation);
@@ -162,7 +163,7 @@ tlm::tlm_sync_enum ProtocolMonitor::nb_transport_bw(Payload& payload, tlm::tlm_p
   const PhaseTracker::Call call{phase, sc_core::sc_time_stamp() + delay};
   if (contains(forward_)) report(kCall, "called within nb_transport_fw: not permitted (11.1.2.4 c)");
   if (std::any_of(blocking_.begin(), blocking_.end(),
-                  [](const Blocking& other) { return other.process == this_process(); }))
+                  [](const Blocking& other) { return std::get<Process>(other) == this_process(); }))
     report(kCall, "called within b_transport: not permitted (11.1.1.4 j)");
   report(kCall, phases_.backward_call(payload, call));
   const Listed<Process> listed(backward_, this_process());
@@ -204,7 +205,7 @@ void ProtocolMonitor::invalidate_direct_mem_ptr(sc_dt::uint64 start, sc_dt::uint
 
 bool ProtocolMonitor::in_b_transport(const Payload& payload) const {
   return std::any_of(blocking_.begin(), blocking_.end(),
-                     [&payload](const Blocking& call) { return call.payload == &payload; });
+                     [&payload](const Blocking& call) { return std::get<const Payload*>(call) == &payload; });
 }
 
 void ProtocolMonitor::check_non_blocking(const char* call, const Payload& payload) {

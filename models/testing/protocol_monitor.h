@@ -3,6 +3,7 @@
 #include <string>
 #include <systemc>
 #include <tlm>
+#include <tuple>
 #include <vector>
 
 #include "models/testing/payload_rules.h"
@@ -29,7 +30,7 @@ class ProtocolMonitor : public sc_core::sc_module,
   // Returns and removes the violations, of which the first hundred are kept.
   std::vector<std::string> take_violations();
   // Fails with the violations and the open accesses of all monitors that exist, as if they were destroyed.
-  // gtest_main.cpp calls it when the program ends.
+  // gtest_main.cpp calls it at the end of each test.
   static void fail_at_end();
 
   void b_transport(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay) override;
@@ -43,15 +44,8 @@ class ProtocolMonitor : public sc_core::sc_module,
 
  private:
   using Process = const sc_core::sc_process_b*;
-  struct Blocking {
-    const tlm::tlm_generic_payload* payload;
-    Process process;
-    sc_dt::uint64 address;   // as requested
-    sc_core::sc_time begin;  // of the request
-    bool operator==(const Blocking& other) const {
-      return payload == other.payload && process == other.process;
-    }
-  };
+  // Payload, process, address as requested, time of the request.
+  using Blocking = std::tuple<const tlm::tlm_generic_payload*, Process, sc_dt::uint64, sc_core::sc_time>;
 
   void fail_all();
   bool in_b_transport(const tlm::tlm_generic_payload& payload) const;
