@@ -26,6 +26,8 @@ class Clock {
     return edge;
   }
 
+  // Whether the time of a number of cycles is the same from each edge on.
+  bool has_whole_period() const { return period_.is_whole(); }
   // Whether all edges of both clocks lie at the same times.
   bool has_edges_of(const Clock& other) const { return period_ == other.period_; }
   // The number of phases that the edges of this clock have against those of `other`. A phase is a multiple of

@@ -39,6 +39,8 @@ class Period {
     return whole_ * count + static_cast<std::uint64_t>(product >> 64U) + (least >> kHalf);
   }
 
+  bool is_whole() const { return rest_ == 0; }  // whether its length is whole ps
+
   friend bool operator==(const Period& a, const Period& b) {
     return a.whole_ == b.whole_ && a.rest_ == b.rest_ && a.denominator_ == b.denominator_;
   }

@@ -20,7 +20,10 @@ void RamTarget::b_transport(tlm::tlm_generic_payload& access, sc_core::sc_time& 
   const std::uint64_t cycles = words - 1 + (access.is_read() ? timing_->read_cycles : 0);
   if (cycles == 0) return;
   const Clock& clock = timing_->clock;
-  const std::uint64_t first = clock.edge_at_or_after(kernel_time::now_ps() + kernel_time::to_ps(delay));
+  // Where the period is whole ps, the time does not depend on the first edge. This is for speed.
+  const std::uint64_t first = clock.has_whole_period()
+                                  ? 0
+                                  : clock.edge_at_or_after(kernel_time::now_ps() + kernel_time::to_ps(delay));
   delay += kernel_time::to_time(clock.edge_ps(first + cycles) - clock.edge_ps(first));
 }
 

@@ -19,6 +19,7 @@
 #include "models/testing/scoreboard.h"
 #include "models/testing/test_host.h"
 #include "models/testing/traffic.h"
+#include "tests/support/scratch_folder.h"
 #include "tests/support/scripted_ends.h"
 
 namespace stereotlm::test {
@@ -189,15 +190,9 @@ TEST(Traffic, IsReadFromATrace) {
   EXPECT_EQ(strided_traffic(8, 16, 3, false).back().address, 40U);
 }
 
-// Why a trace is refused; empty if it is not.
 std::string problem_of(const std::string& text) {
   std::istringstream csv(text);
-  try {
-    traffic_of_csv(csv);
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return {};
+  return message_of([&] { traffic_of_csv(csv); });
 }
 
 TEST(Traffic, OfABrokenTraceIsRefusedWithItsLine) {
