@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 #include <deque>
 #include <string>
 #include <systemc>
@@ -24,11 +25,11 @@ class AccessQueue {
   template <typename Serve, typename Drop>
   void serve(const tlm::tlm_generic_payload& access, sc_core::sc_time& delay, const Serve& serve,
              const Drop& drop) {
-    const char place = 0;  // its address stands for the access
+    const std::uint64_t place = arrived_++;
     try {
       if (delay != sc_core::SC_ZERO_TIME) sc_core::wait(delay);
       delay = sc_core::SC_ZERO_TIME;
-      places_.push_back(&place);
+      places_.push_back(place);
       while (!is_first(place)) sc_core::wait(next_turn_);
       serve();
     } catch (...) {
@@ -41,9 +42,9 @@ class AccessQueue {
   }
 
  private:
-  bool is_first(const char& place) const { return !places_.empty() && places_.front() == &place; }
-  void leave(const char& place) {
-    places_.erase(std::remove(places_.begin(), places_.end(), &place), places_.end());
+  bool is_first(std::uint64_t place) const { return !places_.empty() && places_.front() == place; }
+  void leave(std::uint64_t place) {
+    places_.erase(std::remove(places_.begin(), places_.end(), place), places_.end());
     if (!places_.empty()) next_turn_.notify(sc_core::SC_ZERO_TIME);
   }
   void report_lost(const tlm::tlm_generic_payload& access, unsigned done) const {
@@ -62,7 +63,8 @@ class AccessQueue {
   }
 
   const sc_core::sc_object& target_;
-  std::deque<const char*> places_;  // in the order of arrival; the first one is served
+  std::uint64_t arrived_ = 0;
+  std::deque<std::uint64_t> places_;  // in the order of arrival; the first one is served
   sc_core::sc_event next_turn_;
 };
 

@@ -57,7 +57,7 @@ tlm::tlm_sync_enum LocalBus::nb_transport_fw(tlm::tlm_generic_payload& access, t
   }
   if (!refusals_.respond(access, check(access), {},
                          access.has_mm() ? "all words must be in one bank, or in the registers"
-                                         : "it must have a memory manager (set_mm())")) {
+                                         : "must have a memory manager (set_mm())")) {
     control_.count_error();
     return tlm::TLM_COMPLETED;
   }

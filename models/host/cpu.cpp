@@ -11,7 +11,6 @@
 namespace stereotlm::host {
 namespace {
 
-constexpr char kCpuReport[] = "/stereotlm/cpu";
 constexpr int kStackBytes = 1 << 20;  // large, because the program is not written to run in a coroutine
 
 }  // namespace
@@ -43,7 +42,7 @@ void Cpu::run() {
   } catch (...) {
     problem = "exception of an unknown type";
   }
-  if (problem) SC_REPORT_ERROR(kCpuReport, (std::string(name()) + ": " + *problem).c_str());
+  if (problem) SC_REPORT_ERROR("/stereotlm/cpu", (std::string(name()) + ": " + *problem).c_str());
 }
 
 std::uint32_t Cpu::read(std::uint64_t address) {

@@ -88,19 +88,10 @@ TEST(GenericCrossbar, GivesAnAccessTheCyclesOfItsWords) {
     answer = host.read_words(crossbar_address(1, 7), 3);
     EXPECT_EQ(answer.words, (Words{5, 6, 7}));
     EXPECT_EQ(answer.at, sc_time(200, SC_NS));
-    sc_core::wait(answer.at - sc_core::sc_time_stamp());
-    // By nb_transport, in cycle 8.
-    answer = host.access(tlm::TLM_READ_COMMAND, crossbar_address(1, 8));
-    EXPECT_EQ(answer.word, 6U);
-    EXPECT_EQ(answer.at, sc_time(225, SC_NS));
     EXPECT_EQ(host.debug_read(crossbar_address(1, 7), 3), (Words{5, 6, 7}));
   });
   sc_core::sc_start(sc_time(300, SC_NS));
-  EXPECT_EQ(bench.accesses(1).size(), 7U);
-  const ArbiterStats stats = bench.crossbar.stats(1);
-  EXPECT_EQ(stats.reads(), 4U);
-  EXPECT_EQ(stats.writes(), 3U);
-  EXPECT_EQ(stats.idle_cycles(), 12U - 7U);
+  EXPECT_EQ(bench.crossbar.stats(1).idle_cycles(), 12U - 6U);
 }
 
 TEST(GenericCrossbar, WritesTheBytesThatAreEnabled) {

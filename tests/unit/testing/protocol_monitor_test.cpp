@@ -572,19 +572,16 @@ TEST(ProtocolMonitor, FailsWithAnAccessByBTransportThatNeverEnds) {
 // Without END_RESP. The payload is gone at the end.
 TEST(ProtocolMonitor, FailsWithAnAccessByNbTransportThatNeverEnds) {
   static auto* const link = new Link(ProtocolOptions{});
-  {
-    Payload payload;
-    payload.deep_copy_from(link->payload);
-    payload.set_data_ptr(link->data.data());
-    payload.set_mm(&link->manager);
-    payload.acquire();
-    link->used = &payload;
-    link->forward(BEGIN_REQ, 2, END_REQ);
-    link->backward(BEGIN_RESP, 3);
-  }
-  EXPECT_NONFATAL_FAILURE(
-      link->binder.reset(),
-      "link_monitor at 0 s: nb_transport: the access to address 0x40 that began at 2 ns is open");
+  auto payload = std::make_unique<Payload>(&link->manager);
+  payload->deep_copy_from(link->payload);
+  payload->set_data_ptr(link->data.data());
+  payload->acquire();
+  link->used = payload.get();
+  link->forward(BEGIN_REQ, 2, END_REQ);
+  link->backward(BEGIN_RESP, 3);
+  payload.reset();
+  EXPECT_NONFATAL_FAILURE(link->binder.reset(),
+                          "nb_transport: the access to address 0x40 that began at 2 ns");
 }
 
 TEST(ProtocolMonitor, FailsATestThatItOutlives) {
