@@ -26,14 +26,16 @@ class AccessQueue {
   void serve(const tlm::tlm_generic_payload& access, sc_core::sc_time& delay, const Serve& serve,
              const Drop& drop) {
     const std::uint64_t place = arrived_++;
+    bool is_served = false;
     try {
       if (delay != sc_core::SC_ZERO_TIME) sc_core::wait(delay);
       delay = sc_core::SC_ZERO_TIME;
       places_.push_back(place);
-      while (!is_first(place)) sc_core::wait(next_turn_);
+      while (places_.front() != place) sc_core::wait(next_turn_);
+      is_served = true;
       serve();
     } catch (...) {
-      const unsigned done = is_first(place) ? drop() : 0;
+      const unsigned done = is_served ? drop() : 0;
       leave(place);
       if (done < access.get_data_length()) report_lost(access, done);
       throw;
@@ -42,7 +44,6 @@ class AccessQueue {
   }
 
  private:
-  bool is_first(std::uint64_t place) const { return !places_.empty() && places_.front() == place; }
   void leave(std::uint64_t place) {
     places_.erase(std::remove(places_.begin(), places_.end(), place), places_.end());
     if (!places_.empty()) next_turn_.notify(sc_core::SC_ZERO_TIME);
