@@ -20,7 +20,7 @@ class AccessQueue {
   explicit AccessQueue(const sc_core::sc_object& target) : target_(target) {}
 
   // Waits until the time of the access, sets `delay` to 0, waits until all accesses that arrived earlier have
-  // left, and calls `serve`, which may wait. If the process is killed or reset in `serve`, calls `drop`, which
+  // left, and calls `serve`, which may wait. If the process is killed or reset in `serve`, calls `drop`. This
   // forgets the access, and returns the number of its bytes that have been transferred.
   template <typename Serve, typename Drop>
   void serve(const tlm::tlm_generic_payload& access, sc_core::sc_time& delay, const Serve& serve,
