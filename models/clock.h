@@ -26,7 +26,7 @@ class Clock {
     return edge;
   }
 
-  // Whether edge k lies at k times a whole number of ps.
+  // Whether the time of a number of cycles is the same from each edge on.
   bool has_whole_period() const { return period_.is_whole(); }
   // Whether all edges of both clocks lie at the same times.
   bool has_edges_of(const Clock& other) const { return period_ == other.period_; }

@@ -26,11 +26,15 @@ class Refusals {
                              access_text(access) + ": " + rule + "; later refusals are not reported";
     SC_REPORT_WARNING("/stereotlm/refused_access", text.c_str());
   }
-  // The same. `rules`: those of the target; `other`: what the access breaks if it keeps them.
-  void report(const tlm::tlm_generic_payload& access, const AccessRules& rules, const char* other = "") {
-    if (has_reported_) return;
+  // Gives the access its response. Returns whether that is TLM_OK_RESPONSE, and reports the access if not.
+  // `rules`: those of the target; `other`: what the access breaks if it keeps them.
+  bool respond(tlm::tlm_generic_payload& access, tlm::tlm_response_status status, const AccessRules& rules,
+               const char* other = "") {
+    access.set_response_status(status);
+    if (status == tlm::TLM_OK_RESPONSE) return true;
     const BrokenRule broken = broken_rule(access, rules);
     report(access, broken.response == tlm::TLM_OK_RESPONSE ? other : broken.text);
+    return false;
   }
 
  private:

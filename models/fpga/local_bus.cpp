@@ -26,6 +26,7 @@ LocalBus::LocalBus(const sc_core::sc_module_name& name, const LocalBusConfig& co
 tlm::tlm_response_status LocalBus::check(const tlm::tlm_generic_payload& access) const {
   const tlm::tlm_response_status status = check_access(access, {});
   if (status != tlm::TLM_OK_RESPONSE) return status;
+  if (!access.has_mm()) return tlm::TLM_GENERIC_ERROR_RESPONSE;  // the bus keeps a reference
   switch (control_.refusal_of(burst_of(access))) {
     case LocalBusControl::Refusal::kAddress:
       return tlm::TLM_ADDRESS_ERROR_RESPONSE;
@@ -38,13 +39,9 @@ tlm::tlm_response_status LocalBus::check(const tlm::tlm_generic_payload& access)
 }
 
 void LocalBus::b_transport(tlm::tlm_generic_payload& access, sc_core::sc_time&) {
-  refuse(access, tlm::TLM_GENERIC_ERROR_RESPONSE, "must come by nb_transport");
-}
-
-void LocalBus::refuse(tlm::tlm_generic_payload& access, tlm::tlm_response_status status, const char* rule) {
   control_.count_error();
-  access.set_response_status(status);
-  refusals_.report(access, rule);
+  access.set_response_status(tlm::TLM_GENERIC_ERROR_RESPONSE);
+  refusals_.report(access, "must come by nb_transport");
 }
 
 tlm::tlm_sync_enum LocalBus::nb_transport_fw(tlm::tlm_generic_payload& access, tlm::tlm_phase& phase,
@@ -58,16 +55,10 @@ tlm::tlm_sync_enum LocalBus::nb_transport_fw(tlm::tlm_generic_payload& access, t
     SC_REPORT_ERROR("/stereotlm/local_bus", (std::string(name()) + ": phase out of order").c_str());
     return tlm::TLM_ACCEPTED;
   }
-  if (const tlm::tlm_response_status status = check(access); status != tlm::TLM_OK_RESPONSE) {
-    const BrokenRule broken = broken_rule(access, {});
-    refuse(access, status,
-           broken.response != tlm::TLM_OK_RESPONSE ? broken.text
-                                                   : "all words must be in one bank, or in the registers");
-    return tlm::TLM_COMPLETED;
-  }
-  if (!access.has_mm()) {  // the bus keeps a reference until the response
-    refuse(access, tlm::TLM_GENERIC_ERROR_RESPONSE,
-           "by nb_transport it must have a memory manager (set_mm())");
+  if (!refusals_.respond(access, check(access), {},
+                         access.has_mm() ? "all words must be in one bank, or in the registers"
+                                         : "must have a memory manager (set_mm())")) {
+    control_.count_error();
     return tlm::TLM_COMPLETED;
   }
   {

@@ -71,7 +71,6 @@ class LocalBus : public sc_core::sc_module,
   }
 
   tlm::tlm_response_status check(const tlm::tlm_generic_payload& access) const;
-  void refuse(tlm::tlm_generic_payload& access, tlm::tlm_response_status status, const char* rule);
   void begin(tlm::tlm_generic_payload& access, const sc_core::sc_time& delay);
   void run_registers();
   void await_register();

@@ -20,11 +20,10 @@ void RegisterFile::transport(tlm::tlm_generic_payload& access, sc_core::sc_time&
   tlm::tlm_response_status status = check_access(access, registers_below(registers::kEnd));
   if (status == tlm::TLM_OK_RESPONSE && !CoreRegisters::allows(access.is_write(), access.get_address()))
     status = tlm::TLM_COMMAND_ERROR_RESPONSE;
-  access.set_response_status(status);
-  if (status != tlm::TLM_OK_RESPONSE) {
+  if (!refusals_.respond(access, status, registers_below(registers::kEnd),
+                         "the register does not have this direction")) {
     ++stats_.errors;
-    return refusals_.report(access, registers_below(registers::kEnd),
-                            "the register does not have this direction");
+    return;
   }
   std::uint32_t value = 0;
   if (access.is_read()) {

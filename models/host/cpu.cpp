@@ -11,14 +11,7 @@
 namespace stereotlm::host {
 namespace {
 
-constexpr char kCpuReport[] = "/stereotlm/cpu";
 constexpr int kStackBytes = 1 << 20;  // large, because the program is not written to run in a coroutine
-
-std::string text_of(tlm::tlm_response_status status) {
-  tlm::tlm_generic_payload payload;
-  payload.set_response_status(status);
-  return payload.get_response_string();
-}
 
 }  // namespace
 
@@ -49,7 +42,7 @@ void Cpu::run() {
   } catch (...) {
     problem = "exception of an unknown type";
   }
-  if (problem) SC_REPORT_ERROR(kCpuReport, (std::string(name()) + ": " + *problem).c_str());
+  if (problem) SC_REPORT_ERROR("/stereotlm/cpu", (std::string(name()) + ": " + *problem).c_str());
 }
 
 std::uint32_t Cpu::read(std::uint64_t address) {
@@ -69,7 +62,7 @@ void Cpu::write(std::uint64_t address, std::uint32_t value) {
 void Cpu::end_access(bool ok, const char* what, std::uint64_t address, const sc_core::sc_time& delay) {
   accessed_ = true;
   if (delay != sc_core::SC_ZERO_TIME) wait(delay);
-  if (!ok) throw BusError(std::string(what) + " of " + hex(address) + ": " + text_of(access_.status()));
+  if (!ok) throw BusError(std::string(what) + " of " + hex(address) + ": " + access_.status_text());
 }
 
 bool Cpu::interrupted() const {

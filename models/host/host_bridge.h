@@ -41,17 +41,18 @@ class HostBridge : public sc_core::sc_module, private pci::PciMasterIf {
 
  private:
   void transport(tlm::tlm_generic_payload& access, sc_core::sc_time& delay);
-  tlm::tlm_response_status transfer(tlm::tlm_generic_payload& access, AccessQueue::Place& place);
-  void run_burst(const pci::PciBurst& burst, AccessQueue::Place& place);
+  tlm::tlm_response_status transfer(tlm::tlm_generic_payload& access);
   pci::PciBurst begin_burst(std::uint64_t address_clock_ps) override;
   void end_burst(const pci::BurstResult& result) override;
 
+  enum class State { kIdle, kRequested, kGranted, kLost };  // of the burst; kLost: its access is lost
+
   AccessQueue queue_{*this};
   sc_core::sc_event ended_{"ended"};
-  pci::PciBurst burst_;   // requested and not granted; without words: none
-  bool is_ended_ = true;  // the burst that was granted last
-  pci::BurstResult result_;
-  unsigned done_bytes_ = 0;  // of the access that is served
+  pci::PciBurst burst_;
+  State state_ = State::kIdle;
+  pci::BurstEnd end_ = pci::BurstEnd::kComplete;  // of the last burst
+  unsigned done_bytes_ = 0;                       // of the access that is served
   std::vector<std::uint32_t> words_;
   Refusals refusals_{*this};
 };

@@ -46,34 +46,25 @@ ArbiterStats GenericCrossbar::stats(std::size_t bank) const {
 }
 
 void GenericCrossbar::transport(int number, tlm::tlm_generic_payload& access, sc_core::sc_time& delay) {
-  const auto status = check(access);
   PortState& port = states_[static_cast<std::size_t>(number)];
-  if (status != tlm::TLM_OK_RESPONSE) {
-    access.set_response_status(status);
-    return port.refusals.report(
-        access, kRules,
-        bank_of_address(access.get_address()) < banks.size()
-            ? "all words must be in one bank"
-            : "there is no such bank (crossbar_address(): the bank is in bits 28 and up)");
-  }
-  AccessQueue::Place place(port.queue, access);
-  place.await_time(delay);
-  place.await_turn();
-  port.access = &access;
-  ++port.number;
-  port.granted_bytes = 0;
-  port.from_cycle = std::max(first_undecided_, clock_.edge_at_or_after(kernel_time::now_ps()));
-  await_cycle();
-  try {
-    while (port.access != nullptr) wait(port.ended);
-  } catch (...) {  // the process is killed or reset
-    place.set_done(port.granted_bytes);
-    port.access = nullptr;
+  const char* const other = bank_of_address(access.get_address()) < banks.size()
+                                ? "all words must be in one bank"
+                                : "there is no such bank (crossbar_address(): the bank is in bits 28 and up)";
+  if (!port.refusals.respond(access, check(access), kRules, other)) return;
+  const auto serve = [&] {
+    port.access = &access;
+    port.done_bytes = 0;
+    port.from_cycle = std::max(first_undecided_, clock_.edge_at_or_after(kernel_time::now_ps()));
     await_cycle();
-    throw;
-  }
-  place.end();
-  delay = port.delay;
+    while (port.access != nullptr) wait(port.ended);
+    delay = port.delay;
+  };
+  const auto drop = [&] {
+    access_granted_words();
+    port.access = nullptr;
+    return port.done_bytes;
+  };
+  port.queue.serve(access, delay, serve, drop);
 }
 
 tlm::tlm_response_status GenericCrossbar::check(const tlm::tlm_generic_payload& access) const {
@@ -106,7 +97,7 @@ void GenericCrossbar::decide() {
   for (Port port = 0; port < states_.size(); ++port) {
     const PortState& state = states_[port];
     if (state.access == nullptr || state.from_cycle > cycle) continue;
-    const std::uint64_t address = state.access->get_address() + state.granted_bytes;
+    const std::uint64_t address = state.access->get_address() + state.done_bytes;
     requests[bank_of_address(address)] |= mask_of(port);
     if (state.access->is_write()) writes[bank_of_address(address)] |= mask_of(port);
     words_[port] = static_cast<std::uint32_t>(address_in_bank(address) / 4);
@@ -115,7 +106,6 @@ void GenericCrossbar::decide() {
   for (std::size_t bank = 0; bank < banks.size(); ++bank) {
     if (requests[bank] != 0) decide(bank, cycle, requests[bank], writes[bank]);
   }
-  granted_cycle_ = cycle;
   granted_.empty() ? await_cycle() : accesses_.notify(sc_core::SC_ZERO_TIME);
 }
 
@@ -123,63 +113,60 @@ void GenericCrossbar::decide(std::size_t bank, std::uint64_t cycle, PortMask req
   const BankArbiter::Outcome outcome = arbiters_[bank].decide(cycle, requests, writes, words_.data());
   arbiters_[bank].count(outcome);
   for_each_port(requests, [&](Port port) { states_[port].from_cycle = cycle + 1; });
-  for_each_port(outcome.granted & ~writes, [this](Port port) { grant_word(port); });
-  for_each_port(outcome.granted & writes, [this](Port port) { grant_word(port); });
-}
-
-void GenericCrossbar::grant_word(Port number) {
-  PortState& port = states_[number];
-  const tlm::tlm_generic_payload& access = *port.access;
-  GrantedWord& word = granted_.emplace_back();
-  word.port = number;
-  word.number = port.number;
-  word.offset = port.granted_bytes;
-  word.command = access.get_command();
-  word.address = access.get_address() + word.offset;
-  std::memcpy(word.data.data(), access.get_data_ptr() + word.offset, 4);
-  const unsigned char* const enables = access.get_byte_enable_ptr();
-  word.has_enables = enables != nullptr;
-  for (unsigned byte = 0; word.has_enables && byte < 4; ++byte)
-    word.enables[byte] = enables[(word.offset + byte) % access.get_byte_enable_length()];
-  port.granted_bytes += 4;
-  word.is_last = port.granted_bytes == access.get_data_length();
+  for_each_port(outcome.granted & ~writes, [&](Port port) { granted_.emplace_back(port, bank); });
+  for_each_port(outcome.granted & writes, [&](Port port) { granted_.emplace_back(port, bank); });
 }
 
 // A thread: the protocol allows b_transport only there.
 void GenericCrossbar::access_banks() {
   for (;;) {
     wait(accesses_);
-    for (GrantedWord& word : granted_) access_word(word);
-    granted_.clear();
+    access_granted_words();
     await_cycle();
   }
 }
 
-// The word has been granted in the cycle that begins now.
-void GenericCrossbar::access_word(GrantedWord& granted) {
+void GenericCrossbar::access_granted_words() {
+  while (!granted_.empty()) {
+    const auto [port, bank] = granted_.front();
+    granted_.pop_front();
+    access_word(states_[port], bank);
+  }
+}
+
+// The next word of the port has been granted in the cycle that begins now. It is copied, because the bank may
+// kill the process of the access.
+void GenericCrossbar::access_word(PortState& port, std::size_t bank) {
+  tlm::tlm_generic_payload& access = *port.access;
+  unsigned char* const place = access.get_data_ptr() + port.done_bytes;
+  std::array<unsigned char, 4> data{};
+  std::memcpy(data.data(), place, 4);
   tlm::tlm_generic_payload word;
-  word.set_command(granted.command);
-  word.set_address(address_in_bank(granted.address));
-  word.set_data_ptr(granted.data.data());
+  word.set_command(access.get_command());
+  word.set_address(address_in_bank(access.get_address()) + port.done_bytes);
+  word.set_data_ptr(data.data());
   word.set_data_length(4);
   word.set_streaming_width(4);
-  if (granted.has_enables) {
-    word.set_byte_enable_ptr(granted.enables.data());
+  std::array<unsigned char, 4> enables{};
+  if (access.get_byte_enable_ptr() != nullptr) {
+    for (unsigned byte = 0; byte < 4; ++byte)
+      enables[byte] =
+          access.get_byte_enable_ptr()[(port.done_bytes + byte) % access.get_byte_enable_length()];
+    word.set_byte_enable_ptr(enables.data());
     word.set_byte_enable_length(4);
   }
+  port.done_bytes += 4;
   sc_core::sc_time delay;
-  banks[bank_of_address(granted.address)]->b_transport(word, delay);
-  PortState& port = states_[granted.port];
-  if (port.access == nullptr || port.number != granted.number) return;  // its process has ended
-  tlm::tlm_generic_payload& access = *port.access;
-  if (access.is_read()) std::memcpy(access.get_data_ptr() + granted.offset, granted.data.data(), 4);
-  if (word.is_response_ok() && !granted.is_last) return;
+  banks[bank]->b_transport(word, delay);
+  if (port.access == nullptr) return;
+  if (access.is_read()) std::memcpy(place, data.data(), 4);
+  if (word.is_response_ok() && port.done_bytes < access.get_data_length()) return;
   access.set_response_status(word.get_response_status());
   if (!word.is_response_ok()) port.refusals.report(access, "its bank has refused a word");
   port.access = nullptr;
   port.delay = access.is_read()
                    ? delay
-                   : kernel_time::to_time(clock_.edge_ps(granted_cycle_ + 1) - kernel_time::now_ps());
+                   : kernel_time::to_time(clock_.edge_ps(first_undecided_) - kernel_time::now_ps());
   port.ended.notify(sc_core::SC_ZERO_TIME);
 }
 

@@ -8,6 +8,7 @@
 #include <deque>
 #include <systemc>
 #include <tlm>
+#include <utility>
 #include <vector>
 
 #include "models/access_queue.h"
@@ -66,25 +67,12 @@ class GenericCrossbar : public sc_core::sc_module {
     explicit PortState(const sc_core::sc_object& socket) : queue(socket), refusals(socket) {}
 
     AccessQueue queue;
-    tlm::tlm_generic_payload* access = nullptr;  // null: none, or its process has ended
-    std::uint64_t number = 0;                    // of the access, from 1
-    unsigned granted_bytes = 0;
+    tlm::tlm_generic_payload* access = nullptr;
+    unsigned done_bytes = 0;
     std::uint64_t from_cycle = 0;  // its next word requests from this cycle on
     sc_core::sc_time delay;        // of the rest, after its last grant
     sc_core::sc_event ended;
     Refusals refusals;
-  };
-  // A word that has been granted. It needs neither the access nor its process.
-  struct GrantedWord {
-    Port port = 0;
-    std::uint64_t number = 0;  // of the access
-    unsigned offset = 0;       // of the word in the access
-    bool is_last = false;      // of the access
-    tlm::tlm_command command = tlm::TLM_IGNORE_COMMAND;
-    std::uint64_t address = 0;  // on the crossbar
-    std::array<unsigned char, 4> data{};
-    bool has_enables = false;
-    std::array<unsigned char, 4> enables{};
   };
 
   void transport(int port, tlm::tlm_generic_payload& access, sc_core::sc_time& delay);
@@ -93,18 +81,17 @@ class GenericCrossbar : public sc_core::sc_module {
   void begin_cycle();
   void decide();
   void decide(std::size_t bank, std::uint64_t cycle, PortMask requests, PortMask writes);
-  void grant_word(Port port);
   void access_banks();
-  void access_word(GrantedWord& granted);
+  void access_granted_words();
+  void access_word(PortState& port, std::size_t bank);
   void await_cycle();
 
   Clock clock_;
-  std::vector<BankArbiter> arbiters_;              // [bank]
-  std::deque<PortState> states_;                   // [port]
-  std::uint64_t first_undecided_ = 0;              // cycle
-  std::array<std::uint32_t, kMostPorts> words_{};  // [port]: the word that it requests
-  std::vector<GrantedWord> granted_;               // in this cycle, in the order of their accesses
-  std::uint64_t granted_cycle_ = 0;
+  std::vector<BankArbiter> arbiters_;                 // [bank]
+  std::deque<PortState> states_;                      // [port]
+  std::uint64_t first_undecided_ = 0;                 // cycle
+  std::array<std::uint32_t, kMostPorts> words_{};     // [port]: the word that it requests
+  std::deque<std::pair<Port, std::size_t>> granted_;  // port and bank, in the order of their accesses
   sc_core::sc_event accesses_{"accesses"};
   StepEvent cycle_{"cycle"};
   DecisionPoint decision_{"decision", [this] { decide(); }};

@@ -7,18 +7,9 @@
 
 namespace stereotlm::memory {
 
-RamTarget::RamTarget(const AccessRules& rules, const char* report, const sc_core::sc_object& owner,
-                     const std::optional<Timing>& timing)
-    : rules_(rules), report_(report), refusals_(owner), timing_(timing), ram_(rules.end) {
-  if (timing) read_time_ = kernel_time::to_time(timing->clock.edge_ps(timing->read_cycles));
-}
-
 void RamTarget::b_transport(tlm::tlm_generic_payload& access, sc_core::sc_time& delay) {
-  const tlm::tlm_response_status status = check_access(access, rules_);
-  access.set_response_status(status);
-  if (status != tlm::TLM_OK_RESPONSE) {
+  if (!refusals_.respond(access, check_access(access, rules_), rules_)) {
     ++stats_.errors;
-    refusals_.report(access, rules_);
     return;
   }
   access.set_dmi_allowed(true);
@@ -27,20 +18,13 @@ void RamTarget::b_transport(tlm::tlm_generic_payload& access, sc_core::sc_time& 
   (access.is_read() ? stats_.reads : stats_.writes) += words;
   if (!timing_) return;
   const std::uint64_t cycles = words - 1 + (access.is_read() ? timing_->read_cycles : 0);
-  if (cycles == timing_->read_cycles && timing_->clock.has_whole_period()) {
-    delay += read_time_;  // at any time; for speed
-  } else if (cycles != 0) {
-    delay += time_of(cycles, delay);
-  }
-}
-
-// The time of these cycles of an access at `delay` from now.
-sc_core::sc_time RamTarget::time_of(std::uint64_t cycles, const sc_core::sc_time& delay) {
+  if (cycles == 0) return;
   const Clock& clock = timing_->clock;
-  const std::uint64_t at_ps = kernel_time::now_ps() + kernel_time::to_ps(delay);
-  // Mostly the access begins with the edge after that of the one before.
-  if (clock.edge_ps(++first_edge_) != at_ps) first_edge_ = clock.edge_at_or_after(at_ps);
-  return kernel_time::to_time(clock.edge_ps(first_edge_ + cycles) - clock.edge_ps(first_edge_));
+  // Where the period is whole ps, the time does not depend on the first edge. This is for speed.
+  const std::uint64_t first = clock.has_whole_period()
+                                  ? 0
+                                  : clock.edge_at_or_after(kernel_time::now_ps() + kernel_time::to_ps(delay));
+  delay += kernel_time::to_time(clock.edge_ps(first + cycles) - clock.edge_ps(first));
 }
 
 // Moves the enabled bytes.
@@ -92,7 +76,7 @@ bool RamTarget::get_direct_mem_ptr(tlm::tlm_generic_payload& access, tlm::tlm_dm
   dmi.set_dmi_ptr(ram_.data());
   dmi.set_start_address(0);
   dmi.set_end_address(ram_.bytes() - 1);
-  dmi.set_read_latency(read_time_);
+  if (timing_) dmi.set_read_latency(kernel_time::to_time(timing_->clock.edge_ps(timing_->read_cycles)));
   dmi.set_write_latency(sc_core::SC_ZERO_TIME);
   return true;
 }

@@ -64,7 +64,8 @@ class RamTarget : public tlm::tlm_fw_transport_if<> {
   // `rules.end` is the number of bytes. `report`: the type of the SC_REPORT_ERROR for a phase other than
   // BEGIN_REQ. `owner`: the module, which outlives this object. Without `timing` accesses take no time.
   RamTarget(const AccessRules& rules, const char* report, const sc_core::sc_object& owner,
-            const std::optional<Timing>& timing = std::nullopt);
+            const std::optional<Timing>& timing = std::nullopt)
+      : rules_(rules), report_(report), refusals_(owner), timing_(timing), ram_(rules.end) {}
 
   void b_transport(tlm::tlm_generic_payload& access, sc_core::sc_time& delay) override;
   tlm::tlm_sync_enum nb_transport_fw(tlm::tlm_generic_payload& access, tlm::tlm_phase& phase,
@@ -78,14 +79,11 @@ class RamTarget : public tlm::tlm_fw_transport_if<> {
 
  private:
   void move(tlm::tlm_generic_payload& access);
-  sc_core::sc_time time_of(std::uint64_t cycles, const sc_core::sc_time& delay);
 
   AccessRules rules_;
   const char* report_;
   Refusals refusals_;
   std::optional<Timing> timing_;
-  sc_core::sc_time read_time_;    // of a read of a word at time 0
-  std::uint64_t first_edge_ = 0;  // of the last access
   Ram ram_;
   Stats stats_;
 };

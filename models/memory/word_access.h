@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <systemc>
 #include <tlm>
 
@@ -32,6 +33,7 @@ class WordAccess {
   }
   std::uint32_t word() const { return word_; }  // last word read or written
   tlm::tlm_response_status status() const { return access_.get_response_status(); }  // of the last access
+  std::string status_text() const { return access_.get_response_string(); }          // as text
 
  private:
   bool transport(tlm::tlm_command command, std::uint64_t address, sc_core::sc_time& delay) {

@@ -39,39 +39,32 @@ void PciBridge::access_slave(tlm::tlm_generic_payload& access, sc_core::sc_time&
   if (status != tlm::TLM_OK_RESPONSE) {
     control_.count_error();
   } else {
-    AccessQueue::Place place(queue_, access);
-    place.await_time(delay);
-    const std::uint64_t offset = access.get_address();
-    const std::size_t words = access.get_data_length() / 4;
-    if (access.is_read()) {
-      if (!read_slave(offset, access.get_data_ptr(), words, place)) status = tlm::TLM_GENERIC_ERROR_RESPONSE;
-    } else {
-      const std::uint64_t now_ps = kernel_time::now_ps();
-      if (!control_.write(now_ps, offset, access.get_data_ptr(), words))
-        status = tlm::TLM_BURST_ERROR_RESPONSE;
-      await_step();
-    }
-    place.end();
+    AccessQueue& queue = access.is_read() ? slave_reads_ : slave_writes_;
+    const auto serve = [&] { status = access.is_read() ? read_slave(access) : write_slave(access); };
+    queue.serve(access, delay, serve, [] { return 0U; });
   }
-  access.set_response_status(status);
-  if (status != tlm::TLM_OK_RESPONSE) {
-    refusals_.report(access, {bridge::kSlaveWindowBytes},
-                     access.is_read() ? "the local bus has refused a word" : "more words than can be posted");
-  }
+  refusals_.respond(access, status, {bridge::kSlaveWindowBytes},
+                    access.is_read() ? "the local bus has refused a word" : "more words than can be posted");
 }
 
-// Waits until the words have arrived. Returns false if the read was refused.
-bool PciBridge::read_slave(std::uint64_t offset, unsigned char* data, std::size_t words,
-                           AccessQueue::Place& place) {
-  place.await_turn();
+tlm::tlm_response_status PciBridge::write_slave(const tlm::tlm_generic_payload& access) {
+  const bool ok = control_.write(kernel_time::now_ps(), access.get_address(), access.get_data_ptr(),
+                                 access.get_data_length() / 4);
+  await_step();
+  return ok ? tlm::TLM_OK_RESPONSE : tlm::TLM_BURST_ERROR_RESPONSE;
+}
+
+// Waits until the words have arrived.
+tlm::tlm_response_status PciBridge::read_slave(const tlm::tlm_generic_payload& access) {
   while (reads_) wait(read_ended_);  // the read of an access that is lost
   reads_ = true;
-  read_bytes_.resize(words * 4);
-  control_.read(kernel_time::now_ps(), offset, read_bytes_.data(), words);
+  read_bytes_.resize(access.get_data_length());
+  control_.read(kernel_time::now_ps(), access.get_address(), read_bytes_.data(), read_bytes_.size() / 4);
   await_step();
   while (reads_) wait(read_ended_);
-  if (read_ok_) std::memcpy(data, read_bytes_.data(), read_bytes_.size());
-  return read_ok_;
+  if (!read_ok_) return tlm::TLM_GENERIC_ERROR_RESPONSE;
+  std::memcpy(access.get_data_ptr(), read_bytes_.data(), read_bytes_.size());
+  return tlm::TLM_OK_RESPONSE;
 }
 
 void PciBridge::slave_read_ended(std::uint64_t /*now_ps*/, bool ok) {

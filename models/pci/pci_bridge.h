@@ -56,7 +56,8 @@ class PciBridge : public sc_core::sc_module,
   // These serve the slave window and the register window.
   std::size_t writable_words(std::uint64_t address, std::size_t words) const override;
   void access_slave(tlm::tlm_generic_payload& access, sc_core::sc_time& delay);
-  bool read_slave(std::uint64_t offset, unsigned char* data, std::size_t words, AccessQueue::Place& place);
+  tlm::tlm_response_status write_slave(const tlm::tlm_generic_payload& access);
+  tlm::tlm_response_status read_slave(const tlm::tlm_generic_payload& access);
   void slave_read_ended(std::uint64_t now_ps, bool ok) override;
   void access_registers(tlm::tlm_generic_payload& access, sc_core::sc_time& delay);
 
@@ -84,8 +85,9 @@ class PciBridge : public sc_core::sc_module,
   Refusals refusals_{*this};
   StepEvent step_{"next_step"};
   sc_core::sc_event interrupt_changed_{"interrupt_changed"};
-  AccessQueue queue_{slave};  // of reads
-  bool reads_ = false;        // a read of the slave window is under way
+  AccessQueue slave_reads_{slave};
+  AccessQueue slave_writes_{slave};  // which wait for their time alone
+  bool reads_ = false;               // a read of the slave window is under way
   bool read_ok_ = false;
   std::vector<unsigned char> read_bytes_;
   sc_core::sc_event read_ended_{"read_ended"};

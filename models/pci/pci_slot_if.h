@@ -90,10 +90,7 @@ inline void access_registers(PciTarget& registers, std::uint64_t end, tlm::tlm_g
                       .ok;
   if (ok && access.is_read()) std::memcpy(access.get_data_ptr(), &word, 4);
   if (is_one_word && !ok) status = tlm::TLM_COMMAND_ERROR_RESPONSE;
-  access.set_response_status(status);
-  if (status != tlm::TLM_OK_RESPONSE) {
-    refusals.report(access, registers_below(end), "the register does not have this direction");
-  }
+  refusals.respond(access, status, registers_below(end), "the register does not have this direction");
 }
 
 }  // namespace stereotlm::pci

@@ -47,8 +47,7 @@ class TrafficGenerator : public sc_core::sc_module {
   void respond(tlm::tlm_generic_payload& access, sc_core::sc_time& delay) {
     tlm::tlm_response_status status = check_access(access, {});
     if (access.is_write()) status = tlm::TLM_COMMAND_ERROR_RESPONSE;
-    access.set_response_status(status);
-    if (status != tlm::TLM_OK_RESPONSE) return refusals_.report(access, AccessRules{}, "must be a read");
+    if (!refusals_.respond(access, status, {}, "must be a read")) return;
     std::memset(access.get_data_ptr(), 0, access.get_data_length());
     delay += kernel_time::to_time(access_ps_);
   }

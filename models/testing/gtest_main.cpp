@@ -1,8 +1,6 @@
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -37,8 +35,8 @@ void handle_report(const sc_core::sc_report& report, const sc_core::sc_actions& 
       report, actions & ~static_cast<sc_core::sc_actions>(sc_core::SC_DISPLAY));
 }
 
-// Says what to do where a second test of a process makes modules.
-class OneTestAProcess : public testing::EmptyTestEventListener {
+// Says what to do where a second test of a process makes modules, and fails a test that a monitor outlives.
+class TestListener : public testing::EmptyTestEventListener {
   void OnTestPartResult(const testing::TestPartResult& result) override {
     if (!result.failed() || std::strstr(result.message(), "(E529)") == nullptr) return;
     std::fputs(
@@ -46,22 +44,8 @@ class OneTestAProcess : public testing::EmptyTestEventListener {
         "gtest_discover_tests(), or by --gtest_filter=TEST\n",
         stderr);
   }
+  void OnTestEnd(const testing::TestInfo& /*test*/) override { ProtocolMonitor::fail_at_end(); }
 };
-
-// A monitor may outlive its test, or the test calls exit(). A process that it has forked has only copies.
-const pid_t first_process = getpid();
-void end_process() {
-  if (getpid() != first_process || !ProtocolMonitor::fail_at_end()) return;
-  std::fflush(nullptr);
-  std::_Exit(EXIT_FAILURE);
-}
-
-// A violation may tell the cause of the crash.
-void end_by(int signal) {
-  std::signal(signal, SIG_DFL);
-  ProtocolMonitor::fail_at_end();
-  std::raise(signal);
-}
 
 }  // namespace
 
@@ -92,13 +76,7 @@ int sc_main(int argc, char** argv) {
   sc_core::sc_report_handler::set_handler(stereotlm::test::handle_report);
   stereotlm::test::set_failure_handler([](const std::string& text) { ADD_FAILURE() << text; });
   testing::InitGoogleTest(&argc, argv);
-  testing::UnitTest::GetInstance()->listeners().Append(new stereotlm::test::OneTestAProcess);
-  std::atexit(stereotlm::test::end_process);
-  for (const int crash : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT}) {
-    struct sigaction earlier {};  // that of a sanitizer stays
-    sigaction(crash, nullptr, &earlier);
-    if (earlier.sa_handler == SIG_DFL) std::signal(crash, stereotlm::test::end_by);
-  }
+  testing::UnitTest::GetInstance()->listeners().Append(new stereotlm::test::TestListener);
   return RUN_ALL_TESTS();
 }
 

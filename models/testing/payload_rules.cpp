@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "models/access_text.h"
+#include "models/kernel_time.h"
 
 namespace stereotlm::test {
 namespace {
@@ -118,7 +119,7 @@ Problems response_problems(const tlm::tlm_generic_payload& payload, const Protoc
 }
 
 std::string open_problem(sc_dt::uint64 address, const sc_core::sc_time& begin) {
-  return "the access to address " + hex(address) + " that began at " + begin.to_string() +
+  return "the access to address " + hex(address) + " that began at " + kernel_time::text_of(begin) +
          " is open: must end before the simulation does";
 }
 

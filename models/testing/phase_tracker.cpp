@@ -158,6 +158,13 @@ Problems PhaseTracker::backward_return(const Payload& payload, const Call& call,
   return problems;
 }
 
+Problems PhaseTracker::open_problems() const {
+  Problems problems;
+  for (const auto& [payload, transaction] : transactions_)
+    problems.push_back(open_problem(transaction.sent.address(), transaction.begin));
+  return problems;
+}
+
 PhaseTracker::Transaction* PhaseTracker::find(const Payload& payload) {
   const auto found = transactions_.find(&payload);
   return found == transactions_.end() ? nullptr : &found->second;
@@ -171,7 +178,7 @@ void PhaseTracker::begin_request(const Payload& payload, const sc_core::sc_time&
   } else if (request_ != nullptr) {
     problems.emplace_back("BEGIN_REQ before the last request ended: one request at a time (15.2.6 e)");
   }
-  transactions_.emplace(&payload, Transaction{State::kRequest, time, PayloadSnapshot(payload)});
+  transactions_.emplace(&payload, Transaction{State::kRequest, time, time, PayloadSnapshot(payload)});
   request_ = &payload;
 }
 

@@ -32,12 +32,14 @@ class PhaseTracker {
   bool in_progress(const tlm::tlm_generic_payload& payload) const {  // whether it has no END_RESP yet
     return transactions_.count(&payload) != 0;
   }
+  Problems open_problems() const;  // one of each transaction in progress, at the end of the simulation
 
  private:
   enum class State { kRequest, kRequestEnded, kResponse };
   struct Transaction {
     State state;
-    sc_core::sc_time time;  // of the last call or return
+    sc_core::sc_time begin;  // of BEGIN_REQ
+    sc_core::sc_time time;   // of the last call or return
     PayloadSnapshot sent;
     std::optional<ResponseSnapshot> answered = {};
     bool spoilt = false;    // a change is reported once

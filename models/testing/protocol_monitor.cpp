@@ -85,20 +85,17 @@ ProtocolMonitor::~ProtocolMonitor() {
   fail_all();
 }
 
-bool ProtocolMonitor::fail_all() {
-  const bool all_end = std::exchange(options_.all_end, false);  // an open access fails once
-  for (const auto& [payload, begun] : begun_) {
-    const bool is_blocking = in_b_transport(*payload);
-    if (all_end && (is_blocking || phases_.in_progress(*payload)))
-      report(is_blocking ? "b_transport" : "nb_transport", open_problem(begun.first, begun.second));
+void ProtocolMonitor::fail_all() {
+  if (std::exchange(options_.all_end, false)) {  // an open access fails once
+    for (const auto& [payload, process, address, begin] : blocking_)
+      report("b_transport", open_problem(address, begin));
+    report("nb_transport", phases_.open_problems());
   }
-  const std::vector<std::string> failures = take_violations();
-  for (const std::string& failure : failures) fail(failure);
-  return !failures.empty();
+  for (const std::string& violation : take_violations()) fail(violation);
 }
 
-bool ProtocolMonitor::fail_at_end() {
-  return std::count_if(monitors().begin(), monitors().end(), [](auto* each) { return each->fail_all(); }) > 0;
+void ProtocolMonitor::fail_at_end() {
+  for (ProtocolMonitor* const monitor : monitors()) monitor->fail_all();
 }
 
 std::vector<std::string> ProtocolMonitor::take_violations() { return std::exchange(violations_, {}); }
@@ -118,13 +115,11 @@ void ProtocolMonitor::b_transport(Payload& payload, sc_core::sc_time& delay) {
 
   const PayloadSnapshot sent(payload);
   const sc_core::sc_time start = sc_core::sc_time_stamp() + delay;
-  const Listed<Blocking> listed(blocking_, {&payload, this_process()});
-  begun_[&payload] = {sent.address(), start};
+  const Listed<Blocking> listed(blocking_, {&payload, this_process(), sent.address(), start});
   const bool managed = payload.has_mm();
   const Hold hold(payload);
   const int references = hold.others();
   to_target->b_transport(payload, delay);
-  begun_.erase(&payload);
 
   if (!managed && payload.has_mm()) {
     report(kCall, "memory manager set: what has set it must remove it before it returns (14.5 j)");
@@ -152,13 +147,11 @@ tlm::tlm_sync_enum ProtocolMonitor::nb_transport_fw(Payload& payload, tlm::tlm_p
   const PhaseTracker::Call call{phase, sc_core::sc_time_stamp() + delay};
   if (contains(backward_)) report(kCall, "called within nb_transport_bw: not permitted (11.1.2.4 c)");
   report(kCall, phases_.forward_call(payload, call));
-  if (phase == tlm::BEGIN_REQ) begun_[&payload] = {payload.get_address(), call.time};
   const Listed<Process> listed(forward_, this_process());
   const Hold hold(payload);
   const auto status = to_target->nb_transport_fw(payload, phase, delay);
   if (moment.passed()) report(kCall, "time passed: a non-blocking callee must not wait (11.1.2.4)");
   report(kCall, phases_.forward_return(payload, call, {phase, sc_core::sc_time_stamp() + delay}, status));
-  if (!phases_.in_progress(payload)) begun_.erase(&payload);
   return status;
 }
 
@@ -170,7 +163,7 @@ tlm::tlm_sync_enum ProtocolMonitor::nb_transport_bw(Payload& payload, tlm::tlm_p
   const PhaseTracker::Call call{phase, sc_core::sc_time_stamp() + delay};
   if (contains(forward_)) report(kCall, "called within nb_transport_fw: not permitted (11.1.2.4 c)");
   if (std::any_of(blocking_.begin(), blocking_.end(),
-                  [](const Blocking& other) { return other.second == this_process(); }))
+                  [](const Blocking& other) { return std::get<Process>(other) == this_process(); }))
     report(kCall, "called within b_transport: not permitted (11.1.1.4 j)");
   report(kCall, phases_.backward_call(payload, call));
   const Listed<Process> listed(backward_, this_process());
@@ -178,7 +171,6 @@ tlm::tlm_sync_enum ProtocolMonitor::nb_transport_bw(Payload& payload, tlm::tlm_p
   const auto status = from_initiator->nb_transport_bw(payload, phase, delay);
   if (moment.passed()) report(kCall, "time passed: a non-blocking callee must not wait (11.1.2.4)");
   report(kCall, phases_.backward_return(payload, call, {phase, sc_core::sc_time_stamp() + delay}, status));
-  if (!phases_.in_progress(payload)) begun_.erase(&payload);
   return status;
 }
 
@@ -213,7 +205,7 @@ void ProtocolMonitor::invalidate_direct_mem_ptr(sc_dt::uint64 start, sc_dt::uint
 
 bool ProtocolMonitor::in_b_transport(const Payload& payload) const {
   return std::any_of(blocking_.begin(), blocking_.end(),
-                     [&payload](const Blocking& call) { return call.first == &payload; });
+                     [&payload](const Blocking& call) { return std::get<const Payload*>(call) == &payload; });
 }
 
 void ProtocolMonitor::check_non_blocking(const char* call, const Payload& payload) {

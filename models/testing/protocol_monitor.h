@@ -1,10 +1,9 @@
 #pragma once
 
-#include <map>
 #include <string>
 #include <systemc>
 #include <tlm>
-#include <utility>
+#include <tuple>
 #include <vector>
 
 #include "models/testing/payload_rules.h"
@@ -14,9 +13,9 @@ namespace stereotlm::test {
 
 // Forwards every call between an initiator and a target unchanged, and checks that both keep the base
 // protocol (IEEE Std 1666-2011, 11 and 14 to 16) and the rules of ProtocolOptions. A violation reads
-// "<monitor> at <time>: <call>: <value found and the rule>". Those that nobody has
-// taken out are failures (failure.h) when the monitor is destroyed. So is each access that is open then: one
-// without return from b_transport, or without END_RESP.
+// "<monitor> at <time>: <call>: <value found and the rule>". Those that nobody has taken out are failures
+// (failure.h) when the monitor is destroyed. So is each access that is open then: one without return from
+// b_transport, or without END_RESP.
 class ProtocolMonitor : public sc_core::sc_module,
                         public tlm::tlm_fw_transport_if<>,
                         public tlm::tlm_bw_transport_if<> {
@@ -31,8 +30,8 @@ class ProtocolMonitor : public sc_core::sc_module,
   // Returns and removes the violations, of which the first hundred are kept.
   std::vector<std::string> take_violations();
   // Fails with the violations and the open accesses of all monitors that exist, as if they were destroyed.
-  // Returns whether there were any. gtest_main.cpp calls it when the program ends or crashes.
-  static bool fail_at_end();
+  // gtest_main.cpp calls it at the end of each test.
+  static void fail_at_end();
 
   void b_transport(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay) override;
   tlm::tlm_sync_enum nb_transport_fw(tlm::tlm_generic_payload& payload, tlm::tlm_phase& phase,
@@ -45,9 +44,10 @@ class ProtocolMonitor : public sc_core::sc_module,
 
  private:
   using Process = const sc_core::sc_process_b*;
-  using Blocking = std::pair<const tlm::tlm_generic_payload*, Process>;
+  // Payload, process, address as requested, time of the request.
+  using Blocking = std::tuple<const tlm::tlm_generic_payload*, Process, sc_dt::uint64, sc_core::sc_time>;
 
-  bool fail_all();
+  void fail_all();
   bool in_b_transport(const tlm::tlm_generic_payload& payload) const;
   void check_non_blocking(const char* call, const tlm::tlm_generic_payload& payload);
   void report(const char* call, const Problems& problems);
@@ -59,8 +59,6 @@ class ProtocolMonitor : public sc_core::sc_module,
   std::vector<Blocking> blocking_;
   std::vector<Process> forward_;
   std::vector<Process> backward_;
-  // Address and time of the requests of the accesses in progress.
-  std::map<const tlm::tlm_generic_payload*, std::pair<sc_dt::uint64, sc_core::sc_time>> begun_;
   std::vector<std::string> violations_;
 };
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "models/access_text.h"
 #include "models/kernel_time.h"
 #include "models/testing/failure.h"
 
@@ -24,15 +25,12 @@ void require(bool holds, const char* what, std::uint64_t value, const std::strin
 constexpr const char* kColumns = "pause_ns,direction,address,words";
 constexpr std::uint64_t kMostWords = UINT32_MAX / 4;  // a payload counts its bytes in 32 bits
 
-// Shows characters that a reader does not see as their bytes.
+// Shows each byte that is no visible character of ASCII as <0x..>.
 [[noreturn]] void refuse(std::size_t line, const std::string& problem) {
-  constexpr const char* kDigits = "0123456789abcdef";
   std::string text = "line " + std::to_string(line) + ": ";
-  for (const char byte : problem) {
-    const auto value = static_cast<unsigned char>(byte);
-    text += byte >= ' ' && byte <= '~' ? std::string(1, byte)
-                                       : std::string("\\x") + kDigits[value / 16] + kDigits[value % 16];
-  }
+  for (const char byte : problem)
+    text +=
+        byte >= ' ' && byte <= '~' ? std::string(1, byte) : "<" + hex(static_cast<unsigned char>(byte)) + ">";
   throw std::invalid_argument(text);
 }
 

@@ -39,7 +39,7 @@ std::vector<TrafficAccess> random_traffic(const RandomTraffic& from);
 // A recorded trace: lines `pause in ns,read or write,address,words`, and a first line with these names:
 // pause_ns,direction,address,words. Numbers are integers, also hexadecimal (0x..). Blanks around a value,
 // empty lines, CRLF and a byte order mark are allowed. Throws std::invalid_argument with the number of the
-// line, the value and the rule; a character that cannot be seen is shown as \x and its byte.
+// line, the value and the rule; a byte that is no visible character of ASCII is shown as <0x..>.
 std::vector<TrafficAccess> traffic_of_csv(std::istream& csv);
 
 // An initiator that makes these accesses, one after the other, with b_transport or nb_transport. The words

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "models/testing/expected_report.h"
+#include "tests/support/scratch_folder.h"
 #include "tests/unit/capture/capture_bench.h"
 
 namespace stereotlm::capture {
@@ -154,12 +155,9 @@ TEST_F(CameraTest, RefusesAConfigurationWithProblems) {
 TEST(CameraResolution, MustBeOnePicosecond) {
   sc_core::sc_set_time_resolution(10, sc_core::SC_PS);
   NoiseSource source(8, 5);
-  std::string text;
-  try {
-    const Camera camera("refused", CameraConfig{8, 5, 25, CameraTrigger::kFreeRunning}, source);
-  } catch (const std::invalid_argument& refusal) {
-    text = refusal.what();
-  }
+  const std::string text = test::message_of([&] {
+    Camera("refused", CameraConfig{8, 5, 25, CameraTrigger::kFreeRunning}, source);
+  });
   EXPECT_EQ(text,
             "refused: time resolution = 10 ps: must be 1 ps, SystemC's default: leave "
             "sc_set_time_resolution() out, or call it with (1, SC_PS)");

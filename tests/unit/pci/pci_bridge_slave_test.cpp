@@ -100,8 +100,7 @@ TEST_F(PciBridgeSlave, EndsTheReadOfAKilledProcessBeforeTheNextOne) {
     });
   };
   auto victim = start_read(16);
-  start_read(24);
-  start_read(32);
+  for (const std::uint64_t address : {24U, 32U}) start_read(address);
   sc_core::sc_spawn([&] {
     sc_core::wait(100, sc_core::SC_NS);
     victim.kill();
@@ -110,7 +109,7 @@ TEST_F(PciBridgeSlave, EndsTheReadOfAKilledProcessBeforeTheNextOne) {
   });
   run(5);
   EXPECT_NE(lost.text().find("bridge.slave: a read of 4 bytes at address 0x10 is lost"), std::string::npos);
-  ASSERT_EQ(local.bursts.size(), 3U);
+  EXPECT_EQ(local.bursts.size(), 3U);
   EXPECT_EQ(read, (std::vector<std::uint32_t>{word_at(24), word_at(32)}));
 }
 

@@ -19,6 +19,7 @@
 #include "models/testing/scoreboard.h"
 #include "models/testing/test_host.h"
 #include "models/testing/traffic.h"
+#include "tests/support/scratch_folder.h"
 #include "tests/support/scripted_ends.h"
 
 namespace stereotlm::test {
@@ -175,67 +176,48 @@ TEST(GrantCheck, TellsInWhichCycleAWordWasRequestedAndGranted) {
 }
 
 TEST(Traffic, IsReadFromATrace) {
-  std::istringstream csv("pause_ns,direction,address,words\n0,write,0x10,2\n25,read,16,1\n");
+  std::istringstream csv(
+      "\xEF\xBB\xBFpause_ns, direction,address,words\r\n0,\twrite , 0x10,2\r\n\r\n25,read,16,1\r\n \r\n"
+      "9007199254740993,read,0,1\n18446744073709551,read,0xfffffffffffffff8,2");
   const std::vector<TrafficAccess> accesses = traffic_of_csv(csv);
-  ASSERT_EQ(accesses.size(), 2U);
+  ASSERT_EQ(accesses.size(), 4U);
   EXPECT_TRUE(accesses[0].write);
   EXPECT_EQ(accesses[0].words, 2U);
   EXPECT_EQ(accesses[0].address, accesses[1].address);
   EXPECT_EQ(accesses[1].pause, sc_time(25, SC_NS));
+  EXPECT_EQ(accesses[2].pause.value(), 9'007'199'254'740'993'000U);
+  EXPECT_EQ(accesses[3].pause.value(), 18'446'744'073'709'551'000U);
   EXPECT_EQ(strided_traffic(8, 16, 3, false).back().address, 40U);
 }
 
-// Why a trace is refused; empty if it is not.
 std::string problem_of(const std::string& text) {
   std::istringstream csv(text);
-  try {
-    traffic_of_csv(csv);
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return {};
+  return message_of([&] { traffic_of_csv(csv); });
 }
 
 TEST(Traffic, OfABrokenTraceIsRefusedWithItsLine) {
-  const auto problem = [](const std::string& row) {
-    return problem_of("pause_ns,direction,address,words\n" + row);
-  };
+  const std::string columns = "pause_ns,direction,address,words";
+  const auto problem = [&](const std::string& row) { return problem_of(columns + "\n" + row); };
   const std::string pause = ": must be an integer of 0..18446744073709551";
   const std::string address = ": must be an integer of 0..18446744073709551615";
   const std::string words = ": must be an integer of 1..1073741823";
-  EXPECT_EQ(problem("0,read,0"), "line 2: 3 values: must be pause_ns,direction,address,words");
-  EXPECT_EQ(problem("0,read,0,1,"), "line 2: 5 values: must be pause_ns,direction,address,words");
+  EXPECT_EQ(problem("0,read,0"), "line 2: 3 values: must be " + columns);
+  EXPECT_EQ(problem("0,read,0,1,"), "line 2: 5 values: must be " + columns);
   EXPECT_EQ(problem("0,read,0,1\n\n-1,read,0,1"), "line 4: pause_ns = -1" + pause);
   EXPECT_EQ(problem("0,fetch,0,1"), "line 2: direction = fetch: must be read or write");
-  EXPECT_EQ(problem("0,read,6,1"), "line 2: address = 6: must be a multiple of 4");
   EXPECT_EQ(problem("0,read,010,1"), "line 2: address = 010: must be a multiple of 4");  // ten
-  for (const char* const none : {"", "-1", "+1", "1.0", "1e3", "18446744073709552", "18446744073709551615"})
-    EXPECT_EQ(problem(std::string(none) + ",read,0,1"), "line 2: pause_ns = " + std::string(none) + pause);
-  for (const char* const none : {"0x1g", "0x", "0x-4", "-4", "0x10000000000000000", "18446744073709551616"})
-    EXPECT_EQ(problem("0,read, " + std::string(none) + ",1"),
-              "line 2: address = " + std::string(none) + address);
-  for (const char* const none : {"0", "1073741824", "18446744073709551615"})
-    EXPECT_EQ(problem("0,read,0," + std::string(none)), "line 2: words = " + std::string(none) + words);
-  EXPECT_EQ(problem("0,read,0xfffffffffffffff8,2"), "");
+  for (const std::string none : {"", "-1", "+1", "1.0", "1e3", "18446744073709552", "18446744073709551615"})
+    EXPECT_EQ(problem(none + ",read,0,1"), "line 2: pause_ns = " + none + pause);
+  for (const std::string none : {"0x1g", "0x", "0x-4", "-4", "0x10000000000000000", "18446744073709551616"})
+    EXPECT_EQ(problem("0,read, " + none + ",1"), "line 2: address = " + none + address);
+  for (const std::string none : {"0", "1073741824", "18446744073709551615"})
+    EXPECT_EQ(problem("0,read,0," + none), "line 2: words = " + none + words);
   EXPECT_EQ(problem("0,read,0xfffffffffffffff8,3"),
             "line 2: address = 0xfffffffffffffff8: the access must end at 2^64 or before it");
-  EXPECT_EQ(problem("0,read,\xC2\xA0"
-                    "8,1"),
-            "line 2: address = \\xc2\\xa08" + address);
-  EXPECT_THROW(random_traffic({}), std::invalid_argument);
-  EXPECT_THROW(random_traffic({0, 1, 4, UINT64_MAX / 4 + 1, 1, 50, {}}), std::invalid_argument);
-  EXPECT_THROW(random_traffic({0, 1, 0, UINT64_MAX / 8, std::size_t{1} << 30U, 50, {}}),
-               std::invalid_argument);
-  EXPECT_THROW(strided_traffic(0, 4, 1, false, std::size_t{1} << 30U), std::invalid_argument);
-  EXPECT_THROW(strided_traffic(2, 4, 1, false), std::invalid_argument);
-  EXPECT_THROW(strided_traffic(0, 4, 1, false, 0), std::invalid_argument);
-}
-
-TEST(Traffic, KeepsEachPauseExactly) {
-  for (const std::uint64_t pause : {9'007'199'254'740'993, 9'223'372'036'854'776, 18'446'744'073'709'551}) {
-    std::istringstream csv("pause_ns,direction,address,words\n" + std::to_string(pause) + ",read,0,1");
-    EXPECT_EQ(traffic_of_csv(csv).at(0).pause.value(), pause * 1000);
-  }
+  EXPECT_EQ(problem("0,read,8\xC2\xA0,1"), "line 2: address = 8<0xc2><0xa0>" + address);
+  EXPECT_EQ(problem_of(""), "line 1: cannot be read: must be " + columns);
+  EXPECT_EQ(problem_of({"p\0a\0", 4}), "line 1: p<0x0>a<0x0>: must be " + columns);  // UTF-16
+  EXPECT_EQ(problem_of(columns + "\r0"), "line 1: " + columns + "<0xd>0: must be " + columns);
 }
 
 TEST(Traffic, NeedsATimeResolutionInWhichAPauseIsExact) {
@@ -245,19 +227,14 @@ TEST(Traffic, NeedsATimeResolutionInWhichAPauseIsExact) {
             "line 2: pause_ns: needs a time resolution of 1 ns or finer");
 }
 
-TEST(Traffic, IsReadWithCharactersThatNobodySees) {
-  std::istringstream csv(
-      "\xEF\xBB\xBFpause_ns, direction,address,words\r\n0,\twrite , 0x10,2\r\n\r\n25,read,16,1\r\n \r\n");
-  EXPECT_EQ(traffic_of_csv(csv).size(), 2U);
-}
-
-TEST(Traffic, NamesWhatItFindsInPlaceOfItsColumns) {
-  const std::string rule = "must be pause_ns,direction,address,words";
-  EXPECT_EQ(problem_of(""), "line 1: cannot be read: " + rule);
-  EXPECT_EQ(problem_of("0,read,0,1"), "line 1: 0,read,0,1: " + rule);
-  EXPECT_EQ(problem_of({"p\0a\0", 4}), "line 1: p\\x00a\\x00: " + rule);  // UTF-16
-  EXPECT_EQ(problem_of("pause_ns,direction,address,words\r0"),
-            "line 1: pause_ns,direction,address,words\\x0d0: " + rule);
+TEST(Traffic, OfNumbersOutOfRangeIsRefused) {
+  constexpr std::size_t kTooManyWords = std::size_t{1} << 30U;
+  for (const RandomTraffic& from : {RandomTraffic{}, RandomTraffic{0, 1, 4, UINT64_MAX / 4 + 1, 1, 50, {}},
+                                    RandomTraffic{0, 1, 0, UINT64_MAX / 8, kTooManyWords, 50, {}}})
+    EXPECT_THROW(random_traffic(from), std::invalid_argument);
+  for (const std::size_t words : {std::size_t{0}, kTooManyWords})
+    EXPECT_THROW(strided_traffic(0, 4, 1, false, words), std::invalid_argument);
+  EXPECT_THROW(strided_traffic(2, 4, 1, false), std::invalid_argument);
 }
 
 TEST(Traffic, FailsTheTestWithAnAccessThatIsRefused) {
