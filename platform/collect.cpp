@@ -247,14 +247,10 @@ Statistics collect_statistics(const BoardConfig& config, const Tables& tables, c
   around.cameras = {camera_statistics("left", counters.cameras[0]),
                     camera_statistics("right", counters.cameras[1])};
   derive_delivery_figures(deliveries, allocation_period_frames(config), statistics);
-  if (statistics.frames_per_second.steady) {
-    Bound of_turns = core_bound(config, accesses);
-    add_system_bound(config, accesses, whole_pictures, of_turns);
-    statistics.bound.system = of_turns.system;
-    statistics.bound.system_limited_by = of_turns.system_limited_by;
-  } else {
-    add_system_bound(config, accesses, whole_pictures, statistics.bound, statistics.frames);
-  }
+  Bound of_turns = core_bound(config, accesses);
+  add_system_bound(config, accesses, whole_pictures, of_turns);
+  statistics.bound.system = of_turns.system;
+  statistics.bound.system_limited_by = of_turns.system_limited_by;
 
   Audit audit;
   audit.equal("frames delivered", deliveries.size(), "frames of the core", statistics.frames);

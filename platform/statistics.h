@@ -68,9 +68,9 @@ struct FramesPerSecond {
 // Upper bounds for the rates of FramesPerSecond, and the resource that sets each of them. Those of a run are
 // of the frames that the rates are of (contract section 6).
 struct Bound {
-  double core = 0;               // frames per second
-  std::string core_limited_by;   // such as "port left_lut", "bank bank0"
-  std::optional<double> system;  // of the steady rate, or of the rate from power-up if there is no steady one
+  double core = 0;                // frames per second
+  std::string core_limited_by;    // such as "port left_lut", "bank bank0"
+  std::optional<double> system;   // frames per second, of whole turns of the lists as `steady` is
   std::string system_limited_by;  // such as "camera", "pci"; empty without a computer
 };
 

@@ -87,11 +87,11 @@ Json banks_of(const BoardConfig& board) {
   return all;
 }
 
-// Of the frames that the rate of the run is of: whole turns, or without a steady rate its own frames.
+// Of the frames that the bound of the run is of: of the whole computer whole turns, else its own frames.
 Json bounds_of(const BoardConfig& board, const platform::Tables& tables, const platform::Statistics& run) {
   const platform::FrameAccesses accesses = platform::frame_accesses(board, tables);
   const std::uint64_t turn = platform::allocation_period_frames(board);
-  const std::uint64_t frames = run.frames_per_second.steady ? turn : run.frames;
+  const std::uint64_t frames = run.computer ? turn : run.frames;
   Json core = Json::array();
   for (std::uint64_t frame = 0; frame < std::min(turn, frames); ++frame) {
     Json resources = Json::array();
