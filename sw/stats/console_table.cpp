@@ -112,7 +112,7 @@ std::string wait_lines(const platform::Statistics& statistics,
   if (longest == statistics.blame.end()) return fmt::format("{:<12} none\n", "waits");
   std::string text = fmt::format("{:<12} {}{}: {} cycles ({:.2f} %)\n", "waits",
                                  statistics.blame.size() > 1 ? "mostly " : "",
-                                 wait_text(longest->port, shortened(longest->bank, 12), longest->by),
+                                 wait_text(longest->port, shortened(longest->bank, 11), longest->by),
                                  longest->cycles, 100 * share(longest->cycles, statistics.cycles));
   if (waitless_frames_per_second) {
     text += fmt::format(

@@ -46,7 +46,7 @@ TEST(ConflictsText, SumsFramesAndShowsTheBanksThatAreUsed) {
   EXPECT_EQ(conflicts_text(conflicts_document(board(), none.recorder(), sums)),
             "core         0 cycles in 0 frames\n"
             "waits        none\n"
-            "rows              waits %       a %       b %\n"
+            "rows              waits %  bank a %  bank b %\n"
             "fill                 0.00      0.00      0.00\n"
             "0..1                28.50     75.00      3.00\n"
             "2..2                 0.00      0.00      0.00\n");

@@ -21,11 +21,11 @@ platform::Statistics two_banks() {
   statistics.frames_per_second.core = 39331.5;
   statistics.bound.core = 40000;
   statistics.bound.core_limited_by = "left_pixel";
-  statistics.banks = {{"image", 1500, 0, 1500, 0, 500, 3, 0.75, 120},
-                      {"out", 0, 20, 20, 0, 1980, 0, 0.01, 1.6}};
-  statistics.blame = {{"left_lut", "image", "left_pixel", 40},
-                      {"left_pixel", "out", "turnaround", 250},
-                      {"right_lut", "out", "result", 250}};
+  statistics.banks = {{"bank0", 1500, 0, 1500, 0, 500, 3, 0.75, 120},
+                      {"bank1", 0, 20, 20, 0, 1980, 0, 0.01, 1.6}};
+  statistics.blame = {{"left_lut", "bank0", "left_pixel", 40},
+                      {"left_pixel", "bank1", "turnaround", 250},
+                      {"right_lut", "bank1", "result", 250}};
   return statistics;
 }
 
@@ -63,9 +63,9 @@ TEST(ConsoleTable, ShowsTheCoreAndTheComputerAroundIt) {
       "core bound     40000.000 frames/s   limited by left_pixel\n";
   const std::string banks =
       "bank                  reads         writes  busy %      MB/s peak MB/s\n"
-      "image                  1500              0   75.00    120.00    160.00\n"
-      "out                       0             20    1.00      1.60    160.00\n"
-      "waits        mostly left_pixel on out for the turnaround: 250 cycles (12.50 %)\n";
+      "bank0                  1500              0   75.00    120.00    160.00\n"
+      "bank1                     0             20    1.00      1.60    160.00\n"
+      "waits        mostly left_pixel on bank1 for the turnaround: 250 cycles (12.50 %)\n";
   EXPECT_EQ(console_table(two_banks(), {}), core + banks);
   EXPECT_EQ(
       console_table(in_a_computer(), clocks(40, 30, 40)),
@@ -126,9 +126,9 @@ TEST(ConsoleTable, ShowsWhatAllWaitsCostOfTheRateWithoutWaits) {
       console_table(two_banks(), {}, {39500, std::nullopt, std::nullopt}),
       HasSubstr("\nwaits cost      168.500 frames/s   of 39500.000, which the core reaches without waits\n"));
   platform::Statistics one_wait = two_banks();
-  one_wait.blame = {{"left_lut", "image", "left_pixel", 40}};
+  one_wait.blame = {{"left_lut", "bank0", "left_pixel", 40}};
   EXPECT_THAT(console_table(one_wait, {}),
-              HasSubstr("\nwaits        left_lut on image for left_pixel: 40 cycles (2.00 %)\n"));
+              HasSubstr("\nwaits        left_lut on bank0 for left_pixel: 40 cycles (2.00 %)\n"));
 }
 
 TEST(ConsoleTable, ShowsHowManyPixelsHaveADisparity) {

@@ -205,14 +205,14 @@ TEST_F(VcdSinkTest, AnAbsentPortHasNoSignals) {
 }
 
 TEST_F(VcdSinkTest, SixtyFourBanksHaveSignalsOfTheirOwn) {
-  while (board_.banks.size() < 64) board_.banks.push_back({"more" + std::to_string(board_.banks.size())});
+  while (board_.banks.size() < 64) board_.banks.push_back({"bank" + std::to_string(board_.banks.size())});
   fpga::CoreCycle cycle = test::idle_cycle();
   cycle.ports[0] = {fpga::Intent::kRequest, true, 63, 4, 0, 0};
   test::MadeTrace trace;
   trace.cycles = {cycle};
   const VcdFile file = written(trace);
   for (const platform::BankConfig& bank : board_.banks)
-    EXPECT_EQ(file.at(bank.name + ".owner", 0), bank.name == "more63" ? "left_lut" : "-");
+    EXPECT_EQ(file.at(bank.name + ".owner", 0), bank.name == "bank63" ? "left_lut" : "-");
 }
 
 TEST_F(VcdSinkTest, TheLayoutNamesTheFileAndEachSignalOfWhatDoesSomething) {
