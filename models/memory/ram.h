@@ -57,7 +57,7 @@ class RamTarget : public tlm::tlm_fw_transport_if<> {
   // The cycles of an access. It takes the time from the first edge of the clock at or after its beginning to
   // the edge that is so many cycles later: an access that begins with an edge ends with one.
   struct Timing {
-    Clock clock;
+    Clock clock;                // of the memory
     std::uint64_t read_cycles;  // of the first word of a read; each further word takes one cycle more
   };
 
