@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <exception>
+#include <set>
 #include <sstream>
 #include <string_view>
 #include <systemc>
@@ -63,14 +64,15 @@ bool is_option(const std::string& word) {
   return word.size() > 1 && word[0] == '-' && kOfNumber.find(word[1]) == std::string_view::npos;
 }
 
-// Throws Refused for options that the command does not have, and for those without a value: the parser would
-// take the option behind one for its value. `words`: those behind the command.
+// Throws Refused for options that the command does not have, for those without a value, because the parser
+// would take the option behind one for its value, and for those given twice. `words`: those behind the command.
 void check_options(const CLI::App& command, std::vector<std::string> words) {
   std::vector<std::string> known;
   for (const CLI::Option* option : command.get_options()) {
     for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
   }
   process::Problems problems;
+  std::set<const CLI::Option*> given;
   words.emplace_back();  // behind the last one
   for (std::size_t i = 0; i + 1 < words.size() && words[i] != "--"; ++i) {
     if (!is_option(words[i])) continue;
@@ -88,6 +90,8 @@ void check_options(const CLI::App& command, std::vector<std::string> words) {
       if (!is_flag) problem += ' ' + option->get_option_text();
       if (!has_equals && !next.empty())
         problem += fmt::format(", or {0}={1} if {1} is the value", name, next);
+    } else if (!is_flag && option->get_items_expected_max() == 1 && !given.insert(option).second) {
+      problem = "given twice: must be given once";
     } else if (!has_equals && !is_flag) {
       ++i;  // behind the value
     }

@@ -91,7 +91,8 @@ class CommandLine(ProgramTest):
         for option in ("--left", "--frames", "--out", "--source", "--set"):
             self.refused_in_one_line(run("run", "fpl2003", option), option)
             if option != "--set":
-                self.refused_in_one_line(run("run", "fpl2003", option, "1", option, "1"), option)
+                self.refused_in_one_line(run("run", "fpl2003", option, "1", option, "1"),
+                                         f"{option}: given twice: must be given once")
 
     def test_each_option_that_takes_a_value_needs_one(self):
         options = parsed_options()
