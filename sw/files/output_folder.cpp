@@ -43,8 +43,10 @@ OutputFolder::OutputFolder(const fs::path& dir, OutputContent content)
   if (const auto problem = result_folder_problem(content_.mark == kResultMark ? dir_ : aside()))
     refuse(*problem);
   try {
-    do create_folders();
-    while (!try_lock());
+    constexpr int kMostTries = 100;
+    for (int tries = 1; create_folders(), !try_lock(); ++tries) {
+      if (tries == kMostTries) fail(ENOENT, aside());  // DIR takes no entries, such as /proc/self/fd
+    }
     check_aside();
     repair();
     check_earlier();

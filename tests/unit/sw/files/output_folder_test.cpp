@@ -40,6 +40,11 @@ class OutputFolderTest : public testing::Test {
   fs::path out_ = scratch_.path() / "parent" / "out";
 };
 
+TEST_F(OutputFolderTest, RefusesAFolderThatTakesNoEntries) {
+  out_ = "/proc/self/fd";
+  EXPECT_EQ(refusal(), "folder '/proc/self/fd': cannot be written to: No such file or directory");
+}
+
 TEST_F(OutputFolderTest, ReplacesItsFilesAndLeavesOthersAndWhatIsKept) {
   test::write_file(out_ / "run", "script");
   test::write_file(out_ / "kept/note", "mine");
