@@ -64,8 +64,8 @@ bool is_option(const std::string& word) {
   return word.size() > 1 && word[0] == '-' && kOfNumber.find(word[1]) == std::string_view::npos;
 }
 
-// Throws Refused for options that the command does not have, for those without a value, because the parser
-// would take the option behind one for its value, and for those given twice. `words`: those behind the command.
+// Throws Refused for options that the command does not have, for those that are given twice, and for those
+// without a value: the parser would take the next option for it. `words`: those behind the command.
 void check_options(const CLI::App& command, std::vector<std::string> words) {
   std::vector<std::string> known;
   for (const CLI::Option* option : command.get_options()) {
