@@ -21,9 +21,11 @@ void RamTarget::b_transport(tlm::tlm_generic_payload& access, sc_core::sc_time& 
   if (cycles == 0) return;
   const Clock& clock = timing_->clock;
   // Where the period is whole ps, the time does not depend on the first edge. This is for speed.
-  const std::uint64_t first = clock.has_whole_period()
-                                  ? 0
-                                  : clock.edge_at_or_after(kernel_time::now_ps() + kernel_time::to_ps(delay));
+  if (cycles == timing_->read_cycles && clock.has_whole_period()) {
+    delay += read_time_;
+    return;
+  }
+  const std::uint64_t first = clock.edge_at_or_after(kernel_time::now_ps() + kernel_time::to_ps(delay));
   delay += kernel_time::to_time(clock.edge_ps(first + cycles) - clock.edge_ps(first));
 }
 

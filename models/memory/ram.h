@@ -10,6 +10,7 @@
 
 #include "models/access_rules.h"
 #include "models/clock.h"
+#include "models/kernel_time.h"
 #include "models/refusals.h"
 
 namespace stereotlm::memory {
@@ -65,7 +66,9 @@ class RamTarget : public tlm::tlm_fw_transport_if<> {
   // BEGIN_REQ. `owner`: the module, which outlives this object. Without `timing` accesses take no time.
   RamTarget(const AccessRules& rules, const char* report, const sc_core::sc_object& owner,
             const std::optional<Timing>& timing = std::nullopt)
-      : rules_(rules), report_(report), refusals_(owner), timing_(timing), ram_(rules.end) {}
+      : rules_(rules), report_(report), refusals_(owner), timing_(timing), ram_(rules.end) {
+    if (timing) read_time_ = kernel_time::to_time(timing->clock.edge_ps(timing->read_cycles));
+  }
 
   void b_transport(tlm::tlm_generic_payload& access, sc_core::sc_time& delay) override;
   tlm::tlm_sync_enum nb_transport_fw(tlm::tlm_generic_payload& access, tlm::tlm_phase& phase,
@@ -84,6 +87,7 @@ class RamTarget : public tlm::tlm_fw_transport_if<> {
   const char* report_;
   Refusals refusals_;
   std::optional<Timing> timing_;
+  sc_core::sc_time read_time_;  // of a word that is read at time 0
   Ram ram_;
   Stats stats_;
 };
