@@ -127,11 +127,17 @@ AsideFile::AsideFile(fs::path file, std::string name) : file_(std::move(file)), 
     }
     new_.emplace(path);
     path_ = path;
-    lock_ = fcntl(new_->descriptor(), F_DUPFD_CLOEXEC, 0);
-    if (lock_ < 0) fail(errno, path_);
-    const bool is_locked = flock(lock_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
-    if (!is_locked || !is_open_at(lock_, path_)) fail(EBUSY, path_);
-    remover_.emplace("/bin/rm -f -- \"$1\"", std::vector<std::string>{fs::absolute(path_)}, lock_);
+    try {
+      lock_ = fcntl(new_->descriptor(), F_DUPFD_CLOEXEC, 0);
+      if (lock_ < 0) fail(errno, path_);
+      const bool is_locked = flock(lock_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
+      if (!is_locked || !is_open_at(lock_, path_)) fail(EBUSY, path_);
+      remover_.emplace("/bin/rm -f -- \"$1\"", std::vector<std::string>{fs::absolute(path_)}, lock_);
+    } catch (...) {  // such as too many open files
+      if (is_open_at(new_->descriptor(), path_)) unlink(path_.c_str());
+      if (lock_ >= 0) close(lock_);
+      throw;
+    }
   });
 }
 

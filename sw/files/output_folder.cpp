@@ -282,8 +282,8 @@ void OutputFolder::undo_commit(const std::vector<fs::path>& names) const {
 
 void OutputFolder::discard() noexcept {
   std::error_code ignored;
-  if (owns_aside_) {
-    fs::remove_all(earlier(), ignored);  // see repair()
+  if (owns_aside_ && !fs::remove(aside(), ignored)) {  // an empty folder is removed without a descriptor
+    fs::remove_all(earlier(), ignored);                // see repair()
     fs::remove_all(aside(), ignored);
   }
   owns_aside_ = false;

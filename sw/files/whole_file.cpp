@@ -138,8 +138,13 @@ TemporaryFolder::TemporaryFolder() {
     fail(fmt::format("must be a folder that takes temporary files: {}", std::strerror(errno)));
   path_ = path;
   // A process that is killed together with this one may still write for a moment.
-  remover_.emplace("for i in 1 2 3 4 5 6 7 8 9; do /bin/rm -rf -- \"$1\" && break; sleep 0.1; done",
-                   std::vector<std::string>{path});
+  try {
+    remover_.emplace("for i in 1 2 3 4 5 6 7 8 9; do /bin/rm -rf -- \"$1\" && break; sleep 0.1; done",
+                     std::vector<std::string>{path});
+  } catch (...) {  // such as too many open files
+    rmdir(path.c_str());
+    throw;
+  }
 }
 
 TemporaryFolder::~TemporaryFolder() {

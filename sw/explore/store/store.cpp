@@ -476,7 +476,14 @@ StoreLock::StoreLock(const std::string& store, std::chrono::milliseconds busy_ti
           store + ": another process is at work on it: wait for its end, or give another file");
   }
   const std::string remove_empty = "[ -s \"$1\" ] || /bin/rm -f -- \"$1\" \"$1-journal\"";
-  if (is_made_) remover_.emplace(remove_empty, Names{fs::absolute(path_)}, file_);
+  if (!is_made_) return;
+  try {
+    remover_.emplace(remove_empty, Names{fs::absolute(path_)}, file_);
+  } catch (...) {  // such as too many open files
+    unlink(path_.c_str());
+    close(file_);
+    throw;
+  }
 }
 
 void StoreLock::check() const {

@@ -249,13 +249,17 @@ class Environment(ProgramTest):
 
     def test_too_few_open_files_name_the_limit(self):
         self.succeeds(self.run_small("--out", self.out))
+        temporary = self.folder / "temporary"
+        temporary.mkdir()
         traces = ["--trace", "sqlite:a.db", "--trace", "vcd:a.fst", "--trace-window", "frame=0"]
         ends = []
         for command in (self.run_arguments("--out", "b", *traces), ["conflicts", self.out, "--out", "c"],
                         ["report", self.out, "--out", "a.html"]):
             for most in range(4, 14):  # with 3 the program cannot be loaded
                 limit = lambda: resource.setrlimit(resource.RLIMIT_NOFILE, (most, most))
-                process = run(*command, cwd=self.folder, preexec_fn=limit)
+                process = run(*command, cwd=self.folder, preexec_fn=limit,
+                              env={**os.environ, "TMPDIR": str(temporary)})
+                self.assertEqual([*temporary.iterdir(), *self.folder.rglob(".*.writing")], [], (command, most))
                 ends.append(process.returncode)
                 self.assertEqual("Too many open files" in process.stderr,
                                  "(the limit: ulimit -n)" in process.stderr)
