@@ -259,7 +259,8 @@ class Environment(ProgramTest):
                 limit = lambda: resource.setrlimit(resource.RLIMIT_NOFILE, (most, most))
                 process = run(*command, cwd=self.folder, preexec_fn=limit,
                               env={**os.environ, "TMPDIR": str(temporary)})
-                self.assertEqual([*temporary.iterdir(), *self.folder.rglob(".*.writing")], [], (command, most))
+                left = [*temporary.iterdir(), *self.folder.rglob(".*.writing")]
+                self.assertEqual(left, [], (command, most))
                 ends.append(process.returncode)
                 self.assertEqual("Too many open files" in process.stderr,
                                  "(the limit: ulimit -n)" in process.stderr)
