@@ -139,19 +139,22 @@ void audit_captures(const ComputerStatistics& computer, const ComputerCounters& 
 }
 
 // The frames from power-up need not be whole turns of the lists. Their rate is compared with the bounds of
-// just these frames.
+// just these frames. The words of captures do not count where they lose pixels.
 void audit_rates(const BoardConfig& config, const FrameAccesses& accesses, bool whole_pictures,
                  const Statistics& statistics, Audit& audit) {
-  constexpr double kRoundingFactor = 1 + 1e-9;  // rates are rounded quotients
-  Bound of_frames = statistics.bound;
-  add_system_bound(config, accesses, whole_pictures, of_frames, statistics.frames);
+  const auto bound_of = [&](Bound bound, const std::optional<std::uint64_t>& frames) {
+    constexpr double kRoundingFactor = 1 + 1e-9;  // rates are rounded quotients
+    add_system_bound(config, accesses, whole_pictures, bound, frames);
+    return *bound.system * kRoundingFactor;
+  };
+  const std::string lossy = whole_pictures ? "" : ", without the words of captures";
   const FramesPerSecond& rate = statistics.frames_per_second;
-  audit.at_most("frames_per_second.system", *rate.system, "the bound of these frames",
-                *of_frames.system * kRoundingFactor);
+  audit.at_most("frames_per_second.system", *rate.system, "the bound of these frames" + lossy,
+                bound_of(statistics.bound, statistics.frames));
   if (!rate.steady) return;
   audit.at_most("frames_per_second.steady - steady_uncertainty",
-                rate.steady->frames_per_second - rate.steady->uncertainty, "bound.system",
-                *statistics.bound.system * kRoundingFactor);
+                rate.steady->frames_per_second - rate.steady->uncertainty, "the bound of whole turns" + lossy,
+                bound_of(core_bound(config, accesses), std::nullopt));
 }
 
 }  // namespace
@@ -248,7 +251,7 @@ Statistics collect_statistics(const BoardConfig& config, const Tables& tables, c
                     camera_statistics("right", counters.cameras[1])};
   derive_delivery_figures(deliveries, allocation_period_frames(config), statistics);
   Bound of_turns = core_bound(config, accesses);
-  add_system_bound(config, accesses, whole_pictures, of_turns);
+  add_system_bound(config, accesses, true, of_turns);
   statistics.bound.system = of_turns.system;
   statistics.bound.system_limited_by = of_turns.system_limited_by;
 

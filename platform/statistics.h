@@ -70,7 +70,7 @@ struct FramesPerSecond {
 struct Bound {
   double core = 0;                // frames per second
   std::string core_limited_by;    // such as "port left_lut", "bank bank0"
-  std::optional<double> system;   // frames per second, of whole turns of the lists as `steady` is
+  std::optional<double> system;   // frames per second, of whole pictures and whole turns of the lists
   std::string system_limited_by;  // such as "camera", "pci"; empty without a computer
 };
 
@@ -132,5 +132,14 @@ struct Statistics {
   area::Area area;                             // area of the core
   std::vector<std::string> failed;  // identities that do not hold, each with both sides; empty in a valid run
 };
+
+// The pixels that captures lose in a run; 0 without a computer.
+inline std::uint64_t lost_pixels(const Statistics& run) {
+  std::uint64_t pixels = 0;
+  if (run.computer) {
+    for (const CameraStatistics& camera : run.computer->cameras) pixels += camera.dropped_pixels;
+  }
+  return pixels;
+}
 
 }  // namespace stereotlm::platform

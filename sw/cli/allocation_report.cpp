@@ -224,7 +224,7 @@ std::string command_text(const AllocationReport& report) {
   if (!report.best) return "";
   std::string text =
       fmt::format("This command runs the best allocation, and prints {} frames/s as {}:\n  {}\n",
-                  rate_text(report, report.best->outcome), report.search.run().camera ? "computer" : "core",
+                  rate_text(report, report.best->outcome), report.search.run().camera ? "steady" : "core",
                   files::shell_command(command_of(report, report.best->witness)));
   if (report.written) text += *report.written + ": the board with the best allocation\n";
   return text;

@@ -164,7 +164,18 @@ std::string lines_of(const Group& group, const BoardBounds& all) {
   return text;
 }
 
-std::string area_lines(const BoardConfig& board) {
+// What the core takes of the FPGA, and the pins of the board.
+std::string area_text(const BoardConfig& board) {
+  const area::Device& device = platform::device_of(board);
+  const area::Area area = platform::area_of(board);
+  return fmt::format(
+      "area of the core: {} of {} slices ({:.2f} %), {} of {} block RAMs, {} of {} multipliers\n{}\n",
+      area.slices, device.slices, area.slices_percent, area.block_rams, device.block_rams, area.multipliers,
+      device.multipliers, platform::device_text(board));
+}
+
+// The same part by part and bank by bank.
+std::string part_lines(const BoardConfig& board) {
   constexpr const char* row = "  {:<21} {:>6} {:>10} {:>11} {:>11} {:>12}\n";
   const area::Device& device = platform::device_of(board);
   const std::vector<area::Item> items = platform::area_items(board);
@@ -176,10 +187,6 @@ std::string area_lines(const BoardConfig& board) {
                         item.all.multipliers);
   }
   text += fmt::format(row, "all", "", area.luts, area.flip_flops, area.block_rams, area.multipliers);
-  text += fmt::format(
-      "area of the core: {} of {} slices ({:.2f} %), {} of {} block RAMs, {} of {} multipliers\n{}\n",
-      area.slices, device.slices, area.slices_percent, area.block_rams, device.block_rams, area.multipliers,
-      device.multipliers, platform::device_text(board));
   constexpr const char* pins_row = "  {:<16} {:>6} {:>8} {:>8} {:>6}\n";
   text += "pins\n" + fmt::format(pins_row, "bank", "data", "control", "address", "all");
   for (const auto& [bank, pins] : platform::bank_pins(board))
@@ -190,21 +197,21 @@ std::string area_lines(const BoardConfig& board) {
 }
 
 std::string text_of(const BoardBounds& all) {
-  std::string text;
+  const std::uint64_t turn = platform::allocation_period_frames(all.board);
+  const auto bound_line = [&](const char* whole, double bound, const std::string& limited_by) {
+    const bool differs = all.groups.size() > 1 || (turn > 1 && platform::bank_of_resource(limited_by));
+    return fmt::format("{:<12} {:>10.3f} frames/s{}, limited by {}\n", whole, bound,
+                       differs ? fmt::format(" over whole turns of {} frames", turn) : "",
+                       stats::resource_words(limited_by));
+  };
+  std::string text = bound_line("steady bound", *all.bound.system, all.bound.system_limited_by) +
+                     bound_line("core bound", all.bound.core, all.bound.core_limited_by) +
+                     area_text(all.board);
   for (const Group& group : all.groups) text += lines_of(group, all);
   text += fmt::format("the whole computer, with all masters\n  {:<16} {:>14}\n", "resource", "frames/s");
   for (const platform::RateBound& part : all.computer)
     text += fmt::format("  {:<16} {:>14.3f}\n", stats::resource_text(part.resource), part.frames_per_second);
-  const std::uint64_t turn = platform::allocation_period_frames(all.board);
-  const auto bound_line = [&](const char* whole, double bound, const std::string& limited_by) {
-    const bool differs = all.groups.size() > 1 || (turn > 1 && platform::bank_of_resource(limited_by));
-    return fmt::format("bound of the {}: {:.3f} frames/s{}, limited by {}\n", whole, bound,
-                       differs ? fmt::format(" over whole turns of {} frames", turn) : "",
-                       stats::resource_text(limited_by));
-  };
-  text += bound_line("core", all.bound.core, all.bound.core_limited_by);
-  text += bound_line("computer", *all.bound.system, all.bound.system_limited_by);
-  return text + area_lines(all.board);
+  return text;
 }
 
 Json json_of(const Group& group, const BoardBounds& all) {
@@ -249,13 +256,21 @@ Json document_of(const BoardBounds& all) {
   return document;
 }
 
-int bounds(const BoardCommandOptions& options) {
+struct BoundsOptions : BoardCommandOptions {
+  using BoardCommandOptions::BoardCommandOptions;
+
+  Option area = Option(this, "--area", "", "Also print the parts of the core, and the pins of each bank");
+};
+
+int bounds(const BoundsOptions& options) {
   process::Problems problems;
   const LoadedBoard loaded = options.board.load(problems);
   problems.check();
   loaded.say_clock_remark();
   const BoardBounds all = bounds_of(*loaded.board, loaded.tables());
-  process::print(options.json.is_given() ? json_text(document_of(all)) : text_of(all));
+  process::print(options.json.is_given()
+                     ? json_text(document_of(all))
+                     : text_of(all) + (options.area.is_given() ? part_lines(all.board) : ""));
   return kDone;
 }
 
@@ -265,12 +280,13 @@ void add_bounds(Commands& commands) {
   add_command(
       commands, "bounds",
       "Say what limits the frame rate: ports, banks, matcher, cameras, buses; and the area", bounds,
-      "For each frame until the allocation's lists begin anew, equal ones together: the fewest FPGA cycles\n"
-      "that a frame costs each resource alone, the frames a second that follow, and the headroom: the share\n"
-      "of the slowest resource's time that it does not need. Then what cameras, PCI bus and bridge allow\n"
-      "with --source camera as long as no pixel is dropped, and the bounds of the core and the computer\n"
-      "over whole turns of these lists. Last an estimate of what the core takes of its\n"
-      "FPGA. Tables, where the board has them, are the identity, or those of --calibration.");
+      "First the bounds of the steady rate of the whole computer and of the core alone, over whole turns of\n"
+      "the allocation's lists, and an estimate of what the core takes of its FPGA. Then for each frame of a\n"
+      "turn, equal ones together: the fewest FPGA cycles that a frame costs each resource alone, the frames\n"
+      "a second that follow, and the headroom: the share of the slowest resource's time that it does not\n"
+      "need. Last what cameras, PCI bus, bridge and banks allow with --source camera as long as no pixel is\n"
+      "lost. Tables, where the board has them, are the identity, or those of --calibration. JSON has the\n"
+      "parts of --area always.");
 }
 
 }  // namespace stereotlm::cli

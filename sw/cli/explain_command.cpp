@@ -85,13 +85,14 @@ std::string head_text(const BoardConfig& board, const platform::Tables& tables,
   const std::string of = camera ? "bound.system" : "bound.core";
   const Explanation::Rate& now = explanation.now();
   return paragraph(fmt::format("{}, {}: ", board.name, camera ? "the whole computer" : "the core alone"), 2,
-                   fmt::format("{:.3f}{} frames/s, limited by {}", now.frames_per_second,
+                   fmt::format("{:.3f}{} frames/s{}, limited by {}", now.frames_per_second,
                                camera ? fmt::format(" ± {:.3f}", now.uncertainty) : "",
+                               now.loses_pixels() ? " with pixels lost" : "",
                                runs::limiter_text(explanation))) +
          paragraph("the time of a frame: ", 2, runs::budget_text(explanation)) +
-         fmt::format("bound {:.3f} frames/s: {}; {} frames simulated{}\n", row.real(of),
-                     stats::resource_words(row.text(of + "_limited_by")), explanation.frames(),
-                     now.loses_pixels ? "; captures lose pixels" : "") +
+         fmt::format("{} bound {:.3f} frames/s{}: {}; {} frames simulated\n", camera ? "steady" : "core",
+                     row.real(of), now.loses_pixels() ? " of whole pictures" : "",
+                     stats::resource_words(row.text(of + "_limited_by")), explanation.frames()) +
          platform::device_text(board) + '\n' + stepped_text(board, tables, camera) +
          shared_bank_text(board, explanation);
 }
@@ -146,7 +147,7 @@ std::string line_of(const Explanation::Step& found, const BoardConfig& board,
   const double slices_percent = its.slices_percent - before.slices_percent;
   const double saved = std::min({slices_percent, its.block_rams_percent - before.block_rams_percent,
                                  its.multipliers_percent - before.multipliers_percent});
-  const bool changes_loss = found.rate.loses_pixels != now.loses_pixels;
+  const bool changes_loss = found.rate.loses_pixels() != now.loses_pixels();
   if (std::abs(explanation.gained_percent(found)) < kLeastGainPercent && !changes_loss &&
       saved > -kLeastSavedPercent && step.knob != kBankLess)
     return "";
@@ -163,7 +164,8 @@ std::string line_of(const Explanation::Step& found, const BoardConfig& board,
   if (const int pins = platform::pins_of(step.board) - platform::pins_of(board); pins != 0)
     text += fmt::format(", {:+} pins", pins);
   if (!its.fits()) text += "  does not fit";
-  if (changes_loss) text += now.loses_pixels ? "  loses no pixels" : "  loses pixels";
+  if (found.rate.loses_pixels()) text += "  loses pixels";
+  if (changes_loss && now.loses_pixels()) text += "  loses no pixels";
   if (gained != 0 && std::abs(gained) <= found.rate.uncertainty + now.uncertainty) text += "  ~";
   text += '\n';
   if (step.sets == std::vector<std::string>{step.knob + "=" + step.to}) return text;
@@ -261,10 +263,10 @@ void add_explain(Commands& commands) {
       commands, "explain", "Say what limits a board, and what each single change gains or costs", explain,
       "The board is simulated, and then once more for each change: one key one step up or down, such as a\n"
       "cycle, a MHz, a place in a queue, a word of a burst, a buffer or a bank. The changes are sorted by\n"
-      "their frame rate. FPGA % (of the slices) and RAMs are what a change takes of the FPGA, or frees. A\n"
-      "bank more is the best way to give one buffer a new bank of its own, a bank less the best way to\n"
-      "move all buffers of one bank into another. The size of the images, the depth of banks and the\n"
-      "device stay.");
+      "their frame rate, and those that lose pixels are last. FPGA % (of the slices) and RAMs are what a\n"
+      "change takes of the FPGA, or frees. A bank more is the best way to give one buffer a new bank of its\n"
+      "own, a bank less the best way to move all buffers of one bank into another. The size of the images,\n"
+      "the depth of banks and the device stay.");
 }
 
 }  // namespace stereotlm::cli

@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "models/capture/camera_timing.h"
 #include "models/fpga/core_ports.h"
 #include "models/fpga/frame_geometry.h"
 #include "platform/config/board_area.h"
@@ -36,6 +37,7 @@ const std::string kHost = fpga::kPortGroups[fpga::kHostGroup].name;
 const std::string kResult = fpga::kPortGroups[fpga::kResultGroup].name;
 constexpr double kVisibleLoss = 0.01;     // of the cycles
 constexpr double kVisiblePercent = 0.05;  // of the time of a frame
+constexpr double kBusy = 50;              // of the clocks of a bus in percent: with less it is no limit
 constexpr double kLeastHeadroom = 10;     // of a bus in percent; with less it is named beside what waits
 
 struct Reason {
@@ -75,21 +77,35 @@ std::string busy_bus_text(const Explanation& explanation) {
   return text;
 }
 
-std::string bound_text(const Explanation& explanation) {
-  const explore::StoredRow& row = explanation.figures();
-  const std::string bound = explanation.camera() ? "bound.system" : "bound.core";
-  const std::string owner = row.text(bound + "_limited_by");
-  const std::string text =
-      fmt::format("{}, at the bound of {:.3f} frames/s", stats::resource_words(owner), row.real(bound));
+// A frame rate at the bound of its limiter.
+std::string bound_text(const Explanation& explanation, const std::string& owner, double bound) {
+  const bool is_above = explanation.camera() && explanation.now().frames_per_second > bound;
+  const std::string text = fmt::format("{}, at the bound of {:.3f} frames/s{}", stats::resource_words(owner),
+                                       bound, is_above ? " within the uncertainty" : "");
   const auto wait = longest_wait(explanation, owner);
   return wait ? text + "; " + wait_of(explanation, *wait) : text;
 }
 
+// Why captures lose pixels. First what is certain: a bus needs longer for a pair of pictures than the pair
+// takes to arrive, or cannot move whole pictures at this rate. Else what was used the most, if it was busy.
 std::string lost_pixels_text(const Explanation& explanation) {
   const explore::StoredRow& row = explanation.figures();
+  const std::int64_t lost = explanation.now().lost_pixels;
   const std::string text =
-      fmt::format(": captures lose {} pixels while {} frames are delivered, so pictures are torn",
-                  row.lost_pixels(), explanation.frames());
+      fmt::format(": captures lose {} pixel{} while {} frames are delivered, so pictures are torn", lost,
+                  lost == 1 ? "" : "s", explanation.frames());
+  const double arrival_s = explanation.picture_seconds();
+  const auto slowest =
+      std::max_element(explanation.pair_seconds().begin(), explanation.pair_seconds().end(),
+                       [](const auto& a, const auto& b) { return a.second < b.second; });
+  if (slowest->second > arrival_s) {
+    return fmt::format("{}{}; a pair of pictures arrives in {:.3f} ms, and takes {:.3f} ms there",
+                       stats::resource_words(slowest->first), text, 1e3 * arrival_s, 1e3 * slowest->second);
+  }
+  if (const Explanation::Resource& least = explanation.resources().front(); least.headroom_percent < 0) {
+    return fmt::format("{}{}; whole pictures at this rate need {:.2f} times its time",
+                       stats::resource_words(least.name), text, 1 - least.headroom_percent / 100);
+  }
   for (const platform::BlameRow& wait : explanation.blames()) {
     if (wait.port == kHost && explanation.percent_of_cycles(wait.cycles) > 100 * kVisibleLoss)
       return platform::bank_text(wait.bank) + text + "; " + wait_of(explanation, wait);
@@ -100,15 +116,27 @@ std::string lost_pixels_text(const Explanation& explanation) {
         ->busy_percent;
   };
   const char* const bus = busy_of("pci") >= busy_of("bridge") ? "pci" : "bridge";
-  const std::int64_t of_load = row.integer("pci.masters.load.transactions");
-  std::int64_t all_transactions = of_load;
-  for (const char* const master : {"host", "left_capture", "right_capture", "bridge"})
+  const bool is_busy = busy_of(bus) > kBusy;
+  std::int64_t all_transactions = 0;
+  for (const char* const master : {"host", "left_capture", "right_capture", "bridge", "load"})
     all_transactions += row.integer(fmt::format("pci.masters.{}.transactions", master));
-  return fmt::format(
-      "{}{}; it is busy in {:.1f} % of its clocks{}", stats::resource_words(bus), text, busy_of(bus),
-      of_load == 0
-          ? ""
-          : fmt::format(", and pci.load makes {} of its {} transactions", of_load, all_transactions));
+  const std::int64_t of_load = row.integer("pci.masters.load.transactions");
+  const auto clocks_of = [&row](const char* master) {
+    return static_cast<double>(row.integer(fmt::format("pci.masters.{}.wait_clocks", master))) /
+           static_cast<double>(std::max<std::int64_t>(
+               1, row.integer(fmt::format("pci.masters.{}.transactions", master))));
+  };
+  const std::string where =
+      is_busy ? stats::resource_words(bus)
+              : fmt::format("the FIFOs of the capture boards, which hold {} words",
+                            explanation.board().capture.fifo_words);
+  return fmt::format("{}{}; {} is busy in {:.1f} % of its clocks, and a capture board waits {:.1f} PCI "
+                     "clocks for a burst{}",
+                     where, text, is_busy ? "it" : stats::resource_words(bus), busy_of(bus),
+                     std::max(clocks_of("left_capture"), clocks_of("right_capture")),
+                     of_load == 0 ? ""
+                                  : fmt::format("; pci.load makes {} of the {} transactions", of_load,
+                                                all_transactions));
 }
 
 std::string waits_text(const Explanation& explanation) {
@@ -170,6 +198,19 @@ std::string core_waits_text(const Explanation& explanation) {
     separator = " and ";
   }
   return text + busy_bus_text(explanation);
+}
+
+// What limits the rate, whether pixels are lost or not.
+std::string rate_limiter_text(const Explanation& explanation) {
+  const platform::RateBound& bound = explanation.rate_bound();
+  if (explanation.now().frames_per_second >= bound.frames_per_second * (1 - kAtBound))
+    return bound_text(explanation, bound.resource, bound.frames_per_second);
+  const Budget& budget = explanation.budget();
+  double core_waits = 0;
+  for (const auto& [why, share] : budget.core_waits) core_waits += share;
+  const double queues = std::max(budget.queues, 0.0);
+  if (budget.waits > std::max(core_waits, queues)) return waits_text(explanation);
+  return core_waits > queues ? core_waits_text(explanation) : queues_text(explanation);
 }
 
 // Blames of ports as those of port groups, the most cycles first. Of a group they are the mean of its lanes.
@@ -238,7 +279,7 @@ void add_changes(const Explanation& explanation, Json& document) {
     change["gained_frames_per_second"] = rate - now;
     change["gained_percent"] = explanation.gained_percent(found);
     change["changes_disparities"] = step.changes_disparities;
-    change["loses_pixels"] = found.rate.loses_pixels;
+    change["loses_pixels"] = found.rate.loses_pixels();
     change["sets"] = step.sets;
     change["area"] = stats::area_json(step.board);
     change["pins"] = platform::pins_of(step.board);
@@ -312,11 +353,11 @@ bool Explanation::simulate(PointSimulator simulator) {
 Explanation::Rate Explanation::rate_of(std::uint64_t number) {
   try {
     const explore::StoredRow& row = batch_.row_of(points_.point(number));
-    if (!run_.camera) return {row.real("frames_per_second.core"), 0, false, ""};
+    if (!run_.camera) return {row.real("frames_per_second.core"), 0, 0, ""};
     return {row.real("frames_per_second.steady"), row.real("frames_per_second.steady_uncertainty"),
-            row.lost_pixels() > 0, ""};
+            row.lost_pixels(), ""};
   } catch (const explore::PointFailed& failed) {
-    return {0, 0, false, failed.what()};
+    return {0, 0, 0, failed.what()};
   }
 }
 
@@ -348,17 +389,18 @@ void Explanation::read_steps() {
   }
   std::stable_sort(steps_.begin(), steps_.end(), [](const Step& a, const Step& b) {
     if (a.rate.failure.empty() != b.rate.failure.empty()) return a.rate.failure.empty();
+    if (a.rate.loses_pixels() != b.rate.loses_pixels()) return b.rate.loses_pixels();
     return a.rate.frames_per_second > b.rate.frames_per_second;
   });
   std::set<std::string> groups;
   std::set<std::string> whole;  // groups with an alternative that loses no pixels
   for (const Step& step : steps_) {
-    if (step.rate.failure.empty() && !step.rate.loses_pixels) whole.insert(step.step->group);
+    if (step.rate.failure.empty() && !step.rate.loses_pixels()) whole.insert(step.step->group);
   }
   const auto is_alternative = [&](const Step& step) {
     const std::string& group = step.step->group;
     if (group.empty() || !step.rate.failure.empty()) return false;
-    return (step.rate.loses_pixels && whole.count(group) > 0) || !groups.insert(group).second;
+    return (step.rate.loses_pixels() && whole.count(group) > 0) || !groups.insert(group).second;
   };
   steps_.erase(std::remove_if(steps_.begin(), steps_.end(), is_alternative), steps_.end());
 }
@@ -397,7 +439,16 @@ void Explanation::add_resource(const Resource& found) {
 
 void Explanation::compare_resources(const std::vector<double>& frame_cycles) {
   const double clock_hz = board_.fpga.clock_mhz * 1e6;
-  const double stretch = run_.camera ? clock_hz / mean_of(frame_cycles) / now_.frames_per_second : 1;
+  const auto around = platform::computer_bounds(board_, accesses_, true);
+  const std::string of = run_.camera ? "bound.system" : "bound.core";
+  rate_bound_ = {figures_->text(of + "_limited_by"), figures_->real(of)};
+  if (now_.loses_pixels()) {
+    const platform::Bound core = platform::core_bound(board_, accesses_);
+    rate_bound_ = {core.core_limited_by, core.core};
+    if (around.front().frames_per_second < core.core) rate_bound_ = around.front();  // the cameras
+  }
+  const double rate = std::min(now_.frames_per_second, rate_bound_.frames_per_second);
+  const double stretch = run_.camera ? std::max(1.0, clock_hz / mean_of(frame_cycles) / rate) : 1;
   for (std::size_t frame = 0; frame < std::min(bounds_.size(), frame_cycles.size()); ++frame) {
     for (const platform::ResourceBound& bound : bounds_[frame]) {
       if (run_.camera && platform::bank_of_resource(bound.resource))
@@ -408,15 +459,25 @@ void Explanation::compare_resources(const std::vector<double>& frame_cycles) {
     }
   }
   if (run_.camera) {
-    for (const platform::RateBound& part : platform::computer_bounds(board_, accesses_, !now_.loses_pixels)) {
-      add_resource({part.resource, part.frames_per_second,
-                    100 * (1 - now_.frames_per_second / part.frames_per_second), busy_percent(part.resource),
-                    0});
+    const auto without_captures = platform::computer_bounds(board_, accesses_, false);
+    for (const platform::RateBound& part : around) {
+      add_resource({part.resource, part.frames_per_second, 100 * (1 - rate / part.frames_per_second),
+                    busy_percent(part.resource), 0});
+      if (platform::bank_of_resource(part.resource)) continue;
+      const auto same = std::find_if(without_captures.begin(), without_captures.end(),
+                                     [&](const auto& other) { return other.resource == part.resource; });
+      pair_seconds_[part.resource] = 1 / part.frames_per_second - 1 / same->frames_per_second;
     }
   }
   std::stable_sort(resources_.begin(), resources_.end(), [](const Resource& a, const Resource& b) {
     return a.headroom_percent < b.headroom_percent;
   });
+}
+
+double Explanation::picture_seconds() const {
+  const platform::ImageConfig& image = board_.image;
+  return 1e-12 * static_cast<double>(capture::CameraTiming({image.width, image.height, board_.cameras.frame_rate_hz,
+                                          board_.cameras.trigger}).last_pixel_ps());
 }
 
 void Explanation::share_time(std::vector<double> frame_cycles) {
@@ -452,15 +513,9 @@ std::optional<platform::BlameRow> longest_wait(const Explanation& explanation, c
 }
 
 std::string limiter_text(const Explanation& explanation) {
-  if (explanation.now().loses_pixels) return lost_pixels_text(explanation);
-  const double bound = explanation.figures().real(explanation.camera() ? "bound.system" : "bound.core");
-  if (explanation.now().frames_per_second >= bound * (1 - kAtBound)) return bound_text(explanation);
-  const Budget& budget = explanation.budget();
-  double core_waits = 0;
-  for (const auto& [why, share] : budget.core_waits) core_waits += share;
-  const double queues = std::max(budget.queues, 0.0);
-  if (budget.waits > std::max(core_waits, queues)) return waits_text(explanation);
-  return core_waits > queues ? core_waits_text(explanation) : queues_text(explanation);
+  if (!explanation.now().loses_pixels()) return rate_limiter_text(explanation);
+  return lost_pixels_text(explanation) + ". With this loss the rate is limited by " +
+         rate_limiter_text(explanation);
 }
 
 std::string budget_text(const Explanation& explanation) {
@@ -485,7 +540,8 @@ Json explanation_document(const platform::BoardConfig& board, const Explanation&
       {"source", explanation.camera() ? "camera" : "preloaded"},
       {"frames", explanation.frames()},
       {"frames_per_second", now.frames_per_second},
-      {"loses_pixels", now.loses_pixels},
+      {"loses_pixels", now.loses_pixels()},
+      {"lost_pixels", now.lost_pixels},
       {"bound", {{"frames_per_second", row.real(of)}, {"limited_by", row.text(of + "_limited_by")}}}};
   if (explanation.camera()) document["uncertainty_frames_per_second"] = now.uncertainty;
   document["limited_by"] = limiter_text(explanation);

@@ -51,8 +51,9 @@ class Explanation {
   struct Rate {
     double frames_per_second = 0;  // of the core; of the whole computer the steady rate
     double uncertainty = 0;        // of the steady rate
-    bool loses_pixels = false;
-    std::string failure;  // the reason if the run has failed; else empty
+    std::int64_t lost_pixels = 0;  // by captures
+    std::string failure;           // the reason if the run has failed; else empty
+    bool loses_pixels() const { return lost_pixels > 0; }
   };
   const platform::BoardConfig& board() const { return board_; }
   const Rate& now() const { return now_; }  // of the board itself
@@ -72,7 +73,8 @@ class Explanation {
     Rate rate;
     BusiestBank busiest;  // without meaning if the run has failed
   };
-  // All steps, the best first; those that have failed last. Of a group only the best.
+  // All steps, the best first: those that lose no pixels, then the others, each by their rate; those that have
+  // failed last. Of a group only the best.
   const std::vector<Step>& steps() const { return steps_; }
   const BusiestBank& busiest_bank() const { return busiest_; }
   const explore::KnobSteps& knobs() const { return knobs_; }
@@ -90,8 +92,18 @@ class Explanation {
   };
   // All resources, the least headroom first. The headroom of ports and matcher, and of banks if the core runs
   // alone, is the least in a turn of the allocation lists. On a whole computer the time between frames is
-  // divided among the frames in proportion to their cycles.
+  // divided among the frames in proportion to their cycles. A steady rate that its uncertainty puts above a
+  // bound counts as that bound. Where captures lose pixels, the headroom of a bus or bank is that with whole
+  // pictures at this rate, and can be negative.
   const std::vector<Resource>& resources() const { return resources_; }
+
+  // The bound of the rate, and what sets it. Where captures lose pixels, fewer words are moved: then it is
+  // that of the core or of the cameras.
+  const platform::RateBound& rate_bound() const { return rate_bound_; }
+  // Of the whole computer: the time in which the cameras deliver a pair of pictures, and the time that its
+  // words take at least on each bus.
+  double picture_seconds() const;
+  const std::map<std::string, double>& pair_seconds() const { return pair_seconds_; }
 
   const Budget& budget() const { return budget_; }
   double percent_of_cycles(std::uint64_t cycles) const {
@@ -127,6 +139,8 @@ class Explanation {
   BusiestBank busiest_;
   std::vector<Step> steps_;
   std::vector<Resource> resources_;
+  std::map<std::string, double> pair_seconds_;
+  platform::RateBound rate_bound_;
   Budget budget_;
   std::vector<platform::BlameRow> blames_;
   std::vector<platform::BlameRow> group_blames_;

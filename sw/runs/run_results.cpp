@@ -162,11 +162,7 @@ void leave_out_verify(RunInput& input) {
 }
 
 void say_lost_pixels(const platform::Statistics& statistics, const std::string& subject) {
-  if (!statistics.computer) return;
-  std::uint64_t pixels = 0;
-  for (const platform::CameraStatistics& camera : statistics.computer->cameras)
-    pixels += camera.dropped_pixels;
-  const std::string text = stats::lost_pixels_text(pixels);
+  const std::string text = stats::lost_pixels_text(platform::lost_pixels(statistics));
   if (!text.empty()) process::say("warning", subject + text);
 }
 

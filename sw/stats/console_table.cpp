@@ -39,14 +39,18 @@ std::string rate_lines(const platform::Statistics& statistics) {
 std::string computer_rate_lines(const platform::Statistics& statistics) {
   const platform::FramesPerSecond& rate = statistics.frames_per_second;
   if (!rate.system || !statistics.bound.system) return "";
-  const std::string rest =
-      rate.steady ? fmt::format(" ± {:.3f} frames/s   steady over {} frames; {:.3f} from power-up",
-                                rate.steady->uncertainty, rate.steady->frames, *rate.system)
-                  : " frames/s   from power-up; too few frames for a steady rate";
-  return fmt::format("{:<14} {:>8.3f}{}\n", "computer",
-                     rate.steady ? rate.steady->frames_per_second : *rate.system, rest) +
-         bound_line("computer bound", *statistics.bound.system, statistics.bound.system_limited_by,
-                    turns_text(statistics));
+  const std::uint64_t lost = platform::lost_pixels(statistics);
+  std::string text;
+  if (rate.steady) {
+    text = fmt::format("{:<14} {:>8.3f} ± {:.3f} frames/s   over {} frames{}\n", "steady",
+                       rate.steady->frames_per_second, rate.steady->uncertainty, rate.steady->frames,
+                       rate_remark(rate.steady->frames_per_second, *statistics.bound.system, lost));
+  }
+  return text +
+         fmt::format("{:<14} {:>8.3f} frames/s{}{}\n", "from power-up", *rate.system,
+                     rate_remark(0, 0, lost), rate.steady ? "" : "; too few frames for a steady rate") +
+         bound_line("steady bound", *statistics.bound.system, statistics.bound.system_limited_by,
+                    whole_text(statistics));
 }
 
 std::string pci_lines(const platform::ComputerStatistics& computer, const platform::BoardConfig& board) {
@@ -146,6 +150,11 @@ std::string ports_text(const std::vector<std::string>& ports) {
     if (!lanes.empty()) text += '.' + files::ranges_text(lanes, ",");
   }
   return text;
+}
+
+std::string rate_remark(double rate, double bound, std::uint64_t lost_pixels) {
+  if (lost_pixels > 0) return fmt::format(", with {} pixel{} lost", lost_pixels, lost_pixels == 1 ? "" : "s");
+  return rate > bound ? ", at its bound within the uncertainty" : "";
 }
 
 std::string lost_pixels_text(std::uint64_t pixels) {

@@ -46,12 +46,17 @@ inline std::string resource_words(const std::string& resource) {
   return resource_text(resource);
 }
 
-// Says behind the bound of the computer that it is of whole turns (contract section 6), where the rate from
-// power-up, which is of other frames, is above it. Else empty.
-inline const char* turns_text(const platform::Statistics& run) {
+// Says behind the steady bound what it is of (contract section 6), where a rate beside it is of something
+// else: captures lose pixels, or the rate from power-up is above it. Else empty.
+inline const char* whole_text(const platform::Statistics& run) {
+  if (platform::lost_pixels(run) > 0) return " of whole pictures";
   const bool is_above = run.frames_per_second.system.value_or(0) > run.bound.system.value_or(0);
   return is_above ? " over whole turns" : "";
 }
+
+// What stands behind a steady rate, its uncertainty and its unit, so that nobody quotes the rate alone: the
+// pixels that captures lose, or that the rate is above its bound, which is then within the uncertainty.
+std::string rate_remark(double rate, double bound, std::uint64_t lost_pixels);
 
 // What the table shows beside the statistics.
 struct TableExtras {

@@ -39,9 +39,9 @@ UNITS = [("_percent", "%"), ("_mhz", "MHz"), ("_hz", "Hz"), ("megabytes_per_seco
 MEANINGS = {
     "frames_per_second.core": "core, frames/s",
     "frames_per_second.steady": "whole computer, steady frames/s",
-    "frames_per_second.system": "whole computer from power-up, frames/s",
-    "bound.core": "bound of the core, frames/s",
-    "bound.system": "bound of the whole computer, frames/s",
+    "frames_per_second.system": "whole computer, from power-up, frames/s",
+    "bound.core": "core bound, frames/s",
+    "bound.system": "steady bound, frames/s",
     "matcher.window": "window n, pixels (of n x n)",
     "matcher.disparities": "disparities D",
     "matcher.rows": "rows of results at once",

@@ -220,7 +220,7 @@ class Allocate(ProgramTest):
             best = document["best"]["frames_per_second"]
             self.assertEqual(printed, rate_text(best))
             shown = self.succeeds(run("run", *words))
-            self.assertRegex(shown, rf"(?m)^{'core' if source == 'preloaded' else 'computer'} +{printed} "
+            self.assertRegex(shown, rf"(?m)^{'core' if source == 'preloaded' else 'steady'} +{printed} "
                                     rf"frames/s ")
             self.assertEqual(document["best"]["command"][2:], words)
             self.assertEqual(document["written"], str(name))

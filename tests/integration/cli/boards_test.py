@@ -161,29 +161,29 @@ class Keys(ProgramTest):
 
 class Bounds(ProgramTest):
     def parts(self, *assignments, board="fpl2003"):
-        """The lines about the frame rate, and those about the FPGA."""
-        lines = self.succeeds(run("bounds", board, *sets(*assignments))).splitlines()
+        """The lines of `bounds`, and those that --area adds."""
+        lines = self.succeeds(run("bounds", board, "--area", *sets(*assignments))).splitlines()
         at = lines.index("area of xc2v6000")
         return lines[:at], lines[at:]
 
     def groups(self, *assignments, board="fpl2003"):
-        """For each group of frames the line above it and {resource: its numbers}; the bound of the core."""
+        """For each group of frames the line above it and {resource: its numbers}; the core bound."""
         lines, _ = self.parts(*assignments, board=board)
         groups = []
-        for line in lines[: lines.index("the whole computer, with all masters")]:
+        for line in lines[4 : lines.index("the whole computer, with all masters")]:
             if line.startswith("frame"):
                 groups.append((line, {}))
             elif not line.split()[0] == "resource":
                 *resource, cycles, rate, headroom = line.split()
                 groups[-1][1][" ".join(resource)] = (int(cycles), float(rate), float(headroom))
-        return groups, lines[-2]
+        return groups, lines[1]
 
     def around_the_board(self, *assignments):
-        """What each part of the computer allows, and the bound of the computer."""
+        """What each part of the computer allows, and the steady bound."""
         lines, _ = self.parts(*assignments)
         parts = [line.rsplit(maxsplit=1)
-                 for line in lines[lines.index("the whole computer, with all masters") + 2 : -2]]
-        return {name.strip(): float(rate) for name, rate in parts}, lines[-1]
+                 for line in lines[lines.index("the whole computer, with all masters") + 2 :]]
+        return {name.strip(): float(rate) for name, rate in parts}, lines[0]
 
     def test_lists_each_resource(self):
         ((head, rows),), last = self.groups()
@@ -193,7 +193,7 @@ class Bounds(ProgramTest):
         banks = ["bank0, bank1", "bank2, bank3", "bank4, bank5", "bank6", "bank7"]
         self.assertEqual(list(rows), ports + banks + ["matcher"])
         self.assertEqual(rows["matcher"], (2151016, 18.596, 0.0))
-        self.assertEqual(last, "bound of the core: 18.596 frames/s, limited by matcher")
+        self.assertEqual(last, "core bound       18.596 frames/s, limited by the matcher")
         ((_, rows),), _ = self.groups(board="fpl2003-no-calibration")
         self.assertNotIn("port left_lut", rows)
 
@@ -204,7 +204,7 @@ class Bounds(ProgramTest):
             self.assertAlmostEqual(rate, 40e6 / cycles, places=3)
             self.assertAlmostEqual(headroom, 100 * (1 - cycles / most), places=2)
         table = self.succeeds(self.run_small("--frames", "2"))  # reaches the bound
-        self.assertEqual(table.splitlines()[1].split()[2], last.split()[4])
+        self.assertEqual(table.splitlines()[1].split()[2], last.split()[2])
 
     def test_names_the_bank_that_limits_when_two_buffers_share_it(self):
         groups, last = self.groups("allocation.left_lut=bank0")
@@ -217,7 +217,7 @@ class Bounds(ProgramTest):
 
     def test_are_of_whole_turns_and_those_of_a_run_of_its_frames(self):
         shared = sets("allocation.left_lut=bank1")  # the bank of the second left picture
-        said = r".*: ([\d.]+) frames/s over whole turns of 2 frames, limited by bank1"
+        said = r".* ([\d.]+) frames/s over whole turns of 2 frames, limited by bank1"
         of_turn = float(re.fullmatch(said, self.groups(*SMALL[1::2], *shared[1::2])[1])[1])
         for frames, limited_by in ((1, "matcher"), (2, "bank bank1"), (3, "bank bank1")):
             out = self.folder / str(frames)
@@ -253,16 +253,17 @@ class Bounds(ProgramTest):
         parts, last = self.around_the_board()
         banks = [f"bank{number}" for number in range(8)]
         self.assertEqual((list(parts), parts["camera"]), (["camera", "pci", "bridge", *banks], 29.97))
-        self.assertEqual(last, "bound of the computer: 18.596 frames/s, limited by matcher")
-        limits = {"name=fast": "camera", "pci.clock_mhz=1": "pci", "bridge.local_clock_mhz=1": "bridge"}
-        for key, part in limits.items():
+        self.assertEqual(last, "steady bound     18.596 frames/s, limited by the matcher")
+        limits = {"name=fast": ("camera", "the cameras"), "pci.clock_mhz=1": ("pci", "the PCI bus"),
+                  "bridge.local_clock_mhz=1": ("bridge", "the PCI bridge")}
+        for key, (part, words) in limits.items():
             parts, last = self.around_the_board("matcher.fetch=line_buffer", key)
-            self.assertEqual(last, f"bound of the computer: {parts[part]:.3f} frames/s, limited by {part}")
+            self.assertEqual(last, f"steady bound {parts[part]:10.3f} frames/s, limited by {words}")
 
     def test_lists_what_the_core_takes_of_its_fpga(self):
-        _, lines = self.parts()
+        (*_, last, device), lines = self.parts()[0][:4], self.parts()[1]
         pins = lines.index("pins")
-        _, head, *items, whole, last, device = lines[:pins]
+        _, head, *items, whole = lines[:pins]
         self.assertEqual(head.split(), "parts count LUTs flip-flops block RAMs multipliers".split())
         numbers = [list(map(int, line.split()[-4:])) for line in items]
         self.assertEqual(whole.split(), ["all", *(str(sum(column)) for column in zip(*numbers))])
@@ -276,11 +277,10 @@ class Bounds(ProgramTest):
         self.assertEqual([line.split() for line in banks],
                          [[f"bank{number}", "32", "10", "19", "61"] for number in range(8)])
         self.assertEqual((bus.split(), status.split()), (["local", "bus", "48"], ["clocks,", "status", "12"]))
-        _, lines = self.parts("matcher.fetch=line_buffer", "matcher.disparities=254")
-        pins = lines.index("pins")
-        self.assertRegex(lines[pins - 2], r"^area of the core: \d+ of 33792 slices \(1\d\d\.\d\d %\), ")
-        self.assertTrue(lines[pins - 1].startswith("device xc2v6000: does not fit; the smallest that fits: "
-                                                   "none; 548 pins"))
+        text = self.succeeds(run("bounds", "fpl2003", *sets("matcher.fetch=line_buffer", "matcher.disparities=254")))
+        self.assertNotIn("pins\n", text)
+        self.assertRegex(text, r"(?m)^area of the core: \d+ of 33792 slices \(1\d\d\.\d\d %\), .*\n"
+                               r"device xc2v6000: does not fit; the smallest that fits: none; 548 pins")
 
 
 def unwrapped(text):
@@ -330,7 +330,7 @@ class Explain(ProgramTest):
         bound = f"{stats['bound']['core']:.3f} frames/s"
         limiter = f"limited by waits at {most['bank']}: {wait}; all waits cost"
         self.assertTrue(unwrapped(text).startswith(f"fpl2003, the core alone: {now:.3f} frames/s, {limiter}"))
-        self.assertIn(f"\nbound {bound}: {most['bank']}; 6 frames simulated\n", text)
+        self.assertIn(f"\ncore bound {bound}: {most['bank']}; 6 frames simulated\n", text)
         self.assertRegex(text, rf"\n  {most['port']} +on {most['bank']} +for {most['by']} +{percent:.3f}\n")
         self.assertNotIn("cameras.", text)
         self.assertNotIn("pci", text)
@@ -415,8 +415,46 @@ class Explain(ProgramTest):
         ]
         for options, limiter in cases:
             text = unwrapped(self.succeeds(run("explain", "fpl2003", *options)))
-            self.assertRegex(text, rf"^fpl2003, the whole computer: [\d.]+ ± [\d.]+ frames/s, limited by "
-                                   rf"{limiter}")
+            self.assertRegex(text, rf"^fpl2003, the whole computer: [\d.]+ ± [\d.]+ frames/s"
+                                   rf"(?: with pixels lost)?, limited by {limiter}")
+
+    def test_where_pixels_are_lost_it_has_the_bounds_of_bounds_and_names_the_loss_and_the_limit(self):
+        board = ["fpl2003", *sets("image={width: 160, height: 120}", "matcher.disparities=24")]
+        slow_bus = sets("cameras.frame_rate_hz=480", "bridge.local_clock_mhz=3")
+        short_fifo = sets("cameras.frame_rate_hz=470", "capture.fifo_words=2", "matcher.fetch=line_buffer")
+        cases = [
+            (slow_bus, r"the PCI bridge: captures lose (\d+) pixels while 12 frames are delivered, so pictures "
+                       r"are torn; a pair of pictures arrives in 1\.90\d ms, and takes ([\d.]+) ms there\. With "
+                       r"this loss the rate is limited by "),
+            (short_fifo, r"the FIFOs of the capture boards, which hold 2 words: captures lose (\d+) pixels while "
+                         r"12 frames are delivered, so pictures are torn; the PCI bus is busy in ([\d.]+) % of "
+                         r"its clocks, .* With this loss the rate is limited by the cameras, at the bound of "
+                         r"470\.000 frames/s"),
+        ]
+        for options, said in cases:
+            explained_now = functools.partial(run, "explain", *board, *options, "--frames", 12)
+            self.succeeds(run("run", *board, *options, "--timing-only", "--frames", 12, "--out", self.out))
+            stats = self.stats()
+            document = json.loads(self.succeeds(explained_now("--json")))
+            bounds = json.loads(self.succeeds(run("bounds", *board, *options, "--json")))
+            shown = {row["resource"]: row for row in document["resources"]}
+            for row in bounds["computer"]:
+                self.assertEqual(shown[row["resource"]]["frames_per_second"], row["frames_per_second"])
+            self.assertEqual(document["bound"]["frames_per_second"], bounds["bound"]["system"])
+            self.assertEqual(stats["bound"]["system"], bounds["bound"]["system"])
+            self.assertEqual(document["lost_pixels"], sum(each["dropped_pixels"] for each in stats["cameras"]))
+            for name, row in shown.items():
+                if name not in ("pci", "bridge") and not name.startswith("bank "):
+                    self.assertGreaterEqual(row["headroom_percent"], 0, name)
+            text = unwrapped(self.succeeds(explained_now()))
+            self.assertRegex(text, r"^fpl2003, the whole computer: [\d.]+ ± [\d.]+ frames/s with pixels lost, "
+                                   r"limited by " + said)
+            self.assertEqual(document["limited_by"],
+                             re.match(r".* with pixels lost, limited by (.*)", text)[1])
+            self.assertEqual(int(re.search(said, text)[1]), document["lost_pixels"])
+            for row in re.findall(r"(?m)^ +[\d.]+ +[+-][\d.]+ .*: .* -> .*$", text):
+                self.assertRegex(row, "loses (no )?pixels")
+        self.assertLess(shown["pci"]["busy_percent"], 50)
 
     def test_frames_are_those_of_the_option(self):
         text = self.explain(*CAMERA_RATES, "--frames", 12)

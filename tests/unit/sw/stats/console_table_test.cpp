@@ -70,8 +70,9 @@ TEST(ConsoleTable, ShowsTheCoreAndTheComputerAroundIt) {
   EXPECT_EQ(
       console_table(in_a_computer(), clocks(40, 30, 40)),
       core +
-          "computer         17.980 ± 0.250 frames/s   steady over 12 frames; 17.500 from power-up\n"
-          "computer bound   29.970 frames/s   limited by camera\n" +
+          "steady           17.980 ± 0.250 frames/s   over 12 frames, with 80 pixels lost\n"
+          "from power-up    17.500 frames/s, with 80 pixels lost\n"
+          "steady bound     29.970 frames/s of whole pictures   limited by camera\n" +
           banks +
           "pci master     transactions          words  data %      MB/s peak MB/s mean wait us\n"
           "host                     10             20    0.20      0.24    120.00        0.000\n"
@@ -114,9 +115,8 @@ TEST(ConsoleTable, ShowsNoSteadyRateOfFewFramesAndNoWaitWhereNoPortWaits) {
   statistics.frames_per_second.steady.reset();
   statistics.blame.clear();
   const std::string text = console_table(statistics, clocks(62.5, 33, 40));
-  EXPECT_THAT(
-      text,
-      HasSubstr("\ncomputer         17.500 frames/s   from power-up; too few frames for a steady rate\n"));
+  EXPECT_THAT(text, HasSubstr("\nfrom power-up    17.500 frames/s, with 80 pixels lost; too few frames for a "
+                              "steady rate\n"));
   EXPECT_THAT(text, HasSubstr("\nwaits        none\n"));
   EXPECT_THAT(text, HasSubstr("    120.00    250.00\n")) << "the peak follows from the clock";
 }
@@ -135,6 +135,17 @@ TEST(ConsoleTable, ShowsHowManyPixelsHaveADisparity) {
   EXPECT_THAT(console_table(two_banks(), {}, {std::nullopt, 81.504, std::nullopt}),
               HasSubstr("\ndisparities  in 81.50 % of the pixels of the last frame\n"));
   EXPECT_THAT(console_table(two_banks(), {}), Not(HasSubstr("disparities")));
+}
+
+TEST(ConsoleTable, SaysWhereARateIsAboveItsBound) {
+  platform::Statistics statistics = in_a_computer();
+  statistics.computer->cameras[0].dropped_pixels = 0;
+  statistics.bound.system = 17.9;
+  EXPECT_THAT(console_table(statistics, {}),
+              HasSubstr("\nsteady           17.980 ± 0.250 frames/s   over 12 frames, at its bound within the "
+                        "uncertainty\nfrom power-up    17.500 frames/s\nsteady bound     17.900 frames/s   "));
+  statistics.bound.system = 17.4;  // below the rate from power-up
+  EXPECT_THAT(console_table(statistics, {}), HasSubstr("\nsteady bound     17.400 frames/s over whole turns  "));
 }
 
 TEST(LostPixels, AreNamedIfThereAreAny) {
@@ -166,7 +177,7 @@ TEST(ConsoleTable, StaysWithinAHundredColumns) {
   statistics.bound.core_limited_by = std::string(300, 'l');
   const std::string text =
       console_table(statistics, clocks(1000, 1000, 1000), {999999, 100, Accuracy{100, 100, 100}});
-  EXPECT_THAT(text, HasSubstr("\ncomputer bound   17.400 frames/s over whole turns   limited by lll"));
+  EXPECT_THAT(text, HasSubstr("\nsteady bound     17.400 frames/s of whole pictures   limited by lll"));
   std::istringstream lines(text);
   std::string line;
   int count = 0;
@@ -174,7 +185,7 @@ TEST(ConsoleTable, StaysWithinAHundredColumns) {
     EXPECT_LE(line.size(), 100U) << line;
     ++count;
   }
-  EXPECT_EQ(count, 20);
+  EXPECT_EQ(count, 21);
 }
 
 }  // namespace
