@@ -419,17 +419,18 @@ class Explain(ProgramTest):
                                    rf"(?: with pixels lost)?, limited by {limiter}")
 
     def test_where_pixels_are_lost_it_has_the_bounds_of_bounds_and_names_the_loss_and_the_limit(self):
-        board = ["fpl2003", *sets("image={width: 160, height: 120}", "matcher.disparities=24")]
-        slow_bus = sets("cameras.frame_rate_hz=480", "bridge.local_clock_mhz=3")
-        short_fifo = sets("cameras.frame_rate_hz=470", "capture.fifo_words=2", "matcher.fetch=line_buffer")
+        board = ["fpl2003", *sets("image={width: 64, height: 48}", "matcher.disparities=24")]
+        slow_bus = sets("cameras.frame_rate_hz=800", "bridge.local_clock_mhz=1")
+        short_fifo = sets("cameras.frame_rate_hz=1000", "capture.fifo_words=2", "capture.fifo_trigger_words=2",
+                          "matcher.fetch=line_buffer")
         cases = [
             (slow_bus, r"the PCI bridge: captures lose (\d+) pixels while 12 frames are delivered, so pictures "
-                       r"are torn; a pair of pictures arrives in 1\.90\d ms, and takes ([\d.]+) ms there\. With "
+                       r"are torn; a pair of pictures arrives in 1\.13\d ms, and takes ([\d.]+) ms there\. With "
                        r"this loss the rate is limited by "),
             (short_fifo, r"the FIFOs of the capture boards, which hold 2 words: captures lose (\d+) pixels while "
                          r"12 frames are delivered, so pictures are torn; the PCI bus is busy in ([\d.]+) % of "
                          r"its clocks, .* With this loss the rate is limited by the cameras, at the bound of "
-                         r"470\.000 frames/s"),
+                         r"1000\.000 frames/s"),
         ]
         for options, said in cases:
             explained_now = functools.partial(run, "explain", *board, *options, "--frames", 12)
