@@ -84,11 +84,11 @@ std::string head_text(const BoardConfig& board, const platform::Tables& tables,
   const bool camera = explanation.camera();
   const std::string of = camera ? "bound.system" : "bound.core";
   const Explanation::Rate& now = explanation.now();
-  return paragraph(fmt::format("{}, {}: ", board.name, camera ? "the whole computer" : "the core alone"), 2,
-                   fmt::format("{:.3f}{} frames/s{}, limited by {}", now.frames_per_second,
-                               camera ? fmt::format(" ± {:.3f}", now.uncertainty) : "",
-                               now.loses_pixels() ? " with pixels lost" : "",
-                               runs::limiter_text(explanation))) +
+  return paragraph(
+             fmt::format("{}, {}: ", board.name, camera ? "the whole computer" : "the core alone"), 2,
+             fmt::format("{:.3f}{} frames/s{}, limited by {}", now.frames_per_second,
+                         camera ? fmt::format(" ± {:.3f}", now.uncertainty) : "",
+                         now.loses_pixels() ? " with pixels lost" : "", runs::limiter_text(explanation))) +
          paragraph("the time of a frame: ", 2, runs::budget_text(explanation)) +
          fmt::format("{} bound {:.3f} frames/s{}: {}; {} frames simulated\n", camera ? "steady" : "core",
                      row.real(of), now.loses_pixels() ? " of whole pictures" : "",

@@ -95,9 +95,8 @@ std::string lost_pixels_text(const Explanation& explanation) {
       fmt::format(": captures lose {} pixel{} while {} frames are delivered, so pictures are torn", lost,
                   lost == 1 ? "" : "s", explanation.frames());
   const double arrival_s = explanation.picture_seconds();
-  const auto slowest =
-      std::max_element(explanation.pair_seconds().begin(), explanation.pair_seconds().end(),
-                       [](const auto& a, const auto& b) { return a.second < b.second; });
+  const auto slowest = std::max_element(explanation.pair_seconds().begin(), explanation.pair_seconds().end(),
+                                        [](const auto& a, const auto& b) { return a.second < b.second; });
   if (slowest->second > arrival_s) {
     return fmt::format("{}{}; a pair of pictures arrives in {:.3f} ms, and takes {:.3f} ms there",
                        stats::resource_words(slowest->first), text, 1e3 * arrival_s, 1e3 * slowest->second);
@@ -123,20 +122,19 @@ std::string lost_pixels_text(const Explanation& explanation) {
   const std::int64_t of_load = row.integer("pci.masters.load.transactions");
   const auto clocks_of = [&row](const char* master) {
     return static_cast<double>(row.integer(fmt::format("pci.masters.{}.wait_clocks", master))) /
-           static_cast<double>(std::max<std::int64_t>(
-               1, row.integer(fmt::format("pci.masters.{}.transactions", master))));
+           static_cast<double>(
+               std::max<std::int64_t>(1, row.integer(fmt::format("pci.masters.{}.transactions", master))));
   };
-  const std::string where =
-      is_busy ? stats::resource_words(bus)
-              : fmt::format("the FIFOs of the capture boards, which hold {} words",
-                            explanation.board().capture.fifo_words);
-  return fmt::format("{}{}; {} is busy in {:.1f} % of its clocks, and a capture board waits {:.1f} PCI "
-                     "clocks for a burst{}",
-                     where, text, is_busy ? "it" : stats::resource_words(bus), busy_of(bus),
-                     std::max(clocks_of("left_capture"), clocks_of("right_capture")),
-                     of_load == 0 ? ""
-                                  : fmt::format("; pci.load makes {} of the {} transactions", of_load,
-                                                all_transactions));
+  const std::string where = is_busy ? stats::resource_words(bus)
+                                    : fmt::format("the FIFOs of the capture boards, which hold {} words",
+                                                  explanation.board().capture.fifo_words);
+  return fmt::format(
+      "{}{}; {} is busy in {:.1f} % of its clocks, and a capture board waits {:.1f} PCI "
+      "clocks for a burst{}",
+      where, text, is_busy ? "it" : stats::resource_words(bus), busy_of(bus),
+      std::max(clocks_of("left_capture"), clocks_of("right_capture")),
+      of_load == 0 ? ""
+                   : fmt::format("; pci.load makes {} of the {} transactions", of_load, all_transactions));
 }
 
 std::string waits_text(const Explanation& explanation) {
@@ -476,8 +474,10 @@ void Explanation::compare_resources(const std::vector<double>& frame_cycles) {
 
 double Explanation::picture_seconds() const {
   const platform::ImageConfig& image = board_.image;
-  return 1e-12 * static_cast<double>(capture::CameraTiming({image.width, image.height, board_.cameras.frame_rate_hz,
-                                          board_.cameras.trigger}).last_pixel_ps());
+  return 1e-12 *
+         static_cast<double>(capture::CameraTiming({image.width, image.height, board_.cameras.frame_rate_hz,
+                                                    board_.cameras.trigger})
+                                 .last_pixel_ps());
 }
 
 void Explanation::share_time(std::vector<double> frame_cycles) {

@@ -47,8 +47,8 @@ std::string computer_rate_lines(const platform::Statistics& statistics) {
                        rate_remark(rate.steady->frames_per_second, *statistics.bound.system, lost));
   }
   return text +
-         fmt::format("{:<14} {:>8.3f} frames/s{}{}\n", "from power-up", *rate.system,
-                     rate_remark(0, 0, lost), rate.steady ? "" : "; too few frames for a steady rate") +
+         fmt::format("{:<14} {:>8.3f} frames/s{}{}\n", "from power-up", *rate.system, rate_remark(0, 0, lost),
+                     rate.steady ? "" : "; too few frames for a steady rate") +
          bound_line("steady bound", *statistics.bound.system, statistics.bound.system_limited_by,
                     whole_text(statistics));
 }

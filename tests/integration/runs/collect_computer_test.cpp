@@ -106,7 +106,7 @@ TEST_F(CollectComputer, FindsASteadyRateAboveItsBoundByMoreThanItsUncertainty) {
   for (Delivery& delivery : deliveries) delivery.capture_ps = delivery.host_ps - 1'000'000'000;
   const platform::Statistics found = statistics();
   EXPECT_THAT(found.failed, ElementsAre(fmt::format("frames_per_second.steady - steady_uncertainty = {}, but "
-                                                    "bound.system = {}",
+                                                    "the bound of whole turns = {}",
                                                     found.frames_per_second.steady->frames_per_second,
                                                     *found.bound.system * (1 + 1e-9))));
 }

@@ -231,19 +231,18 @@ std::string differences_at(const std::vector<Fidelity>& fidelities,
   return text;
 }
 
-// What is wrong if a run is faster than the bound beside its rate, or than steady_bound(). A run that loses
-// pixels does not have the latter.
+// What is wrong if a run is faster than the bound beside its rate, or than steady_bound(). The steady rate of
+// a run that loses pixels has neither.
 std::string above_bound(const platform::BoardConfig& board, const platform::Tables& tables,
                         const platform::Statistics& statistics) {
   const auto& steady = statistics.frames_per_second.steady;
   const auto& rates = statistics.frames_per_second;
   const double rate = steady ? steady->frames_per_second - steady->uncertainty : 0;
-  if (rates.core > statistics.bound.core || rate > *statistics.bound.system * (1 + 1e-9))
+  const bool is_whole = platform::lost_pixels(statistics) == 0;
+  if (rates.core > statistics.bound.core || (is_whole && rate > *statistics.bound.system * (1 + 1e-9)))
     return fmt::format("{} and {} frames/s, above {} or {}\n", rates.core, rate, statistics.bound.core,
                        *statistics.bound.system);
-  const auto& cameras = statistics.computer->cameras;
-  const auto loses = [](const platform::CameraStatistics& camera) { return camera.dropped_pixels > 0; };
-  if (!steady || std::any_of(cameras.begin(), cameras.end(), loses)) return "";
+  if (!steady || !is_whole) return "";
   const double bound = platform::steady_bound(board, platform::frame_accesses(board, tables));
   const double least = steady->frames_per_second - steady->uncertainty;
   return least <= bound * (1 + 1e-9) ? "" : fmt::format("{} frames/s, above the bound of {}\n", least, bound);

@@ -141,11 +141,13 @@ TEST(ConsoleTable, SaysWhereARateIsAboveItsBound) {
   platform::Statistics statistics = in_a_computer();
   statistics.computer->cameras[0].dropped_pixels = 0;
   statistics.bound.system = 17.9;
-  EXPECT_THAT(console_table(statistics, {}),
-              HasSubstr("\nsteady           17.980 ± 0.250 frames/s   over 12 frames, at its bound within the "
-                        "uncertainty\nfrom power-up    17.500 frames/s\nsteady bound     17.900 frames/s   "));
+  EXPECT_THAT(
+      console_table(statistics, {}),
+      HasSubstr("\nsteady           17.980 ± 0.250 frames/s   over 12 frames, at its bound within the "
+                "uncertainty\nfrom power-up    17.500 frames/s\nsteady bound     17.900 frames/s   "));
   statistics.bound.system = 17.4;  // below the rate from power-up
-  EXPECT_THAT(console_table(statistics, {}), HasSubstr("\nsteady bound     17.400 frames/s over whole turns  "));
+  EXPECT_THAT(console_table(statistics, {}),
+              HasSubstr("\nsteady bound     17.400 frames/s over whole turns  "));
 }
 
 TEST(LostPixels, AreNamedIfThereAreAny) {
