@@ -73,8 +73,8 @@ class Explanation {
     Rate rate;
     BusiestBank busiest;  // without meaning if the run has failed
   };
-  // All steps, the best first: those that lose no pixels, then the others, each by their rate; those that have
-  // failed last. Of a group only the best.
+  // All steps, the best first: by their rate, those that lose pixels after the others, those that have failed
+  // last. Of a group only the best.
   const std::vector<Step>& steps() const { return steps_; }
   const BusiestBank& busiest_bank() const { return busiest_; }
   const explore::KnobSteps& knobs() const { return knobs_; }
@@ -92,9 +92,9 @@ class Explanation {
   };
   // All resources, the least headroom first. The headroom of ports and matcher, and of banks if the core runs
   // alone, is the least in a turn of the allocation lists. On a whole computer the time between frames is
-  // divided among the frames in proportion to their cycles. A steady rate that its uncertainty puts above a
-  // bound counts as that bound. Where captures lose pixels, the headroom of a bus or bank is that with whole
-  // pictures at this rate, and can be negative.
+  // divided among the frames in proportion to their cycles. A steady rate above its bound counts as the
+  // bound. Where captures lose pixels, the headroom of a bus or bank is that with whole pictures at this rate,
+  // and can be negative.
   const std::vector<Resource>& resources() const { return resources_; }
 
   // The bound of the rate, and what sets it. Where captures lose pixels, fewer words are moved: then it is

@@ -479,13 +479,14 @@ class Run:
             return _chart(lambda command, *words: execute(command, out, *words))
 
     def __repr__(self):
-        texts = {"system": "from power-up {:.3f}", "steady": "steady {:.3f}", "steady_uncertainty": "± {:.3f}"}
-        rates = ", ".join(texts.get(name, name + " {:.3f}").format(value)
+        texts = {"system": "from power-up", "steady_uncertainty": "±"}
+        rates = ", ".join(f"{texts.get(name, name)} {value:.3f}"
                           for name, value in self.frames_per_second.items()).replace(", ±", " ±")
         frames = self.statistics["frames"]
-        lost = sum(camera["dropped_pixels"] for camera in self.statistics.get("cameras", {}).values())
-        return (f"Run of {self.statistics['board']}: {frames} frame{'s' * (frames != 1)}, frames/s: {rates}"
-                + f", with {lost} pixel{'s' * (lost != 1)} lost" * (lost > 0))
+        lost = sum(camera["dropped_pixels"] for camera in self.statistics.get("cameras", []))
+        loss = f", with {lost} pixel{'s' * (lost != 1)} lost" if lost else ""
+        run = f"Run of {self.statistics['board']}: {frames} frame{'s' * (frames != 1)}"
+        return f"{run}, frames/s: {rates}{loss}"
 
     def _repr_html_(self):
         return f"<p>{html.escape(repr(self))}</p>{self.chart()}"

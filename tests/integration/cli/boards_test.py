@@ -277,7 +277,8 @@ class Bounds(ProgramTest):
         self.assertEqual([line.split() for line in banks],
                          [[f"bank{number}", "32", "10", "19", "61"] for number in range(8)])
         self.assertEqual((bus.split(), status.split()), (["local", "bus", "48"], ["clocks,", "status", "12"]))
-        text = self.succeeds(run("bounds", "fpl2003", *sets("matcher.fetch=line_buffer", "matcher.disparities=254")))
+        large = sets("matcher.fetch=line_buffer", "matcher.disparities=254")
+        text = self.succeeds(run("bounds", "fpl2003", *large))
         self.assertNotIn("pins\n", text)
         self.assertRegex(text, r"(?m)^area of the core: \d+ of 33792 slices \(1\d\d\.\d\d %\), .*\n"
                                r"device xc2v6000: does not fit; the smallest that fits: none; 548 pins")
@@ -421,16 +422,15 @@ class Explain(ProgramTest):
     def test_where_pixels_are_lost_it_has_the_bounds_of_bounds_and_names_the_loss_and_the_limit(self):
         board = ["fpl2003", *sets("image={width: 64, height: 48}", "matcher.disparities=24")]
         slow_bus = sets("cameras.frame_rate_hz=800", "bridge.local_clock_mhz=1")
-        short_fifo = sets("cameras.frame_rate_hz=1000", "capture.fifo_words=2", "capture.fifo_trigger_words=2",
-                          "matcher.fetch=line_buffer")
+        short_fifo = sets("cameras.frame_rate_hz=1000", "capture.fifo_words=2",
+                          "capture.fifo_trigger_words=2", "matcher.fetch=line_buffer")
+        lost = r"captures lose (\d+) pixels while 12 frames are delivered, so pictures are torn"
+        limited = r"\. With this loss the rate is limited by "
         cases = [
-            (slow_bus, r"the PCI bridge: captures lose (\d+) pixels while 12 frames are delivered, so pictures "
-                       r"are torn; a pair of pictures arrives in 1\.13\d ms, and takes ([\d.]+) ms there\. With "
-                       r"this loss the rate is limited by "),
-            (short_fifo, r"the FIFOs of the capture boards, which hold 2 words: captures lose (\d+) pixels while "
-                         r"12 frames are delivered, so pictures are torn; the PCI bus is busy in ([\d.]+) % of "
-                         r"its clocks, .* With this loss the rate is limited by the cameras, at the bound of "
-                         r"1000\.000 frames/s"),
+            (slow_bus, rf"the PCI bridge: {lost}; a pair of pictures arrives in 1\.13\d ms, and takes "
+                       rf"[\d.]+ ms there{limited}"),
+            (short_fifo, rf"the FIFOs of the capture boards, which hold 2 words: {lost}; the PCI bus is busy "
+                         rf"in [\d.]+ % of its clocks, .*{limited}the cameras, at the bound of 1000\.000 "),
         ]
         for options, said in cases:
             explained_now = functools.partial(run, "explain", *board, *options, "--frames", 12)
@@ -443,16 +443,16 @@ class Explain(ProgramTest):
                 self.assertEqual(shown[row["resource"]]["frames_per_second"], row["frames_per_second"])
             self.assertEqual(document["bound"]["frames_per_second"], bounds["bound"]["system"])
             self.assertEqual(stats["bound"]["system"], bounds["bound"]["system"])
-            self.assertEqual(document["lost_pixels"], sum(each["dropped_pixels"] for each in stats["cameras"]))
+            dropped = sum(camera["dropped_pixels"] for camera in stats["cameras"])
+            self.assertEqual(document["lost_pixels"], dropped)
             for name, row in shown.items():
                 if name not in ("pci", "bridge") and not name.startswith("bank "):
                     self.assertGreaterEqual(row["headroom_percent"], 0, name)
             text = unwrapped(self.succeeds(explained_now()))
-            self.assertRegex(text, r"^fpl2003, the whole computer: [\d.]+ ± [\d.]+ frames/s with pixels lost, "
-                                   r"limited by " + said)
-            self.assertEqual(document["limited_by"],
-                             re.match(r".* with pixels lost, limited by (.*)", text)[1])
-            self.assertEqual(int(re.search(said, text)[1]), document["lost_pixels"])
+            head = r"^fpl2003, the whole computer: [\d.]+ ± [\d.]+ frames/s with pixels lost, limited by "
+            self.assertRegex(text, head + said)
+            self.assertEqual(document["limited_by"], re.match(head + "(.*)", text)[1])
+            self.assertEqual(int(re.search(said, text)[1]), dropped)
             for row in re.findall(r"(?m)^ +[\d.]+ +[+-][\d.]+ .*: .* -> .*$", text):
                 self.assertRegex(row, "loses (no )?pixels")
         self.assertLess(shown["pci"]["busy_percent"], 50)
