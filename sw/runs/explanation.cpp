@@ -125,9 +125,11 @@ std::string lost_pixels_text(const Explanation& explanation) {
            static_cast<double>(
                std::max<std::int64_t>(1, row.integer(fmt::format("pci.masters.{}.transactions", master))));
   };
-  const std::string where = is_busy ? stats::resource_words(bus)
-                                    : fmt::format("the FIFOs of the capture boards, which hold {} words",
-                                                  explanation.board().capture.fifo_words);
+  const platform::CaptureConfig& capture = explanation.board().capture;
+  const std::string where =
+      is_busy ? stats::resource_words(bus)
+              : fmt::format("the FIFOs of the capture boards, which hold {} words and request the bus at {}",
+                            capture.fifo_words, capture.fifo_trigger_words);
   return fmt::format(
       "{}{}; {} is busy in {:.1f} % of its clocks, and a capture board waits {:.1f} PCI "
       "clocks for a burst{}",

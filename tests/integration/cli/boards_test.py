@@ -429,8 +429,8 @@ class Explain(ProgramTest):
         cases = [
             (slow_bus, rf"the PCI bridge: {lost}; a pair of pictures arrives in 1\.13\d ms, and takes "
                        rf"[\d.]+ ms there{limited}"),
-            (short_fifo, rf"the FIFOs of the capture boards, which hold 2 words: {lost}; the PCI bus is busy "
-                         rf"in [\d.]+ % of its clocks, .*{limited}the cameras, at the bound of 1000\.000 "),
+            (short_fifo, rf"the FIFOs of the capture boards, which hold 2 words and request the bus at 2: {lost}; "
+                         rf"the PCI bus is busy in [\d.]+ % of its clocks, .*{limited}the cameras, at the bound of 1000\.000 "),
         ]
         for options, said in cases:
             explained_now = functools.partial(run, "explain", *board, *options, "--frames", 12)
