@@ -183,7 +183,9 @@ std::string changes_text(const BoardConfig& board, const Explanation& explanatio
       explanation.knobs().possible.size(), explanation.camera() ? "; ~: within the uncertainty" : "",
       "frames/s", "gained", "%", "FPGA %", "RAMs");
   const auto& steps = explanation.steps();
-  if (std::all_of(steps.begin(), steps.end(), [](const auto& step) { return step.rate.loses_pixels(); }))
+  if (explanation.now().loses_pixels() && std::none_of(steps.begin(), steps.end(), [](const auto& step) {
+        return step.rate.failure.empty() && !step.rate.loses_pixels();
+      }))
     text += "  no single change ends the loss of pixels\n";
   std::set<std::string> listed;              // keys with a line
   std::set<const explore::KnobStep*> small;  // changes without a line
