@@ -195,6 +195,7 @@ std::string text_of(const BoardBounds& all) {
   text += fmt::format("the whole computer, with all masters\n  {:<16} {:>14}\n", "resource", "frames/s");
   for (const platform::RateBound& part : all.computer)
     text += fmt::format("  {:<16} {:>14.3f}\n", stats::resource_text(part.resource), part.frames_per_second);
+  text += platform::local_bus_remark(all.board);
   const std::uint64_t turn = platform::allocation_period_frames(all.board);
   const auto bound_line = [&](const char* whole, double bound, const std::string& limited_by) {
     const bool differs = all.groups.size() > 1 || (turn > 1 && platform::bank_of_resource(limited_by));
