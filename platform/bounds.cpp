@@ -1,11 +1,14 @@
 #include "platform/bounds.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
 
 #include "models/capture/camera_timing.h"
+#include "models/clock.h"
 #include "models/fpga/access_pattern.h"
 #include "models/fpga/frame_geometry.h"
 #include "models/fpga/placement.h"
@@ -118,17 +121,17 @@ double pci_rate(const BoardConfig& board, bool whole_pictures) {
 double bridge_rate(const BoardConfig& board, bool whole_pictures) {
   const auto picture =
       static_cast<std::uint64_t>(board.image.width) * static_cast<std::uint64_t>(board.image.height) / 4;
-  // The local bus moves the result and the pair, by DMA or straight from the capture boards. The FPGA grants
-  // at most one word a cycle. Two words of a burst are at least one local clock apart. The last word of a
-  // burst and the first one of the next are four local clocks apart: idle, address, decode and word.
+  // The local bus moves the result and the pair, by DMA or straight from the capture boards. Two words of a
+  // burst are at least one local clock apart. The last word of a burst and the first one of the next are four
+  // local clocks apart: idle, address, decode and word.
   const bool to_host = board.capture.destination == CaptureDestination::kHostMemory;
   const double pictures = to_host || whole_pictures ? 3 : 1;
   const double words = pictures * static_cast<double>(picture);
   const double bursts = pictures * static_cast<double>(bursts_of(picture, board.bridge.dma_burst_words));
   const double local_us = 1 / board.bridge.local_clock_mhz;
   const double fpga_us = 1 / board.fpga.clock_mhz;
-  return 1e6 /
-         std::max(words * fpga_us, bursts * 4 * local_us + (words - bursts) * std::max(local_us, fpga_us));
+  return 1e6 / std::max(words * fpga_us * local_bus_cycles_a_word(board, board.bridge.local_clock_mhz),
+                        bursts * 4 * local_us + (words - bursts) * std::max(local_us, fpga_us));
 }
 
 // Calls visit(bank, part, reads) for each part of the buffer of a port, with the reads of its rows in a
@@ -295,6 +298,51 @@ void count_rows(const BoardConfig& board, bool has_table, fpga::Side side, const
 }
 
 }  // namespace
+
+// A grant is at an edge of the FPGA. The next word's clock is the first one of the local bus at or after it.
+// The word requests as that clock ends; the next edge of the FPGA grants it at the earliest. Between bursts
+// are three more clocks: idle, address, decode. A grant that comes later makes no grant after it earlier.
+// The quickest phase: move the edges of the local bus earlier, until one of them coincides with a grant of
+// the burst. No grant gets later. So it is enough to try the phases with such an edge. Edges are rounded to
+// whole ps: at each of the two waits of a word, an edge that is late by less than 1 ps may be in time.
+double local_bus_cycles_a_word(const BoardConfig& board, double local_clock_mhz) {
+  constexpr int kMostWords = 64;          // longer bursts: pieces of so many words, and a last one
+  constexpr double kRoundedPs = 2 + 0.1;  // 0.1: for the rounding of the numbers here
+  constexpr double kSamePs = 1e-6;        // times that differ by less are equal
+  const double local_ps = 1e6 / local_clock_mhz;
+  const double fpga_ps = 1e6 / board.fpga.clock_mhz;
+  const int words = std::min(board.bridge.dma_burst_words, kMostWords);
+  double piece = INFINITY;   // cycles of `words` words within a burst
+  double a_word = INFINITY;  // of bursts of 1..words words, with the clocks between bursts
+  for (double aligned = 0; aligned <= piece; ++aligned) {  // the edge of the FPGA
+    const double phase_ps = std::fmod(aligned * fpga_ps, local_ps);
+    if (aligned > 0 && std::min(phase_ps, local_ps - phase_ps) < kSamePs) break;  // the phases repeat
+    const auto next_grant = [&](double grant, int clocks) {
+      const double word_clock = std::ceil((grant * fpga_ps - phase_ps - kSamePs) / local_ps);
+      return std::ceil((phase_ps + (word_clock + clocks) * local_ps - kRoundedPs) / fpga_ps);
+    };
+    double grant = 0;
+    for (int word = 1; word <= words; ++word) {
+      a_word = std::min(a_word, next_grant(grant, 4) / word);
+      grant = next_grant(grant, 1);
+    }
+    piece = std::min(piece, grant);
+  }
+  return words < board.bridge.dma_burst_words ? std::min(a_word, piece / words) : a_word;
+}
+
+std::string local_bus_remark(const BoardConfig& board) {
+  const double local = board.bridge.local_clock_mhz;
+  const double fpga = board.fpga.clock_mhz;
+  const double in_step = fpga / std::max(1.0, std::round(fpga / local));
+  const auto megabytes = [&](double mhz) { return 4 * fpga / local_bus_cycles_a_word(board, mhz); };
+  const bool is_clock = in_step >= 1 && Clock(in_step).phases_against(Clock(fpga)) == 1;
+  if (!is_clock || megabytes(in_step) < 1.05 * megabytes(local)) return "";
+  return fmt::format(
+      "local bus: each word waits for an edge of both clocks: at {} MHz beside an FPGA clock of {} MHz it "
+      "moves at most {:.1f} MB/s, at {} MHz {:.1f} MB/s\n",
+      local, fpga, megabytes(local), in_step, megabytes(in_step));
+}
 
 FrameAccesses frame_accesses(const BoardConfig& board, const Tables& tables) {
   const fpga::CoreConfig core = core_config(board);

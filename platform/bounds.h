@@ -81,8 +81,8 @@ inline Bound core_bound(const BoardConfig& board, const Tables& tables) {
 // | camera   | Its frame clock. On demand: the time from the first to the last pixel of a frame.          |
 // | pci      | The clocks of the words of a pair and a result, and of the fewest bursts that hold them.   |
 // |          | Plus the bursts that pci.load gets at least, if its first request is at time 0.            |
-// | bridge   | The clocks of the local bus for the words of a pair and a result. It moves at most one     |
-// |          | word per cycle of the FPGA.                                                                |
+// | bridge   | The time of the words of a pair and a result on the local bus, with the waits for the      |
+// |          | edges of its clock and of the FPGA's: local_bus_cycles_a_word().                           |
 // | bank B   | reads + writes, with separate ports max(reads, writes): of the core, of the pictures that  |
 // |          | are written, of the results that are read back. One cycle each.                            |
 //
@@ -92,6 +92,14 @@ struct RateBound {
   std::string resource;          // "camera", "pci", "bridge", "bank bank0"
   double frames_per_second = 0;  // at most
 };
+
+// The fewest cycles of the FPGA that a word takes on the local bus, on average over bursts of at most
+// bridge.dma_burst_words words and the clocks between them, if the local bus has this clock.
+double local_bus_cycles_a_word(const BoardConfig& board, double local_clock_mhz);
+
+// A line on a local bus that would be at least 5 % faster with the clock of the FPGA, or the divisor of it
+// that is next to its own clock. Empty for any other local bus.
+std::string local_bus_remark(const BoardConfig& board);
 
 // The bounds of the computer, in the order of the table at RateBound: over whole turns of the allocation's
 // lists, or over frames 0..frames-1.

@@ -211,7 +211,7 @@ std::string text_of(const BoardBounds& all) {
   text += fmt::format("the whole computer, with all masters\n  {:<16} {:>14}\n", "resource", "frames/s");
   for (const platform::RateBound& part : all.computer)
     text += fmt::format("  {:<16} {:>14.3f}\n", stats::resource_text(part.resource), part.frames_per_second);
-  return text;
+  return text + platform::local_bus_remark(all.board);
 }
 
 Json json_of(const Group& group, const BoardBounds& all) {

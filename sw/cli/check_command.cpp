@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 
+#include "platform/bounds.h"
 #include "platform/config/board_area.h"
 #include "platform/config/board_yaml.h"
 #include "platform/yaml/yaml_tree.h"
@@ -16,10 +17,10 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 std::string summary(const std::string& name, const platform::BoardConfig& board) {
-  return fmt::format("{}: ok: {}x{}, window {}x{}, {} disparities, {} banks, {} MHz\n{}\n", name,
+  return fmt::format("{}: ok: {}x{}, window {}x{}, {} disparities, {} banks, {} MHz\n{}\n{}", name,
                      board.image.width, board.image.height, board.matcher.window, board.matcher.window,
                      board.matcher.disparities, board.banks.size(), board.fpga.clock_mhz,
-                     platform::device_text(board));
+                     platform::device_text(board), platform::local_bus_remark(board));
 }
 
 Json json_of(const platform::YamlNode& value) {

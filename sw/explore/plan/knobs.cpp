@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <set>
 #include <utility>
@@ -45,17 +47,17 @@ bool is_of_computer(const std::string& path) {
 
 class Steps {
  public:
-  Steps(const BoardConfig& board, const std::optional<std::string>& joint_problem)
-      : board_(board), joint_problem_(joint_problem) {}
+  Steps(const BoardConfig& board, bool camera, const std::optional<std::string>& joint_problem)
+      : board_(board), camera_(camera), joint_problem_(joint_problem) {}
 
-  void add_keys(bool camera) {
-    if (camera && board_.pci.load)
+  void add_keys() {
+    if (camera_ && board_.pci.load)
       add({"pci.load", "as it is", "none"}, [](BoardConfig& b) { b.pci.load.reset(); });
     for (const Key& key : platform::board_keys()) {
       const bool stays = begins_with(key.path, "image.") || key.path == "fpga.device" ||
                          key.path == "fpga.package" || key.path == "fpga.tables" ||  // add_tables()
                          (begins_with(key.path, "pci.load") && !board_.pci.load);
-      if (stays || (is_of_computer(key.path) && !camera)) continue;
+      if (stays || (is_of_computer(key.path) && !camera_)) continue;
       std::visit([&](const auto& kind) { add_key(key, kind); }, key.kind);
     }
   }
@@ -341,9 +343,16 @@ class Steps {
   void add_key(const Key& key, const platform::DecimalKey& decimal) {
     BoardConfig now = board_;
     const double from = *decimal.field(now);
-    for (const double change : {1.0, -1.0}) {
-      add({key.path, fmt::format("{:g}", from), fmt::format("{:g}", from + change)},
-          [&](BoardConfig& b) { *decimal.field(b) += change; });
+    std::set<double, std::greater<>> others = {from + 1, from - 1};
+    // Words of the local bus wait least if one of its clock and the FPGA's is a multiple of the other.
+    const double fpga = board_.fpga.clock_mhz;
+    const double local = board_.bridge.local_clock_mhz;
+    if (key.path == "bridge.local_clock_mhz") others.insert({fpga, 2 * fpga, local < fpga ? fpga / 2 : fpga});
+    if (key.path == "fpga.clock_mhz" && camera_ && std::abs(local / fpga - 1) < 0.1) others.insert(local);
+    others.erase(from);
+    for (const double other : others) {
+      add({key.path, fmt::format("{:g}", from), fmt::format("{:g}", other)},
+          [&](BoardConfig& b) { *decimal.field(b) = other; });
     }
   }
   void add_key(const Key& key, const platform::WordKey& word) {
@@ -409,6 +418,7 @@ class Steps {
   }
 
   const BoardConfig& board_;
+  bool camera_;  // the computer is explained too
   const std::optional<std::string>& joint_problem_;
   std::vector<KnobStep> steps_;
   std::vector<KnobStep> forbidden_;
@@ -417,8 +427,8 @@ class Steps {
 }  // namespace
 
 KnobSteps knob_steps(const BoardConfig& board, bool camera, const std::optional<std::string>& joint_problem) {
-  Steps steps(board, joint_problem);
-  steps.add_keys(camera);
+  Steps steps(board, camera, joint_problem);
+  steps.add_keys();
   steps.add_units();
   steps.add_tables();
   steps.add_costs();

@@ -260,6 +260,14 @@ class Bounds(ProgramTest):
             parts, last = self.around_the_board("matcher.fetch=line_buffer", key)
             self.assertEqual(last, f"steady bound {parts[part]:10.3f} frames/s, limited by {words}")
 
+    def test_says_like_check_where_words_of_the_local_bus_wait_for_the_edges_of_both_clocks(self):
+        waits = "local bus: each word waits for an edge of both clocks: at {} MHz beside an FPGA clock of "
+        for command, clock, rate in ("check", 39, 76.4), ("bounds", 41, 81.8):
+            self.assertNotIn("local bus:", self.succeeds(run(command, "fpl2003")))
+            said = self.succeeds(run(command, "fpl2003", *sets(f"bridge.local_clock_mhz={clock}")))
+            self.assertIn(f"{waits.format(clock)}40 MHz it moves at most {rate} MB/s, at 40 MHz "
+                          "146.3 MB/s\n", said)
+
     def test_lists_what_the_core_takes_of_its_fpga(self):
         (*_, last, device), lines = self.parts()[0][:4], self.parts()[1]
         pins = lines.index("pins")

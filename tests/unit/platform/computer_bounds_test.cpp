@@ -1,6 +1,11 @@
 #include <gtest/gtest.h>
 
+#include <array>
+#include <utility>
+#include <vector>
+
 #include "platform/bounds.h"
+#include "tests/support/plain_clock.h"
 
 namespace stereotlm::platform {
 namespace {
@@ -67,6 +72,42 @@ TEST_F(ComputerBounds, CountTheLocalBusOfAllThreePictures) {
   EXPECT_DOUBLE_EQ(bound_of("bridge"), 40e6 / (3 * kPicture));
   board.bridge.local_clock_mhz = 80;
   EXPECT_DOUBLE_EQ(bound_of("bridge"), 40e6 / (3 * (kPicture - 4800 + 4800 * 2)));
+}
+
+TEST_F(ComputerBounds, CountTheWaitsOfTheLocalBusForTheEdgesOfBothClocks) {
+  board.fpga.clock_mhz = 60;
+  using Clocks = std::vector<std::pair<double, double>>;  // MHz, and cycles of the FPGA for 32 words
+  for (const auto& [local_mhz, cycles] :
+       Clocks{{59, 67}, {60, 35}, {61, 64}, {66, 55}, {90, 34}, {120, 33}}) {
+    board.bridge.local_clock_mhz = local_mhz;
+    EXPECT_DOUBLE_EQ(bound_of("bridge"), 60e6 / (3 * 2400 * cycles)) << local_mhz;
+  }
+}
+
+// The bus always has a burst to make, on the clocks of the plain loops.
+TEST_F(ComputerBounds, LetNoPlainLocalBusMoveWordsFasterAndAreCloseToIt) {
+  const std::array clocks = {"60", "59", "61", "66", "120", "30", "40", "39.9", "10", "33.333", "17.1234"};
+  for (std::size_t number = 0; number < 11 * 11 * 4; ++number) {
+    const int burst_words = std::array{32, 65, 7, 1}[number / 121];
+    const test::PlainClock local(test::plain_number(clocks[number % 11]));
+    const test::PlainClock fpga(test::plain_number(clocks[number / 11 % 11]));
+    std::uint64_t grant = 0;
+    for (int word = 1; word <= burst_words * 100; ++word)
+      grant = fpga.first_edge(local.edge(local.first_edge(fpga.edge(grant)) + (word % burst_words ? 1 : 4)));
+    const double plain = static_cast<double>(grant) / (burst_words * 100);
+    board.fpga.clock_mhz = std::stod(clocks[number / 11 % 11]);
+    board.bridge.dma_burst_words = burst_words;
+    const double bound = local_bus_cycles_a_word(board, std::stod(clocks[number % 11]));
+    EXPECT_LE(bound, plain * (1 + 1e-9)) << number;
+    EXPECT_GE(bound, plain * (number < 11 ? 0.95 : 0.5)) << number;  // below 11: beside 60 MHz
+  }
+}
+
+TEST_F(ComputerBounds, RemarkOnNoLocalClockWithoutABetterOne) {
+  for (const double mhz : {8, 14, 20, 40, 60, 160}) {  // 14: no board file can say a third of 40
+    board.bridge.local_clock_mhz = mhz;
+    EXPECT_EQ(local_bus_remark(board), "");
+  }
 }
 
 // A load that always requests gets a burst for each burst of the bridge, the master with the most: 2,401. The
