@@ -69,9 +69,15 @@ std::string computer_text(const runs::RecordedRun& a, const runs::RecordedRun& b
 std::string diff_text(const runs::RecordedRun& a, const runs::RecordedRun& b,
                       const runs::FrameAlignment& aligned, const runs::DiffLimits& limits) {
   const Json document = report::diff_document(a, b, aligned, limits);
-  const std::string settings = in_sections({report::settings_table("board", document["settings"]),
-                                            report::settings_table("run options", document["options"])});
-  const Json& all = document["figures"];
+  const std::string settings =
+      in_sections({report::settings_table("board", report::shown_values(document["settings"])),
+                   report::settings_table("run options", document["options"])});
+  Json all = report::shown_values(document["figures"]);
+  const bool is_lossy = !report::loss_text(Json::parse(a.stats_json), Json::parse(b.stats_json)).empty();
+  for (Json& row : all) {
+    if (is_lossy && (row["path"] == "frames_per_second.steady" || row["path"] == "frames_per_second.system"))
+      row["path"] = row["path"].get<std::string>() + ", losing pixels";
+  }
   const std::string rows = limits.rows.empty() ? report::rows_table(aligned.rows())
                                                : fmt::format("rows: not compared: {}\n", limits.rows);
   std::string figures = in_sections(

@@ -6,11 +6,13 @@
 #include "sw/cli/command.h"
 #include "sw/explore/store/store.h"
 #include "sw/process/command.h"
+#include "sw/report/difference_tables.h"
 #include "sw/report/html_page.h"
 #include "sw/report/page_data/page_data.h"
 #include "sw/runs/explanation.h"
 #include "sw/runs/recorded_run.h"
 #include "sw/runs/run_results.h"
+#include "sw/stats/console_table.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -49,6 +51,21 @@ struct ReportOptions : Options {
              "Simulate nothing: no gain of the changes; rows and times only of a run with --record");
 };
 
+// What `explain` finds, for a page without JavaScript.
+std::string text_of(const runs::Explanation& found) {
+  const auto line = [](const runs::Explanation::Rate& rate, const std::string& what) {
+    return fmt::format("{:>10.3f} frames/s{}: {}\n", rate.frames_per_second,
+                       rate.loses_pixels ? ", losing pixels" : "", what);
+  };
+  std::string text = paragraph("", 0, "limited by " + runs::limiter_text(found)) +
+                     paragraph("the time of a frame: ", 2, runs::budget_text(found)) +
+                     line(found.now(), "this board");
+  for (const auto& [step, rate, busiest] : found.steps())
+    if (rate.failure.empty())
+      text += line(rate, fmt::format("{}: {} -> {}", step->knob, step->from, step->to));
+  return text;
+}
+
 // nullopt if interrupted.
 std::optional<Json> data_of_run(const ReportOptions& options, process::Problems& problems) {
   const auto run = runs::load_recorded_run("RUN", options.inputs.texts().front(), problems);
@@ -62,6 +79,7 @@ std::optional<Json> data_of_run(const ReportOptions& options, process::Problems&
   }
   problems.check();
   Json data = report::run_data(*run, input.tables);
+  std::string text = stats::console_table(run->statistics, run->board);
   if (options.quick.is_given()) {
     process::attempt_or_refuse("", [&] { report::add_recorded_files(*run, data); });
   } else {
@@ -71,9 +89,10 @@ std::optional<Json> data_of_run(const ReportOptions& options, process::Problems&
     if (!explanation.simulate(calibrated ? runs::PointSimulator(input.tables) : runs::PointSimulator()))
       return std::nullopt;
     data["knobs"] = report::knobs_data(run->board, explanation);
+    text += '\n' + text_of(explanation);
   }
   runs::say_lost_pixels(run->statistics, fmt::format("'{}': ", run->folder));
-  return Json{{"kind", "run"}, {"run", std::move(data)}};
+  return Json{{"kind", "run"}, {"text", run->folder + "\n\n" + text}, {"run", std::move(data)}};
 }
 
 std::optional<Json> data_of_two_runs(const ReportOptions& options, process::Problems& problems) {
@@ -95,6 +114,11 @@ std::optional<Json> data_of_two_runs(const ReportOptions& options, process::Prob
     runs::say_lost_pixels(run.statistics, fmt::format("'{}': ", run.folder));
   Json data = {{"kind", "two_runs"}};
   data.update(report::two_runs_data(of_a, of_b, aligned, limits));
+  const Json& difference = data["difference"];
+  data["text"] =
+      fmt::format("A: {}\nB: {}\n\n{}\n{}\n{}", a->folder, b->folder, paragraph("", 0, difference["verdict"]),
+                  report::settings_table("board", difference["settings"]),
+                  report::figures_table("figures", report::shown_values(difference["figures"])));
   return data;
 }
 
@@ -102,7 +126,10 @@ std::optional<Json> data_of(const ReportOptions& options, process::Problems& pro
   if (options.inputs.texts().size() == 2) return data_of_two_runs(options, problems);
   if (!options.is_database()) return data_of_run(options, problems);
   Json data = {{"kind", "database"}};
-  problems.attempt("", [&] { data["database"] = report::database_data(options.inputs.texts().front()); });
+  problems.attempt("", [&] {
+    data["database"] = report::database_data(options.inputs.texts().front());
+    data["text"] = options.inputs.texts().front() + ": " + data["database"]["points"].dump() + " points";
+  });
   return data;
 }
 

@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <map>
 #include <numeric>
+#include <regex>
 #include <tuple>
 #include <utility>
 #include <variant>
@@ -25,7 +26,7 @@ using Json = nlohmann::ordered_json;
 using Wait = std::tuple<std::string, std::string, std::string>;
 
 struct Rates {
-  const char* kind;
+  std::string kind;
   double a;
   double b;
   double uncertainty;  // of both
@@ -61,7 +62,7 @@ std::string cause(const JudgedRun& a, const JudgedRun& b, bool b_is_faster) {
   if (cycles_a_frame(slower.stats) / slower.clock_mhz <= cycles_a_frame(faster.stats) / faster.clock_mhz)
     return fmt::format("the core is not faster in {}, and the difference arises around it",
                        b_is_faster ? "B" : "A");
-  if (a.clock_mhz != b.clock_mhz)
+  if (faster.clock_mhz > slower.clock_mhz)
     return fmt::format("the core runs at {} MHz in A and at {} MHz in B", a.clock_mhz, b.clock_mhz);
   const std::map<Wait, double> before = waits_a_frame(faster.stats);
   std::pair<Wait, double> largest = {{}, 0};
@@ -95,6 +96,12 @@ std::string text_of(const Json& row, const char* run) {
   const Json& value = row[run];
   if (value.is_string()) return value.get<std::string>();
   return value.is_number_integer() ? value.dump() : fmt::format("{:.6g}", value.get<double>());
+}
+
+// Whether a row of differing_values() has two real numbers that read the same.
+bool reads_same(const Json& row) {
+  const auto is_real = [&row](const char* run) { return row.contains(run) && row[run].is_number_float(); };
+  return is_real("a") && is_real("b") && text_of(row, "a") == text_of(row, "b");
 }
 
 std::string signed_text(std::int64_t value) { return value == 0 ? "0" : fmt::format("{:+}", value); }
@@ -148,8 +155,20 @@ std::uint64_t cycles_of_frames(const Json& stats) {
   return std::accumulate(frames.begin(), frames.end(), std::uint64_t{0});
 }
 
+std::string loss_text(const Json& a, const Json& b) {
+  std::vector<std::uint64_t> lost;
+  for (const Json* const stats : {&a, &b}) {
+    lost.push_back(0);
+    for (const Json& camera : stats->value("cameras", Json::array()))
+      lost.back() += camera.at("dropped_pixels").get<std::uint64_t>();
+  }
+  if (lost[0] + lost[1] == 0) return "";
+  return fmt::format(", while captures lose {} pixels in A and {} in B", lost[0], lost[1]);
+}
+
 std::string diff_verdict(const JudgedRun& a, const JudgedRun& b, const stats::PixelComparison* pixels) {
-  const Rates rates = rates_of(a.stats.at("frames_per_second"), b.stats.at("frames_per_second"));
+  Rates rates = rates_of(a.stats.at("frames_per_second"), b.stats.at("frames_per_second"));
+  rates.kind += loss_text(a.stats, b.stats);
   if (rates.a == rates.b) {
     return fmt::format("A and B are equally fast, {:.3f} frames/s, {}; {}.", rates.a, rates.kind,
                        pixels_text(pixels));
@@ -191,14 +210,36 @@ Json differing_values(const Values& a, const Values& b) {
   return rows;
 }
 
+Json shown_values(const Json& rows) {
+  static const std::regex kAlways("(.*banks\\.(.*)\\.)(words|reads)");  // what every bank has
+  std::map<std::string, std::string> banks;                             // of one run
+  Json shown = rows;
+  for (const Json& row : rows) {
+    const auto path = row["path"].get<std::string>();
+    std::smatch found;
+    if (row.size() == 3 || !std::regex_match(path, found, kAlways)) continue;
+    std::string& names = banks[row.contains("a") ? "banks only in A" : "banks only in B"];
+    names += (names.empty() ? "" : ", ") + found[2].str();
+    const auto is_of_bank = [head = found[1].str()](const Json& each) {
+      return each["path"].get<std::string>().rfind(head, 0) == 0;
+    };
+    shown.erase(std::remove_if(shown.begin(), shown.end(), is_of_bank), shown.end());
+  }
+  for (const auto& [path, names] : banks) shown.push_back({{"path", path}, {"banks", names}});
+  return shown;
+}
+
 std::string settings_table(const std::string& head, const Json& rows) {
   if (rows.empty()) return "";
   std::string text = fmt::format("{:<{}} {:<{}} {}\n", head, kLabelColumns, "A", kSettingColumns, "B");
   for (std::size_t i = 0; i < std::min(rows.size(), kMostSettings); ++i) {
     const auto path = rows[i]["path"].get<std::string>();
-    const std::string of_a = text_of(rows[i], "a");
-    const std::string of_b = text_of(rows[i], "b");
-    if (std::max(of_a.size(), of_b.size()) <= kSettingColumns) {
+    const bool is_close = reads_same(rows[i]);
+    const std::string of_a = is_close ? rows[i]["a"].dump() : text_of(rows[i], "a");
+    const std::string of_b = is_close ? rows[i]["b"].dump() : text_of(rows[i], "b");
+    if (rows[i].contains("banks")) {
+      text += fmt::format("  {}: {}\n", path, rows[i]["banks"].get<std::string>());
+    } else if (std::max(of_a.size(), of_b.size()) <= kSettingColumns) {
       text += fmt::format("  {:<{}} {:<{}} {}\n", path, kLabelColumns - 2, of_a, kSettingColumns, of_b);
     } else {
       text += fmt::format("  {}\n    A  {}\n    B  {}\n", path, of_a, of_b);
@@ -210,6 +251,7 @@ std::string settings_table(const std::string& head, const Json& rows) {
 std::string figures_table(const std::string& head, const Json& rows) {
   std::string text;
   for (const Json& row : rows) {
+    if (reads_same(row)) continue;
     text += line("  " + row["path"].get<std::string>(), text_of(row, "a"), text_of(row, "b"),
                  difference_text(row));
   }

@@ -49,16 +49,19 @@ std::string html_page(const nlohmann::ordered_json& data) {
 {}</style>
 </head>
 <body>
-<main id="page"><noscript>This page needs JavaScript.</noscript></main>
+<main id="page"><noscript><pre>{}</pre></noscript></main>
 <script type="text/plain" id="data">{}</script>
 <script type="module">
 {}</script>
 </body>
 </html>
 )";
-  return fmt::format(kPage, page_mark(), between(stereotlm_page_style, stereotlm_page_style_end),
-                     compressed(data.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)),
-                     between(stereotlm_page_script, stereotlm_page_script_end));
+  const std::string json = data.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  std::string plain;
+  for (const char letter : nlohmann::json::parse(json).value("text", ""))
+    plain += letter == '<' ? "&lt;" : letter == '&' ? "&amp;" : std::string(1, letter);
+  return fmt::format(kPage, page_mark(), between(stereotlm_page_style, stereotlm_page_style_end), plain,
+                     compressed(json), between(stereotlm_page_script, stereotlm_page_script_end));
 }
 
 }  // namespace stereotlm::report

@@ -133,6 +133,7 @@ Json two_runs_data(const ComparedRun& a, const ComparedRun& b, const runs::Frame
   Json data = {{"runs", {run_data_of(a), run_data_of(b)}},
                {"difference", diff_document(a.run, b.run, aligned, limits)}};
   Json& difference = data["difference"];
+  difference["settings"] = shown_values(difference["settings"]);
   if (limits.rows.empty())
     difference["rows"] = rows_data(aligned.rows(), static_cast<std::size_t>(a.run.board.image.height));
   if (const auto& first = aligned.pixels().first()) {

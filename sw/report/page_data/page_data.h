@@ -41,7 +41,7 @@ struct ComparedRun {
 nlohmann::ordered_json diff_document(const runs::RecordedRun& a, const runs::RecordedRun& b,
                                      const runs::FrameAlignment& aligned, const runs::DiffLimits& limits);
 
-// The parts `runs` and `difference`: diff_document() with all rows.
+// The parts `runs` and `difference`: diff_document() with all rows, its settings as shown_values().
 nlohmann::ordered_json two_runs_data(const ComparedRun& a, const ComparedRun& b,
                                      const runs::FrameAlignment& aligned, const runs::DiffLimits& limits);
 

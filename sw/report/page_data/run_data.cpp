@@ -153,11 +153,8 @@ void add_banks_taken(const BoardConfig& board, const BoardConfig& changed, Json&
     if (used.count(bank) > 0) continue;
     const bool is_there = std::any_of(board.banks.begin(), board.banks.end(),
                                       [&](const platform::BankConfig& own) { return own.name == bank; });
-    if (is_there) {
-      idle.push_back(bank);
-    } else {
-      ++lacking;
-    }
+    if (is_there) idle.push_back(bank);
+    lacking += is_there ? 0 : 1;
   }
   data["idle_banks"] = idle;
   data["new_banks"] = lacking;
@@ -193,6 +190,8 @@ Json run_data(const runs::RecordedRun& run, const platform::Tables& tables) {
       {"banks", banks_of(board)},
       {"bounds", bounds_of(board, tables, run.statistics)},
       {"area", area_data(board)},
+      {"pins", platform::pins_of(board)},
+      {"banks_used", banks_used(board).size()},
       {"identities", identities_of(run)},
       {"memory_chart", memory_chart_svg({board, run.statistics.computer.has_value(), &run.statistics})}};
   if (!run.options.timing_only) {
@@ -236,12 +235,14 @@ void add_recorded_files(const runs::RecordedRun& run, Json& data) {
 Json knobs_data(const BoardConfig& board, runs::Explanation& explanation) {
   Json data = runs::explanation_document(board, explanation);
   add_prices(board, explanation.busiest_bank(), data);
+  data["uncertainty_frames_per_second"] = explanation.now().uncertainty;
   std::size_t number = 0;
   for (const runs::Explanation::Step& found : explanation.steps()) {
     if (!found.rate.failure.empty()) continue;
     Json& change = data["changes"][number++];
     add_prices(found.step->board, found.busiest, change);
     add_banks_taken(board, found.step->board, change);
+    change["uncertainty_frames_per_second"] = found.rate.uncertainty;
   }
   return data;
 }

@@ -100,7 +100,11 @@ class Differences(DiffTest):
         fast = shared_run(*SCENE, *sets("fpga.clock_mhz=50"), "--frames", "2")
         self.assertIn("(25.00 %), core only: the core runs at 40 MHz in A and at 50 MHz in B;",
                       self.verdict(a, fast))
+        slow = shared_run(*SCENE, *sets("fpga.clock_mhz=39", "matcher.fetch=line_buffer"), "--frames", "2")
+        self.assertRegex(self.verdict(a, slow), "^B is faster .*: a frame takes ")  # not for its clock
         cache = shared_run(*SCENE, *sets("fpga.clock_mhz=40.000001"), "--frames", "2")
+        self.assertEqual(self.lines(a, cache)[4:7],  # the rates differ in the eighth digit
+                         ["fpga.clock_mhz 40.0 40.000001", "", "no figure and no row differs"])
         self.assertIn("A and B are equally fast to 0.001 frames/s, core only: the core runs at 40 MHz in A "
                       "and at",
                       self.verdict(a, cache).replace("\n", " "))
@@ -245,6 +249,17 @@ class Computer(DiffTest):
         both = len(ours & theirs)
         self.assertGreater(both, 1)
         self.assertEqual(lines[-1], f"disparities: the same, pixel for pixel, in {both} frames")
+
+    def test_a_rate_that_loses_pixels_says_so(self):
+        losing = sets("fpga.clock_mhz=8", "cameras.frame_rate_hz=1000", "pci.clock_mhz=1", "image.width=64",
+                      "image.height=24", "matcher.window=3", "capture.fifo_words=16",
+                      "capture.fifo_trigger_words=4")
+        for out, frames in ((self.a, 14), (self.b, 20)):
+            self.succeeds(run("run", "fpl2003", "--timing-only", "--frames", frames, *losing, "--out", out))
+        lost = [sum(each["dropped_pixels"] for each in stats_of(out)["cameras"]) for out in (self.a, self.b)]
+        self.assertIn(", while captures lose {} pixels in A and {} in B".format(*lost),
+                      self.verdict(self.a, self.b))
+        self.assertIn("\nframes_per_second.steady, losing pixels ", "\n".join(self.lines(self.a, self.b)))
 
     def test_it_is_compared_with_the_board_alone(self):
         self.write(self.a, "--frames", "3")

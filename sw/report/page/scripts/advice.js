@@ -1,11 +1,10 @@
 // What to change first, of all single changes of the board, and what a change takes.
-import {bankText, fixed, sameWithin, signed, whole} from './format.js';
+import {bankText, fixed, signed, whole} from './format.js';
 
 const kWorthwhile = 0.01;  // least gain of a change worth naming, of the present rate
 const kFreeSlices = 1;     // percent of the FPGA that a change may take and still need nothing new
 const kSame = 0.9995;      // rates that differ by less are the same
 const kVisible = 0.0005;  // frames/s
-const kAtLimit = 0.003;    // a rate is at the bound of a resource around the board if it is as near as this
 
 // Keys that are no settings of the parts of the board, but need another part.
 const kNeeds = [
@@ -19,29 +18,21 @@ const kNeeds = [
   [/^fpga\.clock_mhz$/, step => `a clock of ${step.clock_mhz} MHz`],
 ];
 
-const kKeyTexts = {
-  'ssram.banks.*.kind': 'kind of memory of all banks',
-  'ssram.banks.*.turnaround_cycles': 'turnaround of all banks',
-};
-
 // The gain of a change, as a share of the present rate.
 export const gainOf = step => step.gained_percent / 100;
+// Whether a gain is within what the finite runs leave open of both rates.
+export const isWithin = (step, board) => Math.abs(step.frames_per_second - board.frames_per_second) <=
+    step.uncertainty_frames_per_second + board.uncertainty_frames_per_second;
 
 // Whether a change has a visible effect: on the loss of pixels, or on the rate.
 export const hasEffect = (step, board) => step.loses_pixels !== board.loses_pixels ||
     Math.abs(step.gained_frames_per_second) >= kVisible;
 
 // A change in words: matcher.rows: 1 → 2.
-export function shortStepText({key, from, to, idle_banks: idle}) {
+export function stepText({key, from, to, idle_banks: idle}) {
   const moved = key === 'a bank more' && /^(.*) in (.*)$/.exec(from);
-  if (moved) return `${moved[1]}: ${moved[2]} → ${idle?.length ? bankText(idle[0]) : 'a new bank'}`;
-  return `${kKeyTexts[key] ?? key}: ${from} → ${to}`;
-}
-
-// The same with the key that it changes.
-export function stepText(step) {
-  const name = kKeyTexts[step.key];
-  return name ? `${name} (${step.key}): ${step.from} → ${step.to}` : shortStepText(step);
+  return moved ? `${moved[1]}: ${moved[2]} → ${idle?.length ? bankText(idle[0]) : 'a new bank'}` :
+                 `${key}: ${from} → ${to}`;
 }
 
 // What a change takes beside the board as it is.
@@ -82,36 +73,17 @@ export function priceText(step, board) {
            '');
 }
 
-// The keys that move the bound of a resource around the board.
-const kMoves = {
-  camera: /^cameras\./,
-  pci: /^(pci|bridge|capture)\./,
-  bridge: /^(bridge\.|capture\.|fpga\.clock_mhz$)/
-};
-
-// The resource around the board whose bound the rate after a change reaches, such as `camera`; not one whose
-// bound the change moves.
-export function limitReached(run, step) {
-  const isConcerned = resource => kMoves[resource]?.test(step.key) ?? false;
-  return (run.bounds.computer ?? [])
-      .find(
-          ({resource, frames_per_second: bound}) =>
-              !isConcerned(resource) && sameWithin(step.frames_per_second, bound, kAtLimit))
-      ?.resource;
-}
-
-// The changes worth naming: the largest gain of those that need nothing new, and the largest of all. Changes
-// of the disparities, boards that lose pixels and boards that do not fit are left out.
+// The changes worth naming: the largest gain of those that need nothing new, and the largest of all. Left out
+// is what changes disparities, loses pixels, does not fit, gains within the uncertainty, or saves a bank.
 export function adviceOf(run) {
   if (!run.knobs) return null;
   const board = run.knobs;
-  const {changes} = board;
-  const useful = changes.filter(
-      step => gainOf(step) >= kWorthwhile && !step.changes_disparities && step.area.fits &&
-          (!step.loses_pixels || board.loses_pixels));
+  const sound = board.changes.filter(
+      step => !step.changes_disparities && !step.loses_pixels && step.area.fits &&
+          step.key !== 'a bank less');
+  const useful = sound.filter(step => gainOf(step) >= kWorthwhile && !isWithin(step, board));
   // Of a board that loses pixels, the best step that cures it comes first, whatever it gains or takes.
-  const cure = board.loses_pixels &&
-      changes.find(step => !step.loses_pixels && !step.changes_disparities && step.area.fits);
+  const cure = board.loses_pixels && sound[0];
   const isFree = step => {
     const price = priceOf(step, board);
     return newPartsOf(step).length === 0 && price.slicesPercent <= kFreeSlices && price.blockRams <= 0 &&
@@ -125,6 +97,5 @@ export function adviceOf(run) {
     first: cure || (bestOf(useful.filter(isFree)) ?? largest),
     largest,
     board,
-    cures: Boolean(cure),
   };
 }

@@ -1,12 +1,12 @@
 // What each single change of the board gains, and what the core takes of its FPGA.
 import {
-    adviceOf, gainOf, hasEffect, newPartsOf, priceOf, priceText, shortStepText, stepText,
+    adviceOf, gainOf, hasEffect, isWithin, newPartsOf, priceOf, priceText, stepText,
 } from './advice.js';
 import {drawBars} from './bars.js';
 import {addChart, addLeftOut} from './card.js';
 import {button, checkBox, folded, h, note} from './dom.js';
 import {kindOfSteps} from './findings.js';
-import {count, fixed, gainText, most, percent, rate, signed, sum, whole} from './format.js';
+import {count, fixed, gainText, lossText, most, percent, rate, signed, sum, whole} from './format.js';
 
 // A change that gains or loses less is folded, until it is asked for.
 const kFolded = 0.001;
@@ -29,18 +29,19 @@ export function addKnobs(page, run) {
   }, {id: 'fold-changes'});
   const rowOf = step => {
     const price = priceOf(step, board);
-    const gain = gainText(gainOf(step));
+    const gain = gainText(gainOf(step)) + (gainOf(step) !== 0 && isWithin(step, board) ? ' ~' : '');
     return {
-      name: shortStepText(step) + (step.changes_disparities ? ' *' : '') + (step.loses_pixels ? ' †' : ''),
+      name: stepText(step) + (step.changes_disparities ? ' *' : '') + (step.loses_pixels ? ' †' : ''),
       strong: step === advice.first,
       bars: [{
         from: now,
         to: step.frames_per_second,
         colour: step.frames_per_second > now ? '--blue' : '--vermilion',
         lines: [
-          stepText(step), `${rate(step.frames_per_second)} frames/s, ${kind} (${gain})`,
+          stepText(step),
+          `${rate(step.frames_per_second)} frames/s, ${kind} (${gain})${lossText(step.loses_pixels)}`,
           `takes ${priceText(step, board)}`, step.changes_disparities && 'changes the disparities',
-          step.loses_pixels && 'captures lose pixels', ...step.sets.map(set => `--set '${set}'`)
+          ...step.sets.map(set => `--set '${set}'`)
         ].filter(Boolean)
       }],
       texts: [
@@ -67,7 +68,7 @@ export function addKnobs(page, run) {
       domain,
       isLog: true,
       axis: `frames/s, ${kind} (logarithmic)`,
-      now: {value: now, text: `now: ${rate(now)}, ${kind}`},
+      now: {value: now, text: `now: ${rate(now)}, ${kind}${board.loses_pixels ? ' †' : ''}`},
       heads: ['', 'slices', 'block RAMs', 'new parts'],
       above
     });
@@ -82,13 +83,15 @@ export function addKnobs(page, run) {
     id: 'knobs',
     wide: true,
     draw,
-    title: advice.first ? `First: ${shortStepText(advice.first)}, ${gainText(gainOf(advice.first))}` :
-                          'No single change gains 1 % and keeps the disparities',
+    title: advice.first ?
+        `First: ${stepText(advice.first)}, ${gainText(gainOf(advice.first))}` +
+            (board.loses_pixels ? ', and loses no pixels' : '') :
+        'No single change is worth making first',
     note: `One setting changed at a time, simulated with ${
               count(board.frames, 'frame')} each. Right: the gain, and what the change takes in ` +
         'addition. First: the largest gain that needs nothing new; if there is none, the largest of ' +
         'all; where captures lose pixels, the best change that ends that. *: changes the disparities. ' +
-        '†: captures lose pixels.',
+        '†: captures lose pixels. ~: within the uncertainty.',
     body: [
       keep, note(without.length > 0 && `Without effect here: ${without.join(', ')}.`),
       impossible.length > 0 &&

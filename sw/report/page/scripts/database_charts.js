@@ -75,7 +75,7 @@ export function addScatter(page, points, choose) {
   const legendHost = h('div');
   const linesOf =
       row => [y.name, x.name]
-                 .map(name => `${name} ${value(points.column(name)[row])}`)
+                 .map(name => `${name} ${points.text(name, row)}`)
                  .concat(points.keys.slice(0, 8).map(key => `${key}: ${value(points.column(key)[row])}`));
 
   const draw = (host, width) => {
@@ -96,7 +96,11 @@ export function addScatter(page, points, choose) {
         points.selected.forEach((is, row) => {
           if (is !== wanted) return;
           context.fillStyle = is ? colourOf(row) : faint;
-          context.fillRect(across.at[row] - size / 2, up.at[row] - size / 2, size, size);
+          const [left, above] = spot(row).map(place => place - size / 2);
+          if (points.lost[row] > 0)
+            context.fillText('×', left, above + size);
+          else
+            context.fillRect(left, above, size, size);
         });
       }
       const front = points.isNumeric(x.name) && points.isNumeric(y.name) ? points.front(x, y) : [];
@@ -110,9 +114,14 @@ export function addScatter(page, points, choose) {
           s('polyline', {class: 'front', points: stepsOf(front.map(spot), edges).join(' ')}), ...spots,
           ...points.chosen >= 0 ? [dot(points.chosen, {r: 9, class: 'chosen'})] : []);
       linkMarks(host);
+      const crosses = points.losing() > 0 ?
+          ` Pixels are lost in ${whole(points.losing(points.selectedRows()))} of the points (×), ${
+              whole(points.losing(front))} of the front.` :
+          '';
       const ties = [x, y].some(({name}) => points.hasUncertainty(name));
       frontText.textContent = `${count(points.count, 'point')} of ${whole(points.size)} selected; ${
-          whole(front.length)} of them on the front.${ties ? ' What lies within the uncertainty ties.' : ''}`;
+          whole(front.length)} of them on the front.${crosses}${
+          ties ? ' What lies within the uncertainty ties.' : ''}`;
     };
     const select = box =>
         points.filter('scatter', box && (row => {

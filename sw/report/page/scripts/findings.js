@@ -1,8 +1,8 @@
 // What a run shows, in plain words: what limits, who waits for whom, where, what to change first, its price.
-import {adviceOf, gainOf, limitReached, priceText, stepText} from './advice.js';
+import {adviceOf, gainOf, priceText, stepText} from './advice.js';
 import {linesOf, rowsText, tilesOf} from './data.js';
 import {
-  bankText, capital, count, fixed, gainText, kRates, percent, rate, rateWith, sum, whole
+    bankText, capital, count, fixed, gainText, grouped, kRates, lossText, percent, rate, rateWith, sum, whole
 } from './format.js';
 
 const kLeastShare = 0.0005;  // of all cycles that a port waits, to be named
@@ -15,7 +15,9 @@ export const settingOf = (run, key) => run.settings.find(setting => setting.key 
 export const kindOfRate = (...runs) =>
     kRates.find(([name]) => runs.every(run => run.stats.frames_per_second[name] !== undefined));
 
-// The rate of a run, what kind of rate it is, and its bound.
+export const lostPixels = run => sum((run.stats.cameras ?? []).map(camera => camera.dropped_pixels));
+
+// The rate of a run, what kind of rate it is, its bound, and the pixels that it loses.
 export function rateOf(run) {
   const {frames_per_second: rates, bound} = run.stats;
   const computer = rates.system !== undefined;
@@ -23,8 +25,17 @@ export function rateOf(run) {
   const [name, kind] = kindOfRate(run);
   const now = rates[name];
   const by = computer ? bound.system_limited_by : bound.core_limited_by;
-  const text = rateWith(now, rates.steady_uncertainty);
-  return {now, text, kind, limit, by, computer, share: now / limit};
+  const lost = lostPixels(run);
+  const text = `${rateWith(now, rates.steady_uncertainty)} frames/s, ${kind}${lossText(lost)}`;
+  return {now, text, kind, limit, by, lost};
+}
+
+// How near a rate is to the bound that a resource sets.
+export function againstBound({now, kind, lost}, limit, by) {
+  const bound = `the bound of ${rate(limit)} frames/s, which ${withVerb(by, 'set')}`;
+  if (lost > 0) return `no share of ${bound} for whole pictures`;
+  if (now <= limit) return `${percent(now / limit)} of ${bound}`;
+  return kind === 'steady' ? `at ${bound}, within its uncertainty` : `above ${bound} over whole turns`;
 }
 
 // The kind of the rates of single changes.
@@ -83,55 +94,37 @@ export function waitText({port, share, causes}) {
       named.length < causes.length ? ' and less' : ''}${isOneBank ? `, on ${bankText(causes[0].bank)}` : ''}`;
 }
 
-const lostPixels = run => sum((run.stats.cameras ?? []).map(camera => camera.dropped_pixels));
-
 function whatLimits(run) {
-  const {by, limit, share, text, kind: rateKind, computer} = rateOf(run);
-  const [kind, name] = by.split(' ');
-  const reached =
-      `The run reaches ${percent(share)} of the bound of ${rate(limit)} frames/s: ${text}, ${rateKind}`;
-  const because = {
-    bank: () => {
-      const bank = run.banks.find(each => each.name === name);
-      const busy = run.stats.banks.find(each => each.name === name);
-      const title = capital(bankText(name));
-      const held = bank.buffers.join(', ') || 'no buffer';
-      return `${title} holds ${held}, and is busy in ${percent(busy.utilization)} of the cycles`;
-    },
-    port: () => `Port ${name}: it moves one word a cycle at most`,
-    matcher: () =>
-        'The matcher: it takes one pixel of each picture a cycle at most, and needs each pixel of ' +
-        'a window',
-    camera: () => 'The cameras: the board could do more',
-    pci: () => 'The PCI bus: the transfers of its masters fill it',
-    bridge: () => 'The local bus behind the bridge',
-  }[kind]?.() ??
-      by;
-  const limiter = run.knobs?.limited_by;
+  const {limited_by: limiter, frames} = run.knobs ?? {};
   return [
-    limiter ? `Limited by ${limiter}.` : `Not known with --quick. The lowest bound: ${because}.`,
-    `${reached}.`, computer && droppedText(run),
-    !limiter && !computer && share < 0.99 && run.stats.blame.length === 0 &&
-        'No port waits: the matcher waits for the queue of results, which the bound leaves out.',
+    limiter ? `Limited by ${grouped(limiter)}.` : 'Not known with --quick: only how far the lowest bound is.',
+    limiter && rateOf(run).kind !== kindOfSteps(run) && `That is steady, of ${whole(frames)} frames.`,
+    `${headlineOf(run)}.`, run.stats.cameras && droppedText(run),
     lostPixels(run) > 0 &&
-        `Captures lose ${whole(lostPixels(run))} pixels: their FIFOs are full before the ` +
-            'words reach the memory. Disparities there are wrong.'
+        'Captures lose pixels where their FIFOs are full before the words reach the memory. ' +
+            'Disparities there are wrong.'
   ];
 }
 
-// Why frames of the left camera are dropped.
+// How many frames of the left camera are dropped, and why.
 export function droppedText(run) {
-  const {frames, dropped_frames: all, dropped_not_armed: dropped} = run.stats.cameras[0];
-  if (dropped === 0) return null;
-  const delivered = settingOf(run, 'cameras.frame_rate_hz');
-  const {now, kind, limit} = rateOf(run);
-  const others = all > dropped ? `; ${whole(all - dropped)} for other reasons` : '';
-  const text = `${whole(dropped)} of ${whole(frames)} frames of the left camera ${
-      dropped === 1 ? 'is' : 'are'} dropped, because its capture board is not armed as they begin${others}`;
-  return (kind === 'steady' ? now : limit) < 0.995 * delivered ?
-      `${text}. The cameras deliver ${
-          rate(delivered)} frames/s, and the board takes fewer. This is expected.` :
-      `${text}. It is armed when the tables are uploaded and a buffer is free.`;
+  const camera = run.stats.cameras[0];
+  const reasons = [
+    [camera.dropped_not_armed, 'its capture board is not armed as they begin'],
+    [camera.dropped_busy, 'the capture before them still runs'],
+    [camera.dropped_by_partner, 'the other board cannot take them']
+  ].filter(([amount]) => amount > 0);
+  if (reasons.length === 0) return null;
+  return [
+    `${whole(camera.dropped_frames)} of ${count(camera.frames, 'frame')} of the left camera ${
+        camera.dropped_frames === 1 ? 'is' : 'are'} dropped: ${
+        reasons.map(([amount, text]) => `${whole(amount)} because ${text}`).join(', ')}.`,
+    settingOf(run, 'cameras.trigger') === 'free_running' &&
+        `The cameras deliver ${rate(settingOf(run, 'cameras.frame_rate_hz'))} frames/s; the run makes ${
+            rateOf(run).text}.`,
+    camera.dropped_not_armed > 0 &&
+        'A capture board is armed when the tables are uploaded and a buffer is free.'
+  ].filter(Boolean).join(' ');
 }
 
 function whoWaits(run) {
@@ -239,21 +232,20 @@ function whereText(run) {
 function whatFirst(run) {
   const advice = adviceOf(run);
   if (!advice) return ['Not known: this report was made with --quick.'];
-  const {first, largest, board, cures} = advice;
-  if (!first) return ['Nothing: no single change gains 1 % or more and keeps the disparities.'];
-  const text = step => {
-    const limit = limitReached(run, step);
-    return `${stepText(step)} gives ${rate(step.frames_per_second)} frames/s, ${kindOfSteps(run)} (${
-        gainText(gainOf(step))})${limit ? `, where ${withVerb(limit, 'limit')}` : ''}${
-        step.loses_pixels ? ', and loses pixels too' : ''}`;
-  };
+  const {first, largest, board} = advice;
+  const rateText = step =>
+      `${rateWith(step.frames_per_second, step.uncertainty_frames_per_second)} frames/s, ${kindOfSteps(run)}`;
+  const now = `Now: ${rateText(board)}${lossText(board.loses_pixels)}.`;
+  const rule = 'Only changes that keep the disparities are named, and that gain 1 % or more beyond the ' +
+      `uncertainty${board.loses_pixels ? ' or end the loss of pixels' : ''}.`;
+  const none = board.loses_pixels ? 'No single change ends the loss of pixels.' : 'Nothing.';
+  if (!first) return [none, now, rule];
+  const text = step => `${stepText(step)} gives ${rateText(step)} (${gainText(gainOf(step))})`;
   const sets = step => step.sets.map(set => `--set '${set}'`).join(' ');
   return [
-    `${text(first)}${cures ? ', and loses no pixels' : ''}.`, `To try it: ${sets(first)}.`,
-    'Only changes that keep the disparities are named, and that gain 1 % or more' +
-        `${cures ? ' or end the loss of pixels' : ''}.`,
-    !largest || largest === first ?
-        null :
+    `${text(first)}${board.loses_pixels ? ', and loses no pixels' : ''}.`, now,
+    `To try it: ${sets(first)}.`, rule,
+    largest && largest !== first &&
         `The largest gain: ${text(largest)}. It needs ${priceText(largest, board)}.`
   ];
 }
@@ -269,10 +261,8 @@ function whatItCosts(run) {
 }
 
 export function headlineOf(run) {
-  const {text, kind, limit, by, share} = rateOf(run);
-  return `${text} frames/s, ${kind}: ${percent(share)} of the bound ${rate(limit)}, which ${
-             withVerb(by, 'set')}` +
-      (lostPixels(run) > 0 ? '; captures lose pixels' : '');
+  const its = rateOf(run);
+  return `${its.text}: ${againstBound(its, its.limit, its.by)}`;
 }
 
 // [question, [answer, ..]] in the order in which they are asked.

@@ -23,6 +23,9 @@ export const kRates = [['steady', 'steady'], ['system', 'from power-up'], ['core
 // With what a finite run leaves open, if that can be seen.
 export const rateWith = (number, uncertainty = 0) =>
     rate(number) + (uncertainty < 0.005 ? '' : ` ± ${rate(uncertainty)}`);
+// What stands behind a rate that was reached by losing pixels: so many, or `true`.
+export const lossText = lost =>
+    lost ? `, while captures lose ${lost === true ? 'pixels' : count(lost, 'pixel')}` : '';
 const isShownAsZero = text => !/[1-9]/.test(text);
 export const signed = (number, text) =>
     `${number < 0 && !isShownAsZero(text(Math.abs(number))) ? '−' : '+'}${text(Math.abs(number))}`;

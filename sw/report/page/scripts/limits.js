@@ -1,15 +1,14 @@
 // What limits a run: the bounds of its resources, the roofline of its busiest bank, what ports and banks do
 // in all cycles, and how long its frames take.
-import {adviceOf, hasEffect, shortStepText} from './advice.js';
+import {adviceOf, hasEffect, stepText} from './advice.js';
 import {drawBars, drawColumns} from './bars.js';
 import {addChart, legend} from './card.js';
 import {s} from './dom.js';
-import {kindOfSteps, rateOf, resourceText, settingOf, withVerb} from './findings.js';
-import {bankText, fixed, inMs, least, most, percent, rate, tableOf, whole} from './format.js';
+import {againstBound, kindOfSteps, rateOf, resourceText, settingOf, withVerb} from './findings.js';
+import {bankText, fixed, inMs, least, lossText, most, percent, rate, tableOf, whole} from './format.js';
 import {axisBelow, axisLeft, cut, drawing, numeric} from './plot.js';
 import {mark} from './tooltip.js';
 
-const kNearRoof = 0.9;
 const kMostFrames = 200;
 
 // Each resource with the frame in which it allows least.
@@ -28,7 +27,8 @@ function resourcesOf(run) {
 
 // The ladder of bounds: what each resource alone would allow, beside what the run reaches.
 export function addBounds(page, run) {
-  const {now, kind, limit, by} = rateOf(run);
+  const its = rateOf(run);
+  const {now, kind, limit, by, lost} = its;
   const resources = resourcesOf(run);
   const lowest = resources[0].frames_per_second;
   const turn = run.bounds.core.length;
@@ -48,7 +48,7 @@ export function addBounds(page, run) {
                 turn > 1 ? `, in frame ${each.frame} of each ${turn}` : ''}`,
         turn > 1 && each.cycles ?
             `frame ${each.frame} of the run takes ${whole(run.stats.frame_cycles[each.frame])} cycles` :
-            `the run reaches ${percent(now / each.frames_per_second)} of it`
+            `the run: ${againstBound(its, each.frames_per_second, each.resource)}`
       ].filter(Boolean)
     }],
     texts: [rate(each.frames_per_second)]
@@ -61,7 +61,7 @@ export function addBounds(page, run) {
       domain: [Math.min(now, lowest) * 0.8, Math.max(resources.at(-1).frames_per_second, now) * 1.1],
       isLog: true,
       axis: 'frames/s (logarithmic)',
-      now: {value: now, text: `the run: ${rate(now)}, ${kind}`}
+      now: {value: now, text: `the run: ${rate(now)}, ${kind}${lost > 0 ? ', losing pixels' : ''}`}
     }),
     note: 'The frames a second that each resource alone would allow' +
         (run.bounds.computer ? '. Of banks and buses all masters count.' : '.') +
@@ -77,7 +77,6 @@ export function addBounds(page, run) {
 export function addRoofline(page, run) {
   if (!run.knobs) return;
   const board = run.knobs;
-  const {by} = rateOf(run);
   const kind = kindOfSteps(run);
   const {first, largest} = adviceOf(run);
   const pixels = settingOf(run, 'image.width') * settingOf(run, 'image.height');
@@ -91,7 +90,7 @@ export function addRoofline(page, run) {
   });
   const here = point(board, 'this board');
   const all = board.changes.filter(step => hasEffect(step, board))
-                  .map(step => point(step, shortStepText(step)))
+                  .map(step => point(step, stepText(step)))
                   .filter(each => each.accesses_per_pixel > 0);
   const roofAt = here.clock_mhz / here.accesses_per_pixel;
   const share = here.megapixels_per_second / roofAt;
@@ -99,7 +98,7 @@ export function addRoofline(page, run) {
   const linesOf = each =>
       [each.board, `${fixed(each.accesses_per_pixel, 2)} accesses of ${bankText(each.bank)} a pixel`,
        `${fixed(each.megapixels_per_second, 2)} Mpixels/s, ` +
-           `${rate(each.frames_per_second)} frames/s, ${kind}`];
+           `${rate(each.frames_per_second)} frames/s, ${kind}${lossText(each.loses_pixels)}`];
   const draw = (host, width) => {
     const {plot, width: inner, height} = drawing(
         host, width, Math.min(380, Math.max(280, width * 0.6)), {left: 46, right: 14, top: 24, bottom: 40},
@@ -144,16 +143,14 @@ export function addRoofline(page, run) {
   addChart(page, {
     id: 'roofline',
     draw,
-    title: `${bankText(here.bank)} works at ${percent(share)} of its roof: ` +
-        (by.startsWith('bank') ? 'fewer accesses are the way up' :
-             share > kNearRoof ? `a faster ${resourceText(by).replace('the ', '')} needs fewer accesses too` :
-                                 withVerb(by, 'limit')),
+    title: `${bankText(here.bank)} works at ${percent(share)} of its roof${lossText(here.loses_pixels)}`,
     note:
         'The line is the roof: what a bank with one access a cycle allows. Both axes are logarithmic. ' +
         'Large dots: this board (orange), the first change and the largest gain. ' +
         'Small dots: all other single changes.',
     numbers: () => tableOf(
-        ['board', 'bank', 'accesses_per_pixel', 'megapixels_per_second', 'frames_per_second', 'clock_mhz'],
+        ['board', 'bank', 'accesses_per_pixel', 'megapixels_per_second', 'frames_per_second', 'loses_pixels',
+         'clock_mhz'],
         [here, ...all])
   });
 }

@@ -4,12 +4,13 @@ import {addParallel, addScatter} from './database_charts.js';
 import {button, folded, h, note, textBox} from './dom.js';
 import {resourceText} from './findings.js';
 import {
-    capital, count, different, fixed, inOrder, kRates, rateWith, shortened, value, whole,
+    capital, count, different, fixed, inOrder, kRates, lossText, rateWith, shortened, value, whole,
 } from './format.js';
-import {kRateColumns, Points} from './points.js';
+import {kLostPixels, kRateColumns, Points} from './points.js';
 
 const kMostChips = 16;
 const kRowsShown = 100;
+const kAtBound = 0.005;  // a rate that is below its bound by less is that of the bound
 
 // Filters: the values of each key that varies, to be switched off and on.
 function addFilters(page, points) {
@@ -99,30 +100,35 @@ export function showDatabase(page, {database}) {
   const [named] = ties;
   const rateText = row => {
     const [amount, open] = [points.column(rateName)[row], points.uncertainty(rateName)[row]];
-    return kind ? `${rateWith(amount, open)} frames/s, ${kind[1]}` : `${fixed(amount, 2)} ${rateName}`;
+    return kind ? `${rateWith(amount, open)} frames/s, ${kind[1]}${lossText(points.lost[row])}` :
+                  `${fixed(amount, 2)} ${rateName}`;
   };
   const keysOf = row => points.keys.map(key => `${key} ${value(points.column(key)[row])}`).join(', ');
   const names = new Set(points.has('name') ? points.column('name') : []);
   const statuses = points.has('status') ? points.column('status') : [];
   const bad = statuses.filter(status => status !== 'ok').length;
+  const losing = points.losing();
+  const tally = new Map();  // of the points with a rate
+  for (let row = 0; row < points.size; ++row) {
+    const now = points.first(kRateColumns, row);
+    if (now === undefined) continue;
+    const [bound, by] = ['', '_limited_by'].map(
+        end => points.first([`bound.system${end}`, `bound.core${end}`], row));
+    const name = points.lost[row] > 0 ? 'pixels are lost' :
+        now < (1 - kAtBound) * bound  ? 'below all bounds' :
+                                        `at the bound of ${resourceText(by)}`;
+    tally.set(name, (tally.get(name) ?? 0) + 1);
+  }
   addHead(page, {
     kind: 'database',
     name: database.path,
-    headline: `${count(points.size, 'point')}: ${named ? `at most ${rateText(best)}` : 'none has a rate'}`,
+    headline: `${count(points.size, 'point')}: ${named ? `at most ${rateText(best)}` : 'none has a rate'}${
+        losing > 0 ? `; pixels are lost in ${whole(losing)} of them` : ''}`,
     sub:
         h('p', {class: 'note'},
           `${names.size === 1 ? `${[...names][0]}: ` : ''}${points.keys.length} keys vary${
               bad ? `; ${whole(bad)} points are impossible or have failed` : ''}.`)
   });
-  // Of points with cameras, what sets the bound of the whole computer.
-  const [ofSystem, ofCore] = ['system', 'core']
-                                 .map(each => `bound.${each}_limited_by`)
-                                 .map(name => points.has(name) ? points.column(name) : []);
-  const tally = new Map();
-  for (let row = 0; row < points.size; ++row) {
-    const name = ofSystem[row] ?? ofCore[row];
-    if (name) tally.set(name, (tally.get(name) ?? 0) + 1);
-  }
   addAnswers(page, [
     [
       'Which is the fastest?',
@@ -143,10 +149,8 @@ export function showDatabase(page, {database}) {
           [`${
               capital([...tally]
                           .sort((a, b) => b[1] - a[1])
-                          .slice(0, 4)
-                          .map(
-                              ([name, all], i) =>
-                                  `${resourceText(name)} in ${i ? whole(all) : count(all, 'point')}`)
+                          .slice(0, 6)
+                          .map(([name, all], i) => `${name} in ${i ? whole(all) : count(all, 'point')}`)
                           .join(', '))}.`] :
           []
     ],
@@ -157,7 +161,7 @@ export function showDatabase(page, {database}) {
   const choose = row => {
     points.chosen = row;
     scatter.redraw();
-    const figures = points.allNames.map(name => [name, points.column(name)[row]]);
+    const figures = points.allNames.map(name => [name, points.text(name, row)]);
     board.replaceChildren(
         textBox(boards.points[row].map(line => boards.lines[line]).join(''), `point_${row}.yaml`),
         folded('All figures', htmlTable(['column', 'value'], figures, 500)));
@@ -169,7 +173,8 @@ export function showDatabase(page, {database}) {
   addFilters(cards, points);
   addParallel(cards, points);
   addTable(
-      cards, points, [rateName, ...(points.figures.includes('area.slices') ? ['area.slices'] : [])], choose);
+      cards, points,
+      [rateName, ...[kLostPixels, 'area.slices'].filter(name => points.figures.includes(name))], choose);
   const constants = [['key', 'value'], points.constantKeys.map(key => [key, points.column(key)[0]])];
   addChart(cards, {
     id: 'constants',

@@ -1,21 +1,24 @@
 // The page of two runs: what differs in B.
 import {addAnswers, addChart, addGroup, addHead, htmlTable} from './card.js';
 import {commandLine} from './dom.js';
-import {kindOfRate, rateOf, resourceText, settingOf, waitsOf, waitText} from './findings.js';
-import {count, gainText, grouped, rate, rateWith, shortened, whole} from './format.js';
+import {headlineOf, kindOfRate, lostPixels, settingOf, waitsOf, waitText} from './findings.js';
+import {count, fixed, gainText, grouped, lossText, rateWith, shortened, sum, whole} from './format.js';
 import {laneNote, withFoldedLanes} from './lanes.js';
 import {addFrames, addPortStates} from './limits.js';
 import {addMemory} from './memory.js';
 import {addPicture} from './picture.js';
+import {kRateColumns} from './points.js';
 import {addBlameDifference, addRowDifference} from './waits.js';
 
 // Settings that differ: [key, value in A, value in B]. The name of the board is the last.
-const settingsOf = ({settings}) => settings.map(({path, a = '–', b = '–'}) => [path, a, b])
-                                       .sort(([x], [y]) => (x === 'name') - (y === 'name'));
+const settingsOf = ({settings}) =>
+    settings.map(({path, banks, a = banks ?? '–', b = banks ? '' : '–'}) => [path, a, b])
+        .sort(([x], [y]) => (x === 'name') - (y === 'name'));
 
-function addTotals(page, {figures}) {
+function addTotals(page, {figures}, loss) {
   const rows = figures.filter(({a, b}) => typeof a === 'number' && typeof b === 'number')
-                   .map(({path, a, b}) => [path, a, b, b - a]);
+                   .filter(({a, b}) => Number.isInteger(a + b) || a.toPrecision(6) !== b.toPrecision(6))
+                   .map(({path, a, b}) => [path + (kRateColumns.includes(path) ? loss : ''), a, b, b - a]);
   addChart(page, {
     id: 'totals',
     title: rows.length ?
@@ -39,21 +42,35 @@ function pixelText({disparities: {not_compared: reason, ...pixels}}) {
              pixels.first.camera_frame}`;
 }
 
-// What was changed, and what it does to the rate that both runs have.
-function headlineOfTwo(a, b, settings) {
-  const [ratesA, ratesB] = [a, b].map(run => run.stats.frames_per_second);
+// What differs in B for the user, the most important first.
+function headlineOfTwo(a, b) {
   const [name, kind] = kindOfRate(a, b);
-  const [before, after] = [ratesA[name], ratesB[name]];
-  const [openA, openB] = [ratesA, ratesB].map(rates => rates[`${name}_uncertainty`] ?? 0);
-  const isTie = Math.abs(after - before) <= openA + openB;
-  const change = settings.length === 0 ?
-      'The same board' :
-      changeText(settings[0]) + (settings.length > 1 ? ` and ${settings.length - 1} more` : '');
-  return `${change}: ${isTie ? '≈ 0' : gainText(after / before - 1)}, from ${rateWith(before, openA)} to ${
-      rateWith(after, openB)} frames/s, ${kind}`;
+  const [before, after] = [a, b].map(run => run.stats.frames_per_second[name]);
+  const opens = [a, b].map(run => run.stats.frames_per_second[`${name}_uncertainty`] ?? 0);
+  const [textA, textB] = [rateWith(before, opens[0]), rateWith(after, opens[1])];
+  const isTie = textA !== textB && Math.abs(after - before) <= sum(opens);
+  const [lostA, lostB] = [a, b].map(lostPixels);
+  const now = `${textB} frames/s, ${kind}${lossText(lostB)}`;
+  const isSame = (isTie || textA === textB) && lostA === lostB;
+  const rates = isSame ?
+      `The same ${now}${isTie ? ', within the uncertainty' : ''}` :
+      `${now}, instead of ${textA}${lossText(lostA)} (${isTie ? '≈ 0' : gainText(after / before - 1)})`;
+  const noun = name => number => count(number, name);
+  const others =
+      [
+        [run => run.banks_used, noun('bank')], [run => run.pins, noun('pin')],
+        [run => run.area.slices, noun('slice')], [run => run.area.block_rams, noun('block RAM')],
+        [run => run.area.multipliers, noun('multiplier')],
+        [run => run.stats.latency_ms?.capture_to_host.p50, ms => `${fixed(ms, 1)} ms of latency`]
+      ].filter(([of]) => of(a) !== undefined && of(b) !== undefined)
+          .map(([of, text]) => [text(of(a)), text(of(b))])
+          .filter(([x, y]) => x !== y)
+          .map(([x, y]) => `${y} instead of ${x.split(' ')[0]}`);
+  if (isSame && others.length === 0) return `${rates}: banks, pins, area and latency are the same`;
+  return [rates, others.join(', ')].filter(Boolean).join(', with ');
 }
 
-const changeText = ([key, x, y]) => `${key}: ${x} → ${y}`;
+const changeText = ([key, x, y]) => `${key}: ${x}${y === '' ? '' : ` → ${y}`}`;
 
 // Amounts of rows as a map over the picture.
 const layerOf = (cycles, width) =>
@@ -61,14 +78,13 @@ const layerOf = (cycles, width) =>
 
 export function showTwoRuns(page, {runs, difference}) {
   const [a, b] = runs.map(withFoldedLanes);
-  const [rateA, rateB] = [rateOf(a), rateOf(b)];
   const settings = settingsOf(difference);
   const isSame = difference.disparities.frames > 0 && difference.disparities.pixels_that_differ === 0;
   const blame = run => waitsOf(run).length ? `${waitText(waitsOf(run)[0])}.` : 'Nobody.';
   addHead(page, {
     kind: 'two runs',
     name: `A ${a.folder} · B ${b.folder}`,
-    headline: headlineOfTwo(a, b, settings),
+    headline: headlineOfTwo(a, b),
     sub: [runs.map(laneNote).find(Boolean), commandLine(a.command), commandLine(b.command)]
   });
   const {rows} = difference;
@@ -91,13 +107,7 @@ export function showTwoRuns(page, {runs, difference}) {
            rows.parting ? `In frame ${rows.parting.frame}, row ${rows.parting.row}.` :
                           'Nowhere.']
     ],
-    [
-      'What limits?',
-      [
-        `A: ${resourceText(rateA.by)}, at ${rate(rateA.limit)} frames/s.`,
-        `B: ${resourceText(rateB.by)}, at ${rate(rateB.limit)} frames/s.`
-      ]
-    ]
+    ['How near are their bounds?', [`A: ${headlineOf(a)}.`, `B: ${headlineOf(b)}.`]]
   ]);
 
   const where = addGroup(page, 'Where and when');
@@ -133,5 +143,5 @@ export function showTwoRuns(page, {runs, difference}) {
     body: settings.length > 0 && htmlTable(['key', 'A', 'B'], settings),
     numbers: () => [['key', 'a', 'b'], settings]
   });
-  addTotals(figures, difference);
+  addTotals(figures, difference, lossText(lostPixels(a) + lostPixels(b) > 0));
 }

@@ -1,12 +1,13 @@
 // The points of a database: their columns, which of them are selected, and the front of Pareto.
-import {kRates, value} from './format.js';
+import {kRates, lossText, sum, value} from './format.js';
 
 export const kRateColumns = kRates.map(([name]) => `frames_per_second.${name}`);
+export const kLostPixels = 'lost_pixels';  // the sum of both cameras
 
 // Rates and prices first, then keys, then the other figures.
 const kFirst = [
-  ...kRateColumns, 'bound.system', 'bound.core', 'area.slices', 'area.block_rams', 'area.multipliers',
-  'latency_ms.capture_to_host.p50'
+  kRateColumns[0], kLostPixels, ...kRateColumns.slice(1), 'bound.system', 'bound.core', 'area.slices',
+  'area.block_rams', 'area.multipliers', 'latency_ms.capture_to_host.p50'
 ];
 
 export class Points {
@@ -14,6 +15,7 @@ export class Points {
     this.size = points;
     this.columns = new Map(columns.map(({name, ...column}) => [name, column]));
     this.addShares();
+    this.addLostPixels();
     this.keys = keys.filter(key => this.has(key) && !this.isConstant(key));
     this.constantKeys = keys.filter(key => this.has(key) && this.isConstant(key));
     const figures = this.allNames.filter(name => !keys.includes(name));
@@ -42,6 +44,24 @@ export class Points {
       const list = this.column(name).map((each, row) => each === null ? null : factor * each / cycles[row]);
       this.columns.set(target, {list});
     }
+  }
+  addLostPixels() {
+    const lists = this.allNames.filter(name => /^cameras\..*\.dropped_pixels$/.test(name))
+                      .map(name => this.column(name));
+    this.lost = Array.from({length: this.size}, (_, row) => sum(lists.map(list => list[row])));
+    if (this.lost.some(pixels => pixels > 0)) this.columns.set(kLostPixels, {list: this.lost});
+  }
+  losing(rows = [...this.lost.keys()]) {
+    return rows.filter(row => this.lost[row] > 0).length;
+  }
+  // A value as text, a rate with its loss.
+  text(name, row) {
+    const text = value(this.column(name)[row]);
+    return text && kRateColumns.includes(name) ? text + lossText(this.lost[row]) : text;
+  }
+  // The value of the first of these columns that has one for a point.
+  first(names, row) {
+    return names.map(name => this.has(name) ? this.column(name)[row] : null).find(each => each !== null);
   }
   // The columns that are offered, and all columns.
   get names() {
@@ -116,7 +136,7 @@ export class Points {
     const numbers = this.column(name);
     const limits = this.allNames.filter(each => /^area\..*_percent$/.test(each))
                        .map(each => [each, 100])
-                       .concat(['left', 'right'].map(side => [`cameras.${side}.dropped_pixels`, 0]))
+                       .concat([[kLostPixels, 0]])
                        .filter(([each]) => this.has(each))
                        .map(([each, most]) => [this.column(each), most]);
     const all = [...numbers.keys()].filter(row => typeof numbers[row] === 'number');

@@ -184,9 +184,7 @@ export function addTimeLine(page, run) {
     draw,
     title: `The core works ${percent(works)} of the time${waits.title}`,
     note: [
-      waits.note,
-      drops > 0 && (droppedText(run) ?? `${count(drops, 'frame')} of the left camera are dropped.`),
-      drops > 0 && 'Crosses: dropped frames.',
+      waits.note, drops > 0 && `${droppedText(run)} Crosses: dropped frames.`,
       'The number in a bar is the frame; thin grey bars are waits. Drag to choose the time that is shown.',
       recorded.all > recorded.rows.length &&
           `The page has ${whole(recorded.rows.length)} of ${
