@@ -55,7 +55,7 @@ struct ReportOptions : Options {
 std::string text_of(const runs::Explanation& found) {
   const auto line = [](const runs::Explanation::Rate& rate, const std::string& what) {
     return fmt::format("{:>10.3f} frames/s{}: {}\n", rate.frames_per_second,
-                       rate.loses_pixels ? ", losing pixels" : "", what);
+                       rate.loses_pixels() ? ", losing pixels" : "", what);
   };
   std::string text = paragraph("", 0, "limited by " + runs::limiter_text(found)) +
                      paragraph("the time of a frame: ", 2, runs::budget_text(found)) +
