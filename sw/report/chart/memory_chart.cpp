@@ -304,6 +304,10 @@ Lines subtitle_of(const ChartView& view) {
     text = fmt::format("{} frames/s, steady; {} from power-up", rate_text(rates.steady->frames_per_second),
                        rate_text(*rates.system));
   }
+  const auto loses = [](const platform::CameraStatistics& camera) { return camera.dropped_pixels > 0; };
+  const std::vector<platform::CameraStatistics> none;
+  const auto& cameras = view.run->computer ? view.run->computer->cameras : none;
+  if (std::any_of(cameras.begin(), cameras.end(), loses)) text += ", losing pixels";
   lines.push_back(fmt::format("{}; {}", text, count_of(static_cast<int>(view.run->frames), "frame")));
   lines.push_back(
       fmt::format("bound {} frames/s{}, set by {}", rate_text(bound.system.value_or(bound.core)),
