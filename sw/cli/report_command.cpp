@@ -51,7 +51,10 @@ struct ReportOptions : Options {
              "Simulate nothing: no gain of the changes; rows and times only of a run with --record");
 };
 
-// What `explain` finds, for a page without JavaScript.
+// What `run` has printed, and what `explain` finds, for a page without JavaScript.
+std::string text_of(const runs::RecordedRun& run) {
+  return run.folder + "\n\n" + stats::console_table(run.statistics, run.board);
+}
 std::string text_of(const runs::Explanation& found) {
   const auto line = [](const runs::Explanation::Rate& rate, const std::string& what) {
     return fmt::format("{:>10.3f} frames/s{}: {}\n", rate.frames_per_second,
@@ -79,7 +82,7 @@ std::optional<Json> data_of_run(const ReportOptions& options, process::Problems&
   }
   problems.check();
   Json data = report::run_data(*run, input.tables);
-  std::string text = stats::console_table(run->statistics, run->board);
+  std::string text = text_of(*run);
   if (options.quick.is_given()) {
     process::attempt_or_refuse("", [&] { report::add_recorded_files(*run, data); });
   } else {
@@ -92,7 +95,7 @@ std::optional<Json> data_of_run(const ReportOptions& options, process::Problems&
     text += '\n' + text_of(explanation);
   }
   runs::say_lost_pixels(run->statistics, fmt::format("'{}': ", run->folder));
-  return Json{{"kind", "run"}, {"text", run->folder + "\n\n" + text}, {"run", std::move(data)}};
+  return Json{{"kind", "run"}, {"text", std::move(text)}, {"run", std::move(data)}};
 }
 
 std::optional<Json> data_of_two_runs(const ReportOptions& options, process::Problems& problems) {
@@ -114,11 +117,9 @@ std::optional<Json> data_of_two_runs(const ReportOptions& options, process::Prob
     runs::say_lost_pixels(run.statistics, fmt::format("'{}': ", run.folder));
   Json data = {{"kind", "two_runs"}};
   data.update(report::two_runs_data(of_a, of_b, aligned, limits));
-  const Json& difference = data["difference"];
-  data["text"] =
-      fmt::format("A: {}\nB: {}\n\n{}\n{}\n{}", a->folder, b->folder, paragraph("", 0, difference["verdict"]),
-                  report::settings_table("board", difference["settings"]),
-                  report::figures_table("figures", report::shown_values(difference["figures"])));
+  data["text"] = paragraph("", 0, data["difference"]["verdict"]) + '\n' +
+                 report::settings_table("board", data["difference"]["settings"]) + "\nA: " + text_of(*a) +
+                 "\nB: " + text_of(*b);
   return data;
 }
 

@@ -444,7 +444,9 @@ platform::Statistics read_stats(const std::string& text, const platform::BoardCo
     statistics.frames_per_second.system.emplace();
     statistics.bound.system.emplace();
     statistics.computer.emplace();
-    if (reader.has(Pointer("/frames_per_second/steady"))) statistics.frames_per_second.steady.emplace();
+    if (reader.has(Pointer("/frames_per_second/steady")))
+      statistics.frames_per_second.steady.emplace().frames =
+          platform::steady_frames(frames, platform::allocation_period_frames(board));
   }
   each_field(reader, statistics);
   if (frames == 0 || statistics.frame_cycles.size() != frames)

@@ -304,8 +304,7 @@ Lines subtitle_of(const ChartView& view) {
     text = fmt::format("{} frames/s, steady; {} from power-up", rate_text(rates.steady->frames_per_second),
                        rate_text(*rates.system));
   }
-  text += stats::rate_remark(rates.steady ? rates.steady->frames_per_second : 0,
-                             bound.system.value_or(bound.core), platform::lost_pixels(*view.run));
+  text += stats::rate_remark(0, 0, platform::lost_pixels(*view.run));
   lines.push_back(fmt::format("{}; {}", text, count_of(static_cast<int>(view.run->frames), "frame")));
   lines.push_back(
       fmt::format("bound {} frames/s{}, set by {}", rate_text(bound.system.value_or(bound.core)),

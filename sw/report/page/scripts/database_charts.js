@@ -75,7 +75,7 @@ export function addScatter(page, points, choose) {
   const legendHost = h('div');
   const linesOf =
       row => [y.name, x.name]
-                 .map(name => `${name} ${points.text(name, row)}`)
+                 .map(name => `${name} ${points.textWithLoss(name, row)}`)
                  .concat(points.keys.slice(0, 8).map(key => `${key}: ${value(points.column(key)[row])}`));
 
   const draw = (host, width) => {

@@ -100,9 +100,7 @@ function whatLimits(run) {
     limiter ? `Limited by ${grouped(limiter)}.` : 'Not known with --quick: only how far the lowest bound is.',
     limiter && rateOf(run).kind !== kindOfSteps(run) && `That is steady, of ${whole(frames)} frames.`,
     `${headlineOf(run)}.`, run.stats.cameras && droppedText(run),
-    lostPixels(run) > 0 &&
-        'Captures lose pixels where their FIFOs are full before the words reach the memory. ' +
-            'Disparities there are wrong.'
+    lostPixels(run) > 0 && 'Pixels are lost where a capture FIFO is full. Disparities there are wrong.'
   ];
 }
 

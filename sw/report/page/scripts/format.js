@@ -31,7 +31,6 @@ export const signed = (number, text) =>
     `${number < 0 && !isShownAsZero(text(Math.abs(number))) ? '−' : '+'}${text(Math.abs(number))}`;
 // A gain, as a share of what there was.
 export const gainText = gain => Math.abs(gain) < 0.0005 ? '≈ 0' : signed(gain, percent);
-export const sameWithin = (a, b, share) => Math.abs(a / b - 1) <= share;
 export const count = (number, noun) => `${whole(number)} ${noun}${number === 1 ? '' : 's'}`;
 
 // For ticks: 1200 -> 1.2k.

@@ -107,7 +107,6 @@ export function showDatabase(page, {database}) {
   const names = new Set(points.has('name') ? points.column('name') : []);
   const statuses = points.has('status') ? points.column('status') : [];
   const bad = statuses.filter(status => status !== 'ok').length;
-  const losing = points.losing();
   const tally = new Map();  // of the points with a rate
   for (let row = 0; row < points.size; ++row) {
     const now = points.first(kRateColumns, row);
@@ -123,7 +122,7 @@ export function showDatabase(page, {database}) {
     kind: 'database',
     name: database.path,
     headline: `${count(points.size, 'point')}: ${named ? `at most ${rateText(best)}` : 'none has a rate'}${
-        losing > 0 ? `; pixels are lost in ${whole(losing)} of them` : ''}`,
+        points.losing() > 0 ? `; pixels are lost in ${whole(points.losing())} of them` : ''}`,
     sub:
         h('p', {class: 'note'},
           `${names.size === 1 ? `${[...names][0]}: ` : ''}${points.keys.length} keys vary${
@@ -161,7 +160,7 @@ export function showDatabase(page, {database}) {
   const choose = row => {
     points.chosen = row;
     scatter.redraw();
-    const figures = points.allNames.map(name => [name, points.text(name, row)]);
+    const figures = points.allNames.map(name => [name, points.textWithLoss(name, row)]);
     board.replaceChildren(
         textBox(boards.points[row].map(line => boards.lines[line]).join(''), `point_${row}.yaml`),
         folded('All figures', htmlTable(['column', 'value'], figures, 500)));

@@ -54,8 +54,7 @@ export class Points {
   losing(rows = [...this.lost.keys()]) {
     return rows.filter(row => this.lost[row] > 0).length;
   }
-  // A value as text, a rate with its loss.
-  text(name, row) {
+  textWithLoss(name, row) {
     const text = value(this.column(name)[row]);
     return text && kRateColumns.includes(name) ? text + lossText(this.lost[row]) : text;
   }
