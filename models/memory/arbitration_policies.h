@@ -12,9 +12,9 @@ namespace stereotlm::memory {
 // BankArbiter holds the order, so that one policy serves any number of banks.
 //
 // The order is the whole state of an arbiter. Two rules let cycles be skipped. After a cycle without request,
-// further such cycles change nothing. After a grant without competitors, each further one to the same port
-// acts as a cycle without request does. So an uncontended port can be granted without its arbiter, which
-// receives the number of grants later.
+// further ones change nothing. After an uncontended grant, each further one to the same port acts as a cycle
+// without request does: an uncontended port is granted without its arbiter, which gets the number of grants
+// later. An order that depends on elapsed time, or on the number of grants, breaks them.
 struct ArbitrationPolicy {
   const char* name;          // in board files
   const char* list_meaning;  // meaning of the priority list for this policy, for the list of keys

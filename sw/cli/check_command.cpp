@@ -9,6 +9,7 @@
 #include "platform/yaml/yaml_tree.h"
 #include "sw/cli/command.h"
 #include "sw/cli/run_options.h"
+#include "sw/files/output_file.h"
 #include "sw/process/client.h"
 
 namespace stereotlm::cli {
@@ -77,11 +78,29 @@ void send_files(const LoadedBoard& loaded, const process::FileContents& sent) {
   }
 }
 
-int check(const BoardCommandOptions& options) {
+struct CheckOptions : BoardCommandOptions {
+  using BoardCommandOptions::BoardCommandOptions;
+
+  Option write = Option(this, "--write", "F.yaml", "Write the board as a board file", {ends_in(".yaml")});
+};
+
+// Replaces no file but one of the same bytes.
+void write_board(const CheckOptions& options, const std::string& text) {
+  const files::FileKind kind = {"file of this board",
+                                [&](const auto& file) { return files::read_whole_file(file) == text; }};
+  const std::vector<files::NamedFile> read = {{"BOARD", options.board.argument.text()}};
+  std::optional<files::OutputFile> file;
+  process::attempt_or_refuse("--write ", [&] { file.emplace(options.write.text(), kind, read); });
+  file->write(text);
+  file->commit();
+}
+
+int check(const CheckOptions& options) {
   process::Problems problems;
   const LoadedBoard loaded = options.board.load(problems);
   if (problems.empty()) loaded.say_clock_remark();
   if (problems.empty() && process::client != nullptr) send_files(loaded, options.board.sent);
+  if (problems.empty() && options.write.is_given()) write_board(options, platform::to_yaml(*loaded.board));
   if (options.json.is_given()) {
     process::print(json_text(
         document_of(options.board.argument.text(), loaded.board ? &*loaded.board : nullptr, problems)));
@@ -115,7 +134,7 @@ nlohmann::ordered_json problem_document(const platform::Diagnostic& problem) {
 
 void add_check(Commands& commands) {
   add_command(
-      commands, "check", "Validate a board and nothing else", check,
+      commands, "check", "Validate a board, and write it as a file", check,
       "With --json the problems of the board are printed as a list to standard output. The exit status\n"
       "is 2 then too.");
 }

@@ -339,9 +339,6 @@ bool RunOptions::has_board_only() const {
 void RunOptions::check_together(const std::string& command, process::Problems& problems) const {
   const bool has_pictures = pictures.check_together(problems, timing_only.is_given());
   trace.check_together(problems);
-  if (has_arrays() && out.is_given())
-    problems.add(
-        "--out: does not go with arrays: the folder names the files of its pictures: must be a run of files");
   if (truth.file.is_given() && pictures.synthetic.is_given())
     problems.add("--truth: does not go with --synthetic, whose scene is its own truth");
   for (const auto& [name, given] :
@@ -386,6 +383,7 @@ runs::RunInput RunOptions::load() const {
       input.calibration = calibration->calibration;
       input.described.calibration = calibration->described;
     }
+    if (has_arrays() && input.folder) named.sequence = runs::keep_pictures(*opened.pairs, *input.folder);
     describe(*this, opened.pairs ? opened.pairs->length() : 1, input);
   });
   trace.check_window(input.board, input.frames, problems);

@@ -51,6 +51,7 @@ class OutputFolder {
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
+  const std::filesystem::path& path() const { return dir_; }  // DIR, absolute
 
   // Adds a file of the command, each name once. Throws std::invalid_argument for another name, and
   // std::runtime_error if the file cannot be stored (disk full). The object can then only be destroyed.

@@ -108,16 +108,32 @@ files::OutputContent result_content(std::vector<files::NamedFile> inputs) {
                    "disparity.@(pfm|png)",
                    "@(depth|disparity)_color.png",
                    "frames/",
-                   "frames/[0-9][0-9][0-9][0-9][0-9]+([0-9]).png"};
+                   "frames/[0-9][0-9][0-9][0-9][0-9]+([0-9]).png",
+                   "pictures/",
+                   "pictures/@(left|right)_[0-9][0-9][0-9][0-9][0-9]+([0-9]).png"};
   content.inputs = std::move(inputs);
   return content;
+}
+
+InputFolder keep_pictures(PairSource& pairs, files::OutputFolder& folder) {
+  InputFolder kept = {(folder.path() / "pictures").string(), {}};
+  for (std::uint64_t index = 0; index < pairs.length(); ++index) {
+    const host::StereoPair& pair = pairs.pair(index);
+    for (const auto& [side, picture] : {std::pair("left", &pair.left), std::pair("right", &pair.right)}) {
+      const std::string name = fmt::format("{}_{:06}.png", side, index);
+      const std::vector<std::uint8_t> png = media::encode_png_gray(*picture);
+      kept.files.push_back({name, files::sha256_hex(png.data(), png.size())});
+      folder.add("pictures/" + name, png);
+    }
+  }
+  return kept;
 }
 
 void save_frame(const RunInput& input, const Result& result) {
   if (!input.described.save_frames) return;
   const std::string name = frame_file_name(result.number);
-  if (input.folder) return input.folder->add(name, media::encode_png_gray(result.disparity));
-  send(name, result.disparity);
+  if (input.folder) input.folder->add(name, media::encode_png_gray(result.disparity));
+  if (process::client != nullptr) send(name, result.disparity);
 }
 
 Records::Records(const RunInput& input, Append append) : input_(input), append_(std::move(append)) {

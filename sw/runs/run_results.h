@@ -18,7 +18,10 @@ std::string frame_file_name(std::uint64_t frame);
 // The folder of `run --out`: one result and nothing else. Its mark is run.json. `inputs`: see OutputContent.
 files::OutputContent result_content(std::vector<files::NamedFile> inputs = {});
 
-// With --save-frames: adds the disparities of this frame to the result folder, which deliver() commits, or
+// Adds pictures that are in no files to the result folder, and returns them as a sequence there.
+InputFolder keep_pictures(PairSource& pairs, files::OutputFolder& folder);
+
+// With --save-frames: adds the disparities of this frame to the result folder, which deliver() commits, and
 // sends them to the client.
 // Throws std::runtime_error if they cannot be written.
 void save_frame(const RunInput& input, const Result& result);

@@ -211,6 +211,10 @@ class Board:
         """Raises Refused with all problems of the board."""
         self._execute("check", "--json")
 
+    def save(self, path):
+        """Writes NAME.yaml: Board(path) is this board, without its calibration. Replaces no other file."""
+        self._execute("check", *_options({"write": os.fsdecode(path)}))
+
     def __getitem__(self, path):
         try:
             return self._get(path)
@@ -303,8 +307,8 @@ class Board:
 
         `left`, `right`: arrays of uint8, (rows, columns) for one pair or (pairs, rows, columns) for as many,
         or the paths of two files. Without pictures only times and counts are simulated. `options`: those of
-        `stereotlm run`: frames=100, synthetic=1, fidelity="cycle", truth="truth.png"; with files instead of
-        arrays out="folder", which `stereotlm report` reads.
+        `stereotlm run`: frames=100, synthetic=1, fidelity="cycle", truth="truth.png", out="folder". `out`
+        keeps the results for `stereotlm report` and `diff`, of arrays with their pictures.
 
         By default the whole computer with its cameras runs until it has delivered as many frames as there are
         pairs. source="preloaded" is the core alone.

@@ -218,6 +218,21 @@ class Files(PythonTest):
         for run in runs:
             self.assertEqual(run.board.run(**ALONE).statistics, run.statistics)
 
+    def test_a_board_is_saved_as_a_file_that_gives_it_again(self):
+        board = small_board(matcher__cost={"census": 5}, name="é: x", pci__load={"burst_words": 64,
+                                                                                "interval_us": 2.5})
+        for path in (self.folder / "board.yaml", os.fsencode(self.folder) + b"/\xff.yaml"):
+            board.save(path)
+            again = stereotlm.Board(path)
+            self.assertEqual((again, again.sets), (board, []))
+        board.save(self.folder / "board.yaml")  # the same bytes
+        board.matcher.window = 5
+        with self.unchanged(self.folder / "board.yaml"):
+            for its, path, text in ((board, self.folder / "board.yaml", "exists, and is not known as a"),
+                                    (again, again.board, "is the file of BOARD: must be another"),
+                                    (board, self.left, "must end in .yaml"), (board, "", "--write")):
+                self.assertIn(text, str(self.refusal(lambda: its.save(path))))  # noqa: B023
+
     def test_pipes_and_devices_are_refused(self):
         os.mkfifo(self.folder / "pipe.yaml")
         pipe = str(self.folder / "pipe.yaml")
@@ -272,8 +287,22 @@ class Runs(PythonTest):
         self.assertEqual(board.run(synthetic=1, **ALONE).disparity.shape, (HEIGHT, WIDTH))
         found = board.run(self.left, self.right, out=self.out, **ALONE)
         self.assertEqual(found.statistics["frames"], self.stats()["frames"])
-        self.assertIn("does not go with arrays", str(self.refusal(
-            lambda: board.run(*self.arrays, out=self.folder / "other"))))
+
+    def test_a_run_of_arrays_keeps_a_result_folder(self):
+        board = small_board(cameras__frame_rate_hz=1000, fpga__clock_mhz=4)
+        for pairs, pictures in ((1, self.arrays), (3, [numpy.stack([side] * 3) for side in self.arrays])):
+            out = self.folder / f"kept{pairs}"
+            found = board.run(*pictures, frames=4, out=out)
+            again = board.run(sequence=out / "pictures", frames=4, out=self.out, save_frames=pairs > 1)
+            self.assertEqual(len(os.listdir(out / "pictures")), 2 * pairs)
+            self.assertEqual(found.statistics, again.statistics)
+            self.assertEqual(found.frame_numbers, again.frame_numbers)
+            self.assertTrue((found.disparity == again.disparity).all())
+            kept = {name: data for name, data in self.result(out).items() if "pictures/" not in name}
+            self.assertEqual(kept, self.result())
+            self.succeeds(run("diff", out, self.out))
+            with self.unchanged(out):
+                self.refused(run("run", "fpl2003", *SMALL, "--sequence", out / "pictures", "--out", out))
 
     def test_a_stack_is_a_sequence(self):
         pairs = [numpy.stack([numpy.roll(side, shift, 1) for shift in range(3)]) for side in self.arrays]

@@ -5,10 +5,12 @@
 #include <cstdio>
 #include <cstdlib>
 #include <numeric>
+#include <set>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "models/memory/arbitration_policies.h"
 #include "platform/bounds.h"
 #include "platform/config/board_yaml.h"
 #include "platform/conflicts.h"
@@ -310,6 +312,16 @@ TEST_P(RandomBoards, GiveTheSameDisparityImageWithAnyAllocation) {
     EXPECT_EQ(images[0], images[1]);
     EXPECT_EQ(images[0], images[2]);
   }
+}
+
+TEST_P(RandomBoards, HaveEveryArbitrationPolicy) {
+  std::set<std::string> drawn;
+  for (std::uint64_t seed = 0; seed < 100; ++seed)
+    drawn.insert(board_config(board_of(seed, GetParam())).fpga.arbiter.policy);
+  for (const memory::ArbitrationPolicy& policy : memory::arbitration_policies())
+    EXPECT_EQ(drawn.count(policy.name), 1U)
+        << policy.name << ": not in the plain cycle loop, with which each "
+        << "policy is compared: models/INSIDE.md says how to add it there";
 }
 
 TEST_P(RandomBoards, AreValid) {

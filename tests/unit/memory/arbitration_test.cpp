@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "models/memory/arbitration_policies.h"
 #include "models/memory/bank_arbiter.h"
 #include "tests/unit/memory/ports.h"
 
@@ -54,8 +55,8 @@ TEST(Arbitration, GrantsNothingToAPortThatIsUnrouted) {
 }
 
 TEST(BankArbiter, RefusesARequestOfAPortThatIsNotInThePriorityList) {
-  for (const char* policy : {"fixed_priority", "round_robin", "age"}) {
-    BankArbiter arbiter({policy, {1, 0}}, {16});
+  for (const ArbitrationPolicy& policy : arbitration_policies()) {
+    BankArbiter arbiter({policy.name, {1, 0}}, {16});
     EXPECT_EQ(arbiter.decide(0, 0b01, 0).granted, 0b01);
     EXPECT_THROW(arbiter.decide(1, 0b100, 0), std::invalid_argument);
     EXPECT_THROW(arbiter.decide(1, 0b101, 0), std::invalid_argument);

@@ -13,10 +13,12 @@
 #include <memory>
 #include <numeric>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "models/kernel_time.h"
+#include "models/memory/arbitration_policies.h"
 #include "models/memory/ssram_bank.h"
 #include "models/testing/expected_report.h"
 #include "models/testing/monitoring_binder.h"
@@ -294,7 +296,7 @@ Traffic draw(std::uint64_t seed) {
   test::SplitMix64 random(seed);
   Traffic traffic;
   const auto ports = static_cast<std::size_t>(random.between(1, 7));
-  traffic.config.arbiter.policy = std::vector<std::string>{"fixed_priority", "round_robin", "age"}[seed % 3];
+  traffic.config.arbiter.policy = arbitration_policies()[seed % arbitration_policies().size()].name;
   traffic.config.arbiter.priority = list_of(ports);
   for (std::size_t left = ports; left > 1; --left)
     std::swap(traffic.config.arbiter.priority[left - 1],
@@ -457,12 +459,14 @@ class PlainCrossbar {
   }
   Port winner_of(const Bank& bank, std::size_t direction, const std::vector<std::size_t>& asking) const {
     const PriorityList& list = traffic_.config.arbiter.priority;
-    if (traffic_.config.arbiter.policy == "fixed_priority") return asking.front();
-    if (traffic_.config.arbiter.policy == "age") {
+    const std::string& policy = traffic_.config.arbiter.policy;
+    if (policy == "fixed_priority") return asking.front();
+    if (policy == "age") {
       return *std::max_element(asking.begin(), asking.end(), [&](std::size_t a, std::size_t b) {
         return bank.age[direction][a] < bank.age[direction][b];
       });
     }
+    if (policy != "round_robin") throw std::invalid_argument("policy " + policy + ": not in this plain loop");
     for (std::size_t step = 0; step < list.size(); ++step) {
       const std::size_t begin = bank.last_port[direction] ? *bank.last_port[direction] + 1 : 0;
       const Port port = list[(begin + step) % list.size()];

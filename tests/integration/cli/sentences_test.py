@@ -1,0 +1,149 @@
+"""Each sentence about random computers agrees with the counters of their runs, and with all others."""
+
+import concurrent.futures
+import json
+import os
+import random
+import re
+import shlex
+import tempfile
+import types
+import unittest
+
+import program
+from browser import Browser
+from program import run, sets, shared_folder
+from report_data import data_of
+
+COMPUTERS = int(os.environ.get("STEREOTLM_RANDOM_SENTENCES", 20))
+TIMES = ["--timing-only", "--frames", 42]  # as many frames as explain simulates
+BANKS = [f"bank{number}" for number in range(4)]
+PAIRS = [f"[{first}, {second}]" for first in BANKS for second in BANKS]
+CHOICES = {
+    "image.width": range(32, 65, 4), "image.height": range(24, 49), "matcher.disparities": range(4, 33),
+    "cameras.frame_rate_hz": range(100, 1000), "fpga.arbitration": ("fixed_priority", "round_robin", "age"),
+    "pci.clock_mhz": (1, 1.5, 2, 3, 12), "pci.load": ("none", "none", "{burst_words: 16, interval_us: 9}"),
+    "capture.fifo_trigger_words": range(1, 5), "capture.fifo_words": (4, 6, 20, 140),
+    "capture.destination": ("board", "board", "host_memory"), "allocation.left_image": PAIRS,
+    "allocation.right_image": PAIRS, "allocation.disparity": PAIRS, "allocation.left_lut": BANKS,
+    "allocation.right_lut": BANKS,
+    "ssram.banks": ["{bank0: {}, bank1: {}, bank2: {}, bank3: {}}"],
+    "ssram.default": [f"{{words: 8192, kind: {kind}}}" for kind in ("zbt_pipelined", "qdr")]}
+MULTIPLES = {"fpga.clock_mhz": (4, 8), "bridge.local_clock_mhz": (1, 2, 4, 8, 16)}
+NO_MULTIPLES = {"fpga.clock_mhz": (5, 7, 9, 11), "bridge.local_clock_mhz": (2, 4, 6, 8, 13)}
+
+
+def said(*arguments):
+    process = run(*arguments)
+    assert process.returncode == 0, (arguments, process.stderr)
+    return process.stdout
+
+
+def stats_of(*board):
+    stats = json.loads(said("run", *board, *TIMES, "--json"))
+    return stats, sum(camera["dropped_pixels"] for camera in stats["cameras"])
+
+
+def computer_of(seed):
+    """A computer and what is said of it. Half of all lose pixels; the clocks of a third are no multiples."""
+    draw, lost = random.Random(seed), None
+    while lost is None or (lost > 0) != (seed % 2 == 0):
+        choices = {**CHOICES, **(MULTIPLES if seed % 3 else NO_MULTIPLES)}
+        options = sets(*(f"{key}={draw.choice(values)}" for key, values in choices.items()))
+        stats, lost = stats_of("fpl2003", *options)
+    out, page, quick = (shared_folder() / f"{seed}{ending}" for ending in ("", ".html", "quick.html"))
+    texts = {command: said(command, "fpl2003", *options) for command in ("bounds", "explain")}
+    texts["run"] = said("run", "fpl2003", *options, *TIMES, "--out", out)
+    said("report", out, "--out", page)
+    said("report", out, "--quick", "--out", quick)
+    bounds = json.loads(said("bounds", "fpl2003", *options, "--json"))
+    explained = data_of(page)["run"]["knobs"]  # the document of explain
+    busy = {bank["name"]: bank["utilization"] for bank in stats["banks"]}
+    busy["pci"] = stats["pci"]["busy_clocks"] / stats["pci"]["clocks"]
+    busy["bridge"] = stats["bridge"]["local_busy_clocks"] / stats["bridge"]["local_clocks"]
+    rate, bound, left = stats["frames_per_second"]["steady"], bounds["bound"]["system"], stats["cameras"][0]
+    rates = [(change["frames_per_second"], change["loses_pixels"]) for change in explained["changes"]]
+    rates += [(rate, lost > 0), (stats["frames_per_second"]["system"], lost > 0)]
+    alone = {each["resource"].split()[-1]: each["frames_per_second"] for each in bounds["computer"]}
+    return types.SimpleNamespace(**locals())
+
+
+def shown(text, value):
+    """Whether a printed number is this value, rounded."""
+    return abs(float(text.replace(",", "")) - value) <= 0.500001 * 10 ** -len(text.partition(".")[2])
+
+
+def has_loss(c, text, rate):
+    """A rate that is reached by losing pixels stands beside the loss."""
+    bounds = [(each, False) for each in c.alone.values()] if "bound" in text else []
+    loses = {loses for each, loses in c.rates + bounds if shown(rate, each)}
+    return loses != {True} or re.search(r"\blos(?:e|es|ing|s|t)\b", text)
+
+
+def resource_in(text):
+    found = re.search(r"(PCI bus)|(bridge|local bus)|(cameras)|(matcher)|(bank\d)", text, re.I)
+    return found and ("pci", "bridge", "camera", "matcher", found[0].lower())[found.lastindex - 1]
+
+
+# What a sentence says, and whether that is true of the computer c: all that depends on the wording.
+SENTENCES = (
+    (r"(\d[\d,]*\.?\d*)(?: ± [\d.]+)? frames/s", has_loss),
+    (r"^ +([\d.]+) +[-+][\d.]+ +[-+][\d.]+ .* -> ", has_loss),
+    (r"aptures lose ([\d,]+) pixels", lambda c, text, pixels: shown(pixels, c.lost)),
+    (r"(PCI bus|bridge|local bus|bank\d)((?!bus|bridge|bank).)*busy (?:in )?([\d.]+) % of",
+     lambda c, text, name, _, busy: shown(busy, 100 * c.busy[resource_in(name)])),
+    (r"([\d.]+) % of the bound", lambda c, text, share: shown(share, 100 * c.rate / c.bound)),
+    (r"of the bound (?:of )?([\d,]+\.?\d*)", lambda c, text, bound: shown(bound, c.bound)),
+    (r"of the bound", lambda c, text: c.rate <= c.bound or re.search("uncertain|los", text)),
+    (r"([\d,]+) of [\d,]+ frames? of the left", lambda c, text, its: shown(its, c.left["dropped_frames"])),
+    (r"of ([\d,]+) frames? of the left", lambda c, text, its: shown(its, c.left["frames"])),
+    (r"(\d[\d,]*) because its capture board", lambda c, text, its: shown(its, c.left["dropped_not_armed"])),
+    (r"(\w+) waits there for [\w -]+ in ([\d.]+) %", lambda c, text, port, share: any(
+        shown(share, row["cycles_percent"]) for row in c.explained["blame"] if row["port"] == port)))
+ANSWERS = "return [...document.querySelectorAll('h1, .answers dd')].map(each => each.textContent)"
+
+
+class Sentences(unittest.TestCase):
+    def test_agree(self):
+        browser = Browser(self.enterContext(tempfile.TemporaryDirectory()))
+        self.addCleanup(browser.quit)
+        with concurrent.futures.ThreadPoolExecutor(2) as threads:
+            for c in threads.map(computer_of, range(COMPUTERS)):
+                for page in (c.page, c.quick):
+                    browser.driver.get(page.as_uri())
+                    program.wait_until(lambda: browser.all("footer"))
+                    c.texts[page.stem] = "\n".join(browser.run(ANSWERS)).replace("\u00a0", " ")
+                with self.subTest(shlex.join(c.options)):
+                    wrong = [*self.wrong_sentences(c), *self.contradictions(c)]
+                    self.assertTrue(not wrong, "\n" + "\n".join(wrong))
+
+    def wrong_sentences(self, c):
+        for source, text in c.texts.items():
+            for line in re.sub(r"\n  (?=[a-z]|\d\d?\.\d\d %)", " ", text).splitlines():
+                yield from (f"{source}: {line}" for pattern, is_true in SENTENCES for found in
+                            re.finditer(pattern, line, re.I) if not is_true(c, line, *found.groups()))
+
+    def contradictions(self, c):
+        its = {(each["system"], each["system_limited_by"]) for each in (c.bounds["bound"], c.stats["bound"])}
+        if its != {tuple(c.explained["bound"].values())}:
+            yield f"bounds: {its}, explain: {c.explained['bound']}"
+        for each in c.explained["resources"]:
+            rate = each["frames_per_second"]
+            if rate != c.alone.setdefault(each["resource"].split()[-1], rate) or each["headroom_percent"] < 0:
+                yield f"explain: {each}, bounds: {c.alone}"
+        limiter = resource_in(c.explained["limited_by"].partition(":")[0])
+        # A bus that carries what cameras deliver loses no pixels: their FIFOs are too small for its waits.
+        is_slow = c.alone.get(limiter, 0) < 1.1 * c.alone["camera"] or c.busy.get(limiter, 0) > 0.5
+        waits = limiter in [row["bank"] for row in c.explained["blame"]]
+        if limiter and c.rate < 0.995 * c.alone[limiter] and not waits and not (c.lost and is_slow):
+            yield f"limited by {c.explained['limited_by']}: {c.rate} frames/s, its bound {c.alone[limiter]}"
+        for first in re.findall("To try it: (.*)[.]$", c.texts[c.page.stem], re.M):
+            after, lost = stats_of(c.out / "config.yaml", *shlex.split(first))
+            least = sum(each["frames_per_second"]["steady_uncertainty"] for each in (c.stats, after))
+            gained = after["frames_per_second"]["steady"] - c.rate
+            if gained <= least and (lost or not c.lost):
+                yield f"first change {first}: {gained} frames/s, within the uncertainty of {least}"
+
+
+if __name__ == "__main__":
+    program.main()
