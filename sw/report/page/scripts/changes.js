@@ -82,8 +82,9 @@ export function addKnobs(page, run) {
     id: 'knobs',
     wide: true,
     draw,
-    title: advice.first ? `First: ${shortStepText(advice.first)}, ${gainText(gainOf(advice.first))}` :
-                          'No single change gains 1 % and keeps the disparities',
+    title: (board.interrupted ? `Interrupted: ${board.interrupted}. ` : '') +
+        (advice.first ? `First: ${shortStepText(advice.first)}, ${gainText(gainOf(advice.first))}` :
+                        'No single change gains 1 % and keeps the disparities'),
     note: `One setting changed at a time, simulated with ${
               count(board.frames, 'frame')} each. Right: the gain, and what the change takes in ` +
         'addition. First: the largest gain that needs nothing new; if there is none, the largest of ' +
