@@ -66,6 +66,7 @@ std::string text_of(const BoardConfig& board, const Placement& placement) {
 std::optional<ComparedPixels> compare_pixels(const BoardConfig& board, const platform::Tables& tables,
                                              const explore::PointRun& search,
                                              const std::vector<BestPlacement>& all) {
+  runs::ProgressLine line("the best allocations are simulated with pixels");
   process::Problems none;
   runs::InputPictures scene;
   scene.synthetic = 1;
@@ -77,6 +78,7 @@ std::optional<ComparedPixels> compare_pixels(const BoardConfig& board, const pla
   for (const BestPlacement& best : all) {
     if (process::interrupted()) return std::nullopt;
     if (best.tied == 0) continue;
+    line.show(compared.allocations, all.size(), [](double) { return "pixels are compared"; });
     const auto run =
         runs::simulate_pixels(explore::placed(board, best.witness), tables, *pairs, compared.frames);
     if (process::interrupted()) return std::nullopt;
@@ -97,10 +99,14 @@ std::optional<ComparedPixels> compare_pixels(const BoardConfig& board, const pla
   return compared;
 }
 
+// Comparing allocations may take long. An interrupt during that time ends the process.
 AllocationSearch search_of(const BoardConfig& board, int banks, const explore::PointRun& run,
                            const AllocationSearch::BoundOf& bound) {
+  runs::ProgressLine line(fmt::format("all allocations to at most {} banks are compared", banks));
   try {
-    return AllocationSearch(board, banks, run, bound);
+    return AllocationSearch(board, banks, run, bound, [&line](std::uint64_t done, std::uint64_t of) {
+      line.show(done, of, [=](double) { return fmt::format("{}/{} allocations", done, of); });
+    });
   } catch (const std::length_error& error) {
     process::refuse(
         fmt::format("--banks = {}: {}; give fewer, or a board with fewer buffers or more banks alike", banks,
@@ -216,7 +222,8 @@ int allocate(const AllocateOptions& options) {
       return so_far.frames >= explore::kSteadyFrames && so_far.frames_per_second + so_far.uncertainty < rate;
     });
   };
-  runs::ProgressLine line;
+  runs::ProgressLine line(fmt::format("allocations are simulated, each for {} frames", run.frames),
+                          runs::stepped_text(*board, tables, camera));
   AllocationReport report = {search,
                              *board,
                              bound,
@@ -250,13 +257,13 @@ int allocate(const AllocateOptions& options) {
 void add_allocate(Commands& commands) {
   add_command(
       commands, "allocate", "Find the best allocation of the buffers to banks, and prove it", allocate,
-      "Every different way to place the buffers in at most N banks is tried: placements that differ only\n"
-      "by an exchange of banks that are alike count as one, and those that are known to be slower than\n"
-      "another of as many banks are not simulated, or not to the end. For each number of banks: how many\n"
-      "placements fit, the best frame rate beside its bound, how many tie, and one of them. Placements tie\n"
-      "if the uncertainty of their rates leaves open which is faster. An allocation with which captures\n"
-      "lose pixels does not count. Last the command that runs the best allocation: the fastest of those\n"
-      "with the fewest banks that tie.\n"
+      "Every different way to place the buffers in at most N banks is tried; all other keys stay.\n"
+      "Placements that differ only by an exchange of banks that are alike count as one, and those that are\n"
+      "known to be slower than another of as many banks are not simulated, or not to the end. For each\n"
+      "number of banks: how many placements fit, the best frame rate beside its bound, how many tie, and\n"
+      "one of them. Placements tie if the uncertainty of their rates leaves open which is faster. An\n"
+      "allocation with which captures lose pixels does not count. Last the command that runs the best\n"
+      "allocation: the fastest of those with the fewest banks that tie.\n"
       "Ctrl-C ends the search: the best so far is printed, and written by --write, with the most that\n"
       "another allocation can be better. DB is continued: the same command resumes. Without --out\n"
       "nothing is kept.\n"

@@ -33,6 +33,7 @@
 #include "sw/media/encode.h"
 #include "sw/media/load.h"
 #include "sw/process/streams.h"
+#include "sw/runs/progress.h"
 #include "sw/runs/sources/calibration_input.h"
 #include "sw/runs/sources/calibration_library.h"
 
@@ -457,7 +458,9 @@ class Calibrator {
     constexpr std::chrono::milliseconds kPollInterval{50};
     auto result =
         std::async(std::launch::async, runs::calibration_functions().calibrate, std::cref(request_));
+    runs::ProgressLine progress(fmt::format("{} pairs of pictures are compared", request_.pictures.size()));
     while (result.wait_for(kPollInterval) != std::future_status::ready) {
+      progress.show_time();
       if (!process::interrupted()) continue;
       output_.reset();
       std::_Exit(leave_unwritten());

@@ -12,6 +12,7 @@
 
 #include "sw/cli/options.h"
 #include "sw/files/output_file.h"
+#include "sw/process/command.h"
 #include "sw/process/streams.h"
 
 namespace stereotlm::cli {
@@ -102,6 +103,9 @@ int interrupted(const std::string& what);
 // Writes the file of --out. Returns false, and writes nothing, if interrupted. Refuses the command if the
 // file cannot be written.
 bool write_out(const std::string& path, const files::FileKind& kind, const std::string& bytes);
+
+// Runs a script that draws figures, and shows how long that takes.
+process::CommandEnd draw(const std::string& script, const std::vector<std::string>& arguments);
 
 // Runs a script that draws figures from these files, by name, in a folder, and returns the files that it has
 // added there. Returns nullopt if interrupted. Throws std::runtime_error if the script fails.

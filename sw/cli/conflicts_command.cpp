@@ -128,12 +128,13 @@ struct Shown {
 bool simulate(runs::Simulation& simulation, const runs::RunInput& input, files::OutputFolder* folder,
               Shown& shown) {
   if (folder != nullptr) folder->append("rows.csv", stats::rows_csv_head(input.board));
-  runs::ProgressLine progress;
+  runs::ProgressLine progress(fmt::format("{} frames are simulated", input.frames),
+                              runs::stepped_text(input.board, input.tables, input.camera));
   while (!simulation.finished()) {
     if (process::interrupted()) return false;
     simulation.advance();
-    progress.show(simulation.frames_done(), simulation.frames(), [&](double) {
-      return fmt::format("{}/{} frames simulated", simulation.frames_done(), simulation.frames());
+    progress.show(simulation.frames_done(), simulation.frames(), [&](double seconds) {
+      return runs::progress_text(simulation.frames_done(), simulation.frames(), "frames simulated", seconds);
     });
     simulation.take_timeline();
     for (const fpga::FrameConflicts& frame : simulation.take_conflicts()) {

@@ -8,8 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "models/fpga/fast/sdram_parts.h"
-#include "models/kernels/rectification_table.h"
 #include "platform/bounds.h"
 #include "platform/config/board_area.h"
 #include "platform/config/buffer_layout.h"
@@ -47,41 +45,11 @@ std::string shared_bank_text(const BoardConfig& board, const Explanation& explan
                      platform::bank_text(wait->bank), in_bank);
 }
 
-// What has to be simulated cycle by cycle (FastForward), which takes longer.
-std::string stepped_text(const BoardConfig& board, const platform::Tables& tables, bool camera) {
-  const fpga::CoreConfig core = core_config(board);
-  const std::vector<memory::SsramBankConfig> banks = ssram_configs(board);
-  fpga::SdramTimings timings;
-  for (const memory::SsramBankConfig& bank : banks) timings.push_back(bank.sdram ? &*bank.sdram : nullptr);
-  const auto points_elsewhere = [&](fpga::Side side) {
-    const auto& table = side == fpga::Side::kLeft ? tables.left : tables.right;
-    return table && table->entries != kernels::identity_table(table->width, table->height).entries;
-  };
-  std::set<std::string> found;
-  for (std::uint64_t frame = 0; frame < allocation_period_frames(board); ++frame) {
-    const fpga::Placements placements = placements_of(core, buffer_bases(board).of_frame(frame));
-    const std::vector<fpga::SdramPart> sdram = sdram_parts(core, placements, timings);
-    for (const fpga::Side side : fpga::kSides) {
-      const std::size_t group = fpga::pixel_group(side);
-      const bool is_striped = placements[group].parts().size() > 1;
-      const bool is_in_sdram = std::any_of(
-          sdram.begin(), sdram.end(), [group](const fpga::SdramPart& part) { return part.group == group; });
-      if ((is_striped || is_in_sdram) && points_elsewhere(side))
-        found.insert("pictures in stripes or sdram, as their tables point to other pixels");
-    }
-    if (!are_apart(sdram))
-      found.insert("rows of sdram that hold the end of one buffer and the start of another");
-    if (camera && !sdram.empty()) found.insert("accesses of captures and of the host in sdram");
-  }
-  return found.empty()
-             ? ""
-             : fmt::format("simulated cycle by cycle, which takes longer: {}\n", fmt::join(found, "; "));
-}
-
 std::string head_text(const BoardConfig& board, const platform::Tables& tables,
                       const Explanation& explanation) {
   const explore::StoredRow& row = explanation.figures();
   const bool camera = explanation.camera();
+  const std::string stepped = runs::stepped_text(board, tables, camera);
   const std::string of = camera ? "bound.system" : "bound.core";
   const Explanation::Rate& now = explanation.now();
   return paragraph(
@@ -93,7 +61,8 @@ std::string head_text(const BoardConfig& board, const platform::Tables& tables,
          fmt::format("{} bound {:.3f} frames/s{}: {}; {} frames simulated\n", camera ? "steady" : "core",
                      row.real(of), now.loses_pixels() ? " of whole pictures" : "",
                      stats::resource_words(row.text(of + "_limited_by")), explanation.frames()) +
-         platform::device_text(board) + '\n' + stepped_text(board, tables, camera) +
+         platform::device_text(board) + '\n' +
+         (stepped.empty() ? "" : fmt::format("simulated cycle by cycle, which takes longer: {}\n", stepped)) +
          shared_bank_text(board, explanation);
 }
 
@@ -180,13 +149,18 @@ std::string changes_text(const BoardConfig& board, const Explanation& explanatio
       "one change at a time: {} boards simulated; *: the disparities change too{}\n"
       "to try a change, append --set KEY=TO, and drop an earlier --set of the same key\n"
       "  {:>8} {:>8} {:>8} {:>6} {:>4}  change: from -> to\n",
-      explanation.knobs().possible.size(), explanation.camera() ? "; ~: within the uncertainty" : "",
-      "frames/s", "gained", "%", "FPGA %", "RAMs");
+      explanation.simulated(), explanation.camera() ? "; ~: within the uncertainty" : "", "frames/s",
+      "gained", "%", "FPGA %", "RAMs");
+  const std::string interruption = explanation.interruption();
   const auto& steps = explanation.steps();
-  if (explanation.now().loses_pixels() && std::none_of(steps.begin(), steps.end(), [](const auto& step) {
-        return step.rate.failure.empty() && !step.rate.loses_pixels();
-      }))
+  if (!interruption.empty()) {
+    text.insert(0, "interrupted: " + interruption + '\n');
+  } else if (explanation.now().loses_pixels() &&
+             std::none_of(steps.begin(), steps.end(), [](const auto& step) {
+               return step.rate.failure.empty() && !step.rate.loses_pixels();
+             })) {
     text += "  no single change ends the loss of pixels\n";
+  }
   std::set<std::string> listed;              // keys with a line
   std::set<const explore::KnobStep*> small;  // changes without a line
   std::string failures;
@@ -253,12 +227,14 @@ int explain(const ExplainOptions& options) {
   process::catch_interrupts();
   runs::Explanation explanation(*board, tables, options.source.is_camera(),
                                 options.frames.number<std::uint64_t>().value_or(0));
-  if (!explanation.simulate(loaded.simulator())) return kInterrupted;
+  if (!explanation.simulate(loaded.simulator()))
+    return interrupted("the board itself was not simulated: there is no result");
   process::print(options.json.is_given()
                      ? json_text(runs::explanation_document(*board, explanation))
                      : head_text(*board, tables, explanation) + resources_text(*board, explanation) +
                            blames_text(explanation) + changes_text(*board, explanation));
-  return kDone;
+  const std::string interruption = explanation.interruption();
+  return interruption.empty() ? kDone : interrupted(interruption);
 }
 
 }  // namespace

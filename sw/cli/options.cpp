@@ -15,6 +15,7 @@
 #include "sw/files/whole_file.h"
 #include "sw/process/command.h"
 #include "sw/process/streams.h"
+#include "sw/runs/progress.h"
 
 // Implements options.h and command.h. Commands include these, because CLI11 takes long to compile.
 namespace stereotlm::cli {
@@ -140,13 +141,18 @@ bool write_out(const std::string& path, const files::FileKind& kind, const std::
   return !process::interrupted();
 }
 
+process::CommandEnd draw(const std::string& script, const std::vector<std::string>& arguments) {
+  runs::ProgressLine progress("the figures are drawn");
+  return process::run_script(script, arguments, process::kPython, [&progress] { progress.show_time(); });
+}
+
 std::optional<NamedBytes> drawn(const std::string& script, const NamedBytes& files,
                                 std::vector<std::string> options) {
   const files::TemporaryFolder temporary;
   const std::filesystem::path& folder = temporary.path();
   for (const auto& [name, bytes] : files) files::write_whole_file(folder / name, bytes);
   options.insert(options.end(), {"--", folder.string()});
-  const auto end = process::run_script(script, options);
+  const auto end = draw(script, options);
   if (process::interrupted()) return std::nullopt;
   if (end.status != 0) {
     throw std::runtime_error(

@@ -113,7 +113,7 @@ paper::Quality quality(const platform::BoardConfig& board, const Pictures& pictu
 // Simulates everything that the claims of the paper need. Returns nullopt if interrupted.
 std::optional<paper::Findings> study(const std::optional<LoadedPair>& given) {
   runs::PointSimulator simulator;
-  runs::ProgressLine progress;
+  runs::ProgressLine progress("the boards of the paper's tables and claims are simulated");
   paper::Means means;
   means.evaluate = [&simulator](const explore::Point& point) { return simulator(point); };
   means.bound = [](const platform::BoardConfig& board) {

@@ -104,7 +104,7 @@ int plot(const PlotOptions& options) {
   }
   process::CommandEnd end;
   try {
-    end = process::run_script("plot_all.py", options.arguments(drawings.path(), problem));
+    end = draw("plot_all.py", options.arguments(drawings.path(), problem));
   } catch (const std::runtime_error& error) {
     process::refuse(error.what());
   }

@@ -143,7 +143,8 @@ int report(const ReportOptions& options) {
                  files::marked_kind("page of stereotlm report", {{0, report::page_mark()}}));
   });
   std::optional<Json> data = data_of(options, problems);
-  if (process::interrupted()) return interrupted("no page is written");
+  if (!data && process::interrupted())
+    return interrupted("no page is written; --quick writes one, and simulates nothing");
   problems.check();
   Json whole = {{"format", 2}, {"version", process::kVersion}};
   whole.update(*data);
@@ -151,7 +152,8 @@ int report(const ReportOptions& options) {
   file->write(page);
   file->commit();
   process::print(fmt::format("{}: {} kB\n", options.out.text(), (page.size() + 999) / 1000));
-  return kDone;
+  const std::string interruption = data->value(Json::json_pointer("/run/knobs/interrupted"), "");
+  return interruption.empty() ? kDone : interrupted(interruption + ", and are on the page");
 }
 
 }  // namespace

@@ -47,7 +47,9 @@ Outcome simulate(const runs::RunInput& input, runs::Verification* verification) 
   runs::Records records(input, [&input](const std::string& name, const std::string& text) {
     input.folder->append(name, text);
   });
-  runs::ProgressLine progress;
+  runs::ProgressLine progress(
+      fmt::format("{} frames are simulated", input.frames),
+      input.fast ? runs::stepped_text(input.board, input.tables, input.camera) : "--fidelity cycle");
   bool ends_early = false;
   while (!simulation->finished()) {
     if (process::interrupted() && !ends_early) {
@@ -88,7 +90,7 @@ bool has_counts_only(const runs::RunInput& input, bool verifies) {
 // The same figures as simulate(), of the core alone without pixels, in a third of the time.
 Outcome count_cycles(const runs::RunInput& input) {
   const std::uint64_t frame_cycles = assumed_frame_cycles(input);
-  runs::ProgressLine progress;
+  runs::ProgressLine progress(fmt::format("{} frames are simulated", input.frames));
   Outcome outcome;
   outcome.statistics = platform::run_core(
       input.board, input.tables, input.frames, [&](std::uint64_t done, std::uint64_t cycles) {

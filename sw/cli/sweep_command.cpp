@@ -134,7 +134,11 @@ int merge(const MergeOptions& options) {
   try {
     const explore::StoreLock lock(options.out.text());
     process::catch_interrupts();
-    explore::merge_stores(options.inputs.texts(), options.out.text(), process::interrupted);
+    runs::ProgressLine progress(fmt::format("{} databases are merged", options.inputs.texts().size()));
+    explore::merge_stores(options.inputs.texts(), options.out.text(), [&progress] {
+      progress.show_time();
+      return process::interrupted();
+    });
   } catch (const sqlite::DatabaseError& error) {
     if (process::interrupted()) return interrupted("nothing is written");
     process::refuse(error.what());
@@ -299,11 +303,12 @@ explore::SweepCounts sweep_here(const SweepCommandOptions& options, const explor
   prepare(options, sweep, plan);
   runs::PointSimulator simulator =
       calibration ? runs::PointSimulator(calibration->tables) : runs::PointSimulator();
-  runs::ProgressLine progress;
+  runs::ProgressLine progress(fmt::format("{} points are simulated, or left out", plan.size()));
   auto next_write = std::chrono::steady_clock::now() + kBetweenCounts;
   const auto show = [&](const explore::SweepCounts& done) {
-    progress.show(done.done(), done.total,
-                  [&done](double seconds) { return runs::progress_text(done, 0, seconds); });
+    progress.show(done.done(), done.total, [&done](double seconds) {
+      return runs::progress_text(done.done(), done.total, "points", seconds);
+    });
     if (std::chrono::steady_clock::now() >= next_write) {
       write_progress(done, options);
       next_write = std::chrono::steady_clock::now() + kBetweenCounts;
@@ -340,8 +345,9 @@ explore::ShardedSweep sharded(const SweepCommandOptions& options, const explore:
 }
 
 std::string line_of(const explore::SlurmProgress& progress, std::uint64_t before, double seconds) {
-  std::string text = runs::progress_text(progress.counts, before, seconds);
-  text += fmt::format("   {} running", progress.running);
+  const explore::SweepCounts& counts = progress.counts;
+  std::string text = runs::progress_text(counts.done(), counts.total, "points", seconds, before);
+  text += fmt::format(", {} running", progress.running);
   if (progress.waiting > 0) text += fmt::format(", {} waiting", progress.waiting);
   if (!progress.reason.empty()) text += fmt::format(" ({})", progress.reason);
   return text;
@@ -352,7 +358,7 @@ std::string line_of(const explore::SlurmProgress& progress, std::uint64_t before
 // submitted, and std::runtime_error if the sweep fails later.
 explore::SweepCounts sweep_on_slurm(const SweepCommandOptions& options, const explore::Plan& plan,
                                     const std::optional<runs::CalibrationInput>& calibration) {
-  runs::ProgressLine progress;
+  runs::ProgressLine progress(fmt::format("{} points are simulated, or left out", plan.size()));
   const auto say_note = [&progress](const std::string& note) {
     progress.erase();
     process::say("note", note);

@@ -105,7 +105,7 @@ const void* plugin_symbol(const std::string& library_name, const char* symbol, c
 }
 
 CommandEnd run_command(const std::vector<std::string>& words, const std::vector<std::string>& hidden,
-                       bool ends_if_interrupted) {
+                       const std::function<void()>& waiting) {
   const MemoryFile out;
   const MemoryFile errors;
   std::vector<char*> arguments;
@@ -126,10 +126,11 @@ CommandEnd run_command(const std::vector<std::string>& words, const std::vector<
   if (error != 0) fail(error, words[0].c_str());
   int status = 0;
   for (pid_t ended = 0; ended != pid;) {
-    ended = waitpid(pid, &status, ends_if_interrupted ? WNOHANG : 0);
+    ended = waitpid(pid, &status, waiting ? WNOHANG : 0);
     if (ended < 0 && errno != EINTR) fail(errno, "waitpid");
     if (ended != 0) continue;
     if (interrupted()) kill(pid, SIGTERM);
+    waiting();
     usleep(10'000);
   }
   constexpr int kSignalled = 128;
@@ -138,7 +139,7 @@ CommandEnd run_command(const std::vector<std::string>& words, const std::vector<
 }
 
 CommandEnd run_script(const std::string& script, const std::vector<std::string>& arguments,
-                      const std::string& python) {
+                      const std::string& python, const std::function<void()>& waiting) {
   const std::string path = installed_path(STEREOTLM_SCRIPT_FOLDER) / script;
   if (!std::filesystem::is_regular_file(path))
     throw std::runtime_error(fmt::format("'{}': not found: it is installed with the program", path));
@@ -148,7 +149,7 @@ CommandEnd run_script(const std::string& script, const std::vector<std::string>&
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::string cause;
   try {
-    return run_command(words, {}, true);
+    return run_command(words, {}, waiting);
   } catch (const CommandMissing& /*error*/) {
     cause = std::strerror(ENOENT);
   } catch (const std::system_error& error) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -30,16 +31,17 @@ struct CommandEnd {
 // Runs the program words[0], searched in PATH, with the other words as arguments, without a shell, and waits
 // for its end. Its standard input is empty. Its environment is that of this process without the variables
 // whose names begin with one of `hidden`. Ctrl-C in a terminal does not reach the program. It is
-// killed when this process ends. `ends_if_interrupted`: interrupted() ends it with SIGTERM. Throws
-// CommandMissing and std::system_error.
+// killed when this process ends. `waiting`: called every 10 ms until then; interrupted() ends it with
+// SIGTERM; null: neither. Throws CommandMissing and std::system_error.
 CommandEnd run_command(const std::vector<std::string>& words, const std::vector<std::string>& hidden = {},
-                       bool ends_if_interrupted = false);
+                       const std::function<void()>& waiting = nullptr);
 
 inline constexpr const char* kPython = "/usr/bin/python3";
 
 // Runs one of the scripts that are installed with the program as run_command() does, until an interrupt, and
 // returns its output. Throws std::runtime_error if the script or `python` does not exist.
-CommandEnd run_script(const std::string& script, const std::vector<std::string>& arguments,
-                      const std::string& python = kPython);
+CommandEnd run_script(
+    const std::string& script, const std::vector<std::string>& arguments, const std::string& python = kPython,
+    const std::function<void()>& waiting = [] {});
 
 }  // namespace stereotlm::process

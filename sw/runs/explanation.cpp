@@ -320,15 +320,18 @@ Explanation::Explanation(const platform::BoardConfig& board, const platform::Tab
 }
 
 bool Explanation::simulate(PointSimulator simulator) {
-  ProgressLine progress;
-  const bool is_whole = batch_.run(
-      points_, [&simulator](const explore::Point& point) { return simulator(point); },
+  ProgressLine progress(fmt::format("{} boards are simulated, each for {} frames", points_.size, frames()),
+                        stepped_text(board_, tables_, run_.camera));
+  batch_.run(
+      points_,
+      [&](const explore::Point& point) { return simulator(point, {}, run_.camera && point.number == 0); },
       [&](const explore::SweepCounts& done) {
-        progress.show(done.done(), done.total,
-                      [&](double) { return fmt::format("{}/{} boards simulated", done.done(), done.total); });
+        progress.show(done.done(), done.total, [&](double seconds) {
+          return progress_text(done.done(), done.total, "boards simulated", seconds);
+        });
         return !process::interrupted();
       });
-  if (!is_whole) return false;
+  if (!batch_.has(points_.point(0))) return false;
   now_ = rate_of(0);
   if (!now_.failure.empty()) throw std::runtime_error(now_.failure);
   figures_ = std::make_unique<explore::StoredRow>(batch_.path());
@@ -347,7 +350,12 @@ bool Explanation::simulate(PointSimulator simulator) {
   const auto cycles = nlohmann::json::parse(figures_->text("frame_cycles")).get<std::vector<double>>();
   compare_resources(cycles);
   share_time(cycles);
-  return !process::interrupted();
+  return true;
+}
+
+std::string Explanation::interruption() const {
+  if (simulated_ == knobs_.possible.size()) return "";
+  return fmt::format("{} of {} changes were simulated", simulated_, knobs_.possible.size());
 }
 
 Explanation::Rate Explanation::rate_of(std::uint64_t number) {
@@ -383,6 +391,8 @@ Explanation::BusiestBank Explanation::busiest_bank_of(std::uint64_t number,
 void Explanation::read_steps() {
   for (std::size_t i = 0; i < knobs_.possible.size(); ++i) {
     const explore::KnobStep& knob = knobs_.possible[i];
+    if (!batch_.has(points_.point(i + 1))) continue;
+    ++simulated_;
     Step step{&knob, rate_of(i + 1), {}};
     if (step.rate.failure.empty()) step.busiest = busiest_bank_of(i + 1, knob.board);
     steps_.push_back(std::move(step));
@@ -486,8 +496,11 @@ void Explanation::share_time(std::vector<double> frame_cycles) {
   const std::uint64_t turn = bounds_.size();
   double frames_share = 100;
   if (run_.camera) {
-    for (const auto& [why, share] : core_time(board_, tables_, run_.frames))
-      (why.empty() ? frames_share : budget_.core_waits[why]) = 100 * share;
+    for (const Reason& reason : kReasons) {
+      const double share = 100 * figures_->real(fmt::format("core_waits.{}", reason.why));
+      frames_share -= share;
+      if (share > 0) budget_.core_waits[reason.why] = share;
+    }
     const std::uint64_t window = platform::steady_frames(run_.frames, turn);
     frame_cycles.erase(frame_cycles.begin(), frame_cycles.end() - static_cast<std::ptrdiff_t>(window));
   }
@@ -556,6 +569,7 @@ Json explanation_document(const platform::BoardConfig& board, const Explanation&
   document["blame"] = blame_json(explanation);
   document["area"] = stats::area_json(board);
   document["pins"] = platform::pins_of(board);
+  if (!explanation.interruption().empty()) document["interrupted"] = explanation.interruption();
   add_changes(explanation, document);
   return document;
 }

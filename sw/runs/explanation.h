@@ -43,7 +43,8 @@ class Explanation {
   Explanation(const platform::BoardConfig& board, const platform::Tables& tables, bool camera,
               std::uint64_t frames = 0);
 
-  // Returns false if interrupted. Throws std::runtime_error if the run of the board itself has failed.
+  // Returns false if interrupted before the board itself was simulated. A later interrupt leaves out steps
+  // that were not simulated. Throws std::runtime_error if the run of the board itself has failed.
   // Everything below needs a call that has returned true.
   bool simulate(PointSimulator simulator);
 
@@ -73,9 +74,12 @@ class Explanation {
     Rate rate;
     BusiestBank busiest;  // without meaning if the run has failed
   };
-  // All steps, the best first: by their rate, those that lose pixels after the others, those that have failed
-  // last. Of a group only the best.
+  // All steps that were simulated, the best first: by their rate, those that lose pixels after the others, those
+  // that have failed last. Of a group only the best.
   const std::vector<Step>& steps() const { return steps_; }
+  std::size_t simulated() const { return simulated_; }  // how many of knobs().possible
+  // "12 of 47 changes were simulated"; empty without an interrupt.
+  std::string interruption() const;
   const BusiestBank& busiest_bank() const { return busiest_; }
   const explore::KnobSteps& knobs() const { return knobs_; }
 
@@ -138,6 +142,7 @@ class Explanation {
   Rate now_;
   BusiestBank busiest_;
   std::vector<Step> steps_;
+  std::size_t simulated_ = 0;
   std::vector<Resource> resources_;
   std::map<std::string, double> pair_seconds_;
   platform::RateBound rate_bound_;

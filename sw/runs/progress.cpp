@@ -15,6 +15,7 @@ namespace stereotlm::runs {
 namespace {
 
 constexpr std::chrono::milliseconds kBetweenDrawings{200};
+constexpr double kLongSeconds = 5;  // longer work is announced, as soon as a fifth of that is over
 
 std::size_t terminal_columns() {
   constexpr std::size_t kUsual = 80;
@@ -48,12 +49,12 @@ std::string progress_text(const RunState& state, double seconds) {
                      time_text((frames - position) * frame_cycles / rate));
 }
 
-std::string progress_text(const explore::SweepCounts& counts, std::uint64_t before, double seconds) {
-  const auto done = static_cast<double>(counts.done());
-  const double rate = (done - static_cast<double>(before)) / seconds;
-  return fmt::format("{}/{} points   {:.1f} %   {:.1f} points/s   {} left", counts.done(), counts.total,
-                     100 * done / static_cast<double>(counts.total), rate,
-                     time_text((static_cast<double>(counts.total) - done) / rate));
+std::string progress_text(std::uint64_t done, std::uint64_t of, const std::string& pieces, double seconds,
+                          std::uint64_t before) {
+  const std::string text = fmt::format("{}/{} {}", done, of, pieces);
+  if (done == before) return text;
+  return text + fmt::format(", {} left", time_text(seconds * static_cast<double>(of - done) /
+                                                   static_cast<double>(done - before)));
 }
 
 std::string progress_text(const explore::SearchProgress& progress, double seconds) {
@@ -64,18 +65,32 @@ std::string progress_text(const explore::SearchProgress& progress, double second
   return text + fmt::format(" ({} at this rate)", time_text(static_cast<double>(progress.most_left) / rate));
 }
 
-ProgressLine::ProgressLine()
-    : is_shown_((process::client != nullptr || isatty(STDERR_FILENO) != 0) && !process::leaves_out_notes()),
+ProgressLine::ProgressLine(const std::string& work, const std::string& stepped,
+                           std::chrono::milliseconds between_notes)
+    : work_(stepped.empty() ? work : work + ", cycle by cycle because of " + stepped),
+      between_notes_(between_notes),
       start_(std::chrono::steady_clock::now()),
-      next_(start_ + kBetweenDrawings) {}
+      next_(start_ + kBetweenDrawings),
+      next_note_(start_ + between_notes) {}
 
 void ProgressLine::show(std::uint64_t done, std::uint64_t of,
                         const std::function<std::string(double seconds)>& line) {
-  if (!is_shown_) return;
   const Time now = std::chrono::steady_clock::now();
-  if (now < next_) return;
+  if (now < next_ || process::leaves_out_notes()) return;
   next_ = now + kBetweenDrawings;
-  std::string text = line(std::chrono::duration<double>(now - start_).count());
+  const double seconds = std::chrono::duration<double>(now - start_).count();
+  const double whole = done == 0 ? seconds : seconds * static_cast<double>(of) / static_cast<double>(done);
+  const bool is_redrawn = process::client != nullptr || isatty(STDERR_FILENO) != 0;
+  const bool is_announced = !work_.empty() && seconds > kLongSeconds / 5 && whole > kLongSeconds;
+  if (!is_announced && !is_redrawn && now < next_note_) return;
+  std::string text = line(seconds);
+  if (is_announced || !is_redrawn) {
+    erase();
+    process::say("note", is_announced ? work_ + ": " + text : text);
+    if (is_announced) work_.clear();
+    next_note_ = now + between_notes_;
+    return;
+  }
   if (process::client != nullptr) return process::client->progress(done, of, text);
   text.resize(std::min(text.size(), terminal_columns() - 1));  // a wrapped line cannot be overwritten
   const std::size_t columns = text.size();
@@ -83,6 +98,10 @@ void ProgressLine::show(std::uint64_t done, std::uint64_t of,
   columns_drawn_ = columns;
   std::fprintf(stderr, "\r%s", text.c_str());
   std::fflush(stderr);
+}
+
+void ProgressLine::show_time() {
+  show(0, 0, [](double seconds) { return time_text(seconds) + " so far"; });
 }
 
 void ProgressLine::erase() {

@@ -6,7 +6,6 @@
 #include <string>
 
 #include "sw/explore/search/allocation_search.h"
-#include "sw/explore/sweep/sweep.h"
 
 namespace stereotlm::runs {
 
@@ -23,35 +22,43 @@ struct RunState {
 // For a run: "1.25/4 frames   31.2 %   8.40 M cycles/s   3.91 frames/s   0:08 left"
 std::string progress_text(const RunState& state, double seconds);
 
-// For a sweep: "3/10 points   30.0 %   2.0 points/s   0:04 left". `before`: points that were done before
-// `seconds` began.
-std::string progress_text(const explore::SweepCounts& counts, std::uint64_t before, double seconds);
-
 // For a search: "332 boards simulated, 120 left at most (0:05 at this rate)". The time is left out until
 // most_left is narrowed and 8 boards were simulated.
 std::string progress_text(const explore::SearchProgress& progress, double seconds);
 
-// A progress line on standard error, if that is a terminal and notes are shown, or for the client of a
-// worker. The destructor erases it.
+// For work in equal pieces: "12/48 boards simulated, 0:15 left". `before`: pieces that were done before
+// `seconds` began. The time is left out until another one is done.
+std::string progress_text(std::uint64_t done, std::uint64_t of, const std::string& pieces, double seconds,
+                          std::uint64_t before = 0);
+
+// Shows the progress of work, unless notes are left out: to the client of a worker, or on standard error. On a
+// terminal it is one line, which the destructor erases; elsewhere a note every 10 s. Work that takes longer
+// than 5 s is announced by a note as soon as that can be estimated.
 class ProgressLine {
  public:
-  ProgressLine();
+  // `work`: what is done: "9 frames are simulated". `stepped`: why cycle by cycle, see stepped_text().
+  explicit ProgressLine(const std::string& work, const std::string& stepped = "",
+                        std::chrono::milliseconds between_notes = std::chrono::seconds(10));
   ~ProgressLine() { erase(); }
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
-  // Redraws the text that `line` returns for the seconds since construction, at most a few times a second.
-  // `done` of `of` pieces of work are done.
+  // Shows the text that `line` returns for the seconds since construction, if it is time for that. `done` of
+  // `of` pieces of work are done.
   void show(std::uint64_t done, std::uint64_t of, const std::function<std::string(double seconds)>& line);
+  // Shows how long the work has taken. For work of which nothing else is known.
+  void show_time();
   // Erases the line until the next show().
   void erase();
 
  private:
   using Time = std::chrono::steady_clock::time_point;
 
-  bool is_shown_;
+  std::string work_;  // empty once it was announced
+  std::chrono::milliseconds between_notes_;
   Time start_;
   Time next_;
+  Time next_note_;
   std::size_t columns_drawn_ = 0;
 };
 

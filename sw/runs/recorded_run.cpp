@@ -304,8 +304,9 @@ bool FrameAlignment::run() {
 bool FrameAlignment::read(AlignedRun& side) {
   do {
     if (process::interrupted()) return false;
-    progress_.show(rows_.frames(), frames_,
-                   [this](double) { return fmt::format("{}/{} frames compared", rows_.frames(), frames_); });
+    progress_.show(rows_.frames(), frames_, [this](double seconds) {
+      return progress_text(rows_.frames(), frames_, "frames compared", seconds);
+    });
   } while (!side.rerun.has_news(kBetweenPolls));
   side.ahead = side.rerun.next();
   return true;

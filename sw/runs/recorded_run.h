@@ -136,7 +136,7 @@ class FrameAlignment {
   std::optional<CommonFrame> last_common_;
   AlignedRun a_;
   AlignedRun b_;
-  ProgressLine progress_;
+  ProgressLine progress_{"both runs are repeated"};
 };
 
 }  // namespace stereotlm::runs

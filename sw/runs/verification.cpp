@@ -69,8 +69,8 @@ void Verification::add(const Result& result) { results_.push_back(line_of(result
 std::optional<std::string> Verification::next_of_other(ProgressLine& progress, std::size_t frames_compared) {
   do {
     if (process::interrupted()) throw Interrupted();
-    progress.show(frames_compared, results_.size(), [&](double) {
-      return fmt::format("verifying: {}/{} frames", frames_compared, results_.size());
+    progress.show(frames_compared, results_.size(), [&](double seconds) {
+      return "verifying: " + progress_text(frames_compared, results_.size(), "frames", seconds);
     });
   } while (!other_.has_news(kPollInterval));
   return other_.next();
@@ -80,7 +80,7 @@ std::optional<std::vector<std::string>> Verification::compare(const platform::St
   const std::string ours = input_.fast ? "fast" : "cycle";
   const std::string other = input_.fast ? "cycle" : "fast";
   std::vector<std::string> lines;
-  ProgressLine progress;
+  ProgressLine progress("the run is repeated at fidelity " + other);
   try {
     for (std::size_t frame = 0; frame < results_.size(); ++frame) {
       const std::string theirs = next_of_other(progress, frame).value_or("nothing");

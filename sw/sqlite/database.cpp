@@ -78,7 +78,7 @@ DatabaseError Database::error_of(int code) const {
 
 void Database::fail(int code) const { throw error_of(code); }
 
-void Database::interrupt_if(bool (*is_interrupted)()) {
+void Database::interrupt_if(const std::function<bool()>& is_interrupted) {
   constexpr int kInstructions = 1000;  // of SQLite's virtual machine, between two calls
   is_interrupted_ = is_interrupted;
   sqlite3_progress_handler(

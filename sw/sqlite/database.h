@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <stdexcept>
 #include <string>
 #include <variant>
@@ -37,7 +38,7 @@ class Database {
   Database& operator=(const Database&) = delete;
 
   // From now on every call fails as soon as this function returns true.
-  void interrupt_if(bool (*is_interrupted)());
+  void interrupt_if(const std::function<bool()>& is_interrupted);
   void execute(const std::string& sql);
   // Opens another file as well; the names of its tables are NAME.TABLE.
   void attach(const std::string& path, const std::string& name);
@@ -55,7 +56,7 @@ class Database {
 
   std::string path_;
   sqlite3* handle_ = nullptr;
-  bool (*is_interrupted_)() = nullptr;
+  std::function<bool()> is_interrupted_;
 };
 
 // A prepared statement. The database must outlive it.

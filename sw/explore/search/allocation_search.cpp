@@ -36,7 +36,7 @@ constexpr double kRounding = 1e-9;
 
 bool reaches(double rate, double rate_to_reach) { return rate >= rate_to_reach * (1 - kRounding); }
 
-// The banks of all buffers in one text, as a key of frame_numbers_.
+// The banks of all buffers in one text, as a key.
 std::string key_of(const platform::BoardConfig& board) {
   std::string key;
   for (const platform::PlacedBuffer& buffer : platform::buffers(board)) key += buffer.bank + ' ';
@@ -171,21 +171,26 @@ std::string allocation_text(const platform::BoardConfig& board) {
 }
 
 AllocationSearch::AllocationSearch(const platform::BoardConfig& board, int most_banks, const PointRun& run,
-                                   const BoundOf& bound)
+                                   const BoundOf& bound, const Watch& watch)
     : board_(board),
       run_(run),
       by_frames_(!run.camera && frames_are_independent(board)),
       turn_frames_(platform::allocation_period_frames(board)) {
-  for_each_placement(board, most_banks, [this](const Placement& placement) {
-    if (++placements_ > kMostPlacements) {
+  for_each_placement(board, most_banks, [this](const Placement& /*placement*/) {
+    if (++placements_ > kMostPlacements)
       throw std::length_error(fmt::format("more than {} different allocations", kMostPlacements));
-    }
+  });
+  std::uint64_t visited = 0;
+  std::map<std::string, std::size_t> numbers;  // [key_of(board)]: index of frame_boards_
+  for_each_placement(board, most_banks, [&](const Placement& placement) {
+    watch(visited++, placements_);
     if (!fits(board_, placement)) return;
     fitting_.push_back(placement);
     for (std::uint64_t frame = 0; by_frames_ && frame < turn_frames_; ++frame) {
       platform::BoardConfig one = board_of_frame(board_, placement, frame);
-      if (frame_numbers_.emplace(key_of(one), frame_boards_.size()).second)
-        frame_boards_.push_back(std::move(one));
+      const auto [known, is_new] = numbers.emplace(key_of(one), frame_boards_.size());
+      frame_numbers_.push_back(known->second);
+      if (is_new) frame_boards_.push_back(std::move(one));
     }
   });
   outcomes_.resize(by_frames_ ? frame_boards_.size() : fitting_.size());
@@ -193,7 +198,10 @@ AllocationSearch::AllocationSearch(const platform::BoardConfig& board, int most_
   order_.resize(outcomes_.size());
   std::iota(order_.begin(), order_.end(), std::size_t{0});
   if (by_frames_) return;
-  for (const Placement& placement : fitting_) bounds_.push_back(bound(placed(board_, placement)));
+  for (const Placement& placement : fitting_) {
+    watch(bounds_.size(), fitting_.size());
+    bounds_.push_back(bound(placed(board_, placement)));
+  }
   std::stable_sort(order_.begin(), order_.end(),
                    [this](std::size_t a, std::size_t b) { return bounds_[a] > bounds_[b]; });
 }
@@ -271,8 +279,7 @@ std::optional<AllocationOutcome> AllocationSearch::outcome_of(std::size_t placem
   if (!by_frames_) return outcomes_[placement];
   AllocationOutcome sum;
   for (std::uint64_t frame = 0; frame < turn_frames_; ++frame) {
-    const std::string key = key_of(board_of_frame(board_, fitting_[placement], frame));
-    const std::optional<AllocationOutcome>& one = outcomes_.at(frame_numbers_.at(key));
+    const auto& one = outcomes_.at(frame_numbers_[placement * turn_frames_ + frame]);
     if (!one || !one->failure.empty()) return one;
     sum.cycles += one->cycles;
   }

@@ -93,6 +93,8 @@ struct BestOfAll {
 // than another with as many banks. A run may be given up once its rate shows the same.
 class AllocationSearch {
  public:
+  // Called while placements are compared, with how many of them were. May throw, which ends the constructor.
+  using Watch = std::function<void(std::uint64_t done, std::uint64_t of)>;
   // An upper bound of the frames per second of a board that loses no pixels.
   using BoundOf = std::function<double(const platform::BoardConfig& board)>;
 
@@ -101,8 +103,9 @@ class AllocationSearch {
 
   // most_banks: 1..banks of the board. run: the run of every placement, of whole turns of the lists. Throws
   // std::length_error if there are more than kMostPlacements placements.
-  AllocationSearch(const platform::BoardConfig& board, int most_banks, const PointRun& run,
-                   const BoundOf& bound);
+  AllocationSearch(
+      const platform::BoardConfig& board, int most_banks, const PointRun& run, const BoundOf& bound,
+      const Watch& watch = [](std::uint64_t /*done*/, std::uint64_t /*of*/) {});
 
   std::uint64_t placements() const { return placements_; }
   std::uint64_t fitting() const { return fitting_.size(); }
@@ -164,7 +167,7 @@ class AllocationSearch {
   std::vector<Placement> fitting_;
   std::vector<double> bounds_;  // [index of fitting_]: frames per second
   std::vector<platform::BoardConfig> frame_boards_;
-  std::map<std::string, std::size_t> frame_numbers_;  // [key_of(board)]: index of frame_boards_
+  std::vector<std::size_t> frame_numbers_;  // [index of fitting_ * turn_frames_ + frame]: of frame_boards_
   // By the number of a board, which is an index of frame_boards_ if by_frames_, else of fitting_.
   std::vector<bool> given_up_;                              // whether the run was given up
   std::vector<std::optional<AllocationOutcome>> outcomes_;  // the result, once it is known

@@ -497,7 +497,8 @@ StoreLock::~StoreLock() {
   close(file_);
 }
 
-void merge_stores(const Names& inputs, const std::string& store, bool (*is_interrupted)()) try {
+void merge_stores(const Names& inputs, const std::string& store,
+                  const std::function<bool()>& is_interrupted) try {
   const std::string out = behind_links(store);
   std::error_code none;
   if (fs::file_size(out, none) > 0 && !none) empty_journal(out);

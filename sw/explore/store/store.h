@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
@@ -132,7 +133,7 @@ class StoredRow {
 // inputs have different results of one point; points have different versions; `store` is neither missing,
 // empty nor a file of a Store; `is_interrupted` returns true (null: never).
 void merge_stores(const std::vector<std::string>& inputs, const std::string& store,
-                  bool (*is_interrupted)() = nullptr);
+                  const std::function<bool()>& is_interrupted = nullptr);
 
 // Follows the symbolic links in the path of a store to write, and returns the path of the file. Throws
 // DatabaseError, also for a file in a result folder of `run`.

@@ -253,7 +253,10 @@ class Sweep {
     }
     try {
       run_points(lock, keep_going);
-      merge_stores({options.store}, options.store);
+      merge_stores({options.store}, options.store, [&] {
+        keep_going(state_.claims.counts());
+        return false;
+      });
     } catch (const std::exception&) {
       lock.check();  // if the file is gone, that is the reason for the error
       throw;
@@ -373,15 +376,16 @@ bool Batch::run(const Points& points, const Evaluate& evaluate,
   return counts.done() == counts.total;
 }
 
-const StoredRow& Batch::row_of(const Point& point) {
+bool Batch::has(const Point& point) {
   if (!row_) row_ = std::make_unique<StoredRow>(path_);
-  StoredRow& row = *row_;
-  if (!row.find(point.hash))
-    throw std::runtime_error(fmt::format("point {} was not simulated", point.number));
-  if (row.text("status") != "ok") {
-    throw PointFailed(fmt::format("{}: {}", point.board->name, row.text("reason")));
-  }
-  return row;
+  return row_->find(point.hash);
+}
+
+const StoredRow& Batch::row_of(const Point& point) {
+  if (!has(point)) throw std::runtime_error(fmt::format("point {} was not simulated", point.number));
+  if (row_->text("status") != "ok")
+    throw PointFailed(fmt::format("{}: {}", point.board->name, row_->text("reason")));
+  return *row_;
 }
 
 }  // namespace stereotlm::explore

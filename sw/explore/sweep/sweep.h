@@ -106,6 +106,8 @@ class Batch {
 
   // The path of the database, which exists after run().
   const std::string& path() const { return path_; }
+  // Whether the point was simulated.
+  bool has(const Point& point);
   // The results of a point, valid until the next call. Throws PointFailed, and std::runtime_error if the
   // point was not simulated.
   const StoredRow& row_of(const Point& point);

@@ -205,14 +205,15 @@ bool add_repetition(const runs::RecordedRun& run, runs::RunInput& input, Json& d
   RecordingData recording(run.board, input.camera);
   runs::Rerun rerun(
       run, [&recording](const std::string& name, const std::string& text) { recording.add(name, text); });
-  runs::ProgressLine progress;
+  runs::ProgressLine progress(fmt::format("{} frames of '{}' are repeated", run.options.frames, run.folder));
   std::uint64_t frames = 0;
   std::uint64_t last = 0;  // camera frame
   while (true) {
     do {
       if (process::interrupted()) return false;
-      progress.show(frames, run.options.frames,
-                    [&](double) { return fmt::format("{}/{} frames repeated", frames, run.options.frames); });
+      progress.show(frames, run.options.frames, [&](double seconds) {
+        return runs::progress_text(frames, run.options.frames, "frames repeated", seconds);
+      });
     } while (!rerun.has_news(kBetweenPolls));
     const auto frame = rerun.next();
     if (!frame) break;

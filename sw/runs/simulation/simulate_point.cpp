@@ -1,15 +1,21 @@
 #include "sw/runs/simulation/simulate_point.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <utility>
 #include <vector>
 
 #include "models/binder.h"
+#include "models/fpga/fast/sdram_parts.h"
+#include "models/kernels/rectification_table.h"
 #include "platform/config/buffer_layout.h"
 #include "platform/figures.h"
 #include "platform/preloaded_system.h"
@@ -57,23 +63,43 @@ Json in_child(const std::function<Json()>& work) {
 // Simulates the whole computer. To be called in a child process that ends afterwards: the simulation is never
 // destroyed. Returns null if the simulation was given up.
 Json simulate_computer(const explore::Point& point, const platform::Tables& tables,
-                       const PointSimulator::Hopeless& hopeless) {
+                       const PointSimulator::Hopeless& hopeless, bool with_core_waits) {
   const platform::BoardConfig& board = *point.board;
+  const std::uint64_t frames = point.run.frames;
   auto* const binder = new Binder;
-  auto* const simulation = new CameraSimulation(board, tables, *blank_pairs(board).release(),
-                                                point.run.frames, *binder, fpga::Fidelity::kTiming);
+  auto* const simulation = new CameraSimulation(board, tables, *blank_pairs(board).release(), frames, *binder,
+                                                fpga::Fidelity::kTiming);
+  double whole_ps = 0;
+  std::map<std::string, double> core_waits_ps;
+  const auto take = [&] {
+    const auto turn = platform::allocation_period_frames(board);
+    for (const platform::TimelineEvent& event : simulation->take_timeline().events) {
+      const bool is_wait = event.kind == platform::EventKind::kWait && event.what == std::string("core");
+      if (!is_wait && event.kind != platform::EventKind::kFrame) continue;
+      if (event.frame.value() < frames - platform::steady_frames(frames, turn)) continue;
+      const auto time_ps = static_cast<double>(event.end_ps - event.begin_ps);
+      whole_ps += time_ps;
+      if (is_wait) core_waits_ps[event.why] += time_ps;
+    }
+  };
+  if (with_core_waits) simulation->record_timeline();
   while (!simulation->finished()) {
     simulation->advance();
+    take();
     if (!hopeless) continue;
     const std::optional<platform::SteadyRate> so_far = simulation->steady_rate();
     if (so_far && hopeless(*so_far)) return nullptr;
   }
-  return document_of(simulation->statistics());
+  Json document = document_of(simulation->statistics());
+  take();
+  for (const auto& [why, time_ps] : core_waits_ps) document["core_waits"][why] = time_ps / whole_ps;
+  return document;
 }
 
 }  // namespace
 
-explore::Figures PointSimulator::operator()(const explore::Point& point, const Hopeless& hopeless) {
+explore::Figures PointSimulator::operator()(const explore::Point& point, const Hopeless& hopeless,
+                                            bool with_core_waits) {
   const platform::BoardConfig& board = *point.board;
   const bool is_usable = is_table_of(tables_.left, board, board.allocation.left_lut.has_value()) &&
                          is_table_of(tables_.right, board, board.allocation.right_lut.has_value());
@@ -83,42 +109,10 @@ explore::Figures PointSimulator::operator()(const explore::Point& point, const H
   if (!point.run.camera) {
     return explore::figures_of(document_of(platform::run_core(board, tables_, point.run.frames)));
   }
-  const Json document = in_child([&] { return simulate_computer(point, tables_, hopeless); });
+  const Json document =
+      in_child([&] { return simulate_computer(point, tables_, hopeless, with_core_waits); });
   if (document.is_null()) throw explore::GivenUp();
   return explore::figures_of(document);
-}
-
-std::map<std::string, double> core_time(const platform::BoardConfig& board, const platform::Tables& tables,
-                                        std::uint64_t frames) {
-  const Json document = in_child([&]() -> Json {
-    Binder binder;
-    const auto blank = blank_pairs(board);
-    CameraSimulation simulation(board, tables, *blank, frames, binder, fpga::Fidelity::kTiming);
-    simulation.record_timeline();
-    const std::uint64_t first =
-        frames - platform::steady_frames(frames, platform::allocation_period_frames(board));
-    std::map<std::string, std::uint64_t> times_ps;
-    const auto take = [&] {
-      for (const platform::TimelineEvent& event : simulation.take_timeline().events) {
-        const bool is_wait = event.kind == platform::EventKind::kWait && event.what == std::string("core");
-        if (!is_wait && event.kind != platform::EventKind::kFrame) continue;
-        if (event.frame.value() >= first) times_ps[event.why] += event.end_ps - event.begin_ps;
-      }
-    };
-    while (!simulation.finished()) {
-      simulation.advance();
-      take();
-    }
-    document_of(simulation.statistics());  // its identities hold
-    take();
-    return times_ps;
-  });
-  if (document.is_null()) return {};
-  auto times = document.get<std::map<std::string, double>>();
-  double whole = 0;
-  for (const auto& [why, time] : times) whole += time;
-  for (auto& [why, time] : times) time /= whole;
-  return times;
 }
 
 PixelRun simulate_pixels(const platform::BoardConfig& board, const platform::Tables& tables,
@@ -143,6 +137,34 @@ PixelRun simulate_pixels(const platform::BoardConfig& board, const platform::Tab
   PixelRun run = {document.at("sha256"), document.at("cycles"), {board.image.width, board.image.height}};
   run.last.pixels = document.at("last").get_binary();
   return run;
+}
+
+std::string stepped_text(const platform::BoardConfig& board, const platform::Tables& tables, bool camera) {
+  const fpga::CoreConfig core = core_config(board);
+  const std::vector<memory::SsramBankConfig> banks = ssram_configs(board);
+  fpga::SdramTimings timings;
+  for (const memory::SsramBankConfig& bank : banks) timings.push_back(bank.sdram ? &*bank.sdram : nullptr);
+  const auto points_elsewhere = [&](fpga::Side side) {
+    const auto& table = side == fpga::Side::kLeft ? tables.left : tables.right;
+    return table && table->entries != kernels::identity_table(table->width, table->height).entries;
+  };
+  std::set<std::string> found;
+  for (std::uint64_t frame = 0; frame < allocation_period_frames(board); ++frame) {
+    const fpga::Placements placements = placements_of(core, buffer_bases(board).of_frame(frame));
+    const std::vector<fpga::SdramPart> sdram = sdram_parts(core, placements, timings);
+    for (const fpga::Side side : fpga::kSides) {
+      const std::size_t group = fpga::pixel_group(side);
+      const bool is_striped = placements[group].parts().size() > 1;
+      const bool is_in_sdram = std::any_of(
+          sdram.begin(), sdram.end(), [group](const fpga::SdramPart& part) { return part.group == group; });
+      if ((is_striped || is_in_sdram) && points_elsewhere(side))
+        found.insert("pictures in stripes or sdram, as their tables point to other pixels");
+    }
+    if (!are_apart(sdram))
+      found.insert("rows of sdram that hold the end of one buffer and the start of another");
+    if (camera && !sdram.empty()) found.insert("accesses of captures and of the host in sdram");
+  }
+  return fmt::format("{}", fmt::join(found, "; "));
 }
 
 double waitless_frames_per_second(const platform::BoardConfig& board, const platform::Tables& tables,

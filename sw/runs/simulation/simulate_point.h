@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <functional>
-#include <map>
 #include <string>
 
 #include "models/host/frame_source.h"
@@ -27,7 +26,10 @@ class PointSimulator {
   using Hopeless = std::function<bool(const platform::SteadyRate& so_far)>;
 
   // Simulates a point. Throws std::runtime_error if that fails, and explore::GivenUp if it was given up.
-  explore::Figures operator()(const explore::Point& point, const Hopeless& hopeless = {});
+  // `with_core_waits`: for a whole computer with a steady rate, adds the shares of the time in its window in
+  // which the core waits for its next start: figures `core_waits.REASON` (sw/report/README.md, Time line).
+  explore::Figures operator()(const explore::Point& point, const Hopeless& hopeless = {},
+                              bool with_core_waits = false);
 
  private:
   // The given tables; if there are none, the identity tables of the last point, because the next point mostly
@@ -35,12 +37,6 @@ class PointSimulator {
   platform::Tables tables_;
   bool is_calibrated_ = false;
 };
-
-// How the core of a whole computer spends its time in the window of the steady rate: shares, which sum to 1.
-// Key "": in frames. Each other key: waiting for the next start, by reason (sw/report/README.md, Time line).
-// The run of `frames` frames must have a steady rate. Empty after an interrupt. Throws as PointSimulator.
-std::map<std::string, double> core_time(const platform::BoardConfig& board, const platform::Tables& tables,
-                                        std::uint64_t frames);
 
 // The result of simulate_pixels().
 struct PixelRun {
@@ -53,6 +49,10 @@ struct PixelRun {
 // interrupt. Throws as PointSimulator does.
 PixelRun simulate_pixels(const platform::BoardConfig& board, const platform::Tables& tables,
                          host::FrameSource& pairs, std::uint64_t frames);
+
+// What makes the fast simulation of a board step every cycle (FastForward), which takes longer: "accesses of
+// captures and of the host in sdram". Empty if nothing does.
+std::string stepped_text(const platform::BoardConfig& board, const platform::Tables& tables, bool camera);
 
 // The frame rate of the core over frames 0..frames-1 if no port ever waited for a bank: each buffer is in a
 // bank of its own, of the kind that it has now, and no host accesses the banks. Simulates one turn of the

@@ -18,7 +18,7 @@ SHARED = sets("allocation.left_lut=bank0")
 class Json(ProgramTest):
     def document(self, command, *arguments):
         """The document, which keeps its schema."""
-        process = run(command, *arguments, "--json")
+        process = run(command, *arguments, "--json", "--quiet")
         self.assertEqual(process.stderr, "")
         return self.valid(command, self.succeeds(process))
 

@@ -226,7 +226,7 @@ class Environment(PlotTest):
             for variables in ({"PYTHONPATH": str(self.folder), "MPLBACKEND": "nonsense",
                                "PYTHONSAFEPATH": "1"},
                               {"PYTHONHOME": str(self.folder), "PYTHONOPTIMIZE": "2"}):
-                process = run("plot", store, "--out", self.out, env={**os.environ, **variables})
+                process = run("plot", store, "--quiet", "--out", self.out, env={**os.environ, **variables})
                 self.assertEqual((process.returncode, process.stderr), (0, ""), variables)
         self.out = self.folder / "alone"
         self.succeeds(script_with("plot_window.py", store, "--out", self.out, MPLBACKEND="nonsense"))

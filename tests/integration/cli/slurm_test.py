@@ -131,8 +131,8 @@ class Results(SlurmTest):
 class Progress(SlurmTest):
     def test_progress_is_shown(self):
         terminal = Terminal(self.command(plan=self.slow), columns=120, env=cluster.environment)
-        terminal.read_until(r"/20 points   .* left   2 running, 1 waiting \(\w+\)")
-        terminal.read_until(r"[1-9]\d*/20 points   \d+\.\d %   \d+\.\d points/s   \d+:\d\d left   \d running")
+        terminal.read_until(r"/20 points.*, 2 running, 1 waiting \(\w+\)")
+        terminal.read_until(r"[1-9]\d*/20 points, \d+:\d\d left, \d running")
         status, out = terminal.finish()
         self.assertEqual(status, 0)
         self.assertIn(ALL_DONE, out)

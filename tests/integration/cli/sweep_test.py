@@ -271,7 +271,7 @@ class Meanwhile(SweepTest):
         self.assertEqual(process.returncode, 130, errors)
         self.assertRegex(out, r"4064 points: \d+ ok, \d+ impossible, 0 failed, \d+ not begun\n")
         note = "interrupted: run the same command to resume"
-        self.assertEqual(errors, f"stereotlm: note: {note}\n")
+        self.assertTrue(errors.endswith(f"stereotlm: note: {note}\n"), errors)
         self.succeeds(self.sweep(plan=self.many))
         whole = self.folder / "whole.db"
         self.succeeds(self.sweep(plan=self.many, store=whole))
@@ -286,7 +286,7 @@ class Meanwhile(SweepTest):
     @program.slow
     def test_a_terminal_shows_its_progress(self):
         terminal = Terminal(["sweep", self.many, "--out", self.store])
-        terminal.read_until(r"\d+/4064 points   \d+\.\d %   \d+\.\d points/s   \S+ left")
+        terminal.read_until(r"\d+/4064 points, \S+ left")
         status, out = terminal.finish()
         self.assertEqual(status, 0)
         self.assertIn("4064 points: 2032 ok, 2032 impossible", out)

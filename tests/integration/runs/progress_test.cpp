@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <thread>
+
 namespace stereotlm::runs {
 namespace {
 
@@ -36,6 +38,24 @@ TEST(ProgressText, WritesLongTimes) {
   EXPECT_EQ(left(3601), "1:00:00 left");
   EXPECT_EQ(left(360'001), "100:00:00 left");
   EXPECT_EQ(left(18'446'744'073'709'551'615U), "years left");
+}
+
+TEST(ProgressText, OfEqualPiecesLeavesOutThoseThatWereDoneBefore) {
+  EXPECT_EQ(progress_text(8, 20, "points", 5, 6), "8/20 points, 0:30 left");
+}
+
+TEST(ProgressLine, WritesNotesWithoutATerminalAndAnnouncesWhatTakesLongerThan5Seconds) {
+  for (const std::uint64_t seconds : {2U, 100U}) {
+    testing::internal::CaptureStderr();
+    ProgressLine progress("boards are made", "sdram", std::chrono::milliseconds(300));
+    for (int time = 0; time < 14; ++time) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+      progress.show(1, seconds, [](double) { return "1 made"; });
+    }
+    const std::string shown = testing::internal::GetCapturedStderr();
+    EXPECT_EQ(shown.rfind("stereotlm: note: 1 made\n", 0), 0U);
+    EXPECT_EQ(shown.find("made, cycle by cycle because of sdram: 1 made\n") < shown.size(), seconds > 5);
+  }
 }
 
 }  // namespace

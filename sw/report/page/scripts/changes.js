@@ -83,8 +83,9 @@ export function addKnobs(page, run) {
     id: 'knobs',
     wide: true,
     draw,
-    title: advice.first ? `First: ${stepText(advice.first)}, ${gainText(gainOf(advice.first))}` :
-                          'No single change is worth making first',
+    title: (board.interrupted ? `Interrupted: ${board.interrupted}. ` : '') +
+        (advice.first ? `First: ${stepText(advice.first)}, ${gainText(gainOf(advice.first))}` :
+                         'No single change is worth making first'),
     note: `One setting changed at a time, simulated with ${
               count(board.frames, 'frame')} each. Right: the gain, and what the change takes in ` +
         'addition. First: the largest gain that needs nothing new; if there is none, the largest of ' +

@@ -40,7 +40,7 @@ TEST(Command, IsEndedByAnInterruptIfThatIsAskedFor) {
   const auto run_interrupted = [](bool ends) {
     catch_interrupts();
     raise(SIGINT);
-    std::exit(run_command({"sleep", ends ? "60" : "0.1"}, {}, ends).status);
+    std::exit(run_command({"sleep", ends ? "60" : "0.1"}, {}, ends ? [] {} : std::function<void()>()).status);
   };
   EXPECT_EXIT(run_interrupted(true), testing::ExitedWithCode(128 + SIGTERM), "");
   EXPECT_EXIT(run_interrupted(false), testing::ExitedWithCode(0), "");
