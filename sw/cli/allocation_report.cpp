@@ -23,8 +23,6 @@ using explore::BestPlacement;
 using platform::BoardConfig;
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kKept = "with these kinds of banks, these clocks and this priority";
-
 bool counts(const BestPlacement& best) { return best.tied > 0; }
 
 double percent_of(double rate, double best) { return 100 * rate / best; }
@@ -155,21 +153,21 @@ std::string best_text(const AllocationReport& report) {
   std::string rest;
   if (fewer != nullptr) {
     decimals = decimals_of(top.highest.frames_per_second, fewer->outcome.frames_per_second);
-    rest = ":\n  the best with fewer gives " + rate_text(report, fewer->outcome, decimals);
+    rest = ": the best with fewer gives " + rate_text(report, fewer->outcome, decimals);
   } else {
-    rest = report.all.front().banks < top.banks ? ",\n  the fewest with an allocation that counts"
-                                                : ",\n  the fewest that hold the buffers";
+    rest = report.all.front().banks < top.banks ? ", the fewest with an allocation that counts"
+                                                : ", the fewest that hold the buffers";
   }
   const BestPlacement& kept = kept_of(report);
   return fmt::format(
-             "The best of all is {} frames/s; {}.\n", rate_text(report, top.highest, decimals),
+             "The best with these kinds of banks, clocks and priority is {} frames/s; {}.\n",
+             rate_text(report, top.highest, decimals),
              top.tied > 1 ? fmt::format("{} allocations tie", top.tied) : "no other allocation ties") +
-         fmt::format("It needs {} banks {} ({} frames/s){}.\n", top.banks, kKept,
+         fmt::format("It needs {} banks ({} frames/s){}.\n", top.banks,
                      rate_text(report, top.outcome, decimals), rest) +
-         fmt::format(
-             "{:g} % of it is kept with {} banks ({} frames/s, {:.2f} %), and not with fewer,\n  {}.\n",
-             report.keep_percent, kept.banks, rate_text(report, kept.outcome),
-             percent_of(kept.outcome.frames_per_second, top.highest.frames_per_second), kKept);
+         fmt::format("{:g} % of it is kept with {} banks ({} frames/s, {:.2f} %), and not with fewer.\n",
+                     report.keep_percent, kept.banks, rate_text(report, kept.outcome),
+                     percent_of(kept.outcome.frames_per_second, top.highest.frames_per_second));
 }
 
 // The line that states how much better another allocation can be at most.
@@ -183,8 +181,8 @@ std::string certificate_text(const AllocationReport& report) {
         rounded_up(percent_of(*open, best) - 100, 2), rounded_up(*open, 3));
   }
   const double most = top.possible_frames_per_second;
-  return fmt::format("No allocation that uses at most {} banks gives more{},\n  {}.\n", report.most_banks,
-                     most > best ? fmt::format(" than {:.3f} frames/s", rounded_up(most, 3)) : "", kKept);
+  return fmt::format("No allocation that uses at most {} banks gives more{}.\n", report.most_banks,
+                     most > best ? fmt::format(" than {:.3f} frames/s", rounded_up(most, 3)) : "");
 }
 
 std::string result_text(const AllocationReport& report) {

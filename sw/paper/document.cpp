@@ -177,8 +177,9 @@ std::string table2_remarks(const ClaimFinding& found) {
   for (const CaseFinding& finding : found.cases)
     worst = std::max(worst, std::abs(finding.modelled - finding.of.printed));
   return fmt::format(
-      "\nMethod: adders, registers and memories are counted from the structure (`stereotlm bounds --area` lists\n"
-      "them); one constant, {:g} slices for each place of a LUT and its flip-flop, is fitted to these rows.\n"
+      "\nMethod: adders, registers and memories are counted from the structure (`stereotlm bounds\n"
+      "--area` lists them); one constant, {:g} slices for each place of a LUT and its flip-flop, is fitted\n"
+      "to these rows.\n"
       "What is counted was decided with these rows in view: some 45 more places that do not grow with the\n"
       "disparities, the constant fitted again, take the row of 80 past one point.\n"
       "The largest error is {:.2f} points; a printed whole percentage stands for half a point to each "

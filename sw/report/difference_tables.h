@@ -17,14 +17,14 @@ struct JudgedRun {
   double clock_mhz;
 };
 
-// What stands behind rates of two runs, by stats.json: ", while captures lose 7 pixels in A and 0 in B". Empty
-// if none are lost.
+// What stands behind rates of two runs, by stats.json: ", while captures lose 7 pixels in A and 0 in B".
+// Empty if none are lost.
 std::string loss_text(const nlohmann::ordered_json& a, const nlohmann::ordered_json& b);
 
 // The comparison of two runs in one sentence: which is faster, by how much, where the difference arises, and
 // whether the disparities are the same. The rates are the steady ones if both runs have them, else those from
-// power-up, else those of the core, with the pixels that captures lose. Rates that differ by at most the sum of their uncertainties count as
-// equal. `pixels`: null if the disparities are not compared.
+// power-up, else those of the core, with the pixels that captures lose. Rates that differ by at most the sum
+// of their uncertainties count as equal. `pixels`: null if the disparities are not compared.
 std::string diff_verdict(const JudgedRun& a, const JudgedRun& b, const stats::PixelComparison* pixels);
 
 // The sum of `frame_cycles`.
@@ -51,8 +51,8 @@ nlohmann::ordered_json differing_waits(const std::vector<platform::BlameRow>& a,
 inline constexpr std::size_t kMostSettings = 30;
 std::string settings_table(const std::string& head, const nlohmann::ordered_json& rows);
 
-// The table of figures, from shown_values(). Beside two numbers it shows their difference. Two real numbers that
-// are the same with six digits, such as quotients that are rounded differently, are left out.
+// The table of figures, from shown_values(). Beside two numbers it shows their difference. Two real numbers
+// that are the same with six digits, such as quotients that are rounded differently, are left out.
 std::string figures_table(const std::string& head, const nlohmann::ordered_json& rows);
 
 // The table of cycles of frames with the same number in both runs. Frames with the same cycles share a line.

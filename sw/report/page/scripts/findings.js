@@ -236,13 +236,14 @@ function whatFirst(run) {
   const now = `Now: ${rateText(board)}${lossText(board.loses_pixels)}.`;
   const rule = 'Only changes that keep the disparities are named, and that gain 1 % or more beyond the ' +
       `uncertainty${board.loses_pixels ? ' or end the loss of pixels' : ''}.`;
-  const none = board.loses_pixels ? 'No single change ends the loss of pixels.' : 'Nothing.';
+  const others = board.interrupted && `Interrupted: ${board.interrupted}. Others may be better.`;
+  const none = others || (board.loses_pixels ? 'No single change ends the loss of pixels.' : 'Nothing.');
   if (!first) return [none, now, rule];
   const text = step => `${stepText(step)} gives ${rateText(step)} (${gainText(gainOf(step))})`;
   const sets = step => step.sets.map(set => `--set '${set}'`).join(' ');
   return [
     `${text(first)}${board.loses_pixels ? ', and loses no pixels' : ''}.`, now,
-    `To try it: ${sets(first)}.`, rule,
+    `To try it: ${sets(first)}.`, rule, others,
     largest && largest !== first &&
         `The largest gain: ${text(largest)}. It needs ${priceText(largest, board)}.`
   ];
