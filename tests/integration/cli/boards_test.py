@@ -265,8 +265,7 @@ class Bounds(ProgramTest):
         for command, clock, rate in ("check", 39, 76.4), ("bounds", 41, 81.8):
             self.assertNotIn("local bus:", self.succeeds(run(command, "fpl2003")))
             said = self.succeeds(run(command, "fpl2003", *sets(f"bridge.local_clock_mhz={clock}")))
-            self.assertIn(f"{waits.format(clock)}40 MHz it moves at most {rate} MB/s, at 40 MHz "
-                          "146.3 MB/s\n", said)
+            self.assertIn(f"{waits.format(clock)}40 MHz it moves at most {rate} MB/s, at 40 MHz 146.3", said)
 
     def test_lists_what_the_core_takes_of_its_fpga(self):
         (*_, last, device), lines = self.parts()[0][:4], self.parts()[1]

@@ -474,20 +474,19 @@ INSTANTIATE_TEST_SUITE_P(
                                              "allocation.disparity=[bank0, bank0]",
                                              "allocation.left_lut=bank0", "allocation.right_lut=bank0"}));
 
-// The bridge copies pictures as fast as it can. Returns the rate as a share of its bound, if that is the
-// bridge's; or what has failed.
+// The bridge copies pictures as fast as it can. Returns the rate as a share of its bound, or what has failed.
 std::string share_of_bound(double local_mhz, int burst_words) {
   const platform::BoardConfig board = platform::load_board(
       "fpl2003-no-calibration",
       {"image={width: 64, height: 48}", "matcher.disparities=1", "matcher.window=3", "matcher.filter=none",
        "matcher.fetch=line_buffer", "cameras.frame_rate_hz=1000", "capture.destination=host_memory",
        "capture.host_frames=4", "pci.clock_mhz=1000", "fpga.clock_mhz=3",
-       fmt::format("bridge={{local_clock_mhz: {}, dma_burst_words: {}}}", local_mhz, burst_words)});
+       fmt::format("bridge={{local_clock_mhz: {}, dma_burst_words: {}, posted_words: 64}}", local_mhz,
+                   burst_words)});
   const platform::Statistics all =
       simulate(board, platform::identity_tables(board), *runs::blank_pairs(board), 13, Fidelity::kTiming)
           .statistics;
   if (!all.failed.empty()) return all.failed.front();
-  if (all.bound.system_limited_by != "bridge") return "";
   return fmt::format("{}", all.frames_per_second.steady->frames_per_second / *all.bound.system);
 }
 
@@ -496,17 +495,18 @@ TEST(SaturatedLocalBus, StaysBelowItsBoundAndComesCloseToItWithAnyClocks) {
   std::vector<test::ChildWork> jobs = {[] { return share_of_bound(12, 1); }};  // four clocks hide in a cycle
   while (jobs.size() < 60) {
     const double local_mhz = random.between(1000, 4000) / 1000.0;
-    jobs.push_back([local_mhz, words = std::array{7, 32, 100}[jobs.size() % 3]] {
+    jobs.push_back([local_mhz, words = std::array{20, 32, 100}[jobs.size() % 3]] {
       return share_of_bound(local_mhz, words);
     });
   }
-  int limited = 0;
+  int close = 0;
   for (const test::ChildResult& result : test::run_in_children(jobs, processors())) {
-    if (result.ok()) continue;
-    ++limited;
-    EXPECT_GT(std::atof(result.text.c_str()), 0.9) << result.text;
+    const double share = std::atof(result.text.c_str());
+    EXPECT_GT(share, 0.65) << result.text;
+    if (share > 0.93) ++close;
   }
-  EXPECT_GE(limited, 30);
+  EXPECT_GE(close,
+            48);  // at some ratios of the clocks not every phase of a burst is as quick as the best one
 }
 
 }  // namespace
