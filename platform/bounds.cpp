@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "models/capture/camera_timing.h"
 #include "models/clock.h"
@@ -312,6 +313,10 @@ double local_bus_cycles_a_word(const BoardConfig& board, double local_clock_mhz)
   const double local_ps = 1e6 / local_clock_mhz;
   const double fpga_ps = 1e6 / board.fpga.clock_mhz;
   const int words = std::min(board.bridge.dma_burst_words, kMostWords);
+  // A search asks once for each allocation, with the same clocks.
+  thread_local std::pair<std::array<double, 3>, double> last = {{}, 0};
+  const std::array<double, 3> asked = {local_ps, fpga_ps, static_cast<double>(board.bridge.dma_burst_words)};
+  if (last.first == asked) return last.second;
   double piece = INFINITY;   // cycles of `words` words within a burst
   double a_word = INFINITY;  // of bursts of 1..words words, with the clocks between bursts
   for (double aligned = 0; aligned <= piece; ++aligned) {  // the edge of the FPGA
@@ -328,7 +333,8 @@ double local_bus_cycles_a_word(const BoardConfig& board, double local_clock_mhz)
     }
     piece = std::min(piece, grant);
   }
-  return words < board.bridge.dma_burst_words ? std::min(a_word, piece / words) : a_word;
+  last = {asked, words < board.bridge.dma_burst_words ? std::min(a_word, piece / words) : a_word};
+  return last.second;
 }
 
 std::string local_bus_remark(const BoardConfig& board) {
@@ -339,8 +345,8 @@ std::string local_bus_remark(const BoardConfig& board) {
   const bool is_clock = in_step >= 1 && Clock(in_step).phases_against(Clock(fpga)) == 1;
   if (!is_clock || megabytes(in_step) < 1.05 * megabytes(local)) return "";
   return fmt::format(
-      "local bus: each word waits for an edge of both clocks: at {} MHz beside an FPGA clock of {} MHz it "
-      "moves at most {:.1f} MB/s, at {} MHz {:.1f} MB/s\n",
+      "local bus: each word waits for an edge of both clocks: at {} MHz beside an FPGA clock of {} MHz\n"
+      "  it moves at most {:.1f} MB/s, at {} MHz {:.1f} MB/s\n",
       local, fpga, megabytes(local), in_step, megabytes(in_step));
 }
 

@@ -265,7 +265,7 @@ class Bounds(ProgramTest):
         for command, clock, rate in ("check", 39, 76.4), ("bounds", 41, 81.8):
             self.assertNotIn("local bus:", self.succeeds(run(command, "fpl2003")))
             said = self.succeeds(run(command, "fpl2003", *sets(f"bridge.local_clock_mhz={clock}")))
-            self.assertIn(f"{waits.format(clock)}40 MHz it moves at most {rate} MB/s, at 40 MHz 146.3", said)
+            self.assertIn(f"{waits.format(clock)}40 MHz\n  it moves at most {rate} MB/s, at 40 MHz 146.3", said)
 
     def test_lists_what_the_core_takes_of_its_fpga(self):
         (*_, last, device), lines = self.parts()[0][:4], self.parts()[1]
@@ -436,8 +436,9 @@ class Explain(ProgramTest):
         cases = [
             (slow_bus, rf"the PCI bridge: {lost}; a pair of pictures arrives in 1\.13\d ms, and takes "
                        rf"[\d.]+ ms there{limited}"),
-            (short_fifo, rf"the FIFOs of the capture boards, which hold 2 words and request the bus at 2: {lost}; "
-                         rf"the PCI bus is busy in [\d.]+ % of its clocks, .*{limited}the cameras, at the bound of 1000\.000 "),
+            (short_fifo, rf"the FIFOs of the capture boards, which hold 2 words and request the bus at 2: "
+                         rf"{lost}; the PCI bus is busy in [\d.]+ % of its clocks, .*{limited}the cameras, at "
+                         rf"the bound of 1000\.000 "),
         ]
         for options, said in cases:
             explained_now = functools.partial(run, "explain", *board, *options, "--frames", 12)

@@ -64,6 +64,8 @@ def computer_of(seed):
     rate, bound, left = stats["frames_per_second"]["steady"], bounds["bound"]["system"], stats["cameras"][0]
     rates = [(change["frames_per_second"], change["loses_pixels"]) for change in explained["changes"]]
     rates += [(rate, lost > 0), (stats["frames_per_second"]["system"], lost > 0)]
+    core, free = stats["frames_per_second"]["core"], stats.get("waitless_frames_per_second", 0)
+    rates += [(each, False) for each in (core, free, free - core, bounds["bound"]["core"], bound)]
     alone = {each["resource"].split()[-1]: each["frames_per_second"] for each in bounds["computer"]}
     return types.SimpleNamespace(**locals())
 
@@ -73,11 +75,12 @@ def shown(text, value):
     return abs(float(text.replace(",", "")) - value) <= 0.500001 * 10 ** -len(text.partition(".")[2])
 
 
-def has_loss(c, text, rate):
-    """A rate that is reached by losing pixels stands beside the loss."""
-    bounds = [(each, False) for each in c.alone.values()] if "bound" in text else []
-    loses = {loses for each, loses in c.rates + bounds if shown(rate, each)}
-    return loses != {True} or re.search(r"\blos(?:e|es|ing|s|t)\b", text)
+def is_rate(c, text, rate):
+    """Whether it is a rate or a bound of the computer, and beside the loss if pixels are lost at it."""
+    loses = {loses for each, loses in c.rates if shown(rate, each)}
+    if any(shown(rate, each) for each in c.alone.values()) and (not loses or "bound" in text):
+        return True
+    return bool(loses) and (loses != {True} or re.search(r"\blos(?:e|es|ing|s|t)\b", text))
 
 
 def resource_in(text):
@@ -87,9 +90,11 @@ def resource_in(text):
 
 # What a sentence says, and whether that is true of the computer c: all that depends on the wording.
 SENTENCES = (
-    (r"(\d[\d,]*\.?\d*)(?: ± [\d.]+)? frames/s", has_loss),
-    (r"^ +([\d.]+) +[-+][\d.]+ +[-+][\d.]+ .* -> ", has_loss),
-    (r"aptures lose ([\d,]+) pixels", lambda c, text, pixels: shown(pixels, c.lost)),
+    (r"(\d[\d,]*\.?\d*)(?: ± [\d.]+)? frames/s", is_rate),
+    (r"^ +([\d.]+) +[-+][\d.]+ +[-+][\d.]+ .* -> ", is_rate),
+    (r"(?:captures lose|with) ([\d,]+) pixels", lambda c, text, pixels: shown(pixels, c.lost)),
+    (r"hold ([\d,]+) words and", lambda c, text, its: f"capture.fifo_words={its}" in c.options),
+    (r"all waits cost ([\d.]+) %", lambda c, text, its: shown(its, c.explained["time_percent"]["waits"])),
     (r"(PCI bus|bridge|local bus|bank\d)((?!bus|bridge|bank).)*busy (?:in )?([\d.]+) % of",
      lambda c, text, name, _, busy: shown(busy, 100 * c.busy[resource_in(name)])),
     (r"([\d.]+) % of the bound", lambda c, text, share: shown(share, 100 * c.rate / c.bound)),
@@ -98,6 +103,9 @@ SENTENCES = (
     (r"([\d,]+) of [\d,]+ frames? of the left", lambda c, text, its: shown(its, c.left["dropped_frames"])),
     (r"of ([\d,]+) frames? of the left", lambda c, text, its: shown(its, c.left["frames"])),
     (r"(\d[\d,]*) because its capture board", lambda c, text, its: shown(its, c.left["dropped_not_armed"])),
+    (r"takes ([\d,]+) slices", lambda c, text, its: shown(its, c.explained["area"]["slices"])),
+    (r"(\w+) waits in ([\d.]+) % of all cycles", lambda c, text, port, share: shown(share, 100 * sum(
+        row["cycles"] for row in c.stats["blame"] if row["port"] == port) / c.stats["cycles"])),
     (r"(\w+) waits there for [\w -]+ in ([\d.]+) %", lambda c, text, port, share: any(
         shown(share, row["cycles_percent"]) for row in c.explained["blame"] if row["port"] == port)))
 ANSWERS = "return [...document.querySelectorAll('h1, .answers dd')].map(each => each.textContent)"
