@@ -159,7 +159,7 @@ std::string changes_text(const BoardConfig& board, const Explanation& explanatio
              std::none_of(steps.begin(), steps.end(), [](const auto& step) {
                return step.rate.failure.empty() && !step.rate.loses_pixels();
              })) {
-    text += "  no single change ends the loss of pixels\n";
+    text += "  none of these changes ends the loss of pixels\n";
   }
   std::set<std::string> listed;              // keys with a line
   std::set<const explore::KnobStep*> small;  // changes without a line

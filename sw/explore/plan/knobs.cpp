@@ -331,7 +331,11 @@ class Steps {
   void add_key(const Key& key, const platform::IntegerKey& integer) {
     BoardConfig now = board_;
     const int from = *integer.field(now);
-    for (const int change : {static_cast<int>(key.numbers->step), -static_cast<int>(key.numbers->step)}) {
+    std::vector<int> changes = {static_cast<int>(key.numbers->step), -static_cast<int>(key.numbers->step)};
+    // Whether pixels are lost because the FIFOs are short is seen with FIFOs that are much longer.
+    if (key.path == "capture.fifo_words")
+      changes.push_back(std::max(platform::CaptureConfig{}.fifo_words, 2 * from) - from);
+    for (const int change : changes) {
       add({key.path,
            std::to_string(from),
            std::to_string(from + change),

@@ -20,8 +20,8 @@ class LongWork(ProgramTest):
         terminal = Terminal(arguments, columns=200)
         status, out = terminal.interrupt(r"\r([3-9]|\d\d)/\d+ boards simulated, ", signal.SIGINT)
         self.assertEqual(status, 130)
-        self.assertIn("82 boards are simulated, each for 42 frames, cycle by cycle because", terminal.text)
-        return out, re.search(r"note: interrupted: (\d+ of 81 changes were simulated)", terminal.text)[1]
+        self.assertRegex(terminal.text, r"\d+ boards are simulated, each for 42 frames, cycle by cycle b")
+        return out, re.search(r"note: interrupted: (\d+ of \d+ changes were simulated)", terminal.text)[1]
 
     def test_explain_and_report_keep_what_is_simulated(self):
         out, kept = self.interrupted("explain", *SLOW)

@@ -145,7 +145,7 @@ class Boards(PythonTest):
     def test_charts(self):
         for shown in (small_board(), small_board().run(*self.arrays)):
             self.assertIn("<svg", shown._repr_html_())
-        self.assertIn("system", repr(small_board().run()))
+        self.assertIn("from power-up", repr(small_board().run()))
         of_set = small_board().run(**ALONE, set=["matcher.window=5"])
         self.assertNotEqual(of_set.chart(), small_board().run(**ALONE).chart())
 

@@ -889,7 +889,7 @@ class Answers(PageTest):
             self.steps(("a bank less", "bank3", "bank2", 0.2, whole), ("fpga.clock_mhz", "8", "9", 5, {}),
                        *[("capture.fifo_words", "64", "128", -1, whole)][:cures])(run)
 
-        for cures, text in ((0, r"No single change ends the loss of pixels\.Now: "),
+        for cures, text in ((0, r"None of the changes ends the loss of pixels\.Now: "),
                             (1, r"capture.fifo_words: 64 → 128 gives .* \(−1.0 %\), and loses no "
                                 r"pixels\.Now: .* while captures lose pixels\.")):
             self.opened(computer(), change)

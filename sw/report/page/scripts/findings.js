@@ -237,7 +237,7 @@ function whatFirst(run) {
   const rule = 'Only changes that keep the disparities are named, and that gain 1 % or more beyond the ' +
       `uncertainty${board.loses_pixels ? ' or end the loss of pixels' : ''}.`;
   const others = board.interrupted && `Interrupted: ${board.interrupted}. Others may be better.`;
-  const none = others || (board.loses_pixels ? 'No single change ends the loss of pixels.' : 'Nothing.');
+  const none = others || (board.loses_pixels ? 'None of the changes ends the loss of pixels.' : 'Nothing.');
   if (!first) return [none, now, rule];
   const text = step => `${stepText(step)} gives ${rateText(step)} (${gainText(gainOf(step))})`;
   const sets = step => step.sets.map(set => `--set '${set}'`).join(' ');
