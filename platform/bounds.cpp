@@ -6,7 +6,6 @@
 #include <cmath>
 #include <map>
 #include <set>
-#include <utility>
 
 #include "models/capture/camera_timing.h"
 #include "models/clock.h"
@@ -302,21 +301,17 @@ void count_rows(const BoardConfig& board, bool has_table, fpga::Side side, const
 
 // A grant is at an edge of the FPGA. The next word's clock is the first one of the local bus at or after it.
 // The word requests as that clock ends; the next edge of the FPGA grants it at the earliest. Between bursts
-// are three more clocks: idle, address, decode. A grant that comes later makes no grant after it earlier.
-// The quickest phase: move the edges of the local bus earlier, until one of them coincides with a grant of
-// the burst. No grant gets later. So it is enough to try the phases with such an edge. Edges are rounded to
-// whole ps: at each of the two waits of a word, an edge that is late by less than 1 ps may be in time.
+// are three more clocks: idle, address, decode. A later grant never advances the grants behind it. So moving
+// the edges of the local bus earlier, until one of them coincides with a grant of the burst, delays no grant.
+// It is enough to try the phases with such an edge. Edges are rounded to whole ps: at each of the two waits of
+// a word, an edge that is late by less than 1 ps may be in time.
 double local_bus_cycles_a_word(const BoardConfig& board, double local_clock_mhz) {
-  constexpr int kMostWords = 64;          // longer bursts: pieces of so many words, and a last one
+  constexpr int kMostWords = 16;          // longer bursts: pieces of so many words, and a last one
   constexpr double kRoundedPs = 2 + 0.1;  // 0.1: for the rounding of the numbers here
   constexpr double kSamePs = 1e-6;        // times that differ by less are equal
   const double local_ps = 1e6 / local_clock_mhz;
   const double fpga_ps = 1e6 / board.fpga.clock_mhz;
   const int words = std::min(board.bridge.dma_burst_words, kMostWords);
-  // A search asks once for each allocation, with the same clocks.
-  thread_local std::pair<std::array<double, 3>, double> last = {{}, 0};
-  const std::array<double, 3> asked = {local_ps, fpga_ps, static_cast<double>(board.bridge.dma_burst_words)};
-  if (last.first == asked) return last.second;
   double piece = INFINITY;   // cycles of `words` words within a burst
   double a_word = INFINITY;  // of bursts of 1..words words, with the clocks between bursts
   for (double aligned = 0; aligned <= piece; ++aligned) {  // the edge of the FPGA
@@ -333,21 +328,25 @@ double local_bus_cycles_a_word(const BoardConfig& board, double local_clock_mhz)
     }
     piece = std::min(piece, grant);
   }
-  last = {asked, words < board.bridge.dma_burst_words ? std::min(a_word, piece / words) : a_word};
-  return last.second;
+  return words < board.bridge.dma_burst_words ? std::min(a_word, piece / words) : a_word;
+}
+
+double clock_in_step(const BoardConfig& board) {
+  return board.fpga.clock_mhz /
+         std::max(1.0, std::round(board.fpga.clock_mhz / board.bridge.local_clock_mhz));
 }
 
 std::string local_bus_remark(const BoardConfig& board) {
   const double local = board.bridge.local_clock_mhz;
   const double fpga = board.fpga.clock_mhz;
-  const double in_step = fpga / std::max(1.0, std::round(fpga / local));
+  const double in_step = clock_in_step(board);
   const auto megabytes = [&](double mhz) { return 4 * fpga / local_bus_cycles_a_word(board, mhz); };
   const bool is_clock = in_step >= 1 && Clock(in_step).phases_against(Clock(fpga)) == 1;
   if (!is_clock || megabytes(in_step) < 1.05 * megabytes(local)) return "";
   return fmt::format(
-      "local bus: each word waits for an edge of both clocks: at {} MHz beside an FPGA clock of {} MHz\n"
-      "  it moves at most {:.1f} MB/s, at {} MHz {:.1f} MB/s\n",
-      local, fpga, megabytes(local), in_step, megabytes(in_step));
+      "local bus: its words wait for edges of two clocks. Beside an FPGA clock of {} MHz\n"
+      "  it moves at most {:.1f} MB/s at {} MHz, and {:.1f} MB/s at {} MHz\n",
+      fpga, megabytes(local), local, megabytes(in_step), in_step);
 }
 
 FrameAccesses frame_accesses(const BoardConfig& board, const Tables& tables) {

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -97,8 +99,13 @@ struct RateBound {
 // bridge.dma_burst_words words and the clocks between them, if the local bus has this clock.
 double local_bus_cycles_a_word(const BoardConfig& board, double local_clock_mhz);
 
-// A line on a local bus that would be at least 5 % faster with the clock of the FPGA, or the divisor of it
-// that is next to its own clock. Empty for any other local bus.
+// The clock of the FPGA, or its divisor next to the clock of the local bus, MHz.
+inline double clock_in_step(const BoardConfig& board) {
+  return board.fpga.clock_mhz /
+         std::max(1.0, std::round(board.fpga.clock_mhz / board.bridge.local_clock_mhz));
+}
+
+// A line on a local bus that would be at least 5 % faster with clock_in_step(); empty for any other.
 std::string local_bus_remark(const BoardConfig& board);
 
 // The bounds of the computer, in the order of the table at RateBound: over whole turns of the allocation's

@@ -63,10 +63,13 @@ std::string text_of(const runs::Explanation& found) {
   std::string text = paragraph("", 0, "limited by " + runs::limiter_text(found)) +
                      paragraph("the time of a frame: ", 2, runs::budget_text(found)) +
                      line(found.now(), "this board");
-  for (const auto& [step, rate, busiest] : found.steps())
-    if (rate.failure.empty())
-      text += line(rate, fmt::format("{}: {} -> {}", step->knob, step->from, step->to));
-  return text;
+  for (const auto& [step, rate, busiest] : found.steps()) {
+    if (!rate.failure.empty()) continue;
+    text += line(rate, fmt::format("{}{}: {} -> {}", step->knob, step->changes_disparities ? " *" : "",
+                                   step->from, step->to));
+  }
+  if (!found.interruption().empty()) text += "interrupted: " + found.interruption() + '\n';
+  return text + "*: the disparities change too\n";
 }
 
 // nullopt if interrupted.

@@ -383,7 +383,8 @@ runs::RunInput RunOptions::load() const {
       input.calibration = calibration->calibration;
       input.described.calibration = calibration->described;
     }
-    if (has_arrays() && input.folder) named.sequence = runs::keep_pictures(*opened.pairs, *input.folder);
+    if (has_arrays() && input.folder && !input.timing_only)
+      named.sequence = runs::keep_pictures(*opened.pairs, *input.folder);
     describe(*this, opened.pairs ? opened.pairs->length() : 1, input);
   });
   trace.check_window(input.board, input.frames, problems);

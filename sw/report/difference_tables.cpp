@@ -163,7 +163,7 @@ std::string loss_text(const Json& a, const Json& b) {
       lost.back() += camera.at("dropped_pixels").get<std::uint64_t>();
   }
   if (lost[0] + lost[1] == 0) return "";
-  return fmt::format(", while captures lose {} pixels in A and {} in B", lost[0], lost[1]);
+  return fmt::format(", with {} lost pixels in A and {} in B", lost[0], lost[1]);
 }
 
 std::string diff_verdict(const JudgedRun& a, const JudgedRun& b, const stats::PixelComparison* pixels) {

@@ -17,7 +17,7 @@ struct JudgedRun {
   double clock_mhz;
 };
 
-// What stands behind rates of two runs, by stats.json: ", while captures lose 7 pixels in A and 0 in B".
+// What stands behind rates of two runs, by stats.json: ", with 7 lost pixels in A and 0 in B".
 // Empty if none are lost.
 std::string loss_text(const nlohmann::ordered_json& a, const nlohmann::ordered_json& b);
 

@@ -56,12 +56,15 @@ std::string html_page(const nlohmann::ordered_json& data) {
 </body>
 </html>
 )";
-  const std::string json = data.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  const auto json_of = [](const nlohmann::ordered_json& value) {
+    return value.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  };
   std::string plain;
-  for (const char letter : nlohmann::json::parse(json).value("text", ""))
+  const std::string text = json_of(data.value("text", ""));
+  for (const char letter : nlohmann::json::parse(text).get<std::string>())
     plain += letter == '<' ? "&lt;" : letter == '&' ? "&amp;" : std::string(1, letter);
   return fmt::format(kPage, page_mark(), between(stereotlm_page_style, stereotlm_page_style_end), plain,
-                     compressed(json), between(stereotlm_page_script, stereotlm_page_script_end));
+                     compressed(json_of(data)), between(stereotlm_page_script, stereotlm_page_script_end));
 }
 
 }  // namespace stereotlm::report

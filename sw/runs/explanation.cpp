@@ -26,8 +26,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// A rate that is below its bound by less than this share is that of the bound.
+// A rate that is below its bound by less than this share is that of the bound. So is one that is below it by
+// less than its uncertainty, unless that is larger than kMostOpen of the bound.
 constexpr double kAtBound = 0.005;
+constexpr double kMostOpen = 0.05;
 
 double mean_of(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
@@ -37,7 +39,6 @@ const std::string kHost = fpga::kPortGroups[fpga::kHostGroup].name;
 const std::string kResult = fpga::kPortGroups[fpga::kResultGroup].name;
 constexpr double kVisibleLoss = 0.01;     // of the cycles
 constexpr double kVisiblePercent = 0.05;  // of the time of a frame
-constexpr double kBusy = 50;              // of the clocks of a bus in percent: with less it is no limit
 constexpr double kLeastHeadroom = 10;     // of a bus in percent; with less it is named beside what waits
 
 struct Reason {
@@ -48,7 +49,7 @@ struct Reason {
 constexpr std::array<Reason, 6> kReasons = {
     Reason{"upload", "the upload of the tables", "the tables"},
     Reason{"camera", "the captures", "a camera frame to begin"},
-    Reason{"capture", "the captures", "the end of a capture, which begins only with a camera frame"},
+    Reason{"capture", "the captures", "the end of a capture"},
     Reason{"copy", "the copies from host memory", "the end of a copy from host memory"},
     Reason{"output_buffer", "the read-back", "a result to be read back"},
     Reason{"host", "the driver", "register accesses"}};
@@ -58,6 +59,12 @@ const Reason& reason_of(const std::string& why) {
     if (reason.why == why) return reason;
   }
   throw std::logic_error(why + ": not a reason for which the core waits");
+}
+
+std::string reason_text(const Explanation& explanation, const std::string& why) {
+  const bool is_clocked =
+      why == "capture" && explanation.board().cameras.trigger == platform::CameraTrigger::kFreeRunning;
+  return reason_of(why).text + std::string(is_clocked ? ", which begins only with a camera frame" : "");
 }
 
 // "left_lut waits there for left_pixel in 33.14 % of the cycles"
@@ -79,15 +86,16 @@ std::string busy_bus_text(const Explanation& explanation) {
 
 // A frame rate at the bound of its limiter.
 std::string bound_text(const Explanation& explanation, const std::string& owner, double bound) {
-  const bool is_above = explanation.camera() && explanation.now().frames_per_second > bound;
+  const double rate = explanation.now().frames_per_second;
+  const bool is_open = rate < bound * (1 - kAtBound) || rate - bound >= stats::kVisibleRate;
   const std::string text = fmt::format("{}, at the bound of {:.3f} frames/s{}", stats::resource_words(owner),
-                                       bound, is_above ? " within the uncertainty" : "");
+                                       bound, is_open ? " within the uncertainty" : "");
   const auto wait = longest_wait(explanation, owner);
   return wait ? text + "; " + wait_of(explanation, *wait) : text;
 }
 
 // Why captures lose pixels. First what is certain: a bus needs longer for a pair of pictures than the pair
-// takes to arrive, or cannot move whole pictures at this rate. Else what was used the most, if it was busy.
+// takes to arrive, or cannot move whole pictures at this rate.
 std::string lost_pixels_text(const Explanation& explanation) {
   const explore::StoredRow& row = explanation.figures();
   const std::int64_t lost = explanation.now().lost_pixels;
@@ -105,38 +113,31 @@ std::string lost_pixels_text(const Explanation& explanation) {
     return fmt::format("{}{}; whole pictures at this rate need {:.2f} times its time",
                        stats::resource_words(least.name), text, 1 - least.headroom_percent / 100);
   }
-  for (const platform::BlameRow& wait : explanation.blames()) {
-    if (wait.port == kHost && explanation.percent_of_cycles(wait.cycles) > 100 * kVisibleLoss)
-      return platform::bank_text(wait.bank) + text + "; " + wait_of(explanation, wait);
-  }
+  // On average nothing is too slow. So the FIFOs are too short for the waits.
   const std::vector<Explanation::Resource>& all = explanation.resources();
   const auto busy_of = [&all](const char* name) {
     return std::find_if(all.begin(), all.end(), [name](const auto& each) { return each.name == name; })
         ->busy_percent;
   };
   const char* const bus = busy_of("pci") >= busy_of("bridge") ? "pci" : "bridge";
-  const bool is_busy = busy_of(bus) > kBusy;
-  std::int64_t all_transactions = 0;
-  for (const char* const master : {"host", "left_capture", "right_capture", "bridge", "load"})
-    all_transactions += row.integer(fmt::format("pci.masters.{}.transactions", master));
-  const std::int64_t of_load = row.integer("pci.masters.load.transactions");
-  const auto clocks_of = [&row](const char* master) {
-    return static_cast<double>(row.integer(fmt::format("pci.masters.{}.wait_clocks", master))) /
-           static_cast<double>(
-               std::max<std::int64_t>(1, row.integer(fmt::format("pci.masters.{}.transactions", master))));
-  };
+  double clocks = 0;  // that a capture board waits for a burst, on average
+  for (const std::string master : {"pci.masters.left_capture", "pci.masters.right_capture"}) {
+    const auto bursts = std::max<std::int64_t>(1, row.integer(master + ".transactions"));
+    clocks = std::max(
+        clocks, static_cast<double>(row.integer(master + ".wait_clocks")) / static_cast<double>(bursts));
+  }
+  std::string where;
+  for (const platform::BlameRow& wait : explanation.blames()) {
+    if (wait.port != kHost || explanation.percent_of_cycles(wait.cycles) < 100 * kVisibleLoss) continue;
+    where = fmt::format("; {}: {}", platform::bank_text(wait.bank), wait_of(explanation, wait));
+    break;
+  }
   const platform::CaptureConfig& capture = explanation.board().capture;
-  const std::string where =
-      is_busy ? stats::resource_words(bus)
-              : fmt::format("the FIFOs of the capture boards, which hold {} words and request the bus at {}",
-                            capture.fifo_words, capture.fifo_trigger_words);
   return fmt::format(
-      "{}{}; {} is busy in {:.1f} % of its clocks, and a capture board waits {:.1f} PCI "
-      "clocks for a burst{}",
-      where, text, is_busy ? "it" : stats::resource_words(bus), busy_of(bus),
-      std::max(clocks_of("left_capture"), clocks_of("right_capture")),
-      of_load == 0 ? ""
-                   : fmt::format("; pci.load makes {} of the {} transactions", of_load, all_transactions));
+      "the FIFOs of the capture boards, which hold {} words and request the bus at {}{}; a capture board "
+      "waits {:.1f} PCI clocks for a burst, and {} is busy in {:.1f} % of its clocks{}",
+      capture.fifo_words, capture.fifo_trigger_words, text, clocks, stats::resource_words(bus), busy_of(bus),
+      where);
 }
 
 std::string waits_text(const Explanation& explanation) {
@@ -190,11 +191,11 @@ std::string core_waits_text(const Explanation& explanation) {
   std::string text =
       fmt::format("{}: the core waits {:.2f} % of the time", reason_of(shares.front().second).limiter,
                   is_one ? shares.front().first : sum);
-  if (is_one) text += fmt::format(" for {}", reason_of(shares.front().second).text);
+  if (is_one) text += fmt::format(" for {}", reason_text(explanation, shares.front().second));
   const char* separator = ", ";
   for (const auto& [share, why] : shares) {
     if (is_one || share < kVisiblePercent) break;
-    text += fmt::format("{}{:.2f} % for {}", separator, share, reason_of(why).text);
+    text += fmt::format("{}{:.2f} % for {}", separator, share, reason_text(explanation, why));
     separator = " and ";
   }
   return text + busy_bus_text(explanation);
@@ -203,7 +204,9 @@ std::string core_waits_text(const Explanation& explanation) {
 // What limits the rate, whether pixels are lost or not.
 std::string rate_limiter_text(const Explanation& explanation) {
   const platform::RateBound& bound = explanation.rate_bound();
-  if (explanation.now().frames_per_second >= bound.frames_per_second * (1 - kAtBound))
+  const Explanation::Rate& now = explanation.now();
+  const double open = std::min(now.uncertainty, kMostOpen * bound.frames_per_second);
+  if (now.frames_per_second >= bound.frames_per_second - std::max(open, kAtBound * bound.frames_per_second))
     return bound_text(explanation, bound.resource, bound.frames_per_second);
   const Budget& budget = explanation.budget();
   double core_waits = 0;
@@ -540,7 +543,7 @@ std::string budget_text(const Explanation& explanation) {
   if (budget.waits >= kVisiblePercent) text += fmt::format(", {:.2f} % waits for banks", budget.waits);
   for (const auto& [why, share] : budget.core_waits) {
     if (share >= kVisiblePercent)
-      text += fmt::format(", {:.2f} % the core waits for {}", share, reason_of(why).text);
+      text += fmt::format(", {:.2f} % the core waits for {}", share, reason_text(explanation, why));
   }
   return text;
 }

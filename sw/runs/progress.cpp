@@ -15,7 +15,7 @@ namespace stereotlm::runs {
 namespace {
 
 constexpr std::chrono::milliseconds kBetweenDrawings{200};
-constexpr double kLongSeconds = 5;  // longer work is announced, as soon as a fifth of that is over
+constexpr double kLongSeconds = 5;  // work that will take longer is announced after 1 s
 
 std::size_t terminal_columns() {
   constexpr std::size_t kUsual = 80;

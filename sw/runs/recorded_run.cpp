@@ -153,6 +153,8 @@ std::optional<RecordedRun> read_recorded_run(const std::string& argument, const 
   };
   read("run.json", run.run_json, [&] {
     run.options = parse_run_json(run.run_json);
+    const fs::path kept = fs::absolute(folder) / "pictures";  // of a folder that may have been moved
+    if (run.options.sequence && fs::is_directory(kept)) run.options.sequence->path = kept.string();
     const std::size_t videos = run.options.video.size();
     if (videos == 0 || videos == video_files(run.options.video_layout)) return;
     throw std::runtime_error(fmt::format("video_layout = {}: must be that of {} file{}",

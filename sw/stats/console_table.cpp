@@ -154,7 +154,7 @@ std::string ports_text(const std::vector<std::string>& ports) {
 
 std::string rate_remark(double rate, double bound, std::uint64_t lost_pixels) {
   if (lost_pixels > 0) return fmt::format(", with {} pixel{} lost", lost_pixels, lost_pixels == 1 ? "" : "s");
-  return rate > bound ? ", at its bound within the uncertainty" : "";
+  return rate - bound >= kVisibleRate ? ", at its bound within the uncertainty" : "";
 }
 
 std::string lost_pixels_text(std::uint64_t pixels) {

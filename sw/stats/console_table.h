@@ -46,13 +46,15 @@ inline std::string resource_words(const std::string& resource) {
   return resource_text(resource);
 }
 
-// Says behind the steady bound what it is of (contract section 6), where a rate beside it is of something
-// else: captures lose pixels, or the rate from power-up is above it. Else empty.
+// What stands behind the steady bound (contract section 6): " of whole pictures" if captures lose pixels;
+// " over whole turns" if the rate from power-up is above the bound; else empty.
 inline const char* whole_text(const platform::Statistics& run) {
   if (platform::lost_pixels(run) > 0) return " of whole pictures";
   const bool is_above = run.frames_per_second.system.value_or(0) > run.bound.system.value_or(0);
   return is_above ? " over whole turns" : "";
 }
+
+inline constexpr double kVisibleRate = 0.0005;  // frames/s: less is not seen in the table
 
 // What stands behind a steady rate, its uncertainty and its unit, so that nobody quotes the rate alone: the
 // pixels that captures lose, or that the rate is above its bound, which is then within the uncertainty.

@@ -13,6 +13,7 @@
 
 #include "models/fpga/core_ports.h"
 #include "models/kernels/filter_kernel.h"
+#include "platform/bounds.h"
 #include "platform/config/board_keys.h"
 #include "platform/config/board_reader.h"
 #include "platform/config/board_yaml.h"
@@ -351,7 +352,8 @@ class Steps {
     // Words of the local bus wait least if one of its clock and the FPGA's is a multiple of the other.
     const double fpga = board_.fpga.clock_mhz;
     const double local = board_.bridge.local_clock_mhz;
-    if (key.path == "bridge.local_clock_mhz") others.insert({fpga, 2 * fpga, local < fpga ? fpga / 2 : fpga});
+    if (key.path == "bridge.local_clock_mhz")
+      others.insert({fpga, 2 * fpga, platform::clock_in_step(board_)});
     if (key.path == "fpga.clock_mhz" && camera_ && std::abs(local / fpga - 1) < 0.1) others.insert(local);
     others.erase(from);
     for (const double other : others) {

@@ -251,13 +251,19 @@ class Sweep {
     {  // One message for an unusable file, instead of one from each worker.
       const Store made(options.store, options.version, options.busy_timeout);
     }
+    std::exception_ptr problem;  // SQLite calls without letting exceptions through
     try {
       run_points(lock, keep_going);
       merge_stores({options.store}, options.store, [&] {
-        keep_going(state_.claims.counts());
-        return false;
+        try {
+          keep_going(state_.claims.counts());
+        } catch (...) {
+          problem = std::current_exception();
+        }
+        return problem != nullptr;
       });
     } catch (const std::exception&) {
+      if (problem) std::rethrow_exception(problem);
       lock.check();  // if the file is gone, that is the reason for the error
       throw;
     }

@@ -134,11 +134,12 @@ def handles(families, panels, best, with_dots):
 
 
 def above_note(points, places, panels):
-    """A note if rates exceed their bounds, which they do by their uncertainty at most; otherwise empty."""
+    """A note if rates exceed their bounds, which whole pictures do by their uncertainty at most."""
     for panel in panels:
         if panel.bound == "bound.system":
             values, bounds = points.column(panel.column), points.column(panel.bound)
-            above = [place for place in places if values[place] is not None and values[place] > bounds[place]]
+            above = [place for place in set(places) - set(points.losing_pixels())
+                     if values[place] is not None and values[place] > bounds[place]]
             if above:
                 return (f"Above the bound by no more than the uncertainty: "
                         f"{counted(len(above), 'steady rate')}.")

@@ -257,7 +257,7 @@ class Computer(DiffTest):
         for out, frames in ((self.a, 14), (self.b, 20)):
             self.succeeds(run("run", "fpl2003", "--timing-only", "--frames", frames, *losing, "--out", out))
         lost = [sum(each["dropped_pixels"] for each in stats_of(out)["cameras"]) for out in (self.a, self.b)]
-        self.assertIn(", while captures lose {} pixels in A and {} in B".format(*lost),
+        self.assertIn(", with {} lost pixels in A and {} in B".format(*lost),
                       self.verdict(self.a, self.b))
         self.assertIn("\nframes_per_second.steady, losing pixels ", "\n".join(self.lines(self.a, self.b)))
 

@@ -33,7 +33,8 @@ export function rateOf(run) {
 // How near a rate is to the bound that a resource sets.
 export function againstBound({now, kind, lost}, limit, by) {
   const bound = `the bound of ${rate(limit)} frames/s, which ${withVerb(by, 'set')}`;
-  if (lost > 0) return `no share of ${bound} for whole pictures`;
+  if (lost > 0) return `not to be compared with ${bound} for whole pictures`;
+  if (rate(now) === rate(limit)) return `at ${bound}`;
   if (now <= limit) return `${percent(now / limit)} of ${bound}`;
   return kind === 'steady' ? `at ${bound}, within its uncertainty` : `above ${bound} over whole turns`;
 }
@@ -234,8 +235,8 @@ function whatFirst(run) {
   const rateText = step =>
       `${rateWith(step.frames_per_second, step.uncertainty_frames_per_second)} frames/s, ${kindOfSteps(run)}`;
   const now = `Now: ${rateText(board)}${lossText(board.loses_pixels)}.`;
-  const rule = 'Only changes that keep the disparities are named, and that gain 1 % or more beyond the ' +
-      `uncertainty${board.loses_pixels ? ' or end the loss of pixels' : ''}.`;
+  const rule = 'Named are only changes that keep the disparities and lose no pixels, that fit the FPGA, and ' +
+      `that gain at least 1 % and more than the uncertainty${board.loses_pixels ? ', or end the loss' : ''}.`;
   const others = board.interrupted && `Interrupted: ${board.interrupted}. Others may be better.`;
   const none = others || (board.loses_pixels ? 'None of the changes ends the loss of pixels.' : 'Nothing.');
   if (!first) return [none, now, rule];

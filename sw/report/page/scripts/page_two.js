@@ -66,7 +66,7 @@ function headlineOfTwo(a, b) {
           .map(([of, text]) => [text(of(a)), text(of(b))])
           .filter(([x, y]) => x !== y)
           .map(([x, y]) => `${y} instead of ${x.split(' ')[0]}`);
-  if (isSame && others.length === 0) return `${rates}: banks, pins, area and latency are the same`;
+  if (isSame && others.length === 0) return `${rates}, with the same banks, pins and area`;
   return [rates, others.join(', ')].filter(Boolean).join(', with ');
 }
 
@@ -138,7 +138,7 @@ export function showTwoRuns(page, {runs, difference}) {
   addChart(figures, {
     id: 'settings',
     title: settings.length ?
-        `${count(settings.length, 'key')} of the board differ${settings.length === 1 ? 's' : ''}` :
+        `${count(settings.length, 'difference')} between the boards` :
         'The boards are the same',
     body: settings.length > 0 && htmlTable(['key', 'A', 'B'], settings),
     numbers: () => [['key', 'a', 'b'], settings]
