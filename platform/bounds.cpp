@@ -331,11 +331,6 @@ double local_bus_cycles_a_word(const BoardConfig& board, double local_clock_mhz)
   return words < board.bridge.dma_burst_words ? std::min(a_word, piece / words) : a_word;
 }
 
-double clock_in_step(const BoardConfig& board) {
-  return board.fpga.clock_mhz /
-         std::max(1.0, std::round(board.fpga.clock_mhz / board.bridge.local_clock_mhz));
-}
-
 std::string local_bus_remark(const BoardConfig& board) {
   const double local = board.bridge.local_clock_mhz;
   const double fpga = board.fpga.clock_mhz;
