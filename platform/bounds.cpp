@@ -303,10 +303,10 @@ void count_rows(const BoardConfig& board, bool has_table, fpga::Side side, const
 // The word requests as that clock ends; the next edge of the FPGA grants it at the earliest. Between bursts
 // are three more clocks: idle, address, decode. A later grant never advances the grants behind it. So moving
 // the edges of the local bus earlier, until one of them coincides with a grant of the burst, delays no grant.
-// It is enough to try the phases with such an edge. Edges are rounded to whole ps: at each of the two waits of
-// a word, an edge that is late by less than 1 ps may be in time.
+// It is enough to try the phases with such an edge. Edges are rounded to whole ps: at each of the two waits
+// of a word, an edge that is late by less than 1 ps may be in time.
 double local_bus_cycles_a_word(const BoardConfig& board, double local_clock_mhz) {
-  constexpr int kMostWords = 16;          // longer bursts: pieces of so many words, and a last one
+  constexpr int kMostWords = 32;          // longer bursts: pieces of so many words, and a last one
   constexpr double kRoundedPs = 2 + 0.1;  // 0.1: for the rounding of the numbers here
   constexpr double kSamePs = 1e-6;        // times that differ by less are equal
   const double local_ps = 1e6 / local_clock_mhz;

@@ -113,7 +113,7 @@ std::string lost_pixels_text(const Explanation& explanation) {
     return fmt::format("{}{}; whole pictures at this rate need {:.2f} times its time",
                        stats::resource_words(least.name), text, 1 - least.headroom_percent / 100);
   }
-  // On average nothing is too slow. So the FIFOs are too short for the waits.
+  // Else a bus that is always busy. Else the FIFOs are too short for the waits.
   const std::vector<Explanation::Resource>& all = explanation.resources();
   const auto busy_of = [&all](const char* name) {
     return std::find_if(all.begin(), all.end(), [name](const auto& each) { return each.name == name; })
@@ -133,11 +133,15 @@ std::string lost_pixels_text(const Explanation& explanation) {
     break;
   }
   const platform::CaptureConfig& capture = explanation.board().capture;
+  const std::string limiter =
+      busy_of(bus) > 100 - kLeastHeadroom
+          ? stats::resource_words(bus)
+          : fmt::format("the FIFOs of the capture boards, which hold {} words and request the bus at {}",
+                        capture.fifo_words, capture.fifo_trigger_words);
   return fmt::format(
-      "the FIFOs of the capture boards, which hold {} words and request the bus at {}{}; a capture board "
-      "waits {:.1f} PCI clocks for a burst, and {} is busy in {:.1f} % of its clocks{}",
-      capture.fifo_words, capture.fifo_trigger_words, text, clocks, stats::resource_words(bus), busy_of(bus),
-      where);
+      "{}{}; {} is busy in {:.1f} % of its clocks, and a capture board waits {:.1f} PCI clocks "
+      "for a burst{}",
+      limiter, text, stats::resource_words(bus), busy_of(bus), clocks, where);
 }
 
 std::string waits_text(const Explanation& explanation) {

@@ -74,8 +74,8 @@ class Explanation {
     Rate rate;
     BusiestBank busiest;  // without meaning if the run has failed
   };
-  // All steps that were simulated, the best first: by their rate, those that lose pixels after the others, those
-  // that have failed last. Of a group only the best.
+  // All steps that were simulated, the best first: by their rate, those that lose pixels after the others,
+  // those that have failed last. Of a group only the best.
   const std::vector<Step>& steps() const { return steps_; }
   std::size_t simulated() const { return simulated_; }  // how many of knobs().possible
   // "12 of 47 changes were simulated"; empty without an interrupt.
@@ -97,8 +97,8 @@ class Explanation {
   // All resources, the least headroom first. The headroom of ports and matcher, and of banks if the core runs
   // alone, is the least in a turn of the allocation lists. On a whole computer the time between frames is
   // divided among the frames in proportion to their cycles. A steady rate above its bound counts as the
-  // bound. Where captures lose pixels, the headroom of a bus or bank is that with whole pictures at this rate,
-  // and can be negative.
+  // bound. Where captures lose pixels, the headroom of a bus or bank is that with whole pictures at this
+  // rate, and can be negative.
   const std::vector<Resource>& resources() const { return resources_; }
 
   // The bound of the rate, and what sets it. Where captures lose pixels, fewer words are moved: then it is

@@ -31,8 +31,8 @@ std::string progress_text(const explore::SearchProgress& progress, double second
 std::string progress_text(std::uint64_t done, std::uint64_t of, const std::string& pieces, double seconds,
                           std::uint64_t before = 0);
 
-// Shows the progress of work, unless notes are left out: to the client of a worker, or on standard error. On a
-// terminal it is one line, which the destructor erases; elsewhere a note every 10 s. Work that takes longer
+// Shows the progress of work, unless notes are left out: to the client of a worker, or on standard error. On
+// a terminal it is one line, which the destructor erases; elsewhere a note every 10 s. Work that takes longer
 // than 5 s is announced by a note as soon as that can be estimated.
 class ProgressLine {
  public:

@@ -261,7 +261,7 @@ class Bounds(ProgramTest):
             self.assertEqual(last, f"steady bound {parts[part]:10.3f} frames/s, limited by {words}")
 
     def test_says_like_check_where_words_of_the_local_bus_wait_for_the_edges_of_both_clocks(self):
-        waits = "local bus: its words wait for edges of two clocks. Beside an FPGA clock of 40 MHz\n  it moves "
+        waits = "its words wait for edges of two clocks. Beside an FPGA clock of 40 MHz\n  it moves "
         for command, clock, rate in ("check", 39, 76.4), ("bounds", 41, 81.8):
             self.assertNotIn("local bus:", self.succeeds(run(command, "fpl2003")))
             said = self.succeeds(run(command, "fpl2003", *sets(f"bridge.local_clock_mhz={clock}")))
@@ -437,8 +437,8 @@ class Explain(ProgramTest):
             (slow_bus, rf"the PCI bridge: {lost}; a pair of pictures arrives in 1\.13\d ms, and takes "
                        rf"[\d.]+ ms there{limited}"),
             (short_fifo, rf"the FIFOs of the capture boards, which hold 2 words and request the bus at 2: "
-                         rf"{lost}; the PCI bus is busy in [\d.]+ % of its clocks, .*{limited}the cameras, at "
-                         rf"the bound of 1000\.000 "),
+                         rf"{lost}; the PCI bus is busy in [\d.]+ % of its clocks, .*{limited}the cameras, "
+                         rf"at the bound of 1000\.000 "),
         ]
         for options, said in cases:
             explained_now = functools.partial(run, "explain", *board, *options, "--frames", 12)
