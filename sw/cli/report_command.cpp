@@ -146,8 +146,8 @@ int report(const ReportOptions& options) {
                  files::marked_kind("page of stereotlm report", {{0, report::page_mark()}}));
   });
   std::optional<Json> data = data_of(options, problems);
-  if (!data && process::interrupted())
-    return interrupted("no page is written; --quick writes one, and simulates nothing");
+  const std::string changes = data ? data->value(Json::json_pointer("/run/knobs/interrupted"), "") : "";
+  if (process::interrupted() && changes.empty()) return interrupted("no page is written");
   problems.check();
   Json whole = {{"format", 2}, {"version", process::kVersion}};
   whole.update(*data);
@@ -155,8 +155,7 @@ int report(const ReportOptions& options) {
   file->write(page);
   file->commit();
   process::print(fmt::format("{}: {} kB\n", options.out.text(), (page.size() + 999) / 1000));
-  const std::string interruption = data->value(Json::json_pointer("/run/knobs/interrupted"), "");
-  return interruption.empty() ? kDone : interrupted(interruption + ", and are on the page");
+  return changes.empty() ? kDone : interrupted(changes + ", and are on the page");
 }
 
 }  // namespace

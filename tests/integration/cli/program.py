@@ -54,10 +54,17 @@ def words(arguments):
     return [PROGRAM, *map(str, arguments)]
 
 
+# How far long work has come: on a busy machine any command may say it.
+PROGRESS_NOTE = re.compile(r"stereotlm: note: .*(\d/\d+ |\d left|so far).*\n")
+
+
 def run(*arguments, **options):
-    """The finished process, with text output."""
+    """The finished process, with text output, without notes on progress."""
     pipes = {"capture_output": True, "text": True, "timeout": 300, "check": False}
-    return subprocess.run(words(arguments), **pipes, **options)
+    process = subprocess.run(words(arguments), **{**pipes, **options})
+    if isinstance(process.stderr, str):
+        process.stderr = PROGRESS_NOTE.sub("", process.stderr)
+    return process
 
 
 def wait_until(is_so, seconds=60):
@@ -200,8 +207,7 @@ class ProgramTest(unittest.TestCase):
     def ends(self, process, status, out="", errors=""):
         """A process that was started ends so."""
         said, told = process.communicate(timeout=120)
-        told = re.sub(r"stereotlm: note: .*(\d/\d+ | left|so far).*\n", "", told)  # how far it has come
-        self.assertEqual((process.returncode, said, told), (status, out, errors))
+        self.assertEqual((process.returncode, said, PROGRESS_NOTE.sub("", told)), (status, out, errors))
 
     def succeeds(self, process):
         """Its standard output."""
