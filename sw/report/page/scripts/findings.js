@@ -236,7 +236,8 @@ function whatFirst(run) {
       `${rateWith(step.frames_per_second, step.uncertainty_frames_per_second)} frames/s, ${kindOfSteps(run)}`;
   const now = `Now: ${rateText(board)}${lossText(board.loses_pixels)}.`;
   const rule = 'Named are only changes that keep the disparities and lose no pixels, that fit the FPGA, ' +
-      `and that gain at least 1 % and more than the uncertainty${board.loses_pixels ? ', or end the loss' : ''}.`;
+      'and that gain at least 1 % and more than the uncertainty' +
+      `${board.loses_pixels ? ', or end the loss' : ''}.`;
   const others = board.interrupted && `Interrupted: ${board.interrupted}. Others may be better.`;
   const none = others || (board.loses_pixels ? 'None of the changes ends the loss of pixels.' : 'Nothing.');
   if (!first) return [none, now, rule];
