@@ -113,7 +113,7 @@ std::string lost_pixels_text(const Explanation& explanation) {
     return fmt::format("{}{}; whole pictures at this rate need {:.2f} times its time",
                        stats::resource_words(least.name), text, 1 - least.headroom_percent / 100);
   }
-  // Else a bus that is always busy. Else the FIFOs are too short for the waits.
+  // Else a bus that is nearly always busy. Else the FIFOs are too short for the waits.
   const std::vector<Explanation::Resource>& all = explanation.resources();
   const auto busy_of = [&all](const char* name) {
     return std::find_if(all.begin(), all.end(), [name](const auto& each) { return each.name == name; })

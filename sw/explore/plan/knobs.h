@@ -31,7 +31,8 @@ struct KnobSteps {
 
 // One step of every knob of a board, if the new value is in the range of its key:
 //   a number: up and down by the step of its key (1; window: 2; pci.width_bits: 32); a word: each other word
-//   bridge.local_clock_mhz: also that of the FPGA, its double, and its half if the local bus is slower
+//   bridge.local_clock_mhz: also the FPGA's clock, its double, and clock_in_step()
+//   capture.fifo_words: also twice as many, at least the 140 of a PXC200
 //   fpga.clock_mhz with `camera`: also that of the local bus if they differ by less than 10 %
 //   matcher.fetch: a step to the line buffer also sets matcher.rows to 1
 //   matcher.units: the fewest modules for the next lower and next higher number of folds; `all`
