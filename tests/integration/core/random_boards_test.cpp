@@ -145,8 +145,10 @@ std::string rates_above_bounds(const RandomBoard& board, Fidelity /*its own*/) {
   const platform::BoardConfig config = board_config(board);
   const platform::Tables tables = board_tables(board);
   const platform::FrameAccesses accesses = platform::frame_accesses(config, tables);
+  // Frames of tall boards are long, and the loop simulates each of them several times.
+  const std::uint64_t most_frames = board.width * board.height > 4000 ? 2 : 6;
   double cycles = 0;
-  for (std::uint64_t frames = 1; frames <= 6; ++frames) {
+  for (std::uint64_t frames = 1; frames <= most_frames; ++frames) {
     std::uint64_t most = 0;
     for (const auto& each : frame_bounds(config, accesses, frames - 1)) most = std::max(most, each.cycles);
     cycles += static_cast<double>(most);
