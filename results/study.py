@@ -15,6 +15,8 @@ import matplotlib.pyplot as plt  # noqa: E402
 sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "sw" / "report" / "plots"))
 import style  # noqa: E402
 from points import Points  # noqa: E402
+from style import (BLACK, BLUE, GRAY, GREEN, ORANGE, PINK, SKY, VERMILION, bound,  # noqa: E402, F401
+                   encoded)
 
 style.use()
 
@@ -135,4 +137,4 @@ def legend(axis, **options):
 
 def save(figure, path):
     figure.tight_layout()
-    path.write_bytes(style.encoded(figure, "png", dpi=110))
+    path.write_bytes(encoded(figure, path.suffix[1:], dpi=110))

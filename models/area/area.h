@@ -12,7 +12,7 @@
 // Estimates the FPGA resources that the stereo core takes, part by part. The paper's figures 5, 6 and 8 and
 // sections 1, 2 and 7 of the contract give the adders, comparators, shift registers and memories. Their
 // widths follow from the 8 bits of a pixel, the window and the number of disparities. Only one constant, the
-// number of slices per LUT, is fitted to the paper's Table 2 (tests/unit/sw/paper/claims_test.cpp).
+// number of slices per LUT, is fitted to the paper's Table 2 (tests/unit/area/area_total_test.cpp).
 //
 // The count includes all parts that pixels, table entries, sums and disparities pass through. It leaves out
 // the parts that control them: counters, the addresses of tables and results, the repetition of edge pixels,

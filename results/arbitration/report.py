@@ -8,7 +8,6 @@ import sys
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 import study  # noqa: E402
-from study import style  # noqa: E402
 
 DEFAULT = "[host, result, left_pixel, right_pixel, left_lut, right_lut]"
 BUFFERS = ("left_image", "right_image", "left_lut", "right_lut", "disparity")
@@ -37,7 +36,7 @@ POLICIES = {
     "host last": ("fixed_priority", "[result, left_pixel, right_pixel, left_lut, right_lut, host]"),
     "round robin": ("round_robin", DEFAULT),
 }
-DRAWN = dict(zip(POLICIES, zip((style.BLUE, style.SKY, style.VERMILION, style.ORANGE), "o^Xs")))
+DRAWN = dict(zip(POLICIES, zip((study.BLUE, study.SKY, study.VERMILION, study.ORANGE), "o^Xs")))
 
 
 def read_core(database):
@@ -128,7 +127,7 @@ def draw(core, computer):
     figure, (left, middle, right) = study.panels(3, height=4.6, width=4.5, width_ratios=(1.15, 1, 0.95))
     names = list(CORE)[::-1]
     for policy, shift, color, marker in (
-    ("fixed_priority", 0.14, style.BLUE, "o"), ("round_robin", -0.14, style.ORANGE, "s")):
+    ("fixed_priority", 0.14, study.BLUE, "o"), ("round_robin", -0.14, study.ORANGE, "s")):
         rows = [study.only(core, shared=name, policy=policy) for name in names]
         at = [number + shift for number in range(len(rows))]
         left.hlines(at, [row["slowest"] for row in rows], [row["fastest"]
@@ -136,7 +135,7 @@ def draw(core, computer):
         left.plot([row["default"] for row in rows], at, marker, color=color, label=policy.replace("_", " "))
     rows = [study.only(core, shared=name, policy="fixed_priority") for name in names]
     left.plot([row["bound"] for row in rows], range(len(rows)),
-              **style.bound(style.INK, of_x=True, label="bound"))
+              label="bound", **study.bound(study.BLACK, of_x=True))
     left.set(
     yticks=range(
         len(names)),
@@ -157,7 +156,7 @@ def draw(core, computer):
     for axis in (middle, right):
         axis.set(yticks=range(len(names)), yticklabels=[], ylim=(-0.5, len(names) - 0.5))
         axis.hlines([place + 0.5 for place in range(len(names) - 1)], 0, 1,
-                    transform=axis.get_yaxis_transform(), color=style.GRID, linewidth=0.8)
+                    transform=axis.get_yaxis_transform(), color=study.GRID, linewidth=0.8)
         axis.grid(False, axis="y")
     middle.set(
     yticklabels=[

@@ -9,7 +9,6 @@ import sys
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 import study  # noqa: E402
-from study import style  # noqa: E402
 
 # By name of the output file: what `allocate` searched.
 SEARCHES = {
@@ -25,19 +24,19 @@ SEARCHES = {
 DRAWN = {
     "core": (
         "o-",
-        style.BLUE),
+        study.BLUE),
         "core_sync_burst": (
             "o--",
-            style.SKY),
+            study.SKY),
             "computer": (
                 "s-",
-                style.VERMILION),
+                study.VERMILION),
                 "computer_sync_burst": (
                     "s--",
-                    style.ORANGE),
+                    study.ORANGE),
                     "computer_long_queues": (
                         "s-",
-                         style.GREEN)}
+                         study.GREEN)}
 BANKS = range(1, 9)
 
 
@@ -65,9 +64,9 @@ def draw(found, queues):
             0,
              20))
     study.legend(left, loc="lower right")
-    right.axhline(found["computer"][8]["best"], color=style.GRAY, linestyle="--", label="8 banks, 16 slots")
+    right.axhline(found["computer"][8]["best"], color=study.GRAY, linestyle="--", label="8 banks, 16 slots")
     right.plot([point["lane_fifo_slots"] for point in queues], [point["steady"]
-               for point in queues], "s-", color=style.VERMILION, markersize=5, label="5 banks")
+               for point in queues], "s-", color=study.VERMILION, markersize=5, label="5 banks")
     right.set(
     title="longer queues, five banks",
     xlabel="slots of a lane's queue (fpga.lane_fifo_slots)",

@@ -8,10 +8,9 @@ import sys
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 import study  # noqa: E402
-from study import style  # noqa: E402
 
 NAMES = {1: "single", 2: "ping-pong", 3: "triple"}
-COLORS = {1: style.VERMILION, 2: style.BLUE, 3: style.GREEN}
+COLORS = {1: study.VERMILION, 2: study.BLUE, 3: study.GREEN}
 SHOWN = [10, 20, 29.97, 40, 60]
 PAPER_HZ = 29.97
 
@@ -61,9 +60,9 @@ def draw(found):
     linewidth=1.2,
      label=f"{NAMES[pictures]}, results {NAMES[results]}")
     core = found[0]["core"]
-    left.axhline(core, label="the core alone", **style.FAINT_LINE)
+    left.axhline(core, label="the core alone", color=study.GRAY, linewidth=0.9, linestyle="--")
     for axis in (left, right):
-        axis.axvline(PAPER_HZ, color=style.GRAY, linewidth=0.8, linestyle=":", zorder=0)
+        axis.axvline(PAPER_HZ, color=study.GRAY, linewidth=0.8, linestyle=":", zorder=0)
         axis.set(xlabel="frame rate of the cameras, Hz")
     left.set(title="rate of results", ylabel="whole computer, steady frames/s", ylim=(0, 20))
     right.set(title="age of results", ylabel="capture to result in the host, median, ms", ylim=(0, 190))

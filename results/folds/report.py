@@ -9,15 +9,14 @@ import sys
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 import study  # noqa: E402
-from study import style  # noqa: E402
 
 WINDOW, PAPER, FEW = 7, 80, 14
 FETCHES = {"column": "column fetch", "line_buffer": "line buffers"}
-DRAWN = {("column", 80): ("o-", style.BLUE), ("line_buffer", 80): ("o-", style.VERMILION),
-         ("column", 200): ("s--", style.SKY), ("line_buffer", 200): ("s--", style.ORANGE)}
+DRAWN = {("column", 80): ("o-", study.BLUE), ("line_buffer", 80): ("o-", study.VERMILION),
+         ("column", 200): ("s--", study.SKY), ("line_buffer", 200): ("s--", study.ORANGE)}
 TABLES = {"": "identity", "_rig": "real rig"}
 BANKS = ("one bank", "two banks", "eight banks")
-WINDOWS = {7: style.BLUE, 15: style.ORANGE, 31: style.GREEN}
+WINDOWS = {7: study.BLUE, 15: study.ORANGE, 31: study.GREEN}
 
 
 def read(folder):
@@ -135,7 +134,7 @@ def draw(found):
                   look, color=color, markersize=4, label=f"{FETCHES[fetch]}, D = {disparities}")
     left.set(title=f"fewer modules, {WINDOW}x{WINDOW}")
     here = [point for point in found["together"] if point["window"] == WINDOW]
-    for fetch, color in (("column", style.BLUE), ("line_buffer", style.VERMILION)):
+    for fetch, color in (("column", study.BLUE), ("line_buffer", study.VERMILION)):
         points = [point for point in here if point["fetch"] == fetch]
         right.plot([point["slices"] for point in points],
     [point["core"] for point in points],
@@ -150,7 +149,7 @@ def draw(found):
     right.plot([paper["slices"]], [paper["core"]], "k*", markersize=11, label="the paper's board")
     right.set(title=f"rows and fewer modules together, D = {PAPER}")
     for axis in (left, right):
-        axis.axvline(100, color=style.GRAY, linestyle=":")
+        axis.axvline(100, color=study.GRAY, linestyle=":")
         axis.set(
     xlabel="area, % of the slices",
     ylabel="core, frames/s",

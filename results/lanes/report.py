@@ -10,7 +10,6 @@ import sys
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 import study  # noqa: E402
-from study import style  # noqa: E402
 
 TABLES = {"": "identity", "_rig": "real rig"}
 LANES = range(1, 9)
@@ -133,7 +132,7 @@ def sdram_table(found):
 def draw(found):
     figure, axes = study.panels(2, height=4.2, width=5)
     for panel, tables in zip(axes, TABLES.values()):
-        for lanes, color in zip(LANES, [*style.COLORS, "grey"]):
+        for lanes, color in zip(LANES, [*study.COLORS, "grey"]):
             panel.plot(BANKS, [best(found, tables, banks, lanes)["core"] for banks in BANKS], "o-",
                        color=color, markersize=4, label=lane_text(lanes))
         panel.set(xlabel="banks", ylabel="core, frames/s", ylim=(0, 140), title=tables)

@@ -9,11 +9,10 @@ import sys
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 import study  # noqa: E402
-from study import style  # noqa: E402
 
 WINDOW = 7
 FETCHES = ("column", "line_buffer")
-DRAWN = {3: style.GREEN, 7: style.BLUE, 15: style.ORANGE, 31: style.VERMILION}
+DRAWN = {3: study.GREEN, 7: study.BLUE, 15: study.ORANGE, 31: study.VERMILION}
 TABLES = {"": "identity", "_rig": "real rig"}
 DRAWN_ROWS = 8
 CAMERA_ROWS = (1, 2, 3, 4, 5, 6, 8)
@@ -148,13 +147,13 @@ def draw(found):
     figure, (left, right) = study.panels(2, height=4.2, width=5)
     points = line(point for point in found["core"] if point["window"] == WINDOW)
     left.plot([point["rows"] for point in points], [point["core"]
-              for point in points], "o-", color=style.BLUE, markersize=5, label="eight banks")
-    for tables, color in zip(TABLES.values(), (style.GREEN, style.VERMILION)):
+              for point in points], "o-", color=study.BLUE, markersize=5, label="eight banks")
+    for tables, color in zip(TABLES.values(), (study.GREEN, study.VERMILION)):
         two = line(point for point in found["two_banks"] if point["tables"] == tables)
         left.plot([point["rows"] for point in two], [point["core"]
                   for point in two], "s--", color=color, markersize=4, label=f"two banks, {tables}")
     kept = study.only(found["core"], window=WINDOW, fetch="line_buffer")
-    left.axhline(kept["core"], color=style.GRAY, linestyle=":", label="line buffers, eight banks")
+    left.axhline(kept["core"], color=study.GRAY, linestyle=":", label="line buffers, eight banks")
     left.set(
     xlabel="rows at once",
     ylabel="core, frames/s",
@@ -174,7 +173,7 @@ def draw(found):
         right.plot([point["slices"] for point in points], [point["core"]
                    for point in points], "o-", color=color, markersize=4, label=f"{window}x{window}")
         right.plot([kept["slices"]], [kept["core"]], "*", color=color, markersize=12)
-    right.axvline(100, color=style.GRAY, linestyle=":")
+    right.axvline(100, color=study.GRAY, linestyle=":")
     right.set(xlabel="area, % of the slices", ylabel="core, frames/s", xlim=(0, 190), ylim=(0, 140),
               title=f"one to {DRAWN_ROWS} rows; star: line buffers")
     study.legend(right, loc="center right")

@@ -12,7 +12,6 @@ import numpy
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 import study  # noqa: E402
-from study import style  # noqa: E402
 
 # By name of the output file: what `allocate` searched.
 SEARCHES = {
@@ -24,10 +23,10 @@ SEARCHES = {
     "computer_both": "computer, both",
 }
 DRAWN = {
-    "core": style.BLUE,
-    "core_joint": style.GREEN,
-    "core_cache": style.ORANGE,
-     "core_both": style.VERMILION}
+    "core": study.BLUE,
+    "core_joint": study.GREEN,
+    "core_cache": study.ORANGE,
+     "core_both": study.VERMILION}
 BANKS = range(2, 9)
 # The points of ports.yaml and of banks.yaml.
 PORTS = ("two banks", "no cache", "round robin", "age", "queues of 8", "queues of 11", "queues of 12",
@@ -169,9 +168,9 @@ def draw_banks(found):
         right.plot(list(rates),
     [row["best"] for row in rates.values()],
     look,
-    color=style.VERMILION,
+    color=study.VERMILION,
     markersize=5,
-    markerfacecolor="white" if which else style.VERMILION,
+    markerfacecolor="white" if which else study.VERMILION,
      label=f"steady, {TABLES[which]}")
     right.set(title="the whole computer, joint tables and word cache")
     for axis in (left, right):
@@ -202,7 +201,7 @@ def draw_misses(maps):
         shown = axis.imshow(numpy.ma.masked_where(~found["valid"], share), vmin=20, vmax=32)
         axis.set(title=f"{side} port", xlabel="column of the rectified picture, pixels", ylabel="row, pixels")
         axis.grid(False)
-        axis.set_facecolor(style.MISSING)
+        axis.set_facecolor("#D9D9D9")
         figure.colorbar(shown, ax=axis, label="slots that read a word, %")
     study.save(figure, HERE / "misses.png")
 

@@ -78,7 +78,6 @@ void add_conflicts(Commands& commands);
 void add_diagram(Commands& commands);
 void add_diff(Commands& commands);
 void add_report(Commands& commands);
-void add_paper(Commands& commands);
 void add_worker(Commands& commands);
 
 inline constexpr std::size_t kTextColumns = 100;

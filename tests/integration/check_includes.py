@@ -36,7 +36,6 @@ ROOMS = {
     "sw/explore/sweep": ["sw/explore/plan", "sw/explore/store", "sw/files", "sw/process", "sw/sqlite"],
     "sw/explore/search": ["sw/explore/plan", "sw/explore/store", "sw/explore/sweep", "sw/sqlite"],
     "sw/explore/slurm": ["sw/explore/plan", "sw/explore/store", "sw/explore/sweep", "sw/files", "sw/process"],
-    "sw/paper": ["sw/explore", "sw/files", "sw/stats"],
     "sw/trace": ["sw/files", "sw/process", "sw/sqlite"],
     "sw/runs": [
         "sw/driver", "sw/explore", "sw/files", "sw/media", "sw/process", "sw/sqlite", "sw/stats", "sw/trace"

@@ -93,7 +93,7 @@ class PointFailed : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// Simulates a few points on several processors, for `explain` and `paper`. The results are in a database in a
+// Simulates a few points on several processors, for `explain`. The results are in a database in a
 // temporary folder, which is removed when the batch is destroyed.
 class Batch {
  public:

@@ -49,7 +49,7 @@ class Completion(unittest.TestCase):
     def test_every_shell_has_every_command_and_option(self):
         for name in ("_stereotlm", "stereotlm.fish", "stereotlm.bash"):
             text = (pathlib.Path(self.folder.name) / name).read_text()
-            for word in ("allocate", "paper", "keep-fps", "video-layout", "eight-banks-four-lanes"):
+            for word in ("allocate", "diagram", "keep-fps", "video-layout", "eight-banks-four-lanes"):
                 self.assertIn(word, text, name)
 
 

@@ -92,7 +92,6 @@ class Commands(EndedTest):
         self.ended(["conflicts", "fpl2003", "--synthetic", 1, *FRAMES, "--out", "c"], 1)
         self.ended(["calibrate", *rig, "--out", "rig.yaml"], 1)
         self.ended(["explain", "fpl2003", *FRAMES], 2, signal.SIGTERM)
-        self.ended(["paper", "--out", "paper", "--quiet"], 2, signal.SIGTERM)
         self.ended(["diff", self.out, self.out], 2, signal.SIGTERM)
         self.ended(["report", self.out, "--out", "page.html"], 1, signal.SIGTERM)
         self.ended(["plot", self.folder / "points.db", "--out", "figures"], "plot_all.py", signal.SIGQUIT)

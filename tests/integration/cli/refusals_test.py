@@ -22,7 +22,7 @@ import completion  # noqa: E402
 
 COMMANDS = (
     "run check boards keys bounds explain calibrate sweep merge allocate plot conflicts diff diagram report "
-    "paper worker"
+    "worker"
 ).split()
 OPTIONS_OF_RUN = (
     "BOARD,--left,--right,--sequence,--video F [F2],--video-layout,--synthetic,--frames,--truth,"
@@ -308,7 +308,6 @@ class Paths(ProgramTest):
             (sweep, "--out", ""),
             ([*sweep, self.folder / "a.db", "--known"], "--known", ""),
             ([*sweep, self.folder / "a.db", "--progress"], "--progress", ""),
-            (["paper", "--out"], "--out", ""),
             (["conflicts", "--synthetic", "1"], "", ""),
             (["report", self.out, "--quick", "--out"], "--out", ".html"),
             (["diagram", "fpl2003", "--out"], "--out", ".svg"),
@@ -413,7 +412,7 @@ class Outputs(ProgramTest):
         (self.a / "frames").mkdir()
         scene = ["fpl2003", *SMALL, *PRELOADED, "--timing-only"]
         calibrate = ["calibrate", "--synthetic", "1", "--grid", "9x6", "--square-mm", "25", "--out"]
-        of_folders = (["conflicts", *scene, "--out"], ["plot", self.store, "--out"], ["paper", "--out"])
+        of_folders = (["conflicts", *scene, "--out"], ["plot", self.store, "--out"])
         commands = [(ending, functools.partial(self.command, ending)) for ending in self.writers]
         for words in (self.sweep, ["sweep", "--launcher", "slurm", *self.sweep[1:]], ["run", *scene, "--out"],
                       ["allocate", *scene[:-1], "--banks", "1", "--out"], *of_folders):
@@ -449,12 +448,10 @@ class Outputs(ProgramTest):
     @program.slow
     def test_folders_with_files_of_others_under_its_names_are_refused(self):
         scene = ["fpl2003", *SMALL, *PRELOADED, "--synthetic", "1"]
-        own = {"conflicts": ["conflicts", *scene, "--out"], "plot": ["plot", self.store, "--out"],
-               "paper": ["paper", "--out"]}
+        own = {"conflicts": ["conflicts", *scene, "--out"], "plot": ["plot", self.store, "--out"]}
         for name, entry in (("conflicts", "rows.csv"), ("conflicts", "conflicts.csv"),
                             ("conflicts", "picture.png"),
-                            ("plot", "window.csv"), ("plot", "use.png"), ("paper", "paper.md"),
-                            ("paper", "claims.csv")):
+                            ("plot", "window.csv"), ("plot", "use.png")):
             path = self.file(f"{name}/{entry}", "mine")
             with self.subTest(name=name, entry=entry), self.unchanged(self.folder):
                 self.refused_in_one_line(run(*own[name], path.parent), f"holds '{entry}'")

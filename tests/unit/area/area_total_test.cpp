@@ -100,5 +100,27 @@ TEST(AreaTotal, FitsUpToTheLastOfEachResource) {
   EXPECT_FALSE(total_of({0, 0, 0, 145}).fits());
 }
 
+// The one constant of the area model, for the least squared error over the rows of the paper's Table 2: images
+// of 640x480, windows of 7x7, tables and filters for both sides.
+TEST(AreaTotal, HasTheConstantThatFitsThePapersTable2) {
+  struct Row {
+    int disparities;
+    double printed_percent;
+    double documented_error;  // percentage points
+  };
+  double product = 0;
+  double square = 0;
+  for (const Row& row : {Row{80, 21, 0.96}, Row{160, 43, 0.02}, Row{200, 54, -0.41}}) {
+    fpga::CoreConfig core;
+    core.disparities = row.disparities;
+    const Area area = total(items(core), kXc2v6000);
+    EXPECT_NEAR(area.slices_percent - row.printed_percent, row.documented_error, 0.005);
+    const auto places = static_cast<double>(area.lut_equivalents);
+    product += places * row.printed_percent * static_cast<double>(kXc2v6000.slices) / 100;
+    square += places * places;
+  }
+  EXPECT_NEAR(product / square, kSlicesPerLutEquivalent, 0.00005);  // as printed, with four decimals
+}
+
 }  // namespace
 }  // namespace stereotlm::area

@@ -1,0 +1,129 @@
+"""What programs of users read keeps its form: the keys and values of stats.json, the columns and rows of the
+database of a sweep, and the table of keys equal the files in the folder `frozen`.
+
+With STEREOTLM_FREEZE=1 the test writes these files. A change of them is a change of the contract.
+"""
+
+import json
+import os
+import pathlib
+import sqlite3
+import tempfile
+import unittest
+
+from pictures import noise, pgm
+from program import PRELOADED, ProgramTest, run, sets
+
+FROZEN = pathlib.Path(__file__).parent / "frozen"
+
+RUNS = {
+    "computer": ["fpl2003", *sets("image.width=32", "image.height=24", "cameras.frame_rate_hz=1000",
+                                  "pci.load={burst_words: 8, interval_us: 20}"), "--frames", "4"],
+    "computer_that_loses_pixels": ["two-banks", *sets("image.width=64", "image.height=16",
+                                                      "cameras.frame_rate_hz=1000", "pci.clock_mhz=2",
+                                                      "capture.fifo_words=4",
+                                                      "capture.fifo_trigger_words=2"),
+                                   "--frames", "3", "--timing-only"],
+    "core_of_lanes": ["eight-banks-four-lanes", *sets("image.width=32", "image.height=16"), *PRELOADED,
+                      "--frames", "2"],
+    "core_of_sdram": ["sdram", *sets("image.width=32", "image.height=16"), *PRELOADED, "--frames", "2",
+                      "--fidelity", "cycle"],
+}
+
+PLANS = {
+    "core": """
+board: fpl2003
+run: {frames: 2}
+set: {image.width: 32, image.height: 8, matcher.filter: none}
+vary:
+  matcher.window: [3, 5, 7]
+  matcher.disparities: {from: 4, to: 12, step: 4}
+  allocation.left_lut: [bank6, bank0, bank9]
+zip:
+  - {fpga.lanes: [1, 2], fpga.tables: [separate, joint]}
+where: [matcher.window * matcher.disparities < 80]
+sample: {points: 30, seed: 7}
+""",
+    "computer": """
+board: two-banks
+run: {source: camera, frames: 3}
+set: {image.width: 32, image.height: 12, cameras.frame_rate_hz: 900}
+vary:
+  fpga.arbitration: [fixed_priority, round_robin, age]
+  bridge.local_clock_mhz: [33.333, 40]
+""",
+}
+
+
+def as_lines(stats):
+    """A line for each figure, its path and its value."""
+    lines = []
+
+    def walk(path, value):
+        if isinstance(value, dict):
+            for name, each in value.items():
+                walk(f"{path}.{name}", each)
+        elif isinstance(value, list):
+            for index, each in enumerate(value):
+                walk(f"{path}[{index}]", each)
+        else:
+            lines.append(f"{path[1:]} = {json.dumps(value)}")
+
+    walk("", stats)
+    return "\n".join(lines) + "\n"
+
+
+def table_of(database, table):
+    """Its columns, and its rows in the order of their text; without the version of the program."""
+    cursor = database.execute(f"SELECT * FROM {table}")
+    names = [column[0] for column in cursor.description]
+    kept = [index for index, name in enumerate(names) if name != "version"]
+    rows = sorted(json.dumps([row[index] for index in kept]) for row in cursor)
+    return "\n".join([f"{table}: " + json.dumps([names[index] for index in kept]), *rows]) + "\n"
+
+
+class Frozen(ProgramTest):
+    maxDiff = 4000
+
+    def expect(self, name, text):
+        path = FROZEN / f"{name}.txt"
+        if os.environ.get("STEREOTLM_FREEZE"):
+            FROZEN.mkdir(exist_ok=True)
+            path.write_text(text)
+            return
+        self.assertMultiLineEqual(path.read_text(), text)
+
+    def test_the_keys_and_values_of_stats_json(self):
+        with tempfile.TemporaryDirectory() as folder:
+            folder = pathlib.Path(folder)
+            for name, arguments in RUNS.items():
+                pictures = []
+                if "--timing-only" not in arguments:
+                    size = [int(word.split("=")[1]) for word in arguments
+                            if word.startswith(("image.width", "image.height"))]
+                    for side, seed in (("left", 1), ("right", 2)):
+                        (folder / f"{name}_{side}.pgm").write_bytes(pgm(*size, noise(*size, seed)))
+                        pictures += [f"--{side}", folder / f"{name}_{side}.pgm"]
+                done = run("run", *arguments, *pictures, "--out", folder / name)
+                self.assertEqual(done.returncode, 0, done.stderr)
+                stats = json.loads((folder / name / "stats.json").read_text())
+                self.expect(f"stats_{name}", as_lines(stats))
+
+    def test_the_columns_and_rows_of_a_database(self):
+        for name, plan in PLANS.items():
+            with self.subTest(name), tempfile.TemporaryDirectory() as folder:
+                folder = pathlib.Path(folder)
+                (folder / "plan.yaml").write_text(plan)
+                done = run("sweep", folder / "plan.yaml", "--out", folder / "points.db")
+                self.assertEqual(done.returncode, 0, done.stderr)
+                database = sqlite3.connect(folder / "points.db")
+                text = "".join(table_of(database, table) for table in ("points", "keys", "blame"))
+                database.close()
+                self.expect(f"database_{name}", text)
+
+    def test_the_table_of_keys(self):
+        self.expect("keys", run("keys").stdout + run("keys", "--json").stdout)
+
+
+if __name__ == "__main__":
+    unittest.main()
