@@ -35,7 +35,7 @@ struct AllocationReport {
 
 std::string allocation_report_text(const AllocationReport& report);
 
-// The document of --json, see schemas/allocate.schema.json.
+// The document of --json, see stats/document_schemas.cpp.
 nlohmann::ordered_json allocation_report_document(const AllocationReport& report);
 
 }  // namespace stereotlm::cli

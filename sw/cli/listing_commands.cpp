@@ -7,6 +7,7 @@
 #include "platform/config/board_yaml.h"
 #include "sw/cli/command.h"
 #include "sw/cli/key_schema.h"
+#include "sw/stats/document_schemas.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -61,6 +62,17 @@ int print_boards(const BoardsOptions& options) {
   return kDone;
 }
 
+std::vector<std::string> schema_names() {
+  std::vector<std::string> names = stats::document_names();
+  names.insert(names.begin(), {"board", "plan"});
+  return names;
+}
+
+Json schema_of(const std::string& name) {
+  if (name == "board") return board_schema();
+  return name == "plan" ? plan_schema() : stats::document_schema(name);
+}
+
 struct KeysOptions : Options {
   using Options::Options;
 
@@ -68,9 +80,10 @@ struct KeysOptions : Options {
     if (schema.is_given() && json.is_given()) problems.add("--schema: does not go with --json");
   }
 
-  Option schema =
-      Option(this, "--schema", "board|plan", "Print the JSON Schema of board files, or of plans, for editors",
-             {one_of({"board", "plan"})});
+  Option schema = Option(this, "--schema", "NAME",
+                         "Print a JSON Schema: of board files (`board`) or plans (`plan`), for editors, or "
+                         "of what this command prints with --json",
+                         {one_of(schema_names())});
   JsonOption json{this};
 };
 
@@ -105,8 +118,7 @@ std::string keys_text() {
 }
 
 int print_keys(const KeysOptions& options) {
-  process::print(options.schema.is_given()
-                     ? json_text(options.schema.text() == "board" ? board_schema() : plan_schema())
+  process::print(options.schema.is_given() ? json_text(schema_of(options.schema.text()))
                  : options.json.is_given() ? keys_json()
                                            : keys_text());
   return kDone;

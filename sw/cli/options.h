@@ -109,7 +109,7 @@ class Option {
 };
 
 // The option --json: the command prints one JSON document instead of its text. Its keys have the style of
-// stats.json; its schema is sw/cli/schemas/COMMAND.schema.json.
+// stats.json; `keys --schema COMMAND` prints its schema.
 struct JsonOption : Option {
   explicit JsonOption(Options* of) : Option(of, "--json", "", "Print one JSON document instead of text") {}
 };

@@ -12,7 +12,7 @@ namespace stereotlm::report {
 // before the first frame.
 void add_frame(const fpga::FrameConflicts& frame, fpga::FrameConflicts& sums);
 
-// What `conflicts --json` prints of a run (sw/cli/schemas/conflicts.schema.json): who waits where for whom,
+// What `conflicts --json` prints of a run (stats/document_schemas.cpp): who waits where for whom,
 // the longest wait first. For each wait the shortest range of rows, and that of columns, with 80 % of it; a
 // range of 75 % of the picture or more is left out. Then how busy the used banks are from top to bottom.
 nlohmann::ordered_json conflicts_document(const platform::BoardConfig& board,

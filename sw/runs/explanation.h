@@ -162,7 +162,7 @@ std::string limiter_text(const Explanation& explanation);
 // What the time of a frame goes to: "96.69 % the matcher and the ports, 3.31 % the core waits for ..".
 std::string budget_text(const Explanation& explanation);
 
-// What `explain --json` prints. Its schema is sw/cli/schemas/explain.schema.json.
+// What `explain --json` prints (stats/document_schemas.cpp).
 nlohmann::ordered_json explanation_document(const platform::BoardConfig& board,
                                             const Explanation& explanation);
 

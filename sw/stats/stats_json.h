@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "models/area/area.h"
 #include "platform/config/board_config.h"
 #include "platform/statistics.h"
 #include "sw/stats/accuracy.h"
@@ -31,12 +30,15 @@ nlohmann::ordered_json run_document(const platform::Statistics& statistics, cons
 platform::Statistics read_stats(const std::string& text, const platform::BoardConfig& board,
                                 const std::string& fidelity, std::uint64_t frames, bool camera);
 
-// The part `area` of stats.json.
-nlohmann::ordered_json area_json(const area::Area& area);
-// The same of the core of a board, and `fits`.
+// The part `area` of stats.json for the core of a board, and `fits`.
 nlohmann::ordered_json area_json(const platform::BoardConfig& board);
 // The same with `device`, `smallest_device` that fits, and `parts`.
 nlohmann::ordered_json area_document(const platform::BoardConfig& board);
+
+// The JSON Schemas of run_document(), area_json() and area_document().
+nlohmann::ordered_json run_schema();
+nlohmann::ordered_json area_schema();
+nlohmann::ordered_json area_document_schema();
 
 // The differences of two texts of stats.json, one line each: "/banks/0/reads: fast 5, cycle 6". A key that
 // only one text has is "absent" in the other. Throws std::runtime_error if a text is not JSON.

@@ -37,7 +37,7 @@ struct ComparedRun {
   RecordingData waits;
 };
 
-// What `diff --json` prints of two runs. Its schema is sw/cli/schemas/diff.schema.json.
+// What `diff --json` prints of two runs (stats/document_schemas.cpp).
 nlohmann::ordered_json diff_document(const runs::RecordedRun& a, const runs::RecordedRun& b,
                                      const runs::FrameAlignment& aligned, const runs::DiffLimits& limits);
 

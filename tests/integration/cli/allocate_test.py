@@ -4,7 +4,6 @@ import contextlib
 import itertools
 import json
 import os
-import pathlib
 import re
 import shlex
 import signal
@@ -14,8 +13,6 @@ import jsonschema
 
 import program
 from program import HEIGHT, PRELOADED, WIDTH, ProgramTest, run, sets, wait_until
-
-SCHEMA = json.loads((pathlib.Path(__file__).parents[3] / "sw/cli/schemas/allocate.schema.json").read_text())
 
 # A line of the table.
 ROW = re.compile(r" *(?P<banks>\d+) +(?P<allocations>\d+) +(?P<simulated>\d+) +(?P<rate>[\d.]+( ± [\d.]+)?)"
@@ -96,7 +93,8 @@ class Allocate(ProgramTest):
         """The JSON document of a search, which is all that it prints."""
         self.assertEqual(process.returncode, status, process.stderr)
         document = json.loads(process.stdout)
-        jsonschema.Draft202012Validator(SCHEMA).validate(document)
+        schema = json.loads(self.succeeds(run("keys", "--schema", "allocate")))
+        jsonschema.Draft202012Validator(schema).validate(document)
         return document
 
     def rates_of(self, *arguments):

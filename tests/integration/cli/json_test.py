@@ -3,7 +3,6 @@ board."""
 
 import json
 import os
-import pathlib
 import re
 
 import jsonschema
@@ -11,7 +10,6 @@ import jsonschema
 import program
 from program import CAMERA_RATES, PRELOADED, SMALL, ProgramTest, run, sets
 
-SCHEMAS = pathlib.Path(__file__).parents[3] / "sw" / "cli" / "schemas"
 SHARED = sets("allocation.left_lut=bank0")
 
 
@@ -23,7 +21,7 @@ class Json(ProgramTest):
         return self.valid(command, self.succeeds(process))
 
     def valid(self, command, text):
-        schema = json.loads((SCHEMAS / f"{command}.schema.json").read_text())
+        schema = json.loads(self.succeeds(run("keys", "--schema", command)))
         jsonschema.Draft202012Validator.check_schema(schema)
         document = json.loads(text)
         jsonschema.Draft202012Validator(schema).validate(document)

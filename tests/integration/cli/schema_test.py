@@ -147,7 +147,9 @@ class Schemas(ProgramTest):
             self.assertEqual(self.is_valid("plan", plan), is_valid, plan)
 
     def test_options(self):
-        self.all_refused([(["keys", "--schema", "boards"], "--schema = boards: must be board or plan"),
+        self.all_refused([(["keys", "--schema", "sweep"],
+                           "--schema = sweep: must be board, plan, allocate, boards, bounds, check, conflicts, "
+                           "diff, explain, keys or run"),
                           (["keys", "--schema", "plan", "--json"], "--schema: does not go with --json")])
 
 
