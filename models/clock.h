@@ -30,12 +30,9 @@ class Clock {
   bool has_whole_period() const { return period_.is_whole(); }
   // Whether all edges of both clocks lie at the same times.
   bool has_edges_of(const Clock& other) const { return period_ == other.period_; }
-  // The number of phases that the edges of this clock have against those of `other`. A phase is a multiple of
-  // other's period divided by this number.
-  Wide phases_against(const Clock& other) const {
-    const Wide mine = mhz_.numerator * other.mhz_.denominator;
-    const Wide others = other.mhz_.numerator * mhz_.denominator;
-    return mine / greatest_common_divisor(mine, others);
+  // Whether the frequency of `other` is a multiple of this one: each edge lies at one of `other`.
+  bool divides(const Clock& other) const {
+    return other.mhz_.numerator * mhz_.denominator % (mhz_.numerator * other.mhz_.denominator) == 0;
   }
 
  private:

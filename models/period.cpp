@@ -26,6 +26,16 @@ std::uint64_t fraction_of(Wide a, Wide b) {
   return fraction;
 }
 
+// Both are greater than 0.
+Wide greatest_common_divisor(Wide a, Wide b) {
+  while (b != 0) {
+    const Wide rest = a % b;
+    a = b;
+    b = rest;
+  }
+  return a;
+}
+
 }  // namespace
 
 // std::to_chars() writes `value` as "d.ddde-dd", with at most 17 digits.
@@ -46,15 +56,6 @@ DecimalNumber decimal_of(double value) {
   std::from_chars(sign + 1, end, exponent);
   decimals -= *sign == '-' ? -exponent : exponent;
   return {digits * power_of_ten(-decimals), power_of_ten(decimals)};
-}
-
-Wide greatest_common_divisor(Wide a, Wide b) {
-  while (b != 0) {
-    const Wide rest = a % b;
-    a = b;
-    b = rest;
-  }
-  return a;
 }
 
 Period::Period(Wide numerator, Wide denominator) {

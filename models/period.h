@@ -16,9 +16,6 @@ struct DecimalNumber {
 // same double. If 0.001 <= value <= 1000, its numerator is below 10^17 and its denominator at most 10^19.
 DecimalNumber decimal_of(double value);
 
-// Both are greater than 0.
-Wide greatest_common_divisor(Wide a, Wide b);
-
 // A period whose length in ps is a rational number. Each multiple is rounded once, halves up, from its exact
 // value, so that rounding errors do not add up.
 class Period {

@@ -336,7 +336,7 @@ std::string local_bus_remark(const BoardConfig& board) {
   const double fpga = board.fpga.clock_mhz;
   const double in_step = clock_in_step(board);
   const auto megabytes = [&](double mhz) { return 4 * fpga / local_bus_cycles_a_word(board, mhz); };
-  const bool is_clock = in_step >= 1 && Clock(in_step).phases_against(Clock(fpga)) == 1;
+  const bool is_clock = in_step >= 1 && Clock(in_step).divides(Clock(fpga));
   if (!is_clock || megabytes(in_step) < 1.05 * megabytes(local)) return "";
   return fmt::format(
       "local bus: its words wait for edges of two clocks. Beside an FPGA clock of {} MHz\n"

@@ -24,8 +24,7 @@
 namespace stereotlm::platform {
 
 // Traces the buses and the queues of a computer in a window, at every fidelity with the same records
-// (trace_records.h). The controls of the blocks report what they do. A computer skips no burst that is in the
-// window. Plain C++.
+// (trace_records.h). The controls of the blocks report what they do. Plain C++.
 //
 // The window is a range of times, or the time of a frame of the core, from its start strobe to its end. A
 // burst is in the window begin..end if its end_ps > begin and its request_ps < end. A QueueLevel is in the
@@ -54,9 +53,6 @@ class BusTrace : public pci::PciBusObserver,
   capture::FifoObserver& capture_fifo(std::size_t side) { return fifos_[side]; }
   // `show(now_ps)` lets both observers of FIFOs receive all words up to a time.
   void set_show_words(std::function<void(std::uint64_t)> show) { show_words_ = std::move(show); }
-
-  // Bursts that begin at `now_ps` or later may be skipped if they end before the returned time.
-  std::uint64_t skips_end_ps(std::uint64_t now_ps) const { return now_ps <= end_ps_ ? begin_ps_ : kNever; }
 
   // Hands out, once each, the bursts whose bus is free again by `now_ps`, and the levels up to `now_ps`.
   // Keeps later records, which a computer that is ahead of `now_ps` has made. To be called regularly, because

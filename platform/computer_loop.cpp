@@ -17,9 +17,7 @@ ComputerLoop::ComputerLoop(const BoardConfig& config, unsigned char* host_memory
                 capture::CaptureControl(capture_config(config))},
       cameras_{capture::CameraControl(camera_config(config), left, captures_[0]),
                capture::CameraControl(camera_config(config), right, captures_[1])},
-      host_memory_(host_memory),
-      lines_(pci_bus_, bridge_, board_, captures_, fpga::has_pixels(fidelity)),
-      dma_(pci_bus_, bridge_, board_, host_memory, host_memory_bytes) {
+      host_memory_(host_memory) {
   board_.local_bus().bind(bridge_.local_bus_master());
   pci_bus_.bind(kHostMemory, host_memory_window_);
   pci_bus_.bind(kBridgeSlave, bridge_slave_);
@@ -62,7 +60,6 @@ void ComputerLoop::run(std::uint64_t end_ps) {
                                 std::to_string(kEndOfTime));
   }
   noticed_ = false;
-  lines_.drop();
   for (;;) {
     const std::uint64_t next = next_event();
     if (noticed_ && next >= event(now_ps_, kPciDecides)) return;
@@ -72,35 +69,11 @@ void ComputerLoop::run(std::uint64_t end_ps) {
     }
     now_ps_ = next >> kKindBits;
     const auto kind = static_cast<Kind>(next & ((1U << kKindBits) - 1));
-    if (skip(kind, end_ps + 1)) continue;
     step(kind);
-    if (lines_.is_recording()) {
-      const bool is_of_pci_bus = kind == kPciSteps || kind == kPciDecides;
-      if (is_of_pci_bus || kind == kLocalBusEnds || kind == kLocalBusChooses) {
-        lines_.stepped(now_ps_, is_of_pci_bus);
-      } else if (kind != kCoreDecides) {
-        lines_.drop();
-      }
-    }
     const bool level = interrupt();
     if (level && !interrupt_) noticed_ = true;
     interrupt_ = level;
   }
-}
-
-// Skips a line of the cameras, or bursts of DMA, if their course is known and they end before `end_ps`.
-// Nothing is skipped that comes after what the processor is to see.
-bool ComputerLoop::skip(Kind kind, std::uint64_t end_ps) {
-  if (kind == kPciDecides) return lines_.begins() && lines_.skip(now_ps_, skips_end_ps(end_ps));
-  return kind == kLocalBusChooses && !noticed_ && dma_.skip(now_ps_, skips_end_ps(end_ps));
-}
-
-// The end of what can be skipped: the earliest of `end_ps`, the next event of a block other than the PCI bus
-// and the bridge, and the time from which the buses are traced.
-std::uint64_t ComputerLoop::skips_end_ps(std::uint64_t end_ps) const {
-  if (trace_ != nullptr) end_ps = std::min(end_ps, trace_->skips_end_ps(now_ps_));
-  return std::min({end_ps, board_.next_ps(), board_.local_bus().next_ps(), captures_[0].next_ps(),
-                   captures_[1].next_ps(), cameras_[0].next_ps(), cameras_[1].next_ps(), bridge_read_ps_});
 }
 
 void ComputerLoop::step(Kind kind) {

@@ -12,12 +12,9 @@
 #include "models/pci/pci_bus_control.h"
 #include "models/pci/traffic_control.h"
 #include "models/time_ps.h"
-#include "platform/bus_trace.h"
-#include "platform/camera_lines.h"
 #include "platform/computer_parts.h"
 #include "platform/computer_view.h"
 #include "platform/config/board_config.h"
-#include "platform/dma_bursts.h"
 #include "platform/fast_board.h"
 
 namespace stereotlm::platform {
@@ -52,13 +49,7 @@ class ComputerLoop : private pci::BridgeControl::Host {
   pci::PciSlot& host_slot() { return pci_bus_.slot(kHost); }
   FastBoard& board() { return board_; }
   ComputerControls controls();
-  // The buses are traced: the loop skips nothing that `trace` shows.
-  void trace_buses(const BusTrace& trace) { trace_ = &trace; }
   const pci::PciBusControl& pci_bus() const { return pci_bus_; }
-  // Lines of the cameras that were skipped.
-  std::uint64_t skipped_lines() const { return lines_.skipped(); }
-  // Bursts of DMA that were skipped.
-  std::uint64_t skipped_dma_bursts() const { return dma_.skipped(); }
 
  private:
   // A window of the PCI bus, whose accesses the loop serves. The controls serve those to registers.
@@ -104,9 +95,7 @@ class ComputerLoop : private pci::BridgeControl::Host {
     return time_ps << kKindBits | kind;
   }
   std::uint64_t next_event() const;
-  bool skip(Kind kind, std::uint64_t end_ps);
   void step(Kind kind);
-  std::uint64_t skips_end_ps(std::uint64_t end_ps) const;
   void slave_read_ended(std::uint64_t now_ps, bool ok) override { pci_bus_.answer(now_ps, {now_ps, ok}); }
   void interrupt_changed(std::uint64_t /*now_ps*/) override {}
 
@@ -121,9 +110,6 @@ class ComputerLoop : private pci::BridgeControl::Host {
   Window traffic_device_{*this, kTrafficDevice};
   unsigned char* host_memory_;
   std::uint64_t traffic_access_ps_ = 0;  // for which the device of the traffic generator makes the bus wait
-  CameraLines lines_;
-  DmaBursts dma_;
-  const BusTrace* trace_ = nullptr;
   std::uint64_t now_ps_ = 0;
   pci::PciAccess bridge_read_;
   std::uint64_t bridge_read_ps_ = kNever;  // the end of the address clock of a read: it reaches the bridge

@@ -44,7 +44,7 @@ class ComputerView {
   // Hands everything that happens to `timeline`, which outlives the computer. To be called at time 0.
   void record(Timeline& timeline);
   // Hands what the buses and the queues do to `trace`, which outlives the computer. To be called at time 0.
-  virtual void trace_buses(BusTrace& trace);
+  void trace_buses(BusTrace& trace);
 
  private:
   virtual ComputerControls controls() = 0;

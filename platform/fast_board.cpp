@@ -37,20 +37,6 @@ void FastBoard::catch_up(std::uint64_t now_ps) {
   if (frames_.is_running()) frames_.run_ahead(clock_.edge_at_or_after(now_ps));
 }
 
-bool FastBoard::serves_one_word_per_cycle(bool write, std::uint64_t address, std::uint64_t bytes) const {
-  const std::size_t bank = memory::bank_of_address(address);
-  return bank < banks_.size() && banks_[bank].holds(address - memory::crossbar_address(bank, 0), bytes) &&
-         host_port_.serves_one_word_per_cycle(bank) &&
-         !(host_port_.is_contended(bank) && fast_core_.is_hazard({address, address + bytes}, write));
-}
-
-unsigned char* FastBoard::count_skipped(bool write, std::uint64_t address, std::uint64_t words) {
-  local_bus_.count_words(write, address, words);
-  count_direct(memory::bank_of_address(address), words);
-  if (write) changes(address, 4 * words);
-  return direct(address, 4 * words);
-}
-
 bool FastBoard::access_bank(std::uint64_t /*at_ps*/, bool write, std::uint64_t address, std::uint32_t& word) {
   const std::size_t bank = memory::bank_of_address(address);
   count_direct(bank, 1);

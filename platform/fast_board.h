@@ -52,23 +52,6 @@ class FastBoard : private fpga::LocalBusControl::Core,
   // Advances the core. Throws std::runtime_error if a frame stalls or needs Fidelity::kCycle.
   void step(std::uint64_t now_ps);
 
-  // To skip bursts that repeat:
-  //
-  // Whether bursts that access these bytes are served one word a cycle, whatever the running frame does.
-  bool serves_one_word_per_cycle(bool write, std::uint64_t address, std::uint64_t bytes) const;
-  // Whether skip_bursts() needs each burst to the bank of this address. If not, all bursts to that bank may
-  // be given as one.
-  bool needs_each_burst(std::uint64_t address) const {
-    return frames_.is_recorded() || host_port_.is_contended(memory::bank_of_address(address));
-  }
-  // See HostPort::skip_bursts().
-  void skip_bursts(const std::vector<fpga::HostPort::SkippedBurst>& bursts) {
-    host_port_.skip_bursts(bursts);
-  }
-  // Counts the words of skipped bursts, from `address` on. Returns their place, where the caller must read or
-  // write them.
-  unsigned char* count_skipped(bool write, std::uint64_t address, std::uint64_t words);
-
   // Advances the running frame to `now_ps`, for observers. See StereoCore::catch_up().
   void catch_up(std::uint64_t now_ps);
 

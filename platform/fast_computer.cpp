@@ -37,11 +37,6 @@ void FastComputer::end_burst(const pci::BurstResult& result) {
   loop_.notice();
 }
 
-void FastComputer::trace_buses(BusTrace& trace) {
-  ComputerView::trace_buses(trace);
-  loop_.trace_buses(trace);
-}
-
 // Steps the loop whenever the program has done everything that it does at a time.
 void FastComputer::run() {
   constexpr std::uint64_t kMostAheadPs = 10'000'000'000;  // 10 ms: the loop runs ahead of the kernel

@@ -34,8 +34,6 @@ class FastComputer : public sc_core::sc_module,
                std::uint64_t host_memory_bytes, host::Program& program, capture::CameraSource& left,
                capture::CameraSource& right, Binder& binder, fpga::Fidelity fidelity);
 
-  void trace_buses(BusTrace& trace) override;
-
   host::HostMemory host_memory;
   host::HostBridge host_bridge;
   host::Cpu cpu;

@@ -237,14 +237,6 @@ void CaptureControl::end_burst(const pci::BurstResult& result) {
   proceed(result.end_ps);
 }
 
-void CaptureControl::skip_line(std::uint64_t now_ps, std::uint64_t bursts) {
-  stats_.bursts += bursts;
-  stats_.words += static_cast<std::uint64_t>(fifo_.words_per_line());
-  bus_state_ = BusState::kIdle;
-  fifo_.skip_line(now_ps);
-  proceed(now_ps);
-}
-
 CaptureFifo CaptureControl::fifo_at(std::uint64_t now_ps) const {
   CaptureFifo fifo = fifo_;
   if (bus_state_ == BusState::kBurst) {

@@ -87,21 +87,6 @@ class CaptureControl : public FrameReceiver,
   pci::PciBurst begin_burst(std::uint64_t address_clock_ps) override;
   void end_burst(const pci::BurstResult& result) override;
 
-  // To skip lines that repeat:
-  //
-  // Whether a next line of the picture exists and the FIFO is empty before it. The board then requests the
-  // bus for the next line, from requested_ps() on.
-  bool is_between_lines() const { return bus_state_ == BusState::kRequested && fifo_.is_between_lines(); }
-  std::uint64_t requested_ps() const { return requested_ps_; }
-  const CaptureFifo& fifo() const { return fifo_; }
-  // The bus address of the next line.
-  std::uint64_t line_address() const { return address_ + 4 * static_cast<std::uint64_t>(next_line_word()); }
-  void copy_line(std::uint32_t* to) const {
-    camera_->copy_words(next_line_word(), fifo_.words_per_line(), to);
-  }
-  // Skips the next line, whose words have left in `bursts` bursts. The last burst ended at `now_ps`.
-  void skip_line(std::uint64_t now_ps, std::uint64_t bursts);
-
   bool capturing() const { return capturing_; }  // whether a capture is under way
   // Whether a frame has begun in this very ps, and is neither started nor dropped yet.
   bool undecided() const { return decision_ps_ != kNever; }
@@ -130,7 +115,6 @@ class CaptureControl : public FrameReceiver,
   void finish(std::uint64_t now_ps);
   bool fits(const pci::BurstResult& result) const;
   CaptureFifo fifo_at(std::uint64_t now_ps) const;
-  int next_line_word() const { return fifo_.next_row() * fifo_.words_per_line(); }
 
   // The registers (capture_registers.h).
   std::uint32_t buffer_address_ = 0;

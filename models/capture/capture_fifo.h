@@ -108,45 +108,6 @@ class CaptureFifo {
   int complete_words() const { return occupancy_ - (taken_ * kernels::kPixelsPerWord > pixels_ ? 1 : 0); }
   // Whether the frame finishes at next_ps(), without a further request.
   bool finishes_next() const { return occupancy_ == 0 && next_line_ps_ == kNever && takes_no_more(); }
-  // To skip lines that repeat:
-  //
-  // Whether next_row() exists and can be skipped: the FIFO is empty, and takes no more words of the lines so
-  // far.
-  bool is_between_lines() const { return occupancy_ == 0 && takes_no_more() && next_line_ps_ != kNever; }
-  int next_row() const { return row_ + 1; }
-  bool has_row(int row) const { return row < timing_->height(); }
-  int words_per_line() const { return words_per_line_; }
-  // The time of the first request in a line, if the line finds the FIFO empty.
-  std::uint64_t first_request_ps(int row) const {
-    return arrival_ps(std::min(trigger_words_, words_per_line_) * kernels::kPixelsPerWord - 1, row);
-  }
-  // A span of time: `first_ps` included, `end_ps` not.
-  struct Span {
-    std::uint64_t first_ps = 0;  // included
-    std::uint64_t end_ps = 0;    // not included
-  };
-  // The span around `time_ps` in which the numbers of words begun and of words complete stay the same. Some
-  // pixels of `row` have arrived at `time_ps`, but none of the next row, which exists.
-  Span same_words(int row, std::uint64_t time_ps) const {
-    const int pixels = timing_->pixels_by(row, time_ps - begin_ps_);
-    const int first_of_word = pixels / kernels::kPixelsPerWord * kernels::kPixelsPerWord;
-    if (pixels != first_of_word)
-      return {arrival_ps(first_of_word, row), arrival_ps(first_of_word + kernels::kPixelsPerWord - 1, row)};
-    return {arrival_ps(pixels - 1, row),
-            pixels != timing_->width() ? arrival_ps(pixels, row) : arrival_ps(0, row + 1)};
-  }
-  // The number of times that a word needed a check for a free place.
-  std::uint64_t full_checks() const { return full_checks_; }
-  // Skips the next line: all its words have entered and left, the last of them at `now_ps`.
-  void skip_line(std::uint64_t now_ps) {
-    begin_line(row_ + 1);
-    pixels_ = timing_->width();
-    taken_ = words_per_line_;
-    now_ps_ = now_ps;
-    if (observer_ == nullptr) return;
-    show_words();
-    observer_->words_left(now_ps, static_cast<std::size_t>(taken_));
-  }
 
   // The number of pixels dropped in all frames. A pixel is counted when it arrives.
   std::uint64_t dropped_pixels() const {
@@ -176,7 +137,6 @@ class CaptureFifo {
       return occupancy_ + (word - taken_) - left_by(arrival_ps(word * kernels::kPixelsPerWord, row_)) >=
              fifo_words_;
     };
-    if (word < end) ++full_checks_;
     while (word < end && !finds_it_full()) ++word;
     append(word - taken_);
     if (word == end) return;
@@ -217,6 +177,10 @@ class CaptureFifo {
       observer_->word_came(arrival_ps((shown_ + 1) * kernels::kPixelsPerWord - 1, row_));
   }
   bool takes_no_more() const { return drops_line_ || taken_ == words_per_line_; }
+  // The time of the first request in a line, if the line finds the FIFO empty.
+  std::uint64_t first_request_ps(int row) const {
+    return arrival_ps(std::min(trigger_words_, words_per_line_) * kernels::kPixelsPerWord - 1, row);
+  }
   std::uint64_t arrival_ps(int column, int row) const { return begin_ps_ + timing_->pixel_ps(column, row); }
 
   int fifo_words_;
@@ -241,8 +205,7 @@ class CaptureFifo {
   // The words in the FIFO, oldest first. A new range begins behind words that were dropped.
   std::vector<FrameWords> ranges_;
   int occupancy_ = 0;  // number of words in the FIFO, complete or being filled
-  std::uint64_t full_checks_ = 0;
-  int owed_ = 0;  // number of the oldest words that were complete at the last grant and have not left
+  int owed_ = 0;       // number of the oldest words that were complete at the last grant and have not left
 };
 
 }  // namespace stereotlm::capture

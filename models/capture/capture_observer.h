@@ -39,8 +39,7 @@ class FifoObserver {
   virtual ~FifoObserver() = default;
   // The last pixel of a word has arrived.
   virtual void word_came(std::uint64_t time_ps) = 0;
-  // All words that leave at this time: the end of their data clock, of a burst that loses them, or of a line
-  // that is skipped.
+  // All words that leave at this time: the end of their data clock, or of a burst that loses them.
   virtual void words_left(std::uint64_t time_ps, std::size_t words) = 0;
 };
 

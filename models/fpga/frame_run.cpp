@@ -99,7 +99,7 @@ void FrameRun::begin(std::uint64_t cycle, const FrameBases& bases) {
 // As run_ahead(), but steps the cycles that CycleRecorder needs.
 void FrameRun::run_ahead_recorded(std::uint64_t end) {
   while (cycle_ < end && !control().frame_done()) {
-    const std::uint64_t stepped = is_recorded() ? cycles_->next_stepped(cycle_) : UINT64_MAX;
+    const std::uint64_t stepped = core_.conflicts() != nullptr ? cycles_->next_stepped(cycle_) : UINT64_MAX;
     if (stepped != cycle_) {
       cycle_ = core_.run_ahead(cycle_, std::min(end, stepped));
       is_settled_ = false;

@@ -94,7 +94,6 @@ class FrameRun {
   FastForward::Served serve_host(const FastForward::Route& route, std::uint64_t first, std::size_t words) {
     return core_.serve_host(cycle_, route, first, words);
   }
-  void serve_series(const std::vector<FastForward::Burst>& bursts) { core_.serve_series(cycle_, bursts); }
   // To be called before the route of the host changes.
   void host_route_changes() { core_.settle(cycle_); }
   // To be called when control().frame_done() becomes true.
@@ -157,8 +156,6 @@ class FrameRun {
   bool must_step_before(std::uint64_t end) const {
     return cycles_ != nullptr && cycles_->next_stepped(cycle_) < end;
   }
-  // Whether a frame is running that is recorded.
-  bool is_recorded() const { return core_.conflicts() != nullptr; }
 
  private:
   enum class State { kIdle, kRunning, kFinishing };

@@ -157,48 +157,6 @@ void HostPort::serve_in_step(std::uint64_t first_cycle) {
   bus_.count_granted(words, clock_.edge_ps(last), usable_ps(last));
 }
 
-bool HostPort::serves_one_word_per_cycle(std::size_t bank) const {
-  const memory::BankArbiter& arbiter = arbitration_.arbiter(bank);
-  if (!is_in_step_ || !is_only_master_) return false;
-  return is_contended(bank) ? arbiter.grants_first(port_) && frames_.cycles() == nullptr
-                            : arbiter.grants_at_once();
-}
-
-void HostPort::skip_bursts(const std::vector<SkippedBurst>& bursts) {
-  const bool in_frame = frames_.is_running();
-  ConflictRecorder* const conflicts = frames_.is_recorded() ? frames_.conflicts() : nullptr;
-  count_served(UINT64_MAX, in_frame);
-  contended_.clear();
-  uncontended_.clear();
-  for (const SkippedBurst& burst : bursts) {
-    const std::size_t bank = memory::bank_of_address(burst.address);
-    const HostTraffic traffic =
-        conflicts != nullptr ? conflicts->traffic_of(burst.write, burst.address) : HostTraffic::kCapture;
-    if (is_contended(bank)) {
-      const auto word = static_cast<std::uint32_t>(memory::address_in_bank(burst.address) / 4);
-      contended_.push_back({{bank, burst.write, traffic, word}, burst.first_cycle, burst.words});
-      continue;
-    }
-    if (conflicts != nullptr) conflicts->add_served(traffic, bank, burst.first_cycle, burst.words, true);
-    const auto served = std::find_if(uncontended_.begin(), uncontended_.end(), [bank](const auto& other) {
-      return memory::bank_of_address(other.address) == bank;
-    });
-    if (served == uncontended_.end()) {
-      uncontended_.push_back(burst);
-    } else {
-      served->words += burst.words;
-    }
-  }
-  // As in serve_in_step(), each grant after the first one changes the state of the policy as a cycle without
-  // request does. So do the cycles between the bursts: one decide() serves all words to a bank.
-  for (const SkippedBurst& served : uncontended_) {
-    served_bank_ = memory::bank_of_address(served.address);
-    count({served.first_cycle, served.words, decide(served_bank_, served.first_cycle, served.write)},
-          in_frame);
-  }
-  if (!contended_.empty()) frames_.serve_series(contended_);
-}
-
 // What the burst is for; without meaning unless conflicts are recorded.
 HostTraffic HostPort::traffic() const {
   const ConflictRecorder* const conflicts = frames_.conflicts();

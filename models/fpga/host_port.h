@@ -75,22 +75,6 @@ class HostPort {
   // Serves an uncontended burst that has just begun, if no frame can start within it.
   void serve_new_burst();
 
-  // To skip bursts that repeat:
-  //
-  // Whether bursts to this bank are served one word a cycle, whatever the frame does.
-  bool serves_one_word_per_cycle(std::size_t bank) const;
-  // A burst to such a bank that reads or writes words from this byte address on, one a cycle from this cycle
-  // on.
-  struct SkippedBurst {
-    bool write;
-    std::uint64_t address;
-    std::uint64_t first_cycle;
-    std::uint64_t words;
-  };
-  // Counts skipped bursts, which must be in the order of their times. Those to a bank have one direction. If
-  // the running frame uses their banks, runs it through the bursts. It cannot end before the last of them.
-  void skip_bursts(const std::vector<SkippedBurst>& bursts);
-
   // Finishes the frame, after the cycle in which its last write was granted. Words served before the frame's
   // cycle() belong to it, later ones do not.
   void finish_frame() {
@@ -143,9 +127,7 @@ class HostPort {
   bool is_joined_ = false;       // the burst takes part in the arbitration
   bool is_moved_ = false;        // the data of the burst is in place; its words are still to be served
   std::vector<Served> served_;
-  std::vector<FastForward::Burst> contended_;  // of skip_bursts(), as the next one
-  std::vector<SkippedBurst> uncontended_;      // the first burst to each bank, with the words of all
-  std::size_t served_bank_ = 0;                // bank of all served_
+  std::size_t served_bank_ = 0;  // bank of all served_
   HostTraffic served_traffic_ = HostTraffic::kCapture;
 };
 

@@ -55,7 +55,7 @@ void LocalBusControl::begin(std::uint64_t now_ps, const LocalBurst& burst) {
   // Bursts often follow each other without a pause.
   address_clock_ = now_ps == free_ps_ ? idle_clock_ + 1 : clock_.edge_at_or_after(now_ps);
   idle_clock_ = kUnknown;
-  request_clock_ = first_request_clock();
+  request_clock_ = address_clock_ + kFirstWordClock + 1;
   request_ps_ = clock_.edge_ps(request_clock_);
   if (is_register(burst.address)) {
     next_ps_ = request_ps_;
@@ -72,7 +72,7 @@ void LocalBusControl::access(std::uint64_t grant_ps, std::uint64_t usable_ps) {
   if (!core_.access_bank(grant_ps, burst_.write, next_address(), word)) {
     refuse_word();
   } else {
-    count_words(burst_.write, next_address(), 1);
+    count_words(1);
   }
   if (!burst_.write) std::memcpy(next_data(), &word, 4);
   advance(1, grant_ps, usable_ps);
@@ -83,7 +83,7 @@ void LocalBusControl::move_words(unsigned char* words) {
 }
 
 void LocalBusControl::count_granted(std::size_t words, std::uint64_t grant_ps, std::uint64_t usable_ps) {
-  count_words(burst_.write, next_address(), words);
+  count_words(words);
   advance(words, grant_ps, usable_ps);
 }
 
@@ -136,14 +136,6 @@ void LocalBusControl::end(std::uint64_t idle_clock) {
 void LocalBusControl::report() const {
   observer_->local_burst_ended({burst_.write, burst_.address, burst_.words, clock_.edge_ps(address_clock_),
                                 clock_.edge_ps(address_clock_ + 1), clock_.edge_ps(idle_clock_), free_ps_});
-}
-
-void LocalBusControl::skip_bursts(std::uint64_t bursts, std::uint64_t busy_clocks, std::uint64_t idle_clock) {
-  stats_.bursts += bursts;
-  stats_.busy_clocks += idle_clock_ - address_clock_ + busy_clocks;
-  address_clock_ = idle_clock;  // all clocks of the last burst are counted
-  idle_clock_ = idle_clock;
-  free_ps_ = clock_.edge_ps(idle_clock_ + 1);
 }
 
 LocalBusControl::Stats LocalBusControl::stats(std::uint64_t now_ps) const {

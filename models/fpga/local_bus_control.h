@@ -132,23 +132,6 @@ class LocalBusControl final : public LocalBusIf {
   // Whether the clocks of the bus begin with those of `clock`.
   bool is_in_step_with(const Clock& clock) const { return clock_.has_edges_of(clock); }
 
-  // To skip bursts to the banks that repeat:
-  const Clock& clock() const { return clock_; }
-  // The last burst, the first clock in which its first word requests, and the number of its idle clock.
-  const LocalBurst& burst() const { return burst_; }
-  std::uint64_t first_request_clock() const { return address_clock_ + kFirstWordClock + 1; }
-  std::uint64_t idle_clock() const { return idle_clock_; }
-  // The clocks of all bursts, while the bus is idle.
-  std::uint64_t busy_clocks() const { return stats_.busy_clocks + idle_clock_ - address_clock_; }
-  std::uint64_t bursts() const { return stats_.bursts; }
-  // Skips `bursts` bursts while the bus is idle. They take `busy_clocks` clocks; `idle_clock` is the idle
-  // clock of the last one. For each range of addresses the caller adds their words by count_words().
-  void skip_bursts(std::uint64_t bursts, std::uint64_t busy_clocks, std::uint64_t idle_clock);
-  void count_words(bool write, std::uint64_t address, std::uint64_t words) {
-    (write ? stats_.words_written : stats_.words_read) += words;
-    if (write) words_granted_.add(address, words);
-  }
-
   // Counts up to `now_ps`.
   Stats stats(std::uint64_t now_ps) const;
   // Words written to the banks: those granted, and those of the burst that are not granted yet.
@@ -161,6 +144,10 @@ class LocalBusControl final : public LocalBusIf {
 
   unsigned char* next_data() const { return burst_.data + 4 * next_word_; }
   std::uint64_t next_address() const { return burst_.address + 4 * next_word_; }
+  void count_words(std::size_t words) {
+    (burst_.write ? stats_.words_written : stats_.words_read) += words;
+    if (burst_.write) words_granted_.add(next_address(), words);
+  }
   void advance(std::size_t words, std::uint64_t grant_ps, std::uint64_t usable_ps);
   void refuse_word();
   void end(std::uint64_t idle_clock);

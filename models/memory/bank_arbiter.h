@@ -142,10 +142,6 @@ class BankArbiter {
 
   // Whether a request without competitors is granted in its cycle.
   bool grants_at_once() const { return !has_turnaround_ && !rows_; }
-  // Whether each request of this port is granted in its cycle, whatever the other ports request.
-  bool grants_first(Port port) const {
-    return grants_at_once() && policy_->advance == nullptr && list_.front() == port;
-  }
   bool has_rows() const { return rows_.has_value(); }  // whether the bank is of sdram
   // Of sdram; null for any other bank. Not part of append_state().
   SdramRows* rows() { return rows_ ? &*rows_ : nullptr; }

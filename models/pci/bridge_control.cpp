@@ -63,11 +63,12 @@ bool BridgeControl::write(std::uint64_t now_ps, std::uint64_t offset, const unsi
     return false;
   }
   settle(now_ps);
+  stats_.posted_words += words;
   for (const std::uint64_t end = offset + 4 * words; offset < end;) {
     const std::uint64_t here = std::min(border_behind(offset), end) - offset;
     const std::uint64_t address = local_address_of(offset);
     posted_.push(address, data, here / 4);
-    count_posted(address, here / 4);
+    count_for_banks(words_taken_, address, here / 4);
     offset += here;
     data += here;
   }
@@ -95,37 +96,6 @@ WordsByRange BridgeControl::words_held() const {
     if (to.under_way && to.write && &to != running_) held.add(to.address, to.words.size());
   }
   return held;
-}
-
-bool BridgeControl::is_idle() const {
-  return pci_queue_.front() == nullptr && !busy_ && !posted_.waits() && !read_.under_way &&
-         std::none_of(channels_.begin(), channels_.end(),
-                      [](const DmaChannel& channel) { return channel.busy(); });
-}
-
-std::optional<std::uint64_t> BridgeControl::bank_address(std::uint64_t offset, std::uint64_t bytes) const {
-  if (offset >= bridge::kCoreRegisters || offset + bytes > border_behind(offset)) return std::nullopt;
-  const std::uint64_t address = local_address_of(offset);
-  if (address / bridge::kBankBytes != (address + bytes - 4) / bridge::kBankBytes) return std::nullopt;
-  return address;
-}
-
-DmaChannel* BridgeControl::lone_channel() const {
-  if (pci_queue_.front() == nullptr || read_.under_way) return nullptr;
-  const auto busy =
-      std::count_if(channels_.begin(), channels_.end(), [](const DmaChannel& any) { return any.busy(); });
-  return busy == 1 ? pci_queue_.front()->channel : nullptr;
-}
-
-void BridgeControl::skip_dma(std::uint64_t now_ps, DmaChannel& channel, std::size_t bursts) {
-  const BridgeTransfer& local = channel.on_local_bus();
-  const std::size_t words = bursts * local.words.size();
-  stats_.dma_words += words;
-  // The words of the first burst are counted.
-  if (local.write) words_taken_.add(local.address + 4 * local.words.size(), words);
-  channel.skip_bursts(bursts);
-  slot_.request(*this, now_ps);
-  start_on_local_bus(now_ps, channel.on_local_bus());
 }
 
 BridgeControl::Register BridgeControl::decode(std::uint64_t offset) {

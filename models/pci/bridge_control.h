@@ -4,7 +4,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "models/local_burst.h"
@@ -29,7 +28,7 @@ namespace stereotlm::pci {
 // - The bridge is the only master of the local bus, and runs one burst at a time: posted writes first, then
 //   the read of the slave window, then the DMA channels in turn. Channel 1 has the first turn; a burst that
 //   ends while nothing waits passes the turn on. The end of a burst costs a step only if the burst was
-//   refused or something waits for its end. Otherwise it takes effect in the next call of settle().
+//   refused or something waits for its end. Otherwise it takes effect in the next call that uses the bus.
 //
 // Errors of posted writes and of DMA set bits of kInterruptStatus.
 class BridgeControl final : public PciMasterIf, public PciTarget, public LocalBusMasterIf {
@@ -95,35 +94,6 @@ class BridgeControl final : public PciMasterIf, public PciTarget, public LocalBu
   PciBurst begin_burst(std::uint64_t address_clock_ps) override;
   void end_burst(const BurstResult& result) override;
 
-  // To skip bursts that repeat:
-  //
-  // If the burst on the local bus is due to end by `now_ps`, ends it and begins the next one.
-  void settle(std::uint64_t now_ps) {
-    if (has_ended(now_ps)) end_local(now_ps);
-  }
-  // Whether nothing is under way in the bridge or on the local bus, or waits there. To be called after
-  // settle().
-  bool is_idle() const;
-  // The byte address on the local bus to which `bytes` bytes of the slave window lead, if they lead to one
-  // bank at contiguous addresses.
-  std::optional<std::uint64_t> bank_address(std::uint64_t offset, std::uint64_t bytes) const;
-  // The state while it is idle: the channel that has the next turn on the local bus.
-  std::size_t turn() const { return turn_; }
-  // Skips posted writes that have been sent; `turn` is the turn after them. For each range of addresses on
-  // the local bus the caller adds their words by count_posted().
-  void skip_posted(std::size_t turn) { turn_ = turn; }
-  void count_posted(std::uint64_t address, std::uint64_t words) {
-    stats_.posted_words += words;
-    count_for_banks(words_taken_, address, words);
-  }
-
-  // The channel that begins to write a burst on one bus and to read the next one on the other, if nothing
-  // else is under way in the bridge. Else null. To be called before step() chooses a burst.
-  DmaChannel* lone_channel() const;
-  // That channel has written this number of bursts of full length, and read as many. The next two begin at
-  // `now_ps`. To be called after PciBusControl::skip_to().
-  void skip_dma(std::uint64_t now_ps, DmaChannel& channel, std::size_t bursts);
-
   const Stats& stats() const { return stats_; }  // counts up to the last call
   // The words for the banks that the bridge has received, posted or by DMA, counted by buffer.
   const WordsByRange& words_taken() const { return words_taken_; }
@@ -166,6 +136,10 @@ class BridgeControl final : public PciMasterIf, public PciTarget, public LocalBu
   bool serve(std::uint64_t now_ps, BridgeTransfer& transfer);
   void begin(std::uint64_t now_ps, BridgeTransfer* transfer, const LocalBurst& burst);
   void end_local(std::uint64_t now_ps);
+  // If the burst on the local bus is due to end by `now_ps`, ends it and begins the next one.
+  void settle(std::uint64_t now_ps) {
+    if (has_ended(now_ps)) end_local(now_ps);
+  }
   // Names the time of the next step while a burst runs.
   void plan() { next_ps_ = end_is_awaited() ? end_ps_ : kNever; }
   bool end_is_awaited() const;

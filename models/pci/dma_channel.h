@@ -101,19 +101,6 @@ class DmaChannel {
     return end_descriptor(now_ps);
   }
 
-  // To skip bursts that repeat:
-  //
-  // The descriptor whose words are moved, and the words of it whose write has begun.
-  const DmaDescriptor& moving() const { return moving_; }
-  std::size_t written() const { return written_; }
-  // This number of bursts has been written, and as many have been read.
-  void skip_bursts(std::size_t bursts) {
-    const std::size_t words = bursts * burst_words_;
-    written_ += words;
-    pci_.address += 4 * words;
-    local_.address += 4 * words;
-  }
-
   unsigned number() const { return number_; }
   BridgeTransfer& on_pci() { return pci_; }
   BridgeTransfer& on_local_bus() { return local_; }

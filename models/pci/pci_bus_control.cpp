@@ -8,13 +8,12 @@ namespace stereotlm::pci {
 namespace {
 
 constexpr std::uint64_t kDevselClocks = 4;  // clocks for which a master waits for DEVSEL#
+constexpr std::size_t kNoMaster = SIZE_MAX;
 
 BurstEnd end_of(std::size_t words, std::size_t accepted, std::size_t asked) {
   if (words == asked) return BurstEnd::kComplete;
   return words == accepted ? BurstEnd::kDisconnect : BurstEnd::kLatencyTimer;
 }
-
-static_assert(kMasterCountRule.max <= 64, "PciBusControl::Masters has a bit for each slot");
 
 }  // namespace
 
@@ -42,7 +41,7 @@ void PciBusControl::request(std::size_t master, PciMasterIf& from, std::uint64_t
 }
 
 void PciBusControl::await_request() {
-  const std::uint64_t earliest = earliest_request_beside(0);
+  const std::uint64_t earliest = earliest_request(kNoMaster);
   if (earliest == kNever) return;
   const std::uint64_t clock = std::max(free_clock_, earliest);
   if (clock >= decision_clock_) return;
@@ -50,33 +49,11 @@ void PciBusControl::await_request() {
   next_ps_ = clock_.edge_ps(clock);
 }
 
-std::uint64_t PciBusControl::earliest_request_beside(Masters masters) const {
+std::uint64_t PciBusControl::earliest_request(std::size_t without) const {
   std::uint64_t earliest = kNever;
-  for (const Request& request : requests_) {
-    if ((masters & 1U) == 0) earliest = std::min(earliest, request.clock);
-    masters >>= 1U;
-  }
+  for (std::size_t master = 0; master < requests_.size(); ++master)
+    if (master != without) earliest = std::min(earliest, requests_[master].clock);
   return earliest;
-}
-
-std::uint64_t PciBusControl::transactions() const {
-  std::uint64_t transactions = 0;
-  for (const MasterStats& stats : master_stats_) transactions += stats.transactions;
-  return transactions;
-}
-
-void PciBusControl::skip_bursts(std::size_t master, const MasterCounts& counts) {
-  requests_[master].clock = kNever;
-  master_stats_[master].add(counts);
-}
-
-void PciBusControl::skip_to(const Position& position, std::uint64_t busy_clocks) {
-  last_granted_ = position.last_granted;
-  free_clock_ = position.free_clock;
-  busy_clocks_ += busy_clocks;
-  decision_clock_ = kNever;
-  next_ps_ = kNever;
-  await_request();
 }
 
 void PciBusControl::step(std::uint64_t now_ps) {
@@ -146,7 +123,7 @@ void PciBusControl::begin_words(std::uint64_t first_clock) {
 
 // Cuts the burst for the earliest request of another master. A later request would not cut it earlier.
 void PciBusControl::cut_words() {
-  const std::uint64_t request = earliest_request_beside(mask_of(running_.master));
+  const std::uint64_t request = earliest_request(running_.master);
   if (request == kNever) return;
   const std::uint64_t last_data_clock =
       std::max({running_.address_clock + latency_timer_clocks_, request, running_.result.first_data_clock});

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -39,27 +38,13 @@ class PciBusObserver {
 class PciBusControl {
  public:
   // Counts of a master since time 0.
-  struct MasterCounts {
+  struct MasterStats {
+    std::string name;                // of its slot, in the configuration
     std::uint64_t transactions = 0;  // bursts, counted at their end
     std::uint64_t words = 0;         // words transferred
     std::uint64_t wait_clocks = 0;   // from the first clock at or after a request to its address clock
     std::uint64_t retries = 0;       // bursts that the target disconnected before the first word
     std::uint64_t aborts = 0;        // bursts that ended with kMasterAbort or kTargetError
-
-    // All members, to add and subtract them.
-    static constexpr std::array kAll = {&MasterCounts::transactions, &MasterCounts::words,
-                                        &MasterCounts::wait_clocks, &MasterCounts::retries,
-                                        &MasterCounts::aborts};
-    void add(const MasterCounts& other) {  // adds each counter
-      for (const auto count : kAll) this->*count += other.*count;
-    }
-    void subtract(const MasterCounts& other) {  // subtracts each counter
-      for (const auto count : kAll) this->*count -= other.*count;
-    }
-  };
-  // The counts of a slot.
-  struct MasterStats : MasterCounts {
-    std::string name;  // name in the configuration
   };
   // What the bus has counted since time 0.
   struct Stats {
@@ -94,33 +79,6 @@ class PciBusControl {
 
   // Counts up to `now_ps`.
   Stats stats(std::uint64_t now_ps) const;
-
-  // To skip bursts that repeat:
-  //
-  // The clock that the next decide() grants, and the first clock in which the request of a master counts;
-  // kNever if there is none.
-  std::uint64_t decision_clock() const { return decision_clock_; }
-  std::uint64_t request_clock(std::size_t master) const { return requests_[master].clock; }
-  // The earliest request_clock() of the masters that are not in `masters`.
-  using Masters = std::uint64_t;  // a bit for each slot
-  static constexpr Masters mask_of(std::size_t master) { return Masters{1} << master; }
-  std::uint64_t earliest_request_beside(Masters masters) const;
-  // The state between two bursts.
-  struct Position {
-    std::size_t last_granted = 0;  // slot
-    std::uint64_t free_clock = 0;  // the first clock in which the bus is free
-  };
-  Position position() const { return {last_granted_, free_clock_}; }  // between two bursts
-  // What has been done up to the end of the last burst, by one master or by all.
-  const MasterCounts& counts(std::size_t master) const { return master_stats_[master]; }
-  std::uint64_t transactions() const;
-  std::uint64_t busy_clocks() const { return busy_clocks_; }
-  // Called instead of decide(): grants the request of a master. `counts` are those of its bursts, which have
-  // ended.
-  void skip_bursts(std::size_t master, const MasterCounts& counts);
-  // To be called after skip_bursts() for all masters. `position`: the state after these bursts;
-  // `busy_clocks`: their clocks. The masters may then request again.
-  void skip_to(const Position& position, std::uint64_t busy_clocks);
 
  private:
   class Slot final : public PciSlot {
@@ -164,6 +122,8 @@ class PciBusControl {
   // These take requests.
   void request(std::size_t master, PciMasterIf& from, std::uint64_t from_ps);
   void await_request();
+  // The earliest clock of the requests, without that of this master. kNever: there is none.
+  std::uint64_t earliest_request(std::size_t without) const;
 
   // These step through a burst.
   void begin(std::uint64_t now_ps, std::size_t master, const PciBurst& burst, std::uint64_t request_clock,

@@ -50,11 +50,6 @@ class FastCore {
   // To be called instead of HostPort::route() unless a stepped frame runs.
   void route(const HostRoute& route);
 
-  // Whether a burst that accesses these bytes would be a hazard for the running frame.
-  bool is_hazard(const AddressRange& words, bool write) const {
-    return frames_.is_running() && direct_frame_.hazard_with(words, write);
-  }
-
   // Does what is due at `now_ps`. Returns the time of the next call; kNever: when a frame starts. A call is
   // also due when a burst begins to request. An event at the time of an edge belongs to the cycle that begins
   // there.

@@ -10,9 +10,6 @@ namespace {
 // After this number of groups with the same accesses, the walk expects more groups with these accesses.
 constexpr int kManyAlike = 8;
 
-// Cap: series that never repeat would otherwise fill memory.
-constexpr std::size_t kMostSeries = std::size_t{1} << 16U;
-
 // See FastForward::slots_ahead_.
 std::uint64_t slots_ahead(const FrameGeometry& geometry, int lane_fifo_slots) {
   if (geometry.lanes == 1) return static_cast<std::uint64_t>(lane_fifo_slots);
@@ -214,61 +211,6 @@ FastForward::Served FastForward::serve_host(std::uint64_t& cycle, const Route& r
   return served;
 }
 
-// Sets series_key_ for the state of the walk in `cycle`. Returns false if a series must not be looked up,
-// because it may differ the next time that it comes in this state.
-bool FastForward::set_series_key(std::uint64_t cycle, const std::vector<Burst>& bursts) {
-  if (!is_walking_ || varies() || refresh_left_ != UINT64_MAX || conflicts() != nullptr) return false;
-  series_key_.assign(1, state_);
-  for (const Burst& burst : bursts) {
-    if (!arbitration().is_shared(burst.route.bank)) return false;
-    series_key_.push_back(burst.first - cycle);
-    series_key_.push_back(burst.words << 8U | burst.route.bank << 1U | std::size_t{burst.route.write});
-  }
-  return true;
-}
-
-void FastForward::serve_series(std::uint64_t& cycle, const std::vector<Burst>& bursts) {
-  is_in_series_ = set_series_key(cycle, bursts);
-  if (const auto known = series_.find(series_key_); is_in_series_ && known != series_.end()) {
-    const Series& series = known->second;
-    if (series.progress.fits(room_of_area(UINT64_MAX)) && series.progress.consumed < room_.consumed) {
-      is_in_series_ = false;
-      route_host(cycle, bursts.back().route, cycle);
-      for (const auto& [effect, times] : series.followed) known_.follow({series.next, effect}, times);
-      host_ahead_.words += series.host.words;
-      host_ahead_.requests += series.host.requests;
-      state_ = series.next;
-      skip(series.progress);
-      change_area();
-      cycle += series.progress.cycles;
-      return;
-    }
-  }
-  const std::uint64_t skipped_to = cycle - skipped_cycles_;
-  const std::uint64_t area_end = area_end_;
-  const HostGrants host = host_ahead_;
-  Progress progress{cycle, consumed_, ahead_.words};
-  for (const Burst& burst : bursts) serve_host(cycle, burst.route, burst.first, burst.words);
-  const bool is_skipped = is_walking_ && cycle - skipped_cycles_ == skipped_to;
-  if (std::exchange(is_in_series_, false) && is_skipped && area_end_ == area_end) {
-    if (series_.size() >= kMostSeries) series_.clear();
-    Series& series = series_[series_key_];
-    series.next = state_;
-    series.progress = {cycle, consumed_, ahead_.words};
-    series.progress.subtract(progress);
-    series.host = {host_ahead_.words - host.words, 0, host_ahead_.requests - host.requests};
-    series.followed.clear();
-    std::sort(in_order_.begin(), in_order_.end(),
-              [](const auto& a, const auto& b) { return a.effect < b.effect; });
-    for (const TransitionCache::Followed& one : in_order_) {
-      if (series.followed.empty() || series.followed.back().first != one.effect)
-        series.followed.emplace_back(one.effect, 0);
-      series.followed.back().second += one.times;
-    }
-  }
-  if (conflicts() == nullptr) in_order_.clear();
-}
-
 // Routes the host to the bank. If a port was alone there until now, first runs the core up to `first`.
 void FastForward::route_host(std::uint64_t& cycle, const Route& route, std::uint64_t first) {
   memory::Arbitration& arbitration = this->arbitration();
@@ -327,7 +269,7 @@ void FastForward::begin_walk(std::uint64_t cycle) {
   if (!can_walk_) return;
   room_ = room();
   if (!holds_group(room_)) return;
-  if (known_.is_full()) clear_known();
+  if (known_.is_full()) known_.clear();
   state_ = state(cycle);
   consumed_ = control().match().consumed();
   left_of_group_ = control().match().cycles_of_group_left();

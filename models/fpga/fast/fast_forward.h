@@ -5,8 +5,6 @@
 #include <cstdint>
 #include <map>
 #include <optional>
-#include <unordered_map>
-#include <utility>
 #include <vector>
 
 #include "models/fpga/access_pattern.h"
@@ -72,16 +70,6 @@ class FastForward : public CoreStepper {
   // before `first`. Returns early if the frame is done, or kMostHostCycles after the first request. Sets
   // `cycle` to the next cycle; only a call of another function takes the core there.
   Served serve_host(std::uint64_t& cycle, const Route& route, std::uint64_t first, std::size_t words);
-  // Bursts of the host that come one after the other.
-  struct Burst {
-    Route route;
-    std::uint64_t first = 0;  // the first cycle in which its words request
-    std::size_t words = 0;
-  };
-  // Runs the core from `cycle` on until all words of the bursts are granted, as serve_host() does for each of
-  // them. A series that comes again in the same state is skipped in one step. The frame cannot end before the
-  // last word, and each burst must end before the next one begins.
-  void serve_series(std::uint64_t& cycle, const std::vector<Burst>& bursts);
   // The number of cycles that were skipped and not stepped, over all frames.
   std::uint64_t skipped_cycles() const { return skipped_cycles_; }
   // The cycles that were skipped so far, but not by the core: its control has the state before them.
@@ -105,14 +93,6 @@ class FastForward : public CoreStepper {
     CoreControl::Counts counts;
     std::uint64_t part;          // MatchControl::part()
     std::uint64_t refresh_left;  // refresh_left_
-  };
-
-  // What serve_series() has done from one state on.
-  struct Series {
-    StateNumber next = 0;
-    Progress progress;
-    HostGrants host;                                                // without HostGrants::cycles
-    std::vector<std::pair<std::uint32_t, std::uint64_t>> followed;  // effects, and how often each
   };
 
   template <bool kMayRequest>
@@ -148,14 +128,8 @@ class FastForward : public CoreStepper {
   std::optional<TransitionCache::Transition> find_host(std::uint64_t cycle);
   bool fits_host(const TransitionCache::Transition& transition) const;
   void follow(const TransitionCache::Transition& transition, std::uint64_t cycle);
-  // Where the recorder of the frame, or serve_series(), finds the transitions that were followed; null if
-  // nobody needs them.
-  TransitionCache::Log* log() { return conflicts() != nullptr || is_in_series_ ? &in_order_ : nullptr; }
-  bool set_series_key(std::uint64_t cycle, const std::vector<Burst>& bursts);
-  void clear_known() {
-    known_.clear();
-    series_.clear();
-  }
+  // Where the recorder of the frame finds the transitions that were followed; null if there is none.
+  TransitionCache::Log* log() { return conflicts() != nullptr ? &in_order_ : nullptr; }
   void skip(const Progress& progress);
   // Reports what has been skipped to the recorder of the frame, if there is one. `left_of_group`:
   // left_of_group_ before it was skipped. Returns true at the end of a strip: more may be skipped then.
@@ -224,10 +198,6 @@ class FastForward : public CoreStepper {
   TransitionCache::Accesses accesses_;
   TransitionCache::Accesses accesses_before_;
   std::optional<Stepped> stepped_;
-  // [key of set_series_key()]
-  std::unordered_map<memory::StateWords, Series, TransitionCache::StateHash> series_;
-  memory::StateWords series_key_;
-  bool is_in_series_ = false;                    // a series is being recorded
   memory::StateWords state_words_;               // of state()
   memory::StateWords last_words_;                // of last_words()
   std::vector<std::int64_t> refreshes_;          // of find_refreshes()
