@@ -234,35 +234,4 @@ constexpr MatchLoops loops_of() {
           Cost::kUnpacks, add_row_with<Cost>, match_row_with<Cost>};
 }
 
-// Returns kScale * (lower byte - upper byte) of each lane. The bytes must be small enough for 16 bits.
-template <int kScale>
-Int16s difference_of_bytes(Bytes bytes) {
-#if defined(__AVX512BW__)
-  const Int16s weights = int16s((kScale & 0xFF) - kScale * 256);
-  return reinterpret_cast<Int16s>(
-      _mm512_maddubs_epi16(reinterpret_cast<__m512i>(bytes), reinterpret_cast<__m512i>(weights)));
-#elif defined(__AVX2__)
-  const Int16s weights = int16s((kScale & 0xFF) - kScale * 256);
-  return reinterpret_cast<Int16s>(
-      _mm256_maddubs_epi16(reinterpret_cast<__m256i>(bytes), reinterpret_cast<__m256i>(weights)));
-#else
-  const auto lanes = reinterpret_cast<Int16s>(bytes);
-  return ((lanes & 0xFF) - (lanes >> 8 & 0xFF)) * static_cast<std::int16_t>(kScale);
-#endif
-}
-
-// Stores the pixels of even lanes and those of odd lanes as pairs of 16 bits: the pixel that enters the
-// window times kEntering, and the pixel that leaves it times kLeaving.
-template <int kEntering, int kLeaving>
-void unpack(const std::int16_t* pixels, int positions, std::int16_t* out) {
-  const auto factors = reinterpret_cast<Int16s>(int32s((kEntering & 0xFFFF) + kLeaving * 65536));
-  for (std::ptrdiff_t p = 0; p < positions; ++p) {
-    const auto bytes = load<Int32s>(pixels + p * kLanes);
-    const Int32s even = (bytes & 0xFF) | (bytes & 0xFF00) << 8;
-    const Int32s odd = (bytes >> 16 & 0xFF) | (bytes >> 8 & 0xFF0000);
-    store(reinterpret_cast<Int16s>(even) * factors, out + 2 * p * kLanes);
-    store(reinterpret_cast<Int16s>(odd) * factors, out + (2 * p + 1) * kLanes);
-  }
-}
-
 }  // namespace stereotlm::kernels::STEREOTLM_SIMD
