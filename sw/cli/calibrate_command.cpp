@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "calib/depth.h"
+#include "calib/grid_sheet.h"
 #include "calib/synthetic_rig.h"
 #include "calib/tables.h"
 #include "models/fpga/core_config.h"
@@ -154,7 +155,7 @@ constexpr int kDefaultDisparities = 80;
 
 constexpr const char* kCalibrateExample =
     "stereotlm calibrate --left 'left*.jpg' --right 'right*.jpg' --grid 9x6 --square-mm 25 --out rig.yaml";
-constexpr const char* kPrintExample = "stereotlm calibrate --print-grid 9x6 --square-mm 25 --out grid.pdf";
+constexpr const char* kPrintExample = "stereotlm calibrate --print-grid 9x6 --square-mm 25 --out grid.svg";
 constexpr const char* kGridRule = "columns x rows of inner corners, such as 9x6";
 
 // Sets columns and rows; returns false if the text is not CxR.
@@ -186,14 +187,12 @@ struct CalibrateOptions : Options {
   using Options::Options;
 
   void check_together(process::Problems& problems) override {
-    const std::string extension = std::filesystem::path(out.text()).extension();
     if (print_grid.is_given()) {
       for (const Option* option : {&grid, &left, &right, &synthetic, &disparities, &offset}) {
         if (option->is_given())
           problems.add(fmt::format("{}: does not go with --print-grid", option->name()));
       }
-      if (out.is_given() && extension != ".pdf" && extension != ".svg")
-        problems.add(fmt::format("--out '{}': must end in .pdf or .svg", out.text()));
+      ends_in(".svg")(out, problems);
     } else {
       if (!grid.is_given()) problems.add(fmt::format("--grid: missing: {}", kGridRule));
       if (synthetic.is_given() && (left.is_given() || right.is_given()))
@@ -261,8 +260,8 @@ struct CalibrateOptions : Options {
       Option(this, "--out", "F.yaml",
              "The calibration; the tables F_left.lut and F_right.lut and the drawings F_drawings/ go beside "
              "it. With "
-             "--print-grid the sheet, F.pdf or F.svg",
-             {required("the calibration, F.yaml, or the sheet of --print-grid, F.pdf or F.svg")});
+             "--print-grid the sheet, F.svg",
+             {required("the calibration, F.yaml, or the sheet of --print-grid, F.svg")});
 };
 
 using Names = std::vector<std::string>;
@@ -373,12 +372,7 @@ int leave_unwritten() { return interrupted("nothing was written"); }
 int print_grid(const CalibrateOptions& options) {
   const calib::GridShape grid = options.grid_shape();
   process::catch_interrupts();
-  std::string sheet;
-  process::attempt_or_refuse("--print-grid: ", [&] {
-    const bool is_pdf = fs::path(options.out.text()).extension() == ".pdf";
-    const runs::CalibrationFunctions& functions = runs::calibration_functions();
-    sheet = is_pdf ? functions.grid_sheet_pdf(grid) : functions.grid_sheet_svg(grid);
-  });
+  const std::string sheet = calib::grid_sheet_svg(grid);
   const files::FileKind kind = {"sheet of the same grid", [&sheet](const fs::path& earlier) {
                                   return files::read_whole_file(earlier) == sheet;
                                 }};

@@ -2,7 +2,6 @@
 
 #include "calib/calibrate.h"
 #include "calib/drawings.h"
-#include "calib/grid_sheet.h"
 
 namespace stereotlm::runs {
 
@@ -19,9 +18,6 @@ struct CalibrationFunctions {
   decltype(&calib::encode_displacement_png) encode_displacement_png;
   decltype(&calib::encode_source_lines_png) encode_source_lines_png;
   decltype(&calib::encode_depth_color_png) encode_depth_color_png;
-  // grid_sheet.h
-  decltype(&calib::grid_sheet_pdf) grid_sheet_pdf;
-  decltype(&calib::grid_sheet_svg) grid_sheet_svg;
 };
 
 // Throws std::runtime_error if the library, which is installed with the program, cannot be loaded.

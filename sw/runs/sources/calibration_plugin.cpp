@@ -31,7 +31,5 @@ const stereotlm::runs::CalibrationFunctions stereotlm_calibration_functions = {
     calib::encode_rectified_pair_png,
     calib::encode_displacement_png,
     calib::encode_source_lines_png,
-    calib::encode_depth_color_png,
-    calib::grid_sheet_pdf,
-    calib::grid_sheet_svg};
+    calib::encode_depth_color_png};
 }
